@@ -1,0 +1,78 @@
+"""Theory of gases of rough, inelastic disks and spheres: closed forms and rate equations.
+
+Everything is a function of plain numbers or numpy arrays that broadcast against each other, in
+double precision; plain numbers give a numpy float back. Arguments are checked: an illegal one
+raises `roughgas.errors.InputError`.
+
+Units: particle radius a, mass m and time unit T are 1. A granular temperature is T = 2 E, twice the
+kinetic energy per degree of freedom: T_tr = m <v^2>/D and T_rot = m q a^2 <omega^2>/(2D-3), in
+m a^2/T^2. theta = T_rot/T_tr = 1/K and R = theta/(1 + theta). Time is often counted in collisions
+per particle: one collision counts for both its particles.
+"""
+
+from roughgas.theory.arguments import moment_of_inertia
+from roughgas.theory.closed_forms import (
+    a_G,
+    b_G,
+    c_G,
+    cooling_K,
+    cooling_ratio,
+    goldshtein_ratio,
+    lun_ratio,
+)
+from roughgas.theory.collision_energies import (
+    mean_normal_squared,
+    mean_spin_squared,
+    mean_tangential_squared,
+    rotational_energy_change,
+    translational_energy_change,
+)
+from roughgas.theory.frequencies import (
+    collision_frequency,
+    contact_value,
+    mean_free_path,
+    number_density,
+)
+from roughgas.theory.haff import decay_rate, haff_temperature, haff_time
+from roughgas.theory.rate_equations import (
+    Rates,
+    collision_rates,
+    drive_changes,
+    stationary_ratio,
+    stationary_theta,
+    temperature_changes,
+)
+from roughgas.theory.relaxation import Relaxation, collisions_to_relax, relax, relaxation_rate
+
+__all__ = [
+    "Rates",
+    "Relaxation",
+    "a_G",
+    "b_G",
+    "c_G",
+    "collision_frequency",
+    "collision_rates",
+    "collisions_to_relax",
+    "contact_value",
+    "cooling_K",
+    "cooling_ratio",
+    "decay_rate",
+    "drive_changes",
+    "goldshtein_ratio",
+    "haff_temperature",
+    "haff_time",
+    "lun_ratio",
+    "mean_free_path",
+    "mean_normal_squared",
+    "mean_spin_squared",
+    "mean_tangential_squared",
+    "moment_of_inertia",
+    "number_density",
+    "relax",
+    "relaxation_rate",
+    "rotational_energy_change",
+    "stationary_ratio",
+    "stationary_theta",
+    "temperature_changes",
+    "translational_energy_change",
+]

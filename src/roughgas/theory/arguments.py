@@ -1,0 +1,86 @@
+"""Checks of the arguments of theory: each returns them as double precision arrays.
+
+All raise InputError with the name of the argument, the first illegal value and what is legal. NaN
+and what is not a number are illegal everywhere.
+"""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from roughgas.errors import InputError
+
+
+class Material(NamedTuple):
+    """Checked properties of the particles: r, beta and q are arrays, D an int."""
+
+    r: np.ndarray
+    beta: np.ndarray
+    dimension: int
+    inertia: np.ndarray
+
+
+def moment_of_inertia(dimension: int) -> float:
+    """Dimensionless moment of inertia q = I/(m a^2) of a uniform disk (1/2) or sphere (2/5)."""
+    return {2: 1 / 2, 3: 2 / 5}[check_dimension(dimension)]
+
+
+def material(r, beta, dimension=2, inertia=None) -> Material:
+    """Check r, beta, D and q at once; q defaults to that of uniform disks or spheres."""
+    dimension = check_dimension(dimension)
+    inertia = moment_of_inertia(dimension) if inertia is None else inertia
+    return Material(check_restitution(r), check_roughness(beta), dimension, check_inertia(inertia))
+
+
+def check_restitution(r) -> np.ndarray:
+    """Normal restitution r, in [0, 1]."""
+    return check_between("restitution r", r, 0, 1)
+
+
+def check_roughness(beta) -> np.ndarray:
+    """Tangential restitution beta, in [-1, 1]: smooth at -1, perfectly rough at 1."""
+    return check_between("roughness beta", beta, -1, 1)
+
+
+def check_inertia(q) -> np.ndarray:
+    """Dimensionless moment of inertia q, positive and finite."""
+    return _checked("inertia q", q, "be a positive number", lambda x: (x > 0) & (x < np.inf))
+
+
+def check_dimension(dimension) -> int:
+    """Number of dimensions D, 2 or 3."""
+    if np.ndim(dimension) or dimension not in (2, 3):
+        raise InputError("dimension", dimension, "be 2 or 3")
+    return int(dimension)
+
+
+def check_share(spin_share) -> np.ndarray:
+    """Share s of a drive's power that goes into spin, in [0, 1]."""
+    return check_between("spin share of the drive", spin_share, 0, 1)
+
+
+def check_between(key: str, value, low: float, high: float) -> np.ndarray:
+    """A number in [low, high]."""
+    return _checked(key, value, f"lie in [{low}, {high}]", lambda x: (x >= low) & (x <= high))
+
+
+def check_not_negative(key: str, value) -> np.ndarray:
+    """A finite number that is zero or positive."""
+    return _checked(key, value, "be a number >= 0", lambda x: (x >= 0) & (x < np.inf))
+
+
+def check_fraction(key: str, value) -> np.ndarray:
+    """A number in (0, 1), the ends excluded."""
+    return _checked(key, value, "lie in (0, 1)", lambda x: (x > 0) & (x < 1))
+
+
+def _checked(key: str, value, legal: str, accepts: Callable) -> np.ndarray:
+    array = np.asarray(value)
+    if array.dtype.kind not in "iuf":
+        raise InputError(key, value, legal)
+    array = array.astype(float)
+    illegal = ~accepts(array)
+    if illegal.any():
+        raise InputError(key, array[illegal].flat[0], legal)
+    return array

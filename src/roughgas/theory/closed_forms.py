@@ -1,0 +1,78 @@
+"""Closed forms for R = E_rot/(E_rot + E_tr), the share of rotational energy per degree of freedom.
+
+Source: McNamara & Luding (1998). r and beta are the normal and tangential restitution, q the
+`inertia` I/(m a^2) and D the `dimension`. r, beta and q broadcast against each other; all raise
+InputError for r outside [0, 1], beta outside [-1, 1], q <= 0, D other than 2 or 3, and NaN.
+"""
+
+import numpy as np
+
+from roughgas.theory.arguments import check_inertia, check_restitution, check_roughness, material
+from roughgas.theory.shares import positive_root, quotient, shares
+
+
+def lun_ratio(beta, inertia) -> np.ndarray:
+    """R of a gas whose drive adds translational energy only: Eq. (lun), for any D and r."""
+    beta, q = check_roughness(beta), check_inertia(inertia)
+    gain = q * (1 + beta)
+    return gain / (gain + (1 - beta) + 2 * q)
+
+
+def goldshtein_ratio(r, beta, inertia=2 / 5) -> np.ndarray:
+    """R of a freely cooling gas of spheres: Eq. (Goldshtein), without its cancellation for a_G > 0.
+
+    Limits as in `cooling_ratio`.
+    """
+    a, b = a_G(r, beta, inertia), b_G(beta, inertia)
+    root = np.sqrt(a**2 + b**2)
+    size = np.abs(a)
+    rough = quotient(b, b + root) * (1 + quotient(b, root + size)) / 2
+    smooth = (1 + quotient(size, b + root)) / 2
+    return np.where((a > 0) | (root == 0), rough, smooth)[()]
+
+
+def cooling_ratio(r, beta, dimension=2, inertia=None) -> np.ndarray:
+    """R = 1/(1 + K) of a freely cooling gas, K from Eq. (K).
+
+    Accurate to 1e-14 of R up to the ends of the ranges of r and beta, apart from what the
+    rounding of r and beta themselves leaves open: near beta = -1 and r = 1, where R is a steep
+    function of (1 - r)/(1 + beta). Limits: R = 1/2 at r = beta = 1. At beta = -1, where spin is
+    decoupled, the limit beta -> -1 from above: R = 1 for r < 1 (spin outlives translation), and
+    R = 0 at r = 1 (the limit along r = 1 of all q < 1).
+    """
+    return _cooling_shares(r, beta, dimension, inertia)[1][()]
+
+
+def cooling_K(r, beta, dimension=2, inertia=None) -> np.ndarray:
+    """K = E_tr/E_rot of a freely cooling gas: the positive root of Eq. (K).
+
+    Limits as in `cooling_ratio`: K = 0 at beta = -1 and r < 1, K infinite at beta = -1 and r = 1.
+    """
+    return quotient(*_cooling_shares(r, beta, dimension, inertia))
+
+
+def a_G(r, beta, inertia) -> np.ndarray:
+    """a_G = (1 - beta^2)(1 - q)/(1 + q) - 1 + r^2, below Eq. (Goldshtein)."""
+    r, beta, q = check_restitution(r), check_roughness(beta), check_inertia(inertia)
+    return (1 - beta) * (1 + beta) * (1 - q) / (1 + q) - (1 - r) * (1 + r)
+
+
+def b_G(beta, inertia) -> np.ndarray:
+    """b_G = 2 q (1 + beta)^2/(1 + q)^2, below Eq. (Goldshtein)."""
+    beta, q = check_roughness(beta), check_inertia(inertia)
+    return 2 * q * ((1 + beta) / (1 + q)) ** 2
+
+
+def c_G(beta, inertia) -> np.ndarray:
+    """c_G = (1 + beta)(2 q + q^2 - beta q^2)/(1 + q)^2, below Eq. (K)."""
+    beta, q = check_roughness(beta), check_inertia(inertia)
+    return (1 + beta) * (2 * q + q**2 * (1 - beta)) / (1 + q) ** 2
+
+
+def _cooling_shares(r, beta, dimension, inertia) -> tuple[np.ndarray, np.ndarray]:
+    """1 - R and R: shares of the energy per degree of freedom, with alpha = 2/(D - 1)."""
+    r, beta, dimension, q = material(r, beta, dimension, inertia)
+    alpha = 2 / (dimension - 1)
+    b = b_G(beta, q)
+    linear = alpha * a_G(r, beta, q) + (alpha - 1) * c_G(beta, q)
+    return shares(*positive_root(alpha * b / 2, linear, b / 2), neither=0)

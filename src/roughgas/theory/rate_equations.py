@@ -1,0 +1,106 @@
+"""Rate equations for the two granular temperatures, and where they are stationary.
+
+They are McNamara & Luding (1998), Eqs. (deltaEt) and (deltaEr), averaged over the collisions of a
+Maxwellian gas with eta = q (1 + beta)/[2 (1 + q)], nu collisions per particle per time:
+
+    dT_tr/dt  = (nu/D) {-[(1-r^2) + 2(D-1) eta (1-eta)] T_tr + 2(D-1) (eta^2/q) T_rot} + drive
+    dT_rot/dt = (2(D-1) nu/(2D-3)) {(eta^2/q) T_tr - (eta/q) (1-eta/q) T_rot} + drive
+
+A drive is described by `spin_share`, the share s in [0, 1] of its power that goes into spin: 0 is
+translational, 1 rotational driving, and None no drive: free cooling.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from roughgas.theory.arguments import check_dimension, check_not_negative, check_share, material
+from roughgas.theory.shares import positive_root, quotient, shares
+
+
+class Rates(NamedTuple):
+    """Coefficients of the rate equations, all >= 0, per collision per particle.
+
+    With n counting collisions per particle: dT_tr/dn = -translational_loss T_tr +
+    translational_gain T_rot and dT_rot/dn = rotational_gain T_tr - rotational_loss T_rot.
+    """
+
+    translational_loss: np.ndarray
+    translational_gain: np.ndarray
+    rotational_gain: np.ndarray
+    rotational_loss: np.ndarray
+
+
+def collision_rates(r, beta, dimension=2, inertia=None) -> Rates:
+    """Coefficients of the rate equations; r, beta and q broadcast. Raises InputError."""
+    r, beta, dimension, q = material(r, beta, dimension, inertia)
+    eta = q * (1 + beta) / (2 * (1 + q))
+    # 1 - eta and 1 - eta/q from sums of positive terms, exact towards beta = 1 and small q.
+    kept = (2 + q * (1 - beta)) / (2 * (1 + q))
+    kept_spin = (2 * q + 1 - beta) / (2 * (1 + q))
+    tangential, spins = 2 * (dimension - 1), 2 * dimension - 3
+    return Rates(
+        translational_loss=((1 - r) * (1 + r) + tangential * eta * kept) / dimension,
+        translational_gain=tangential * eta**2 / q / dimension,
+        rotational_gain=tangential * eta**2 / q / spins,
+        rotational_loss=tangential * (eta / q) * kept_spin / spins,
+    )
+
+
+def temperature_changes(
+    T_tr, T_rot, r, beta, dimension=2, inertia=None, frequency=1.0
+) -> tuple[np.ndarray, np.ndarray]:
+    """dT_tr/dt and dT_rot/dt due to collisions, `frequency` being nu, e.g. `collision_frequency`.
+
+    With the frequency 1 left as it is, they are per collision per particle. All arguments but D
+    broadcast; raises InputError for negative temperatures or frequencies too.
+    """
+    T_tr = check_not_negative("temperature T_tr", T_tr)
+    T_rot = check_not_negative("temperature T_rot", T_rot)
+    nu = check_not_negative("frequency", frequency)
+    rates = collision_rates(r, beta, dimension, inertia)
+    return (
+        nu * (rates.translational_gain * T_rot - rates.translational_loss * T_tr),
+        nu * (rates.rotational_gain * T_tr - rates.rotational_loss * T_rot),
+    )
+
+
+def drive_changes(power, spin_share, dimension=2) -> tuple[np.ndarray, np.ndarray]:
+    """dT_tr/dt and dT_rot/dt due to a drive of `power` per particle (m a^2/T^3)."""
+    power, share = check_not_negative("power", power), check_share(spin_share)
+    dimension = check_dimension(dimension)
+    return 2 * (1 - share) * power / dimension, 2 * share * power / (2 * dimension - 3)
+
+
+def stationary_ratio(r, beta, dimension=2, inertia=None, spin_share=None) -> np.ndarray:
+    """Stationary R = T_rot/(T_rot + T_tr): Eq. (K) without a drive, Eq. (lun) at spin_share 0.
+
+    At spin_share 1 it is theta = A/B, the loss over the gain of T_tr. In general translation and
+    spin lose energy to collisions as (1 - s) : s, whatever the power and however it varies. Limits
+    at beta = -1 are those of beta -> -1 (without a drive, see `cooling_ratio`). Raises InputError.
+    """
+    return stationary_shares(r, beta, dimension, inertia, spin_share)[1][()]
+
+
+def stationary_theta(r, beta, dimension=2, inertia=None, spin_share=None) -> np.ndarray:
+    """Stationary theta = T_rot/T_tr; infinite where R = 1. See `stationary_ratio`."""
+    translational, rotational = stationary_shares(r, beta, dimension, inertia, spin_share)
+    return quotient(rotational, translational)
+
+
+def stationary_shares(r, beta, dimension=2, inertia=None, spin_share=None):
+    """Stationary T_tr and T_rot as shares of their sum: 1 - R and R."""
+    r, beta, dimension, q = material(r, beta, dimension, inertia)
+    rates = collision_rates(r, beta, dimension, q)
+    if spin_share is None:
+        difference = rates.translational_loss - rates.rotational_loss
+        rotational, translational = positive_root(
+            rates.translational_gain, difference, rates.rotational_gain
+        )
+        return shares(translational, rotational, neither=0)
+    s, spins = check_share(spin_share), 2 * dimension - 3
+    rotational = s * dimension * rates.translational_loss + (1 - s) * spins * rates.rotational_gain
+    translational = (
+        s * dimension * rates.translational_gain + (1 - s) * spins * rates.rotational_loss
+    )
+    return shares(translational, rotational, neither=s * q / (s * q + 1 - s))

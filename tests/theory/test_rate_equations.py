@@ -1,0 +1,105 @@
+"""The rate equations: the paper's averages put into its energy changes, and their steady states."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from roughgas import theory
+
+interior = {
+    "r": st.floats(0, 1),
+    "beta": st.floats(-0.999, 1),
+    "q": st.floats(0.05, 1),
+    "dimension": st.sampled_from([2, 3]),
+}
+share = st.floats(0, 1)
+
+
+@settings(derandomize=True, deadline=None)
+@given(**interior, T_tr=st.floats(0, 5), T_rot=st.floats(0, 5))
+def test_rates_are_the_averaged_energy_changes(r, beta, q, dimension, T_tr, T_rot):
+    v_t2 = theory.mean_tangential_squared(T_tr / 2, dimension)
+    v_r2 = theory.mean_spin_squared(T_rot / 2, dimension, q)
+    v_n2 = theory.mean_normal_squared(T_tr / 2)
+    rate_tr, rate_rot = theory.temperature_changes(T_tr, T_rot, r, beta, dimension, q, 3.0)
+    change_tr = theory.translational_energy_change(v_n2, v_t2, 0, v_r2, r, beta, q)
+    change_rot = theory.rotational_energy_change(v_t2, 0, v_r2, beta, q)
+    assert rate_tr == pytest.approx(3 * change_tr / dimension, abs=1e-12)
+    assert rate_rot == pytest.approx(3 * change_rot / (2 * dimension - 3), abs=1e-11)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_rates_are_those_written_down(dimension):
+    r, beta, q, T_tr, T_rot, nu = 0.7, 0.2, 0.45, 1.3, 0.8, 2.0
+    eta, pairs = q * (1 + beta) / (2 * (1 + q)), 2 * (dimension - 1)
+    loss = (1 - r**2) + pairs * eta * (1 - eta)
+    by_hand_tr = nu / dimension * (-loss * T_tr + pairs * eta**2 / q * T_rot)
+    by_hand_rot = eta**2 / q * T_tr - eta / q * (1 - eta / q) * T_rot
+    by_hand_rot *= pairs * nu / (2 * dimension - 3)
+    rates = theory.temperature_changes(T_tr, T_rot, r, beta, dimension, q, nu)
+    assert rates == pytest.approx((by_hand_tr, by_hand_rot), rel=1e-14)
+
+
+@settings(derandomize=True, deadline=None)
+@given(**interior)
+def test_free_cooling_is_stationary_at_equation_K(r, beta, q, dimension):
+    R = theory.stationary_ratio(r, beta, dimension, q)
+    assert pytest.approx(theory.cooling_ratio(r, beta, dimension, q), rel=1e-10) == R
+    rate_tr, rate_rot = theory.temperature_changes(1 - R, R, r, beta, dimension, q)
+    assert R * rate_tr == pytest.approx((1 - R) * rate_rot, abs=1e-14)
+
+
+@settings(derandomize=True, deadline=None)
+@given(**interior)
+def test_translational_drive_is_equation_lun(r, beta, q, dimension):
+    R = theory.stationary_ratio(r, beta, dimension, q, spin_share=0)
+    assert pytest.approx(theory.lun_ratio(beta, q), rel=1e-13) == R
+
+
+@settings(derandomize=True, deadline=None)
+@given(r=st.floats(0, 1), beta=st.floats(-0.999, 1), q=st.floats(0.05, 1))
+def test_rotational_drive_of_disks_is_A_over_B(r, beta, q):
+    eta = q * (1 + beta) / (2 * (1 + q))
+    A, B = (1 - r**2) / 4 + eta * (1 - eta) / 2, eta**2 / (2 * q)
+    theta = theory.stationary_theta(r, beta, 2, q, spin_share=1)
+    assert theta == pytest.approx(A / B, rel=1e-12)
+
+
+@settings(derandomize=True, deadline=None)
+@given(**interior, s=share)
+def test_drive_balances_collisions_where_stationary(r, beta, q, dimension, s):
+    """With the power that the collisions dissipate, both temperatures stand still."""
+    R = theory.stationary_ratio(r, beta, dimension, q, spin_share=s)
+    by_collisions = theory.temperature_changes(1 - R, R, r, beta, dimension, q)
+    power = -(dimension * by_collisions[0] + (2 * dimension - 3) * by_collisions[1]) / 2
+    by_drive = theory.drive_changes(max(power, 0), s, dimension)
+    assert np.add(by_collisions, by_drive) == pytest.approx(0, abs=1e-14)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_R_grows_with_the_share_of_spin_between_the_two_limits(dimension):
+    shares = np.linspace(0, 1, 21)
+    R = theory.stationary_ratio(0.9, -0.3, dimension, spin_share=shares)
+    assert R[0] == pytest.approx(theory.lun_ratio(-0.3, theory.moment_of_inertia(dimension)))
+    assert R[-1] > 0.5 > R[0]
+    assert (np.diff(R) > 0).all()
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("s", [None, 0, 0.3, 1])
+@pytest.mark.parametrize("r", [0.5, 1])
+def test_smooth_limit_is_approached_from_above(dimension, s, r):
+    at, near = theory.stationary_ratio(r, np.array([-1, -1 + 1e-10]), dimension, spin_share=s)
+    assert at == pytest.approx(near, abs=1e-8)
+
+
+@pytest.mark.parametrize("s", [None, 0, 0.5, 1])
+def test_elastic_rough_particles_share_energy_equally(s):
+    assert theory.stationary_theta(1, 1, 2, spin_share=s) == pytest.approx(1, rel=1e-14)
+    assert theory.stationary_theta(1, 1, 3, spin_share=s) == pytest.approx(1, rel=1e-14)
+
+
+def test_theta_is_infinite_where_all_energy_is_spin():
+    assert np.isinf(theory.stationary_theta(0.9, -1))
+    assert theory.stationary_theta(0.9, -1, spin_share=0) == 0
