@@ -1,0 +1,37 @@
+"""Uniform shear through Lees-Edwards boundaries.
+
+The box is periodic; its image above (along the second axis) moves along the first axis at the
+velocity U, the one below at -U. What leaves at the top enters at the bottom with U less.
+"""
+
+from typing import NamedTuple
+
+from roughgas.effects.settings import number
+from roughgas.errors import InputError
+from roughgas.kernel.jit import jit
+
+
+class Shear(NamedTuple):
+    """Images above the box slide."""
+
+    velocity: float  # U, in a/T
+    length: float  # of the box along the first axis, in a
+
+    @classmethod
+    def from_settings(cls, settings, around):
+        if None in around.box[:2]:
+            raise InputError(
+                "effects.shear", "given", "come with a box periodic in both directions"
+            )
+        return cls(number(settings, "shear", "velocity"), around.box[0])
+
+
+@jit
+def phase(shear, index, base):
+    """Offset of the image above at absolute time `base`, from 0 to L."""
+    return shear.velocity * (base % (shear.length / abs(shear.velocity)))
+
+
+@jit
+def sliding(shear, index, none, state, time):
+    return state.phase[index] + shear.velocity * time, shear.velocity

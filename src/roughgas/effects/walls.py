@@ -1,0 +1,44 @@
+"""Resting side walls that close the first axis, with a material of their own."""
+
+import math
+from typing import NamedTuple
+
+from roughgas.effects.settings import material
+from roughgas.kernel.contact import collide_with_wall
+from roughgas.kernel.flight import whereabouts
+from roughgas.kernel.jit import jit
+from roughgas.kernel.vectors import along_first
+
+LEFT, RIGHT = 0, 1
+
+
+class Walls(NamedTuple):
+    """Walls at 0 and at `width` along the first axis."""
+
+    width: float  # in a
+    restitution: float
+    roughness: float
+
+    @classmethod
+    def from_settings(cls, settings, around):
+        return cls(around.box[0], *material(settings, "walls", around))
+
+
+@jit
+def predict(walls, index, state, scene, i):
+    time = state.trajectory[i, 2 * len(scene.box)]
+    position, velocity = whereabouts(state, scene, i, time)
+    speed = velocity[0]
+    if speed < 0.0:
+        return time + max(0.0, (position[0] - 1.0) / -speed), LEFT
+    if speed > 0.0:
+        return time + max(0.0, (walls.width - 1.0 - position[0]) / speed), RIGHT
+    return math.inf, LEFT
+
+
+@jit
+def resolve(walls, index, what, state, scene, i, time):
+    normal = along_first(scene.box, 1.0 if what == LEFT else -1.0)
+    material = (walls.restitution, walls.roughness)
+    at_rest = along_first(scene.box, 0.0)
+    collide_with_wall(state, scene, index, i, time, material, normal, at_rest, 0.0)

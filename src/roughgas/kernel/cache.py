@@ -1,0 +1,58 @@
+"""Where compiled kernels are kept between runs.
+
+Numba's disk cache notices an edit only in the file of the function that is looked up, not in the
+files of the functions which that one calls: a kernel could outlive an edit and give yesterday's
+numbers. The folder is therefore named by a hash of every source that machine code is made from.
+"""
+
+import hashlib
+import os
+import tempfile
+from pathlib import Path
+
+PACKAGE = Path(__file__).resolve().parent.parent
+COMPILED_ROOMS = ("kernel", "effects")
+
+
+def source_hash():
+    """Hex digest over the sources that are compiled, and the versions of the compilers."""
+    import llvmlite
+    import numba
+
+    digest = hashlib.sha256(f"numba {numba.__version__} llvmlite {llvmlite.__version__}".encode())
+    for path in compiled_sources():
+        digest.update(path.name.encode() + b"\0" + path.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+def compiled_sources():
+    """Every source file that shapes the machine code, in a fixed order."""
+    return [p for room in COMPILED_ROOMS for p in sorted((PACKAGE / room).glob("*.py"))]
+
+
+def use_source_keyed_folder():
+    """Point numba's disk cache at the folder that belongs to these sources.
+
+    ROUGHGAS_CACHE_DIR, then XDG_CACHE_HOME, then ~/.cache hold it; where none can be written (a
+    read-only home), a folder of the system's temporary directory does.
+    """
+    import numba
+
+    folder = _cache_root() / f"kernels-{source_hash()}"
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        writable = os.access(folder, os.W_OK)
+    except OSError:
+        writable = False
+    if not writable:
+        folder = Path(tempfile.gettempdir()) / f"roughgas-{os.getuid()}" / folder.name
+        folder.mkdir(parents=True, exist_ok=True)
+    numba.config.CACHE_DIR = str(folder)
+    return folder
+
+
+def _cache_root():
+    chosen = os.environ.get("ROUGHGAS_CACHE_DIR")
+    if chosen:
+        return Path(chosen)
+    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "roughgas"

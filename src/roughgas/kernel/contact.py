@@ -1,0 +1,155 @@
+"""What a contact does to velocities and spins.
+
+McNamara & Luding (1998), Eq. (collrule), with n from particle 2 to particle 1 and the contact
+velocity g = v1 - v2 - a (w1 + w2) x n:
+
+    v1,2' = v1,2 -+ (1 + r)/2 g_n n -+ q (1 + beta)/(2 + 2q) g_t
+    a w1,2' = a w1,2 + (1 + beta)/(2 + 2q) n x g_t
+
+A wall is a partner of infinite mass: both prefactors double, and n points into the gas.
+"""
+
+import math
+
+from numba import types
+from numba.extending import overload
+
+from roughgas.kernel import hooks
+from roughgas.kernel.flight import arrive, put
+from roughgas.kernel.images import image_numbers, shifted
+from roughgas.kernel.jit import jit
+from roughgas.kernel.spins import book_spin, spin_of, spin_sum, turn_spin
+from roughgas.kernel.state import (
+    BOUNDARY_HITS,
+    COLLISIONS,
+    LAST_FIRST,
+    LAST_SECOND,
+    TOUCHED,
+    TYPICAL_SPEED,
+)
+from roughgas.kernel.vectors import (
+    add_scaled,
+    cross_to_spin,
+    dot,
+    scale,
+    spin_cross,
+    subtract,
+)
+
+# Particles part at no less than this share of the typical speed: where r = 0, what is left of the
+# normal velocity is rounding, and a cluster in contact would go on colliding over it for ever
+LEAST_DEPARTURE = 1e-10
+
+
+@jit
+def collide(state, scene, i, j, time):
+    """Carry out the contact of particles i and j at `time`."""
+    box = scene.box
+    position_i, velocity_i = arrive(state, scene, i, time)
+    position_j, velocity_j = arrive(state, scene, j, time)
+    slide = hooks.sliding(scene.effects, None, state, time)
+    x = subtract(position_i, position_j)
+    v = subtract(velocity_i, velocity_j)
+    x, v = shifted(x, v, image_numbers(x, box, slide), box, slide)
+    n = scale(x, 1.0 / math.sqrt(dot(x, x)))
+    w_i = spin_of(state.spin, box, i)
+    w_j = spin_of(state.spin, box, j)
+    effects = scene.effects
+    material = _material(effects, scene.restitution, scene.roughness, state, i, j, time)
+    push, turn = response(effects.spin, effects, material, n, v, spin_sum(w_i, w_j), 0.5)
+    lacking = LEAST_DEPARTURE * state.clock[TYPICAL_SPEED] - dot(subtract(v, scale(push, 2.0)), n)
+    if lacking > 0.0:
+        push = add_scaled(push, n, -0.5 * lacking)
+    put(state, scene, i, position_i, subtract(velocity_i, push), time)
+    put(state, scene, j, position_j, add_scaled(velocity_j, push, 1.0), time)
+    turn_spin(state.spin, i, w_i, turn)
+    turn_spin(state.spin, j, w_j, turn)
+    # in the frame of the pair, where nothing large cancels
+    account = state.ledger[0, len(effects)]
+    account[0] += dot(push, push) - dot(v, push)
+    book_spin(w_i, turn, effects.spin, account)
+    book_spin(w_j, turn, effects.spin, account)
+    _note_contact(state, i, time)
+    _note_contact(state, j, time)
+    state.counts[COLLISIONS] += 1
+    state.counts[LAST_FIRST] = i
+    state.counts[LAST_SECOND] = j
+
+
+@jit
+def collide_with_wall(state, scene, index, i, time, material, n, wall_velocity, least_departure):
+    """Carry out the contact of particle i with a wall at `time`.
+
+    Parameters: the effect's index in the ledger; material (r, beta); n the unit normal into the
+    gas; the wall's velocity; least_departure: the particle leaves at no less than this normal
+    speed, so that a bouncing particle makes finitely many bounces in a finite time.
+    """
+    position, velocity = arrive(state, scene, i, time)
+    w = spin_of(state.spin, scene.box, i)
+    v = subtract(velocity, wall_velocity)
+    effects = scene.effects
+    material = _material(effects, material[0], material[1], state, i, -1, time)
+    push, turn = response(effects.spin, effects, material, n, v, w, 1.0)
+    lacking = least_departure - dot(subtract(v, push), n)
+    if lacking > 0.0:
+        push = add_scaled(push, n, -lacking)
+    put(state, scene, i, position, subtract(velocity, push), time)
+    turn_spin(state.spin, i, w, turn)
+    account = state.ledger[0, index]
+    account[0] += 0.5 * dot(push, push) - dot(velocity, push)
+    book_spin(w, turn, effects.spin, account)
+    _note_contact(state, i, time)
+    state.counts[BOUNDARY_HITS] += 1
+
+
+def response(spin, effects, material, n, v, w, share):
+    """Momentum exchanged and change of each spin a w in one contact, both per unit mass.
+
+    material = (r, beta); n the normal, v the relative velocity, w the sum of the spins; share =
+    1/2 between equal particles and 1 at a wall. Without spin (None) only the normal part is there.
+    """
+    solve = _smooth if spin is None else _rough
+    return solve(spin, effects, material, n, v, w, share)
+
+
+@overload(response)
+def _compiled_response(spin, effects, material, n, v, w, share):
+    solve = _smooth if isinstance(spin, types.NoneType) else _rough
+    return lambda spin, effects, material, n, v, w, share: solve(
+        spin, effects, material, n, v, w, share
+    )
+
+
+@jit
+def _smooth(spin, effects, material, n, v, w, share):
+    return scale(n, share * (1.0 + material[0]) * dot(v, n)), None
+
+
+@jit
+def _rough(spin, effects, material, n, v, w, share):
+    r, beta = material
+    speed = dot(v, n)
+    slip = subtract(add_scaled(v, n, -speed), spin_cross(w, n))
+    beta = hooks.roughness(effects, beta, r, speed, slip)
+    turn = share * (1.0 + beta) / (1.0 + spin.inertia)
+    push = add_scaled(scale(n, share * (1.0 + r) * speed), slip, spin.inertia * turn)
+    return push, scale(cross_to_spin(n, slip), turn)
+
+
+@jit
+def _material(effects, r, beta, state, i, j, time):
+    effective = hooks.restitution(effects, r, state, i, j, time)
+    if effective != r:
+        state.counts[TOUCHED] += 1
+    return effective, beta
+
+
+@jit
+def _note_contact(state, i, time):
+    state.changes[i] += 1
+    _remember(state.last_contact, i, time)
+
+
+@hooks.unless_absent
+def _remember(last_contact, i, time):
+    last_contact[i] = time

@@ -1,0 +1,46 @@
+"""Free flight between events, with or without gravity."""
+
+from roughgas.kernel import hooks
+from roughgas.kernel.images import fold_into_box
+from roughgas.kernel.jit import jit
+from roughgas.kernel.vectors import add_scaled, read, write
+
+
+@jit
+def fallen(position, velocity, elapsed, gravity):
+    """Position and velocity after `elapsed`, falling along the last axis where there is gravity."""
+    moved = add_scaled(position, velocity, elapsed)
+    if gravity is None:
+        return moved, velocity
+    drop = 0.5 * gravity * elapsed * elapsed
+    return (
+        moved[:-1] + (moved[-1] - drop,),
+        velocity[:-1] + (velocity[-1] - gravity * elapsed,),
+    )
+
+
+@jit
+def whereabouts(state, scene, i, time):
+    """Position and velocity of particle i at `time`, on the straight continuation of its path."""
+    box = scene.box
+    trajectory = state.trajectory
+    elapsed = time - trajectory[i, 2 * len(box)]
+    position = read(trajectory, i, 0, box)
+    velocity = read(trajectory, i, len(box), box)
+    return fallen(position, velocity, elapsed, hooks.acceleration(scene.effects, None))
+
+
+@jit
+def arrive(state, scene, i, time):
+    """Position and velocity of particle i at `time`, as its image inside the box has them."""
+    position, velocity = whereabouts(state, scene, i, time)
+    slide = hooks.sliding(scene.effects, None, state, time)
+    return fold_into_box(position, velocity, scene.box, slide)
+
+
+@jit
+def put(state, scene, i, position, velocity, time):
+    """Store particle i's trajectory."""
+    write(state.trajectory, i, 0, position)
+    write(state.trajectory, i, len(scene.box), velocity)
+    state.trajectory[i, 2 * len(scene.box)] = time

@@ -1,0 +1,129 @@
+"""Which particles may meet a given one soon: all of them swept at once, in vector registers.
+
+The sweep works in single precision on straight lines r0 + v0 t from the clock's base and is only a
+sieve: with a margin for its rounding it never misses a contact, and what it lets through is decided
+in double precision (pairs.py). So neither its precision nor its order can be seen in the results.
+
+For each pair, with x the separation at mid-interval (nearest image) and u the relative velocity,
+the line passes within a diameter s if |x cross u| <= s |u|, and does so within the interval of
+half-length h if |x.u| <= u.u h + s |u|. Pairs too fast for one image are let through.
+"""
+
+import numpy as np
+from numba.cpython.unsafe.numbers import trailing_zeros
+from numba.extending import overload
+
+from roughgas.kernel import hooks
+from roughgas.kernel.flight import whereabouts
+from roughgas.kernel.hooks import unless_absent
+from roughgas.kernel.images import exceeds, image_numbers, shifted, speed_limits
+from roughgas.kernel.jit import jit
+from roughgas.kernel.pairs import DIAMETER
+from roughgas.kernel.state import EXTENT, SPAN, TYPICAL_SPEED
+from roughgas.kernel.vectors import add_scaled, cross_squared, dot, subtract
+
+ROUNDING = 2.0**-24  # half the spacing of single precision just above 1
+
+
+@jit
+def redraw_line(state, scene, i):
+    """Renew particle i's single-precision line after its velocity has changed.
+
+    Under gravity the lines are those seen from a frame that falls with it from the clock's base:
+    r(t) = r0 + v0 t - g t^2/2 with the same last term for all, so that pairs never see gravity.
+    """
+    start, velocity = whereabouts(state, scene, i, 0.0)
+    lines = state.sweep.lines
+    extent = 0.0
+    for k in range(len(start)):
+        lines[k, i] = start[k]
+        lines[k + len(start), i] = velocity[k]
+        extent += abs(start[k]) + 3.0 * state.clock[SPAN] * abs(velocity[k])
+    state.clock[EXTENT] = max(state.clock[EXTENT], extent)
+
+
+@jit
+def mark_candidates(state, scene, i, middle, half):
+    """Set state.sweep.marks of every particle that i may touch within `half` of time `middle`."""
+    clock = state.clock
+    margin = DIAMETER + 16.0 * ROUNDING * clock[EXTENT]
+    speed = max(clock[TYPICAL_SPEED], 1e-30)
+    # s |u| <= (s / 2) (u.u / w + w) for any speed w, which saves a root per pair
+    reach = half + 0.55 * margin / speed
+    slide = hooks.sliding(scene.effects, None, state, middle)
+    _sweep(
+        state.sweep.lines,
+        state.sweep.marks,
+        i,
+        single(scene.box),
+        single(slide),
+        single(speed_limits(scene.box, half)),
+        np.float32(middle),
+        np.float32(reach),
+        np.float32(0.55 * margin * speed),
+        np.float32(margin * margin),
+    )
+
+
+@jit
+def _sweep(lines, marks, i, box, slide, limits, middle, reach, spare, square):
+    x_i = column(lines, i, 0, box)
+    u_i = column(lines, i, len(box), box)
+    for j in range(marks.size):
+        u = subtract(column(lines, j, len(box), box), u_i)
+        x = add_scaled(subtract(column(lines, j, 0, box), x_i), u, middle)
+        x, u = shifted(x, u, image_numbers(x, box, slide), box, slide)
+        uu = dot(u, u)
+        hits = (cross_squared(x, u) <= square * uu) & (abs(dot(x, u)) <= uu * reach + spare)
+        marks[j] = hits | exceeds(u, limits)
+
+
+@jit
+def collect_candidates(sweep, i):
+    """List the marked particles but i in sweep.found; how many there are."""
+    number = 0
+    for word in range(sweep.words.size):
+        rest = sweep.words[word]
+        while rest != 0:
+            j = 8 * word + (trailing_zeros(rest) >> 3)
+            sweep.found[number] = j
+            number += j != i
+            rest &= rest - np.uint64(1)
+    return number
+
+
+def single(numbers):
+    """A tuple in single precision; None stays None, inside and out."""
+    return None if numbers is None else tuple(_single(x) for x in numbers)
+
+
+@unless_absent
+def _single(x):
+    return np.float32(x)
+
+
+@overload(single)
+def _compiled_single(numbers):
+    if not hasattr(numbers, "types"):
+        return lambda numbers: None
+    return {
+        2: lambda numbers: (_single(numbers[0]), _single(numbers[1])),
+        3: lambda numbers: (_single(numbers[0]), _single(numbers[1]), _single(numbers[2])),
+    }[len(numbers)]
+
+
+def column(array, j, first, like):
+    """Components array[first:first + len(like), j] as a tuple."""
+    return tuple(array[first + k, j] for k in range(len(like)))
+
+
+@overload(column)
+def _column(array, j, first, like):
+    return {
+        2: lambda array, j, first, like: (array[first, j], array[first + 1, j]),
+        3: lambda array, j, first, like: (
+            array[first, j],
+            array[first + 1, j],
+            array[first + 2, j],
+        ),
+    }[len(like)]
