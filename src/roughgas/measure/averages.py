@@ -1,0 +1,22 @@
+"""Averages over whole periods of the drive."""
+
+import numpy as np
+
+
+def period_means(series: np.ndarray, samples_per_period: int) -> np.ndarray:
+    """Means over consecutive blocks of `samples_per_period` samples, along the last axis.
+
+    A vibrated bed sampled a few times per period meets the same few phases of its floor again and
+    again. Its raw samples are anticorrelated and autocorrelation estimates of them mislead, so
+    everything statistical is done on these means. An incomplete last block is left out. `series`
+    has shape (..., samples), the result (..., samples // samples_per_period). Raises ValueError
+    unless there is at least one whole period.
+    """
+    series = np.asarray(series)
+    periods = series.shape[-1] // samples_per_period if samples_per_period >= 1 else 0
+    if periods < 1:
+        raise ValueError(
+            f"{series.shape[-1]} samples hold no whole period of {samples_per_period} samples"
+        )
+    whole = series[..., : periods * samples_per_period]
+    return whole.reshape(*series.shape[:-1], periods, samples_per_period).mean(axis=-1)

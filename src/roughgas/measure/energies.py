@@ -1,0 +1,77 @@
+"""Energies per degree of freedom and their ratio R, from the kernel's sums over particles.
+
+The kernel hands over, for each sample, sums over all particles at that instant; here they are a
+dict of arrays of shape (samples,), named `vv_x` (sum of v_x^2), `ww` (sum of (a w)^2), `w` (sum of
+a w; in three dimensions `w_x`, `w_y`, `w_z`), and for the sheared gas `yy` (sum of (y - L/2)^2)
+and `yv_x` (sum of (y - L/2) v_x). Units: particle radius a = mass m = time unit T = 1, so energies
+are in m a^2/T^2.
+"""
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+
+Columns = Mapping[str, np.ndarray]
+
+
+class Energies(NamedTuple):
+    """Energies per degree of freedom, in m a^2/T^2: McNamara & Luding (1998), Eq. (defE)."""
+
+    translational: np.ndarray
+    rotational: np.ndarray
+
+
+def energies(columns: Columns, particles: int, inertia: float) -> Energies:
+    """Energies as they are: E_tr = sum m v^2/2 / (N D), E_rot = sum m q (a w)^2/2 / (N n_r).
+
+    `particles` is N and `inertia` q (1/2 for disks, 2/5 for spheres). There are as many dimensions
+    D as `vv_` columns, and n_r = 2 D - 3. McNamara & Luding (1998), Eq. (defE).
+    """
+    speed_squared = sum(columns[name] for name in _components(columns, "vv"))
+    return _per_degree_of_freedom(columns, particles, inertia, speed_squared, columns["ww"])
+
+
+def fluctuation_energies(
+    columns: Columns, particles: int, inertia: float, shear_rate: float
+) -> Energies:
+    """Energies that remain once the mean flow and the mean spin are removed, for the sheared gas.
+
+    McNamara & Luding (1998), second experiment. The mean flow is v_x = Gamma (y - L/2), Gamma being
+    the `shear_rate` in 1/T; the square of v_x minus that expands in the columns. The mean spin is
+    the one observed in each sample: sum (w - <w>)^2 = sum w^2 - (sum w)^2/N. Removing it takes one
+    of N spins from E_rot, just as the conserved momentum takes one of N velocities from E_tr, so
+    that their ratio has no bias of order 1/N.
+    """
+    speed_squared = sum(columns[name] for name in _components(columns, "vv"))
+    speed_squared = speed_squared + shear_rate * (shear_rate * columns["yy"] - 2 * columns["yv_x"])
+    mean_spin = sum(columns[name] ** 2 for name in _components(columns, "w")) / particles
+    return _per_degree_of_freedom(
+        columns, particles, inertia, speed_squared, columns["ww"] - mean_spin
+    )
+
+
+def ratio(energies: Energies) -> np.ndarray:
+    """R = E_rot / (E_rot + E_tr) of each sample, in [0, 1]; NaN where both energies vanish."""
+    total = energies.rotational + energies.translational
+    return np.divide(
+        energies.rotational, total, out=np.full(np.shape(total), np.nan), where=total > 0
+    )
+
+
+def ratio_of_means(energies: Energies, axis: int = -1) -> np.ndarray:
+    """R of the energies averaged along `axis`: not the same as the mean of `ratio`."""
+    return ratio(Energies(energies.translational.mean(axis), energies.rotational.mean(axis)))
+
+
+def _per_degree_of_freedom(columns, particles, inertia, speed_squared, spin_squared) -> Energies:
+    dimension = len(_components(columns, "vv"))
+    translational = speed_squared / (2 * particles * dimension)
+    rotational = inertia * spin_squared / (2 * particles * (2 * dimension - 3))
+    return Energies(translational, rotational)
+
+
+def _components(columns: Columns, quantity: str) -> list[str]:
+    """Names of the columns of a vector: `vv_x`, `vv_y`, ...; a spin in the plane has one, `w`."""
+    names = [f"{quantity}_{axis}" for axis in "xyz"]
+    return [name for name in [quantity, *names] if name in columns]
