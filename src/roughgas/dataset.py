@@ -1,0 +1,180 @@
+"""The dataset of one simulated point: what it may hold, and how it is written and read.
+
+Units: particle radius a = particle mass m = time unit T = 1. A freely cooling gas has no lasting
+time scale: there, times are counted in collisions per particle, energies in the initial E_trans.
+
+Written with netCDF4 alone, since importing xarray would double the start-up time of a point's job.
+"""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from roughgas.atomic import whole_file
+
+if TYPE_CHECKING:
+    import netCDF4
+    import xarray
+
+SCHEMA_VERSION = 1
+TIME = "T"
+ENERGY = "m a^2 T^-2"
+COOLING_UNITS = {TIME: "collisions per particle", ENERGY: "initial E_trans"}
+
+
+class Variable(NamedTuple):
+    """What a variable is, and how a reduced dataset combines it over seeds: "mean", "sum" or ""."""
+
+    long_name: str
+    units: str = "1"
+    dims: tuple[str, ...] = ()
+    dtype: str = "f8"
+    over_seeds: str = "mean"
+
+
+def _series(long_name: str, units: str = "1") -> Variable:
+    return Variable(long_name, units, ("sample",), "f8", "")
+
+
+VARIABLES = {
+    "R": Variable("share of rotation in the energy, mean of E_rot / (E_rot + E_trans)"),
+    "R_stderr": Variable("standard error of R within this file", over_seeds=""),
+    "R_ratio_of_means": Variable("share of rotation in the energy, from the mean energies"),
+    "E_trans": Variable("translational energy per degree of freedom", ENERGY),
+    "E_rot": Variable("rotational energy per degree of freedom", ENERGY),
+    "collisions": Variable("collisions simulated", dtype="i8", over_seeds="sum"),
+    "kernel_seconds": Variable("time spent in the kernel", "s", over_seeds="sum"),
+    "equilibrated": Variable("1 where a steady state was found, else 0", dtype="i1"),
+    "measured_from": Variable("begin of the measured window", TIME),
+    "autocorrelation_time": Variable("integrated autocorrelation time of R", TIME),
+    "contact_time": Variable("contact time t_c of the contact-time model, NaN without it", TIME),
+    "contact_time_fraction": Variable("share of contacts changed by the contact-time model"),
+    "R_unsubtracted": Variable("R with the mean flow and the mean spin left in"),
+    "E_trans_unsubtracted": Variable("E_trans with the mean flow left in", ENERGY),
+    "E_rot_unsubtracted": Variable("E_rot with the mean spin left in", ENERGY),
+    "plateau_end": Variable("end of the plateau of R", TIME),
+    "R_replica": Variable("plateau mean of R of each replica", "1", ("replica",), "f8", ""),
+    "time": _series("time since the start", TIME),
+    "collisions_per_particle": _series("collisions per particle since the start", TIME),
+    "R_series": _series("share of rotation in the energy"),
+    "R_series_stderr": _series("standard error of R_series over replicas"),
+    "E_trans_series": _series("translational energy per degree of freedom", ENERGY),
+    "E_rot_series": _series("rotational energy per degree of freedom", ENERGY),
+}
+CLOCKS = ("time", "collisions_per_particle")
+REQUIRED = (
+    "R",
+    "R_stderr",
+    "R_ratio_of_means",
+    "E_trans",
+    "E_rot",
+    "collisions",
+    "kernel_seconds",
+    "equilibrated",
+)
+REQUIRED_ATTRIBUTES = (
+    "experiment",
+    "scale",
+    "r",
+    "beta",
+    "seed",
+    "dimension",
+    "inertia",
+    "particles",
+)
+WALL_CLOCK = ("kernel_seconds",)
+"""The only variables that differ when the same point is run again."""
+
+COMMON_ATTRIBUTES = {
+    "Conventions": "CF-1.11",
+    "schema_version": SCHEMA_VERSION,
+    "units_of_measure": "a (particle radius) = m (particle mass) = T (time unit) = 1",
+}
+
+
+class Point(NamedTuple):
+    """One (experiment, r, beta, seed): variables by the names in VARIABLES, and global attributes.
+
+    Attributes are strings, ints or floats; REQUIRED and REQUIRED_ATTRIBUTES must be there.
+    """
+
+    variables: dict[str, Any]
+    attributes: dict[str, str | int | float]
+
+
+def write_point(path: str | Path, point: Point) -> None:
+    """Write `point` to `path` (netCDF4), whole or not at all; parent folders are created.
+
+    Raises ValueError for variables that VARIABLES does not know, for missing ones, and for shapes
+    that disagree; OSError when the file cannot be written, as on a full disk.
+    """
+    import netCDF4
+
+    lengths = _dimensions(point)
+    with whole_netcdf(path) as draft, netCDF4.Dataset(draft, "w") as file:
+        file.setncatts(COMMON_ATTRIBUTES | point.attributes)
+        for name, length in lengths.items():
+            file.createDimension(name, length)
+        for name in VARIABLES:
+            if name in point.variables:
+                _write_variable(file, name, point.variables)
+
+
+@contextmanager
+def whole_netcdf(path: str | Path) -> Iterator[Path]:
+    """`whole_file` for the netCDF library, which has other names for a full disk."""
+    try:
+        with whole_file(path) as draft:
+            yield draft
+    except (RuntimeError, PermissionError) as error:
+        reason = f"{error}; is the disk full or the folder read-only?"
+        raise OSError(f"cannot write {path}: {reason}") from error
+
+
+def read_point(path: str | Path) -> "xarray.Dataset":
+    """The dataset at `path` as an xarray.Dataset in memory, the file closed."""
+    import xarray
+
+    return xarray.load_dataset(path, engine="netcdf4")
+
+
+def variable_attributes(name: str, cooling: bool) -> dict[str, str]:
+    """CF attributes (long_name, units) of a variable of a cooling gas or of a forced one."""
+    about = VARIABLES[name]
+    units = COOLING_UNITS.get(about.units, about.units) if cooling else about.units
+    return {"long_name": about.long_name, "units": units}
+
+
+def _write_variable(file: "netCDF4.Dataset", name: str, variables: dict[str, Any]) -> None:
+    dims = VARIABLES[name].dims
+    packing = {"compression": "zlib", "complevel": 1, "shuffle": True} if dims else {}
+    target = file.createVariable(name, VARIABLES[name].dtype, dims, **packing)
+    target.setncatts(variable_attributes(name, cooling=CLOCKS[1] in variables))
+    clock = next((clock for clock in CLOCKS if clock in variables), None)
+    if dims == ("sample",) and clock and name not in CLOCKS:
+        target.coordinates = clock
+    target[...] = variables[name]
+
+
+def _dimensions(point: Point) -> dict[str, int]:
+    """Length of each dimension; raises ValueError where `point` is not what VARIABLES says."""
+    _refuse("unknown variables", set(point.variables) - set(VARIABLES))
+    _refuse("missing variables", set(REQUIRED) - set(point.variables))
+    _refuse("missing attributes", set(REQUIRED_ATTRIBUTES) - set(point.attributes))
+    lengths: dict[str, int] = {}
+    for name, values in point.variables.items():
+        shape, dims = np.shape(values), VARIABLES[name].dims
+        if len(shape) != len(dims):
+            raise ValueError(f"{name} has shape {shape}, but dimensions {dims}")
+        for dim, length in zip(dims, shape, strict=True):
+            if lengths.setdefault(dim, length) != length:
+                raise ValueError(f"{name} has {length} values along {dim}, others {lengths[dim]}")
+    return lengths
+
+
+def _refuse(what: str, names: set[str]) -> None:
+    if names:
+        raise ValueError(f"{what} of a point: {', '.join(sorted(names))}")

@@ -1,0 +1,36 @@
+"""The figures of the paper, drawn from reduced datasets beside theory."""
+
+from collections.abc import Iterable
+from importlib import import_module
+from pathlib import Path
+
+from roughgas.errors import InputError
+from roughgas.reduce import read_reduced
+
+FIGURES = ("fig1a", "fig1b", "fig2a", "fig2b")
+
+
+def draw(name: str, inputs: Iterable[str | Path], outputs: Iterable[str | Path]) -> None:
+    """Draw the figure `name` from the reduced datasets at `inputs`, in any order, into `outputs`.
+
+    Each output is a .pdf or a .png. Raises InputError for an unknown figure, another kind of file,
+    and experiments that are not those of the figure.
+    """
+    if name not in FIGURES:
+        raise InputError("figure", name, f"be one of {', '.join(FIGURES)}")
+    from matplotlib import rc_context
+
+    from roughgas.plotting import style
+
+    outputs = [Path(output) for output in outputs]
+    for output in outputs:
+        if output.suffix not in style.METADATA:
+            raise InputError("figure file", output, f"end in {' or '.join(style.METADATA)}")
+    figure = import_module(f"roughgas.plotting.{name}")
+    datasets = {data.attrs["experiment"]: data for data in map(read_reduced, inputs)}
+    if set(datasets) != set(figure.EXPERIMENTS):
+        needed = ", ".join(figure.EXPERIMENTS)
+        raise InputError(f"data of {name}", ", ".join(datasets), f"be {needed}")
+    with rc_context(style.PARAMETERS):
+        drawing = figure.draw(*(datasets[experiment] for experiment in figure.EXPERIMENTS))
+        style.save(drawing, outputs)

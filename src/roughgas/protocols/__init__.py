@@ -1,0 +1,1 @@
+"""How an experiment is run and measured: one file a kind of schedule."""

@@ -1,0 +1,82 @@
+"""A freely cooling gas: many replicas of it, averaged where R has settled on its plateau."""
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from roughgas.initial import initial_state
+from roughgas.measure.energies import Energies, energies, ratio, ratio_of_means
+from roughgas.measure.errors import autocorrelation_time
+from roughgas.measure.plateau import find_plateau
+from roughgas.scene import Scene
+from roughgas.theory import relaxation_rate
+
+SAMPLES_PER_REFRESH = 4
+TRANSIENT = 10.0, 1000.0  # collisions per particle: theory's estimate is kept between these
+
+
+def run(scene: Scene, experiment: Mapping[str, Any], seed: int, recorder) -> dict[str, Any]:
+    """Variables of the point (see roughgas.dataset), from `replicas` independent simulations.
+
+    Each starts as a smooth elastic gas, thermalised for `thermalise` collisions per particle. Then
+    dissipation is switched on for the time that the rate equations say R needs to settle,
+    `relaxation_times` of its e-folds, and for `plateau` collisions per particle more.
+    """
+    schedule, number = experiment["schedule"], experiment["particles"]
+    transient = transient_length(scene, schedule["relaxation_times"])
+    every = schedule["sample_every"]
+    samples = math.ceil((transient + schedule["plateau"]) / every)
+    seeds = np.random.SeedSequence(seed).spawn(schedule["replicas"])
+    runs = []
+    for one in seeds:
+        state = initial_state(scene, experiment, np.random.default_rng(one))
+        runs.append(_cool(state, scene, schedule, number, samples, recorder))
+    ensemble = Energies(*(np.array(part) for part in zip(*runs, strict=True)))
+    passed = every * np.arange(1, samples + 1)
+    return _measure(ensemble, passed, transient, every)
+
+
+def transient_length(scene: Scene, relaxation_times: float) -> float:
+    """Collisions per particle that R needs to settle, by the rate equations."""
+    q = scene.effects.spin.inertia
+    rate = float(relaxation_rate(scene.restitution, scene.roughness, len(scene.box), q))
+    return min(max(relaxation_times / rate if rate > 0.0 else math.inf, TRANSIENT[0]), TRANSIENT[1])
+
+
+def _cool(state, scene, schedule, number, samples, recorder):
+    """Energies of one replica, in units of its E_trans when dissipation is switched on."""
+    per_unit = number / 2  # a collision has two partners
+    elastic = scene._replace(restitution=1.0, roughness=-1.0)
+    thermal = math.ceil(per_unit * schedule["thermalise"])
+    before = recorder.in_collisions(state, elastic, thermal, 1)
+    start = energies(before, number, scene.effects.spin.inertia).translational[0]
+    collisions = max(1, round(per_unit * schedule["sample_every"]))
+    rows = recorder.in_collisions(state, scene, collisions, samples, SAMPLES_PER_REFRESH)
+    return Energies(*(part / start for part in energies(rows, number, scene.effects.spin.inertia)))
+
+
+def _measure(ensemble, passed, transient, every):
+    R = ratio(ensemble)
+    plateau = find_plateau(passed, R, transient)
+    inside = (passed >= plateau.start) & (passed <= plateau.stop)
+    first = np.argmax(inside)
+    E_trans, E_rot = (part.mean(axis=0) for part in ensemble)
+    return {
+        "R": plateau.mean,
+        "R_stderr": plateau.stderr,
+        "R_ratio_of_means": ratio_of_means(ensemble, axis=0)[inside].mean(),
+        "E_trans": E_trans[first],
+        "E_rot": E_rot[first],
+        "equilibrated": plateau.found,
+        "measured_from": plateau.start,
+        "plateau_end": plateau.stop,
+        "autocorrelation_time": autocorrelation_time(R[:, inside]) * every,
+        "R_replica": plateau.per_replica,
+        "collisions_per_particle": passed,
+        "R_series": R.mean(axis=0),
+        "R_series_stderr": R.std(axis=0, ddof=1) / math.sqrt(len(R)),
+        "E_trans_series": E_trans,
+        "E_rot_series": E_rot,
+    }

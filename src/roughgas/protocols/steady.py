@@ -1,0 +1,88 @@
+"""A gas under steady driving: wait until it is stationary, then average over time."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from roughgas.initial import initial_state
+from roughgas.measure.averages import period_means
+from roughgas.measure.energies import (
+    Energies,
+    energies,
+    fluctuation_energies,
+    ratio,
+    ratio_of_means,
+)
+from roughgas.measure.equilibration import detect_start, is_equilibrated
+from roughgas.measure.errors import autocorrelation_time, blocking_stderr
+from roughgas.scene import Scene
+
+LEAST_LEFT = 0.5  # share of the planned measurement below which a late start is not worth having
+
+
+def run(scene: Scene, experiment: Mapping[str, Any], seed: int, recorder) -> dict[str, Any]:
+    """Variables of the point (see roughgas.dataset), from one simulation.
+
+    The schedule gives `equilibrate` and `measure` (T), `sample_every` (T), and `period` (T), over
+    whole multiples of which averages are formed. The measurement begins later than planned where
+    the energies say that the gas is not yet stationary, and the point is flagged where half of it
+    would be lost or the energies drift in what is left.
+    """
+    schedule = experiment["schedule"]
+    every, number = schedule["sample_every"], experiment["particles"]
+    planned, length = (round(schedule[part] / every) for part in ("equilibrate", "measure"))
+    per_period = max(1, round(schedule.get("period", every) / every))
+    state = initial_state(scene, experiment, np.random.default_rng(seed))
+    rows = recorder.in_time(state, scene, every, planned + length)
+    series = _fluctuations(scene, rows, number)
+    start, found = _start(series, planned, length, per_period)
+    window = Energies(series.translational[start:], series.rotational[start:])
+    R = ratio(window)
+    R_periods = period_means(R, per_period)
+    return {
+        "R": R.mean(),
+        "R_stderr": blocking_stderr(R_periods),
+        "R_ratio_of_means": ratio_of_means(window),
+        "E_trans": window.translational.mean(),
+        "E_rot": window.rotational.mean(),
+        **_unsubtracted(scene, rows, number, start),
+        "equilibrated": found,
+        "measured_from": start * every,
+        "autocorrelation_time": autocorrelation_time(R_periods) * per_period * every,
+        "time": rows["time"][start:],
+        "R_series": R,
+        "E_trans_series": window.translational,
+        "E_rot_series": window.rotational,
+    }
+
+
+def _fluctuations(scene, rows, number):
+    shear, q = scene.effects.shear, scene.effects.spin.inertia
+    if shear is None:
+        return energies(rows, number, q)
+    return fluctuation_energies(rows, number, q, shear.velocity / (2.0 * scene.middle))
+
+
+def _unsubtracted(scene, rows, number, start):
+    """The sheared gas with its mean flow and mean spin left in, which is not what is meant by R."""
+    if scene.effects.shear is None:
+        return {}
+    every = energies(rows, number, scene.effects.spin.inertia)
+    window = Energies(every.translational[start:], every.rotational[start:])
+    return {
+        "R_unsubtracted": ratio(window).mean(),
+        "E_trans_unsubtracted": window.translational.mean(),
+        "E_rot_unsubtracted": window.rotational.mean(),
+    }
+
+
+def _start(series, planned, length, per_period):
+    """First sample to be measured, a whole number of periods in, and whether the rest is steady."""
+    means = [period_means(part, per_period) for part in series]
+    detected = per_period * detect_start(*means)
+    first = -(-planned // per_period) * per_period
+    start = max(first, detected)
+    if planned + length - start < LEAST_LEFT * length:
+        return first, False
+    return start, is_equilibrated(*means, start=start // per_period)

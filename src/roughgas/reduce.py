@@ -1,0 +1,264 @@
+"""From points to one reduced dataset an experiment, and from those to one table.
+
+A reduced dataset has the dimensions (r, beta, seed). The primary error bar is the scatter over
+independent seeds; the errors estimated within each file are kept beside it as a cross-check.
+"""
+
+import csv
+import math
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from roughgas.atomic import whole_file
+from roughgas.dataset import (
+    CLOCKS,
+    COMMON_ATTRIBUTES,
+    VARIABLES,
+    variable_attributes,
+    whole_netcdf,
+)
+from roughgas.errors import InputError
+
+if TYPE_CHECKING:
+    import netCDF4
+    import xarray
+
+GRID = ("r", "beta")
+SAME = ("experiment", "scale", "dimension", "inertia", "particles")
+PROVENANCE = ("roughgas_version", "numpy_version", "numba_version", "kernel_source_hash")
+SCATTERED = ("R", "R_unsubtracted", "R_drift")
+"""Means over seeds that carry a standard error, `<name>_stderr`."""
+
+EQUILIBRATED = 0.5
+"""A point counts as being in a steady state where more than this share of its seeds is."""
+
+DERIVED = {
+    "R_seed": "R of each seed",
+    "R_stderr": "standard error of R: scatter over seeds (within the file where there is one seed)",
+    "R_stderr_within": "standard error of R from within the files, combined over seeds",
+    "R_unsubtracted_stderr": "standard error of R_unsubtracted: scatter over seeds",
+    "R_drift": "mean of R in the second half of the measured window minus that in the first",
+    "R_drift_stderr": "standard error of R_drift: scatter over seeds",
+    "measured_for": "length of the measured window, mean over seeds",
+    "n_seeds": "number of seeds found",
+}
+COLUMNS = (
+    "n_seeds",
+    "R",
+    "R_stderr",
+    "R_stderr_within",
+    "R_ratio_of_means",
+    "R_unsubtracted",
+    "R_unsubtracted_stderr",
+    "E_trans",
+    "E_rot",
+    "equilibrated",
+    "measured_from",
+    "measured_for",
+    "collisions",
+    "contact_time_fraction",
+)
+
+
+class Summary(NamedTuple):
+    """The scalars and attributes of one point's file."""
+
+    scalars: dict[str, float]
+    attributes: dict[str, Any]
+
+    @property
+    def place(self) -> tuple[float, float, int]:
+        """Its (r, beta, seed)."""
+        about = self.attributes
+        return float(about["r"]), float(about["beta"]), int(about["seed"])
+
+
+def reduce_points(paths: Iterable[str | Path], output: str | Path) -> None:
+    """Combine the points at `paths` (of one experiment, in any order) into the dataset `output`.
+
+    Seeds missing at an (r, beta) are NaN in R_seed and absent from n_seeds and the means.
+    Raises InputError where the paths are none, of several experiments, or the same point twice.
+    """
+    points = [_summary(Path(path)) for path in paths]
+    if not points:
+        raise InputError("number of points to reduce", 0, "be at least 1")
+    dataset = _combined(points)
+    with whole_netcdf(output) as draft:
+        dataset.to_netcdf(draft, engine="netcdf4")
+
+
+def read_reduced(path: str | Path) -> "xarray.Dataset":
+    """The reduced dataset at `path` in memory, the file closed."""
+    import xarray
+
+    return xarray.load_dataset(path, engine="netcdf4")
+
+
+def predicted_ratio(attributes: dict[str, Any], r: Any, beta: Any) -> np.ndarray:
+    """R of theory for an experiment: Eq. (K) for a freely cooling gas, else Eq. (lun).
+
+    `attributes` are those of a reduced dataset; `r` and `beta` broadcast.
+    """
+    from roughgas import theory
+
+    r, beta = np.broadcast_arrays(np.asarray(r, float), np.asarray(beta, float))
+    inertia, dimension = float(attributes["inertia"]), int(attributes["dimension"])
+    if attributes["theory"] == "K":
+        return np.asarray(theory.cooling_ratio(r, beta, dimension, inertia))
+    return np.asarray(theory.lun_ratio(beta, inertia))
+
+
+def write_table(reduced_paths: Iterable[str | Path], csv_path: str | Path) -> None:
+    """Write one tidy CSV: a row for each experiment, r and beta that holds data."""
+    head = ["experiment", "scale", "particles", "dimension", "inertia", *GRID]
+    head += [*COLUMNS, "theory", "R_theory", "residual"]
+    with whole_file(csv_path) as draft, open(draft, "w", newline="", encoding="utf-8") as file:
+        table = csv.writer(file, lineterminator="\n")
+        table.writerow(head)
+        for path in reduced_paths:
+            table.writerows(_rows(read_reduced(path), head))
+
+
+def _rows(dataset: "xarray.Dataset", head: Sequence[str]) -> Iterable[list[str]]:
+    """The rows of one reduced dataset, in ascending (r, beta)."""
+    flat = dataset.drop_dims("seed").stack(point=GRID)
+    prediction = predicted_ratio(dataset.attrs, flat.r.values, flat.beta.values)
+    for index in np.flatnonzero(flat["n_seeds"].values):
+        row = {name: flat[name].values[index] for name in (*GRID, *COLUMNS) if name in flat}
+        row |= {"R_theory": prediction[index], "residual": row["R"] - prediction[index]}
+        yield [_cell(row.get(name, dataset.attrs.get(name, ""))) for name in head]
+
+
+def _cell(value: Any) -> str:
+    """Numbers to ten digits, what is not a number as an empty cell."""
+    if isinstance(value, str):
+        return value
+    return "" if math.isnan(value) else format(value, ".10g")
+
+
+def _summary(path: Path) -> Summary:
+    import netCDF4
+
+    with netCDF4.Dataset(path) as file:
+        file.set_auto_mask(False)
+        found = [name for name, about in VARIABLES.items() if not about.dims]
+        scalars = {name: file[name][...].item() for name in found if name in file.variables}
+        attributes = {name: file.getncattr(name) for name in file.ncattrs()}
+        scalars["measured_for"], scalars["R_drift"] = _window(file, scalars)
+    return Summary(scalars, attributes)
+
+
+def _window(file: "netCDF4.Dataset", scalars: dict[str, float]) -> tuple[float, float]:
+    """Length of the measured window, and how far R moves from its first half to its second."""
+    clock = next((name for name in CLOCKS if name in file.variables), None)
+    begin = scalars.get("measured_from", math.nan)
+    if clock is None or "R_series" not in file.variables or math.isnan(begin):
+        return math.nan, math.nan
+    at, ratio = file[clock][...], file["R_series"][...]
+    end = scalars.get("plateau_end", math.nan)
+    inside = (at >= begin) & (at <= (at[-1] if math.isnan(end) else end))
+    halves = np.array_split(ratio[inside], 2)
+    if not halves[1].size:
+        return math.nan, math.nan
+    return float(np.ptp(at[inside])), float(halves[1].mean() - halves[0].mean())
+
+
+def _combined(points: Sequence[Summary]) -> "xarray.Dataset":
+    """The reduced dataset of points of one experiment."""
+    import xarray
+
+    attributes = _common_attributes(points)
+    columns = zip(*(point.place for point in points), strict=True)
+    axes = [np.unique(column) for column in columns]
+    stacks = _stacks(points, axes)
+    cooling = "plateau_end" in stacks
+    attributes.setdefault("theory", "K" if cooling else "lun")
+    variables = {
+        name: (GRID + ("seed",) * (values.ndim == 3), values, _about(name, cooling))
+        for name, values in _over_seeds(stacks).items()
+    }
+    coordinates = dict(zip((*GRID, "seed"), axes, strict=True))
+    dataset = xarray.Dataset(variables, coordinates, attributes)
+    dataset.r.attrs.update(long_name="normal restitution", units="1")
+    dataset.beta.attrs.update(long_name="tangential restitution", units="1")
+    dataset.seed.attrs.update(long_name="seed of the random generator")
+    return dataset
+
+
+def _stacks(points: Sequence[Summary], axes: Sequence[np.ndarray]) -> dict[str, np.ndarray]:
+    """Every scalar over (r, beta, seed), NaN where no point is."""
+    shape = tuple(len(axis) for axis in axes)
+    stacks = {name: np.full(shape, math.nan) for point in points for name in point.scalars}
+    seen = set()
+    for point in points:
+        if point.place in seen:
+            raise InputError("point (r, beta, seed)", point.place, "be given once")
+        seen.add(point.place)
+        index = tuple(np.searchsorted(a, x) for a, x in zip(axes, point.place, strict=True))
+        for name, value in point.scalars.items():
+            stacks[name][index] = value
+    return stacks
+
+
+def _over_seeds(stacks: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """What a reduced dataset holds, by name."""
+    there = np.isfinite(stacks["R"])
+    count = there.sum(-1)
+    square = np.where(there, stacks["R_stderr"] ** 2, 0.0).sum(-1)
+    within = np.sqrt(square) / np.maximum(count, 1)
+    reduced = {
+        "R_seed": stacks["R"],
+        "R_stderr_within": np.where(count > 0, within, math.nan),
+        "n_seeds": count,
+    }
+    for name, values in stacks.items():
+        how = VARIABLES[name].over_seeds if name in VARIABLES else "mean"
+        if how == "sum":
+            reduced[name] = np.nansum(values, -1).astype(VARIABLES[name].dtype)
+        elif how == "mean":
+            reduced[name] = _mean(values)
+        if name in SCATTERED:
+            reduced[f"{name}_stderr"] = _standard_error(values)
+    alone = count == 1
+    reduced["R_stderr"] = np.where(alone, reduced["R_stderr_within"], reduced["R_stderr"])
+    return reduced
+
+
+def _mean(values: np.ndarray) -> np.ndarray:
+    """Mean over the last axis of what is there, NaN where nothing is."""
+    count = np.isfinite(values).sum(-1)
+    return np.where(count > 0, np.nansum(values, -1) / np.maximum(count, 1), math.nan)
+
+
+def _standard_error(values: np.ndarray) -> np.ndarray:
+    """Standard error of the mean over the last axis (ddof = 1), NaN below two values."""
+    count = np.isfinite(values).sum(-1)
+    square = np.nansum((values - _mean(values)[..., None]) ** 2, -1)
+    return np.where(count > 1, np.sqrt(square / np.maximum(count * (count - 1), 1)), math.nan)
+
+
+def _about(name: str, cooling: bool) -> dict[str, str]:
+    """CF attributes of a reduced variable."""
+    if name not in DERIVED:
+        return variable_attributes(name, cooling)
+    units = variable_attributes("measured_from", cooling)["units"]
+    return {"long_name": DERIVED[name], "units": units if name == "measured_for" else "1"}
+
+
+def _common_attributes(points: Sequence[Summary]) -> dict[str, Any]:
+    """Attributes that all points share; versions that differ are listed, not hidden."""
+    shared = dict(points[0].attributes)
+    for name in SAME:
+        values = {str(point.attributes[name]) for point in points}
+        if len(values) > 1:
+            raise InputError(f"{name} of the points", " and ".join(sorted(values)), "be the same")
+    for name in list(shared):
+        values = {str(point.attributes.get(name, "")) for point in points}
+        if len(values) > 1 and name in PROVENANCE:
+            shared[name] = ", ".join(sorted(values))
+        elif len(values) > 1 or name in ("r", "beta", "seed", "r_label", "beta_label", "command"):
+            del shared[name]
+    return shared | COMMON_ATTRIBUTES | {"title": f"{shared['experiment']}: R over r and beta"}

@@ -1,0 +1,76 @@
+"""One point of an experiment: from its settings to the dataset's variables."""
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+import numpy as np
+
+from roughgas import __version__
+from roughgas.dataset import Point
+from roughgas.initial import initial_state
+from roughgas.kernel.cache import source_hash
+from roughgas.protocols import cooling, steady
+from roughgas.protocols.recorder import Progress, Recorder
+from roughgas.scene import build
+
+PROTOCOLS = {"steady": steady, "cooling": cooling}
+
+
+def run_point(
+    experiment: Mapping[str, Any],
+    r: float,
+    beta: float,
+    seed: int,
+    progress: Progress | None = None,
+) -> Point:
+    """Simulate one point and measure it.
+
+    `experiment` is an experiment's settings as roughgas.config.experiment gives them; the same
+    settings, r, beta and seed give the same numbers to the last bit, but for `kernel_seconds`.
+    `progress(time, collisions)` is called as the simulation goes on. Raises InputError for illegal
+    values, CollapseError where contacts accumulate without end.
+    """
+    scene = build(experiment, r, beta)
+    recorder = Recorder(progress)
+    protocol = PROTOCOLS[experiment["schedule"]["kind"]]
+    measured = protocol.run(scene, experiment, seed, recorder)
+    model = scene.effects.contact_time
+    return Point(
+        variables=measured
+        | {
+            "collisions": recorder.collisions,
+            "kernel_seconds": recorder.seconds,
+            "contact_time": np.nan if model is None else model.duration,
+            "contact_time_fraction": recorder.touched / max(1, recorder.collisions),
+        },
+        attributes={
+            "r": float(r),
+            "beta": float(beta),
+            "seed": int(seed),
+            "particles": experiment["particles"],
+            "dimension": len(scene.box),
+            "inertia": scene.effects.spin.inertia,
+            "roughgas_version": __version__,
+            "numpy_version": np.__version__,
+            "kernel_source_hash": source_hash(),
+        },
+    )
+
+
+def compile_kernels(experiments: Iterable[Mapping[str, Any]]) -> int:
+    """Compile, into numba's cache, every kernel that the experiments' sweeps need; how many."""
+    kernels = {}
+    for experiment in experiments:
+        for r in experiment["sweep"]["r"]:
+            scene = build(experiment, float(r), 0.0)
+            kernels.setdefault(_composition(scene), (scene, experiment))
+    for scene, experiment in kernels.values():
+        state = initial_state(scene, experiment, np.random.default_rng(0))
+        Recorder().in_time(state, scene, 1.0, 0)
+    return len(kernels)
+
+
+def _composition(scene):
+    """What decides which machine code a scene runs: the types in it."""
+    effects = tuple(None if effect is None else type(effect) for effect in scene.effects)
+    return effects, tuple(side is None for side in scene.box)

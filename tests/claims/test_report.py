@@ -1,0 +1,64 @@
+import json
+
+import pytest
+from synthetic import reduced
+
+from roughgas.claims import STATEMENTS, judge
+from roughgas.claims.finding import NOT_TESTED
+from roughgas.errors import InputError
+
+
+@pytest.fixture
+def paths(tmp_path):
+    paths = [tmp_path / "vibrated.nc", tmp_path / "cooling.nc"]
+    reduced().to_netcdf(paths[0])
+    reduced("cooling").to_netcdf(paths[1])
+    return paths
+
+
+def test_one_row_for_each_statement_in_both_reports(paths, tmp_path):
+    rows = judge(paths, tmp_path / "claims.json", tmp_path / "claims.md")
+    content = json.loads((tmp_path / "claims.json").read_text())
+    assert [claim["id"] for claim in content["claims"]] == [one.name for one in STATEMENTS]
+    assert content["scale"] == "small" and content["data"]["cooling"]["theory"] == "K"
+    markdown = (tmp_path / "claims.md").read_text()
+    for row, claim in zip(rows, content["claims"], strict=True):
+        assert claim["verdict"] == row.finding.verdict and claim["reason"] == row.finding.reason
+        assert row.statement.quote in markdown and row.finding.reason in markdown
+        assert f"**{claim['verdict']}** |" in markdown
+        if claim["verdict"] != NOT_TESTED:
+            deciding = claim["numbers"][0]
+            assert claim["deviation"] == deciding["value"] and claim["sigma"] == deciding["sigma"]
+
+
+def test_missing_experiments_are_named(paths, tmp_path):
+    judge(paths, tmp_path / "claims.json", tmp_path / "claims.md")
+    content = json.loads((tmp_path / "claims.json").read_text())
+    claims = {claim["id"]: claim for claim in content["claims"]}
+    assert claims["sheared_follows_lun"]["verdict"] == NOT_TESTED
+    assert claims["sheared_follows_lun"]["reason"] == "No data of sheared."
+    assert claims["sheared_follows_lun"]["sigma"] is None
+    assert claims["vibrated_follows_lun"]["verdict"] != NOT_TESTED
+
+
+def test_the_same_data_give_the_same_bytes(paths, tmp_path):
+    reports = []
+    for order in (paths, paths[::-1]):
+        judge(order, tmp_path / "claims.json", tmp_path / "claims.md")
+        names = ("claims.json", "claims.md")
+        reports.append([(tmp_path / name).read_bytes() for name in names])
+    assert reports[0] == reports[1]
+
+
+def test_datasets_of_several_scales_are_refused(paths, tmp_path):
+    reduced("sheared").assign_attrs(scale="paper").to_netcdf(tmp_path / "sheared.nc")
+    with pytest.raises(InputError, match="paper and small"):
+        judge([*paths, tmp_path / "sheared.nc"], tmp_path / "c.json", tmp_path / "c.md")
+    with pytest.raises(InputError, match="none"):
+        judge([], tmp_path / "c.json", tmp_path / "c.md")
+    assert not (tmp_path / "c.md").exists()
+
+
+def test_statements_have_names_of_their_own():
+    names = [statement.name for statement in STATEMENTS]
+    assert len(set(names)) == len(names)
