@@ -5,10 +5,12 @@ previous one dissipates nothing along the normal. Roughness is left as it is: sw
 would drive the spins towards equipartition.
 """
 
+import math
 from typing import NamedTuple
 
 from roughgas.effects.settings import number
 from roughgas.kernel.jit import jit
+from roughgas.kernel.state import EXPONENT
 
 
 class ContactTime(NamedTuple):
@@ -21,7 +23,7 @@ class ContactTime(NamedTuple):
         """The model, or None where the particles are too elastic to need it."""
         duration = number(settings, "contact_time", "duration")
         if "below_r" in settings:
-            limit = number(settings, "contact_time", "below_r", high=1.0, ends=True)
+            limit = number(settings, "contact_time", "below_r", "[0, 1]")
             return cls(duration) if around.restitution < limit else None
         return cls(duration)
 
@@ -31,4 +33,4 @@ def restitution(model, index, r, state, i, j, time):
     previous = state.last_contact[i]
     if j >= 0:
         previous = max(previous, state.last_contact[j])
-    return 1.0 if time - previous < model.duration else r
+    return 1.0 if time - previous < math.ldexp(model.duration, state.counts[EXPONENT]) else r

@@ -1,6 +1,5 @@
 """Reading an effect's parameters from settings: numbers in their legal range, or an InputError."""
 
-import math
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
@@ -15,29 +14,28 @@ class Surroundings(NamedTuple):
     roughness: float
 
 
-def number(settings: Mapping[str, Any], effect: str, name: str, low=0.0, high=math.inf, ends=False):
-    """Parameter `name` of an effect, between low and high; `ends` tells whether these are legal."""
+def number(settings: Mapping[str, Any], effect: str, name: str, interval: str = "(0, inf)"):
+    """Parameter `name` of an effect, which must lie in the interval."""
     value = settings.get(name)
-    valid = isinstance(value, int | float) and not isinstance(value, bool)
-    if not valid or not (low <= value <= high if ends else low < value < high):
-        raise InputError(f"effects.{effect}.{name}", value, _legal(low, high, ends))
+    low, high = (float(end) for end in interval[1:-1].split(","))
+    legal = (
+        isinstance(value, int | float)
+        and not isinstance(value, bool)
+        and (low < value or (interval[0] == "[" and value == low))
+        and (value < high or (interval[-1] == "]" and value == high))
+    )
+    if not legal:
+        raise InputError(f"effects.{effect}.{name}", value, f"be a number in {interval}")
     return float(value)
 
 
 def material(settings: Mapping[str, Any], effect: str, around: Surroundings):
     """(restitution, roughness) of a boundary; `particles` stands for the particles' own."""
     r, beta = (
-        own if settings.get(name) == "particles" else number(settings, effect, name, low, 1.0, True)
-        for name, low, own in (
-            ("restitution", 0.0, around.restitution),
-            ("roughness", -1.0, around.roughness),
+        own if settings.get(name) == "particles" else number(settings, effect, name, interval)
+        for name, own, interval in (
+            ("restitution", around.restitution, "[0, 1]"),
+            ("roughness", around.roughness, "[-1, 1]"),
         )
     )
     return r, beta
-
-
-def _legal(low, high, ends):
-    if high == math.inf:
-        return f"be a number above {low:g}"
-    brackets = "[]" if ends else "()"
-    return f"lie in {brackets[0]}{low:g}, {high:g}{brackets[1]}"

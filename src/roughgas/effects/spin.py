@@ -12,4 +12,4 @@ class Spin(NamedTuple):
 
     @classmethod
     def from_settings(cls, settings, around):
-        return cls(number(settings, "spin", "inertia", high=1.0, ends=True))
+        return cls(number(settings, "spin", "inertia", "(0, 1]"))

@@ -21,6 +21,7 @@ def insert_contact(agenda, i, time, partner, change):
     filled = agenda.filled[i]
     if filled == SLOTS:
         if not time < times[i, SLOTS - 1]:
+            agenda.complete_until[i] = min(agenda.complete_until[i], time)
             return
         agenda.complete_until[i] = times[i, SLOTS - 1]
         filled -= 1

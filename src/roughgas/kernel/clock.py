@@ -79,7 +79,8 @@ def _survey(state, scene, elapsed):
 
 @jit
 def horizon(state, scene, i):
-    """How far ahead particle i's contacts are foreseen; any positive time gives the same events."""
+    """How far ahead particle i's contacts are foreseen; any positive time gives the same events,
+    to rounding."""
     v = read(state.trajectory, i, len(scene.box), scene.box)
     speed = math.sqrt(dot(v, v)) + 2.0 * state.clock[TYPICAL_SPEED]
     if speed == 0.0:

@@ -36,9 +36,9 @@ from roughgas.kernel.vectors import (
     subtract,
 )
 
-# Particles part at no less than this share of the typical speed: where r = 0, what is left of the
-# normal velocity is rounding, and a cluster in contact would go on colliding over it for ever
-LEAST_DEPARTURE = 1e-10
+# At r = 0 what is left of the normal velocity is rounding, over which a pair would go on colliding
+# for ever: below this restitution particles part at this share of the typical speed
+STICKING = 1e-10
 
 
 @jit
@@ -57,9 +57,8 @@ def collide(state, scene, i, j, time):
     effects = scene.effects
     material = _material(effects, scene.restitution, scene.roughness, state, i, j, time)
     push, turn = response(effects.spin, effects, material, n, v, spin_sum(w_i, w_j), 0.5)
-    lacking = LEAST_DEPARTURE * state.clock[TYPICAL_SPEED] - dot(subtract(v, scale(push, 2.0)), n)
-    if lacking > 0.0:
-        push = add_scaled(push, n, -0.5 * lacking)
+    if scene.restitution < STICKING:
+        push = _parted(push, n, v, 0.5, STICKING * state.clock[TYPICAL_SPEED])
     put(state, scene, i, position_i, subtract(velocity_i, push), time)
     put(state, scene, j, position_j, add_scaled(velocity_j, push, 1.0), time)
     turn_spin(state.spin, i, w_i, turn)
@@ -90,9 +89,7 @@ def collide_with_wall(state, scene, index, i, time, material, n, wall_velocity, 
     effects = scene.effects
     material = _material(effects, material[0], material[1], state, i, -1, time)
     push, turn = response(effects.spin, effects, material, n, v, w, 1.0)
-    lacking = least_departure - dot(subtract(v, push), n)
-    if lacking > 0.0:
-        push = add_scaled(push, n, -lacking)
+    push = _parted(push, n, v, 1.0, least_departure)
     put(state, scene, i, position, subtract(velocity, push), time)
     turn_spin(state.spin, i, w, turn)
     account = state.ledger[0, index]
@@ -134,6 +131,13 @@ def _rough(spin, effects, material, n, v, w, share):
     turn = share * (1.0 + beta) / (1.0 + spin.inertia)
     push = add_scaled(scale(n, share * (1.0 + r) * speed), slip, spin.inertia * turn)
     return push, scale(cross_to_spin(n, slip), turn)
+
+
+@jit
+def _parted(push, n, v, share, least):
+    """The push, made large enough that the partners part at no less than `least` along n."""
+    lacking = least - dot(add_scaled(v, push, -1.0 / share), n)
+    return add_scaled(push, n, -share * max(0.0, lacking))
 
 
 @jit

@@ -10,7 +10,7 @@ from roughgas.kernel import hooks
 from roughgas.kernel.flight import whereabouts
 from roughgas.kernel.images import exceeds, image_numbers, shifted, speed_limits
 from roughgas.kernel.jit import compiled, jit
-from roughgas.kernel.vectors import add_scaled, dot, subtract
+from roughgas.kernel.vectors import add_scaled, cross_squared, dot, subtract
 
 DIAMETER = 2.0
 
@@ -21,12 +21,13 @@ def time_to_contact(x, u):
 
     Touching or overlapping (by rounding) and approaching is a contact now; receding never is one.
     The smaller root is formed by division, so that it does not cancel when the particles are
-    close. Roots and quotients are taken before anything is decided: a branch that the processor
-    cannot foresee would cost more than they do.
+    close, and the discriminant from the cross product, so that it does not when they are far. Roots
+    and quotients are taken before anything is decided: a branch that the processor cannot foresee
+    would cost more than they do.
     """
     b = dot(x, u)
     c = dot(x, x) - DIAMETER * DIAMETER
-    discriminant = b * b - dot(u, u) * c
+    discriminant = DIAMETER * DIAMETER * dot(u, u) - cross_squared(x, u)
     time = max(c, 0.0) / (math.sqrt(max(discriminant, 0.0)) - b)
     meets = (b < 0.0) & ((discriminant >= 0.0) | (c <= 0.0))
     return time if meets else math.inf

@@ -1,0 +1,92 @@
+"""The kernel and the brute force side by side: what they agree on, and how well."""
+
+from collections import Counter
+
+import numpy as np
+
+from brute_force.scenes import run
+from brute_force.simulation import BruteForce, Snapshot
+from roughgas.kernel.state import BASE, BOUNDARY_HITS, LAST_FIRST, LAST_SECOND, NOW
+
+ROUNDINGS = 1e-15
+
+
+def snapshot(state, scene):
+    """All particles of a kernel's state at the present instant, each in free flight."""
+    dimension, now = len(scene.box), state.clock[NOW]
+    position = state.trajectory[:, :dimension].copy()
+    velocity = state.trajectory[:, dimension:-1].copy()
+    elapsed = now - state.trajectory[:, -1]
+    position += velocity * elapsed[:, None]
+    if scene.effects.gravity is not None:
+        g = scene.effects.gravity.acceleration
+        position[:, -1] -= 0.5 * g * elapsed**2
+        velocity[:, -1] -= g * elapsed
+    spin = None if state.spin is None else state.spin.copy()
+    return Snapshot(state.clock[BASE] + now, position, velocity, spin)
+
+
+def brute_force_from(world, shot, last_contact=None):
+    """A brute-force simulation that starts where the kernel stands."""
+    return BruteForce(world, shot.position, shot.velocity, shot.spin, shot.time, last_contact)
+
+
+def largest_overlap(state, scene, world):
+    """By how much the closest pair of the kernel's particles is closer than a diameter."""
+    one = brute_force_from(world, snapshot(state, scene))
+    i, j = one.pairs.T
+    x = one.x[i] - one.x[j]
+    squares = [((x + shift) ** 2).sum(axis=1).min() for shift, _ in one.images()]
+    return float(2.0 - np.sqrt(min(squares)))
+
+
+def compare(shot, brute):
+    """Largest difference of a snapshot from a brute force in time, any place, velocity or spin."""
+    own = brute_force_from(brute.world, shot._replace(time=brute.time))
+    x, v = own.x - brute.x, own.v - brute.v
+    # a particle on the edge of the box may be folded either way
+    near = [np.abs(x + s).max(axis=1) + np.abs(v + d).max(axis=1) for s, d in brute.images()]
+    spins = np.abs(own.w - brute.w)
+    return float(max(abs(shot.time - brute.time), np.min(near, axis=0).max(), spins.max()))
+
+
+class Beside:
+    """Runs both from the same state, collision by collision, and compares.
+
+    Chaos multiplies any difference: each `segment` starts the brute force anew where the kernel is,
+    and a second one from a place some roundings off, which tells what difference is to be expected.
+    """
+
+    def __init__(self, state, scene, world):
+        self.state, self.scene, self.world = state, scene, world
+        self.last_contact = np.full(len(state.changes), -np.inf)
+        self.rng = np.random.default_rng(0)
+        self.events = Counter()
+
+    def segment(self, collisions):
+        """(difference, difference to be expected) after so many pair collisions."""
+        run(self.state, self.scene, 0)  # foresees everything if nothing has been yet
+        shot = snapshot(self.state, self.scene)
+        brute = brute_force_from(self.world, shot, self.last_contact)
+        other = brute_force_from(self.world, self._disturbed(shot), self.last_contact)
+        counts = self.state.counts
+        hits = int(counts[BOUNDARY_HITS])
+        events = Counter()
+        for _ in range(collisions):
+            step = brute.run(1)
+            run(self.state, self.scene, 1, collisions=1)
+            pair = {int(counts[LAST_FIRST]), int(counts[LAST_SECOND])}
+            assert {step[-1].i, step[-1].j} == pair, (step[-1], pair)
+            events.update(event.kind for event in step)
+        assert counts[BOUNDARY_HITS] - hits == events.total() - collisions
+        other.run(collisions)
+        self.last_contact = brute.last
+        self.events += events
+        return compare(snapshot(self.state, self.scene), brute), compare(other.snapshot(), brute)
+
+    def _disturbed(self, shot):
+        position, velocity = (
+            x * (1.0 + ROUNDINGS * self.rng.standard_normal(x.shape))
+            for x in (shot.position, shot.velocity)
+        )
+        return shot._replace(position=position, velocity=velocity)

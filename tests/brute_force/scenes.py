@@ -1,0 +1,98 @@
+"""The scenes that the kernel's tests run: few, since each is compiled on its own.
+
+What a scene does without can be had by its numbers: a contact time of 1e-300 never acts.
+"""
+
+import functools
+
+import numpy as np
+
+from brute_force.simulation import World
+from roughgas.initial import initial_state
+from roughgas.kernel.record import Plan, columns, record
+from roughgas.scene import build
+
+NEVER = 1e-300  # a contact time
+UNLIMITED = 2**60
+
+_DISKS = {"spin": {"inertia": 0.5}}
+_BED = _DISKS | {
+    "gravity": {"acceleration": 1.0},
+    "floor": {"amplitude": 5.0, "period": 1.0, "restitution": 1.0, "roughness": -1.0},
+}
+KERNELS = {
+    "gas": {"particles": 160, "box": [100, 100], "effects": _DISKS},
+    "smooth": {"particles": 160, "box": [100, 100], "effects": {}},
+    "sheared": {
+        "particles": 160,
+        "box": [50, 50],
+        "effects": _DISKS | {"shear": {"velocity": 2.0}},
+    },
+    "bed": {"particles": 160, "box": [50, "open"], "effects": _BED},
+    "walled": {
+        "particles": 160,
+        "box": [50, "open"],
+        "effects": _BED
+        | {
+            "walls": {"restitution": 1.0, "roughness": 1.0},
+            "contact_time": {"duration": NEVER},
+        },
+    },
+    "spheres": {
+        "particles": 64,
+        "box": [12, 12, 12],
+        "effects": {"spin": {"inertia": 0.4}, "contact_time": {"duration": NEVER}},
+    },
+}
+
+
+def settings(kernel, particles=None, box=None, **effects):
+    """Settings of one of KERNELS with other numbers, such as floor={"amplitude": 2}."""
+    chosen = KERNELS[kernel]
+    changed = {name: own | effects.get(name, {}) for name, own in chosen["effects"].items()}
+    return {
+        "particles": particles or chosen["particles"],
+        "box": box or chosen["box"],
+        "effects": changed,
+    }
+
+
+def scene_of(experiment, r, beta):
+    """(kernel's scene, brute force's world) of the same experiment."""
+    effects = experiment["effects"]
+    periods = [None if side == "open" else float(side) for side in experiment["box"]]
+    floor, walls = effects.get("floor"), effects.get("walls")
+    if walls:
+        width, periods[0] = periods[0], None
+    world = World(
+        box=tuple(periods),
+        r=r,
+        beta=beta,
+        q=effects["spin"]["inertia"] if "spin" in effects else None,
+        gravity=effects.get("gravity", {}).get("acceleration", 0.0),
+        floor=floor
+        and (floor["amplitude"], floor["period"], floor["restitution"], floor["roughness"]),
+        walls=walls and (width, walls["restitution"], walls["roughness"]),
+        shear=effects.get("shear", {}).get("velocity", 0.0),
+        contact_time=effects.get("contact_time", {}).get("duration", 0.0),
+    )
+    return build(experiment, r, beta), world
+
+
+def begin(experiment, r, beta, seed=0):
+    """A scene and its initial state."""
+    scene = build(experiment, r, beta)
+    return scene, initial_state(scene, experiment, np.random.default_rng(seed))
+
+
+def run(state, scene, samples, interval=np.inf, collisions=UNLIMITED, refresh=0):
+    """Advance the kernel; columns by name. Fails where the gas collapses."""
+    names = _columns(len(scene.box), scene.effects.spin is not None)
+    rows = np.empty((samples, len(names)))
+    assert record(state, scene, Plan(float(interval), collisions, refresh), rows) == samples
+    return dict(zip(names, rows.T, strict=True))
+
+
+@functools.cache
+def _columns(dimension, spinning):
+    return columns(dimension, spinning)

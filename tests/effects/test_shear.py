@@ -1,0 +1,94 @@
+"""Lees-Edwards boundaries."""
+
+import numpy as np
+import pytest
+from brute_force import begin, run, settings, snapshot
+
+from roughgas.kernel.state import new_state
+
+GAS = settings("sheared", 40, [25, 25])
+U, L = 2.0, 25.0
+
+
+def test_the_mean_flow_is_linear():
+    """Velocities in ten layers over 1000 T: each within 5 standard errors of the straight line.
+
+    The layers are averages over 2000 samples 0.5 T apart; errors are from 20 blocks. Chance of a
+    failure for any one seed: about 1e-4 (10 layers, t distribution of 19 degrees of freedom).
+    """
+    scene, state = begin(GAS, 0.9, 0.2, 1)
+    run(state, scene, 1, interval=200.0)
+    profile = np.empty((2000, 10))
+    for k in range(len(profile)):
+        run(state, scene, 1, interval=0.5)
+        shot = snapshot(state, scene)
+        crossings = np.floor(shot.position[:, 1] / L)
+        y, v = shot.position[:, 1] - crossings * L, shot.velocity[:, 0] - crossings * U
+        layer = np.minimum((10 * y / L).astype(int), 9)
+        excess = v - U / L * (y - L / 2)
+        number = np.bincount(layer, minlength=10)
+        total = np.bincount(layer, excess, minlength=10)
+        profile[k] = np.divide(total, number, out=np.zeros(10), where=number > 0)
+    blocks = profile.reshape(20, 100, 10).mean(axis=1)
+    error = blocks.std(axis=0, ddof=1) / np.sqrt(20)
+    assert np.all(np.abs(blocks.mean(axis=0)) < 5.0 * error)
+    assert np.all(error < 0.1 * U)
+
+
+def test_shear_heats_by_the_flow_and_reaches_a_steady_state():
+    scene, state = begin(GAS, 0.9, 0.2, 2)
+    row = run(state, scene, 3000, interval=0.5)
+    rate = U / L
+    energy = (row["vv_x"] + row["vv_y"] - 2 * rate * row["yv_x"] + rate**2 * row["yy"]) / 40
+    halves = energy[1000:2000].mean(), energy[2000:].mean()
+    assert 0.01 < halves[0] < 1.0
+    assert halves[1] == pytest.approx(halves[0], rel=0.25)
+
+
+def moved(shot, across, along):
+    """The same state seen from other images: the particles in the upper half shifted by boxes."""
+    upper = (shot.position[:, 1] > L / 2)[:, None]
+    position = shot.position + upper * np.array([L * along, L * across])
+    velocity = shot.velocity + upper * np.array([U * across, 0.0])
+    return position, velocity
+
+
+def test_the_choice_of_images_does_not_matter():
+    """Particles given by other images, at time 0, at which the image above is not displaced."""
+    scene, state = begin(GAS, 0.9, 0.2, 3)
+    shot = snapshot(state, scene)
+    pairs = {}
+    for across, along in ((0, 0), (1, 0), (-2, 3)):
+        other = new_state(scene, *moved(shot, across, along), np.zeros((40, 1)))
+        rows = run(other, scene, 100, collisions=1)
+        pairs[across] = rows["time"], rows["ww"]
+    for across in (1, -2):
+        assert pairs[across][0][:60] == pytest.approx(pairs[0][0][:60], rel=1e-8)
+        assert pairs[across][1][:60] == pytest.approx(pairs[0][1][:60], rel=1e-6, abs=1e-9)
+
+
+def test_a_galilean_boost_does_not_matter():
+    """Along the flow, where the boundaries are invariant."""
+    scene, state = begin(GAS, 0.9, 0.2, 4)
+    shot = snapshot(state, scene)
+    times = []
+    for boost in (0.0, 3.0):
+        velocity = shot.velocity + np.array([boost, 0.0])
+        other = new_state(scene, shot.position, velocity, np.zeros((40, 1)))
+        times.append(run(other, scene, 60, collisions=1)["time"])
+    assert times[1] == pytest.approx(times[0], rel=1e-8)
+
+
+def test_a_translation_across_the_flow_does_not_matter():
+    """The box has no preferred height: y -> y + s with v_x -> v_x + Gamma s is the same gas.
+
+    What crosses the boundary differs, so that this tests its every sign.
+    """
+    scene, state = begin(GAS, 0.9, 0.2, 5)
+    shot = snapshot(state, scene)
+    times = []
+    for shift in (0.0, 7.3):
+        position, velocity = shot.position + np.array([0.0, shift]), shot.velocity
+        other = new_state(scene, position, velocity, np.zeros((40, 1)))
+        times.append(run(other, scene, 60, collisions=1)["time"])
+    assert times[1] == pytest.approx(times[0], rel=1e-8)

@@ -1,0 +1,200 @@
+"""When two particles meet, to the last digits, and that nobody's meeting is overlooked."""
+
+import mpmath
+import numpy as np
+import pytest
+from brute_force import BruteForce, begin, largest_overlap, run, scene_of, settings, snapshot
+
+from roughgas.kernel.pairs import time_to_contact
+from roughgas.kernel.state import LAST_FIRST, LAST_SECOND, LONGEST_HORIZON, new_state
+
+EPSILON = 2.0**-52
+
+
+def exact_time(x, u):
+    """The smaller root of |x + u t| = 2 in 50 digits, or None where the paths do not meet."""
+    with mpmath.workdps(50):
+        x, u = ([mpmath.mpf(float(c)) for c in vector] for vector in (x, u))
+        b, uu = mpmath.fdot(x, u), mpmath.fdot(u, u)
+        discriminant = b * b - uu * (mpmath.fdot(x, x) - 4)
+        if b >= 0 or discriminant < 0:
+            return None, None
+        root = mpmath.sqrt(discriminant)
+        return (-b - root) / uu, root / uu
+
+
+def meeting(dimension, gap, impact, speed, rng):
+    """A pair `gap` apart along its path, whose miss distance is 2 `impact`."""
+    direction, across = np.linalg.qr(rng.standard_normal((dimension, 2)))[0].T
+    along = gap + 2.0 * np.sqrt(1.0 - impact**2)
+    return 2.0 * impact * across - along * direction, speed * direction
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("gap", [1e-12, 1e-9, 1e-6, 1e-3, 1.0, 30.0, 1e4])
+def test_time_to_contact_against_fifty_digits(dimension, gap):
+    """To a few roundings of the separation; a grazing path turns them into more, as it must."""
+    rng = np.random.default_rng(dimension)
+    for impact in (0.0, 0.3, 0.9, 0.99, 0.999999):
+        for speed in (1e-8, 1.0, 1e8):
+            x, u = meeting(dimension, gap, impact, speed, rng)
+            time = time_to_contact(tuple(x), tuple(u))
+            exact, half_chord = exact_time(x, u)
+            # a rounding of |x| - 2a moves the contact by that, over the normal speed
+            normal_speed = float(half_chord) * speed**2 / 2.0
+            rounding = EPSILON * (4.0 / normal_speed + float(exact) * speed / normal_speed)
+            assert abs(time - float(exact)) <= 4.0 * rounding + 4.0 * EPSILON * time
+
+
+def test_grazing_paths_are_decided_within_rounding():
+    for excess, meets in ((-1e-13, True), (1e-13, False)):
+        x = (-5.0, 2.0 * (1.0 + excess))
+        assert (time_to_contact(x, (1.0, 0.0)) < np.inf) == meets
+
+
+def test_touching_pairs_meet_now_if_they_approach_and_never_if_they_recede():
+    for distance in (2.0, 2.0 - 1e-15, 2.0 - 1e-12, 1.9):
+        assert time_to_contact((distance, 0.0), (-1e-9, 3.0)) == 0.0
+        assert time_to_contact((distance, 0.0), (1e-9, 3.0)) == np.inf
+    assert time_to_contact((2.0, 0.0, 0.0), (0.0, 1.0, 0.0)) == np.inf
+    assert time_to_contact((3.0, 0.0), (0.0, 0.0)) == np.inf
+
+
+# ---------------------------------------------------------------------- the search for partners
+
+
+def first_contact(scene, world, position, velocity, spin=None):
+    """((pair, time) of the kernel's first contact, the same of the brute force)."""
+    spin = np.zeros((len(position), 2 * position.shape[1] - 3)) if spin is None else spin
+    state = new_state(scene, position, velocity, spin)
+    row = run(state, scene, 1, collisions=1)
+    pair = {int(state.counts[LAST_FIRST]), int(state.counts[LAST_SECOND])}
+    event = BruteForce(world, position, velocity, spin).run(1)[-1]
+    return (pair, row["time"][0]), ({event.i, event.j}, event.time)
+
+
+@pytest.mark.parametrize("number", [2, 3, 15, 16, 17, 31, 33, 48])
+def test_any_number_of_particles(number):
+    """The sweep works on whole vector registers, whose padding is never taken for particles."""
+    experiment = settings("gas", number, [30, 40])
+    scene, world = scene_of(experiment, 1.0, 0.5)
+    _, state = begin(experiment, 1.0, 0.5, number)
+    state.trajectory[:, 2:4] *= 50.0  # too fast to meet only one image within the horizon
+    state.trajectory[0, 2:4] *= 40.0
+    found, expected = first_contact(scene, world, *snapshot(state, scene)[1:])
+    assert found[0] == expected[0]
+    assert found[1] == pytest.approx(expected[1], rel=1e-9)
+
+
+def tall_bed(rng):
+    """A bed whose particles are hundreds of radii up and fast."""
+    number, columns = 40, 12
+    sites = rng.permutation(columns * 200)[:number]
+    position = np.stack([4.0 * (sites % columns) + 2.0, 300.0 + 4.0 * (sites // columns)], axis=1)
+    return position, rng.standard_normal((number, 2)) * [3.0, 30.0]
+
+
+def jittered(rng, counts, spacing, slack):
+    """Particles on a lattice, each off its site by up to `slack` along each axis."""
+    axes = [spacing * (np.arange(c) + 0.5) for c in counts]
+    position = np.stack(np.meshgrid(*axes), axis=-1).reshape(-1, len(counts))
+    position += rng.uniform(-slack, slack, position.shape)
+    return position, rng.standard_normal(position.shape)
+
+
+@pytest.mark.parametrize(
+    "kind", ["tall bed", "dense", "dilute", "cold and hot", "shear", "spheres"]
+)
+def test_the_first_contact_of_random_states(kind):
+    """40 states each: whatever the sieve rounds, it lets the first pair to meet through."""
+    rng = np.random.default_rng(len(kind))
+    for _ in range(40):
+        if kind == "tall bed":
+            experiment = settings("bed", 40, [48, "open"])
+            position, velocity = tall_bed(rng)
+        elif kind == "spheres":
+            experiment = settings("spheres", 64, [10, 10, 10])
+            position, velocity = jittered(rng, (4, 4, 4), 2.5, 0.24)
+        elif kind == "shear":
+            speed = 10.0 ** rng.uniform(-1, 3)
+            experiment = settings("sheared", 36, [18, 18], shear={"velocity": speed})
+            position, velocity = jittered(rng, (6, 6), 3.0, 0.49)
+            velocity[:, 0] += speed * (position[:, 1] / 18 - 0.5)
+        else:
+            spacing = 2.2 if kind == "dense" else 12.0
+            experiment = settings("gas", 36, [6 * spacing] * 2)
+            position, velocity = jittered(rng, (6, 6), spacing, spacing / 2 - 1.01)
+            if kind == "cold and hot":
+                velocity *= 10.0 ** rng.uniform(-4, 2, (36, 1))
+        scene, world = scene_of(experiment, 0.9, 0.1)
+        found, expected = first_contact(scene, world, position, velocity)
+        assert found[0] == expected[0]
+        assert found[1] == pytest.approx(expected[1], rel=1e-9, abs=1e-12)
+
+
+def test_a_seventh_contact_is_not_lost_when_the_first_six_fall_through():
+    """A needle is set off along a lane; six particles leave it before they are met, one stays.
+
+    A particle keeps a short list of contacts: what does not fit in must be looked for again.
+    """
+    lane = 3.0 * np.arange(6) + 20.0
+    position = [(x, 100.0) for x in lane] + [(x, 102.5) for x in lane]
+    position += [(10.0, 99.5), (45.0, 99.5), (7.8, 99.5)]
+    velocity = [(0.0, 0.0)] * 6 + [(0.0, -1.0)] * 6 + [(0.0, 0.0), (0.0, 0.0), (1.0, 0.0)]
+    scene, world = scene_of(settings("gas", 15, [200, 200]), 1.0, -1.0)
+    state = new_state(scene, np.array(position), np.array(velocity), np.zeros((15, 1)))
+    brute = BruteForce(world, position, velocity, None)
+    assert brute.run(8)[-1][2:] == (12, 13)
+    row = run(state, scene, 8, collisions=1)
+    assert {int(state.counts[LAST_FIRST]), int(state.counts[LAST_SECOND])} == {12, 13}
+    assert row["time"][-1] == pytest.approx(brute.time, rel=1e-12)
+
+
+# ---------------------------------------------------------------------- what must not matter
+
+POINTS = {
+    "gas": (settings("gas", 40, [25, 25]), 0.9, 0.2),
+    "dense gas": (settings("gas", 100, [20.2, 20.2]), 0.95, -0.5),
+    "sheared": (settings("sheared", 40, [25, 25]), 0.9, 0.2),
+    "bed": (settings("bed", 40, [12.5, "open"]), 0.8, 0.2),
+    "walled": (settings("walled", 40, [12.5, "open"]), 0.8, 0.2),
+    "spheres": (settings("spheres", 100, [11, 11, 11]), 0.95, 0.2),
+}
+
+
+@pytest.mark.parametrize("name", POINTS)
+def test_when_and_how_often_samples_are_taken_does_not_matter(name):
+    """Bitwise: one sample, many, at odd instants, or in several calls."""
+    instants = {}
+    for interval, samples, calls in ((32.0, 1, 1), (0.25, 128, 1), (0.125, 64, 4), (1.0, 1, 32)):
+        scene, state = begin(*POINTS[name], 5)
+        for _ in range(calls):
+            run(state, scene, samples, interval=interval)
+        instants[interval] = (state.trajectory.tobytes(), state.spin.tobytes(), *state.counts[:2])
+    assert len(set(instants.values())) == 1
+
+
+@pytest.mark.parametrize("name", POINTS)
+def test_how_far_ahead_contacts_are_foreseen_does_not_matter(name):
+    """Four collisions per particle: later, chaos shows the few roundings that it does make."""
+    ends = []
+    for horizon in (np.inf, 1.0, 0.1):
+        scene, state = begin(*POINTS[name], 6)
+        run(state, scene, 0)
+        state.clock[LONGEST_HORIZON] = horizon
+        # the longest horizon acts from each particle's next event on
+        run(state, scene, 1, collisions=2 * len(state.changes))
+        ends.append(snapshot(state, scene))
+    for other in ends[1:]:
+        assert other.time == pytest.approx(ends[0].time, rel=1e-9)
+        assert other.velocity == pytest.approx(ends[0].velocity, abs=1e-7)
+        assert other.spin == pytest.approx(ends[0].spin, abs=1e-7)
+
+
+@pytest.mark.parametrize("name", POINTS)
+def test_particles_never_overlap(name):
+    scene, state = begin(*POINTS[name], 7)
+    _, world = scene_of(*POINTS[name])
+    for _ in range(100):
+        run(state, scene, 1, interval=0.7)
+        assert largest_overlap(state, scene, world) < 1e-11

@@ -1,0 +1,51 @@
+"""The recorder: units, chunks, books, collapse."""
+
+import numpy as np
+import pytest
+from brute_force import begin, run, settings
+
+from roughgas.protocols.recorder import Recorder
+
+GAS = settings("gas", 20, [25, 25])
+
+
+def test_columns_are_those_of_the_kernel():
+    for interval, collisions in ((0.5, None), (None, 10)):
+        (scene, state), (_, same) = (begin(GAS, 0.9, 0.2, 1) for _ in range(2))
+        if interval:
+            rows = Recorder().in_time(state, scene, interval, 130)
+            plain = run(same, scene, 130, interval=interval)
+        else:
+            rows = Recorder().in_collisions(state, scene, collisions, 130)
+            plain = run(same, scene, 130, collisions=collisions)
+        for name in rows:
+            assert np.array_equal(rows[name], plain[name]), name
+
+
+def test_units_of_a_refreshed_gas_are_restored():
+    """As far as chaos lets one compare: with and without refreshing."""
+    ends = []
+    for refresh in (0, 2):
+        scene, state = begin(GAS, 0.5, 0.5, 2)
+        ends.append(Recorder().in_collisions(state, scene, 10, 10, refresh))
+    plain, refreshed = ends
+    assert refreshed["time"] == pytest.approx(plain["time"], rel=1e-7)
+    for name in ("vv_x", "vv_y", "ww", "w", "yv_x"):
+        scale = np.abs(plain[name])
+        assert refreshed[name] == pytest.approx(plain[name], rel=1e-6, abs=1e-6 * scale.min()), name
+
+
+def test_it_sums_up_over_runs():
+    recorder = Recorder()
+    for seed in (1, 2):
+        scene, state = begin(GAS, 0.9, 0.2, seed)
+        recorder.in_collisions(state, scene, 10, 7)
+        recorder.in_collisions(state, scene, 5, 4)
+    assert recorder.collisions == 2 * (70 + 20) and recorder.seconds > 0.0
+
+
+def test_a_gas_that_never_collides_comes_to_an_end():
+    """One particle, sampled by collisions: the samples are taken all the same."""
+    scene, state = begin(settings("gas", 1, [10, 10]), 0.9, 0.2)
+    rows = Recorder().in_collisions(state, scene, 10, 5)
+    assert np.all(rows["collisions"] == 0) and np.all(np.diff(rows["time"]) > 0.0)

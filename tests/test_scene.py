@@ -1,0 +1,134 @@
+"""What scenes may be made of, and what is said about the others."""
+
+import math
+
+import pytest
+
+from roughgas.errors import InputError
+from roughgas.scene import build, check
+
+SPIN = {"spin": {"inertia": 0.5}}
+GRAVITY = {"gravity": {"acceleration": 1}}
+FLOOR = {"floor": {"amplitude": 5, "period": 1, "restitution": 1, "roughness": -1}}
+WALLS = {"walls": {"restitution": 1, "roughness": 1}}
+SHEAR = {"shear": {"velocity": 2}}
+TIME = {"contact_time": {"duration": 1e-5}}
+BED = SPIN | GRAVITY | FLOOR
+
+
+def experiment(box=(50, 50), particles=20, **effects):
+    return {"particles": particles, "box": list(box), "effects": effects}
+
+
+def test_a_gas():
+    scene = build(experiment((50, 60), **SPIN), 0.9, -0.5)
+    assert scene.box == (50.0, 60.0) and scene.extent == 50.0 and scene.middle == 30.0
+    assert (scene.restitution, scene.roughness) == (0.9, -0.5)
+    assert scene.effects.spin.inertia == 0.5
+    assert {name for name in scene.effects._fields if getattr(scene.effects, name)} == {"spin"}
+
+
+def test_a_bed_between_walls():
+    scene = build(experiment((50, "open"), **BED, **WALLS), 0.9, -0.5)
+    assert scene.box == (None, None) and scene.extent == 50.0 and scene.effects.walls.width == 50.0
+    assert scene.effects.floor[:4] == (5.0, 1.0, 1.0, -1.0)
+
+
+def test_the_particles_own_material_at_a_boundary():
+    own = {"restitution": "particles", "roughness": "particles"}
+    effects = BED | {"floor": FLOOR["floor"] | own, "walls": own}
+    scene = build(experiment((50, "open"), **effects), 0.9, -0.5)
+    assert scene.effects.floor[2:4] == scene.effects.walls[1:] == (0.9, -0.5)
+
+
+@pytest.mark.parametrize(("r", "present"), [(0.74, True), (0.75, False), (0.9, False)])
+def test_the_contact_time_model_acts_below_an_r(r, present):
+    model = {"contact_time": {"duration": 1e-5, "below_r": 0.75}}
+    assert (build(experiment(**SPIN, **model), r, 0.0).effects.contact_time is not None) == present
+
+
+@pytest.mark.parametrize(
+    ("r", "beta", "key"),
+    [
+        (-0.01, 0.0, "restitution r"),
+        (1.01, 0.0, "restitution r"),
+        (math.nan, 0.0, "restitution r"),
+        (math.inf, 0.0, "restitution r"),
+        (0.9, -1.01, "roughness beta"),
+        (0.9, 1.01, "roughness beta"),
+        (0.9, math.nan, "roughness beta"),
+    ],
+)
+def test_illegal_materials(r, beta, key):
+    with pytest.raises(InputError) as caught:
+        build(experiment(**SPIN), r, beta)
+    assert caught.value.key == key and "\n" not in str(caught.value)
+
+
+ILLEGAL = {
+    "effects.spin.inertia": [{"spin": {"inertia": q}} for q in (0, -1, 1.1, math.nan, "x", True)]
+    + [{"spin": {}}],
+    "effects.gravity.acceleration": [
+        BED | {"gravity": {"acceleration": g}} for g in (0, -1, math.nan, math.inf, None)
+    ],
+    "effects.floor.amplitude": [
+        BED | {"floor": FLOOR["floor"] | {"amplitude": A}} for A in (-1, math.inf, math.nan)
+    ],
+    "effects.floor.period": [BED | {"floor": FLOOR["floor"] | {"period": P}} for P in (0, -1)],
+    "effects.floor.restitution": [
+        BED | {"floor": FLOOR["floor"] | {"restitution": r}} for r in (-0.1, 1.1, "own", math.nan)
+    ],
+    "effects.floor.roughness": [
+        BED | {"floor": FLOOR["floor"] | {"roughness": b}} for b in (-1.1, 1.1)
+    ],
+    "effects.walls.restitution": [BED | {"walls": {"restitution": 2, "roughness": 0}}],
+    "effects.walls.roughness": [BED | {"walls": {"restitution": 1, "roughness": -2}}],
+    "effects.shear.velocity": [SPIN | {"shear": {"velocity": U}} for U in (0, -2, math.nan)],
+    "effects.contact_time.duration": [
+        SPIN | {"contact_time": {"duration": t}} for t in (0, -1e-5, math.nan)
+    ],
+    "effects.contact_time.below_r": [SPIN | {"contact_time": {"duration": 1, "below_r": 1.5}}],
+    "effect": [SPIN | {"wind": {}}],
+}
+
+
+@pytest.mark.parametrize("key", ILLEGAL)
+def test_illegal_effects(key):
+    for effects in ILLEGAL[key]:
+        box = (50, "open") if "floor" in effects else (50, 50)
+        with pytest.raises(InputError) as caught:
+            build(experiment(box, **effects), 0.9, 0.0)
+        assert caught.value.key == key, effects
+        assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("box", "effects", "key"),
+    [
+        ((4, 50), SPIN, "box[0]"),
+        ((50, 4), SPIN, "box[1]"),
+        ((50, 50, 3.9), SPIN, "box[2]"),
+        ((50, -50), SPIN, "box[1]"),
+        ((math.nan, 50), SPIN, "box[0]"),
+        ((math.inf, 50), SPIN, "box[0]"),
+        (("open", 50), BED, "box"),
+        (("open", "open"), BED, "box"),
+        ((50, "open"), SPIN, "box"),
+        ((50, 50), BED, "box"),
+        ((50, "open"), SPIN | GRAVITY, "effects"),
+        ((50, "open"), SPIN | FLOOR, "effects"),
+        ((50, 50), SPIN | WALLS | SHEAR, "effects"),
+        ((50, "open"), BED | SHEAR, "effects.shear"),
+    ],
+)
+def test_what_does_not_go_together(box, effects, key):
+    with pytest.raises(InputError) as caught:
+        build(experiment(box, **effects), 0.9, 0.0)
+    assert caught.value.key == key and "\n" not in str(caught.value)
+
+
+def test_too_many_particles_for_the_box():
+    check(experiment((8.1, 8.1), 16, **SPIN))
+    with pytest.raises(InputError) as caught:
+        check(experiment((8.1, 8.1), 17, **SPIN))
+    assert caught.value.key == "particles" and "16" in caught.value.legal
