@@ -1,0 +1,63 @@
+# From a fresh clone, with Python 3.11 or newer and nothing else: `make figures`, `make test`.
+
+# candidates, the first that is there and new enough is taken; or name one: make PYTHON=... figures
+PYTHON ?= python3.11 python3.12 python3.13 python3.14 python3
+JOBS ?= 2
+SNAKEFILES := Snakefile rules
+BIN := .venv/bin
+PIP := $(BIN)/python -m pip --disable-pip-version-check install -qq
+
+help: ## say what there is to make
+	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /  make \1\t/' | expand -t 18
+
+figures: setup ## simulate, and draw the four figures of the paper
+	$(BIN)/snakemake -j$(JOBS) figures
+	@echo
+	@echo "Look at  figures/fig1a.png  figures/fig1b.png  figures/fig2a.png  figures/fig2b.png"
+	@echo "What the paper claims, and what we find:  results/paper/claims.md"
+	@echo "Every number in them:  results/paper/R.csv"
+
+test: setup ## run every test
+	$(BIN)/python -m pytest
+
+bench: setup ## print how fast the kernel is in each scene
+	$(BIN)/python -m benchmarks
+
+lint: setup ## check style and format
+	$(BIN)/ruff check
+	$(BIN)/ruff format --check
+	$(BIN)/snakefmt --check $(SNAKEFILES)
+
+format: setup ## bring the sources into format
+	$(BIN)/ruff check --fix
+	$(BIN)/ruff format
+	$(BIN)/snakefmt $(SNAKEFILES)
+
+setup: .venv/ready ## install what is needed into .venv
+
+.venv/ready: requirements.lock pyproject.toml
+	@for python in $(PYTHON) ""; do \
+	    $$python -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null || continue; \
+	    $$python -c 'import ensurepip, venv' 2>/dev/null && break; \
+	    lacking=$$python; \
+	done; \
+	if [ -z "$$python" ] && [ -n "$$lacking" ]; then \
+	    echo "make: error: $$lacking lacks venv: install python3-venv, or set PYTHON" >&2; exit 1; \
+	elif [ -z "$$python" ]; then \
+	    echo "make: error: no Python 3.11 or newer among: $(PYTHON)" >&2; exit 1; \
+	fi; \
+	echo "Installing into .venv, once; this takes about a minute."; \
+	$$python -m venv --clear .venv
+	@$(PIP) --require-hashes --requirement requirements.lock
+	@$(PIP) --no-deps --no-build-isolation --editable .
+	@touch $@
+
+lock: ## choose and pin the newest versions of all dependencies (needs uv)
+	uv pip compile --quiet --upgrade --extra dev --generate-hashes --no-emit-index-url --no-header \
+	    --universal --python-version 3.11 --output-file requirements.lock pyproject.toml
+
+clean: ## remove all results; the environment and the committed figures stay
+	rm -rf results logs .snakemake figures/*.pdf figures/*/ .pytest_cache .ruff_cache .hypothesis
+
+.PHONY: help figures test bench lint format setup lock clean
+.DELETE_ON_ERROR:

@@ -1,0 +1,50 @@
+# The workflow at a glance: config.yaml says what is simulated, rules/ how, roughgas does the work.
+#
+#   snakemake -j2 figures                       the four figures of the paper, a table, its claims
+#   snakemake -j2 figures --config scale=small  the same in a minute, with wide error bars
+#   snakemake -j1 results/paper/cooling/r0.87/beta-0.33/seed7.nc     any one point
+
+
+include: "rules/common.smk"
+include: "rules/sources.smk"
+
+
+if workflow.is_main_process:
+    alive = forget_dead_locks()  # held until this process ends
+
+config = checked_config("config.yaml", config)
+SCALE = config["scale"]
+
+
+wildcard_constraints:
+    scale="[^/]+",
+    experiment="[^/]+",
+    r="[^/]+",
+    beta="[^/]+",
+    seed="[^/]+",
+    folder="([^/]+/)?",
+    figure="[^/]+",
+
+
+include: "rules/simulate.smk"
+include: "rules/reduce.smk"
+include: "rules/figures.smk"
+
+
+rule figures:
+    default_target: True
+    input:
+        drawn(PAPER),
+        f"results/{SCALE}/R.csv",
+        f"results/{SCALE}/claims.json",
+        f"results/{SCALE}/claims.md",
+
+
+rule everything:
+    input:
+        rules.figures.input,
+        reduced(SCALE, config["experiments"]),
+
+
+onerror:
+    print("Stopped: the same command goes on from here.", file=sys.stderr)

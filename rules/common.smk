@@ -1,0 +1,122 @@
+# What the rules share. Bad input ends the workflow with one line, before anything is run.
+import fcntl
+import functools
+import os
+import sys
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+try:
+    import roughgas.config
+    from roughgas.errors import InputError
+except ModuleNotFoundError as error:
+    sys.exit(f"roughgas: error: no module {error.name}: `make setup`, then .venv/bin/snakemake")
+
+KERNEL = "results/{scale}/{experiment}/r{r}/compiled.txt"
+POINT = "results/{scale}/{experiment}/r{r}/beta{beta}/seed{seed}.nc"
+REDUCED = "results/{scale}/{experiment}.nc"
+# rules call the `roughgas` beside this snakemake, wherever it was started from
+os.environ["PATH"] = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+FIGURES = {}  # name -> the experiments that it shows; every file of figures adds its own
+
+
+@contextmanager
+def one_line(place=None):
+    """End the workflow with one line where the input turns out to be bad."""
+    try:
+        yield
+    except InputError as error:
+        sys.exit(f"roughgas: error: {place}: {error}" if place else f"roughgas: error: {error}")
+    except OSError as error:
+        sys.exit(f"roughgas: error: {error.filename}: {error.strerror}")
+
+
+def checked_config(path, changes):
+    """The configuration at `path`, with the changes that the command line makes to it."""
+    with one_line():
+        return roughgas.config.load(path, changes)
+
+
+@functools.cache
+def settings(scale, experiment):
+    """The settings of an experiment at a scale, found to be such as can be simulated."""
+    with one_line(REDUCED.format(scale=scale, experiment=experiment)):
+        found = roughgas.config.experiment(config, experiment, scale)
+    with one_line(f"config.yaml: experiments.{experiment} at scale {scale}"):
+        from roughgas.scene import check
+
+        check(found)
+    return found
+
+
+def kernel_of_point(wildcards):
+    """What says that the kernel of a point is compiled; ends the workflow for an illegal point."""
+    with one_line(POINT.format(**wildcards)):
+        roughgas.config.restitution(wildcards.r)
+        roughgas.config.roughness(wildcards.beta)
+        roughgas.config.seed(wildcards.seed)
+    settings(wildcards.scale, wildcards.experiment)
+    return KERNEL.format(**wildcards)
+
+
+def settings_of_points(wildcards):
+    """All in config.yaml that the points of an experiment depend on, whichever they are, as JSON:
+    what else changes there does not touch them."""
+    found = settings(wildcards.scale, wildcards.experiment)
+    return roughgas.config.as_text(roughgas.config.point_settings(found))
+
+
+def urgency(wildcards):
+    """Longest points first: close to beta = -1 spin relaxes slowest."""
+    return -roughgas.config.roughness(wildcards.beta)
+
+
+def points_of_experiment(wildcards):
+    """The datasets of all points in the sweep of an experiment."""
+    scale, experiment = wildcards.scale, wildcards.experiment
+    return [
+        POINT.format(scale=scale, experiment=experiment, r=r, beta=beta, seed=seed)
+        for r, beta, seed in roughgas.config.sweep(settings(scale, experiment))
+    ]
+
+
+def reduced(scale, experiments):
+    """The reduced datasets of experiments; ends the workflow for one that does not exist."""
+    for experiment in experiments:
+        settings(scale, experiment)
+    return [REDUCED.format(scale=scale, experiment=experiment) for experiment in experiments]
+
+
+def data_of_figure(wildcards):
+    with one_line():
+        if wildcards.figure not in FIGURES:
+            raise InputError("figure", wildcards.figure, f"be one of {', '.join(sorted(FIGURES))}")
+    return reduced(wildcards.folder.rstrip("/") or "paper", FIGURES[wildcards.figure])
+
+
+def data_of_paper(wildcards):
+    shown = [experiment for experiments in PAPER.values() for experiment in experiments]
+    return reduced(wildcards.scale, dict.fromkeys(shown))
+
+
+def drawn(figures):
+    """The files of figures at the scale of this run: in figures/, or in a folder below it."""
+    folder = "" if SCALE == "paper" else f"{SCALE}/"
+    return [f"figures/{folder}{figure}{kind}" for figure in figures for kind in (".pdf", ".png")]
+
+
+def forget_dead_locks():
+    """Remove the locks that a killed Snakemake has left, so that the same command goes on.
+
+    Each Snakemake in this folder holds a shared lock of the system's for as long as it lives: who
+    can have it alone knows that no other one is alive.
+    """
+    Path(".snakemake/locks").mkdir(parents=True, exist_ok=True)
+    alive = open(".snakemake/alive", "w")
+    with suppress(OSError):  # another one is alive, or there are no such locks on this disk
+        fcntl.flock(alive, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        for lock in Path(".snakemake/locks").glob("*.lock"):
+            lock.unlink()
+    with suppress(OSError):
+        fcntl.flock(alive, fcntl.LOCK_SH)
+    return alive

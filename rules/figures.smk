@@ -1,0 +1,63 @@
+# The paper: its four figures, one table, and the verdict on what it claims.
+PAPER = {
+    "fig1a": ["vibrated"],
+    "fig1b": [
+        "vibrated",
+        "vibrated_rough_walls",
+        "vibrated_particle_walls",
+        "vibrated_smooth_walls",
+    ],
+    "fig2a": ["sheared"],
+    "fig2b": ["cooling"],
+}
+FIGURES |= PAPER
+
+
+rule figure:
+    # at the scale `paper` into figures/, at others into a folder below it
+    input:
+        sources("plotting"),
+        data=data_of_figure,
+    output:
+        multiext("figures/{folder}{figure}", ".pdf", ".png"),
+    log:
+        "logs/figures/{folder}{figure}.log",
+    benchmark:
+        "logs/figures/{folder}{figure}.tsv"
+    message:
+        "draw {wildcards.folder}{wildcards.figure}"
+    shell:
+        "roughgas figure {wildcards.figure} {input.data} --output {output} > {log} 2>&1"
+
+
+rule table:
+    input:
+        sources("reduce"),
+        data=data_of_paper,
+    output:
+        "results/{scale}/R.csv",
+    log:
+        "logs/{scale}/table.log",
+    benchmark:
+        "logs/{scale}/table.tsv"
+    message:
+        "write {output}"
+    shell:
+        "roughgas table {input.data} --output {output} > {log} 2>&1"
+
+
+rule claims:
+    input:
+        sources("claims"),
+        data=data_of_paper,
+    output:
+        json="results/{scale}/claims.json",
+        markdown="results/{scale}/claims.md",
+    log:
+        "logs/{scale}/claims.log",
+    benchmark:
+        "logs/{scale}/claims.tsv"
+    message:
+        "judge the claims of the paper"
+    shell:
+        "roughgas claims {input.data} --json {output.json} --markdown {output.markdown} > {log} 2>&1"

@@ -1,0 +1,17 @@
+# From points to one dataset an experiment, over r, beta and seed.
+
+
+rule reduce:
+    input:
+        sources("reduce"),
+        points=points_of_experiment,
+    output:
+        REDUCED,
+    log:
+        "logs/{scale}/{experiment}/reduced.log",
+    benchmark:
+        "logs/{scale}/{experiment}/reduced.tsv"
+    message:
+        "reduce {wildcards.experiment}"
+    shell:
+        "roughgas reduce {input.points} --output {output} > {log} 2>&1"

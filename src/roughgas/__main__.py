@@ -1,0 +1,7 @@
+"""`python -m roughgas` is the command `roughgas`."""
+
+import sys
+
+from roughgas.cli import main
+
+sys.exit(main())

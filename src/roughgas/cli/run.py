@@ -1,0 +1,117 @@
+"""`roughgas run` simulates one point of an experiment; `roughgas compile` prepares its kernel."""
+
+import argparse
+import shlex
+import sys
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from roughgas.dataset import Point
+
+RUN_EXAMPLE = "example: roughgas run cooling --r 0.9 --beta -0.5 --seed 1 -o point.nc"
+COMPILE_EXAMPLE = "example: roughgas compile cooling --r 0.9"
+
+
+def add_commands(commands: Any) -> None:
+    """Add the two subcommands to argparse's `commands`."""
+    parser = commands.add_parser(
+        "run",
+        help="simulate one point and write its dataset",
+        description="Simulate one point of an experiment and write its dataset.",
+        epilog=RUN_EXAMPLE,
+    )
+    _add_experiment(parser)
+    parser.add_argument("--beta", required=True, help="roughness, in [-1, 1]")
+    parser.add_argument("--seed", required=True, help="seed of the random generator, 0, 1, ...")
+    parser.add_argument("-o", "--output", required=True, metavar="FILE", help="dataset to write")
+    parser.set_defaults(command=run)
+
+    parser = commands.add_parser(
+        "compile",
+        help="compile the kernel of a point ahead of it",
+        description="Compile the machine code that a point of an experiment runs, into its cache.",
+        epilog=COMPILE_EXAMPLE,
+    )
+    _add_experiment(parser)
+    parser.add_argument("-o", "--output", metavar="FILE", help="say in FILE what was compiled")
+    parser.set_defaults(command=compile_kernel)
+
+
+def _add_experiment(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("experiment", metavar="EXPERIMENT", help="its name in the configuration")
+    parser.add_argument("--scale", default="paper", help="its scale (default: paper)")
+    parser.add_argument("--config", default="config.yaml", metavar="FILE", help="the configuration")
+    parser.add_argument("--settings", metavar="JSON", help="its settings, in place of --config")
+    parser.add_argument(
+        "--checked", action="store_true", help="take --settings for legal, which saves 0.1 s"
+    )
+    parser.add_argument("--r", required=True, help="normal restitution, in [0, 1]")
+
+
+def run(options: argparse.Namespace) -> None:
+    """Simulate the point that `options` name, and write its dataset."""
+    from roughgas import config
+    from roughgas.cli.progress import Progress
+
+    r, beta = config.restitution(options.r), config.roughness(options.beta)
+    seed, settings = config.seed(options.seed), _settings(options)
+
+    from roughgas.dataset import write_point
+    from roughgas.simulate import run_point
+
+    with Progress(options.experiment, settings["schedule"]) as progress:
+        point = run_point(config.point_settings(settings), r, beta, seed, progress)
+    point = point._replace(attributes=_provenance(options, settings) | point.attributes)
+    write_point(options.output, point)
+    print(_closing_line(options, point), file=sys.stderr)
+
+
+def compile_kernel(options: argparse.Namespace) -> None:
+    """Compile what the points of an experiment run at some r, whatever their beta and seed."""
+    from roughgas import config
+
+    r, settings = config.restitution(options.r), _settings(options)
+
+    from roughgas.atomic import write_text
+    from roughgas.kernel.cache import source_hash
+    from roughgas.simulate import compile_kernels
+
+    compile_kernels([settings | {"sweep": {"r": [r]}}])
+    if options.output:
+        write_text(options.output, f"compiled from the sources {source_hash()}\n")
+
+
+def _settings(options: argparse.Namespace) -> dict[str, Any]:
+    from roughgas import config
+
+    if options.settings is not None:
+        return config.from_text(options.settings, "--settings", options.checked)
+    return config.experiment(config.load(options.config), options.experiment, options.scale)
+
+
+def _provenance(options: argparse.Namespace, settings: dict[str, Any]) -> dict[str, Any]:
+    """The attributes of a point that say how to run it again, besides its r, beta and seed."""
+    from roughgas import config
+
+    text = config.as_text(config.point_settings(settings))
+    command = ["roughgas", "run", options.experiment, "--scale", options.scale]
+    # joined by =, lest a negative number be taken for an option
+    command += [f"--{name}={getattr(options, name)}" for name in ("r", "beta", "seed")]
+    command += ["--settings", text, "--output", options.output]
+    return {
+        "title": f"{options.experiment}: r = {options.r}, beta = {options.beta}",
+        "experiment": options.experiment,
+        "scale": options.scale,
+        "r_label": options.r,
+        "beta_label": options.beta,
+        "experiment_json": text,
+        "command": shlex.join(command),
+    }
+
+
+def _closing_line(options: argparse.Namespace, point: "Point") -> str:
+    found = point.variables
+    return (
+        f"{options.output}: R = {float(found['R']):.4f} +- {float(found['R_stderr']):.4f}, "
+        f"{int(found['collisions']):,} collisions in {float(found['kernel_seconds']):.1f} s"
+    )

@@ -1,0 +1,150 @@
+"""config.yaml: read, checked against its schema, and merged into one experiment at one scale.
+
+Everything illegal raises an InputError, whose text is one line naming key, value and what is legal.
+"""
+
+import json
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from roughgas.config.labels import restitution, roughness, seed
+from roughgas.config.schema import check_schema, first_repeated, shown
+from roughgas.errors import InputError
+
+__all__ = [
+    "as_text",
+    "check",
+    "experiment",
+    "from_text",
+    "load",
+    "merged",
+    "point_settings",
+    "restitution",
+    "roughness",
+    "seed",
+    "sweep",
+]
+
+SOURCE = "config.yaml"
+NOT_OF_A_POINT = ("description", "sweep")
+"""Settings of an experiment that do not concern any single point of it."""
+
+
+def load(path: str | Path, overrides: Mapping[str, Any] | None = None) -> dict[str, Any]:
+    """The configuration at `path`, `overrides` (from a command line) merged into it, checked.
+
+    Raises InputError for anything illegal, OSError where the file cannot be read.
+    """
+    from roughgas.config.reading import read_yaml
+
+    source = Path(path).name
+    config = read_yaml(path)
+    if not isinstance(config, dict):
+        raise InputError(source, shown(config), "hold the keys scale, experiments, scales")
+    if overrides:
+        source += " with the command line's changes"
+        config = merged(config, overrides)
+    check(config, source)
+    return config
+
+
+def check(config: Mapping[str, Any], source: str = SOURCE) -> None:
+    """Raise an InputError for the first illegal thing in `config`, if there is any."""
+    check_schema(config, source)
+    known, scales = config["experiments"], config["scales"]
+    _one_of(f"{source}: scale", config["scale"], scales)
+    for name in known:
+        _check_ancestors(name, known, source)
+    for scale, changes in scales.items():
+        for name in changes:
+            _one_of(f"{source}: key of scales.{scale}", name, known)
+        for name in known:
+            where = f"{source}: experiments.{name}"
+            if scale != config["scale"]:
+                where += f" at scale {scale}"
+            _check_complete(experiment(config, name, scale), where)
+
+
+def experiment(config: Mapping[str, Any], name: str, scale: str) -> dict[str, Any]:
+    """The experiment `name` at `scale`: what it extends, its own settings, the scale's changes.
+
+    What it extends is taken as it is at this scale. Raises InputError for unknown names.
+    """
+    _one_of("experiment", name, config["experiments"])
+    _one_of("scale", scale, config["scales"])
+    own = dict(config["experiments"][name])
+    parent = own.pop("extends", None)
+    settings = experiment(config, parent, scale) if parent else {}
+    settings.pop("description", None)
+    return merged(merged(settings, own), config["scales"][scale].get(name, {}))
+
+
+def merged(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
+    """`base` with `changes` merged in, key by key at every depth; a change to None takes away."""
+    result = dict(base)
+    for key, change in changes.items():
+        if change is None:
+            result.pop(key, None)
+        elif isinstance(change, Mapping):
+            inner = result.get(key)
+            result[key] = merged(inner if isinstance(inner, Mapping) else {}, change)
+        else:
+            result[key] = change
+    return result
+
+
+def point_settings(settings: Mapping[str, Any]) -> dict[str, Any]:
+    """The settings of an experiment that shape its points, whichever of them are asked for."""
+    return {key: value for key, value in settings.items() if key not in NOT_OF_A_POINT}
+
+
+def sweep(settings: Mapping[str, Any]) -> Iterator[tuple[str, str, str]]:
+    """The labels (r, beta, seed) of every point of an experiment."""
+    axes = settings["sweep"]
+    for r in axes["r"]:
+        for beta in axes["beta"]:
+            for number in range(1, axes["seeds"] + 1):
+                yield str(r), str(beta), str(number)
+
+
+def as_text(settings: Mapping[str, Any]) -> str:
+    """Settings as JSON on one line, the same for equal settings."""
+    return json.dumps(settings, sort_keys=True, separators=(",", ":"))
+
+
+def from_text(text: str, source: str, checked: bool = False) -> dict[str, Any]:
+    """The settings of a point from their JSON; `checked` says that they are known to be legal."""
+    try:
+        settings = json.loads(text)
+    except ValueError as error:
+        raise InputError(source, shown(text), "be JSON") from error
+    if not checked:
+        check_schema(settings, source, "experiment")
+        check_schema(settings, source, "point")
+    return settings
+
+
+def _check_complete(settings: Mapping[str, Any], where: str) -> None:
+    check_schema(settings, where, "point")
+    check_schema(settings, where, "swept")
+    for axis, value_of in (("r", restitution), ("beta", roughness)):
+        repeated = first_repeated(settings["sweep"][axis], value_of)
+        if repeated is not None:
+            raise InputError(f"{where}.sweep.{axis}", shown(repeated), "be given once")
+
+
+def _check_ancestors(name: str, known: Mapping[str, Any], source: str) -> None:
+    """Raise an InputError where the chain of `extends` breaks or runs in a circle."""
+    seen = [name]
+    while parent := known[seen[-1]].get("extends"):
+        key = f"{source}: experiments.{seen[-1]}.extends"
+        _one_of(key, parent, known)
+        if parent in seen:
+            raise InputError(key, parent, "be an experiment that does not itself build on this one")
+        seen.append(parent)
+
+
+def _one_of(key: str, value: Any, known: Mapping[str, Any]) -> None:
+    if value not in known:
+        raise InputError(key, shown(value), f"be one of {', '.join(sorted(known))}")

@@ -1,0 +1,35 @@
+"""The numbers that name a point: r, beta and seed as they stand in paths and on command lines."""
+
+import re
+from typing import Any
+
+from roughgas.errors import InputError
+
+NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
+WHOLE_NUMBER = re.compile(r"\d{1,19}", re.ASCII)
+LARGEST_SEED = 2**63 - 1
+
+
+def restitution(label: Any, key: str = "restitution r") -> float:
+    """The normal restitution that `label` (text or a number) stands for, in [0, 1]."""
+    return _between(key, label, 0, 1)
+
+
+def roughness(label: Any, key: str = "roughness beta") -> float:
+    """The roughness that `label` (text or a number) stands for, in [-1, 1]."""
+    return _between(key, label, -1, 1)
+
+
+def seed(label: Any, key: str = "seed") -> int:
+    """The seed that `label` (text or a number) stands for, from 0 to 2^63 - 1."""
+    if not WHOLE_NUMBER.fullmatch(str(label)) or int(label) > LARGEST_SEED:
+        raise InputError(key, label, "be a whole number in [0, 2^63 - 1]")
+    return int(label)
+
+
+def _between(key: str, label: Any, low: int, high: int) -> float:
+    """The number that `label` stands for; raises InputError where it is none in [low, high]."""
+    is_number = NUMBER.fullmatch(str(label)) is not None
+    if not is_number or not low <= float(label) <= high:
+        raise InputError(key, label, f"lie in [{low}, {high}]")
+    return float(label) + 0.0  # turns -0 into 0

@@ -1,0 +1,54 @@
+"""Reads YAML as a person means it: 1e-5 is a number, and a key that is given twice is a mistake."""
+
+import re
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from roughgas.errors import InputError
+
+# YAML 1.1 takes 1e-5 for text, since it has no point
+SCIENTIFIC = re.compile(r"[-+]?[0-9]+(\.[0-9]*)?[eE][-+]?[0-9]+")
+
+
+class Loader(yaml.SafeLoader):
+    """PyYAML's safe loader, with the two differences named above."""
+
+    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
+        """A mapping; raises InputError where a key is there twice."""
+        seen = set()
+        for key in (key for key, _ in node.value if isinstance(key, yaml.ScalarNode)):
+            if key.value in seen:
+                raise InputError(_place(key.start_mark), repr(key.value), "be given once")
+            seen.add(key.value)
+        return super().construct_mapping(node, deep)
+
+
+Loader.add_implicit_resolver("tag:yaml.org,2002:float", SCIENTIFIC, list("-+0123456789"))
+
+
+def read_yaml(path: str | Path) -> Any:
+    """What the YAML file at `path` holds.
+
+    Raises InputError where it is not YAML, OSError where it cannot be read.
+    """
+    name = Path(path).name
+    try:
+        text = Path(path).read_text(encoding="utf-8")
+        loader = Loader(text)
+    except (UnicodeDecodeError, yaml.reader.ReaderError) as error:
+        raise InputError(name, "(not text)", "be YAML in UTF-8") from error
+    loader.name = name
+    try:
+        return loader.get_single_data()
+    except yaml.MarkedYAMLError as error:
+        mark = error.problem_mark or error.context_mark
+        line = text.splitlines()[mark.line : mark.line + 1]
+        raise InputError(_place(mark), repr("".join(line)), f"be YAML: {error.problem}") from error
+    finally:
+        loader.dispose()
+
+
+def _place(mark: yaml.Mark) -> str:
+    return f"{mark.name}: line {mark.line + 1}"

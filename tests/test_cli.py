@@ -1,0 +1,192 @@
+"""The command line: what it refuses and how, and what a person sees."""
+
+import io
+import json
+import resource
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from roughgas import __version__
+from roughgas.cli import main
+from roughgas.cli.progress import Progress
+from roughgas.dataset import WALL_CLOCK, read_point
+
+CONFIG = str(Path(__file__).parent.parent / "config.yaml")
+SETTINGS = {
+    "particles": 5,
+    "box": [20, 20],
+    "effects": {"spin": {"inertia": 0.5}},
+    "schedule": {
+        "kind": "cooling",
+        "replicas": 2,
+        "thermalise": 1,
+        "relaxation_times": 1,
+        "plateau": 5,
+        "sample_every": 1,
+    },
+}
+
+
+def run(output, experiment="cooling", r="0.9", beta="0", seed="1", **others):
+    arguments = ["run", experiment, f"--r={r}", f"--beta={beta}", f"--seed={seed}"]
+    arguments += [f"--{name}={value}" for name, value in others.items()]
+    return main([*arguments, "--output", str(output)])
+
+
+@pytest.mark.parametrize(
+    ("choice", "message"),
+    [
+        ({"r": "1.5"}, "restitution r = 1.5: must lie in [0, 1]"),
+        ({"r": "nan"}, "restitution r = nan: must lie in [0, 1]"),
+        ({"beta": "-2"}, "roughness beta = -2: must lie in [-1, 1]"),
+        ({"beta": "rough"}, "roughness beta = rough: must lie in [-1, 1]"),
+        ({"seed": "-1"}, "seed = -1: must be a whole number in [0, 2^63 - 1]"),
+        ({"experiment": "foo"}, "experiment = 'foo': must be one of cooling, sheared, vibrated"),
+        ({"scale": "large"}, "scale = 'large': must be one of paper, small"),
+        ({"config": "no.yaml"}, "no.yaml: No such file or directory"),
+        ({"settings": "{"}, "--settings = '{': must be JSON"),
+        (
+            {"settings": json.dumps(SETTINGS | {"particles": 0})},
+            "--settings.particles = 0: must be a whole number >= 1",
+        ),
+        ({"settings": json.dumps(SETTINGS | {"particles": 10_000})}, "particles = 10000: must"),
+        ({"settings": json.dumps(SETTINGS | {"box": [3, 3]})}, "box[0] = 3"),
+    ],
+)
+def test_bad_input_is_refused_in_one_line_and_leaves_no_file(tmp_path, capsys, choice, message):
+    status = run(tmp_path / "new" / "point.nc", **({"config": CONFIG} | choice))
+    said = capsys.readouterr()
+    assert status != 0
+    assert said.out == ""
+    assert said.err.startswith(f"roughgas: error: {message}")
+    assert said.err.count("\n") == 1
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ([], "the following arguments are required: COMMAND (see `roughgas --help`)"),
+        (["fly"], "argument COMMAND: invalid choice: 'fly'"),
+        (["run", "cooling"], "the following arguments are required: --r, --beta, --seed"),
+        (["run", "cooling", "--mu", "1"], "the following arguments are required"),
+        (["figure", "fig1a"], "the following arguments are required: REDUCED"),
+    ],
+)
+def test_bad_arguments_are_refused_in_one_line(capsys, arguments, message):
+    with pytest.raises(SystemExit) as stop:
+        main(arguments)
+    said = capsys.readouterr()
+    assert stop.value.code == 2
+    assert said.err.startswith(f"roughgas: error: {message}")
+    assert said.err.count("\n") == 1
+
+
+def test_a_figure_that_does_not_exist(tmp_path, capsys):
+    assert main(["figure", "fig9", "x.nc", "--output", str(tmp_path / "f.png")]) == 2
+    assert capsys.readouterr().err.startswith("roughgas: error: figure = fig9: must")
+
+
+def test_a_dataset_that_does_not_exist(tmp_path, capsys):
+    assert main(["reduce", str(tmp_path / "no.nc"), "--output", str(tmp_path / "x.nc")]) == 1
+    said = capsys.readouterr().err
+    assert said.startswith("roughgas: error: ") and said.count("\n") == 1
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_version(capsys):
+    with pytest.raises(SystemExit):
+        main(["--version"])
+    assert capsys.readouterr().out == f"roughgas {__version__}\n"
+
+
+def test_help_imports_nothing_heavy():
+    script = (
+        "import sys\nfrom roughgas.cli import main\n"
+        "try: main(['--help'])\n"
+        "except SystemExit: print(*sys.modules)\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, check=True
+    )
+    loaded = set(done.stdout.split())
+    assert loaded.isdisjoint({"numpy", "numba", "xarray", "netCDF4", "matplotlib", "jsonschema"})
+
+
+class Terminal(io.StringIO):
+    def isatty(self):
+        return True
+
+
+def test_progress_is_seen_on_a_terminal_and_cleared():
+    stream = Terminal()
+    with Progress("sheared", {"kind": "steady", "equilibrate": 2000, "measure": 5000}, stream) as p:
+        p(1234.5, 98_765)
+        p(1234.6, 98_766)  # too soon to be shown
+    assert stream.getvalue() == ("\r\x1b[Ksheared: t = 1,234 of 7,000 T, 98,765 collisions\r\x1b[K")
+
+
+def test_progress_of_a_cooling_gas_has_no_end():
+    stream = Terminal()
+    Progress("cooling", {"kind": "cooling"}, stream)(50.0, 7)
+    assert stream.getvalue().endswith("cooling: t = 50 T, 7 collisions")
+
+
+def test_progress_is_silent_elsewhere():
+    stream = io.StringIO()
+    with Progress("cooling", {"kind": "cooling"}, stream) as progress:
+        progress(1.0, 1)
+    assert stream.getvalue() == ""
+
+
+def test_an_interrupt_ends_in_one_line(tmp_path, capsys, monkeypatch):
+    def interrupted(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("roughgas.simulate.run_point", interrupted)
+    assert run(tmp_path / "point.nc", config=CONFIG) == 130
+    assert capsys.readouterr().err == "roughgas: error: interrupted, nothing written\n"
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.fixture(scope="module")
+def point(tmp_path_factory):
+    path = tmp_path_factory.mktemp("point") / "a" / "b" / "point.nc"
+    assert run(path, beta="-0.50", settings=json.dumps(SETTINGS)) == 0
+    return path
+
+
+def test_a_point_says_how_to_run_it_again(point, tmp_path):
+    dataset = read_point(point)
+    assert dataset.attrs["experiment"] == "cooling"
+    assert dataset.attrs["scale"] == "paper"
+    assert dataset.attrs["beta"] == -0.5 and dataset.attrs["beta_label"] == "-0.50"
+    assert json.loads(dataset.attrs["experiment_json"]) == SETTINGS
+    program, *arguments = shlex.split(dataset.attrs["command"])
+    assert program == "roughgas"
+    arguments[-1] = str(tmp_path / "again.nc")
+    assert main(arguments) == 0
+    again = read_point(tmp_path / "again.nc")
+    assert dataset.drop_vars(WALL_CLOCK).equals(again.drop_vars(WALL_CLOCK))
+
+
+def test_a_full_disk_is_named_and_leaves_no_file(point, tmp_path):
+    def nothing_fits():
+        resource.setrlimit(resource.RLIMIT_FSIZE, (1024, 1024))
+
+    arguments = ["run", "cooling", "--r=0.9", "--beta=0", "--seed=1", "--output=point.nc"]
+    done = subprocess.run(
+        [sys.executable, "-m", "roughgas", *arguments, "--settings", json.dumps(SETTINGS)],
+        cwd=tmp_path,
+        preexec_fn=nothing_fits,
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 1
+    assert done.stderr.startswith("roughgas: error: cannot write point.nc")
+    assert done.stderr.count("\n") == 1
+    assert list(tmp_path.iterdir()) == []

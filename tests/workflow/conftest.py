@@ -1,0 +1,135 @@
+"""A copy of the project, in which Snakemake itself is run on a tiny scale."""
+
+import copy
+import json
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from roughgas.config.reading import read_yaml
+
+ROOT = Path(__file__).parent.parent.parent
+COPIED = ("Snakefile", "config.yaml", "rules", "profiles", "src")
+SWEEP = {"r": ["0.9"], "beta": ["0"], "seeds": 2}
+STEADY = {"equilibrate": 20, "measure": 20}
+TINY = {
+    "vibrated": {"particles": 10, "box": [10, "open"], "sweep": SWEEP, "schedule": STEADY},
+    "vibrated_rough_walls": {"sweep": {"beta": ["-1"]}},
+    "vibrated_particle_walls": {"sweep": {"beta": ["0"]}},
+    "vibrated_smooth_walls": {"sweep": {"beta": ["0"]}},
+    "sheared": {"particles": 10, "box": [20, 20], "sweep": SWEEP, "schedule": STEADY},
+    "cooling": {
+        "particles": 10,
+        "box": [20, 20],
+        "sweep": SWEEP,
+        "schedule": {"replicas": 3, "plateau": 20},
+    },
+}
+POINTS = 6 * 2
+
+
+class Project:
+    """A copy of the project in `folder`, with a scale `tiny`."""
+
+    def __init__(self, folder):
+        self.folder = folder
+        for name in COPIED:
+            if (ROOT / name).is_dir():
+                shutil.copytree(ROOT / name, folder / name)
+            else:
+                shutil.copy2(ROOT / name, folder / name)
+        self.configure(lambda config: config["scales"].update(tiny=copy.deepcopy(TINY)))
+
+    def copy_to(self, folder):
+        """Another such project, as far run as this one."""
+        shutil.copytree(self.folder, folder)
+        other = copy.copy(self)
+        other.folder = folder
+        return other
+
+    def configure(self, change):
+        """Let `change` edit config.yaml, given as a dictionary."""
+        path = self.folder / "config.yaml"
+        config = read_yaml(path)
+        change(config)
+        path.write_text(json.dumps(config))  # which is YAML, too, and has no aliases
+
+    def append(self, path, text="\n# edited\n"):
+        """Edit a source file."""
+        with open(self.folder / path, "a") as file:
+            file.write(text)
+
+    def start(self, *arguments):
+        """Snakemake, running."""
+        return subprocess.Popen(
+            self._command(arguments),
+            cwd=self.folder,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            start_new_session=True,
+        )
+
+    def snakemake(self, *arguments):
+        """Exit status and all output of a run of Snakemake."""
+        done = subprocess.run(
+            self._command(arguments),
+            cwd=self.folder,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+        )
+        return done.returncode, done.stdout
+
+    def succeed(self, *arguments):
+        status, output = self.snakemake(*arguments)
+        assert status == 0, output
+        return output
+
+    def planned(self, *targets):
+        """Number of jobs of each rule that a run would start."""
+        output = self.succeed("-n", "--config", "scale=tiny", "--", *targets)
+        if "Nothing to be done" in output:
+            return {}
+        table = output.rsplit("Job stats:", 1)[1].split("total")[0]
+        return {rule: int(count) for rule, count in re.findall(r"^(\w+) +(\d+)$", table, re.M)}
+
+    def files(self):
+        """All files but Snakemake's own."""
+        return {
+            str(path.relative_to(self.folder))
+            for path in self.folder.rglob("*")
+            if path.is_file() and ".snakemake" not in path.parts and path.suffix != ".pyc"
+        }
+
+    def _command(self, arguments):
+        return [sys.executable, "-m", "snakemake", *arguments]
+
+
+@pytest.fixture(scope="session")
+def project(tmp_path_factory):
+    """A project in which nothing has been run, and which no test changes."""
+    return Project(tmp_path_factory.mktemp("project"))
+
+
+@pytest.fixture(scope="session")
+def made(tmp_path_factory):
+    """A project that Snakemake takes to be finished: its products are there, though empty."""
+    made = Project(tmp_path_factory.mktemp("made"))
+    output = made.succeed("--config", "scale=tiny", "--detailed-summary", "--", "everything")
+    for line in output.splitlines():
+        if re.match(r"(results|figures)/\S+\t", line):
+            path = made.folder / line.split("\t")[0]
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.touch()
+    made.succeed("-j1", "--touch", "--forceall", "--config", "scale=tiny", "--", "everything")
+    return made
+
+
+@pytest.fixture
+def finished(made, tmp_path):
+    """A copy of `made` that a test may change."""
+    return made.copy_to(tmp_path / "copy")

@@ -1,0 +1,88 @@
+"""What an edit makes Snakemake run again: what it may change, and nothing else."""
+
+import subprocess
+import sys
+
+import pytest
+from conftest import POINTS
+
+EACH = POINTS // 6
+AFTER_POINTS = {"claims": 1, "table": 1, "figures": 1}
+ALL = {"compile_kernel": 6, "point": POINTS, "reduce": 6, "figure": 4} | AFTER_POINTS
+
+
+def test_nothing_is_run_twice(made):
+    assert made.planned() == {}
+
+
+def test_only_contents_count(finished):
+    for path in finished.folder.rglob("src/**/*.py"):
+        path.touch()
+    (finished.folder / "config.yaml").touch()
+    assert finished.planned() == {}
+
+
+@pytest.mark.parametrize(
+    ("module", "expected"),
+    [
+        ("kernel/pairs.py", ALL),
+        ("theory/relaxation.py", ALL),
+        ("cli/run.py", ALL),
+        ("reduce.py", {"reduce": 6, "figure": 4} | AFTER_POINTS),
+        ("plotting/style.py", {"figure": 4, "figures": 1}),
+        ("claims/report.py", {"claims": 1, "figures": 1}),
+        ("config/__init__.py", {}),
+    ],
+)
+def test_an_edit_in_the_package(finished, module, expected):
+    finished.append(f"src/roughgas/{module}")
+    assert finished.planned() == expected
+
+
+def test_a_new_module_of_the_kernel(finished):
+    (finished.folder / "src/roughgas/kernel/added.py").write_text("")
+    assert finished.planned() == ALL
+
+
+def test_an_edit_of_one_experiment(finished):
+    finished.configure(
+        lambda config: config["experiments"]["sheared"]["effects"]["shear"].update(velocity=3)
+    )
+    expected = {"compile_kernel": 1, "point": EACH, "reduce": 1, "figure": 1} | AFTER_POINTS
+    assert finished.planned() == expected
+
+
+def test_more_seeds_are_added_to_those_that_are_there(finished):
+    finished.configure(lambda config: config["scales"]["tiny"]["cooling"]["sweep"].update(seeds=3))
+    assert finished.planned() == {"point": 1, "reduce": 1, "figure": 1} | AFTER_POINTS
+
+
+def test_a_description_concerns_no_point(finished):
+    finished.configure(
+        lambda config: config["experiments"]["cooling"].update(description="colder and colder")
+    )
+    assert finished.planned() == {}
+
+
+def test_every_module_that_a_point_imports_is_an_input_of_it(made):
+    """Found out by importing, where the rules find out by reading the sources."""
+    target = "results/tiny/vibrated/r0.9/beta0/seed1.nc"
+    summary = made.succeed("--config", "scale=tiny", "--detailed-summary", "--", target)
+    (row,) = (line for line in summary.splitlines() if line.startswith(target))
+    script = "import sys, roughgas.simulate, roughgas.dataset; print(*sys.modules)"
+    done = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, check=True
+    )
+    modules = {name for name in done.stdout.split() if name.startswith("roughgas.")}
+    assert len(modules) > 10
+    for name in modules:
+        path = "src/" + name.replace(".", "/")
+        assert f"{path}.py" in row or f"{path}/__init__.py" in row, name
+
+
+def test_a_reduced_dataset_does_not_depend_on_the_kernel(made):
+    target = "results/tiny/cooling.nc"
+    summary = made.succeed("--config", "scale=tiny", "--detailed-summary", "--", target)
+    (row,) = (line for line in summary.splitlines() if line.startswith(target))
+    assert "src/roughgas/theory/closed_forms.py" in row  # imported inside a function
+    assert "src/roughgas/kernel/" not in row

@@ -1,0 +1,63 @@
+"""The workflow as it is really run: twice, in another order, and killed in between."""
+
+import time
+
+import pytest
+from conftest import POINTS
+
+from roughgas.dataset import WALL_CLOCK, read_point
+
+pytestmark = pytest.mark.slow
+TARGET = ("--config", "scale=tiny", "--", "figures")
+
+
+@pytest.fixture(scope="module")
+def undisturbed(project, tmp_path_factory):
+    """A project after a run on two cores."""
+    ran = project.copy_to(tmp_path_factory.mktemp("runs") / "undisturbed")
+    ran.succeed("-j2", *TARGET)
+    return ran
+
+
+def points(project):
+    return sorted(project.folder.glob("results/tiny/*/*/*/*.nc"))
+
+
+def same_numbers(one, other):
+    """Whether two datasets are equal to the last bit, but for the time that they took."""
+    one, other = read_point(one), read_point(other)
+    return one.drop_vars(WALL_CLOCK).identical(other.drop_vars(WALL_CLOCK))
+
+
+def test_the_products_are_there(undisturbed):
+    assert len(points(undisturbed)) == POINTS
+    products = {path for path in undisturbed.files() if path.startswith(("figures", "results"))}
+    for figure in ("fig1a", "fig1b", "fig2a", "fig2b"):
+        assert {f"figures/tiny/{figure}.pdf", f"figures/tiny/{figure}.png"} <= products
+    for name in ("R.csv", "claims.json", "claims.md", "vibrated.nc", "sheared.nc", "cooling.nc"):
+        assert f"results/tiny/{name}" in products
+    assert not any(path.endswith(".tmp") for path in products)
+
+
+def test_a_second_run_does_nothing(undisturbed):
+    assert "Nothing to be done" in undisturbed.succeed("-j2", *TARGET)
+
+
+def test_after_a_kill_the_same_command_ends_with_the_same_numbers(project, undisturbed, tmp_path):
+    killed = project.copy_to(tmp_path / "killed")
+    running = killed.start("-j2", *TARGET)
+    deadline = time.monotonic() + 300
+    while len(points(killed)) < POINTS // 3 and running.poll() is None:
+        assert time.monotonic() < deadline
+        time.sleep(0.01)
+    running.kill()
+    running.wait()
+    found = {path: path.stat().st_mtime_ns for path in points(killed)}
+    assert 0 < len(found) < POINTS
+    killed.succeed("-j1", *TARGET)
+    kept = [path for path, when in found.items() if path.stat().st_mtime_ns == when]
+    assert len(kept) >= len(found) - 4  # two were being made, and two may have been finished since
+    for path in points(undisturbed):
+        again = killed.folder / path.relative_to(undisturbed.folder)
+        assert same_numbers(path, again), path
+    assert "Nothing to be done" in killed.succeed("-j2", *TARGET)

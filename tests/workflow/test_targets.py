@@ -1,0 +1,94 @@
+"""What can be asked for, and how the rest is refused."""
+
+import pytest
+from conftest import POINTS, Project
+
+LEGAL = [
+    "results/paper/cooling/r0.87/beta-0.33/seed7.nc",
+    "results/paper/vibrated/r1/beta1/seed0.nc",
+    "results/small/sheared/r0.5/beta-1/seed123.nc",
+    "results/tiny/vibrated_rough_walls/r1e-3/beta.5/seed1.nc",
+    "results/paper/vibrated_particle_walls/r0.90/beta0.0/seed1.nc",
+    "results/paper/vibrated_smooth_walls/r0/beta0/seed1.nc",
+]
+ILLEGAL = [
+    ("results/paper/cooling/r1.5/beta0/seed1.nc", "restitution r = 1.5: must lie in [0, 1]"),
+    ("results/paper/cooling/r0.9/beta-2/seed1.nc", "roughness beta = -2: must lie in [-1, 1]"),
+    ("results/paper/cooling/r0.9/beta0/seedx.nc", "seed = x: must be a whole number in [0,"),
+    ("results/paper/heating/r0.9/beta0/seed1.nc", "experiment = 'heating': must be one of cooling"),
+    ("results/large/cooling/r0.9/beta0/seed1.nc", "scale = 'large': must be one of paper, small"),
+    ("figures/large/fig1a.pdf", "scale = 'large': must be one of paper, small"),
+    ("figures/fig9.png", "figure = fig9: must be one of fig1a, fig1b, fig2a, fig2b"),
+]
+
+
+def refusal(project, *arguments):
+    """The one line in which Snakemake refuses."""
+    before = project.files()
+    status, output = project.snakemake("-j1", *arguments)
+    assert status != 0
+    assert "Traceback" not in output
+    assert project.files() == before
+    (line,) = (line for line in output.splitlines() if "error" in line.lower())
+    return line
+
+
+def test_the_default_are_the_figures_which_need_every_point_of_the_sweep_once(project):
+    assert project.planned() == {
+        "compile_kernel": 6,
+        "point": POINTS,
+        "reduce": 6,
+        "figure": 4,
+        "table": 1,
+        "claims": 1,
+        "figures": 1,
+    }
+
+
+def test_everything_has_the_experiments_that_were_added(tmp_path):
+    project = Project(tmp_path)
+    project.configure(
+        lambda config: config["experiments"].update(
+            wide={"extends": "cooling", "box": [200, 50], "sweep": {"seeds": 1}}
+        )
+    )
+    assert project.planned("everything")["point"] == POINTS + 1
+    assert project.planned("figures")["point"] == POINTS
+
+
+def test_any_legal_point_can_be_asked_for(project):
+    planned = project.planned(*LEGAL)
+    assert planned == {"compile_kernel": len(LEGAL), "point": len(LEGAL)}
+
+
+@pytest.mark.parametrize(("target", "message"), ILLEGAL)
+def test_an_illegal_target_is_refused_in_one_line(project, target, message):
+    assert message in refusal(project, target)
+
+
+@pytest.mark.parametrize(
+    ("setting", "message"),
+    [
+        ("scale=large", "scale = 'large': must be one of paper, small"),
+        ("n_particles=5", "key = 'n_particles': must be one of experiments, scale, scales"),
+    ],
+)
+def test_an_illegal_setting_on_the_command_line_is_refused(project, setting, message):
+    assert message in refusal(project, "--config", setting)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"effects": {"tide": {}}}, "experiments.cooling.effects: key = 'tide': must be one of"),
+        ({"particles": "many"}, "experiments.cooling.particles = 'many': must be a whole number"),
+        ({"particles": 100_000}, "experiments.cooling at scale paper: particles = 100000: must"),
+        ({"box": [3, 100]}, "experiments.cooling at scale paper: box[0] = 3"),
+    ],
+)
+def test_a_mistake_in_the_configuration_is_refused(tmp_path, change, message):
+    project = Project(tmp_path)
+    project.configure(lambda config: config["experiments"]["cooling"].update(change))
+    line = refusal(project, "results/paper/cooling.nc")
+    assert line.startswith("roughgas: error: config.yaml: ")
+    assert message in line
