@@ -64,9 +64,23 @@ def test_a_description_concerns_no_point(finished):
     assert finished.planned() == {}
 
 
-def test_every_module_that_a_point_imports_is_an_input_of_it(made):
+def test_an_edit_is_not_forgotten_when_a_run_is_interrupted(finished):
+    """What stands between the sources and the points is made again, the points are not yet."""
+    finished.append("src/roughgas/measure/plateau.py")
+    finished.succeed("-j1", "results/tiny/cooling/r0.9/compiled.txt")
+    assert finished.planned("results/tiny/cooling.nc") == {"point": EACH, "reduce": 1}
+
+
+def test_an_edit_counts_where_what_was_compiled_has_been_deleted(finished):
+    (finished.folder / "results/tiny/cooling/r0.9/compiled.txt").unlink()
+    assert finished.planned() == {}
+    finished.append("src/roughgas/measure/plateau.py")
+    assert finished.planned("results/tiny/cooling.nc")["point"] == EACH
+
+
+def test_every_module_that_a_point_imports_counts(made):
     """Found out by importing, where the rules find out by reading the sources."""
-    target = "results/tiny/vibrated/r0.9/beta0/seed1.nc"
+    target = "results/tiny/vibrated/r0.9/compiled.txt"
     summary = made.succeed("--config", "scale=tiny", "--detailed-summary", "--", target)
     (row,) = (line for line in summary.splitlines() if line.startswith(target))
     script = "import sys, roughgas.simulate, roughgas.dataset; print(*sys.modules)"

@@ -33,7 +33,6 @@ def add_commands(commands: Any) -> None:
         epilog=COMPILE_EXAMPLE,
     )
     _add_experiment(parser)
-    parser.add_argument("-o", "--output", metavar="FILE", help="say in FILE what was compiled")
     parser.set_defaults(command=compile_kernel)
 
 
@@ -72,13 +71,9 @@ def compile_kernel(options: argparse.Namespace) -> None:
 
     r, settings = config.restitution(options.r), _settings(options)
 
-    from roughgas.atomic import write_text
-    from roughgas.kernel.cache import source_hash
     from roughgas.simulate import compile_kernels
 
     compile_kernels([settings | {"sweep": {"r": [r]}}])
-    if options.output:
-        write_text(options.output, f"compiled from the sources {source_hash()}\n")
 
 
 def _settings(options: argparse.Namespace) -> dict[str, Any]:
