@@ -18,7 +18,7 @@ figures: setup ## simulate, and draw the four figures of the paper
 	@echo "Every number in them:  results/paper/R.csv"
 
 test: setup ## run every test
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest -n $(JOBS) --dist loadfile
 
 bench: setup ## print how fast the kernel is in each scene
 	$(BIN)/python -m benchmarks

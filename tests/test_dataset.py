@@ -21,6 +21,7 @@ ATTRIBUTES = {
     "particles": 40,
     "command": "roughgas run ...",
 }
+CAPTURED = {"capture_output": True, "text": True, "check": True}
 
 
 def point(samples: int = 200, **others) -> Point:
@@ -97,7 +98,7 @@ def test_same_point_same_bits_wall_clock_aside(tmp_path):
     write_point(paths[2], point(R=np.nextafter(0.25, 1)))
     assert same_bits(paths[0], paths[1])
     assert not same_bits(paths[0], paths[2])
-    assert os.listdir(tmp_path).count("a.nc.tmp") == 0
+    assert not [name for name in os.listdir(tmp_path) if name.endswith(".tmp")]
 
 
 @pytest.mark.parametrize(
@@ -157,8 +158,9 @@ def test_a_failed_write_keeps_the_file_that_was_there(tmp_path, monkeypatch):
     assert os.listdir(tmp_path) == ["a.nc"]
 
 
-def test_what_a_killed_run_left_behind_is_overwritten(tmp_path):
-    (tmp_path / "a.nc.tmp").write_bytes(b"half a file")
+def test_what_a_killed_run_left_behind_is_removed(tmp_path):
+    gone = subprocess.run([sys.executable, "-c", "import os; print(os.getpid())"], **CAPTURED)
+    (tmp_path / f"a.nc.{int(gone.stdout)}.tmp").write_bytes(b"half a file")
     write_point(tmp_path / "a.nc", point())
     assert os.listdir(tmp_path) == ["a.nc"]
     assert read_point(tmp_path / "a.nc").R.item() == 0.25
@@ -166,5 +168,5 @@ def test_what_a_killed_run_left_behind_is_overwritten(tmp_path):
 
 def test_writing_a_point_does_not_import_xarray():
     code = "import sys, roughgas.dataset; print('xarray' in sys.modules, 'netCDF4' in sys.modules)"
-    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    run = subprocess.run([sys.executable, "-c", code], **CAPTURED)
     assert run.stdout.split() == ["False", "False"]

@@ -8,14 +8,19 @@ from pathlib import Path
 
 @contextmanager
 def whole_file(path: str | Path) -> Iterator[Path]:
-    """Lend the name `path`.tmp to write to; on success it becomes `path`, else nothing stays.
+    """Lend a name to write to; on success the file becomes `path`, else nothing stays.
 
-    Parent folders are created. After SIGKILL a .tmp may remain, which the next writer overwrites.
+    Parent folders are created. The name, `path`.PID.tmp, is this process's own: a job that outlives
+    a killed workflow must not spoil what its successor writes. After SIGKILL it remains, until the
+    next writer of `path` finds that its process is gone.
     Raises OSError when the folder cannot be written.
     """
     path = Path(path)
-    draft = path.with_name(path.name + ".tmp")
+    draft = path.with_name(f"{path.name}.{os.getpid()}.tmp")
     path.parent.mkdir(parents=True, exist_ok=True)
+    for left in path.parent.glob(f"{path.name}.*.tmp"):
+        if not _alive(left.name.split(".")[-2]):
+            left.unlink(missing_ok=True)
     try:
         yield draft
         _flush(draft)
@@ -28,6 +33,16 @@ def write_text(path: str | Path, text: str) -> None:
     """Write `text` (UTF-8, line ends as given) to `path`, whole or not at all."""
     with whole_file(path) as draft:
         draft.write_text(text, encoding="utf-8", newline="")
+
+
+def _alive(process: str) -> bool:
+    try:
+        os.kill(int(process), 0)
+    except (ValueError, ProcessLookupError):
+        return False
+    except PermissionError:  # somebody else's
+        return True
+    return True
 
 
 def _flush(path: Path) -> None:

@@ -5,6 +5,7 @@ files of the functions which that one calls: a kernel could outlive an edit and 
 numbers. The folder is therefore named by a hash of every source that machine code is made from.
 """
 
+import fcntl
 import hashlib
 import os
 import tempfile
@@ -49,6 +50,23 @@ def use_source_keyed_folder():
         folder.mkdir(parents=True, exist_ok=True)
     numba.config.CACHE_DIR = str(folder)
     return folder
+
+
+def one_writer_at_a_time(dispatcher):
+    """Keep processes that compile at the same time from spoiling numba's index for each other.
+
+    Numba reads its index, picks a free file number and writes both: two writers could pick the same
+    number, and one of them would later load the other's code.
+    """
+    cache = dispatcher._cache
+    save = cache.save_overload
+
+    def save_alone(signature, compiled):
+        with (Path(cache.cache_path) / "lock").open("w") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            save(signature, compiled)
+
+    cache.save_overload = save_alone
 
 
 def _cache_root():

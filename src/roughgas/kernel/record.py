@@ -3,6 +3,7 @@
 import math
 from typing import NamedTuple
 
+from roughgas.kernel.cache import one_writer_at_a_time
 from roughgas.kernel.flight import arrive, put
 from roughgas.kernel.hooks import unless_absent
 from roughgas.kernel.jit import compiled, jit
@@ -56,6 +57,9 @@ def record(state, scene, plan, samples):
         if plan.refresh > 0 and (k + 1) % plan.refresh == 0:
             refresh(state, scene)
     return len(samples)
+
+
+one_writer_at_a_time(record)
 
 
 @compiled

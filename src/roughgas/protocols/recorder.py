@@ -31,7 +31,7 @@ class Recorder:
 
     def in_time(self, state: State, scene: Scene, interval: float, samples: int):
         """Columns (name -> array of length `samples`), sampled every `interval` T."""
-        return self._run(state, scene, Plan(interval, UNLIMITED, 0), samples)
+        return self._run(state, scene, Plan(float(interval), UNLIMITED, 0), samples)
 
     def in_collisions(self, state: State, scene: Scene, collisions: int, samples: int, refresh=0):
         """The same, sampled every so many collisions; the gas is refreshed every `refresh` samples.
