@@ -1,8 +1,8 @@
 """Vectors of one to three components as tuples, unrolled at compile time.
 
 A tuple's length is part of its type, so the dimension of space costs nothing at run time and the
-compiler keeps every component in a register. Each function has a plain-Python body, which is what
-runs when numba is switched off.
+compiler keeps every component in a register. Each function's plain-Python body is the definition
+that its compiled forms unroll.
 """
 
 from numba.extending import overload
