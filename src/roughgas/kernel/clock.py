@@ -3,6 +3,7 @@
 import math
 
 from roughgas.kernel import hooks
+from roughgas.kernel.agenda import enter_in_queue
 from roughgas.kernel.hooks import unless_absent
 from roughgas.kernel.jit import compiled, jit
 from roughgas.kernel.pairs import DIAMETER
@@ -46,7 +47,7 @@ def _shift_times(state, scene, step):
     state.clock[NOW] -= step
     for i in range(len(state.changes)):
         state.trajectory[i, 2 * len(scene.box)] -= step
-        agenda.key[i] -= step
+        enter_in_queue(agenda, i, agenda.key[i] - step)
         agenda.complete_until[i] -= step
         agenda.boundary_time[i] -= step
         for k in range(SLOTS):

@@ -16,7 +16,7 @@ from numba.extending import overload
 
 from roughgas.kernel import hooks
 from roughgas.kernel.flight import arrive, put
-from roughgas.kernel.images import image_numbers, shifted
+from roughgas.kernel.images import image_numbers, shifted, slid
 from roughgas.kernel.jit import jit
 from roughgas.kernel.spins import book_spin, spin_of, spin_sum, turn_spin
 from roughgas.kernel.state import (
@@ -47,7 +47,7 @@ def collide(state, scene, i, j, time):
     box = scene.box
     position_i, velocity_i = arrive(state, scene, i, time)
     position_j, velocity_j = arrive(state, scene, j, time)
-    slide = hooks.sliding(scene.effects, None, state, time)
+    slide = slid(hooks.sliding(scene.effects, None, state), time)
     x = subtract(position_i, position_j)
     v = subtract(velocity_i, velocity_j)
     x, v = shifted(x, v, image_numbers(x, box, slide), box, slide)

@@ -1,7 +1,7 @@
 """Free flight between events, with or without gravity."""
 
 from roughgas.kernel import hooks
-from roughgas.kernel.images import fold_into_box
+from roughgas.kernel.images import fold_into_box, slid
 from roughgas.kernel.jit import jit
 from roughgas.kernel.vectors import add_scaled, read, write
 
@@ -20,22 +20,34 @@ def fallen(position, velocity, elapsed, gravity):
 
 
 @jit
+def path_of(trajectory, i, box):
+    """Particle i's path: position, velocity, and the time at which they hold."""
+    return (
+        read(trajectory, i, 0, box),
+        read(trajectory, i, len(box), box),
+        trajectory[i, 2 * len(box)],
+    )
+
+
+@jit
+def along(path, time, gravity):
+    """Position and velocity at `time` on a path."""
+    return fallen(path[0], path[1], time - path[2], gravity)
+
+
+@jit
 def whereabouts(state, scene, i, time):
     """Position and velocity of particle i at `time`, on the straight continuation of its path."""
-    box = scene.box
-    trajectory = state.trajectory
-    elapsed = time - trajectory[i, 2 * len(box)]
-    position = read(trajectory, i, 0, box)
-    velocity = read(trajectory, i, len(box), box)
-    return fallen(position, velocity, elapsed, hooks.acceleration(scene.effects, None))
+    path = path_of(state.trajectory, i, scene.box)
+    return along(path, time, hooks.acceleration(scene.effects, None))
 
 
 @jit
 def arrive(state, scene, i, time):
     """Position and velocity of particle i at `time`, as its image inside the box has them."""
     position, velocity = whereabouts(state, scene, i, time)
-    slide = hooks.sliding(scene.effects, None, state, time)
-    return fold_into_box(position, velocity, scene.box, slide)
+    slide = hooks.sliding(scene.effects, None, state)
+    return fold_into_box(position, velocity, scene.box, slid(slide, time))
 
 
 @jit

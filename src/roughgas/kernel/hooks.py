@@ -9,8 +9,8 @@ What an effect's file may define, all jitted, `index` being the effect's place i
 
     acceleration(effect, index, none)
         downward acceleration along the last axis
-    sliding(effect, index, none, state, time)
-        (offset, velocity) along the first axis of the image above, at a time on the state's clock
+    sliding(effect, index, none, state)
+        (offset, velocity) along the first axis of the image above, at the clock's base
     restitution(effect, index, r, state, i, j, time)
         normal restitution of one contact, from the value so far; j < 0 for a boundary
     roughness(effect, index, beta, r, normal_speed, tangential_speed)

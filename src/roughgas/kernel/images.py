@@ -1,13 +1,15 @@
 """Periodic images: an axis of the box has a length, or is None and open.
 
 Under Lees-Edwards shear (`slide` = (offset, velocity), else None) the images above are displaced
-by the offset along the first axis and move with the velocity along it.
+by the offset along the first axis and move with the velocity along it: the offset holds at the
+clock's base (hooks.sliding) or, after `slid`, at the time in question.
 """
 
 import numpy as np
 from numba import types
 from numba.extending import overload
 
+from roughgas.kernel.arithmetic import multiply_add
 from roughgas.kernel.hooks import unless_absent
 from roughgas.kernel.jit import jit
 
@@ -15,46 +17,42 @@ FIRST_LARGE_32 = np.float32(1.5 * 2.0**23)
 FIRST_LARGE_64 = 1.5 * 2.0**52
 
 
-def nearest_integer(x):
-    """x rounded to the nearest integer, ties to even; exact for |x| < 2^22 (2^51 in double).
+def periods(x, length):
+    """x/length rounded to the nearest integer, ties to even; exact up to 2^22 (2^51 in double).
 
     Adding and subtracting a number whose spacing is 1 rounds in two additions, which every x86-64
     machine has in vector form and which give the same bits on all of them.
     """
     large = FIRST_LARGE_32 if isinstance(x, np.float32) else FIRST_LARGE_64
-    return (x + large) - large
+    return multiply_add(x, type(x)(1) / length, large) - large
 
 
-@overload(nearest_integer)
-def _nearest_integer(x):
-    if x == types.float32:
-        return lambda x: (x + FIRST_LARGE_32) - FIRST_LARGE_32
-    return lambda x: (x + FIRST_LARGE_64) - FIRST_LARGE_64
+@overload(periods)
+def _compiled_periods(x, length):
+    single = length == types.float32
+    one, large = (np.float32(1.0), FIRST_LARGE_32) if single else (1.0, FIRST_LARGE_64)
+    # a loop over many divides once and multiplies
+    return lambda x, length: multiply_add(x, one / length, large) - large
 
 
-def reciprocal(length):
-    """1/length in its own precision: a loop over many divides once and multiplies."""
-    return type(length)(1) / length
-
-
-@overload(reciprocal)
-def _reciprocal(length):
-    one = np.float32(1.0) if length == types.float32 else 1.0
-    return lambda length: one / length
+@unless_absent
+def slid(slide, time):
+    """The slide as it is at `time` after the clock's base."""
+    return slide[0] + slide[1] * time, slide[1]
 
 
 @jit
 def _axis_number(x, length):
     if length is None:
         return x  # not used: an open axis has one image
-    return nearest_integer(x * reciprocal(length))
+    return periods(x, length)
 
 
 @jit
 def _axis_shift(x, number, length):
     if length is None:
         return x
-    return x - number * length
+    return multiply_add(-number, length, x)
 
 
 def _numbers(x, box):
@@ -96,7 +94,7 @@ def image_numbers(x, box, slide):
     numbers = _numbers(x, box)
     if slide is None:
         return numbers
-    along = x[0] - numbers[1] * slide[0]
+    along = multiply_add(-numbers[1], slide[0], x[0])
     return (_axis_number(along, box[0]),) + numbers[1:]
 
 
@@ -107,8 +105,8 @@ def shifted(x, u, numbers, box, slide):
     if slide is None:
         return moved, u
     return (
-        (moved[0] - numbers[1] * slide[0],) + moved[1:],
-        (u[0] - numbers[1] * slide[1],) + u[1:],
+        (multiply_add(-numbers[1], slide[0], moved[0]),) + moved[1:],
+        (multiply_add(-numbers[1], slide[1], u[0]),) + u[1:],
     )
 
 
@@ -129,45 +127,41 @@ def _compiled_halves(like):
     return lambda like: halves
 
 
-@unless_absent
-def _axis_limit(length, half):
-    return (0.5 * length - 2.0) / half
+def speed_limit(box, half):
+    """Square of the relative speed below which no second image is met within +-`half`.
+
+    None where no axis is periodic. It has some room for rounding.
+    """
+    shortest = _shortest_period(box)
+    return None if shortest is None else _limit(shortest, half)
+
+
+def _shortest_period(box):
+    return min((length for length in box if length is not None), default=None)
 
 
 @jit
-def _axis_exceeds(u, limit):
-    if limit is None:
-        return False
-    return abs(u) > limit
+def _limit(shortest, half):
+    speed = (0.5 * shortest - 2.001) / half
+    return speed * speed
 
 
-def speed_limits(box, half):
-    """Fastest relative velocities, per axis, at which no second image is met within +-`half`."""
-    return tuple(_axis_limit(length, half) for length in box)
+@overload(speed_limit)
+def _compiled_speed_limit(box, half):
+    periodic = [k for k, length in enumerate(box) if not isinstance(length, types.NoneType)]
+    if not periodic:
+        return lambda box, half: None
+    first, second, third = (periodic * 3)[:3] if len(periodic) != 2 else (*periodic, periodic[0])
+    return lambda box, half: _limit(min(box[first], box[second], box[third]), half)
 
 
-@overload(speed_limits)
-def _compiled_speed_limits(box, half):
-    if len(box) == 2:
-        return lambda box, half: (_axis_limit(box[0], half), _axis_limit(box[1], half))
-    return lambda box, half: (
-        _axis_limit(box[0], half),
-        _axis_limit(box[1], half),
-        _axis_limit(box[2], half),
-    )
-
-
-def exceeds(u, limits):
-    """Whether a relative velocity exceeds a speed limit; NaN does not."""
-    return any(_axis_exceeds(a, limit) for a, limit in zip(u, limits, strict=True))
+def exceeds(squared, limit):
+    """Whether the square of a relative speed is above a speed limit; NaN is not."""
+    return False if limit is None else squared > limit
 
 
 @overload(exceeds)
-def _compiled_exceeds(u, limits):
-    if len(limits) == 2:
-        return lambda u, limits: _axis_exceeds(u[0], limits[0]) | _axis_exceeds(u[1], limits[1])
-    return lambda u, limits: (
-        _axis_exceeds(u[0], limits[0])
-        | _axis_exceeds(u[1], limits[1])
-        | _axis_exceeds(u[2], limits[2])
-    )
+def _compiled_exceeds(squared, limit):
+    if isinstance(limit, types.NoneType):
+        return lambda squared, limit: False
+    return lambda squared, limit: squared > limit

@@ -6,14 +6,14 @@ from roughgas.kernel import hooks
 from roughgas.kernel.agenda import (
     choose_next,
     clear_contacts,
+    drop_contact,
     earliest,
-    insert_contact,
-    is_stale,
+    enter_in_queue,
 )
 from roughgas.kernel.clock import horizon, rebase
 from roughgas.kernel.contact import collide
 from roughgas.kernel.jit import compiled, jit
-from roughgas.kernel.pairs import contact_of_any_image, contact_of_nearest_image
+from roughgas.kernel.shortlist import decide
 from roughgas.kernel.state import (
     BASE,
     BOUNDARY,
@@ -65,13 +65,15 @@ def carry_out(state, scene, i, kind, time):
     if kind == BOUNDARY:
         hooks.resolve_boundary(scene.effects, agenda.boundary_code[i], state, scene, i, time)
         return i, -1
-    if is_stale(agenda, i, state.changes):
+    partner = int(agenda.slot_partner[i, kind])
+    if agenda.slot_change[i, kind] != state.changes[partner]:  # its path is another by now
         state.counts[STALE] += 1
-        choose_next(agenda, i, state.changes)
+        drop_contact(agenda, i, kind)
+        choose_next(agenda, i)
         return -1, -1
-    collide(state, scene, i, kind, time)
+    collide(state, scene, i, partner, time)
     state.counts[SINCE_REBASE] += 1
-    return i, kind
+    return i, partner
 
 
 @jit
@@ -86,16 +88,9 @@ def foresee(state, scene, i, time):
     half = 0.5 * (end - time)
     mark_candidates(state, scene, i, time + half, half)
     clear_contacts(agenda, i, end)
-    found, when = state.sweep.found, state.sweep.when
-    number = collect_candidates(state.sweep, i)
-    for k in range(number):
-        decided, when[k] = contact_of_nearest_image(state, scene, i, found[k], time + half, half)
-        if not decided:
-            when[k] = contact_of_any_image(state, scene, i, found[k], time, end)
-    for k in range(number):
-        if when[k] <= end:
-            insert_contact(agenda, i, when[k], found[k], state.changes[found[k]])
-    choose_next(agenda, i, state.changes)
+    number = collect_candidates(state.sweep, i, state.shortlist.found)
+    decide(state, scene, i, number, time, end, end)
+    choose_next(agenda, i)
 
 
 @compiled
@@ -104,5 +99,5 @@ def start(state, scene):
     rebase(state, scene)
     agenda = state.agenda
     for i in range(len(state.changes)):
-        agenda.key[i] = state.clock[NOW]
         agenda.kind[i] = HORIZON
+        enter_in_queue(agenda, i, state.clock[NOW])

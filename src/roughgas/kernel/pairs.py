@@ -1,14 +1,14 @@
 """When two particles meet: exact, in double precision, and a function of their paths alone.
 
 The time does not depend on when the question is asked, by whom, or which of the two asks, so that
-no scheduling choice can change a trajectory.
+no scheduling choice can change a trajectory. A path is (position, velocity, time at which they
+hold), and goes on in free flight.
 """
 
 import math
 
-from roughgas.kernel import hooks
-from roughgas.kernel.flight import whereabouts
-from roughgas.kernel.images import exceeds, image_numbers, shifted, speed_limits
+from roughgas.kernel.flight import along
+from roughgas.kernel.images import exceeds, image_numbers, shifted, slid, speed_limit
 from roughgas.kernel.jit import compiled, jit
 from roughgas.kernel.vectors import add_scaled, cross_squared, dot, subtract
 
@@ -23,7 +23,7 @@ def time_to_contact(x, u):
     The smaller root is formed by division, so that it does not cancel when the particles are
     close, and the discriminant from the cross product, so that it does not when they are far. Roots
     and quotients are taken before anything is decided: a branch that the processor cannot foresee
-    would cost more than they do.
+    would cost more than they do, and without branches several pairs are done at once.
     """
     b = dot(x, u)
     c = dot(x, x) - DIAMETER * DIAMETER
@@ -34,30 +34,26 @@ def time_to_contact(x, u):
 
 
 @jit
-def contact_of_nearest_image(state, scene, i, j, middle, half):
-    """(whether it is decided, time) of the first contact of i and j within `half` of `middle`.
+def meeting(path_i, path_j, box, gravity, slide, middle, limit):
+    """Time of the first contact of two paths; NaN where a second image might be met.
 
     The nearest image at `middle` is the only one that can be met as long as the pair moves less
-    than half a box, less a diameter, from there; of faster pairs this says that it is undecided.
+    than half a box, less a diameter, from there: as long as it is not faster than the speed_limit.
     """
-    last = 2 * len(scene.box)
-    since = max(state.trajectory[i, last], state.trajectory[j, last])
-    position_i, velocity_i = whereabouts(state, scene, i, since)
-    position_j, velocity_j = whereabouts(state, scene, j, since)
+    since = max(path_i[2], path_j[2])
+    position_i, velocity_i = along(path_i, since, gravity)
+    position_j, velocity_j = along(path_j, since, gravity)
     x = subtract(position_j, position_i)
     u = subtract(velocity_j, velocity_i)
-    numbers = image_numbers(
-        add_scaled(x, u, middle - since),
-        scene.box,
-        hooks.sliding(scene.effects, None, state, middle),
-    )
-    x, u = shifted(x, u, numbers, scene.box, hooks.sliding(scene.effects, None, state, since))
-    return not exceeds(u, speed_limits(scene.box, half)), since + time_to_contact(x, u)
+    numbers = image_numbers(add_scaled(x, u, middle - since), box, slid(slide, middle))
+    x, u = shifted(x, u, numbers, box, slid(slide, since))
+    time = since + time_to_contact(x, u)
+    return math.nan if exceeds(dot(u, u), limit) else time
 
 
 @compiled
-def contact_of_any_image(state, scene, i, j, start, end):
-    """Time of the first contact of i and j with any image between `start` and `end`, or inf.
+def meeting_of_any_image(path_i, path_j, box, gravity, slide, start, end):
+    """Time of the first contact of two paths, of any images, between `start` and `end`, or inf.
 
     The interval is cut until within each piece the nearest image decides.
     """
@@ -66,8 +62,9 @@ def contact_of_any_image(state, scene, i, j, start, end):
     while k < pieces:
         length = (end - start) / pieces
         middle = start + (k + 0.5) * length
-        decided, time = contact_of_nearest_image(state, scene, i, j, middle, 0.5 * length)
-        if not decided:
+        limit = speed_limit(box, 0.5 * length)
+        time = meeting(path_i, path_j, box, gravity, slide, middle, limit)
+        if math.isnan(time):
             pieces *= 2
             k *= 2
         elif time <= start + (k + 1) * length:

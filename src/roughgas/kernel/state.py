@@ -9,7 +9,9 @@ from typing import NamedTuple
 import numpy as np
 
 LANES = 16  # the arrays that are swept are padded to whole vector registers
-SLOTS = 6  # upcoming contacts kept per particle
+BLOCK = 16  # particles to a block of the queue; divides LANES
+TOGETHER = 8  # candidates that are decided at once
+SLOTS = 8  # upcoming contacts kept per particle
 
 # Entries of State.clock
 BASE, NOW, ORIGIN, SPAN, TYPICAL_SPEED, LONGEST_HORIZON, EXTENT = range(7)
@@ -26,7 +28,7 @@ BASE, NOW, ORIGIN, SPAN, TYPICAL_SPEED, LONGEST_HORIZON, EXTENT = range(7)
     LAST_FIRST,
     LAST_SECOND,
 ) = range(10)
-# Kinds of event in Agenda.kind: a partner's number, or one of these
+# Kinds of event in Agenda.kind: a slot's number, or one of these
 HORIZON, BOUNDARY, NOTHING = -1, -2, -3
 
 
@@ -35,12 +37,12 @@ class Agenda(NamedTuple):
 
     key: np.ndarray  # (N padded,) time of the next event, inf where there is none
     bits: np.ndarray  # the same memory as integers, which order like the times
-    kind: np.ndarray  # (N,) partner's number, HORIZON or BOUNDARY
-    slot_time: np.ndarray  # (N, SLOTS) ascending times of contacts
+    least: np.ndarray  # the least of each BLOCK of them
+    kind: np.ndarray  # (N,) the slot of the contact that comes next, or HORIZON or BOUNDARY
+    slot_time: np.ndarray  # (N, SLOTS) times of contacts, in no order
     slot_partner: np.ndarray  # (N, SLOTS)
     slot_change: np.ndarray  # (N, SLOTS) the partner's `changes` when the contact was predicted
     filled: np.ndarray  # (N,) slots in use
-    head: np.ndarray  # (N,) first slot not yet consumed
     complete_until: np.ndarray  # (N,) no contact before this time is missing from the slots
     boundary_time: np.ndarray  # (N,)
     boundary_code: np.ndarray  # (N,) which effect, and what of it
@@ -52,8 +54,16 @@ class Sweep(NamedTuple):
     lines: np.ndarray  # (2 D, N padded) r0 and v0 at the clock's base; NaN in the padding
     marks: np.ndarray  # (N padded,) one byte a particle
     words: np.ndarray  # the same memory, eight marks a word
-    found: np.ndarray  # (N padded,) the particles marked
-    when: np.ndarray  # (N padded,) times of contact with these
+    bits: np.ndarray  # the marks packed, eight to a byte
+    bit_words: np.ndarray  # the same memory, 64 marks a word
+
+
+class Shortlist(NamedTuple):
+    """The candidates and what becomes of them; its room is a multiple of TOGETHER."""
+
+    found: np.ndarray  # (room,) numbers of particles
+    paths: np.ndarray  # (2 D + 1, room) their positions, velocities, and times at which these hold
+    when: np.ndarray  # (room,) times of contact
 
 
 class State(NamedTuple):
@@ -70,6 +80,7 @@ class State(NamedTuple):
     counts: np.ndarray
     agenda: Agenda
     sweep: Sweep
+    shortlist: Shortlist
 
 
 def new_state(scene, position, velocity, spin):
@@ -95,6 +106,7 @@ def new_state(scene, position, velocity, spin):
         counts=np.zeros(10, np.int64),
         agenda=_empty_agenda(number),
         sweep=_empty_sweep(number, dimension),
+        shortlist=_empty_shortlist(number, dimension),
     )
 
 
@@ -107,12 +119,12 @@ def _empty_agenda(number):
     return Agenda(
         key=key,
         bits=key.view(np.int64),
-        kind=np.full(number, NOTHING, np.int32),
+        least=key[::BLOCK].copy().view(np.int64),
+        kind=np.full(number, NOTHING, np.int8),
         slot_time=np.full((number, SLOTS), np.inf),
         slot_partner=np.zeros((number, SLOTS), np.int32),
         slot_change=np.zeros((number, SLOTS), np.int32),
-        filled=np.zeros(number, np.int32),
-        head=np.zeros(number, np.int32),
+        filled=np.zeros(number, np.int8),
         complete_until=np.full(number, np.inf),
         boundary_time=np.full(number, np.inf),
         boundary_code=np.zeros(number, np.int32),
@@ -121,10 +133,20 @@ def _empty_agenda(number):
 
 def _empty_sweep(number, dimension):
     marks = np.zeros(_padded(number), np.uint8)
+    bits = np.zeros(-(-number // 64) * 8, np.uint8)
     return Sweep(
         lines=np.full((2 * dimension, _padded(number)), np.nan, np.float32),
         marks=marks,
         words=marks.view(np.uint64),
-        found=np.zeros(len(marks), np.int64),
-        when=np.zeros(len(marks)),
+        bits=bits,
+        bit_words=bits.view(np.uint64),
+    )
+
+
+def _empty_shortlist(number, dimension):
+    room = -(-number // TOGETHER) * TOGETHER
+    return Shortlist(
+        found=np.zeros(room, np.int64),
+        paths=np.zeros((2 * dimension + 1, room)),
+        when=np.zeros(room),
     )

@@ -14,13 +14,14 @@ from numba.cpython.unsafe.numbers import trailing_zeros
 from numba.extending import overload
 
 from roughgas.kernel import hooks
+from roughgas.kernel.arithmetic import multiply_add
 from roughgas.kernel.flight import whereabouts
 from roughgas.kernel.hooks import unless_absent
-from roughgas.kernel.images import exceeds, image_numbers, shifted, speed_limits
+from roughgas.kernel.images import exceeds, image_numbers, shifted, slid, speed_limit
 from roughgas.kernel.jit import jit
 from roughgas.kernel.pairs import DIAMETER
 from roughgas.kernel.state import EXTENT, SPAN, TYPICAL_SPEED
-from roughgas.kernel.vectors import add_scaled, cross_squared, dot, subtract
+from roughgas.kernel.vectors import add_scaled, column, cross_squared, dot, subtract
 
 ROUNDING = 2.0**-24  # half the spacing of single precision just above 1
 
@@ -50,14 +51,14 @@ def mark_candidates(state, scene, i, middle, half):
     speed = max(clock[TYPICAL_SPEED], 1e-30)
     # s |u| <= (s / 2) (u.u / w + w) for any speed w, which saves a root per pair
     reach = half + 0.55 * margin / speed
-    slide = hooks.sliding(scene.effects, None, state, middle)
+    slide = slid(hooks.sliding(scene.effects, None, state), middle)
     _sweep(
         state.sweep.lines,
         state.sweep.marks,
         i,
         single(scene.box),
         single(slide),
-        single(speed_limits(scene.box, half)),
+        _single(speed_limit(scene.box, half)),
         np.float32(middle),
         np.float32(reach),
         np.float32(0.55 * margin * speed),
@@ -66,7 +67,7 @@ def mark_candidates(state, scene, i, middle, half):
 
 
 @jit
-def _sweep(lines, marks, i, box, slide, limits, middle, reach, spare, square):
+def _sweep(lines, marks, i, box, slide, limit, middle, reach, spare, square):
     x_i = column(lines, i, 0, box)
     u_i = column(lines, i, len(box), box)
     for j in range(marks.size):
@@ -74,22 +75,31 @@ def _sweep(lines, marks, i, box, slide, limits, middle, reach, spare, square):
         x = add_scaled(subtract(column(lines, j, 0, box), x_i), u, middle)
         x, u = shifted(x, u, image_numbers(x, box, slide), box, slide)
         uu = dot(u, u)
-        hits = (cross_squared(x, u) <= square * uu) & (abs(dot(x, u)) <= uu * reach + spare)
-        marks[j] = hits | exceeds(u, limits)
+        passes = cross_squared(x, u) <= square * uu
+        soon = abs(dot(x, u)) <= multiply_add(uu, reach, spare)
+        marks[j] = (passes & soon) | exceeds(uu, limit)
 
 
 @jit
-def collect_candidates(sweep, i):
-    """List the marked particles but i in sweep.found; how many there are."""
+def collect_candidates(sweep, i, found):
+    """List the marked particles but i in `found`; how many there are."""
     number = 0
-    for word in range(sweep.words.size):
-        rest = sweep.words[word]
+    _pack(sweep.words, sweep.bits)
+    for word in range(sweep.bit_words.size):
+        rest = sweep.bit_words[word]
         while rest != 0:
-            j = 8 * word + (trailing_zeros(rest) >> 3)
-            sweep.found[number] = j
+            j = 64 * word + trailing_zeros(rest)
+            found[number] = j
             number += j != i
             rest &= rest - np.uint64(1)
     return number
+
+
+@jit
+def _pack(words, bits):
+    """One bit for each of eight marks: the product moves bit 8k of a word to bit 56 + k."""
+    for word in range(words.size):
+        bits[word] = (words[word] * np.uint64(0x0102040810204080)) >> np.uint64(56)
 
 
 def single(numbers):
@@ -110,20 +120,3 @@ def _compiled_single(numbers):
         2: lambda numbers: (_single(numbers[0]), _single(numbers[1])),
         3: lambda numbers: (_single(numbers[0]), _single(numbers[1]), _single(numbers[2])),
     }[len(numbers)]
-
-
-def column(array, j, first, like):
-    """Components array[first:first + len(like), j] as a tuple."""
-    return tuple(array[first + k, j] for k in range(len(like)))
-
-
-@overload(column)
-def _column(array, j, first, like):
-    return {
-        2: lambda array, j, first, like: (array[first, j], array[first + 1, j]),
-        3: lambda array, j, first, like: (
-            array[first, j],
-            array[first + 1, j],
-            array[first + 2, j],
-        ),
-    }[len(like)]

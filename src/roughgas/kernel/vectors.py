@@ -7,6 +7,8 @@ that its compiled forms unroll.
 
 from numba.extending import overload
 
+from roughgas.kernel.arithmetic import multiply_add
+
 
 def dot(a, b):
     """Scalar product of two vectors of equal length."""
@@ -72,8 +74,8 @@ def _cross(a, b):
 def _dot(a, b):
     return {
         1: lambda a, b: a[0] * b[0],
-        2: lambda a, b: a[0] * b[0] + a[1] * b[1],
-        3: lambda a, b: a[0] * b[0] + a[1] * b[1] + a[2] * b[2],
+        2: lambda a, b: multiply_add(a[1], b[1], a[0] * b[0]),
+        3: lambda a, b: multiply_add(a[2], b[2], multiply_add(a[1], b[1], a[0] * b[0])),
     }[len(a)]
 
 
@@ -98,9 +100,13 @@ def _scale(a, s):
 @overload(add_scaled)
 def _add_scaled(a, b, s):
     return {
-        1: lambda a, b, s: (a[0] + b[0] * s,),
-        2: lambda a, b, s: (a[0] + b[0] * s, a[1] + b[1] * s),
-        3: lambda a, b, s: (a[0] + b[0] * s, a[1] + b[1] * s, a[2] + b[2] * s),
+        1: lambda a, b, s: (multiply_add(b[0], s, a[0]),),
+        2: lambda a, b, s: (multiply_add(b[0], s, a[0]), multiply_add(b[1], s, a[1])),
+        3: lambda a, b, s: (
+            multiply_add(b[0], s, a[0]),
+            multiply_add(b[1], s, a[1]),
+            multiply_add(b[2], s, a[2]),
+        ),
     }[len(a)]
 
 
@@ -183,7 +189,7 @@ def _along_last(like, s):
 @overload(cross_squared)
 def _cross_squared(a, b):
     def plane(a, b):
-        area = a[0] * b[1] - a[1] * b[0]
+        area = multiply_add(a[0], b[1], -(a[1] * b[0]))
         return area * area
 
     def space(a, b):
@@ -191,3 +197,20 @@ def _cross_squared(a, b):
         return dot(area, area)
 
     return plane if len(a) == 2 else space
+
+
+def column(array, j, first, like):
+    """Components array[first:first + len(like), j] as a tuple."""
+    return tuple(array[first + k, j] for k in range(len(like)))
+
+
+@overload(column)
+def _column(array, j, first, like):
+    return {
+        2: lambda array, j, first, like: (array[first, j], array[first + 1, j]),
+        3: lambda array, j, first, like: (
+            array[first, j],
+            array[first + 1, j],
+            array[first + 2, j],
+        ),
+    }[len(like)]
