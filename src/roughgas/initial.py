@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 
 from roughgas.errors import InputError
-from roughgas.kernel.state import State, new_state
+from roughgas.kernel.layout import new_state
+from roughgas.kernel.state import State
 from roughgas.scene import DIAMETER, Scene
 
 TEMPERATURE = 1.0  # m a^2/T^2

@@ -12,17 +12,21 @@ ROUNDINGS = 1e-15
 
 
 def snapshot(state, scene):
-    """All particles of a kernel's state at the present instant, each in free flight."""
+    """All particles of a kernel's state at the present instant, each in free flight.
+
+    They stand in the order of the start, whatever order the kernel has them in.
+    """
     dimension, now = len(scene.box), state.clock[NOW]
-    position = state.trajectory[:, :dimension].copy()
-    velocity = state.trajectory[:, dimension:-1].copy()
-    elapsed = now - state.trajectory[:, -1]
+    order = np.argsort(state.label)
+    trajectory = state.trajectory[order]
+    position, velocity = trajectory[:, :dimension], trajectory[:, dimension:-1]
+    elapsed = now - trajectory[:, -1]
     position += velocity * elapsed[:, None]
     if scene.effects.gravity is not None:
         g = scene.effects.gravity.acceleration
         position[:, -1] -= 0.5 * g * elapsed**2
         velocity[:, -1] -= g * elapsed
-    spin = None if state.spin is None else state.spin.copy()
+    spin = None if state.spin is None else state.spin[order]
     return Snapshot(state.clock[BASE] + now, position, velocity, spin)
 
 

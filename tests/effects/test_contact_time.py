@@ -5,9 +5,10 @@ import pytest
 from brute_force import begin, run, settings
 
 from roughgas.errors import CollapseError
+from roughgas.kernel.layout import new_state
 from roughgas.kernel.loop import COLLAPSE
 from roughgas.kernel.record import Plan, columns, record
-from roughgas.kernel.state import COLLISIONS, SINCE_REBASE, TOUCHED, new_state
+from roughgas.kernel.state import COLLISIONS, SINCE_REBASE, TOUCHED
 from roughgas.protocols.recorder import UNLIMITED, Recorder
 
 BED = settings(

@@ -6,7 +6,8 @@ import pytest
 from brute_force import begin, run, settings, snapshot
 
 from roughgas.effects.floor import Floor, time_to_floor
-from roughgas.kernel.state import BOUNDARY_HITS, new_state
+from roughgas.kernel.layout import new_state
+from roughgas.kernel.state import BOUNDARY_HITS
 
 
 def floor_of(amplitude=5.0, period=1.0):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from brute_force import begin, run, settings, snapshot
 
-from roughgas.kernel.state import new_state
+from roughgas.kernel.layout import new_state
 
 GAS = settings("sheared", 40, [25, 25])
 U, L = 2.0, 25.0

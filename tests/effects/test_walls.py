@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from brute_force import begin, run, settings, snapshot
 
-from roughgas.kernel.state import BOUNDARY_HITS, new_state
+from roughgas.kernel.layout import new_state
+from roughgas.kernel.state import BOUNDARY_HITS
 
 
 def thrown(velocity, spin=0.0, **walls):

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from brute_force import begin, run, settings, snapshot
 
-from roughgas.kernel.state import BOUNDARY_HITS, COLLISIONS, new_state
+from roughgas.kernel.layout import new_state
+from roughgas.kernel.state import BOUNDARY_HITS, COLLISIONS
 
 GAS = settings("gas", 40, [25, 25])
 SPHERES = settings("spheres", 64, [12, 12, 12])

@@ -5,8 +5,9 @@ import numpy as np
 import pytest
 from brute_force import BruteForce, begin, largest_overlap, run, scene_of, settings, snapshot
 
+from roughgas.kernel.layout import new_state
 from roughgas.kernel.pairs import time_to_contact
-from roughgas.kernel.state import LAST_FIRST, LAST_SECOND, LONGEST_HORIZON, new_state
+from roughgas.kernel.state import LAST_FIRST, LAST_SECOND, LONGEST_HORIZON
 
 EPSILON = 2.0**-52
 

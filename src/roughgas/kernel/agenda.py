@@ -1,13 +1,11 @@
-"""Upcoming events: a short list of contacts per particle, and the earliest event of all."""
+"""Upcoming events of each particle: a short list of contacts, a boundary, the end of foresight."""
 
 import math
 
-import numpy as np
-from numba import types
-from numba.extending import intrinsic, overload
-
+from roughgas.kernel.hooks import either
 from roughgas.kernel.jit import jit
-from roughgas.kernel.state import BLOCK, BOUNDARY, HORIZON, NOTHING
+from roughgas.kernel.queue import enter_in_queue
+from roughgas.kernel.state import BOUNDARY, HORIZON, NOTHING
 
 
 @jit
@@ -60,68 +58,26 @@ def drop_contact(agenda, i, slot):
 
 
 @jit
-def choose_next(agenda, i):
+def choose_next(state, i):
     """Make the earliest event of particle i its entry in the queue."""
+    agenda = state.agenda
     time = agenda.complete_until[i]
     kind = HORIZON
     for k in range(int(agenda.filled[i])):
         earlier = agenda.slot_time[i, k] <= time
         time = agenda.slot_time[i, k] if earlier else time
         kind = k if earlier else kind
-    if agenda.boundary_time[i] < time:
-        time = agenda.boundary_time[i]
-        kind = BOUNDARY
+    time, kind = _with_boundary(agenda.boundary_time, i, time, kind)
     if time == math.inf:
         kind = NOTHING
     agenda.kind[i] = kind
-    enter_in_queue(agenda, i, time)
+    enter_in_queue(state.cells, state, i, time)
 
 
-@jit
-def enter_in_queue(agenda, i, time):
-    """Make `time` that of particle i's next event.
-
-    Times are compared as integers, which order like the non-negative doubles they are the bits
-    of: integer minima have no NaN to mind and run through the vector registers. What is stored is
-    not loaded again at once: the processor would wait for it.
-    """
-    bits, block = agenda.bits, i // BLOCK
-    new = float_bits(time)
-    least = new
-    for k in range(BLOCK):
-        place = BLOCK * block + k
-        least = min(least, new if place == i else bits[place])
-    bits[i] = new
-    agenda.least[block] = least
+def _sooner_of(boundary_time, i, time, kind):
+    if boundary_time[i] < time:
+        return boundary_time[i], BOUNDARY
+    return time, kind
 
 
-@jit
-def earliest(agenda):
-    """The particle whose event comes first; of several at the same instant, the first."""
-    least, block = agenda.least[0], 0
-    for k in range(1, agenda.least.size):
-        earlier = agenda.least[k] < least
-        least = agenda.least[k] if earlier else least
-        block = k if earlier else block
-    place = agenda.key.size
-    for k in range(BLOCK * block, BLOCK * (block + 1)):
-        place = min(place, k if agenda.bits[k] == least else agenda.key.size)
-    return place
-
-
-def float_bits(x):
-    """The bits of a double as an integer."""
-    return int(np.float64(x).view(np.int64))
-
-
-@intrinsic
-def _bitcast(context, x):
-    def generate(context, builder, signature, arguments):
-        return builder.bitcast(arguments[0], context.get_value_type(signature.return_type))
-
-    return types.int64(types.float64), generate
-
-
-@overload(float_bits)
-def _compiled_float_bits(x):
-    return lambda x: _bitcast(x)
+_with_boundary = either(_sooner_of, lambda boundary_time, i, time, kind: (time, kind))

@@ -3,56 +3,33 @@
 import math
 
 from roughgas.kernel import hooks
-from roughgas.kernel.agenda import enter_in_queue
-from roughgas.kernel.hooks import unless_absent
-from roughgas.kernel.jit import compiled, jit
-from roughgas.kernel.pairs import DIAMETER
-from roughgas.kernel.state import (
-    BASE,
-    EXTENT,
-    LONGEST_HORIZON,
-    NOW,
-    SINCE_REBASE,
-    SLOTS,
-    SPAN,
-    TYPICAL_SPEED,
-)
-from roughgas.kernel.sweep import redraw_line
+from roughgas.kernel.hooks import either, unless_absent
+from roughgas.kernel.jit import jit
+from roughgas.kernel.state import BASE, LONGEST_HORIZON, NOW, SINCE_REBASE, SPAN, TYPICAL_SPEED
 from roughgas.kernel.vectors import dot, read
 
 FLIGHTS = 2.5  # foresee about so many mean free flights
+CELLS = 16.0  # particles that are in cells are sorted anew after crossing about so many
 
 
-@compiled
+@jit
 def rebase(state, scene):
     """Move the base up to the present, by a whole number of spans, and look at the gas afresh.
 
     A span is a power of two, so that the base stays exact; it is about the time that a typical
-    particle takes to cross the box.
+    particle takes to cross the box, or CELLS cells. Returns how far the base has moved; the times
+    on the agenda still count from the old one.
     """
     clock = state.clock
     step = math.floor(clock[NOW] / clock[SPAN]) * clock[SPAN]
-    _shift_times(state, scene, step)
+    clock[NOW] -= step
+    for i in range(len(state.changes)):
+        state.trajectory[i, 2 * len(scene.box)] -= step
+        _shift(state.last_contact, i, step)
     clock[BASE] += step
     hooks.set_phases(scene.effects, state.phase, clock[BASE])
     _survey(state, scene, step)
-    clock[EXTENT] = 0.0
-    for i in range(len(state.changes)):
-        redraw_line(state, scene, i)
-
-
-@jit
-def _shift_times(state, scene, step):
-    agenda = state.agenda
-    state.clock[NOW] -= step
-    for i in range(len(state.changes)):
-        state.trajectory[i, 2 * len(scene.box)] -= step
-        enter_in_queue(agenda, i, agenda.key[i] - step)
-        agenda.complete_until[i] -= step
-        agenda.boundary_time[i] -= step
-        for k in range(SLOTS):
-            agenda.slot_time[i, k] -= step
-        _shift(state.last_contact, i, step)
+    return step
 
 
 @unless_absent
@@ -71,19 +48,14 @@ def _survey(state, scene, elapsed):
     speed = math.sqrt(total / number)
     clock[TYPICAL_SPEED] = speed
     if speed > 0.0:
-        clock[SPAN] = math.ldexp(0.5, math.frexp(scene.extent / speed)[1])
+        clock[SPAN] = math.ldexp(0.5, math.frexp(_stretch(state.cells, scene) / speed)[1])
     clock[LONGEST_HORIZON] = math.inf
     if counts[SINCE_REBASE] > number and elapsed > 0.0:
         clock[LONGEST_HORIZON] = FLIGHTS * elapsed * number / (2.0 * counts[SINCE_REBASE])
     counts[SINCE_REBASE] = 0
 
 
-@jit
-def horizon(state, scene, i):
-    """How far ahead particle i's contacts are foreseen; any positive time gives the same events,
-    to rounding."""
-    v = read(state.trajectory, i, len(scene.box), scene.box)
-    speed = math.sqrt(dot(v, v)) + 2.0 * state.clock[TYPICAL_SPEED]
-    if speed == 0.0:
-        return state.clock[SPAN]
-    return min((scene.extent - 2.0 * DIAMETER) / speed, state.clock[LONGEST_HORIZON])
+_stretch = either(
+    lambda cells, scene: min(scene.extent, CELLS * max(cells.widths)),
+    lambda cells, scene: scene.extent,
+)

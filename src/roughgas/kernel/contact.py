@@ -71,8 +71,8 @@ def collide(state, scene, i, j, time):
     _note_contact(state, i, time)
     _note_contact(state, j, time)
     state.counts[COLLISIONS] += 1
-    state.counts[LAST_FIRST] = i
-    state.counts[LAST_SECOND] = j
+    state.counts[LAST_FIRST] = state.label[i]
+    state.counts[LAST_SECOND] = state.label[j]
 
 
 @jit

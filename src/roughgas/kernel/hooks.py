@@ -33,7 +33,7 @@ from roughgas.kernel.jit import jit
 CODES = 8  # kinds of boundary event per effect
 
 
-def _present(effects, name):
+def present(effects, name):
     """(index, function) of every effect that is there and defines the hook, in listed order."""
     if isinstance(effects, types.BaseTuple):
         classes = [getattr(kind, "instance_class", None) for kind in effects.types]
@@ -52,11 +52,11 @@ def _chain(parts, join):
 
 def _hook(name, join):
     def stub(effects, value, *args):
-        return _chain(_present(effects, name), join)(effects, value, *args)
+        return _chain(present(effects, name), join)(effects, value, *args)
 
     @overload(stub)
     def compiled(effects, value, *args):
-        return _chain(_present(effects, name), join)
+        return _chain(present(effects, name), join)
 
     return stub
 
@@ -107,20 +107,25 @@ def _stored(index, part, rest):
     return step
 
 
-def unless_absent(function):
-    """Jit `function`; where its first argument is None the call is compiled away and gives None."""
-    present = jit(function)
+def either(present, absent):
+    """A function that is `present` where its first argument is there, and `absent` where it is
+    None; the other one is compiled away. Both take all arguments."""
+    present, absent = jit(present), jit(absent)
 
     def stub(first, *args):
-        return None if first is None else present(first, *args)
+        return (absent if first is None else present)(first, *args)
 
     @overload(stub)
     def compiled(first, *args):
-        if isinstance(first, types.NoneType):
-            return lambda first, *args: None
-        return lambda first, *args: present(first, *args)
+        chosen = absent if isinstance(first, types.NoneType) else present
+        return lambda first, *args: chosen(first, *args)
 
     return stub
+
+
+def unless_absent(function):
+    """Jit `function`; where its first argument is None the call is compiled away and gives None."""
+    return either(function, lambda first, *args: None)
 
 
 acceleration = _hook("acceleration", _thread)

@@ -3,21 +3,19 @@
 import math
 
 from roughgas.kernel import hooks
-from roughgas.kernel.agenda import (
-    choose_next,
-    clear_contacts,
-    drop_contact,
-    earliest,
-    enter_in_queue,
-)
-from roughgas.kernel.clock import horizon, rebase
+from roughgas.kernel.agenda import choose_next, drop_contact
+from roughgas.kernel.cells import find_around
+from roughgas.kernel.clock import rebase
 from roughgas.kernel.contact import collide
+from roughgas.kernel.hooks import either
 from roughgas.kernel.jit import compiled, jit
-from roughgas.kernel.shortlist import decide
+from roughgas.kernel.order import arrange
+from roughgas.kernel.queue import clear_calendar, earliest, enter_in_queue
 from roughgas.kernel.state import (
     BASE,
     BOUNDARY,
     COLLISIONS,
+    EXTENT,
     HORIZON,
     NOW,
     PREDICTIONS,
@@ -25,7 +23,7 @@ from roughgas.kernel.state import (
     SPAN,
     STALE,
 )
-from roughgas.kernel.sweep import collect_candidates, mark_candidates, redraw_line
+from roughgas.kernel.sweep import find_by_sweep, redraw_line
 
 # A span is about the time to cross the box: this many contacts a particle within it is collapse
 COLLAPSE = 100_000
@@ -39,7 +37,7 @@ def advance(state, scene, until, collisions):
     """
     clock, counts, agenda = state.clock, state.counts, state.agenda
     while counts[COLLISIONS] < collisions:
-        i = earliest(agenda)
+        i = earliest(state.cells, state)
         time = agenda.key[i]
         if time > until - clock[BASE] or time == math.inf:
             clock[NOW] = until - clock[BASE]
@@ -50,7 +48,7 @@ def advance(state, scene, until, collisions):
             if affected[k] >= 0:
                 foresee(state, scene, affected[k], time)
         if time >= clock[SPAN]:
-            rebase(state, scene)
+            renew(state, scene)
         elif counts[SINCE_REBASE] > COLLAPSE * len(state.changes):
             return False
     return True
@@ -63,41 +61,86 @@ def carry_out(state, scene, i, kind, time):
     if kind == HORIZON:
         return i, -1
     if kind == BOUNDARY:
-        hooks.resolve_boundary(scene.effects, agenda.boundary_code[i], state, scene, i, time)
+        _resolve_boundary(agenda.boundary_code, state, scene, i, time)
         return i, -1
     partner = int(agenda.slot_partner[i, kind])
     if agenda.slot_change[i, kind] != state.changes[partner]:  # its path is another by now
         state.counts[STALE] += 1
         drop_contact(agenda, i, kind)
-        choose_next(agenda, i)
+        choose_next(state, i)
         return -1, -1
     collide(state, scene, i, partner, time)
     state.counts[SINCE_REBASE] += 1
     return i, partner
 
 
+@hooks.unless_absent
+def _resolve_boundary(boundary_code, state, scene, i, time):
+    hooks.resolve_boundary(scene.effects, boundary_code[i], state, scene, i, time)
+
+
 @jit
 def foresee(state, scene, i, time):
     """Predict all events of particle i: its next meeting with a boundary, and its contacts."""
-    agenda = state.agenda
     state.counts[PREDICTIONS] += 1
-    redraw_line(state, scene, i)
-    boundary = hooks.next_boundary(scene.effects, (math.inf, 0), state, scene, i)
-    agenda.boundary_time[i], agenda.boundary_code[i] = boundary
-    end = time + horizon(state, scene, i)
-    half = 0.5 * (end - time)
-    mark_candidates(state, scene, i, time + half, half)
-    clear_contacts(agenda, i, end)
-    number = collect_candidates(state.sweep, i, state.shortlist.found)
-    decide(state, scene, i, number, time, end, end)
-    choose_next(agenda, i)
+    _foresee_boundary(state.agenda.boundary_time, state, scene, i)
+    _find_contacts(state.cells, state, scene, i, time)
+    choose_next(state, i)
+
+
+@hooks.unless_absent
+def _foresee_boundary(boundary_time, state, scene, i):
+    none = (math.inf, 0)
+    boundary = hooks.next_boundary(scene.effects, none, state, scene, i)
+    boundary_time[i], state.agenda.boundary_code[i] = boundary
+
+
+_find_contacts = either(find_around, find_by_sweep)
+
+
+@compiled
+def renew(state, scene):
+    """Move the clock's base up to the present, and what has been foreseen with it."""
+    step = rebase(state, scene)
+    _carry_over(state.cells, state, scene, step)
+
+
+def _sort_anew(cells, state, scene, step):
+    arrange(state, scene, state.clock[NOW])
+    clear_calendar(state, cells, scene)
+    foresee_all(state)
+
+
+def _shift_agenda(cells, state, scene, step):
+    agenda = state.agenda
+    state.clock[EXTENT] = 0.0
+    for i in range(len(state.changes)):
+        redraw_line(state, scene, i)
+        agenda.complete_until[i] -= step
+        for k in range(agenda.slot_time.shape[1]):
+            agenda.slot_time[i, k] -= step
+        _shift_boundary(agenda.boundary_time, i, step)
+        enter_in_queue(cells, state, i, agenda.key[i] - step)
+
+
+@hooks.unless_absent
+def _shift_boundary(boundary_time, i, step):
+    boundary_time[i] -= step
+
+
+_carry_over = either(_sort_anew, _shift_agenda)
 
 
 @compiled
 def start(state, scene):
     """Have everything foreseen again, after velocities were set from outside."""
-    rebase(state, scene)
-    agenda = state.agenda
-    for i in range(len(state.changes)):
-        agenda.kind[i] = HORIZON
-        enter_in_queue(agenda, i, state.clock[NOW])
+    renew(state, scene)
+    foresee_all(state)
+
+
+@jit
+def foresee_all(state):
+    """Make it the next event of every particle that its future is foreseen."""
+    for i in range(len(state.changes) - 1, -1, -1):
+        state.agenda.kind[i] = HORIZON
+        enter_in_queue(state.cells, state, i, state.clock[NOW])

@@ -10,8 +10,8 @@ from roughgas.kernel.agenda import add_contact
 from roughgas.kernel.flight import path_of
 from roughgas.kernel.images import speed_limit
 from roughgas.kernel.jit import jit
+from roughgas.kernel.layout import TOGETHER
 from roughgas.kernel.pairs import meeting, meeting_of_any_image
-from roughgas.kernel.state import TOGETHER
 from roughgas.kernel.vectors import column
 
 

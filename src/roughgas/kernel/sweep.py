@@ -9,21 +9,47 @@ the line passes within a diameter s if |x cross u| <= s |u|, and does so within 
 half-length h if |x.u| <= u.u h + s |u|. Pairs too fast for one image are let through.
 """
 
+import math
+
 import numpy as np
 from numba.cpython.unsafe.numbers import trailing_zeros
 from numba.extending import overload
 
 from roughgas.kernel import hooks
+from roughgas.kernel.agenda import clear_contacts
 from roughgas.kernel.arithmetic import multiply_add
 from roughgas.kernel.flight import whereabouts
 from roughgas.kernel.hooks import unless_absent
 from roughgas.kernel.images import exceeds, image_numbers, shifted, slid, speed_limit
 from roughgas.kernel.jit import jit
 from roughgas.kernel.pairs import DIAMETER
-from roughgas.kernel.state import EXTENT, SPAN, TYPICAL_SPEED
-from roughgas.kernel.vectors import add_scaled, column, cross_squared, dot, subtract
+from roughgas.kernel.shortlist import decide
+from roughgas.kernel.state import EXTENT, LONGEST_HORIZON, SPAN, TYPICAL_SPEED
+from roughgas.kernel.vectors import add_scaled, column, cross_squared, dot, read, subtract
 
 ROUNDING = 2.0**-24  # half the spacing of single precision just above 1
+
+
+def find_by_sweep(cells, state, scene, i, time):
+    """Foresee particle i's contacts with all others up to its horizon."""
+    redraw_line(state, scene, i)
+    end = time + horizon(state, scene, i)
+    half = 0.5 * (end - time)
+    mark_candidates(state, scene, i, time + half, half)
+    clear_contacts(state.agenda, i, end)
+    number = collect_candidates(state.sweep, i, state.shortlist.found)
+    decide(state, scene, i, number, time, end, end)
+
+
+@jit
+def horizon(state, scene, i):
+    """How far ahead particle i's contacts are foreseen; any positive time gives the same events,
+    to rounding."""
+    v = read(state.trajectory, i, len(scene.box), scene.box)
+    speed = math.sqrt(dot(v, v)) + 2.0 * state.clock[TYPICAL_SPEED]
+    if speed == 0.0:
+        return state.clock[SPAN]
+    return min((scene.extent - 2.0 * DIAMETER) / speed, state.clock[LONGEST_HORIZON])
 
 
 @jit

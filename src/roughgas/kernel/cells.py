@@ -1,0 +1,254 @@
+"""Which particles may meet a given one soon: those in its cell and in the cells around it.
+
+A cell is at least a diameter wide, so a particle has to enter a neighbouring cell before it can be
+met. Each particle foresees its contacts with the particles around it up to the time at which it
+leaves its cell; then it looks around again. Who has come into its neighbourhood in the meantime
+has looked around, too, and has found it. The paths do not know of the cells: like the sweep, they
+can be seen in no result.
+
+Cells repeat with a period on each axis. That of an open axis has no meaning: what is a period away
+is looked at, and never met.
+"""
+
+import math
+
+from numba.extending import overload
+
+from roughgas.kernel import hooks
+from roughgas.kernel.agenda import clear_contacts
+from roughgas.kernel.flight import whereabouts
+from roughgas.kernel.hooks import either
+from roughgas.kernel.images import fold_into_box, image_numbers, shifted, slid
+from roughgas.kernel.jit import jit
+from roughgas.kernel.shortlist import decide
+from roughgas.kernel.state import NOBODY, SPAN
+from roughgas.kernel.vectors import subtract
+
+
+def find_around(cells, state, scene, i, time):
+    """Foresee particle i's contacts until it leaves its cell; if it does so now, in the next."""
+    if time >= cells.leave[i]:
+        _move_on(state, scene, i, time)
+    home = cells.home[i]
+    d, u = _in_cell(state, scene, i, time)
+    gravity = hooks.acceleration(scene.effects, None)
+    cells.leave[i] = time + _exit(d, u, cells.widths, gravity)[0]
+    slide = slid(hooks.sliding(scene.effects, None, state), time)
+    outlook = min(state.clock[SPAN], _outlook(slide, cells, home))
+    end = min(cells.leave[i], time + outlook)
+    clear_contacts(state.agenda, i, end)
+    done, found = 0, 1
+    while done < found:
+        found = _collect(state, i, slide, end - time, done)
+        room = state.shortlist.found.size
+        decide(state, scene, i, min(found - done, room), time, time, end)
+        done += room
+
+
+@jit
+def settle(state, scene, i, time):
+    """Put particle i on the list of the cell that it is in at `time`."""
+    cells = state.cells
+    position, velocity = whereabouts(state, scene, i, time)
+    slide = slid(hooks.sliding(scene.effects, None, state), time)
+    position, velocity = fold_into_box(position, velocity, cells.periods, slide)
+    home = 0
+    for k in range(len(position) - 1, -1, -1):
+        place = int(position[k] / cells.widths[k])
+        home = home * cells.counts[k] + min(max(place, 0), cells.counts[k] - 1)
+    cells.leave[i] = math.inf
+    _enter(cells, i, home)
+
+
+@jit
+def _enter(cells, i, home):
+    head = cells.first[home]
+    cells.home[i] = home
+    cells.following[i] = head
+    cells.previous[i] = NOBODY
+    if head != NOBODY:
+        cells.previous[head] = i
+    cells.first[home] = i
+
+
+@jit
+def _strike_out(cells, i):
+    following, previous = cells.following[i], cells.previous[i]
+    if previous == NOBODY:
+        cells.first[cells.home[i]] = following
+    else:
+        cells.following[previous] = following
+    if following != NOBODY:
+        cells.previous[following] = previous
+
+
+@jit
+def _in_cell(state, scene, i, time):
+    """Position of particle i from the middle of its cell, and its velocity, as seen there."""
+    cells = state.cells
+    position, velocity = whereabouts(state, scene, i, time)
+    slide = slid(hooks.sliding(scene.effects, None, state), time)
+    d = subtract(position, middle_of(cells.widths, places(cells.counts, cells.home[i])))
+    return shifted(d, velocity, image_numbers(d, cells.periods, slide), cells.periods, slide)
+
+
+def places(counts, home):
+    """Which cell along each axis the cell with this number is."""
+    if len(counts) == 2:
+        return home % counts[0], home // counts[0]
+    return home % counts[0], home // counts[0] % counts[1], home // (counts[0] * counts[1])
+
+
+def middle_of(widths, places):
+    """Position of the middle of a cell."""
+    return tuple(width * (place + 0.5) for width, place in zip(widths, places, strict=True))
+
+
+@overload(places)
+def _compiled_places(counts, home):
+    if len(counts) == 2:
+        return lambda counts, home: (home % counts[0], home // counts[0])
+    return lambda counts, home: (
+        home % counts[0],
+        home // counts[0] % counts[1],
+        home // (counts[0] * counts[1]),
+    )
+
+
+@overload(middle_of)
+def _compiled_middle(widths, places):
+    if len(widths) == 2:
+        return lambda widths, places: (
+            widths[0] * (places[0] + 0.5),
+            widths[1] * (places[1] + 0.5),
+        )
+    return lambda widths, places: (
+        widths[0] * (places[0] + 0.5),
+        widths[1] * (places[1] + 0.5),
+        widths[2] * (places[2] + 0.5),
+    )
+
+
+@jit
+def _exit(d, u, widths, gravity):
+    """(time, axis, step) with which a particle leaves its cell, from there in free flight."""
+    last = len(d) - 1
+    time, up = _fall_out(gravity, d[last], u[last], 0.5 * widths[last])
+    axis = last
+    for k in range(last):
+        other, forward = _fly_out(d[k], u[k], 0.5 * widths[k])
+        if other < time:
+            time, up, axis = other, forward, k
+    return time, axis, 1 if up else -1
+
+
+@jit
+def _fly_out(d, u, half):
+    forward = u > 0.0
+    gap = max(half - (d if forward else -d), 0.0)
+    return (gap / abs(u) if u != 0.0 else math.inf), forward
+
+
+def _fall_out_under_gravity(gravity, d, u, half):
+    above, below = max(half - d, 0.0), max(half + d, 0.0)
+    if u > 0.0 and u * u >= 2.0 * gravity * above:
+        return 2.0 * above / (u + math.sqrt(u * u - 2.0 * gravity * above)), True
+    root = math.sqrt(u * u + 2.0 * gravity * below)
+    if u > 0.0:
+        return (u + root) / gravity, False
+    return (2.0 * below / (root - u) if below > 0.0 else 0.0), False
+
+
+_fall_out = either(_fall_out_under_gravity, lambda gravity, d, u, half: _fly_out(d, u, half))
+
+
+@jit
+def _move_on(state, scene, i, time):
+    """Take particle i into the next cell on its way."""
+    cells = state.cells
+    d, u = _in_cell(state, scene, i, time)
+    _, axis, step = _exit(d, u, cells.widths, hooks.acceleration(scene.effects, None))
+    _strike_out(cells, i)
+    cells.home[i] = _next_to(cells.counts, cells.home[i], axis, step)
+    if axis == 1:
+        _change_column(hooks.sliding(scene.effects, None, state), state, scene, i, time)
+    _enter(cells, i, cells.home[i])
+
+
+@jit
+def _next_to(counts, home, axis, step):
+    stride = 1
+    for k in range(axis):
+        stride *= counts[k]
+    place = home // stride % counts[axis]
+    return home + stride * (wrapped(place + step, counts[axis]) - place)
+
+
+@hooks.unless_absent
+def _change_column(slide, state, scene, i, time):
+    """What has gone through the top or the bottom of a sheared box comes out elsewhere."""
+    cells = state.cells
+    d, _ = _in_cell(state, scene, i, time)
+    place = cells.home[i] % cells.counts[0]
+    moved = (place + round(d[0] / cells.widths[0])) % cells.counts[0]
+    cells.home[i] += moved - place
+
+
+@jit
+def wrapped(place, count):
+    """A place up to one period off, brought back."""
+    return place + count if place < 0 else place - count if place >= count else place
+
+
+def _outlook_at_edge(slide, cells, home):
+    """At the edge of a sheared box: until the images there have slid by one cell."""
+    row = home // cells.counts[0] % cells.counts[1]
+    if 0 < row < cells.counts[1] - 1:
+        return math.inf
+    return cells.widths[0] / abs(slide[1])
+
+
+_outlook = either(_outlook_at_edge, lambda slide, cells, home: math.inf)
+
+
+@jit
+def _collect(state, i, slide, duration, skipped):
+    """List the particles around particle i, but for the first ones that are to be skipped, in the
+    shortlist, as far as there is room; how many there are in all."""
+    cells, found, number = state.cells, state.shortlist.found, 0
+    home = places(cells.counts, cells.home[i])
+    for layer in range(3 if len(home) == 3 else 1):
+        level = 0
+        if len(home) == 3:
+            level = wrapped(home[-1] + layer - 1, cells.counts[-1]) * cells.counts[1]
+        for up in range(-1, 2):
+            row = wrapped(home[1] + up, cells.counts[1])
+            across = home[1] + up - row  # other than zero if that row lies beyond the edge
+            column, columns = _columns(slide, cells, home[0], across, duration)
+            for k in range(columns):
+                cell = wrapped(column + k, cells.counts[0]) + cells.counts[0] * (row + level)
+                j = cells.first[cell]
+                while j != NOBODY:
+                    if j != i:
+                        if skipped <= number < skipped + found.size:
+                            found[number - skipped] = j
+                        number += 1
+                    j = cells.following[j]
+    return number
+
+
+def _columns_beyond_edge(slide, cells, place, across, duration):
+    """First column, and how many, that lie across the edge while the images slide past."""
+    if across == 0:
+        return place - 1, 3
+    side = 1.0 if across > 0 else -1.0
+    begin = side * slide[0] / cells.widths[0]
+    slip = side * slide[1] * duration / cells.widths[0]
+    first = math.floor(place - 1 - begin - max(slip, 0.0))
+    last = math.floor(place + 2 - begin - min(slip, 0.0))
+    return first % cells.counts[0], last - first + 1
+
+
+_columns = either(
+    _columns_beyond_edge, lambda slide, cells, place, across, duration: (place - 1, 3)
+)

@@ -1,0 +1,193 @@
+"""Where a state lies in memory, and by which scheme its contacts are found."""
+
+import math
+
+import numpy as np
+
+from roughgas.kernel import hooks
+from roughgas.kernel.state import (
+    NOBODY,
+    NOTHING,
+    SPAN,
+    Agenda,
+    Blocks,
+    Calendar,
+    Cells,
+    Shortlist,
+    State,
+    Sweep,
+)
+
+FEW = 300  # up to so many particles all pairs are swept: measured, see docs/performance.md
+LANES = 16  # the arrays that are swept are padded to whole vector registers
+BLOCK = 16  # particles to a block of the queue; divides LANES
+TOGETHER = 8  # candidates that are decided at once
+SLOTS_OF_FEW, SLOTS_OF_MANY = 8, 2  # upcoming contacts kept per particle
+LINE = 64  # bytes that the processor fetches at once
+ROOM = 512  # candidates that cells may yield at once
+NARROWEST = 2.002  # of a cell: a diameter and room for rounding, in a
+PER_CELL = 1.0  # particles to a cell, where cells are wider than that
+FEWEST = 8  # cells along an axis: fewer would be met twice
+
+
+def new_state(scene, position, velocity, spin):
+    """A state at time 0 from positions (N, D) in a, velocities (N, D) and spins (N, D') in a/T.
+
+    The spin is left out where the scene has none. More than FEW particles are sorted into cells
+    if the box has room for these.
+    """
+    number, dimension = position.shape
+    grid = cell_grid(scene, position)
+    if number <= FEW or min(grid[0]) < FEWEST:
+        state = _few(scene, number, dimension)
+    else:
+        state = _many(scene, number, dimension, *grid)
+    state.trajectory[:, :dimension] = position
+    state.trajectory[:, dimension:-1] = velocity
+    if state.spin is not None:
+        state.spin[:] = spin
+    if state.last_contact is not None:
+        state.last_contact[:] = -np.inf
+    state.label[:] = np.arange(number)
+    state.agenda.key[:] = np.inf
+    state.agenda.kind[:] = NOTHING
+    state.clock[SPAN] = 1.0
+    return state
+
+
+def cell_grid(scene, position):
+    """(number, width) of cells along each axis: PER_CELL particles to a cell if it is no narrower
+    than NARROWEST. Along an open axis they fill the height that the particles have at first."""
+    heights = np.ptp(position, axis=0) + NARROWEST
+    lengths = [length or height for length, height in zip(scene.box, heights, strict=True)]
+    volume = PER_CELL * math.prod(lengths) / len(position)
+    least = max(NARROWEST, volume ** (1.0 / len(lengths)))
+    counts = tuple(max(1, math.floor(length / least)) for length in lengths)
+    return counts, tuple(float(length / n) for length, n in zip(lengths, counts, strict=True))
+
+
+def _few(scene, number, dimension):
+    padded = _whole(number, LANES)
+    key = np.full(padded, np.inf)
+    marks = np.zeros(padded, np.uint8)
+    bits = np.zeros(_whole(number, 64) // 8, np.uint8)
+    fields = _fields(scene, dimension, SLOTS_OF_FEW)
+    arrays = {name: _array(number, *kind) for name, kind in fields.items()}
+    return _state(
+        scene,
+        arrays | {"key": key},
+        queue=Blocks(bits=key.view(np.int64), least=key[::BLOCK].copy().view(np.int64)),
+        sweep=Sweep(
+            lines=np.full((2 * dimension, padded), np.nan, np.float32),
+            marks=marks,
+            words=marks.view(np.uint64),
+            bits=bits,
+            bit_words=bits.view(np.uint64),
+        ),
+        cells=None,
+        shortlist=_shortlist(number, dimension),
+    )
+
+
+def _many(scene, number, dimension, counts, widths):
+    """Each particle has one line of the cache for where it is, and one for what comes next."""
+    fields = _fields(scene, dimension, SLOTS_OF_MANY)
+    here = ("trajectory", "spin", "changes", "home", "following", "previous", "last_contact")
+    links = {name: (np.int32,) for name in ("home", "following", "previous", "later", "sooner")}
+    fields |= links | {"leave": (float,)}
+    small = ("kind", "filled", "label")
+    ahead = [name for name in fields if name not in here + small]
+    arrays = {name: _array(number, *fields[name]) for name in small}
+    arrays |= _records(number, {name: fields[name] for name in here if name in fields})
+    arrays |= _records(number, {name: fields[name] for name in ahead})
+    return _state(
+        scene,
+        arrays,
+        queue=Calendar(
+            first=np.full(2 ** (number - 1).bit_length(), NOBODY, np.int32),
+            later=arrays["later"],
+            sooner=arrays["sooner"],
+            pace=np.ones(1),
+            today=np.zeros(1, np.int64),
+        ),
+        sweep=None,
+        cells=Cells(
+            counts=counts,
+            widths=widths,
+            periods=tuple(n * width for n, width in zip(counts, widths, strict=True)),
+            first=np.full(math.prod(counts), NOBODY, np.int32),
+            **{name: arrays[name] for name in ("following", "previous", "home", "leave")},
+        ),
+        shortlist=_shortlist(ROOM, dimension),
+    )
+
+
+def _fields(scene, dimension, slots):
+    """Type and number of what every particle has."""
+    effects = scene.effects
+    fields = {
+        "trajectory": (float, 2 * dimension + 1),
+        "changes": (np.int32,),
+        "label": (np.int32,),
+        "key": (float,),
+        "kind": (np.int8,),
+        "slot_time": (float, slots),
+        "slot_partner": (np.int32, slots),
+        "slot_change": (np.int32, slots),
+        "filled": (np.int8,),
+        "complete_until": (float,),
+    }
+    if effects.spin is not None:
+        fields["spin"] = (float, 2 * dimension - 3)
+    if effects.contact_time is not None:
+        fields["last_contact"] = (float,)
+    if hooks.present(effects, "predict"):
+        fields |= {"boundary_time": (float,), "boundary_code": (np.int32,)}
+    return fields
+
+
+def _state(scene, arrays, **parts):
+    effects = len(scene.effects)
+    return State(
+        **{name: arrays.get(name) for name in ("trajectory", "spin", "last_contact")},
+        **{name: arrays[name] for name in ("changes", "label")},
+        phase=np.zeros(effects),
+        ledger=np.zeros((2, effects + 1, 2)),
+        clock=np.zeros(7),
+        counts=np.zeros(10, np.int64),
+        agenda=Agenda(**{name: arrays.get(name) for name in Agenda._fields}),
+        **parts,
+    )
+
+
+def _shortlist(number, dimension):
+    room = _whole(number, TOGETHER)
+    return Shortlist(
+        found=np.zeros(room, np.int64),
+        paths=np.zeros((2 * dimension + 1, room)),
+        when=np.zeros(room),
+    )
+
+
+def _whole(number, unit):
+    return -(-number // unit) * unit
+
+
+def _array(number, kind, *width):
+    return np.zeros((number, *width), kind)
+
+
+def _records(number, fields):
+    """Arrays that lie in each other's gaps: all entries of a particle in the same cache lines."""
+    order = sorted(fields.items(), key=lambda field: -np.dtype(field[1][0]).itemsize)
+    sizes = {name: np.dtype(kind).itemsize * math.prod(width) for name, (kind, *width) in order}
+    size = _whole(sum(sizes.values()), 8)
+    memory = np.zeros(number * size + LINE, np.uint8)
+    start = -memory.ctypes.data % LINE
+    rows = memory[start : start + number * size].reshape(number, size)
+    arrays, offset = {}, 0
+    for name, (kind, *width) in order:
+        array = rows[:, offset : offset + sizes[name]].view(kind)
+        arrays[name] = array if width else array[:, 0]
+        offset += sizes[name]
+    return arrays

@@ -1,0 +1,147 @@
+"""Which particle's event comes first: blocks of keys for few particles, a calendar for many."""
+
+import math
+
+import numpy as np
+from numba import types
+from numba.extending import intrinsic, overload
+
+from roughgas.kernel.clock import FLIGHTS
+from roughgas.kernel.hooks import either
+from roughgas.kernel.jit import jit
+from roughgas.kernel.layout import BLOCK
+from roughgas.kernel.state import LONGEST_HORIZON, NOBODY, NOW, TYPICAL_SPEED
+
+LAST_DAY = 2.0**62
+EVENTS_A_DAY = 2.0  # this many make a day's list short and empty days rare
+
+
+def _enter_in_blocks(cells, state, i, time):
+    """Times are compared as integers, which order like the non-negative doubles they are the bits
+    of: integer minima have no NaN to mind and run through the vector registers. What is stored is
+    not loaded again at once: the processor would wait for it."""
+    bits, block = state.queue.bits, i // BLOCK
+    new = float_bits(time)
+    least = new
+    for k in range(BLOCK):
+        place = BLOCK * block + k
+        least = min(least, new if place == i else bits[place])
+    bits[i] = new
+    state.queue.least[block] = least
+
+
+def _earliest_in_blocks(cells, state):
+    queue, bits = state.queue, state.queue.bits
+    least, block = queue.least[0], 0
+    for k in range(1, queue.least.size):
+        earlier = queue.least[k] < least
+        least = queue.least[k] if earlier else least
+        block = k if earlier else block
+    place = bits.size
+    for k in range(BLOCK * block, BLOCK * (block + 1)):
+        place = min(place, k if bits[k] == least else bits.size)
+    return place
+
+
+def _enter_in_calendar(cells, state, i, time):
+    """A day has one list; of a year ahead, the same. So an entry costs the same among a thousand
+    particles as among a million."""
+    queue, key = state.queue, state.agenda.key
+    if key[i] < math.inf:
+        _strike_out(queue, i, day_of(queue, key[i]))
+    key[i] = time
+    if time < math.inf:
+        day = day_of(queue, time)
+        place = day & (queue.first.size - 1)
+        head = queue.first[place]
+        queue.later[i] = head
+        queue.sooner[i] = NOBODY
+        if head != NOBODY:
+            queue.sooner[head] = i
+        queue.first[place] = i
+        queue.today[0] = min(queue.today[0], day)
+
+
+@jit
+def _strike_out(queue, i, day):
+    later, sooner = queue.later[i], queue.sooner[i]
+    if sooner == NOBODY:
+        queue.first[day & (queue.first.size - 1)] = later
+    else:
+        queue.later[sooner] = later
+    if later != NOBODY:
+        queue.sooner[later] = sooner
+
+
+@jit
+def day_of(queue, time):
+    """The day on which a time lies; far ones share the last day."""
+    return int(min(time * queue.pace[0], LAST_DAY))
+
+
+def _earliest_in_calendar(cells, state):
+    queue, key = state.queue, state.agenda.key
+    day = queue.today[0]
+    for _ in range(queue.first.size):
+        least, place = math.inf, NOBODY
+        i = queue.first[day & (queue.first.size - 1)]
+        while i != NOBODY and least > state.clock[NOW]:  # nothing comes before now
+            if key[i] < least and day_of(queue, key[i]) <= day:
+                least, place = key[i], i
+            i = queue.later[i]
+        if place != NOBODY:
+            queue.today[0] = day
+            return place
+        day += 1
+    return _earliest_of_all(state)
+
+
+@jit
+def _earliest_of_all(state):
+    """When nothing happens for a year."""
+    key = state.agenda.key
+    place = 0
+    for i in range(key.size):
+        if key[i] < key[place]:
+            place = i
+    if key[place] < math.inf:
+        state.queue.today[0] = day_of(state.queue, key[place])
+    return place
+
+
+@jit
+def clear_calendar(state, cells, scene):
+    """Empty the calendar, and set its days to hold about EVENTS_A_DAY each."""
+    queue = state.queue
+    for place in range(queue.first.size):
+        queue.first[place] = NOBODY
+    for i in range(len(state.changes)):
+        state.agenda.key[i] = math.inf
+    clock = state.clock
+    crossings = 2.0 * clock[TYPICAL_SPEED] / max(cells.widths)
+    contacts = 4.0 * FLIGHTS / clock[LONGEST_HORIZON]  # none where nothing is known yet
+    pace = len(state.changes) * (crossings + contacts) / EVENTS_A_DAY
+    queue.pace[0] = pace if pace > 0.0 else 1.0
+    queue.today[0] = day_of(queue, clock[NOW])
+
+
+enter_in_queue = either(_enter_in_calendar, _enter_in_blocks)
+earliest = either(_earliest_in_calendar, _earliest_in_blocks)
+
+
+def float_bits(x):
+    """The bits of a double as an integer."""
+    return int(np.float64(x).view(np.int64))
+
+
+@intrinsic
+def _bitcast(context, x):
+    def generate(context, builder, signature, arguments):
+        return builder.bitcast(arguments[0], context.get_value_type(signature.return_type))
+
+    return types.int64(types.float64), generate
+
+
+@overload(float_bits)
+def _compiled_float_bits(x):
+    return lambda x: _bitcast(x)

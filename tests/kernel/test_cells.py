@@ -1,0 +1,132 @@
+"""Many particles, sorted into cells: nothing of it can be seen in the results."""
+
+import numpy as np
+import pytest
+from brute_force import Beside, begin, largest_overlap, run, scene_of, settings, snapshot
+
+from roughgas.kernel import layout
+from roughgas.kernel.state import LAST_FIRST, LAST_SECOND
+
+CASES = {
+    # experiment, r, beta, seed
+    "gas": (settings("gas", 24, [17, 19]), 0.98, 0.2, 1),
+    "dense gas": (settings("gas", 56, [17, 17]), 0.98, -0.6, 2),
+    "dilute gas": (settings("gas", 8, [60, 50]), 1.0, 1.0, 3),
+    "sheared": (settings("sheared", 24, [17, 19]), 0.9, 0.2, 4),
+    "fast shear": (settings("sheared", 24, [17, 19], shear={"velocity": 80.0}), 0.9, 0.2, 5),
+    "slow gas, fast shear": (
+        settings("sheared", 12, [17, 19], shear={"velocity": 2e3}),
+        0.5,
+        1.0,
+        6,
+    ),
+    "bed between rough walls": (settings("walled", 40, [20, "open"]), 0.8, 0.2, 7),
+    "spheres": (settings("spheres", 40, [17, 17, 17]), 0.98, 0.2, 8),
+}
+SEGMENTS, COLLISIONS = 20, 10
+
+
+@pytest.fixture
+def cells(monkeypatch):
+    """However few they are, the particles are sorted into cells, as small as these may be."""
+    monkeypatch.setattr(layout, "FEW", 0)
+    monkeypatch.setattr(layout, "PER_CELL", 0.0)
+
+
+@pytest.mark.parametrize("room", [layout.ROOM, layout.TOGETHER])
+@pytest.mark.parametrize("case", CASES)
+def test_the_kernel_makes_the_same_collisions(case, room, cells, monkeypatch):
+    """As brute force does, from the same state every ten collisions; also if the candidates around
+    a particle do not fit on its shortlist."""
+    monkeypatch.setattr(layout, "ROOM", room)
+    *point, seed = CASES[case]
+    scene, world = scene_of(*point)
+    _, state = begin(*point, seed)
+    assert state.cells is not None and state.sweep is None
+    beside = Beside(state, scene, world)
+    measured = np.array([beside.segment(COLLISIONS) for _ in range(SEGMENTS)])
+    difference, expected = measured.T
+    assert np.all(difference < 1e-12 + 300.0 * expected + 1e-15 * snapshot(state, scene).time)
+    assert np.median(difference) < 1e-7
+    assert largest_overlap(state, scene, world) < 1e-11
+
+
+MANY = {
+    "gas": (settings("gas", 400, [60, 60]), 0.9, 0.2),
+    "sheared": (settings("sheared", 400, [60, 60], shear={"velocity": 5.0}), 0.9, 0.2),
+    "walled": (settings("walled", 400, [50, "open"]), 0.9, 0.2),
+    "spheres": (settings("spheres", 600, [22, 22, 22]), 0.95, 0.2),
+}
+
+
+@pytest.mark.parametrize("name", MANY)
+def test_both_schemes_make_the_same_collisions(name, monkeypatch):
+    """The same 2,000 pairs in the same order; later, chaos shows the roundings of the clock."""
+    states = []
+    for few in (0, 10_000):
+        monkeypatch.setattr(layout, "FEW", few)
+        scene, state = begin(*MANY[name], 3)
+        states.append(state)
+    assert states[0].cells is not None and states[1].cells is None
+    for _ in range(2000):
+        pairs = []
+        for state in states:
+            run(state, scene, 1, collisions=1)
+            pairs.append({int(state.counts[LAST_FIRST]), int(state.counts[LAST_SECOND])})
+        assert pairs[0] == pairs[1]
+    one, other = (snapshot(state, scene) for state in states)
+    assert one.time == pytest.approx(other.time, rel=1e-9)
+    assert one.velocity == pytest.approx(other.velocity, abs=1e-6)
+    assert one.spin == pytest.approx(other.spin, abs=1e-6)
+
+
+def test_particles_are_put_into_the_order_of_their_cells():
+    scene, state = begin(*MANY["gas"], 4)
+    run(state, scene, 0)  # starts it
+    assert np.all(np.diff(state.cells.home) >= 0)
+    labels = state.label.copy()
+    run(state, scene, 40, collisions=200)
+    assert sorted(state.label) == list(range(400))
+    assert not np.array_equal(state.label, labels)
+
+
+def test_every_particle_is_listed_once_in_its_cell_and_on_its_day():
+    scene, state = begin(*MANY["gas"], 5)
+    run(state, scene, 20, collisions=100)
+    cells, queue = state.cells, state.queue
+    assert members(cells.first, cells.following) == {
+        cell: set(np.flatnonzero(cells.home == cell)) for cell in set(cells.home)
+    }
+    days = np.floor(state.agenda.key * queue.pace[0]).astype(int) % len(queue.first)
+    assert members(queue.first, queue.later) == {
+        day: set(np.flatnonzero(days == day)) for day in set(days)
+    }
+
+
+def members(first, following):
+    """What is on each list that is not empty."""
+    lists = {}
+    for k, i in enumerate(first):
+        found = []
+        while i >= 0:
+            found.append(i)
+            i = following[i]
+        if found:
+            assert len(set(found)) == len(found)
+            lists[k] = set(found)
+    return lists
+
+
+def test_many_particles_take_little_memory():
+    """At most 150 bytes a particle, but for the cells' own lists."""
+    _, state = begin(settings("gas", 10_000, [400, 400]), 0.9, 0.2)
+    whole = owned(state._replace(cells=state.cells._replace(first=None), shortlist=()))
+    assert state.cells is not None
+    assert whole / 10_000 <= 150.0
+
+
+def owned(part):
+    """Bytes in the arrays of nested tuples."""
+    if isinstance(part, np.ndarray):
+        return part.nbytes
+    return sum(map(owned, part)) if isinstance(part, tuple) else 0
