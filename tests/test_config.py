@@ -190,7 +190,11 @@ MISTAKES = [
     ("scales.small.showcase.frames", 0, "scales.small.showcase.frames = 0: must be a whole number"),
     ("showcase.beta", "2", "showcase.beta = '2': must lie in [-1, 1]"),
     ("showcase.box", [10, "open"], "showcase.box[1] = 'open': must be a number > 0"),
-    ("showcase.effects.spin", None, "showcase at scale paper.effects.spin = None: must be a mapping"),
+    (
+        "showcase.effects.spin",
+        None,
+        "showcase at scale paper.effects.spin = None: must be a mapping",
+    ),
     ("showcase.window", KeyError, "showcase at scale paper.window = (nothing): must be given"),
     ("experiments.showcase", {}, "key of experiments = showcase: must be another name"),
     ("scales.small.cooling.extends", "vibrated", "must not be given here"),

@@ -163,7 +163,9 @@ def _joined(film: Film) -> dict[str, np.ndarray]:
 
 def _books(recorder: Recorder) -> dict[str, np.ndarray]:
     """What a recorder sums up over its runs."""
-    return {name: np.array(getattr(recorder, name)) for name in ("seconds", "collisions", "touched")}
+    return {
+        name: np.array(getattr(recorder, name)) for name in ("seconds", "collisions", "touched")
+    }
 
 
 def _variables(film, scene, settings, recorder) -> dict[str, Any]:

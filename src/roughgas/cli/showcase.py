@@ -1,4 +1,4 @@
-"""The showcase: `roughgas clustering` films a large cooling gas, `roughgas film` draws what it saw."""
+"""The showcase: `roughgas clustering` films a large cooling gas, `roughgas film` draws the film."""
 
 import argparse
 import shlex
