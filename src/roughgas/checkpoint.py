@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from roughgas.atomic import whole_file
+from roughgas.atomic import remove_dead_drafts, whole_file
 
 OWNER, STATE, RECORD = "belongs to", "state.", "record."
 DAMAGE = (OSError, EOFError, KeyError, ValueError, RuntimeError, zipfile.BadZipFile, zlib.error)
@@ -56,6 +56,12 @@ def restore(path: str | Path, owner: str, state: Any) -> dict[str, np.ndarray]:
         for name, array in content.items()
         if name.startswith(RECORD)
     }
+
+
+def discard(path: str | Path) -> None:
+    """Remove a checkpoint that has served, and what a killed writer may have left of it."""
+    Path(path).unlink(missing_ok=True)
+    remove_dead_drafts(Path(path))
 
 
 def arrays_of(state: Any, prefix: str = "") -> Iterator[tuple[str, np.ndarray]]:

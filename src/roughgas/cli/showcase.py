@@ -47,6 +47,7 @@ def clustering(options: argparse.Namespace) -> None:
     """Film the gas, from the last checkpoint on where there is one."""
     settings, every = _settings(options), _frames(options.checkpoint_every)
 
+    from roughgas.checkpoint import discard
     from roughgas.cli.progress import FilmProgress
     from roughgas.clustering import run
     from roughgas.film import write_film
@@ -58,7 +59,7 @@ def clustering(options: argparse.Namespace) -> None:
         except KeyboardInterrupt:
             raise KeyboardInterrupt(progress.how_to_go_on()) from None
     write_film(options.output, variables, _provenance(options, settings) | attributes)
-    checkpoint.unlink(missing_ok=True)
+    discard(checkpoint)
     took = f"{variables['collisions']:,} collisions in {variables['kernel_seconds']:.1f} s"
     print(f"{options.output}: {settings['frames']} frames, {took}", file=sys.stderr)
 
