@@ -33,6 +33,12 @@ class Line:
             self._due = now + SECONDS_BETWEEN
             self._overwrite(f"{self._name}: {text}")
 
+    def say(self, text: str) -> None:
+        """Write a line that stays."""
+        self.__exit__()
+        self._stream.write(f"{self._name}: {text}\n")
+        self._stream.flush()
+
     def _overwrite(self, text: str) -> None:
         self._stream.write(f"\r\x1b[K{text}")
         self._stream.flush()
@@ -65,8 +71,7 @@ class FilmProgress(Line):
 
     def fresh(self, why: str) -> None:
         """The run begins anew, although there is a checkpoint."""
-        self._stream.write(f"{self._name}: {why}: starting afresh\n")
-        self.show("bringing the gas into equilibrium")
+        self.say(f"{why}: starting afresh")
 
     def reached(self, frame: int, collisions: int, saved: bool) -> None:
         """So many frames and collisions are over; `saved`: a checkpoint now holds them."""
@@ -74,13 +79,12 @@ class FilmProgress(Line):
             self._begun = frame, time.monotonic()
             if frame:
                 self._saved = frame
-                self._stream.write(f"{self._name}: going on from {self._checkpoint}\n")
+                self.say(f"going on from {self._checkpoint}")
         text = f"frame {frame} of {self._frames}, {collisions:,} collisions{self._left(frame)}"
         if saved:
             self._saved = frame
             if not self._shown:
-                self._stream.write(f"{self._name}: {text}\n")
-                self._stream.flush()
+                self.say(text)
         self.show(text)
 
     def how_to_go_on(self) -> str:

@@ -54,6 +54,7 @@ def clustering(options: argparse.Namespace) -> None:
 
     checkpoint = Path(f"{options.output}.checkpoint.npz")
     with FilmProgress(checkpoint, settings["frames"]) as progress:
+        progress.show("bringing the gas into equilibrium")
         try:
             variables, attributes = run(settings, checkpoint, every, progress)
         except KeyboardInterrupt:
