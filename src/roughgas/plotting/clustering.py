@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -23,13 +24,22 @@ SHOWN = 0.05, 0.25, 1.0  # instants in the picture, as shares of the film
 SMOOTHING = 6.0  # in a: standard deviation of the Gaussian that packing is averaged with
 PACKING = {"cmap": "cividis", "vmin": 0.0, "vmax": 0.8, "interpolation": "bilinear"}
 SPIN = {"cmap": "RdBu_r", "clim": (-2.0, 2.0)}
+SPIN_LABEL = "spin / its r.m.s."
 VOID = "#222222"
-CLOSEUP = 120.0  # side in a of the square in which single disks are shown
+CLOSEUP = 160.0  # side in a of the square in which single disks are shown
 TRANSLATION, ROTATION, UNEVENNESS = (look.colour for look in style.LOOKS[:3])
 FRAMES_PER_SECOND = 12
 LAST_FRAME = 1.5  # seconds that the movie rests on its last frame
 LETTERS, TITLE = "abc", 9
 PER_PARTICLE = "collisions per particle"
+
+
+class Square(NamedTuple):
+    """Where single disks are shown, in a."""
+
+    left: float
+    bottom: float
+    side: float
 
 
 def draw(path: str | Path, outputs: Iterable[str | Path]) -> None:
@@ -60,10 +70,13 @@ def picture(film: xr.Dataset) -> Figure:
         axes.set_title(f"{letter}   {_passed(film, frame)}", loc="left", fontsize=TITLE)
         axes.label_outer()
     above.colorbar(image, ax=maps, label="packing fraction", pad=0.01)
-    _outline(maps[-1], film)
+    square = closeup(film)
+    _outline(maps[-1], square)
     above.suptitle(_caption(film), fontsize=TITLE)
-    closeup, cooling, others = below.subfigures(1, 3, width_ratios=(1.15, 1, 1))
-    _closeup(closeup.subplots(), film, frames[-1])
+    zoom, cooling, others = below.subfigures(1, 3, width_ratios=(1.15, 1, 1))
+    disks = _disks(axes := zoom.subplots(), film, frames[-1], square)
+    axes.set_title("d   the square in c", loc="left", fontsize=TITLE)
+    zoom.colorbar(disks, ax=axes, label=SPIN_LABEL, shrink=0.62, pad=0.02)
     graphs = [cooling.subplots(), *others.subplots(2, 1, sharex=True)]
     for axes, draw_graph in zip(graphs, (_energies, _ratio, _unevenness), strict=True):
         draw_graph(axes, film)
@@ -91,8 +104,8 @@ def _map(axes: Axes, film: xr.Dataset, frame: int) -> AxesImage:
     return axes.imshow(packing(film, frame), origin="lower", extent=extent, **PACKING)
 
 
-def closeup(film: xr.Dataset) -> tuple[float, float, float]:
-    """(left, bottom, side) of the square in which single disks are shown: it lies where the gas is
+def closeup(film: xr.Dataset) -> Square:
+    """The square in which single disks are shown: it lies where the gas is
     densest in the end, within the window in which they are known."""
     box, window = np.asarray(film.attrs["box"]), film.attrs["window"]
     side = min(CLOSEUP, window, *box)
@@ -103,35 +116,29 @@ def closeup(film: xr.Dataset) -> tuple[float, float, float]:
     dense[:, abs(x - box[0] / 2) > room] = 0.0
     j, i = np.unravel_index(dense.argmax(), dense.shape)
     middle = (x[i], y[j]) if dense[j, i] > 0.0 else box / 2
-    return float(middle[0] - side / 2), float(middle[1] - side / 2), float(side)
+    return Square(float(middle[0] - side / 2), float(middle[1] - side / 2), float(side))
 
 
-def _outline(axes: Axes, film: xr.Dataset) -> None:
-    left, bottom, side = closeup(film)
+def _outline(axes: Axes, square: Square) -> None:
+    left, bottom, side = square
     axes.add_patch(Rectangle((left, bottom), side, side, fill=False, edgecolor="white"))
 
 
-def _closeup(axes: Axes, film: xr.Dataset, frame: int) -> None:
-    disks = _disks(axes, film, frame)
-    axes.figure.colorbar(disks, ax=axes, label="spin / its r.m.s.", shrink=0.62, pad=0.02)
-    axes.set_title("d   the square in c", loc="left", fontsize=TITLE)
-
-
-def _disks(axes: Axes, film: xr.Dataset, frame: int) -> EllipseCollection:
-    left, bottom, side = closeup(film)
+def _disks(axes: Axes, film: xr.Dataset, frame: int, square: Square) -> EllipseCollection:
+    left, bottom, side = square
     axes.set(xlim=(left, left + side), ylim=(bottom, bottom + side), aspect="equal")
     axes.set(xlabel=r"$x/a$", ylabel=r"$y/a$", facecolor=VOID)
     axes.minorticks_off()
     disks = EllipseCollection([], [], [], units="xy", offsets=[], transOffset=axes.transData)
     disks.set(edgecolor=VOID, linewidth=0.2, rasterized=True, **SPIN)
     axes.add_collection(disks)
-    _move(disks, film, frame)
+    _move(disks, film, frame, square)
     return disks
 
 
-def _move(disks: EllipseCollection, film: xr.Dataset, frame: int) -> None:
+def _move(disks: EllipseCollection, film: xr.Dataset, frame: int, square: Square) -> None:
     x, y, spin = disks_of(film, frame)
-    left, bottom, side = closeup(film)
+    left, bottom, side = square
     seen = (abs(x - left - side / 2) < side / 2 + 1) & (abs(y - bottom - side / 2) < side / 2 + 1)
     size = np.full(seen.sum(), 2.0)
     disks.set(widths=size, heights=size, angles=0 * size)
@@ -153,7 +160,7 @@ def _energies(axes: Axes, film: xr.Dataset) -> None:
     axes.plot(smooth, haff.T_tr, label="both, if homogeneous", **dotted)
     axes.plot(smooth[1:], haff.T_rot[1:], **dotted)
     low = film.E_rot.values[1:].min()
-    axes.set(yscale="log", ylim=(low / 10, 3), xlim=(0, n[-1]))
+    axes.set(yscale="log", ylim=(low / 4, 3), xlim=(0, n[-1]))
     axes.set(xlabel=PER_PARTICLE, ylabel=r"energies / initial $\bar{E}$")
     axes.set_title("e   energies leave Haff's law", loc="left", fontsize=TITLE)
     axes.legend()
@@ -204,11 +211,12 @@ def _movie(film: xr.Dataset, output: Path) -> None:
     figure = Figure(figsize=(8.4, 4.1), dpi=160, layout="constrained")
     squares, graphs = figure.subfigures(1, 2, width_ratios=(2.5, 1))
     whole, zoom = squares.subplots(1, 2)
-    image, disks = _map(whole, film, 0), _disks(zoom, film, 0)
-    _outline(whole, film)
+    square = closeup(film)
+    image, disks = _map(whole, film, 0), _disks(zoom, film, 0, square)
+    _outline(whole, square)
     bar = {"location": "bottom", "shrink": 0.8}
     squares.colorbar(image, ax=whole, label="packing fraction", **bar)
-    squares.colorbar(disks, ax=zoom, label="spin / its r.m.s.", **bar)
+    squares.colorbar(disks, ax=zoom, label=SPIN_LABEL, **bar)
     zoom.set_title("the square", fontsize=TITLE)
     squares.suptitle(_caption(film), fontsize=TITLE)
     marks = []
@@ -223,7 +231,7 @@ def _movie(film: xr.Dataset, output: Path) -> None:
 
     def show(frame: int) -> None:
         image.set_data(packing(film, frame))
-        _move(disks, film, frame)
+        _move(disks, film, frame, square)
         whole.set_title(_passed(film, frame), fontsize=TITLE)
         for mark in marks:
             mark.set_xdata([_at(film)[frame]] * 2)
