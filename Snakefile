@@ -2,6 +2,7 @@
 #
 #   snakemake -j2 figures                       the four figures of the paper, a table, its claims
 #   snakemake -j2 figures --config scale=small  the same in a minute, with wide error bars
+#   snakemake -j1 showcase                      a large cooling gas forms clusters: a movie
 #   snakemake -j1 results/paper/cooling/r0.87/beta-0.33/seed7.nc     any one point
 
 
@@ -23,12 +24,13 @@ wildcard_constraints:
     beta="[^/]+",
     seed="[^/]+",
     folder="([^/]+/)?",
-    figure="[^/]+",
+    figure=r"(?!clustering\.)[^/]+",  # that one is drawn by rules/showcase.smk
 
 
 include: "rules/simulate.smk"
 include: "rules/reduce.smk"
 include: "rules/figures.smk"
+include: "rules/showcase.smk"
 
 
 rule figures:
@@ -44,6 +46,7 @@ rule everything:
     input:
         rules.figures.input,
         reduced(SCALE, config["experiments"]),
+        rules.showcase.input,
 
 
 onerror:

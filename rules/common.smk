@@ -99,10 +99,10 @@ def data_of_paper(wildcards):
     return reduced(wildcards.scale, dict.fromkeys(shown))
 
 
-def drawn(figures):
+def drawn(figures, kinds=(".pdf", ".png")):
     """The files of figures at the scale of this run: in figures/, or in a folder below it."""
     folder = "" if SCALE == "paper" else f"{SCALE}/"
-    return [f"figures/{folder}{figure}{kind}" for figure in figures for kind in (".pdf", ".png")]
+    return [f"figures/{folder}{figure}{kind}" for figure in figures for kind in kinds]
 
 
 def forget_dead_locks():

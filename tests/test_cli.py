@@ -12,7 +12,7 @@ import pytest
 
 from roughgas import __version__
 from roughgas.cli import main
-from roughgas.cli.progress import Progress
+from roughgas.cli.progress import FilmProgress, Progress
 from roughgas.dataset import WALL_CLOCK, read_point
 
 CONFIG = str(Path(__file__).parent.parent / "config.yaml")
@@ -141,6 +141,33 @@ def test_progress_is_silent_elsewhere():
     with Progress("cooling", {"kind": "cooling"}, stream) as progress:
         progress(1.0, 1)
     assert stream.getvalue() == ""
+
+
+def test_progress_of_a_film_tells_the_time_that_is_left(monkeypatch):
+    clock = iter(range(1000, 2000, 50))
+    monkeypatch.setattr("roughgas.cli.progress.time.monotonic", lambda: next(clock))
+    stream = Terminal()
+    with FilmProgress(Path("c.npz"), 100, stream) as progress:
+        progress.reached(20, 5_000, False)
+        progress.reached(21, 6_000, True)
+    clear = "\r\x1b[K"
+    assert stream.getvalue() == (
+        "clustering: going on from c.npz\n"
+        f"{clear}clustering: frame 20 of 100, 5,000 collisions"
+        f"{clear}clustering: frame 21 of 100, 6,000 collisions, 131 min 40 s left{clear}"
+    )
+    assert progress.how_to_go_on() == "the same command goes on from frame 21 of 100"
+
+
+def test_a_log_has_a_line_for_each_checkpoint_of_a_film():
+    stream = io.StringIO()
+    with FilmProgress(Path("c.npz"), 4, stream) as progress:
+        progress.fresh("c.npz is damaged")
+        for frame in range(5):
+            progress.reached(frame, 10 * frame, frame == 2)
+    first, second = stream.getvalue().splitlines()
+    assert first == "clustering: c.npz is damaged: starting afresh"
+    assert second.startswith("clustering: frame 2 of 4, 20 collisions, 0 s left")
 
 
 def test_an_interrupt_ends_in_one_line(tmp_path, capsys, monkeypatch):

@@ -18,15 +18,20 @@ def whole_file(path: str | Path) -> Iterator[Path]:
     path = Path(path)
     draft = path.with_name(f"{path.name}.{os.getpid()}.tmp")
     path.parent.mkdir(parents=True, exist_ok=True)
-    for left in path.parent.glob(f"{path.name}.*.tmp"):
-        if not _alive(left.name.split(".")[-2]):
-            left.unlink(missing_ok=True)
+    remove_dead_drafts(path)
     try:
         yield draft
         _flush(draft)
         os.replace(draft, path)
     finally:
         draft.unlink(missing_ok=True)
+
+
+def remove_dead_drafts(path: Path) -> None:
+    """Remove what killed writers of `path` have left."""
+    for left in path.parent.glob(f"{path.name}.*.tmp"):
+        if not _alive(left.name.split(".")[-2]):
+            left.unlink(missing_ok=True)
 
 
 def write_text(path: str | Path, text: str) -> None:

@@ -28,6 +28,14 @@ TINY = {
         "sweep": SWEEP,
         "schedule": {"replicas": 3, "plateau": 20},
     },
+    "showcase": {
+        "particles": 40,
+        "box": [40, 40],
+        "effects": {"contact_time": None},
+        "collisions": 20,
+        "frames": 10,
+        "window": 30,
+    },
 }
 POINTS = 6 * 2
 

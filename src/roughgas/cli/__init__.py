@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 from roughgas import __version__
-from roughgas.cli import products, run
+from roughgas.cli import products, run, showcase
 from roughgas.errors import CollapseError, InputError
 
 BAD_INPUT, FAILED, INTERRUPTED = 2, 1, 130
@@ -35,8 +35,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except OSError as error:
         where = f"{error.filename}: " if error.filename else ""
         return _fail(FAILED, f"{where}{error.strerror or error}")
-    except KeyboardInterrupt:
-        return _fail(INTERRUPTED, "interrupted, nothing written")
+    except KeyboardInterrupt as stop:
+        return _fail(INTERRUPTED, f"interrupted, {stop if stop.args else 'nothing written'}")
     return 0
 
 
@@ -55,4 +55,5 @@ def _parser() -> Parser:
     commands = parser.add_subparsers(metavar="COMMAND", required=True)
     run.add_commands(commands)
     products.add_commands(commands)
+    showcase.add_commands(commands)
     return parser

@@ -4,7 +4,7 @@ Everything illegal raises an InputError, whose text is one line naming key, valu
 """
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -23,10 +23,12 @@ __all__ = [
     "restitution",
     "roughness",
     "seed",
+    "showcase",
     "sweep",
 ]
 
 SOURCE = "config.yaml"
+SHOWCASE = "showcase"
 NOT_OF_A_POINT = ("description", "sweep")
 """Settings of an experiment that do not concern any single point of it."""
 
@@ -54,11 +56,14 @@ def check(config: Mapping[str, Any], source: str = SOURCE) -> None:
     check_schema(config, source)
     known, scales = config["experiments"], config["scales"]
     _one_of(f"{source}: scale", config["scale"], scales)
+    if SHOWCASE in known:
+        raise InputError(f"{source}: key of experiments", SHOWCASE, "be another name")
     for name in known:
         _check_ancestors(name, known, source)
     for scale, changes in scales.items():
         for name in changes:
-            _one_of(f"{source}: key of scales.{scale}", name, known)
+            _one_of(f"{source}: key of scales.{scale}", name, [*known, SHOWCASE])
+        check_schema(showcase(config, scale), f"{source}: {SHOWCASE} at scale {scale}", "filmed")
         for name in known:
             where = f"{source}: experiments.{name}"
             if scale != config["scale"]:
@@ -78,6 +83,13 @@ def experiment(config: Mapping[str, Any], name: str, scale: str) -> dict[str, An
     settings = experiment(config, parent, scale) if parent else {}
     settings.pop("description", None)
     return merged(merged(settings, own), config["scales"][scale].get(name, {}))
+
+
+def showcase(config: Mapping[str, Any], scale: str) -> dict[str, Any]:
+    """The settings of the showcase at `scale`. Raises InputError for an unknown scale."""
+    _one_of("scale", scale, config["scales"])
+    settings = merged(config[SHOWCASE], config["scales"][scale].get(SHOWCASE, {}))
+    return {key: value for key, value in settings.items() if key not in NOT_OF_A_POINT}
 
 
 def merged(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
@@ -113,15 +125,20 @@ def as_text(settings: Mapping[str, Any]) -> str:
     return json.dumps(settings, sort_keys=True, separators=(",", ":"))
 
 
-def from_text(text: str, source: str, checked: bool = False) -> dict[str, Any]:
-    """The settings of a point from their JSON; `checked` says that they are known to be legal."""
+def from_text(
+    text: str, source: str, checked: bool = False, parts: Iterable[str] = ("experiment", "point")
+) -> dict[str, Any]:
+    """The settings of a point from their JSON; `checked` says that they are known to be legal.
+
+    `parts` are the definitions of the schema that they must else fulfil.
+    """
     try:
         settings = json.loads(text)
     except ValueError as error:
         raise InputError(source, shown(text), "be JSON") from error
     if not checked:
-        check_schema(settings, source, "experiment")
-        check_schema(settings, source, "point")
+        for part in parts:
+            check_schema(settings, source, part)
     return settings
 
 
@@ -145,6 +162,6 @@ def _check_ancestors(name: str, known: Mapping[str, Any], source: str) -> None:
         seen.append(parent)
 
 
-def _one_of(key: str, value: Any, known: Mapping[str, Any]) -> None:
+def _one_of(key: str, value: Any, known: Iterable[str]) -> None:
     if value not in known:
         raise InputError(key, shown(value), f"be one of {', '.join(sorted(known))}")

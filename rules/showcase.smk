@@ -1,0 +1,60 @@
+# The showcase of scale: a cooling gas of many particles, filmed until it forms clusters.
+FILM = "results/{scale}/showcase/clustering.nc"
+
+
+def settings_of_showcase(wildcards):
+    """The settings of the showcase at a scale, found to be such as can be simulated, as JSON."""
+    with one_line(FILM.format(**wildcards)):
+        found = roughgas.config.showcase(config, wildcards.scale)
+    with one_line(f"config.yaml: showcase at scale {wildcards.scale}"):
+        from roughgas.scene import check
+
+        check(found)
+    return roughgas.config.as_text(found)
+
+
+def film_of_figure(wildcards):
+    return FILM.format(scale=wildcards.folder.rstrip("/") or "paper")
+
+
+rule clustering:
+    # It leaves checkpoints beside its output. They are no output: Snakemake would delete them where
+    # a job fails, while from the last one the same command goes on after a kill.
+    input:
+        sources("clustering", "film"),
+        "src/roughgas/cli/showcase.py",
+    output:
+        FILM,
+    log:
+        "logs/{scale}/showcase/clustering.log",
+    benchmark:
+        "logs/{scale}/showcase/clustering.tsv"
+    priority: 5
+    params:
+        settings=settings_of_showcase,
+    message:
+        "film a cooling gas; how far it is: {log}"
+    shell:
+        "roughgas clustering --scale {wildcards.scale} --settings {params.settings:q} --checked"
+        " --output {output} > {log} 2>&1"
+
+
+rule film:
+    input:
+        sources("plotting"),
+        data=film_of_figure,
+    output:
+        multiext("figures/{folder}clustering", ".pdf", ".png", ".mp4"),
+    log:
+        "logs/figures/{folder}clustering.log",
+    benchmark:
+        "logs/figures/{folder}clustering.tsv"
+    message:
+        "draw the picture and the movie of the cooling gas"
+    shell:
+        "roughgas film {input.data} --output {output} > {log} 2>&1"
+
+
+rule showcase:
+    input:
+        drawn(["clustering"], (".pdf", ".png", ".mp4")),

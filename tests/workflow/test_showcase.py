@@ -1,0 +1,106 @@
+"""The showcase as Snakemake runs it: what it needs, and that a kill costs it no more than a bit."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+from roughgas.film import read_film
+
+FILM = "results/tiny/showcase/clustering.nc"
+CHECKPOINT = f"{FILM}.checkpoint.npz"
+PRODUCTS = {f"figures/tiny/clustering.{kind}" for kind in ("pdf", "png", "mp4")}
+TINY = ("--config", "scale=tiny", "--")
+
+
+def test_the_showcase_needs_no_point(project):
+    assert project.planned("showcase") == {"clustering": 1, "film": 1, "showcase": 1}
+
+
+def test_everything_has_the_showcase_in_it(project):
+    assert project.planned("everything")["film"] == 1
+
+
+@pytest.mark.parametrize(
+    ("module", "expected"),
+    [
+        ("kernel/pairs.py", {"clustering": 1, "film": 1, "showcase": 1}),
+        ("checkpoint.py", {"clustering": 1, "film": 1, "showcase": 1}),
+        ("plotting/movie.py", {"film": 1, "showcase": 1}),
+        ("claims/report.py", {}),
+    ],
+)
+def test_an_edit_in_the_package(finished, module, expected):
+    finished.append(f"src/roughgas/{module}")
+    assert finished.planned("showcase") == expected
+
+
+def test_an_edit_of_its_settings(finished):
+    finished.configure(lambda config: config["scales"]["tiny"]["showcase"].update(beta="0.5"))
+    assert finished.planned("showcase") == {"clustering": 1, "film": 1, "showcase": 1}
+    assert finished.planned("figures") == {}
+
+
+def test_every_module_that_a_film_imports_counts(made):
+    """Found out by importing, where the rules find out by reading the sources."""
+    summary = made.succeed("--config", "scale=tiny", "--detailed-summary", "--", FILM)
+    (row,) = (line for line in summary.splitlines() if line.startswith(FILM))
+    script = "import sys, roughgas.clustering, roughgas.film; print(*sys.modules)"
+    done = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, check=True
+    )
+    for name in {name for name in done.stdout.split() if name.startswith("roughgas.")}:
+        path = "src/" + name.replace(".", "/")
+        assert f"{path}.py" in row or f"{path}/__init__.py" in row, name
+
+
+@pytest.mark.parametrize(
+    ("target", "change", "message"),
+    [
+        ("results/large/showcase/clustering.nc", {}, "scale = 'large': must be one of paper"),
+        ("figures/large/clustering.mp4", {}, "scale = 'large': must be one of paper"),
+        (FILM, {"particles": 10_000}, "showcase at scale tiny: particles = 10000: must be at"),
+        (FILM, {"box": [3, 3]}, "showcase at scale tiny: box[0] = 3"),
+    ],
+)
+def test_what_cannot_be_filmed_is_refused_in_one_line(finished, target, change, message):
+    finished.configure(lambda config: config["scales"]["tiny"]["showcase"].update(change))
+    status, output = finished.snakemake("-n", target)
+    assert status != 0 and "Traceback" not in output
+    (line,) = (line for line in output.splitlines() if "error" in line.lower())
+    assert message in line
+
+
+@pytest.mark.slow
+def test_the_products_are_there(project, tmp_path):
+    ran = project.copy_to(tmp_path / "ran")
+    ran.succeed("-j1", *TINY, "showcase")
+    products = {path for path in ran.files() if path.startswith(("figures", "results"))}
+    assert products == PRODUCTS | {FILM}
+    assert "Nothing to be done" in ran.succeed("-j1", *TINY, "showcase")
+
+
+@pytest.mark.slow
+def test_after_a_kill_the_same_command_goes_on_from_the_checkpoint(project, tmp_path):
+    whole = project.copy_to(tmp_path / "whole")
+    long = {"frames": 3000, "collisions": 300}
+    whole.configure(lambda config: config["scales"]["tiny"]["showcase"].update(long))
+    killed = whole.copy_to(tmp_path / "killed")
+    whole.succeed("-j1", *TINY, FILM)
+    running = killed.start("-j1", *TINY, FILM)
+    deadline = time.monotonic() + 300
+    while not (killed.folder / CHECKPOINT).exists():
+        assert running.poll() is None and time.monotonic() < deadline
+        time.sleep(0.001)
+    os.killpg(running.pid, signal.SIGKILL)  # its jobs, too
+    running.wait()
+    assert not (killed.folder / FILM).exists() and (killed.folder / CHECKPOINT).exists()
+    killed.succeed("-j1", *TINY, FILM)
+    log = (killed.folder / "logs/tiny/showcase/clustering.log").read_text()
+    assert log.startswith(f"clustering: going on from {CHECKPOINT}\n")
+    one, other = (read_film(ran.folder / FILM) for ran in (whole, killed))
+    assert one.drop_vars("kernel_seconds").identical(other.drop_vars("kernel_seconds"))
+    assert not (killed.folder / CHECKPOINT).exists()
