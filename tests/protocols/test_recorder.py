@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from brute_force import begin, run, settings
 
+from roughgas.kernel.state import EXPONENT
 from roughgas.protocols.recorder import Recorder
 
 GAS = settings("gas", 20, [25, 25])
@@ -33,6 +34,14 @@ def test_units_of_a_refreshed_gas_are_restored():
     for name in ("vv_x", "vv_y", "ww", "w", "yv_x"):
         scale = np.abs(plain[name])
         assert refreshed[name] == pytest.approx(plain[name], rel=1e-6, abs=1e-6 * scale.min()), name
+
+
+@pytest.mark.parametrize("samples", [10, 130, 230])
+def test_a_gas_is_refreshed_however_its_run_is_cut_into_calls(samples):
+    (scene, state), (_, same) = (begin(GAS, 0.5, 0.5, 2) for _ in range(2))
+    rows = Recorder().in_collisions(state, scene, 10, samples, 4)
+    assert np.array_equal(rows["time"], run(same, scene, samples, collisions=10, refresh=4)["time"])
+    assert state.counts[EXPONENT] == same.counts[EXPONENT] < 0
 
 
 def test_it_sums_up_over_runs():

@@ -52,6 +52,8 @@ class Recorder:
         begin = time.perf_counter()
         before = state.counts.copy()
         length = max(1, -(-samples // REPORTS))
+        if plan.refresh > 0:  # which the kernel counts from the start of each call
+            length = -(-length // plan.refresh) * plan.refresh
         for first in range(0, samples, length):
             part = rows[first : first + length]
             filled = record(state, scene, plan, part)
