@@ -80,7 +80,12 @@ def test_both_schemes_make_the_same_collisions(name, monkeypatch):
     assert one.spin == pytest.approx(other.spin, abs=1e-6)
 
 
-def test_particles_are_put_into_the_order_of_their_cells():
+@pytest.fixture
+def many(monkeypatch):
+    monkeypatch.setattr(layout, "FEW", 0)
+
+
+def test_particles_are_put_into_the_order_of_their_cells(many):
     scene, state = begin(*MANY["gas"], 4)
     run(state, scene, 0)  # starts it
     assert np.all(np.diff(state.cells.home) >= 0)
@@ -90,7 +95,7 @@ def test_particles_are_put_into_the_order_of_their_cells():
     assert not np.array_equal(state.label, labels)
 
 
-def test_every_particle_is_listed_once_in_its_cell_and_on_its_day():
+def test_every_particle_is_listed_once_in_its_cell_and_on_its_day(many):
     scene, state = begin(*MANY["gas"], 5)
     run(state, scene, 20, collisions=100)
     cells, queue = state.cells, state.queue

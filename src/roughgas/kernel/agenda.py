@@ -61,7 +61,7 @@ def drop_contact(agenda, i, slot):
 def choose_next(state, i):
     """Make the earliest event of particle i its entry in the queue."""
     agenda = state.agenda
-    time = agenda.complete_until[i]
+    time = _foresight(state.cells, agenda, i)
     kind = HORIZON
     for k in range(int(agenda.filled[i])):
         earlier = agenda.slot_time[i, k] <= time
@@ -72,6 +72,12 @@ def choose_next(state, i):
         kind = NOTHING
     agenda.kind[i] = kind
     enter_in_queue(state.cells, state, i, time)
+
+
+_foresight = either(
+    lambda cells, agenda, i: min(agenda.complete_until[i], cells.leave[i]),
+    lambda cells, agenda, i: agenda.complete_until[i],
+)
 
 
 def _sooner_of(boundary_time, i, time, kind):

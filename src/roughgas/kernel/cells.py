@@ -7,10 +7,13 @@ has looked around, too, and has found it. The paths do not know of the cells: li
 can be seen in no result.
 
 Cells repeat with a period on each axis. That of an open axis has no meaning: what is a period away
-is looked at, and never met.
+is looked at, and never met. Under shear each row of cells moves with the mean flow, row k of n by
+(k + 1/2)/n - 1/2 of what the images above the box have slid: rows slide past each other slowly,
+and past the images no faster.
 """
 
 import math
+import sys
 
 from numba.extending import overload
 
@@ -24,24 +27,30 @@ from roughgas.kernel.shortlist import decide
 from roughgas.kernel.state import NOBODY, SPAN
 from roughgas.kernel.vectors import subtract
 
+ALL = -1  # every axis
+FARTHEST = sys.float_info.max
+
 
 def find_around(cells, state, scene, i, time):
-    """Foresee particle i's contacts until it leaves its cell; if it does so now, in the next."""
-    if time >= cells.leave[i]:
-        _move_on(state, scene, i, time)
-    home = cells.home[i]
+    """Foresee particle i's contacts with the particles around it; if it leaves its cell now, only
+    with those that come into its neighbourhood thereby."""
+    agenda = state.agenda
+    moved_on = time >= cells.leave[i]
+    axis, step = _move_on(state, scene, i, time) if moved_on else (ALL, 0)
     d, u = _in_cell(state, scene, i, time)
     gravity = hooks.acceleration(scene.effects, None)
     cells.leave[i] = time + _exit(d, u, cells.widths, gravity)[0]
     slide = slid(hooks.sliding(scene.effects, None, state), time)
-    outlook = min(state.clock[SPAN], _outlook(slide, cells, home))
-    end = min(cells.leave[i], time + outlook)
-    clear_contacts(state.agenda, i, end)
+    outlook = _outlook(slide, cells, state.clock[SPAN])
+    known = state.trajectory[i, 2 * len(d)] < time < agenda.complete_until[i]
+    if not (known and moved_on and _newcomers_in_one_slab(slide, axis)):
+        axis = ALL
+        clear_contacts(agenda, i, time + outlook)
     done, found = 0, 1
     while done < found:
-        found = _collect(state, i, slide, end - time, done)
+        found = _collect(state, i, slide, outlook, axis, step, done)
         room = state.shortlist.found.size
-        decide(state, scene, i, min(found - done, room), time, time, end)
+        decide(state, scene, i, min(found - done, room), time, time, FARTHEST)
         done += room
 
 
@@ -56,8 +65,10 @@ def settle(state, scene, i, time):
     for k in range(len(position) - 1, -1, -1):
         place = int(position[k] / cells.widths[k])
         home = home * cells.counts[k] + min(max(place, 0), cells.counts[k] - 1)
+    cells.home[i] = home
+    _find_column(slide, state, scene, i, time)
     cells.leave[i] = math.inf
-    _enter(cells, i, home)
+    _enter(cells, i, cells.home[i])
 
 
 @jit
@@ -88,8 +99,24 @@ def _in_cell(state, scene, i, time):
     cells = state.cells
     position, velocity = whereabouts(state, scene, i, time)
     slide = slid(hooks.sliding(scene.effects, None, state), time)
+    position, velocity = _beside_row(slide, cells, cells.home[i], position, velocity)
     d = subtract(position, middle_of(cells.widths, places(cells.counts, cells.home[i])))
     return shifted(d, velocity, image_numbers(d, cells.periods, slide), cells.periods, slide)
+
+
+def _beside_row_that_moves(slide, cells, home, position, velocity):
+    row = home // cells.counts[0] % cells.counts[1]
+    share = (row + 0.5) / cells.counts[1] - 0.5
+    return (
+        (position[0] - share * slide[0],) + position[1:],
+        (velocity[0] - share * slide[1],) + velocity[1:],
+    )
+
+
+_beside_row = either(
+    _beside_row_that_moves,
+    lambda slide, cells, home, position, velocity: (position, velocity),
+)
 
 
 def places(counts, home):
@@ -164,15 +191,16 @@ _fall_out = either(_fall_out_under_gravity, lambda gravity, d, u, half: _fly_out
 
 @jit
 def _move_on(state, scene, i, time):
-    """Take particle i into the next cell on its way."""
+    """Take particle i into the next cell on its way; the axis along which that lies, and where."""
     cells = state.cells
     d, u = _in_cell(state, scene, i, time)
     _, axis, step = _exit(d, u, cells.widths, hooks.acceleration(scene.effects, None))
     _strike_out(cells, i)
     cells.home[i] = _next_to(cells.counts, cells.home[i], axis, step)
     if axis == 1:
-        _change_column(hooks.sliding(scene.effects, None, state), state, scene, i, time)
+        _find_column(hooks.sliding(scene.effects, None, state), state, scene, i, time)
     _enter(cells, i, cells.home[i])
+    return axis, step
 
 
 @jit
@@ -185,8 +213,8 @@ def _next_to(counts, home, axis, step):
 
 
 @hooks.unless_absent
-def _change_column(slide, state, scene, i, time):
-    """What has gone through the top or the bottom of a sheared box comes out elsewhere."""
+def _find_column(slide, state, scene, i, time):
+    """Correct the column of a particle's home, which is in the right row: rows have slid."""
     cells = state.cells
     d, _ = _in_cell(state, scene, i, time)
     place = cells.home[i] % cells.counts[0]
@@ -200,33 +228,32 @@ def wrapped(place, count):
     return place + count if place < 0 else place - count if place >= count else place
 
 
-def _outlook_at_edge(slide, cells, home):
-    """At the edge of a sheared box: until the images there have slid by one cell."""
-    row = home // cells.counts[0] % cells.counts[1]
-    if 0 < row < cells.counts[1] - 1:
-        return math.inf
-    return cells.widths[0] / abs(slide[1])
-
-
-_outlook = either(_outlook_at_edge, lambda slide, cells, home: math.inf)
+_outlook = either(  # until rows have slid past each other by one cell
+    lambda slide, cells, longest: min(longest, cells.counts[1] * cells.widths[0] / abs(slide[1])),
+    lambda slide, cells, longest: longest,
+)
+# which column it is that newcomers are in differs from row to row where rows have slid
+_newcomers_in_one_slab = either(lambda slide, axis: axis > 0, lambda slide, axis: True)
 
 
 @jit
-def _collect(state, i, slide, duration, skipped):
-    """List the particles around particle i, but for the first ones that are to be skipped, in the
-    shortlist, as far as there is room; how many there are in all."""
+def _collect(state, i, slide, duration, axis, step, skipped):
+    """List the particles around particle i in the shortlist; how many there are in all.
+
+    Those in all cells around, or only in those a step further along an axis. The first ones are
+    skipped: they have been on the list already, and there was no room for more.
+    """
     cells, found, number = state.cells, state.shortlist.found, 0
     home = places(cells.counts, cells.home[i])
-    for layer in range(3 if len(home) == 3 else 1):
+    for above in range(*_steps(len(home) - 1, axis, step) if len(home) == 3 else (0, 1)):
         level = 0
         if len(home) == 3:
-            level = wrapped(home[-1] + layer - 1, cells.counts[-1]) * cells.counts[1]
-        for up in range(-1, 2):
+            level = wrapped(home[-1] + above, cells.counts[-1]) * cells.counts[1]
+        for up in range(*_steps(1, axis, step)):
             row = wrapped(home[1] + up, cells.counts[1])
-            across = home[1] + up - row  # other than zero if that row lies beyond the edge
-            column, columns = _columns(slide, cells, home[0], across, duration)
-            for k in range(columns):
-                cell = wrapped(column + k, cells.counts[0]) + cells.counts[0] * (row + level)
+            first, last = _columns(slide, cells, home[0], up, duration, _steps(0, axis, step))
+            for column in range(first, last):
+                cell = wrapped(column, cells.counts[0]) + cells.counts[0] * (row + level)
                 j = cells.first[cell]
                 while j != NOBODY:
                     if j != i:
@@ -237,18 +264,24 @@ def _collect(state, i, slide, duration, skipped):
     return number
 
 
-def _columns_beyond_edge(slide, cells, place, across, duration):
-    """First column, and how many, that lie across the edge while the images slide past."""
-    if across == 0:
-        return place - 1, 3
-    side = 1.0 if across > 0 else -1.0
-    begin = side * slide[0] / cells.widths[0]
-    slip = side * slide[1] * duration / cells.widths[0]
+@jit
+def _steps(along, axis, step):
+    """First and end of the steps to be taken along an axis."""
+    return (step, step + 1) if along == axis else (-1, 2)
+
+
+def _columns_of_row_that_slides(slide, cells, place, up, duration, steps):
+    if up == 0:
+        return place + steps[0], place + steps[1]
+    by = up / (cells.counts[1] * cells.widths[0])
+    begin, slip = by * slide[0], by * slide[1] * duration
     first = math.floor(place - 1 - begin - max(slip, 0.0))
     last = math.floor(place + 2 - begin - min(slip, 0.0))
-    return first % cells.counts[0], last - first + 1
+    column = first % cells.counts[0]
+    return column, column + last - first + 1
 
 
-_columns = either(
-    _columns_beyond_edge, lambda slide, cells, place, across, duration: (place - 1, 3)
+_columns = either(  # first and end of those to look at in the same row or the next ones
+    _columns_of_row_that_slides,
+    lambda slide, cells, place, up, duration, steps: (place + steps[0], place + steps[1]),
 )

@@ -42,8 +42,11 @@ def _survey(state, scene, elapsed):
     clock, counts = state.clock, state.counts
     number = len(state.changes)
     total = 0.0
+    slide = hooks.sliding(scene.effects, None, state)
     for i in range(number):
+        position = read(state.trajectory, i, 0, scene.box)
         v = read(state.trajectory, i, len(scene.box), scene.box)
+        v = _beside_flow(slide, scene.box, position, v)
         total += dot(v, v)
     speed = math.sqrt(total / number)
     clock[TYPICAL_SPEED] = speed
@@ -58,4 +61,9 @@ def _survey(state, scene, elapsed):
 _stretch = either(
     lambda cells, scene: min(scene.extent, CELLS * max(cells.widths)),
     lambda cells, scene: scene.extent,
+)
+
+_beside_flow = either(  # velocity relative to the mean flow of a sheared gas, but for a constant
+    lambda slide, box, x, v: (v[0] - slide[1] * (x[1] / box[1] - 0.5),) + v[1:],
+    lambda slide, box, x, v: v,
 )

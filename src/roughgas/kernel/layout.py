@@ -18,7 +18,7 @@ from roughgas.kernel.state import (
     Sweep,
 )
 
-FEW = 300  # up to so many particles all pairs are swept: measured, see docs/performance.md
+FEW = 700  # up to so many particles all pairs are swept: measured, see docs/performance.md
 LANES = 16  # the arrays that are swept are padded to whole vector registers
 BLOCK = 16  # particles to a block of the queue; divides LANES
 TOGETHER = 8  # candidates that are decided at once
