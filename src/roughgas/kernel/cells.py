@@ -232,8 +232,8 @@ _outlook = either(  # until rows have slid past each other by one cell
     lambda slide, cells, longest: min(longest, cells.counts[1] * cells.widths[0] / abs(slide[1])),
     lambda slide, cells, longest: longest,
 )
-# which column it is that newcomers are in differs from row to row where rows have slid
-_newcomers_in_one_slab = either(lambda slide, axis: axis > 0, lambda slide, axis: True)
+# cells of rows that have slid are not in line: a particle that moves on has part of another outlook
+_newcomers_in_one_slab = either(lambda slide, axis: axis > 1, lambda slide, axis: True)
 
 
 @jit
