@@ -4,10 +4,14 @@ import mpmath
 import numpy as np
 import pytest
 from brute_force import begin, run, settings, snapshot
+from compiled import from_python
 
-from roughgas.effects.floor import Floor, time_to_floor
+from roughgas.effects import floor as floors
+from roughgas.effects.floor import Floor
 from roughgas.kernel.layout import new_state
 from roughgas.kernel.state import BOUNDARY_HITS
+
+time_to_floor = from_python(floors.time_to_floor)
 
 
 def floor_of(amplitude=5.0, period=1.0):

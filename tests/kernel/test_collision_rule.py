@@ -2,13 +2,15 @@
 
 import numpy as np
 import pytest
+from compiled import from_python
 
 from roughgas import theory
 from roughgas.effects import Effects
 from roughgas.effects.spin import Spin
-from roughgas.kernel.contact import response
+from roughgas.kernel.contact import response as compiled_response
 
 PAIR, WALL = 0.5, 1.0
+response = from_python(compiled_response)
 MATERIALS = [(r, beta) for r in (0.0, 0.3, 0.9, 1.0) for beta in (-1.0, -0.4, 0.0, 0.7, 1.0)]
 
 

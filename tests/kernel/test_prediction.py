@@ -4,12 +4,14 @@ import mpmath
 import numpy as np
 import pytest
 from brute_force import BruteForce, begin, largest_overlap, run, scene_of, settings, snapshot
+from compiled import from_python
 
+from roughgas.kernel import pairs
 from roughgas.kernel.layout import new_state
-from roughgas.kernel.pairs import time_to_contact
 from roughgas.kernel.state import LAST_FIRST, LAST_SECOND, LONGEST_HORIZON
 
 EPSILON = 2.0**-52
+time_to_contact = from_python(pairs.time_to_contact)
 
 
 def exact_time(x, u):

@@ -3,10 +3,14 @@
 import numpy as np
 import pytest
 from brute_force import begin, settings
+from compiled import from_python
 
-from roughgas.kernel import layout
-from roughgas.kernel.queue import clear_calendar, earliest, enter_in_queue
+from roughgas.kernel import layout, queue
 from roughgas.kernel.state import NOW, TYPICAL_SPEED
+
+earliest, enter_in_queue, clear_calendar = map(
+    from_python, (queue.earliest, queue.enter_in_queue, queue.clear_calendar)
+)
 
 
 @pytest.mark.parametrize("few", [0, 10_000])

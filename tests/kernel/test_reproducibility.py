@@ -114,7 +114,9 @@ def test_the_hash_covers_every_compiled_source(tmp_path, monkeypatch, room):
 def test_every_compiled_function_lies_in_a_hashed_room():
     """The decorators are used nowhere else, so that no compiled source escapes the hash."""
     for source in PACKAGE.rglob("*.py"):
-        compiled = any(f"@{name}" in source.read_text() for name in ("jit", "compiled", "njit"))
+        compiled = any(
+            f"@{name}" in source.read_text() for name in ("jit", "compiled", "entry", "njit")
+        )
         assert not compiled or source.parent.name in cache.COMPILED_ROOMS, source
 
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 from roughgas.kernel.cache import one_writer_at_a_time
 from roughgas.kernel.flight import arrive, put
 from roughgas.kernel.hooks import unless_absent
-from roughgas.kernel.jit import compiled, jit
+from roughgas.kernel.jit import compiled, entry, jit
 from roughgas.kernel.loop import advance, start
 from roughgas.kernel.spins import spin_of
 from roughgas.kernel.state import BASE, COLLISIONS, EXPONENT, NOW, ORIGIN, SPAN, STARTED
@@ -38,7 +38,7 @@ def columns(dimension, spinning):
     )
 
 
-@compiled(cache=True)
+@entry(cache=True)
 def record(state, scene, plan, samples):
     """Advance, filling one row of `samples` (see `columns`) at each instant of the plan.
 
