@@ -49,28 +49,6 @@ def settings(scale, experiment):
     return found
 
 
-def kernel_of_point(wildcards):
-    """What says that the kernel of a point is compiled; ends the workflow for an illegal point."""
-    with one_line(POINT.format(**wildcards)):
-        roughgas.config.restitution(wildcards.r)
-        roughgas.config.roughness(wildcards.beta)
-        roughgas.config.seed(wildcards.seed)
-    settings(wildcards.scale, wildcards.experiment)
-    return KERNEL.format(**wildcards)
-
-
-def settings_of_points(wildcards):
-    """All in config.yaml that the points of an experiment depend on, whichever they are, as JSON:
-    what else changes there does not touch them."""
-    found = settings(wildcards.scale, wildcards.experiment)
-    return roughgas.config.as_text(roughgas.config.point_settings(found))
-
-
-def urgency(wildcards):
-    """Longest points first: close to beta = -1 spin relaxes slowest."""
-    return -roughgas.config.roughness(wildcards.beta)
-
-
 def points_of_experiment(wildcards):
     """The datasets of all points in the sweep of an experiment."""
     scale, experiment = wildcards.scale, wildcards.experiment
