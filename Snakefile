@@ -46,5 +46,9 @@ rule everything:
         reduced(SCALE, config["experiments"]),
 
 
+onstart:
+    lift_rate_limit()
+
+
 onerror:
     print("Stopped: the same command goes on from here.", file=sys.stderr)

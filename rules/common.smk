@@ -98,3 +98,13 @@ def forget_dead_locks():
     with suppress(OSError):
         fcntl.flock(alive, fcntl.LOCK_SH)
     return alive
+
+
+def lift_rate_limit():
+    """Let a run on this machine start jobs as fast as it can, not a hundred a second.
+
+    To keep that limit, Snakemake looks at all jobs that are ready again a second after each time
+    that it has done so. These rounds add up, until they keep a core busy.
+    """
+    if workflow.local_exec:
+        workflow.scheduler.job_rate_limiter = None
