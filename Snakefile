@@ -49,5 +49,9 @@ rule everything:
         rules.showcase.input,
 
 
+onstart:
+    lift_rate_limit()
+
+
 onerror:
     print("Stopped: the same command goes on from here.", file=sys.stderr)

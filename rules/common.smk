@@ -49,28 +49,6 @@ def settings(scale, experiment):
     return found
 
 
-def kernel_of_point(wildcards):
-    """What says that the kernel of a point is compiled; ends the workflow for an illegal point."""
-    with one_line(POINT.format(**wildcards)):
-        roughgas.config.restitution(wildcards.r)
-        roughgas.config.roughness(wildcards.beta)
-        roughgas.config.seed(wildcards.seed)
-    settings(wildcards.scale, wildcards.experiment)
-    return KERNEL.format(**wildcards)
-
-
-def settings_of_points(wildcards):
-    """All in config.yaml that the points of an experiment depend on, whichever they are, as JSON:
-    what else changes there does not touch them."""
-    found = settings(wildcards.scale, wildcards.experiment)
-    return roughgas.config.as_text(roughgas.config.point_settings(found))
-
-
-def urgency(wildcards):
-    """Longest points first: close to beta = -1 spin relaxes slowest."""
-    return -roughgas.config.roughness(wildcards.beta)
-
-
 def points_of_experiment(wildcards):
     """The datasets of all points in the sweep of an experiment."""
     scale, experiment = wildcards.scale, wildcards.experiment
@@ -120,3 +98,13 @@ def forget_dead_locks():
     with suppress(OSError):
         fcntl.flock(alive, fcntl.LOCK_SH)
     return alive
+
+
+def lift_rate_limit():
+    """Let a run on this machine start jobs as fast as it can, not a hundred a second.
+
+    To keep that limit, Snakemake looks at all jobs that are ready again a second after each time
+    that it has done so. These rounds add up, until they keep a core busy.
+    """
+    if workflow.local_exec:
+        workflow.scheduler.job_rate_limiter = None

@@ -1,4 +1,49 @@
-# From an experiment's settings to its points, one job each.
+# From an experiment's settings to its points. Of a point in the sweep, `seeds_per_job` seeds are made
+# by one job (see config.yaml); any other seed is a job of its own.
+import re
+
+FIRST = 10**12  # more urgent than any point
+RUN = (
+    "roughgas run {wildcards.experiment} --scale {wildcards.scale} --r={wildcards.r}"
+    " --beta={wildcards.beta} --seed {params.seeds} --settings {params.settings:q}"
+    " --checked --output {output} > {log} 2>&1"
+)
+
+
+def kernel_of_point(wildcards):
+    """What says that the kernel of a point is compiled; ends the workflow for an illegal point."""
+    with one_line(POINT.format(**wildcards)):
+        roughgas.config.restitution(wildcards.r)
+        roughgas.config.roughness(wildcards.beta)
+        roughgas.config.seed(wildcards.seed)
+    settings(wildcards.scale, wildcards.experiment)
+    return KERNEL.format(**wildcards)
+
+
+def settings_of_points(wildcards):
+    """All in config.yaml that the points of an experiment depend on, whichever they are, as JSON:
+    what else changes there does not touch them."""
+    found = settings(wildcards.scale, wildcards.experiment)
+    return roughgas.config.as_text(roughgas.config.point_settings(found))
+
+
+def seeds_of_job(wildcards, output):
+    """The seeds of a job's outputs. Snakemake does not record params that are made from outputs: a
+    point is up to date whichever job has made it."""
+    return " ".join(Path(file).stem.removeprefix("seed") for file in output)
+
+
+def urgency(wildcards):
+    """Longest points first, lest one of them is left alone on one core at the end."""
+    from roughgas.simulate import effort
+
+    experiment = settings(wildcards.scale, wildcards.experiment)
+    return effort(experiment, float(wildcards.r), float(wildcards.beta))
+
+
+def one_of(labels):
+    """The wildcard constraint for one of these labels."""
+    return "|".join(re.escape(str(label)) for label in labels)
 
 
 rule compile_kernel:
@@ -17,7 +62,7 @@ rule compile_kernel:
         "logs/{scale}/{experiment}/r{r}/compiled.log",
     benchmark:
         "logs/{scale}/{experiment}/r{r}/compiled.tsv"
-    priority: 10
+    priority: FIRST
     resources:
         compiling=1,
     params:
@@ -41,9 +86,43 @@ rule point:
     priority: urgency
     params:
         settings=settings_of_points,
+        seeds=seeds_of_job,
     message:
         "{wildcards.experiment}: r = {wildcards.r}, beta = {wildcards.beta}, seed = {wildcards.seed}"
     shell:
-        "roughgas run {wildcards.experiment} --scale {wildcards.scale} --r={wildcards.r}"
-        " --beta={wildcards.beta} --seed={wildcards.seed} --settings {params.settings:q}"
-        " --checked --output {output} > {log} 2>&1"
+        RUN
+
+
+for experiment in config["experiments"]:
+    swept = roughgas.config.experiment(config, experiment, SCALE)["sweep"]
+    for seeds in roughgas.config.seed_blocks(swept["seeds"], config):
+        together = f"{experiment}_seeds_{seeds[0]}_to_{seeds[-1]}"
+
+        rule:
+            name:
+                together
+            input:
+                KERNEL,
+            output:
+                [POINT.replace("{seed}", seed) for seed in seeds],
+            log:
+                f"logs/{{scale}}/{{experiment}}/r{{r}}/beta{{beta}}/seeds{seeds[0]}-{seeds[-1]}.log",
+            benchmark:
+                f"logs/{{scale}}/{{experiment}}/r{{r}}/beta{{beta}}/seeds{seeds[0]}-{seeds[-1]}.tsv"
+            wildcard_constraints:
+                scale=SCALE,
+                experiment=experiment,
+                r=one_of(swept["r"]),
+                beta=one_of(swept["beta"]),
+            priority: urgency
+            params:
+                settings=settings_of_points,
+                seeds=seeds_of_job,
+            message:
+                "{wildcards.experiment}: r = {wildcards.r}, beta = {wildcards.beta},"
+                " seeds {params.seeds}"
+            shell:
+                RUN
+
+        # as `ruleorder` does, which takes no variables
+        workflow.ruleorder(together, "point")

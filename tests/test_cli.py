@@ -10,10 +10,11 @@ from pathlib import Path
 
 import pytest
 
-from roughgas import __version__
+from roughgas import __version__, simulate
 from roughgas.cli import main
 from roughgas.cli.progress import FilmProgress, Progress
 from roughgas.dataset import WALL_CLOCK, read_point
+from roughgas.errors import CollapseError
 
 CONFIG = str(Path(__file__).parent.parent / "config.yaml")
 SETTINGS = {
@@ -176,7 +177,7 @@ def test_an_interrupt_ends_in_one_line(tmp_path, capsys, monkeypatch):
 
     monkeypatch.setattr("roughgas.simulate.run_point", interrupted)
     assert run(tmp_path / "point.nc", config=CONFIG) == 130
-    assert capsys.readouterr().err == "roughgas: error: interrupted, nothing written\n"
+    assert capsys.readouterr().err == "roughgas: error: interrupted, nothing half-written\n"
     assert list(tmp_path.iterdir()) == []
 
 
@@ -199,6 +200,62 @@ def test_a_point_says_how_to_run_it_again(point, tmp_path):
     assert main(arguments) == 0
     again = read_point(tmp_path / "again.nc")
     assert dataset.drop_vars(WALL_CLOCK).equals(again.drop_vars(WALL_CLOCK))
+
+
+def run_seeds(folder, seeds, files):
+    arguments = ["run", "cooling", "--r=0.9", "--beta=0", "--seed", *seeds]
+    arguments += ["--settings", json.dumps(SETTINGS), "--output"]
+    return main([*arguments, *(str(folder / name) for name in files)])
+
+
+def test_several_seeds_are_the_same_as_each_alone(tmp_path, capsys):
+    assert run_seeds(tmp_path, "123", ["1.nc", "2.nc", "3.nc"]) == 0
+    assert capsys.readouterr().err.count(": R = ") == 3
+    for seed in "312":
+        assert run_seeds(tmp_path, seed, ["alone.nc"]) == 0
+        one, other = read_point(tmp_path / f"{seed}.nc"), read_point(tmp_path / "alone.nc")
+        assert one.attrs.pop("command") == other.attrs.pop("command").replace("alone", seed)
+        assert one.drop_vars(WALL_CLOCK).identical(other.drop_vars(WALL_CLOCK))
+
+
+@pytest.mark.parametrize(
+    ("seeds", "files", "message"),
+    [("12", ["1.nc"], "must name 2, one a seed"), (["1", "x"], ["1.nc", "x.nc"], "seed = x: must")],
+)
+def test_a_mistake_in_one_seed_stops_all_of_them(tmp_path, capsys, seeds, files, message):
+    assert run_seeds(tmp_path, seeds, files) == 2
+    said = capsys.readouterr().err
+    assert message in said and said.count("\n") == 1
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_what_is_done_stays_when_a_later_seed_fails(tmp_path, monkeypatch):
+    run_point = simulate.run_point
+
+    def second_collapses(experiment, r, beta, seed, progress):
+        if seed == 2:
+            raise CollapseError("inelastic collapse")
+        return run_point(experiment, r, beta, seed, progress)
+
+    monkeypatch.setattr(simulate, "run_point", second_collapses)
+    assert run_seeds(tmp_path, "123", ["1.nc", "2.nc", "3.nc"]) == 1
+    assert [path.name for path in tmp_path.iterdir()] == ["1.nc"]
+
+
+def test_a_run_imports_no_more_than_it_needs(point, tmp_path):
+    """Each of these would cost every job a tenth of a second; `point` has the kernel compiled."""
+    script = (
+        "import sys\nfrom roughgas.cli import main\n"
+        "assert main(sys.argv[1:]) == 0\nprint(*sys.modules)\n"
+    )
+    arguments = ["run", "cooling", "--r=0.9", "--beta=0", "--seed=1", "--checked"]
+    arguments += [f"--settings={json.dumps(SETTINGS)}", f"--output={tmp_path / 'point.nc'}"]
+    done = subprocess.run(
+        [sys.executable, "-c", script, *arguments], capture_output=True, text=True, check=True
+    )
+    loaded = set(done.stdout.split())
+    assert loaded.isdisjoint({"scipy", "xarray", "pandas", "matplotlib", "jsonschema", "snakemake"})
+    assert "numba.np.linalg" not in loaded  # the compiler has not been set up
 
 
 def test_a_full_disk_is_named_and_leaves_no_file(point, tmp_path):

@@ -1,7 +1,5 @@
 """`python -m roughgas` is the command `roughgas`."""
 
-import sys
+from roughgas.cli import process
 
-from roughgas.cli import main
-
-sys.exit(main())
+process()

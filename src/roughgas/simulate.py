@@ -57,6 +57,16 @@ def run_point(
     )
 
 
+def effort(experiment: Mapping[str, Any], r: float, beta: float) -> float:
+    """About how much work a point is compared with others, in particles times collisions of each.
+
+    Meant for the order of jobs: a driven gas is taken for one whose particles meet once a T.
+    """
+    protocol = PROTOCOLS[experiment["schedule"]["kind"]]
+    length = protocol.length(build(experiment, r, beta), experiment["schedule"])
+    return experiment["particles"] * length
+
+
 def compile_kernels(experiments: Iterable[Mapping[str, Any]]) -> int:
     """Compile, into numba's cache, every kernel that the experiments' sweeps need; how many."""
     kernels = {}

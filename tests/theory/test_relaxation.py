@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.integrate import solve_ivp
+from integration import integrate
 
 from roughgas import theory
 
@@ -12,20 +12,18 @@ DRIVES = [None, 0, 0.4, 1]
 PLACES = [(0.9, -0.8), (0.9, 0.5), (0.6, 0), (0.99, 1.0), (1.0, -0.5)]
 
 
-def integrate(theta0, r, beta, collisions, dimension, s):
+def temperatures(theta0, r, beta, collisions, dimension, s):
     """T_tr and T_rot at `collisions`, the drive giving back what collisions dissipate."""
 
-    def slope(_, temperatures):
-        T_tr, T_rot = np.maximum(temperatures, 0)
+    def slope(now):
+        T_tr, T_rot = np.maximum(now, 0)
         change = np.array(theory.temperature_changes(T_tr, T_rot, r, beta, dimension))
         if s is None:
             return change
         power = -(dimension * change[0] + (2 * dimension - 3) * change[1]) / 2
         return change + theory.drive_changes(max(power, 0), s, dimension)
 
-    span = (0, collisions[-1])
-    tight = {"rtol": 1e-10, "atol": 1e-13, "method": "DOP853"}
-    return solve_ivp(slope, span, (1, theta0), t_eval=collisions, **tight).y
+    return integrate(slope, (1, theta0), collisions)
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
@@ -33,7 +31,7 @@ def integrate(theta0, r, beta, collisions, dimension, s):
 def test_relax_solves_the_rate_equations(dimension, s):
     collisions = np.array([0, 0.5, 2, 8, 20])
     for (r, beta), theta0 in zip(PLACES, [0, 0.3, 5, 0, 1], strict=True):
-        T_tr, T_rot = integrate(theta0, r, beta, collisions, dimension, s)
+        T_tr, T_rot = temperatures(theta0, r, beta, collisions, dimension, s)
         gas = theory.relax(theta0, r, beta, collisions, dimension, spin_share=s)
         assert gas.T_tr == pytest.approx(T_tr, rel=1e-8)
         assert gas.T_rot == pytest.approx(T_rot, rel=1e-8, abs=1e-14)

@@ -37,7 +37,8 @@ TINY = {
         "window": 30,
     },
 }
-POINTS = 6 * 2
+POINTS = 6 * SWEEP["seeds"]
+JOBS = 6  # one makes both seeds of a point
 
 
 class Project:
@@ -98,12 +99,17 @@ class Project:
         return output
 
     def planned(self, *targets):
-        """Number of jobs of each rule that a run would start."""
+        """Number of jobs of each rule that a run would start; those that make several seeds of a
+        point are counted together, as `seeds`."""
         output = self.succeed("-n", "--config", "scale=tiny", "--", *targets)
         if "Nothing to be done" in output:
             return {}
         table = output.rsplit("Job stats:", 1)[1].split("total")[0]
-        return {rule: int(count) for rule, count in re.findall(r"^(\w+) +(\d+)$", table, re.M)}
+        found = {}
+        for rule, count in re.findall(r"^(\w+) +(\d+)$", table, re.M):
+            name = re.sub(r"\w+_seeds_\d+_to_\d+", "seeds", rule)
+            found[name] = found.get(name, 0) + int(count)
+        return found
 
     def files(self):
         """All files but Snakemake's own."""

@@ -4,11 +4,11 @@ import subprocess
 import sys
 
 import pytest
-from conftest import POINTS
+from conftest import JOBS
 
-EACH = POINTS // 6
+EACH = JOBS // 6
 AFTER_POINTS = {"claims": 1, "table": 1, "figures": 1}
-ALL = {"compile_kernel": 6, "point": POINTS, "reduce": 6, "figure": 4} | AFTER_POINTS
+ALL = {"compile_kernel": 6, "seeds": JOBS, "reduce": 6, "figure": 4} | AFTER_POINTS
 
 
 def test_nothing_is_run_twice(made):
@@ -48,13 +48,23 @@ def test_an_edit_of_one_experiment(finished):
     finished.configure(
         lambda config: config["experiments"]["sheared"]["effects"]["shear"].update(velocity=3)
     )
-    expected = {"compile_kernel": 1, "point": EACH, "reduce": 1, "figure": 1} | AFTER_POINTS
+    expected = {"compile_kernel": 1, "seeds": EACH, "reduce": 1, "figure": 1} | AFTER_POINTS
     assert finished.planned() == expected
 
 
-def test_more_seeds_are_added_to_those_that_are_there(finished):
-    finished.configure(lambda config: config["scales"]["tiny"]["cooling"]["sweep"].update(seeds=3))
-    assert finished.planned() == {"point": 1, "reduce": 1, "figure": 1} | AFTER_POINTS
+@pytest.mark.parametrize(("wanted", "jobs"), [(3, {"point": 1}), (4, {"seeds": 1})])
+def test_more_seeds_are_added_to_those_that_are_there(finished, wanted, jobs):
+    def change(config):
+        config["seeds_per_job"] = 2  # so that the two that are there are a whole job
+        config["scales"]["tiny"]["cooling"]["sweep"].update(seeds=wanted)
+
+    finished.configure(change)
+    assert finished.planned() == jobs | {"reduce": 1, "figure": 1} | AFTER_POINTS
+
+
+def test_which_job_has_made_a_point_does_not_matter(finished):
+    finished.configure(lambda config: config.update(seeds_per_job=1))
+    assert finished.planned() == {}
 
 
 def test_a_description_concerns_no_point(finished):
@@ -68,14 +78,14 @@ def test_an_edit_is_not_forgotten_when_a_run_is_interrupted(finished):
     """What stands between the sources and the points is made again, the points are not yet."""
     finished.append("src/roughgas/measure/plateau.py")
     finished.succeed("-j1", "results/tiny/cooling/r0.9/compiled.txt")
-    assert finished.planned("results/tiny/cooling.nc") == {"point": EACH, "reduce": 1}
+    assert finished.planned("results/tiny/cooling.nc") == {"seeds": EACH, "reduce": 1}
 
 
 def test_an_edit_counts_where_what_was_compiled_has_been_deleted(finished):
     (finished.folder / "results/tiny/cooling/r0.9/compiled.txt").unlink()
     assert finished.planned() == {}
     finished.append("src/roughgas/measure/plateau.py")
-    assert finished.planned("results/tiny/cooling.nc")["point"] == EACH
+    assert finished.planned("results/tiny/cooling.nc")["seeds"] == EACH
 
 
 def test_every_module_that_a_point_imports_counts(made):

@@ -1,7 +1,7 @@
 """What can be asked for, and how the rest is refused."""
 
 import pytest
-from conftest import POINTS, Project
+from conftest import JOBS, POINTS, Project
 
 LEGAL = [
     "results/paper/cooling/r0.87/beta-0.33/seed7.nc",
@@ -36,13 +36,37 @@ def refusal(project, *arguments):
 def test_the_default_are_the_figures_which_need_every_point_of_the_sweep_once(project):
     assert project.planned() == {
         "compile_kernel": 6,
-        "point": POINTS,
+        "seeds": JOBS,
         "reduce": 6,
         "figure": 4,
         "table": 1,
         "claims": 1,
         "figures": 1,
     }
+
+
+def test_each_seed_can_be_a_job_of_its_own(tmp_path):
+    project = Project(tmp_path)
+    project.configure(lambda config: config.update(seeds_per_job=1))
+    planned = project.planned()
+    assert planned["point"] == POINTS and "seeds" not in planned
+
+
+def test_seeds_that_fill_no_job_are_jobs_nevertheless(tmp_path):
+    project = Project(tmp_path)
+
+    def change(config):
+        config["seeds_per_job"] = 2
+        config["scales"]["tiny"]["cooling"]["sweep"].update(seeds=5)
+
+    project.configure(change)
+    planned = project.planned("results/tiny/cooling.nc")
+    assert planned == {"compile_kernel": 1, "seeds": 2, "point": 1, "reduce": 1}
+
+
+def test_a_seed_of_the_sweep_comes_with_those_of_its_job(project):
+    target = "results/tiny/cooling/r0.9/beta0/seed2.nc"
+    assert project.planned(target) == {"compile_kernel": 1, "seeds": 1}
 
 
 def test_everything_has_the_experiments_that_were_added(tmp_path):
@@ -52,8 +76,9 @@ def test_everything_has_the_experiments_that_were_added(tmp_path):
             wide={"extends": "cooling", "box": [200, 50], "sweep": {"seeds": 1}}
         )
     )
-    assert project.planned("everything")["point"] == POINTS + 1
-    assert project.planned("figures")["point"] == POINTS
+    assert project.planned("everything")["seeds"] == JOBS
+    assert project.planned("everything")["point"] == 1
+    assert "point" not in project.planned("figures")
 
 
 def test_any_legal_point_can_be_asked_for(project):
@@ -70,7 +95,8 @@ def test_an_illegal_target_is_refused_in_one_line(project, target, message):
     ("setting", "message"),
     [
         ("scale=large", "scale = 'large': must be one of paper, small"),
-        ("n_particles=5", "key = 'n_particles': must be one of experiments, scale, scales"),
+        ("seeds_per_job=0", "seeds_per_job = 0: must be a whole number >= 1"),
+        ("n_particles=5", "key = 'n_particles': must be one of experiments, scale, scales,"),
     ],
 )
 def test_an_illegal_setting_on_the_command_line_is_refused(project, setting, message):

@@ -1,9 +1,11 @@
-"""`roughgas run` simulates one point of an experiment; `roughgas compile` prepares its kernel."""
+"""`roughgas run` simulates a point of an experiment; `roughgas compile` prepares its kernel."""
 
 import argparse
 import shlex
 import sys
 from typing import TYPE_CHECKING, Any
+
+from roughgas.errors import InputError
 
 if TYPE_CHECKING:
     from roughgas.dataset import Point
@@ -16,14 +18,19 @@ def add_commands(commands: Any) -> None:
     """Add the two subcommands to argparse's `commands`."""
     parser = commands.add_parser(
         "run",
-        help="simulate one point and write its dataset",
-        description="Simulate one point of an experiment and write its dataset.",
+        help="simulate a point and write its dataset",
+        description="Simulate a point of an experiment, for one seed or for several one after the "
+        "other, and write a dataset for each.",
         epilog=RUN_EXAMPLE,
     )
     _add_experiment(parser)
     parser.add_argument("--beta", required=True, help="roughness, in [-1, 1]")
-    parser.add_argument("--seed", required=True, help="seed of the random generator, 0, 1, ...")
-    parser.add_argument("-o", "--output", required=True, metavar="FILE", help="dataset to write")
+    parser.add_argument(
+        "--seed", required=True, nargs="+", help="seeds of the random generator, 0, 1, ..."
+    )
+    parser.add_argument(
+        "-o", "--output", required=True, nargs="+", metavar="FILE", help="datasets, one a seed"
+    )
     parser.set_defaults(command=run)
 
     parser = commands.add_parser(
@@ -48,21 +55,24 @@ def _add_experiment(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> None:
-    """Simulate the point that `options` name, and write its dataset."""
+    """Simulate the point that `options` name, and write a dataset as soon as its seed is done."""
     from roughgas import config
     from roughgas.cli.progress import Progress
 
     r, beta = config.restitution(options.r), config.roughness(options.beta)
-    seed, settings = config.seed(options.seed), _settings(options)
+    seeds, settings = [config.seed(label) for label in options.seed], _settings(options)
+    if len(options.output) != len(seeds):
+        raise InputError("--output", " ".join(options.output), f"name {len(seeds)}, one a seed")
 
     from roughgas.dataset import write_point
     from roughgas.simulate import run_point
 
-    with Progress(options.experiment, settings["schedule"]) as progress:
-        point = run_point(config.point_settings(settings), r, beta, seed, progress)
-    point = point._replace(attributes=_provenance(options, settings) | point.attributes)
-    write_point(options.output, point)
-    print(_closing_line(options, point), file=sys.stderr)
+    for label, seed, output in zip(options.seed, seeds, options.output, strict=True):
+        with Progress(options.experiment, settings["schedule"]) as progress:
+            point = run_point(config.point_settings(settings), r, beta, seed, progress)
+        provenance = _provenance(options, settings, label, output)
+        write_point(output, point._replace(attributes=provenance | point.attributes))
+        print(_closing_line(output, point), file=sys.stderr)
 
 
 def compile_kernel(options: argparse.Namespace) -> None:
@@ -84,15 +94,17 @@ def _settings(options: argparse.Namespace) -> dict[str, Any]:
     return config.experiment(config.load(options.config), options.experiment, options.scale)
 
 
-def _provenance(options: argparse.Namespace, settings: dict[str, Any]) -> dict[str, Any]:
-    """The attributes of a point that say how to run it again, besides its r, beta and seed."""
+def _provenance(
+    options: argparse.Namespace, settings: dict[str, Any], seed: str, output: str
+) -> dict[str, Any]:
+    """The attributes of a dataset that say how to make it again, it alone."""
     from roughgas import config
 
     text = config.as_text(config.point_settings(settings))
     command = ["roughgas", "run", options.experiment, "--scale", options.scale]
     # joined by =, lest a negative number be taken for an option
-    command += [f"--{name}={getattr(options, name)}" for name in ("r", "beta", "seed")]
-    command += ["--settings", text, "--output", options.output]
+    command += [f"--r={options.r}", f"--beta={options.beta}", f"--seed={seed}"]
+    command += ["--settings", text, "--output", output]
     return {
         "title": f"{options.experiment}: r = {options.r}, beta = {options.beta}",
         "experiment": options.experiment,
@@ -104,9 +116,9 @@ def _provenance(options: argparse.Namespace, settings: dict[str, Any]) -> dict[s
     }
 
 
-def _closing_line(options: argparse.Namespace, point: "Point") -> str:
+def _closing_line(output: str, point: "Point") -> str:
     found = point.variables
     return (
-        f"{options.output}: R = {float(found['R']):.4f} +- {float(found['R_stderr']):.4f}, "
+        f"{output}: R = {float(found['R']):.4f} +- {float(found['R_stderr']):.4f}, "
         f"{int(found['collisions']):,} collisions in {float(found['kernel_seconds']):.1f} s"
     )

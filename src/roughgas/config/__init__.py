@@ -23,12 +23,14 @@ __all__ = [
     "restitution",
     "roughness",
     "seed",
+    "seed_blocks",
     "showcase",
     "sweep",
 ]
 
 SOURCE = "config.yaml"
 SHOWCASE = "showcase"
+SEEDS_PER_JOB = 4
 NOT_OF_A_POINT = ("description", "sweep")
 """Settings of an experiment that do not concern any single point of it."""
 
@@ -118,6 +120,17 @@ def sweep(settings: Mapping[str, Any]) -> Iterator[tuple[str, str, str]]:
         for beta in axes["beta"]:
             for number in range(1, axes["seeds"] + 1):
                 yield str(r), str(beta), str(number)
+
+
+def seed_blocks(seeds: int, config: Mapping[str, Any]) -> list[list[str]]:
+    """The labels of `seeds` swept seeds that one job makes, each block being a job of two or more.
+
+    A seed that is left over is a job of its own, and in no block.
+    """
+    size = config.get("seeds_per_job", SEEDS_PER_JOB)
+    labels = [str(number) for number in range(1, seeds + 1)]
+    blocks = [labels[first : first + size] for first in range(0, seeds, size)]
+    return [block for block in blocks if len(block) > 1]
 
 
 def as_text(settings: Mapping[str, Any]) -> str:

@@ -52,6 +52,23 @@ def use_source_keyed_folder():
     return folder
 
 
+def load_without_compiler(dispatcher):
+    """Have compiled code loaded from the disk without setting up the compiler before.
+
+    Numba first imports and registers all that it can compile, which takes three times as long as
+    loading. Where nothing is found in the cache, compiling begins with that anyway.
+    """
+    from numba.core.runtime import rtsys
+
+    cache = dispatcher._cache
+
+    def load(signature, target):
+        rtsys.initialize(target)  # which the loaded code takes its arguments apart with
+        return cache._load_overload(signature, target)
+
+    cache.load_overload = load
+
+
 def one_writer_at_a_time(dispatcher):
     """Keep processes that compile at the same time from spoiling numba's index for each other.
 

@@ -3,7 +3,7 @@
 import math
 from typing import NamedTuple
 
-from roughgas.kernel.cache import one_writer_at_a_time
+from roughgas.kernel.cache import load_without_compiler, one_writer_at_a_time
 from roughgas.kernel.flight import arrive, put
 from roughgas.kernel.hooks import unless_absent
 from roughgas.kernel.jit import compiled, entry, jit
@@ -59,6 +59,7 @@ def record(state, scene, plan, samples):
     return len(samples)
 
 
+load_without_compiler(record)
 one_writer_at_a_time(record)
 
 

@@ -38,6 +38,12 @@ def run(scene: Scene, experiment: Mapping[str, Any], seed: int, recorder) -> dic
     return _measure(ensemble, passed, transient, every)
 
 
+def length(scene: Scene, schedule: Mapping[str, Any]) -> float:
+    """Collisions per particle to be simulated, in all replicas together."""
+    transient = transient_length(scene, schedule["relaxation_times"])
+    return schedule["replicas"] * (schedule["thermalise"] + transient + schedule["plateau"])
+
+
 def transient_length(scene: Scene, relaxation_times: float) -> float:
     """Collisions per particle that R needs to settle, by the rate equations."""
     q = scene.effects.spin.inertia

@@ -57,6 +57,11 @@ def run(scene: Scene, experiment: Mapping[str, Any], seed: int, recorder) -> dic
     }
 
 
+def length(scene: Scene, schedule: Mapping[str, Any]) -> float:
+    """T to be simulated."""
+    return schedule["equilibrate"] + schedule["measure"]
+
+
 def _fluctuations(scene, rows, number):
     shear, q = scene.effects.shear, scene.effects.spin.inertia
     if shear is None:
