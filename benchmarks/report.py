@@ -1,0 +1,111 @@
+"""What was measured, as Markdown: for the terminal and for docs/benchmarks.md."""
+
+from collections.abc import Iterable, Sequence
+
+from benchmarks.kernel import LONGEST_WARM_UP, RUNS, WARM_UP, Timing
+from benchmarks.yardstick import Rate
+
+REFERENCE = 160  # particles: what costs are relative to
+OVERHEAD = (  # of benchmarks.pipeline: key, words, format
+    ("job_cpu", "start-up of a job: CPU besides its kernel (s)", ".2f"),
+    ("job_wall", "start-up of a job: wall time besides its kernel (s)", ".2f"),
+    ("pipeline_points", "pipeline: points of the sweep", ".0f"),
+    ("pipeline_kernel", "pipeline: kernel time (s)", ".1f"),
+    ("pipeline_wall", "pipeline: wall time on two cores (s)", ".1f"),
+    ("pipeline_efficiency", "pipeline: kernel time / (2 x wall time)", ".2f"),
+)
+EXPLANATION = f"""
+Collisions per second of CPU on one core, over all of {RUNS} runs, with the slowest and the fastest
+of them. Runs begin in the steady state; a box of more than a thousand particles is made of copies
+of a smaller one, each kicked at random, and then makes {WARM_UP:g} collisions per particle, or as
+many as it can in {LONGEST_WARM_UP:g} s. The runs together last for a whole number of the intervals
+after which particles are sorted anew.
+
+An event is a collision, a hit of a boundary, a renewal (a particle's future is foreseen anew, since
+it leaves its cell or comes to the end of what it has foreseen) or a stale entry (a contact whose
+partner has gone another way by then); the columns count them per collision. `relative` is the cost
+of a collision over that at N = {REFERENCE} in the same scene; `x plain` is the rate over that of
+the yardstick at N = {REFERENCE}. The last columns are bytes per particle: state and queue; the cells'
+own lists; workspace, which is of fixed size but for the few that are swept.
+
+Density, shear rate and depth of the bed are those of config.yaml at any N; the second cooling gas
+is four times as dense. The cooling gases are smooth and elastic, so that they stay homogeneous; the
+driven ones have r = 0.9, beta = 0.
+""".strip()
+YARDSTICK = """
+Rough disks by the plainest compiled loop (`benchmarks/yardstick.py`), medians: ratios to it survive
+a change of machine.
+""".strip()
+
+
+def report(timings, yardstick, overhead, machine) -> str:
+    """The whole page."""
+    parts = [
+        "# Benchmarks",
+        "Written by `make bench`.",
+        table(["", "machine"], machine.items()),
+        "## The kernel",
+        "![Cost per collision against the number of particles](benchmarks.png)",
+        kernel_table(timings, yardstick),
+        EXPLANATION,
+        "## The yardstick",
+        YARDSTICK,
+        yardstick_table(yardstick),
+    ]
+    if overhead:
+        rows = [(words, format(overhead[key], form)) for key, words, form in OVERHEAD]
+        parts += ["## The pipeline", table(["", "measured"], rows)]
+    return "\n\n".join(parts) + "\n"
+
+
+def kernel_table(timings: Sequence[Timing], yardstick: Sequence[Rate]) -> str:
+    """One row a scene and size."""
+    heads = ["scene", "N", "collisions/s", "slowest", "fastest", "events/s", "µs/collision"]
+    heads += ["relative", "x plain", "hits", "renewals", "stale", "B state", "B cells", "B work"]
+    reference = {one.case: one.cost for one in timings if one.number == REFERENCE}
+    plain = next((one.median for one in yardstick if one.number == REFERENCE), float("nan"))
+    rows = []
+    for one in timings:
+        low, high = one.extremes
+        rows.append(
+            [one.case.title, f"{one.number:,}", *map(_short, (one.rate, low, high, one.events))]
+            + [f"{one.cost:.2f}", f"{one.cost / reference.get(one.case, float('nan')):.2f}"]
+            + [f"{one.rate / plain:.1f}"]
+            + [f"{count / one.counts.collisions:.2f}" for count in one.counts[1:]]
+            + [f"{size:.0f}" for size in one.memory]
+        )
+    return table(heads, rows)
+
+
+def yardstick_table(yardstick: Sequence[Rate]) -> str:
+    """One row a size."""
+    rows = [
+        (f"{one.number:,}", *map(_short, (one.median, min(one.rates), max(one.rates))))
+        for one in yardstick
+    ]
+    return table(["N", "collisions/s", "slowest", "fastest"], rows)
+
+
+def table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """A Markdown table that can be read as it stands: numbers to the right, words to the left."""
+    rows = [list(row) for row in rows]
+    widths = [max(len(row[k]) for row in [heads, *rows]) for k in range(len(heads))]
+    left = [
+        not all(row[k][:1].isdigit() or row[k] == "nan" for row in rows) for k in range(len(heads))
+    ]
+    rule = [
+        "-" * (width - 1) + ("-" if words else ":")
+        for width, words in zip(widths, left, strict=True)
+    ]
+    lines = []
+    for row in [heads, rule, *rows]:
+        columns = zip(row, widths, left, strict=True)
+        cells = [
+            cell.ljust(width) if words else cell.rjust(width) for cell, width, words in columns
+        ]
+        lines.append(f"| {' | '.join(cells)} |")
+    return "\n".join(lines)
+
+
+def _short(rate):
+    return f"{rate:.2e}".replace("e+0", "e")

@@ -1,0 +1,130 @@
+"""The yardstick: rough disks by the plainest compiled loop.
+
+At each collision all disks are moved; then the contacts of the two partners, and of those who were
+to meet one of them, are foreseen anew by a loop over all others. The next collision is the least
+entry of an array. Nothing here is the kernel's: the rate says how fast a machine is, and ratios to
+it can be compared between machines.
+"""
+
+import math
+import statistics
+import time
+from typing import NamedTuple
+
+import numba
+import numpy as np
+
+NUMBERS = (40, 160, 1_000)
+DENSITY = 160 / 100**2  # disks of radius 1 per area: the paper's cooling gas
+LEAST_WORK = 20_000_000  # pairs that are tried in a run
+RUNS = 5
+INERTIA = 0.5
+
+
+class Rate(NamedTuple):
+    """Collisions per second of CPU in each of several runs."""
+
+    number: int
+    rates: list[float]
+
+    @property
+    def median(self) -> float:
+        """Of the runs."""
+        return statistics.median(self.rates)
+
+
+def measure(number: int, runs: int = RUNS) -> Rate:
+    """Rate of a smooth elastic gas of so many disks, like that of the kernel's cooling gas."""
+    gas, length = _gas(number), math.sqrt(number / DENSITY)
+    collisions = LEAST_WORK // (2 * number)
+    run(*gas, length, 1.0, -1.0, 20 * number)  # compiles, and forgets the lattice
+    rates = []
+    for _ in range(runs):
+        begin = time.process_time()
+        run(*gas, length, 1.0, -1.0, collisions)
+        rates.append(collisions / (time.process_time() - begin))
+    return Rate(number, rates)
+
+
+def _gas(number):
+    """Positions on a lattice, Maxwellian velocities, no spins."""
+    side = math.ceil(math.sqrt(number))
+    places = np.stack(np.divmod(np.arange(number), side), axis=-1)
+    velocities = np.random.default_rng(1).standard_normal((number, 2))
+    spacing = math.sqrt(number / DENSITY) / side
+    return places * spacing, velocities - velocities.mean(axis=0), np.zeros(number)
+
+
+@numba.njit
+def run(x, v, w, length, r, beta, collisions):
+    """Make so many collisions; positions, velocities and spins of all disks are changed in place.
+
+    Returns the time that passes.
+    """
+    number, now = len(x), 0.0
+    next_time, partner = np.full(number, np.inf), np.zeros(number, np.int64)
+    for i in range(number):
+        foresee(x, v, i, length, now, next_time, partner)
+    for _ in range(collisions):
+        i = 0
+        for k in range(number):
+            if next_time[k] < next_time[i]:
+                i = k
+        j, step = partner[i], next_time[i] - now
+        for k in range(number):
+            for c in range(2):
+                x[k, c] += v[k, c] * step
+        now = next_time[i]
+        collide(x, v, w, i, j, length, r, beta)
+        for k in range(number):
+            if k == i or k == j or partner[k] == i or partner[k] == j:
+                foresee(x, v, k, length, now, next_time, partner)
+    return now
+
+
+@numba.njit
+def foresee(x, v, i, length, now, next_time, partner):
+    """The earliest contact of disk i with the nearest image of any other disk.
+
+    Another image may come first after a flight of half the box; such a contact is found late.
+    """
+    next_time[i] = np.inf
+    for j in range(len(x)):
+        dx, dy = x[j, 0] - x[i, 0], x[j, 1] - x[i, 1]
+        ux, uy = v[j, 0] - v[i, 0], v[j, 1] - v[i, 1]
+        dx -= length * round(dx / length)
+        dy -= length * round(dy / length)
+        time = now + contact(dx, dy, ux, uy)
+        if j != i and time < next_time[i]:
+            next_time[i], partner[i] = time, j
+
+
+@numba.njit
+def contact(dx, dy, ux, uy):
+    """Time until two disks at this separation touch; inf if never."""
+    b = dx * ux + dy * uy
+    square = ux * ux + uy * uy
+    c = dx * dx + dy * dy - 4.0
+    discriminant = b * b - square * c
+    if b >= 0.0 or discriminant < 0.0:
+        return np.inf
+    return max(c, 0.0) / (math.sqrt(discriminant) - b)
+
+
+@numba.njit
+def collide(x, v, w, i, j, length, r, beta):
+    """The paper's Eq. (collrule) for two disks that touch."""
+    nx, ny = x[i, 0] - x[j, 0], x[i, 1] - x[j, 1]
+    nx -= length * round(nx / length)
+    ny -= length * round(ny / length)
+    distance = math.sqrt(nx * nx + ny * ny)
+    nx, ny = nx / distance, ny / distance
+    ux, uy = v[i, 0] - v[j, 0], v[i, 1] - v[j, 1]
+    normal = 0.5 * (1.0 + r) * (ux * nx + uy * ny)
+    slip = uy * nx - ux * ny - (w[i] + w[j])
+    turn = 0.5 * (1.0 + beta) / (1.0 + INERTIA) * slip
+    px = normal * nx - INERTIA * turn * ny
+    py = normal * ny + INERTIA * turn * nx
+    v[i, 0], v[i, 1] = v[i, 0] - px, v[i, 1] - py
+    v[j, 0], v[j, 1] = v[j, 0] + px, v[j, 1] + py
+    w[i], w[j] = w[i] + turn, w[j] + turn
