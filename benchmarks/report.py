@@ -25,8 +25,8 @@ An event is a collision, a hit of a boundary, a renewal (a particle's future is 
 it leaves its cell or comes to the end of what it has foreseen) or a stale entry (a contact whose
 partner has gone another way by then); the columns count them per collision. `relative` is the cost
 of a collision over that at N = {REFERENCE} in the same scene; `x plain` is the rate over that of
-the yardstick at N = {REFERENCE}. The last columns are bytes per particle: state and queue; the cells'
-own lists; workspace, which is of fixed size but for the few that are swept.
+the yardstick at N = {REFERENCE}. The last columns are bytes per particle: state and queue; the
+cells' own lists; workspace, which is of fixed size but for the few that are swept.
 
 Density, shear rate and depth of the bed are those of config.yaml at any N; the second cooling gas
 is four times as dense. The cooling gases are smooth and elastic, so that they stay homogeneous; the

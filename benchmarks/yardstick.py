@@ -16,7 +16,7 @@ import numpy as np
 
 NUMBERS = (40, 160, 1_000)
 DENSITY = 160 / 100**2  # disks of radius 1 per area: the paper's cooling gas
-LEAST_WORK = 20_000_000  # pairs that are tried in a run
+LEAST_WORK = 10_000_000  # pairs that are tried in a run
 RUNS = 5
 INERTIA = 0.5
 

@@ -1,7 +1,6 @@
 """The machine code of the two loops over particles computes with several of them at once."""
 
 import pytest
-
 from benchmarks.vectorised import decisions, packed_instructions, scenes, sweep
 
 SCENES = {title: (scene, state) for title, scene, state in scenes()}
