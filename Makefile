@@ -20,7 +20,7 @@ figures: setup ## simulate, and draw the four figures of the paper
 test: setup ## run every test
 	$(BIN)/python -m pytest -n $(JOBS) --dist loadfile
 
-bench: setup ## print how fast the kernel is in each scene
+bench: setup ## measure the speed: docs/benchmarks.md
 	$(BIN)/python -m benchmarks
 
 lint: setup ## check style and format
