@@ -65,11 +65,14 @@ def discard(path: str | Path) -> None:
 
 
 def arrays_of(state: Any, prefix: str = "") -> Iterator[tuple[str, np.ndarray]]:
-    """(dotted name, array) of every array in NamedTuples within NamedTuples; None is left out."""
+    """(dotted name, array) of every array in NamedTuples within NamedTuples.
+
+    None is left out, and so are plain tuples: these hold what follows from the scene.
+    """
     for name, part in zip(state._fields, state, strict=True):
         if isinstance(part, np.ndarray):
             yield prefix + name, part
-        elif isinstance(part, tuple):
+        elif hasattr(part, "_fields"):
             yield from arrays_of(part, f"{prefix}{name}.")
 
 

@@ -23,10 +23,13 @@ def arrange(state, scene, time):
             number += 1
             i = cells.following[i]
     for i in range(number):
-        j = order[i]
-        while j < i:
-            j = order[j]
-        _exchange(state, i, j)
+        place = i
+        while order[place] != i:  # a cycle of the permutation
+            source = order[place]
+            _exchange(state, place, source)
+            order[place] = place
+            place = source
+        order[place] = place
     _settle_all(state, scene, time)
 
 
