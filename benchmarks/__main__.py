@@ -32,6 +32,9 @@ def main() -> None:
 
     numbers = [n for n in kernel.NUMBERS if not quick or n <= QUICK]
     plain, timings, overhead = [], [], None
+    if not quick:
+        say("start-up of a job, and the pipeline")
+        overhead = pipeline.measure()
     for number in yardstick.NUMBERS:
         say(f"yardstick, N = {number}")
         plain.append(yardstick.measure(number))
@@ -39,9 +42,6 @@ def main() -> None:
         for number in numbers:
             say(f"{case.title}, N = {number}")
             timings.append(kernel.measure(case, number))
-    if not quick:
-        say("start-up of a job, and the pipeline")
-        overhead = pipeline.measure()
     page = report(timings, plain, overhead, machine.description())
     print(page)
     if not quick:

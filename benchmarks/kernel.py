@@ -21,7 +21,7 @@ from roughgas.kernel.state import (
 
 NUMBERS = (40, 160, 1_000, 10_000, 100_000, 1_000_000)
 WARM_UP = 5.0  # collisions per particle after a large box was made of small ones
-LONGEST_WARM_UP = 20.0  # seconds
+LONGEST = 20.0  # seconds, of the warm-up and, about, of what is timed
 LEAST = 1_500_000  # collisions that are timed
 RUNS = 5
 
@@ -76,7 +76,8 @@ class Timing(NamedTuple):
 
 
 def measure(case: Case, number: int, runs: int = RUNS, least: int = LEAST) -> Timing:
-    """Time a scene over a whole number of spans, after which particles are sorted anew."""
+    """Time a scene over a whole number of spans, after each of which particles are sorted anew; less
+    if that would take too long."""
     scene, state = steady(case, number)
     warm_up(scene, state)
     before = counts_of(state)
@@ -88,18 +89,20 @@ def measure(case: Case, number: int, runs: int = RUNS, least: int = LEAST) -> Ti
         advance(scene, state, time=spans * state.clock[SPAN] / runs)
         seconds.append(time.process_time() - begin)
         collisions.append(int(state.counts[COLLISIONS] - made))
+        if len(seconds) > 1 and sum(seconds) > LONGEST:
+            break
     counts = Counts(*np.subtract(counts_of(state), before).tolist())
     return Timing(case, number, seconds, collisions, counts, memory_of(state))
 
 
-def warm_up(scene, state, longest: float = LONGEST_WARM_UP) -> None:
-    """WARM_UP collisions a particle, or fewer if these take longer than so many seconds."""
+def warm_up(scene, state) -> None:
+    """WARM_UP collisions a particle, or fewer if these would take too long."""
     number = len(state.label)
     advance(scene, state, collisions=1)  # compiles
     begin = time.process_time()
     while state.counts[COLLISIONS] < WARM_UP * number / 2:
         advance(scene, state, collisions=max(1, number // 8))
-        if time.process_time() - begin > longest:
+        if time.process_time() - begin > LONGEST:
             break
 
 

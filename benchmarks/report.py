@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 
-from benchmarks.kernel import LONGEST_WARM_UP, RUNS, WARM_UP, Timing
+from benchmarks.kernel import LONGEST, RUNS, WARM_UP, Timing
 from benchmarks.yardstick import Rate
 
 REFERENCE = 160  # particles: what costs are relative to
@@ -17,9 +17,9 @@ OVERHEAD = (  # of benchmarks.pipeline: key, words, format
 EXPLANATION = f"""
 Collisions per second of CPU on one core, over all of {RUNS} runs, with the slowest and the fastest
 of them. Runs begin in the steady state; a box of more than a thousand particles is made of copies
-of a smaller one, each kicked at random, and then makes {WARM_UP:g} collisions per particle, or as
-many as it can in {LONGEST_WARM_UP:g} s. The runs together last for a whole number of the intervals
-after which particles are sorted anew.
+of a smaller one, each kicked at random, and then makes {WARM_UP:g} collisions per particle. The runs
+together last for a whole number of the intervals after which particles are sorted anew. Among a
+million particles both the way to the first run and the runs are cut short after some {LONGEST:g} s.
 
 An event is a collision, a hit of a boundary, a renewal (a particle's future is foreseen anew, since
 it leaves its cell or comes to the end of what it has foreseen) or a stale entry (a contact whose
