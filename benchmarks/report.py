@@ -15,11 +15,11 @@ OVERHEAD = (  # of benchmarks.pipeline: key, words, format
     ("pipeline_efficiency", "pipeline: kernel time / (2 x wall time)", ".2f"),
 )
 EXPLANATION = f"""
-Collisions per second of CPU on one core, over all of {RUNS} runs, with the slowest and the fastest
-of them. Runs begin in the steady state; a box of more than a thousand particles is made of copies
-of a smaller one, each kicked at random, and then makes {WARM_UP:g} collisions per particle. The runs
+Collisions per second of CPU on one core, over {RUNS} runs, with the slowest and the fastest of
+them. Runs begin in the steady state; a box of more than a thousand particles is made of copies of
+a smaller one, each kicked at random, and then makes {WARM_UP:g} collisions per particle. The runs
 together last for a whole number of the intervals after which particles are sorted anew. Among a
-million particles both the way to the first run and the runs are cut short after some {LONGEST:g} s.
+million particles the way to the first run, and the runs, are cut short after some {LONGEST:g} s.
 
 An event is a collision, a hit of a boundary, a renewal (a particle's future is foreseen anew, since
 it leaves its cell or comes to the end of what it has foreseen) or a stale entry (a contact whose
