@@ -76,8 +76,8 @@ class Timing(NamedTuple):
 
 
 def measure(case: Case, number: int, runs: int = RUNS, least: int = LEAST) -> Timing:
-    """Time a scene over a whole number of spans, after each of which particles are sorted anew; over
-    less if that would take too long."""
+    """Time a scene over a whole number of spans, after each of which particles are sorted anew, or
+    over less if that would take too long."""
     scene, state = steady(case, number)
     warm_up(scene, state)
     before = counts_of(state)
