@@ -8,7 +8,7 @@ can be seen in no result.
 
 Cells repeat with a period on each axis. That of an open axis has no meaning: what is a period away
 is looked at, and never met. Under shear each row of cells moves with the mean flow, row k of n by
-(k + 1/2)/n - 1/2 of what the images above the box have slid: rows slide past each other slowly,
+(k + 1/2)/n - 1/2, about, of what the images above the box have slid: rows slide past each other slowly,
 and past the images no faster.
 """
 
@@ -28,6 +28,7 @@ from roughgas.kernel.state import NOBODY, SPAN
 from roughgas.kernel.vectors import subtract
 
 ALL = -1  # every axis
+ORIGIN = 0.38196601125  # where cells begin, in their widths: no lattice has many sites on an edge
 FARTHEST = sys.float_info.max
 
 
@@ -63,8 +64,8 @@ def settle(state, scene, i, time):
     position, velocity = fold_into_box(position, velocity, cells.periods, slide)
     home = 0
     for k in range(len(position) - 1, -1, -1):
-        place = int(position[k] / cells.widths[k])
-        home = home * cells.counts[k] + min(max(place, 0), cells.counts[k] - 1)
+        place = math.floor(position[k] / cells.widths[k] - ORIGIN)
+        home = home * cells.counts[k] + wrapped(place, cells.counts[k])
     cells.home[i] = home
     _find_column(slide, state, scene, i, time)
     cells.leave[i] = math.inf
@@ -106,7 +107,7 @@ def _in_cell(state, scene, i, time):
 
 def _beside_row_that_moves(slide, cells, home, position, velocity):
     row = home // cells.counts[0] % cells.counts[1]
-    share = (row + 0.5) / cells.counts[1] - 0.5
+    share = (row + ORIGIN + 0.5) / cells.counts[1] - 0.5
     return (
         (position[0] - share * slide[0],) + position[1:],
         (velocity[0] - share * slide[1],) + velocity[1:],
@@ -128,7 +129,7 @@ def places(counts, home):
 
 def middle_of(widths, places):
     """Position of the middle of a cell."""
-    return tuple(width * (place + 0.5) for width, place in zip(widths, places, strict=True))
+    return tuple(width * (place + ORIGIN + 0.5) for width, place in zip(widths, places, strict=True))
 
 
 @overload(places)
@@ -146,13 +147,13 @@ def _compiled_places(counts, home):
 def _compiled_middle(widths, places):
     if len(widths) == 2:
         return lambda widths, places: (
-            widths[0] * (places[0] + 0.5),
-            widths[1] * (places[1] + 0.5),
+            widths[0] * (places[0] + ORIGIN + 0.5),
+            widths[1] * (places[1] + ORIGIN + 0.5),
         )
     return lambda widths, places: (
-        widths[0] * (places[0] + 0.5),
-        widths[1] * (places[1] + 0.5),
-        widths[2] * (places[2] + 0.5),
+        widths[0] * (places[0] + ORIGIN + 0.5),
+        widths[1] * (places[1] + ORIGIN + 0.5),
+        widths[2] * (places[2] + ORIGIN + 0.5),
     )
 
 
