@@ -8,8 +8,8 @@ can be seen in no result.
 
 Cells repeat with a period on each axis. That of an open axis has no meaning: what is a period away
 is looked at, and never met. Under shear each row of cells moves with the mean flow, row k of n by
-(k + 1/2)/n - 1/2, about, of what the images above the box have slid: rows slide past each other slowly,
-and past the images no faster.
+about (k + 1/2)/n - 1/2 of what the images above the box have slid: rows slide past each other
+slowly, and past the images no faster.
 """
 
 import math
@@ -129,7 +129,8 @@ def places(counts, home):
 
 def middle_of(widths, places):
     """Position of the middle of a cell."""
-    return tuple(width * (place + ORIGIN + 0.5) for width, place in zip(widths, places, strict=True))
+    sides = zip(widths, places, strict=True)
+    return tuple(width * (place + ORIGIN + 0.5) for width, place in sides)
 
 
 @overload(places)
