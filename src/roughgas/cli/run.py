@@ -5,6 +5,7 @@ import shlex
 import sys
 from typing import TYPE_CHECKING, Any
 
+from roughgas.cli.settings import add_settings
 from roughgas.errors import InputError
 
 if TYPE_CHECKING:
@@ -45,12 +46,7 @@ def add_commands(commands: Any) -> None:
 
 def _add_experiment(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("experiment", metavar="EXPERIMENT", help="its name in the configuration")
-    parser.add_argument("--scale", default="paper", help="its scale (default: paper)")
-    parser.add_argument("--config", default="config.yaml", metavar="FILE", help="the configuration")
-    parser.add_argument("--settings", metavar="JSON", help="its settings, in place of --config")
-    parser.add_argument(
-        "--checked", action="store_true", help="take --settings for legal, which saves 0.1 s"
-    )
+    add_settings(parser)
     parser.add_argument("--r", required=True, help="normal restitution, in [0, 1]")
 
 

@@ -6,6 +6,8 @@ import sys
 from pathlib import Path
 from typing import Any
 
+from roughgas.cli.settings import add_settings
+
 EXAMPLE = "example: roughgas clustering --scale small -o clustering.nc"
 FILM_EXAMPLE = "example: roughgas film clustering.nc -o clustering.png clustering.mp4"
 
@@ -20,10 +22,7 @@ def add_commands(commands: Any) -> None:
         " is given again; the result is the same to the last bit.",
         epilog=EXAMPLE,
     )
-    parser.add_argument("--scale", default="paper", help="its scale (default: paper)")
-    parser.add_argument("--config", default="config.yaml", metavar="FILE", help="the configuration")
-    parser.add_argument("--settings", metavar="JSON", help="its settings, in place of --config")
-    parser.add_argument("--checked", action="store_true", help="take --settings for legal")
+    add_settings(parser)
     parser.add_argument(
         "--checkpoint-every", default="10", metavar="FRAMES", help="1, 2, ... (default: 10)"
     )
