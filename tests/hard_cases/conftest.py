@@ -4,6 +4,7 @@ import json
 from pathlib import Path
 
 import pytest
+
 from hard_cases.catalogue import Margins, Without
 
 FOUND = pytest.StashKey[dict]()

@@ -3,8 +3,8 @@
 import mpmath
 import numpy as np
 from compiled import from_python
-from hard_cases.catalogue import hard_case
 
+from hard_cases.catalogue import hard_case
 from roughgas.kernel import pairs
 
 time_to_contact = from_python(pairs.time_to_contact)
