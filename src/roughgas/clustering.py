@@ -17,7 +17,7 @@ from roughgas.config import as_text
 from roughgas.initial import initial_state
 from roughgas.kernel.cache import PACKAGE, source_hash
 from roughgas.kernel.state import State
-from roughgas.measure.energies import energies
+from roughgas.measure.energies import energies, restored
 from roughgas.protocols.recorder import Recorder
 from roughgas.scene import DIAMETER, Scene, build
 
@@ -112,7 +112,8 @@ def _leg(settings) -> int:
 
 def _add_frame(film, frame, rows, state, scene, settings) -> None:
     number = settings["particles"]
-    E_trans, E_rot = energies(rows, number, scene.effects.spin.inertia)
+    present = energies(rows, number, scene.effects.spin.inertia)
+    E_trans, E_rot = restored(present, rows["exponent"])
     x, y, spin = _particles(state, scene)
     square = np.mean(spin**2)
     seen = _in_window(x, y, scene.box, settings["window"])

@@ -57,6 +57,21 @@ VARIABLES = {
     "E_rot_unsubtracted": Variable("E_rot with the mean spin left in", ENERGY),
     "plateau_end": Variable("end of the plateau of R", TIME),
     "R_replica": Variable("plateau mean of R of each replica", "1", ("replica",), "f8", ""),
+    "energy_imbalance": Variable("energy that the books miss, over all that was exchanged"),
+    "source": Variable("what exchanged energy with the gas", "", ("source",), "str", ""),
+    "motion": Variable("motion that holds the energy", "", ("motion",), "str", ""),
+    "energy_input": Variable(
+        "energy per particle that a source has put in since the start (negative: taken out)",
+        ENERGY,
+        ("source", "motion"),
+        over_seeds="",
+    ),
+    "energy_gain": Variable(
+        "change of the energy per particle, kinetic and potential, since the start",
+        ENERGY,
+        ("motion",),
+        over_seeds="",
+    ),
     "time": _series("time since the start", TIME),
     "collisions_per_particle": _series("collisions per particle since the start", TIME),
     "R_series": _series("share of rotation in the energy"),
@@ -150,13 +165,15 @@ def variable_attributes(name: str, cooling: bool) -> dict[str, str]:
 
 def _write_variable(file: "netCDF4.Dataset", name: str, variables: dict[str, Any]) -> None:
     dims = VARIABLES[name].dims
-    packing = {"compression": "zlib", "complevel": 1, "shuffle": True} if dims else {}
-    target = file.createVariable(name, VARIABLES[name].dtype, dims, **packing)
+    packing = {"compression": "zlib", "complevel": 1, "shuffle": True}
+    words = VARIABLES[name].dtype == "str"
+    kind = str if words else VARIABLES[name].dtype
+    target = file.createVariable(name, kind, dims, **(packing if dims and not words else {}))
     target.setncatts(variable_attributes(name, cooling=CLOCKS[1] in variables))
     clock = next((clock for clock in CLOCKS if clock in variables), None)
     if dims == ("sample",) and clock and name not in CLOCKS:
         target.coordinates = clock
-    target[...] = variables[name]
+    target[...] = np.array(variables[name], object) if words else variables[name]
 
 
 def _dimensions(point: Point) -> dict[str, int]:

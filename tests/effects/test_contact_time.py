@@ -4,12 +4,9 @@ import numpy as np
 import pytest
 from brute_force import begin, run, settings
 
-from roughgas.errors import CollapseError
 from roughgas.kernel.layout import new_state
-from roughgas.kernel.loop import COLLAPSE
 from roughgas.kernel.record import Plan, columns, record
-from roughgas.kernel.state import COLLISIONS, SINCE_REBASE, TOUCHED
-from roughgas.protocols.recorder import UNLIMITED, Recorder
+from roughgas.kernel.state import COLLISIONS, TOUCHED
 
 BED = settings(
     "walled",
@@ -86,20 +83,3 @@ def test_t_c_is_a_time_however_slow_the_gas_has_become():
         rows = np.empty((2, len(columns(3, True))))
         record(state, scene, Plan(np.inf, 1, 0), rows)
         assert state.counts[TOUCHED] == touched, duration
-
-
-@pytest.mark.parametrize("seed", [1, 2])
-def test_without_it_a_bed_ends_in_bounded_work(seed):
-    """r = 0.6, beta = 0: collapse is either reported, or ended by the least speed of departure."""
-    scene, state = begin(settings("bed"), 0.6, 0.0, seed)
-    rows = np.empty((240, len(columns(2, True))))
-    filled = record(state, scene, Plan(0.25, UNLIMITED, 0), rows)
-    assert filled < 240 or state.counts[COLLISIONS] < 2e7
-
-
-def test_collapse_is_reported_with_advice():
-    scene, state = begin(settings("bed", 20, [10, "open"]), 0.6, 0.0, 1)
-    run(state, scene, 4, interval=0.25)
-    state.counts[SINCE_REBASE] = COLLAPSE * 20 + 1  # as if so many contacts had been made at once
-    with pytest.raises(CollapseError, match=r"inelastic collapse at t = .* add the contact_time"):
-        Recorder().in_time(state, scene, 0.25, 240)

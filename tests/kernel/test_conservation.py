@@ -5,7 +5,7 @@ import pytest
 from brute_force import begin, run, settings, snapshot
 
 from roughgas.kernel.layout import new_state
-from roughgas.kernel.state import BOUNDARY_HITS, COLLISIONS
+from roughgas.kernel.state import BOUNDARY_HITS, COLLISIONS, EXPONENT
 
 GAS = settings("gas", 40, [25, 25])
 SPHERES = settings("spheres", 64, [12, 12, 12])
@@ -78,10 +78,15 @@ def angular_momentum(shot, q):
 
 
 @pytest.mark.parametrize(
-    "experiment", [GAS, BED, WALLED, SPHERES], ids=["gas", "bed", "walled", "spheres"]
+    "experiment",
+    [GAS, SHEARED, BED, WALLED, SPHERES],
+    ids=["gas", "sheared", "bed", "walled", "spheres"],
 )
 def test_the_ledger_explains_every_change_of_energy(experiment):
-    """Kinetic energy gained = what contacts, floor and walls booked, and the weight's work."""
+    """Kinetic energy gained = what contacts, floor, walls and shear booked, and the weight's work.
+
+    Of velocities as they are in the images that the particles last collided in.
+    """
     q = experiment["effects"]["spin"]["inertia"]
     scene, state = begin(experiment, 0.9, 0.3, 4)
     state.spin[:] = np.random.default_rng(1).standard_normal(state.spin.shape)
@@ -140,7 +145,7 @@ def test_a_pair_without_restitution_parts():
 def test_refreshing_takes_out_the_momentum_and_keeps_everything_else(experiment):
     scene, state = begin(experiment, 0.6, 0.2, 9)
     refreshed = run(state, scene, 400, collisions=len(state.changes), refresh=4)
-    assert state.counts[7] < -10  # so many halvings of the velocities
+    assert state.counts[EXPONENT] < -10  # so many halvings of the velocities
     unit = np.ldexp(1.0, refreshed["exponent"].astype(int))
     assert np.all(np.diff(refreshed["time"]) > 0.0)
     speeds = np.sqrt(refreshed["vv_x"] + refreshed["vv_y"])

@@ -2,6 +2,9 @@
 
 The box is periodic; its image above (along the second axis) moves along the first axis at the
 velocity U, the one below at -U. What leaves at the top enters at the bottom with U less.
+
+This is where the shear does its work: on particles that cross the boundary, and in contacts across
+it, where the impulses on the two partners are opposite but the velocities at which they act differ.
 """
 
 from typing import NamedTuple
@@ -30,6 +33,11 @@ class Shear(NamedTuple):
 def phase(shear, index, base):
     """Offset of the image above at absolute time `base`, from 0 to L."""
     return shear.velocity * (base % (shear.length / abs(shear.velocity)))
+
+
+@jit
+def transfer(shear, index, none, state, work):
+    state.ledger[0, index, 0] += work
 
 
 @jit

@@ -5,11 +5,39 @@ import math
 from roughgas.kernel import hooks
 from roughgas.kernel.hooks import either, unless_absent
 from roughgas.kernel.jit import jit
-from roughgas.kernel.state import BASE, LONGEST_HORIZON, NOW, SINCE_REBASE, SPAN, TYPICAL_SPEED
+from roughgas.kernel.state import (
+    AT_ONCE,
+    BASE,
+    INSTANT_END,
+    LONGEST_HORIZON,
+    NOW,
+    SINCE_REBASE,
+    SPAN,
+    TYPICAL_SPEED,
+)
 from roughgas.kernel.vectors import dot, read
 
 FLIGHTS = 2.5  # foresee about so many mean free flights
 CELLS = 16.0  # particles that are in cells are sorted anew after crossing about so many
+
+
+INSTANT = 2.0**-30  # of a span: so close to each other events count as simultaneous
+ENOUGH = 100_000, 10  # simultaneous events, and as many more for each particle, are a collapse
+
+
+@jit
+def moves_on(state, time):
+    """Note an event at `time`; False where events accumulate as if time stood still.
+
+    What is simultaneous by chance or by symmetry are some events a particle. In an inelastic
+    collapse infinitely many contacts of a few particles are made in a finite time.
+    """
+    clock, counts = state.clock, state.counts
+    if time > clock[INSTANT_END]:
+        clock[INSTANT_END] = time + INSTANT * clock[SPAN]
+        counts[AT_ONCE] = 0
+    counts[AT_ONCE] += 1
+    return counts[AT_ONCE] <= ENOUGH[0] + ENOUGH[1] * len(state.changes)
 
 
 @jit
@@ -23,6 +51,7 @@ def rebase(state, scene):
     clock = state.clock
     step = math.floor(clock[NOW] / clock[SPAN]) * clock[SPAN]
     clock[NOW] -= step
+    clock[INSTANT_END] -= step
     for i in range(len(state.changes)):
         state.trajectory[i, 2 * len(scene.box)] -= step
         _shift(state.last_contact, i, step)

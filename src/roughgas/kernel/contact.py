@@ -15,7 +15,7 @@ from numba import types
 from numba.extending import overload
 
 from roughgas.kernel import hooks
-from roughgas.kernel.flight import arrive, put
+from roughgas.kernel.flight import come_in, put
 from roughgas.kernel.images import image_numbers, shifted, slid
 from roughgas.kernel.jit import jit
 from roughgas.kernel.spins import book_spin, spin_of, spin_sum, turn_spin
@@ -45,12 +45,12 @@ STICKING = 1e-10
 def collide(state, scene, i, j, time):
     """Carry out the contact of particles i and j at `time`."""
     box = scene.box
-    position_i, velocity_i = arrive(state, scene, i, time)
-    position_j, velocity_j = arrive(state, scene, j, time)
+    position_i, velocity_i = come_in(state, scene, i, time)
+    position_j, velocity_j = come_in(state, scene, j, time)
     slide = slid(hooks.sliding(scene.effects, None, state), time)
     x = subtract(position_i, position_j)
-    v = subtract(velocity_i, velocity_j)
-    x, v = shifted(x, v, image_numbers(x, box, slide), box, slide)
+    between = subtract(velocity_i, velocity_j)
+    x, v = shifted(x, between, image_numbers(x, box, slide), box, slide)
     n = scale(x, 1.0 / math.sqrt(dot(x, x)))
     w_i = spin_of(state.spin, box, i)
     w_j = spin_of(state.spin, box, j)
@@ -68,6 +68,7 @@ def collide(state, scene, i, j, time):
     account[0] += dot(push, push) - dot(v, push)
     book_spin(w_i, turn, effects.spin, account)
     book_spin(w_j, turn, effects.spin, account)
+    hooks.transfer(effects, None, state, dot(push, subtract(v, between)))
     _note_contact(state, i, time)
     _note_contact(state, j, time)
     state.counts[COLLISIONS] += 1
@@ -83,7 +84,7 @@ def collide_with_wall(state, scene, index, i, time, material, n, wall_velocity, 
     gas; the wall's velocity; least_departure: the particle leaves at no less than this normal
     speed, so that a bouncing particle makes finitely many bounces in a finite time.
     """
-    position, velocity = arrive(state, scene, i, time)
+    position, velocity = come_in(state, scene, i, time)
     w = spin_of(state.spin, scene.box, i)
     v = subtract(velocity, wall_velocity)
     effects = scene.effects

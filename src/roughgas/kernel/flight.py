@@ -3,7 +3,7 @@
 from roughgas.kernel import hooks
 from roughgas.kernel.images import fold_into_box, slid
 from roughgas.kernel.jit import jit
-from roughgas.kernel.vectors import add_scaled, read, write
+from roughgas.kernel.vectors import add_scaled, dot, read, subtract, write
 
 
 @jit
@@ -48,6 +48,17 @@ def arrive(state, scene, i, time):
     position, velocity = whereabouts(state, scene, i, time)
     slide = hooks.sliding(scene.effects, None, state)
     return fold_into_box(position, velocity, scene.box, slid(slide, time))
+
+
+@jit
+def come_in(state, scene, i, time):
+    """`arrive` for good: what the particle gains by becoming another image is booked."""
+    _, before = whereabouts(state, scene, i, time)
+    position, velocity = arrive(state, scene, i, time)
+    gained = subtract(velocity, before)
+    work = dot(gained, add_scaled(before, gained, 0.5))
+    hooks.transfer(scene.effects, None, state, work)
+    return position, velocity
 
 
 @jit

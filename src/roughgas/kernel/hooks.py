@@ -19,6 +19,8 @@ What an effect's file may define, all jitted, `index` being the effect's place i
         (time, what) of particle i's next meeting with a boundary; 0 <= what < 8
     resolve(effect, index, what, state, scene, i)
         carry that meeting out
+    transfer(effect, index, none, state, work)
+        book the energy that particles gain where they, or their partners, change images
     phase(effect, index, base)
         the effect's own phase when the clock's base is at the absolute time `base`
 """
@@ -134,4 +136,5 @@ restitution = _hook("restitution", _thread)
 roughness = _hook("roughness", _thread)
 next_boundary = _hook("predict", _earliest)
 resolve_boundary = _hook("resolve", _addressed)
+transfer = _hook("transfer", _thread)
 set_phases = _hook("phase", _stored)

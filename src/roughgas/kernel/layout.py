@@ -35,6 +35,9 @@ def new_state(scene, position, velocity, spin):
 
     The spin is left out where the scene has none. More than FEW particles are sorted into cells
     if the box has room for these.
+
+    Particles are kept in the order of their positions: where events coincide their order in memory
+    decides, and what happens must not depend on the numbers that they were given.
     """
     number, dimension = position.shape
     grid = cell_grid(scene, position)
@@ -42,13 +45,14 @@ def new_state(scene, position, velocity, spin):
         state = _few(scene, number, dimension)
     else:
         state = _many(scene, number, dimension, *grid)
-    state.trajectory[:, :dimension] = position
-    state.trajectory[:, dimension:-1] = velocity
+    order = np.lexsort(position.T[::-1])
+    state.trajectory[:, :dimension] = position[order]
+    state.trajectory[:, dimension:-1] = velocity[order]
     if state.spin is not None:
-        state.spin[:] = spin
+        state.spin[:] = spin[order]
     if state.last_contact is not None:
         state.last_contact[:] = -np.inf
-    state.label[:] = np.arange(number)
+    state.label[:] = order
     state.agenda.key[:] = np.inf
     state.agenda.kind[:] = NOTHING
     state.clock[SPAN] = 1.0
@@ -153,8 +157,8 @@ def _state(scene, arrays, **parts):
         **{name: arrays[name] for name in ("changes", "label")},
         phase=np.zeros(effects),
         ledger=np.zeros((2, effects + 1, 2)),
-        clock=np.zeros(7),
-        counts=np.zeros(10, np.int64),
+        clock=np.zeros(8),
+        counts=np.zeros(11, np.int64),
         agenda=Agenda(**{name: arrays.get(name) for name in Agenda._fields}),
         **parts,
     )

@@ -5,7 +5,7 @@ import math
 from roughgas.kernel import hooks
 from roughgas.kernel.agenda import choose_next, drop_contact
 from roughgas.kernel.cells import find_around
-from roughgas.kernel.clock import rebase
+from roughgas.kernel.clock import moves_on, rebase
 from roughgas.kernel.contact import collide
 from roughgas.kernel.hooks import either
 from roughgas.kernel.jit import compiled, jit
@@ -24,9 +24,6 @@ from roughgas.kernel.state import (
     STALE,
 )
 from roughgas.kernel.sweep import find_by_sweep, redraw_line
-
-# A span is about the time to cross the box: this many contacts a particle within it is collapse
-COLLAPSE = 100_000
 
 
 @jit
@@ -49,7 +46,7 @@ def advance(state, scene, until, collisions):
                 foresee(state, scene, affected[k], time)
         if time >= clock[SPAN]:
             renew(state, scene)
-        elif counts[SINCE_REBASE] > COLLAPSE * len(state.changes):
+        elif not moves_on(state, time):
             return False
     return True
 

@@ -4,12 +4,21 @@ import math
 from typing import NamedTuple
 
 from roughgas.kernel.cache import load_without_compiler, one_writer_at_a_time
-from roughgas.kernel.flight import arrive, put
+from roughgas.kernel.flight import arrive, come_in, put
 from roughgas.kernel.hooks import unless_absent
 from roughgas.kernel.jit import compiled, entry, jit
 from roughgas.kernel.loop import advance, start
 from roughgas.kernel.spins import spin_of
-from roughgas.kernel.state import BASE, COLLISIONS, EXPONENT, NOW, ORIGIN, SPAN, STARTED
+from roughgas.kernel.state import (
+    BASE,
+    COLLISIONS,
+    EXPONENT,
+    INSTANT_END,
+    NOW,
+    ORIGIN,
+    SPAN,
+    STARTED,
+)
 
 PATIENCE = 1000.0  # spans to wait for collisions that may never come
 
@@ -105,7 +114,7 @@ def refresh(state, scene):
     number, dimension = len(state.changes), len(scene.box)
     time = state.clock[NOW]
     for i in range(number):
-        position, velocity = arrive(state, scene, i, time)
+        position, velocity = come_in(state, scene, i, time)
         put(state, scene, i, position, velocity, time)
     square = 0.0
     for k in range(dimension, 2 * dimension):
@@ -141,6 +150,7 @@ def rescale(state, scene, power):
     state.counts[EXPONENT] += power
     clock[BASE] = 0.0
     clock[NOW] = 0.0
+    clock[INSTANT_END] = 0.0
 
 
 @unless_absent

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 # Entries of State.clock
-BASE, NOW, ORIGIN, SPAN, TYPICAL_SPEED, LONGEST_HORIZON, EXTENT = range(7)
+BASE, NOW, ORIGIN, SPAN, TYPICAL_SPEED, LONGEST_HORIZON, EXTENT, INSTANT_END = range(8)
 # Entries of State.counts
 (
     COLLISIONS,
@@ -22,11 +22,12 @@ BASE, NOW, ORIGIN, SPAN, TYPICAL_SPEED, LONGEST_HORIZON, EXTENT = range(7)
     STALE,
     TOUCHED,
     SINCE_REBASE,
+    AT_ONCE,
     STARTED,
     EXPONENT,
     LAST_FIRST,
     LAST_SECOND,
-) = range(10)
+) = range(11)
 # Kinds of event in Agenda.kind: a slot's number, or one of these
 HORIZON, BOUNDARY, NOTHING = -1, -2, -3
 NOBODY = -1  # ends a linked list of particles

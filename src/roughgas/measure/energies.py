@@ -51,6 +51,15 @@ def fluctuation_energies(
     )
 
 
+def restored(energies: Energies, exponent: np.ndarray) -> Energies:
+    """Energies in m a^2/T^2 from those of a gas whose unit of velocity is 2^exponent a/T.
+
+    What is smaller than the smallest number becomes zero.
+    """
+    power = 2 * np.asarray(exponent, int)
+    return Energies(*(np.ldexp(part, power) for part in energies))
+
+
 def ratio(energies: Energies) -> np.ndarray:
     """R = E_rot / (E_rot + E_tr) of each sample, in [0, 1]; NaN where both energies vanish."""
     total = energies.rotational + energies.translational

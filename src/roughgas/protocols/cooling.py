@@ -2,12 +2,13 @@
 
 import math
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from roughgas.initial import initial_state
-from roughgas.measure.energies import Energies, energies, ratio, ratio_of_means
+from roughgas.measure.books import Books, books, exchange
+from roughgas.measure.energies import Energies, energies, ratio, ratio_of_means, restored
 from roughgas.measure.errors import autocorrelation_time
 from roughgas.measure.plateau import find_plateau
 from roughgas.scene import Scene
@@ -15,6 +16,15 @@ from roughgas.theory import relaxation_rate
 
 SAMPLES_PER_REFRESH = 4
 TRANSIENT = 10.0, 1000.0  # collisions per particle: theory's estimate is kept between these
+
+
+class Cooled(NamedTuple):
+    """One replica, or several along the first axis; energies in units of E_trans at the start."""
+
+    energies: Energies  # of each sample, over 4^exponent: they may fall below the smallest number
+    exponent: np.ndarray
+    before: Books
+    after: Books
 
 
 def run(scene: Scene, experiment: Mapping[str, Any], seed: int, recorder) -> dict[str, Any]:
@@ -33,9 +43,10 @@ def run(scene: Scene, experiment: Mapping[str, Any], seed: int, recorder) -> dic
     for one in seeds:
         state = initial_state(scene, experiment, np.random.default_rng(one))
         runs.append(_cool(state, scene, schedule, number, samples, recorder))
-    ensemble = Energies(*(np.array(part) for part in zip(*runs, strict=True)))
+    ensemble = _together(runs)
     passed = every * np.arange(1, samples + 1)
-    return _measure(ensemble, passed, transient, every)
+    exchanged = exchange(ensemble.before, ensemble.after, scene, number)
+    return _measure(ensemble, passed, transient, every) | exchanged
 
 
 def length(scene: Scene, schedule: Mapping[str, Any]) -> float:
@@ -52,27 +63,46 @@ def transient_length(scene: Scene, relaxation_times: float) -> float:
 
 
 def _cool(state, scene, schedule, number, samples, recorder):
-    """Energies of one replica, in units of its E_trans when dissipation is switched on."""
+    """One replica, from when dissipation is switched on."""
     per_unit = number / 2  # a collision has two partners
     elastic = scene._replace(restitution=1.0, roughness=-1.0)
     thermal = math.ceil(per_unit * schedule["thermalise"])
     before = recorder.in_collisions(state, elastic, thermal, 1)
     start = energies(before, number, scene.effects.spin.inertia).translational[0]
+    opened = books(state, scene)
     collisions = max(1, round(per_unit * schedule["sample_every"]))
     rows = recorder.in_collisions(state, scene, collisions, samples, SAMPLES_PER_REFRESH)
-    return Energies(*(part / start for part in energies(rows, number, scene.effects.spin.inertia)))
+    present = energies(rows, number, scene.effects.spin.inertia)
+    kept = (present, opened, books(state, scene))
+    present, opened, closed = (type(one)(*(part / start for part in one)) for one in kept)
+    return Cooled(present, rows["exponent"].astype(int), opened, closed)
+
+
+def _together(runs):
+    """All replicas as one: energies stacked, books averaged."""
+    present, exponent, before, after = zip(*runs, strict=True)
+    return Cooled(
+        Energies(*(np.array(part) for part in zip(*present, strict=True))),
+        np.array(exponent),
+        *(
+            Books(*(np.mean(part, axis=0) for part in zip(*one, strict=True)))
+            for one in (before, after)
+        ),
+    )
 
 
 def _measure(ensemble, passed, transient, every):
-    R = ratio(ensemble)
+    R = ratio(ensemble.energies)
     plateau = find_plateau(passed, R, transient)
     inside = (passed >= plateau.start) & (passed <= plateau.stop)
     first = np.argmax(inside)
-    E_trans, E_rot = (part.mean(axis=0) for part in ensemble)
+    exponent = ensemble.exponent
+    E_trans, E_rot = (part.mean(axis=0) for part in restored(ensemble.energies, exponent))
+    alike = restored(ensemble.energies, exponent - exponent.max(axis=0))
     return {
         "R": plateau.mean,
         "R_stderr": plateau.stderr,
-        "R_ratio_of_means": ratio_of_means(ensemble, axis=0)[inside].mean(),
+        "R_ratio_of_means": ratio_of_means(alike, axis=0)[inside].mean(),
         "E_trans": E_trans[first],
         "E_rot": E_rot[first],
         "equilibrated": plateau.found,

@@ -6,11 +6,22 @@ from collections.abc import Callable
 import numpy as np
 
 from roughgas.errors import CollapseError
+from roughgas.kernel.clock import INSTANT
 from roughgas.kernel.record import Plan, columns, record
-from roughgas.kernel.state import BASE, COLLISIONS, LAST_FIRST, LAST_SECOND, NOW, TOUCHED, State
+from roughgas.kernel.state import (
+    BASE,
+    COLLISIONS,
+    EXPONENT,
+    NOW,
+    ORIGIN,
+    SPAN,
+    TOUCHED,
+    State,
+)
 from roughgas.scene import Scene
 
 REPORTS = 50
+NAMED = 8  # of the particles in a collapse
 UNLIMITED = 2**62
 
 Progress = Callable[[float, int], None]
@@ -36,14 +47,9 @@ class Recorder:
     def in_collisions(self, state: State, scene: Scene, collisions: int, samples: int, refresh=0):
         """The same, sampled every so many collisions; the gas is refreshed every `refresh` samples.
 
-        The kernel's energies are in units that a refreshed gas changes: here they are restored.
+        That changes the unit of velocity, to 2^exponent a/T: see measure.energies.restored.
         """
-        rows = self._run(state, scene, Plan(np.inf, collisions, refresh), samples)
-        unit = np.ldexp(1.0, rows.pop("exponent").astype(int))
-        for name in rows:
-            power = 2 if name.startswith(("vv", "ww")) else name.startswith(("p_", "w", "yv"))
-            rows[name] *= unit**power
-        return rows
+        return self._run(state, scene, Plan(np.inf, collisions, refresh), samples)
 
     def _run(self, state, scene, plan, samples):
         names = columns(len(scene.box), scene.effects.spin is not None)
@@ -68,10 +74,17 @@ class Recorder:
 
 
 def _collapse(state):
-    now = state.clock[BASE] + state.clock[NOW]
-    first, second = state.counts[LAST_FIRST], state.counts[LAST_SECOND]
+    clock = state.clock
+    time = clock[ORIGIN] + (clock[BASE] + clock[NOW]) * 2.0 ** -state.counts[EXPONENT]
+    names = [str(label) for label in _collapsing(state)]
+    others = f" and {len(names) - NAMED} more" if len(names) > NAMED else ""
     return CollapseError(
-        f"inelastic collapse at t = {now:.6g} T after {state.counts[COLLISIONS]} collisions, "
-        f"the last between particles {first} and {second}: add the contact_time effect to the "
-        "experiment, or raise r"
+        f"inelastic collapse at t = {time:.6g} T of particles {', '.join(names[:NAMED])}{others}: "
+        "add the contact_time effect to the experiment, or raise r"
     )
+
+
+def _collapsing(state):
+    """Numbers of the particles whose last contact is simultaneous with the present instant."""
+    last = state.clock[NOW] - INSTANT * state.clock[SPAN]
+    return np.sort(state.label[state.trajectory[:, -1] >= last])

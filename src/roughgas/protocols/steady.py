@@ -7,6 +7,7 @@ import numpy as np
 
 from roughgas.initial import initial_state
 from roughgas.measure.averages import period_means
+from roughgas.measure.books import books, exchange
 from roughgas.measure.energies import (
     Energies,
     energies,
@@ -34,6 +35,7 @@ def run(scene: Scene, experiment: Mapping[str, Any], seed: int, recorder) -> dic
     planned, length = (round(schedule[part] / every) for part in ("equilibrate", "measure"))
     per_period = max(1, round(schedule.get("period", every) / every))
     state = initial_state(scene, experiment, np.random.default_rng(seed))
+    before = books(state, scene)
     rows = recorder.in_time(state, scene, every, planned + length)
     series = _fluctuations(scene, rows, number)
     start, found = _start(series, planned, length, per_period)
@@ -47,6 +49,7 @@ def run(scene: Scene, experiment: Mapping[str, Any], seed: int, recorder) -> dic
         "E_trans": window.translational.mean(),
         "E_rot": window.rotational.mean(),
         **_unsubtracted(scene, rows, number, start),
+        **exchange(before, books(state, scene), scene, number),
         "equilibrated": found,
         "measured_from": start * every,
         "autocorrelation_time": autocorrelation_time(R_periods) * per_period * every,
