@@ -3,6 +3,7 @@
 #   snakemake -j2 figures                       the four figures of the paper, a table, its claims
 #   snakemake -j2 figures --config scale=small  the same in a minute, with wide error bars
 #   snakemake -j1 showcase                      a large cooling gas forms clusters: a movie
+#   snakemake -j2 hard_cases                    where simulations go wrong, and how far from it we are
 #   snakemake -j1 results/paper/cooling/r0.87/beta-0.33/seed7.nc     any one point
 
 
@@ -24,13 +25,15 @@ wildcard_constraints:
     beta="[^/]+",
     seed="[^/]+",
     folder="([^/]+/)?",
-    figure=r"(?!clustering\.)[^/]+",  # that one is drawn by rules/showcase.smk
+    figure=r"(?!clustering\.|hard_cases)[^/]+",  # these have rules of their own
+    family="[^/]+",
 
 
 include: "rules/simulate.smk"
 include: "rules/reduce.smk"
 include: "rules/figures.smk"
 include: "rules/showcase.smk"
+include: "rules/hard_cases.smk"
 
 
 rule figures:
@@ -47,6 +50,7 @@ rule everything:
         rules.figures.input,
         reduced(SCALE, config["experiments"]),
         rules.showcase.input,
+        rules.hard_cases.input,
 
 
 onstart:

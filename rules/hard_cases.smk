@@ -1,0 +1,68 @@
+# Where a simulation could go wrong: the catalogue in tests/hard_cases, tried as often as it takes.
+HARD_CASES = Path("tests/hard_cases")
+FAMILIES = sorted(path.stem.removeprefix("test_") for path in HARD_CASES.glob("test_*.py"))
+LONGEST = ["long_times"]  # starts first
+PICTURES = ["hard_cases", "hard_cases_collapse"]
+
+
+def size_of_cases(wildcards):
+    """As often as it takes at the scale `paper`, else as often as among the tests."""
+    return "" if wildcards.folder else "--full"
+
+
+def urgency_of_family(wildcards):
+    return 10 if wildcards.family in LONGEST else 0
+
+
+rule family:
+    # other families start while this one compiles: the kernels of all are the same few
+    input:
+        sources("simulate", "dataset", "cli"),
+        [str(path) for path in sorted(Path("tests/brute_force").glob("*.py"))],
+        "tests/conftest.py",
+        "tests/compiled.py",
+        "tests/hard_cases/catalogue.py",
+        "tests/hard_cases/conftest.py",
+        cases="tests/hard_cases/test_{family}.py",
+    output:
+        "results/{folder}hard_cases/{family}.json",
+    log:
+        "logs/{folder}hard_cases/{family}.log",
+    benchmark:
+        "logs/{folder}hard_cases/{family}.tsv"
+    priority: urgency_of_family
+    params:
+        size=size_of_cases,
+    message:
+        "hard cases: {wildcards.family}"
+    shell:
+        "python -m pytest -n0 -q -s {params.size} --margins {output} {input.cases} > {log} 2>&1"
+
+
+rule catalogue:
+    input:
+        sources("plotting"),
+        "tests/hard_cases/report.py",
+        "tests/hard_cases/pictures.py",
+        families=expand("results/{{folder}}hard_cases/{family}.json", family=FAMILIES),
+    output:
+        table="results/{folder}hard_cases.md",
+        pictures=expand(
+            "figures/{{folder}}{picture}{kind}", picture=PICTURES, kind=[".pdf", ".png"]
+        ),
+    log:
+        "logs/{folder}hard_cases.log",
+    benchmark:
+        "logs/{folder}hard_cases.tsv"
+    params:
+        size=size_of_cases,
+    message:
+        "write {output.table}"
+    shell:
+        "PYTHONPATH=tests python -m hard_cases.report {input.families} {params.size}"
+        " --table {output.table} --pictures {output.pictures} > {log} 2>&1"
+
+
+rule hard_cases:
+    input:
+        f"results/{'' if SCALE == 'paper' else SCALE + '/'}hard_cases.md",

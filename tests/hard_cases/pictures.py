@@ -1,0 +1,118 @@
+"""Pictures of the hard cases: how much room each leaves, and what some of them look like."""
+
+import itertools
+import math
+from collections.abc import Callable, Mapping
+
+import matplotlib
+import numpy as np
+from matplotlib.figure import Figure
+
+from hard_cases.catalogue import Margin
+from roughgas.plotting.style import FAINT, GREY, LOOKS, PARAMETERS, THEORY, WIDTH
+
+Series = Mapping[str, Mapping[str, list[float]]]
+
+FARTHEST = 1e5  # of factors that are told apart; beyond, and where nothing at all was off, the rim
+ROW = 0.19  # inches
+
+matplotlib.rcParams.update(PARAMETERS)
+
+
+def room(row: Margin) -> float:
+    """The factor by which a measured number could be worse; inf where it is as good as can be."""
+    one, other = row.limit, row.measured
+    if row.sense == "at least":
+        one, other = other, one
+    return one / other if other > 0.0 else math.inf
+
+
+def overview(margins: list[Margin]) -> Figure:
+    """A line a case: a symbol for each of its margins, over how much room that leaves."""
+    families = [list(rows) for _, rows in itertools.groupby(margins, key=lambda row: row.family)]
+    cases = [list(dict.fromkeys(row.case for row in rows)) for rows in families]
+    lines = sum(map(len, cases)) + len(families)
+    figure = Figure(figsize=(1.55 * WIDTH, ROW * lines + 1.0), layout="constrained")
+    axes = figure.subplots()
+    labels, height = [], 0
+    for index, (rows, titles) in enumerate(zip(families, cases, strict=True)):
+        labels.append((height, rows[0].family, True))
+        for title in titles:
+            height += 1
+            labels.append((height, title, False))
+            factors = [room(row) for row in rows if row.case == title]
+            _line(axes, height, np.array(factors), LOOKS[index % len(LOOKS)])
+        height += 1
+    _frame(axes, labels)
+    return figure
+
+
+def _line(axes, height, factors, look):
+    near = factors[factors < FARTHEST]
+    axes.plot([1.0, min(factors.min(), FARTHEST)], [height, height], color=look.colour, lw=1.0)
+    axes.plot(near, np.full(near.size, height), look.marker, color=look.colour, ms=4)
+    if near.size < factors.size:
+        axes.plot(FARTHEST, height, ">", color=look.colour, ms=5, clip_on=False)
+
+
+def _frame(axes, labels):
+    axes.set_xscale("log")
+    axes.set_xlim(1.0, FARTHEST)
+    axes.set_ylim(labels[-1][0] + 0.8, -0.8)
+    axes.set_yticks([height for height, _, _ in labels], [text for _, text, _ in labels])
+    for tick, (_, _, family) in zip(axes.get_yticklabels(), labels, strict=True):
+        tick.set_fontsize(8 if family else 7)
+        tick.set_fontweight("bold" if family else "normal")
+    axes.tick_params(axis="y", which="both", left=False, right=False)
+    axes.grid(axis="x", color=FAINT, linewidth=0.3)
+    axes.axvline(1.0, color=THEORY)
+    axes.set_xlabel(
+        "room: the factor by which a measured number could be worse before the case fails"
+    )
+    note = "a symbol a margin; the line reaches to the least of a case; arrows: more, or exact"
+    axes.set_title(note, fontsize=7, color=GREY, loc="right", pad=3)
+
+
+def collapse(series: Series) -> Figure:
+    """The chain that a bed collapses in, and what the contact-time model makes of it."""
+    figure = Figure(figsize=(1.5 * WIDTH, 0.75 * WIDTH), layout="constrained")
+    bed, model = figure.subplots(1, 2, width_ratios=(1.15, 1))
+    _chain(bed, series["collapse_chain"])
+    _contact_times(model, series["contact_time"])
+    return figure
+
+
+PICTURES: dict[str, Callable[[Series], Figure]] = {"collapse": collapse}
+
+
+def _chain(axes, chain):
+    x, y, last = (np.array(chain[name]) for name in ("x", "y", "last"))
+    involved = last < 1e-6
+    xs, ys = x[involved], y[involved]
+    middle = np.array([np.median(xs), np.median(ys)])
+    for k in range(x.size):
+        colour = LOOKS[1].colour if involved[k] else "#DDDDDD"
+        axes.add_patch(matplotlib.patches.Circle((x[k], y[k]), 1.0, fc=colour, ec=GREY, lw=0.4))
+    half = 13.0
+    axes.set_xlim(middle[0] - half, middle[0] + half)
+    axes.set_ylim(middle[1] - half, middle[1] + half)
+    axes.set_aspect("equal")
+    axes.set_xlabel("$x/a$")
+    axes.set_ylabel("$y/a$")
+    axes.set_title("a bed at $r = 0.6$ collapses in this chain", fontsize=8, loc="left")
+
+
+def _contact_times(axes, model):
+    duration, R, error, touched = (
+        np.array(model[name]) for name in ("duration", "R", "error", "touched")
+    )
+    axes.errorbar(duration, R, error, fmt=LOOKS[0].marker, color=LOOKS[0].colour, capsize=1.5)
+    axes.set_xscale("log")
+    axes.set_ylim(0.18, 0.3)
+    axes.set_xlabel(r"contact time $t_c/T$")
+    axes.set_ylabel("$R$", color=LOOKS[0].colour)
+    share = axes.twinx()
+    share.plot(duration, touched, LOOKS[1].marker + "--", color=LOOKS[1].colour, ms=3.5)
+    share.set_yscale("log")
+    share.set_ylabel("share of contacts touched by the model", color=LOOKS[1].colour)
+    axes.set_title(r"with the model, $r = 0.6$, $\beta = 0$", fontsize=8, loc="left")

@@ -1,0 +1,91 @@
+"""From what the families measured to one table and its pictures.
+
+    python -m hard_cases.report FAMILY.json... --table TABLE.md --pictures FILE.pdf FILE.png...
+
+Pictures are told apart by the names of their files: hard_cases shows every margin, hard_cases_x
+what was kept for the picture x (pictures.py).
+"""
+
+import argparse
+import itertools
+import json
+from pathlib import Path
+
+from hard_cases import pictures
+from hard_cases.catalogue import Margin, Remedy
+from roughgas.atomic import whole_file
+from roughgas.plotting.style import save
+
+HEAD = """# Hard cases
+
+Where a simulation could go wrong, and how far this one stays from that. Written by
+`snakemake hard_cases`{scale}; docs/hard_cases.md tells the stories.
+
+{cases} cases, {margins} margins, all within their limits. Of {remedies} cases it was shown that
+they fail once a remedy is taken out of the source.
+"""
+COLUMNS = "| measured | value | limit | tried |\n| --- | ---: | ---: | ---: |\n"
+
+
+def main() -> None:
+    arguments = _arguments()
+    found = [json.loads(path.read_text(encoding="utf-8")) for path in arguments.families]
+    margins = [Margin(**row) for one in found for row in one["margins"]]
+    remedies = [Remedy(**row) for one in found for row in one["remedies"]]
+    series = {name: columns for one in found for name, columns in one["series"].items()}
+    with whole_file(arguments.table) as draft:
+        draft.write_text(table(margins, remedies, arguments.full), encoding="utf-8")
+    for name, files in itertools.groupby(sorted(arguments.pictures), key=lambda path: path.stem):
+        picture = name.removeprefix("hard_cases").removeprefix("_")
+        figure = pictures.PICTURES[picture](series) if picture else pictures.overview(margins)
+        save(figure, files)
+
+
+def table(margins: list[Margin], remedies: list[Remedy], full: bool) -> str:
+    """The whole table as Markdown: a section a family, within it a paragraph a case."""
+    cases = {(row.family, row.case) for row in margins}
+    parts = [
+        HEAD.format(
+            scale="" if full else " at a smaller scale, with few tries",
+            cases=len(cases),
+            margins=len(margins),
+            remedies=len({(one.family, one.case) for one in remedies}),
+        )
+    ]
+    for family, of_family in itertools.groupby(margins, key=lambda row: row.family):
+        parts.append(f"\n## {family}\n")
+        for (case, danger), rows in itertools.groupby(of_family, key=lambda r: (r.case, r.danger)):
+            taken = [one.remedy for one in remedies if (one.family, one.case) == (family, case)]
+            parts.append(_case(case, danger, list(rows), taken))
+    return "".join(parts)
+
+
+def _case(case, danger, rows, taken):
+    lines = "".join(
+        f"| {row.what} | {row.measured:.3g} | {row.sense} {row.limit:g} | {number(row.tried)} "
+        f"{row.unit} |\n"
+        for row in rows
+    )
+    remedies = "".join(f"\nFails without: {remedy}.\n" for remedy in taken)
+    return f"\n**{case}.** What could go wrong: {danger}.\n\n{COLUMNS}{lines}{remedies}"
+
+
+def number(tried: int) -> str:
+    """A count with its thousands apart; powers of ten from a million on."""
+    if tried >= 10**6:
+        mantissa, _, power = f"{tried:.1e}".partition("e")
+        return f"{mantissa.removesuffix('.0')}e{int(power)}"
+    return f"{tried:,}".replace(",", " ")
+
+
+def _arguments():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("families", nargs="+", type=Path)
+    parser.add_argument("--table", type=Path, required=True)
+    parser.add_argument("--pictures", nargs="+", type=Path, default=[])
+    parser.add_argument("--full", action="store_true", help="cases were tried as often as it takes")
+    return parser.parse_args()
+
+
+if __name__ == "__main__":
+    main()
