@@ -86,3 +86,16 @@ def test_points_without_a_steady_state_are_set_aside(verdicts):
     assert "21 points not in a steady state set aside" in finding.reason
     finding = verdicts(reduced(equilibrated=0.0))["vibrated_follows_lun"]
     assert finding.verdict == NOT_TESTED and "steady state" in finding.reason
+
+
+def test_points_with_the_contact_time_model_are_not_the_papers(verdicts):
+    """At r = 0.6 something else altogether: nothing of it is judged."""
+    contact_time = np.array([[1e-4], [np.nan], [np.nan]])
+
+    def elsewhere(r, beta):
+        return np.where(r == 0.6, 0.3, 0.0)
+
+    bed = reduced("vibrated", elsewhere, r=(0.6, 0.9, 0.99), contact_time=contact_time)
+    same = reduced("vibrated", elsewhere, r=(0.6, 0.9, 0.99))
+    assert verdicts(bed)["vibrated_follows_lun"].verdict == HOLDS
+    assert verdicts(same)["vibrated_follows_lun"].verdict != HOLDS

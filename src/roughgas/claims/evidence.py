@@ -19,9 +19,10 @@ def load(path: str | Path) -> xr.Dataset:
 
     `deviation` is R - theory. Points that are not in a steady state cannot test a theory of one:
     their R is NaN, and the attribute `set_aside` counts them. The attribute `freedom` is the
-    number of degrees of freedom of the errors.
+    number of degrees of freedom of the errors. Values of r at which the contact-time model was
+    there are left out: the paper has none.
     """
-    data = read_reduced(path)
+    data = _without_contact_time(read_reduced(path))
     errors, freedom = _errors(data, "R_stderr")
     data["error"] = (("r", "beta"), errors)
     theory = predicted_ratio(data.attrs, data.r.values[:, None], data.beta.values)
@@ -31,6 +32,14 @@ def load(path: str | Path) -> xr.Dataset:
     data["deviation"] = data.R - data.theory
     counts = {"points": int(found.sum()), "set_aside": int((found & ~steady).sum())}
     return data.assign_attrs(freedom=freedom, **counts)
+
+
+def _without_contact_time(data: xr.Dataset) -> xr.Dataset:
+    """The part of a reduced dataset that was simulated without the contact-time model."""
+    if "contact_time" not in data:
+        return data
+    modelled = np.isfinite(data.contact_time).any("beta")
+    return data.sel(r=data.r[~modelled])
 
 
 def load_all(paths: Iterable[str | Path]) -> dict[str, xr.Dataset]:
