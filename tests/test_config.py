@@ -59,7 +59,8 @@ def test_the_paper_as_data(paper):
         "roughness": -1,
     }
     assert vibrated["schedule"]["equilibrate"] + vibrated["schedule"]["measure"] == 7000
-    assert len(list(config.sweep(vibrated))) == 3 * 21 * 4
+    assert vibrated["sweep"]["r"] == ["0.99", "0.9", "0.8", "0.6"]
+    assert len(list(config.sweep(vibrated))) == 4 * 21 * 4
     assert config.experiment(paper, "sheared", "paper")["effects"]["shear"] == {"velocity": 2}
     assert config.experiment(paper, "cooling", "paper")["box"] == [100, 100]
 

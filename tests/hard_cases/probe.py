@@ -1,0 +1,57 @@
+"""An effect that only looks: the gap that each pair has when it collides.
+
+A scene is made of the effects that it lists, so a test may list one of its own. The product carries
+no instruction of it.
+"""
+
+import math
+from collections import namedtuple
+from typing import NamedTuple
+
+import numpy as np
+
+from roughgas.effects import Effects
+from roughgas.initial import initial_state
+from roughgas.kernel import hooks
+from roughgas.kernel.flight import arrive
+from roughgas.kernel.images import image_numbers, shifted, slid
+from roughgas.kernel.jit import entry, jit
+from roughgas.kernel.record import Plan, columns, record
+from roughgas.kernel.vectors import dot, subtract
+from roughgas.scene import Scene, build
+
+Probed = namedtuple("Probed", [*Effects._fields, "probe"])
+_record = entry(record.py_func)  # not that of the product, whose cache must not know of probes
+
+
+class Probe(NamedTuple):
+    """Looks at every contact of a scene."""
+
+    scene: Scene
+    gaps: np.ndarray  # (2,) smallest and largest gap so far, in a
+
+
+@jit
+def restitution(probe, index, r, state, i, j, time):
+    if j >= 0:
+        scene = probe.scene
+        position_i, velocity_i = arrive(state, scene, i, time)
+        position_j, velocity_j = arrive(state, scene, j, time)
+        slide = slid(hooks.sliding(scene.effects, None, state), time)
+        x, v = subtract(position_i, position_j), subtract(velocity_i, velocity_j)
+        x, v = shifted(x, v, image_numbers(x, scene.box, slide), scene.box, slide)
+        gap = math.sqrt(dot(x, x)) - 2.0
+        probe.gaps[0] = min(probe.gaps[0], gap)
+        probe.gaps[1] = max(probe.gaps[1], gap)
+    return r
+
+
+def gaps_at_contacts(experiment, r, beta, collisions, seed=1):
+    """(smallest, largest) gap over so many collisions, each in a."""
+    plain = build(experiment, r, beta)
+    probe = Probe(plain, np.zeros(2))
+    scene = plain._replace(effects=Probed(*plain.effects, probe))
+    state = initial_state(scene, experiment, np.random.default_rng(seed))
+    row = np.empty((1, len(columns(len(scene.box), scene.effects.spin is not None))))
+    assert _record(state, scene, Plan(np.inf, collisions, 0), row) == 1
+    return probe.gaps

@@ -1,0 +1,142 @@
+"""Free cooling, far down."""
+
+import math
+
+import numpy as np
+import pytest
+from brute_force import begin, run, settings, snapshot
+from compiled import from_python
+
+from hard_cases.catalogue import hard_case
+from roughgas.config import experiment, load
+from roughgas.kernel import record
+from roughgas.kernel.state import LAST_FIRST, LAST_SECOND
+from roughgas.measure.energies import energies, ratio
+from roughgas.protocols.cooling import SAMPLES_PER_REFRESH
+from roughgas.protocols.recorder import Recorder
+from roughgas.simulate import run_point
+
+GAS = settings("gas")  # 160 disks on (100 a)^2, as in Fig. 2b
+BLOCKS = 20
+LEG = 100  # samples
+rescale, start = from_python(record.rescale), from_python(record.start)
+
+
+@hard_case(
+    "ten thousand collisions per particle, r from 0.4 to 0.99",
+    "the energy falls by hundreds of orders of magnitude: it underflows, or old rounding errors in "
+    "the momentum of the whole gas become all the energy that there is (a flying ice cube)",
+)
+def test_a_gas_cools_for_ever(margins):
+    """R in two halves of the run, in standard errors from means of twenty blocks.
+
+    With ten blocks a half, one of five runs passes 5.5 standard errors by chance once in 6000 times.
+    """
+    restitutions = (0.4, 0.6, 0.8, 0.9, 0.99) if margins.full else (0.4, 0.9)
+    samples = margins.size(quick=1500, full=10_000)
+    runs = [cooled(r, samples) for r in restitutions]
+    tried = {"tried": samples * len(runs), "unit": "collisions per particle"}
+    lump = max(one["lump"] for one in runs)
+    margins.at_most("share of the common motion in the energy", lump, 1e-28, **tried)
+    fallen = min(one["log10_energy"][0] - one["log10_energy"][-1] for one in runs)
+    margins.at_least("orders of magnitude lost by the energy", fallen, samples / 50, **tried)
+    broken = sum(not np.all(np.isfinite(one["R"])) for one in runs)
+    margins.at_most("runs with numbers that are none", broken, 0, len(runs), "runs")
+    drift = max(drift_in_errors(one["R"][samples // 10 :]) for one in runs)
+    margins.at_most("drift of R, in standard errors", drift, 5.5, **tried)
+    margins.keep("cooling_far", **curves(restitutions, runs, samples))
+
+
+def cooled(r, samples):
+    """A gas that is sampled once a collision per particle. It is given up once it flies as one
+    lump: what happens inside is then as slow to simulate as it is small."""
+    scene, state = begin(GAS, r, 0.0, 1)
+    legs, common = [], np.zeros(1)
+    while LEG * len(legs) < samples and common.max() < 0.5:
+        leg = Recorder().in_collisions(state, scene, 80, LEG, SAMPLES_PER_REFRESH)
+        common = (leg["p_x"] ** 2 + leg["p_y"] ** 2) / 160 / (leg["vv_x"] + leg["vv_y"])
+        legs.append(leg | {"common": common})
+    rows = {name: np.concatenate([leg[name] for leg in legs]) for name in legs[0]}
+    present = energies(rows, 160, 0.5)
+    power = 2.0 * rows["exponent"] * math.log10(2.0)
+    return {
+        "R": ratio(present),
+        "log10_energy": np.log10(present.translational) + power,
+        "lump": rows["common"].max(),
+    }
+
+
+def drift_in_errors(R):
+    """Difference between the means of R in the two halves, over its standard error."""
+    blocks = R[: len(R) // BLOCKS * BLOCKS].reshape(BLOCKS, -1).mean(axis=1)
+    first, second = np.split(blocks, 2)
+    error = math.hypot(*(half.std(ddof=1) / math.sqrt(half.size) for half in (first, second)))
+    return abs(first.mean() - second.mean()) / error
+
+
+def curves(restitutions, runs, samples):
+    """Means over a hundredth of the run, for the picture."""
+    count = max(1, samples // 100)
+    columns = {"collisions": np.arange(count, samples + 1, count)}
+    for r, one in zip(restitutions, runs, strict=True):
+        for name in ("R", "log10_energy"):
+            columns[f"{name} {r:g}"] = one[name].reshape(-1, count).mean(axis=1)
+    return columns
+
+
+@pytest.mark.slow
+def test_without_removing_the_momentum(without):
+    without(
+        "removing the momentum that roundings leave",
+        test_a_gas_cools_for_ever,
+        "kernel/record.py",
+        "            state.trajectory[i, k] -= mean\n",
+        "",
+    )
+
+
+@hard_case(
+    "a gas in other units of time",
+    "rescaling a gas that has become slow changes its collisions",
+)
+def test_rescaling_changes_no_digit(margins):
+    """Velocities doubled or halved so and so often: the same pairs, at the same places."""
+    powers = (-40, -1, 30) if not margins.full else range(-50, 51, 5)
+    collisions = margins.size(quick=200, full=2000)
+    plain = rescaled(0, collisions)
+    different = sum(rescaled(power, collisions) != plain for power in powers)
+    tried = {"tried": len(powers), "unit": f"powers of two, {collisions} collisions each"}
+    margins.at_most("runs that differ in any bit", different, 0, **tried)
+
+
+def rescaled(power, collisions):
+    """All pairs that collide, and all bits at the end in the units of the beginning."""
+    scene, state = begin(GAS, 0.8, 0.3, 2)
+    run(state, scene, 0)
+    rescale(state, scene, power)
+    start(state, scene)
+    pairs = []
+    for _ in range(collisions):
+        run(state, scene, 1, collisions=1)
+        pairs.append((state.counts[LAST_FIRST], state.counts[LAST_SECOND]))
+    shot = snapshot(state, scene)
+    restored = (np.ldexp(part, power) for part in (shot.velocity, shot.spin))
+    return pairs, shot.position.tobytes(), *(part.tobytes() for part in restored)
+
+
+@hard_case(
+    "a point whose energy falls below the smallest number",
+    "its energies become zero, and R, their ratio, nonsense",
+)
+def test_a_point_may_cool_below_the_smallest_number(margins):
+    """1000 collisions per particle at r = 0.4 take e^380 off the energy; doubles reach e^-745."""
+    point = experiment(load("config.yaml", {}), "cooling", "small")
+    point["schedule"] |= {"replicas": 4, "plateau": margins.size(quick=2500, full=10_000)}
+    found = run_point(point, 0.4, 0.0, 1).variables
+    series = found["R_series"]
+    tried = {"tried": 4 * len(series), "unit": "samples"}
+    margins.at_most("samples without an R", np.sum(~np.isfinite(series)), 0, **tried)
+    margins.at_most("E_trans at the end", found["E_trans_series"][-1], 0.0, **tried)
+    margins.at_most(
+        "energy missing in the books, relative", found["energy_imbalance"], 1e-13, **tried
+    )

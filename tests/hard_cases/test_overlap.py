@@ -1,0 +1,79 @@
+"""Overlap by rounding."""
+
+import numpy as np
+import pytest
+from brute_force import run, scene_of, settings
+
+from hard_cases.catalogue import hard_case
+from hard_cases.probe import gaps_at_contacts
+from roughgas.kernel.layout import new_state
+from roughgas.kernel.state import COLLISIONS
+
+DENSE = settings("gas", 160, [27, 27])  # 0.69 of the area
+SCENES = {
+    "dense gas": (DENSE, 0.95, 0.3),
+    "dilute gas": (settings("gas"), 1.0, 0.3),
+    "sheared gas": (settings("sheared"), 0.9, 0.3),
+    "vibrated bed": (settings("bed"), 0.8, 0.3),
+}
+
+
+@hard_case(
+    "the gap at which pairs collide",
+    "positions are rounded: a pair that should just touch overlaps a little, and once an overlap "
+    "is lost sight of, particles sink into each other",
+)
+def test_pairs_collide_where_they_touch(margins):
+    """A place is rounded to some 1e-15 of itself; a bed throws particles up to hundreds of a."""
+    chosen = SCENES if margins.full else {"dense gas": SCENES["dense gas"]}
+    collisions = margins.size(quick=300_000, full=25_000_000)
+    gaps = np.array([gaps_at_contacts(*scene, collisions) for scene in chosen.values()])
+    tried = {"tried": collisions * len(chosen), "unit": "collisions"}
+    margins.at_most("largest overlap at a contact, in a", -gaps[:, 0].min(), 1e-11, **tried)
+    margins.at_most("largest gap at a contact, in a", gaps[:, 1].max(), 1e-11, **tried)
+
+
+@pytest.mark.slow
+def test_without_dropping_contacts_of_paths_that_have_changed(without):
+    without(
+        "dropping a contact once its partner's path has changed",
+        test_pairs_collide_where_they_touch,
+        "kernel/loop.py",
+        "if agenda.slot_change[i, kind] != state.changes[partner]:",
+        "if agenda.slot_change[i, kind] < 0:",
+    )
+
+
+@hard_case(
+    "pairs that overlap by rounding",
+    "a pair that overlaps and approaches is overlooked, one that recedes collides over and over",
+)
+def test_overlapping_pairs(margins):
+    """Overlaps from 1e-16 to 1e-9 a: approaching pairs collide at once, and only once."""
+    pairs = margins.size(quick=200, full=5000)
+    rng = np.random.default_rng(3)
+    scene, _ = scene_of(settings("smooth", 2, [40, 40]), 0.9, -1.0)
+    late = extra = overlooked = 0
+    for k in range(pairs):
+        approaching = k % 2 == 0
+        state = overlapping_pair(scene, approaching, rng)
+        run(state, scene, 1, interval=2.0**-26)  # the time that a rounded gap may take
+        late += approaching and state.counts[COLLISIONS] == 0
+        run(state, scene, 1, interval=1.0)
+        extra += max(0, int(state.counts[COLLISIONS]) - approaching)
+        overlooked += approaching and state.counts[COLLISIONS] == 0
+    margins.at_most("approaching pairs that do not collide at once", late, 0, pairs // 2, "pairs")
+    margins.at_most("approaching pairs that never collide", overlooked, 0, pairs // 2, "pairs")
+    margins.at_most("contacts of receding pairs", extra, 0, pairs, "pairs")
+
+
+def overlapping_pair(scene, approaching, rng):
+    """A state of two particles, at a random place and angle."""
+    angle = rng.uniform(0.0, 2.0 * np.pi)
+    n, t = np.array([np.cos(angle), np.sin(angle)]), np.array([-np.sin(angle), np.cos(angle)])
+    apart = 2.0 - 10.0 ** rng.uniform(-16, -9)
+    # slow enough to stay within the box, fast enough along n not to be at rest by rounding
+    speed = 10.0 ** rng.uniform(-6, 0) * (-1.0 if approaching else 1.0)
+    velocity = np.array([np.zeros(2), speed * n + rng.normal() * t])
+    place = rng.uniform(4.0, 36.0, 2)
+    return new_state(scene, np.array([place, place + apart * n]), velocity, np.zeros((2, 1)))
