@@ -36,8 +36,8 @@ from roughgas.kernel.vectors import (
     subtract,
 )
 
-# At r = 0 what is left of the normal velocity is rounding, over which a pair would go on colliding
-# for ever: below this restitution particles part at this share of the typical speed
+# Where r leaves nothing of the normal velocity but rounding, a pair would go on colliding for ever:
+# particles part at no less than this share of the typical speed
 STICKING = 1e-10
 
 
@@ -57,8 +57,7 @@ def collide(state, scene, i, j, time):
     effects = scene.effects
     material = _material(effects, scene.restitution, scene.roughness, state, i, j, time)
     push, turn = response(effects.spin, effects, material, n, v, spin_sum(w_i, w_j), 0.5)
-    if scene.restitution < STICKING:
-        push = _parted(push, n, v, 0.5, STICKING * state.clock[TYPICAL_SPEED])
+    push = _parted(push, n, v, 0.5, STICKING * state.clock[TYPICAL_SPEED])
     put(state, scene, i, position_i, subtract(velocity_i, push), time)
     put(state, scene, j, position_j, add_scaled(velocity_j, push, 1.0), time)
     turn_spin(state.spin, i, w_i, turn)
