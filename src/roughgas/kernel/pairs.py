@@ -21,14 +21,17 @@ def time_to_contact(x, u):
 
     Touching or overlapping (by rounding) and approaching is a contact now; receding never is one.
     The smaller root is formed by division, so that it does not cancel when the particles are
-    close, and the discriminant from the cross product, so that it does not when they are far. Roots
-    and quotients are taken before anything is decided: a branch that the processor cannot foresee
-    would cost more than they do, and without branches several pairs are done at once.
+    close, and the discriminant from the cross product, so that it does not when they are far. Of a
+    pair that touches but for a rounding, root - b may be nearly nothing: a contact is therefore not
+    put later than the closest approach. Roots and quotients are taken before anything is decided: a
+    branch that the processor cannot foresee would cost more than they do, and without branches
+    several pairs are done at once.
     """
-    b = dot(x, u)
+    b, uu = dot(x, u), dot(u, u)
     c = dot(x, x) - DIAMETER * DIAMETER
-    discriminant = DIAMETER * DIAMETER * dot(u, u) - cross_squared(x, u)
+    discriminant = DIAMETER * DIAMETER * uu - cross_squared(x, u)
     time = max(c, 0.0) / (math.sqrt(max(discriminant, 0.0)) - b)
+    time = min(time, -b / uu)
     meets = (b < 0.0) & ((discriminant >= 0.0) | (c <= 0.0))
     return time if meets else math.inf
 

@@ -1,0 +1,222 @@
+"""Limits of the collision rule."""
+
+import numpy as np
+import pytest
+from brute_force import begin, run, settings, snapshot
+from compiled import from_python
+
+from hard_cases.catalogue import hard_case
+from roughgas import theory
+from roughgas.effects import Effects
+from roughgas.effects.spin import Spin
+from roughgas.kernel import contact
+from roughgas.kernel.layout import new_state
+from roughgas.kernel.state import COLLISIONS
+
+response = from_python(contact.response)
+direction = from_python(contact.direction)
+DISKS = settings("gas", 160, [50, 50])
+SPHERES = settings("spheres", 64, [12, 12, 12])
+ROUNDING = 2.0**-53  # the largest relative error of one operation
+
+
+def energy(shot, q):
+    """Kinetic energy of all particles."""
+    return 0.5 * (shot.velocity**2).sum() + 0.5 * q * (shot.spin**2).sum()
+
+
+def spinning_gas(experiment, beta, seed=2):
+    """Scene and state of an elastic gas whose particles spin from the start."""
+    scene, state = begin(experiment, 1.0, beta, seed)
+    state.spin[:] = np.random.default_rng(seed).standard_normal(state.spin.shape)
+    return scene, state
+
+
+def run_to(state, scene, collisions):
+    """Run to so many collisions in all; a single call ends before, after a thousand spans."""
+    while state.counts[COLLISIONS] < collisions:
+        run(state, scene, 1, collisions=int(collisions - state.counts[COLLISIONS]))
+
+
+@hard_case(
+    "elastic gases",
+    "rounding errors that have a sign add up, contact by contact: an elastic gas heats up or "
+    "cools, drifts away, or spins up where nothing should turn",
+)
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_conserved(margins, dimension):
+    """What r = 1 and beta = +-1 conserve. The energy drifts in proportion to the collisions: by
+    what normals are too short on average (see test_normal), and what 1/(1 + q) is rounded by. The
+    bound is a rounding of all the energy in ten collisions, 1e-17 a collision.
+
+    The momentum makes a random walk of roundings, two a collision along each axis, whose rms is
+    1e-16 at most: more than six times its length is met by chance once in 1e8 times.
+    """
+    experiment = DISKS if dimension == 2 else SPHERES
+    q, collisions = theory.moment_of_inertia(dimension), margins.size(100_000, 10_000_000)
+    tried = {"tried": collisions, "unit": "collisions"}
+    for beta in (-1.0, 1.0):
+        scene, state = spinning_gas(experiment, beta)
+        spin, start = state.spin.copy(), energy(snapshot(state, scene), q)
+        run_to(state, scene, collisions)
+        end = snapshot(state, scene)
+        drift = abs(energy(end, q) / start - 1.0) / collisions * 1e7
+        what = f"drift of the energy in 1e7 collisions, beta = {beta:g}, D = {dimension}"
+        margins.at_most(what, drift, 1e-10, **tried)
+        momentum = np.abs(end.velocity.sum(axis=0)).max() / np.sqrt(2.0 * collisions)
+        what = f"momentum, over the root of the roundings [m a/T], beta = {beta:g}, D = {dimension}"
+        margins.at_most(what, momentum, 6e-16, **tried)
+        if beta == -1.0:
+            what = f"spins that changed, beta = -1, D = {dimension}"
+            margins.at_most(what, (spin != state.spin).sum(), 0, **tried)
+
+
+@hard_case(
+    "the length of the normal",
+    "a unit vector that is too long on average, by less than a rounding, heats an elastic gas at "
+    "each contact",
+)
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_normal(margins, dimension):
+    """n.n - 1, the share of its normal motion that a contact adds, on average over contacts of
+    pairs that stand anywhere in a box of 25 a.
+
+    A contact adds rms 1e-16; over 1e5 of them the mean is known to 3e-19. The bound is a quarter of
+    a rounding; what is left comes from the components' own grid.
+    """
+    rng, contacts = np.random.default_rng(dimension), margins.size(100_000, 1_000_000)
+    normals = rng.standard_normal((contacts, dimension))
+    normals *= 2.0 / np.linalg.norm(normals, axis=1)[:, None]
+    places = rng.uniform(2.0, 23.0, normals.shape)
+    found = np.array([direction(x) for x in map(tuple, (places + normals - places).tolist())])
+    excess = (found.astype(np.longdouble) ** 2).sum(axis=1) - 1  # to 1e-19
+    what, tried = f"mean of n.n - 1, D = {dimension}", {"tried": contacts, "unit": "contacts"}
+    margins.at_most(what, abs(excess.mean()), ROUNDING / 4.0, **tried)
+    margins.at_most(
+        f"largest of n.n - 1, D = {dimension}", abs(excess).max(), 6 * ROUNDING, **tried
+    )
+
+
+def test_without_the_normal_that_is_right_on_average(without):
+    without(
+        "a normal from what half of x lacks in length, not from 1/|x|",
+        test_normal,
+        "kernel/contact.py",
+        "add_scaled(half, half, (4.0 - square) / (length * (2.0 + length)))",
+        "scale(x, 1.0 / length)",
+    )
+
+
+@hard_case(
+    "the angular momentum of a pair",
+    "what the tangential push takes from the orbital part is not what the spins get",
+)
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_angular_momentum(margins, dimension):
+    """About a fixed point some ten radii off, over the largest value that its terms could have.
+
+    Some ten roundings: of positions, velocities, and spins, each before and after.
+    """
+    experiment = (
+        settings("gas", 2, [20, 20]) if dimension == 2 else settings("spheres", 2, [20] * 3)
+    )
+    scene, _ = begin(experiment, 1.0, 1.0)
+    q, rng = theory.moment_of_inertia(dimension), np.random.default_rng(dimension)
+    pairs_tried, worst = margins.size(500, 10_000), 0.0
+    for _ in range(pairs_tried):
+        scene = scene._replace(restitution=rng.uniform(0, 1), roughness=rng.uniform(-1, 1))
+        n, across = np.linalg.qr(rng.standard_normal((dimension, 2)))[0].T
+        position = 10.0 + np.array([0.0 * n, 2.5 * n])
+        velocity = rng.standard_normal(dimension) + np.array([0.0 * n, 0.2 * across - n])
+        spin = rng.standard_normal((2, 2 * dimension - 3))
+        state = new_state(scene, position, velocity, spin)
+        before, largest = angular_momentum(snapshot(state, scene), q)
+        run(state, scene, 1, interval=1.0)
+        assert state.counts[COLLISIONS] == 1
+        change = angular_momentum(snapshot(state, scene), q)[0] - before
+        worst = max(worst, np.linalg.norm(change) / largest)
+    what = f"change of the angular momentum, over its largest value, D = {dimension}"
+    margins.at_most(what, worst, 10 * ROUNDING, tried=pairs_tried, unit="contacts")
+
+
+def angular_momentum(shot, q):
+    """(angular momentum of all particles about the origin, sum of the sizes of its terms)."""
+    pad = ((0, 0), (0, 3 - shot.position.shape[1]))
+    x, v = np.pad(shot.position, pad), np.pad(shot.velocity, pad)
+    w = np.pad(shot.spin, ((0, 0), (3 - shot.spin.shape[1], 0)))
+    sizes = np.linalg.norm(x, axis=1) * np.linalg.norm(v, axis=1) + q * np.linalg.norm(w, axis=1)
+    return (np.cross(x, v) + q * w).sum(axis=0), sizes.sum()
+
+
+@hard_case(
+    "the rule undone",
+    "small coefficients leave so little of a velocity that it cannot be got back",
+)
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_inverse(margins, dimension):
+    """The rule with 1/r and 1/beta undoes the one with r and beta, these down to 1e-3 in size.
+
+    It multiplies roundings of the speed by 1/r and 1/beta: some ten of them are allowed for.
+    """
+    rng, worst = np.random.default_rng(dimension), 0.0
+    contacts = margins.size(5000, 100_000)
+    q = theory.moment_of_inertia(dimension)
+    for _ in range(contacts):
+        n = rng.standard_normal(dimension)
+        v = rng.standard_normal(dimension) * 10.0 ** rng.uniform(-3, 3)
+        w = rng.standard_normal(2 * dimension - 3) * 10.0 ** rng.uniform(-3, 3)
+        r, beta = 10.0 ** rng.uniform(-3, 0, 2) * [1.0, rng.choice([-1.0, 1.0])]
+        n /= np.linalg.norm(n)
+        after = applied((r, beta), q, n, v, w)
+        back = applied((1.0 / r, 1.0 / beta), q, n, *after)
+        error = np.hypot(np.linalg.norm(back[0] - v), np.linalg.norm(back[1] - w))
+        worst = max(worst, error * min(r, abs(beta)) / np.hypot(*map(np.linalg.norm, (v, w))))
+    what = f"error of what is got back, times r or beta, over the speed, D = {dimension}"
+    margins.at_most(what, worst, 20 * ROUNDING, tried=contacts, unit="contacts")
+
+
+def applied(material, q, n, v, w):
+    """Relative velocity and sum of the spins after a contact."""
+    vectors = [tuple(map(float, vector)) for vector in (n, v, w)]
+    push, turn = response(Spin(q), Effects(spin=Spin(q)), material, *vectors, 0.5)
+    return v - 2.0 * np.array(push), w + 2.0 * np.array(turn)
+
+
+@hard_case(
+    "pairs that hardly part",
+    "where r leaves nothing of the normal velocity but rounding, the pair meets again at once, and "
+    "for ever: time stands still",
+)
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_parting(margins, dimension):
+    """One contact a pair, for r from 0 and 1e-16 to 1, and normal velocities from 1e-12 to 1 of
+    the tangential one: two free particles that have met never do again.
+    """
+    experiment = (
+        settings("gas", 2, [14, 14]) if dimension == 2 else settings("spheres", 2, [14] * 3)
+    )
+    scene, _ = begin(experiment, 0.0, -1.0)
+    rng, most, pairs_tried = np.random.default_rng(dimension), 0, margins.size(1000, 20_000)
+    for _ in range(pairs_tried):
+        r = rng.choice([0.0, 1.0, 1.0]) * 10.0 ** rng.uniform(-16, 0)
+        scene = scene._replace(restitution=r, roughness=rng.choice([-1.0, rng.uniform(-1, 1)]))
+        n, across = np.linalg.qr(rng.standard_normal((dimension, 2)))[0].T
+        approach = 10.0 ** rng.uniform(-12, 0)
+        gap = 0.1 * approach * 10.0 ** rng.uniform(-13, 0)
+        position = 7.0 + np.array([0.0 * n, (2.0 + gap) * n])
+        velocity = rng.standard_normal(dimension) + np.array([0.0 * n, across - approach * n])
+        state = new_state(scene, position, velocity, np.zeros((2, 2 * dimension - 3)))
+        run(state, scene, 1, interval=1.0, collisions=100)
+        most = max(most, state.counts[COLLISIONS])
+    margins.at_most(f"contacts of a pair, D = {dimension}", most, 1, pairs_tried, "pairs")
+
+
+@pytest.mark.slow
+def test_without_parting(without):
+    without(
+        "particles part at 1e-10 of the typical speed at least",
+        test_parting,
+        "kernel/contact.py",
+        "push = _parted(push, n, v, 0.5, STICKING * state.clock[TYPICAL_SPEED])",
+        "",
+    )
