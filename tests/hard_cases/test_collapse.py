@@ -9,15 +9,13 @@ from brute_force import begin, run, settings, snapshot
 
 from hard_cases.catalogue import hard_case
 from roughgas.errors import CollapseError
-from roughgas.kernel.clock import ENOUGH
 from roughgas.kernel.layout import new_state
 from roughgas.kernel.record import Plan, columns, record
 from roughgas.kernel.state import BASE, COLLISIONS, NOW, TOUCHED
 from roughgas.measure.energies import energies, ratio
-from roughgas.protocols.recorder import Recorder
+from roughgas.protocols.recorder import UNLIMITED, Recorder
 
 BED = settings("bed")  # 160 disks on 50 a, as in Fig. 1a
-AT_ONCE = ENOUGH[0] + ENOUGH[1] * 160
 THRESHOLD = 7.0 - 4.0 * math.sqrt(3.0)  # of r, for three particles on a line
 
 
@@ -29,15 +27,15 @@ THRESHOLD = 7.0 - 4.0 * math.sqrt(3.0)  # of r, for three particles on a line
     "chains of particles touch infinitely often in a finite time: a simulation never gets past it",
 )
 def test_a_bed_that_collapses_is_stopped(margins):
-    """T = 60 and beta = 0; each contact beyond those simultaneous ones that are let pass counts."""
+    """60 T at beta = 0. A bed may be lucky: about three in four collapse in that time."""
     seeds = margins.size(quick=4, full=24)
     ends = [collapse(seed) for seed in range(1, seeds + 1)]
     collapsed = [end for end in ends if end["collapsed"]]
-    margins.at_least("share of beds that collapse", len(collapsed) / seeds, 0.5, seeds, "beds")
+    margins.at_least("share of beds that collapse", len(collapsed) / seeds, 0.4, seeds, "beds")
     margins.at_most(
         "contacts made in the quarter T of the collapse",
         max(end["contacts"] for end in collapsed),
-        AT_ONCE + 100_000,  # as many as that may be on the way there
+        200_000,  # a fraction of a second
         len(collapsed),
         "collapses",
     )
@@ -52,11 +50,9 @@ def collapse(seed):
     time, collapsed = 0.0, False
     while time < 60.0 and not collapsed:
         before = state.counts[COLLISIONS]
-        # the second bound is there for a kernel that would not stop
-        collapsed = record(state, scene, Plan(0.25, 2_000_000, 0), row) == 0
+        collapsed = record(state, scene, Plan(0.25, UNLIMITED, 0), row) == 0
         contacts = state.counts[COLLISIONS] - before
         time = state.clock[BASE] + state.clock[NOW]
-        collapsed |= contacts == 2_000_000
     shot = snapshot(state, scene)
     last = state.clock[NOW] - state.trajectory[np.argsort(state.label), -1]
     x, y = shot.position.T
@@ -64,13 +60,13 @@ def collapse(seed):
 
 
 @pytest.mark.slow
-def test_without_the_watch_on_the_clock(without):
+def test_without_a_watch_on_spent_contacts(without):
     without(
-        "noticing that time stands still",
+        "noticing contacts that have no speed left",
         test_a_bed_that_collapses_is_stopped,
         "kernel/clock.py",
-        "return counts[AT_ONCE] <= ENOUGH[0] + ENOUGH[1] * len(state.changes)",
-        "return True",
+        "return (counts[SPENT] < COLLAPSE) & (counts[AT_ONCE] < many)",
+        "return counts[AT_ONCE] < many",
     )
 
 
@@ -96,17 +92,15 @@ def test_the_error_names_time_particles_and_remedy():
     "what is merely dense is taken for a collapse, and a good run is stopped",
 )
 def test_a_dense_bed_is_not_taken_for_a_collapse(margins):
-    """At r = 0.7 beds come closest to collapsing without doing so."""
-    duration = margins.size(quick=50, full=1000)
-    busiest = 0
+    """In quarters of T: what was stopped is missing. r = 0.7 is as close as one safely gets."""
+    samples = margins.size(quick=200, full=8000)
+    missing = 0
     for r in (0.8, 0.7):
         scene, state = begin(BED, r, 0.0, 1)
-        rows = run(state, scene, 4 * duration, interval=0.25)
-        busiest = max(busiest, np.diff(rows["collisions"]).max())
-    tried = {"tried": 2 * duration, "unit": "T"}
-    margins.at_most(
-        "contacts in a quarter T, over those taken for a collapse", busiest / AT_ONCE, 0.1, **tried
-    )
+        rows = np.empty((samples, len(columns(2, True))))
+        missing += samples - record(state, scene, Plan(0.25, UNLIMITED, 0), rows)
+    tried = {"tried": samples // 2, "unit": "T"}
+    margins.at_most("quarters of T that are missing", missing, 0, **tried)
 
 
 # ---------------------------------------------------------------------- with the model
@@ -156,8 +150,8 @@ def bed_with(duration, seed, measure):
 def test_three_on_a_line(margins):
     """Contacts of smooth particles, against exact fractions.
 
-    Below the threshold velocities become equal to the last digit after some tens of contacts: the
-    collapse is then over, with the result that it has after infinitely many.
+    Below the threshold velocities are equal to 1e-10, at which particles part at least, after some
+    tens of contacts: the collapse is then over, with the result that it has after infinitely many.
     """
     above = [0.08, 0.1, 0.15, 0.2, 0.3, 0.5, 0.7, 0.9]
     below = [THRESHOLD * share for share in (0.05, 0.2, 0.5, 0.8, 0.9, 0.98)]
@@ -168,7 +162,7 @@ def test_three_on_a_line(margins):
     tried = {"tried": len(below), "unit": "values of r"}
     margins.at_most("contacts made below it", max(contacts for contacts, _ in ends), 100, **tried)
     spread = max(np.ptp(velocity) for _, velocity in ends)
-    margins.at_most("difference of velocities afterwards, in a/T", spread, 1e-15, **tried)
+    margins.at_most("difference of velocities afterwards, in a/T", spread, 3e-10, **tried)
 
 
 PLACES, VELOCITIES = (50.0, 53.0, 56.0), (1.0, 0.125, -0.875)

@@ -30,7 +30,7 @@ rescale, start = from_python(record.rescale), from_python(record.start)
 def test_a_gas_cools_for_ever(margins):
     """R in two halves of the run, in standard errors from means of twenty blocks.
 
-    With ten blocks a half, one of five runs passes 5.5 standard errors by chance once in 6000 times.
+    With ten blocks a half, one of five runs passes 5.5 of them by chance once in 6000 times.
     """
     restitutions = (0.4, 0.6, 0.8, 0.9, 0.99) if margins.full else (0.4, 0.9)
     samples = margins.size(quick=1500, full=10_000)

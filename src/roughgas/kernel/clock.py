@@ -13,6 +13,7 @@ from roughgas.kernel.state import (
     NOW,
     SINCE_REBASE,
     SPAN,
+    SPENT,
     TYPICAL_SPEED,
 )
 from roughgas.kernel.vectors import dot, read
@@ -22,22 +23,26 @@ CELLS = 16.0  # particles that are in cells are sorted anew after crossing about
 
 
 INSTANT = 2.0**-30  # of a span: so close to each other events count as simultaneous
-ENOUGH = 100_000, 10  # simultaneous events, and as many more for each particle, are a collapse
+COLLAPSE = 10  # simultaneous contacts of particles that hardly approach
+STANDSTILL = 100_000, 10  # simultaneous events, and as many more for each particle
 
 
 @jit
 def moves_on(state, time):
     """Note an event at `time`; False where events accumulate as if time stood still.
 
-    What is simultaneous by chance or by symmetry are some events a particle. In an inelastic
-    collapse infinitely many contacts of a few particles are made in a finite time.
+    In an inelastic collapse infinitely many contacts of a few particles are made in a finite time,
+    at less and less speed: contacts at speeds that are next to none are its sign. What is
+    simultaneous by symmetry are some events a particle; many more are a fault, which must not hang.
     """
     clock, counts = state.clock, state.counts
     if time > clock[INSTANT_END]:
         clock[INSTANT_END] = time + INSTANT * clock[SPAN]
         counts[AT_ONCE] = 0
+        counts[SPENT] = 0
     counts[AT_ONCE] += 1
-    return counts[AT_ONCE] <= ENOUGH[0] + ENOUGH[1] * len(state.changes)
+    many = STANDSTILL[0] + STANDSTILL[1] * len(state.changes)
+    return (counts[SPENT] < COLLAPSE) & (counts[AT_ONCE] < many)
 
 
 @jit

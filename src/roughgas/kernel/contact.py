@@ -24,6 +24,7 @@ from roughgas.kernel.state import (
     COLLISIONS,
     LAST_FIRST,
     LAST_SECOND,
+    SPENT,
     TOUCHED,
     TYPICAL_SPEED,
 )
@@ -57,7 +58,9 @@ def collide(state, scene, i, j, time):
     effects = scene.effects
     material = _material(effects, scene.restitution, scene.roughness, state, i, j, time)
     push, turn = response(effects.spin, effects, material, n, v, spin_sum(w_i, w_j), 0.5)
-    push = _parted(push, n, v, 0.5, STICKING * state.clock[TYPICAL_SPEED])
+    least = STICKING * state.clock[TYPICAL_SPEED]
+    push = _parted(push, n, v, 0.5, least)
+    state.counts[SPENT] += -dot(v, n) < least
     put(state, scene, i, position_i, subtract(velocity_i, push), time)
     put(state, scene, j, position_j, add_scaled(velocity_j, push, 1.0), time)
     turn_spin(state.spin, i, w_i, turn)

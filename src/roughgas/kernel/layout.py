@@ -158,7 +158,7 @@ def _state(scene, arrays, **parts):
         phase=np.zeros(effects),
         ledger=np.zeros((2, effects + 1, 2)),
         clock=np.zeros(8),
-        counts=np.zeros(11, np.int64),
+        counts=np.zeros(12, np.int64),
         agenda=Agenda(**{name: arrays.get(name) for name in Agenda._fields}),
         **parts,
     )

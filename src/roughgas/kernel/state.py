@@ -23,11 +23,12 @@ BASE, NOW, ORIGIN, SPAN, TYPICAL_SPEED, LONGEST_HORIZON, EXTENT, INSTANT_END = r
     TOUCHED,
     SINCE_REBASE,
     AT_ONCE,
+    SPENT,
     STARTED,
     EXPONENT,
     LAST_FIRST,
     LAST_SECOND,
-) = range(11)
+) = range(12)
 # Kinds of event in Agenda.kind: a slot's number, or one of these
 HORIZON, BOUNDARY, NOTHING = -1, -2, -3
 NOBODY = -1  # ends a linked list of particles
