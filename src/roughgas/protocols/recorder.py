@@ -64,7 +64,7 @@ class Recorder:
             part = rows[first : first + length]
             filled = record(state, scene, plan, part)
             if filled < len(part):
-                raise _collapse(state)
+                raise _collapse(state, scene)
             if self.progress:
                 self.progress(float(part[-1, 0]), int(part[-1, 1]))
         self.seconds += time.perf_counter() - begin
@@ -73,15 +73,23 @@ class Recorder:
         return dict(zip(names, rows.T, strict=True))
 
 
-def _collapse(state):
+def _collapse(state, scene):
     clock = state.clock
     time = clock[ORIGIN] + (clock[BASE] + clock[NOW]) * 2.0 ** -state.counts[EXPONENT]
     names = [str(label) for label in _collapsing(state)]
     others = f" and {len(names) - NAMED} more" if len(names) > NAMED else ""
     return CollapseError(
         f"inelastic collapse at t = {time:.6g} T of particles {', '.join(names[:NAMED])}{others}: "
-        "add the contact_time effect to the experiment, or raise r"
+        + _remedy(scene.effects)
     )
+
+
+def _remedy(effects):
+    if effects.contact_time is None:
+        return "add the contact_time effect to the experiment, or raise r"
+    if effects.floor is None and effects.walls is None:
+        return "raise r, or the duration of contact_time"
+    return "raise r, or make floor or walls smoother, between which a particle may be held"
 
 
 def _collapsing(state):
