@@ -14,6 +14,7 @@ CASES = {
     "narrow": settings("gas", 30, [4.5, 300]),
     "dense spheres": settings("spheres", 125, [10.1, 10.1, 10.1]),
     "one in a bed": settings("bed", 1, [10, "open"]),
+    "on a floor at rest": settings("bed", floor={"amplitude": 0}),
     "narrow bed": settings("walled", 30, [4.1, "open"]),
     "fast shear": settings("sheared", 40, [25, 20], shear={"velocity": 100.0}),
 }

@@ -34,6 +34,11 @@ def test_a_bed_between_walls():
     assert scene.effects.floor[:4] == (5.0, 1.0, 1.0, -1.0)
 
 
+def test_a_floor_at_rest():
+    at_rest = BED | {"floor": FLOOR["floor"] | {"amplitude": 0}}
+    assert build(experiment((50, "open"), **at_rest), 0.9, -0.5).effects.floor.amplitude == 0.0
+
+
 def test_the_particles_own_material_at_a_boundary():
     own = {"restitution": "particles", "roughness": "particles"}
     effects = BED | {"floor": FLOOR["floor"] | own, "walls": own}

@@ -20,7 +20,7 @@ LEAST_DEPARTURE = 1e-3
 class Floor(NamedTuple):
     """A floor under a gas with gravity."""
 
-    amplitude: float  # height of a stroke, in a
+    amplitude: float  # height of a stroke, in a; a floor at rest has 0
     period: float  # T
     restitution: float
     roughness: float
@@ -29,7 +29,7 @@ class Floor(NamedTuple):
     @classmethod
     def from_settings(cls, settings, around):
         return cls(
-            number(settings, "floor", "amplitude"),
+            number(settings, "floor", "amplitude", "[0, inf)"),
             number(settings, "floor", "period"),
             *material(settings, "floor", around),
             LEAST_DEPARTURE,
