@@ -27,8 +27,8 @@ SEGMENTS, SEGMENT = 20, 40  # comparisons with the brute force, and collisions i
 
 @hard_case(
     "a late start",
-    "a double holds a time of 1e9 T to no better than 1e-7 T: events that are closer together would "
-    "change places, and the phases of floor and images would be coarse",
+    "a double holds a time of 1e9 T to no better than 1e-7 T: events that are closer together "
+    "would change places, and the phases of floor and images would be coarse",
 )
 def test_an_offset_of_the_clock_changes_no_bit(margins):
     collisions = margins.size(quick=2000, full=50_000)
@@ -77,7 +77,6 @@ def test_a_billion_collisions_wear_nothing_out(margins):
     time = state.clock[BASE] + state.clock[NOW]
     mean_free = 0.5 * len(state.changes) * time / state.counts[COLLISIONS]
     drift = np.abs(energy / energy[0] - 1.0).max()
-    print("signed", energy[-1] / energy[0] - 1)
     print(
         f"{state.counts[COLLISIONS]} collisions in {time:.4g} T, mean free time {mean_free:.3g} T"
     )
