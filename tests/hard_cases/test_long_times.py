@@ -31,7 +31,7 @@ SEGMENTS, SEGMENT = 20, 40  # comparisons with the brute force, and collisions i
     "would change places, and the phases of floor and images would be coarse",
 )
 def test_an_offset_of_the_clock_changes_no_bit(margins):
-    collisions = margins.size(quick=2000, full=50_000)
+    collisions = margins.size(quick=2000, full=500_000)
     changed, coarsest = 0, 0.0
     for experiment in SCENES.values():
         early, late = (_after(experiment, collisions, start) for start in (0.0, float(LATE)))
