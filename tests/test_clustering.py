@@ -235,7 +235,7 @@ def test_a_film_says_what_it_shows_and_how_to_make_it_again(tmp_path):
     [
         ({"r": "1.5"}, "--settings.r = '1.5': must lie in [0, 1]"),
         ({"frames": 0}, "--settings.frames = 0: must be a whole number >= 1"),
-        ({"particles": 1000}, "particles = 1000: must be at most 456 in this box"),
+        ({"particles": 1000}, "particles = 1000: must be at most 540 in this box"),
         ({"every": 0}, "--checkpoint-every = 0: must be a whole number of frames >= 1"),
     ],
 )

@@ -14,7 +14,14 @@ CASES = {
     "narrow": settings("gas", 30, [4.5, 300]),
     "dense spheres": settings("spheres", 125, [10.1, 10.1, 10.1]),
     "one in a bed": settings("bed", 1, [10, "open"]),
+    "on a floor at rest": settings("bed", floor={"amplitude": 0}),
     "narrow bed": settings("walled", 30, [4.1, "open"]),
+    "single file": settings("walled", 30, [2.01, "open"]),
+    "denser than a square lattice": settings("gas", 160, [25.1, 25.1]),
+    "denser than a cubic lattice": settings("spheres", 247, [12, 12, 12]),
+    "cells longer than wide": settings("spheres", 143, [10, 10, 10]),
+    "dense and sheared": settings("sheared", 95, [40, 9.4]),
+    "dense and narrow": settings("gas", 48, [5.1, 40]),
     "fast shear": settings("sheared", 40, [25, 20], shear={"velocity": 100.0}),
 }
 
@@ -72,7 +79,7 @@ def test_seeds_differ_and_repeat():
 
 
 @pytest.mark.parametrize(
-    "most", [(settings("gas", 100, [20.1, 20.1])), settings("spheres", 125, [10.1] * 3)]
+    "most", [settings("gas", 108, [20.1, 20.1]), settings("spheres", 144, [10.1] * 3)]
 )
 def test_more_than_fit_are_refused(most):
     begin(most, 0.9, 0.0)

@@ -34,6 +34,11 @@ def test_a_bed_between_walls():
     assert scene.effects.floor[:4] == (5.0, 1.0, 1.0, -1.0)
 
 
+def test_a_floor_at_rest():
+    at_rest = BED | {"floor": FLOOR["floor"] | {"amplitude": 0}}
+    assert build(experiment((50, "open"), **at_rest), 0.9, -0.5).effects.floor.amplitude == 0.0
+
+
 def test_the_particles_own_material_at_a_boundary():
     own = {"restitution": "particles", "roughness": "particles"}
     effects = BED | {"floor": FLOOR["floor"] | own, "walls": own}
@@ -108,6 +113,9 @@ def test_illegal_effects(key):
         ((4, 50), SPIN, "box[0]"),
         ((50, 4), SPIN, "box[1]"),
         ((50, 50, 3.9), SPIN, "box[2]"),
+        ((4.009, 50), SPIN, "box[0]"),
+        ((2.009, "open"), BED | WALLS, "box[0]"),
+        ((4.009, "open"), BED, "box[0]"),
         ((50, -50), SPIN, "box[1]"),
         ((math.nan, 50), SPIN, "box[0]"),
         ((math.inf, 50), SPIN, "box[0]"),
@@ -132,3 +140,17 @@ def test_too_many_particles_for_the_box():
     with pytest.raises(InputError) as caught:
         check(experiment((8.1, 8.1), 17, **SPIN))
     assert caught.value.key == "particles" and "16" in caught.value.legal
+
+
+@pytest.mark.parametrize("effects", [SPIN, SPIN | SHEAR])
+def test_one_particle_alone(effects):
+    check(experiment((50, "open"), 1, **BED))
+    with pytest.raises(InputError) as caught:
+        check(experiment((50, 50), 1, **effects))
+    assert caught.value.key == "particles" and "\n" not in str(caught.value)
+
+
+def test_the_narrowest_boxes():
+    assert build(experiment((4.01, 4.01), 2, **SPIN), 0.9, 0.0).extent == 4.01
+    scene = build(experiment((2.01, "open"), 2, **BED, **WALLS), 0.9, 0.0)
+    assert scene.effects.walls.width == 2.01 and scene.extent == 8.0

@@ -12,7 +12,11 @@ from roughgas.effects.settings import Surroundings
 from roughgas.errors import InputError
 
 DIAMETER = 2.0
-NARROWEST = 2.0 * DIAMETER  # a periodic box in which no particle can meet two images of another
+# Of a periodic box, in a: below two diameters a particle could meet two images of another, and a
+# little above that contacts are foreseen for moments only
+NARROWEST = 4.01
+NARROWEST_CHANNEL = 2.01  # between side walls, in a
+FAR_APART = 8.0  # nothing comes round at walls: those nearer than this shorten no outlook
 
 
 class Scene(NamedTuple):
@@ -42,7 +46,7 @@ def build(experiment: Mapping[str, Any], r: float, beta: float) -> Scene:
         restitution=float(r),
         roughness=float(beta),
         effects=effects,
-        extent=min(length for length in lengths if length is not None),
+        extent=_extent(lengths, effects.walls),
         middle=0.0 if lengths[1] is None else lengths[1] / 2.0,
     )
 
@@ -51,7 +55,15 @@ def check(experiment: Mapping[str, Any]) -> None:
     """Raise InputError where no point of the experiment could be simulated."""
     from roughgas.initial import lattice
 
-    lattice(build(experiment, 0.5, 0.0), experiment)
+    scene = build(experiment, 0.5, 0.0)
+    check_company(scene, experiment)
+    lattice(scene, experiment)
+
+
+def check_company(scene: Scene, experiment: Mapping[str, Any]) -> None:
+    """Raise InputError where a single particle would rest in its box, and have no energy."""
+    if experiment["particles"] == 1 and scene.effects.gravity is None:
+        raise InputError("particles", 1, "be at least 2 where there is no floor to meet")
 
 
 def _effects(settings, around):
@@ -64,6 +76,11 @@ def _effects(settings, around):
     )
 
 
+def _extent(lengths, walls):
+    across = lengths[0] if walls is None else max(lengths[0], FAR_APART)
+    return min(length for length in (across, *lengths[1:]) if length is not None)
+
+
 def _check_range(key, value, low, high):
     if not low <= value <= high:  # NaN fails, too
         raise InputError(key, value, f"lie in [{low:g}, {high:g}]")
@@ -74,8 +91,9 @@ def _check_composition(lengths, effects):
     if open_axes not in ([], [len(lengths) - 1]):
         raise InputError("box", list(lengths), "be open along its last axis only")
     for k, length in enumerate(lengths):
-        if length is not None and not NARROWEST < length < math.inf:
-            raise InputError(f"box[{k}]", length, f"be more than {NARROWEST:g} (two diameters)")
+        least = NARROWEST_CHANNEL if k == 0 and effects.walls is not None else NARROWEST
+        if length is not None and not least <= length < math.inf:
+            raise InputError(f"box[{k}]", length, f"be a number of at least {least:g}")
     if (effects.gravity is None) != (effects.floor is None):
         raise InputError("effects", "gravity or floor alone", "have both gravity and floor or none")
     if (effects.gravity is None) == bool(open_axes):

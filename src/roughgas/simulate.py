@@ -11,7 +11,7 @@ from roughgas.initial import initial_state
 from roughgas.kernel.cache import source_hash
 from roughgas.protocols import cooling, steady
 from roughgas.protocols.recorder import Progress, Recorder
-from roughgas.scene import build
+from roughgas.scene import build, check_company
 
 PROTOCOLS = {"steady": steady, "cooling": cooling}
 
@@ -31,6 +31,7 @@ def run_point(
     values, CollapseError where contacts accumulate without end.
     """
     scene = build(experiment, r, beta)
+    check_company(scene, experiment)
     recorder = Recorder(progress)
     protocol = PROTOCOLS[experiment["schedule"]["kind"]]
     measured = protocol.run(scene, experiment, seed, recorder)

@@ -20,7 +20,7 @@ LEAST_DEPARTURE = 1e-3
 class Floor(NamedTuple):
     """A floor under a gas with gravity."""
 
-    amplitude: float  # height of a stroke, in a
+    amplitude: float  # height of a stroke, in a; a floor at rest has 0
     period: float  # T
     restitution: float
     roughness: float
@@ -29,7 +29,7 @@ class Floor(NamedTuple):
     @classmethod
     def from_settings(cls, settings, around):
         return cls(
-            number(settings, "floor", "amplitude"),
+            number(settings, "floor", "amplitude", "[0, inf)"),
             number(settings, "floor", "period"),
             *material(settings, "floor", around),
             LEAST_DEPARTURE,
@@ -58,12 +58,7 @@ def time_to_floor(floor, gravity, height, speed, phase):
 
     phase is the time since some stroke began; gravity > 0. Times in T, lengths in a.
     """
-    stroke = math.floor(phase / floor.period)
-    # nothing can happen before the particle is back at the height of the stroke
-    above = height - floor.amplitude
-    if above > 0.0:
-        safe = (speed + math.sqrt(speed * speed + 2.0 * gravity * above)) / gravity
-        stroke = max(stroke, math.floor((phase + safe) / floor.period))
+    stroke = _stroke_to_meet(floor, gravity, height, speed, phase, 0.0)
     floor_speed = floor.amplitude / floor.period
     while True:
         begin = max(0.0, stroke * floor.period - phase)
@@ -74,7 +69,19 @@ def time_to_floor(floor, gravity, height, speed, phase):
         meeting = begin + _fall(gap, relative, gravity)
         if meeting <= end:
             return meeting
-        stroke += 1.0
+        stroke = max(stroke + 1.0, _stroke_to_meet(floor, gravity, height, speed, phase, end))
+
+
+@jit
+def _stroke_to_meet(floor, gravity, height, speed, phase, time):
+    """The stroke under way at `time`; of a particle above all strokes, when it is back from there.
+
+    A long flight passes over millions of strokes.
+    """
+    above = height + speed * time - 0.5 * gravity * time * time - floor.amplitude
+    if above > 0.0:
+        time += _fall(above, speed - gravity * time, gravity)
+    return math.floor((phase + time) / floor.period)
 
 
 @jit

@@ -1,0 +1,262 @@
+"""Densities and boxes."""
+
+import json
+import math
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from brute_force import Beside, begin, largest_overlap, run, scene_of, settings
+
+from hard_cases.catalogue import hard_case
+from roughgas.errors import InputError
+from roughgas.scene import check
+from roughgas.simulate import run_point
+
+DISKS = (0.001, 0.01, 0.1, 0.3, 0.5, 0.7, 0.8)  # shares of the area
+SPHERES = (0.001, 0.01, 0.1, 0.3, 0.5, 0.6)  # shares of the volume
+ROUNDING = 2.0**-53
+AT_REST = {"floor": {"amplitude": 0.0}}  # the gas on it keeps its energy
+BETWEEN = AT_REST | {"walls": {"restitution": 1.0, "roughness": -1.0}}
+
+
+def lossless(kernel, particles, box, **effects):
+    """A scene that neither collapses nor comes to rest."""
+    return settings(kernel, particles, box, **effects), 1.0, -1.0
+
+
+def check_run(margins, scenes, collisions):
+    """Run (experiment, r, beta), and measure overlaps, and how far particles are from the box."""
+    overlap = outside = 0.0
+    for experiment, r, beta in scenes:
+        scene, world = scene_of(experiment, r, beta)
+        _, state = begin(experiment, r, beta, 1)
+        run(state, scene, collisions // 50, collisions=50)
+        size = max(np.ptp(state.trajectory[:, k]) for k in range(len(scene.box))) + scene.extent
+        # places are sums of lengths up to the size of the box, and squares of 2 a
+        overlap = max(overlap, largest_overlap(state, scene, world) / (ROUNDING * size))
+        outside = max(outside, _outside(state, experiment) / (ROUNDING * size))
+        assert np.isfinite(state.trajectory).all() and state.counts[0] >= collisions
+    tried = {"tried": len(scenes) * collisions, "unit": "collisions"}
+    margins.at_most("overlap of two particles, in roundings of the box", overlap, 30.0, **tried)
+    margins.at_most("way out of the box, likewise", outside, 30.0, **tried)
+
+
+def _outside(state, experiment):
+    """How far a particle was out of its box when something happened to it last."""
+    found = 0.0
+    for k, length in enumerate(experiment["box"]):
+        x, edge = state.trajectory[:, k], 0.0
+        if k == 0 and "walls" in experiment["effects"]:
+            edge = 1.0
+        above = -math.inf if length == "open" else np.max(x) - (length - edge)
+        found = max(found, above, edge - np.min(x))
+    return found
+
+
+def check_beside(margins, scenes, segments, collisions):
+    """Compare (experiment, r, beta) with the brute force.
+
+    The limit is that of Beside.assert_same: what roundings at the start of a segment become in one
+    trial, and some hundred times that, since a grazing contact multiplies either.
+    """
+    worst = 0.0
+    for experiment, r, beta in scenes:
+        scene, world = scene_of(experiment, r, beta)
+        _, state = begin(experiment, r, beta, 1)
+        beside = Beside(state, scene, world)
+        found = np.array([beside.segment(collisions) for _ in range(segments)])
+        worst = max(worst, np.max(found[:, 0] / (1e-12 + 300.0 * found[:, 1])))
+    tried = {"tried": len(scenes) * segments, "unit": f"segments of {collisions} collisions"}
+    margins.at_most("difference from brute force, over what is tolerated", worst, 1.0, **tried)
+
+
+@hard_case(
+    "from nearly empty to nearly packed",
+    "particles that meet only every thousand diameters, and others that touch all the time, need "
+    "outlooks of very different length; a dense start must find a place for each",
+)
+def test_densities(margins):
+    collisions = margins.size(quick=5000, full=500_000)
+    disks = [lossless("gas", 160, [math.sqrt(160 * math.pi / share)] * 2) for share in DISKS]
+    volume = 4.0 * math.pi / 3.0
+    spheres = [lossless("spheres", 108, [(108 * volume / s) ** (1 / 3)] * 3) for s in SPHERES]
+    refused = sum(not _fits(experiment) for experiment, _, _ in disks + spheres)
+    margins.at_most("densities refused", refused, 0, len(disks + spheres), "densities")
+    check_run(margins, disks + spheres, collisions)
+    few = margins.size(quick=1, full=5)
+    check_beside(margins, [disks[0], disks[-1], spheres[0], spheres[-1]], few, 10)
+
+
+FAST = {"shear": {"velocity": 50.0}}  # rows of images slide past each other faster than all else
+
+
+def _fits(experiment):
+    try:
+        check(experiment)
+    except InputError:
+        return False
+    return True
+
+
+NARROW = {
+    "sheared": [
+        (settings("sheared", 30, [60, 4.1], **FAST), 0.9, 0.2),
+        (settings("sheared", 30, [4.1, 60], **FAST), 0.9, 0.2),
+    ],
+    "gas": [
+        lossless("gas", 3, [4.01, 4.01]),
+        lossless("gas", 8, [5, 9]),
+        lossless("gas", 30, [4.1, 60]),
+    ],
+    "bed": [lossless("bed", 8, [4.1, "open"], **AT_REST)],
+    "spheres": [lossless("spheres", 12, [4.2, 4.2, 20])],
+}
+
+
+@hard_case(
+    "boxes hardly wider than two particles",
+    "in a narrow periodic box a particle meets one image of another shortly after the next: that "
+    "which is nearest at one moment need not be the first to be met",
+)
+@pytest.mark.parametrize("kernel", NARROW)
+def test_narrow_boxes(margins, kernel):
+    check_run(margins, NARROW[kernel], margins.size(quick=1000, full=20_000))
+    check_beside(margins, NARROW[kernel], margins.size(quick=2, full=10), 10)
+
+
+@hard_case(
+    "channels hardly wider than a particle",
+    "between side walls a particle may have no more than a hundredth of its radius to move in, and "
+    "hits the walls hundreds of times from one contact to the next",
+)
+def test_narrow_channels(margins):
+    scenes = [lossless("walled", 4, [W, "open"], **BETWEEN) for W in (2.05, 3.0, 3.99, 4.2)]
+    check_run(margins, scenes, margins.size(quick=1000, full=20_000))
+    check_run(margins, [lossless("walled", 3, [2.01, "open"], **BETWEEN)], 100)
+    check_beside(margins, scenes[1:], margins.size(quick=2, full=10), 10)
+
+
+@hard_case(
+    "boxes a hundred times as long as wide",
+    "whatever is chosen by the shortest side, such as the span after which the clock is set anew, "
+    "or by the longest, such as the margin of single precision, must suit the other, too",
+)
+def test_aspect_ratios(margins):
+    collisions = margins.size(quick=5000, full=200_000)
+    scenes = [
+        lossless(kernel, 160, box)
+        for kernel in ("gas", "sheared")
+        for box in ([10.0, 1000.0], [1000.0, 10.0])
+    ]
+    scenes.append(lossless("gas", 1000, [1200.0, 12.0]))  # too narrow for cells
+    scenes.append(lossless("bed", 160, [1000.0, "open"], **AT_REST))
+    check_run(margins, scenes, collisions)
+    check_beside(margins, scenes[:4], margins.size(quick=1, full=5), 10)
+
+
+STEADY = {"kind": "steady", "equilibrate": 20, "measure": 40, "sample_every": 0.25, "period": 1}
+COOLING = {
+    "kind": "cooling",
+    "replicas": 3,
+    "thermalise": 5,
+    "relaxation_times": 2,
+    "plateau": 20,
+    "sample_every": 1,
+}
+ALONE = {
+    "a gas": settings("gas", 1, [10, 10]) | {"schedule": COOLING},
+    "under shear": settings("sheared", 1, [10, 10]) | {"schedule": STEADY},
+    "in a bed": settings("bed", 1, [10, "open"]) | {"schedule": STEADY},
+}
+
+
+@hard_case(
+    "one, two, three particles",
+    "a single particle in a periodic box has no energy, and its R would be 0/0; two may wait for "
+    "each other for ever",
+)
+def test_few_particles(margins):
+    points = nothing = refused = 0
+    for alone in ALONE.values():
+        for number in (1, 2, 3):
+            for r, beta in ((0.9, 0.2), (0.5, -0.5), (1.0, 1.0)):
+                try:
+                    found = run_point(alone | {"particles": number}, r, beta, 1).variables
+                except InputError:
+                    assert number == 1
+                    refused += 1
+                    continue
+                points += 1
+                nothing += not all(np.isfinite(found[x]) for x in ("R", "R_stderr", "E_trans"))
+    margins.at_most("points without a number", nothing, 0, points, "points")
+    margins.at_most("points refused: those of one undriven particle", refused, 6, points, "points")
+
+
+REFUSED = {
+    "too many disks": settings("gas", 109, [20.1, 20.1]),
+    "too many spheres": settings("spheres", 257, [12, 12, 12]),
+    "too many between walls": settings("walled", 10, [2.005, "open"]),
+    "a periodic box of two diameters": settings("gas", 2, [4.0, 4.0]),
+    "one hardly wider": settings("gas", 2, [4.001, 40]),
+    "a box that ends below zero": settings("gas", 2, [-4.0, 40]),
+    "no number": settings("gas", 2, [math.nan, 40]),
+    "one in a gas": ALONE["a gas"],
+    "one under shear": ALONE["under shear"],
+}
+
+
+@hard_case(
+    "what cannot be simulated",
+    "a scene that does not fit, or in which nothing can happen, would hang, or write a file "
+    "without numbers",
+)
+def test_the_impossible_is_refused_in_one_line(margins, tmp_path):
+    accepted = lines = 0
+    for experiment in REFUSED.values():
+        try:
+            run_point({"schedule": COOLING} | experiment, 0.9, 0.2, 1)
+            accepted += 1
+        except InputError as error:
+            lines = max(lines, str(error).count("\n") + 1)
+    margins.at_most("scenes run all the same", accepted, 0, len(REFUSED), "scenes")
+    margins.at_most("lines of an error", lines, 1, len(REFUSED), "scenes")
+    names = list(REFUSED)[: margins.size(quick=2, full=6)]
+    said = [_by_command(REFUSED[name], tmp_path / "point.nc") for name in names]
+    wrong = sum(status != 2 or text.count("\n") != 1 for status, text in said)
+    margins.at_most("commands that end otherwise", wrong, 0, len(names), "commands")
+    assert not list(tmp_path.iterdir())
+
+
+def _by_command(experiment, output):
+    """(exit status, what is said) of `roughgas run`."""
+    effects = experiment["effects"]
+    if "contact_time" in effects:
+        effects = effects | {"contact_time": effects["contact_time"] | {"below_r": 0.5}}
+    text = json.dumps({"schedule": COOLING} | experiment | {"effects": effects})
+    command = [sys.executable, "-m", "roughgas", "run", "some", "--settings", text, "--r=0.9"]
+    command += ["--beta=0.2", "--seed=1", "--output", str(output)]
+    done = subprocess.run(command, capture_output=True, text=True)
+    return done.returncode, done.stderr
+
+
+def test_without_the_centred_lattice(without):
+    without(
+        "a centred lattice for a start that is denser than a square one",
+        test_densities,
+        "initial.py",
+        "if len(sites) < number and None not in scene.box:",
+        "if False:",
+    )
+
+
+@pytest.mark.slow
+def test_without_the_refusal_of_one_alone(without):
+    without(
+        "a point of one particle that nothing drives is refused",
+        test_few_particles,
+        "simulate.py",
+        "    check_company(scene, experiment)\n",
+        "",
+    )

@@ -1,0 +1,261 @@
+"""The floor."""
+
+import math
+
+import mpmath
+import numpy as np
+import pytest
+from brute_force import begin, run, settings, snapshot
+from compiled import from_python
+
+from hard_cases.catalogue import hard_case
+from hard_cases.falls import Exact, dyadic, general, nearly_at_rest
+from roughgas.effects import floor as floors
+from roughgas.kernel.layout import new_state
+from roughgas.kernel.state import BASE, BOUNDARY_HITS, NOW
+
+time_to_floor = from_python(floors.time_to_floor)
+ROUNDING = 2.0**-53
+RULE = 1e-3  # a/T: a particle leaves the floor at no less than this speed, relative to it
+PHASE = 0.3  # of the accelerating mode: no dyadic number
+
+
+@hard_case(
+    "hits at the stroke's return",
+    "the floor drops from under a particle that is about to be met: a hit that is taken or missed "
+    "by a rounding could leave the particle below the floor, or let it bounce in mid-air",
+)
+def test_hits_around_the_return_of_the_floor(margins):
+    falls = margins.size(quick=600, full=30_000)
+    rng = np.random.default_rng(0)
+    below = beside = 0.0
+    with mpmath.workdps(50):
+        for k in range(falls):
+            fall = (dyadic if k % 2 else general)(rng)
+            exact = Exact(*fall)
+            t = mpmath.mpf(time_to_floor(*fall))
+            lengths = exact.lengths(t)
+            below = max(below, exact.depth(t) / lengths)
+            beside = max(beside, exact.miss(t) / lengths)
+    tried = {"tried": falls, "unit": "falls"}
+    margins.at_most("depth below the floor, over the lengths that enter", below, 1e-15, **tried)
+    margins.at_most("distance from the floor when it is hit, likewise", beside, 1e-15, **tried)
+
+
+@hard_case(
+    "take-off",
+    "a particle that sits on the floor, a rounding above or below it, and leaves it slowly or not "
+    "at all: it could be hit again and again without moving, or be pulled through the floor",
+)
+def test_take_off_at_hardly_any_speed(margins):
+    starts = margins.size(quick=1000, full=50_000)
+    rng = np.random.default_rng(1)
+    beside = early = 0.0
+    with mpmath.workdps(50):
+        for _ in range(starts):
+            start = nearly_at_rest(rng)
+            exact = Exact(*start)
+            t = mpmath.mpf(time_to_floor(*start))
+            speed = exact.v - exact.V
+            # one that is below the floor by rounding is taken to be on it
+            beside = max(beside, abs(exact.gap(t, 0) - min(0, exact.gap(0, 0))) / exact.lengths(t))
+            if speed > 0:
+                early = max(early, 1 - t * exact.g / (2 * speed))
+    tried = {"tried": starts, "unit": "starts"}
+    margins.at_most("distance from the floor when it is hit, likewise", beside, 1e-15, **tried)
+    # both the time and what it is compared with are some roundings off
+    margins.at_most("share by which a hop from the floor is too short", early, 1e-15, **tried)
+
+
+class Bouncer:
+    """One particle above a floor, in the kernel, on the scene of a bed."""
+
+    def __init__(self, height, speed, width=10, gravity=1.0, **floor):
+        experiment = settings(
+            "bed", 1, [width, "open"], floor=floor, gravity={"acceleration": gravity}
+        )
+        self.scene, _ = begin(experiment, 1.0, 0.0)
+        start = np.array([[3.0, 1.0 + float(height)]]), np.array([[0.0, float(speed)]])
+        self.state = new_state(self.scene, *start, np.zeros((1, 1)))
+
+    def run_to(self, time):
+        """Advance to an absolute time."""
+        clock = self.state.clock
+        run(self.state, self.scene, 1, interval=(time - clock[BASE]) - clock[NOW])
+
+    @property
+    def hits(self):
+        return int(self.state.counts[BOUNDARY_HITS])
+
+    def last_hit(self):
+        """(clock's base, time since then, height, velocity) when it left the floor last."""
+        _, y, _, v, time = self.state.trajectory[0]
+        return self.state.clock[BASE], time, y - 1.0, v
+
+
+@hard_case(
+    "ten thousand bounces on a floor at rest",
+    "an elastic particle that bounces keeps its height only if the rounding errors of its bounces "
+    "do not add up in one direction",
+)
+def test_bounces_on_a_floor_at_rest_follow_the_closed_form(margins):
+    bounces = margins.size(quick=10_000, full=300_000)
+    height = 7.3
+    bouncer = Bouncer(height, 0.0, amplitude=0.0)
+    with mpmath.workdps(50):
+        fall = mpmath.sqrt(2 * mpmath.mpf(height))
+        late, fast = [], []
+        for k in range(bounces):
+            bouncer.run_to(float((2 * k + 2) * fall))
+            assert bouncer.hits == k + 1
+            base, time, _, speed = bouncer.last_hit()
+            late.append(float(base - (2 * k + 1) * fall + time))
+            fast.append(float(speed / fall - 1))
+    k = np.arange(1, bounces + 1)
+    # each bounce changes the speed by a rounding or two, as in a random walk, and the times sum up
+    # what has become of it
+    walk = np.max(np.abs(fast) / (ROUNDING * np.sqrt(k)))
+    sums = np.max(np.abs(late) / (2 * float(fall) * ROUNDING * k**1.5))
+    tried = {"tried": bounces, "unit": "bounces"}
+    margins.at_most("error of the speed, in roundings of a random walk", walk, 10.0, **tried)
+    margins.at_most("error of the time, in those of its sum", sums, 10.0, **tried)
+
+
+@hard_case(
+    "ten thousand bounces, each faster than the last",
+    "on a floor that meets it at the same phase each time, a particle gains speed with each "
+    "bounce: the errors of ever longer flights shift the phase until the floor is missed",
+)
+@pytest.mark.parametrize(("amplitude", "flight", "gained"), [(0.25, 2, 1), (5.0, 20, 20)])
+def test_the_accelerating_mode_follows_the_closed_form(margins, amplitude, flight, gained):
+    """With g = period = 1 the k-th bounce comes after a flight of so many + k times so many gained.
+
+    An error e of the speed w becomes e (w - V)/(w + V) in the next bounce: e w stays nearly as it
+    is, and shifts each phase by 2 e/g. So nothing grows exponentially: roundings of w, as in a
+    random walk, add up to some 4 V/g roundings times k^2.5 in the phase.
+    """
+    bounces = margins.size(quick=10_000, full=10_000)
+    bouncer = Bouncer(*_rising(amplitude, flight), 1e9, amplitude=amplitude, period=1.0)
+    shift, periods = [], 0
+    for k in range(bounces):
+        following = flight + gained * (k + 1)
+        bouncer.run_to(periods + following // 2)
+        assert bouncer.hits == k + 1
+        base, time, _, _ = bouncer.last_hit()
+        shift.append(abs(base - periods + time - PHASE))
+        periods += following
+    k = np.arange(1, bounces + 1)
+    worst = np.max(shift / (4.0 * amplitude * ROUNDING * k**2.5))
+    tried = {"tried": bounces, "unit": f"bounces, V = {amplitude:g} a/T"}
+    margins.at_most("shift of the phase, in roundings of the law", worst, 10.0, **tried)
+    margins.at_most("shift of the phase, in T", np.max(shift), 1e-4, **tried)
+
+
+def _rising(amplitude, flight):
+    """(height, speed) at time 0 of a particle whose flight, of so many periods, ends at PHASE."""
+    with mpmath.workdps(50):
+        gone = flight - mpmath.mpf(PHASE)
+        return amplitude * PHASE + flight * gone / 2 - gone**2 / 2, mpmath.mpf(flight) / 2 - gone
+
+
+@hard_case(
+    "a particle that comes to rest",
+    "on a floor that takes energy a particle bounces infinitely often in a finite time: the "
+    "simulation would not get past that moment",
+)
+@pytest.mark.parametrize("amplitude", [0.0, 5.0])
+@pytest.mark.parametrize("restitution", [0.5, 0.9])
+def test_bounces_that_accumulate_come_to_an_end(margins, restitution, amplitude):
+    """The rule: a particle leaves the floor at no less than RULE relative to it.
+
+    Until then, with u0 the speed at the first hit, the k-th flight lasts 2 u0 r^k/g.
+    """
+    period, height = 100.0, 7.3  # all within a stroke, relative to which the floor is at rest
+    floor = {"amplitude": amplitude, "period": period, "restitution": restitution}
+    bouncer = Bouncer(height, 0.0, **floor)
+    floor_speed = amplitude / period
+    first = math.sqrt(floor_speed**2 + 2.0 * height)
+    hit, leaving, late, slowest = first - floor_speed, first * restitution, 0.0, math.inf
+    while True:
+        bouncer.run_to(hit + leaving)
+        base, time, _, speed = bouncer.last_hit()
+        slowest = min(slowest, speed - floor_speed)
+        if leaving < RULE:
+            break
+        # to be a rounding above the floor shifts a hit by that over the speed
+        roundings = ROUNDING * (hit + (height + amplitude) / leaving)
+        late = max(late, abs(base + time - hit) / roundings)
+        hit, leaving = hit + 2.0 * leaving, leaving * restitution
+    tried = {"tried": bouncer.hits, "unit": f"bounces, r = {restitution:g}, V = {floor_speed:g}"}
+    # a flight passes the share r of its error on to the next
+    most = 3.0 / (1.0 - restitution)
+    margins.at_most("error of the time of a bounce, in roundings", late, most, **tried)
+    margins.at_least("speed at which the floor is left, in a/T", slowest, RULE * 0.999999, **tried)
+    _check_afterwards(margins, bouncer, floor_speed)
+
+
+def _check_afterwards(margins, bouncer, floor_speed):
+    """Of the small bounces each lasts 2 RULE/g, and goes RULE^2/2g high."""
+    begin, hits = bouncer.last_hit()[0] + bouncer.state.clock[NOW], bouncer.hits
+    highest = 0.0
+    for k in range(1, 2001):
+        bouncer.run_to(begin + k / 1000)
+        shot = snapshot(bouncer.state, bouncer.scene)
+        highest = max(highest, shot.position[0, 1] - 1.0 - floor_speed * shot.time)
+    tried = {"tried": bouncer.hits - hits, "unit": "bounces at rest"}
+    margins.at_most("bounces per T", 0.5 * tried["tried"], 0.5 / RULE + 1.0, **tried)
+    margins.at_most("height of these, in a", highest, 0.501 * RULE**2, **tried)
+
+
+@hard_case(
+    "a crowd on the floor",
+    "a particle that others push against the floor, whenever that is, must not get below it",
+)
+def test_no_particle_falls_through_the_floor(margins):
+    instants = margins.size(quick=500, full=20_000)
+    deepest = -math.inf
+    # on a floor at rest a gas that dissipates would come to rest
+    lossy, elastic = (0.9, 0.2), (1.0, -1.0)
+    for amplitude, period, own in ((5.0, 1.0, lossy), (0.3, 0.2, lossy), (0.0, 1.0, elastic)):
+        floor = {"amplitude": amplitude, "period": period}
+        scene, state = begin(settings("bed", 40, [12.5, "open"], floor=floor), *own, 3)
+        for _ in range(instants):
+            run(state, scene, 1, interval=0.137)
+            # each where something has happened to it last, which often is the floor
+            y, time = state.trajectory[:, 1], state.trajectory[:, 4]
+            surface = amplitude / period * ((state.clock[BASE] % period + time) % period)
+            deepest = max(deepest, np.max(1.0 + surface - y))
+    tried = {"tried": 3 * instants, "unit": "instants"}
+    # heights of some ten, and times of some ten since the base, each rounded a few times
+    margins.at_most("depth below the floor, in a", deepest, 1e-13, **tried)
+
+
+def test_without_the_quotient_in_free_fall(without):
+    without(
+        "the time of a fall without cancellation",
+        test_hits_around_the_return_of_the_floor,
+        "effects/floor.py",
+        "return 2.0 * gap / (root - speed) if speed < 0.0 else (speed + root) / gravity",
+        "return (speed + root) / gravity",
+    )
+
+
+def test_without_the_hop_of_those_on_the_floor(without):
+    without(
+        "one on the floor that leaves it meets it only after its hop",
+        test_take_off_at_hardly_any_speed,
+        "effects/floor.py",
+        "return 0.0 if speed < 0.0 else 2.0 * speed / gravity",
+        "return 0.0",
+    )
+
+
+@pytest.mark.slow
+def test_without_the_least_speed_of_departure(without):
+    without(
+        "a least speed at which the floor is left",
+        test_bounces_that_accumulate_come_to_an_end,
+        "effects/floor.py",
+        "LEAST_DEPARTURE = 1e-3",
+        "LEAST_DEPARTURE = 0.0",
+    )
