@@ -149,7 +149,7 @@ def test_invariants_of_random_scenes(margins):
     margins.at_most("depth in a wall or the floor, in a", worst.outside, 1e-11, **tried)
     margins.at_most("scenes with numbers that are none", worst.broken, 0, **tried)
     stopped = worst.stopped / worst.tried
-    margins.at_most("share of scenes that are stopped", stopped, 0.05, **tried)
+    margins.at_most("share of scenes that are stopped", stopped, 0.15, **tried)
 
 
 def test_without_the_work_of_contacts_across_the_boundary(without):
