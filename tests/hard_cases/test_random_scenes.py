@@ -131,7 +131,7 @@ def test_invariants_of_random_scenes(margins):
     worst = Worst()
 
     @settings(
-        max_examples=margins.size(60, 3000),
+        max_examples=margins.size(60, 500),
         phases=[Phase.generate],
         derandomize=True,
         database=None,
