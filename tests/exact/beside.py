@@ -1,0 +1,131 @@
+"""The kernel beside the simulation in fifty digits, and what roundings make of themselves."""
+
+import math
+import random
+from decimal import Decimal
+from typing import NamedTuple
+
+import numpy as np
+from brute_force import run
+
+from exact.simulation import ZERO, Exact, minus, plus, times
+from roughgas.kernel.state import BASE, LAST_FIRST, LAST_SECOND, NOW
+
+EPSILON = Decimal(2) ** -52
+NOISE = Decimal(10) ** -30  # so small that it stays so, whatever multiplies EPSILON up to 1
+FOLLOWERS = 8
+
+
+class Segment(NamedTuple):
+    """The pair collisions from a common start that the kernel and the exact simulation share."""
+
+    separation: np.ndarray  # after each collision
+    expected: np.ndarray  # what it is to be by roundings (root of its mean square)
+
+    def ratio(self, up_to):
+        """Largest ratio of the separation to what is expected, while it is below `up_to`."""
+        small = self.separation < up_to
+        return np.max(self.separation[small] / self.expected[small], initial=0.0)
+
+    def last(self):
+        """Separation before the first collision that is not shared."""
+        return self.separation[-1] if len(self.separation) else 0.0
+
+
+def exactly(state, scene, world):
+    """The kernel's present state to the last bit, every particle brought to the present."""
+    dimension = len(scene.box)
+    base, now = _decimals(state.clock[[BASE, NOW]])
+    drop = [ZERO] * 3
+    drop[dimension - 1] = Decimal(world.gravity)
+    order = np.argsort(state.label)
+    x, v, w = [], [], []
+    for i in order:
+        row = _decimals(state.trajectory[i])
+        position, velocity = ((*row[k : k + dimension], ZERO)[:3] for k in (0, dimension))
+        elapsed = now - row[-1]
+        v.append(minus(velocity, times(drop, elapsed)))
+        x.append(plus(position, times(plus(velocity, v[-1]), elapsed / 2)))
+        spin = () if state.spin is None else _decimals(state.spin[i])
+        w.append((ZERO, ZERO, ZERO, *spin)[-3:])
+    last = state.last_contact
+    last = None if last is None else [base + time for time in _decimals(last[order])]
+    shear = type(scene.effects)._fields.index("shear")
+    (phase,) = _decimals(state.phase[[shear]])
+    slide = phase - Decimal(world.shear) * base if world.shear else ZERO
+    return Exact(world, base + now, x, v, w, last, slide)
+
+
+def _decimals(numbers):
+    return [Decimal(float(number)) for number in numbers]
+
+
+def separation(one, other):
+    """Largest difference in time, any place, velocity or spin, as the nearest image has them."""
+    largest = abs(one.time - other.time)
+    for i in range(len(one.x)):
+        x, v = minus(one.x[i], other.x[i]), minus(one.v[i], other.v[i])
+        up = round(x[1] / one.box[1]) if one.shear else 0
+        x, v = (x[0] - up * one.slid(), *x[1:]), (v[0] - up * one.shear, *v[1:])
+        x = (a - round(a / side) * side if side else a for a, side in zip(x, one.box, strict=True))
+        largest = max(largest, *map(abs, (*x, *v, *minus(one.w[i], other.w[i]))))
+    return largest
+
+
+class Rounded:
+    """What rounding does to the exact simulation `one`, in the small.
+
+    Others, the followers, are led through the same events. Whenever the kernel would round, they
+    are displaced at random by NOISE, relative to the gas's largest lengths and speeds: all at the
+    start, and in each event its particles. So each disturbance is multiplied by what the gas
+    makes of it, the exponential growth by the Lyapunov exponent as well as what passes.
+    """
+
+    def __init__(self, one):
+        self.random = random.Random(0)
+        self.length = max([*one.periods, *(max(map(abs, vector)) for vector in one.x)])
+        self.speed = max(max(map(abs, vector)) for vector in one.v + one.w)
+        space = len(one.world.box) == 3
+        self.in_space, self.of_spin = (True, True, space), (space, space, one.q is not None)
+        self.others = [one.copy() for _ in range(FOLLOWERS)]
+        for other in self.others:
+            self._displace(other, range(len(one.x)))
+
+    def follow(self, events):
+        for other in self.others:
+            for event in events:
+                other.follow(event)
+                self._displace(other, [event.i] if event.j < 0 else [event.i, event.j])
+
+    def separation(self, one):
+        """Root of the mean square of the distance from `one`, with EPSILON in NOISE's place."""
+        squares = [(separation(other, one) / NOISE * EPSILON) ** 2 for other in self.others]
+        return math.sqrt(sum(squares) / FOLLOWERS)
+
+    def _displace(self, other, particles):
+        for i in particles:
+            other.x[i] = plus(other.x[i], self._vector(self.in_space, self.length))
+            other.v[i] = plus(other.v[i], self._vector(self.in_space, self.speed))
+            other.w[i] = plus(other.w[i], self._vector(self.of_spin, self.speed))
+
+    def _vector(self, axes, size):
+        """A random one, whose components are there along some of the three axes."""
+        largest = NOISE * size
+        return [Decimal(self.random.uniform(-1.0, 1.0)) * largest if k else ZERO for k in axes]
+
+
+def segment(state, scene, world):
+    """Run both from where the kernel stands until they make different pairs collide."""
+    run(state, scene, 0)  # foresees everything if nothing has been yet
+    exact = exactly(state, scene, world)
+    rounded = Rounded(exact)
+    columns = []
+    while True:
+        events = exact.run(1)
+        run(state, scene, 1, collisions=1)
+        pair = {int(state.counts[LAST_FIRST]), int(state.counts[LAST_SECOND])}
+        if {events[-1].i, events[-1].j} != pair:
+            return Segment(*np.array(columns).reshape(-1, 2).T)
+        rounded.follow(events)
+        kernel = exactly(state, scene, world)
+        columns.append((float(separation(kernel, exact)), rounded.separation(exact)))
