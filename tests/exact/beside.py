@@ -9,7 +9,7 @@ import numpy as np
 from brute_force import run
 
 from exact.simulation import ZERO, Exact, minus, plus, times
-from roughgas.kernel.state import BASE, LAST_FIRST, LAST_SECOND, NOW
+from roughgas.kernel.state import BASE, LAST_FIRST, LAST_SECOND, NOW, SPAN
 
 EPSILON = Decimal(2) ** -52
 NOISE = Decimal(10) ** -30  # so small that it stays so, whatever multiplies EPSILON up to 1
@@ -21,15 +21,12 @@ class Segment(NamedTuple):
 
     separation: np.ndarray  # after each collision
     expected: np.ndarray  # what it is to be by roundings (root of its mean square)
+    parted: float  # separation before they made different pairs collide; inf: they did not
 
     def ratio(self, up_to):
         """Largest ratio of the separation to what is expected, while it is below `up_to`."""
         small = self.separation < up_to
         return np.max(self.separation[small] / self.expected[small], initial=0.0)
-
-    def last(self):
-        """Separation before the first collision that is not shared."""
-        return self.separation[-1] if len(self.separation) else 0.0
 
 
 def exactly(state, scene, world):
@@ -76,15 +73,18 @@ class Rounded:
     """What rounding does to the exact simulation `one`, in the small.
 
     Others, the followers, are led through the same events. Whenever the kernel would round, they
-    are displaced at random by NOISE, relative to the gas's largest lengths and speeds: all at the
-    start, and in each event its particles. So each disturbance is multiplied by what the gas
-    makes of it, the exponential growth by the Lyapunov exponent as well as what passes.
+    are displaced at random by NOISE, relative to the largest lengths and speeds that the kernel
+    has to do with: all at the start, and in each event its particles. So each disturbance is
+    multiplied by what the gas makes of it, the exponential growth by the Lyapunov exponent as well
+    as what passes.
     """
 
-    def __init__(self, one):
+    def __init__(self, one, frame, span):
+        """`frame` is the same state as the kernel has it, `span` how far its times may count."""
         self.random = random.Random(0)
-        self.length = max([*one.periods, *(max(map(abs, vector)) for vector in one.x)])
-        self.speed = max(max(map(abs, vector)) for vector in one.v + one.w)
+        self.speed = max(frame.shear, *(max(map(abs, vector)) for vector in frame.v + frame.w))
+        places = [max(map(abs, vector)) for vector in frame.x]
+        self.length = max(*frame.periods, *places, self.speed * Decimal(span))
         space = len(one.world.box) == 3
         self.in_space, self.of_spin = (True, True, space), (space, space, one.q is not None)
         self.others = [one.copy() for _ in range(FOLLOWERS)]
@@ -97,10 +97,10 @@ class Rounded:
                 other.follow(event)
                 self._displace(other, [event.i] if event.j < 0 else [event.i, event.j])
 
-    def separation(self, one):
+    def separation(self, one, seen):
         """Root of the mean square of the distance from `one`, with EPSILON in NOISE's place."""
-        squares = [(separation(other, one) / NOISE * EPSILON) ** 2 for other in self.others]
-        return math.sqrt(sum(squares) / FOLLOWERS)
+        away = [separation(seen(other), seen(one)) / NOISE * EPSILON for other in self.others]
+        return math.sqrt(sum(x * x for x in away) / FOLLOWERS)
 
     def _displace(self, other, particles):
         for i in particles:
@@ -114,18 +114,26 @@ class Rounded:
         return [Decimal(self.random.uniform(-1.0, 1.0)) * largest if k else ZERO for k in axes]
 
 
-def segment(state, scene, world):
-    """Run both from where the kernel stands until they make different pairs collide."""
+def segment(state, scene, world, most=10**6, exact=None, seen=lambda one: one):
+    """Run both from where the kernel stands, until they make different pairs collide or `most`
+    collisions are made.
+
+    The exact simulation is one of the same state, or of one that is the same once it is `seen` from
+    another frame.
+    """
     run(state, scene, 0)  # foresees everything if nothing has been yet
-    exact = exactly(state, scene, world)
-    rounded = Rounded(exact)
-    columns = []
-    while True:
+    begun = exactly(state, scene, world)
+    exact = exact or begun
+    rounded = Rounded(exact, begun, float(state.clock[SPAN]))
+    columns, parted = [(0.0, math.inf)], math.inf
+    while len(columns) <= most:
         events = exact.run(1)
         run(state, scene, 1, collisions=1)
         pair = {int(state.counts[LAST_FIRST]), int(state.counts[LAST_SECOND])}
         if {events[-1].i, events[-1].j} != pair:
-            return Segment(*np.array(columns).reshape(-1, 2).T)
+            parted = columns[-1][0]
+            break
         rounded.follow(events)
-        kernel = exactly(state, scene, world)
-        columns.append((float(separation(kernel, exact)), rounded.separation(exact)))
+        apart = float(separation(exactly(state, scene, world), seen(exact)))
+        columns.append((apart, rounded.separation(exact, seen)))
+    return Segment(*np.array(columns[1:]).reshape(-1, 2).T, parted)

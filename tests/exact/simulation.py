@@ -64,17 +64,17 @@ class Exact:
             look = self._longest_look()
             wait, event = min(self._ahead(), key=lambda found: found[0])
             if wait <= look:
-                self._move(wait)
+                self.move(wait)
                 self._resolve(event)
                 return event
-            self._move(look)
+            self.move(look)
             if self.floor and self.time >= self._stroke_end() * (1 - Decimal(10) ** (8 - DIGITS)):
                 self.time = self._stroke_end()
                 self.stroke += 1
 
     def follow(self, event):
         """Carry out this event, which is the next one on these paths, too."""
-        self._move(self._wait(event))
+        self.move(self._wait(event))
         self._resolve(event)
 
     # ------------------------------------------------------------------ what comes next
@@ -160,11 +160,13 @@ class Exact:
 
     # ------------------------------------------------------------------ what happens
 
-    def _move(self, wait):
+    def move(self, wait):
+        """Everything in free flight."""
         drop = [ZERO] * 3
         drop[self.top] = self.gravity * wait
         fallen = times(drop, HALF * wait)
-        self.x = [minus(plus(x, times(v, wait)), fallen) for x, v in zip(self.x, self.v)]
+        paths = zip(self.x, self.v, strict=True)
+        self.x = [minus(plus(x, times(v, wait)), fallen) for x, v in paths]
         self.v = [minus(v, drop) for v in self.v]
         self.time += wait
 

@@ -90,6 +90,6 @@ def test_elastic_paths_can_be_walked_back(name):
         [times(w, -1) for w in exact.w],
     )
     back.run(60)
-    back._move(-back.time)
+    back.move(-back.time)
     back.v, back.w = ([times(a, -1) for a in vectors] for vectors in (back.v, back.w))
     assert separation(back, begun) < Decimal(10) ** (20 - DIGITS)

@@ -66,7 +66,7 @@ def test_separates_from_exact_arithmetic_as_chaos_demands(name, margins):
     most = 400 if name == "cooling gas" else 10_000  # a cold one only moves as a whole
     collisions = min(most, margins.size(quick=200, full=10_000))
     segments, tried = compare(margins, name, state, scene, world, collisions)
-    first = min(one.last() for one in segments)
+    first = min(one.parted for one in segments)
     margins.at_least(f"{name}: separation from which pairs differ", first, SMALL, **tried)
     one = segments[0]
     margins.keep(
