@@ -24,8 +24,8 @@ class Segment(NamedTuple):
     parted: float  # separation before they made different pairs collide; inf: they did not
 
     def ratio(self, up_to):
-        """Largest ratio of the separation to what is expected, while it is below `up_to`."""
-        small = self.separation < up_to
+        """Largest ratio of the separation to what is expected, while that is below `up_to`."""
+        small = self.expected < up_to
         return np.max(self.separation[small] / self.expected[small], initial=0.0)
 
 
