@@ -9,7 +9,7 @@ import numpy as np
 from brute_force import run
 
 from exact.simulation import ZERO, Exact, minus, plus, times
-from roughgas.kernel.state import BASE, LAST_FIRST, LAST_SECOND, NOW, SPAN
+from roughgas.kernel.state import BASE, COLLISIONS, LAST_FIRST, LAST_SECOND, NOW, SPAN
 
 EPSILON = Decimal(2) ** -52
 NOISE = Decimal(10) ** -30  # so small that it stays so, whatever multiplies EPSILON up to 1
@@ -114,6 +114,14 @@ class Rounded:
         return [Decimal(self.random.uniform(-1.0, 1.0)) * largest if k else ZERO for k in axes]
 
 
+def next_pair(state, scene):
+    """The kernel's next collision, however long it takes: a call waits for a limited time."""
+    made = state.counts[COLLISIONS]
+    while state.counts[COLLISIONS] == made:
+        run(state, scene, 1, collisions=1)
+    return {int(state.counts[LAST_FIRST]), int(state.counts[LAST_SECOND])}
+
+
 def segment(state, scene, world, most=10**6, exact=None, seen=lambda one: one):
     """Run both from where the kernel stands, until they make different pairs collide or `most`
     collisions are made.
@@ -128,9 +136,7 @@ def segment(state, scene, world, most=10**6, exact=None, seen=lambda one: one):
     columns, parted = [(0.0, math.inf)], math.inf
     while len(columns) <= most:
         events = exact.run(1)
-        run(state, scene, 1, collisions=1)
-        pair = {int(state.counts[LAST_FIRST]), int(state.counts[LAST_SECOND])}
-        if {events[-1].i, events[-1].j} != pair:
+        if {events[-1].i, events[-1].j} != next_pair(state, scene):
             parted = columns[-1][0]
             break
         rounded.follow(events)
