@@ -114,10 +114,15 @@ class Rounded:
         return [Decimal(self.random.uniform(-1.0, 1.0)) * largest if k else ZERO for k in axes]
 
 
-def next_pair(state, scene):
-    """The kernel's next collision, however long it takes: a call waits for a limited time."""
+def next_pair(state, scene, until):
+    """The kernel's next collision; none if there is none up to some time after `until`.
+
+    One call waits for a limited time, which may be short where the images are fast.
+    """
     made = state.counts[COLLISIONS]
     while state.counts[COLLISIONS] == made:
+        if state.clock[BASE] + state.clock[NOW] > until:
+            return set()
         run(state, scene, 1, collisions=1)
     return {int(state.counts[LAST_FIRST]), int(state.counts[LAST_SECOND])}
 
@@ -136,7 +141,8 @@ def segment(state, scene, world, most=10**6, exact=None, seen=lambda one: one):
     columns, parted = [(0.0, math.inf)], math.inf
     while len(columns) <= most:
         events = exact.run(1)
-        if {events[-1].i, events[-1].j} != next_pair(state, scene):
+        pair = next_pair(state, scene, float(seen(exact).time) + 1.0)
+        if {events[-1].i, events[-1].j} != pair:
             parted = columns[-1][0]
             break
         rounded.follow(events)

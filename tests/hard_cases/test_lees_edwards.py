@@ -222,7 +222,7 @@ def test_fast_shear_makes_the_same_collisions(scheme, margins):
     flow or nearly at rest."""
     rng = np.random.default_rng(4)
     segments = []
-    for k in range(margins.size(quick=80, full=600)):
+    for k in range(margins.size(quick=40, full=600)):
         velocity = float(10.0 ** rng.uniform(0, 4))
         scene, world = scene_of(
             settings("sheared", 8, [25, 25], shear={"velocity": velocity}), 0.9, 0.2
