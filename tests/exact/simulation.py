@@ -1,0 +1,246 @@
+"""The same physics once more, in fifty digits and plain Python: all pairs, all images, all events.
+
+Written from docs/physics.md. Positions, velocities and spins have three components each, in the
+plane, too. Nobody is ever folded into the box: an event names the image that is met. So another
+simulation that differs very little can be led through the same events (`follow`), each at the time
+at which its own paths have it.
+"""
+
+import decimal
+import itertools
+import math
+from decimal import Decimal
+from typing import NamedTuple
+
+DIGITS = 50
+decimal.getcontext().prec = DIGITS
+ZERO, HALF, NEVER = Decimal(0), Decimal("0.5"), Decimal("Infinity")
+DIAMETER = 2
+
+
+class Event(NamedTuple):
+    kind: str  # pair, floor, left, right
+    i: int
+    j: int = -1
+    image: tuple[int, int, int] = (0, 0, 0)  # of j: periods along each axis that i sees it off by
+    stroke: int = 0  # of the floor
+
+
+class Exact:
+    """A simulation under way: `step` finds the next event and carries it out."""
+
+    def __init__(self, world, time, x, v, w, last=None, slide=ZERO):
+        """World as in brute_force; all numbers Decimals, vectors of three of them. `slide`: place
+        at time 0 of the image above a sheared box."""
+        self.world = world
+        self.time, self.x, self.v, self.w = time, list(x), list(v), list(w)
+        self.last = [-NEVER] * len(x) if last is None else list(last)
+        self.top = len(world.box) - 1  # the axis along which things fall
+        self.box = tuple(_exact(side) for side in world.box) + (None,) * (2 - self.top)
+        self.periods = [length for length in self.box if length is not None]
+        self.r, self.beta, self.q = map(_exact, (world.r, world.beta, world.q))
+        self.gravity, self.shear = Decimal(world.gravity), Decimal(world.shear)
+        self.slide = slide
+        self.floor, self.walls = (
+            tuple(map(Decimal, wall)) if wall else None for wall in (world.floor, world.walls)
+        )
+        self.contact_time = Decimal(world.contact_time)
+        self.stroke = math.floor(time / self.floor[1]) if self.floor else 0
+
+    def copy(self):
+        return Exact(self.world, self.time, self.x, self.v, self.w, self.last, self.slide)
+
+    def run(self, collisions):
+        """The events up to and with the so-manieth pair collision."""
+        events = []
+        while collisions > 0:
+            events.append(self.step())
+            collisions -= events[-1].kind == "pair"
+        return events
+
+    def step(self):
+        """Carry out the next event and return it."""
+        while True:
+            look = self._longest_look()
+            wait, event = min(self._ahead(), key=lambda found: found[0])
+            if wait <= look:
+                self.move(wait)
+                self._resolve(event)
+                return event
+            self.move(look)
+            if self.floor and self.time >= self._stroke_end() * (1 - Decimal(10) ** (8 - DIGITS)):
+                self.time = self._stroke_end()
+                self.stroke += 1
+
+    def follow(self, event):
+        """Carry out this event, which is the next one on these paths, too."""
+        self.move(self._wait(event))
+        self._resolve(event)
+
+    # ------------------------------------------------------------------ what comes next
+
+    def _longest_look(self):
+        """No pair moves by more than half a box within it, and the floor's stroke does not end."""
+        look = self._stroke_end() - self.time if self.floor else NEVER
+        if self.periods:
+            speeds = [dot(v, v).sqrt() for v in map(self._velocity_in_box, self.x, self.v)]
+            fastest = 2 * max(speeds) + abs(self.shear)
+            look = min(look, HALF * min(self.periods) / fastest)
+        return look
+
+    def _stroke_end(self):
+        return (self.stroke + 1) * self.floor[1]
+
+    def _velocity_in_box(self, x, v):
+        crossed = math.floor(x[1] / self.box[1]) if self.shear else 0
+        return (v[0] - crossed * self.shear, v[1], v[2])
+
+    def _ahead(self):
+        """(wait, event) of everything that may come next."""
+        number = len(self.x)
+        for i, j in itertools.combinations(range(number), 2):
+            for image in self._images(i, j):
+                yield self._until_contact(i, j, image), Event("pair", i, j, image)
+        kinds = ("floor",) * bool(self.floor) + ("left", "right") * bool(self.walls)
+        for kind, i in itertools.product(kinds, range(number)):
+            event = Event(kind, i, stroke=self.stroke)
+            yield self._wait(event), event
+
+    def _images(self, i, j):
+        """The images of j that i may touch after half a box of relative motion."""
+        d = minus(self.x[i], self.x[j])
+        for up in self._numbers(d[1], 1):
+            for along in self._numbers(d[0] + up * self.slid(), 0):
+                for out in self._numbers(d[2], 2):
+                    yield along, up, out
+
+    def _numbers(self, distance, axis):
+        length = self.box[axis]
+        if length is None:
+            return (0,)
+        nearest = -round(distance / length)
+        reach = DIAMETER + HALF * min(self.periods)
+        near = range(nearest - 1, nearest + 2)
+        return [k for k in near if abs(distance + k * length) <= reach]
+
+    def slid(self):
+        """How far the image above has slid."""
+        return self.slide + self.shear * self.time
+
+    def apart(self, i, j, image):
+        """Position and velocity of i from this image of j."""
+        x, v = minus(self.x[i], self.x[j]), minus(self.v[i], self.v[j])
+        x = tuple(a + k * (length or 0) for a, k, length in zip(x, image, self.box, strict=True))
+        up = image[1]
+        return (x[0] + up * self.slid(), *x[1:]), (v[0] + up * self.shear, *v[1:])
+
+    def _wait(self, event):
+        """Time until this event on the present paths."""
+        if event.kind == "pair":
+            return self._until_contact(event.i, event.j, event.image)
+        x, v = self.x[event.i], self.v[event.i]
+        if event.kind == "floor":
+            rise = self.floor[0] / self.floor[1]
+            gap = x[self.top] - 1 - rise * (self.time - event.stroke * self.floor[1])
+            return _fall(gap, v[self.top] - rise, self.gravity)
+        gap, speed = (x[0] - 1, -v[0]) if event.kind == "left" else (self.walls[0] - 1 - x[0], v[0])
+        return max(gap, ZERO) / speed if speed > 0 else NEVER
+
+    def _until_contact(self, i, j, image):
+        """First root of |x + v t| = 2, if they approach; overlapping is now."""
+        x, v = self.apart(i, j, image)
+        b = dot(x, v)
+        if b >= 0:
+            return NEVER
+        vv = dot(v, v)
+        discriminant = b * b - vv * (dot(x, x) - DIAMETER**2)
+        if discriminant < 0:
+            return NEVER
+        return max(ZERO, (-b - discriminant.sqrt()) / vv)
+
+    # ------------------------------------------------------------------ what happens
+
+    def move(self, wait):
+        """Everything in free flight."""
+        drop = [ZERO] * 3
+        drop[self.top] = self.gravity * wait
+        fallen = times(drop, HALF * wait)
+        paths = zip(self.x, self.v, strict=True)
+        self.x = [minus(plus(x, times(v, wait)), fallen) for x, v in paths]
+        self.v = [minus(v, drop) for v in self.v]
+        self.time += wait
+
+    def _resolve(self, event):
+        if event.kind == "pair":
+            self._collide(event.i, event.j, event.image)
+        elif event.kind == "floor":
+            rise = [ZERO] * 3
+            rise[self.top] = self.floor[0] / self.floor[1]
+            self._bounce(event.i, times(rise, 1 / rise[self.top]), rise, *self.floor[2:])
+        else:
+            n = (Decimal(1 if event.kind == "left" else -1), ZERO, ZERO)
+            self._bounce(event.i, n, (ZERO,) * 3, *self.walls[1:])
+
+    def _collide(self, i, j, image):
+        x, v = self.apart(i, j, image)
+        n = times(x, 1 / dot(x, x).sqrt())
+        r = self._restitution(self.r, i, j)
+        push, turn = self._response(n, v, plus(self.w[i], self.w[j]), r, self.beta)
+        self._kick(i, times(push, -HALF), times(turn, HALF))
+        self._kick(j, times(push, HALF), times(turn, HALF))
+
+    def _bounce(self, i, n, wall_velocity, r, beta):
+        r = self._restitution(r, i)
+        push, turn = self._response(n, minus(self.v[i], wall_velocity), self.w[i], r, beta)
+        self._kick(i, times(push, Decimal(-1)), turn)
+
+    def _response(self, n, v, w, r, beta):
+        """Push and turn by a partner of infinite mass: between two particles it is half of that."""
+        normal = times(n, dot(v, n))
+        push, turn = times(normal, 1 + r), (ZERO,) * 3
+        if self.q is not None:
+            slip = minus(minus(v, cross(w, n)), normal)
+            push = plus(push, times(slip, self.q * (1 + beta) / (1 + self.q)))
+            turn = times(cross(n, slip), (1 + beta) / (1 + self.q))
+        return push, turn
+
+    def _kick(self, i, push, turn):
+        self.v[i], self.w[i] = plus(self.v[i], push), plus(self.w[i], turn)
+
+    def _restitution(self, r, *particles):
+        """Contacts soon after the previous one lose nothing along the normal."""
+        previous = max(self.last[k] for k in particles)
+        for k in particles:
+            self.last[k] = self.time
+        return Decimal(1) if self.time - previous < self.contact_time else r
+
+
+def _exact(number):
+    return None if number is None else Decimal(number)
+
+
+def _fall(gap, speed, gravity):
+    """First time at which gap + speed t - gravity t^2/2 vanishes, from above."""
+    if gap <= 0 and speed < 0:
+        return ZERO
+    return (speed + (speed * speed + 2 * gravity * max(gap, ZERO)).sqrt()) / gravity
+
+
+def plus(a, b):
+    return (a[0] + b[0], a[1] + b[1], a[2] + b[2])
+
+
+def minus(a, b):
+    return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
+
+
+def times(a, s):
+    return (a[0] * s, a[1] * s, a[2] * s)
+
+
+def dot(a, b):
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def cross(a, b):
+    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
