@@ -2,7 +2,12 @@
 HARD_CASES = Path("tests/hard_cases")
 FAMILIES = sorted(path.stem.removeprefix("test_") for path in HARD_CASES.glob("test_*.py"))
 LONGEST = ["long_times"]  # starts first
-PICTURES = ["hard_cases", "hard_cases_collapse"]
+PICTURES = [
+    "hard_cases",
+    "hard_cases_collapse",
+    "hard_cases_chaos",
+    "hard_cases_cooling",
+]
 
 
 def size_of_cases(wildcards):
@@ -21,6 +26,7 @@ rule family:
         [str(path) for path in sorted(Path("tests/brute_force").glob("*.py"))],
         "tests/conftest.py",
         "tests/compiled.py",
+        [str(path) for path in sorted(Path("tests/exact").glob("*.py"))],
         "tests/hard_cases/catalogue.py",
         "tests/hard_cases/conftest.py",
         cases="tests/hard_cases/test_{family}.py",

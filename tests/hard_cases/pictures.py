@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.patches import Circle
 
 from hard_cases.catalogue import Margin
 from roughgas.plotting.style import FAINT, GREY, LOOKS, PARAMETERS, THEORY, WIDTH
@@ -75,24 +76,70 @@ def _frame(axes, labels):
 
 def collapse(series: Series) -> Figure:
     """The chain that a bed collapses in, and what the contact-time model makes of it."""
-    figure = Figure(figsize=(1.5 * WIDTH, 0.75 * WIDTH), layout="constrained")
-    bed, model = figure.subplots(1, 2, width_ratios=(1.15, 1))
+    figure, (bed, model) = _pair(1.15, 1.0)
     _chain(bed, series["collapse_chain"])
     _contact_times(model, series["contact_time"])
     return figure
 
 
-PICTURES: dict[str, Callable[[Series], Figure]] = {"collapse": collapse}
+def chaos(series: Series) -> Figure:
+    """How fast roundings grow: beside exact arithmetic, and on the way back to the start."""
+    figure, (beside, back) = _pair(1.0, 1.0)
+    _separation(beside, series["separation, gas"])
+    _way_back(back, series["time_reversal"])
+    return figure
+
+
+def cooling(series: Series) -> Figure:
+    """A gas whose energy falls by hundreds of orders of magnitude, and its R."""
+    figure, (energy, ratio) = _pair(1.0, 1.0)
+    columns = {name: np.array(numbers) for name, numbers in series["cooling_far"].items()}
+    restitutions = [name.split()[1] for name in columns if name.startswith("R ")]
+    for r, look in zip(restitutions, LOOKS, strict=False):
+        style = {"color": look.colour, "linestyle": look.line, "label": f"$r = {r}$"}
+        energy.plot(columns["collisions"], columns[f"log10_energy {r}"], **style)
+        ratio.plot(columns["collisions"], columns[f"R {r}"], **style)
+    energy.axhline(-308, color=FAINT, lw=0.8, linestyle=(0, (1, 2)))
+    energy.annotate(
+        "smallest double",
+        (0.98, -308),
+        ("axes fraction", "data"),
+        (0, 3),
+        textcoords="offset points",
+        ha="right",
+        fontsize=7,
+        color=GREY,
+    )
+    energy.set_ylabel(r"$\log_{10} \bar{E}$")
+    ratio.set_ylabel("$R$, means over a hundredth of the run")
+    ratio.set_ylim(0.0, 0.8)
+    for axes in (energy, ratio):
+        axes.set_xlabel("collisions per particle")
+    energy.legend(loc="lower left")
+    return figure
+
+
+PICTURES: dict[str, Callable[[Series], Figure]] = {
+    "collapse": collapse,
+    "chaos": chaos,
+    "cooling": cooling,
+}
+
+
+def _pair(*widths):
+    figure = Figure(figsize=(1.5 * WIDTH, 0.72 * WIDTH), layout="constrained")
+    return figure, figure.subplots(1, 2, width_ratios=widths)
 
 
 def _chain(axes, chain):
+    """Particles about the chain, in the images closest to it; `last` is the time since contact."""
     x, y, last = (np.array(chain[name]) for name in ("x", "y", "last"))
     involved = last < 1e-6
-    xs, ys = x[involved], y[involved]
-    middle = np.array([np.median(xs), np.median(ys)])
+    middle = np.median(x[involved]), np.median(y[involved])
+    x = middle[0] + (x - middle[0] + 25.0) % 50.0 - 25.0
     for k in range(x.size):
         colour = LOOKS[1].colour if involved[k] else "#DDDDDD"
-        axes.add_patch(matplotlib.patches.Circle((x[k], y[k]), 1.0, fc=colour, ec=GREY, lw=0.4))
+        axes.add_patch(Circle((x[k], y[k]), 1.0, fc=colour, ec=GREY, lw=0.4))
     half = 13.0
     axes.set_xlim(middle[0] - half, middle[0] + half)
     axes.set_ylim(middle[1] - half, middle[1] + half)
@@ -116,3 +163,31 @@ def _contact_times(axes, model):
     share.set_yscale("log")
     share.set_ylabel("share of contacts touched by the model", color=LOOKS[1].colour)
     axes.set_title(r"with the model, $r = 0.6$, $\beta = 0$", fontsize=8, loc="left")
+
+
+def _separation(axes, columns):
+    collision, kernel, expected = (
+        np.array(columns[name]) for name in ("collision", "kernel", "expected")
+    )
+    axes.semilogy(collision, kernel, "o", color=LOOKS[0].colour, ms=3, label="the kernel")
+    axes.plot(collision, expected, color=THEORY, label="what roundings grow to")
+    axes.set_xlabel("collisions of eight disks")
+    axes.set_ylabel("separation from fifty digits")
+    axes.legend(loc="upper left")
+    axes.set_title("until chaos separates them", fontsize=8, loc="left")
+
+
+def _way_back(axes, columns):
+    length = np.array(columns["collisions"])
+    names = [name.removeprefix("error of ") for name in columns if name.startswith("error of ")]
+    for name, look in zip(names, LOOKS, strict=False):
+        error, prediction = (
+            np.array(columns[f"{what} {name}"]) for what in ("error of", "prediction for")
+        )
+        axes.semilogy(length, error, look.marker, color=look.colour, ms=3, label=name)
+        seen = prediction < 1.0
+        axes.plot(length[seen], prediction[seen], color=look.colour, linestyle=look.line, lw=0.9)
+    axes.set_xlabel("collisions per particle before the turn")
+    axes.set_ylabel("distance from the start after the return")
+    axes.legend(loc="lower right")
+    axes.set_title("an elastic gas retraces its steps", fontsize=8, loc="left")
