@@ -17,8 +17,11 @@ figures: setup ## simulate, and draw the four figures of the paper
 	@echo "What the paper claims, and what we find:  results/paper/claims.md"
 	@echo "Every number in them:  results/paper/R.csv"
 
-test: setup ## run every test
-	$(BIN)/python -m pytest -n $(JOBS) --dist loadfile
+test: setup ## run the tests
+	$(BIN)/python -m pytest -n $(JOBS) --dist loadfile -m "not remedy"
+
+remedies: setup ## show that hard cases fail once a remedy is taken out: some minutes more
+	$(BIN)/python -m pytest -n $(JOBS) -m remedy tests/hard_cases
 
 bench: setup ## measure the speed: docs/benchmarks.md
 	$(BIN)/python -m benchmarks
@@ -59,5 +62,5 @@ lock: ## choose and pin the newest versions of all dependencies (needs uv)
 clean: ## remove all results; the environment and the committed figures stay
 	rm -rf results logs .snakemake figures/*.pdf figures/*/ .pytest_cache .ruff_cache .hypothesis
 
-.PHONY: help figures test bench lint format setup lock clean
+.PHONY: help figures test remedies bench lint format setup lock clean
 .DELETE_ON_ERROR:

@@ -19,6 +19,12 @@ def pytest_configure(config):
     config.stash[FOUND] = {"margins": [], "remedies": [], "series": {}}
 
 
+def pytest_collection_modifyitems(items):
+    for item in items:
+        if "without" in getattr(item, "fixturenames", ()):
+            item.add_marker(pytest.mark.remedy)
+
+
 def pytest_sessionfinish(session):
     target = session.config.getoption("--margins", None)
     if target:

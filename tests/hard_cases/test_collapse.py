@@ -4,7 +4,6 @@ import math
 from fractions import Fraction
 
 import numpy as np
-import pytest
 from brute_force import begin, run, settings, snapshot
 
 from hard_cases.catalogue import hard_case
@@ -59,7 +58,6 @@ def collapse(seed):
     return {"collapsed": collapsed, "contacts": contacts, "x": x % 50.0, "y": y, "last": last}
 
 
-@pytest.mark.slow
 def test_without_a_watch_on_spent_contacts(without):
     without(
         "noticing contacts that have no speed left",

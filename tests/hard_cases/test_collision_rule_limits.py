@@ -11,6 +11,7 @@ from roughgas.effects import Effects
 from roughgas.effects.spin import Spin
 from roughgas.kernel import contact
 from roughgas.kernel.layout import new_state
+from roughgas.kernel.record import Plan, columns, record
 from roughgas.kernel.state import COLLISIONS
 
 response = from_python(contact.response)
@@ -197,6 +198,7 @@ def test_parting(margins, dimension):
     )
     scene, _ = begin(experiment, 0.0, -1.0)
     rng, most, pairs_tried = np.random.default_rng(dimension), 0, margins.size(1000, 20_000)
+    row = np.empty((1, len(columns(dimension, True))))
     for _ in range(pairs_tried):
         r = rng.choice([0.0, 1.0, 1.0]) * 10.0 ** rng.uniform(-16, 0)
         scene = scene._replace(restitution=r, roughness=rng.choice([-1.0, rng.uniform(-1, 1)]))
@@ -206,17 +208,17 @@ def test_parting(margins, dimension):
         position = 7.0 + np.array([0.0 * n, (2.0 + gap) * n])
         velocity = rng.standard_normal(dimension) + np.array([0.0 * n, across - approach * n])
         state = new_state(scene, position, velocity, np.zeros((2, 2 * dimension - 3)))
-        run(state, scene, 1, interval=1.0, collisions=100)
+        # a pair that does is stopped, as a collapse would be: here it is only counted
+        record(state, scene, Plan(1.0, 100, 0), row)
         most = max(most, state.counts[COLLISIONS])
     margins.at_most(f"contacts of a pair, D = {dimension}", most, 1, pairs_tried, "pairs")
 
 
-@pytest.mark.slow
 def test_without_parting(without):
     without(
         "particles part at 1e-10 of the typical speed at least",
         test_parting,
         "kernel/contact.py",
-        "push = _parted(push, n, v, 0.5, STICKING * state.clock[TYPICAL_SPEED])",
+        "    push = _parted(push, n, v, 0.5, least)\n",
         "",
     )

@@ -3,7 +3,6 @@
 import math
 
 import numpy as np
-import pytest
 from brute_force import begin, run, settings, snapshot
 from compiled import from_python
 
@@ -84,7 +83,6 @@ def curves(restitutions, runs, samples):
     return columns
 
 
-@pytest.mark.slow
 def test_without_removing_the_momentum(without):
     without(
         "removing the momentum that roundings leave",

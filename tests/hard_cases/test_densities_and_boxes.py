@@ -251,7 +251,6 @@ def test_without_the_centred_lattice(without):
     )
 
 
-@pytest.mark.slow
 def test_without_the_refusal_of_one_alone(without):
     without(
         "a point of one particle that nothing drives is refused",

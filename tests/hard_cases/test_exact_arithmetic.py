@@ -94,7 +94,6 @@ def test_an_old_gas_is_as_close_to_exact_arithmetic(name, margins):
     compare(margins, name, state, scene, world, margins.size(quick=100, full=1000))
 
 
-@pytest.mark.slow
 def test_without_a_clock_that_moves_along(without):
     without(
         "times count from a base that moves along",

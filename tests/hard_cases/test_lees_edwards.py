@@ -128,7 +128,6 @@ def test_the_gas_is_the_same_however_it_is_seen(name, scheme, margins):
     measure(margins, f"{name}, {scheme}", segments)
 
 
-@pytest.mark.slow
 def test_without_taking_whole_boxes_off_the_slide(without):
     without(
         "whole boxes are taken off the slide",
@@ -198,7 +197,6 @@ def test_contacts_coincide_with_crossings(box, margins):
     measure(margins, f"two particles in a box of {box[0]:g} by {box[1]:g}", segments)
 
 
-@pytest.mark.slow
 def test_without_less_velocity_below(without):
     without(
         "what crosses the boundary has U less",
@@ -234,7 +232,6 @@ def test_fast_shear_makes_the_same_collisions(scheme, margins):
     measure(margins, scheme, segments)
 
 
-@pytest.mark.slow
 def test_without_looking_at_every_image(without):
     without(
         "flights are cut until within each piece the nearest image decides",

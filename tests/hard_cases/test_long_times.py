@@ -1,7 +1,6 @@
 """Long times."""
 
 import numpy as np
-import pytest
 from brute_force import Beside, begin, run, scene_of, settings
 
 from hard_cases.catalogue import hard_case
@@ -116,7 +115,6 @@ def _agreement(beside):
     return np.median(differences[:, 0] / differences[:, 1])
 
 
-@pytest.mark.slow
 def test_without_moving_the_base(without):
     without(
         "a clock whose base moves along",

@@ -1,7 +1,6 @@
 """Overlap by rounding."""
 
 import numpy as np
-import pytest
 from brute_force import run, scene_of, settings
 
 from hard_cases.catalogue import hard_case
@@ -33,7 +32,6 @@ def test_pairs_collide_where_they_touch(margins):
     margins.at_most("largest gap at a contact, in a", gaps[:, 1].max(), 1e-11, **tried)
 
 
-@pytest.mark.slow
 def test_without_dropping_contacts_of_paths_that_have_changed(without):
     without(
         "dropping a contact once its partner's path has changed",

@@ -250,7 +250,6 @@ def test_without_the_hop_of_those_on_the_floor(without):
     )
 
 
-@pytest.mark.slow
 def test_without_the_least_speed_of_departure(without):
     without(
         "a least speed at which the floor is left",
