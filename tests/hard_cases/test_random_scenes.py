@@ -31,7 +31,7 @@ ALL = [
 """Compositions (kind, spin, contact time, dimension): each is a kernel of its own."""
 
 material = {
-    "restitution": st.sampled_from([0.0, 0.3, 0.9, 1.0]),
+    "restitution": st.sampled_from([0.3, 0.7, 0.9, 1.0]),
     "roughness": st.sampled_from([-1.0, -0.4, 0.5, 1.0]),
 }
 PARAMETERS = {
@@ -131,7 +131,7 @@ def test_invariants_of_random_scenes(margins):
     worst = Worst()
 
     @settings(
-        max_examples=margins.size(60, 500),
+        max_examples=margins.size(60, 1500),
         phases=[Phase.generate],
         derandomize=True,
         database=None,
@@ -149,7 +149,7 @@ def test_invariants_of_random_scenes(margins):
     margins.at_most("depth in a wall or the floor, in a", worst.outside, 1e-11, **tried)
     margins.at_most("scenes with numbers that are none", worst.broken, 0, **tried)
     stopped = worst.stopped / worst.tried
-    margins.at_most("share of scenes that are stopped", stopped, 0.15, **tried)
+    margins.at_most("share of scenes that are stopped", stopped, 0.05, **tried)
 
 
 def test_without_the_work_of_contacts_across_the_boundary(without):
