@@ -14,6 +14,8 @@ from roughgas.config.reading import read_yaml
 
 ROOT = Path(__file__).parent.parent.parent
 COPIED = ("Snakefile", "config.yaml", "rules", "profiles", "src")
+COPIED += tuple(f"tests/{name}" for name in ("hard_cases", "brute_force", "exact"))
+COPIED += ("tests/conftest.py", "tests/compiled.py")
 SWEEP = {"r": ["0.9"], "beta": ["0"], "seeds": 2}
 STEADY = {"equilibrate": 20, "measure": 20}
 TINY = {
@@ -46,6 +48,7 @@ class Project:
 
     def __init__(self, folder):
         self.folder = folder
+        (folder / "tests").mkdir()
         for name in COPIED:
             if (ROOT / name).is_dir():
                 shutil.copytree(ROOT / name, folder / name)

@@ -110,3 +110,9 @@ def test_a_reduced_dataset_does_not_depend_on_the_kernel(made):
     (row,) = (line for line in summary.splitlines() if line.startswith(target))
     assert "src/roughgas/theory/closed_forms.py" in row  # imported inside a function
     assert "src/roughgas/kernel/" not in row
+
+
+def test_an_edit_of_a_family_of_hard_cases_concerns_it_alone(finished):
+    assert finished.planned("hard_cases") == {}
+    finished.append("tests/hard_cases/test_ties.py")
+    assert finished.planned("hard_cases") == {"family": 1, "catalogue": 1, "hard_cases": 1}

@@ -81,6 +81,13 @@ def test_everything_has_the_experiments_that_were_added(tmp_path):
     assert "point" not in project.planned("figures")
 
 
+def test_the_hard_cases_are_those_of_the_catalogue(project):
+    families = list((project.folder / "tests" / "hard_cases").glob("test_*.py"))
+    planned = project.planned("hard_cases")
+    assert planned == {"family": len(families), "catalogue": 1, "hard_cases": 1}
+    assert len(families) > 10
+
+
 def test_any_legal_point_can_be_asked_for(project):
     planned = project.planned(*LEGAL)
     assert planned == {"compile_kernel": len(LEGAL), "point": len(LEGAL)}
