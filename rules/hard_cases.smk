@@ -1,6 +1,13 @@
 # Where a simulation could go wrong: the catalogue in tests/hard_cases, tried as often as it takes.
 HARD_CASES = Path("tests/hard_cases")
 FAMILIES = sorted(path.stem.removeprefix("test_") for path in HARD_CASES.glob("test_*.py"))
+DRAWING = [HARD_CASES / "report.py", HARD_CASES / "pictures.py"]
+SHARED = [  # what a family may import
+    str(path)
+    for folder in ("", "brute_force", "exact", "hard_cases")
+    for path in sorted(Path("tests", folder).glob("*.py"))
+    if not path.name.startswith("test_") and path not in DRAWING
+]
 LONGEST = ["long_times"]  # starts first
 PICTURES = [
     "hard_cases",
@@ -23,12 +30,7 @@ rule family:
     # other families start while this one compiles: the kernels of all are the same few
     input:
         sources("simulate", "dataset", "cli"),
-        [str(path) for path in sorted(Path("tests/brute_force").glob("*.py"))],
-        "tests/conftest.py",
-        "tests/compiled.py",
-        [str(path) for path in sorted(Path("tests/exact").glob("*.py"))],
-        "tests/hard_cases/catalogue.py",
-        "tests/hard_cases/conftest.py",
+        SHARED,
         cases="tests/hard_cases/test_{family}.py",
     output:
         "results/{folder}hard_cases/{family}.json",
@@ -48,8 +50,7 @@ rule family:
 rule catalogue:
     input:
         sources("plotting"),
-        "tests/hard_cases/report.py",
-        "tests/hard_cases/pictures.py",
+        DRAWING,
         families=expand("results/{{folder}}hard_cases/{family}.json", family=FAMILIES),
     output:
         table="results/{folder}hard_cases.md",

@@ -3,19 +3,11 @@
 import numpy as np
 import pytest
 from brute_force import settings
+from schedules import COOLING, STEADY
 
 from roughgas.errors import InputError
 from roughgas.simulate import compile_kernels, run_point
 
-STEADY = {"kind": "steady", "equilibrate": 20, "measure": 40, "sample_every": 0.25, "period": 1}
-COOLING = {
-    "kind": "cooling",
-    "replicas": 3,
-    "thermalise": 5,
-    "relaxation_times": 2,
-    "plateau": 20,
-    "sample_every": 1,
-}
 SWEEP = {"r": ["0.9"], "beta": ["0"], "seeds": 1}
 POINTS = {
     "bed": settings("bed", 20, [10, "open"]) | {"schedule": STEADY, "sweep": SWEEP},

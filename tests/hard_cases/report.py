@@ -13,7 +13,7 @@ from pathlib import Path
 
 from hard_cases import pictures
 from hard_cases.catalogue import Margin, Remedy
-from roughgas.atomic import whole_file
+from roughgas.atomic import write_text
 from roughgas.plotting.style import save
 
 HEAD = """# Hard cases
@@ -33,8 +33,7 @@ def main() -> None:
     margins = [Margin(**row) for one in found for row in one["margins"]]
     remedies = [Remedy(**row) for one in found for row in one["remedies"]]
     series = {name: columns for one in found for name, columns in one["series"].items()}
-    with whole_file(arguments.table) as draft:
-        draft.write_text(table(margins, remedies, arguments.full), encoding="utf-8")
+    write_text(arguments.table, table(margins, remedies, arguments.full))
     for name, files in itertools.groupby(sorted(arguments.pictures), key=lambda path: path.stem):
         picture = name.removeprefix("hard_cases").removeprefix("_")
         figure = pictures.PICTURES[picture](series) if picture else pictures.overview(margins)

@@ -8,6 +8,7 @@ import sys
 import numpy as np
 import pytest
 from brute_force import Beside, begin, largest_overlap, run, scene_of, settings
+from schedules import COOLING, STEADY
 
 from hard_cases.catalogue import hard_case
 from roughgas.errors import InputError
@@ -156,15 +157,6 @@ def test_aspect_ratios(margins):
     check_beside(margins, scenes[:4], margins.size(quick=1, full=5), 10)
 
 
-STEADY = {"kind": "steady", "equilibrate": 20, "measure": 40, "sample_every": 0.25, "period": 1}
-COOLING = {
-    "kind": "cooling",
-    "replicas": 3,
-    "thermalise": 5,
-    "relaxation_times": 2,
-    "plateau": 20,
-    "sample_every": 1,
-}
 ALONE = {
     "a gas": settings("gas", 1, [10, 10]) | {"schedule": COOLING},
     "under shear": settings("sheared", 1, [10, 10]) | {"schedule": STEADY},

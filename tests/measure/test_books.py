@@ -3,20 +3,12 @@
 import numpy as np
 import pytest
 from brute_force import begin, run, settings
+from schedules import COOLING, STEADY
 
 from roughgas.dataset import read_point, write_point
 from roughgas.measure.books import books, exchange, imbalance
 from roughgas.simulate import run_point
 
-STEADY = {"kind": "steady", "equilibrate": 20, "measure": 40, "sample_every": 0.25}
-COOLING = {
-    "kind": "cooling",
-    "replicas": 3,
-    "thermalise": 5,
-    "relaxation_times": 2,
-    "plateau": 20,
-    "sample_every": 1,
-}
 SOURCES = {
     "bed": (settings("bed", 20, [10, "open"]) | {"schedule": STEADY}, ["floor", "contacts"]),
     "walled": (

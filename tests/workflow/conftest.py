@@ -15,7 +15,7 @@ from roughgas.config.reading import read_yaml
 ROOT = Path(__file__).parent.parent.parent
 COPIED = ("Snakefile", "config.yaml", "rules", "profiles", "src")
 COPIED += tuple(f"tests/{name}" for name in ("hard_cases", "brute_force", "exact"))
-COPIED += ("tests/conftest.py", "tests/compiled.py")
+COPIED += tuple(f"tests/{name}.py" for name in ("conftest", "compiled", "schedules"))
 SWEEP = {"r": ["0.9"], "beta": ["0"], "seeds": 2}
 STEADY = {"equilibrate": 20, "measure": 20}
 TINY = {
