@@ -38,6 +38,8 @@ def reduced(
     values = {
         "R": ratio.mean(-1),
         "R_stderr": spread,
+        "R_stderr_over_seeds": spread,
+        "R_dof": seeds - 1.0,
         "R_stderr_within": error,
         "n_seeds": seeds,
         "equilibrated": 1.0,

@@ -29,6 +29,8 @@ def point(samples: int = 200, **others) -> Point:
     variables = {
         "R": 0.25,
         "R_stderr": 0.01,
+        "R_dof": 12.0,
+        "R_ci95": 0.022,
         "R_ratio_of_means": 0.24,
         "E_trans": 3.0,
         "E_rot": 1.0,

@@ -20,6 +20,8 @@ def write(folder, r, beta, seed, ratio, cooling=False, attributes=None, **others
     variables = {
         "R": ratio,
         "R_stderr": 0.01 * seed,
+        "R_dof": 0.0,
+        "R_ci95": math.nan,
         "R_ratio_of_means": ratio - 0.01,
         "E_trans": 2.0,
         "E_rot": 1.0,
@@ -55,7 +57,11 @@ def test_means_and_errors_over_seeds(paths, tmp_path):
     assert list(data.seed) == [1, 2, 3]
     full = data.sel(r=0.9, beta=-0.5)
     assert full.R.item() == pytest.approx(0.23)
-    assert full.R_stderr.item() == pytest.approx(np.std([0.2, 0.22, 0.27], ddof=1) / math.sqrt(3))
+    scatter = pytest.approx(np.std([0.2, 0.22, 0.27], ddof=1) / math.sqrt(3))
+    assert full.R_stderr_over_seeds.item() == scatter
+    # nothing is known of these runs' own errors
+    assert full.R_stderr.item() == scatter and full.R_dof.item() == 2
+    assert full.R_ci95.item() == pytest.approx(4.303 * full.R_stderr.item(), rel=0.05)
     assert full.R_stderr_within.item() == pytest.approx(0.01 * math.sqrt(1 + 4 + 9) / 3)
     assert full.R_ratio_of_means.item() == pytest.approx(0.22)
     assert full.collisions.item() == 300 and full.collisions.dtype == np.int64

@@ -42,6 +42,8 @@ def _series(long_name: str, units: str = "1") -> Variable:
 VARIABLES = {
     "R": Variable("share of rotation in the energy, mean of E_rot / (E_rot + E_trans)"),
     "R_stderr": Variable("standard error of R within this file", over_seeds=""),
+    "R_dof": Variable("degrees of freedom that R_stderr is known with", over_seeds=""),
+    "R_ci95": Variable("half width of the 95 % interval of R, by Student's t", over_seeds=""),
     "R_ratio_of_means": Variable("share of rotation in the energy, from the mean energies"),
     "E_trans": Variable("translational energy per degree of freedom", ENERGY),
     "E_rot": Variable("rotational energy per degree of freedom", ENERGY),
@@ -83,6 +85,8 @@ CLOCKS = ("time", "collisions_per_particle")
 REQUIRED = (
     "R",
     "R_stderr",
+    "R_dof",
+    "R_ci95",
     "R_ratio_of_means",
     "E_trans",
     "E_rot",

@@ -1,7 +1,8 @@
 """From points to one reduced dataset an experiment, and from those to one table.
 
-A reduced dataset has the dimensions (r, beta, seed). The primary error bar is the scatter over
-independent seeds; the errors estimated within each file are kept beside it as a cross-check.
+A reduced dataset has the dimensions (r, beta, seed). The error bar pools the scatter over
+independent seeds with the errors within them (measure/intervals.py), since a scatter over few seeds
+alone is known badly; each of the two is kept beside it.
 """
 
 import csv
@@ -21,6 +22,7 @@ from roughgas.dataset import (
     whole_netcdf,
 )
 from roughgas.errors import InputError
+from roughgas.measure.intervals import pooled
 
 if TYPE_CHECKING:
     import netCDF4
@@ -37,7 +39,10 @@ EQUILIBRATED = 0.5
 
 DERIVED = {
     "R_seed": "R of each seed",
-    "R_stderr": "standard error of R: scatter over seeds (within the file where there is one seed)",
+    "R_stderr": "standard error of R: scatter over seeds and error within them, pooled",
+    "R_dof": "degrees of freedom that R_stderr is known with",
+    "R_ci95": "half width of the 95 % interval of R, by Student's t",
+    "R_stderr_over_seeds": "standard error of R from the scatter over seeds alone",
     "R_stderr_within": "standard error of R from within the files, combined over seeds",
     "R_unsubtracted_stderr": "standard error of R_unsubtracted: scatter over seeds",
     "R_drift": "mean of R in the second half of the measured window minus that in the first",
@@ -49,6 +54,9 @@ COLUMNS = (
     "n_seeds",
     "R",
     "R_stderr",
+    "R_dof",
+    "R_ci95",
+    "R_stderr_over_seeds",
     "R_stderr_within",
     "R_ratio_of_means",
     "R_unsubtracted",
@@ -222,9 +230,20 @@ def _over_seeds(stacks: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
             reduced[name] = _mean(values)
         if name in SCATTERED:
             reduced[f"{name}_stderr"] = _standard_error(values)
-    alone = count == 1
-    reduced["R_stderr"] = np.where(alone, reduced["R_stderr_within"], reduced["R_stderr"])
-    return reduced
+    reduced["R_stderr_over_seeds"] = reduced["R_stderr"]
+    return reduced | _pooled_errors(stacks, there)
+
+
+def _pooled_errors(stacks: dict[str, np.ndarray], there: np.ndarray) -> dict[str, np.ndarray]:
+    """R's error, its degrees of freedom and its interval over (r, beta); NaN where no point is."""
+    names = ("R_stderr", "R_dof", "R_ci95")
+    found = {name: np.full(there.shape[:-1], math.nan) for name in names}
+    for place in zip(*np.nonzero(there.any(-1)), strict=True):
+        runs = (stacks[name][place][there[place]] for name in ("R", "R_stderr", "R_dof"))
+        error = pooled(*runs)
+        for name, value in zip(names, (*error, error.half_width(0.95)), strict=True):
+            found[name][place] = value
+    return found
 
 
 def _mean(values: np.ndarray) -> np.ndarray:

@@ -63,7 +63,7 @@ def test_above_half_at_smooth_particles(verdicts, shift, expected):
     rough = rough.sel(beta=[-1.0])
     exact = 2 * shift - 0.5
     rough["R"] = 0 * rough.R + 0.5 + exact
-    rough["R_stderr"] = rough["R_stderr_within"] = 0 * rough.R + 0.0001
+    rough["R_stderr_over_seeds"] = rough["R_stderr_within"] = 0 * rough.R + 0.0001
     found = verdicts(rough)["rough_walls_above_half"]
     assert found.verdict == expected
     assert found.numbers[0][1].value == pytest.approx(exact)

@@ -108,7 +108,7 @@ def test_captions_say_what_how_large_and_which_error_bars():
     main, _ = fig1a.draw(data).axes
     title = main.get_title(loc="left")
     assert "N = 160" in title and "small scale" in title
-    assert "standard error over 4 seeds" in title
+    assert "standard error from 4 seeds" in title
     data["n_seeds"][0, 0] = 2
     assert "over 2 to 4 seeds" in fig1a.draw(data).axes[0].get_title(loc="left")
     alone = fig1a.draw(reduced("vibrated", seeds=1)).axes[0]

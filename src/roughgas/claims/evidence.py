@@ -23,7 +23,7 @@ def load(path: str | Path) -> xr.Dataset:
     there are left out: the paper has none.
     """
     data = _without_contact_time(read_reduced(path))
-    errors, freedom = _errors(data, "R_stderr")
+    errors, freedom = _errors(data, "R_stderr_over_seeds")
     data["error"] = (("r", "beta"), errors)
     theory = predicted_ratio(data.attrs, data.r.values[:, None], data.beta.values)
     data["theory"] = (("r", "beta"), theory)

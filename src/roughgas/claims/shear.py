@@ -88,7 +88,7 @@ def _log_scatter_ratio(sheared: xr.Dataset, bed: xr.Dataset, per: str) -> Estima
 def _scatter(data: xr.Dataset) -> xr.Dataset:
     """Standard deviation of R between runs (NaN for one seed), their length and collisions."""
     seeds = data.n_seeds.where((data.n_seeds > 1) & np.isfinite(data.R))
-    scatter = data.R_stderr * np.sqrt(seeds)
+    scatter = data.R_stderr_over_seeds * np.sqrt(seeds)
     per_run = data.collisions / seeds
     return xr.Dataset(
         {

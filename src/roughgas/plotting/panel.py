@@ -126,7 +126,7 @@ def caption(main: Axes, datasets: Sequence[xr.Dataset], what: str) -> None:
     counts = np.concatenate([data.n_seeds.values.ravel() for data in datasets])
     low, high = counts[counts > 0].min(), counts.max()
     seeds = f"{high} seeds" if low == high else f"{low} to {high} seeds"
-    bars = f"standard error over {seeds}" if high > 1 else "standard error within the run"
+    bars = f"standard error from {seeds}" if high > 1 else "standard error within the run"
     about = datasets[0].attrs
     text = f"{what}, $N = {about['particles']}$ ({about['scale']} scale)\nError bars: {bars}"
     main.set_title(text, fontsize=8, loc="left")

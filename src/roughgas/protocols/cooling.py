@@ -10,6 +10,7 @@ from roughgas.initial import initial_state
 from roughgas.measure.books import Books, books, exchange
 from roughgas.measure.energies import Energies, energies, ratio, ratio_of_means, restored
 from roughgas.measure.errors import autocorrelation_time
+from roughgas.measure.intervals import Error
 from roughgas.measure.plateau import find_plateau
 from roughgas.scene import Scene
 from roughgas.theory import relaxation_rate
@@ -96,12 +97,15 @@ def _measure(ensemble, passed, transient, every):
     plateau = find_plateau(passed, R, transient)
     inside = (passed >= plateau.start) & (passed <= plateau.stop)
     first = np.argmax(inside)
+    error = Error(plateau.stderr, len(R) - 1.0)
     exponent = ensemble.exponent
     E_trans, E_rot = (part.mean(axis=0) for part in restored(ensemble.energies, exponent))
     alike = restored(ensemble.energies, exponent - exponent.max(axis=0))
     return {
         "R": plateau.mean,
-        "R_stderr": plateau.stderr,
+        "R_stderr": error.stderr,
+        "R_dof": error.dof,
+        "R_ci95": error.half_width(0.95),
         "R_ratio_of_means": ratio_of_means(alike, axis=0)[inside].mean(),
         "E_trans": E_trans[first],
         "E_rot": E_rot[first],

@@ -16,7 +16,8 @@ from roughgas.measure.energies import (
     ratio_of_means,
 )
 from roughgas.measure.equilibration import detect_start, is_equilibrated
-from roughgas.measure.errors import autocorrelation_time, blocking_stderr
+from roughgas.measure.errors import autocorrelation_time, blocking
+from roughgas.measure.intervals import Error, degrees_of_freedom
 from roughgas.scene import Scene
 
 LEAST_LEFT = 0.5  # share of the planned measurement below which a late start is not worth having
@@ -42,9 +43,13 @@ def run(scene: Scene, experiment: Mapping[str, Any], seed: int, recorder) -> dic
     window = Energies(series.translational[start:], series.rotational[start:])
     R = ratio(window)
     R_periods = period_means(R, per_period)
+    stderr, blocks = blocking(R_periods)
+    error = Error(stderr, degrees_of_freedom(blocks))
     return {
         "R": R.mean(),
-        "R_stderr": blocking_stderr(R_periods),
+        "R_stderr": error.stderr,
+        "R_dof": error.dof,
+        "R_ci95": error.half_width(0.95),
         "R_ratio_of_means": ratio_of_means(window),
         "E_trans": window.translational.mean(),
         "E_rot": window.rotational.mean(),
