@@ -3,6 +3,7 @@
 # candidates, the first that is there and new enough is taken; or name one: make PYTHON=... figures
 PYTHON ?= python3.11 python3.12 python3.13 python3.14 python3
 JOBS ?= 2
+SCALE ?= paper
 SNAKEFILES := Snakefile rules
 BIN := .venv/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check install -qq
@@ -16,6 +17,10 @@ figures: setup ## simulate, and draw the four figures of the paper
 	@echo "Look at  figures/fig1a.png  figures/fig1b.png  figures/fig2a.png  figures/fig2b.png"
 	@echo "What the paper claims, and what we find:  results/paper/claims.md"
 	@echo "Every number in them:  results/paper/R.csv"
+
+plan: setup ## say what all experiments at SCALE will cost, from pilot runs
+	$(BIN)/snakemake -j$(JOBS) --quiet all --config scale=$(SCALE) -- plan
+	@cat results/$(SCALE)/plan.md
 
 test: setup ## run the tests
 	$(BIN)/python -m pytest -n $(JOBS) --dist loadfile -m "not remedy"
@@ -62,5 +67,5 @@ lock: ## choose and pin the newest versions of all dependencies (needs uv)
 clean: ## remove all results; the environment and the committed figures stay
 	rm -rf results logs .snakemake figures/*.pdf figures/*/ .pytest_cache .ruff_cache .hypothesis
 
-.PHONY: help figures test remedies bench lint format setup lock clean
+.PHONY: help figures plan test remedies bench lint format setup lock clean
 .DELETE_ON_ERROR:

@@ -30,6 +30,7 @@ wildcard_constraints:
 
 
 include: "rules/simulate.smk"
+include: "rules/planning.smk"
 include: "rules/reduce.smk"
 include: "rules/figures.smk"
 include: "rules/showcase.smk"

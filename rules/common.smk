@@ -14,6 +14,8 @@ except ModuleNotFoundError as error:
 
 KERNEL = "results/{scale}/{experiment}/r{r}/compiled.txt"
 POINT = "results/{scale}/{experiment}/r{r}/beta{beta}/seed{seed}.nc"
+PILOT = "results/{scale}/{experiment}/r{r}/beta{beta}/pilot.json"
+SEEDS = "results/{scale}/{experiment}/r{r}/beta{beta}/seeds"  # as many as a target needs
 REDUCED = "results/{scale}/{experiment}.nc"
 # rules call the `roughgas` beside this snakemake, wherever it was started from
 os.environ["PATH"] = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
@@ -50,11 +52,24 @@ def settings(scale, experiment):
 
 
 def points_of_experiment(wildcards):
-    """The datasets of all points in the sweep of an experiment."""
+    """The datasets of all points in the sweep of an experiment, or the folders that hold them."""
     scale, experiment = wildcards.scale, wildcards.experiment
+    found = settings(scale, experiment)
+    if "target_stderr" in found:
+        return swept(SEEDS, scale, experiment)
     return [
         POINT.format(scale=scale, experiment=experiment, r=r, beta=beta, seed=seed)
-        for r, beta, seed in roughgas.config.sweep(settings(scale, experiment))
+        for r, beta, seed in roughgas.config.sweep(found)
+    ]
+
+
+def swept(pattern, scale, experiment):
+    """A file, or a folder, for each (r, beta) in the sweep of an experiment."""
+    axes = settings(scale, experiment)["sweep"]
+    return [
+        pattern.format(scale=scale, experiment=experiment, r=r, beta=beta)
+        for r in axes["r"]
+        for beta in axes["beta"]
     ]
 
 

@@ -1,4 +1,5 @@
-# From an experiment's settings to its points. Of a point in the sweep, `seeds_per_job` seeds are made
+# From an experiment's settings to its points, where their lengths are set (where a target is set
+# instead: planning.smk). Of a point in the sweep, `seeds_per_job` seeds are made
 # by one job (see config.yaml); any other seed is a job of its own.
 import re
 
@@ -12,10 +13,11 @@ RUN = (
 
 def kernel_of_point(wildcards):
     """What says that the kernel of a point is compiled; ends the workflow for an illegal point."""
-    with one_line(POINT.format(**wildcards)):
+    with one_line(f"results/{wildcards.scale}/{wildcards.experiment}"):
         roughgas.config.restitution(wildcards.r)
         roughgas.config.roughness(wildcards.beta)
-        roughgas.config.seed(wildcards.seed)
+        if "seed" in wildcards.keys():
+            roughgas.config.seed(wildcards.seed)
     settings(wildcards.scale, wildcards.experiment)
     return KERNEL.format(**wildcards)
 
@@ -94,8 +96,8 @@ rule point:
 
 
 for experiment in config["experiments"]:
-    swept = roughgas.config.experiment(config, experiment, SCALE)["sweep"]
-    for seeds in roughgas.config.seed_blocks(swept["seeds"], config):
+    axes = roughgas.config.experiment(config, experiment, SCALE)["sweep"]
+    for seeds in roughgas.config.seed_blocks(axes.get("seeds", 0), config):
         together = f"{experiment}_seeds_{seeds[0]}_to_{seeds[-1]}"
 
         rule:
@@ -112,8 +114,8 @@ for experiment in config["experiments"]:
             wildcard_constraints:
                 scale=SCALE,
                 experiment=experiment,
-                r=one_of(swept["r"]),
-                beta=one_of(swept["beta"]),
+                r=one_of(axes["r"]),
+                beta=one_of(axes["beta"]),
             priority: urgency
             params:
                 settings=settings_of_points,

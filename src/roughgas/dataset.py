@@ -48,10 +48,15 @@ VARIABLES = {
     "E_trans": Variable("translational energy per degree of freedom", ENERGY),
     "E_rot": Variable("rotational energy per degree of freedom", ENERGY),
     "collisions": Variable("collisions simulated", dtype="i8", over_seeds="sum"),
-    "kernel_seconds": Variable("time spent in the kernel", "s", over_seeds="sum"),
+    "kernel_seconds": Variable("CPU time spent in the kernel", "s", over_seeds="sum"),
     "equilibrated": Variable("1 where a steady state was found, else 0", dtype="i1"),
     "measured_from": Variable("begin of the measured window", TIME),
     "autocorrelation_time": Variable("integrated autocorrelation time of R", TIME),
+    "target_stderr": Variable("standard error of R that was asked for"),
+    "planned_seeds": Variable("seeds that its pilot run said the point would need"),
+    "planned_stderr": Variable("standard error of R expected from these"),
+    "planned_collisions": Variable("collisions expected in all of them"),
+    "planned_seconds": Variable("CPU time of the kernel expected in all of them", "s"),
     "contact_time": Variable("contact time t_c of the contact-time model, NaN without it", TIME),
     "contact_time_fraction": Variable("share of contacts changed by the contact-time model"),
     "R_unsubtracted": Variable("R with the mean flow and the mean spin left in"),
@@ -104,7 +109,7 @@ REQUIRED_ATTRIBUTES = (
     "inertia",
     "particles",
 )
-WALL_CLOCK = ("kernel_seconds",)
+WALL_CLOCK = ("kernel_seconds", "planned_seconds")
 """The only variables that differ when the same point is run again."""
 
 COMMON_ATTRIBUTES = {

@@ -87,15 +87,22 @@ class Summary(NamedTuple):
 def reduce_points(paths: Iterable[str | Path], output: str | Path) -> None:
     """Combine the points at `paths` (of one experiment, in any order) into the dataset `output`.
 
+    A path is that of a dataset, or of a folder of them, one a seed.
+
     Seeds missing at an (r, beta) are NaN in R_seed and absent from n_seeds and the means.
     Raises InputError where the paths are none, of several experiments, or the same point twice.
     """
-    points = [_summary(Path(path)) for path in paths]
+    points = [_summary(file) for path in map(Path, paths) for file in _files(path)]
     if not points:
         raise InputError("number of points to reduce", 0, "be at least 1")
     dataset = _combined(points)
     with whole_netcdf(output) as draft:
         dataset.to_netcdf(draft, engine="netcdf4")
+
+
+def _files(path: Path) -> list[Path]:
+    """The dataset at `path`, or those in the folder that it is."""
+    return sorted(path.glob("seed*.nc")) if path.is_dir() else [path]
 
 
 def read_reduced(path: str | Path) -> "xarray.Dataset":

@@ -61,8 +61,11 @@ def run_point(
 def effort(experiment: Mapping[str, Any], r: float, beta: float) -> float:
     """About how much work a point is compared with others, in particles times collisions of each.
 
-    Meant for the order of jobs: a driven gas is taken for one whose particles meet once a T.
+    Meant for the order of jobs: a driven gas is taken for one whose particles meet once a T, and a
+    point with a target for one that takes as long as any other.
     """
+    if "target_stderr" in experiment:
+        return float(experiment["particles"])
     protocol = PROTOCOLS[experiment["schedule"]["kind"]]
     length = protocol.length(build(experiment, r, beta), experiment["schedule"])
     return experiment["particles"] * length

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 from roughgas import __version__
-from roughgas.cli import products, run, showcase
+from roughgas.cli import planning, products, run, showcase
 from roughgas.errors import CollapseError, InputError
 
 BAD_INPUT, FAILED, INTERRUPTED = 2, 1, 130
@@ -71,6 +71,7 @@ def _parser() -> Parser:
     parser.add_argument("--version", action="version", version=f"roughgas {__version__}")
     commands = parser.add_subparsers(metavar="COMMAND", required=True)
     run.add_commands(commands)
+    planning.add_commands(commands)
     products.add_commands(commands)
     showcase.add_commands(commands)
     return parser

@@ -7,7 +7,9 @@ from typing import Any
 def add_commands(commands: Any) -> None:
     """Add the four subcommands to argparse's `commands`."""
     parser = _add(commands, "reduce", reduce, "combine the points of an experiment")
-    parser.add_argument("inputs", nargs="+", metavar="POINT", help="datasets of points")
+    parser.add_argument(
+        "inputs", nargs="+", metavar="POINT", help="datasets of points, or folders of them"
+    )
     parser.add_argument("-o", "--output", required=True, metavar="FILE", help="reduced dataset")
 
     parser = _add(commands, "table", table, "write reduced datasets as one CSV table")

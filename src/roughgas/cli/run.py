@@ -24,8 +24,7 @@ def add_commands(commands: Any) -> None:
         "other, and write a dataset for each.",
         epilog=RUN_EXAMPLE,
     )
-    _add_experiment(parser)
-    parser.add_argument("--beta", required=True, help="roughness, in [-1, 1]")
+    add_point(parser)
     parser.add_argument(
         "--seed", required=True, nargs="+", help="seeds of the random generator, 0, 1, ..."
     )
@@ -44,6 +43,12 @@ def add_commands(commands: Any) -> None:
     parser.set_defaults(command=compile_kernel)
 
 
+def add_point(parser: argparse.ArgumentParser) -> None:
+    """Add what names a point, but for its seed."""
+    _add_experiment(parser)
+    parser.add_argument("--beta", required=True, help="roughness, in [-1, 1]")
+
+
 def _add_experiment(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("experiment", metavar="EXPERIMENT", help="its name in the configuration")
     add_settings(parser)
@@ -55,20 +60,22 @@ def run(options: argparse.Namespace) -> None:
     from roughgas import config
     from roughgas.cli.progress import Progress
 
-    r, beta = config.restitution(options.r), config.roughness(options.beta)
-    seeds, settings = [config.seed(label) for label in options.seed], _settings(options)
+    seeds = [config.seed(label) for label in options.seed]
+    r, beta, settings = point_of(options)
     if len(options.output) != len(seeds):
         raise InputError("--output", " ".join(options.output), f"name {len(seeds)}, one a seed")
 
     from roughgas.dataset import write_point
+    from roughgas.planning.reach import complete
     from roughgas.simulate import run_point
 
+    settings = complete(config.point_settings(settings), r, beta)
     for label, seed, output in zip(options.seed, seeds, options.output, strict=True):
         with Progress(options.experiment, settings["schedule"]) as progress:
-            point = run_point(config.point_settings(settings), r, beta, seed, progress)
-        provenance = _provenance(options, settings, label, output)
-        write_point(output, point._replace(attributes=provenance | point.attributes))
-        print(_closing_line(output, point), file=sys.stderr)
+            point = run_point(settings, r, beta, seed, progress)
+        about = provenance(options, settings, label, output)
+        write_point(output, point._replace(attributes=about | point.attributes))
+        print(closing_line(output, point), file=sys.stderr)
 
 
 def compile_kernel(options: argparse.Namespace) -> None:
@@ -82,6 +89,13 @@ def compile_kernel(options: argparse.Namespace) -> None:
     compile_kernels([settings | {"sweep": {"r": [r]}}])
 
 
+def point_of(options: argparse.Namespace) -> tuple[float, float, dict[str, Any]]:
+    """r, beta and the experiment's settings."""
+    from roughgas import config
+
+    return config.restitution(options.r), config.roughness(options.beta), _settings(options)
+
+
 def _settings(options: argparse.Namespace) -> dict[str, Any]:
     from roughgas import config
 
@@ -90,7 +104,7 @@ def _settings(options: argparse.Namespace) -> dict[str, Any]:
     return config.experiment(config.load(options.config), options.experiment, options.scale)
 
 
-def _provenance(
+def provenance(
     options: argparse.Namespace, settings: dict[str, Any], seed: str, output: str
 ) -> dict[str, Any]:
     """The attributes of a dataset that say how to make it again, it alone."""
@@ -112,7 +126,8 @@ def _provenance(
     }
 
 
-def _closing_line(output: str, point: "Point") -> str:
+def closing_line(output: str, point: "Point") -> str:
+    """What is said of a point when it is done."""
     found = point.variables
     return (
         f"{output}: R = {float(found['R']):.4f} +- {float(found['R_stderr']):.4f}, "

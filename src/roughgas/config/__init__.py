@@ -33,6 +33,11 @@ SHOWCASE = "showcase"
 SEEDS_PER_JOB = 4
 NOT_OF_A_POINT = ("description", "sweep")
 """Settings of an experiment that do not concern any single point of it."""
+REPLACED = {
+    "sweep": ("seeds",),
+    "schedule": ("equilibrate", "measure", "replicas", "relaxation_times", "plateau"),
+}
+"""Settings that an experiment with a `target_stderr` does without."""
 
 
 def load(path: str | Path, overrides: Mapping[str, Any] | None = None) -> dict[str, Any]:
@@ -84,7 +89,17 @@ def experiment(config: Mapping[str, Any], name: str, scale: str) -> dict[str, An
     parent = own.pop("extends", None)
     settings = experiment(config, parent, scale) if parent else {}
     settings.pop("description", None)
-    return merged(merged(settings, own), config["scales"][scale].get(name, {}))
+    return _over(_over(settings, own), config["scales"][scale].get(name, {}))
+
+
+def _over(settings: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
+    """Settings of an experiment with changes, a target among which replaces lengths and seeds."""
+    if "target_stderr" in changes:
+        settings = dict(settings)
+        for part, names in REPLACED.items():
+            kept = {key: x for key, x in settings.get(part, {}).items() if key not in names}
+            settings[part] = kept
+    return merged(settings, changes)
 
 
 def showcase(config: Mapping[str, Any], scale: str) -> dict[str, Any]:

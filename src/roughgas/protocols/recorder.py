@@ -55,7 +55,7 @@ class Recorder:
         names = columns(len(scene.box), scene.effects.spin is not None)
         rows = np.empty((samples, len(names)))
         record(state, scene, plan, rows[:0])  # compiles, or fetches the kernel from its cache
-        begin = time.perf_counter()
+        begin = time.process_time()
         before = state.counts.copy()
         length = max(1, -(-samples // REPORTS))
         if plan.refresh > 0:  # which the kernel counts from the start of each call
@@ -67,7 +67,7 @@ class Recorder:
                 raise _collapse(state, scene)
             if self.progress:
                 self.progress(float(part[-1, 0]), int(part[-1, 1]))
-        self.seconds += time.perf_counter() - begin
+        self.seconds += time.process_time() - begin
         self.collisions += state.counts[COLLISIONS] - before[COLLISIONS]
         self.touched += state.counts[TOUCHED] - before[TOUCHED]
         return dict(zip(names, rows.T, strict=True))

@@ -34,11 +34,11 @@ def run(scene: Scene, experiment: Mapping[str, Any], seed: int, recorder) -> dic
     schedule = experiment["schedule"]
     every, number = schedule["sample_every"], experiment["particles"]
     planned, length = (round(schedule[part] / every) for part in ("equilibrate", "measure"))
-    per_period = max(1, round(schedule.get("period", every) / every))
+    per_period = samples_per_period(schedule)
     state = initial_state(scene, experiment, np.random.default_rng(seed))
     before = books(state, scene)
     rows = recorder.in_time(state, scene, every, planned + length)
-    series = _fluctuations(scene, rows, number)
+    series = fluctuations(scene, rows, number)
     start, found = _start(series, planned, length, per_period)
     window = Energies(series.translational[start:], series.rotational[start:])
     R = ratio(window)
@@ -70,7 +70,15 @@ def length(scene: Scene, schedule: Mapping[str, Any]) -> float:
     return schedule["equilibrate"] + schedule["measure"]
 
 
-def _fluctuations(scene, rows, number):
+def samples_per_period(schedule: Mapping[str, Any]) -> int:
+    """Samples in a period of the drive; 1 where there is none."""
+    return max(
+        1, round(schedule.get("period", schedule["sample_every"]) / schedule["sample_every"])
+    )
+
+
+def fluctuations(scene: Scene, rows: Mapping[str, np.ndarray], number: int) -> Energies:
+    """Energies of samples, in a sheared gas without the mean flow and the mean spin."""
     shear, q = scene.effects.shear, scene.effects.spin.inertia
     if shear is None:
         return energies(rows, number, q)

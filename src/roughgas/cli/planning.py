@@ -1,0 +1,149 @@
+"""Accuracy on demand: `roughgas pilot`, `reach`, `plan` and `costs`."""
+
+import argparse
+import os
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+from roughgas.cli.run import add_point, closing_line, point_of, provenance
+from roughgas.cli.settings import add_settings
+from roughgas.errors import InputError
+
+PILOT_EXAMPLE = "example: roughgas pilot sheared --r 0.9 --beta 0 -o pilot.json"
+REACH_EXAMPLE = "example: roughgas reach sheared --scale fine --r 0.9 --beta 0 -o seeds"
+PLAN_EXAMPLE = "example: roughgas plan --scale fine --cores 8"
+PILOT = "{experiment}/r{r}/beta{beta}/pilot.json"
+
+
+def add_commands(commands: Any) -> None:
+    """Add the four subcommands to argparse's `commands`."""
+    parser = commands.add_parser(
+        "pilot",
+        help="measure what a point costs and how much it scatters",
+        description="Run a point for a moment, and write what its cost and its error follow from.",
+        epilog=PILOT_EXAMPLE,
+    )
+    add_point(parser)
+    parser.add_argument("-o", "--output", required=True, metavar="FILE", help="JSON file to write")
+    parser.set_defaults(command=pilot)
+
+    parser = commands.add_parser(
+        "reach",
+        help="run as many seeds of a point as its target_stderr needs",
+        description="Run seeds 1, 2, ... of a point until the standard error of R is the "
+        "experiment's target_stderr, and no longer.",
+        epilog=REACH_EXAMPLE,
+    )
+    add_point(parser)
+    parser.add_argument("--pilot", metavar="FILE", help="its pilot; without one it is run first")
+    parser.add_argument("-o", "--output", required=True, metavar="FOLDER", help="for the datasets")
+    parser.set_defaults(command=reach)
+
+    parser = commands.add_parser(
+        "plan",
+        help="say what all experiments will cost, and how accurate they will be",
+        description="Print a table of points, seeds, errors and times, from pilot runs. Those that "
+        "are not there yet are run first; nothing else is.",
+        epilog=PLAN_EXAMPLE,
+    )
+    add_settings(parser)
+    parser.add_argument("experiments", nargs="*", metavar="EXPERIMENT", help="default: all")
+    parser.add_argument("--cores", default=str(os.cpu_count()), help="for the wall time")
+    parser.add_argument("--pilots", metavar="FOLDER", help="of pilots (default: results/SCALE)")
+    parser.add_argument("-o", "--output", metavar="FILE", help="file for the table, too")
+    parser.set_defaults(command=plan)
+
+    parser = commands.add_parser(
+        "costs",
+        help="compare what was planned with what happened",
+        description="Write, from reduced datasets, what was planned beside what happened.",
+    )
+    parser.add_argument("inputs", nargs="+", metavar="REDUCED", help="reduced datasets")
+    parser.add_argument("--fixed", required=True, metavar="JSON", help="schedules to compare with")
+    parser.add_argument("-o", "--output", required=True, metavar="FILE", help="Markdown file")
+    parser.set_defaults(command=costs)
+
+
+def pilot(options: argparse.Namespace) -> None:
+    """Run the pilot of a point."""
+    from roughgas.planning.pilot import explore, write_pilot
+
+    r, beta, settings = point_of(options)
+    write_pilot(options.output, explore(settings, r, beta))
+
+
+def reach(options: argparse.Namespace) -> None:
+    """Run a point until it is as accurate as its experiment says."""
+    from roughgas.cli.progress import Progress
+    from roughgas.dataset import write_point
+    from roughgas.planning.pilot import explore, read_pilot
+    from roughgas.planning.reach import reach as run
+
+    r, beta, settings = point_of(options)
+    if "target_stderr" not in settings:
+        raise InputError("target_stderr", "(nothing)", f"be set for {options.experiment}")
+    known = read_pilot(options.pilot) if options.pilot else explore(settings, r, beta)
+
+    def keep(seed, point, chosen):
+        output = str(Path(options.output, f"seed{seed}.nc"))
+        about = provenance(options, chosen, str(seed), output)
+        write_point(output, point._replace(attributes=about | point.attributes))
+        print(closing_line(output, point), file=sys.stderr)
+
+    with Progress(options.experiment, {"kind": ""}) as progress:
+        planned, error, seeds = run(settings, r, beta, known, keep, progress)
+    met = "met" if error.stderr <= settings["target_stderr"] else "NOT met"
+    print(
+        f"{options.output}: {seeds} seeds ({planned.seeds} planned), standard error "
+        f"{error.stderr:.2g}: target {settings['target_stderr']:g} {met}",
+        file=sys.stderr,
+    )
+
+
+def plan(options: argparse.Namespace) -> None:
+    """Print what experiments will cost."""
+    from roughgas import config
+    from roughgas.atomic import write_text
+    from roughgas.planning.table import as_markdown, row
+
+    if not options.cores.isdecimal() or int(options.cores) < 1:
+        raise InputError("--cores", options.cores, "be a whole number >= 1")
+    loaded = config.load(options.config)
+    names = options.experiments or list(loaded["experiments"])
+    found = {name: config.experiment(loaded, name, options.scale) for name in names}
+    folder = Path(options.pilots or f"results/{options.scale}")
+    pilots = {name: _pilots(name, settings, folder) for name, settings in found.items()}
+    start_up = time.process_time()  # of this process: jobs import as much
+    block = loaded.get("seeds_per_job", config.SEEDS_PER_JOB)
+    rows = [row(name, settings, pilots[name][0], block) for name, settings in found.items()]
+    start_up -= sum(seconds for _, seconds in pilots.values())
+    text = as_markdown(rows, int(options.cores), start_up)
+    print(text, end="")
+    if options.output:
+        write_text(options.output, text)
+
+
+def costs(options: argparse.Namespace) -> None:
+    """Write what was planned beside what happened."""
+    from roughgas.planning.costs import write_costs
+
+    write_costs(options.inputs, options.fixed, options.output)
+
+
+def _pilots(name: str, settings: dict[str, Any], folder: Path):
+    """The pilots of a sweep by (r, beta), and the CPU seconds spent on missing ones."""
+    from roughgas.cli.progress import Line
+    from roughgas.planning.pilot import explore, read_pilot, write_pilot
+
+    axes, found, begin = settings["sweep"], {}, time.process_time()
+    with Line(f"pilots of {name}") as line:
+        for r in axes["r"]:
+            for beta in axes["beta"]:
+                path = folder / PILOT.format(experiment=name, r=r, beta=beta)
+                if not path.exists():
+                    line.show(f"r = {r}, beta = {beta}")
+                    write_pilot(path, explore(settings, float(r), float(beta)))
+                found[str(r), str(beta)] = read_pilot(path)
+    return found, time.process_time() - begin

@@ -1,0 +1,74 @@
+"""Run a point until its standard error is what was asked for, and no longer."""
+
+import math
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+
+from roughgas.dataset import Point
+from roughgas.measure.intervals import Error, pooled
+from roughgas.planning.pilot import Pilot, explore
+from roughgas.planning.plan import Plan, plan_point
+from roughgas.simulate import run_point
+
+MOST = 4  # times the planned number of seeds: a pilot cannot be further off
+
+Keep = Callable[[int, Point, dict[str, Any]], None]
+
+
+def reach(
+    experiment: Mapping[str, Any], r: float, beta: float, pilot: Pilot, keep: Keep, progress: Any
+) -> tuple[Plan, Error, int]:
+    """Make seeds 1, 2, ... of a point until its `target_stderr` is met; the plan, the error reached
+    and the number of seeds.
+
+    `keep(seed, point, settings)` is called with each seed's point, the settings being such as make
+    that seed again. The planned number comes first; where the error is then still larger than the
+    target, as many more as its size calls for, and so on, up to MOST times as many as planned.
+    """
+    plan = plan_point(experiment, r, beta, pilot)
+    settings = completed(experiment, plan)
+    expected = expectations(experiment, plan)
+    runs, wanted = [], plan.seeds
+    while True:
+        while len(runs) < wanted:
+            point = run_point(settings, r, beta, len(runs) + 1, progress)
+            runs.append([point.variables[name] for name in ("R", "R_stderr", "R_dof")])
+            keep(len(runs), point._replace(variables=point.variables | expected), settings)
+        error = pooled(*np.array(runs, float).T)
+        wanted = _wanted(len(runs), error, experiment["target_stderr"], plan.seeds)
+        if wanted == len(runs):
+            return plan, error, wanted
+
+
+def completed(experiment: Mapping[str, Any], plan: Plan) -> dict[str, Any]:
+    """The settings of an experiment with the lengths of its runs in place of a target."""
+    settings = {key: value for key, value in experiment.items() if key != "target_stderr"}
+    return settings | {"schedule": plan.schedule}
+
+
+def complete(experiment: Mapping[str, Any], r: float, beta: float) -> dict[str, Any]:
+    """The same for a point without a plan; the settings as they are where they have no target."""
+    if "target_stderr" not in experiment:
+        return dict(experiment)
+    return completed(experiment, plan_point(experiment, r, beta, explore(experiment, r, beta)))
+
+
+def expectations(experiment: Mapping[str, Any], plan: Plan) -> dict[str, float]:
+    """What a point's dataset holds of its plan, beside what then happened."""
+    return {
+        "target_stderr": experiment["target_stderr"],
+        "planned_seeds": plan.seeds,
+        "planned_stderr": plan.stderr,
+        "planned_collisions": plan.collisions,
+        "planned_seconds": plan.seconds,
+    }
+
+
+def _wanted(made: int, error: Error, target: float, planned: int) -> int:
+    """How many seeds there should be, by the error that those made so far have."""
+    if not error.stderr > target:
+        return made
+    enough = math.ceil(made * (error.stderr / target) ** 2)
+    return max(made, min(max(enough, made + 1), MOST * planned))
