@@ -3,6 +3,8 @@
 #   snakemake -j2 figures                       the four figures of the paper, a table, its claims
 #   snakemake -j2 figures --config scale=small  the same in a minute, with wide error bars
 #   snakemake -j1 showcase                      a large cooling gas forms clusters: a movie
+#   snakemake -j2 accuracy                      what the next digit costs, in CPU seconds
+#   snakemake -j2 coverage                      whether error bars hold the truth as often as they say
 #   snakemake -j2 hard_cases                    where simulations go wrong, and how far from it we are
 #   snakemake -j1 results/paper/cooling/r0.87/beta-0.33/seed7.nc     any one point
 
@@ -25,7 +27,10 @@ wildcard_constraints:
     beta="[^/]+",
     seed="[^/]+",
     folder="([^/]+/)?",
-    figure=r"(?!clustering\.|hard_cases)[^/]+",  # these have rules of their own
+    figure=r"(?!clustering\.|hard_cases|accuracy\.|coverage\.)[^/]+",  # these have their own rules
+    study="[^/]+",
+    task="[^/]+",
+    study_figure="accuracy|coverage",
     family="[^/]+",
 
 
@@ -35,6 +40,7 @@ include: "rules/reduce.smk"
 include: "rules/figures.smk"
 include: "rules/showcase.smk"
 include: "rules/hard_cases.smk"
+include: "rules/accuracy.smk"
 
 
 rule figures:
@@ -52,6 +58,8 @@ rule everything:
         reduced(SCALE, config["experiments"]),
         rules.showcase.input,
         rules.hard_cases.input,
+        rules.accuracy.input,
+        rules.coverage.input,
 
 
 onstart:

@@ -25,11 +25,12 @@ __all__ = [
     "seed",
     "seed_blocks",
     "showcase",
+    "study",
     "sweep",
 ]
 
 SOURCE = "config.yaml"
-SHOWCASE = "showcase"
+SHOWCASE, ACCURACY = "showcase", "accuracy"
 SEEDS_PER_JOB = 4
 NOT_OF_A_POINT = ("description", "sweep")
 """Settings of an experiment that do not concern any single point of it."""
@@ -63,13 +64,14 @@ def check(config: Mapping[str, Any], source: str = SOURCE) -> None:
     check_schema(config, source)
     known, scales = config["experiments"], config["scales"]
     _one_of(f"{source}: scale", config["scale"], scales)
-    if SHOWCASE in known:
-        raise InputError(f"{source}: key of experiments", SHOWCASE, "be another name")
+    for name in (SHOWCASE, ACCURACY):
+        if name in known:
+            raise InputError(f"{source}: key of experiments", name, "be another name")
     for name in known:
         _check_ancestors(name, known, source)
     for scale, changes in scales.items():
         for name in changes:
-            _one_of(f"{source}: key of scales.{scale}", name, [*known, SHOWCASE])
+            _one_of(f"{source}: key of scales.{scale}", name, [*known, SHOWCASE, ACCURACY])
         check_schema(showcase(config, scale), f"{source}: {SHOWCASE} at scale {scale}", "filmed")
         for name in known:
             where = f"{source}: experiments.{name}"
@@ -107,6 +109,18 @@ def showcase(config: Mapping[str, Any], scale: str) -> dict[str, Any]:
     _one_of("scale", scale, config["scales"])
     settings = merged(config[SHOWCASE], config["scales"][scale].get(SHOWCASE, {}))
     return {key: value for key, value in settings.items() if key not in NOT_OF_A_POINT}
+
+
+def study(config: Mapping[str, Any], name: str, scale: str) -> dict[str, Any]:
+    """The settings of a study of accuracy at `scale`, under `study`, and under `experiments` those of
+    the experiments that it may run. Raises InputError for unknown names."""
+    _one_of("scale", scale, config["scales"])
+    settings = merged(config[ACCURACY], config["scales"][scale].get(ACCURACY, {}))
+    _one_of("study", name, settings)
+    experiments = {
+        one: point_settings(experiment(config, one, scale)) for one in config["experiments"]
+    }
+    return {"study": settings[name], "experiments": experiments}
 
 
 def merged(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:

@@ -8,16 +8,18 @@ from roughgas.errors import InputError
 from roughgas.reduce import read_reduced
 
 FIGURES = ("fig1a", "fig1b", "fig2a", "fig2b")
+STUDIES = ("accuracy", "coverage")
 
 
 def draw(name: str, inputs: Iterable[str | Path], outputs: Iterable[str | Path]) -> None:
-    """Draw the figure `name` from the reduced datasets at `inputs`, in any order, into `outputs`.
+    """Draw the figure `name` from the reduced datasets at `inputs`, in any order, into `outputs`;
+    that of a study from the one combined dataset.
 
     Each output is a .pdf or a .png. Raises InputError for an unknown figure, another kind of file,
     and experiments that are not those of the figure.
     """
-    if name not in FIGURES:
-        raise InputError("figure", name, f"be one of {', '.join(FIGURES)}")
+    if name not in FIGURES + STUDIES:
+        raise InputError("figure", name, f"be one of {', '.join(FIGURES + STUDIES)}")
     from matplotlib import rc_context
 
     from roughgas.plotting import style
@@ -27,10 +29,18 @@ def draw(name: str, inputs: Iterable[str | Path], outputs: Iterable[str | Path])
         if output.suffix not in style.METADATA:
             raise InputError("figure file", output, f"end in {' or '.join(style.METADATA)}")
     figure = import_module(f"roughgas.plotting.{name}")
-    datasets = {data.attrs["experiment"]: data for data in map(read_reduced, inputs)}
-    if set(datasets) != set(figure.EXPERIMENTS):
-        needed = ", ".join(figure.EXPERIMENTS)
-        raise InputError(f"data of {name}", ", ".join(datasets), f"be {needed}")
     with rc_context(style.PARAMETERS):
-        drawing = figure.draw(*(datasets[experiment] for experiment in figure.EXPERIMENTS))
+        if name in STUDIES:
+            drawing = figure.draw(*inputs)
+        else:
+            drawing = figure.draw(*_datasets(name, figure.EXPERIMENTS, inputs))
         style.save(drawing, outputs)
+
+
+def _datasets(name, experiments, inputs):
+    """The reduced datasets of the experiments that a figure shows, in its order."""
+    datasets = {data.attrs["experiment"]: data for data in map(read_reduced, inputs)}
+    if set(datasets) != set(experiments):
+        needed = ", ".join(experiments)
+        raise InputError(f"data of {name}", ", ".join(datasets), f"be {needed}")
+    return [datasets[experiment] for experiment in experiments]

@@ -1,0 +1,142 @@
+# What accuracy costs in time, and whether error bars are true: the studies in roughgas/accuracy, each
+# of them a few independent tasks.
+from roughgas import accuracy as studies
+
+TASK = "results/{scale}/accuracy/{study}/{task}.nc"
+
+
+def settings_of_study(wildcards):
+    """The settings of a study and of the experiments, as JSON."""
+    with one_line(TASK.format(**wildcards)):
+        found = roughgas.config.study(config, wildcards.study, wildcards.scale)
+    return roughgas.config.as_text(found)
+
+
+def tasks(*studies):
+    """An input function: the files of all tasks of these studies."""
+
+    def files(wildcards):
+        return [
+            TASK.format(scale=wildcards.scale, study=name, task=task)
+            for name in studies
+            for task in tasks_of_study(name, wildcards.scale)
+        ]
+
+    return files
+
+
+def tasks_of_study(name, scale):
+    """The names of a study's tasks, the longest first."""
+    with one_line(f"results/{scale}/accuracy/{name}"):
+        settings = roughgas.config.study(config, name, scale)["study"]
+        return studies.study(name).tasks(settings)
+
+
+def urgency_of_task(wildcards):
+    names = tasks_of_study(wildcards.study, wildcards.scale)
+    return len(names) - names.index(wildcards.task) if wildcards.task in names else 0
+
+
+def sources_of_study(wildcards):
+    return sources(f"accuracy/{wildcards.study}", "simulate", "config", "cli/studies")
+
+
+def study_of_figure(wildcards):
+    scale = wildcards.folder.rstrip("/") or "paper"
+    return f"results/{scale}/{wildcards.study_figure}.nc"
+
+
+rule study:
+    input:
+        sources_of_study,
+    output:
+        TASK,
+    log:
+        "logs/{scale}/accuracy/{study}/{task}.log",
+    benchmark:
+        "logs/{scale}/accuracy/{study}/{task}.tsv"
+    priority: urgency_of_task
+    params:
+        settings=settings_of_study,
+    message:
+        "accuracy, {wildcards.study}: {wildcards.task}"
+    shell:
+        "roughgas study {wildcards.study} {wildcards.task} --scale {wildcards.scale}"
+        " --settings {params.settings:q} --output {output} > {log} 2>&1"
+
+
+rule work_precision:
+    input:
+        sources("accuracy"),
+        tasks=tasks(*studies.PANELS),
+    output:
+        "results/{scale}/accuracy.nc",
+    log:
+        "logs/{scale}/accuracy.log",
+    benchmark:
+        "logs/{scale}/accuracy.tsv"
+    message:
+        "combine the studies of accuracy"
+    shell:
+        "roughgas combine {input.tasks} --output {output} > {log} 2>&1"
+
+
+rule coverage_of_intervals:
+    input:
+        sources("accuracy"),
+        tasks=tasks("coverage"),
+    output:
+        "results/{scale}/coverage.nc",
+    log:
+        "logs/{scale}/coverage.log",
+    benchmark:
+        "logs/{scale}/coverage.tsv"
+    message:
+        "combine the study of coverage"
+    shell:
+        "roughgas combine {input.tasks} --output {output} > {log} 2>&1"
+
+
+rule study_figure:
+    # the figure, and the same numbers as a table
+    input:
+        sources("plotting"),
+        data=study_of_figure,
+    output:
+        multiext("figures/{folder}{study_figure}", ".pdf", ".png"),
+    log:
+        "logs/figures/{folder}{study_figure}.log",
+    benchmark:
+        "logs/figures/{folder}{study_figure}.tsv"
+    message:
+        "draw {wildcards.folder}{wildcards.study_figure}"
+    shell:
+        "roughgas figure {wildcards.study_figure} {input.data} --output {output} > {log} 2>&1"
+
+
+rule study_table:
+    input:
+        sources("accuracy"),
+        data="results/{scale}/{study_figure}.nc",
+    output:
+        "results/{scale}/{study_figure}.md",
+    log:
+        "logs/{scale}/{study_figure}_table.log",
+    benchmark:
+        "logs/{scale}/{study_figure}_table.tsv"
+    message:
+        "write {output}"
+    shell:
+        "roughgas tables {input.data} --output {output} > {log} 2>&1"
+
+
+rule accuracy:
+    input:
+        drawn(["accuracy"]),
+        f"results/{SCALE}/accuracy.md",
+
+
+rule coverage:
+    input:
+        drawn(["coverage"]),
+        f"results/{SCALE}/coverage.md",

@@ -1,0 +1,21 @@
+"""What accuracy costs in time, and whether error bars are true: studies of the methods themselves.
+
+A study is a file here. Its `tasks` are independent jobs, `run` does one of them, `combine` joins what
+they found and fits what is to be fitted. settings are those of config.yaml, under `accuracy`.
+"""
+
+from importlib import import_module
+from types import ModuleType
+
+from roughgas.errors import InputError
+
+PANELS = ("statistical", "models", "discretisation")
+"""The studies that the work-precision figure shows, one a panel."""
+STUDIES = (*PANELS, "coverage")
+
+
+def study(name: str) -> ModuleType:
+    """The module of a study. Raises InputError for an unknown one."""
+    if name not in STUDIES:
+        raise InputError("study", name, f"be one of {', '.join(STUDIES)}")
+    return import_module(f"roughgas.accuracy.{name}")

@@ -1,0 +1,26 @@
+"""The work-precision figure: error of R against CPU seconds, a panel a study, and the map of what
+the Maxwellian theory misses."""
+
+from pathlib import Path
+
+from matplotlib.figure import Figure
+
+from roughgas.accuracy import PANELS
+from roughgas.accuracy.files import read_study
+from roughgas.plotting.accuracy import discretisation, models, statistical
+
+SIZE = (10.2, 8.6)  # inches
+
+
+def draw(path: str | Path) -> Figure:
+    """The figure, from the combined dataset of the studies at `path`."""
+    data = {name: read_study(path, name) for name in PANELS}
+    figure = Figure(figsize=SIZE, layout="constrained")
+    (first, second), (third, fourth) = figure.subplots(2, 2)
+    statistical.draw(first, data["statistical"])
+    models.draw(second, data["models"])
+    discretisation.draw(third, data["discretisation"])
+    models.draw_map(fourth, data["models"])
+    for letter, axes in zip("abcd", (first, second, third, fourth), strict=True):
+        axes.set_title(f"({letter}) {axes.get_title()}", loc="left", fontsize=9)
+    return figure
