@@ -1,4 +1,5 @@
 # Accuracy on demand: a pilot of each point says how many seeds it needs, and what they will cost.
+PLANNING = PACKAGE / "planning"
 PLANNED = [
     name
     for name in config["experiments"]
@@ -23,6 +24,7 @@ def fixed_schedules(wildcards):
 rule pilot:
     input:
         kernel_of_point,
+        PLANNING / "pilot.py",
     output:
         PILOT,
     log:
@@ -43,6 +45,8 @@ rule reach:
     # a folder, since only its making shows how many seeds it takes
     input:
         kernel_of_point,
+        PLANNING / "plan.py",
+        PLANNING / "reach.py",
         pilot=PILOT,
     output:
         directory(SEEDS),

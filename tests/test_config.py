@@ -91,6 +91,25 @@ def test_small_has_the_density_of_paper(paper, name):
     assert density("small") == density("paper")
 
 
+@pytest.mark.parametrize("name", ["vibrated", "cooling", "vibrated_rough_walls"])
+def test_a_target_replaces_lengths_and_seeds(paper, name):
+    settings = config.experiment(paper, name, "fine")
+    plain = config.experiment(paper, name, "paper")
+    assert settings["target_stderr"] == 0.002 and "target_stderr" not in plain
+    assert settings["sweep"] == {key: plain["sweep"][key] for key in ("r", "beta")}
+    assert set(settings["schedule"]) <= {"kind", "sample_every", "period", "thermalise"}
+    assert settings["effects"] == plain["effects"]
+
+
+def test_a_study_has_its_settings_and_those_of_the_experiments(paper):
+    found = config.study(paper, "statistical", "small")
+    assert found["experiments"]["sheared"]["particles"] == 40
+    assert set(found["experiments"]) == set(paper["experiments"])
+    assert found["study"] != config.study(paper, "statistical", "paper")["study"]
+    with pytest.raises(InputError, match="study = 'none': must be one of"):
+        config.study(paper, "none", "small")
+
+
 def test_null_takes_an_effect_away():
     base = {"effects": {"spin": {"inertia": 0.5}, "walls": {"restitution": 1}}}
     assert config.merged(base, {"effects": {"walls": None}}) == {
@@ -133,6 +152,13 @@ MISTAKES = [
     ("experiments.cooling.sweep.beta", ["0.1", "0.10"], "sweep.beta = '0.10': must be given once"),
     ("experiments.cooling.sweep.r", [], "sweep.r = []: must be a list of at least 1"),
     ("experiments.cooling.sweep.seeds", 0, "sweep.seeds = 0: must be a whole number >= 1"),
+    ("experiments.cooling.target_stderr", 0, "target_stderr = 0: must be a number in (0, 0.1]"),
+    (
+        "experiments.cooling.target_stderr",
+        0.01,
+        "schedule: key = 'replicas': must be one of kind, thermalise, sample_every",
+    ),
+    ("experiments.accuracy", {}, "key of experiments = accuracy: must be another name"),
     ("experiments.cooling.particles", 0, "particles = 0: must be a whole number >= 1"),
     ("experiments.cooling.particles", "many", "particles = 'many': must be a whole number >= 1"),
     ("experiments.cooling.particles", 1.5, "particles = 1.5: must be a whole number >= 1"),
@@ -187,7 +213,11 @@ MISTAKES = [
     ("experiments.vibrated_smooth_walls.extends", "foo", f"must be one of {EXPERIMENTS}"),
     ("experiments.cooling.extends", "cooling", "that does not itself build on this one"),
     ("experiments.No Name", {}, "must be made of lower-case letters, digits and _, a letter first"),
-    ("scales.small.foo", {}, "key of scales.small = 'foo': must be one of cooling, sheared, show"),
+    (
+        "scales.small.foo",
+        {},
+        "key of scales.small = 'foo': must be one of accuracy, cooling, sheared",
+    ),
     ("scales.small.showcase.frames", 0, "scales.small.showcase.frames = 0: must be a whole number"),
     ("showcase.beta", "2", "showcase.beta = '2': must lie in [-1, 1]"),
     ("showcase.box", [10, "open"], "showcase.box[1] = 'open': must be a number > 0"),
@@ -200,8 +230,12 @@ MISTAKES = [
     ("experiments.showcase", {}, "key of experiments = showcase: must be another name"),
     ("scales.small.cooling.extends", "vibrated", "must not be given here"),
     ("scales.small.cooling.particles", 0, "particles = 0: must be a whole number >= 1"),
-    ("scale", "large", "config.yaml: scale = 'large': must be one of paper, small"),
-    ("n_particles", 5, "config.yaml: key = 'n_particles': must be one of experiments, scale"),
+    ("scale", "large", "config.yaml: scale = 'large': must be one of coarse, fine, paper, small"),
+    (
+        "n_particles",
+        5,
+        "config.yaml: key = 'n_particles': must be one of accuracy, experiments, scale",
+    ),
 ]
 
 
@@ -228,7 +262,7 @@ def test_unknown_names(paper):
     said = refusal(config.experiment, paper, "foo", "paper")
     assert said == f"experiment = 'foo': must be one of {EXPERIMENTS}"
     said = refusal(config.experiment, paper, "cooling", "foo")
-    assert said == "scale = 'foo': must be one of paper, small"
+    assert said == "scale = 'foo': must be one of coarse, fine, paper, small"
 
 
 @pytest.mark.parametrize(

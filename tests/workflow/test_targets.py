@@ -16,8 +16,11 @@ ILLEGAL = [
     ("results/paper/cooling/r0.9/beta-2/seed1.nc", "roughness beta = -2: must lie in [-1, 1]"),
     ("results/paper/cooling/r0.9/beta0/seedx.nc", "seed = x: must be a whole number in [0,"),
     ("results/paper/heating/r0.9/beta0/seed1.nc", "experiment = 'heating': must be one of cooling"),
-    ("results/large/cooling/r0.9/beta0/seed1.nc", "scale = 'large': must be one of paper, small"),
-    ("figures/large/fig1a.pdf", "scale = 'large': must be one of paper, small"),
+    (
+        "results/large/cooling/r0.9/beta0/seed1.nc",
+        "scale = 'large': must be one of coarse, fine, paper, small",
+    ),
+    ("figures/large/fig1a.pdf", "scale = 'large': must be one of coarse, fine, paper, small"),
     ("figures/fig9.png", "figure = fig9: must be one of fig1a, fig1b, fig2a, fig2b"),
 ]
 
@@ -64,6 +67,17 @@ def test_seeds_that_fill_no_job_are_jobs_nevertheless(tmp_path):
     assert planned == {"compile_kernel": 1, "seeds": 2, "point": 1, "reduce": 1}
 
 
+def test_a_point_with_a_target_is_one_job_after_its_pilot(project):
+    planned = project.planned("results/coarse/cooling.nc")
+    assert planned == {"compile_kernel": 4, "pilot": 84, "reach": 84, "reduce": 1}
+    assert project.planned("results/fine/cooling/r0.9/beta0/seed3.nc")["point"] == 1
+
+
+def test_a_plan_takes_pilots_and_no_points(project):
+    planned = project.planned("plan")
+    assert planned == {"compile_kernel": 6, "pilot": 6, "plan_of_scale": 1, "plan": 1}
+
+
 def test_a_seed_of_the_sweep_comes_with_those_of_its_job(project):
     target = "results/tiny/cooling/r0.9/beta0/seed2.nc"
     assert project.planned(target) == {"compile_kernel": 1, "seeds": 1}
@@ -101,9 +115,12 @@ def test_an_illegal_target_is_refused_in_one_line(project, target, message):
 @pytest.mark.parametrize(
     ("setting", "message"),
     [
-        ("scale=large", "scale = 'large': must be one of paper, small"),
+        ("scale=large", "scale = 'large': must be one of coarse, fine, paper, small"),
         ("seeds_per_job=0", "seeds_per_job = 0: must be a whole number >= 1"),
-        ("n_particles=5", "key = 'n_particles': must be one of experiments, scale, scales,"),
+        (
+            "n_particles=5",
+            "key = 'n_particles': must be one of accuracy, experiments, scale, scales,",
+        ),
     ],
 )
 def test_an_illegal_setting_on_the_command_line_is_refused(project, setting, message):

@@ -1,4 +1,4 @@
-"""`roughgas study` runs a task of a study of accuracy, `combine` joins tasks, `tables` shows them."""
+"""`roughgas study` runs a task of a study, `combine` joins tasks, `tables` shows what they found."""
 
 import argparse
 import json

@@ -112,8 +112,8 @@ def showcase(config: Mapping[str, Any], scale: str) -> dict[str, Any]:
 
 
 def study(config: Mapping[str, Any], name: str, scale: str) -> dict[str, Any]:
-    """The settings of a study of accuracy at `scale`, under `study`, and under `experiments` those of
-    the experiments that it may run. Raises InputError for unknown names."""
+    """The settings of a study of accuracy at `scale`, as `study`, and those of the experiments that
+    it may run, as `experiments`. Raises InputError for unknown names."""
     _one_of("scale", scale, config["scales"])
     settings = merged(config[ACCURACY], config["scales"][scale].get(ACCURACY, {}))
     _one_of("study", name, settings)

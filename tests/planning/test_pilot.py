@@ -1,0 +1,102 @@
+"""Pilots: the same twice, and right about what is to come."""
+
+import math
+
+import numpy as np
+import pytest
+
+from roughgas.errors import InputError
+from roughgas.planning.pilot import (
+    CHAINS,
+    MEASURED,
+    Pilot,
+    _settling,
+    explore,
+    read_pilot,
+    write_pilot,
+)
+from roughgas.planning.plan import plan_point
+from roughgas.planning.reach import completed
+from roughgas.simulate import run_point
+
+TIMES = ("seconds", "seconds_per_length")
+
+
+def numbers(pilot):
+    return {name: value for name, value in pilot._asdict().items() if name not in TIMES}
+
+
+def test_the_same_pilot_twice(sheared):
+    assert numbers(explore(sheared, 0.9, 0.0)) == numbers(explore(sheared, 0.9, 0.0))
+
+
+def test_a_driven_pilot_has_seen_enough(sheared):
+    pilot = explore(sheared, 0.9, 0.0)
+    assert pilot.settled and pilot.seconds > 0
+    measured = pilot.length - CHAINS * pilot.transient
+    assert measured >= MEASURED * pilot.autocorrelation_time
+    # one relaxation of the shear flow's heating is some hundred T: neither none nor the whole run
+    assert 10 < pilot.transient < pilot.length / CHAINS / 4
+
+
+@pytest.mark.parametrize("name", ["sheared", "cooling"])
+def test_the_expected_error_is_the_scatter_of_independent_runs(name, request):
+    """24 runs: their variance is known to 29 % (1 sigma), that of the pilot to about 23 %. Within
+    a factor 3, more than 3 sigma on either side: fails by chance less than once in 300."""
+    experiment = request.getfixturevalue(name)
+    plan = plan_point(experiment, 0.9, 0.0, explore(experiment, 0.9, 0.0))
+    settings = completed(experiment, plan)
+    found = [run_point(settings, 0.9, 0.0, seed).variables["R"] for seed in range(24)]
+    expected = plan.stderr**2 * plan.seeds
+    assert expected / 3 < np.var(found, ddof=1) < 3 * expected
+
+
+def test_expected_collisions_are_those_that_happen(sheared):
+    plan = plan_point(sheared, 0.9, 0.0, explore(sheared, 0.9, 0.0))
+    settings = completed(sheared, plan)
+    made = sum(
+        run_point(settings, 0.9, 0.0, seed).variables["collisions"] for seed in range(plan.seeds)
+    )
+    assert plan.collisions == pytest.approx(made, rel=0.1)
+
+
+def chains(transient, noise, seed=1, count=10, periods=512):
+    """Energies that decay to 1 with an e-fold of `transient`, with white noise."""
+    time = np.arange(periods)
+    decay = np.exp(-time / transient) if transient else np.zeros(periods)
+    return 1 + decay + noise * np.random.default_rng(seed).standard_normal((count, periods))
+
+
+def test_the_transient_is_where_the_energies_settle():
+    """With 1 % of noise: after 3 to 6 e-folds, the windows growing by 30 %."""
+    for e_fold in (4, 16):
+        assert 3 * e_fold <= _settling(chains(e_fold, 0.01)) <= 8 * e_fold
+    assert _settling(chains(0, 0.0)) == 0
+
+
+def test_noise_is_seldom_taken_for_a_transient():
+    """20 windows at 3 sigma: an alarm in one of 20 sets of chains."""
+    alarms = [_settling(chains(0, 0.3, seed)) > 64 for seed in range(60)]
+    assert np.mean(alarms) < 0.15
+
+
+def test_a_gas_that_nothing_makes_spin(sheared):
+    """R is 0 for ever: no scatter, no memory, and the least that is ever run."""
+    pilot = explore(sheared, 0.9, -1.0)
+    assert pilot.variance == 0 and math.isnan(pilot.autocorrelation_time)
+    plan = plan_point(sheared, 0.9, -1.0, pilot)
+    assert plan.stderr == 0 and plan.seeds == 2
+
+
+def test_a_pilot_comes_back_as_written(tmp_path, sheared):
+    pilot = Pilot(1.0, math.nan, 2.0, 9.0, 0.1, 1e-3, True, 100.0, 0.5)
+    write_pilot(tmp_path / "new" / "pilot.json", pilot)
+    assert str(read_pilot(tmp_path / "new" / "pilot.json")) == str(pilot)
+
+
+@pytest.mark.parametrize("text", ["", "[1]", '{"transient": 1}'])
+def test_what_is_no_pilot_is_refused(tmp_path, text):
+    path = tmp_path / "pilot.json"
+    path.write_text(text)
+    with pytest.raises(InputError, match=r"pilot\.json: must be a file of `roughgas pilot`"):
+        read_pilot(path)

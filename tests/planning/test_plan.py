@@ -1,0 +1,89 @@
+"""Plans: the law of large numbers, and how long a gas needs."""
+
+import math
+
+import pytest
+
+from roughgas.planning.pilot import Pilot
+from roughgas.planning.plan import BIAS, CARE, plan_point, relaxation
+from roughgas.scene import build
+from roughgas.theory import cooling_ratio, lun_ratio, relax
+
+PILOT = Pilot(
+    transient=40.0,
+    autocorrelation_time=10.0,
+    variance=0.081,
+    dof=50.0,
+    pace=0.5,
+    seconds_per_length=1e-3,
+    settled=True,
+    length=5000.0,
+    seconds=5.0,
+)
+
+
+def with_target(experiment, target):
+    return experiment | {"target_stderr": target}
+
+
+def test_seeds_are_as_many_as_the_error_calls_for_and_no_more(sheared):
+    plan = plan_point(with_target(sheared, 0.004), 0.9, 0.0, PILOT)
+    length = plan.schedule["measure"]
+    assert math.sqrt(PILOT.variance / (plan.seeds * length)) == pytest.approx(plan.stderr)
+    assert plan.stderr <= 0.004 < math.sqrt(PILOT.variance / ((plan.seeds - 1) * length))
+
+
+@pytest.mark.parametrize("name", ["sheared", "cooling"])
+def test_half_the_error_costs_four_times_as_much(name, request):
+    """But for whole seeds, and for one more half-life of what is left of the transient."""
+    experiment = request.getfixturevalue(name)
+    pilot = PILOT._replace(variance=2.0)
+    one, two = (
+        plan_point(with_target(experiment, target), 0.9, 0.0, pilot) for target in (0.004, 0.002)
+    )
+    assert two.seconds / one.seconds == pytest.approx(4, rel=0.1)
+    assert two.seeds / one.seeds == pytest.approx(4, rel=0.1)
+
+
+def test_a_run_waits_for_the_slower_of_energies_and_spin(sheared):
+    slow, fast = (
+        plan_point(sheared, 0.9, beta, PILOT).schedule["equilibrate"] for beta in (-0.95, 0.5)
+    )
+    scene = build(sheared, 0.9, -0.95)
+    assert fast == PILOT.transient
+    assert slow == math.ceil(relaxation(scene, BIAS * 0.01, cooling=False) / PILOT.pace) > fast
+
+
+def test_a_run_is_measured_for_many_times_what_it_remembers(sheared):
+    assert plan_point(sheared, 0.9, 0.5, PILOT).schedule["measure"] == 200
+    forgetful = PILOT._replace(autocorrelation_time=0.1)
+    assert plan_point(sheared, 0.9, 0.5, forgetful).schedule["measure"] == PILOT.transient
+
+
+@pytest.mark.parametrize("beta", [-0.5, 0.0, 1.0])
+@pytest.mark.parametrize("cooling", [True, False])
+def test_after_the_relaxation_theory_is_within_what_is_tolerated(sheared, beta, cooling):
+    scene, tolerated = build(sheared, 0.9, beta), 0.001
+    needed = relaxation(scene, tolerated, cooling) / CARE
+    final = cooling_ratio(0.9, beta) if cooling else lun_ratio(beta, 0.5)
+    theta = relax(0.0, 0.9, beta, needed, spin_share=None if cooling else 0.0).theta
+    assert abs(theta / (1 + theta) - final) == pytest.approx(tolerated, rel=1e-6)
+
+
+def test_lengths_that_are_set_are_taken_as_they_are(sheared):
+    schedule = sheared["schedule"] | {"equilibrate": 100, "measure": 400}
+    experiment = {key: value for key, value in sheared.items() if key != "target_stderr"}
+    experiment |= {"schedule": schedule, "sweep": {"seeds": 3}}
+    plan = plan_point(experiment, 0.9, 0.0, PILOT)
+    assert plan.schedule == schedule and plan.seeds == 3
+    assert plan.stderr == pytest.approx(math.sqrt(PILOT.variance / 1200))
+    assert plan.seconds == pytest.approx(1.5)
+    assert plan.collisions == pytest.approx(1500 * PILOT.pace * sheared["particles"] / 2)
+
+
+def test_a_cooling_seed_is_ten_replicas(cooling):
+    plan = plan_point(cooling, 0.9, 0.0, PILOT)
+    assert plan.schedule["replicas"] == 10
+    assert plan.stderr == pytest.approx(
+        math.sqrt(PILOT.variance / (plan.seeds * 10 * plan.schedule["plateau"]))
+    )
