@@ -19,6 +19,7 @@ __all__ = [
     "from_text",
     "load",
     "merged",
+    "pilot_settings",
     "point_settings",
     "restitution",
     "roughness",
@@ -97,11 +98,17 @@ def experiment(config: Mapping[str, Any], name: str, scale: str) -> dict[str, An
 def _over(settings: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
     """Settings of an experiment with changes, a target among which replaces lengths and seeds."""
     if "target_stderr" in changes:
-        settings = dict(settings)
-        for part, names in REPLACED.items():
-            kept = {key: x for key, x in settings.get(part, {}).items() if key not in names}
-            settings[part] = kept
+        settings = _without_lengths(settings)
     return merged(settings, changes)
+
+
+def _without_lengths(settings: Mapping[str, Any]) -> dict[str, Any]:
+    replaced = {
+        part: {key: value for key, value in settings[part].items() if key not in names}
+        for part, names in REPLACED.items()
+        if part in settings
+    }
+    return dict(settings) | replaced
 
 
 def showcase(config: Mapping[str, Any], scale: str) -> dict[str, Any]:
@@ -140,6 +147,11 @@ def merged(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any
 def point_settings(settings: Mapping[str, Any]) -> dict[str, Any]:
     """The settings of an experiment that shape its points, whichever of them are asked for."""
     return {key: value for key, value in settings.items() if key not in NOT_OF_A_POINT}
+
+
+def pilot_settings(settings: Mapping[str, Any]) -> dict[str, Any]:
+    """The settings of an experiment that shape the pilots of its points, whatever the target."""
+    return merged(_without_lengths(point_settings(settings)), {"target_stderr": None})
 
 
 def sweep(settings: Mapping[str, Any]) -> Iterator[tuple[str, str, str]]:
