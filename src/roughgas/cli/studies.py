@@ -1,4 +1,4 @@
-"""`roughgas study` runs a task of a study, `combine` joins tasks, `tables` shows what they found."""
+"""`roughgas study` runs a task of a study, `combine` joins tasks, `tables` shows the outcome."""
 
 import argparse
 import json
