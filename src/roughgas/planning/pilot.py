@@ -44,6 +44,7 @@ class Pilot(NamedTuple):
 
     transient: float  # length until the energies are steady (cooling gas: R, by theory alone)
     autocorrelation_time: float  # of R, as a length
+    memory: float  # the longest autocorrelation time of R and both energies
     variance: float  # of the mean of R over a length of one: error^2 is this over the length
     dof: float  # degrees of freedom of `variance`
     pace: float  # collisions per particle in a length of one
@@ -119,12 +120,14 @@ def _judged(chains: Chains, period: float, pace: float, seconds: float) -> Pilot
     count, periods = chains.R.shape
     start = max(_settling(part) for part in (chains.E_trans, chains.E_rot))
     settled = start <= TRANSIENT_SHARE * periods
-    measured = chains.R[:, min(start, periods // 2) :]
+    begin = min(start, periods // 2)
+    measured = chains.R[:, begin:]
     blocks = [blocking(one) for one in measured]
     simulated = count * periods * period
     return Pilot(
         transient=start * period,
         autocorrelation_time=autocorrelation_time(measured) * period,
+        memory=np.nanmax([autocorrelation_time(part[:, begin:]) for part in chains]) * period,
         variance=np.mean([one.stderr**2 for one in blocks]) * measured.shape[1] * period,
         dof=sum(degrees_of_freedom(one.blocks) for one in blocks),
         pace=pace,
@@ -168,6 +171,7 @@ def _explore_cooling(scene: Scene, experiment: Mapping[str, Any]) -> Pilot:
     return Pilot(
         transient=0.0,
         autocorrelation_time=found["autocorrelation_time"],
+        memory=found["autocorrelation_time"],
         variance=found["R_stderr"] ** 2 * replicas * measured,
         dof=replicas - 1.0,
         pace=1.0,

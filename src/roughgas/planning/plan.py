@@ -13,8 +13,8 @@ BIAS = 0.1  # of the target: what may be left of the transient
 CARE = 1.3  # theory's relaxation is followed within a few per cent
 FEWEST_SEEDS = 2
 REPLICAS = 10  # of a cooling gas to a seed: as many as it takes to find a plateau
-MEMORIES = {"steady": 20.0, "cooling": 10.0}  # autocorrelation times in a run, at least: an error
-# from within a run of a driven gas needs the more of them
+MEMORIES = {"steady": 20.0, "cooling": 10.0}  # autocorrelation times in a run, at least: to see a
+# driven gas steady, and an error within one run of it, needs the more of them
 
 
 class Plan(NamedTuple):
@@ -115,10 +115,9 @@ def _given(scene: Scene, experiment: Mapping[str, Any]) -> Lengths:
 
 
 def _measured(kind, spent, pilot):
-    """How long a run is measured: as long as was spent before, and many times what R remembers,
-    which is nothing where it is constant."""
-    memory = pilot.autocorrelation_time
-    return max(spent, 0.0 if math.isnan(memory) else MEMORIES[kind] * memory)
+    """How long a run is measured: as long as was spent before, and many times what the gas
+    remembers (NaN where R is constant)."""
+    return max(spent, 0.0 if math.isnan(pilot.memory) else MEMORIES[kind] * pilot.memory)
 
 
 def _relaxation_rate(scene):
