@@ -1,0 +1,1 @@
+"""What accuracy costs: errors of R against CPU seconds, from every source of error."""

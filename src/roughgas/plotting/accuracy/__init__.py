@@ -1,0 +1,1 @@
+"""The figures of what accuracy costs."""
