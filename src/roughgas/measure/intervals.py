@@ -13,7 +13,6 @@ import numpy as np
 
 from roughgas.measure.errors import student_t
 
-OVERLAPPING = 1.5  # degrees of freedom of overlapping blocks, in those of disjoint ones
 DISAGREE = 2.0  # sigma
 
 
@@ -39,8 +38,14 @@ def half_width(stderr: float, dof: float, level: float) -> float:
 
 
 def degrees_of_freedom(blocks: float) -> float:
-    """Of a standard error from so many blocks that overlap (Meketon & Schmeiser 1984)."""
-    return max(0.0, OVERLAPPING * (blocks - 1))
+    """Of a standard error by `errors.blocking`, from how many blocks it says there are.
+
+    Blocks that overlap are worth 1.5 times as many degrees of freedom as disjoint ones (Meketon &
+    Schmeiser 1984) if their length is given. That it is chosen from the same series costs as much:
+    on AR(1) series of 20 to 1000 autocorrelation times the scatter of the squared error is that of
+    0.6 to 1.3 times as many as there are disjoint blocks, less one.
+    """
+    return max(0.0, blocks - 1.0)
 
 
 def pooled(means: np.ndarray, within: np.ndarray, dof: np.ndarray) -> Error:

@@ -11,9 +11,10 @@ which are independent, so no autocorrelation along s, the collisions per particl
    of 1, 2, 4, ... blocks up to half of it departs from the rest by 3.5 sigma.
 2. From each block the longest stationary window is taken, if it at least doubles s (so that it
    outlasts the transient before it) or begins where a plateau may at the earliest.
-3. Both ends are trimmed until no stretch departs by 2 sigma. An end found inside the data then
-   gives up another fifth of the window, because a transient at the limit of detection would still
-   bias the mean by about its standard error.
+3. Both ends are trimmed until no stretch departs by 3 sigma. (At 2 sigma noise alone would have
+   every fourth window trimmed, and the error understated by a seventh.) An end found inside the
+   data then gives up another fifth of the window, because a transient at the limit of detection
+   would still bias the mean by about its standard error.
 4. Of these windows, the plateau is the one that multiplies s by most, leaving out those that drift
    (it must be shown, at 2 sigma, that the last third differs from the first by less than a quarter
    of R) and those that R exceeds elsewhere, by 5 % and 3.5 sigma in a tenth of what is before or
@@ -36,7 +37,7 @@ ORIGIN = 1 / 40  # of all samples, added to s: no block is shorter than a few pe
 SHORTEST_PLATEAU = 8  # blocks
 SHORTEST_GROWTH = 2.0
 ALARM_SIGMAS = 3.5
-TRIM_SIGMAS = 2.0
+TRIM_SIGMAS = 3.0
 MARGIN = 0.2
 CLEAR_EXCESS = 0.05  # of R
 BOUND_SIGMAS = 2.0

@@ -101,9 +101,8 @@ def _unsubtracted(scene, rows, number, start):
 def _start(series, planned, length, per_period):
     """First sample to be measured, a whole number of periods in, and whether the rest is steady."""
     means = [period_means(part, per_period) for part in series]
-    detected = per_period * detect_start(*means)
     first = -(-planned // per_period) * per_period
-    start = max(first, detected)
+    start = per_period * detect_start(*means, planned=first // per_period)
     if planned + length - start < LEAST_LEFT * length:
         return first, False
     return start, is_equilibrated(*means, start=start // per_period)
