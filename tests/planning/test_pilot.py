@@ -83,13 +83,13 @@ def test_noise_is_seldom_taken_for_a_transient():
 def test_a_gas_that_nothing_makes_spin(sheared):
     """R is 0 for ever: no scatter, no memory, and the least that is ever run."""
     pilot = explore(sheared, 0.9, -1.0)
-    assert pilot.variance == 0 and math.isnan(pilot.autocorrelation_time) and pilot.memory > 0
+    assert pilot.variance == 0 and math.isnan(pilot.autocorrelation_time)
     plan = plan_point(sheared, 0.9, -1.0, pilot)
     assert plan.stderr == 0 and plan.seeds == 2
 
 
 def test_a_pilot_comes_back_as_written(tmp_path, sheared):
-    pilot = Pilot(1.0, math.nan, 2.0, 3.0, 9.0, 0.1, 1e-3, True, 100.0, 0.5)
+    pilot = Pilot(1.0, math.nan, 2.0, 9.0, 0.1, 1e-3, True, 100.0, 0.5)
     write_pilot(tmp_path / "new" / "pilot.json", pilot)
     assert str(read_pilot(tmp_path / "new" / "pilot.json")) == str(pilot)
 

@@ -11,8 +11,7 @@ from roughgas.theory import cooling_ratio, lun_ratio, relax
 
 PILOT = Pilot(
     transient=40.0,
-    autocorrelation_time=8.0,
-    memory=10.0,
+    autocorrelation_time=10.0,
     variance=0.081,
     dof=50.0,
     pace=0.5,
@@ -57,7 +56,7 @@ def test_a_run_waits_for_the_slower_of_energies_and_spin(sheared):
 
 def test_a_run_is_measured_for_many_times_what_it_remembers(sheared):
     assert plan_point(sheared, 0.9, 0.5, PILOT).schedule["measure"] == 200
-    forgetful = PILOT._replace(memory=0.1)
+    forgetful = PILOT._replace(autocorrelation_time=0.1)
     assert plan_point(sheared, 0.9, 0.5, forgetful).schedule["measure"] == PILOT.transient
 
 

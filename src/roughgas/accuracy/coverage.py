@@ -66,9 +66,7 @@ def run(
     return xarray.Dataset(variables | {"cpu_seconds": ((), seconds)})
 
 
-def combine(
-    parts: Mapping[str, "xarray.Dataset"], settings: Mapping[str, Any]
-) -> "xarray.Dataset":
+def combine(parts: Mapping[str, "xarray.Dataset"], settings: Mapping[str, Any]) -> "xarray.Dataset":
     """Coverage, bias and the size of the stated errors at every corner (dimensions as named here).
 
     `parts` holds the result of every job of `tasks`.

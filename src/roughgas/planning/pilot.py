@@ -27,6 +27,7 @@ from roughgas.measure.intervals import degrees_of_freedom
 from roughgas.protocols import cooling, steady
 from roughgas.protocols.recorder import Recorder
 from roughgas.scene import Scene, build, check_company
+from roughgas.theory import relaxation_rate
 
 SEED = LARGEST_SEED  # of pilots: none that a point would take
 CHAINS = 10  # which the transient of a driven gas is seen with
@@ -36,7 +37,9 @@ MEASURED = 200.0  # autocorrelation times in all chains together
 TRANSIENT_SHARE = 0.25  # of a chain, at most
 GROWTH = 1.3  # of the windows in which the transient is looked for
 NEGLIGIBLE, ALARM_SIGMAS = 0.01, 3.0  # deviations of an energy that are none
-COOLING = {"replicas": 40, "relaxation_times": 16, "plateau": 100}  # as a rule, see config.yaml
+COOLING = {"replicas": 40, "relaxation_times": 16}
+E_FOLDS = 10.0  # of R on the plateau of a cooling gas
+PLATEAU = 50.0, 1000.0  # collisions per particle that it is kept between
 
 
 class Pilot(NamedTuple):
@@ -44,7 +47,6 @@ class Pilot(NamedTuple):
 
     transient: float  # length until the energies are steady (cooling gas: R, by theory alone)
     autocorrelation_time: float  # of R, as a length
-    memory: float  # the longest autocorrelation time of R and both energies
     variance: float  # of the mean of R over a length of one: error^2 is this over the length
     dof: float  # degrees of freedom of `variance`
     pace: float  # collisions per particle in a length of one
@@ -120,14 +122,12 @@ def _judged(chains: Chains, period: float, pace: float, seconds: float) -> Pilot
     count, periods = chains.R.shape
     start = max(_settling(part) for part in (chains.E_trans, chains.E_rot))
     settled = start <= TRANSIENT_SHARE * periods
-    begin = min(start, periods // 2)
-    measured = chains.R[:, begin:]
+    measured = chains.R[:, min(start, periods // 2) :]
     blocks = [blocking(one) for one in measured]
     simulated = count * periods * period
     return Pilot(
         transient=start * period,
         autocorrelation_time=autocorrelation_time(measured) * period,
-        memory=np.nanmax([autocorrelation_time(part[:, begin:]) for part in chains]) * period,
         variance=np.mean([one.stderr**2 for one in blocks]) * measured.shape[1] * period,
         dof=sum(degrees_of_freedom(one.blocks) for one in blocks),
         pace=pace,
@@ -160,18 +160,27 @@ def _is_enough(pilot: Pilot) -> bool:
     return pilot.settled and measured >= MEASURED * pilot.autocorrelation_time
 
 
+def rate_of(scene: Scene) -> float:
+    """The rate at which R relaxes in a cooling gas, by the rate equations, per collision per
+    particle."""
+    inertia, dimension = scene.effects.spin.inertia, len(scene.box)
+    return float(relaxation_rate(scene.restitution, scene.roughness, dimension, inertia))
+
+
 def _explore_cooling(scene: Scene, experiment: Mapping[str, Any]) -> Pilot:
-    """One point of the usual kind, long enough to be sure of the plateau."""
+    """One point of the usual kind, long enough to be sure of the plateau and of how R varies on it:
+    it remembers as long as it relaxes, twice the e-fold of theory (Ornstein and Uhlenbeck)."""
     recorder, number = Recorder(), experiment["particles"]
-    tried = experiment | {"schedule": experiment["schedule"] | COOLING}
+    e_fold = 1.0 / max(rate_of(scene), 1.0 / PLATEAU[1])
+    plateau = min(max(E_FOLDS * e_fold, PLATEAU[0]), PLATEAU[1])
+    tried = experiment | {"schedule": experiment["schedule"] | COOLING | {"plateau": plateau}}
     found = cooling.run(scene, tried, SEED, recorder)
     replicas = COOLING["replicas"]
     simulated = 2.0 * recorder.collisions / number
     measured = max(found["plateau_end"] - found["measured_from"], 1.0)
     return Pilot(
         transient=0.0,
-        autocorrelation_time=found["autocorrelation_time"],
-        memory=found["autocorrelation_time"],
+        autocorrelation_time=np.fmax(found["autocorrelation_time"], 2.0 * e_fold),
         variance=found["R_stderr"] ** 2 * replicas * measured,
         dof=replicas - 1.0,
         pace=1.0,

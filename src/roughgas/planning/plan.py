@@ -2,19 +2,26 @@
 
 import math
 from collections.abc import Mapping
+from statistics import NormalDist
 from typing import Any, NamedTuple
 
-from roughgas.planning.pilot import Pilot
+from roughgas.planning.pilot import Pilot, rate_of
 from roughgas.protocols.cooling import TRANSIENT, transient_length
 from roughgas.scene import Scene, build
-from roughgas.theory import collisions_to_relax, cooling_ratio, lun_ratio, relaxation_rate
+from roughgas.theory import collisions_to_relax, cooling_ratio, lun_ratio
 
 BIAS = 0.1  # of the target: what may be left of the transient
 CARE = 1.3  # theory's relaxation is followed within a few per cent
+TWICE = 2.0  # the transient is waited for: whether a gas is steady is judged from half of that on
 FEWEST_SEEDS = 2
-REPLICAS = 10  # of a cooling gas to a seed: as many as it takes to find a plateau
-MEMORIES = {"steady": 20.0, "cooling": 10.0}  # autocorrelation times in a run, at least: to see a
-# driven gas steady, and an error within one run of it, needs the more of them
+ALONE = 0.25  # of a seed: where so little would do, one says enough of its own error
+REPLICAS = 5  # of a cooling gas to a seed
+MEMORIES = {
+    "steady": 20.0,
+    "cooling": 3.0,
+}  # autocorrelation times in a run, at least: blocks, which
+# tell the error within one run, need the more of them
+BLOCKS = 6.0  # degrees of freedom that they have in such a run
 
 
 class Plan(NamedTuple):
@@ -22,9 +29,9 @@ class Plan(NamedTuple):
 
     schedule: dict[str, Any]  # of each run, complete
     seeds: int
-    stderr: float  # expected, of the mean over all seeds
-    collisions: float  # expected, in all runs
-    seconds: float  # expected CPU time of the kernel in all runs
+    stderr: float  # expected, of the mean over these seeds
+    collisions: float  # expected, with the seeds that may have to be added
+    seconds: float  # the same of CPU time of the kernel
 
 
 class Lengths(NamedTuple):
@@ -44,19 +51,20 @@ class Lengths(NamedTuple):
 def plan_point(experiment: Mapping[str, Any], r: float, beta: float, pilot: Pilot) -> Plan:
     """The plan of a point: for its `target_stderr`, or for the lengths and seeds that are set.
 
-    The length of a run does not depend on the target, but for the logarithm of what may be left of
-    the transient: so the cost of an error is proportional to its inverse square. Half of a run, or
-    more where R remembers long, is measured; the number of seeds follows. Raises InputError.
+    Half of a run, or more where R remembers long, is measured; the number of seeds follows. So,
+    where a point needs more than the fewest seeds, its cost is proportional to the inverse square
+    of its error, but for the logarithm of what may be left of the transient. Raises InputError.
     """
     scene = build(experiment, r, beta)
     if "target_stderr" in experiment:
         schedule, lengths = _chosen(scene, experiment, pilot)
         enough = pilot.variance / (lengths.runs * lengths.measured * _target(experiment) ** 2)
-        seeds = max(FEWEST_SEEDS, math.ceil(enough))
+        seeds = 1 if enough <= ALONE else max(FEWEST_SEEDS, math.ceil(enough))
+        made = seeds * (1.0 + added(enough / seeds, seeds * _freedom(lengths)))
     else:
         schedule, lengths = dict(experiment["schedule"]), _given(scene, experiment)
-        seeds = experiment["sweep"]["seeds"]
-    simulated = seeds * lengths.simulated
+        made = seeds = experiment["sweep"]["seeds"]
+    simulated = made * lengths.simulated
     return Plan(
         schedule=schedule,
         seeds=seeds,
@@ -64,6 +72,23 @@ def plan_point(experiment: Mapping[str, Any], r: float, beta: float, pilot: Pilo
         collisions=simulated * pilot.pace * experiment["particles"] / 2,
         seconds=simulated * pilot.seconds_per_length,
     )
+
+
+def added(needed: float, dof: float) -> float:
+    """The share of seeds that are expected to be added, where the planned ones find their error too
+    large: they need this share (at most 1) of their number, and know their variance with so many
+    degrees of freedom, taken for Gaussian."""
+    scatter = math.sqrt(2.0 / dof) * needed
+    if scatter == 0.0:
+        return 0.0
+    reserve = (1.0 - needed) / scatter
+    gauss = NormalDist()
+    return scatter * gauss.pdf(reserve) - (1.0 - needed) * gauss.cdf(-reserve)
+
+
+def _freedom(lengths: Lengths) -> float:
+    """Degrees of freedom that a seed adds to the error of all."""
+    return float(lengths.runs if lengths.runs > 1 else 1.0 + BLOCKS)
 
 
 def relaxation(scene: Scene, tolerated: float, cooling: bool) -> float:
@@ -81,26 +106,27 @@ def relaxation(scene: Scene, tolerated: float, cooling: bool) -> float:
 
 def _chosen(scene: Scene, experiment: Mapping[str, Any], pilot: Pilot):
     """The complete schedule of a run that belongs to a target, and its lengths."""
-    given, tolerated = experiment["schedule"], BIAS * _target(experiment)
+    given = experiment["schedule"]
     choose = {"steady": _chosen_driven, "cooling": _chosen_cooling}[given["kind"]]
-    return choose(scene, given, pilot, tolerated)
+    return choose(scene, given, pilot, _target(experiment))
 
 
-def _chosen_driven(scene, given, pilot, tolerated):
+def _chosen_driven(scene, given, pilot, target):
     unit = given.get("period", given["sample_every"])
-    relaxed = relaxation(scene, tolerated, cooling=False) / pilot.pace
-    transient = _whole(max(relaxed, pilot.transient), unit)
-    measured = _whole(_measured("steady", transient, pilot), unit)
+    relaxed = relaxation(scene, BIAS * target, cooling=False) / pilot.pace
+    transient = _whole(max(relaxed, TWICE * pilot.transient), unit)
+    needed = pilot.variance / (FEWEST_SEEDS * target**2)
+    measured = _whole(_measured("steady", transient, needed, pilot), unit)
     schedule = given | {"equilibrate": transient, "measure": measured}
     return schedule, Lengths(transient, measured)
 
 
-def _chosen_cooling(scene, given, pilot, tolerated):
-    rate = _relaxation_rate(scene)
-    e_folds = _rounded(relaxation(scene, tolerated, cooling=True) * rate)
+def _chosen_cooling(scene, given, pilot, target):
+    e_folds = _rounded(relaxation(scene, BIAS * target, cooling=True) * rate_of(scene))
     transient = transient_length(scene, e_folds)
     spent = given["thermalise"] + transient
-    plateau = _whole(_measured("cooling", spent, pilot), given["sample_every"])
+    needed = pilot.variance / (FEWEST_SEEDS * REPLICAS * target**2)
+    plateau = _whole(_measured("cooling", spent, needed, pilot), given["sample_every"])
     schedule = given | {"replicas": REPLICAS, "relaxation_times": e_folds, "plateau": plateau}
     return schedule, Lengths(transient, plateau, REPLICAS, given["thermalise"])
 
@@ -114,15 +140,11 @@ def _given(scene: Scene, experiment: Mapping[str, Any]) -> Lengths:
     return Lengths(transient, schedule["plateau"], schedule["replicas"], schedule["thermalise"])
 
 
-def _measured(kind, spent, pilot):
-    """How long a run is measured: as long as was spent before, and many times what the gas
-    remembers (NaN where R is constant)."""
-    return max(spent, 0.0 if math.isnan(pilot.memory) else MEMORIES[kind] * pilot.memory)
-
-
-def _relaxation_rate(scene):
-    inertia, dimension = scene.effects.spin.inertia, len(scene.box)
-    return float(relaxation_rate(scene.restitution, scene.roughness, dimension, inertia))
+def _measured(kind, spent, needed, pilot):
+    """How long a run is measured: as long as was spent before, but no longer than is `needed`; and
+    many times what R remembers (NaN where it is constant)."""
+    memory = pilot.autocorrelation_time
+    return max(min(spent, needed), 0.0 if math.isnan(memory) else MEMORIES[kind] * memory)
 
 
 def _target(experiment: Mapping[str, Any]) -> float:
