@@ -1,5 +1,6 @@
 """What changes while soft spheres move: where they are, how fast, and which are neighbours."""
 
+import itertools
 import math
 from typing import NamedTuple
 
@@ -40,6 +41,8 @@ class Gas(NamedTuple):
     old_stretch: np.ndarray  # (N, D)
     first: np.ndarray  # (cells,) first particle of each cell's list
     following: np.ndarray  # (N,) the next particle of the same list
+    home: np.ndarray  # (N,) the cell that each is in
+    beside: np.ndarray  # (cells, 3^D or fewer) each cell and those around it
     reach: np.ndarray  # (2,) least upper bounds: way since the last list, and present speed
     counts: np.ndarray  # (3,) pairs listed, contacts begun, lists made
 
@@ -69,7 +72,17 @@ def new_gas(position, velocity, spin, box, springs, skin=2.0) -> tuple[Gas, Sphe
         old_stretch=np.zeros((6 * number, dimension)),
         first=np.full(math.prod(cells), NOBODY, np.int32),
         following=np.full(number, NOBODY, np.int32),
+        home=np.zeros(number, np.int32),
+        beside=_cells_beside(cells),
         reach=np.array([math.inf, 0.0]),
         counts=np.zeros(3, np.int64),
     )
     return gas, Spheres(tuple(map(float, box)), cells, float(skin), springs)
+
+
+def _cells_beside(counts):
+    """Numbers of each cell and of those around it, each once, the last axis running fastest."""
+    numbers = np.arange(math.prod(counts), dtype=np.int32).reshape(counts)
+    steps = itertools.product(*[range(-1, 2) if count > 2 else range(count) for count in counts])
+    axes = tuple(range(len(counts)))
+    return np.stack([np.roll(numbers, step, axes).ravel() for step in steps], axis=1)

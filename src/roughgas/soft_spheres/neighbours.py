@@ -19,10 +19,12 @@ from roughgas.soft_spheres.gas import (
 
 
 @jit
-def keep_list(gas, spheres, way):
-    """Make the list anew if it would not hold while the fastest goes `way` further; False where
-    there is no room for it."""
-    if gas.reach[TRAVELLED] + way <= 0.5 * spheres.skin:
+def keep_list(gas, spheres, half):
+    """Make the list anew where a pair could be missing that overlaps within +-half of now.
+
+    Returns False where there is no room for it.
+    """
+    if gas.reach[TRAVELLED] + gas.reach[FASTEST] * half <= 0.5 * spheres.skin:
         return True
     return _list_pairs(gas, spheres)
 
@@ -91,6 +93,7 @@ def _sort_into_cells(gas, spheres):
             inside = gas.position[i, k] - length * math.floor(gas.position[i, k] / length)
             gas.position[i, k] = inside
             cell = cell * count + min(int(inside / length * count), count - 1)
+        gas.home[i] = cell
         gas.following[i] = gas.first[cell]
         gas.first[cell] = i
 
@@ -99,11 +102,9 @@ def _sort_into_cells(gas, spheres):
 def _list_of(gas, spheres, i):
     """Add the neighbours of particle i with greater numbers; False where the list is full."""
     near = (DIAMETER + spheres.skin) ** 2
-    around = 1
-    for k in range(len(spheres.box)):
-        around *= min(3, spheres.cells[k])
-    for place in range(around):
-        j = gas.first[_cell_beside(gas, spheres, i, place)]
+    home = gas.home[i]
+    for place in range(gas.beside.shape[1]):
+        j = gas.first[gas.beside[home, place]]
         while j != NOBODY:
             p = gas.counts[PAIRS]
             if j > i and _separation(gas, spheres, i, j, p) <= near:
@@ -117,19 +118,6 @@ def _list_of(gas, spheres, i):
                 gas.counts[PAIRS] += 1
             j = gas.following[j]
     return True
-
-
-@jit
-def _cell_beside(gas, spheres, i, place):
-    """One of the cells at and around particle i, each once."""
-    cell = 0
-    for k in range(len(spheres.box)):
-        length, count = spheres.box[k], spheres.cells[k]
-        step = place % min(3, count)
-        place //= min(3, count)
-        here = min(int(gas.position[i, k] / length * count), count - 1)
-        cell = cell * count + (here + step + count - 1) % count
-    return cell
 
 
 @jit

@@ -38,16 +38,12 @@ one_writer_at_a_time(step)
 def _advance(gas, spheres, dt, steps):
     """Flights and the springs' action in turn; half a flight first and last. Second order."""
     half = 0.5 * dt
-    if not keep_list(gas, spheres, gas.reach[FASTEST] * half):
-        return False
-    _fly(gas, half)
     for k in range(steps):
-        _act_all(gas, spheres, half)
-        flight = dt if k + 1 < steps else half
-        # a list made within a step is that of the middle, where it is used
-        if not keep_list(gas, spheres, gas.reach[FASTEST] * (flight + half)):
+        _fly(gas, dt if k > 0 else half)
+        if not keep_list(gas, spheres, half):
             return False
-        _fly(gas, flight)
+        _act_all(gas, spheres, half)
+    _fly(gas, half)
     return True
 
 
