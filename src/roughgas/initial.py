@@ -32,8 +32,8 @@ def initial_state(
 
     They sit on random sites of a square (cubic) lattice, or of a centred one where only that holds
     them, with Maxwellian velocities at temperature 1 m a^2/T^2 relative to the mean flow and none
-    of them spinning. `precision` is that in which trajectories and spins are kept. Raises InputError
-    where they do not fit.
+    of them spinning. `precision` is that in which trajectories and spins are kept. Raises
+    InputError where they do not fit.
     """
     number = experiment["particles"]
     sites = lattice(scene, experiment)

@@ -11,6 +11,7 @@ proper, everything compiled before, at equilibrium.
 from collections.abc import Callable, Mapping
 from typing import Any
 
+
 def tasks(settings: Mapping[str, Any]) -> list[str]:
     """Names of the independent jobs, the longest first."""
     soft = [f"soft-{n}-{k}" for n in settings["steps"] for k in _places(settings["contact_times"])]

@@ -146,7 +146,7 @@ def _statistical(event, reference):
 
 def _early(t):
     """Which t_c nu are fitted: at least the two smallest."""
-    return t <= max(EARLY, np.sort(t)[: 2][-1])
+    return t <= max(EARLY, np.sort(t)[:2][-1])
 
 
 def _rows(data, *names):

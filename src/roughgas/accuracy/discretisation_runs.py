@@ -42,7 +42,7 @@ def event(settings, cooling, progress):
 
 
 def single(settings, cooling, progress):
-    """Trajectories and spins kept in single precision, and what an elastic gas's energy then does."""
+    """Trajectories and spins in single precision, and how an elastic gas's energy then drifts."""
     found = _summary(*_events(settings, cooling, progress, ("single",), np.float32))
     for name, precision in (("single", np.float32), ("double", np.float64)):
         found |= _drift(name, settings, cooling, precision)
@@ -55,7 +55,8 @@ def soft(settings, cooling, progress, steps, place):
     (dt, per_leg), number = plan, len(gas.position)
     nu = _frequency(settings)
     settling, legs = (
-        math.ceil(length / (nu * dt * per_leg)) for length in (SETTLING, settings["soft_collisions"])
+        math.ceil(length / (nu * dt * per_leg))
+        for length in (SETTLING, settings["soft_collisions"])
     )
     step(gas, spheres, dt, per_leg, 1.0, np.empty((settling, len(COLUMNS))))
     rows = np.empty((legs, len(COLUMNS)))
@@ -79,7 +80,7 @@ def model(settings, cooling, progress, place):
     state, recorder = new_state(scene, *where), Recorder()
     number, q = len(where[0]), scene.effects.spin.inertia
     per_leg = round(LEG * number / 2)
-    settling, legs = (round(length / LEG) for length in (SETTLING, settings["event_collisions"]))
+    settling, legs = (round(length / LEG) for length in (SETTLING, settings["model_collisions"]))
     for _ in range(settling):
         recorder.in_collisions(state, scene, per_leg, 1, 1)
         _heat(state)
@@ -120,7 +121,11 @@ def _start(settings, cooling, stream, effects=None):
     """
     side = math.sqrt(cooling["particles"] * math.pi / settings["packing"])
     spin = {"spin": cooling["effects"]["spin"]}
-    gas = {"particles": cooling["particles"], "box": [side, side], "effects": spin | (effects or {})}
+    gas = {
+        "particles": cooling["particles"],
+        "box": [side, side],
+        "effects": spin | (effects or {}),
+    }
     scene, rng = build(gas, settings["r"], settings["beta"]), _random(settings, *stream)
     q = scene.effects.spin.inertia
     theta = stationary_theta(settings["r"], settings["beta"], len(scene.box), q)
@@ -177,7 +182,7 @@ def _drift(name, settings, cooling, precision):
     scene, *where = _start(settings | ELASTIC, cooling, ("elastic",))
     state, recorder = new_state(scene, *where, precision), Recorder()
     number, q = len(where[0]), scene.effects.spin.inertia
-    every = max(1, round(settings["event_collisions"] * number / 4 / ELASTIC_SAMPLES))
+    every = max(1, round(settings["event_collisions"] * number / 40 / ELASTIC_SAMPLES))
     recorder.in_collisions(state, scene, every, 1)
     seconds = time.process_time()
     rows = recorder.in_collisions(state, scene, every, ELASTIC_SAMPLES)

@@ -90,8 +90,8 @@ def respond(springs, x, u, spins, stretch, time):
 def _parting(springs, overlap, speed, time):
     """Change of the normal velocity, halfway through a flight of `time`.
 
-    The linear map flight-change-flight is given the eigenvalues exp(-gamma t +- i w t) of the damped
-    oscillator itself, so that neither its frequency nor its damping depends on the step.
+    The linear map flight-change-flight is given the eigenvalues exp(-gamma t +- i w t) of the
+    damped oscillator itself, so that neither its frequency nor its damping depends on the step.
     """
     damped = springs.damping * time
     sine = math.sin(0.5 * springs.frequency * time)

@@ -20,7 +20,7 @@ class Springs(NamedTuple):
 
 
 def springs(r: float, beta: float, inertia: float, duration: float) -> Springs:
-    """The forces by which two spheres part after `duration` (T) with restitution r and roughness beta.
+    """The forces by which two spheres part after `duration` (T) with restitution r, roughness beta.
 
     Normal: the overlap is zero again after t_c = pi/sqrt(w0^2 - gamma^2), at exp(-gamma t_c) = r
     times the speed of approach (Luding, Granular Matter 10, 235 (2008), Eqs. 5 and 6). The force is
