@@ -3,13 +3,14 @@
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.ticker import PercentFormatter
+from matplotlib.ticker import FuncFormatter
 
-from roughgas.plotting.style import FAINT, GREY, LOOKS, THEORY
+from roughgas.plotting.style import GREY, LOOKS, THEORY
 
 BOTH = np.sqrt(2.0)  # statistical error and deviation being equal
 RESOLVED = 2.0  # standard errors: deviations below are not told from zero
 BARS = {"elinewidth": 0.8, "capsize": 1.5}
+SMALL = {"fontsize": 6.5, "color": GREY}
 
 
 def draw(axes: Axes, data: xr.Dataset) -> None:
@@ -25,7 +26,7 @@ def draw(axes: Axes, data: xr.Dataset) -> None:
     _method(axes, data, "model", THEORY, "x", ":", "events, contact-time model")
     axes.set_xlabel("CPU seconds")
     axes.set_ylabel(r"relative error of $R$, r.m.s.")
-    axes.yaxis.set_major_formatter(PercentFormatter(1.0))
+    axes.yaxis.set_major_formatter(FuncFormatter(lambda y, _: f"{100.0 * y:g} %"))
     axes.legend(loc="lower left")
     about = f"$r = {data.attrs['r']:g}$, $\\beta = {data.attrs['beta']:g}$"
     axes.set_title(
@@ -51,32 +52,20 @@ def _method(axes, data, kind, colour, marker, line, label):
     seen = np.abs(deviation) > RESOLVED * stderr
     size, bar = BOTH * np.abs(deviation[seen]), BOTH * stderr[seen]
     seconds = data[f"{kind}_matched_seconds"].values[seen]
-    # both coordinates stem from one measured deviation: an error moves a point along a slanted bar
-    ends = [(seconds / (1.0 + s * bar / size) ** 2, size + s * bar) for s in (-1.0, 1.0)]
-    for (x0, x1), (y0, y1) in zip(
-        zip(*(end[0] for end in ends), strict=True),
-        zip(*(end[1] for end in ends), strict=True),
-        strict=True,
-    ):
-        axes.plot([x0, x1], [y0, y1], color=colour, linewidth=0.8)
+    # both coordinates stem from one measured deviation: its error moves a point along a slanted bar
+    (x0, y0), (x1, y1) = ((seconds / (1.0 + s * bar / size) ** 2, size + s * bar) for s in (-1, 1))
+    axes.plot([x0, x1], [y0, y1], color=colour, linewidth=0.8)
     axes.plot(seconds, size, color=colour, marker=marker, linestyle=line, label=label)
 
 
 def _name_contact_times(axes, data):
-    """t_c nu beside the points of the middle number of steps."""
-    row = data.isel(steps=len(data.steps) // 2)
-    seen = np.abs(row.soft_deviation) > RESOLVED * row.soft_deviation_stderr
-    for k in np.flatnonzero(seen):
-        place = row.soft_matched_seconds.values[k], BOTH * abs(row.soft_deviation.values[k])
-        text = f"{row.contact_time.values[k]:g}"
-        axes.annotate(text, place, (5, 2), textcoords="offset points", fontsize=6.5, color=GREY)
-    axes.text(
-        0.98,
-        0.97,
-        r"numbers: $t_c\nu$",
-        transform=axes.transAxes,
-        ha="right",
-        va="top",
-        fontsize=6.5,
-        color=FAINT,
-    )
+    """t_c nu beside the outermost of the points that share it."""
+    seen = np.abs(data.soft_deviation) > RESOLVED * data.soft_deviation_stderr
+    seconds = data.soft_matched_seconds.where(seen, 0.0)
+    for share in data.contact_time.values[seen.any("steps").values]:
+        steps = seconds.sel(contact_time=share).idxmax("steps")
+        point = data.sel(contact_time=share, steps=steps)
+        place = point.soft_matched_seconds.item(), BOTH * abs(point.soft_deviation.item())
+        axes.annotate(f"{share:g}", place, (4, 3), textcoords="offset points", **SMALL)
+    about = {"transform": axes.transAxes, "ha": "right", "va": "top"}
+    axes.text(0.98, 0.97, r"numbers: $t_c\nu$ of soft spheres", **about, **SMALL)
