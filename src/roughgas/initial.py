@@ -22,12 +22,18 @@ CENTRED = {
 }
 
 
-def initial_state(scene: Scene, experiment: Mapping[str, Any], rng: np.random.Generator) -> State:
+def initial_state(
+    scene: Scene,
+    experiment: Mapping[str, Any],
+    rng: np.random.Generator,
+    precision: type = np.float64,
+) -> State:
     """A random state of `experiment["particles"]` particles.
 
     They sit on random sites of a square (cubic) lattice, or of a centred one where only that holds
     them, with Maxwellian velocities at temperature 1 m a^2/T^2 relative to the mean flow and none
-    of them spinning. Raises InputError where they do not fit.
+    of them spinning. `precision` is that in which trajectories and spins are kept. Raises
+    InputError where they do not fit.
     """
     number = experiment["particles"]
     sites = lattice(scene, experiment)
@@ -39,7 +45,7 @@ def initial_state(scene: Scene, experiment: Mapping[str, Any], rng: np.random.Ge
         height = position[:, 1] - scene.middle
         velocity[:, 0] += shear.velocity / (2.0 * scene.middle) * height
     spin = np.zeros((number, 2 * position.shape[1] - 3))
-    return new_state(scene, position, velocity, spin)
+    return new_state(scene, position, velocity, spin, precision)
 
 
 def lattice(scene: Scene, experiment: Mapping[str, Any]) -> np.ndarray:

@@ -30,11 +30,11 @@ PER_CELL = 1.0  # particles to a cell, where cells are wider than that
 FEWEST = 8  # cells along an axis: fewer would be met twice
 
 
-def new_state(scene, position, velocity, spin):
+def new_state(scene, position, velocity, spin, precision=np.float64):
     """A state at time 0 from positions (N, D) in a, velocities (N, D) and spins (N, D') in a/T.
 
     The spin is left out where the scene has none. More than FEW particles are sorted into cells
-    if the box has room for these.
+    if the box has room for these. `precision` is that in which trajectories and spins are kept.
 
     Particles are kept in the order of their positions: where events coincide their order in memory
     decides, and what happens must not depend on the numbers that they were given.
@@ -42,9 +42,9 @@ def new_state(scene, position, velocity, spin):
     number, dimension = position.shape
     grid = cell_grid(scene, position)
     if number <= FEW or min(grid[0]) < FEWEST:
-        state = _few(scene, number, dimension)
+        state = _few(scene, number, dimension, precision)
     else:
-        state = _many(scene, number, dimension, *grid)
+        state = _many(scene, number, dimension, precision, *grid)
     order = np.lexsort(position.T[::-1])
     state.trajectory[:, :dimension] = position[order]
     state.trajectory[:, dimension:-1] = velocity[order]
@@ -70,12 +70,12 @@ def cell_grid(scene, position):
     return counts, tuple(float(length / n) for length, n in zip(lengths, counts, strict=True))
 
 
-def _few(scene, number, dimension):
+def _few(scene, number, dimension, precision):
     padded = _whole(number, LANES)
     key = np.full(padded, np.inf)
     marks = np.zeros(padded, np.uint8)
     bits = np.zeros(_whole(number, 64) // 8, np.uint8)
-    fields = _fields(scene, dimension, SLOTS_OF_FEW)
+    fields = _fields(scene, dimension, precision, SLOTS_OF_FEW)
     arrays = {name: _array(number, *kind) for name, kind in fields.items()}
     return _state(
         scene,
@@ -93,9 +93,9 @@ def _few(scene, number, dimension):
     )
 
 
-def _many(scene, number, dimension, counts, widths):
+def _many(scene, number, dimension, precision, counts, widths):
     """Each particle has one line of the cache for where it is, and one for what comes next."""
-    fields = _fields(scene, dimension, SLOTS_OF_MANY)
+    fields = _fields(scene, dimension, precision, SLOTS_OF_MANY)
     here = ("trajectory", "spin", "changes", "home", "following", "previous", "last_contact")
     links = {name: (np.int32,) for name in ("home", "following", "previous", "later", "sooner")}
     fields |= links | {"leave": (float,)}
@@ -126,11 +126,11 @@ def _many(scene, number, dimension, counts, widths):
     )
 
 
-def _fields(scene, dimension, slots):
+def _fields(scene, dimension, precision, slots):
     """Type and number of what every particle has."""
     effects = scene.effects
     fields = {
-        "trajectory": (float, 2 * dimension + 1),
+        "trajectory": (precision, 2 * dimension + 1),
         "changes": (np.int32,),
         "label": (np.int32,),
         "key": (float,),
@@ -142,7 +142,7 @@ def _fields(scene, dimension, slots):
         "complete_until": (float,),
     }
     if effects.spin is not None:
-        fields["spin"] = (float, 2 * dimension - 3)
+        fields["spin"] = (precision, 2 * dimension - 3)
     if effects.contact_time is not None:
         fields["last_contact"] = (float,)
     if hooks.present(effects, "predict"):
