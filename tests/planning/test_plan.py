@@ -2,10 +2,11 @@
 
 import math
 
+import numpy as np
 import pytest
 
 from roughgas.planning.pilot import Pilot
-from roughgas.planning.plan import BIAS, CARE, plan_point, relaxation
+from roughgas.planning.plan import BIAS, CARE, REPLICAS, TWICE, added, plan_point, relaxation
 from roughgas.scene import build
 from roughgas.theory import cooling_ratio, lun_ratio, relax
 
@@ -50,14 +51,31 @@ def test_a_run_waits_for_the_slower_of_energies_and_spin(sheared):
         plan_point(sheared, 0.9, beta, PILOT).schedule["equilibrate"] for beta in (-0.95, 0.5)
     )
     scene = build(sheared, 0.9, -0.95)
-    assert fast == PILOT.transient
+    assert fast == TWICE * PILOT.transient
     assert slow == math.ceil(relaxation(scene, BIAS * 0.01, cooling=False) / PILOT.pace) > fast
 
 
 def test_a_run_is_measured_for_many_times_what_it_remembers(sheared):
     assert plan_point(sheared, 0.9, 0.5, PILOT).schedule["measure"] == 200
     forgetful = PILOT._replace(autocorrelation_time=0.1)
-    assert plan_point(sheared, 0.9, 0.5, forgetful).schedule["measure"] == PILOT.transient
+    plan = plan_point(sheared, 0.9, 0.5, forgetful)
+    assert plan.schedule["measure"] == plan.schedule["equilibrate"]
+
+
+def test_a_run_is_no_longer_than_it_need_be(sheared):
+    still = PILOT._replace(variance=1e-5, autocorrelation_time=0.1)
+    plan = plan_point(sheared, 0.9, 0.5, still)
+    assert plan.schedule["measure"] == 20 and plan.seeds == 1
+    assert plan.stderr < sheared["target_stderr"] / 2
+
+
+@pytest.mark.parametrize(("needed", "dof"), [(0.7, 10), (1.0, 10), (0.95, 60)])
+def test_added_seeds_are_those_of_gaussian_noise(needed, dof):
+    """By a sum over a million draws: 4 sigma."""
+    noise = np.random.default_rng(1).standard_normal(1_000_000)
+    lacking = np.maximum(needed * (1 + math.sqrt(2 / dof) * noise) - 1, 0)
+    assert abs(added(needed, dof) - lacking.mean()) < 4 * lacking.std() / 1000
+    assert added(0.0, dof) == 0
 
 
 @pytest.mark.parametrize("beta", [-0.5, 0.0, 1.0])
@@ -81,9 +99,9 @@ def test_lengths_that_are_set_are_taken_as_they_are(sheared):
     assert plan.collisions == pytest.approx(1500 * PILOT.pace * sheared["particles"] / 2)
 
 
-def test_a_cooling_seed_is_ten_replicas(cooling):
+def test_a_cooling_seed_is_several_replicas(cooling):
     plan = plan_point(cooling, 0.9, 0.0, PILOT)
-    assert plan.schedule["replicas"] == 10
+    assert plan.schedule["replicas"] == REPLICAS
     assert plan.stderr == pytest.approx(
-        math.sqrt(PILOT.variance / (plan.seeds * 10 * plan.schedule["plateau"]))
+        math.sqrt(PILOT.variance / (plan.seeds * REPLICAS * plan.schedule["plateau"]))
     )

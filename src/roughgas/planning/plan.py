@@ -152,8 +152,8 @@ def _target(experiment: Mapping[str, Any]) -> float:
 
 
 def _whole(length: float, unit: float) -> float:
-    """The length in whole units, at least ten, and short in writing."""
-    return round(unit * max(10, math.ceil(length / unit)), 9)
+    """The length in whole units, at least twenty, and short in writing."""
+    return round(unit * max(20, math.ceil(length / unit)), 9)
 
 
 def _rounded(number: float) -> float:
