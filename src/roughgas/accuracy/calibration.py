@@ -8,7 +8,7 @@ import numpy as np
 
 from roughgas.measure.intervals import half_width, pooled
 
-REGROUPINGS = 200
+REGROUPINGS = 100
 
 
 class Runs(NamedTuple):

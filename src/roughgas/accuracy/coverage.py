@@ -8,7 +8,7 @@ repetitions: that of one run, and that of several seeds pooled.
 
 import time
 import zlib
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -66,16 +66,15 @@ def run(
     return xarray.Dataset(variables | {"cpu_seconds": ((), seconds)})
 
 
-def combine(
-    parts: Mapping[str, "xarray.Dataset"], settings: Mapping[str, Any]
-) -> "xarray.Dataset":
+def combine(parts: Mapping[str, "xarray.Dataset"], settings: Mapping[str, Any]) -> "xarray.Dataset":
     """Coverage, bias and the size of the stated errors at every corner (dimensions as named here).
 
     `parts` holds the result of every job of `tasks`.
     """
     import xarray
 
-    rows = [dict(_summary(parts[name], settings)) for name in tasks(settings)]
+    corners = zip(tasks(settings), settings["corners"], strict=True)
+    rows = [_summary(parts[name], corner, settings) for name, corner in corners]
     variables = {
         name: ((CORNER, *dims), np.array([row[name] for row in rows]), _attributes(about, units))
         for name, (dims, about, units) in ABOUT.items()
@@ -105,6 +104,7 @@ ABOUT = {
         "integrated autocorrelation time of R, in T (cooling: collisions per particle)",
         "1",
     ),
+    "window": ((), "planned length of the measurement, in autocorrelation times", "1"),
     "cpu_seconds": ((), "CPU time of all of the simulations", "s"),
 }
 
@@ -131,7 +131,7 @@ def _point(experiment, schedule, corner, seed) -> list[float]:
     return [measured[name] for name in MEASURED]
 
 
-def _summary(part, settings) -> Iterator[tuple[str, Any]]:
+def _summary(part, corner, settings) -> dict[str, Any]:
     """Every variable of one corner by name."""
     from roughgas.measure.intervals import pooled
 
@@ -139,13 +139,15 @@ def _summary(part, settings) -> Iterator[tuple[str, Any]]:
     truth, truth_stderr = float(long[0].mean()), pooled(*long).stderr
     runs = Runs(*(part[name].values for name in ("R", "R_stderr", "R_dof")))
     rng = np.random.default_rng(np.random.SeedSequence(settings["seed"], spawn_key=(0,)))
-    yield from calibrate(runs, truth, truth_stderr, LEVELS, settings["pooled"], rng).items()
-    yield from {
+    tau = float(part.truth_autocorrelation_time.mean())
+    planned = next(corner["schedule"][key] for key in LENGTH.values() if key in corner["schedule"])
+    return calibrate(runs, truth, truth_stderr, LEVELS, settings["pooled"], rng) | {
         "truth": truth,
         "truth_stderr": truth_stderr,
         "dof": float(np.median(runs.dof)),
         "repetitions": len(runs.R),
         "equilibrated": float(part.equilibrated.mean()),
-        "autocorrelation_time": float(part.truth_autocorrelation_time.mean()),
+        "autocorrelation_time": tau,
+        "window": planned / tau,
         "cpu_seconds": float(part.cpu_seconds),
-    }.items()
+    }

@@ -90,7 +90,15 @@ def _reference(setup, streams, progress) -> dict[str, tuple]:
     return {name: ("chain", list(values)) for name, values in zip(PER_CHAIN, columns, strict=True)}
 
 
-PER_CHAIN = ("equilibration", "R", "variance", "autocorrelation_time", "time", "seconds", "contacts")
+PER_CHAIN = (
+    "equilibration",
+    "R",
+    "variance",
+    "autocorrelation_time",
+    "time",
+    "seconds",
+    "contacts",
+)
 
 
 def _reference_chain(chain, length):
@@ -161,9 +169,7 @@ def _counted(streams: list, progress) -> Iterator:
     progress(len(streams), len(streams))
 
 
-def combine(
-    parts: Mapping[str, "xarray.Dataset"], settings: Mapping[str, Any]
-) -> "xarray.Dataset":
+def combine(parts: Mapping[str, "xarray.Dataset"], settings: Mapping[str, Any]) -> "xarray.Dataset":
     """Errors, slopes, autocorrelation times and what an accuracy costs; dimensions as named here.
 
     `parts` holds the result of every job of `tasks`.
