@@ -9,6 +9,7 @@ from schedules import COOLING, STEADY
 
 from roughgas.accuracy import coverage
 from roughgas.accuracy.calibration import REGROUPINGS, Runs, calibrate, one_run, several
+from roughgas.plotting.accuracy.coverage import draw_figure, table
 
 DOF = 8
 EXPERIMENTS = {
@@ -101,3 +102,17 @@ def test_the_same_settings_give_the_same_runs(parts):
     for task, part in parts.items():
         again = coverage.run(task, SETTINGS, EXPERIMENTS).drop_vars("cpu_seconds")
         assert again.equals(part.drop_vars("cpu_seconds"))
+
+
+def test_figure_and_table_show_every_corner(parts):
+    data = coverage.combine(parts, SETTINGS)
+    data["experiment"] = ("corner", ["vibrated", "cooling"])
+    left, right = draw_figure(data).axes
+    assert len(left.containers) == len(right.containers) == 2 * len(coverage.WAYS)
+    names = [label.get_text() for label in left.get_yticklabels()]
+    assert names == ["vibrated, r = 0.9, β = −0.5", "cooling, r = 0.9, β = 0"]
+    head, _, *rows = table(data)
+    assert [row.split(" | ")[0] for row in rows] == [f"| {name}" for name in names]
+    assert all(row.count("|") == head.count("|") for row in rows)
+    share = 100 * float(data.coverage.sel(corner="bed_r0.9_beta-0.5", way="one run", level=0.95))
+    assert float(rows[0].split(" | ")[3].split(" ± ")[0]) == pytest.approx(share, abs=0.5)

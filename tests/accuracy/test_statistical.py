@@ -5,11 +5,13 @@ import math
 import numpy as np
 import pytest
 from brute_force import settings
+from matplotlib.figure import Figure
 from schedules import COOLING, STEADY
 
 from roughgas.accuracy import statistical
 from roughgas.accuracy.chain import Chain
 from roughgas.accuracy.square_root_law import Levels, noise, observed, slope
+from roughgas.plotting.accuracy.statistical import draw
 
 SETTINGS = {
     "seed": 1,
@@ -124,3 +126,16 @@ def test_segments_continue_one_another(scene):
     chains = [Chain(EXPERIMENTS[scene], 0.9, 0.0, 8, np.random.default_rng(7)) for _ in range(2)]
     halves = np.concatenate([chains[0].measure(8).R for _ in range(2)])
     np.testing.assert_array_equal(chains[1].measure(16).R, halves)
+
+
+def test_the_panel_shows_every_level_and_both_slopes_of_a_scene(parts):
+    data = statistical.combine(parts, SETTINGS)
+    axes = Figure().subplots()
+    draw(axes, data)
+    shown = [bar.lines[0].get_xydata() for bar in axes.containers]
+    assert len(shown) == 6
+    sheared = data.sel(scene="sheared", way="seeds")
+    expected = np.column_stack([sheared.seconds, sheared.error / sheared.R])
+    assert any(np.array_equal(points, expected) for points in shown)
+    labels = [text.get_text() for text in axes.get_legend().get_texts()]
+    assert f"seeds: ${float(sheared.slope):.3f}" in labels[1]

@@ -12,25 +12,27 @@ from roughgas.plotting.style import FAINT, GREY, LOOKS
 LEGAL = (0.92, 0.98)
 """What share of the 95 % intervals has to hold the truth."""
 
-SIZE = (7.4, 4.6)
+WIDTH = 7.4  # inches
 COLOURS = {"vibrated": LOOKS[0], "sheared": LOOKS[1], "cooling": LOOKS[2]}
 SHIFT = 0.17  # of the two ways off their corner's row
 
 
 def draw_figure(data: xr.Dataset) -> Figure:
     """Coverage at each corner, of intervals at 68 and 95 %, from group `coverage`."""
-    figure = Figure(figsize=SIZE, layout="constrained")
+    data = _in_order(data)
+    rows = data.sizes["corner"]
+    figure = Figure(figsize=(WIDTH, 1.2 + 0.3 * rows), layout="constrained")
     left, right = figure.subplots(1, 2, sharey=True)
     for axes, level in ((left, 0.68), (right, 0.95)):
         draw(axes, data, level)
+        axes.tick_params(axis="y", which="both", left=False, right=False)
     right.axvspan(*LEGAL, color=FAINT, alpha=0.15, lw=0)
-    left.set_yticks(range(data.sizes["corner"]), [_label(data, k) for k in range(len(data.corner))])
-    left.invert_yaxis()
-    for axes in (left, right):
-        axes.tick_params(axis="y", which="minor", left=False, right=False)
+    left.set_yticks(range(rows), [_label(data, k) for k in range(rows)])
+    left.set_ylim(rows - 0.5, -0.5)
     for way, fill in zip(data.way.values, (GREY, "white"), strict=True):
-        right.plot([], [], "o", color=GREY, mfc=fill, label=str(way))
-    right.legend(loc="lower left")
+        left.plot([], [], "o", color=GREY, mfc=fill, label=str(way))
+    figure.legend(loc="outside upper center", ncols=2)
+    figure.supxlabel("share of intervals that hold the truth", fontsize="medium")
     return figure
 
 
@@ -47,11 +49,12 @@ def draw(axes: Axes, data: xr.Dataset, level: float) -> None:
                 **{"color": look.colour, "marker": look.marker, "mfc": fill, "ls": "none"},
                 **{"capsize": 1.5, "elinewidth": 0.8, "mew": 0.9},
             )
-    axes.set_xlabel(f"share of the {100 * level:.0f} % intervals that hold the truth")
+    axes.set_xlabel(f"{100 * level:.0f} % intervals")
 
 
 def table(data: xr.Dataset) -> list[str]:
     """The rows of a table in Markdown, its head first: a corner each, with standard errors."""
+    data = _in_order(data)
     head = ["corner", "runs", "68 %, one run", "95 %, one run", "68 %, pooled", "95 %, pooled"]
     head += ["bias / scatter", "stated / true error", "window / τ"]
     rows = [head, ["---"] * len(head)]
@@ -63,11 +66,18 @@ def table(data: xr.Dataset) -> list[str]:
         rows.append([_label(data, k), f"{int(corner.repetitions)}"])
         rows[-1] += [_with_error(100 * value, 100 * stderr) for value, stderr in shares]
         rows[-1] += [_with_error(float(corner[n]), float(corner[f"{n}_stderr"])) for n in JUDGED]
-        rows[-1].append(f"{float(corner.window):.0f}")
+        rows[-1].append(f"{float(corner.window / corner.autocorrelation_time):.0f}")
     return [f"| {' | '.join(row)} |" for row in rows]
 
 
 JUDGED = ("bias", "stated_over_true")
+
+
+def _in_order(data: xr.Dataset) -> xr.Dataset:
+    """The corners by experiment, and there from weak to strong dissipation."""
+    scene = [list(COLOURS).index(name) for name in data.experiment.values]
+    r, beta = data.r.values.astype(float), data.beta.values.astype(float)
+    return data.isel(corner=np.lexsort((-beta, -r, scene)))
 
 
 def _with_error(value: float, stderr: float) -> str:

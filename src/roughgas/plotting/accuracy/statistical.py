@@ -25,17 +25,18 @@ def draw(axes: Axes, data: xr.Dataset) -> None:
             )
             axes.plot(*_fit(own, R), color=look.colour, ls=line, lw=0.9)
     axes.set(xscale="log", yscale="log")
+    axes.set_ylim(bottom=min(data.relative_error.values) / 4)  # there the legend finds room
     axes.set(xlabel="CPU seconds of measurement", ylabel="relative error of $R$ (rms)")
     _mark_accuracies(axes, data.relative_error.values)
-    axes.legend(loc="upper right", title="slopes of error against time")
+    axes.legend(loc="lower left", title="slopes of error against time", alignment="left")
     axes.text(
-        *(0.03, 0.04, "filled: longer runs; open: more runs"),
-        **{"transform": axes.transAxes, "color": GREY, "fontsize": 7.5},
+        *(0.97, 0.95, "filled: longer runs, open: more runs"),
+        **{"transform": axes.transAxes, "color": GREY, "fontsize": 7.5, "ha": "right"},
     )
 
 
 def _slope(own: xr.Dataset) -> str:
-    return f"  {str(own.way.values)}: ${float(own.slope):.3f} \\pm {float(own.slope_stderr):.3f}$"
+    return f"  {own.way.values!s}: ${float(own.slope):.3f} \\pm {float(own.slope_stderr):.3f}$"
 
 
 def _fit(own: xr.Dataset, R: float) -> tuple[np.ndarray, np.ndarray]:
