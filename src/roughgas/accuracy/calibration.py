@@ -8,11 +8,11 @@ import numpy as np
 
 from roughgas.measure.intervals import half_width, pooled
 
-REGROUPINGS = 200
+REGROUPINGS = 100
 
 
 class Runs(NamedTuple):
-    """What independent runs state, arrays of shape (runs,): R, its error, and degrees of freedom."""
+    """What independent runs state: R, its error and degrees of freedom, arrays of shape (runs,)."""
 
     R: np.ndarray
     stderr: np.ndarray

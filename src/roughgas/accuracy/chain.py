@@ -55,7 +55,7 @@ class Chain:
         return self.schedule["kind"] == "cooling"
 
     def measure(self, length: float) -> Segment:
-        """The next `length` of the chain: R over whole periods of a floor, else sample by sample."""
+        """The next `length` of the chain; R over whole periods of a floor, else of each sample."""
         begin, before = time.process_time(), self.recorder.collisions
         R = ratio(_fluctuations(self.scene, self._rows(self.scene, length), self.number))
         seconds = time.process_time() - begin

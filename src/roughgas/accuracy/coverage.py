@@ -8,7 +8,7 @@ repetitions: that of one run, and that of several seeds pooled.
 
 import time
 import zlib
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -63,7 +63,8 @@ def run(
         for prefix, dimension, part in zip(("", "truth_"), ("run", "long_run"), parts, strict=True)
         for name, values in zip(MEASURED, part.T, strict=True)
     }
-    return xarray.Dataset(variables | {"cpu_seconds": ((), seconds)})
+    window = short[LENGTH[short["kind"]]] * short.get("replicas", 1)
+    return xarray.Dataset(variables | {"cpu_seconds": ((), seconds), "window": ((), window)})
 
 
 def combine(parts: Mapping[str, "xarray.Dataset"], settings: Mapping[str, Any]) -> "xarray.Dataset":
@@ -73,18 +74,20 @@ def combine(parts: Mapping[str, "xarray.Dataset"], settings: Mapping[str, Any]) 
     """
     import xarray
 
-    rows = [dict(_summary(parts[name], settings)) for name in tasks(settings)]
+    rows = [_summary(parts[name], settings) for name in tasks(settings)]
     variables = {
         name: ((CORNER, *dims), np.array([row[name] for row in rows]), _attributes(about, units))
         for name, (dims, about, units) in ABOUT.items()
     }
     coordinates = {CORNER: tasks(settings), WAY: list(WAYS), LEVEL: list(LEVELS)}
-    dataset = xarray.Dataset(variables, coordinates, {"seed": settings["seed"]})
+    attributes = {"seed": settings["seed"], "unit_of_length": UNIT}
+    dataset = xarray.Dataset(variables, coordinates, attributes)
     for key in ("experiment", "r", "beta"):
         dataset[key] = (CORNER, [corner[key] for corner in settings["corners"]])
     return dataset
 
 
+UNIT = "T; in a cooling gas a collision per particle"
 ABOUT = {
     "coverage": ((WAY, LEVEL), "share of the intervals that hold the truth", "1"),
     "coverage_stderr": ((WAY, LEVEL), "standard error of the coverage", "1"),
@@ -98,11 +101,8 @@ ABOUT = {
     "dof": ((), "degrees of freedom that a run's error is known with, median", "1"),
     "repetitions": ((), "number of repetitions", "1"),
     "equilibrated": ((), "share of the repetitions found in a steady state", "1"),
-    "autocorrelation_time": (
-        (),
-        "integrated autocorrelation time of R, in T (cooling: collisions per particle)",
-        "1",
-    ),
+    "autocorrelation_time": ((), "integrated autocorrelation time of R", "length"),
+    "window": ((), "length of a run's measurement, of all replicas together", "length"),
     "cpu_seconds": ((), "CPU time of all of the simulations", "s"),
 }
 
@@ -129,7 +129,7 @@ def _point(experiment, schedule, corner, seed) -> list[float]:
     return [measured[name] for name in MEASURED]
 
 
-def _summary(part, settings) -> Iterator[tuple[str, Any]]:
+def _summary(part, settings) -> dict[str, Any]:
     """Every variable of one corner by name."""
     from roughgas.measure.intervals import pooled
 
@@ -137,13 +137,13 @@ def _summary(part, settings) -> Iterator[tuple[str, Any]]:
     truth, truth_stderr = float(long[0].mean()), pooled(*long).stderr
     runs = Runs(*(part[name].values for name in ("R", "R_stderr", "R_dof")))
     rng = np.random.default_rng(np.random.SeedSequence(settings["seed"], spawn_key=(0,)))
-    yield from calibrate(runs, truth, truth_stderr, LEVELS, settings["pooled"], rng).items()
-    yield from {
+    return calibrate(runs, truth, truth_stderr, LEVELS, settings["pooled"], rng) | {
         "truth": truth,
         "truth_stderr": truth_stderr,
         "dof": float(np.median(runs.dof)),
         "repetitions": len(runs.R),
         "equilibrated": float(part.equilibrated.mean()),
         "autocorrelation_time": float(part.truth_autocorrelation_time.mean()),
+        "window": float(part.window),
         "cpu_seconds": float(part.cpu_seconds),
-    }.items()
+    }

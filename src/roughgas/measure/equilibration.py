@@ -115,18 +115,20 @@ def _start(series: np.ndarray, planned: int) -> int:
 def cut_sigmas(series: np.ndarray, cut: int) -> float:
     """By how many sigma the mean of the first `cut` samples differs from that of all others.
 
-    The noise is that of the others, by blocking; `series` has shape (samples,), 0 < cut < samples.
+    The noise is that of the others around a straight line, by blocking, as in `drift`. `series` has
+    shape (samples,), 0 < cut < samples.
     """
     early, late = series[:cut], series[cut:]
-    noise = blocking(late)
-    variance = noise.stderr**2
+    residuals = late - _line_through(late)
+    noise = blocking(residuals)
+    variance = noise.stderr**2 * noise.blocks / max(noise.blocks - 1, 1.0)
     # A stretch shorter than the correlation scatters no more than a single sample.
-    own = min(variance * len(late) / cut, float(late.var()))
+    own = min(variance * len(late) / cut, float(residuals.var()))
     difference = abs(early.mean() - late.mean())
     if not variance + own > 0:
         return np.inf if difference > 0 else 0.0
     t = difference / np.sqrt(variance + own)
-    return float(gaussian_sigmas(t, degrees_of_freedom(noise.blocks)))
+    return float(gaussian_sigmas(t, max(1.0, degrees_of_freedom(noise.blocks) - 1)))
 
 
 def _mser_start(series: np.ndarray) -> int:

@@ -21,8 +21,9 @@ which are independent, so no autocorrelation along s, the collisions per particl
    after: a pause on the way up, or a later plateau where flow rules.
 
 On synthetic ensembles (relaxation in 4 to 60 collisions per particle, 10 to 60 replicas, series of
-50 to 800 samples, with and without a departure) the bias is below 0.7 of the standard error, and 5
-to 17 % of the results are off by more than 2 of them. It takes about ten replicas, and a series of
+50 to 800 samples, with and without a departure) the bias is below 0.7 of the standard error, and
+the 95 % interval holds the truth in 94 % of the cases, in 87 % where the `minimum_start` is only
+three relaxation times or a plateau lasts but twenty. It takes about ten replicas, and a series of
 ten relaxation times or a `minimum_start` of a few: what relaxes more slowly hides in the noise.
 """
 
