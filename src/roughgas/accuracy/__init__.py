@@ -1,8 +1,8 @@
 """What accuracy costs in time, and whether error bars are true: studies of the methods themselves.
 
-A study is a file here. Its `tasks` are independent jobs, `run` does one of them, `combine` joins
-what they found and fits what is to be fitted, and `table` shows it in Markdown. Its settings are in
-config.yaml, under `accuracy`.
+A study is a file here. Its `tasks` are independent jobs, `run` does one of them, and `combine`
+joins what they found and fits what is to be fitted; tables.py shows that in Markdown. Its settings
+are in config.yaml, under `accuracy`.
 """
 
 from importlib import import_module

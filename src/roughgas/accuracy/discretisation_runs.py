@@ -84,15 +84,16 @@ def model(settings, cooling, progress, place):
     for _ in range(settling):
         recorder.in_collisions(state, scene, per_leg, 1, 1)
         _heat(state)
-    recorder.touched, R, seconds = 0, np.empty(legs), time.process_time()
+    recorder.touched, recorder.seconds, R = 0, 0.0, np.empty(legs)
     for _, part in _parts(R, progress):
         for k in range(len(part)):
             rows = recorder.in_collisions(state, scene, per_leg, 1, 1)
             part[k] = ratio(energies(rows, number, q))[0]
             _heat(state)
-    seconds = time.process_time() - seconds
     collisions = 2.0 * legs * per_leg / number
-    return _summary(R, collisions, seconds) | {"touched": recorder.touched / (legs * per_leg)}
+    return _summary(R, collisions, recorder.seconds) | {
+        "touched": recorder.touched / (legs * per_leg)
+    }
 
 
 JOBS = {

@@ -7,7 +7,7 @@ from typing import Any
 
 import xarray as xr
 
-from roughgas.accuracy import STUDIES, study
+from roughgas.accuracy import STUDIES, study, tables
 from roughgas.atomic import write_text
 from roughgas.dataset import COMMON_ATTRIBUTES, whole_netcdf
 from roughgas.errors import InputError
@@ -44,7 +44,7 @@ def write_tables(path: str | Path, output: str | Path) -> None:
 
     with netCDF4.Dataset(path) as file:
         names = [name for name in STUDIES if name in file.groups]
-    write_text(output, "\n".join(study(name).table(read_study(path, name)) for name in names))
+    write_text(output, "\n".join(getattr(tables, name)(read_study(path, name)) for name in names))
 
 
 def _combined(name: str, parts: Mapping[str, xr.Dataset]) -> xr.Dataset:

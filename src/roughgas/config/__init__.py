@@ -74,6 +74,7 @@ def check(config: Mapping[str, Any], source: str = SOURCE) -> None:
         for name in changes:
             _one_of(f"{source}: key of scales.{scale}", name, [*known, SHOWCASE, ACCURACY])
         check_schema(showcase(config, scale), f"{source}: {SHOWCASE} at scale {scale}", "filmed")
+        check_schema(_studies(config, scale), f"{source}: {ACCURACY} at scale {scale}", "studied")
         for name in known:
             where = f"{source}: experiments.{name}"
             if scale != config["scale"]:
@@ -122,12 +123,16 @@ def study(config: Mapping[str, Any], name: str, scale: str) -> dict[str, Any]:
     """The settings of a study of accuracy at `scale`, as `study`, and those of the experiments that
     it may run, as `experiments`. Raises InputError for unknown names."""
     _one_of("scale", scale, config["scales"])
-    settings = merged(config[ACCURACY], config["scales"][scale].get(ACCURACY, {}))
+    settings = _studies(config, scale)
     _one_of("study", name, settings)
     experiments = {
         one: point_settings(experiment(config, one, scale)) for one in config["experiments"]
     }
     return {"study": settings[name], "experiments": experiments}
+
+
+def _studies(config: Mapping[str, Any], scale: str) -> dict[str, Any]:
+    return merged(config[ACCURACY], config["scales"][scale].get(ACCURACY, {}))
 
 
 def merged(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
