@@ -1,0 +1,1 @@
+"""How the studies of accuracy are drawn, one file a part."""
