@@ -96,7 +96,9 @@ def integrate(theta, r, beta, duration, step, dimension=2, inertia=None) -> tupl
     present mean time between two collisions of a particle (units: that at the start). Collisions
     are counted by an equation of their own, and the last step is shortened to end at `duration`.
     """
-    loss, gain, spin_gain, spin_loss = map(float, theory.collision_rates(r, beta, dimension, inertia))
+    loss, gain, spin_gain, spin_loss = map(
+        float, theory.collision_rates(r, beta, dimension, inertia)
+    )
 
     def slope(T_tr, T_rot, _):
         frequency = T_tr**0.5

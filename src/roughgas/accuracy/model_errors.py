@@ -32,7 +32,7 @@ class Measured(NamedTuple):
 
 def combined(parts: Mapping[str, xr.Dataset], settings: Mapping[str, Any]) -> xr.Dataset:
     """The group `models`, from the datasets of all its jobs."""
-    references = [part for task, part in parts.items() if task.startswith("reference-")]
+    references = [parts[f"reference-{k}"] for k in range(settings["reference"]["jobs"])]
     reference = _mean(np.concatenate([part.R.values for part in references]))
     variables = _reference(reference, references) | _closed_form(parts["theory"], reference)
     for method, part in (
@@ -148,15 +148,19 @@ def _shares(parts, reference):
     few = _pooled(part.R.values, part.dsmc_length.values)
     closed = Measured(float(parts["theory"].closed_form_R), 0.0)
     factors = {
-        "of_maxwellian": (closed.over(many), "Maxwellian, uncorrelated velocities (Eq. K over DSMC)"),
+        "of_maxwellian": (
+            closed.over(many),
+            "Maxwellian, uncorrelated velocities (Eq. K over DSMC)",
+        ),
         "of_number": (many.over(few), "infinitely many particles (DSMC of many over DSMC of few)"),
-        "of_dilution": (few.over(reference), "no correlations, no density (DSMC over event-driven)"),
+        "of_dilution": (
+            few.over(reference),
+            "no correlations, no density (DSMC over event-driven)",
+        ),
     }
     variables = {
         "dsmc_floor": _variable(abs(few.value / reference.value - 1), "error that DSMC tends to"),
-        "dsmc_floor_stderr": _variable(
-            few.over(reference).stderr, "standard error of dsmc_floor"
-        ),
+        "dsmc_floor_stderr": _variable(few.over(reference).stderr, "standard error of dsmc_floor"),
         "dsmc_many_R": _variable(many.value, "R by DSMC of many particles"),
         "dsmc_many_R_stderr": _variable(many.stderr, "standard error of dsmc_many_R"),
     }
@@ -188,7 +192,9 @@ MAP = {
 
 def _map(rows):
     dims = ("map_r", "map_beta")
-    stacked = {name: np.array([row[name].values for row in rows]) for name in (*MAP, "length", "seconds")}
+    stacked = {
+        name: np.array([row[name].values for row in rows]) for name in (*MAP, "length", "seconds")
+    }
     r, beta = np.array([float(row.r) for row in rows]), rows[0].beta.values
     theory = cooling_ratio(r[:, np.newaxis], beta)
     variables = {f"map_{x}": _variable(stacked[x], text, dims=dims) for x, text in MAP.items()}
@@ -219,9 +225,7 @@ def _density(parts):
         "density_gap": _variable(
             gaps[..., 0], "density_R, as of many particles, over Eq. (K), minus 1", dims=dims
         ),
-        "density_gap_stderr": _variable(
-            gaps[..., 1], "standard error of density_gap", dims=dims
-        ),
+        "density_gap_stderr": _variable(gaps[..., 1], "standard error of density_gap", dims=dims),
         "density_replicas": _variable(replicas, "independent runs at each packing"),
         "density_seconds": _variable(seconds, "CPU time of all these runs", "s"),
     }

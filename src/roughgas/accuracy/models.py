@@ -173,26 +173,20 @@ def _density(r, beta, settings, experiment):
     many: their ratio tells what is due to the number."""
     import xarray as xr
 
-    from roughgas.accuracy.free_cooling import at_packing, event_driven, homogeneous
+    from roughgas.accuracy.free_cooling import homogeneous
 
     chosen = settings["density"]
-    labels = [[str(label) for label in one] for one in chosen["points"]]
-    place = labels.index([r, beta])
+    place = [[str(x) for x in one] for one in chosen["points"]].index([r, beta])
     point = _point(experiment, r, beta)
-    event_driven(point, WARM, WARM, stream(settings, DENSITY))
-    moved = [point._replace(experiment=at_packing(experiment, x)) for x in chosen["packings"]]
-    runs = [
-        event_driven(one, chosen["length"], settings["segment"], stream(settings, DENSITY, place, k))
-        for k, one in enumerate(moved)
-    ]
-    seeds = stream(settings, DENSITY, place, len(moved)).spawn(2)
+    R, seconds = zip(*_at_packings(point, place, settings), strict=True)
     few, many = (
         homogeneous(point, number, chosen["precision"], np.random.default_rng(seed))
         for number, seed in zip(
-            (experiment["particles"], settings["map"]["particles"]), seeds, strict=True
+            (experiment["particles"], settings["map"]["particles"]),
+            stream(settings, DENSITY, place, len(R)).spawn(2),
+            strict=True,
         )
     )
-    R, seconds = zip(*runs, strict=True)
     return xr.Dataset(
         {
             "R": (("packing", "replica"), np.array(R)),
@@ -205,3 +199,15 @@ def _density(r, beta, settings, experiment):
         },
         {"packing": list(chosen["packings"]), "r": float(r), "beta": float(beta)},
     )
+
+
+def _at_packings(point, place, settings):
+    """R of the replicas, and CPU seconds, at each packing fraction."""
+    from roughgas.accuracy.free_cooling import at_packing, event_driven
+
+    chosen = settings["density"]
+    event_driven(point, WARM, WARM, stream(settings, DENSITY))
+    for k, packing in enumerate(chosen["packings"]):
+        moved = point._replace(experiment=at_packing(point.experiment, packing))
+        seed = stream(settings, DENSITY, place, k)
+        yield event_driven(moved, chosen["length"], settings["segment"], seed)

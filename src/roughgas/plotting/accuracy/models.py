@@ -26,7 +26,7 @@ def draw(axes: Axes, data: xr.Dataset) -> None:
     for method, (label, look) in METHODS.items():
         _points(axes, data, method, label, look)
     seconds = data.event_driven_seconds.values
-    fit = data.event_driven_prefactor.values * seconds ** data.event_driven_slope.values
+    fit = data.event_driven_prefactor.values * seconds**data.event_driven_slope.values
     axes.plot(seconds, fit, color=LOOKS[0].colour, linewidth=0.8, zorder=1)
     _floors(axes, data)
     axes.set_xlabel("CPU time of one run / s")

@@ -1,1 +1,0 @@
-"""How the studies of accuracy are drawn, one file a part."""
