@@ -1,0 +1,172 @@
+"""Bird's no-time-counter scheme for a homogeneous gas, compiled.
+
+Pairs are drawn at random, each with a random normal n, and collide with the probability
+|g.n|/majorant, g being the relative velocity: as often as if they were anywhere in the volume with
+equal probability. Each draw takes the mean time between two draws. G. A. Bird, Molecular Gas
+Dynamics and the Direct Simulation of Gas Flows (Oxford, 1994), section 11.1.
+
+All compiled code of the solver is in this file and in kernel/: numba's cache notices edits of both
+(see kernel/cache.py).
+"""
+
+import math
+
+from numba.extending import overload
+
+from roughgas.kernel.contact import response
+from roughgas.kernel.jit import compiled, entry
+from roughgas.kernel.spins import spin_of, spin_sum, turn_spin
+from roughgas.kernel.vectors import add_scaled, dot, read, scale, subtract, write
+
+# Entries of Gas.clock
+TIME, WAITED, LOG_UNIT, MAJORANT = range(4)
+# Entries of Gas.counts
+COLLISIONS, DRAWS = range(2)
+COLUMNS = ("time", "collisions", "log_unit", "vv", "ww", "vvvv", "wwww", "vvww", "vwvw")
+
+
+@entry(cache=True)
+def record(gas, material, rng, collisions, rows):
+    """Let the gas collide so many times before each of the `rows`, shape (samples, COLUMNS).
+
+    After each sample the total momentum is removed and T_tr scaled to 1.
+    """
+    for k in range(len(rows)):
+        target = gas.counts[COLLISIONS] + collisions
+        while gas.counts[COLLISIONS] < target:
+            draw(gas, material, rng)
+        pass_time(gas, material)
+        take_sample(gas, rows[k])
+        rescale(gas)
+
+
+@compiled
+def draw(gas, material, rng):
+    """Draw two particles and the normal of their contact, and let them collide or not."""
+    number, clock = len(gas.velocity), gas.clock
+    drawn = number * rng.random()
+    i = int(drawn)
+    # what is left of it has 53 bits less those of the number of particles: enough for another one
+    j = int((drawn - i) * (number - 1))
+    j += j >= i
+    v = subtract(read(gas.velocity, i, 0, gas.axes), read(gas.velocity, j, 0, gas.axes))
+    gas.counts[DRAWS] += 1
+    clock[WAITED] += 1.0 / clock[MAJORANT]
+    threshold = clock[MAJORANT] * rng.random()
+    if dot(v, v) <= threshold * threshold:
+        return  # whatever the normal
+    n = random_direction(gas.axes, rng)
+    speed = dot(v, n)
+    clock[MAJORANT] = max(clock[MAJORANT], abs(speed))
+    if abs(speed) > threshold:
+        # from particle j to i, while they approach each other
+        collide(gas, material, i, j, scale(n, -math.copysign(1.0, speed)), v)
+
+
+@compiled
+def collide(gas, material, i, j, n, v):
+    """The contact of particles i and j, by the rule of the event-driven simulation."""
+    axes, effects = gas.axes, material.effects
+    w_i, w_j = spin_of(gas.spin, axes, i), spin_of(gas.spin, axes, j)
+    both = material.restitution, material.roughness
+    push, turn = response(effects.spin, effects, both, n, v, spin_sum(w_i, w_j), 0.5)
+    write(gas.velocity, i, 0, subtract(read(gas.velocity, i, 0, axes), push))
+    write(gas.velocity, j, 0, add_scaled(read(gas.velocity, j, 0, axes), push, 1.0))
+    turn_spin(gas.spin, i, w_i, turn)
+    turn_spin(gas.spin, j, w_j, turn)
+    gas.counts[COLLISIONS] += 1
+
+
+@compiled
+def random_direction(axes, rng):
+    """A unit vector, all directions being equally probable."""
+    while True:
+        x = _in_cube(axes, rng)
+        square = dot(x, x)
+        if 0.0 < square <= 1.0:
+            return scale(x, 1.0 / math.sqrt(square))
+
+
+def _in_cube(axes, rng):
+    return tuple(2.0 * rng.random() - 1.0 for _ in axes)
+
+
+@overload(_in_cube)
+def _compiled_in_cube(axes, rng):
+    def plane(axes, rng):
+        return 2.0 * rng.random() - 1.0, 2.0 * rng.random() - 1.0
+
+    def space(axes, rng):
+        return 2.0 * rng.random() - 1.0, 2.0 * rng.random() - 1.0, 2.0 * rng.random() - 1.0
+
+    return plane if len(axes) == 2 else space
+
+
+@compiled
+def pass_time(gas, material):
+    """Turn the draws made into time: sums of 1/majorant, over the number of pairs and so on."""
+    clock, number = gas.clock, len(gas.velocity)
+    pairs = 0.5 * (number - 1)  # over the volume, with the density in `crowding`
+    draws = pairs * material.crowding * cross_section(gas.axes)
+    clock[TIME] += clock[WAITED] * math.exp(-clock[LOG_UNIT]) / draws
+    clock[WAITED] = 0.0
+
+
+def cross_section(axes):
+    """Half the surface of the sphere of contact, of two radii: a pair meets on half of it."""
+    return 2.0 * math.pi if len(axes) == 2 else 8.0 * math.pi
+
+
+@overload(cross_section)
+def _compiled_cross_section(axes):
+    value = cross_section((0.0,) * len(axes))
+    return lambda axes: value
+
+
+@compiled
+def take_sample(gas, row):
+    """Sums over the particles; nothing is moved."""
+    for k in range(len(row)):
+        row[k] = 0.0
+    row[0], row[1], row[2] = gas.clock[TIME], gas.counts[COLLISIONS], gas.clock[LOG_UNIT]
+    for i in range(len(gas.velocity)):
+        v, w = read(gas.velocity, i, 0, gas.axes), spin_of(gas.spin, gas.axes, i)
+        vv, ww, vw = dot(v, v), dot(w, w), _along(v, w)
+        row[3] += vv
+        row[4] += ww
+        row[5] += vv * vv
+        row[6] += ww * ww
+        row[7] += vv * ww
+        row[8] += vw * vw
+
+
+def _along(v, w):
+    """v.w, which in the plane is 0."""
+    return dot(v, w) if len(v) == len(w) else 0.0
+
+
+@overload(_along)
+def _compiled_along(v, w):
+    return (lambda v, w: dot(v, w)) if len(v) == len(w) else (lambda v, w: 0.0)
+
+
+@compiled
+def rescale(gas):
+    """Remove the total momentum, which roundings leave, and undo the cooling: T_tr = 1."""
+    number, dimension = gas.velocity.shape
+    square = 0.0
+    for k in range(dimension):
+        mean = 0.0
+        for i in range(number):
+            mean += gas.velocity[i, k]
+        mean /= number
+        for i in range(number):
+            gas.velocity[i, k] -= mean
+            square += gas.velocity[i, k] ** 2
+    factor = math.sqrt(number * dimension / square)
+    for i in range(number):
+        for k in range(dimension):
+            gas.velocity[i, k] *= factor
+        for k in range(gas.spin.shape[1]):
+            gas.spin[i, k] *= factor
+    gas.clock[LOG_UNIT] -= math.log(factor)

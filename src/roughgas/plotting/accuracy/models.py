@@ -1,0 +1,118 @@
+"""Model error: R of a cooling gas by four methods against CPU time, and over (r, beta)."""
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.container import ErrorbarContainer
+from matplotlib.ticker import MultipleLocator
+
+from roughgas.plotting.style import FAINT, GREY, LOOKS, THEORY, Look
+
+METHODS = {
+    "rate_equations": ("rate equations, run longer and longer", LOOKS[2]),
+    "dsmc": ("DSMC", LOOKS[1]),
+    "event_driven": ("event-driven", LOOKS[0]),
+}
+CLOSED_FORM = Look(THEORY, "*", "none")
+LEAST = 1 / 3  # of the reference's own error, down to which the axis goes
+SIDESTEP = 0.01  # in beta, between series at the same beta
+PACKING_MARKERS = ("X", "P", "d")
+
+
+def draw(axes: Axes, data: xr.Dataset) -> None:
+    """Relative error of R against CPU seconds, log-log, for each method at one (r, beta)."""
+    axes.set(xscale="log", yscale="log")
+    _points(axes, data, "closed_form", "closed form, Eq. (K)", CLOSED_FORM, size=10)
+    for method, (label, look) in METHODS.items():
+        _points(axes, data, method, label, look)
+    seconds = data.event_driven_seconds.values
+    fit = data.event_driven_prefactor.values * seconds**data.event_driven_slope.values
+    axes.plot(seconds, fit, color=LOOKS[0].colour, linewidth=0.8, zorder=1)
+    _floors(axes, data)
+    axes.set_xlabel("CPU time of one run / s")
+    axes.set_ylabel(r"relative error of $R$")
+    axes.legend(loc="lower left", title=_title(data))
+
+
+def _points(axes, data, method, label, look, size=None) -> ErrorbarContainer:
+    """Symbols with bars; no line, since a run between two lengths was not made."""
+    return axes.errorbar(
+        data[f"{method}_seconds"].values,
+        data[f"{method}_error"].values,
+        data[f"{method}_error_stderr"].values,
+        color=look.colour,
+        marker=look.marker,
+        markersize=size,
+        linestyle="none",
+        elinewidth=0.9,
+        label=label,
+        zorder=3,
+    )
+
+
+def _floors(axes, data):
+    """What each model tends to, whatever is spent on it; and where the reference ends."""
+    right = {"x": 0.985, "transform": axes.get_yaxis_transform(), "ha": "right", "fontsize": 7}
+    for name, text, colour in (
+        ("closed_form_error", "Maxwellian velocities", THEORY),
+        ("dsmc_floor", "no density, no correlations", METHODS["dsmc"][1].colour),
+    ):
+        level = float(data[name])
+        axes.axhline(level, color=colour, linewidth=0.7, linestyle=(0, (4, 2)), zorder=0)
+        axes.text(y=1.06 * level, s=text, color=colour, va="bottom", **right)
+    own = float(data.R_reference_stderr / data.R_reference)
+    axes.axhspan(own * LEAST, own, color=FAINT, alpha=0.25, linewidth=0, zorder=0)
+    axes.set_ylim(bottom=own * LEAST)
+    axes.text(y=0.9 * own, s="error of the reference", color=GREY, va="top", **right)
+
+
+def _title(data):
+    return f"cooling gas, $r = {data.attrs['r']:g}$, $\\beta = {data.attrs['beta']:g}$"
+
+
+def draw_map(axes: Axes, data: xr.Dataset) -> None:
+    """R of the homogeneous gas over Eq. (K), minus 1, against beta, a curve for each r."""
+    order = np.argsort(-data.map_r.values)
+    for place, (row, look) in enumerate(zip(order, LOOKS, strict=False)):
+        one = data.isel(map_r=row)
+        axes.errorbar(
+            one.map_beta.values + SIDESTEP * (place - 1.5),
+            100 * one.map_gap.values,
+            100 * one.map_gap_stderr.values,
+            color=look.colour,
+            marker=look.marker,
+            markersize=3.6,
+            linestyle=look.line,
+            linewidth=0.8,
+            elinewidth=0.9,
+            label=f"$r = {float(one.map_r):g}$",
+        )
+        _event_driven(axes, data, float(one.map_r), look.colour)
+    for k, packing in enumerate(data.packing.values):
+        axes.plot([], [], PACKING_MARKERS[k], color=GREY, label=f"event-driven, {packing:g} filled")
+    axes.axhline(0, color=THEORY, linewidth=0.8, zorder=0)
+    axes.set_xlabel(r"tangential restitution $\beta$")
+    axes.set_ylabel(r"$R/R_{\mathrm{Eq.\,(K)}} - 1$   (%)")
+    axes.set_xlim(-1.04, 1.04)
+    axes.xaxis.set_major_locator(MultipleLocator(0.5))
+    axes.xaxis.set_minor_locator(MultipleLocator(0.1))
+    axes.legend(loc="lower right", title="homogeneous gas (DSMC)")
+
+
+def _event_driven(axes, data, r, colour):
+    """The points at this r, each packing fraction with a symbol of its own."""
+    points = data.isel(density_point=np.flatnonzero(data.density_r.values == r))
+    for k in range(points.sizes["packing"] if points.sizes["density_point"] else 0):
+        axes.errorbar(
+            points.density_beta.values + 2.5 * SIDESTEP * (k - 0.5),
+            100 * points.density_gap.values[:, k],
+            100 * points.density_gap_stderr.values[:, k],
+            color=colour,
+            marker=PACKING_MARKERS[k],
+            markersize=7,
+            markeredgecolor=THEORY,
+            markeredgewidth=0.6,
+            linestyle="none",
+            elinewidth=0.9,
+            zorder=4,
+        )
