@@ -22,7 +22,7 @@ SCALE = config["scale"]
 
 wildcard_constraints:
     scale="[^/]+",
-    experiment="[^/]+",
+    experiment=r"(?!(?:accuracy|coverage)\.)[^/]+",
     r="[^/]+",
     beta="[^/]+",
     seed="[^/]+",

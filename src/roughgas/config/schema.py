@@ -12,7 +12,7 @@ from roughgas.errors import InputError
 if TYPE_CHECKING:
     from jsonschema import Draft202012Validator, ValidationError
 
-SCHEMA = Path(__file__).with_name("schema.yaml")
+SCHEMA, STUDIES = (Path(__file__).with_name(name) for name in ("schema.yaml", "studies.yaml"))
 LONGEST = 60
 FORMATS = {"restitution": restitution, "roughness": roughness}
 LEGAL_FORMATS = {"restitution": "lie in [0, 1]", "roughness": "lie in [-1, 1]"}
@@ -55,7 +55,8 @@ def _validator(part: str | None) -> "Draft202012Validator":
     from jsonschema import Draft202012Validator, FormatChecker
     from jsonschema.validators import extend
 
-    schema = yaml.safe_load(SCHEMA.read_text(encoding="utf-8"))
+    schema, studies = (yaml.safe_load(file.read_text(encoding="utf-8")) for file in (SCHEMA, STUDIES))
+    schema["$defs"] |= studies["$defs"]
     if part is not None:
         schema = {"$ref": f"#/$defs/{part}", "$defs": schema["$defs"]}
     formats = FormatChecker(formats=())

@@ -12,7 +12,7 @@ import tempfile
 from pathlib import Path
 
 PACKAGE = Path(__file__).resolve().parent.parent
-COMPILED_ROOMS = ("kernel", "effects", "soft_spheres")
+COMPILED_ROOMS = ("kernel", "effects", "dsmc", "soft_spheres")
 
 
 def source_hash():
