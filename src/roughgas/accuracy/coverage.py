@@ -82,11 +82,17 @@ def combine(parts: Mapping[str, "xarray.Dataset"], settings: Mapping[str, Any]) 
     coordinates = {CORNER: tasks(settings), WAY: list(WAYS), LEVEL: list(LEVELS)}
     attributes = {"seed": settings["seed"], "unit_of_length": UNIT}
     dataset = xarray.Dataset(variables, coordinates, attributes)
-    for key in ("experiment", "r", "beta"):
-        dataset[key] = (CORNER, [corner[key] for corner in settings["corners"]])
+    for key, about in NAMED.items():
+        labels = [corner[key] for corner in settings["corners"]]
+        dataset[key] = (CORNER, labels, _attributes(about, ""))
     return dataset
 
 
+NAMED = {
+    "experiment": "experiment",
+    "r": "normal restitution, as written in the settings",
+    "beta": "tangential restitution, as written in the settings",
+}
 UNIT = "T; in a cooling gas a collision per particle"
 ABOUT = {
     "coverage": ((WAY, LEVEL), "share of the intervals that hold the truth", "1"),

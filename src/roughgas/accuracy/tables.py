@@ -1,11 +1,14 @@
 """What the studies have found, as tables in Markdown: a function a study."""
 
+import math
 from collections.abc import Iterable, Sequence
 
 import numpy as np
 import xarray as xr
 
 PERCENT = "{:+.2f} ± {:.2f}"
+SCENES = ("vibrated", "sheared", "cooling")
+JUDGED = ("bias", "stated_over_true")
 
 
 def statistical(data: xr.Dataset) -> str:
@@ -55,16 +58,101 @@ def discretisation(data: xr.Dataset) -> str:
     reference = f"{float(data.reference_R):.5f} ± {float(data.reference_R_stderr):.5f}"
     return (
         f"## Discretisation error ({about})\n\n"
-        f"Deviation of R in % from events, R = {reference}:\n\n{_table(head, rows)}\nThe contact-time model:\n\n"
+        f"Deviation of R in % from events, R = {reference}:\n\n{_table(head, rows)}\n"
+        "The contact-time model:\n\n"
         f"{_table(['t_c ν', 'deviation of R in %', 'contacts changed'], model)}\n{_precision(data)}"
     )
 
 
-def coverage(data: xr.Dataset) -> str:
-    """How often intervals hold the truth, at each corner."""
-    from roughgas.plotting.accuracy.coverage import table
+def models(data: xr.Dataset) -> str:
+    """What each model of a cooling gas tends to, and what the Maxwellian theory misses."""
+    about = f"r = {data.attrs['r']:g}, β = {data.attrs['beta']:g}"
+    R = f"{float(data.R_reference):.5f} ± {float(data.R_reference_stderr):.5f}"
+    closed = _scaled(data, "closed_form_error")
+    rows = [
+        ["closed form, Eq. (K)", f"{closed} %", f"{float(data.closed_form_seconds):.1e} s"],
+        ["rate equations", f"{closed} %", f"{float(data.rate_equations_seconds[-1]):.1e} s"],
+        ["DSMC", f"{_scaled(data, 'dsmc_floor')} %", f"{_reached(data):.2g} s"],
+        ["event-driven", "none", f"{_until(data, 0.01)} for 1 %"],
+    ]
+    parts = [
+        [what, f"{_scaled(data, name)} %"]
+        for what, name in (
+            ("Maxwellian, uncorrelated velocities", "of_maxwellian"),
+            ("infinitely many particles", "of_number"),
+            ("no density, no correlations of positions", "of_dilution"),
+        )
+    ]
+    return (
+        f"## Model error ({about})\n\nAgainst events, R = {R}:\n\n"
+        f"{_table(['model', 'tends to an error of R of', 'CPU time'], rows)}\n"
+        f"What the error of the closed form is made of:\n\n"
+        f"{_table(['assumption', 'changes R by'], parts)}\n"
+        "R of the homogeneous gas (DSMC) over R of Eq. (K), minus 1, in %:\n\n" + _map(data)
+    )
 
-    return "## Coverage of the stated intervals\n\n" + "\n".join(table(data)) + "\n"
+
+def coverage(data: xr.Dataset) -> str:
+    """How often intervals hold the truth, a corner a row, with standard errors."""
+    data = in_order(data)
+    head = ["corner", "runs", "68 %, one run", "95 %, one run", "68 %, pooled", "95 %, pooled"]
+    head += ["bias / scatter", "stated / true error", "window / τ"]
+    rows = [_corner(data, k) for k in range(data.sizes["corner"])]
+    return f"## Coverage of the stated intervals\n\n{_table(head, rows)}"
+
+
+def in_order(data: xr.Dataset) -> xr.Dataset:
+    """The corners by experiment, and there from weak to strong dissipation."""
+    scene = [SCENES.index(name) for name in data.experiment.values]
+    r, beta = data.r.values.astype(float), data.beta.values.astype(float)
+    return data.isel(corner=np.lexsort((-beta, -r, scene)))
+
+
+def label(data: xr.Dataset, k: int) -> str:
+    """How the corner with this number is called."""
+    corner = data.isel(corner=k)
+    beta = str(np.asarray(corner.beta)).replace("-", "−")
+    return f"{corner.experiment.values}, r = {corner.r.values}, β = {beta}"
+
+
+def _corner(data: xr.Dataset, k: int) -> list[str]:
+    one = data.isel(corner=k)
+    shares = zip(one.coverage.values.ravel(), one.coverage_stderr.values.ravel(), strict=True)
+    cells = [_with_error(100 * value, 100 * stderr) for value, stderr in shares]
+    cells += [_with_error(float(one[name]), float(one[f"{name}_stderr"])) for name in JUDGED]
+    window = float(one.window / one.autocorrelation_time)
+    return [label(data, k), f"{int(one.repetitions)}", *cells, f"{window:.0f}"]
+
+
+def _with_error(value: float, stderr: float) -> str:
+    digits = max(0, 1 - math.floor(math.log10(stderr))) if stderr > 0 else 2
+    return f"{value:.{digits}f} ± {stderr:.{digits}f}"
+
+
+def _scaled(data: xr.Dataset, name: str) -> str:
+    return _with_error(100 * float(data[name]), 100 * float(data[f"{name}_stderr"]))
+
+
+def _until(data: xr.Dataset, error: float) -> str:
+    """CPU time after which events are as good as that, by the fit to their errors."""
+    seconds = (error / float(data.event_driven_prefactor)) ** (1 / float(data.event_driven_slope))
+    return f"{seconds:.2g} s"
+
+
+def _reached(data: xr.Dataset) -> float:
+    """CPU time of the shortest DSMC run whose noise has come down to its floor: within a third."""
+    near = data.dsmc_error.values < 4 / 3 * float(data.dsmc_floor)
+    return float(data.dsmc_seconds.values[near][0]) if near.any() else math.nan
+
+
+def _map(data: xr.Dataset) -> str:
+    head = ["β", *(f"r = {r:g}" for r in data.map_r.values)]
+    gaps = zip(data.map_gap.values.T, data.map_gap_stderr.values.T, strict=True)
+    rows = [
+        [f"{beta:g}", *(_with_error(100 * g, 100 * e) for g, e in zip(*pair, strict=True))]
+        for beta, pair in zip(data.map_beta.values, gaps, strict=True)
+    ]
+    return _table(head, rows)
 
 
 def _prices(one: xr.Dataset) -> list[str]:

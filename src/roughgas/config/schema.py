@@ -55,7 +55,9 @@ def _validator(part: str | None) -> "Draft202012Validator":
     from jsonschema import Draft202012Validator, FormatChecker
     from jsonschema.validators import extend
 
-    schema, studies = (yaml.safe_load(file.read_text(encoding="utf-8")) for file in (SCHEMA, STUDIES))
+    schema, studies = (
+        yaml.safe_load(file.read_text(encoding="utf-8")) for file in (SCHEMA, STUDIES)
+    )
     schema["$defs"] |= studies["$defs"]
     if part is not None:
         schema = {"$ref": f"#/$defs/{part}", "$defs": schema["$defs"]}
