@@ -4,12 +4,12 @@ import json
 
 import pytest
 import xarray as xr
+from tests.accuracy.test_coverage import EXPERIMENTS, SETTINGS
 
 from roughgas import accuracy, config
 from roughgas.accuracy.files import combine, read_study, write_tables
 from roughgas.cli import main
 from roughgas.errors import InputError
-from tests.accuracy.test_coverage import EXPERIMENTS, SETTINGS
 
 
 @pytest.fixture(scope="module")

@@ -103,7 +103,8 @@ def coverage(data: xr.Dataset) -> str:
 
 def in_order(data: xr.Dataset) -> xr.Dataset:
     """The corners by experiment, and there from weak to strong dissipation."""
-    scene = [SCENES.index(name) for name in data.experiment.values]
+    known = [*SCENES, *dict.fromkeys(data.experiment.values)]
+    scene = [known.index(name) for name in data.experiment.values]
     r, beta = data.r.values.astype(float), data.beta.values.astype(float)
     return data.isel(corner=np.lexsort((-beta, -r, scene)))
 

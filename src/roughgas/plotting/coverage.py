@@ -47,7 +47,7 @@ def _panel(axes: Axes, data: xr.Dataset, level: float) -> None:
     axes.axvline(level, color=GREY, lw=0.8, ls="--", zorder=0)
     for row in range(data.sizes["corner"]):
         corner = data.isel(corner=row).sel(level=level)
-        look = COLOURS[str(corner.experiment.values)]
+        look = COLOURS.get(str(corner.experiment.values), LOOKS[3])
         for way, (shift, fill) in enumerate(((-SHIFT, look.colour), (SHIFT, "white"))):
             axes.errorbar(
                 *(corner.coverage[way], row + shift),
