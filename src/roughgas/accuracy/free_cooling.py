@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from roughgas import dsmc, theory
+from roughgas.accuracy.cumulants import corrected_ratio
 from roughgas.initial import initial_state
 from roughgas.measure.energies import energies, ratio
 from roughgas.measure.errors import blocking_stderr
@@ -66,6 +67,15 @@ class Point(NamedTuple):
         """Collisions per particle from theory's theta until R has settled."""
         rate = float(theory.relaxation_rate(self.r, self.beta, *self._kind))
         return max(SHORTEST_TRANSIENT, E_FOLDS / rate)
+
+    @property
+    def theory(self) -> float:
+        """R of Eq. (K)."""
+        return float(theory.cooling_ratio(self.r, self.beta, *self._kind))
+
+    def with_cumulants(self, a20: float, a11: float) -> float:
+        """R of Eq. (K), corrected for velocities that are not Maxwellian."""
+        return float(corrected_ratio(self.r, self.beta, a20, a11, *self._kind))
 
     @property
     def _kind(self):

@@ -8,8 +8,6 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from roughgas.theory import cooling_ratio
-
 METHODS = {
     "rate_equations": "rate equations",
     "dsmc": "direct simulation Monte Carlo",
@@ -187,22 +185,23 @@ MAP = {
     "a20": "cumulant D <v^4>/[(D+2) <v^2>^2] - 1",
     "a02": "cumulant n <w^4>/[(n+2) <w^2>^2] - 1, n = 2D-3",
     "a11": "correlation <v^2 w^2>/(<v^2> <w^2>) - 1",
+    "theory": "R of Eq. (K)",
 }
 
 
 def _map(rows):
     dims = ("map_r", "map_beta")
-    stacked = {
-        name: np.array([row[name].values for row in rows]) for name in (*MAP, "length", "seconds")
-    }
-    r, beta = np.array([float(row.r) for row in rows]), rows[0].beta.values
-    theory = cooling_ratio(r[:, np.newaxis], beta)
+    names = (*MAP, "explained", "length", "seconds")
+    stacked = {name: np.array([row[name].values for row in rows]) for name in names}
+    theory = stacked["theory"]
     variables = {f"map_{x}": _variable(stacked[x], text, dims=dims) for x, text in MAP.items()}
     return variables | {
-        "map_theory": _variable(theory, "R of Eq. (K)", dims=dims),
         "map_gap": _variable(stacked["R"] / theory - 1, "map_R over Eq. (K), minus 1", dims=dims),
         "map_gap_stderr": _variable(
             stacked["R_stderr"] / theory, "standard error of map_gap", dims=dims
+        ),
+        "map_gap_explained": _variable(
+            stacked["explained"] / theory - 1, "map_gap to first order in a20 and a11", dims=dims
         ),
         "map_length": _variable(
             stacked["length"], "length of a run", "collisions per particle", dims
@@ -235,25 +234,28 @@ def _gap(part, k):
     many = Measured(float(part.R_many), float(part.R_many_stderr))
     few = Measured(float(part.R_few), float(part.R_few_stderr))
     gap = _mean(part.R.values[k]).over(few.over(many))
-    theory = float(cooling_ratio(float(part.r), float(part.beta)))
-    return gap.value / theory - 1, gap.stderr / theory
+    return gap.value / float(part.theory) - 1, gap.stderr / float(part.theory)
 
 
 def _coordinates(parts, settings):
     points = np.array(settings["density"]["points"], float)
     row = parts[f"map-r{settings['map']['r'][0]}"]
-    return {
-        **{
-            f"{x}_length": (f"{x}_length", np.array(settings[x], float), _length_of(name))
-            for x, name in METHODS.items()
-        },
-        "map_r": ("map_r", [float(r) for r in settings["map"]["r"]]),
-        "map_beta": ("map_beta", row.beta.values),
-        "density_r": ("density_point", points[:, 0]),
-        "density_beta": ("density_point", points[:, 1]),
-        "packing": ("packing", np.array(settings["density"]["packings"], float)),
+    restitution, roughness = "normal restitution", "tangential restitution"
+    lengths = {
+        f"{x}_length": _variable(
+            np.array(settings[x], float),
+            f"length of a run by {name}",
+            "collisions per particle",
+            (f"{x}_length",),
+        )
+        for x, name in METHODS.items()
     }
-
-
-def _length_of(name):
-    return {"long_name": f"length of a run by {name}", "units": "collisions per particle"}
+    return lengths | {
+        "map_r": _variable(np.array(settings["map"]["r"], float), restitution, dims="map_r"),
+        "map_beta": _variable(row.beta.values, roughness, dims="map_beta"),
+        "density_r": _variable(points[:, 0], restitution, dims="density_point"),
+        "density_beta": _variable(points[:, 1], roughness, dims="density_point"),
+        "packing": _variable(
+            np.array(settings["density"]["packings"], float), "packing fraction", dims="packing"
+        ),
+    }

@@ -161,9 +161,11 @@ def _map(r, settings, experiment, progress):
     for k, beta in enumerate(chosen["beta"]):
         rng = np.random.default_rng(stream(settings, MAP, row, k))
         point = _point(experiment, r, beta)
-        rows.append(homogeneous(point, chosen["particles"], chosen["precision"], rng))
+        found = homogeneous(point, chosen["particles"], chosen["precision"], rng)
+        rows.append((*found, point.theory, point.with_cumulants(found.a20, found.a11)))
         progress(k + 1, len(chosen["beta"]))
-    columns = zip(Homogeneous._fields, np.transpose(rows), strict=True)
+    names = (*Homogeneous._fields, "theory", "explained")
+    columns = zip(names, np.transpose(rows), strict=True)
     beta = [float(one) for one in chosen["beta"]]
     return xr.Dataset({name: ("beta", x) for name, x in columns}, {"beta": beta, "r": float(r)})
 
@@ -195,6 +197,7 @@ def _density(r, beta, settings, experiment):
             "R_few_stderr": few.R_stderr,
             "R_many": many.R,
             "R_many_stderr": many.R_stderr,
+            "theory": point.theory,
             "dsmc_seconds": few.seconds + many.seconds,
         },
         {"packing": list(chosen["packings"]), "r": float(r), "beta": float(beta)},

@@ -71,7 +71,10 @@ def _title(data):
 
 
 def draw_map(axes: Axes, data: xr.Dataset) -> None:
-    """R of the homogeneous gas over Eq. (K), minus 1, against beta, a curve for each r."""
+    """R of the homogeneous gas over Eq. (K), minus 1, against beta, a series for each r.
+
+    Lines are what its cumulants a20 and a11 explain.
+    """
     order = np.argsort(-data.map_r.values)
     for place, (row, look) in enumerate(zip(order, LOOKS, strict=False)):
         one = data.isel(map_r=row)
@@ -82,14 +85,16 @@ def draw_map(axes: Axes, data: xr.Dataset) -> None:
             color=look.colour,
             marker=look.marker,
             markersize=3.6,
-            linestyle=look.line,
-            linewidth=0.8,
+            linestyle="none",
             elinewidth=0.9,
             label=f"$r = {float(one.map_r):g}$",
         )
+        explained = 100 * one.map_gap_explained.values
+        axes.plot(one.map_beta, explained, color=look.colour, linestyle=look.line, linewidth=0.8)
         _event_driven(axes, data, float(one.map_r), look.colour)
     for k, packing in enumerate(data.packing.values):
         axes.plot([], [], PACKING_MARKERS[k], color=GREY, label=f"event-driven, {packing:g} filled")
+    axes.plot([], [], color=GREY, linewidth=0.8, label="first order in $a_{20}$ and $a_{11}$")
     axes.axhline(0, color=THEORY, linewidth=0.8, zorder=0)
     axes.set_xlabel(r"tangential restitution $\beta$")
     axes.set_ylabel(r"$R/R_{\mathrm{Eq.\,(K)}} - 1$   (%)")
