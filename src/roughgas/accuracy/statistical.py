@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from roughgas.accuracy.square_root_law import noise, observed, slope
+from roughgas.accuracy.square_root_law import noise, observed, slope, time_from_blocks
 
 if TYPE_CHECKING:
     import xarray
@@ -23,6 +23,7 @@ WAYS = ("length", "seeds")
 REFERENCE = "reference"
 RELATIVE_ERRORS = (0.01, 0.003, 0.001)
 SCENE, WAY, LEVEL, ACCURACY = "scene", "way", "level", "relative_error"
+BLOCK = 50  # autocorrelation times: beyond ten of them no tail is left
 GENEROSITY = 4
 """A level gets more groups than it must have until it costs a fourth of the longest one."""
 
@@ -95,6 +96,7 @@ PER_CHAIN = (
     "R",
     "variance",
     "autocorrelation_time",
+    "windowed_time",
     "time",
     "seconds",
     "contacts",
@@ -106,7 +108,9 @@ def _reference_chain(chain, length):
 
     R, seconds, contacts = chain.measure(length)
     unit = length / len(R)
-    return R.mean(), R.var(), autocorrelation_time(R) * unit, length, seconds, contacts
+    windowed = autocorrelation_time(R)
+    whole = time_from_blocks(R, math.ceil(BLOCK * windowed))
+    return R.mean(), R.var(), whole * unit, windowed * unit, length, seconds, contacts
 
 
 def _lengths(setup, streams, progress) -> dict[str, tuple]:
@@ -203,6 +207,7 @@ ABOUT = {
     "variance": ((), "variance of R (over a period of the floor, if there is one)", "1"),
     "autocorrelation_time": ((), "integrated autocorrelation time of R", "length_unit"),
     "autocorrelation_time_stderr": ((), "its standard error", "length_unit"),
+    "windowed_time": ((), "the same by emcee's window of three such times", "length_unit"),
     "noise": ((), "variance of R's mean times the length of the run", "length_unit"),
     "noise_stderr": ((), "its standard error", "length_unit"),
     "equilibration_seconds": ((), "CPU time to equilibrate a seed", "s"),
@@ -263,6 +268,7 @@ def _about_reference(reference, ways) -> dict[str, float]:
         "variance": float(reference.variance.mean()),
         "autocorrelation_time": float(tau.mean()),
         "autocorrelation_time_stderr": float(tau.std(ddof=1)) / math.sqrt(chains),
+        "windowed_time": float(reference.windowed_time.mean()),
         "equilibration_seconds": equilibration.mean(),
         "seconds_per_length": seconds / time,
         "collisions_per_second": float(reference.contacts.sum()) / seconds,
