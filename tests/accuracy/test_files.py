@@ -36,10 +36,12 @@ def test_tasks_become_one_file_with_a_table_and_a_figure(tasks, tmp_path):
         assert {"long_name", "units"} <= set(data[name].attrs), name
     write_tables(combined, table)
     assert table.read_text().startswith("## Coverage of the stated intervals\n")
+    assert main(["figure", "coverage", str(combined), "-o", str(figure)]) == 0
+    assert figure.stat().st_size > 10_000
 
 
 def test_a_missing_task_is_named(tasks, tmp_path):
-    with pytest.raises(InputError, match="tasks of coverage = without gas_r0.9_beta0: must be"):
+    with pytest.raises(InputError, match=r"tasks of coverage = without gas_r0\.9_beta0: must be"):
         combine(tasks[:1], tmp_path / "all.nc")
 
 
