@@ -26,7 +26,7 @@ def statistical(data: xr.Dataset) -> str:
         )
         R = f"{float(one.R):.5f} ± {float(one.R_stderr):.5f}"
         rows.append([name, R, *slopes, f"{memory} {one.length_unit.item()}"])
-    costs = ["scene", "equilibration", *(f"{x:.1%}" for x in data.accuracy.values)]
+    costs = ["scene", "equilibration", *(f"{x:.1%}" for x in data.relative_error.values)]
     priced = [_prices(data.sel(scene=name)) for name in data.scene.values]
     about = f"r = {data.attrs['r']}, β = {data.attrs['beta']}"
     return (
