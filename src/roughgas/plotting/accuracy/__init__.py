@@ -3,6 +3,7 @@ the Maxwellian theory misses."""
 
 from pathlib import Path
 
+import xarray as xr
 from matplotlib.figure import Figure
 
 from roughgas.accuracy import PANELS
@@ -21,6 +22,16 @@ def draw(path: str | Path) -> Figure:
     models.draw(second, data["models"])
     discretisation.draw(third, data["discretisation"])
     models.draw_map(fourth, data["models"])
-    for letter, axes in zip("abcd", (first, second, third, fourth), strict=True):
-        axes.set_title(f"({letter}) {axes.get_title()}", loc="left", fontsize=9)
+    titles = (
+        f"(a) noise: three scenes, {_material(data['statistical'])}",
+        f"(b) models of a cooling gas, {_material(data['models'])}",
+        f"(c) springs and time steps: cooling gas, {_material(data['discretisation'])}",
+        "(d) what the Maxwellian theory of a cooling gas misses",
+    )
+    for axes, title in zip((first, second, third, fourth), titles, strict=True):
+        axes.set_title(title, loc="left", fontsize=9)
     return figure
+
+
+def _material(data: xr.Dataset) -> str:
+    return rf"$r = {float(data.attrs['r']):g}$, $\beta = {float(data.attrs['beta']):g}$"
