@@ -155,6 +155,19 @@ def test_a_gas_cools_for_ever():
     assert np.abs(gas.velocity.sum(axis=0)).max() < 1e-12
 
 
+def test_seldom_samples_waste_no_draws():
+    """The gas is scaled in between, to where the majorant fits; it cools as if sampled often. 2 %
+    of the rate are 8 times its scatter over seeds."""
+    rates = []
+    for every, samples in ((1, 60), (60, 1)):
+        gas, rng = gas_and_generator(4000, 0.5, 2, 7)
+        end = dsmc.run(gas, dsmc.material(0.5, 0.0), rng, every, samples)
+        assert end.collisions_per_particle[-1] == 60.0
+        assert gas.counts[collisions.COLLISIONS] > 0.08 * gas.counts[collisions.DRAWS]
+        rates.append(-end.log_T_tr[-1] / 60.0)
+    assert rates[0] == pytest.approx(rates[1], rel=0.02)
+
+
 def test_illegal_values_are_named():
     rng = np.random.default_rng(0)
     with pytest.raises(InputError, match="restitution r"):

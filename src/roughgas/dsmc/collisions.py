@@ -29,15 +29,27 @@ COLUMNS = ("time", "collisions", "log_unit", "vv", "ww", "vvvv", "wwww", "vvww",
 def record(gas, material, rng, collisions, rows):
     """Let the gas collide so many times before each of the `rows`, shape (samples, COLUMNS).
 
-    After each sample the total momentum is removed and T_tr scaled to 1.
+    After each sample, and in between after so many collisions as there are particles, the total
+    momentum is removed and T_tr scaled to 1: the majorant would else become too large for a gas
+    that has cooled.
     """
+    number = len(gas.velocity)
     for k in range(len(rows)):
         target = gas.counts[COLLISIONS] + collisions
-        while gas.counts[COLLISIONS] < target:
-            draw(gas, material, rng)
-        pass_time(gas, material)
+        while gas.counts[COLLISIONS] + number < target:
+            collide_until(gas, material, rng, gas.counts[COLLISIONS] + number)
+            rescale(gas)
+        collide_until(gas, material, rng, target)
         take_sample(gas, rows[k])
         rescale(gas)
+
+
+@compiled
+def collide_until(gas, material, rng, target):
+    """Draw pairs until there have been so many collisions."""
+    while gas.counts[COLLISIONS] < target:
+        draw(gas, material, rng)
+    pass_time(gas, material)
 
 
 @compiled
