@@ -44,6 +44,7 @@ VARIABLES = {
     "R_stderr": Variable("standard error of R within this file", over_seeds=""),
     "R_dof": Variable("degrees of freedom that R_stderr is known with", over_seeds=""),
     "R_ci95": Variable("half width of the 95 % interval of R, by Student's t", over_seeds=""),
+    "R_ci95_trusted": Variable("1 where R_ci95 holds the truth as often as it says", dtype="i1"),
     "R_ratio_of_means": Variable("share of rotation in the energy, from the mean energies"),
     "E_trans": Variable("translational energy per degree of freedom", ENERGY),
     "E_rot": Variable("rotational energy per degree of freedom", ENERGY),

@@ -56,6 +56,7 @@ COLUMNS = (
     "R_stderr",
     "R_dof",
     "R_ci95",
+    "R_ci95_trusted",
     "R_stderr_over_seeds",
     "R_stderr_within",
     "R_ratio_of_means",

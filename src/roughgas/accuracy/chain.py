@@ -8,9 +8,10 @@ import numpy as np
 
 from roughgas.initial import initial_state
 from roughgas.measure.averages import period_means
-from roughgas.measure.energies import energies, fluctuation_energies, ratio
+from roughgas.measure.energies import ratio
 from roughgas.protocols.cooling import SAMPLES_PER_REFRESH
 from roughgas.protocols.recorder import Recorder
+from roughgas.protocols.steady import fluctuations, samples_per_period
 from roughgas.scene import Scene, build
 
 
@@ -57,10 +58,9 @@ class Chain:
     def measure(self, length: float) -> Segment:
         """The next `length` of the chain; R over whole periods of a floor, else of each sample."""
         begin, before = time.process_time(), self.recorder.collisions
-        R = ratio(_fluctuations(self.scene, self._rows(self.scene, length), self.number))
+        R = ratio(fluctuations(self.scene, self._rows(self.scene, length), self.number))
         seconds = time.process_time() - begin
-        every = self.schedule["sample_every"]
-        period = max(1, round(self.schedule.get("period", every) / every))
+        period = samples_per_period(self.schedule)
         return Segment(period_means(R, period), seconds, self.recorder.collisions - before)
 
     def _rows(self, scene: Scene, length: float, refresh: int = SAMPLES_PER_REFRESH):
@@ -70,11 +70,3 @@ class Chain:
             return self.recorder.in_time(self.state, scene, every, samples)
         collisions = max(1, round(self.number / 2 * every))  # a collision has two partners
         return self.recorder.in_collisions(self.state, scene, collisions, samples, refresh)
-
-
-def _fluctuations(scene, rows, number):
-    """Energies without the mean flow and the mean spin of a sheared gas."""
-    shear, q = scene.effects.shear, scene.effects.spin.inertia
-    if shear is None:
-        return energies(rows, number, q)
-    return fluctuation_energies(rows, number, q, shear.velocity / (2.0 * scene.middle))

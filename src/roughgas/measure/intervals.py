@@ -14,6 +14,7 @@ import numpy as np
 from roughgas.measure.errors import student_t
 
 DISAGREE = 2.0  # sigma
+SHORTEST = 10.0  # autocorrelation times, in a series whose interval at 95 % holds the truth in 95 %
 
 
 class Error(NamedTuple):
@@ -35,6 +36,12 @@ def half_width(stderr: float, dof: float, level: float) -> float:
     if not dof >= 1:
         return math.nan
     return student_t(NormalDist().inv_cdf((1 + level) / 2), dof) * stderr
+
+
+def is_trusted(samples: int, autocorrelation_time: float) -> bool:
+    """Whether a correlated series is long enough for its interval, by blocking, to be as wide as it
+    should be; `autocorrelation_time` in samples, NaN for a constant series, whose mean is exact."""
+    return not samples < SHORTEST * autocorrelation_time
 
 
 def degrees_of_freedom(blocks: float) -> float:

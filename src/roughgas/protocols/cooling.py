@@ -106,6 +106,7 @@ def _measure(ensemble, passed, transient, every):
         "R_stderr": error.stderr,
         "R_dof": error.dof,
         "R_ci95": error.half_width(0.95),
+        "R_ci95_trusted": plateau.found,
         "R_ratio_of_means": ratio_of_means(alike, axis=0)[inside].mean(),
         "E_trans": E_trans[first],
         "E_rot": E_rot[first],

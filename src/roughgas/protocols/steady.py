@@ -17,7 +17,7 @@ from roughgas.measure.energies import (
 )
 from roughgas.measure.equilibration import detect_start, is_equilibrated
 from roughgas.measure.errors import autocorrelation_time, blocking
-from roughgas.measure.intervals import Error, degrees_of_freedom
+from roughgas.measure.intervals import Error, degrees_of_freedom, is_trusted
 from roughgas.scene import Scene
 
 LEAST_LEFT = 0.5  # share of the planned measurement below which a late start is not worth having
@@ -44,12 +44,13 @@ def run(scene: Scene, experiment: Mapping[str, Any], seed: int, recorder) -> dic
     R = ratio(window)
     R_periods = period_means(R, per_period)
     stderr, blocks = blocking(R_periods)
-    error = Error(stderr, degrees_of_freedom(blocks))
+    error, memory = Error(stderr, degrees_of_freedom(blocks)), autocorrelation_time(R_periods)
     return {
         "R": R.mean(),
         "R_stderr": error.stderr,
         "R_dof": error.dof,
         "R_ci95": error.half_width(0.95),
+        "R_ci95_trusted": is_trusted(len(R_periods), memory),
         "R_ratio_of_means": ratio_of_means(window),
         "E_trans": window.translational.mean(),
         "E_rot": window.rotational.mean(),
@@ -57,7 +58,7 @@ def run(scene: Scene, experiment: Mapping[str, Any], seed: int, recorder) -> dic
         **exchange(before, books(state, scene), scene, number),
         "equilibrated": found,
         "measured_from": start * every,
-        "autocorrelation_time": autocorrelation_time(R_periods) * per_period * every,
+        "autocorrelation_time": memory * per_period * every,
         "time": rows["time"][start:],
         "R_series": R,
         "E_trans_series": window.translational,
