@@ -157,7 +157,7 @@ def test_a_gas_cools_for_ever():
 
 def test_seldom_samples_waste_no_draws():
     """The gas is scaled in between, to where the majorant fits; it cools as if sampled often. 2 %
-    of the rate are 8 times its scatter over seeds."""
+    of the rate are five times the scatter of a difference of two gases."""
     rates = []
     for every, samples in ((1, 60), (60, 1)):
         gas, rng = gas_and_generator(4000, 0.5, 2, 7)

@@ -16,6 +16,7 @@ METHODS = {
 CLOSED_FORM = Look(THEORY, "*", "none")
 LEAST = 1 / 3  # of the reference's own error, down to which the axis goes
 SIDESTEP = 0.01  # in beta, between series at the same beta
+ROOM = 0.4  # for the legend beneath, of the range of the data
 PACKING_MARKERS = ("X", "P", "d")
 
 
@@ -52,18 +53,20 @@ def _points(axes, data, method, label, look, size=None) -> ErrorbarContainer:
 
 def _floors(axes, data):
     """What each model tends to, whatever is spent on it; and where the reference ends."""
-    right = {"x": 0.985, "transform": axes.get_yaxis_transform(), "ha": "right", "fontsize": 7}
-    for name, text, colour in (
-        ("closed_form_error", "Maxwellian velocities", THEORY),
-        ("dsmc_floor", "no density, no correlations", METHODS["dsmc"][1].colour),
+    across = {"transform": axes.get_yaxis_transform(), "fontsize": 7}
+    for name, text, colour, x, side in (
+        ("closed_form_error", "Maxwellian velocities", THEORY, 0.985, "right"),
+        ("dsmc_floor", "no density, no correlations", LOOKS[1].colour, 0.015, "left"),
     ):
         level = float(data[name])
         axes.axhline(level, color=colour, linewidth=0.7, linestyle=(0, (4, 2)), zorder=0)
-        axes.text(y=1.06 * level, s=text, color=colour, va="bottom", **right)
+        axes.text(x, 1.06 * level, text, color=colour, va="bottom", ha=side, **across)
     own = float(data.R_reference_stderr / data.R_reference)
     axes.axhspan(own * LEAST, own, color=FAINT, alpha=0.25, linewidth=0, zorder=0)
     axes.set_ylim(bottom=own * LEAST)
-    axes.text(y=0.9 * own, s="error of the reference", color=GREY, va="top", **right)
+    axes.text(
+        0.985, 0.9 * own, "error of the reference", color=GREY, va="top", ha="right", **across
+    )
 
 
 def _title(data):
@@ -101,7 +104,9 @@ def draw_map(axes: Axes, data: xr.Dataset) -> None:
     axes.set_xlim(-1.04, 1.04)
     axes.xaxis.set_major_locator(MultipleLocator(0.5))
     axes.xaxis.set_minor_locator(MultipleLocator(0.1))
-    axes.legend(loc="lower right", title="homogeneous gas (DSMC)")
+    low, high = axes.get_ylim()
+    axes.set_ylim(low - ROOM * (high - low), high)
+    axes.legend(loc="lower center", ncols=2, title="homogeneous gas (DSMC), and what explains it")
 
 
 def _event_driven(axes, data, r, colour):
