@@ -21,11 +21,6 @@ def fixed_schedules(wildcards):
     return roughgas.config.as_text({n: settings("paper", n)["schedule"] for n in PLANNED})
 
 
-def settings_of_pilot(wildcards):
-    found = settings(wildcards.scale, wildcards.experiment)
-    return roughgas.config.as_text(roughgas.config.pilot_settings(found))
-
-
 rule pilot:
     input:
         kernel_of_point,
@@ -37,7 +32,7 @@ rule pilot:
     benchmark:
         "logs/{scale}/{experiment}/r{r}/beta{beta}/pilot.tsv"
     params:
-        settings=settings_of_pilot,
+        settings=settings_without_lengths,
     message:
         "pilot of {wildcards.experiment}: r = {wildcards.r}, beta = {wildcards.beta}"
     shell:

@@ -29,6 +29,12 @@ def settings_of_points(wildcards):
     return roughgas.config.as_text(roughgas.config.point_settings(found))
 
 
+def settings_without_lengths(wildcards):
+    """The same but for run lengths and targets, on which neither kernel nor pilots depend."""
+    found = settings(wildcards.scale, wildcards.experiment)
+    return roughgas.config.as_text(roughgas.config.pilot_settings(found))
+
+
 def seeds_of_job(wildcards, output):
     """The seeds of a job's outputs. Snakemake does not record params that are made from outputs: a
     point is up to date whichever job has made it."""
@@ -68,7 +74,7 @@ rule compile_kernel:
     resources:
         compiling=1,
     params:
-        settings=settings_of_points,
+        settings=settings_without_lengths,
     message:
         "compile the kernel of {wildcards.experiment} at r = {wildcards.r}"
     shell:

@@ -101,6 +101,14 @@ def test_a_target_replaces_lengths_and_seeds(paper, name):
     assert settings["effects"] == plain["effects"]
 
 
+def test_a_target_of_what_is_extended_counts_before_own_seeds(paper):
+    whole = copy.deepcopy(paper)
+    whole["experiments"]["wide"] = {"extends": "cooling", "sweep": {"seeds": 1}}
+    config.check(whole)
+    assert config.experiment(whole, "wide", "paper")["sweep"]["seeds"] == 1
+    assert "seeds" not in config.experiment(whole, "wide", "fine")["sweep"]
+
+
 def test_a_study_has_its_settings_and_those_of_the_experiments(paper):
     found = config.study(paper, "statistical", "small")
     assert found["experiments"]["sheared"]["particles"] == 40
@@ -156,7 +164,12 @@ MISTAKES = [
     (
         "experiments.cooling.target_stderr",
         0.01,
-        "schedule: key = 'replicas': must be one of kind, thermalise, sample_every",
+        "experiments.cooling.sweep.seeds = 4: must not stand beside target_stderr",
+    ),
+    (
+        "scales.fine.cooling.schedule",
+        {"plateau": 10},
+        "scales.fine.cooling.schedule.plateau = 10: must not stand beside target_stderr",
     ),
     ("experiments.accuracy", {}, "key of experiments = accuracy: must be another name"),
     ("experiments.cooling.particles", 0, "particles = 0: must be a whole number >= 1"),

@@ -12,7 +12,7 @@ from hard_cases.catalogue import hard_case
 from roughgas.initial import lattice
 from roughgas.kernel.record import Plan, columns, record
 from roughgas.kernel.state import BOUNDARY_HITS, COLLISIONS
-from roughgas.measure.books import books, imbalance
+from roughgas.protocols.books import books, imbalance
 
 ROUNDING = 2.0**-53
 KINDS = {  # effects besides spin and contact time, and whether there is a top

@@ -110,7 +110,7 @@ def test_captions_say_what_how_large_and_which_error_bars():
     assert "N = 160" in title and "small scale" in title
     assert "standard error from 4 seeds" in title
     data["n_seeds"][0, 0] = 2
-    assert "over 2 to 4 seeds" in fig1a.draw(data).axes[0].get_title(loc="left")
+    assert "from 2 to 4 seeds" in fig1a.draw(data).axes[0].get_title(loc="left")
     alone = fig1a.draw(reduced("vibrated", seeds=1)).axes[0]
     assert "standard error within the run" in alone.get_title(loc="left")
 

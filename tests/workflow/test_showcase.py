@@ -60,8 +60,8 @@ def test_every_module_that_a_film_imports_counts(made):
 @pytest.mark.parametrize(
     ("target", "change", "message"),
     [
-        ("results/large/showcase/clustering.nc", {}, "scale = 'large': must be one of paper"),
-        ("figures/large/clustering.mp4", {}, "scale = 'large': must be one of paper"),
+        ("results/large/showcase/clustering.nc", {}, "scale = 'large': must be one of coarse"),
+        ("figures/large/clustering.mp4", {}, "scale = 'large': must be one of coarse"),
         (FILM, {"particles": 10_000}, "showcase at scale tiny: particles = 10000: must be at"),
         (FILM, {"box": [3, 3]}, "showcase at scale tiny: box[0] = 3"),
     ],

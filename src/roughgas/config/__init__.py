@@ -70,8 +70,12 @@ def check(config: Mapping[str, Any], source: str = SOURCE) -> None:
             raise InputError(f"{source}: key of experiments", name, "be another name")
     for name in known:
         _check_ancestors(name, known, source)
+    for name, settings in known.items():
+        _check_target(settings, f"{source}: experiments.{name}")
     for scale, changes in scales.items():
-        for name in changes:
+        for name, settings in changes.items():
+            if name in known:
+                _check_target(settings, f"{source}: scales.{scale}.{name}")
             _one_of(f"{source}: key of scales.{scale}", name, [*known, SHOWCASE, ACCURACY])
         check_schema(showcase(config, scale), f"{source}: {SHOWCASE} at scale {scale}", "filmed")
         check_schema(_studies(config, scale), f"{source}: {ACCURACY} at scale {scale}", "studied")
@@ -93,14 +97,8 @@ def experiment(config: Mapping[str, Any], name: str, scale: str) -> dict[str, An
     parent = own.pop("extends", None)
     settings = experiment(config, parent, scale) if parent else {}
     settings.pop("description", None)
-    return _over(_over(settings, own), config["scales"][scale].get(name, {}))
-
-
-def _over(settings: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
-    """Settings of an experiment with changes, a target among which replaces lengths and seeds."""
-    if "target_stderr" in changes:
-        settings = _without_lengths(settings)
-    return merged(settings, changes)
+    found = merged(merged(settings, own), config["scales"][scale].get(name, {}))
+    return _without_lengths(found) if "target_stderr" in found else found
 
 
 def _without_lengths(settings: Mapping[str, Any]) -> dict[str, Any]:
@@ -208,6 +206,17 @@ def _check_complete(settings: Mapping[str, Any], where: str) -> None:
         repeated = first_repeated(settings["sweep"][axis], value_of)
         if repeated is not None:
             raise InputError(f"{where}.sweep.{axis}", shown(repeated), "be given once")
+
+
+def _check_target(settings: Mapping[str, Any], where: str) -> None:
+    """Raise an InputError where a target and what it replaces are given side by side."""
+    if "target_stderr" not in settings:
+        return
+    for part, names in REPLACED.items():
+        for name in names:
+            if settings.get(part, {}).get(name) is not None:
+                value = settings[part][name]
+                raise InputError(f"{where}.{part}.{name}", value, "not stand beside target_stderr")
 
 
 def _check_ancestors(name: str, known: Mapping[str, Any], source: str) -> None:

@@ -7,11 +7,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from roughgas.initial import initial_state
-from roughgas.measure.books import Books, books, exchange
 from roughgas.measure.energies import Energies, energies, ratio, ratio_of_means, restored
 from roughgas.measure.errors import autocorrelation_time
 from roughgas.measure.intervals import Error
 from roughgas.measure.plateau import find_plateau
+from roughgas.protocols.books import Books, books, exchange
 from roughgas.scene import Scene
 from roughgas.theory import relaxation_rate
 

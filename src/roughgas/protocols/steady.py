@@ -7,7 +7,6 @@ import numpy as np
 
 from roughgas.initial import initial_state
 from roughgas.measure.averages import period_means
-from roughgas.measure.books import books, exchange
 from roughgas.measure.energies import (
     Energies,
     energies,
@@ -18,6 +17,7 @@ from roughgas.measure.energies import (
 from roughgas.measure.equilibration import detect_start, is_equilibrated
 from roughgas.measure.errors import autocorrelation_time, blocking
 from roughgas.measure.intervals import Error, degrees_of_freedom, is_trusted
+from roughgas.protocols.books import books, exchange
 from roughgas.scene import Scene
 
 LEAST_LEFT = 0.5  # share of the planned measurement below which a late start is not worth having

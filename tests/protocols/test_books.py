@@ -6,7 +6,7 @@ from brute_force import begin, run, settings
 from schedules import COOLING, STEADY
 
 from roughgas.dataset import read_point, write_point
-from roughgas.measure.books import books, exchange, imbalance
+from roughgas.protocols.books import books, exchange, imbalance
 from roughgas.simulate import run_point
 
 SOURCES = {
