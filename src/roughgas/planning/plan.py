@@ -14,7 +14,11 @@ BIAS = 0.1  # of the target: what may be left of the transient
 CARE = 1.3  # theory's relaxation is followed within a few per cent
 TWICE = 2.0  # the transient is waited for: whether a gas is steady is judged from half of that on
 FEWEST_SEEDS = 2
-ALONE = 0.25  # of a seed: where so little would do, one says enough of its own error
+ALONE = 0.5  # of a seed: where so little would do, one says enough of its own error
+RESERVE = (
+    0.9  # of the target is aimed at, lest noise in the error ask for more seeds: errors of runs
+)
+# that stop when they look small enough are too small
 REPLICAS = 5  # of a cooling gas to a seed
 MEMORIES = {
     "steady": 20.0,
@@ -59,7 +63,8 @@ def plan_point(experiment: Mapping[str, Any], r: float, beta: float, pilot: Pilo
     if "target_stderr" in experiment:
         schedule, lengths = _chosen(scene, experiment, pilot)
         enough = pilot.variance / (lengths.runs * lengths.measured * _target(experiment) ** 2)
-        seeds = 1 if enough <= ALONE else max(FEWEST_SEEDS, math.ceil(enough))
+        wanted = enough / RESERVE**2
+        seeds = 1 if wanted <= ALONE else max(FEWEST_SEEDS, math.ceil(wanted))
         made = seeds * (1.0 + added(enough / seeds, seeds * _freedom(lengths)))
     else:
         schedule, lengths = dict(experiment["schedule"]), _given(scene, experiment)
@@ -115,7 +120,7 @@ def _chosen_driven(scene, given, pilot, target):
     unit = given.get("period", given["sample_every"])
     relaxed = relaxation(scene, BIAS * target, cooling=False) / pilot.pace
     transient = _whole(max(relaxed, TWICE * pilot.transient), unit)
-    needed = pilot.variance / (FEWEST_SEEDS * target**2)
+    needed = pilot.variance / (FEWEST_SEEDS * (RESERVE * target) ** 2)
     measured = _whole(_measured("steady", transient, needed, pilot), unit)
     schedule = given | {"equilibrate": transient, "measure": measured}
     return schedule, Lengths(transient, measured)
@@ -125,7 +130,7 @@ def _chosen_cooling(scene, given, pilot, target):
     e_folds = _rounded(relaxation(scene, BIAS * target, cooling=True) * rate_of(scene))
     transient = transient_length(scene, e_folds)
     spent = given["thermalise"] + transient
-    needed = pilot.variance / (FEWEST_SEEDS * REPLICAS * target**2)
+    needed = pilot.variance / (FEWEST_SEEDS * REPLICAS * (RESERVE * target) ** 2)
     plateau = _whole(_measured("cooling", spent, needed, pilot), given["sample_every"])
     schedule = given | {"replicas": REPLICAS, "relaxation_times": e_folds, "plateau": plateau}
     return schedule, Lengths(transient, plateau, REPLICAS, given["thermalise"])
