@@ -3,6 +3,9 @@
 import pytest
 from conftest import JOBS, POINTS, Project
 
+import roughgas.config
+from roughgas import accuracy
+
 LEGAL = [
     "results/paper/cooling/r0.87/beta-0.33/seed7.nc",
     "results/paper/vibrated/r1/beta1/seed0.nc",
@@ -100,6 +103,19 @@ def test_the_hard_cases_are_those_of_the_catalogue(project):
     planned = project.planned("hard_cases")
     assert planned == {"family": len(families), "catalogue": 1, "hard_cases": 1}
     assert len(families) > 10
+
+
+def test_a_study_is_a_job_for_each_of_its_tasks(project):
+    config = roughgas.config.load(project.folder / "config.yaml")
+    tasks = {
+        name: len(accuracy.study(name).tasks(roughgas.config.study(config, name, "tiny")["study"]))
+        for name in accuracy.STUDIES
+    }
+    drawn = {"study_figure": 1, "study_table": 1}
+    expected = {"study": tasks.pop("coverage"), "coverage_of_intervals": 1, "coverage": 1}
+    assert project.planned("coverage") == expected | drawn
+    expected = {"study": sum(tasks.values()), "work_precision": 1, "accuracy": 1}
+    assert project.planned("accuracy") == expected | drawn
 
 
 def test_any_legal_point_can_be_asked_for(project):
