@@ -98,7 +98,6 @@ rule coverage_of_intervals:
 
 
 rule study_figure:
-    # the figure, and the same numbers as a table
     input:
         sources("plotting"),
         data=study_of_figure,
