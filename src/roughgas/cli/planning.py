@@ -7,7 +7,7 @@ import time
 from pathlib import Path
 from typing import Any
 
-from roughgas.cli.run import add_point, closing_line, point_of, provenance
+from roughgas.cli.run import add_point, point_of, write_seed
 from roughgas.cli.settings import add_settings
 from roughgas.errors import InputError
 
@@ -77,7 +77,6 @@ def pilot(options: argparse.Namespace) -> None:
 def reach(options: argparse.Namespace) -> None:
     """Run a point until it is as accurate as its experiment says."""
     from roughgas.cli.progress import Progress
-    from roughgas.dataset import write_point
     from roughgas.planning.pilot import explore, read_pilot
     from roughgas.planning.reach import reach as run
 
@@ -88,9 +87,7 @@ def reach(options: argparse.Namespace) -> None:
 
     def keep(seed, point, chosen):
         output = str(Path(options.output, f"seed{seed}.nc"))
-        about = provenance(options, chosen, str(seed), output)
-        write_point(output, point._replace(attributes=about | point.attributes))
-        print(closing_line(output, point), file=sys.stderr)
+        write_seed(options, chosen, str(seed), output, point)
 
     with Progress(options.experiment, {"kind": ""}) as progress:
         planned, error, seeds = run(settings, r, beta, known, keep, progress)

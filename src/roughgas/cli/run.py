@@ -65,7 +65,6 @@ def run(options: argparse.Namespace) -> None:
     if len(options.output) != len(seeds):
         raise InputError("--output", " ".join(options.output), f"name {len(seeds)}, one a seed")
 
-    from roughgas.dataset import write_point
     from roughgas.planning.reach import complete
     from roughgas.simulate import run_point
 
@@ -73,9 +72,7 @@ def run(options: argparse.Namespace) -> None:
     for label, seed, output in zip(options.seed, seeds, options.output, strict=True):
         with Progress(options.experiment, settings["schedule"]) as progress:
             point = run_point(settings, r, beta, seed, progress)
-        about = provenance(options, settings, label, output)
-        write_point(output, point._replace(attributes=about | point.attributes))
-        print(closing_line(output, point), file=sys.stderr)
+        write_seed(options, settings, label, output, point)
 
 
 def compile_kernel(options: argparse.Namespace) -> None:
@@ -104,7 +101,18 @@ def _settings(options: argparse.Namespace) -> dict[str, Any]:
     return config.experiment(config.load(options.config), options.experiment, options.scale)
 
 
-def provenance(
+def write_seed(
+    options: argparse.Namespace, settings: dict[str, Any], seed: str, output: str, point: "Point"
+) -> None:
+    """Write the dataset of a seed, which says how to make it again, and say that it is done."""
+    from roughgas.dataset import write_point
+
+    about = _provenance(options, settings, seed, output)
+    write_point(output, point._replace(attributes=about | point.attributes))
+    print(_closing_line(output, point), file=sys.stderr)
+
+
+def _provenance(
     options: argparse.Namespace, settings: dict[str, Any], seed: str, output: str
 ) -> dict[str, Any]:
     """The attributes of a dataset that say how to make it again, it alone."""
@@ -126,8 +134,7 @@ def provenance(
     }
 
 
-def closing_line(output: str, point: "Point") -> str:
-    """What is said of a point when it is done."""
+def _closing_line(output: str, point: "Point") -> str:
     found = point.variables
     return (
         f"{output}: R = {float(found['R']):.4f} +- {float(found['R_stderr']):.4f}, "

@@ -27,7 +27,6 @@ from roughgas.measure.intervals import degrees_of_freedom
 from roughgas.protocols import cooling, steady
 from roughgas.protocols.recorder import Recorder
 from roughgas.scene import Scene, build, check_company
-from roughgas.theory import relaxation_rate
 
 SEED = LARGEST_SEED  # of pilots: none that a point would take
 CHAINS = 10  # which the transient of a driven gas is seen with
@@ -160,18 +159,11 @@ def _is_enough(pilot: Pilot) -> bool:
     return pilot.settled and measured >= MEASURED * pilot.autocorrelation_time
 
 
-def rate_of(scene: Scene) -> float:
-    """The rate at which R relaxes in a cooling gas, by the rate equations, per collision per
-    particle."""
-    inertia, dimension = scene.effects.spin.inertia, len(scene.box)
-    return float(relaxation_rate(scene.restitution, scene.roughness, dimension, inertia))
-
-
 def _explore_cooling(scene: Scene, experiment: Mapping[str, Any]) -> Pilot:
     """One point of the usual kind, long enough to be sure of the plateau and of how R varies on it:
     it remembers as long as it relaxes, twice the e-fold of theory (Ornstein and Uhlenbeck)."""
     recorder, number = Recorder(), experiment["particles"]
-    e_fold = 1.0 / max(rate_of(scene), 1.0 / PLATEAU[1])
+    e_fold = 1.0 / max(cooling.rate_of(scene), 1.0 / PLATEAU[1])
     plateau = min(max(E_FOLDS * e_fold, PLATEAU[0]), PLATEAU[1])
     tried = experiment | {"schedule": experiment["schedule"] | COOLING | {"plateau": plateau}}
     found = cooling.run(scene, tried, SEED, recorder)

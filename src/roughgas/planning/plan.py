@@ -5,8 +5,8 @@ from collections.abc import Mapping
 from statistics import NormalDist
 from typing import Any, NamedTuple
 
-from roughgas.planning.pilot import Pilot, rate_of
-from roughgas.protocols.cooling import TRANSIENT, transient_length
+from roughgas.planning.pilot import Pilot
+from roughgas.protocols.cooling import TRANSIENT, rate_of, transient_length
 from roughgas.scene import Scene, build
 from roughgas.theory import collisions_to_relax, cooling_ratio, lun_ratio
 

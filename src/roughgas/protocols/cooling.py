@@ -58,9 +58,14 @@ def length(scene: Scene, schedule: Mapping[str, Any]) -> float:
 
 def transient_length(scene: Scene, relaxation_times: float) -> float:
     """Collisions per particle that R needs to settle, by the rate equations."""
-    q = scene.effects.spin.inertia
-    rate = float(relaxation_rate(scene.restitution, scene.roughness, len(scene.box), q))
+    rate = rate_of(scene)
     return min(max(relaxation_times / rate if rate > 0.0 else math.inf, TRANSIENT[0]), TRANSIENT[1])
+
+
+def rate_of(scene: Scene) -> float:
+    """The rate at which R relaxes, by the rate equations, per collision per particle."""
+    q = scene.effects.spin.inertia
+    return float(relaxation_rate(scene.restitution, scene.roughness, len(scene.box), q))
 
 
 def _cool(state, scene, schedule, number, samples, recorder):
