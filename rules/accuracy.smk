@@ -3,6 +3,7 @@
 from roughgas import accuracy as studies
 
 TASK = "results/{scale}/accuracy/{study}/{task}.nc"
+SHOWN = {"accuracy": studies.PANELS, "coverage": ("coverage",)}  # the studies in each figure
 
 
 def settings_of_study(wildcards):
@@ -12,17 +13,13 @@ def settings_of_study(wildcards):
     return roughgas.config.as_text(found)
 
 
-def tasks(*studies):
-    """An input function: the files of all tasks of these studies."""
-
-    def files(wildcards):
-        return [
-            TASK.format(scale=wildcards.scale, study=name, task=task)
-            for name in studies
-            for task in tasks_of_study(name, wildcards.scale)
-        ]
-
-    return files
+def tasks_of_figure(wildcards):
+    """The files of all tasks of the studies that a figure shows."""
+    return [
+        TASK.format(scale=wildcards.scale, study=name, task=task)
+        for name in SHOWN[wildcards.study_figure]
+        for task in tasks_of_study(name, wildcards.scale)
+    ]
 
 
 def tasks_of_study(name, scale):
@@ -65,34 +62,18 @@ rule study:
         " --settings {params.settings:q} --output {output} > {log} 2>&1"
 
 
-rule work_precision:
+rule combined_studies:
     input:
         sources("accuracy"),
-        tasks=tasks(*studies.PANELS),
+        tasks=tasks_of_figure,
     output:
-        "results/{scale}/accuracy.nc",
+        "results/{scale}/{study_figure}.nc",
     log:
-        "logs/{scale}/accuracy.log",
+        "logs/{scale}/{study_figure}.log",
     benchmark:
-        "logs/{scale}/accuracy.tsv"
+        "logs/{scale}/{study_figure}.tsv"
     message:
-        "combine the studies of accuracy"
-    shell:
-        "roughgas combine {input.tasks} --output {output} > {log} 2>&1"
-
-
-rule coverage_of_intervals:
-    input:
-        sources("accuracy"),
-        tasks=tasks("coverage"),
-    output:
-        "results/{scale}/coverage.nc",
-    log:
-        "logs/{scale}/coverage.log",
-    benchmark:
-        "logs/{scale}/coverage.tsv"
-    message:
-        "combine the study of coverage"
+        "combine the studies of {wildcards.study_figure}"
     shell:
         "roughgas combine {input.tasks} --output {output} > {log} 2>&1"
 

@@ -112,9 +112,9 @@ def test_a_study_is_a_job_for_each_of_its_tasks(project):
         for name in accuracy.STUDIES
     }
     drawn = {"study_figure": 1, "study_table": 1}
-    expected = {"study": tasks.pop("coverage"), "coverage_of_intervals": 1, "coverage": 1}
+    expected = {"study": tasks.pop("coverage"), "combined_studies": 1, "coverage": 1}
     assert project.planned("coverage") == expected | drawn
-    expected = {"study": sum(tasks.values()), "work_precision": 1, "accuracy": 1}
+    expected = {"study": sum(tasks.values()), "combined_studies": 1, "accuracy": 1}
     assert project.planned("accuracy") == expected | drawn
 
 
