@@ -193,7 +193,7 @@ MISTAKES = [
     (
         "experiments.cooling.effects.gravty",
         {"acceleration": 1},
-        "effects: key = 'gravty': must be one of contact_time, floor, gravity, shear, spin, walls",
+        "effects: key = 'gravty': must be one of contact_time, floor, friction, gravity, ",
     ),
     (
         "experiments.vibrated.effects.floor.height",

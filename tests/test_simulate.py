@@ -35,8 +35,7 @@ def test_what_a_point_holds(name):
         assert np.isfinite(point.variables[key]), key
     assert 0.0 < point.variables["R"] < 0.5
     assert point.variables["collisions"] > 100
-    assert np.isnan(point.variables["contact_time"])
-    assert point.variables["contact_time_fraction"] == 0.0
+    assert not {"contact_time", "contact_time_fraction"} & set(point.variables)
     assert ("R_unsubtracted" in point.variables) == (name == "sheared")
     assert ("R_replica" in point.variables) == (name == "gas")
     assert "time" in point.variables or "collisions_per_particle" in point.variables

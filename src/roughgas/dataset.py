@@ -47,6 +47,7 @@ VARIABLES = {
     "R_ci95_trusted": Variable("1 where R_ci95 holds the truth as often as it says", dtype="i1"),
     "R_ratio_of_means": Variable("share of rotation in the energy, from the mean energies"),
     "E_trans": Variable("translational energy per degree of freedom", ENERGY),
+    "E_trans_stderr": Variable("standard error of E_trans within this file", ENERGY, over_seeds=""),
     "E_rot": Variable("rotational energy per degree of freedom", ENERGY),
     "collisions": Variable("collisions simulated", dtype="i8", over_seeds="sum"),
     "kernel_seconds": Variable("CPU time spent in the kernel", "s", over_seeds="sum"),
@@ -58,7 +59,7 @@ VARIABLES = {
     "planned_stderr": Variable("standard error of R expected from these"),
     "planned_collisions": Variable("collisions expected in all of them"),
     "planned_seconds": Variable("CPU time of the kernel expected in all of them", "s"),
-    "contact_time": Variable("contact time t_c of the contact-time model, NaN without it", TIME),
+    "contact_time": Variable("contact time t_c of the contact-time model", TIME),
     "contact_time_fraction": Variable("share of contacts changed by the contact-time model"),
     "R_unsubtracted": Variable("R with the mean flow and the mean spin left in"),
     "E_trans_unsubtracted": Variable("E_trans with the mean flow left in", ENERGY),
@@ -88,28 +89,10 @@ VARIABLES = {
     "E_rot_series": _series("rotational energy per degree of freedom", ENERGY),
 }
 CLOCKS = ("time", "collisions_per_particle")
-REQUIRED = (
-    "R",
-    "R_stderr",
-    "R_dof",
-    "R_ci95",
-    "R_ratio_of_means",
-    "E_trans",
-    "E_rot",
-    "collisions",
-    "kernel_seconds",
-    "equilibrated",
-)
-REQUIRED_ATTRIBUTES = (
-    "experiment",
-    "scale",
-    "r",
-    "beta",
-    "seed",
-    "dimension",
-    "inertia",
-    "particles",
-)
+REQUIRED = ("E_trans", "collisions", "kernel_seconds", "equilibrated")
+REQUIRED_OF_SPIN = ("R", "R_stderr", "R_dof", "R_ci95", "R_ratio_of_means", "E_rot")
+"""What a point holds besides, where particles spin: where it has the attribute `inertia`."""
+REQUIRED_ATTRIBUTES = ("experiment", "scale", "r", "beta", "seed", "dimension", "particles")
 WALL_CLOCK = ("kernel_seconds", "planned_seconds")
 """The only variables that differ when the same point is run again."""
 
@@ -123,7 +106,8 @@ COMMON_ATTRIBUTES = {
 class Point(NamedTuple):
     """One (experiment, r, beta, seed): variables by the names in VARIABLES, and global attributes.
 
-    Attributes are strings, ints or floats; REQUIRED and REQUIRED_ATTRIBUTES must be there.
+    Attributes are strings, ints or floats; REQUIRED and REQUIRED_ATTRIBUTES must be there, where
+    particles spin REQUIRED_OF_SPIN, too.
     """
 
     variables: dict[str, Any]
@@ -189,7 +173,8 @@ def _write_variable(file: "netCDF4.Dataset", name: str, variables: dict[str, Any
 def _dimensions(point: Point) -> dict[str, int]:
     """Length of each dimension; raises ValueError where `point` is not what VARIABLES says."""
     _refuse("unknown variables", set(point.variables) - set(VARIABLES))
-    _refuse("missing variables", set(REQUIRED) - set(point.variables))
+    required = REQUIRED + (REQUIRED_OF_SPIN if "inertia" in point.attributes else ())
+    _refuse("missing variables", set(required) - set(point.variables))
     _refuse("missing attributes", set(REQUIRED_ATTRIBUTES) - set(point.attributes))
     lengths: dict[str, int] = {}
     for name, values in point.variables.items():

@@ -45,7 +45,7 @@ def initial_state(
         height = position[:, 1] - scene.middle
         velocity[:, 0] += shear.velocity / (2.0 * scene.middle) * height
     spin = np.zeros((number, 2 * position.shape[1] - 3))
-    return new_state(scene, position, velocity, spin, precision)
+    return new_state(scene, position, velocity, spin, precision, rng)
 
 
 def lattice(scene: Scene, experiment: Mapping[str, Any]) -> np.ndarray:

@@ -7,9 +7,10 @@ import math
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
-from roughgas.effects import Effects
+from roughgas.effects import KINDS, Effects
 from roughgas.effects.settings import Surroundings
 from roughgas.errors import InputError
+from roughgas.kernel import hooks
 
 DIAMETER = 2.0
 # Of a periodic box, in a: below two diameters a particle could meet two images of another, and a
@@ -38,15 +39,18 @@ def build(experiment: Mapping[str, Any], r: float, beta: float) -> Scene:
     _check_range("restitution r", r, 0.0, 1.0)
     _check_range("roughness beta", beta, -1.0, 1.0)
     lengths = tuple(None if side == "open" else float(side) for side in experiment["box"])
-    effects = _effects(experiment["effects"], Surroundings(lengths, float(r), float(beta)))
-    _check_composition(lengths, effects)
-    box = lengths if effects.walls is None else (None, *lengths[1:])
+    chosen = experiment["effects"]
+    effects = _effects(chosen, Surroundings(lengths, float(r), float(beta), chosen))
+    if effects.spin is None and beta != -1.0:
+        raise InputError("roughness beta", beta, "be -1 where particles do not spin")
+    closed = is_closed(effects)
+    _check_composition(lengths, effects, closed)
     return Scene(
-        box=box,
+        box=(None, *lengths[1:]) if closed else lengths,
         restitution=float(r),
         roughness=float(beta),
         effects=effects,
-        extent=_extent(lengths, effects.walls),
+        extent=_extent(lengths, closed),
         middle=0.0 if lengths[1] is None else lengths[1] / 2.0,
     )
 
@@ -55,9 +59,14 @@ def check(experiment: Mapping[str, Any]) -> None:
     """Raise InputError where no point of the experiment could be simulated."""
     from roughgas.initial import lattice
 
-    scene = build(experiment, 0.5, 0.0)
+    scene = build(experiment, 0.5, 0.0 if "spin" in experiment["effects"] else -1.0)
     check_company(scene, experiment)
     lattice(scene, experiment)
+    if "target_stderr" in experiment and scene.effects.spin is None:
+        value = experiment["target_stderr"]
+        raise InputError("target_stderr", value, "not be given where nothing spins: R is 0")
+    if "schedule" in experiment:
+        _check_schedule(scene.effects, experiment["schedule"]["kind"])
 
 
 def check_company(scene: Scene, experiment: Mapping[str, Any]) -> None:
@@ -66,18 +75,35 @@ def check_company(scene: Scene, experiment: Mapping[str, Any]) -> None:
         raise InputError("particles", 1, "be at least 2 where there is no floor to meet")
 
 
+def is_closed(effects: Effects) -> bool:
+    """Whether walls close the first axis of the box."""
+    return bool(hooks.present(effects, "CLOSES"))
+
+
 def _effects(settings, around):
-    known = {f: t.__args__[0] for f, t in Effects.__annotations__.items()}
     for name in settings:
-        if name not in known:
-            raise InputError("effect", name, f"be one of {', '.join(known)}")
+        if name not in KINDS:
+            raise InputError("effect", name, f"be one of {', '.join(KINDS)}")
     return Effects(
-        **{name: known[name].from_settings(chosen, around) for name, chosen in settings.items()}
+        **{
+            name: kind.from_settings(settings[name], around)
+            for name, kind in KINDS.items()
+            if name in settings
+        }
     )
 
 
-def _extent(lengths, walls):
-    across = lengths[0] if walls is None else max(lengths[0], FAR_APART)
+def _check_schedule(effects, kind):
+    drives = [effects._fields[part.place] for part in hooks.present(effects, "DRIVES")]
+    if kind == "cooling" and drives:
+        legal = f"be steady where there is a drive: {', '.join(drives)}"
+        raise InputError("schedule.kind", kind, legal)
+    if kind == "steady" and not drives:
+        raise InputError("schedule.kind", kind, "be cooling where no effect drives the gas")
+
+
+def _extent(lengths, closed):
+    across = max(lengths[0], FAR_APART) if closed else lengths[0]
     return min(length for length in (across, *lengths[1:]) if length is not None)
 
 
@@ -86,17 +112,21 @@ def _check_range(key, value, low, high):
         raise InputError(key, value, f"lie in [{low:g}, {high:g}]")
 
 
-def _check_composition(lengths, effects):
+def _check_composition(lengths, effects, closed):
     open_axes = [k for k, length in enumerate(lengths) if length is None]
     if open_axes not in ([], [len(lengths) - 1]):
         raise InputError("box", list(lengths), "be open along its last axis only")
     for k, length in enumerate(lengths):
-        least = NARROWEST_CHANNEL if k == 0 and effects.walls is not None else NARROWEST
+        least = NARROWEST_CHANNEL if k == 0 and closed else NARROWEST
         if length is not None and not least <= length < math.inf:
             raise InputError(f"box[{k}]", length, f"be a number of at least {least:g}")
-    if (effects.gravity is None) != (effects.floor is None):
-        raise InputError("effects", "gravity or floor alone", "have both gravity and floor or none")
+    if effects.gravity is None and effects.floor is not None:
+        legal = "come with gravity, without which nothing comes back to it"
+        raise InputError("effects.floor", "without gravity", legal)
+    if effects.gravity is not None and effects.floor is None:
+        legal = "come with a floor, without which all falls for ever"
+        raise InputError("effects.gravity", "without floor", legal)
     if (effects.gravity is None) == bool(open_axes):
         raise InputError("box", list(lengths), "be open above exactly where there is gravity")
-    if effects.walls is not None and effects.shear is not None:
+    if closed and effects.shear is not None:
         raise InputError("effects", "walls and shear", "not close the axis that is sheared along")

@@ -35,27 +35,31 @@ def run_point(
     recorder = Recorder(progress)
     protocol = PROTOCOLS[experiment["schedule"]["kind"]]
     measured = protocol.run(scene, experiment, seed, recorder)
-    model = scene.effects.contact_time
     return Point(
         variables=measured
-        | {
-            "collisions": recorder.collisions,
-            "kernel_seconds": recorder.seconds,
-            "contact_time": np.nan if model is None else model.duration,
-            "contact_time_fraction": recorder.touched / max(1, recorder.collisions),
-        },
+        | {"collisions": recorder.collisions, "kernel_seconds": recorder.seconds}
+        | _contact_time(scene, recorder),
         attributes={
             "r": float(r),
             "beta": float(beta),
             "seed": int(seed),
             "particles": experiment["particles"],
             "dimension": len(scene.box),
-            "inertia": scene.effects.spin.inertia,
+            **({} if scene.effects.spin is None else {"inertia": scene.effects.spin.inertia}),
             "roughgas_version": __version__,
             "numpy_version": np.__version__,
             "kernel_source_hash": source_hash(),
         },
     )
+
+
+def _contact_time(scene, recorder):
+    """What is known of the contact-time model, where there is one."""
+    model = scene.effects.contact_time
+    if model is None:
+        return {}
+    fraction = recorder.touched / max(1, recorder.collisions)
+    return {"contact_time": model.duration, "contact_time_fraction": fraction}
 
 
 def effort(experiment: Mapping[str, Any], r: float, beta: float) -> float:
@@ -76,7 +80,7 @@ def compile_kernels(experiments: Iterable[Mapping[str, Any]]) -> int:
     kernels = {}
     for experiment in experiments:
         for r in experiment["sweep"]["r"]:
-            scene = build(experiment, float(r), 0.0)
+            scene = build(experiment, float(r), -1.0)
             kernels.setdefault(_composition(scene), (scene, experiment))
     for scene, experiment in kernels.values():
         state = initial_state(scene, experiment, np.random.default_rng(0))

@@ -6,8 +6,8 @@ from roughgas.kernel.record import columns, record
 
 
 def test_a_scene_without_spin_has_no_spins():
-    scene, state = begin(settings("smooth", 16, [20, 20]), 0.9, 0.0, 1)
-    assert state.spin is None and state.last_contact is None
+    scene, state = begin(settings("smooth", 16, [20, 20]), 0.9, -1.0, 1)
+    assert state.spin is None and state.moments.contact_time is None
     rows = run(state, scene, 5, collisions=10)
     assert not {"ww", "w"} & set(rows)
     assert rows["collisions"][-1] == 50
@@ -17,14 +17,14 @@ def test_a_scene_without_spin_has_no_spins():
 
 
 def test_a_scene_without_contact_time_remembers_no_contacts():
-    assert begin(settings("gas", 16, [20, 20]), 0.9, 0.0)[1].last_contact is None
+    assert begin(settings("gas", 16, [20, 20]), 0.9, 0.0)[1].moments.contact_time is None
     _, state = begin(settings("spheres", 16), 0.9, 0.0)
-    assert len(state.last_contact) == 16
+    assert len(state.moments.contact_time) == 16
 
 
 def test_each_composition_has_machine_code_of_its_own():
     for name in ("gas", "smooth"):
-        scene, state = begin(settings(name, 16, [20, 20]), 0.9, 0.0)
+        scene, state = begin(settings(name, 16, [20, 20]), 0.9, -1.0)
         run(state, scene, 0)
     scenes = {str(signature[1]) for signature in record.signatures}
     without, having = (

@@ -45,11 +45,14 @@ def exactly(state, scene, world):
         x.append(plus(position, times(plus(velocity, v[-1]), elapsed / 2)))
         spin = () if state.spin is None else _decimals(state.spin[i])
         w.append((ZERO, ZERO, ZERO, *spin)[-3:])
-    last = state.last_contact
+    last = state.moments.contact_time
     last = None if last is None else [base + time for time in _decimals(last[order])]
-    shear = type(scene.effects)._fields.index("shear")
-    (phase,) = _decimals(state.phase[[shear]])
-    slide = phase - Decimal(world.shear) * base if world.shear else ZERO
+    slide = ZERO
+    if world.shear:
+        place = scene.effects.index(scene.effects.shear)
+        rank = sum(effect is not None for effect in scene.effects[:place])
+        (phase,) = _decimals(state.phase[[rank]])
+        slide = phase - Decimal(world.shear) * base
     return Exact(world, base + now, x, v, w, last, slide)
 
 

@@ -13,7 +13,7 @@ CASES = {
     # experiment, r, beta
     "gas": (settings("gas", 8, [12, 11]), 0.98, 0.2),
     "smallest box": (settings("gas", 3, [4.01, 8.0]), 0.99, 0.5),
-    "smooth gas": (settings("smooth", 8, [12, 11]), 0.98, 0.0),
+    "smooth gas": (settings("smooth", 8, [12, 11]), 0.98, -1.0),
     "sheared": (settings("sheared", 8, [12, 11], shear={"velocity": 3.7}), 0.9, 0.2),
     "fast shear": (settings("sheared", 6, [9, 11], shear={"velocity": 50.0}), 0.9, 0.2),
     "bed": (settings("bed", 8, [9, "open"]), 0.8, 0.2),
@@ -61,7 +61,7 @@ def energy(exact):
 ELASTIC = [
     (settings("gas", 8, [12, 11]), 1.0, 1.0),
     (settings("gas", 8, [12, 11]), 1.0, -1.0),
-    (settings("smooth", 8, [12, 11]), 1.0, 0.0),
+    (settings("smooth", 8, [12, 11]), 1.0, -1.0),
     (settings("spheres", 8, [6, 6.5, 7]), 1.0, 1.0),
 ]
 

@@ -11,7 +11,7 @@ SCENES = {
     # experiment, r, beta, seed
     "gas": (settings("gas", 8, [12, 11]), 1.0, 1.0, 1),
     "cooling gas": (settings("gas", 8, [12, 11]), 0.9, 0.2, 2),
-    "smooth gas": (settings("smooth", 8, [12, 11]), 1.0, 0.0, 3),
+    "smooth gas": (settings("smooth", 8, [12, 11]), 1.0, -1.0, 3),
     "sheared gas": (settings("sheared", 8, [12, 11], shear={"velocity": 3.7}), 0.9, 0.2, 4),
     "bed": (settings("bed", 8, [9, "open"], floor={"amplitude": 2.0}), 0.9, 0.2, 5),
     "bed between walls, contact time": (

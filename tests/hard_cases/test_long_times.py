@@ -70,8 +70,8 @@ def test_a_billion_collisions_wear_nothing_out(margins):
     collisions = margins.size(quick=2_000_000, full=1_000_000_000)
     # the quickest of all: a few smooth elastic disks
     experiment = settings("smooth", 16, [14, 14])
-    scene, world = scene_of(experiment, 1.0, 0.0)
-    _, state = begin(experiment, 1.0, 0.0)
+    scene, world = scene_of(experiment, 1.0, -1.0)
+    _, state = begin(experiment, 1.0, -1.0)
     beside = Beside(state, scene, world)
     before = _agreement(beside)
     energy = _energies(state, scene, collisions)

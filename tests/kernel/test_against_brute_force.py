@@ -18,7 +18,7 @@ CASES = {
     "smallest box": (settings("gas", 3, [4.01, 8.0]), 0.99, 0.5, 2),
     "dense gas": (settings("gas", 12, [8.5, 8.5]), 0.98, -0.6, 3),
     "dilute gas": (settings("gas", 16, [90, 110]), 1.0, 1.0, 4),
-    "smooth gas": (settings("smooth", 8, [12, 12]), 0.98, 0.0, 5),
+    "smooth gas": (settings("smooth", 8, [12, 12]), 0.98, -1.0, 5),
     "sheared": (settings("sheared", 8, [12, 12]), 0.9, 0.2, 6),
     "fast shear": (settings("sheared", 6, [9, 11], shear={"velocity": 50.0}), 0.9, 0.2, 7),
     "slow gas, fast shear": (settings("sheared", 5, [9, 7], shear={"velocity": 2e3}), 0.5, 1.0, 8),

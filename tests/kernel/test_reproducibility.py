@@ -20,7 +20,7 @@ import json
 from brute_force import begin, run, settings
 from roughgas.kernel import cache
 
-scene, state = begin(settings("smooth", 20, [20, 20]), 0.9, 0.0, 11)
+scene, state = begin(settings("smooth", 20, [20, 20]), 0.9, -1.0, 11)
 rows = run(state, scene, 10, collisions=100)
 numbers = {name: [x.hex() for x in column] for name, column in rows.items()}
 print(json.dumps({"hash": cache.source_hash(), "rows": numbers}))
@@ -73,7 +73,7 @@ def test_the_same_bits_without_a_cache_and_others_after_an_edit(tmp_path):
     assert "(1.0 + material[0])" in text
     rule.write_text(text.replace("(1.0 + material[0])", "(1.01 + material[0])"), encoding="utf-8")
 
-    scene, state = begin(settings("smooth", 20, [20, 20]), 0.9, 0.0, 11)
+    scene, state = begin(settings("smooth", 20, [20, 20]), 0.9, -1.0, 11)
     rows = run(state, scene, 10, collisions=100)  # now the session's cache holds it
     here = {name: [x.hex() for x in column] for name, column in rows.items()}
     session = os.environ.get("ROUGHGAS_CACHE_DIR") or Path(_cache_folder()).parent

@@ -150,7 +150,7 @@ def _heat(state):
     factor = math.sqrt(velocity.size / float(np.sum(velocity**2)))
     velocity *= factor
     state.spin[:] *= factor
-    state.last_contact[:] /= factor
+    state.moments.contact_time[:] /= factor
     state.counts[EXPONENT] = 0
     state.counts[STARTED] = 0
 

@@ -55,10 +55,13 @@ def _validator(part: str | None) -> "Draft202012Validator":
     from jsonschema import Draft202012Validator, FormatChecker
     from jsonschema.validators import extend
 
+    from roughgas import effects
+
     schema, studies = (
         yaml.safe_load(file.read_text(encoding="utf-8")) for file in (SCHEMA, STUDIES)
     )
     schema["$defs"] |= studies["$defs"]
+    schema["$defs"] |= {"effects": effects.schema(), "effects_in_full": effects.required()}
     if part is not None:
         schema = {"$ref": f"#/$defs/{part}", "$defs": schema["$defs"]}
     formats = FormatChecker(formats=())

@@ -3,13 +3,16 @@
 The order is that in which effects act where several have a say (see kernel/hooks.py).
 """
 
-from typing import NamedTuple
+import sys
+from typing import Any, NamedTuple
 
 from roughgas.effects.contact_time import ContactTime
 from roughgas.effects.floor import Floor
+from roughgas.effects.friction import Friction
 from roughgas.effects.gravity import Gravity
 from roughgas.effects.shear import Shear
 from roughgas.effects.spin import Spin
+from roughgas.effects.thermostat import Thermostat
 from roughgas.effects.walls import Walls
 
 
@@ -21,4 +24,50 @@ class Effects(NamedTuple):
     floor: Floor | None = None
     walls: Walls | None = None
     shear: Shear | None = None
+    thermostat: Thermostat | None = None
+    friction: Friction | None = None
     contact_time: ContactTime | None = None
+
+
+def inertia(effects: Effects) -> float | None:
+    """q of the particles, None where they do not spin."""
+    return None if effects.spin is None else effects.spin.inertia
+
+
+KINDS = {name: kind.__args__[0] for name, kind in Effects.__annotations__.items()}
+"""The effects by the names that they have in settings."""
+
+
+def parameters(name: str) -> dict[str, Any]:
+    """The parameters of an effect by name: see roughgas.effects.settings."""
+    return sys.modules[KINDS[name].__module__].SETTINGS
+
+
+def schema() -> dict[str, Any]:
+    """What `effects` may hold in settings, as a JSON schema; what they do without is null."""
+    return {
+        "description": "What acts in this experiment; an effect that is not listed costs nothing.",
+        "type": "object",
+        "additionalProperties": False,
+        "properties": {
+            name: {
+                "description": kind.__doc__,
+                "type": ["object", "null"],
+                "additionalProperties": False,
+                "properties": {key: one.schema() for key, one in parameters(name).items()},
+            }
+            for name, kind in KINDS.items()
+        },
+    }
+
+
+def required() -> dict[str, Any]:
+    """What must be there of each effect, once all settings are merged, as a JSON schema."""
+    return {
+        "properties": {
+            name: {
+                "required": [key for key, one in parameters(name).items() if one.default is None]
+            }
+            for name in KINDS
+        }
+    }

@@ -8,29 +8,48 @@ would drive the spins towards equipartition.
 import math
 from typing import NamedTuple
 
-from roughgas.effects.settings import number
+import numpy as np
+
+from roughgas.effects.settings import Number, read
 from roughgas.kernel.jit import jit
 from roughgas.kernel.state import EXPONENT
 
+SETTINGS = {
+    "duration": Number("Contact time t_c, in T."),
+    "below_r": Number(
+        "The model acts at points whose r is smaller than this, at others not at all; if not given "
+        "it acts everywhere.",
+        "[0, 1]",
+        default=math.inf,
+    ),
+}
+
 
 class ContactTime(NamedTuple):
-    """Contacts in quick succession are elastic along the normal."""
+    """Contacts in quick succession are elastic, so that the gas cannot collapse."""
 
-    duration: float  # t_c > 0, in T
+    duration: float
 
     @classmethod
     def from_settings(cls, settings, around):
         """The model, or None where the particles are too elastic to need it."""
-        duration = number(settings, "contact_time", "duration")
-        if "below_r" in settings:
-            limit = number(settings, "contact_time", "below_r", "[0, 1]")
-            return cls(duration) if around.restitution < limit else None
-        return cls(duration)
+        chosen = read(SETTINGS, "contact_time", settings, around)
+        return cls(chosen["duration"]) if around.restitution < chosen["below_r"] else None
+
+
+def moment(model, number, rng):
+    """When each particle had its previous contact."""
+    return np.full(number, -math.inf)
 
 
 @jit
-def restitution(model, index, r, state, i, j, time):
-    previous = state.last_contact[i]
+def restitution(model, index, r, state, i, j, time, speed):
+    previous = state.moments.contact_time[i]
     if j >= 0:
-        previous = max(previous, state.last_contact[j])
+        previous = max(previous, state.moments.contact_time[j])
     return 1.0 if time - previous < math.ldexp(model.duration, state.counts[EXPONENT]) else r
+
+
+@jit
+def contact_made(model, index, none, state, i, time):
+    state.moments.contact_time[i] = time

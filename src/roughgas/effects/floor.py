@@ -7,7 +7,7 @@ a root of a quadratic; at the end of a stroke it is back at zero without having 
 import math
 from typing import NamedTuple
 
-from roughgas.effects.settings import material, number
+from roughgas.effects.settings import MATERIAL, Number, read
 from roughgas.kernel import hooks
 from roughgas.kernel.contact import collide_with_wall
 from roughgas.kernel.jit import jit
@@ -17,23 +17,27 @@ from roughgas.kernel.vectors import along_last
 LEAST_DEPARTURE = 1e-3
 
 
+SETTINGS = {
+    "amplitude": Number("Height of a stroke, in a; 0 is a floor at rest.", "[0, inf)"),
+    "period": Number("Time between strokes, in T."),
+    **MATERIAL,
+}
+DRIVES = True
+
+
 class Floor(NamedTuple):
     """A floor under a gas with gravity."""
 
-    amplitude: float  # height of a stroke, in a; a floor at rest has 0
-    period: float  # T
+    amplitude: float
+    period: float
     restitution: float
     roughness: float
     least_departure: float  # a particle leaves at no less than this speed, relative to the floor
 
     @classmethod
     def from_settings(cls, settings, around):
-        return cls(
-            number(settings, "floor", "amplitude", "[0, inf)"),
-            number(settings, "floor", "period"),
-            *material(settings, "floor", around),
-            LEAST_DEPARTURE,
-        )
+        """The effect; raises InputError for illegal parameters."""
+        return cls(**read(SETTINGS, "floor", settings, around), least_departure=LEAST_DEPARTURE)
 
 
 @jit
@@ -98,4 +102,6 @@ def resolve(floor, index, what, state, scene, i, time):
     normal = along_last(scene.box, 1.0)
     moving = along_last(scene.box, floor.amplitude / floor.period)
     material = (floor.restitution, floor.roughness)
-    collide_with_wall(state, scene, index, i, time, material, normal, moving, floor.least_departure)
+    return collide_with_wall(
+        state, scene, index, i, time, material, normal, moving, floor.least_departure
+    )

@@ -2,18 +2,21 @@
 
 from typing import NamedTuple
 
-from roughgas.effects.settings import number
+from roughgas.effects.settings import Number, read
 from roughgas.kernel.jit import jit
+
+SETTINGS = {"acceleration": Number("g, in a/T^2.")}
 
 
 class Gravity(NamedTuple):
-    """Gravity, pointing down the last axis."""
+    """Uniform gravity along the last axis, downwards."""
 
-    acceleration: float  # g > 0, in a/T^2
+    acceleration: float
 
     @classmethod
     def from_settings(cls, settings, around):
-        return cls(number(settings, "gravity", "acceleration"))
+        """The effect; raises InputError for illegal parameters."""
+        return cls(**read(SETTINGS, "gravity", settings, around))
 
 
 @jit

@@ -1,4 +1,8 @@
-"""Reading an effect's parameters from settings: numbers in their legal range, or an InputError."""
+"""The parameters of effects: what each means, which values are legal, and how they are read.
+
+An effect's file names its parameters in SETTINGS; what config.yaml may hold, and what error
+messages quote, is made from that.
+"""
 
 from collections.abc import Mapping
 from typing import Any, NamedTuple
@@ -12,30 +16,110 @@ class Surroundings(NamedTuple):
     box: tuple[float | None, ...]  # lengths in a; None is open
     restitution: float  # of the particles
     roughness: float
+    effects: Mapping[str, Any]  # the settings of all effects, by name
 
 
-def number(settings: Mapping[str, Any], effect: str, name: str, interval: str = "(0, inf)"):
-    """Parameter `name` of an effect, which must lie in the interval."""
-    value = settings.get(name)
-    low, high = (float(end) for end in interval[1:-1].split(","))
-    legal = (
-        isinstance(value, int | float)
-        and not isinstance(value, bool)
-        and (low < value or (interval[0] == "[" and value == low))
-        and (value < high or (interval[-1] == "]" and value == high))
-    )
-    if not legal:
-        raise InputError(f"effects.{effect}.{name}", value, f"be a number in {interval}")
-    return float(value)
+class Number(NamedTuple):
+    """A parameter that is a number in an interval; it must be given unless it has a default."""
 
+    description: str
+    interval: str = "(0, inf)"
+    default: float | None = None
 
-def material(settings: Mapping[str, Any], effect: str, around: Surroundings):
-    """(restitution, roughness) of a boundary; `particles` stands for the particles' own."""
-    r, beta = (
-        own if settings.get(name) == "particles" else number(settings, effect, name, interval)
-        for name, own, interval in (
-            ("restitution", around.restitution, "[0, 1]"),
-            ("roughness", around.roughness, "[-1, 1]"),
+    def read(self, key: str, value: Any, around: Surroundings) -> float:
+        """The number as a float; raises InputError where it is none, or not in the interval."""
+        if value is None and self.default is not None:
+            return self.default
+        low, high = self._ends()
+        legal = (
+            isinstance(value, int | float)
+            and not isinstance(value, bool)
+            and (low < value or (self.interval[0] == "[" and value == low))
+            and (value < high or (self.interval[-1] == "]" and value == high))
         )
-    )
-    return r, beta
+        if not legal:
+            raise InputError(key, value, f"be a number in {self.interval}")
+        return float(value)
+
+    def schema(self) -> dict[str, Any]:
+        """The same as a JSON schema."""
+        low, high = self._ends()
+        found = {"description": self.description, "type": "number"}
+        found["minimum" if self.interval[0] == "[" else "exclusiveMinimum"] = _plain(low)
+        if high < float("inf"):
+            found["maximum" if self.interval[-1] == "]" else "exclusiveMaximum"] = _plain(high)
+        return found
+
+    def _ends(self):
+        low, high = (float(end) for end in self.interval[1:-1].split(","))
+        return low, high
+
+
+class Word(NamedTuple):
+    """A parameter that is one of some words; the first is what it is if not given."""
+
+    description: str
+    words: tuple[str, ...]
+
+    @property
+    def default(self) -> str:
+        """What it is if not given."""
+        return self.words[0]
+
+    def read(self, key: str, value: Any, around: Surroundings) -> str:
+        """The word; raises InputError for any other one."""
+        value = self.default if value is None else value
+        if value not in self.words:
+            raise InputError(key, value, f"be one of {', '.join(self.words)}")
+        return value
+
+    def schema(self) -> dict[str, Any]:
+        """The same as a JSON schema."""
+        return {"description": self.description, "enum": list(self.words)}
+
+
+class OfParticles(NamedTuple):
+    """A number that is the particles' own where it is given as `particles`."""
+
+    number: Number
+    own: str  # the name of theirs in Surroundings
+    default = None
+
+    def read(self, key: str, value: Any, around: Surroundings) -> float:
+        """The number; raises InputError where it is illegal, or a roughness that nothing feels."""
+        found = getattr(around, self.own) if value == "particles" else None
+        found = self.number.read(key, value, around) if found is None else found
+        if self.own == "roughness" and "spin" not in around.effects and found != -1.0:
+            raise InputError(key, value, "be -1 where particles do not spin")
+        return found
+
+    def schema(self) -> dict[str, Any]:
+        """The same as a JSON schema."""
+        number = self.number.schema()
+        description = f"{number.pop('description')}; `particles` takes the particles' own."
+        return {"description": description, "anyOf": [number, {"const": "particles"}]}
+
+
+MATERIAL = {
+    "restitution": OfParticles(Number("Restitution of contacts with it", "[0, 1]"), "restitution"),
+    "roughness": OfParticles(Number("Roughness of contacts with it", "[-1, 1]"), "roughness"),
+}
+"""The parameters of what particles bounce off."""
+
+
+def read(
+    kinds: Mapping[str, Any], effect: str, settings: Mapping[str, Any], around: Surroundings
+) -> dict[str, Any]:
+    """The values of an effect's parameters; raises InputError for illegal or unknown ones."""
+    for name in settings:
+        if name not in kinds:
+            legal = f"be one of {', '.join(kinds)}" if kinds else "not be given"
+            raise InputError(f"effects.{effect}: key", name, legal)
+    return {
+        name: kind.read(f"effects.{effect}.{name}", settings.get(name), around)
+        for name, kind in kinds.items()
+    }
+
+
+def _plain(number):
+    return int(number) if number == int(number) else number

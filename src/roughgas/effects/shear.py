@@ -9,24 +9,27 @@ it, where the impulses on the two partners are opposite but the velocities at wh
 
 from typing import NamedTuple
 
-from roughgas.effects.settings import number
+from roughgas.effects.settings import Number, read
 from roughgas.errors import InputError
 from roughgas.kernel.jit import jit
 
+SETTINGS = {"velocity": Number("Velocity U of the images above relative to the box, in a/T.")}
+DRIVES = True
+
 
 class Shear(NamedTuple):
-    """Images above the box slide."""
+    """Lees-Edwards boundaries: images along the second axis slide along the first."""
 
-    velocity: float  # U, in a/T
+    velocity: float
     length: float  # of the box along the first axis, in a
 
     @classmethod
     def from_settings(cls, settings, around):
+        """The effect; raises InputError for illegal parameters, and a box not periodic."""
         if None in around.box[:2]:
-            raise InputError(
-                "effects.shear", "given", "come with a box periodic in both directions"
-            )
-        return cls(number(settings, "shear", "velocity"), around.box[0])
+            legal = "come with a box periodic in both directions"
+            raise InputError("effects.shear", "given", legal)
+        return cls(**read(SETTINGS, "shear", settings, around), length=around.box[0])
 
 
 @jit

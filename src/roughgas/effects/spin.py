@@ -2,14 +2,17 @@
 
 from typing import NamedTuple
 
-from roughgas.effects.settings import number
+from roughgas.effects.settings import Number, read
+
+SETTINGS = {"inertia": Number("q = I/(m a^2), 1/2 for disks and 2/5 for spheres.", "(0, 1]")}
 
 
 class Spin(NamedTuple):
-    """Particles that spin."""
+    """Particles spin, which makes their roughness felt."""
 
-    inertia: float  # q = I/(m a^2): 1/2 for disks, 2/5 for spheres
+    inertia: float
 
     @classmethod
     def from_settings(cls, settings, around):
-        return cls(number(settings, "spin", "inertia", "(0, 1]"))
+        """The effect; raises InputError for illegal parameters."""
+        return cls(**read(SETTINGS, "spin", settings, around))

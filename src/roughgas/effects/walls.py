@@ -3,25 +3,28 @@
 import math
 from typing import NamedTuple
 
-from roughgas.effects.settings import material
+from roughgas.effects.settings import MATERIAL, read
 from roughgas.kernel.contact import collide_with_wall
 from roughgas.kernel.flight import whereabouts
 from roughgas.kernel.jit import jit
 from roughgas.kernel.vectors import along_first
 
+SETTINGS = MATERIAL
+CLOSES = True
 LEFT, RIGHT = 0, 1
 
 
 class Walls(NamedTuple):
-    """Walls at 0 and at `width` along the first axis."""
+    """Resting side walls that close the first axis."""
 
-    width: float  # in a
+    width: float  # they are at 0 and at this place, in a
     restitution: float
     roughness: float
 
     @classmethod
     def from_settings(cls, settings, around):
-        return cls(around.box[0], *material(settings, "walls", around))
+        """The effect; raises InputError for illegal parameters."""
+        return cls(around.box[0], **read(SETTINGS, "walls", settings, around))
 
 
 @jit
@@ -41,4 +44,4 @@ def resolve(walls, index, what, state, scene, i, time):
     normal = along_first(scene.box, 1.0 if what == LEFT else -1.0)
     material = (walls.restitution, walls.roughness)
     at_rest = along_first(scene.box, 0.0)
-    collide_with_wall(state, scene, index, i, time, material, normal, at_rest, 0.0)
+    return collide_with_wall(state, scene, index, i, time, material, normal, at_rest, 0.0)

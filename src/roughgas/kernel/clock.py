@@ -3,7 +3,7 @@
 import math
 
 from roughgas.kernel import hooks
-from roughgas.kernel.hooks import either, unless_absent
+from roughgas.kernel.hooks import either, for_each
 from roughgas.kernel.jit import jit
 from roughgas.kernel.state import (
     AT_ONCE,
@@ -59,14 +59,14 @@ def rebase(state, scene):
     clock[INSTANT_END] -= step
     for i in range(len(state.changes)):
         state.trajectory[i, 2 * len(scene.box)] -= step
-        _shift(state.last_contact, i, step)
+        _shift(state.moments, i, step)
     clock[BASE] += step
     hooks.set_phases(scene.effects, state.phase, clock[BASE])
     _survey(state, scene, step)
     return step
 
 
-@unless_absent
+@for_each
 def _shift(times, i, step):
     times[i] -= step
 

@@ -24,6 +24,7 @@ from roughgas.kernel.state import (
     COLLISIONS,
     LAST_FIRST,
     LAST_SECOND,
+    NOBODY,
     SPENT,
     TOUCHED,
     TYPICAL_SPEED,
@@ -56,7 +57,7 @@ def collide(state, scene, i, j, time):
     w_i = spin_of(state.spin, box, i)
     w_j = spin_of(state.spin, box, j)
     effects = scene.effects
-    material = _material(effects, scene.restitution, scene.roughness, state, i, j, time)
+    material = _material(effects, scene.restitution, scene.roughness, state, i, j, time, dot(v, n))
     push, turn = response(effects.spin, effects, material, n, v, spin_sum(w_i, w_j), 0.5)
     least = STICKING * state.clock[TYPICAL_SPEED]
     push = _parted(push, n, v, 0.5, least)
@@ -66,13 +67,13 @@ def collide(state, scene, i, j, time):
     turn_spin(state.spin, i, w_i, turn)
     turn_spin(state.spin, j, w_j, turn)
     # in the frame of the pair, where nothing large cancels
-    account = state.ledger[0, len(effects)]
+    account = state.ledger[0, state.ledger.shape[1] - 1]
     account[0] += dot(push, push) - dot(v, push)
     book_spin(w_i, turn, effects.spin, account)
     book_spin(w_j, turn, effects.spin, account)
     hooks.transfer(effects, None, state, dot(push, subtract(v, between)))
-    _note_contact(state, i, time)
-    _note_contact(state, j, time)
+    _note_contact(state, effects, i, time)
+    _note_contact(state, effects, j, time)
     state.counts[COLLISIONS] += 1
     state.counts[LAST_FIRST] = state.label[i]
     state.counts[LAST_SECOND] = state.label[j]
@@ -90,7 +91,7 @@ def collide_with_wall(state, scene, index, i, time, material, n, wall_velocity, 
     w = spin_of(state.spin, scene.box, i)
     v = subtract(velocity, wall_velocity)
     effects = scene.effects
-    material = _material(effects, material[0], material[1], state, i, -1, time)
+    material = _material(effects, material[0], material[1], state, i, NOBODY, time, dot(v, n))
     push, turn = response(effects.spin, effects, material, n, v, w, 1.0)
     push = _parted(push, n, v, 1.0, least_departure)
     put(state, scene, i, position, subtract(velocity, push), time)
@@ -98,8 +99,9 @@ def collide_with_wall(state, scene, index, i, time, material, n, wall_velocity, 
     account = state.ledger[0, index]
     account[0] += 0.5 * dot(push, push) - dot(velocity, push)
     book_spin(w, turn, effects.spin, account)
-    _note_contact(state, i, time)
+    _note_contact(state, effects, i, time)
     state.counts[BOUNDARY_HITS] += 1
+    return NOBODY
 
 
 @jit
@@ -159,19 +161,14 @@ def _parted(push, n, v, share, least):
 
 
 @jit
-def _material(effects, r, beta, state, i, j, time):
-    effective = hooks.restitution(effects, r, state, i, j, time)
+def _material(effects, r, beta, state, i, j, time, speed):
+    effective = hooks.restitution(effects, r, state, i, j, time, speed)
     if effective != r:
         state.counts[TOUCHED] += 1
     return effective, beta
 
 
 @jit
-def _note_contact(state, i, time):
+def _note_contact(state, effects, i, time):
     state.changes[i] += 1
-    _remember(state.last_contact, i, time)
-
-
-@hooks.unless_absent
-def _remember(last_contact, i, time):
-    last_contact[i] = time
+    hooks.contact_made(effects, None, state, i, time)

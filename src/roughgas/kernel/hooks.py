@@ -5,51 +5,77 @@ are its part in the simulation. `scene.effects` has one entry an effect, None wh
 without it. Each hook below is turned, while numba compiles and by the types of these entries, into
 the chain of the functions that are there: an absent effect leaves no instruction behind.
 
-What an effect's file may define, all jitted, `index` being the effect's place in the list:
+What an effect's file may define, all jitted but for `moment`, `index` being the effect's number
+among those that are there:
 
     acceleration(effect, index, none)
         downward acceleration along the last axis
     sliding(effect, index, none, state)
         (offset, velocity) along the first axis of the image above, at the clock's base
-    restitution(effect, index, r, state, i, j, time)
-        normal restitution of one contact, from the value so far; j < 0 for a boundary
-    roughness(effect, index, beta, r, normal_speed, tangential_speed)
-        tangential restitution of one contact, from the value so far
+    restitution(effect, index, r, state, i, j, time, speed)
+        normal restitution of one contact, from the value so far and the normal part of the relative
+        velocity, negative where the partners approach; j < 0 for a boundary
+    roughness(effect, index, beta, r, speed, slip)
+        tangential restitution of one contact, from the value so far, speed as above, and the
+        tangential relative velocity of the surfaces, a vector
+    contact_made(effect, index, none, state, i, time)
+        take note that particle i has had a contact
     predict(effect, index, state, scene, i)
-        (time, what) of particle i's next meeting with a boundary; 0 <= what < 8
-    resolve(effect, index, what, state, scene, i)
-        carry that meeting out
+        (time, what) of particle i's next event that is no contact of a pair; 0 <= what < 8
+    resolve(effect, index, what, state, scene, i, time)
+        carry that event out; returns another particle whose velocity it has changed, or NOBODY
     transfer(effect, index, none, state, work)
         book the energy that particles gain where they, or their partners, change images
     phase(effect, index, base)
         the effect's own phase when the clock's base is at the absolute time `base`
+    moment(effect, number, rng)
+        a time for each of so many particles (array), kept in State.moments under the effect's name
+    RANDOM = True
+        the effect draws random numbers, from State.random
+    DRIVES = True
+        the effect puts energy in
+    CLOSES = True
+        the effect closes the first axis of the box
 """
 
 import sys
+from typing import NamedTuple
 
 from numba import types
 from numba.extending import overload, register_jitable
 
 from roughgas.kernel.jit import jit
 
-CODES = 8  # kinds of boundary event per effect
+CODES = 8  # kinds of event per effect
+
+
+class Part(NamedTuple):
+    """An effect's part in a hook, or what else its file defines."""
+
+    place: int  # in Effects
+    rank: int  # among the effects that are there
+    own: object  # the function
 
 
 def present(effects, name):
-    """(index, function) of every effect that is there and defines the hook, in listed order."""
+    """The parts of every effect that is there and defines the hook, in listed order."""
     if isinstance(effects, types.BaseTuple):
         classes = [getattr(kind, "instance_class", None) for kind in effects.types]
     else:
         classes = [None if effect is None else type(effect) for effect in effects]
-    found = [(k, sys.modules[c.__module__]) for k, c in enumerate(classes) if c is not None]
-    return [(k, getattr(module, name)) for k, module in found if hasattr(module, name)]
+    there = [(k, sys.modules[c.__module__]) for k, c in enumerate(classes) if c is not None]
+    return [
+        Part(place, rank, getattr(module, name))
+        for rank, (place, module) in enumerate(there)
+        if hasattr(module, name)
+    ]
 
 
 def _chain(parts, join):
     if not parts:
         return lambda effects, value, *args: value
-    (index, part), rest = parts[-1], register_jitable(_chain(parts[:-1], join))
-    return join(index, part, rest)
+    rest = register_jitable(_chain(parts[:-1], join))
+    return join(*parts[-1], rest)
 
 
 def _hook(name, join):
@@ -63,47 +89,45 @@ def _hook(name, join):
     return stub
 
 
-def _thread(index, part, rest):
+def _thread(place, rank, part, rest):
     """The value passes through one effect after the other."""
 
     def step(effects, value, *args):
-        return part(effects[index], index, rest(effects, value, *args), *args)
+        return part(effects[place], rank, rest(effects, value, *args), *args)
 
     return step
 
 
-def _earliest(index, part, rest):
+def _earliest(place, rank, part, rest):
     """The earliest of the effects' events, as (time, code)."""
 
     def step(effects, value, *args):
         before = rest(effects, value, *args)
-        time, what = part(effects[index], index, *args)
+        time, what = part(effects[place], rank, *args)
         if time < before[0]:
-            return time, CODES * index + what
+            return time, CODES * rank + what
         return before
 
     return step
 
 
-def _addressed(index, part, rest):
+def _addressed(place, rank, part, rest):
     """Only the effect that the code names acts."""
 
     def step(effects, value, *args):
-        if value // CODES == index:
-            part(effects[index], index, value % CODES, *args)
-        else:
-            rest(effects, value, *args)
-        return value
+        if value // CODES == rank:
+            return part(effects[place], rank, value % CODES, *args)
+        return rest(effects, value, *args)
 
     return step
 
 
-def _stored(index, part, rest):
+def _stored(place, rank, part, rest):
     """Each effect's value goes to its own place in an array."""
 
     def step(effects, value, *args):
         rest(effects, value, *args)
-        value[index] = part(effects[index], index, *args)
+        value[rank] = part(effects[place], rank, *args)
         return value
 
     return step
@@ -130,10 +154,39 @@ def unless_absent(function):
     return either(function, lambda first, *args: None)
 
 
+def for_each(action):
+    """A function that does `action` with every part of a tuple that is there: not None."""
+    action = jit(action)
+
+    def stub(parts, *args):
+        for part in parts:
+            if part is not None:
+                action(part, *args)
+
+    def chain(places):
+        if not places:
+            return lambda parts, *args: None
+        place, rest = places[-1], register_jitable(chain(places[:-1]))
+
+        def step(parts, *args):
+            rest(parts, *args)
+            action(parts[place], *args)
+
+        return step
+
+    @overload(stub)
+    def compiled(parts, *args):
+        kinds = enumerate(parts.types)
+        return chain([k for k, kind in kinds if not isinstance(kind, types.NoneType)])
+
+    return stub
+
+
 acceleration = _hook("acceleration", _thread)
 sliding = _hook("sliding", _thread)
 restitution = _hook("restitution", _thread)
 roughness = _hook("roughness", _thread)
+contact_made = _hook("contact_made", _thread)
 next_boundary = _hook("predict", _earliest)
 resolve_boundary = _hook("resolve", _addressed)
 transfer = _hook("transfer", _thread)

@@ -26,12 +26,15 @@ SLOTS_OF_FEW, SLOTS_OF_MANY = 8, 2  # upcoming contacts kept per particle
 LINE = 64  # bytes that the processor fetches at once
 ROOM = 512  # candidates that cells may yield at once
 NARROWEST = 2.002  # of a cell: a diameter and room for rounding, in a
+MOMENT = "moment of "  # before the name of an effect: the array of its moments
 PER_CELL = 1.0  # particles to a cell, where cells are wider than that
 FEWEST = 8  # cells along an axis: fewer would be met twice
 
 
-def new_state(scene, position, velocity, spin, precision=np.float64):
+def new_state(scene, position, velocity, spin, precision=np.float64, rng=None):
     """A state at time 0 from positions (N, D) in a, velocities (N, D) and spins (N, D') in a/T.
+
+    `rng`, a numpy generator, is what effects that are random start from; without it, a fixed seed.
 
     The spin is left out where the scene has none. More than FEW particles are sorted into cells
     if the box has room for these. `precision` is that in which trajectories and spins are kept.
@@ -50,8 +53,11 @@ def new_state(scene, position, velocity, spin, precision=np.float64):
     state.trajectory[:, dimension:-1] = velocity[order]
     if state.spin is not None:
         state.spin[:] = spin[order]
-    if state.last_contact is not None:
-        state.last_contact[:] = -np.inf
+    rng = np.random.default_rng(0) if rng is None else rng
+    for place, _, moment in hooks.present(scene.effects, "moment"):
+        state.moments[place][:] = moment(scene.effects[place], number, rng)
+    if state.random is not None:
+        state.random[:] = rng.integers(2**64, dtype=np.uint64)
     state.label[:] = order
     state.agenda.key[:] = np.inf
     state.agenda.kind[:] = NOTHING
@@ -96,11 +102,12 @@ def _few(scene, number, dimension, precision):
 def _many(scene, number, dimension, precision, counts, widths):
     """Each particle has one line of the cache for where it is, and one for what comes next."""
     fields = _fields(scene, dimension, precision, SLOTS_OF_MANY)
-    here = ("trajectory", "spin", "changes", "home", "following", "previous", "last_contact")
+    here = ["trajectory", "spin", "changes", "home", "following", "previous"]
+    here += [name for name in fields if name.startswith(MOMENT)]
     links = {name: (np.int32,) for name in ("home", "following", "previous", "later", "sooner")}
     fields |= links | {"leave": (float,)}
     small = ("kind", "filled", "label")
-    ahead = [name for name in fields if name not in here + small]
+    ahead = [name for name in fields if name not in (*here, *small)]
     arrays = {name: _array(number, *fields[name]) for name in small}
     arrays |= _records(number, {name: fields[name] for name in here if name in fields})
     arrays |= _records(number, {name: fields[name] for name in ahead})
@@ -143,20 +150,27 @@ def _fields(scene, dimension, precision, slots):
     }
     if effects.spin is not None:
         fields["spin"] = (precision, 2 * dimension - 3)
-    if effects.contact_time is not None:
-        fields["last_contact"] = (float,)
+    fields |= {MOMENT + name: (float,) for name in _with_moments(effects)}
     if hooks.present(effects, "predict"):
         fields |= {"boundary_time": (float,), "boundary_code": (np.int32,)}
     return fields
 
 
+def _with_moments(effects):
+    return [effects._fields[part.place] for part in hooks.present(effects, "moment")]
+
+
 def _state(scene, arrays, **parts):
-    effects = len(scene.effects)
+    effects = scene.effects
+    there = sum(effect is not None for effect in effects)
+    moments = {name: arrays[MOMENT + name] for name in _with_moments(effects)}
     return State(
-        **{name: arrays.get(name) for name in ("trajectory", "spin", "last_contact")},
+        **{name: arrays.get(name) for name in ("trajectory", "spin")},
         **{name: arrays[name] for name in ("changes", "label")},
-        phase=np.zeros(effects),
-        ledger=np.zeros((2, effects + 1, 2)),
+        moments=type(effects)(**moments),
+        phase=np.zeros(there) if hooks.present(effects, "phase") else None,
+        ledger=np.zeros((2, there + 1, 2)),
+        random=np.zeros(1, np.uint64) if hooks.present(effects, "RANDOM") else None,
         clock=np.zeros(8),
         counts=np.zeros(12, np.int64),
         agenda=Agenda(**{name: arrays.get(name) for name in Agenda._fields}),

@@ -17,6 +17,7 @@ from roughgas.kernel.state import (
     COLLISIONS,
     EXTENT,
     HORIZON,
+    NOBODY,
     NOW,
     PREDICTIONS,
     SINCE_REBASE,
@@ -53,27 +54,28 @@ def advance(state, scene, until, collisions):
 
 @jit
 def carry_out(state, scene, i, kind, time):
-    """One event of particle i; returns the particles whose future is to be foreseen anew, or -1."""
+    """One event of particle i; returns those whose future is to be foreseen anew, or NOBODY."""
     agenda = state.agenda
     if kind == HORIZON:
-        return i, -1
+        return i, NOBODY
     if kind == BOUNDARY:
-        _resolve_boundary(agenda.boundary_code, state, scene, i, time)
-        return i, -1
+        return i, _resolve_boundary(agenda.boundary_code, state, scene, i, time)
     partner = int(agenda.slot_partner[i, kind])
     if agenda.slot_change[i, kind] != state.changes[partner]:  # its path is another by now
         state.counts[STALE] += 1
         drop_contact(agenda, i, kind)
         choose_next(state, i)
-        return -1, -1
+        return NOBODY, NOBODY
     collide(state, scene, i, partner, time)
     state.counts[SINCE_REBASE] += 1
     return i, partner
 
 
-@hooks.unless_absent
-def _resolve_boundary(boundary_code, state, scene, i, time):
-    hooks.resolve_boundary(scene.effects, boundary_code[i], state, scene, i, time)
+def _resolve(boundary_code, state, scene, i, time):
+    return hooks.resolve_boundary(scene.effects, boundary_code[i], state, scene, i, time)
+
+
+_resolve_boundary = either(_resolve, lambda boundary_code, state, scene, i, time: NOBODY)
 
 
 @jit

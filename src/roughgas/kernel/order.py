@@ -5,7 +5,7 @@ move, so that they are numbered anew now and then; State.label keeps the numbers
 """
 
 from roughgas.kernel.cells import settle
-from roughgas.kernel.hooks import unless_absent
+from roughgas.kernel.hooks import for_each, unless_absent
 from roughgas.kernel.jit import jit
 from roughgas.kernel.state import NOBODY
 
@@ -46,7 +46,7 @@ def _settle_all(state, scene, time):
 def _exchange(state, i, j):
     _exchange_rows(state.trajectory, i, j)
     _exchange_spins(state.spin, i, j)
-    _exchange_entries(state.last_contact, i, j)
+    _exchange_moments(state.moments, i, j)
     _exchange_entries(state.changes, i, j)
     _exchange_entries(state.label, i, j)
 
@@ -60,6 +60,9 @@ def _exchange_rows(array, i, j):
 _exchange_spins = unless_absent(_exchange_rows.py_func)
 
 
-@unless_absent
+@jit
 def _exchange_entries(array, i, j):
     array[i], array[j] = array[j], array[i]
+
+
+_exchange_moments = for_each(_exchange_entries.py_func)

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from roughgas.kernel.cache import load_without_compiler, one_writer_at_a_time
 from roughgas.kernel.flight import arrive, come_in, put
-from roughgas.kernel.hooks import unless_absent
+from roughgas.kernel.hooks import either, for_each, unless_absent
 from roughgas.kernel.jit import compiled, entry, jit
 from roughgas.kernel.loop import advance, start
 from roughgas.kernel.spins import spin_of
@@ -108,8 +108,9 @@ def refresh(state, scene):
     """Bring a cooling gas to one instant, remove its momentum, and undo its slowing down.
 
     Each contact leaves a rounding error in the momentum; the velocities decay but these errors do
-    not, until the gas would move as one lump that holds all the energy. Velocities are scaled by
-    a power of two, which changes no digit; State.counts[EXPONENT] keeps the sum of the powers.
+    not, until the gas would move as one lump that holds all the energy. Between walls momentum is
+    not conserved, and stays. Velocities are scaled by a power of two, which changes no digit;
+    State.counts[EXPONENT] keeps the sum of the powers.
     """
     number, dimension = len(state.changes), len(scene.box)
     time = state.clock[NOW]
@@ -118,16 +119,23 @@ def refresh(state, scene):
         put(state, scene, i, position, velocity, time)
     square = 0.0
     for k in range(dimension, 2 * dimension):
-        mean = 0.0
-        for i in range(number):
-            mean += state.trajectory[i, k]
-        mean /= number
+        mean = _conserved_mean(state.agenda.boundary_time, state.trajectory, k)
         for i in range(number):
             state.trajectory[i, k] -= mean
             square += state.trajectory[i, k] ** 2
     if square > 0.0:
         rescale(state, scene, math.frexp(math.sqrt(square / number))[1])
     start(state, scene)
+
+
+def _mean(boundary_time, trajectory, k):
+    mean = 0.0
+    for i in range(len(trajectory)):
+        mean += trajectory[i, k]
+    return mean / len(trajectory)
+
+
+_conserved_mean = either(lambda boundary_time, trajectory, k: 0.0, _mean)
 
 
 @jit
@@ -142,7 +150,7 @@ def rescale(state, scene, power):
         for k in range(dimension, 2 * dimension):
             state.trajectory[i, k] *= down
         _scale_spin(state.spin, i, down)
-        _scale_contact(state.last_contact, i, clock[NOW], down)
+        _scale_moments(state.moments, i, clock[NOW], down)
     for account in range(state.ledger.shape[1]):
         for k in range(2):
             state.ledger[1, account, k] += state.ledger[0, account, k] / (unit * unit)
@@ -159,6 +167,6 @@ def _scale_spin(spin, i, factor):
         spin[i, k] *= factor
 
 
-@unless_absent
-def _scale_contact(times, i, now, factor):
+@for_each
+def _scale_moments(times, i, now, factor):
     times[i] = (times[i] - now) / factor

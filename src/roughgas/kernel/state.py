@@ -102,12 +102,13 @@ class State(NamedTuple):
 
     trajectory: np.ndarray  # (N, 2 D + 1): position, velocity, and the time at which they hold
     spin: np.ndarray | None  # (N, 2 D - 3) surface velocity a w; None without spin
-    last_contact: np.ndarray | None  # (N,) time of the previous contact; None without TC model
+    moments: tuple  # an Effects with, for each effect that keeps one of each particle, times (N,)
     changes: np.ndarray  # (N,) how often each particle's velocity has changed
     label: np.ndarray  # (N,) the particle's number at the start: many are sorted anew now and then
-    phase: np.ndarray  # (effects,) each effect's own phase at the clock's base
-    ledger: np.ndarray  # (2, effects + 1, 2) energy that each effect, and last the contacts, put
-    # into translation and rotation: [0] in present units, [1] before the last rescaling
+    phase: np.ndarray | None  # (effects,) the phase, at the clock's base, of each one that is there
+    ledger: np.ndarray  # (2, effects + 1, 2) energy that each effect that is there, and last the
+    # contacts, put into translation and rotation: [0] in present units, [1] before a rescaling
+    random: np.ndarray | None  # (1,) of the generator; None where no effect draws random numbers
     clock: np.ndarray
     counts: np.ndarray
     agenda: Agenda

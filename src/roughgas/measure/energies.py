@@ -7,7 +7,7 @@ and `yv_x` (sum of (y - L/2) v_x). Units: particle radius a = mass m = time unit
 are in m a^2/T^2.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -19,21 +19,30 @@ class Energies(NamedTuple):
     """Energies per degree of freedom, in m a^2/T^2: McNamara & Luding (1998), Eq. (defE)."""
 
     translational: np.ndarray
-    rotational: np.ndarray
+    rotational: np.ndarray | None = None  # None where particles do not spin
+
+    def there(self) -> list[np.ndarray]:
+        """Those that are there."""
+        return [part for part in self if part is not None]
+
+    def map(self, function: Callable[[np.ndarray], np.ndarray]) -> "Energies":
+        """The energies that a function makes of those that are there."""
+        return Energies(*map(function, self.there()))
 
 
-def energies(columns: Columns, particles: int, inertia: float) -> Energies:
+def energies(columns: Columns, particles: int, inertia: float | None) -> Energies:
     """Energies as they are: E_tr = sum m v^2/2 / (N D), E_rot = sum m q (a w)^2/2 / (N n_r).
 
-    `particles` is N and `inertia` q (1/2 for disks, 2/5 for spheres). There are as many dimensions
-    D as `vv_` columns, and n_r = 2 D - 3. McNamara & Luding (1998), Eq. (defE).
+    `particles` is N and `inertia` q (1/2 for disks, 2/5 for spheres), None where none spins. There
+    are as many dimensions D as `vv_` columns, and n_r = 2 D - 3. McNamara & Luding (1998),
+    Eq. (defE).
     """
     speed_squared = sum(columns[name] for name in _components(columns, "vv"))
-    return _per_degree_of_freedom(columns, particles, inertia, speed_squared, columns["ww"])
+    return _per_degree_of_freedom(columns, particles, inertia, speed_squared, columns.get("ww"))
 
 
 def fluctuation_energies(
-    columns: Columns, particles: int, inertia: float, shear_rate: float
+    columns: Columns, particles: int, inertia: float | None, shear_rate: float
 ) -> Energies:
     """Energies that remain once the mean flow and the mean spin are removed, for the sheared gas.
 
@@ -45,10 +54,11 @@ def fluctuation_energies(
     """
     speed_squared = sum(columns[name] for name in _components(columns, "vv"))
     speed_squared = speed_squared + shear_rate * (shear_rate * columns["yy"] - 2 * columns["yv_x"])
-    mean_spin = sum(columns[name] ** 2 for name in _components(columns, "w")) / particles
-    return _per_degree_of_freedom(
-        columns, particles, inertia, speed_squared, columns["ww"] - mean_spin
-    )
+    spin_squared = columns.get("ww")
+    if spin_squared is not None:
+        mean_spin = sum(columns[name] ** 2 for name in _components(columns, "w")) / particles
+        spin_squared = spin_squared - mean_spin
+    return _per_degree_of_freedom(columns, particles, inertia, speed_squared, spin_squared)
 
 
 def restored(energies: Energies, exponent: np.ndarray) -> Energies:
@@ -57,7 +67,7 @@ def restored(energies: Energies, exponent: np.ndarray) -> Energies:
     What is smaller than the smallest number becomes zero.
     """
     power = 2 * np.asarray(exponent, int)
-    return Energies(*(np.ldexp(part, power) for part in energies))
+    return energies.map(lambda part: np.ldexp(part, power))
 
 
 def ratio(energies: Energies) -> np.ndarray:
@@ -70,12 +80,14 @@ def ratio(energies: Energies) -> np.ndarray:
 
 def ratio_of_means(energies: Energies, axis: int = -1) -> np.ndarray:
     """R of the energies averaged along `axis`: not the same as the mean of `ratio`."""
-    return ratio(Energies(energies.translational.mean(axis), energies.rotational.mean(axis)))
+    return ratio(energies.map(lambda part: part.mean(axis)))
 
 
 def _per_degree_of_freedom(columns, particles, inertia, speed_squared, spin_squared) -> Energies:
     dimension = len(_components(columns, "vv"))
     translational = speed_squared / (2 * particles * dimension)
+    if spin_squared is None:
+        return Energies(translational)
     rotational = inertia * spin_squared / (2 * particles * (2 * dimension - 3))
     return Energies(translational, rotational)
 

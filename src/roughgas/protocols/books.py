@@ -69,5 +69,7 @@ def imbalance(booked: np.ndarray, gain: np.ndarray) -> float:
 def _accounts(scene):
     """Name -> number of the accounts that can change: those of effects that do work."""
     effects = scene.effects
-    working = {k for hook in ("resolve", "transfer") for k, _ in hooks.present(effects, hook)}
-    return {effects._fields[k]: k for k in sorted(working)} | {CONTACTS: len(effects)}
+    working = [part for hook in ("resolve", "transfer") for part in hooks.present(effects, hook)]
+    ranks = {effects._fields[part.place]: part.rank for part in working}
+    last = sum(effect is not None for effect in effects)
+    return dict(sorted(ranks.items(), key=lambda item: item[1])) | {CONTACTS: last}

@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from roughgas.effects import inertia
 from roughgas.initial import initial_state
 from roughgas.measure.energies import Energies, energies, ratio, ratio_of_means, restored
 from roughgas.measure.errors import autocorrelation_time
@@ -47,6 +48,9 @@ def run(scene: Scene, experiment: Mapping[str, Any], seed: int, recorder) -> dic
     ensemble = _together(runs)
     passed = every * np.arange(1, samples + 1)
     exchanged = exchange(ensemble.before, ensemble.after, scene, number)
+    if scene.effects.spin is None:
+        first = min(math.ceil(transient / every), samples) - 1
+        return _decay(ensemble, passed, first) | exchanged
     return _measure(ensemble, passed, transient, every) | exchanged
 
 
@@ -63,32 +67,43 @@ def transient_length(scene: Scene, relaxation_times: float) -> float:
 
 
 def rate_of(scene: Scene) -> float:
-    """The rate at which R relaxes, by the rate equations, per collision per particle."""
-    q = scene.effects.spin.inertia
+    """The rate at which R relaxes, by the rate equations, per collision per particle; without spin
+    there is nothing to relax."""
+    q = inertia(scene.effects)
+    if q is None:
+        return math.inf
     return float(relaxation_rate(scene.restitution, scene.roughness, len(scene.box), q))
 
 
 def _cool(state, scene, schedule, number, samples, recorder):
     """One replica, from when dissipation is switched on."""
     per_unit = number / 2  # a collision has two partners
-    elastic = scene._replace(restitution=1.0, roughness=-1.0)
     thermal = math.ceil(per_unit * schedule["thermalise"])
-    before = recorder.in_collisions(state, elastic, thermal, 1)
-    start = energies(before, number, scene.effects.spin.inertia).translational[0]
+    before = recorder.in_collisions(state, _elastic(scene), thermal, 1)
+    q = inertia(scene.effects)
+    start = energies(before, number, q).translational[0]
     opened = books(state, scene)
     collisions = max(1, round(per_unit * schedule["sample_every"]))
     rows = recorder.in_collisions(state, scene, collisions, samples, SAMPLES_PER_REFRESH)
-    present = energies(rows, number, scene.effects.spin.inertia)
-    kept = (present, opened, books(state, scene))
-    present, opened, closed = (type(one)(*(part / start for part in one)) for one in kept)
+    present = energies(rows, number, q).map(lambda part: part / start)
+    opened, closed = (Books(*(part / start for part in b)) for b in (opened, books(state, scene)))
     return Cooled(present, rows["exponent"].astype(int), opened, closed)
+
+
+def _elastic(scene):
+    """The scene with smooth elastic particles, and side walls if it has any."""
+    walls = scene.effects.walls
+    if walls is not None:
+        walls = walls._replace(restitution=1.0, roughness=-1.0)
+    effects = scene.effects._replace(walls=walls)
+    return scene._replace(restitution=1.0, roughness=-1.0, effects=effects)
 
 
 def _together(runs):
     """All replicas as one: energies stacked, books averaged."""
     present, exponent, before, after = zip(*runs, strict=True)
     return Cooled(
-        Energies(*(np.array(part) for part in zip(*present, strict=True))),
+        Energies(*map(np.array, zip(*(one.there() for one in present), strict=True))),
         np.array(exponent),
         *(
             Books(*(np.mean(part, axis=0) for part in zip(*one, strict=True)))
@@ -104,25 +119,41 @@ def _measure(ensemble, passed, transient, every):
     first = np.argmax(inside)
     error = Error(plateau.stderr, len(R) - 1.0)
     exponent = ensemble.exponent
-    E_trans, E_rot = (part.mean(axis=0) for part in restored(ensemble.energies, exponent))
+    E_rot = restored(ensemble.energies, exponent).rotational.mean(axis=0)
     alike = restored(ensemble.energies, exponent - exponent.max(axis=0))
-    return {
+    return _decay(ensemble, passed, first) | {
         "R": plateau.mean,
         "R_stderr": error.stderr,
         "R_dof": error.dof,
         "R_ci95": error.half_width(0.95),
         "R_ci95_trusted": plateau.found,
         "R_ratio_of_means": ratio_of_means(alike, axis=0)[inside].mean(),
-        "E_trans": E_trans[first],
         "E_rot": E_rot[first],
         "equilibrated": plateau.found,
         "measured_from": plateau.start,
         "plateau_end": plateau.stop,
         "autocorrelation_time": autocorrelation_time(R[:, inside]) * every,
         "R_replica": plateau.per_replica,
-        "collisions_per_particle": passed,
         "R_series": R.mean(axis=0),
-        "R_series_stderr": R.std(axis=0, ddof=1) / math.sqrt(len(R)),
-        "E_trans_series": E_trans,
+        "R_series_stderr": _scatter(R),
         "E_rot_series": E_rot,
     }
+
+
+def _decay(ensemble, passed, first):
+    """How the translational energy decays, and what it is when the measurement begins."""
+    E_trans = restored(ensemble.energies, ensemble.exponent).translational
+    return {
+        "E_trans": E_trans.mean(axis=0)[first],
+        "E_trans_stderr": _scatter(E_trans)[first],
+        "equilibrated": True,
+        "measured_from": passed[first],
+        "plateau_end": passed[-1],
+        "collisions_per_particle": passed,
+        "E_trans_series": E_trans.mean(axis=0),
+    }
+
+
+def _scatter(values):
+    """Standard error over replicas, those along the first axis."""
+    return values.std(axis=0, ddof=1) / math.sqrt(len(values))

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from roughgas.effects import inertia
 from roughgas.initial import initial_state
 from roughgas.measure.averages import period_means
 from roughgas.measure.energies import (
@@ -40,7 +41,23 @@ def run(scene: Scene, experiment: Mapping[str, Any], seed: int, recorder) -> dic
     rows = recorder.in_time(state, scene, every, planned + length)
     series = fluctuations(scene, rows, number)
     start, found = _start(series, planned, length, per_period)
-    window = Energies(series.translational[start:], series.rotational[start:])
+    window = series.map(lambda part: part[start:])
+    translational = period_means(window.translational, per_period)
+    return {
+        "E_trans": window.translational.mean(),
+        "E_trans_stderr": blocking(translational)[0],
+        **(_shared(window, per_period, every) if window.rotational is not None else {}),
+        **_unsubtracted(scene, rows, number, start),
+        **exchange(before, books(state, scene), scene, number),
+        "equilibrated": found,
+        "measured_from": start * every,
+        "time": rows["time"][start:],
+        "E_trans_series": window.translational,
+    }
+
+
+def _shared(window, per_period, every):
+    """How the energy is shared between translation and rotation."""
     R = ratio(window)
     R_periods = period_means(R, per_period)
     stderr, blocks = blocking(R_periods)
@@ -52,16 +69,9 @@ def run(scene: Scene, experiment: Mapping[str, Any], seed: int, recorder) -> dic
         "R_ci95": error.half_width(0.95),
         "R_ci95_trusted": is_trusted(len(R_periods), memory),
         "R_ratio_of_means": ratio_of_means(window),
-        "E_trans": window.translational.mean(),
         "E_rot": window.rotational.mean(),
-        **_unsubtracted(scene, rows, number, start),
-        **exchange(before, books(state, scene), scene, number),
-        "equilibrated": found,
-        "measured_from": start * every,
         "autocorrelation_time": memory * per_period * every,
-        "time": rows["time"][start:],
         "R_series": R,
-        "E_trans_series": window.translational,
         "E_rot_series": window.rotational,
     }
 
@@ -80,7 +90,7 @@ def samples_per_period(schedule: Mapping[str, Any]) -> int:
 
 def fluctuations(scene: Scene, rows: Mapping[str, np.ndarray], number: int) -> Energies:
     """Energies of samples, in a sheared gas without the mean flow and the mean spin."""
-    shear, q = scene.effects.shear, scene.effects.spin.inertia
+    shear, q = scene.effects.shear, inertia(scene.effects)
     if shear is None:
         return energies(rows, number, q)
     return fluctuation_energies(rows, number, q, shear.velocity / (2.0 * scene.middle))
@@ -90,18 +100,18 @@ def _unsubtracted(scene, rows, number, start):
     """The sheared gas with its mean flow and mean spin left in, which is not what is meant by R."""
     if scene.effects.shear is None:
         return {}
-    every = energies(rows, number, scene.effects.spin.inertia)
-    window = Energies(every.translational[start:], every.rotational[start:])
-    return {
-        "R_unsubtracted": ratio(window).mean(),
-        "E_trans_unsubtracted": window.translational.mean(),
-        "E_rot_unsubtracted": window.rotational.mean(),
-    }
+    every = energies(rows, number, inertia(scene.effects))
+    window = every.map(lambda part: part[start:])
+    found = {"E_trans_unsubtracted": window.translational.mean()}
+    if window.rotational is not None:
+        found["E_rot_unsubtracted"] = window.rotational.mean()
+        found["R_unsubtracted"] = ratio(window).mean()
+    return found
 
 
 def _start(series, planned, length, per_period):
     """First sample to be measured, a whole number of periods in, and whether the rest is steady."""
-    means = [period_means(part, per_period) for part in series]
+    means = [period_means(part, per_period) for part in series.there()]
     first = -(-planned // per_period) * per_period
     start = per_period * detect_start(*means, planned=first // per_period)
     if planned + length - start < LEAST_LEFT * length:

@@ -1,0 +1,40 @@
+"""Coulomb friction: rough contacts stick or slide.
+
+O. R. Walton's rule with three parameters (r, beta_0, mu), in Particulate Two-Phase Flow (1993),
+p. 884: a contact sticks, with the roughness beta_0, unless its tangential impulse would then exceed
+mu times the normal one, and slides with just that impulse if it would:
+
+    beta = min{beta_0, -1 + mu (1 + r) (1 + 1/q) |g_n|/|g_t|}
+"""
+
+import math
+from typing import NamedTuple
+
+from roughgas.effects.settings import Number, read
+from roughgas.errors import InputError
+from roughgas.kernel.jit import jit
+from roughgas.kernel.vectors import dot
+
+SETTINGS = {"mu": Number("Coefficient of friction; 0 is a smooth gas.", "[0, inf)")}
+
+
+class Friction(NamedTuple):
+    """Contacts slide where sticking would take more than mu times the normal impulse (Coulomb)."""
+
+    mu: float
+    inertia: float  # q of the particles
+
+    @classmethod
+    def from_settings(cls, settings, around):
+        """The effect; raises InputError for illegal parameters, and where nothing spins."""
+        if "spin" not in around.effects:
+            raise InputError("effects.friction", "without spin", "come with spin, which it acts on")
+        inertia = around.effects["spin"]["inertia"]
+        return cls(**read(SETTINGS, "friction", settings, around), inertia=float(inertia))
+
+
+@jit
+def roughness(friction, index, beta, r, speed, slip):
+    most = friction.mu * (1.0 + r) * (1.0 + 1.0 / friction.inertia) * abs(speed)
+    sliding = math.sqrt(dot(slip, slip))
+    return beta if (1.0 + beta) * sliding <= most else most / sliding - 1.0

@@ -1,0 +1,94 @@
+"""A stochastic drive: random kicks to pairs of particles, a chosen share of them into the spins.
+
+Every particle starts a kick once an `interval`, the particles in a random order and evenly spaced,
+and draws a partner from all others. The two get opposite random velocities, so that momentum is
+conserved, and spins of their own. Kicks are spread over time rather than given to all at once,
+since a gas that is looked at right after its kicks seems hotter than it is on average.
+
+Each component of a kick is uniform in [-k, k]; what many small ones add up to is Gaussian (white
+noise). On average they put `power` into each particle per time, (1 - s) of it into translation and
+s into rotation. Units: a = m = T = 1.
+"""
+
+import math
+from typing import NamedTuple
+
+from roughgas.effects.settings import Number, read
+from roughgas.errors import InputError
+from roughgas.kernel.flight import come_in, put
+from roughgas.kernel.hooks import unless_absent
+from roughgas.kernel.jit import jit
+from roughgas.kernel.random import random_vector, uniform
+from roughgas.kernel.spins import book_spin, spin_of, turn_spin
+from roughgas.kernel.vectors import add_scaled, dot, subtract
+
+SETTINGS = {
+    "power": Number("Energy put in per particle and time, in m a^2/T^3."),
+    "spin_share": Number("Share of it that goes into rotation.", "[0, 1]"),
+    "interval": Number("Time between the kicks that a particle starts, in T."),
+}
+RANDOM = DRIVES = True
+
+
+class Thermostat(NamedTuple):
+    """Random kicks to pairs of particles, a chosen share of their energy into the spins."""
+
+    push: float  # largest component of a kick to the velocity, in a/T
+    turn: float  # the same of a kick to the spin, as a surface velocity
+    interval: float
+
+    @classmethod
+    def from_settings(cls, settings, around):
+        """The effect; raises InputError for illegal parameters, and a share of no spin."""
+        chosen = read(SETTINGS, "thermostat", settings, around)
+        dimension, share = len(around.box), chosen["spin_share"]
+        if "spin" not in around.effects and share > 0.0:
+            raise InputError("effects.thermostat.spin_share", share, "be 0 where nothing spins")
+        inertia = around.effects["spin"]["inertia"] if "spin" in around.effects else 1.0
+        energy = chosen["power"] * chosen["interval"]  # of one kick: one a particle and interval
+        # <x^2> = k^2/3; two particles with m v^2/2 each, and as many spins with q m (a w)^2/2 each
+        push = math.sqrt(3.0 * (1.0 - share) * energy / dimension)
+        turn = math.sqrt(3.0 * share * energy / (inertia * (2 * dimension - 3)))
+        return cls(push, turn, chosen["interval"])
+
+
+def moment(thermostat, number, rng):
+    """When each particle starts its next kick."""
+    return thermostat.interval * (1.0 + rng.permutation(number)) / number
+
+
+@jit
+def predict(thermostat, index, state, scene, i):
+    return state.moments.thermostat[i], 0
+
+
+@jit
+def resolve(thermostat, index, what, state, scene, i, time):
+    """A kick to i and to another particle, which is returned."""
+    others = len(state.changes) - 1
+    j = int(uniform(state.random) * others)
+    j += j >= i
+    kick = random_vector(state.random, scene.box, thermostat.push)
+    _push(state, scene, index, i, kick, 1.0, time)
+    _push(state, scene, index, j, kick, -1.0, time)
+    _turn(state.spin, thermostat, index, state, scene, i)
+    _turn(state.spin, thermostat, index, state, scene, j)
+    state.moments.thermostat[i] += thermostat.interval
+    return j
+
+
+@jit
+def _push(state, scene, index, i, kick, sign, time):
+    position, before = come_in(state, scene, i, time)
+    after = add_scaled(before, kick, sign)
+    put(state, scene, i, position, after, time)
+    state.ledger[0, index, 0] += 0.5 * dot(subtract(after, before), add_scaled(before, after, 1.0))
+    state.changes[i] += 1
+
+
+@unless_absent
+def _turn(spin, thermostat, index, state, scene, i):
+    before = spin_of(spin, scene.box, i)
+    turn = random_vector(state.random, before, thermostat.turn)
+    turn_spin(spin, i, before, turn)
+    book_spin(before, turn, scene.effects.spin, state.ledger[0, index])
