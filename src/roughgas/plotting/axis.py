@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import MultipleLocator
 
-SIDESTEP = 0.007
+SIDESTEP = 0.0066
 """Distance between the residuals of two series, as a share of the axis: else one hides another."""
 
 

@@ -15,6 +15,8 @@ from roughgas.plotting.style import FAINT, GREY, HEIGHT, LOOKS, THEORY, WIDTH, L
 from roughgas.reduce import EQUILIBRATED, predicted_ratio
 
 ENERGY_RATIO = r"$R = E^\circ\!/(E^\circ + \bar{E})$"
+ONE_WIDE, TWO_WIDE, THREE_WIDE = 5.6, 7.6, 10.4
+"""Width of a figure of so many panels with much to tell, in inches."""
 SIZE = 5.2
 """Symbols of the first series; each further one is smaller, so that none hides another."""
 
@@ -106,10 +108,16 @@ def draw_theory(
 
 def draw_series(main: Axes, residual: Axes, drawn: Sequence[Series], axis: Axis = BETA) -> None:
     """The points with error bars above; minus theory, a little apart, beneath."""
+    draw_points(main, drawn)
     for index, one in enumerate(drawn):
-        _points(main, one, one.at, one.ratio, size=SIZE - 0.6 * index)
         steps = index - (len(drawn) - 1) / 2
         _points(residual, one, axis.aside(one.at, steps), one.residual, size=4)
+
+
+def draw_points(main: Axes, drawn: Sequence[Series]) -> None:
+    """The points with error bars."""
+    for index, one in enumerate(drawn):
+        _points(main, one, one.at, one.ratio, size=max(SIZE - 0.6 * index, 3.0))
 
 
 def frame_residuals(residual: Axes, drawn: Sequence[Series], scale: Sequence[Series]) -> None:
