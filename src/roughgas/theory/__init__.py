@@ -33,7 +33,12 @@ from roughgas.theory.frequencies import (
     mean_free_path,
     number_density,
 )
-from roughgas.theory.friction import friction_changes, friction_ratio, sliding_fraction
+from roughgas.theory.friction import (
+    friction_changes,
+    friction_ratio,
+    friction_relaxation_rate,
+    sliding_fraction,
+)
 from roughgas.theory.haff import decay_rate, haff_temperature, haff_time
 from roughgas.theory.rate_equations import (
     Rates,
@@ -61,6 +66,7 @@ __all__ = [
     "drive_changes",
     "friction_changes",
     "friction_ratio",
+    "friction_relaxation_rate",
     "goldshtein_ratio",
     "haff_temperature",
     "haff_time",

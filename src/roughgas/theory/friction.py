@@ -32,6 +32,8 @@ from roughgas.theory.shares import quotient, shares
 # Halvings of a bracket within [0, 1], and thirds taken off one, that leave a rounding of R
 HALVINGS = 60
 THIRDS = 90
+STEP = 1e-4  # of ln theta, for a slope
+NEARLY = 1e-9  # what R lacks to 1 where spin outlives translation, as good as nothing
 
 
 def sliding_fraction(T_tr, T_rot, r, beta, mu, dimension=2, inertia=None) -> np.ndarray:
@@ -97,6 +99,25 @@ def friction_ratio(r, beta, mu, dimension=2, inertia=None, spin_share=None) -> n
         grows = growth(middle) > 0
         low, high = np.where(grows, middle, low), np.where(grows, high, middle)
     return np.where((mu == 0) | (gas.beta == -1), decoupled, high)[()]
+
+
+def friction_relaxation_rate(r, beta, mu, dimension=2, inertia=None) -> np.ndarray:
+    """Rate at which R of a cooling gas goes to `friction_ratio`, per collision per particle.
+
+    From the linear stability of ln theta, by a central difference; where R = 1 the rate at which
+    theta grows in the end. `relaxation_rate` at infinite mu; 0 where spin is decoupled. All
+    arguments but D broadcast; raises InputError.
+    """
+    gas, mu = material(r, beta, dimension, inertia), _check_friction(mu)
+    R = friction_ratio(r, beta, mu, dimension, inertia)
+    lasting = np.where(R < 1 - NEARLY, R, 0.5)
+    theta = lasting / (1 - lasting)
+    below, above = theta * np.exp(-STEP), theta * np.exp(STEP)
+    fall = _growth(below / (1 + below), gas, mu, None) - _growth(above / (1 + above), gas, mu, None)
+    final = _growth(np.asarray(1 - NEARLY), gas, mu, None)
+    decoupled = (mu == 0) | (gas.beta == -1)
+    rate = np.where(R < 1 - NEARLY, fall / (2 * STEP), final)
+    return np.where(decoupled, 0.0, rate)[()]
 
 
 def _fastest_fall(growth, shape) -> np.ndarray:
