@@ -96,11 +96,8 @@ def point_of(options: argparse.Namespace) -> tuple[float, float, dict[str, Any]]
     """r, beta and the settings of the experiment, or of its variant."""
     from roughgas import config
 
-    r, beta, settings = (
-        config.restitution(options.r),
-        config.roughness(options.beta),
-        _settings(options),
-    )
+    r, beta = config.restitution(options.r), config.roughness(options.beta)
+    settings = _settings(options)
     config.check_one_variant(options.experiment, settings)
     _variant(options.experiment, settings)
     return r, beta, settings
