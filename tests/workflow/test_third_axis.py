@@ -70,12 +70,8 @@ def project(tmp_path_factory):
 def ran(project, tmp_path_factory):
     """The same after two of these experiments have been run."""
     ran = project.copy_to(tmp_path_factory.mktemp("runs") / "ran")
-    run(ran, "results/tiny/aimed.nc")
+    ran.succeed("-j2", "--config", "scale=tiny", "--", f"{SPUN}.nc", "costs")
     return ran
-
-
-def run(project, *others):
-    project.succeed("-j2", "--config", "scale=tiny", "--", f"{SPUN}.nc", *others)
 
 
 def sweep_inertia(*labels):
@@ -167,9 +163,9 @@ def test_every_variant_meets_its_target(ran):
     data = read_reduced(ran.folder / "results/tiny/aimed.nc")
     assert data.R.dims == ("inertia", "r", "beta") and data.R.size == 2
     assert (data.R_stderr <= 0.03).all()
-    assert read_point(ran.folder / "results/tiny/aimed/inertia1/r0.9/beta0/seeds/seed1.nc").attrs[
-        "variant"
-    ] == ("inertia1")
+    first = read_point(ran.folder / "results/tiny/aimed/inertia1/r0.9/beta0/seeds/seed1.nc")
+    assert first.attrs["variant"] == "inertia1"
+    assert "| aimed | 2 | 0.03 | 2 |" in (ran.folder / "results/tiny/costs.md").read_text()
 
 
 @pytest.mark.slow
