@@ -22,7 +22,7 @@ SCALE = config["scale"]
 
 wildcard_constraints:
     scale="[^/]+",
-    experiment=r"(?!(?:accuracy|coverage)\.)[^/]+",
+    experiment=EXPERIMENT + VARIANT,
     r="[^/]+",
     beta="[^/]+",
     seed="[^/]+",
@@ -34,6 +34,7 @@ wildcard_constraints:
     family="[^/]+",
 
 
+include: "rules/compile.smk"
 include: "rules/simulate.smk"
 include: "rules/planning.smk"
 include: "rules/reduce.smk"

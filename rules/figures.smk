@@ -32,7 +32,7 @@ rule figure:
 
 rule table:
     input:
-        sources("reduce"),
+        sources("table"),
         data=data_of_paper,
     output:
         "results/{scale}/R.csv",
