@@ -28,10 +28,19 @@ if TYPE_CHECKING:
     import xarray
 
 GRID = ("r", "beta")
-SAME = ("experiment", "scale", "dimension", "inertia", "particles", "swept")
+SAME = (
+    "experiment",
+    "scale",
+    "dimension",
+    "inertia",
+    "spin_share",
+    "mu",
+    "particles",
+    "swept",
+)
 OF_A_POINT = ("r", "beta", "seed", "r_label", "beta_label", "variant", "swept_value", "command")
 PROVENANCE = ("roughgas_version", "numpy_version", "numba_version", "kernel_source_hash")
-SCATTERED = ("R", "R_unsubtracted", "R_drift")
+SCATTERED = ("R", "R_unsubtracted", "R_drift", "E_trans", "input_spin_share")
 """Means over seeds that carry a standard error, `<name>_stderr`."""
 
 EQUILIBRATED = 0.5
@@ -45,6 +54,8 @@ DERIVED = {
     "R_stderr_over_seeds": "standard error of R from the scatter over seeds alone",
     "R_stderr_within": "standard error of R from within the files, combined over seeds",
     "R_unsubtracted_stderr": "standard error of R_unsubtracted: scatter over seeds",
+    "E_trans_stderr": "standard error of E_trans: scatter over seeds",
+    "input_spin_share_stderr": "standard error of input_spin_share: scatter over seeds",
     "R_drift": "mean of R in the second half of the measured window minus that in the first",
     "R_drift_stderr": "standard error of R_drift: scatter over seeds",
     "measured_for": "length of the measured window, mean over seeds",
@@ -101,18 +112,23 @@ def third_axis(attributes: Mapping[str, Any]) -> str | None:
 
 
 def predicted_ratio(attributes: dict[str, Any], r: Any, beta: Any) -> np.ndarray:
-    """R of theory for an experiment: Eq. (K) for a freely cooling gas, else Eq. (lun).
+    """R of theory: Eq. (K) for a freely cooling gas, Eq. (lun) for one whose drive adds translation
+    only, and what the rate equations say of other drives, and of friction.
 
-    `attributes` are those of a reduced dataset, with the `inertia` where that is its third axis;
-    `r` and `beta` broadcast.
+    `attributes` are those of a reduced dataset, with what is its third axis: `inertia`,
+    `spin_share` (of the drive), `mu`; these broadcast with `r` and `beta`. NaN where nothing spins.
     """
     from roughgas import theory
 
-    r, beta = np.broadcast_arrays(np.asarray(r, float), np.asarray(beta, float))
-    inertia, dimension = float(attributes["inertia"]), int(attributes["dimension"])
-    if attributes["theory"] == "K":
-        return np.asarray(theory.cooling_ratio(r, beta, dimension, inertia))
-    return np.asarray(theory.lun_ratio(beta, inertia))
+    names = {"inertia": math.nan, "spin_share": 0.0, "mu": math.inf}
+    given = (attributes.get(name, value) for name, value in names.items())
+    r, beta, q, share, mu = np.broadcast_arrays(*(np.asarray(x, float) for x in (r, beta, *given)))
+    if np.isnan(q).any():
+        return np.full(r.shape, math.nan)
+    dimension, share = int(attributes["dimension"]), None if attributes["theory"] == "K" else share
+    if np.isfinite(mu).any():
+        return np.asarray(theory.friction_ratio(r, beta, mu, dimension, q, share))
+    return np.asarray(theory.stationary_ratio(r, beta, dimension, q, share))
 
 
 def _summary(path: Path) -> Summary:
@@ -198,15 +214,7 @@ def _stacks(points: Sequence[Summary], axes: Sequence[Sequence[Any]]) -> dict[st
 
 def _over_seeds(stacks: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     """What a reduced dataset holds, by name."""
-    there = np.isfinite(stacks["R"])
-    count = there.sum(-1)
-    square = np.where(there, stacks["R_stderr"] ** 2, 0.0).sum(-1)
-    within = np.sqrt(square) / np.maximum(count, 1)
-    reduced = {
-        "R_seed": stacks["R"],
-        "R_stderr_within": np.where(count > 0, within, math.nan),
-        "n_seeds": count,
-    }
+    reduced = {"n_seeds": np.isfinite(stacks["E_trans"]).sum(-1)}
     for name, values in stacks.items():
         how = VARIABLES[name].over_seeds if name in VARIABLES else "mean"
         if how == "sum":
@@ -215,8 +223,20 @@ def _over_seeds(stacks: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
             reduced[name] = _mean(values)
         if name in SCATTERED:
             reduced[f"{name}_stderr"] = _standard_error(values)
-    reduced["R_stderr_over_seeds"] = reduced["R_stderr"]
-    return reduced | _pooled_errors(stacks, there)
+    return reduced | _errors(stacks, reduced) if "R" in stacks else reduced
+
+
+def _errors(stacks: dict[str, np.ndarray], reduced: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """R of each seed, and all that is known of how sure R is."""
+    there = np.isfinite(stacks["R"])
+    count = there.sum(-1)
+    square = np.where(there, stacks["R_stderr"] ** 2, 0.0).sum(-1)
+    within = np.sqrt(square) / np.maximum(count, 1)
+    return {
+        "R_seed": stacks["R"],
+        "R_stderr_within": np.where(count > 0, within, math.nan),
+        "R_stderr_over_seeds": reduced["R_stderr"],
+    } | _pooled_errors(stacks, there)
 
 
 def _pooled_errors(stacks: dict[str, np.ndarray], there: np.ndarray) -> dict[str, np.ndarray]:
@@ -248,8 +268,9 @@ def _about(name: str, cooling: bool) -> dict[str, str]:
     """CF attributes of a reduced variable."""
     if name not in DERIVED:
         return variable_attributes(name, cooling)
-    units = variable_attributes("measured_from", cooling)["units"]
-    return {"long_name": DERIVED[name], "units": units if name == "measured_for" else "1"}
+    like = {"measured_for": "measured_from", "E_trans_stderr": "E_trans"}.get(name, "R")
+    units = variable_attributes(like, cooling)["units"]
+    return {"long_name": DERIVED[name], "units": units}
 
 
 def _common_attributes(points: Sequence[Summary]) -> dict[str, Any]:

@@ -45,12 +45,25 @@ def run_point(
             "seed": int(seed),
             "particles": experiment["particles"],
             "dimension": len(scene.box),
-            **({} if scene.effects.spin is None else {"inertia": scene.effects.spin.inertia}),
+            **_known_to_theory(scene, experiment),
             "roughgas_version": __version__,
             "numpy_version": np.__version__,
             "kernel_source_hash": source_hash(),
         },
     )
+
+
+def _known_to_theory(scene, experiment):
+    """The parameters of effects that R depends on in theory."""
+    effects = scene.effects
+    found = {}
+    if effects.spin is not None:
+        found["inertia"] = effects.spin.inertia
+    if effects.friction is not None:
+        found["mu"] = effects.friction.mu
+    if effects.thermostat is not None:
+        found["spin_share"] = float(experiment["effects"]["thermostat"]["spin_share"])
+    return found
 
 
 def _contact_time(scene, recorder):

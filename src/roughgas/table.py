@@ -28,7 +28,9 @@ COLUMNS = (
     "R_unsubtracted",
     "R_unsubtracted_stderr",
     "E_trans",
+    "E_trans_stderr",
     "E_rot",
+    "input_spin_share",
     "equilibrated",
     "measured_from",
     "measured_for",
@@ -67,7 +69,8 @@ def _rows(dataset: "xarray.Dataset", head: Sequence[str]) -> Iterator[list[str]]
     prediction = predicted_ratio(dataset.attrs, flat.r.values, flat.beta.values)
     for index in np.flatnonzero(flat["n_seeds"].values):
         row = {name: flat[name].values[index] for name in (*GRID, *COLUMNS) if name in flat}
-        row |= {"R_theory": prediction[index], "residual": row["R"] - prediction[index]}
+        residual = row.get("R", math.nan) - prediction[index]
+        row |= {"R_theory": prediction[index], "residual": residual}
         yield [_cell(row.get(name, dataset.attrs.get(name, ""))) for name in head]
 
 

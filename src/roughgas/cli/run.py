@@ -165,7 +165,8 @@ def _variant(name: str, settings: dict[str, Any]) -> dict[str, Any]:
 
 def _closing_line(output: str, point: "Point") -> str:
     found = point.variables
+    name = "R" if "R" in found else "E_trans"
     return (
-        f"{output}: R = {float(found['R']):.4f} +- {float(found['R_stderr']):.4f}, "
+        f"{output}: {name} = {float(found[name]):.4f} +- {float(found[f'{name}_stderr']):.4f}, "
         f"{int(found['collisions']):,} collisions in {float(found['kernel_seconds']):.1f} s"
     )
