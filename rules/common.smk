@@ -101,8 +101,13 @@ def data_of_figure(wildcards):
 
 
 def data_of_paper(wildcards):
-    shown = [experiment for experiments in PAPER.values() for experiment in experiments]
-    return reduced(wildcards.scale, dict.fromkeys(shown))
+    return reduced(wildcards.scale, shown_in(PAPER))
+
+
+def shown_in(figures):
+    """The experiments that some figures show, each once."""
+    shown = [experiment for experiments in figures.values() for experiment in experiments]
+    return list(dict.fromkeys(shown))
 
 
 def drawn(figures, kinds=(".pdf", ".png")):

@@ -1,4 +1,4 @@
-# The paper: its four figures, one table, and the verdict on what it claims.
+# The paper: its four figures, one table, and the verdict on what it claims. How any figure is drawn.
 PAPER = {
     "fig1a": ["vibrated"],
     "fig1b": [

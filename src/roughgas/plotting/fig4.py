@@ -18,7 +18,7 @@ def draw(bed: xr.Dataset, cooling: xr.Dataset) -> Figure:
     mu = 0, where R = 0, has no place on a logarithmic axis; it is in the data.
     """
     figure, panels = panel.ratio_panels([FRICTION] * 2, width=panel.TWO_WIDE)
-    every = []
+    every, places = [], dict(zip(NAMES.values(), ("upper left", "upper right"), strict=True))
     for data, name, (main, residual, axis) in zip(
         (bed, cooling), NAMES.values(), panels, strict=True
     ):
@@ -30,7 +30,7 @@ def draw(bed: xr.Dataset, cooling: xr.Dataset) -> Figure:
         panel.draw_series(main, residual, drawn, axis)
         for beta, look in zip(data.beta.values, LOOKS, strict=False):
             panel.draw_theory(main, data, look, axis, r=RESTITUTION, beta=beta)
-        panel.legend(main, drawn, "", title="lines: rate equations", loc="upper left")
+        panel.legend(main, drawn, "", title="lines: rate equations", loc=places[name])
         panel.caption(main, [data], rf"{name}, $r = {RESTITUTION:g}$")
         every += drawn
     for _, residual, _ in panels:

@@ -4,7 +4,6 @@ A stochastic drive has the share that is chosen. A floor and shaken side walls t
 the one that their energy books say.
 """
 
-import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
@@ -47,5 +46,5 @@ def _boundary_drive(data: xr.Dataset, label: str, look: Look, beta: float) -> pa
     place = {"r": RESTITUTION, "beta": beta}
     found = panel.series(data, rf"{label}, $\beta = {beta:g}$", look, **place)
     share = data.input_spin_share.sel(place).values
-    theory = panel.prediction(data, **place, spin_share=np.clip(share, 0.0, 1.0))
+    theory = panel.prediction(data, **place, spin_share=share)
     return found._replace(at=share, theory=theory)

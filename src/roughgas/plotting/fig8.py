@@ -1,6 +1,5 @@
 """Fig. 8: what the boundaries are made of. R, and how much rotation they put in."""
 
-import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -28,6 +27,7 @@ def draw(floor: xr.Dataset, walls: xr.Dataset) -> Figure:
         for one, beta in zip(drawn, data.beta.values, strict=False):
             _draw_shares(main, beneath, data, one, beta)
         panel.draw_points(main, drawn)
+        main.set_ylim(0.0, 0.78)  # room for the legend
         panel.legend(main, drawn, "", title="lines: rate equations", loc="upper left")
         panel.caption(main, [data], rf"{name}, $r = {RESTITUTION:g}$")
     panels[0].residual.set_ylabel("share of rotation in\nthe energy put in")
@@ -41,5 +41,5 @@ def _draw_shares(main: Axes, beneath: Axes, data: xr.Dataset, one: panel.Series,
     error = data.input_spin_share_stderr.sel(place)
     style = {"color": one.look.colour, "linestyle": one.look.line}
     beneath.errorbar(one.at, share, error, marker=one.look.marker, markersize=4, **style)
-    expected = panel.prediction(data, **place, spin_share=np.clip(share.values, 0.0, 1.0))
+    expected = panel.prediction(data, **place, spin_share=share.values)
     main.plot(one.at, expected, zorder=1, **style)
