@@ -102,7 +102,7 @@ def test_a_drive_may_take_rotation_out(dimension):
     translational, rotational = theory.temperature_changes(1 - R, R, 0.9, 0.5, dimension)
     lost = dimension * translational, (2 * dimension - 3) * rotational
     assert lost[1] / sum(lost) == pytest.approx(-0.05, rel=1e-12)
-    assert theory.stationary_ratio(0.9, 0.5, dimension, spin_share=-1.0) == 0.0
+    assert theory.stationary_ratio(0.9, 0.5, 2, spin_share=-1.0) == 0.0
 
 
 @pytest.mark.parametrize("s", [None, 0, 0.5, 1])
