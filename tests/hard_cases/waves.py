@@ -39,9 +39,15 @@ class Fall:
         return self.y + self.A + (abs(self.v) + self.g * t + self.fastest) * (abs(self.phase) + t)
 
     def depth(self, t):
-        """How far below the floor the particle has been by t, if more than at first."""
-        least = min(self.gap(x) for x in [*self.stations(t), t])
-        return min(self.gap(0), mpmath.mpf(0)) - least
+        """How far below the floor the particle has been by t, if more than at first; of one that
+        sinks, so far that it shows."""
+        first = min(self.gap(0), mpmath.mpf(0))
+        least = min(self.gap(t), first)
+        for x in self.stations(t):
+            least = min(least, self.gap(x))
+            if least < first - self.A / 100:
+                break
+        return first - least
 
     def first(self):
         """When the particle meets the floor; one that is on it, or below by rounding, and leaves
