@@ -75,6 +75,7 @@ def scene_of(experiment, r, beta):
         walls=walls and (width, walls["restitution"], walls["roughness"]),
         shear=effects.get("shear", {}).get("velocity", 0.0),
         contact_time=effects.get("contact_time", {}).get("duration", 0.0),
+        wave=(floor or {}).get("wave", "sawtooth"),
     )
     return build(experiment, r, beta), world
 

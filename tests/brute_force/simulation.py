@@ -11,6 +11,16 @@ from typing import NamedTuple
 
 import numpy as np
 
+# Strokes that make up a period of the floor: when they begin and end, in periods, and at what
+# height, in amplitudes; of the sine, the whole period
+STROKES = {
+    "sawtooth": [(0.0, 1.0, 0.0, 1.0)],
+    "reversed_sawtooth": [(0.0, 0.1, 0.0, 1.0), (0.1, 1.0, 1.0, 0.0)],
+    "triangle": [(0.0, 0.5, 0.0, 1.0), (0.5, 1.0, 1.0, 0.0)],
+    "sine": [(0.0, 1.0, 0.0, 0.0)],
+}
+INSTANTS = np.linspace(0.0, 1.0, 2001) ** 2  # at which a floor without a formula is looked for
+
 
 class World(NamedTuple):
     """What is simulated; None and 0 stand for what is absent."""
@@ -24,6 +34,7 @@ class World(NamedTuple):
     walls: tuple[float, float, float] | None = None  # width, r, beta; along the first axis
     shear: float = 0.0  # U: velocity, along the first axis, of the image above along the second
     contact_time: float = 0.0
+    wave: str = "sawtooth"  # of the floor
 
 
 class Snapshot(NamedTuple):
@@ -54,7 +65,10 @@ class BruteForce:
             self.w[:, 3 - np.shape(spin)[1] :] = spin
         self.time = float(time)
         # the floor's stroke that is under way; at its very end the next one
-        self.stroke = math.floor(time / world.floor[1]) if world.floor else 0
+        self.strokes = STROKES[world.wave]
+        whole, share = divmod(time / world.floor[1] if world.floor else 0.0, 1.0)
+        begun = sum(share >= begin for begin, *_ in self.strokes)
+        self.stroke = int(whole) * len(self.strokes) + begun - 1
         self.last = np.full(self.number, -np.inf) if last_contact is None else last_contact.copy()
         self.pairs = np.array(list(itertools.combinations(range(self.number), 2))).reshape(-1, 2)
         self._fold()
@@ -91,8 +105,8 @@ class BruteForce:
                 self._resolve(kind, i, j)
                 return Event(self.time, kind, i, j)
             self._move(limit)
-            if self.world.floor and self.time >= self._stroke_end() - 1e-12:
-                self.time = self._stroke_end()
+            if self.world.floor and self.time >= self._stroke()[1] - 1e-12:
+                self.time = self._stroke()[1]
                 self.stroke += 1
 
     # ------------------------------------------------------------------ what comes next
@@ -102,14 +116,29 @@ class BruteForce:
         periods = [length for length in self.world.box if length is not None]
         fastest = 2.0 * np.sqrt((self.v**2).sum(axis=1).max()) + abs(self.world.shear) + 1e-12
         limit = 0.5 * min(periods) / fastest if periods else math.inf
-        return min(limit, self._stroke_end() - self.time) if self.world.floor else limit
+        return min(limit, self._stroke()[1] - self.time) if self.world.floor else limit
 
-    def _stroke_end(self):
-        return (self.stroke + 1) * self.world.floor[1]
+    def _stroke(self):
+        """(begin, end, height at its begin, speed) of the floor's stroke under way."""
+        amplitude, period = self.world.floor[:2]
+        whole, k = divmod(self.stroke, len(self.strokes))
+        begin, end, low, high = self.strokes[k]
+        speed = amplitude * (high - low) / ((end - begin) * period)
+        return (whole + begin) * period, (whole + end) * period, amplitude * low, speed
+
+    def _surface(self, wait):
+        """(height, speed) of the floor after a time, within the stroke that is under way."""
+        amplitude, period = self.world.floor[:2]
+        if self.world.wave == "sine":
+            angle = 2.0 * np.pi * (self.time + wait) / period
+            speed = amplitude * np.pi / period * np.sin(angle)
+            return amplitude * (1.0 - np.cos(angle)) / 2.0, speed
+        begin, _, low, speed = self._stroke()
+        return low + speed * (self.time + wait - begin), speed
 
     def _candidates(self, limit):
         """(wait, kind, i, j) of the earliest pair and of what each particle does at boundaries."""
-        found = list(self._boundary_events())
+        found = list(self._boundary_events(limit))
         if len(self.pairs):
             waits = self._pair_waits()
             first = int(np.argmin(waits))
@@ -140,19 +169,37 @@ class BruteForce:
             drift[0] += numbers[1] * world.shear
             yield shift, drift
 
-    def _boundary_events(self):
+    def _boundary_events(self, limit):
         world = self.world
         for i in range(self.number):
             if world.floor:
-                speed = world.floor[0] / world.floor[1]
-                gap = self.x[i, -1] - 1.0 - speed * (self.time - self.stroke * world.floor[1])
-                yield _fall(gap, self.v[i, -1] - speed, world.gravity), "floor", i, -1
+                yield self._floor_wait(i, limit), "floor", i, -1
             if world.walls:
                 x, v = self.x[i, 0], self.v[i, 0]
                 if v < 0.0:
                     yield max(0.0, (1.0 - x) / v), "left", i, -1
                 if v > 0.0:
                     yield max(0.0, (world.walls[0] - 1.0 - x) / v), "right", i, -1
+
+    def _floor_wait(self, i, limit):
+        """Time until particle i meets the floor, if that is before the limit."""
+        height, v, g = self.x[i, -1] - 1.0, self.v[i, -1], self.world.gravity
+        level, speed = self._surface(0.0)
+        if self.world.wave != "sine" or (height - level <= 1e-12 and v < speed):
+            return _fall(height - level, v - speed, g)
+
+        def gap(wait):
+            return height + v * wait - g * wait**2 / 2.0 - self._surface(wait)[0]
+
+        waits = limit * INSTANTS
+        below = np.flatnonzero(gap(waits[1:]) < 0.0)
+        if len(below) == 0:
+            return math.inf
+        above, below = waits[below[0]], waits[below[0] + 1]
+        for _ in range(60):
+            middle = 0.5 * (above + below)
+            above, below = (above, middle) if gap(middle) < 0.0 else (middle, below)
+        return below
 
     # ------------------------------------------------------------------ what happens
 
@@ -182,8 +229,7 @@ class BruteForce:
         if kind == "pair":
             self._collide(i, j)
         elif kind == "floor":
-            amplitude, period, r, beta = world.floor
-            self._bounce(i, self.dimension - 1, 1.0, amplitude / period, r, beta)
+            self._bounce(i, self.dimension - 1, 1.0, self._surface(0.0)[1], *world.floor[2:])
         else:
             self._bounce(i, 0, 1.0 if kind == "left" else -1.0, 0.0, *world.walls[1:])
 
