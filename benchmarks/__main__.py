@@ -11,7 +11,7 @@ import sys
 import time
 from pathlib import Path
 
-from benchmarks import kernel, machine, pipeline, plot, yardstick
+from benchmarks import generality, kernel, machine, pipeline, plot, yardstick
 from benchmarks.report import report
 from benchmarks.scenes import CASES
 from roughgas.atomic import write_text
@@ -31,18 +31,22 @@ def main() -> None:
         print(f"{time.perf_counter() - begin:6.0f} s  {what}", file=sys.stderr, flush=True)
 
     numbers = [n for n in kernel.NUMBERS if not quick or n <= QUICK]
-    plain, timings, overhead = [], [], None
+    plain, comparisons, timings, overhead = [], [], [], None
     if not quick:
         say("start-up of a job, and the pipeline")
         overhead = pipeline.measure()
     for number in yardstick.NUMBERS:
         say(f"yardstick, N = {number}")
         plain.append(yardstick.measure(number))
+    for case in generality.CASES:
+        for number in generality.NUMBERS:
+            say(f"the kernel beside a program by hand, {case.title}, N = {number}")
+            comparisons.append(generality.measure(case, number))
     for case in CASES:
         for number in numbers:
             say(f"{case.title}, N = {number}")
             timings.append(kernel.measure(case, number))
-    page = report(timings, plain, overhead, machine.description())
+    page = report(timings, plain, comparisons, overhead, machine.description())
     print(page)
     if not quick:
         write_text(DOCS / "benchmarks.md", page)
