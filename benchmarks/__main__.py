@@ -2,21 +2,20 @@
 
     make bench          or          python -m benchmarks [--quick]
 
-Prints the table, and writes docs/benchmarks.md and docs/benchmarks.png, in less than ten minutes on
-two cores. With --quick up to 10,000 particles, without the pipeline, and nothing is written.
+Prints the table, and writes docs/benchmarks.md, docs/benchmarks.png and docs/effects_cost.png, in
+less than ten minutes on two cores. With --quick up to 10,000 particles, without the pipeline and
+the cost of effects, and nothing is written.
 """
 
 import argparse
 import sys
 import time
-from pathlib import Path
 
-from benchmarks import generality, kernel, machine, pipeline, plot, yardstick
+from benchmarks import effects, generality, kernel, machine, pipeline, plot, yardstick
 from benchmarks.report import report
-from benchmarks.scenes import CASES
+from benchmarks.scenes import CASES, DOCS
 from roughgas.atomic import write_text
 
-DOCS = Path(__file__).parent.parent / "docs"
 QUICK = 10_000  # particles at most
 
 
@@ -31,10 +30,12 @@ def main() -> None:
         print(f"{time.perf_counter() - begin:6.0f} s  {what}", file=sys.stderr, flush=True)
 
     numbers = [n for n in kernel.NUMBERS if not quick or n <= QUICK]
-    plain, comparisons, timings, overhead = [], [], [], None
+    plain, comparisons, timings, costs, overhead = [], [], [], [], None
     if not quick:
         say("start-up of a job, and the pipeline")
         overhead = pipeline.measure()
+        say("effects, one by one")
+        costs = effects.measure()
     for number in yardstick.NUMBERS:
         say(f"yardstick, N = {number}")
         plain.append(yardstick.measure(number))
@@ -46,11 +47,12 @@ def main() -> None:
         for number in numbers:
             say(f"{case.title}, N = {number}")
             timings.append(kernel.measure(case, number))
-    page = report(timings, plain, comparisons, overhead, machine.description())
+    page = report(timings, plain, comparisons, costs, overhead, machine.description())
     print(page)
     if not quick:
         write_text(DOCS / "benchmarks.md", page)
         plot.draw(timings, plain, DOCS / "benchmarks.png")
+        plot.draw_effects(costs, DOCS / "effects_cost.png")
     say("done")
 
 

@@ -3,7 +3,8 @@
 import statistics
 from collections.abc import Iterable, Sequence
 
-from benchmarks import generality
+from benchmarks import effects, generality
+from benchmarks.effects import Cost
 from benchmarks.generality import Comparison
 from benchmarks.kernel import LONGEST, RUNS, WARM_UP, Timing
 from benchmarks.yardstick import Rate
@@ -49,8 +50,16 @@ all, below 1 the kernel is the faster one. The kernel always keeps an account of
 collisions dissipate; by hand it can be left out. The gases are elastic and perfectly rough.
 """.strip()
 
+EFFECTS = f"""
+Each effect is added alone to the barest gas, smooth disks in a periodic box; what a scene does
+without is compiled away. N = {effects.PARTICLES}, packing 0.2 (the bed finds its own), collisions
+per second of CPU, medians of {effects.RUNS} runs in turns of {effects.LENGTH:,} collisions, with
+the slowest and the fastest. `relative` is the time per collision over that of the barest gas;
+`hits` of walls or floor, renewals and stale entries per collision are as above.
+""".strip()
 
-def report(timings, yardstick, comparisons, overhead, machine) -> str:
+
+def report(timings, yardstick, comparisons, costs, overhead, machine) -> str:
     """The whole page."""
     parts = [
         "# Benchmarks",
@@ -67,6 +76,10 @@ def report(timings, yardstick, comparisons, overhead, machine) -> str:
         GENERALITY,
         generality_table(comparisons),
     ]
+    if costs:
+        parts += ["## What each effect costs", "![Collisions per second with each effect]"]
+        parts[-1] += "(effects_cost.png)"
+        parts += [effects_table(costs), EFFECTS]
     if overhead:
         rows = [(words, format(overhead[key], form)) for key, words, form in OVERHEAD]
         parts += ["## The pipeline", table(["", "measured"], rows)]
@@ -113,6 +126,18 @@ def generality_table(comparisons: Sequence[Comparison]) -> str:
             found = generality.ratios(one.kernel, beside)
             row += [f"{x:.3f}" for x in (statistics.median(found), found[0], found[-1])]
         rows.append(row)
+    return table(heads, rows)
+
+
+def effects_table(costs: Sequence[Cost]) -> str:
+    """One row a scene."""
+    heads = ["scene", "collisions/s", "slowest", "fastest", "relative"]
+    heads += ["hits", "renewals", "stale"]
+    rows = []
+    for one in costs:
+        rates = map(_short, (one.rate, min(one.rates), max(one.rates)))
+        shares = [f"{count / one.counts.collisions:.2f}" for count in one.counts[1:]]
+        rows.append([one.label, *rates, f"{statistics.median(one.relative):.2f}", *shares])
     return table(heads, rows)
 
 
