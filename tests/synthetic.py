@@ -44,7 +44,7 @@ def reduced(
     places = dict(zip(axes, grids, strict=True))
     exact = shift(places["r"], places["beta"], *grids[:-2])
     if "input_spin_share" in others:
-        places["spin_share"] = np.clip(others["input_spin_share"], 0, 1)
+        places["spin_share"] = others["input_spin_share"]
     exact = exact + predicted_ratio(attributes | places, places["r"], places["beta"])
     rng = np.random.default_rng(len(experiment))
     noise = rng.normal(0, error * np.sqrt(seeds), (*exact.shape, seeds))

@@ -61,14 +61,18 @@ def deviation(data: xr.Dataset) -> Sample:
     return sample(data.deviation, data.error, data.attrs["freedom"])
 
 
+LEGAL_SHARES = (-1.0, 2.0)
+"""Of rotation in what sources put in, as theory takes them."""
+
+
 def deviation_at_shares(data: xr.Dataset) -> Sample:
     """R - the rate equations for a drive with the share of rotation that the energy books say.
 
-    Shares outside of [0, 1], of sources that take out one motion, are taken as the nearer of both.
+    It lies outside of [0, 1] where sources take out some of one motion.
     """
     share, uncertainty = spin_shares(data)
     measured, step = np.nan_to_num(share.values), np.nan_to_num(uncertainty.values)
-    ends = (np.clip(end, 0, 1) for end in (measured - step, measured, measured + step))
+    ends = (np.clip(end, *LEGAL_SHARES) for end in (measured - step, measured, measured + step))
     low, expected, high = (theory_of(data, spin_share=end) for end in ends)
     spread = np.where(np.isfinite(uncertainty), np.fmax(high - expected, expected - low), np.nan)
     values = (data.R - expected).where(np.isfinite(share))

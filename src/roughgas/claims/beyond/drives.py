@@ -31,9 +31,9 @@ def follows_its_share(driven: xr.Dataset) -> Finding:
     shares, _ = spin_shares(driven)
     reason = f"{found.reason} The share is from {float(shares.min()):.3f} to "
     reason += f"{float(shares.max()):.3f}."
-    outside = int(((shares < 0) | (shares > 1)).sum())
-    if outside:
-        reason += f" At {outside} {points(outside)} it lies outside of [0, 1]; the end is taken."
+    taken = int((shares < 0).sum())
+    if taken:
+        reason += f" At {taken} {points(taken)} rotation is taken out."
     return found._replace(reason=reason)
 
 
