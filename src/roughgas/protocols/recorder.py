@@ -12,6 +12,8 @@ from roughgas.kernel.state import (
     BASE,
     COLLISIONS,
     EXPONENT,
+    LAST_FIRST,
+    LAST_SECOND,
     NOW,
     ORIGIN,
     SPAN,
@@ -93,6 +95,11 @@ def _remedy(effects):
 
 
 def _collapsing(state):
-    """Numbers of the particles whose last contact is simultaneous with the present instant."""
+    """Numbers of the particles whose last contact is simultaneous with the present instant.
+
+    Where the gas has just been refreshed all are brought to it: then those of the last contact.
+    """
     last = state.clock[NOW] - INSTANT * state.clock[SPAN]
-    return np.sort(state.label[state.trajectory[:, -1] >= last])
+    found = state.label[state.trajectory[:, -1] >= last]
+    refreshed = len(found) == len(state.label)
+    return np.sort(state.counts[[LAST_FIRST, LAST_SECOND]] if refreshed else found)
