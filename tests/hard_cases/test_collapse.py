@@ -163,6 +163,41 @@ def test_three_on_a_line(margins):
     margins.at_most("difference of velocities afterwards, in a/T", spread, 3e-10, **tried)
 
 
+@hard_case(
+    "three particles, the outer ones spinning against each other",
+    "nearly smooth particles that spin fast draw the one between them in, again and again: they "
+    "collapse at an r at which those that do not spin would part after a few contacts, and a gas "
+    "whose spins outlive its velocities does so where nobody expects it",
+)
+def test_spin_draws_three_particles_into_a_collapse(margins):
+    """At r = 0.6 and beta = -0.95, where on a line and without spin 0.072 would be needed.
+
+    First seen in a cooling gas of spheres at r = 0.8, beta = -0.95, R = 0.998.
+    """
+    angles = np.radians([115.0, 120.0, 130.0, 140.0, 150.0])
+    spinning = [squeezed(angle, -30.0) for angle in angles]
+    still = [squeezed(angle, 0.0) for angle in angles]
+    tried = {"tried": len(angles), "unit": "angles"}
+    stopped = np.mean([collapsed for collapsed, _ in spinning])
+    margins.at_least("share that is noticed as a collapse", stopped, 1.0, **tried)
+    contacts = max(contacts for _, contacts in spinning)
+    margins.at_most("contacts made until it is noticed", contacts, 5000, **tried)
+    margins.at_most("share without spin", np.mean([c for c, _ in still]), 0.0, **tried)
+    margins.at_most("their contacts", max(contacts for _, contacts in still), 20, **tried)
+
+
+def squeezed(angle, spin):
+    """(whether they collapse, contacts) of three disks that meet at an angle."""
+    scene, _ = begin(settings("gas", 3, [60, 60]), 0.6, -0.95)
+    across, along = 2.001 * np.sin(angle / 2), 2.001 * np.cos(angle / 2)
+    position = 30.0 + np.array([[-across, -along], [0.0, 0.0], [across, -along]])
+    velocity = np.array([[0.1, 0.0], [0.0, -0.2], [-0.1, 0.0]])
+    state = new_state(scene, position, velocity, np.array([[spin], [0.0], [-spin]]))
+    row = np.empty((1, len(columns(2, True))))
+    collapsed = record(state, scene, Plan(50.0, UNLIMITED, 0), row) == 0
+    return collapsed, int(state.counts[COLLISIONS])
+
+
 PLACES, VELOCITIES = (50.0, 53.0, 56.0), (1.0, 0.125, -0.875)
 
 
