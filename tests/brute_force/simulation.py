@@ -11,6 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from brute_force.kicks import Drive, Kicks
+
 
 class World(NamedTuple):
     """What is simulated; None and 0 stand for what is absent."""
@@ -19,6 +21,8 @@ class World(NamedTuple):
     r: float
     beta: float
     q: float | None  # None: particles do not spin
+    mu: float | None = None  # coefficient of friction; None: contacts never slide
+    thermostat: tuple[float, float, float] | None = None  # power, share of spin, interval
     gravity: float = 0.0  # along the last axis
     floor: tuple[float, float, float, float] | None = None  # amplitude, period, r, beta
     walls: tuple[float, float, float] | None = None  # width, r, beta; along the first axis
@@ -33,11 +37,12 @@ class Snapshot(NamedTuple):
     position: np.ndarray  # (N, D), in any image
     velocity: np.ndarray
     spin: np.ndarray | None  # (N, 2D - 3)
+    drive: Drive | None = None
 
 
 class Event(NamedTuple):
     time: float
-    kind: str  # pair, floor, left, right
+    kind: str  # pair, floor, left, right, kick
     i: int
     j: int  # -1: none
 
@@ -45,7 +50,7 @@ class Event(NamedTuple):
 class BruteForce:
     """A simulation under way; `step` carries out one event, `run` so many pair collisions."""
 
-    def __init__(self, world, position, velocity, spin, time=0.0, last_contact=None):
+    def __init__(self, world, position, velocity, spin, time=0.0, last_contact=None, drive=None):
         self.world = world
         self.x, self.v = np.array(position, float), np.array(velocity, float)
         self.number, self.dimension = self.x.shape
@@ -57,6 +62,8 @@ class BruteForce:
         self.stroke = math.floor(time / world.floor[1]) if world.floor else 0
         self.last = np.full(self.number, -np.inf) if last_contact is None else last_contact.copy()
         self.pairs = np.array(list(itertools.combinations(range(self.number), 2))).reshape(-1, 2)
+        drawn = drive and world.thermostat
+        self.kicks = Kicks(drawn, world.q, self.dimension, drive) if drawn else None
         self._fold()
 
     def run(self, collisions):
@@ -114,6 +121,8 @@ class BruteForce:
             waits = self._pair_waits()
             first = int(np.argmin(waits))
             found.append((waits[first], "pair", *map(int, self.pairs[first])))
+        if self.kicks:
+            found.append(self.kicks.next(self.time))
         return [event for event in found if event[0] <= limit]
 
     def _pair_waits(self):
@@ -179,7 +188,9 @@ class BruteForce:
 
     def _resolve(self, kind, i, j):
         world = self.world
-        if kind == "pair":
+        if kind == "kick":
+            self.kicks.give(i, self.v, self.w)
+        elif kind == "pair":
             self._collide(i, j)
         elif kind == "floor":
             amplitude, period, r, beta = world.floor
@@ -207,8 +218,9 @@ class BruteForce:
         if world.q is not None:
             q, beta = world.q, world.beta
             v_t, v_r = v - v_n, -np.cross(self.w[i] + self.w[j], n)
-            push = push + q * (1.0 + beta) / (2.0 * q + 2.0) * (v_t + v_r)
-            turn = (1.0 + beta) / (2.0 * q + 2.0) * np.cross(n, v_t + v_r)
+            along = self._rubbed(push, q * (1.0 + beta) / (2.0 * q + 2.0) * (v_t + v_r))
+            push = push + along
+            turn = np.cross(n, along) / q
             self.w[i] += turn
             self.w[j] += turn
         self.v[i] -= push[: self.dimension]
@@ -226,9 +238,17 @@ class BruteForce:
         push = (1.0 + r) * g_n
         if self.world.q is not None:
             q = self.world.q
-            push = push + q * (1.0 + beta) / (1.0 + q) * (g - g_n)
-            self.w[i] += (1.0 + beta) / (1.0 + q) * np.cross(n, g - g_n)
+            along = self._rubbed(push, q * (1.0 + beta) / (1.0 + q) * (g - g_n))
+            push = push + along
+            self.w[i] += np.cross(n, along) / q
         self.v[i] -= push[: self.dimension]
+
+    def _rubbed(self, push, along):
+        """The tangential impulse that would stick, cut where Coulomb's friction gives no more."""
+        if self.world.mu is None:
+            return along
+        most, size = self.world.mu * math.sqrt(push @ push), math.sqrt(along @ along)
+        return along * (most / size) if size > most else along
 
 
 def _in_space(vector):
