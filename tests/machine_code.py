@@ -1,20 +1,66 @@
-"""The machine code of the kernel's entry, as it lies in the cache of compiled kernels."""
+"""The machine code of a scene, as numba keeps it in its cache; and the same compiled where nothing
+that the scene does without could be compiled at all.
+
+As a program, `machine_code.py KERNEL [EFFECT ...]` prints what the kernel of that name (see
+brute_force.scenes) is compiled to while every function of all absent effects, and of those named,
+is poisoned.
+"""
+
+import hashlib
+import json
+import sys
 
 import llvmlite.binding as llvm
+import numba
+from brute_force import begin, run, settings
 from numba.core.registry import cpu_target
 
+from roughgas.effects import KINDS
+from roughgas.kernel.jit import jit
 from roughgas.kernel.record import record
 
 
-def machine_code(scene):
-    """Bytes of the instructions and constants of the entry that was compiled for a scene last run.
+def sections(kernel):
+    """The instructions and constants of a kernel, as bytes by the name of their section.
 
-    The names in it are left out: numba counts the functions that it compiles.
+    Without texts, which hold names of functions, into which numba writes how many it has compiled.
     """
-    signature = next(one for one in reversed(record.signatures) if str(one[1]) == scene)
-    cache = record._cache
-    key = cache._index_key(signature, cpu_target.target_context.codegen())
-    (_, _, (compiled, _)), *_ = cache._cache_file.load(signature, key)
-    sections = llvm.ObjectFileRef.from_data(compiled).sections()
-    found = {one.name(): one.data() for one in sections}
-    return {k: v for k, v in found.items() if k and k.startswith((".text", ".rodata"))}
+    scene, state = begin(settings(kernel), 0.9, -1.0)
+    run(state, scene, 0)
+    wanted = numba.typeof(state), numba.typeof(scene)
+    signature = next(one for one in record.signatures if one[:2] == wanted)
+    key = record._cache._index_key(signature, cpu_target.target_context.codegen())
+    (_, _, (compiled, _)), *_ = record._cache._cache_file.load(key)
+    found = {one.name(): one.data() for one in llvm.ObjectFileRef.from_data(compiled).sections()}
+    kinds = (b".text", b".ltext", b".rodata.cst")
+    return {name.decode(): bits for name, bits in found.items() if name and name.startswith(kinds)}
+
+
+def checksums(kernel):
+    """The same, as a length and a checksum of each section."""
+    return {
+        name: [len(bits), hashlib.sha256(bits).hexdigest()]
+        for name, bits in sorted(sections(kernel).items())
+    }
+
+
+def poison(effect):
+    """Replace every function in an effect's file by one that neither compiles nor runs."""
+
+    @jit
+    def poisoned(*arguments):
+        return no_such_thing(*arguments)  # noqa: F821
+
+    module = sys.modules[KINDS[effect].__module__]
+    for name, value in list(vars(module).items()):
+        if callable(value) and not isinstance(value, type):
+            setattr(module, name, poisoned)
+
+
+if __name__ == "__main__":
+    kernel, *others = sys.argv[1:]
+    present = settings(kernel)["effects"]
+    for effect in KINDS:
+        if effect not in present or effect in others:
+            poison(effect)
+    print(json.dumps(checksums(kernel)))

@@ -70,9 +70,12 @@ def check(experiment: Mapping[str, Any]) -> None:
 
 
 def check_company(scene: Scene, experiment: Mapping[str, Any]) -> None:
-    """Raise InputError where a single particle would rest in its box, and have no energy."""
+    """Raise InputError where a single particle would rest in its box, and have no energy, or have
+    nobody to be kicked with."""
     if experiment["particles"] == 1 and scene.effects.gravity is None:
         raise InputError("particles", 1, "be at least 2 where there is no floor to meet")
+    if experiment["particles"] == 1 and scene.effects.thermostat is not None:
+        raise InputError("particles", 1, "be at least 2 where a thermostat kicks pairs")
 
 
 def is_closed(effects: Effects) -> bool:

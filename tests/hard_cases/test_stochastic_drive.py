@@ -39,7 +39,7 @@ def test_R_converges_as_kicks_shrink(margins):
     Six comparisons: one of them beyond 4 by chance once in 3000 choices of seeds. What is large is
     large by the physics of strong kicks; so the difference itself is bounded, too.
     """
-    time = margins.size(quick=1000, full=10_000)
+    time = margins.size(quick=1000, full=4000)
     sigmas, differences = [], []
     for share in (0.0, 0.5):
         values, errors = np.transpose([measured(dt, share, time) for dt in INTERVALS])
@@ -68,7 +68,7 @@ def test_without_kicks_spread_over_time(without):
 )
 def test_a_gas_kicked_all_at_once_is_seen_at_its_hottest(margins):
     """R drops where the kicks go into translation alone, and rises where spins get their half."""
-    time = margins.size(quick=1000, full=10_000)
+    time = margins.size(quick=1000, full=4000)
     biases, sigmas = [], []
     for share, sign in ((0.0, -1.0), (0.5, 1.0)):
         (true, error), (found, other) = (measured(4.0, share, time, once) for once in (False, True))
