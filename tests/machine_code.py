@@ -44,7 +44,7 @@ def checksums(kernel):
 
 
 def absent(scene):
-    """The modules of roughgas.effects that are of no effect in the scene, nor used by one that is."""
+    """The modules of roughgas.effects of no effect in the scene, nor used by one that is there."""
     there = {type(effect).__module__ for effect in scene.effects if effect is not None}
     there |= {
         getattr(value, "__module__", "")
