@@ -2,6 +2,7 @@
 #
 #   snakemake -j2 figures                       the four figures of the paper, a table, its claims
 #   snakemake -j2 figures --config scale=small  the same in a minute, with wide error bars
+#   snakemake -j2 extensions                    beyond the paper: spheres, friction, other drives ...
 #   snakemake -j1 showcase                      a large cooling gas forms clusters: a movie
 #   snakemake -j2 accuracy                      what the next digit costs, in CPU seconds
 #   snakemake -j2 coverage                      whether error bars hold the truth as often as they say
@@ -22,7 +23,7 @@ SCALE = config["scale"]
 
 wildcard_constraints:
     scale="[^/]+",
-    experiment=r"(?!(?:accuracy|coverage)\.)[^/]+",
+    experiment=EXPERIMENT + VARIANT,
     r="[^/]+",
     beta="[^/]+",
     seed="[^/]+",
@@ -34,10 +35,12 @@ wildcard_constraints:
     family="[^/]+",
 
 
+include: "rules/compile.smk"
 include: "rules/simulate.smk"
 include: "rules/planning.smk"
 include: "rules/reduce.smk"
 include: "rules/figures.smk"
+include: "rules/extensions.smk"
 include: "rules/showcase.smk"
 include: "rules/hard_cases.smk"
 include: "rules/accuracy.smk"
@@ -55,6 +58,7 @@ rule figures:
 rule everything:
     input:
         rules.figures.input,
+        rules.extensions.input,
         reduced(SCALE, config["experiments"]),
         rules.showcase.input,
         rules.hard_cases.input,

@@ -2,21 +2,20 @@
 
     make bench          or          python -m benchmarks [--quick]
 
-Prints the table, and writes docs/benchmarks.md and docs/benchmarks.png, in less than ten minutes on
-two cores. With --quick up to 10,000 particles, without the pipeline, and nothing is written.
+Prints the table, and writes docs/benchmarks.md, docs/benchmarks.png and docs/effects_cost.png, in
+less than ten minutes on two cores. With --quick up to 10,000 particles, without the pipeline and
+the cost of effects, and nothing is written.
 """
 
 import argparse
 import sys
 import time
-from pathlib import Path
 
-from benchmarks import kernel, machine, pipeline, plot, yardstick
+from benchmarks import effects, generality, kernel, machine, pipeline, plot, yardstick
 from benchmarks.report import report
-from benchmarks.scenes import CASES
+from benchmarks.scenes import CASES, DOCS
 from roughgas.atomic import write_text
 
-DOCS = Path(__file__).parent.parent / "docs"
 QUICK = 10_000  # particles at most
 
 
@@ -31,22 +30,29 @@ def main() -> None:
         print(f"{time.perf_counter() - begin:6.0f} s  {what}", file=sys.stderr, flush=True)
 
     numbers = [n for n in kernel.NUMBERS if not quick or n <= QUICK]
-    plain, timings, overhead = [], [], None
+    plain, comparisons, timings, costs, overhead = [], [], [], [], None
     if not quick:
         say("start-up of a job, and the pipeline")
         overhead = pipeline.measure()
+        say("effects, one by one")
+        costs = effects.measure()
     for number in yardstick.NUMBERS:
         say(f"yardstick, N = {number}")
         plain.append(yardstick.measure(number))
+    for case in generality.CASES:
+        for number in generality.NUMBERS:
+            say(f"the kernel beside a program by hand, {case.title}, N = {number}")
+            comparisons.append(generality.measure(case, number))
     for case in CASES:
         for number in numbers:
             say(f"{case.title}, N = {number}")
             timings.append(kernel.measure(case, number))
-    page = report(timings, plain, overhead, machine.description())
+    page = report(timings, plain, comparisons, costs, overhead, machine.description())
     print(page)
     if not quick:
         write_text(DOCS / "benchmarks.md", page)
         plot.draw(timings, plain, DOCS / "benchmarks.png")
+        plot.draw_effects(costs, DOCS / "effects_cost.png")
     say("done")
 
 

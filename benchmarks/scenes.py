@@ -18,7 +18,8 @@ from roughgas.kernel.record import Plan, columns, record
 from roughgas.kernel.state import NOW
 from roughgas.scene import build
 
-CONFIGURATION = Path(__file__).parent.parent / "config.yaml"
+ROOT = Path(__file__).parent.parent
+CONFIGURATION, DOCS = ROOT / "config.yaml", ROOT / "docs"
 SETTLING = 500  # T, a whole number of the floor's strokes, and of boxes that the images slide by
 COPIES = {10_000: 5, 100_000: 10, 1_000_000: 50}  # of a smaller box, along each side
 KICK = 0.1  # relative change of a velocity that makes the copies go different ways

@@ -17,6 +17,10 @@ POINT = "results/{scale}/{experiment}/r{r}/beta{beta}/seed{seed}.nc"
 PILOT = "results/{scale}/{experiment}/r{r}/beta{beta}/pilot.json"
 SEEDS = "results/{scale}/{experiment}/r{r}/beta{beta}/seeds"  # as many as a target needs
 REDUCED = "results/{scale}/{experiment}.nc"
+# An experiment as a whole, or one of its variants: as wildcards, not what has rules of its own, nor
+# the folders of points.
+EXPERIMENT = r"(?!(?:accuracy|coverage)\.|(?:accuracy|showcase|hard_cases)/)[^/]+"
+VARIANT = r"(?:/(?!(?:r|beta|seed)[-+.\d])[^/]+)?"
 # rules call the `roughgas` beside this snakemake, wherever it was started from
 os.environ["PATH"] = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
 FIGURES = {}  # name -> the experiments that it shows; every file of figures adds its own
@@ -41,14 +45,21 @@ def checked_config(path, changes):
 
 @functools.cache
 def settings(scale, experiment):
-    """The settings of an experiment at a scale, found to be such as can be simulated."""
-    with one_line(REDUCED.format(scale=scale, experiment=experiment)):
+    """The settings of an experiment, or of a variant, at a scale, found to be such as can be
+    simulated."""
+    with one_line(f"results/{scale}/{experiment}"):
         found = roughgas.config.experiment(config, experiment, scale)
-    with one_line(f"config.yaml: experiments.{experiment} at scale {scale}"):
-        from roughgas.scene import check
+    for name, variant in roughgas.config.every_variant(experiment, found).items():
+        with one_line(f"config.yaml: experiments.{name} at scale {scale}"):
+            from roughgas.scene import check
 
-        check(found)
+            check(variant)
     return found
+
+
+def variants(scale, experiment):
+    """The names of an experiment's variants: its own where its sweep has no third axis."""
+    return roughgas.config.variants(experiment, settings(scale, experiment))
 
 
 def points_of_experiment(wildcards):
@@ -58,16 +69,18 @@ def points_of_experiment(wildcards):
     if "target_stderr" in found:
         return swept(SEEDS, scale, experiment)
     return [
-        POINT.format(scale=scale, experiment=experiment, r=r, beta=beta, seed=seed)
+        POINT.format(scale=scale, experiment=variant, r=r, beta=beta, seed=seed)
+        for variant in variants(scale, experiment)
         for r, beta, seed in roughgas.config.sweep(found)
     ]
 
 
 def swept(pattern, scale, experiment):
-    """A file, or a folder, for each (r, beta) in the sweep of an experiment."""
+    """A file, or a folder, for each variant and each (r, beta) in the sweep of an experiment."""
     axes = settings(scale, experiment)["sweep"]
     return [
-        pattern.format(scale=scale, experiment=experiment, r=r, beta=beta)
+        pattern.format(scale=scale, experiment=variant, r=r, beta=beta)
+        for variant in variants(scale, experiment)
         for r in axes["r"]
         for beta in axes["beta"]
     ]
@@ -88,8 +101,13 @@ def data_of_figure(wildcards):
 
 
 def data_of_paper(wildcards):
-    shown = [experiment for experiments in PAPER.values() for experiment in experiments]
-    return reduced(wildcards.scale, dict.fromkeys(shown))
+    return reduced(wildcards.scale, shown_in(PAPER))
+
+
+def shown_in(figures):
+    """The experiments that some figures show, each once."""
+    shown = [experiment for experiments in figures.values() for experiment in experiments]
+    return list(dict.fromkeys(shown))
 
 
 def drawn(figures, kinds=(".pdf", ".png")):

@@ -1,4 +1,4 @@
-# The paper: its four figures, one table, and the verdict on what it claims.
+# The paper: its four figures, one table, and the verdict on what it claims. How any figure is drawn.
 PAPER = {
     "fig1a": ["vibrated"],
     "fig1b": [
@@ -32,7 +32,7 @@ rule figure:
 
 rule table:
     input:
-        sources("reduce"),
+        sources("table"),
         data=data_of_paper,
     output:
         "results/{scale}/R.csv",

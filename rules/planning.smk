@@ -12,6 +12,12 @@ def pilots(wildcards):
     return [file for name in config["experiments"] for file in swept(PILOT, wildcards.scale, name)]
 
 
+def settings_without_lengths(wildcards):
+    """The settings of points but for run lengths and targets, on which no pilot depends, as JSON."""
+    found = settings(wildcards.scale, wildcards.experiment)
+    return roughgas.config.as_text(roughgas.config.pilot_settings(found))
+
+
 def planned_data(wildcards):
     return reduced(wildcards.scale, PLANNED)
 

@@ -1,4 +1,4 @@
-# From points to one dataset an experiment, over r, beta and seed.
+# From points to one dataset an experiment, over r, beta and seed, and over its variants.
 
 
 rule reduce:
@@ -11,6 +11,8 @@ rule reduce:
         "logs/{scale}/{experiment}/reduced.log",
     benchmark:
         "logs/{scale}/{experiment}/reduced.tsv"
+    wildcard_constraints:
+        experiment=EXPERIMENT,
     message:
         "reduce {wildcards.experiment}"
     shell:

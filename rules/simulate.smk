@@ -3,7 +3,6 @@
 # by one job (see config.yaml); any other seed is a job of its own.
 import re
 
-FIRST = 10**12  # more urgent than any point
 RUN = (
     "roughgas run {wildcards.experiment} --scale {wildcards.scale} --r={wildcards.r}"
     " --beta={wildcards.beta} --seed {params.seeds} --settings {params.settings:q}"
@@ -11,28 +10,11 @@ RUN = (
 )
 
 
-def kernel_of_point(wildcards):
-    """What says that the kernel of a point is compiled; ends the workflow for an illegal point."""
-    with one_line(f"results/{wildcards.scale}/{wildcards.experiment}"):
-        roughgas.config.restitution(wildcards.r)
-        roughgas.config.roughness(wildcards.beta)
-        if "seed" in wildcards.keys():
-            roughgas.config.seed(wildcards.seed)
-    settings(wildcards.scale, wildcards.experiment)
-    return KERNEL.format(**wildcards)
-
-
 def settings_of_points(wildcards):
     """All in config.yaml that the points of an experiment depend on, whichever they are, as JSON:
     what else changes there does not touch them."""
     found = settings(wildcards.scale, wildcards.experiment)
     return roughgas.config.as_text(roughgas.config.point_settings(found))
-
-
-def settings_without_lengths(wildcards):
-    """The same but for run lengths and targets, on which neither kernel nor pilots depend."""
-    found = settings(wildcards.scale, wildcards.experiment)
-    return roughgas.config.as_text(roughgas.config.pilot_settings(found))
 
 
 def seeds_of_job(wildcards, output):
@@ -52,34 +34,6 @@ def urgency(wildcards):
 def one_of(labels):
     """The wildcard constraint for one of these labels."""
     return "|".join(re.escape(str(label)) for label in labels)
-
-
-rule compile_kernel:
-    # Before the fan-out, and one at a time (see the profile): two compilers upset numba's cache.
-    # Its output also stands for all sources that shape a point. They are inputs here, and not once
-    # more of each of a thousand points: at every step the scheduler looks at every input of every
-    # job, which took it longer than the points take. So it holds their checksums: were it the same
-    # after an edit, points that an interrupted run has left as they were would pass for new.
-    input:
-        sources("simulate", "dataset"),
-        "src/roughgas/cli/run.py",
-        "src/roughgas/config/labels.py",
-    output:
-        KERNEL,
-    log:
-        "logs/{scale}/{experiment}/r{r}/compiled.log",
-    benchmark:
-        "logs/{scale}/{experiment}/r{r}/compiled.tsv"
-    priority: FIRST
-    resources:
-        compiling=1,
-    params:
-        settings=settings_without_lengths,
-    message:
-        "compile the kernel of {wildcards.experiment} at r = {wildcards.r}"
-    shell:
-        "roughgas compile {wildcards.experiment} --scale {wildcards.scale} --r={wildcards.r}"
-        " --settings {params.settings:q} --checked > {log} 2>&1; cksum {input} > {output}"
 
 
 rule point:
@@ -102,7 +56,8 @@ rule point:
 
 
 for experiment in config["experiments"]:
-    axes = roughgas.config.experiment(config, experiment, SCALE)["sweep"]
+    found = roughgas.config.experiment(config, experiment, SCALE)
+    axes = found["sweep"]
     for seeds in roughgas.config.seed_blocks(axes.get("seeds", 0), config):
         together = f"{experiment}_seeds_{seeds[0]}_to_{seeds[-1]}"
 
@@ -110,7 +65,7 @@ for experiment in config["experiments"]:
             name:
                 together
             input:
-                KERNEL,
+                kernel_of_point,
             output:
                 [POINT.replace("{seed}", seed) for seed in seeds],
             log:
@@ -119,7 +74,7 @@ for experiment in config["experiments"]:
                 f"logs/{{scale}}/{{experiment}}/r{{r}}/beta{{beta}}/seeds{seeds[0]}-{seeds[-1]}.tsv"
             wildcard_constraints:
                 scale=SCALE,
-                experiment=experiment,
+                experiment=one_of(roughgas.config.variants(experiment, found)),
                 r=one_of(axes["r"]),
                 beta=one_of(axes["beta"]),
             priority: urgency

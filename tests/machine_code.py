@@ -50,6 +50,7 @@ def absent(scene):
         getattr(value, "__module__", "")
         for module in there
         for value in vars(sys.modules[module]).values()
+        if not isinstance(value, type)
     }
     every = {name for name in sys.modules if name.startswith("roughgas.effects.")}
     return every - there - {"roughgas.effects.settings"}

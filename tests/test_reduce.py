@@ -9,7 +9,8 @@ import pytest
 from roughgas import theory
 from roughgas.dataset import Point, write_point
 from roughgas.errors import InputError
-from roughgas.reduce import predicted_ratio, read_reduced, reduce_points, write_table
+from roughgas.reduce import predicted_ratio, read_reduced, reduce_points
+from roughgas.table import write_table
 
 ABOUT = {"experiment": "sheared", "scale": "small", "dimension": 2, "inertia": 0.5, "particles": 40}
 

@@ -75,6 +75,7 @@ VARIABLES = {
         ("source", "motion"),
         over_seeds="",
     ),
+    "input_spin_share": Variable("share of rotation in the energy that all drives have put in"),
     "energy_gain": Variable(
         "change of the energy per particle, kinetic and potential, since the start",
         ENERGY,

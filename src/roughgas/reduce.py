@@ -1,19 +1,18 @@
-"""From points to one reduced dataset an experiment, and from those to one table.
+"""From points to one reduced dataset an experiment.
 
-A reduced dataset has the dimensions (r, beta, seed). The error bar pools the scatter over
-independent seeds with the errors within them (measure/intervals.py), since a scatter over few seeds
-alone is known badly; each of the two is kept beside it.
+A reduced dataset has the dimensions (r, beta, seed), before them the parameter that the experiment
+sweeps besides, if there is one (`third_axis`). The error bar pools the scatter over independent
+seeds with the errors within them (measure/intervals.py), since a scatter over few seeds alone is
+known badly; each of the two is kept beside it.
 """
 
-import csv
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from roughgas.atomic import whole_file
 from roughgas.dataset import (
     CLOCKS,
     COMMON_ATTRIBUTES,
@@ -29,9 +28,19 @@ if TYPE_CHECKING:
     import xarray
 
 GRID = ("r", "beta")
-SAME = ("experiment", "scale", "dimension", "inertia", "particles")
+SAME = (
+    "experiment",
+    "scale",
+    "dimension",
+    "inertia",
+    "spin_share",
+    "mu",
+    "particles",
+    "swept",
+)
+OF_A_POINT = ("r", "beta", "seed", "r_label", "beta_label", "variant", "swept_value", "command")
 PROVENANCE = ("roughgas_version", "numpy_version", "numba_version", "kernel_source_hash")
-SCATTERED = ("R", "R_unsubtracted", "R_drift")
+SCATTERED = ("R", "R_unsubtracted", "R_drift", "E_trans", "input_spin_share")
 """Means over seeds that carry a standard error, `<name>_stderr`."""
 
 EQUILIBRATED = 0.5
@@ -45,31 +54,13 @@ DERIVED = {
     "R_stderr_over_seeds": "standard error of R from the scatter over seeds alone",
     "R_stderr_within": "standard error of R from within the files, combined over seeds",
     "R_unsubtracted_stderr": "standard error of R_unsubtracted: scatter over seeds",
+    "E_trans_stderr": "standard error of E_trans: scatter over seeds",
+    "input_spin_share_stderr": "standard error of input_spin_share: scatter over seeds",
     "R_drift": "mean of R in the second half of the measured window minus that in the first",
     "R_drift_stderr": "standard error of R_drift: scatter over seeds",
     "measured_for": "length of the measured window, mean over seeds",
     "n_seeds": "number of seeds found",
 }
-COLUMNS = (
-    "n_seeds",
-    "R",
-    "R_stderr",
-    "R_dof",
-    "R_ci95",
-    "R_ci95_trusted",
-    "R_stderr_over_seeds",
-    "R_stderr_within",
-    "R_ratio_of_means",
-    "R_unsubtracted",
-    "R_unsubtracted_stderr",
-    "E_trans",
-    "E_rot",
-    "equilibrated",
-    "measured_from",
-    "measured_for",
-    "collisions",
-    "contact_time_fraction",
-)
 
 
 class Summary(NamedTuple):
@@ -79,10 +70,11 @@ class Summary(NamedTuple):
     attributes: dict[str, Any]
 
     @property
-    def place(self) -> tuple[float, float, int]:
-        """Its (r, beta, seed)."""
+    def place(self) -> tuple[Any, ...]:
+        """Its (r, beta, seed), before them the value of the parameter that is swept besides."""
         about = self.attributes
-        return float(about["r"]), float(about["beta"]), int(about["seed"])
+        swept = (about["swept_value"],) if "swept" in about else ()
+        return (*swept, float(about["r"]), float(about["beta"]), int(about["seed"]))
 
 
 def reduce_points(paths: Iterable[str | Path], output: str | Path) -> None:
@@ -113,46 +105,30 @@ def read_reduced(path: str | Path) -> "xarray.Dataset":
     return xarray.load_dataset(path, engine="netcdf4")
 
 
-def predicted_ratio(attributes: dict[str, Any], r: Any, beta: Any) -> np.ndarray:
-    """R of theory for an experiment: Eq. (K) for a freely cooling gas, else Eq. (lun).
+def third_axis(attributes: Mapping[str, Any]) -> str | None:
+    """The dimension besides r and beta of a dataset with these attributes, such as `inertia`: the
+    parameter in `swept`, such as spin.inertia. None where there is none."""
+    return attributes["swept"].split(".")[1] if "swept" in attributes else None
 
-    `attributes` are those of a reduced dataset; `r` and `beta` broadcast.
+
+def predicted_ratio(attributes: dict[str, Any], r: Any, beta: Any) -> np.ndarray:
+    """R of theory: Eq. (K) for a freely cooling gas, Eq. (lun) for one whose drive adds translation
+    only, and what the rate equations say of other drives, and of friction.
+
+    `attributes` are those of a reduced dataset, with what is its third axis: `inertia`,
+    `spin_share` (of the drive), `mu`; these broadcast with `r` and `beta`. NaN where nothing spins.
     """
     from roughgas import theory
 
-    r, beta = np.broadcast_arrays(np.asarray(r, float), np.asarray(beta, float))
-    inertia, dimension = float(attributes["inertia"]), int(attributes["dimension"])
-    if attributes["theory"] == "K":
-        return np.asarray(theory.cooling_ratio(r, beta, dimension, inertia))
-    return np.asarray(theory.lun_ratio(beta, inertia))
-
-
-def write_table(reduced_paths: Iterable[str | Path], csv_path: str | Path) -> None:
-    """Write one tidy CSV: a row for each experiment, r and beta that holds data."""
-    head = ["experiment", "scale", "particles", "dimension", "inertia", *GRID]
-    head += [*COLUMNS, "theory", "R_theory", "residual"]
-    with whole_file(csv_path) as draft, open(draft, "w", newline="", encoding="utf-8") as file:
-        table = csv.writer(file, lineterminator="\n")
-        table.writerow(head)
-        for path in reduced_paths:
-            table.writerows(_rows(read_reduced(path), head))
-
-
-def _rows(dataset: "xarray.Dataset", head: Sequence[str]) -> Iterable[list[str]]:
-    """The rows of one reduced dataset, in ascending (r, beta)."""
-    flat = dataset.drop_dims("seed").stack(point=GRID)
-    prediction = predicted_ratio(dataset.attrs, flat.r.values, flat.beta.values)
-    for index in np.flatnonzero(flat["n_seeds"].values):
-        row = {name: flat[name].values[index] for name in (*GRID, *COLUMNS) if name in flat}
-        row |= {"R_theory": prediction[index], "residual": row["R"] - prediction[index]}
-        yield [_cell(row.get(name, dataset.attrs.get(name, ""))) for name in head]
-
-
-def _cell(value: Any) -> str:
-    """Numbers to ten digits, what is not a number as an empty cell."""
-    if isinstance(value, str):
-        return value
-    return "" if math.isnan(value) else format(value, ".10g")
+    names = {"inertia": math.nan, "spin_share": 0.0, "mu": math.inf}
+    given = (attributes.get(name, value) for name, value in names.items())
+    r, beta, q, share, mu = np.broadcast_arrays(*(np.asarray(x, float) for x in (r, beta, *given)))
+    if np.isnan(q).any():
+        return np.full(r.shape, math.nan)
+    dimension, share = int(attributes["dimension"]), None if attributes["theory"] == "K" else share
+    if np.isfinite(mu).any():
+        return np.asarray(theory.friction_ratio(r, beta, mu, dimension, q, share))
+    return np.asarray(theory.stationary_ratio(r, beta, dimension, q, share))
 
 
 def _summary(path: Path) -> Summary:
@@ -188,32 +164,49 @@ def _combined(points: Sequence[Summary]) -> "xarray.Dataset":
 
     attributes = _common_attributes(points)
     columns = zip(*(point.place for point in points), strict=True)
-    axes = [np.unique(column) for column in columns]
+    axes = [sorted(set(column), key=_ascending) for column in columns]
+    swept = third_axis(attributes)
+    grid = GRID if swept is None else (swept, *GRID)
     stacks = _stacks(points, axes)
     cooling = "plateau_end" in stacks
     attributes.setdefault("theory", "K" if cooling else "lun")
     variables = {
-        name: (GRID + ("seed",) * (values.ndim == 3), values, _about(name, cooling))
+        name: ((*grid, "seed")[: values.ndim], values, _about(name, cooling))
         for name, values in _over_seeds(stacks).items()
     }
-    coordinates = dict(zip((*GRID, "seed"), axes, strict=True))
+    coordinates = dict(zip((*grid, "seed"), map(_coordinate, axes), strict=True))
     dataset = xarray.Dataset(variables, coordinates, attributes)
     dataset.r.attrs.update(long_name="normal restitution", units="1")
     dataset.beta.attrs.update(long_name="tangential restitution", units="1")
     dataset.seed.attrs.update(long_name="seed of the random generator")
+    if swept is not None:
+        dataset[swept].attrs.update(long_name=f"parameter of an effect: {attributes['swept']}")
     return dataset
 
 
-def _stacks(points: Sequence[Summary], axes: Sequence[np.ndarray]) -> dict[str, np.ndarray]:
-    """Every scalar over (r, beta, seed), NaN where no point is."""
-    shape = tuple(len(axis) for axis in axes)
+def _ascending(value: Any) -> tuple[bool, Any]:
+    """Sorts numbers, and words after them."""
+    return isinstance(value, str), value
+
+
+def _coordinate(values: Sequence[Any]) -> np.ndarray:
+    """Numbers as they are; text where some are words."""
+    if any(isinstance(value, str) for value in values):
+        values = [value if isinstance(value, str) else f"{value:.10g}" for value in values]
+    return np.array(values)
+
+
+def _stacks(points: Sequence[Summary], axes: Sequence[Sequence[Any]]) -> dict[str, np.ndarray]:
+    """Every scalar over the axes, NaN where no point is."""
+    places = [{value: index for index, value in enumerate(axis)} for axis in axes]
+    shape = tuple(map(len, axes))
     stacks = {name: np.full(shape, math.nan) for point in points for name in point.scalars}
     seen = set()
     for point in points:
         if point.place in seen:
-            raise InputError("point (r, beta, seed)", point.place, "be given once")
+            raise InputError("point (..., r, beta, seed)", point.place, "be given once")
         seen.add(point.place)
-        index = tuple(np.searchsorted(a, x) for a, x in zip(axes, point.place, strict=True))
+        index = tuple(where[value] for where, value in zip(places, point.place, strict=True))
         for name, value in point.scalars.items():
             stacks[name][index] = value
     return stacks
@@ -221,15 +214,7 @@ def _stacks(points: Sequence[Summary], axes: Sequence[np.ndarray]) -> dict[str, 
 
 def _over_seeds(stacks: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     """What a reduced dataset holds, by name."""
-    there = np.isfinite(stacks["R"])
-    count = there.sum(-1)
-    square = np.where(there, stacks["R_stderr"] ** 2, 0.0).sum(-1)
-    within = np.sqrt(square) / np.maximum(count, 1)
-    reduced = {
-        "R_seed": stacks["R"],
-        "R_stderr_within": np.where(count > 0, within, math.nan),
-        "n_seeds": count,
-    }
+    reduced = {"n_seeds": np.isfinite(stacks["E_trans"]).sum(-1)}
     for name, values in stacks.items():
         how = VARIABLES[name].over_seeds if name in VARIABLES else "mean"
         if how == "sum":
@@ -238,12 +223,24 @@ def _over_seeds(stacks: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
             reduced[name] = _mean(values)
         if name in SCATTERED:
             reduced[f"{name}_stderr"] = _standard_error(values)
-    reduced["R_stderr_over_seeds"] = reduced["R_stderr"]
-    return reduced | _pooled_errors(stacks, there)
+    return reduced | _errors(stacks, reduced) if "R" in stacks else reduced
+
+
+def _errors(stacks: dict[str, np.ndarray], reduced: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """R of each seed, and all that is known of how sure R is."""
+    there = np.isfinite(stacks["R"])
+    count = there.sum(-1)
+    square = np.where(there, stacks["R_stderr"] ** 2, 0.0).sum(-1)
+    within = np.sqrt(square) / np.maximum(count, 1)
+    return {
+        "R_seed": stacks["R"],
+        "R_stderr_within": np.where(count > 0, within, math.nan),
+        "R_stderr_over_seeds": reduced["R_stderr"],
+    } | _pooled_errors(stacks, there)
 
 
 def _pooled_errors(stacks: dict[str, np.ndarray], there: np.ndarray) -> dict[str, np.ndarray]:
-    """R's error, its degrees of freedom and its interval over (r, beta); NaN where no point is."""
+    """R's error, its degrees of freedom and its interval at every place; NaN where no point is."""
     names = ("R_stderr", "R_dof", "R_ci95")
     found = {name: np.full(there.shape[:-1], math.nan) for name in names}
     for place in zip(*np.nonzero(there.any(-1)), strict=True):
@@ -271,21 +268,24 @@ def _about(name: str, cooling: bool) -> dict[str, str]:
     """CF attributes of a reduced variable."""
     if name not in DERIVED:
         return variable_attributes(name, cooling)
-    units = variable_attributes("measured_from", cooling)["units"]
-    return {"long_name": DERIVED[name], "units": units if name == "measured_for" else "1"}
+    like = {"measured_for": "measured_from", "E_trans_stderr": "E_trans"}.get(name, "R")
+    units = variable_attributes(like, cooling)["units"]
+    return {"long_name": DERIVED[name], "units": units}
 
 
 def _common_attributes(points: Sequence[Summary]) -> dict[str, Any]:
     """Attributes that all points share; versions that differ are listed, not hidden."""
     shared = dict(points[0].attributes)
-    for name in SAME:
-        values = {str(point.attributes[name]) for point in points}
+    swept = third_axis(shared)
+    for name in (name for name in SAME if name != swept):
+        values = {str(point.attributes.get(name, "(none)")) for point in points}
         if len(values) > 1:
             raise InputError(f"{name} of the points", " and ".join(sorted(values)), "be the same")
     for name in list(shared):
         values = {str(point.attributes.get(name, "")) for point in points}
         if len(values) > 1 and name in PROVENANCE:
             shared[name] = ", ".join(sorted(values))
-        elif len(values) > 1 or name in ("r", "beta", "seed", "r_label", "beta_label", "command"):
+        elif len(values) > 1 or name in OF_A_POINT or name == swept:
             del shared[name]
-    return shared | COMMON_ATTRIBUTES | {"title": f"{shared['experiment']}: R over r and beta"}
+    over = "r and beta" if swept is None else f"{swept}, r and beta"
+    return shared | COMMON_ATTRIBUTES | {"title": f"{shared['experiment']}: R over {over}"}

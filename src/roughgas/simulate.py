@@ -11,7 +11,7 @@ from roughgas.initial import initial_state
 from roughgas.kernel.cache import source_hash
 from roughgas.protocols import cooling, steady
 from roughgas.protocols.recorder import Progress, Recorder
-from roughgas.scene import build, check_company
+from roughgas.scene import Scene, build, check_company
 
 PROTOCOLS = {"steady": steady, "cooling": cooling}
 
@@ -45,12 +45,25 @@ def run_point(
             "seed": int(seed),
             "particles": experiment["particles"],
             "dimension": len(scene.box),
-            **({} if scene.effects.spin is None else {"inertia": scene.effects.spin.inertia}),
+            **_known_to_theory(scene, experiment),
             "roughgas_version": __version__,
             "numpy_version": np.__version__,
             "kernel_source_hash": source_hash(),
         },
     )
+
+
+def _known_to_theory(scene, experiment):
+    """The parameters of effects that R depends on in theory."""
+    effects = scene.effects
+    found = {}
+    if effects.spin is not None:
+        found["inertia"] = effects.spin.inertia
+    if effects.friction is not None:
+        found["mu"] = effects.friction.mu
+    if effects.thermostat is not None:
+        found["spin_share"] = float(experiment["effects"]["thermostat"]["spin_share"])
+    return found
 
 
 def _contact_time(scene, recorder):
@@ -77,15 +90,21 @@ def effort(experiment: Mapping[str, Any], r: float, beta: float) -> float:
 
 def compile_kernels(experiments: Iterable[Mapping[str, Any]]) -> int:
     """Compile, into numba's cache, every kernel that the experiments' sweeps need; how many."""
-    kernels = {}
+    needed = kernels(experiments)
+    for scene, experiment in needed.values():
+        state = initial_state(scene, experiment, np.random.default_rng(0))
+        Recorder().in_time(state, scene, 1.0, 0)
+    return len(needed)
+
+
+def kernels(experiments: Iterable[Mapping[str, Any]]) -> dict[Any, tuple[Scene, Mapping[str, Any]]]:
+    """By composition, a scene and its experiment for every kernel that the sweeps over r need."""
+    needed = {}
     for experiment in experiments:
         for r in experiment["sweep"]["r"]:
             scene = build(experiment, float(r), -1.0)
-            kernels.setdefault(_composition(scene), (scene, experiment))
-    for scene, experiment in kernels.values():
-        state = initial_state(scene, experiment, np.random.default_rng(0))
-        Recorder().in_time(state, scene, 1.0, 0)
-    return len(kernels)
+            needed.setdefault(_composition(scene), (scene, experiment))
+    return needed
 
 
 def _composition(scene):

@@ -6,7 +6,8 @@ import numpy as np
 
 from brute_force.kicks import Drive
 from brute_force.scenes import run
-from brute_force.simulation import BruteForce, Snapshot
+from brute_force.simulation import BruteForce
+from brute_force.world import Snapshot
 from roughgas.kernel.state import BASE, BOUNDARY_HITS, LAST_FIRST, LAST_SECOND, NOW
 
 ROUNDINGS = 1e-15

@@ -7,7 +7,7 @@ import functools
 
 import numpy as np
 
-from brute_force.simulation import World
+from brute_force.world import World
 from roughgas.initial import initial_state
 from roughgas.kernel.record import Plan, columns, record
 from roughgas.scene import build
@@ -51,6 +51,12 @@ KERNELS = {
         "box": [50, "open"],
         "effects": _BED | {"walls": {"restitution": 1.0, "roughness": 1.0}} | _FRICTION,
     },
+    "shaken": {
+        "particles": 160,
+        "box": [50, 50],
+        "effects": _DISKS
+        | {"shaken_walls": {"amplitude": 1, "period": 2, "restitution": 1, "roughness": 0.5}},
+    },
     "heated": {"particles": 160, "box": [100, 100], "effects": _DISKS | _HEAT},
     "heated, smooth": {
         "particles": 160,
@@ -80,8 +86,8 @@ def scene_of(experiment, r, beta):
     """(kernel's scene, brute force's world) of the same experiment."""
     effects = experiment["effects"]
     periods = [None if side == "open" else float(side) for side in experiment["box"]]
-    floor, walls = effects.get("floor"), effects.get("walls")
-    heat = effects.get("thermostat")
+    floor, heat, shaken = (effects.get(name) for name in ("floor", "thermostat", "shaken_walls"))
+    walls = effects.get("walls", shaken)
     if walls:
         width, periods[0] = periods[0], None
     world = World(
@@ -95,8 +101,10 @@ def scene_of(experiment, r, beta):
         floor=floor
         and (floor["amplitude"], floor["period"], floor["restitution"], floor["roughness"]),
         walls=walls and (width, walls["restitution"], walls["roughness"]),
+        shaken=shaken and (shaken["amplitude"], shaken["period"]),
         shear=effects.get("shear", {}).get("velocity", 0.0),
         contact_time=effects.get("contact_time", {}).get("duration", 0.0),
+        wave=(floor or {}).get("wave", "sawtooth"),
     )
     return build(experiment, r, beta), world
 

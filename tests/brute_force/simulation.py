@@ -7,44 +7,22 @@ event to the next. Absolute times, textbook roots. Units: a = m = T = 1.
 
 import itertools
 import math
-from typing import NamedTuple
 
 import numpy as np
 
-from brute_force.kicks import Drive, Kicks
+from brute_force.formulas import cut_by_friction, falling_time, in_space, meeting_times
+from brute_force.kicks import Kicks
+from brute_force.world import Event, Snapshot
 
-
-class World(NamedTuple):
-    """What is simulated; None and 0 stand for what is absent."""
-
-    box: tuple[float | None, ...]  # periods; None is open, or closed by walls
-    r: float
-    beta: float
-    q: float | None  # None: particles do not spin
-    mu: float | None = None  # coefficient of friction; None: contacts never slide
-    thermostat: tuple[float, float, float] | None = None  # power, share of spin, interval
-    gravity: float = 0.0  # along the last axis
-    floor: tuple[float, float, float, float] | None = None  # amplitude, period, r, beta
-    walls: tuple[float, float, float] | None = None  # width, r, beta; along the first axis
-    shear: float = 0.0  # U: velocity, along the first axis, of the image above along the second
-    contact_time: float = 0.0
-
-
-class Snapshot(NamedTuple):
-    """All particles at one instant."""
-
-    time: float  # absolute
-    position: np.ndarray  # (N, D), in any image
-    velocity: np.ndarray
-    spin: np.ndarray | None  # (N, 2D - 3)
-    drive: Drive | None = None
-
-
-class Event(NamedTuple):
-    time: float
-    kind: str  # pair, floor, left, right, kick
-    i: int
-    j: int  # -1: none
+# Strokes that make up a period of the floor: when they begin and end, in periods, and at what
+# height, in amplitudes; of the sine, the whole period
+STROKES = {
+    "sawtooth": [(0.0, 1.0, 0.0, 1.0)],
+    "reversed_sawtooth": [(0.0, 0.1, 0.0, 1.0), (0.1, 1.0, 1.0, 0.0)],
+    "triangle": [(0.0, 0.5, 0.0, 1.0), (0.5, 1.0, 1.0, 0.0)],
+    "sine": [(0.0, 1.0, 0.0, 0.0)],
+}
+INSTANTS = np.linspace(0.0, 1.0, 2001) ** 2  # at which a floor without a formula is looked for
 
 
 class BruteForce:
@@ -59,7 +37,10 @@ class BruteForce:
             self.w[:, 3 - np.shape(spin)[1] :] = spin
         self.time = float(time)
         # the floor's stroke that is under way; at its very end the next one
-        self.stroke = math.floor(time / world.floor[1]) if world.floor else 0
+        self.strokes = STROKES[world.wave]
+        whole, share = divmod(time / world.floor[1] if world.floor else 0.0, 1.0)
+        begun = sum(share >= begin for begin, *_ in self.strokes)
+        self.stroke = int(whole) * len(self.strokes) + begun - 1
         self.last = np.full(self.number, -np.inf) if last_contact is None else last_contact.copy()
         self.pairs = np.array(list(itertools.combinations(range(self.number), 2))).reshape(-1, 2)
         drawn = drive and world.thermostat
@@ -98,8 +79,8 @@ class BruteForce:
                 self._resolve(kind, i, j)
                 return Event(self.time, kind, i, j)
             self._move(limit)
-            if self.world.floor and self.time >= self._stroke_end() - 1e-12:
-                self.time = self._stroke_end()
+            if self.world.floor and self.time >= self._stroke()[1] - 1e-12:
+                self.time = self._stroke()[1]
                 self.stroke += 1
 
     # ------------------------------------------------------------------ what comes next
@@ -109,14 +90,29 @@ class BruteForce:
         periods = [length for length in self.world.box if length is not None]
         fastest = 2.0 * np.sqrt((self.v**2).sum(axis=1).max()) + abs(self.world.shear) + 1e-12
         limit = 0.5 * min(periods) / fastest if periods else math.inf
-        return min(limit, self._stroke_end() - self.time) if self.world.floor else limit
+        return min(limit, self._stroke()[1] - self.time) if self.world.floor else limit
 
-    def _stroke_end(self):
-        return (self.stroke + 1) * self.world.floor[1]
+    def _stroke(self):
+        """(begin, end, height at its begin, speed) of the floor's stroke under way."""
+        amplitude, period = self.world.floor[:2]
+        whole, k = divmod(self.stroke, len(self.strokes))
+        begin, end, low, high = self.strokes[k]
+        speed = amplitude * (high - low) / ((end - begin) * period)
+        return (whole + begin) * period, (whole + end) * period, amplitude * low, speed
+
+    def surface(self, wait):
+        """(height, speed) of the floor after a time, within the stroke that is under way."""
+        amplitude, period = self.world.floor[:2]
+        if self.world.wave == "sine":
+            angle = 2.0 * np.pi * (self.time + wait) / period
+            speed = amplitude * np.pi / period * np.sin(angle)
+            return amplitude * (1.0 - np.cos(angle)) / 2.0, speed
+        begin, _, low, speed = self._stroke()
+        return low + speed * (self.time + wait - begin), speed
 
     def _candidates(self, limit):
         """(wait, kind, i, j) of the earliest pair and of what each particle does at boundaries."""
-        found = list(self._boundary_events())
+        found = list(self._boundary_events(limit))
         if len(self.pairs):
             waits = self._pair_waits()
             first = int(np.argmin(waits))
@@ -131,7 +127,7 @@ class BruteForce:
         x, v = self.x[i] - self.x[j], self.v[i] - self.v[j]
         best = np.full(len(x), np.inf)
         for shift, drift in self.images():
-            best = np.minimum(best, _waits(x + shift, v + drift))
+            best = np.minimum(best, meeting_times(x + shift, v + drift))
         return best
 
     def images(self):
@@ -149,19 +145,37 @@ class BruteForce:
             drift[0] += numbers[1] * world.shear
             yield shift, drift
 
-    def _boundary_events(self):
+    def _boundary_events(self, limit):
         world = self.world
         for i in range(self.number):
             if world.floor:
-                speed = world.floor[0] / world.floor[1]
-                gap = self.x[i, -1] - 1.0 - speed * (self.time - self.stroke * world.floor[1])
-                yield _fall(gap, self.v[i, -1] - speed, world.gravity), "floor", i, -1
+                yield self._floor_wait(i, limit), "floor", i, -1
             if world.walls:
                 x, v = self.x[i, 0], self.v[i, 0]
                 if v < 0.0:
                     yield max(0.0, (1.0 - x) / v), "left", i, -1
                 if v > 0.0:
                     yield max(0.0, (world.walls[0] - 1.0 - x) / v), "right", i, -1
+
+    def _floor_wait(self, i, limit):
+        """Time until particle i meets the floor, if that is before the limit."""
+        height, v, g = self.x[i, -1] - 1.0, self.v[i, -1], self.world.gravity
+        level, speed = self.surface(0.0)
+        if self.world.wave != "sine" or (height - level <= 1e-12 and v < speed):
+            return falling_time(height - level, v - speed, g)
+
+        def gap(wait):
+            return height + v * wait - g * wait**2 / 2.0 - self.surface(wait)[0]
+
+        waits = limit * INSTANTS
+        below = np.flatnonzero(gap(waits[1:]) < 0.0)
+        if len(below) == 0:
+            return math.inf
+        above, below = waits[below[0]], waits[below[0] + 1]
+        for _ in range(60):
+            middle = 0.5 * (above + below)
+            above, below = (above, middle) if gap(middle) < 0.0 else (middle, below)
+        return below
 
     # ------------------------------------------------------------------ what happens
 
@@ -193,10 +207,16 @@ class BruteForce:
         elif kind == "pair":
             self._collide(i, j)
         elif kind == "floor":
-            amplitude, period, r, beta = world.floor
-            self._bounce(i, self.dimension - 1, 1.0, amplitude / period, r, beta)
+            self._bounce(i, self.dimension - 1, 1.0, self.surface(0.0)[1], *world.floor[2:])
         else:
-            self._bounce(i, 0, 1.0 if kind == "left" else -1.0, 0.0, *world.walls[1:])
+            self._bounce(i, 0, 1.0 if kind == "left" else -1.0, self._shaking(), *world.walls[1:])
+
+    def _shaking(self):
+        """Velocity of the side walls, along the last axis."""
+        if self.world.shaken is None:
+            return 0.0
+        amplitude, period = self.world.shaken
+        return 2.0 * np.pi * amplitude / period * np.cos(2.0 * np.pi * self.time / period)
 
     def _restitution(self, r, *particles):
         recent = max(self.last[k] for k in particles)
@@ -210,7 +230,7 @@ class BruteForce:
         world = self.world
         x, v = self.x[i] - self.x[j], self.v[i] - self.v[j]
         shift, drift = min(self.images(), key=lambda image: ((x + image[0]) ** 2).sum())
-        n, v = _in_space(x + shift), _in_space(v + drift)
+        n, v = in_space(x + shift), in_space(v + drift)
         n /= math.sqrt(n @ n)
         r = self._restitution(world.r, i, j)
         v_n = (v @ n) * n
@@ -218,7 +238,9 @@ class BruteForce:
         if world.q is not None:
             q, beta = world.q, world.beta
             v_t, v_r = v - v_n, -np.cross(self.w[i] + self.w[j], n)
-            along = self._rubbed(push, q * (1.0 + beta) / (2.0 * q + 2.0) * (v_t + v_r))
+            along = cut_by_friction(
+                world.mu, push, q * (1.0 + beta) / (2.0 * q + 2.0) * (v_t + v_r)
+            )
             push = push + along
             turn = np.cross(n, along) / q
             self.w[i] += turn
@@ -226,48 +248,22 @@ class BruteForce:
         self.v[i] -= push[: self.dimension]
         self.v[j] += push[: self.dimension]
 
-    def _bounce(self, i, axis, direction, wall_speed, r, beta):
-        """As with a partner of infinite mass: both prefactors of Eq. (collrule) double."""
-        n = np.zeros(3)
+    def _bounce(self, i, axis, direction, speed, r, beta):
+        """As with a partner of infinite mass: both prefactors of Eq. (collrule) double.
+
+        The partner moves along the last axis.
+        """
+        world, n = self.world, np.zeros(3)
         n[axis] = direction
-        g = _in_space(self.v[i])
-        g[axis] -= wall_speed
+        g = in_space(self.v[i])
+        g[self.dimension - 1] -= speed
         g -= np.cross(self.w[i], n)
         r = self._restitution(r, i)
         g_n = (g @ n) * n
         push = (1.0 + r) * g_n
-        if self.world.q is not None:
-            q = self.world.q
-            along = self._rubbed(push, q * (1.0 + beta) / (1.0 + q) * (g - g_n))
+        if world.q is not None:
+            q = world.q
+            along = cut_by_friction(world.mu, push, q * (1.0 + beta) / (1.0 + q) * (g - g_n))
             push = push + along
             self.w[i] += np.cross(n, along) / q
         self.v[i] -= push[: self.dimension]
-
-    def _rubbed(self, push, along):
-        """The tangential impulse that would stick, cut where Coulomb's friction gives no more."""
-        if self.world.mu is None:
-            return along
-        most, size = self.world.mu * math.sqrt(push @ push), math.sqrt(along @ along)
-        return along * (most / size) if size > most else along
-
-
-def _in_space(vector):
-    full = np.zeros(3)
-    full[: len(vector)] = vector
-    return full
-
-
-def _waits(x, v):
-    """First root of |x + v t| = 2 for each row, if the pair approaches; overlapping is now."""
-    b, vv, c = (x * v).sum(axis=1), (v * v).sum(axis=1), (x * x).sum(axis=1) - 4.0
-    discriminant = b * b - vv * c
-    with np.errstate(invalid="ignore", divide="ignore"):
-        root = np.maximum(0.0, (-b - np.sqrt(discriminant)) / vv)
-    return np.where((b < 0.0) & (discriminant >= 0.0), root, np.inf)
-
-
-def _fall(gap, speed, gravity):
-    """First time at which gap + speed t - gravity t^2/2 vanishes, from above."""
-    if gap <= 1e-12 and speed < 0.0:
-        return 0.0
-    return (speed + math.sqrt(speed * speed + 2.0 * gravity * max(gap, 0.0))) / gravity

@@ -22,8 +22,8 @@ from roughgas.simulate import run_point
 PROGRAM = Path(__file__).parent.parent / "machine_code.py"
 SMALL = {2: (16, [20, 20]), 3: (16, [12, 12, 12])}
 MOMENTS = {"contact_time", "thermostat"}  # what keeps a time for each particle
-EVENTS = {"floor", "walls", "thermostat"}  # what has events of its own
-PHASES = {"floor", "shear"}
+EVENTS = {"floor", "walls", "shaken_walls", "thermostat"}  # what has events of its own
+PHASES = {"floor", "shaken_walls", "shear"}
 
 
 def small(kernel):
@@ -52,7 +52,7 @@ def poisoned(folder, kernel, *effects):
     return subprocess.run(command, env=environment, capture_output=True, text=True, timeout=600)
 
 
-EVERY_EFFECT = ["sheared", "walled", "heated spheres"]
+EVERY_EFFECT = ["sheared", "walled", "shaken", "heated spheres"]
 """Kernels in which each effect is there at least once; from the barest one all are absent."""
 
 
@@ -210,14 +210,14 @@ OF_SPIN = {
 }
 OF_SHEAR = {"R_unsubtracted", "E_trans_unsubtracted", "E_rot_unsubtracted"}
 OF_CONTACT_TIME = {"contact_time", "contact_time_fraction"}
-WORK = ("floor", "walls", "shear", "thermostat")  # what does work has an account
+WORK = ("floor", "walls", "shaken_walls", "shear", "thermostat")  # what does work has an account
 
 
 @pytest.mark.parametrize("kernel", KERNELS)
 def test_a_point_holds_nothing_of_absent_effects(kernel, tmp_path):
     """By whatever protocol fits; written and read."""
     there = set(KERNELS[kernel]["effects"])
-    driven = there & {"floor", "shear", "thermostat"}
+    driven = there & {"floor", "shaken_walls", "shear", "thermostat"}
     experiment = small(kernel) | {"schedule": STEADY if driven else COOLING}
     point = run_point(experiment, 0.9, 0.2 if "spin" in there else -1.0, 1)
     found = set(point.variables)

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 from brute_force import KERNELS, begin, largest_overlap, scene_of, snapshot
+from brute_force.beside import brute_force_from
 from hypothesis import Phase, given, settings
 
 from hard_cases.catalogue import hard_case
@@ -25,9 +26,12 @@ from roughgas.protocols.books import books, imbalance
 from roughgas.scene import build, check
 
 ROUNDING = 2.0**-53
-BOUNDARIES = {"floor", "walls"}
+BOUNDARIES = {"floor", "walls", "shaken_walls"}
 QUICK = ("gas", "sheared", "walled", "rubbed bed", "heated, smooth", "heated spheres")
-FEW = [(set(KERNELS[name]["effects"]), len(KERNELS[name]["box"])) for name in QUICK]
+FEW = [
+    (set(KERNELS[name]["effects"]), len(KERNELS[name]["box"]), "sawtooth")  # the floor's, if any
+    for name in QUICK
+]
 """Compositions that other tests run, too: each is a kernel of its own."""
 
 
@@ -53,7 +57,7 @@ class Worst:
             self._see_books(before, books(state, scene), contacts_of(state))
             shot = snapshot(state, scene)
             self.overlap = max(self.overlap, largest_overlap(state, scene, world))
-            self.outside = max(self.outside, outside(shot, scene, world))
+            self.outside = max(self.outside, outside(shot, world))
             if not BOUNDARIES & set(experiment["effects"]):
                 self.momentum = max(self.momentum, gain_of_momentum(first, shot, world))
             self.backwards += row[0, 0] <= last
@@ -132,15 +136,14 @@ def beyond_cone(before, after, pair, world):
     return max(0.0, along - world.mu * abs(normal)) / (size + 1e-3 * speed)
 
 
-def outside(shot, scene, world):
+def outside(shot, world):
     """By how much a particle reaches through a wall or the floor, in a."""
     depth = 0.0
     if world.walls is not None:
         x = shot.position[:, 0]
         depth = max(depth, (1.0 - x).max(), (x + 1.0 - world.walls[0]).max())
     if world.floor is not None:
-        amplitude, period = world.floor[:2]
-        surface = amplitude * math.fmod(shot.time, period) / period
+        surface, _ = brute_force_from(world, shot).surface(0.0)
         depth = max(depth, (surface + 1.0 - shot.position[:, -1]).max())
     return depth
 

@@ -94,6 +94,17 @@ def test_smooth_limit_is_approached_from_above(dimension, s, r):
     assert at == pytest.approx(near, abs=1e-8)
 
 
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_a_drive_may_take_rotation_out(dimension):
+    """Then collisions must bring it there: their changes of the energies are as -(1 - s) : -s."""
+    R = theory.stationary_ratio(0.9, 0.5, dimension, spin_share=-0.05)
+    assert 0.0 < R < theory.stationary_ratio(0.9, 0.5, dimension, spin_share=0.0)
+    translational, rotational = theory.temperature_changes(1 - R, R, 0.9, 0.5, dimension)
+    lost = dimension * translational, (2 * dimension - 3) * rotational
+    assert lost[1] / sum(lost) == pytest.approx(-0.05, rel=1e-12)
+    assert theory.stationary_ratio(0.9, 0.5, 2, spin_share=-1.0) == 0.0
+
+
 @pytest.mark.parametrize("s", [None, 0, 0.5, 1])
 def test_elastic_rough_particles_share_energy_equally(s):
     assert theory.stationary_theta(1, 1, 2, spin_share=s) == pytest.approx(1, rel=1e-14)

@@ -47,8 +47,8 @@ OTHERS = [
     (lambda: theory.haff_time(0.9, 0, np.inf), "frequency = inf: must be a number >= 0"),
     (lambda: theory.collision_frequency(1, 0.8, 3), "packing = 0.8: must lie in [0, 0.7405]"),
     (
-        lambda: theory.stationary_ratio(0.9, 0, spin_share=1.1),
-        "spin share of the drive = 1.1: must lie in [0, 1]",
+        lambda: theory.stationary_ratio(0.9, 0, spin_share=2.1),
+        "net spin share of the drive = 2.1: must lie in [-1, 2]",
     ),
 ]
 

@@ -29,9 +29,11 @@ def test_only_contents_count(finished):
         ("theory/relaxation.py", ALL),
         ("cli/run.py", ALL),
         ("reduce.py", {"reduce": 6, "figure": 4} | AFTER_POINTS),
+        ("table.py", {"table": 1, "figures": 1}),
         ("plotting/style.py", {"figure": 4, "figures": 1}),
         ("claims/report.py", {"claims": 1, "figures": 1}),
         ("config/__init__.py", {}),
+        ("config/axis.py", {}),
     ],
 )
 def test_an_edit_in_the_package(finished, module, expected):

@@ -109,7 +109,9 @@ def plan(options: argparse.Namespace) -> None:
         raise InputError("--cores", options.cores, "be a whole number >= 1")
     loaded = config.load(options.config)
     names = options.experiments or list(loaded["experiments"])
-    found = {name: config.experiment(loaded, name, options.scale) for name in names}
+    found = {}
+    for name in names:
+        found |= config.every_variant(name, config.experiment(loaded, name, options.scale))
     folder = Path(options.pilots or f"results/{options.scale}")
     pilots = {name: _pilots(name, settings, folder) for name, settings in found.items()}
     start_up = time.process_time()  # of this process: jobs import as much

@@ -38,7 +38,7 @@ def reduce(options: argparse.Namespace) -> None:
 
 def table(options: argparse.Namespace) -> None:
     """Write reduced datasets as one table."""
-    from roughgas.reduce import write_table
+    from roughgas.table import write_table
 
     write_table(options.inputs, options.output)
 

@@ -50,7 +50,11 @@ def add_point(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_experiment(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("experiment", metavar="EXPERIMENT", help="its name in the configuration")
+    parser.add_argument(
+        "experiment",
+        metavar="EXPERIMENT",
+        help="its name in the configuration, or that of a variant: EXPERIMENT/VARIANT",
+    )
     add_settings(parser)
     parser.add_argument("--r", required=True, help="normal restitution, in [0, 1]")
 
@@ -76,21 +80,27 @@ def run(options: argparse.Namespace) -> None:
 
 
 def compile_kernel(options: argparse.Namespace) -> None:
-    """Compile what the points of an experiment run at some r, whatever their beta and seed."""
+    """Compile what the points of an experiment run at some r, whatever their variant, beta and
+    seed."""
     from roughgas import config
 
     r, settings = config.restitution(options.r), _settings(options)
 
     from roughgas.simulate import compile_kernels
 
-    compile_kernels([settings | {"sweep": {"r": [r]}}])
+    every = config.every_variant(options.experiment, settings).values()
+    compile_kernels([one | {"sweep": {"r": [r]}} for one in every])
 
 
 def point_of(options: argparse.Namespace) -> tuple[float, float, dict[str, Any]]:
-    """r, beta and the experiment's settings."""
+    """r, beta and the settings of the experiment, or of its variant."""
     from roughgas import config
 
-    return config.restitution(options.r), config.roughness(options.beta), _settings(options)
+    r, beta = config.restitution(options.r), config.roughness(options.beta)
+    settings = _settings(options)
+    config.check_one_variant(options.experiment, settings)
+    _variant(options.experiment, settings)
+    return r, beta, settings
 
 
 def _settings(options: argparse.Namespace) -> dict[str, Any]:
@@ -125,7 +135,7 @@ def _provenance(
     command += ["--settings", text, "--output", output]
     return {
         "title": f"{options.experiment}: r = {options.r}, beta = {options.beta}",
-        "experiment": options.experiment,
+        **_variant(options.experiment, settings),
         "scale": options.scale,
         "r_label": options.r,
         "beta_label": options.beta,
@@ -134,9 +144,29 @@ def _provenance(
     }
 
 
+def _variant(name: str, settings: dict[str, Any]) -> dict[str, Any]:
+    """The attributes of a dataset that say which experiment, and which variant of it, it is of.
+
+    Raises InputError where name and settings disagree.
+    """
+    from roughgas import config
+
+    base, slash, variant = name.partition("/")
+    key = settings.get(config.SWEPT)
+    if key is None and not slash:
+        return {"experiment": base}
+    effect, _, parameter = (key or "").partition(".")
+    value = settings["effects"].get(effect, {}).get(parameter)
+    label = variant.removeprefix(parameter)
+    if value is None or label == variant or config.level(label) != value:
+        raise InputError("experiment", name, "be the variant that --settings are of")
+    return {"experiment": base, "variant": variant, "swept": key, "swept_value": value}
+
+
 def _closing_line(output: str, point: "Point") -> str:
     found = point.variables
+    name = "R" if "R" in found else "E_trans"
     return (
-        f"{output}: R = {float(found['R']):.4f} +- {float(found['R_stderr']):.4f}, "
+        f"{output}: {name} = {float(found[name]):.4f} +- {float(found[f'{name}_stderr']):.4f}, "
         f"{int(found['collisions']):,} collisions in {float(found['kernel_seconds']):.1f} s"
     )

@@ -1,5 +1,6 @@
 """config.yaml: read, checked against its schema, and merged into one experiment at one scale.
 
+An experiment whose sweep has a third axis (axis.py) consists of variants, named EXPERIMENT/VARIANT.
 Everything illegal raises an InputError, whose text is one line naming key, value and what is legal.
 """
 
@@ -8,15 +9,31 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from roughgas.config.labels import restitution, roughness, seed
+from roughgas.config.axis import (
+    SWEPT,
+    check_axis,
+    check_one_variant,
+    common,
+    every_variant,
+    third_axis,
+    variant,
+    variants,
+)
+from roughgas.config.labels import level, restitution, roughness, seed
 from roughgas.config.schema import check_schema, first_repeated, shown
 from roughgas.errors import InputError
 
 __all__ = [
+    "SWEPT",
     "as_text",
     "check",
+    "check_one_variant",
+    "common",
+    "every_variant",
     "experiment",
     "from_text",
+    "kernel_settings",
+    "level",
     "load",
     "merged",
     "pilot_settings",
@@ -28,6 +45,7 @@ __all__ = [
     "showcase",
     "study",
     "sweep",
+    "variants",
 ]
 
 SOURCE = "config.yaml"
@@ -80,22 +98,32 @@ def check(config: Mapping[str, Any], source: str = SOURCE) -> None:
         check_schema(showcase(config, scale), f"{source}: {SHOWCASE} at scale {scale}", "filmed")
         check_schema(_studies(config, scale), f"{source}: {ACCURACY} at scale {scale}", "studied")
         for name in known:
-            where = f"{source}: experiments.{name}"
-            if scale != config["scale"]:
-                where += f" at scale {scale}"
-            _check_complete(experiment(config, name, scale), where)
+            at_scale = "" if scale == config["scale"] else f" at scale {scale}"
+            _check_complete(name, experiment(config, name, scale), source, at_scale)
 
 
 def experiment(config: Mapping[str, Any], name: str, scale: str) -> dict[str, Any]:
     """The experiment `name` at `scale`: what it extends, its own settings, the scale's changes.
 
-    What it extends is taken as it is at this scale. Raises InputError for unknown names.
+    What it extends is taken as it is at this scale. `name` may be that of a variant, whether or not
+    its value is in the sweep. Raises InputError for unknown names, and for illegal values of a
+    variant.
     """
+    base, slash, _ = name.partition("/")
+    settings = _experiment(config, base, scale)
+    if not slash:
+        return settings
+    chosen = variant(name, settings)
+    check_schema(chosen, name, "experiment")
+    return chosen
+
+
+def _experiment(config: Mapping[str, Any], name: str, scale: str) -> dict[str, Any]:
     _one_of("experiment", name, config["experiments"])
     _one_of("scale", scale, config["scales"])
     own = dict(config["experiments"][name])
     parent = own.pop("extends", None)
-    settings = experiment(config, parent, scale) if parent else {}
+    settings = _experiment(config, parent, scale) if parent else {}
     settings.pop("description", None)
     found = merged(merged(settings, own), config["scales"][scale].get(name, {}))
     return _without_lengths(found) if "target_stderr" in found else found
@@ -157,8 +185,15 @@ def pilot_settings(settings: Mapping[str, Any]) -> dict[str, Any]:
     return merged(_without_lengths(point_settings(settings)), {"target_stderr": None})
 
 
+def kernel_settings(settings: Mapping[str, Any]) -> dict[str, Any]:
+    """The settings of an experiment that its kernels are compiled from: with its third axis."""
+    key = third_axis(settings)
+    swept = {} if key is None else {"sweep": {key: settings["sweep"][key]}}
+    return pilot_settings(settings) | swept
+
+
 def sweep(settings: Mapping[str, Any]) -> Iterator[tuple[str, str, str]]:
-    """The labels (r, beta, seed) of every point of an experiment."""
+    """The labels (r, beta, seed) of every point of an experiment, or of each of its variants."""
     axes = settings["sweep"]
     for r in axes["r"]:
         for beta in axes["beta"]:
@@ -199,13 +234,17 @@ def from_text(
     return settings
 
 
-def _check_complete(settings: Mapping[str, Any], where: str) -> None:
-    check_schema(settings, where, "point")
+def _check_complete(name: str, settings: Mapping[str, Any], source: str, at_scale: str) -> None:
+    where = f"{source}: experiments.{name}{at_scale}"
+    check_axis(settings, where)
+    for one, chosen in every_variant(name, settings).items():
+        for part in ("experiment", "point") if one != name else ("point",):
+            check_schema(chosen, f"{source}: experiments.{one}{at_scale}", part)
     check_schema(settings, where, "swept")
-    for axis, value_of in (("r", restitution), ("beta", roughness)):
-        repeated = first_repeated(settings["sweep"][axis], value_of)
+    for key, value_of in (("r", restitution), ("beta", roughness)):
+        repeated = first_repeated(settings["sweep"][key], value_of)
         if repeated is not None:
-            raise InputError(f"{where}.sweep.{axis}", shown(repeated), "be given once")
+            raise InputError(f"{where}.sweep.{key}", shown(repeated), "be given once")
 
 
 def _check_target(settings: Mapping[str, Any], where: str) -> None:

@@ -1,4 +1,5 @@
-"""The numbers that name a point: r, beta and seed as they stand in paths and on command lines."""
+"""What names a point: r, beta, seed and a swept parameter as they stand in paths and on command
+lines."""
 
 import re
 from typing import Any
@@ -6,8 +7,10 @@ from typing import Any
 from roughgas.errors import InputError
 
 NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
+WORD = re.compile(r"[a-z][a-z0-9_]*")
 WHOLE_NUMBER = re.compile(r"\d{1,19}", re.ASCII)
 LARGEST_SEED = 2**63 - 1
+LEGAL_LEVEL = "be a number, or a word of lower-case letters, digits and _"
 
 
 def restitution(label: Any, key: str = "restitution r") -> float:
@@ -25,6 +28,16 @@ def seed(label: Any, key: str = "seed") -> int:
     if not WHOLE_NUMBER.fullmatch(str(label)) or int(label) > LARGEST_SEED:
         raise InputError(key, label, "be a whole number in [0, 2^63 - 1]")
     return int(label)
+
+
+def level(label: Any, key: str = "swept parameter") -> float | str:
+    """The value of an effect's parameter that `label` stands for: a number if it reads as one, else
+    a word such as `sine`. Whether the effect takes it is another matter."""
+    if NUMBER.fullmatch(str(label)):
+        return float(label) + 0.0
+    if WORD.fullmatch(str(label)):
+        return str(label)
+    raise InputError(key, label, LEGAL_LEVEL)
 
 
 def _between(key: str, label: Any, low: int, high: int) -> float:

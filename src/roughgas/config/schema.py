@@ -2,11 +2,12 @@
 
 import functools
 import math
+import re
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from roughgas.config.labels import restitution, roughness
+from roughgas.config.labels import LEGAL_LEVEL, level, restitution, roughness
 from roughgas.errors import InputError
 
 if TYPE_CHECKING:
@@ -14,8 +15,12 @@ if TYPE_CHECKING:
 
 SCHEMA, STUDIES = (Path(__file__).with_name(name) for name in ("schema.yaml", "studies.yaml"))
 LONGEST = 60
-FORMATS = {"restitution": restitution, "roughness": roughness}
-LEGAL_FORMATS = {"restitution": "lie in [0, 1]", "roughness": "lie in [-1, 1]"}
+FORMATS = {"restitution": restitution, "roughness": roughness, "level": level}
+LEGAL_FORMATS = {
+    "restitution": "lie in [0, 1]",
+    "roughness": "lie in [-1, 1]",
+    "level": LEGAL_LEVEL,
+}
 
 
 def check_schema(instance: Any, source: str, part: str | None = None) -> None:
@@ -91,9 +96,14 @@ def _input_error(error: "ValidationError", source: str, separator: str) -> Input
     if "propertyNames" in error.absolute_schema_path:
         return InputError(f"{key}: key", shown(error.instance), _legal(error.schema))
     if error.validator == "additionalProperties":
-        known = error.schema["properties"]
-        unknown = next(name for name in error.instance if name not in known)
-        return InputError(f"{key}: key", shown(unknown), f"be one of {', '.join(sorted(known))}")
+        known, patterns = error.schema["properties"], error.schema.get("patternProperties", {})
+        unknown = next(
+            name
+            for name in error.instance
+            if name not in known and not any(re.search(pattern, name) for pattern in patterns)
+        )
+        legal = [*sorted(known), *(about["title"] for about in patterns.values())]
+        return InputError(f"{key}: key", shown(unknown), f"be one of {', '.join(legal)}")
     if error.validator == "required":
         missing = next(name for name in error.validator_value if name not in error.instance)
         return InputError(f"{key}.{missing}", "(nothing)", "be given")
@@ -122,7 +132,7 @@ def _legal(schema: Mapping[str, Any]) -> str:
 
 
 def _legal_type(schema: Mapping[str, Any]) -> str:
-    kind = schema["type"]
+    kind = schema["type"] if isinstance(schema["type"], str) else schema["type"][0]
     if kind == "array":
         few, many = schema["minItems"], schema.get("maxItems")
         return f"be a list of {few} to {many} entries" if many else f"be a list of at least {few}"

@@ -10,6 +10,7 @@ from roughgas.effects.contact_time import ContactTime
 from roughgas.effects.floor import Floor
 from roughgas.effects.friction import Friction
 from roughgas.effects.gravity import Gravity
+from roughgas.effects.shaken_walls import ShakenWalls
 from roughgas.effects.shear import Shear
 from roughgas.effects.spin import Spin
 from roughgas.effects.thermostat import Thermostat
@@ -23,6 +24,7 @@ class Effects(NamedTuple):
     gravity: Gravity | None = None
     floor: Floor | None = None
     walls: Walls | None = None
+    shaken_walls: ShakenWalls | None = None
     shear: Shear | None = None
     thermostat: Thermostat | None = None
     friction: Friction | None = None

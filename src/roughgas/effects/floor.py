@@ -2,31 +2,34 @@
 
 Its surface is at height V (t mod T), V = amplitude/T. While it rises it meets a falling particle at
 a root of a quadratic; at the end of a stroke it is back at zero without having touched anything.
+Floors of another wave form are in files of their own: each has its own way to be met.
 """
 
 import math
 from typing import NamedTuple
 
-from roughgas.effects.settings import MATERIAL, Number, read
-from roughgas.kernel import hooks
-from roughgas.kernel.contact import collide_with_wall
+from roughgas.effects.settings import MATERIAL, Number, Word, read
+from roughgas.effects.sine_floor import SineFloor
+from roughgas.effects.surface import LEAST_DEPARTURE, bounce, fall, flight, until_back
+from roughgas.effects.surface import phase as phase
+from roughgas.effects.triangular_floor import REVERSED_RISE, TriangularFloor
 from roughgas.kernel.jit import jit
-from roughgas.kernel.vectors import along_last
-
-# Below it a floor that takes energy would be hit infinitely often in a finite time (a/T)
-LEAST_DEPARTURE = 1e-3
-
 
 SETTINGS = {
     "amplitude": Number("Height of a stroke, in a; 0 is a floor at rest.", "[0, inf)"),
     "period": Number("Time between strokes, in T."),
+    "wave": Word(
+        "Form of its motion; the sawtooth is back at once, the reversed one rises in a tenth of "
+        "the period.",
+        ("sawtooth", "reversed_sawtooth", "triangle", "sine"),
+    ),
     **MATERIAL,
 }
 DRIVES = True
 
 
 class Floor(NamedTuple):
-    """A floor under a gas with gravity."""
+    """A floor under a gas with gravity, that shakes it."""
 
     amplitude: float
     period: float
@@ -36,24 +39,23 @@ class Floor(NamedTuple):
 
     @classmethod
     def from_settings(cls, settings, around):
-        """The effect; raises InputError for illegal parameters."""
-        return cls(**read(SETTINGS, "floor", settings, around), least_departure=LEAST_DEPARTURE)
-
-
-@jit
-def phase(floor, index, base):
-    """Time since the stroke began at which the clock's base lies."""
-    return base % floor.period
+        """The floor of the wave form that the settings name; raises InputError for illegal ones."""
+        chosen = read(SETTINGS, "floor", settings, around)
+        chosen["least_departure"] = LEAST_DEPARTURE
+        match chosen.pop("wave"):
+            case "reversed_sawtooth":
+                return TriangularFloor(rise=REVERSED_RISE, **chosen)
+            case "triangle":
+                return TriangularFloor(rise=0.5, **chosen)
+            case "sine":
+                return SineFloor(**chosen)
+        return cls(**chosen)
 
 
 @jit
 def predict(floor, index, state, scene, i):
-    dimension = len(scene.box)
-    time = state.trajectory[i, 2 * dimension]
-    gap = state.trajectory[i, dimension - 1] - 1.0
-    speed = state.trajectory[i, 2 * dimension - 1]
-    gravity = hooks.acceleration(scene.effects, None)
-    return time + time_to_floor(floor, gravity, gap, speed, state.phase[index] + time), 0
+    falling, time = flight(floor, index, state, scene, i)
+    return time + time_to_floor(floor, *falling), 0
 
 
 @jit
@@ -70,7 +72,7 @@ def time_to_floor(floor, gravity, height, speed, phase):
         surface = floor_speed * (phase + begin - stroke * floor.period)
         gap = height + speed * begin - 0.5 * gravity * begin * begin - surface
         relative = speed - gravity * begin - floor_speed
-        meeting = begin + _fall(gap, relative, gravity)
+        meeting = begin + fall(gap, relative, gravity)
         if meeting <= end:
             return meeting
         stroke = max(stroke + 1.0, _stroke_to_meet(floor, gravity, height, speed, phase, end))
@@ -78,30 +80,11 @@ def time_to_floor(floor, gravity, height, speed, phase):
 
 @jit
 def _stroke_to_meet(floor, gravity, height, speed, phase, time):
-    """The stroke under way at `time`; of a particle above all strokes, when it is back from there.
-
-    A long flight passes over millions of strokes.
-    """
-    above = height + speed * time - 0.5 * gravity * time * time - floor.amplitude
-    if above > 0.0:
-        time += _fall(above, speed - gravity * time, gravity)
+    """The stroke under way at `time`, or when a particle above all strokes is back from there."""
+    time = until_back(floor.amplitude, gravity, height, speed, time)
     return math.floor((phase + time) / floor.period)
 
 
 @jit
-def _fall(gap, speed, gravity):
-    """First time at which gap + speed t - gravity t^2 / 2 = 0, without cancellation."""
-    if gap <= 0.0:
-        return 0.0 if speed < 0.0 else 2.0 * speed / gravity
-    root = math.sqrt(speed * speed + 2.0 * gravity * gap)
-    return 2.0 * gap / (root - speed) if speed < 0.0 else (speed + root) / gravity
-
-
-@jit
 def resolve(floor, index, what, state, scene, i, time):
-    normal = along_last(scene.box, 1.0)
-    moving = along_last(scene.box, floor.amplitude / floor.period)
-    material = (floor.restitution, floor.roughness)
-    return collide_with_wall(
-        state, scene, index, i, time, material, normal, moving, floor.least_departure
-    )
+    return bounce(floor, index, state, scene, i, time, floor.amplitude / floor.period)

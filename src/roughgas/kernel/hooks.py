@@ -5,8 +5,16 @@ are its part in the simulation. `scene.effects` has one entry an effect, None wh
 without it. Each hook below is turned, while numba compiles and by the types of these entries, into
 the chain of the functions that are there: an absent effect leaves no instruction behind.
 
-What an effect's file may define, all jitted but for `moment`, `index` being the effect's number
-among those that are there:
+Where several have a say, each gets the value as those listed before it in `Effects` have left it.
+
+What an effect's file must define: the NamedTuple, with `from_settings`, and SETTINGS, which are its
+parameters (see effects/settings.py; docs/effects.md has an example).
+
+What it may define, all jitted but for `moment`. A name that it merely imports counts, too. `index`
+is the effect's number among those that are there, and that of its account in State.ledger; `none`
+is there for the chain's sake, and holds nothing. Times count from the clock's base, and are, like
+velocities, in the units of a gas that is rescaled as it cools: a velocity in a/T is the present one
+times 2^e, a time in T the present one over 2^e, with e = State.counts[EXPONENT].
 
     acceleration(effect, index, none)
         downward acceleration along the last axis
@@ -16,14 +24,17 @@ among those that are there:
         normal restitution of one contact, from the value so far and the normal part of the relative
         velocity, negative where the partners approach; j < 0 for a boundary
     roughness(effect, index, beta, r, speed, slip)
-        tangential restitution of one contact, from the value so far, speed as above, and the
-        tangential relative velocity of the surfaces, a vector
+        tangential restitution of one contact of particles that spin, from the value so far, r and
+        speed as above, and the tangential relative velocity of the surfaces, a vector; it sees no
+        state, so it cannot depend on how fast all this is but by ratios
     contact_made(effect, index, none, state, i, time)
         take note that particle i has had a contact
     predict(effect, index, state, scene, i)
         (time, what) of particle i's next event that is no contact of a pair; 0 <= what < 8
     resolve(effect, index, what, state, scene, i, time)
-        carry that event out; returns another particle whose velocity it has changed, or NOBODY
+        carry that event out, book the energy that it puts in, and count State.changes of whoever's
+        velocity it changes; returns another particle than i whose velocity it has changed, or
+        NOBODY
     transfer(effect, index, none, state, work)
         book the energy that particles gain where they, or their partners, change images
     phase(effect, index, base)

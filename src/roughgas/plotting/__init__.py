@@ -1,4 +1,4 @@
-"""The figures of the paper, drawn from reduced datasets beside theory."""
+"""The figures of the paper and of what it leaves open, drawn from reduced data beside theory."""
 
 from collections.abc import Iterable
 from importlib import import_module
@@ -7,7 +7,9 @@ from pathlib import Path
 from roughgas.errors import InputError
 from roughgas.reduce import read_reduced
 
-FIGURES = ("fig1a", "fig1b", "fig2a", "fig2b")
+PAPER = ("fig1a", "fig1b", "fig2a", "fig2b")
+EXTENSIONS = ("fig3", "fig4", "fig5", "fig6", "fig7", "fig8")
+FIGURES = PAPER + EXTENSIONS
 STUDIES = ("accuracy", "coverage")
 
 

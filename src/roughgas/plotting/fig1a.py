@@ -13,7 +13,7 @@ def draw(bed: xr.Dataset) -> Figure:
     figure, main, residual = panel.ratio_panel()
     drawn = panel.series_of_all_r(bed)
     panel.draw_series(main, residual, drawn)
-    panel.draw_theory(main, bed, 1.0)
+    panel.draw_theory(main, bed, r=1.0)
     panel.frame_residuals(residual, drawn, drawn)
     panel.legend(main, drawn, "theory, Eq. (lun), any $r$", loc="upper left")
     panel.caption(main, [bed], "Vibrated bed")

@@ -26,9 +26,9 @@ def draw(bed: xr.Dataset, rough: xr.Dataset, particle: xr.Dataset, smooth: xr.Da
         if RESTITUTION not in data.r.values:
             name = data.attrs["experiment"]
             raise InputError(f"r of {name}", data.r.values, f"include {RESTITUTION:g}")
-        drawn.append(panel.series(data, RESTITUTION, label, look))
+        drawn.append(panel.series(data, label, look, r=RESTITUTION))
     panel.draw_series(main, residual, drawn)
-    panel.draw_theory(main, bed, RESTITUTION)
+    panel.draw_theory(main, bed, r=RESTITUTION)
     # The rough walls shift R by ten times what the others do: the scale is that of the others.
     panel.frame_residuals(residual, drawn, [one for one in drawn if one is not drawn[1]])
     panel.legend(main, drawn, "theory, Eq. (lun)", loc="lower right")

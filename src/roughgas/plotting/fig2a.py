@@ -15,7 +15,7 @@ def draw(sheared: xr.Dataset) -> Figure:
     figure, main, residual = panel.ratio_panel()
     drawn = panel.series_of_all_r(sheared)
     panel.draw_series(main, residual, drawn)
-    panel.draw_theory(main, sheared, 1.0)
+    panel.draw_theory(main, sheared, r=1.0)
     _draw_unsubtracted(main, sheared)
     panel.frame_residuals(residual, drawn, drawn)
     panel.legend(main, drawn, "theory, Eq. (lun), any $r$", loc="upper left")

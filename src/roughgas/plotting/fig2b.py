@@ -14,7 +14,7 @@ def draw(cooling: xr.Dataset) -> Figure:
     drawn = panel.series_of_all_r(cooling)
     panel.draw_series(main, residual, drawn)
     for r, one in zip(sorted(cooling.r.values, reverse=True), drawn, strict=True):
-        panel.draw_theory(main, cooling, r, one.look)
+        panel.draw_theory(main, cooling, one.look, r=r)
     panel.frame_residuals(residual, drawn, drawn)
     panel.legend(main, drawn, "", title="lines: theory, Eq. (K)", loc="upper right")
     panel.caption(main, [cooling], "Cooling gas")

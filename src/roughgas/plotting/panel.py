@@ -1,4 +1,4 @@
-"""R against beta, residuals beneath: the form that all figures of the paper share."""
+"""R against one parameter, residuals beneath: the form that all figures of R share."""
 
 from collections.abc import Sequence
 from typing import Any, NamedTuple
@@ -8,25 +8,33 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import MaxNLocator, MultipleLocator
+from matplotlib.ticker import MaxNLocator
 
+from roughgas.plotting.axis import BETA, Axis
 from roughgas.plotting.style import FAINT, GREY, HEIGHT, LOOKS, THEORY, WIDTH, Look
 from roughgas.reduce import EQUILIBRATED, predicted_ratio
 
-BETA = np.linspace(-1, 1, 801)
 ENERGY_RATIO = r"$R = E^\circ\!/(E^\circ + \bar{E})$"
+ONE_WIDE, TWO_WIDE, THREE_WIDE = 5.6, 7.6, 10.4
+"""Width of a figure of so many panels with much to tell, in inches."""
 SIZE = 5.2
 """Symbols of the first series; each further one is smaller, so that none hides another."""
-SIDESTEP = 0.014
-"""Distance in beta between the residuals of two series, which would else cover each other."""
+
+
+class Panel(NamedTuple):
+    """R above, residuals beneath, both over one axis."""
+
+    main: Axes
+    residual: Axes
+    axis: Axis
 
 
 class Series(NamedTuple):
-    """Measured R at one r: arrays over beta, with the prediction, and how it is drawn."""
+    """Measured R along an axis: arrays, with the prediction, and how it is drawn."""
 
     label: str
     look: Look
-    beta: np.ndarray
+    at: np.ndarray
     ratio: np.ndarray
     error: np.ndarray
     theory: np.ndarray
@@ -39,55 +47,77 @@ class Series(NamedTuple):
         return self.ratio - self.theory
 
 
-def series(data: xr.Dataset, r: float, label: str, look: Look) -> Series:
-    """The points of a reduced dataset at `r` that hold data."""
-    row = data.sel(r=r)
-    row = row.isel(beta=np.isfinite(row.R.values))
-    beta = row.beta.values
+def series(data: xr.Dataset, label: str, look: Look, **place: Any) -> Series:
+    """The points of a reduced dataset that hold data, along the one axis that `place` leaves."""
+    row = data.sel(place)
+    (axis,) = row.R.dims
+    row = row.isel({axis: np.isfinite(row.R.values)})
+    at = row[axis].values
     touched = row.get("contact_time_fraction", 0 * row.R).values > 0
-    theory = predicted_ratio(data.attrs, r, beta)
     steady = row.equilibrated.values > EQUILIBRATED
-    return Series(label, look, beta, row.R.values, row.R_stderr.values, theory, steady, touched)
+    theory = prediction(data, **place, **{axis: at})
+    return Series(label, look, at, row.R.values, row.R_stderr.values, theory, steady, touched)
+
+
+def prediction(data: xr.Dataset, r: Any, beta: Any, **place: Any) -> np.ndarray:
+    """R of theory at these coordinates of a reduced dataset."""
+    return predicted_ratio(data.attrs | place, r, beta)
 
 
 def series_of_all_r(data: xr.Dataset) -> list[Series]:
-    """One series for each r of a reduced dataset, from nearly elastic downwards."""
+    """One series over beta for each r of a reduced dataset, from nearly elastic downwards."""
     descending = sorted(data.r.values, reverse=True)
     looks = [LOOKS[index % len(LOOKS)] for index in range(len(descending))]
     return [
-        series(data, r, f"$r = {r:g}$", look) for r, look in zip(descending, looks, strict=True)
+        series(data, f"$r = {r:g}$", look, r=r) for r, look in zip(descending, looks, strict=True)
     ]
 
 
 def ratio_panel() -> tuple[Figure, Axes, Axes]:
     """A figure with R above and residuals beneath, both over beta."""
-    figure = Figure(figsize=(WIDTH, HEIGHT), layout="constrained")
-    main, residual = figure.subplots(2, 1, sharex=True, height_ratios=(2.3, 1))
-    main.set_ylabel(ENERGY_RATIO)
-    main.axhline(0.5, color=FAINT, linewidth=0.8, linestyle=(0, (1, 2)), zorder=0)
-    residual.set_ylabel(r"$R - R_\mathrm{theory}$")
-    residual.set_xlabel(r"tangential restitution $\beta$")
-    residual.set_xlim(-1.06, 1.06)
-    residual.xaxis.set_major_locator(MultipleLocator(0.5))
-    residual.xaxis.set_minor_locator(MultipleLocator(0.1))
-    residual.yaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
-    residual.axhline(0, color=THEORY, linewidth=0.8)
+    figure, (panel,) = ratio_panels([BETA])
+    return figure, panel.main, panel.residual
+
+
+def ratio_panels(axes: Sequence[Axis], width: float = WIDTH) -> tuple[Figure, list[Panel]]:
+    """A figure of several such panels side by side, one an axis; R has the same scale in all."""
+    figure = Figure(figsize=(width, HEIGHT), layout="constrained")
+    above, beneath = figure.subplots(
+        2, len(axes), sharex="col", sharey="row", height_ratios=(2.3, 1), squeeze=False
+    )
+    above[0].set_ylabel(ENERGY_RATIO)
+    beneath[0].set_ylabel(r"$R - R_\mathrm{theory}$")
+    panels = [Panel(*parts) for parts in zip(above, beneath, axes, strict=True)]
+    for main, residual, axis in panels:
+        main.axhline(0.5, color=FAINT, linewidth=0.8, linestyle=(0, (1, 2)), zorder=0)
+        residual.axhline(0, color=THEORY, linewidth=0.8)
+        residual.yaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
+        axis.prepare(residual)
     figure.align_ylabels()
-    return figure, main, residual
+    return figure, panels
 
 
-def draw_theory(main: Axes, data: xr.Dataset, r: float, look: Look | None = None) -> None:
-    """The predicted R over beta as a line: black, or in the look of a series."""
+def draw_theory(
+    main: Axes, data: xr.Dataset, look: Look | None = None, axis: Axis = BETA, **place: Any
+) -> None:
+    """The predicted R along an axis as a line: black, or in the look of a series."""
     colour, line = (look.colour, look.line) if look else (THEORY, "-")
-    main.plot(BETA, predicted_ratio(data.attrs, r, BETA), linestyle=line, color=colour, zorder=1)
+    predicted = prediction(data, **place, **{axis.name: axis.grid})
+    main.plot(axis.grid, predicted, linestyle=line, color=colour, zorder=1)
 
 
-def draw_series(main: Axes, residual: Axes, drawn: Sequence[Series]) -> None:
+def draw_series(main: Axes, residual: Axes, drawn: Sequence[Series], axis: Axis = BETA) -> None:
     """The points with error bars above; minus theory, a little apart, beneath."""
+    draw_points(main, drawn)
     for index, one in enumerate(drawn):
-        _points(main, one, one.beta, one.ratio, size=SIZE - 0.6 * index)
-        step = SIDESTEP * (index - (len(drawn) - 1) / 2)
-        _points(residual, one, one.beta + step, one.residual, size=4)
+        steps = index - (len(drawn) - 1) / 2
+        _points(residual, one, axis.aside(one.at, steps), one.residual, size=4)
+
+
+def draw_points(main: Axes, drawn: Sequence[Series]) -> None:
+    """The points with error bars."""
+    for index, one in enumerate(drawn):
+        _points(main, one, one.at, one.ratio, size=max(SIZE - 0.6 * index, 3.0))
 
 
 def frame_residuals(residual: Axes, drawn: Sequence[Series], scale: Sequence[Series]) -> None:
@@ -139,14 +169,14 @@ def _key(colour: str, label: str, marker: str, linestyle: Any = "none", **how: A
     return Line2D([], [], color=colour, label=label, marker=marker, linestyle=linestyle, **how)
 
 
-def _points(axes: Axes, one: Series, beta: np.ndarray, values: np.ndarray, size: float) -> None:
+def _points(axes: Axes, one: Series, at: np.ndarray, values: np.ndarray, size: float) -> None:
     """Filled symbols in a steady state, open ones elsewhere, rings where contact times mattered."""
     common = {"color": one.look.colour, "fmt": one.look.marker, "elinewidth": 0.8, "capsize": 1.5}
     common["markersize"] = size
     for part, fill in ((one.steady, "full"), (~one.steady, "none")):
-        axes.errorbar(beta[part], values[part], one.error[part], fillstyle=fill, **common)
+        axes.errorbar(at[part], values[part], one.error[part], fillstyle=fill, **common)
     ringed = one.contact_time
-    axes.plot(beta[ringed], values[ringed], color=GREY, linestyle="none", **RING)
+    axes.plot(at[ringed], values[ringed], color=GREY, linestyle="none", **RING)
 
 
 def _arrows(residual: Axes, one: Series) -> bool:
@@ -156,5 +186,5 @@ def _arrows(residual: Axes, one: Series) -> bool:
     for beyond, height, marker in ((above, 0.95, "^"), (below, 0.05, "v")):
         heights = np.full(beyond.sum(), low + height * (high - low))
         style = {"color": one.look.colour, "fillstyle": "none", "ms": 3, "mew": 0.7}
-        residual.plot(one.beta[beyond], heights, marker, **style)
+        residual.plot(one.at[beyond], heights, marker, **style)
     return bool(above.any() or below.any())

@@ -56,7 +56,16 @@ def exchange(before: Books, after: Books, scene: Scene, particles: int) -> dict[
         "energy_input": booked[list(accounts.values())],
         "energy_gain": gain,
         "energy_imbalance": imbalance(booked, gain),
-    }
+    } | _shared_input(booked, accounts, scene)
+
+
+def _shared_input(booked, accounts, scene):
+    """How what drives put in is shared, where there are any, and particles spin."""
+    sources = [number for name, number in accounts.items() if name != CONTACTS]
+    put_in = booked[sources].sum(axis=0)
+    if scene.effects.spin is None or not hooks.present(scene.effects, "DRIVES"):
+        return {}
+    return {"input_spin_share": put_in[1] / put_in.sum()}
 
 
 def imbalance(booked: np.ndarray, gain: np.ndarray) -> float:

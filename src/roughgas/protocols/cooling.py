@@ -14,7 +14,7 @@ from roughgas.measure.intervals import Error
 from roughgas.measure.plateau import find_plateau
 from roughgas.protocols.books import Books, books, exchange
 from roughgas.scene import Scene
-from roughgas.theory import relaxation_rate
+from roughgas.theory import friction_relaxation_rate, relaxation_rate
 
 SAMPLES_PER_REFRESH = 4
 TRANSIENT = 10.0, 1000.0  # collisions per particle: theory's estimate is kept between these
@@ -72,7 +72,15 @@ def rate_of(scene: Scene) -> float:
     q = inertia(scene.effects)
     if q is None:
         return math.inf
-    return float(relaxation_rate(scene.restitution, scene.roughness, len(scene.box), q))
+    r, beta, dimension, friction = (
+        scene.restitution,
+        scene.roughness,
+        len(scene.box),
+        scene.effects.friction,
+    )
+    if friction is None:
+        return float(relaxation_rate(r, beta, dimension, q))
+    return float(friction_relaxation_rate(r, beta, friction.mu, dimension, q))
 
 
 def _cool(state, scene, schedule, number, samples, recorder):

@@ -33,6 +33,12 @@ from roughgas.theory.frequencies import (
     mean_free_path,
     number_density,
 )
+from roughgas.theory.friction import (
+    friction_changes,
+    friction_ratio,
+    friction_relaxation_rate,
+    sliding_fraction,
+)
 from roughgas.theory.haff import decay_rate, haff_temperature, haff_time
 from roughgas.theory.rate_equations import (
     Rates,
@@ -58,6 +64,9 @@ __all__ = [
     "cooling_ratio",
     "decay_rate",
     "drive_changes",
+    "friction_changes",
+    "friction_ratio",
+    "friction_relaxation_rate",
     "goldshtein_ratio",
     "haff_temperature",
     "haff_time",
@@ -71,6 +80,7 @@ __all__ = [
     "relax",
     "relaxation_rate",
     "rotational_energy_change",
+    "sliding_fraction",
     "stationary_ratio",
     "stationary_theta",
     "temperature_changes",

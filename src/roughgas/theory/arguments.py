@@ -60,6 +60,11 @@ def check_share(spin_share) -> np.ndarray:
     return check_between("spin share of the drive", spin_share, 0, 1)
 
 
+def check_net_share(spin_share) -> np.ndarray:
+    """The same of a drive that may take energy out of one motion, in [-1, 2]."""
+    return check_between("net spin share of the drive", spin_share, -1, 2)
+
+
 def check_between(key: str, value, low: float, high: float) -> np.ndarray:
     """A number in [low, high]."""
     return _checked(key, value, f"lie in [{low}, {high}]", lambda x: (x >= low) & (x <= high))

@@ -14,7 +14,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roughgas.theory.arguments import check_dimension, check_not_negative, check_share, material
+from roughgas.theory.arguments import (
+    check_dimension,
+    check_net_share,
+    check_not_negative,
+    check_share,
+    material,
+)
 from roughgas.theory.shares import positive_root, quotient, shares
 
 
@@ -76,8 +82,10 @@ def stationary_ratio(r, beta, dimension=2, inertia=None, spin_share=None) -> np.
     """Stationary R = T_rot/(T_rot + T_tr): Eq. (K) without a drive, Eq. (lun) at spin_share 0.
 
     At spin_share 1 it is theta = A/B, the loss over the gain of T_tr. In general translation and
-    spin lose energy to collisions as (1 - s) : s, whatever the power and however it varies. Limits
-    at beta = -1 are those of beta -> -1 (without a drive, see `cooling_ratio`). Raises InputError.
+    spin lose energy to collisions as (1 - s) : s, whatever the power and however it varies. A drive
+    may take out of one motion some of what it puts into the other, and s then lie below 0 or above
+    1; where it takes more than collisions bring there, R is 0 or 1. Limits at beta = -1 are those
+    of beta -> -1 (without a drive, see `cooling_ratio`). Raises InputError.
     """
     return stationary_shares(r, beta, dimension, inertia, spin_share)[1][()]
 
@@ -98,9 +106,10 @@ def stationary_shares(r, beta, dimension=2, inertia=None, spin_share=None):
             rates.translational_gain, difference, rates.rotational_gain
         )
         return shares(translational, rotational, neither=0)
-    s, spins = check_share(spin_share), 2 * dimension - 3
+    s, spins = check_net_share(spin_share), 2 * dimension - 3
     rotational = s * dimension * rates.translational_loss + (1 - s) * spins * rates.rotational_gain
     translational = (
         s * dimension * rates.translational_gain + (1 - s) * spins * rates.rotational_loss
     )
-    return shares(translational, rotational, neither=s * q / (s * q + 1 - s))
+    limit = np.clip(s * q / (s * q + 1 - s), 0, 1)
+    return shares(np.maximum(translational, 0), np.maximum(rotational, 0), neither=limit)

@@ -1,0 +1,56 @@
+# Beyond the paper: the experiments that it left for later, one table, and what they answer.
+EXTENSIONS = {
+    "fig3": ["cooling_spheres", "sheared_spheres", "vibrated_spheres"],
+    "fig4": ["vibrated_friction", "cooling_friction"],
+    "fig5": ["heated", "floor_materials", "shaken_walls"],
+    "fig6": ["waves"],
+    "fig7": ["vibrated_inertia", "cooling_inertia"],
+    "fig8": ["floor_materials", "wall_materials"],
+}
+FIGURES |= EXTENSIONS
+
+
+def data_of_extensions(wildcards):
+    return reduced(wildcards.scale, shown_in(EXTENSIONS))
+
+
+rule table_of_extensions:
+    input:
+        sources("table"),
+        data=data_of_extensions,
+    output:
+        "results/{scale}/extensions.csv",
+    log:
+        "logs/{scale}/extensions.log",
+    benchmark:
+        "logs/{scale}/extensions.tsv"
+    message:
+        "write {output}"
+    shell:
+        "roughgas table {input.data} --output {output} > {log} 2>&1"
+
+
+rule open_questions:
+    input:
+        sources("claims"),
+        data=data_of_extensions,
+    output:
+        json="results/{scale}/open_questions.json",
+        markdown="results/{scale}/open_questions.md",
+    log:
+        "logs/{scale}/open_questions.log",
+    benchmark:
+        "logs/{scale}/open_questions.tsv"
+    message:
+        "answer what the paper leaves open"
+    shell:
+        "roughgas claims --open {input.data} --json {output.json} --markdown {output.markdown}"
+        " > {log} 2>&1"
+
+
+rule extensions:
+    input:
+        drawn(EXTENSIONS),
+        f"results/{SCALE}/extensions.csv",
+        f"results/{SCALE}/open_questions.json",
+        f"results/{SCALE}/open_questions.md",

@@ -1,0 +1,59 @@
+"""Side walls that are shaken along themselves, so that they drive what their roughness grips.
+
+They close the first axis and move along the last one as a sine, both alike. The surface of a wall
+stays where it is: only the velocity that particles meet there changes.
+"""
+
+from typing import NamedTuple
+
+from roughgas.effects import walls
+from roughgas.effects.settings import MATERIAL, Number, read
+from roughgas.errors import InputError
+from roughgas.kernel.contact import collide_with_wall
+from roughgas.kernel.jit import jit
+from roughgas.kernel.turns import TURN, sine_and_cosine
+from roughgas.kernel.vectors import along_first, along_last
+
+SETTINGS = {
+    "amplitude": Number("Largest displacement from the middle, in a.", "[0, inf)"),
+    "period": Number("Period of the motion, in T."),
+    **MATERIAL,
+}
+CLOSES = DRIVES = True
+
+
+class ShakenWalls(NamedTuple):
+    """Side walls that close the first axis, and are shaken along the last one as a sine."""
+
+    width: float  # they are at 0 and at this place, in a
+    speed: float  # the largest, in a/T
+    period: float
+    restitution: float
+    roughness: float
+
+    @classmethod
+    def from_settings(cls, settings, around):
+        """The effect; raises InputError for illegal parameters, and beside walls at rest."""
+        if "walls" in around.effects:
+            raise InputError("effects", "walls and shaken_walls", "not close the same axis twice")
+        chosen = read(SETTINGS, "shaken_walls", settings, around)
+        speed = TURN * chosen.pop("amplitude") / chosen["period"]
+        return cls(width=around.box[0], speed=speed, **chosen)
+
+
+predict = walls.predict
+
+
+@jit
+def phase(shaken, index, base):
+    """Time since a period began at which the clock's base lies."""
+    return base % shaken.period
+
+
+@jit
+def resolve(shaken, index, what, state, scene, i, time):
+    normal = along_first(scene.box, 1.0 if what == walls.LEFT else -1.0)
+    turns = (state.phase[index] + time) / shaken.period
+    moving = along_last(scene.box, shaken.speed * sine_and_cosine(turns)[1])
+    material = (shaken.restitution, shaken.roughness)
+    return collide_with_wall(state, scene, index, i, time, material, normal, moving, 0.0)

@@ -1,0 +1,64 @@
+"""What all shaken floors share: how a particle falls onto their surface, and leaves it."""
+
+import math
+
+from roughgas.kernel import hooks
+from roughgas.kernel.contact import collide_with_wall
+from roughgas.kernel.jit import jit
+from roughgas.kernel.vectors import along_last
+
+# Below it a floor that takes energy would be hit infinitely often in a finite time (a/T)
+LEAST_DEPARTURE = 1e-3
+
+
+@jit
+def phase(floor, index, base):
+    """Time since the period began in which the clock's base lies."""
+    return base % floor.period
+
+
+@jit
+def flight(floor, index, state, scene, i):
+    """Particle i's flight: (gravity, height of its lowest point, upward speed, the floor's phase),
+    all when its path begins, and that time."""
+    dimension = len(scene.box)
+    time = state.trajectory[i, 2 * dimension]
+    height = state.trajectory[i, dimension - 1] - 1.0
+    speed = state.trajectory[i, 2 * dimension - 1]
+    gravity = hooks.acceleration(scene.effects, None)
+    return (gravity, height, speed, state.phase[index] + time), time
+
+
+@jit
+def fall(gap, speed, gravity):
+    """First time at which gap + speed t - gravity t^2 / 2 = 0, without cancellation.
+
+    gravity > 0. What is on the surface, or below it by rounding, is met at once if it approaches,
+    else after its hop.
+    """
+    if gap <= 0.0:
+        return 0.0 if speed < 0.0 else 2.0 * speed / gravity
+    root = math.sqrt(speed * speed + 2.0 * gravity * gap)
+    return 2.0 * gap / (root - speed) if speed < 0.0 else (speed + root) / gravity
+
+
+@jit
+def until_back(amplitude, gravity, height, speed, time):
+    """When a particle that is above all strokes at `time` is back from there, else `time`.
+
+    A long flight passes over millions of strokes. Height and speed are those at time 0.
+    """
+    above = height + speed * time - 0.5 * gravity * time * time - amplitude
+    if above > 0.0:
+        return time + fall(above, speed - gravity * time, gravity)
+    return time
+
+
+@jit
+def bounce(floor, index, state, scene, i, time, speed):
+    """Carry out particle i's contact with a floor that moves up at `speed`."""
+    normal = along_last(scene.box, 1.0)
+    moving = along_last(scene.box, speed)
+    material = (floor.restitution, floor.roughness)
+    least = floor.least_departure
+    return collide_with_wall(state, scene, index, i, time, material, normal, moving, least)

@@ -1,0 +1,89 @@
+"""A floor that rises and falls at constant speeds: a triangle, or a sawtooth the other way round.
+
+While it rises its surface is at A t/(rise T), and for the rest of the period at
+A (1 - t/T)/(1 - rise), with A the amplitude and T the period. It meets a particle at a root of a
+quadratic: one that falls, and while it goes down itself also one that overtakes it.
+
+The reversed sawtooth rises in a tenth of its period: a floor that rose at once would give every
+particle that it meets an infinite speed.
+"""
+
+import math
+from typing import NamedTuple
+
+from roughgas.effects.surface import bounce, fall, flight, until_back
+from roughgas.effects.surface import phase as phase
+from roughgas.kernel.jit import jit
+
+REVERSED_RISE = 0.1  # of the reversed sawtooth's period
+RISING, FALLING = 0, 1
+DRIVES = True
+
+
+class TriangularFloor(NamedTuple):
+    """A floor under a gas with gravity, whose surface is piecewise linear in time."""
+
+    amplitude: float  # height of a stroke, in a; a floor at rest has 0
+    period: float  # T
+    rise: float  # share of the period in which it rises
+    restitution: float
+    roughness: float
+    least_departure: float  # a particle leaves at no less than this speed, relative to the floor
+
+
+@jit
+def predict(floor, index, state, scene, i):
+    falling, time = flight(floor, index, state, scene, i)
+    wait, piece = time_to_floor(floor, *falling)
+    return time + wait, piece
+
+
+@jit
+def time_to_floor(floor, gravity, height, speed, phase):
+    """(time, RISING or FALLING): when a particle whose lowest point is at `height`, rising at
+    `speed`, meets the floor, and on which piece of its motion.
+
+    phase is the time since some period began; gravity > 0. Times in T, lengths in a. At a turning
+    point it is the earlier piece on which the particle approaches the floor.
+    """
+    number = _piece_to_meet(floor, gravity, height, speed, phase, 0.0)
+    while True:
+        piece = number & 1
+        floor_speed = speed_of(floor, piece)
+        start = _begin(floor, number) - phase
+        end = _begin(floor, number + 1) - phase
+        begin = max(0.0, start)
+        level = floor.amplitude if piece == FALLING else 0.0
+        gap = height + speed * begin - 0.5 * gravity * begin * begin
+        gap -= level + floor_speed * (begin - start)
+        meeting = begin + fall(gap, speed - gravity * begin - floor_speed, gravity)
+        if meeting <= end:
+            return meeting, piece
+        number = max(number + 1, _piece_to_meet(floor, gravity, height, speed, phase, end))
+
+
+@jit
+def speed_of(floor, piece):
+    """Upward speed of the surface on a piece of its motion."""
+    if piece == RISING:
+        return floor.amplitude / (floor.rise * floor.period)
+    return -floor.amplitude / ((1.0 - floor.rise) * floor.period)
+
+
+@jit
+def _begin(floor, number):
+    """When a piece begins; two are a period, and those of even number rise."""
+    return (number // 2 + (number & 1) * floor.rise) * floor.period
+
+
+@jit
+def _piece_to_meet(floor, gravity, height, speed, phase, time):
+    """The piece under way at `time`, or when a particle above all strokes is back from there."""
+    periods = (phase + until_back(floor.amplitude, gravity, height, speed, time)) / floor.period
+    whole = math.floor(periods)
+    return 2 * whole + (FALLING if periods - whole > floor.rise else RISING)
+
+
+@jit
+def resolve(floor, index, what, state, scene, i, time):
+    return bounce(floor, index, state, scene, i, time, speed_of(floor, what))

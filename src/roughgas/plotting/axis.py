@@ -1,0 +1,53 @@
+"""The parameters that figures have along their horizontal axis."""
+
+from typing import NamedTuple
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.ticker import MultipleLocator
+
+SIDESTEP = 0.0066
+"""Distance between the residuals of two series, as a share of the axis: else one hides another."""
+
+
+class Axis(NamedTuple):
+    """A coordinate of reduced datasets, and how it is drawn."""
+
+    name: str
+    label: str
+    limits: tuple[float, float]
+    drawn: tuple[float, float]  # where theory is drawn from and to
+    logarithmic: bool = False
+
+    @property
+    def grid(self) -> np.ndarray:
+        """Where theory is drawn, closely."""
+        spaced = np.geomspace if self.logarithmic else np.linspace
+        return spaced(*self.drawn, 801)
+
+    def prepare(self, axes: Axes) -> None:
+        """Label the axis, and set its scale and its ends."""
+        axes.set_xlabel(self.label)
+        if self.logarithmic:
+            axes.set_xscale("log")
+        axes.set_xlim(*self.limits)
+        if not self.logarithmic:
+            span = self.drawn[1] - self.drawn[0]
+            axes.xaxis.set_major_locator(MultipleLocator(0.25 * span))
+            axes.xaxis.set_minor_locator(MultipleLocator(0.05 * span))
+
+    def aside(self, at: np.ndarray, steps: float) -> np.ndarray:
+        """Places so many steps beside others."""
+        low, high = self.limits
+        if self.logarithmic:
+            return at * (high / low) ** (SIDESTEP * steps)
+        return at + SIDESTEP * (high - low) * steps
+
+
+BETA = Axis("beta", r"tangential restitution $\beta$", (-1.06, 1.06), (-1, 1))
+FRICTION = Axis("mu", r"coefficient of friction $\mu$", (0.007, 14), (0.007, 14), True)
+INERTIA = Axis("inertia", r"moment of inertia $q = I/(ma^2)$", (0.008, 1.25), (0.008, 1), True)
+SPIN_SHARE = Axis(
+    "spin_share", "share $s$ of the drive's power\nthat goes into rotation", (-0.03, 1.03), (0, 1)
+)
+ROUGHNESS = Axis("roughness", r"roughness of the boundary", (-1.06, 1.06), (-1, 1))

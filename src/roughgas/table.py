@@ -1,0 +1,81 @@
+"""From reduced datasets to one table: a row for each point of the grid."""
+
+import csv
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from roughgas.atomic import whole_file
+from roughgas.reduce import GRID, predicted_ratio, read_reduced, third_axis
+
+if TYPE_CHECKING:
+    import xarray
+
+ABOUT = ("experiment", "scale", "particles", "dimension", "inertia", "parameter", "value")
+COLUMNS = (
+    "n_seeds",
+    "R",
+    "R_stderr",
+    "R_dof",
+    "R_ci95",
+    "R_ci95_trusted",
+    "R_stderr_over_seeds",
+    "R_stderr_within",
+    "R_ratio_of_means",
+    "R_unsubtracted",
+    "R_unsubtracted_stderr",
+    "E_trans",
+    "E_trans_stderr",
+    "E_rot",
+    "input_spin_share",
+    "equilibrated",
+    "measured_from",
+    "measured_for",
+    "collisions",
+    "contact_time_fraction",
+)
+THEORY = ("theory", "R_theory", "residual")
+
+
+def write_table(reduced_paths: Iterable[str | Path], csv_path: str | Path) -> None:
+    """Write one tidy CSV: a row for each experiment, value of its third axis, r and beta that holds
+    data."""
+    head = (*ABOUT, *GRID, *COLUMNS, *THEORY)
+    with whole_file(csv_path) as draft, open(draft, "w", newline="", encoding="utf-8") as file:
+        table = csv.writer(file, lineterminator="\n")
+        table.writerow(head)
+        for path in reduced_paths:
+            for variant in _variants(read_reduced(path)):
+                table.writerows(_rows(variant, head))
+
+
+def _variants(dataset: "xarray.Dataset") -> Iterator["xarray.Dataset"]:
+    """A dataset over (r, beta) for each value of the third axis, which its attributes then tell."""
+    name = third_axis(dataset.attrs)
+    if name is None:
+        yield dataset
+        return
+    for index, value in enumerate(dataset[name].values):
+        about = {name: value, "parameter": name, "value": value}
+        yield dataset.isel({name: index}, drop=True).assign_attrs(about)
+
+
+def _rows(dataset: "xarray.Dataset", head: Sequence[str]) -> Iterator[list[str]]:
+    """The rows of a dataset over (r, beta), ascending in them."""
+    flat = dataset.drop_dims("seed").stack(point=GRID)
+    prediction = predicted_ratio(dataset.attrs, flat.r.values, flat.beta.values)
+    for index in np.flatnonzero(flat["n_seeds"].values):
+        row = {name: flat[name].values[index] for name in (*GRID, *COLUMNS) if name in flat}
+        residual = row.get("R", math.nan) - prediction[index]
+        row |= {"R_theory": prediction[index], "residual": residual}
+        yield [_cell(row.get(name, dataset.attrs.get(name, ""))) for name in head]
+
+
+def _cell(value: Any) -> str:
+    """Numbers to ten digits, what is not a number as an empty cell."""
+    if isinstance(value, str):
+        return value
+    return "" if math.isnan(value) else format(value, ".10g")

@@ -1,0 +1,213 @@
+"""Rough gases with Coulomb friction: rates, and the stationary R as a function of mu.
+
+The contact is Walton's: beta = min(beta_0, -1 + mu (1+r)(1+1/q) |g_n|/|g_t|), so that the
+tangential impulse is at most mu times the normal one; a contact where it is equal slides, any other
+sticks. With eta = q (1 + beta)/[2 (1 + q)] this is eta = min(eta_0, mu (1+r)/2 |g_n|/|g_t|), and
+one collision changes the energies of its pair by the normal part -m (1-r^2) g_n^2/4 and
+
+    translation: m (eta^2 g_t^2 - eta g_t.v_t)      rotation: m (eta^2 g_t^2 - q eta g_t.v_r)/q.
+
+In a Maxwellian gas v_t and v_r are on average T_tr : T_rot/q of g_t, whatever eta, so that only
+the averages of eta g_t^2 and eta^2 g_t^2 are needed, and these are elementary (`_moments`). Source
+of the rule: O. R. Walton, in Particulate Two-Phase Flow, ed. M. C. Roco (1993). The averages and
+what follows from them were derived for this package; that a cooling gas with weak friction may keep
+its spin while translation dies out, O. Herbst, M. Huthmann & A. Zippelius found (Granular Matter 2,
+211, 2000).
+
+`beta` is beta_0 and `mu` >= 0 may be infinite: McNamara & Luding's gas, `rate_equations`.
+"""
+
+import numpy as np
+
+from roughgas.theory.arguments import (
+    Material,
+    check_between,
+    check_not_negative,
+    check_share,
+    material,
+)
+from roughgas.theory.rate_equations import Rates, collision_rates, stationary_ratio
+from roughgas.theory.shares import quotient, shares
+
+# Halvings of a bracket within [0, 1], and thirds taken off one, that leave a rounding of R
+HALVINGS = 60
+THIRDS = 90
+STEP = 1e-4  # of ln theta, for a slope
+NEARLY = 1e-9  # what R lacks to 1 where spin outlives translation, as good as nothing
+
+
+def sliding_fraction(T_tr, T_rot, r, beta, mu, dimension=2, inertia=None) -> np.ndarray:
+    """Share of the contacts that slide; 0 for beta = -1, where nothing holds them.
+
+    All arguments but D broadcast; raises InputError.
+    """
+    T_tr, T_rot = _temperatures(T_tr, T_rot)
+    gas, mu = material(r, beta, dimension, inertia), _check_friction(mu)
+    sticking = 1 / np.hypot(1, _threshold(T_tr, T_rot, gas, mu))
+    return (1 - sticking ** (gas.dimension - 1))[()]
+
+
+def friction_changes(
+    T_tr, T_rot, r, beta, mu, dimension=2, inertia=None, frequency=1.0
+) -> tuple[np.ndarray, np.ndarray]:
+    """dT_tr/dt and dT_rot/dt due to collisions, `temperature_changes` at infinite mu.
+
+    With the frequency 1 left as it is, they are per collision per particle. All arguments but D
+    broadcast; raises InputError for negative temperatures or frequencies too.
+    """
+    T_tr, T_rot = _temperatures(T_tr, T_rot)
+    gas, mu = material(r, beta, dimension, inertia), _check_friction(mu)
+    nu = check_not_negative("frequency", frequency)
+    rates = _rates(T_tr, T_rot, gas, mu)
+    return (
+        nu * (rates.translational_gain * T_rot - rates.translational_loss * T_tr),
+        nu * (rates.rotational_gain * T_tr - rates.rotational_loss * T_rot),
+    )
+
+
+def friction_ratio(r, beta, mu, dimension=2, inertia=None, spin_share=None) -> np.ndarray:
+    """Stationary R that a gas started without spin reaches, to 1e-13.
+
+    Without a drive (spin_share None), or driven with a share of its power into spin. At infinite mu
+    it is `stationary_ratio`; at mu = 0, as at beta = -1, spin is decoupled, and R the limit given
+    there. All arguments but D broadcast; raises InputError.
+
+    R = 1 where theta grows without bound: translational energy dies out faster than spin.
+
+    - Without a drive a gas that spins fast enough goes there for mu < mu_c = sqrt((1-r)/(1+r)), in
+      2D and 3D; one started without spin for mu below some mu_s <= mu_c, where R jumps to 1. For
+      nearly elastic disks mu_s is q (1-r)/(2-q), for spheres (2/pi) q (1-r)/(1-q), to leading
+      order. For disks with (1 + beta)(2-q)/(1+q) <= 1 - r^2, mu_s = mu_c, and there is no jump.
+    - Driven through rotation, spin_share 1, every gas does for mu <= mu_c.
+    - Otherwise a driven gas has one stationary R. At spin_share 0 theta is (1+r) mu for disks,
+      (2/pi) (1+r) mu for spheres, to leading order in mu, and for disks at any mu
+      2 q e/[1-e + sqrt((1-e)^2 + (q e/kappa)^2)], e = (1+beta)/(2+2q), kappa = mu (1+r)/2.
+    """
+    gas, mu = material(r, beta, dimension, inertia), _check_friction(mu)
+    share = None if spin_share is None else check_share(spin_share)
+    decoupled = stationary_ratio(gas.r, -1, dimension, gas.inertia, share)
+    shape = np.broadcast_shapes(gas.beta.shape, mu.shape, np.shape(decoupled))
+
+    def growth(R):
+        return _growth(R, gas, mu, share)
+
+    # a drive leaves room for one stationary state only
+    high = _fastest_fall(growth, shape) if share is None else np.ones(shape)
+    low = np.zeros(shape)
+    for _ in range(HALVINGS):
+        middle = (low + high) / 2
+        grows = growth(middle) > 0
+        low, high = np.where(grows, middle, low), np.where(grows, high, middle)
+    return np.where((mu == 0) | (gas.beta == -1), decoupled, high)[()]
+
+
+def friction_relaxation_rate(r, beta, mu, dimension=2, inertia=None) -> np.ndarray:
+    """Rate at which R of a cooling gas goes to `friction_ratio`, per collision per particle.
+
+    From the linear stability of ln theta, by a central difference; where R = 1 the rate at which
+    theta grows in the end. `relaxation_rate` at infinite mu; 0 where spin is decoupled. All
+    arguments but D broadcast; raises InputError.
+    """
+    gas, mu = material(r, beta, dimension, inertia), _check_friction(mu)
+    R = friction_ratio(r, beta, mu, dimension, inertia)
+    lasting = np.where(R < 1 - NEARLY, R, 0.5)
+    theta = lasting / (1 - lasting)
+    below, above = theta * np.exp(-STEP), theta * np.exp(STEP)
+    fall = _growth(below / (1 + below), gas, mu, None) - _growth(above / (1 + above), gas, mu, None)
+    final = _growth(np.asarray(1 - NEARLY), gas, mu, None)
+    decoupled = (mu == 0) | (gas.beta == -1)
+    rate = np.where(R < 1 - NEARLY, fall / (2 * STEP), final)
+    return np.where(decoupled, 0.0, rate)[()]
+
+
+def _fastest_fall(growth, shape) -> np.ndarray:
+    """R where theta falls fastest in a cooling gas, 1 if it falls nowhere: beyond the stationary R.
+
+    d ln theta/dn has no other minimum, being convex as a function of `sticking` (2D) or its square
+    (3D, q <= 1), or growing with it (3D, q > 1); so it changes sign once between no spin and there.
+    """
+    low, high = np.zeros(shape), np.ones(shape)
+    for _ in range(THIRDS):
+        third = (high - low) / 3
+        left, right = low + third, high - third
+        falls = growth(left) > growth(right)
+        low, high = np.where(falls, left, low), np.where(falls, high, right)
+    fastest = (low + high) / 2
+    return np.where(growth(fastest) < 0, fastest, 1.0)
+
+
+def _growth(R, gas: Material, mu, share) -> np.ndarray:
+    """What has the sign of d theta/dt: d ln theta/dn without a drive.
+
+    With one, the power that spin still lacks to lose energy as `share`, where T_tr + T_rot = 1.
+    """
+    T_tr, T_rot = 1 - R, R
+    rates = _rates(T_tr, T_rot, gas, mu)
+    if share is None:
+        return (
+            quotient(rates.rotational_gain * T_tr, T_rot)
+            - quotient(rates.translational_gain * T_rot, T_tr)
+            + (rates.translational_loss - rates.rotational_loss)
+        )
+    translational = rates.translational_loss * T_tr - rates.translational_gain * T_rot
+    rotational = rates.rotational_gain * T_tr - rates.rotational_loss * T_rot
+    D = gas.dimension
+    return share * D * translational + (1 - share) * (2 * D - 3) * rotational
+
+
+def _rates(T_tr, T_rot, gas: Material, mu) -> Rates:
+    """Coefficients of the rate equations, which now depend on theta: see `Rates`.
+
+    They are those without friction, times the second moment, plus a loss of both energies where
+    contacts slide, the first moment exceeding the second.
+    """
+    r, _, dimension, q = gas
+    sticking = collision_rates(*gas)
+    first, second = _moments(_threshold(T_tr, T_rot, gas, mu), dimension)
+    slid = 2 * (dimension - 1) * _eta(gas) * (first - second)
+    inelastic = (1 - r) * (1 + r) / dimension
+    return Rates(
+        translational_loss=second * sticking.translational_loss
+        + (1 - second) * inelastic
+        + slid / dimension,
+        translational_gain=second * sticking.translational_gain,
+        rotational_gain=second * sticking.rotational_gain,
+        rotational_loss=second * sticking.rotational_loss + slid / q / (2 * dimension - 3),
+    )
+
+
+def _moments(threshold, dimension) -> tuple[np.ndarray, np.ndarray]:
+    """<eta g_t^2>/(eta_0 <g_t^2>) and <eta^2 g_t^2>/(eta_0^2 <g_t^2>), both in [0, 1].
+
+    With x = g_n/sqrt(<g_n^2>/2) and y = |g_t|/sqrt(<g_t^2>/(D-1)), of density x y^(D-2)
+    exp(-(x^2+y^2)/2), eta depends on c = y/sqrt(x^2+y^2) alone, whose density is (D-1) c^(D-2), and
+    the averages weight c with c^D. Contacts with c below 1/sqrt(1 + threshold^2) stick.
+    """
+    sticking = 1 / np.hypot(1, threshold)
+    if dimension == 2:
+        return sticking, 2 * sticking**2 / (1 + sticking)
+    # arctan(threshold)/threshold, which is 1 at 0
+    angle_ratio = sticking / np.sinc(np.arctan(threshold) / np.pi)
+    return (angle_ratio + sticking**2) / 2, sticking**2
+
+
+def _threshold(T_tr, T_rot, gas: Material, mu) -> np.ndarray:
+    """x/y below which contacts slide (`_moments`): eta_0 over mu (1+r)/2 times the scale of x/y."""
+    normal = np.sqrt(shares(T_tr, T_rot / gas.inertia, neither=0)[0])
+    return quotient(quotient(_eta(gas), mu * (1 + gas.r) / 2), normal)
+
+
+def _eta(gas: Material) -> np.ndarray:
+    return gas.inertia * (1 + gas.beta) / (2 * (1 + gas.inertia))
+
+
+def _temperatures(T_tr, T_rot) -> tuple[np.ndarray, np.ndarray]:
+    return (
+        check_not_negative("temperature T_tr", T_tr),
+        check_not_negative("temperature T_rot", T_rot),
+    )
+
+
+def _check_friction(mu) -> np.ndarray:
+    """Friction coefficient mu, >= 0 or infinite."""
+    return check_between("friction mu", mu, 0, np.inf)

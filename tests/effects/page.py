@@ -1,0 +1,89 @@
+"""The page docs/effects.md: its parts, and the table in it that is made from the effects' files.
+
+    .venv/bin/python tests/effects/page.py
+
+writes that table anew.
+"""
+
+import math
+import re
+import sys
+from pathlib import Path
+
+from roughgas.effects import KINDS, parameters
+from roughgas.effects.settings import OfParticles, Word
+from roughgas.kernel import hooks
+
+ROOT = Path(__file__).parents[2]
+PAGE = ROOT / "docs" / "effects.md"
+AFTER_EXPERIMENTS = "\nshowcase:\n"  # in config.yaml
+BEGIN, END = "<!-- made by tests/effects/page.py -->\n", "<!-- until here -->\n"
+HEAD = "| effect | what it does | parameters | part in the kernel |\n" + 4 * "| --- " + "|\n"
+
+
+def section(heading):
+    """The text under a heading of the second rank."""
+    text = PAGE.read_text(encoding="utf-8")
+    return text.split(f"\n## {heading}\n")[1].split("\n## ")[0]
+
+
+def block(text, language):
+    """The one fenced block of a language in a text."""
+    (found,) = re.findall(rf"^```{language}\n(.*?)^```$", text, re.DOTALL | re.MULTILINE)
+    return found
+
+
+def rows(text):
+    """The cells of every row of the tables in a text, but for their heads."""
+    lines = [line for line in text.splitlines() if line.startswith("| ")]
+    cells = [[cell.strip() for cell in line[1:-1].split(" | ")] for line in lines]
+    return [row for row in cells if row[0] != "---"][1:]
+
+
+def config_with(experiment, folder):
+    """A copy of config.yaml in a folder, with one experiment more; its path."""
+    text = (ROOT / "config.yaml").read_text(encoding="utf-8")
+    assert text.count(AFTER_EXPERIMENTS) == 1
+    file = folder / "config.yaml"
+    changed = text.replace(AFTER_EXPERIMENTS, f"\n{experiment}{AFTER_EXPERIMENTS}")
+    file.write_text(changed, encoding="utf-8")
+    return file
+
+
+def table():
+    """What effects there are, as a table."""
+    return HEAD + "".join(f"| {' | '.join(_row(name, kind))} |\n" for name, kind in KINDS.items())
+
+
+def written():
+    """The table that is on the page."""
+    return PAGE.read_text(encoding="utf-8").split(BEGIN)[1].split(END)[0]
+
+
+def hook_names():
+    """What the kernel asks of an effect's file, in the order in which hooks.py lists it."""
+    return re.findall(r"^    (\w+)(?:\(| = )", hooks.__doc__, re.MULTILINE)
+
+
+def _row(name, kind):
+    module = sys.modules[kind.__module__]
+    there = [f"`{hook}`" for hook in hook_names() if hasattr(module, hook)]
+    described = "<br>".join(_parameter(key, one) for key, one in parameters(name).items())
+    return f"`{name}`", kind.__doc__, described, ", ".join(there)
+
+
+def _parameter(key, one):
+    if isinstance(one, Word):
+        legal, about = " or ".join(f"`{word}`" for word in one.words), one.description
+    elif isinstance(one, OfParticles):
+        legal, about = f"in {one.number.interval} or `particles`", one.number.description
+    else:
+        legal, about = f"in {one.interval}", one.description
+    # a default that is no number of its own, as that of below_r, is described in words
+    given = "" if one.default in (None, math.inf) else f", {one.default} if not given"
+    return f"`{key}` {legal}{given}: {about.removesuffix('.')}"
+
+
+if __name__ == "__main__":
+    before, after = PAGE.read_text(encoding="utf-8").split(BEGIN + written() + END)
+    PAGE.write_text(before + BEGIN + table() + END + after, encoding="utf-8")

@@ -1,0 +1,222 @@
+"""Floors of other wave forms than the sawtooth: triangle, reversed sawtooth, sine."""
+
+import math
+
+import mpmath
+import numpy as np
+import pytest
+from brute_force import Beside, BruteForce, begin, run, scene_of, settings, snapshot
+from compiled import from_python
+from hard_cases.waves import DIGITS, exact, level, sine, triangle
+
+from roughgas.effects import Floor, sine_floor, triangular_floor
+from roughgas.effects.settings import Surroundings
+from roughgas.effects.sine_floor import SineFloor
+from roughgas.effects.triangular_floor import FALLING, RISING, TriangularFloor
+from roughgas.errors import InputError
+from roughgas.kernel.layout import new_state
+from roughgas.kernel.state import BASE, BOUNDARY_HITS, NOW
+
+time_to_sine = from_python(sine_floor.time_to_floor)
+time_to_triangle = from_python(triangular_floor.time_to_floor)
+WAVES = ["reversed_sawtooth", "triangle", "sine"]
+
+
+def time_to(floor, *fall):
+    if isinstance(floor, SineFloor):
+        return time_to_sine(floor, *fall)
+    return time_to_triangle(floor, *fall)[0]
+
+
+SPIN = {"spin": {"inertia": 0.5}}
+
+
+def from_settings(**chosen):
+    stated = {"amplitude": 5, "period": 2, "restitution": "particles", "roughness": 0.5}
+    return Floor.from_settings(stated | chosen, Surroundings((50.0, None), 0.9, 0.2, SPIN))
+
+
+def test_the_wave_is_chosen_by_name():
+    assert (
+        from_settings()
+        == from_settings(wave=None)
+        == from_settings(wave="sawtooth")
+        == (5.0, 2.0, 0.9, 0.5, 1e-3)
+    )
+    assert isinstance(from_settings(), Floor)
+    triangle, reverse, harmonic = (
+        from_settings(wave=wave) for wave in ("triangle", "reversed_sawtooth", "sine")
+    )
+    assert isinstance(triangle, TriangularFloor) and isinstance(reverse, TriangularFloor)
+    assert (triangle.rise, reverse.rise) == (0.5, 0.1)
+    assert isinstance(harmonic, SineFloor)
+    for floor in (triangle, reverse, harmonic):
+        chosen = floor.amplitude, floor.period, floor.restitution, floor.roughness
+        assert (*chosen, floor.least_departure) == from_settings()
+
+
+@pytest.mark.parametrize("wave", ["square", "Sine", 1, ["sine"]])
+def test_an_unknown_wave_is_an_error_that_names_the_known_ones(wave):
+    with pytest.raises(InputError, match=r"effects\.floor\.wave .*sawtooth.*triangle, sine"):
+        from_settings(wave=wave)
+
+
+def random_fall(rng, make):
+    floor = make(10.0 ** rng.uniform(-2, 1), 10.0 ** rng.uniform(-1, 1))
+    gravity = 10.0 ** rng.uniform(-2, 2)
+    phase = rng.uniform(-30.0, 3.0) * floor.period
+    height = level(floor, phase) + 10.0 ** rng.uniform(-6, 2)
+    return floor, gravity, height, 5.0 * math.sqrt(gravity) * rng.standard_normal(), phase
+
+
+@pytest.mark.parametrize(
+    "make",
+    [sine, triangle, lambda A, P: triangle(A, P, 0.1), lambda A, P: triangle(A, P, 0.9)],
+    ids=["sine", "triangle", "reversed", "steep"],
+)
+def test_time_to_floor_against_forty_digits(make):
+    rng = np.random.default_rng(3)
+    with mpmath.workdps(DIGITS):
+        for _ in range(300):
+            floor, *_, phase = fall = random_fall(rng, make)
+            time, truth = time_to(*fall), exact(*fall)
+            first = truth.first()
+            # a rounding of the lengths shifts a meeting by that over the speed of approach
+            shift = 1e-15 * truth.lengths(first) / abs(truth.speed(first))
+            assert abs(time - first) < shift + 1e-15 * (floor.period + abs(phase) + first), fall
+
+
+@pytest.mark.parametrize("speed", [0.0, 3.0])
+def test_a_floor_that_does_not_move(speed):
+    """Amplitude 0: a free fall to height 0; and nearly so where the amplitude is small."""
+    fallen = speed + math.sqrt(speed**2 + 2.0 * 50.0)
+    for make in (sine, triangle):
+        assert time_to(make(0.0, 0.7), 1.0, 50.0, speed, 0.3) == pytest.approx(fallen, rel=1e-15)
+        for amplitude in (1e-4, 1e-8, 1e-12):
+            time = time_to(make(amplitude, 0.7), 1.0, 50.0, speed, 0.3)
+            assert fallen - amplitude < time <= fallen
+        resting = time_to(make(0.0, 0.7), 1.0, 0.0, 2.0, 0.3)
+        assert resting == pytest.approx(4.0, rel=1e-15)
+
+
+def test_the_roots_of_a_triangle_by_hand():
+    """Amplitude 4 and period 4: up at 2 a/T until t = 2, then down; g = 1."""
+    floor = triangle(4.0, 4.0)
+
+    def meeting(height, speed, phase):
+        return time_to_triangle(floor, 1.0, height, speed, phase)
+
+    # from rest at 5: 5 - t^2/2 = 2 t
+    assert meeting(5.0, 0.0, 0.0) == (pytest.approx(-2.0 + math.sqrt(14.0), rel=1e-15), RISING)
+    # above the crest through the next stroke, then down after the floor: it overtakes it where
+    # 5 + 2 t - t^2/2 = 4 - 2 (t - 4)
+    assert meeting(5.0, 2.0, 2.0) == (pytest.approx(4.0 + math.sqrt(2.0), rel=1e-15), FALLING)
+    # thrown down after the falling floor: 5 - 5 t - t^2/2 = 4 - 2 t
+    assert meeting(5.0, -5.0, 2.0) == (pytest.approx(-3.0 + math.sqrt(11.0), rel=1e-14), FALLING)
+    # left behind by the falling floor, it is met by the next rise: 3.5 - t^2/2 = 2 (t - 1.5)
+    assert meeting(3.5, 0.0, 2.5) == (pytest.approx(-2.0 + math.sqrt(17.0), rel=1e-15), RISING)
+    # off from the crest, over one stroke and a half: 4 + 2.5 t - t^2/2 = 2 (t - 6)
+    over = (1.0 + math.sqrt(129.0)) / 2.0
+    assert meeting(4.0, 2.5, 2.0) == (pytest.approx(over, rel=1e-15), RISING)
+
+
+def test_a_contact_at_a_turning_point_is_with_the_piece_that_is_approached():
+    """A triangle of amplitude 4 and period 4, with g = 1."""
+    floor = triangle(4.0, 4.0)
+    # on the floor at its lowest point
+    assert time_to_triangle(floor, 1.0, 0.0, 0.0, 4.0) == (0.0, RISING)
+    # half a T before that, on to a contact just after it, and right at it
+    time, piece = time_to_triangle(floor, 1.0, 2.0, -3.0, 3.5)
+    assert (time, piece) == (pytest.approx(-5.0 + math.sqrt(31.0), rel=1e-14), RISING)
+    assert time_to_triangle(floor, 1.0, 1.625, -3.0, 3.5) == (0.5, FALLING)
+    # from rest on to the crest: 6 - t^2/2 = 2 t
+    assert time_to_triangle(floor, 1.0, 6.0, 0.0, 0.0) == (2.0, RISING)
+
+
+def one_particle(height, velocity, **floor):
+    experiment = settings("bed", 1, [10, "open"], floor=floor)
+    scene, _ = begin(experiment, 1.0, 0.0)
+    position = np.array([[3.0, height]])
+    return scene, new_state(scene, position, np.array([velocity]), np.zeros((1, 1)))
+
+
+@pytest.mark.parametrize("wave", WAVES)
+def test_an_elastic_floor_reverses_the_velocity_relative_to_its_surface(wave):
+    """Of twenty bounces, each in 40 digits; and the books hold what it gains."""
+    scene, state = one_particle(21.3, (0.3, 0.0), wave=wave)
+    floor = scene.effects.floor
+    gained = 0.0
+    run(state, scene, 1, interval=1e-9)  # has the first meeting foreseen
+    with mpmath.workdps(DIGITS):
+        for bounce in range(1, 21):
+            _, y, _, v, time = map(float, state.trajectory[0])
+            start = state.clock[BASE] + time
+            while state.counts[BOUNDARY_HITS] < bounce:
+                ahead = state.agenda.boundary_time[0] - state.clock[NOW]
+                run(state, scene, 1, interval=ahead + 1e-6)
+            assert state.counts[BOUNDARY_HITS] == bounce
+            _, _, _, leaving, time = map(float, state.trajectory[0])
+            truth = exact(floor, 1.0, y - 1.0, v, start % floor.period)
+            wait = mpmath.mpf(state.clock[BASE] + time - start)
+            assert abs(truth.gap(wait)) < 1e-14 * truth.lengths(wait)
+            opens = leaving - truth.surface(wait)[1]
+            assert opens == pytest.approx(float(-truth.speed(wait)), rel=1e-9)
+            gained += 0.5 * float(leaving**2 - (v - wait) ** 2)
+    index = scene.effects._fields.index("floor")
+    assert state.ledger.sum(axis=0)[index] == pytest.approx([gained, 0.0], rel=1e-9)
+    assert abs(gained) > 1.0
+
+
+@pytest.mark.parametrize("wave", WAVES)
+def test_the_books_explain_the_energy(wave):
+    experiment = settings("bed", 40, [12.5, "open"], floor={"wave": wave, "restitution": 0.9})
+    scene, state = begin(experiment, 0.9, 0.3, 4)
+
+    def energy():
+        shot = snapshot(state, scene)
+        kinetic = 0.5 * (shot.velocity**2).sum() + 0.25 * (shot.spin**2).sum()
+        return kinetic + shot.position[:, 1].sum()
+
+    run(state, scene, 0)
+    before, booked = energy(), state.ledger.sum()
+    run(state, scene, 40, interval=0.5)
+    assert energy() - before == pytest.approx(state.ledger.sum() - booked, abs=1e-9)
+    assert state.counts[BOUNDARY_HITS] > 10
+
+
+CASES = {
+    "elastic": ({}, 0.8, 0.2),
+    "inelastic and rough": ({"restitution": 0.8, "roughness": 0.5}, 0.9, -0.5),
+    "small strokes": ({"amplitude": 0.3, "period": 0.2}, 0.7, 0.2),
+}
+
+
+@pytest.mark.parametrize("wave", WAVES)
+@pytest.mark.parametrize("case", CASES)
+def test_the_kernel_makes_the_same_collisions(wave, case):
+    """The same 200 pairs, and hits of the floor between them, as the brute force."""
+    floor, r, beta = CASES[case]
+    experiment = settings("bed", 16, [10, "open"], floor={"wave": wave} | floor)
+    _, world = scene_of(experiment, r, beta)
+    scene, state = begin(experiment, r, beta, 9)
+    beside = Beside(state, scene, world)
+    beside.assert_same(20, 10)
+    assert beside.events["floor"] > 10
+
+
+@pytest.mark.parametrize("wave", WAVES)
+def test_single_particles_against_the_brute_force(wave):
+    """A hundred flights from anywhere, up to their third meeting with the floor."""
+    rng = np.random.default_rng(5)
+    for _ in range(100):
+        floor = {"wave": wave, "amplitude": 2.0, "period": float(rng.choice([0.5, 1.0, 3.0]))}
+        start = 3.0 + 10.0 * rng.random(), (0.0, 4.0 * rng.standard_normal())
+        scene, state = one_particle(*start, **floor)
+        _, world = scene_of(settings("bed", 1, [10, "open"], floor=floor), 1.0, 0.0)
+        brute = BruteForce(world, [[3.0, start[0]]], [start[1]], np.zeros((1, 1)))
+        met = [brute.step() for _ in range(3)]
+        run(state, scene, 1, interval=met[-1].time + 1e-6)
+        assert state.counts[BOUNDARY_HITS] == 3
+        x, y, _, v, time = state.trajectory[0]
+        assert state.clock[0] + time == pytest.approx(met[-1].time, abs=1e-8)
+        assert (x, y, v) == pytest.approx((3.0, brute.x[0, 1], brute.v[0, 1]), abs=1e-6)

@@ -1,0 +1,204 @@
+"""Wave forms of the floor."""
+
+import math
+
+import mpmath
+import numpy as np
+import pytest
+from brute_force import begin, run, settings
+from compiled import from_python
+
+from hard_cases.catalogue import hard_case
+from hard_cases.waves import DIGITS, exact, level, sine, triangle
+from roughgas.effects import sine_floor, triangular_floor
+from roughgas.effects.sine_floor import SineFloor
+from roughgas.kernel.state import BASE
+
+time_to_sine = from_python(sine_floor.time_to_floor)
+time_to_triangle = from_python(triangular_floor.time_to_floor)
+
+
+def time_to(floor, *fall):
+    if isinstance(floor, SineFloor):
+        return time_to_sine(floor, *fall)
+    return time_to_triangle(floor, *fall)[0]
+
+
+def measure(margins, falls, unit):
+    """How far each fall gets below the floor, and where it is when it is said to meet it."""
+    below = beside = 0.0
+    tried = 0
+    with mpmath.workdps(DIGITS):
+        for fall in falls:
+            tried += 1
+            truth, t = exact(*fall), mpmath.mpf(time_to(*fall))
+            assert t >= 0, fall
+            lengths = truth.lengths(t)
+            below = max(below, truth.depth(t) / lengths)
+            beside = max(beside, abs(truth.gap(t) - min(0, truth.gap(0))) / lengths)
+    about = {"tried": tried, "unit": unit}
+    margins.at_most("depth below the floor, over the lengths that enter", below, 1e-15, **about)
+    margins.at_most("distance from the floor when it is hit, likewise", beside, 1e-15, **about)
+
+
+def wave(rng):
+    """A sine, a triangle, or one that rises in a tenth or in nine tenths of its period."""
+    stroke = 10.0 ** rng.uniform(-2, 1), 10.0 ** rng.uniform(-1, 1)
+    rise = rng.choice([0.0, 0.5, 0.1, 0.9])
+    return sine(*stroke) if rise == 0.0 else triangle(*stroke, rise)
+
+
+@hard_case(
+    "falls onto floors of any wave form",
+    "where a floor is met no formula may say: a step too long would lead past the first meeting, "
+    "and the particle through the floor",
+)
+def test_falls_from_anywhere(margins):
+    rng = np.random.default_rng(0)
+
+    def fall():
+        floor, gravity = wave(rng), 10.0 ** rng.uniform(-2, 2)
+        phase = rng.uniform(-30.0, 3.0) * floor.period
+        height = level(floor, phase) + 10.0 ** rng.uniform(-6, 2)
+        return floor, gravity, height, 5.0 * math.sqrt(gravity) * rng.standard_normal(), phase
+
+    measure(margins, (fall() for _ in range(margins.size(quick=300, full=10_000))), "falls")
+
+
+def touching(rng):
+    """A fall that touches a sine without crossing it, or nearly so, and comes from above there.
+
+    The touch is where the floor falls away faster than the particle, at times hardly so: three
+    roots of the gap are close together then.
+    """
+    while True:
+        floor, gravity = sine(10.0 ** rng.uniform(-2, 1), 10.0 ** rng.uniform(-1, 1)), 1.0
+        rate = 2.0 * math.pi / floor.period
+        sharpest = 0.5 * floor.amplitude * rate * rate
+        if sharpest <= gravity:
+            continue
+        edge = math.acos(-gravity / sharpest) / (2.0 * math.pi)
+        share = rng.random() * 10.0 ** rng.choice([0.0, rng.uniform(-8, 0)])
+        touch = edge + (1.0 - 2.0 * edge) * share
+        before = rng.uniform(0.0, 0.3) * floor.period
+        angle = 2.0 * math.pi * touch
+        surface = 0.5 * floor.amplitude * (1.0 - math.cos(angle))
+        falling = 0.5 * floor.amplitude * rate * math.sin(angle)
+        height = surface - falling * before - 0.5 * gravity * before * before
+        speed = falling + gravity * before
+        phase = touch * floor.period - before + floor.period
+        waits = np.linspace(0.0, 0.99, 200) * before
+        heights = height + speed * waits - 0.5 * gravity * waits**2
+        if all(y > level(floor, phase + t) for y, t in zip(heights, waits, strict=True)):
+            shift = rng.choice([-1.0, 0.0, 1.0]) * 10.0 ** rng.uniform(-16, -6) * floor.amplitude
+            return floor, gravity, height + shift, speed, phase
+
+
+@hard_case(
+    "a sine that grazes",
+    "a floor that falls away as a particle reaches it touches it or not by a rounding: the search "
+    "for the meeting could creep for ever, or miss what comes after",
+)
+def test_sines_that_graze(margins):
+    rng = np.random.default_rng(1)
+    falls = (touching(rng) for _ in range(margins.size(quick=300, full=10_000)))
+    measure(margins, falls, "falls")
+
+
+@hard_case(
+    "a triangle's turning points",
+    "a particle that meets the floor just as it turns could be found on neither piece",
+)
+def test_meetings_at_turning_points(margins):
+    rng = np.random.default_rng(2)
+
+    def fall():
+        """All numbers dyadic, and the meeting right at a turning point, or nearly so."""
+        floor = triangle(*(2.0 ** rng.integers(-3, 3, 2)), rng.choice([0.5, 0.25]))
+        crest = rng.integers(0, 2)
+        before = rng.integers(1, 16) / 16.0 * floor.period * (floor.rise if crest else 0.5)
+        phase = floor.period * (1.0 + (floor.rise if crest else 0.0)) - before
+        gravity, arrives = 2.0 ** rng.integers(-4, 4), -rng.integers(0, 256) / 8.0
+        speed = arrives + gravity * before
+        height = floor.amplitude * crest - speed * before + 0.5 * gravity * before * before
+        height = max(height, level(floor, phase))
+        return floor, gravity, height + rng.integers(-1, 2) * 2.0**-50 * height, speed, phase
+
+    measure(margins, (fall() for _ in range(margins.size(quick=600, full=30_000))), "falls")
+
+
+@hard_case(
+    "take-off from a moving floor",
+    "a particle that has just been hit, a rounding above the surface or below it, could be met "
+    "again at once, or be pulled through the floor",
+)
+def test_take_off_from_a_moving_floor(margins):
+    rng = np.random.default_rng(3)
+    starts = margins.size(quick=500, full=20_000)
+    early = 0.0
+    falls = []
+    for _ in range(starts):
+        floor, gravity = wave(rng), 10.0 ** rng.uniform(-2, 2)
+        phase = rng.random() * floor.period
+        truth = exact(floor, gravity, 0.0, 0.0, phase)
+        height, rising = map(float, truth.surface(0))
+        leaving = 10.0 ** rng.uniform(-3, 0)
+        gap = rng.choice([0.0, -1e-16, 1e-16]) * floor.amplitude
+        falls.append((floor, gravity, height + gap, rising + leaving, phase))
+        if isinstance(floor, SineFloor):
+            bend = gravity + 0.5 * floor.amplitude * (2.0 * math.pi / floor.period) ** 2
+            early = max(early, 1.0 - time_to(*falls[-1]) * bend / (2.0 * leaving))
+    measure(margins, falls, "starts")
+    tried = {"tried": starts, "unit": "starts"}
+    # the height of the start is some roundings of the amplitude off
+    margins.at_most("share by which a hop from a sine is too short", early, 1e-6, **tried)
+
+
+@hard_case(
+    "a crowd on a floor of any wave form",
+    "a particle that others push against the floor, whenever that is, must not get below it",
+)
+@pytest.mark.parametrize("form", ["reversed_sawtooth", "triangle", "sine"])
+def test_no_particle_falls_through_the_floor(margins, form):
+    instants = margins.size(quick=500, full=20_000)
+    deepest, lossy, elastic = -math.inf, (0.9, 0.2), (1.0, -1.0)
+    for amplitude, period, own in ((5.0, 1.0, lossy), (0.3, 0.2, lossy), (0.0, 1.0, elastic)):
+        floor = {"amplitude": amplitude, "period": period, "wave": form}
+        scene, state = begin(settings("bed", 40, [12.5, "open"], floor=floor), *own, 3)
+        for _ in range(instants):
+            run(state, scene, 1, interval=0.137)
+            phases = state.clock[BASE] % period + state.trajectory[:, 4]
+            for y, phase in zip(state.trajectory[:, 1], phases, strict=True):
+                deepest = max(deepest, 1.0 + level(scene.effects.floor, phase % period) - y)
+    tried = {"tried": 3 * instants, "unit": f"instants, {form.replace('_', ' ')}"}
+    margins.at_most("depth below the floor, in a", deepest, 1e-12, **tried)
+
+
+def test_without_the_acceleration_of_the_floor(without):
+    without(
+        "steps towards a sine that take the most into account by which it may accelerate",
+        test_falls_from_anywhere,
+        "effects/sine_floor.py",
+        "bend = gravity + min(",
+        "bend = gravity + 0.0 * min(",
+    )
+
+
+def test_without_the_jerk_of_the_floor(without):
+    without(
+        "steps towards a sine that take into account how its acceleration changes on the way",
+        test_falls_from_anywhere,
+        "effects/sine_floor.py",
+        "acceleration + sharpest * rate * reach / 3.0",
+        "acceleration",
+    )
+
+
+def test_without_the_piece_that_comes_next(without):
+    without(
+        "a triangle's pieces one after the other",
+        test_falls_from_anywhere,
+        "effects/triangular_floor.py",
+        "if meeting <= end:",
+        "if meeting >= 0.0:",
+    )

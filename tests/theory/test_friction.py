@@ -1,0 +1,299 @@
+"""Coulomb friction: limits, the contact rule itself averaged over sampled collisions, and R(mu)."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from roughgas import theory
+from roughgas.errors import InputError
+
+PAIRS = 400_000
+SIGMAS = 5
+LIMIT = {2: 1.0, 3: 2 / np.pi}  # theta/((1+r) mu) of a gas driven through translation, mu -> 0
+DRIVES = [None, 0, 0.4, 1]
+
+gases = {
+    "r": st.floats(0, 1),
+    "beta": st.floats(-1, 1),
+    "q": st.floats(0.05, 1),
+    "dimension": st.sampled_from([2, 3]),
+}
+friction = st.one_of(st.floats(0, 5), st.floats(1e-6, 0.1))
+share = st.one_of(st.none(), st.floats(0, 1))
+temperature = st.floats(0, 5)
+
+
+def sampled_changes(theta, r, beta, mu, dimension, q, seed):
+    """Energy changes of pairs colliding as in a gas with T_tr = 1, T_rot = theta, and who slides.
+
+    The normal lies along x and v_n is drawn from its distribution among collisions; the impulse is
+    that which brings the slip to -beta times itself, cut at mu times the normal one.
+    """
+    rng = np.random.default_rng(seed)
+    v1, v2, w1, w2 = rng.standard_normal((4, PAIRS, 3))
+    approach = -2 * np.sqrt(rng.standard_exponential(PAIRS))
+    v1[:, 0], v2[:, 0] = approach / 2, -approach / 2  # in their centre's frame
+    if dimension == 2:
+        v1[:, 2] = v2[:, 2] = 0
+        w1[:, :2] = w2[:, :2] = 0
+    w1, w2 = w1 * np.sqrt(theta / q), w2 * np.sqrt(theta / q)
+    n = np.array([1.0, 0, 0])
+    slip = v1 - v2 - np.cross(w1 + w2, n)
+    slip[:, 0] = 0
+    normal = -(1 + r) / 2 * approach
+    tangential = -(1 + beta) / (2 + 2 / q) * slip
+    size = np.linalg.norm(tangential, axis=1)
+    slides = size > mu * normal
+    tangential[slides] *= (mu * normal[slides] / size[slides])[:, np.newaxis]
+    impulse = normal[:, np.newaxis] * n + tangential
+    turn = np.cross(-n, impulse) / q  # from the centre of particle 1, the contact lies at -n
+    after = v1 + impulse, v2 - impulse, w1 + turn, w2 + turn
+    energy = [(x**2).sum(1) / 2 for x in (v1, v2, w1, w2, *after)]
+    translation = energy[4] + energy[5] - energy[0] - energy[1]
+    return translation, q * (energy[6] + energy[7] - energy[2] - energy[3]), slides
+
+
+def sigmas(samples, expected):
+    error = samples.std() / np.sqrt(len(samples))
+    return abs(samples.mean() - expected) / max(error, 1e-12)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize(
+    ("r", "beta", "mu", "theta", "q"),
+    [
+        (0.9, 0.5, 0.3, 0.4, None),
+        (0.6, 1.0, 0.1, 2.0, 0.3),
+        (1.0, 0.0, 1.0, 0.0, 0.7),
+        (0.8, -1.0, 0.2, 1.0, None),
+    ],
+)
+def test_changes_are_those_of_sampled_collisions(dimension, r, beta, mu, theta, q):
+    """Means over 4e5 pairs within 5 standard errors: of 70000 seeds one fails any by chance."""
+    inertia = theory.moment_of_inertia(dimension) if q is None else q
+    tr, rot, slides = sampled_changes(theta, r, beta, mu, dimension, inertia, seed=7)
+    rates = theory.friction_changes(1, theta, r, beta, mu, dimension, inertia)
+    assert sigmas(tr, dimension * rates[0]) < SIGMAS
+    assert sigmas(rot, (2 * dimension - 3) * rates[1]) < SIGMAS
+    expected = theory.sliding_fraction(1, theta, r, beta, mu, dimension, inertia)
+    assert sigmas(slides, expected) < SIGMAS
+
+
+@settings(derandomize=True, deadline=None)
+@given(**gases, T_tr=temperature, T_rot=temperature)
+def test_infinite_friction_is_the_gas_without(r, beta, q, dimension, T_tr, T_rot):
+    gas = (r, beta, np.inf, dimension, q)
+    expected = theory.temperature_changes(T_tr, T_rot, r, beta, dimension, q, 3.0)
+    assert theory.friction_changes(T_tr, T_rot, *gas, 3.0) == pytest.approx(expected, rel=1e-14)
+    assert theory.sliding_fraction(T_tr, T_rot, *gas) == 0
+
+
+@settings(derandomize=True, deadline=None)
+@given(**gases, T_tr=temperature, T_rot=temperature)
+def test_no_friction_is_the_smooth_gas(r, beta, q, dimension, T_tr, T_rot):
+    changes = theory.friction_changes(T_tr, T_rot, r, beta, 0, dimension, q)
+    assert changes == pytest.approx((-(1 - r**2) * T_tr / dimension, 0), abs=1e-15)
+    assert theory.sliding_fraction(T_tr, T_rot, r, beta, 0, dimension, q) == (beta > -1)
+
+
+@settings(derandomize=True, deadline=None)
+@given(**gases, mu=friction, T_tr=temperature, T_rot=temperature)
+def test_energy_is_never_gained(r, beta, q, dimension, mu, T_tr, T_rot):
+    changes = theory.friction_changes(T_tr, T_rot, r, beta, mu, dimension, q)
+    assert dimension * changes[0] + (2 * dimension - 3) * changes[1] <= 1e-14 * (T_tr + T_rot / q)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("spin_share", DRIVES)
+def test_R_at_infinite_and_very_large_friction(dimension, spin_share):
+    """The latter is out by the few slow contacts that slide, some (eta_0/mu)^2."""
+    r, beta = np.meshgrid(np.linspace(0, 1, 11), np.linspace(-1, 1, 21))
+    expected = theory.stationary_ratio(r, beta, dimension, None, spin_share)
+    for mu, error in [(np.inf, 1e-13), (1e5, 1e-7)]:
+        R = theory.friction_ratio(r, beta, mu, dimension, None, spin_share)
+        assert pytest.approx(expected, abs=error) == R
+
+
+@settings(derandomize=True, deadline=None)
+@given(r=st.floats(0, 1), beta=st.floats(-0.999, 1), q=st.floats(0.05, 1), mu=st.floats(1e-3, 10))
+def test_driven_disks_in_closed_form(r, beta, q, mu):
+    """Eq. (lun) with friction, at mu = inf with a root of 1 - e: dT_rot/dt = 0 is a quadratic."""
+    e, kappa = (1 + beta) / (2 * (1 + q)), mu * (1 + r) / 2
+    theta = 2 * q * e / (1 - e + np.hypot(1 - e, q * e / kappa))
+    R = theory.friction_ratio(r, beta, mu, 2, q, spin_share=0)
+    assert pytest.approx(theta / (1 + theta), abs=1e-13) == R
+
+
+@settings(derandomize=True, deadline=None)
+@given(**gases, mu=friction, spin_share=share)
+def test_stationary_states_are_stationary(r, beta, q, dimension, mu, spin_share):
+    """Where R is not 0 or 1; ln theta stands still, or losses are shared as the drive does."""
+    R = theory.friction_ratio(r, beta, mu, dimension, q, spin_share)
+    assert 0 <= R <= 1
+    tr, rot = theory.friction_changes(1 - R, R, r, beta, mu, dimension, q)
+    if spin_share is None:
+        assert R * tr == pytest.approx((1 - R) * rot, abs=1e-13)
+    else:
+        wanted = (1 - spin_share) * (2 * dimension - 3) * rot
+        assert spin_share * dimension * tr == pytest.approx(wanted, abs=1e-13 / q**2)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_a_cooling_gas_has_at_most_two_stationary_states_and_R_is_the_first(dimension):
+    """Found as sign changes of d ln theta/dn, or none, along theta in steps of 2%."""
+    rng, size = np.random.default_rng(11), (200, 1)
+    theta = np.exp(np.arange(-25, 25, 0.02))
+    r, beta = 1 - 10 ** rng.uniform(-5, 0, size), rng.uniform(-1, 1, size)
+    mu, q = 10 ** rng.uniform(-5, 1, size), 10 ** rng.uniform(-1.5, 0.3, size)
+    tr, rot = theory.friction_changes(1, theta, r, beta, mu, dimension, q)
+    changes = np.diff(rot / theta - tr > 0)
+    some, first = changes.any(axis=1), changes.argmax(axis=1)
+    R = theory.friction_ratio(r, beta, mu, dimension, q)[:, 0]
+    found = R[some] / (1 - R[some])
+    assert (theta[first[some]] <= found).all()
+    assert (found <= theta[first[some] + 1]).all()
+    assert (R[~some] > 1 - 1e-10).all()
+    assert set(changes.sum(axis=1)) == {0, 1, 2}
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("beta", [-0.5, 0, 1])
+def test_weak_friction_drives_spin_in_proportion(dimension, beta):
+    """Nearly all contacts slide then, and beta no longer matters; the next order is mu/eta_0."""
+    mu = np.array([1e-4, 1e-5, 1e-6])
+    R = theory.friction_ratio(0.8, beta, mu, dimension, spin_share=0)
+    slope = R / (1 - R) / (1.8 * mu)
+    assert (np.abs(slope / LIMIT[dimension] - 1) < 20 * mu).all()
+    elastic = theory.friction_ratio(1, beta, mu[2], dimension)
+    q = theory.moment_of_inertia(dimension)
+    share = {2: 1 - q / 2, 3: 1 - q}[dimension]
+    assert elastic / (2 * mu[2]) == pytest.approx(LIMIT[dimension] / share, rel=2e-5)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("spin_share", DRIVES)
+def test_no_friction_and_smooth_are_the_documented_limits(dimension, spin_share):
+    r = np.array([0.0, 0.9, 1.0])
+    expected = theory.stationary_ratio(r, -1, dimension, None, spin_share)
+    for beta, mu in [(0.3, 0), (-1, 0), (-1, 0.2), (-1, np.inf)]:
+        R = theory.friction_ratio(r, beta, mu, dimension, None, spin_share)
+        assert (expected == R).all()
+    near = theory.friction_ratio(r, 0.3, 1e-9, dimension, None, spin_share)
+    assert near == pytest.approx(expected, abs=1e-6)
+
+
+def evolve(theta, r, beta, mu, dimension):
+    """theta after 300 collisions per particle: ln theta by the midpoint rule."""
+    step, log_theta = 0.1, np.log(theta)
+
+    def slope(x):
+        tr, rot = theory.friction_changes(1, np.exp(x), r, beta, mu, dimension)
+        return rot / np.exp(x) - tr
+
+    for _ in range(3000):
+        log_theta = log_theta + step * slope(log_theta + step / 2 * slope(log_theta))
+    return np.exp(log_theta)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_a_cooling_gas_started_without_spin_gets_to_R(dimension):
+    """As integrated in time, from theta = 1/50 on; also where another start ends elsewhere."""
+    mu = np.array([0.03, 0.13, 0.2, 0.5, 3])
+    reached = evolve(0.02, 0.9, 0.4, mu, dimension)
+    R = theory.friction_ratio(0.9, 0.4, mu, dimension)
+    assert reached / (1 + reached) == pytest.approx(R, abs=1e-5)
+    assert R[0] == 1
+    assert (R[1:] < 0.5).all()
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_below_the_critical_friction_a_spinning_gas_keeps_its_spin(dimension):
+    """Sliding heats translation by mu^2 (1+r)^2 T_tr, inelasticity cools it by (1-r^2) T_tr."""
+    mu, fast = np.sqrt(0.1 / 1.9) * np.array([0.99, 1.01]), 1e12
+    tr, rot = theory.friction_changes(1, fast, 0.9, 0.4, mu, dimension)
+    assert (rot / fast - tr > 0).tolist() == [True, False]
+    R = theory.friction_ratio(0.9, 0.4, mu, dimension, spin_share=1)
+    assert R[0] == 1
+    assert R[1] < 1
+
+
+@pytest.mark.parametrize(("beta", "jumps"), [(-0.24, True), (-0.26, False)])
+def test_of_smooth_enough_disks_R_falls_from_1_without_a_jump(beta, jumps):
+    """(1 + beta)(2 - q)/(1 + q) = 1 - r^2 at beta = -1/4; just above mu_c R is close to 1."""
+    critical = np.sqrt(0.5 / 1.5)
+    below, above = theory.friction_ratio(0.5, beta, critical * np.array([1 - 1e-6, 1 + 1e-6]))
+    assert (below < 1) == jumps
+    assert (above < 0.99999) == jumps
+
+
+def test_nearly_elastic_gases_lose_their_stationary_state_at_mu_s():
+    """The leading order is out by some sqrt(1 - r)."""
+    q = theory.moment_of_inertia
+    for dimension, mu_s in [(2, q(2) / (2 - q(2))), (3, 2 / np.pi * q(3) / (1 - q(3)))]:
+        R = theory.friction_ratio(1 - 1e-6, 0, mu_s * 1e-6 * np.array([0.99, 1.01]), dimension)
+        assert R[0] == 1
+        assert R[1] < 0.01
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_R_of_a_driven_gas_rises_smoothly_with_mu(dimension):
+    """Second differences over steps of 1/100 in ln mu are small: no kink, no jump."""
+    mu = np.exp(np.arange(-6, 4, 0.01))
+    R = theory.friction_ratio(0.9, [[-0.5], [0.3], [1]], mu, dimension, spin_share=0)
+    assert (np.diff(R) > 0).all()
+    assert (np.abs(np.diff(R, 2)) < 2e-5).all()
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_R_jumps_from_the_branch_point_at_mu_s(dimension):
+    """Two stationary states merge there: R at mu_s (1 + 1, 4 and 9 delta) is evenly spaced."""
+    low, high = 0.0, 1.0
+    for _ in range(50):
+        middle = (low + high) / 2
+        jumped = theory.friction_ratio(0.9, 0, middle, dimension) == 1
+        low, high = (middle, high) if jumped else (low, middle)
+    R = theory.friction_ratio(0.9, 0, high * (1 + 1e-9 * np.array([1, 4, 9])), dimension)
+    assert R[0] - R[1] == pytest.approx(R[1] - R[2], rel=1e-3)
+
+
+def test_R_of_a_cooling_gas_falls_and_then_rises_with_mu():
+    mu = np.exp(np.arange(-2.5, 3, 0.01))
+    R = theory.friction_ratio(0.9, 0, mu)
+    assert mu[R.argmin()] == pytest.approx(0.124, abs=0.002)
+    assert ((np.diff(R) > 0) == (mu[1:] > mu[R.argmin()])).all()
+
+
+def test_arguments_broadcast():
+    R = theory.friction_ratio([0.8, 0.9], [[0.1], [0.5], [1]], 0.3, spin_share=0.2)
+    assert R.shape == (3, 2)
+    assert R[2, 1] == theory.friction_ratio(0.9, 1, 0.3, spin_share=0.2)
+    assert theory.friction_ratio(0.9, 0.5, 0.3, spin_share=np.array([0, 0.5])).shape == (2,)
+    assert theory.friction_changes([[1], [2]], [0, 1, 2], 0.9, 0, 0.1)[1].shape == (2, 3)
+
+
+@pytest.mark.parametrize("bad", [-0.1, np.nan, "1", None])
+@pytest.mark.parametrize("name", ["friction_ratio", "friction_changes", "sliding_fraction"])
+def test_friction_outside_its_range(name, bad):
+    temperatures = () if name == "friction_ratio" else (1, 1)
+    with pytest.raises(InputError) as caught:
+        getattr(theory, name)(*temperatures, 0.9, 0, bad)
+    assert str(caught.value) == f"friction mu = {bad}: must lie in [0, inf]"
+
+
+@pytest.mark.parametrize(
+    ("call", "key"),
+    [
+        (lambda: theory.friction_ratio(1.5, 0, 1), "restitution r"),
+        (lambda: theory.friction_ratio(1, [0, 2], 1), "roughness beta"),
+        (lambda: theory.friction_ratio(1, 0, 1, 4), "dimension"),
+        (lambda: theory.friction_ratio(1, 0, 1, 2, 0), "inertia q"),
+        (lambda: theory.friction_ratio(1, 0, 1, spin_share=2), "spin share of the drive"),
+        (lambda: theory.friction_changes(1, 0, 1, 0, 1, frequency=-1), "frequency"),
+        (lambda: theory.sliding_fraction(1, -1, 1, 0, 1), "temperature T_rot"),
+    ],
+)
+def test_other_illegal_arguments_are_named(call, key):
+    with pytest.raises(InputError) as caught:
+        call()
+    assert caught.value.key == key
