@@ -37,21 +37,24 @@ class Row(NamedTuple):
     beta: float = 1.0  # of particles that spin
 
 
+SMOOTH = {"restitution": 1, "roughness": -1}
+SHAKEN = SMOOTH | {"amplitude": 1, "period": 1}
+OPEN = [50, "open"]
+BED = {
+    "gravity": {"acceleration": 1},
+    "floor": {"amplitude": 5, "period": 1, **SMOOTH},
+}
 ROWS = (  # the barest gas comes first
     Row("barest gas: smooth disks", {}),
     Row("+ spin", {"spin": {"inertia": 0.5}}),
     Row("+ contact time", {"contact_time": {"duration": 1e-4}}),
-    Row("+ side walls", {"walls": {"restitution": 1, "roughness": -1}}),
+    Row("+ side walls", {"walls": SMOOTH}),
     Row("+ shear", {"shear": {"velocity": 2}}, r=0.9),
-    Row(
-        "+ gravity and floor",
-        {
-            "gravity": {"acceleration": 1},
-            "floor": {"amplitude": 5, "period": 1, "restitution": 1, "roughness": -1},
-        },
-        box=[50, "open"],
-        r=0.9,
-    ),
+    Row("+ gravity and floor", BED, OPEN, 0.9),
+    Row("+ gravity and floor, sine", BED | {"floor": BED["floor"] | {"wave": "sine"}}, OPEN, 0.9),
+    Row("+ shaken walls", {"shaken_walls": SHAKEN}, r=0.9),
+    Row("+ thermostat", {"thermostat": {"power": 0.1, "interval": 1, "spin_share": 0}}, r=0.9),
+    Row("+ spin, friction", {"spin": {"inertia": 0.5}, "friction": {"mu": 0.5}}),
     Row("+ third dimension", {}, box=CUBE),
 )
 

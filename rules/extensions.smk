@@ -44,7 +44,7 @@ rule open_questions:
     message:
         "answer what the paper leaves open"
     shell:
-        "roughgas claims --open {input.data} --json {output.json} --markdown {output.markdown}"
+        "roughgas claims --open-questions {input.data} --json {output.json} --markdown {output.markdown}"
         " > {log} 2>&1"
 
 

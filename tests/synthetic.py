@@ -5,32 +5,47 @@ from collections.abc import Callable
 import numpy as np
 import xarray as xr
 
-from roughgas.reduce import predicted_ratio
+from roughgas.reduce import predicted_ratio, third_axis
 
-GRID = ("r", "beta")
 BETA = (-0.95, *(round(-0.9 + 0.1 * step, 1) for step in range(20)))
 
 
 def reduced(
     experiment: str = "vibrated",
-    shift: Callable[[np.ndarray, np.ndarray], np.ndarray] = lambda r, beta: 0 * r * beta,
+    shift: Callable[..., np.ndarray] = lambda r, beta, *third: 0 * r * beta,
     r: tuple[float, ...] = (0.8, 0.9, 0.99),
     beta: tuple[float, ...] = BETA,
     error: float = 0.001,
     seeds: int = 4,
+    third: tuple[str, tuple] | None = None,
     **others: float | np.ndarray,
 ) -> xr.Dataset:
-    """R = theory + shift(r, beta) + noise of standard error `error`; `others` set more of it."""
+    """R = theory + shift(r, beta) + noise of standard error `error`; `others` set more of it.
+
+    `third`: a parameter that is swept besides, such as "friction.mu", with its values; `shift` then
+    gets these, too. Theory is that of the energy books where `others` have an input_spin_share.
+    """
+    spheres = experiment.endswith("spheres")
     attributes = {
         "experiment": experiment,
         "scale": "small",
-        "dimension": 2,
-        "inertia": 0.5,
+        "dimension": 3 if spheres else 2,
+        "inertia": 0.4 if spheres else 0.5,
         "particles": 160,
-        "theory": "K" if experiment == "cooling" else "lun",
+        "theory": "K" if experiment.startswith("cooling") else "lun",
     }
-    r_grid, beta_grid = np.meshgrid(r, beta, indexing="ij")
-    exact = predicted_ratio(attributes, r_grid, beta_grid) + shift(r_grid, beta_grid)
+    axes = {"r": list(r), "beta": list(beta)}
+    if third is not None:
+        attributes["swept"], values = third
+        name = third_axis(attributes)
+        attributes.pop(name, None)
+        axes = {name: list(values)} | axes
+    grids = np.meshgrid(*axes.values(), indexing="ij")
+    places = dict(zip(axes, grids, strict=True))
+    exact = shift(places["r"], places["beta"], *grids[:-2])
+    if "input_spin_share" in others:
+        places["spin_share"] = others["input_spin_share"]
+    exact = exact + predicted_ratio(attributes | places, places["r"], places["beta"])
     rng = np.random.default_rng(len(experiment))
     noise = rng.normal(0, error * np.sqrt(seeds), (*exact.shape, seeds))
     ratio = exact[..., None] + noise
@@ -49,7 +64,6 @@ def reduced(
         "R_drift": noise[..., 0] / 10,
         "R_drift_stderr": error,
     } | others
-    variables = {name: (GRID, np.full(exact.shape, value)) for name, value in values.items()}
-    variables["R_seed"] = ((*GRID, "seed"), ratio)
-    coordinates = {"r": list(r), "beta": list(beta), "seed": np.arange(1, seeds + 1)}
-    return xr.Dataset(variables, coordinates, attributes)
+    variables = {name: (tuple(axes), np.full(exact.shape, value)) for name, value in values.items()}
+    variables["R_seed"] = ((*axes, "seed"), ratio)
+    return xr.Dataset(variables, axes | {"seed": np.arange(1, seeds + 1)}, attributes)

@@ -1,10 +1,11 @@
 import json
 
 import pytest
-from synthetic import reduced
+from synthetic import BETA, reduced
 
-from roughgas.claims import STATEMENTS, judge
+from roughgas.claims import OPEN_QUESTIONS, PAPER, judge
 from roughgas.claims.finding import NOT_TESTED
+from roughgas.cli import main
 from roughgas.errors import InputError
 
 
@@ -19,7 +20,7 @@ def paths(tmp_path):
 def test_one_row_for_each_statement_in_both_reports(paths, tmp_path):
     rows = judge(paths, tmp_path / "claims.json", tmp_path / "claims.md")
     content = json.loads((tmp_path / "claims.json").read_text())
-    assert [claim["id"] for claim in content["claims"]] == [one.name for one in STATEMENTS]
+    assert [claim["id"] for claim in content["claims"]] == [one.name for one in PAPER.statements]
     assert content["scale"] == "small" and content["data"]["cooling"]["theory"] == "K"
     markdown = (tmp_path / "claims.md").read_text()
     for row, claim in zip(rows, content["claims"], strict=True):
@@ -60,5 +61,33 @@ def test_datasets_of_several_scales_are_refused(paths, tmp_path):
 
 
 def test_statements_have_names_of_their_own():
-    names = [statement.name for statement in STATEMENTS]
-    assert len(set(names)) == len(names)
+    both = PAPER.statements + OPEN_QUESTIONS.statements
+    assert len({statement.name for statement in both}) == len(both)
+
+
+def test_the_papers_own_experiments_leave_nothing_untested(tmp_path):
+    kinds = [f"vibrated_{kind}_walls" for kind in ("rough", "particle", "smooth")]
+    sheared = reduced("sheared", error=0.004)
+    sheared["R_unsubtracted"], sheared["R_unsubtracted_stderr"] = sheared.R - 0.1, sheared.R_stderr
+    walls = [reduced(kind, r=(0.9,), beta=(-1.0, *BETA)) for kind in kinds]
+    paths = []
+    for data in (reduced(), reduced("cooling"), sheared, *walls):
+        paths.append(tmp_path / f"{data.attrs['experiment']}.nc")
+        data.to_netcdf(paths[-1])
+    rows = judge(paths, tmp_path / "claims.json", tmp_path / "claims.md")
+    assert len(rows) == 17
+    assert not [row for row in rows if row.finding.verdict == NOT_TESTED]
+
+
+def test_each_table_says_what_it_is_about(tmp_path):
+    reduced("cooling_spheres").to_netcdf(tmp_path / "spheres.nc")
+    tables = []
+    for option in ([], ["--open-questions"]):
+        out = [f"--json={tmp_path / 'c.json'}", f"--markdown={tmp_path / 'c.md'}"]
+        assert main(["claims", str(tmp_path / "spheres.nc"), *option, *out]) == 0
+        tables.append((tmp_path / "c.md").read_text())
+        title = json.loads((tmp_path / "c.json").read_text())["title"]
+        assert tables[-1].startswith(f"# {title}\n\nS. McNamara")
+    assert "17 statements: holds 0," in tables[0] and "`open_questions.md`" in tables[0]
+    assert "16 statements: holds 1," in tables[1] and "`open_questions.md`" not in tables[1]
+    assert all("{" not in table and "Statistics and size" in table for table in tables)

@@ -42,11 +42,14 @@ def test_difference_adds_errors_in_quadrature():
 
 def test_mean_and_largest_of_a_sample():
     beta = np.array([-0.5, 0.0, 0.5])
-    sample = Sample(np.full(3, 0.9), beta, np.array([0.1, -0.3, 0.2]), np.array([1, 2, 2]), 12)
+    places = {"r": np.full(3, 0.9), "beta": beta, "wave": np.array(["sine", "triangle", "sine"])}
+    sample = Sample(places, np.array([0.1, -0.3, 0.2]), np.array([1, 2, 2]), 12)
     assert sample.mean() == (pytest.approx(0.0), pytest.approx(1.0), 12)
     largest, place = sample.largest()
-    assert largest == (-0.3, 2.0, 12) and place == "r = 0.9, beta = 0"
-    assert sample.where(beta > 0).size == 1 and sample.joined(sample).size == 6
+    assert largest == (-0.3, 2.0, 12) and place == "r = 0.9, beta = 0, wave = triangle"
+    assert sample.where(beta > 0).place(0) == "r = 0.9, beta = 0.5, wave = sine"
+    twice = sample.joined(sample)
+    assert twice.size == 6 and twice.place(5) == sample.place(2)
 
 
 def test_pooled_errors_find_what_the_errors_within_must_be_multiplied_by():

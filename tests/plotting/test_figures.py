@@ -4,7 +4,20 @@ from matplotlib.image import imread
 from synthetic import BETA, reduced
 
 from roughgas.errors import InputError
-from roughgas.plotting import FIGURES, draw, fig1a, fig1b, fig2a, fig2b, panel
+from roughgas.plotting import (
+    FIGURES,
+    draw,
+    fig1a,
+    fig1b,
+    fig2a,
+    fig2b,
+    fig4,
+    fig5,
+    fig6,
+    fig7,
+    fig8,
+    panel,
+)
 from roughgas.plotting.style import LOOKS
 from roughgas.reduce import predicted_ratio
 
@@ -22,11 +35,35 @@ def sheared():
     return data.assign(R_unsubtracted=data.R - 0.1)
 
 
+def over(experiment, parameter, values, **others):
+    beta = (-0.5, 0.0, 0.5, 1.0)
+    return reduced(experiment, r=(0.9,), beta=beta, third=(parameter, values), **others)
+
+
+def boundaries(experiment):
+    shares = np.array([-0.02, 0.0, 0.1])[:, None, None] + np.zeros((3, 1, 4))
+    values = (-1.0, 0.0, 1.0)
+    known = {"input_spin_share": shares, "input_spin_share_stderr": 0.002}
+    return over(experiment, "walls.roughness", values, **known)
+
+
+SCENES = ("cooling", "sheared", "vibrated")
+WAVES = ("reversed_sawtooth", "sawtooth", "sine", "triangle")
 DATA = {
     "fig1a": lambda: (reduced("vibrated"),),
     "fig1b": walls,
     "fig2a": lambda: (sheared(),),
     "fig2b": lambda: (reduced("cooling"),),
+    "fig3": lambda: tuple(reduced(f"{scene}_spheres") for scene in SCENES),
+    "fig4": lambda: tuple(over(name, "friction.mu", (0.0, 0.1, 1.0)) for name in fig4.EXPERIMENTS),
+    "fig5": lambda: (
+        over("heated", "thermostat.spin_share", (0.0, 0.5, 1.0)),
+        boundaries("floor_materials"),
+        boundaries("shaken_walls"),
+    ),
+    "fig6": lambda: (over("waves", "floor.wave", WAVES),),
+    "fig7": lambda: tuple(over(name, "spin.inertia", (0.01, 1.0)) for name in fig7.EXPERIMENTS),
+    "fig8": lambda: tuple(boundaries(name) for name in fig8.EXPERIMENTS),
 }
 
 
@@ -175,3 +212,37 @@ def test_what_cannot_be_drawn_is_refused_and_leaves_no_file(tmp_path):
     with pytest.raises(InputError, match=r"data of fig2b = vibrated: must be cooling"):
         draw("fig2b", paths, [tmp_path / "a.pdf"])
     assert {path.name for path in tmp_path.iterdir()} == {"vibrated.nc"}
+
+
+def test_friction_of_zero_is_left_out_of_a_logarithmic_axis():
+    main = fig4.draw(*DATA["fig4"]()).axes[0]
+    assert main.get_xscale() == "log"
+    assert all(np.all(column[:, 0] > 0.0) for column in bars(main) if len(column))
+
+
+def test_boundary_drives_stand_at_their_measured_shares():
+    heated, floor, walls = DATA["fig5"]()
+    main, residual = fig5.draw(heated, floor, walls).axes
+    points = [column for column in bars(main) if len(column)]
+    assert len(points) == 3 * heated.beta.size
+    np.testing.assert_allclose(points[-1][:, 0], walls.input_spin_share.sel(r=0.9, beta=1.0))
+    beneath = [column for column in bars(residual) if len(column)]
+    share, ratio = (walls[name].sel(r=0.9, beta=1.0) for name in ("input_spin_share", "R"))
+    expected = predicted_ratio(walls.attrs | {"spin_share": share.values}, 0.9, 1.0)
+    np.testing.assert_allclose(beneath[-1][:, 1], ratio - expected)
+
+
+def test_wave_forms_are_compared_with_the_sawtooth():
+    (waves,) = DATA["fig6"]()
+    _, residual = fig6.draw(waves).axes
+    first, second, *_ = (column for column in bars(residual) if len(column))
+    assert np.all(first[:, 1] == 0.0)
+    one, other = (waves.R.sel(r=0.9, wave=wave) for wave in ("reversed_sawtooth", "sawtooth"))
+    np.testing.assert_allclose(second[:, 1], one - other)
+
+
+def test_the_share_of_rotation_is_shown_beneath_R():
+    floor, walls = DATA["fig8"]()
+    axes = fig8.draw(floor, walls).axes
+    beneath = [column for column in bars(axes[2]) if len(column)]
+    np.testing.assert_allclose(beneath[0][:, 1], floor.input_spin_share.sel(r=0.9, beta=-0.5))

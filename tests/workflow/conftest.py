@@ -41,6 +41,29 @@ TINY = {
 }
 POINTS = 6 * SWEEP["seeds"]
 JOBS = 6  # one makes both seeds of a point
+BEYOND = {  # the experiments beyond the paper, and the third axis of their sweeps
+    "cooling_spheres": {},
+    "sheared_spheres": {},
+    "vibrated_spheres": {},
+    "vibrated_friction": {"friction.mu": ["0.5"]},
+    "cooling_friction": {"friction.mu": ["0.5"]},
+    "heated": {"thermostat.spin_share": ["0.5"]},
+    "shaken_walls": {"shaken_walls.roughness": ["1"]},
+    "waves": {"floor.wave": ["sine"]},
+    "vibrated_inertia": {"spin.inertia": ["0.1"]},
+    "cooling_inertia": {"spin.inertia": ["0.1"]},
+    "floor_materials": {"floor.roughness": ["1"]},
+    "wall_materials": {"walls.roughness": ["1"]},
+}
+TINY |= {name: {"sweep": SWEEP | axis} for name, axis in BEYOND.items()}
+for name, box in (
+    ("cooling_spheres", [10, 10, 10]),
+    ("sheared_spheres", [10, 10, 10]),
+    ("vibrated_spheres", [10, 10, "open"]),
+    ("heated", [20, 20]),
+    ("shaken_walls", [20, 20]),
+):
+    TINY[name] |= {"particles": 10, "box": box}
 
 
 class Project:

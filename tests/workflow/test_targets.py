@@ -1,7 +1,7 @@
 """What can be asked for, and how the rest is refused."""
 
 import pytest
-from conftest import JOBS, POINTS, Project
+from conftest import BEYOND, JOBS, POINTS, Project
 
 import roughgas.config
 from roughgas import accuracy
@@ -78,7 +78,22 @@ def test_a_point_with_a_target_is_one_job_after_its_pilot(project):
 
 def test_a_plan_takes_pilots_and_no_points(project):
     planned = project.planned("plan")
-    assert planned == {"compile_kernel": 6, "pilot": 6, "plan_of_scale": 1, "plan": 1}
+    every = JOBS + len(BEYOND)
+    assert planned == {"compile_kernel": every, "pilot": every, "plan_of_scale": 1, "plan": 1}
+
+
+def test_what_lies_beyond_the_paper_is_a_target_of_its_own(project):
+    planned = project.planned("extensions")
+    assert planned == {
+        "compile_kernel": len(BEYOND),
+        "seeds": len(BEYOND),
+        "reduce": len(BEYOND),
+        "figure": 6,
+        "table_of_extensions": 1,
+        "open_questions": 1,
+        "extensions": 1,
+    }
+    assert project.planned("figures")["seeds"] == JOBS
 
 
 def test_a_seed_of_the_sweep_comes_with_those_of_its_job(project):
@@ -93,7 +108,7 @@ def test_everything_has_the_experiments_that_were_added(tmp_path):
             wide={"extends": "cooling", "box": [200, 50], "sweep": {"seeds": 1}}
         )
     )
-    assert project.planned("everything")["seeds"] == JOBS
+    assert project.planned("everything")["seeds"] == JOBS + len(BEYOND)
     assert project.planned("everything")["point"] == 1
     assert "point" not in project.planned("figures")
 

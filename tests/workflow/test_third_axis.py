@@ -5,7 +5,7 @@ import subprocess
 import sys
 
 import pytest
-from conftest import JOBS, Project
+from conftest import BEYOND, JOBS, Project
 from test_targets import refusal
 
 from roughgas.dataset import read_point
@@ -88,12 +88,12 @@ def test_all_variants_are_run_and_compiled_together(project):
 
 def test_everything_has_them(project):
     planned = project.planned("everything")
-    assert planned["seeds"] == JOBS + 2 + 3
+    assert planned["seeds"] == JOBS + len(BEYOND) + 2 + 3
     assert planned["point"] == 2 and planned["reach"] == planned["pilot"] == 2
 
 
 def test_a_plan_has_a_pilot_for_each_variant(project):
-    assert project.planned("plan")["pilot"] == 6 + 2 + 3 + 2 + 2
+    assert project.planned("plan")["pilot"] == JOBS + len(BEYOND) + 2 + 3 + 2 + 2
 
 
 def test_any_legal_value_can_be_asked_for(project):

@@ -37,7 +37,7 @@ def follows_k(cooling: xr.Dataset) -> Finding:
     relative = gap.value / theory
     index = int(np.argmax(np.abs(relative)))
     found = agreement(gap, "Eq. (K)")
-    place = f"r = {gap.r[index]:g}, beta = {gap.beta[index]:g}"
+    place = gap.place(index)
     near = int((np.abs(relative) <= NEAR).sum())
     note = f" Relative to Eq. (K), {near} of {gap.size} points are within {NEAR:.0%}; the largest "
     note += f"difference is {100 * relative[index]:+.1f} % at {place}."
@@ -67,12 +67,13 @@ def depends_on_restitution(cooling: xr.Dataset) -> Finding:
     if largest.real and abs(largest.value) > AGREE:
         verdict = HOLDS if abs(largest.value) > LIMIT else QUALIFIED
     low, high = cooling.r.values[[0, -1]]
-    curves = [predicted_ratio(cooling.attrs, r, effect.beta) for r in (low, high)]
+    beta = effect.places["beta"]
+    curves = [predicted_ratio(cooling.attrs, r, beta) for r in (low, high)]
     expected = curves[0] - curves[1]
     at = int(np.argmax(np.abs(effect.value)))
     reason = (
         f"R at r = {low:g} differs from R at r = {high:g} by up to {text(largest)} at "
-        f"beta = {effect.beta[at]:g}, where Eq. (K) expects {expected[at]:+.4f}."
+        f"beta = {beta[at]:g}, where Eq. (K) expects {expected[at]:+.4f}."
     )
     numbers = (("largest difference", largest), ("mean difference", effect.mean()))
     return Finding(verdict, reason, numbers)

@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from roughgas.claims.statistics import Sample, pooled_errors
-from roughgas.reduce import EQUILIBRATED, predicted_ratio, read_reduced
+from roughgas.reduce import EQUILIBRATED, GRID, predicted_ratio, read_reduced
 
 
 class NotTestedError(Exception):
@@ -15,7 +15,7 @@ class NotTestedError(Exception):
 
 
 def load(path: str | Path) -> xr.Dataset:
-    """The reduced dataset at `path` with `error`, `theory` and `deviation` over (r, beta).
+    """The reduced dataset at `path` with `error`, `theory` and `deviation`, all like its R.
 
     `deviation` is R - theory. Points that are not in a steady state cannot test a theory of one:
     their R is NaN, and the attribute `set_aside` counts them. The attribute `freedom` is the
@@ -24,9 +24,8 @@ def load(path: str | Path) -> xr.Dataset:
     """
     data = _without_contact_time(read_reduced(path))
     errors, freedom = _errors(data, "R_stderr_over_seeds")
-    data["error"] = (("r", "beta"), errors)
-    theory = predicted_ratio(data.attrs, data.r.values[:, None], data.beta.values)
-    data["theory"] = (("r", "beta"), theory)
+    data["error"] = data.R.copy(data=errors)
+    data["theory"] = data.R.copy(data=theory_of(data))
     found, steady = np.isfinite(data.R), data.equilibrated > EQUILIBRATED
     data["R"] = data.R.where(steady)
     data["deviation"] = data.R - data.theory
@@ -34,11 +33,20 @@ def load(path: str | Path) -> xr.Dataset:
     return data.assign_attrs(freedom=freedom, **counts)
 
 
+def theory_of(data: xr.Dataset, **others: np.ndarray) -> np.ndarray:
+    """R of theory at every point; `others` are parameters beside the dataset's own, such as
+    spin_share, of the same shape."""
+    axes = [data[name].values for name in data.R.dims]
+    places = dict(zip(data.R.dims, np.meshgrid(*axes, indexing="ij"), strict=True))
+    return predicted_ratio(data.attrs | places | others, places["r"], places["beta"])
+
+
 def _without_contact_time(data: xr.Dataset) -> xr.Dataset:
     """The part of a reduced dataset that was simulated without the contact-time model."""
     if "contact_time" not in data:
         return data
-    modelled = np.isfinite(data.contact_time).any("beta")
+    modelled = np.isfinite(data.contact_time)
+    modelled = modelled.any([name for name in modelled.dims if name != "r"])
     return data.sel(r=data.r[~modelled])
 
 
@@ -51,6 +59,36 @@ def load_all(paths: Iterable[str | Path]) -> dict[str, xr.Dataset]:
 def deviation(data: xr.Dataset) -> Sample:
     """R - theory at every point."""
     return sample(data.deviation, data.error, data.attrs["freedom"])
+
+
+LEGAL_SHARES = (-1.0, 2.0)
+"""Of rotation in what sources put in, as theory takes them."""
+
+
+def deviation_at_shares(data: xr.Dataset) -> Sample:
+    """R - the rate equations for a drive with the share of rotation that the energy books say.
+
+    It lies outside of [0, 1] where sources take out some of one motion.
+    """
+    share, uncertainty = spin_shares(data)
+    measured, step = np.nan_to_num(share.values), np.nan_to_num(uncertainty.values)
+    ends = (np.clip(end, *LEGAL_SHARES) for end in (measured - step, measured, measured + step))
+    low, expected, high = (theory_of(data, spin_share=end) for end in ends)
+    spread = np.where(np.isfinite(uncertainty), np.fmax(high - expected, expected - low), np.nan)
+    values = (data.R - expected).where(np.isfinite(share))
+    return sample(values, np.hypot(data.error, spread), data.attrs["freedom"])
+
+
+def spin_shares(data: xr.Dataset) -> tuple[xr.DataArray, xr.DataArray]:
+    """Share of rotation in what the sources put in, where R is measured, and its standard error.
+
+    None at beta = -1: contacts leave spin alone there, so that in a steady state the sources put in
+    none on balance, whatever R is.
+    """
+    if "input_spin_share" not in data:
+        raise NotTestedError("the dataset holds no share of rotation in what its sources put in")
+    known = np.isfinite(data.R) & (data.beta > -1.0)
+    return data.input_spin_share.where(known), data.input_spin_share_stderr
 
 
 def unsubtracted_deviation(data: xr.Dataset) -> Sample:
@@ -82,17 +120,12 @@ def effect_of_restitution(data: xr.Dataset) -> Sample:
 
 def sample(values: xr.DataArray, errors: xr.DataArray, freedom: float) -> Sample:
     """The finite `values` as a sample; raises NotTestedError where there is none."""
-    r, beta = (np.broadcast_to(axis, values.shape) for axis in _grid(values))
     there = np.isfinite(values.values)
     if not there.any():
         raise NotTestedError("no point is in a steady state and measured in all that is compared")
-    columns = (column[there] for column in (r, beta, values.values, np.asarray(errors)))
-    return Sample(*columns, freedom)
-
-
-def _grid(values: xr.DataArray) -> tuple[np.ndarray, np.ndarray]:
-    r = values.r.values[:, None] if values.r.ndim else values.r.values
-    return r, values.beta.values
+    axes = [*GRID, *(name for name in values.coords if name not in GRID)]
+    places = {name: values[name].broadcast_like(values).values[there] for name in axes}
+    return Sample(places, values.values[there], np.asarray(errors)[there], freedom)
 
 
 def _errors(data: xr.Dataset, name: str) -> tuple[np.ndarray, float]:

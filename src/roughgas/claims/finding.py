@@ -7,7 +7,8 @@ import numpy as np
 import xarray as xr
 
 from roughgas.claims.evidence import NotTestedError
-from roughgas.claims.statistics import SIGNIFICANT, Estimate, Sample
+from roughgas.claims.statistics import SIGNIFICANT, Estimate, Sample, written
+from roughgas.reduce import GRID
 
 HOLDS = "holds"
 QUALIFIED = "holds with a qualification"
@@ -86,8 +87,18 @@ def agreement(sample: Sample, other: str) -> Finding:
     )
     if vague.mean() > FEW:
         reason += f" At {vague.sum()} {points(vague.sum())} the errors are too large to tell."
-    numbers = (("largest difference", largest), ("mean difference", mean))
+    numbers = (("largest difference", largest), ("mean difference", mean), *_along(sample))
     return Finding(verdict, reason, numbers)
+
+
+def _along(sample: Sample) -> list[tuple[str, Estimate]]:
+    """The largest value at each step of what is swept besides r and beta, if anything is."""
+    columns = ((name, column) for name, column in sample.places.items() if name not in GRID)
+    return [
+        (f"largest at {name} = {written(value)}", sample.where(column == value).largest()[0])
+        for name, column in columns
+        for value in np.unique(column)
+    ]
 
 
 def tendency(value: Estimate) -> str:

@@ -3,7 +3,7 @@
 import json
 import math
 from collections import Counter
-from typing import Any
+from typing import Any, NamedTuple
 
 import xarray as xr
 
@@ -18,6 +18,7 @@ from roughgas.claims.finding import (
     TENDENCY,
     Finding,
     Row,
+    Statement,
     text,
 )
 from roughgas.claims.statistics import SIGNIFICANT, Estimate
@@ -30,20 +31,14 @@ TOLERANCES = {
     "few": FEW,
     "significant_sigma": SIGNIFICANT,
 }
-HEAD = """\
-# The verdict on the paper
-
-S. McNamara and S. Luding, *Energy nonequipartition in systems of inelastic, rough spheres*,
-Phys. Rev. E 58, 2247 (1998): each statement that these simulations can test, computed from the
-datasets.
-
+HOW_TO_READ = """\
 How to read it. A number is "value ± standard error (sigma)". Statistics and size count separately:
 with small errors a theory that is 2 % off is 20 sigma off and still useful. R agrees where it is
 within {agree:g} (about a symbol's size in the paper's figures), and disagrees beyond {limit:g}
-where the difference is significant, {sigma:g} sigma or more. In between, agreement is qualified,
-and so it is where errors are too large to tell at more than a few points ({few:.0%} of them). A
-direction (above, below) needs {tendency:g} in R. Points that are not in a steady state are set
-aside, and counted.
+where the difference is significant, {significant_sigma:g} sigma or more. In between, agreement is
+qualified, and so it is where errors are too large to tell at more than a few points ({few:.0%} of
+them). A direction (above, below) needs {tendency:g} in R. Points that are not in a steady state are
+set aside, and counted.
 
 Sigma is that of a Gaussian with the same probability as Student's t. The errors come from few
 seeds, so those of an experiment are pooled: seeds calibrate the blocking errors by one common
@@ -51,10 +46,21 @@ factor, and a point whose own seeds scatter more keeps that larger error.
 """
 
 
-def as_json(rows: list[Row], datasets: dict[str, xr.Dataset]) -> str:
+class Subject(NamedTuple):
+    """What a table of verdicts is about: its texts, and its statements."""
+
+    title: str
+    about: str  # a paragraph
+    quotes: str  # what the column of quotations is called
+    statements: tuple[Statement, ...]
+    after: str = ""  # a line below the table
+
+
+def as_json(subject: Subject, rows: list[Row], datasets: dict[str, xr.Dataset]) -> str:
     """All rows, with the tolerances used and the data they rest on."""
     content = {
         "schema_version": SCHEMA_VERSION,
+        "title": subject.title,
         "scale": _scale(datasets),
         "tolerances": TOLERANCES,
         "data": {name: _data(data) for name, data in sorted(datasets.items())},
@@ -63,15 +69,18 @@ def as_json(rows: list[Row], datasets: dict[str, xr.Dataset]) -> str:
     return json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
 
 
-def as_markdown(rows: list[Row], datasets: dict[str, xr.Dataset]) -> str:
+def as_markdown(subject: Subject, rows: list[Row], datasets: dict[str, xr.Dataset]) -> str:
     """A table of all verdicts, then the reasons and numbers of each."""
-    head = HEAD.format(agree=AGREE, limit=LIMIT, tendency=TENDENCY, few=FEW, sigma=SIGNIFICANT)
+    how = HOW_TO_READ.format(**TOLERANCES)
     count = Counter(row.finding.verdict for row in rows)
     verdicts = (HOLDS, QUALIFIED, FAILS, NOT_TESTED)
     summary = ", ".join(f"{verdict} {count[verdict]}" for verdict in verdicts)
-    lines = [head, f"Scale: {_scale(datasets)}. Of {len(rows)} statements: {summary}.", ""]
-    lines += ["| # | The paper says | Deciding number | Verdict |", "| --- | --- | --- | --- |"]
+    lines = [f"# {subject.title}", "", subject.about, how]
+    lines += [f"Scale: {_scale(datasets)}. Of {len(rows)} statements: {summary}.", ""]
+    lines += [f"| # | {subject.quotes} | Deciding number | Verdict |"]
+    lines += ["| --- | --- | --- | --- |"]
     lines += [_line(number, row) for number, row in enumerate(rows, 1)]
+    lines += ["", subject.after] if subject.after else []
     lines += ["", "## Reasons and numbers", ""]
     for number, row in enumerate(rows, 1):
         lines += _details(number, row)
@@ -124,7 +133,8 @@ def _short(value: float) -> float | None:
 def _data(data: xr.Dataset) -> dict[str, Any]:
     names = ("particles", "points", "set_aside")
     about = {name: int(data.attrs[name]) for name in names}
-    return about | {"seeds": int(data.n_seeds.max()), "theory": data.attrs["theory"]}
+    about |= {"seeds": int(data.n_seeds.max()), "theory": data.attrs["theory"]}
+    return about | ({"swept": data.attrs["swept"]} if "swept" in data.attrs else {})
 
 
 def _scale(datasets: dict[str, xr.Dataset]) -> str:

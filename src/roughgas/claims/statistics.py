@@ -47,10 +47,12 @@ class Estimate(NamedTuple):
 
 
 class Sample(NamedTuple):
-    """Independent numbers with errors at points of a sweep, all 1-D and of one length."""
+    """Independent numbers with errors at points of a sweep, all 1-D and of one length.
 
-    r: np.ndarray
-    beta: np.ndarray
+    `places` has the coordinates of the points by name: r, beta, and what is swept besides.
+    """
+
+    places: dict[str, np.ndarray]
     value: np.ndarray
     error: np.ndarray
     freedom: float
@@ -66,12 +68,18 @@ class Sample(NamedTuple):
 
     def where(self, mask: np.ndarray) -> "Sample":
         """The part of the sample where `mask` holds."""
-        return Sample(*(column[mask] for column in self[:4]), self.freedom)
+        places = {name: column[mask] for name, column in self.places.items()}
+        return Sample(places, self.value[mask], self.error[mask], self.freedom)
 
     def joined(self, other: "Sample") -> "Sample":
         """Both samples as one."""
-        columns = (np.concatenate(pair) for pair in zip(self[:4], other[:4], strict=True))
-        return Sample(*columns, min(self.freedom, other.freedom))
+        places = {
+            name: np.concatenate([column, other.places[name]])
+            for name, column in self.places.items()
+        }
+        value = np.concatenate([self.value, other.value])
+        error = np.concatenate([self.error, other.error])
+        return Sample(places, value, error, min(self.freedom, other.freedom))
 
     def sigma(self) -> np.ndarray:
         """Significance of each value's difference from 0."""
@@ -89,7 +97,17 @@ class Sample(NamedTuple):
     def largest(self) -> tuple[Estimate, str]:
         """The value of largest size, and where it is."""
         index = int(np.argmax(np.abs(self.value)))
-        return self.at(index), f"r = {self.r[index]:g}, beta = {self.beta[index]:g}"
+        return self.at(index), self.place(index)
+
+    def place(self, index: int) -> str:
+        """Such as "r = 0.9, beta = 0, mu = 0.1"."""
+        pairs = ((name, column[index]) for name, column in self.places.items())
+        return ", ".join(f"{name} = {written(value)}" for name, value in pairs)
+
+
+def written(value: float | str) -> str:
+    """A coordinate, which is a number or a word."""
+    return value if isinstance(value, str) else f"{value:g}"
 
 
 def pooled_errors(

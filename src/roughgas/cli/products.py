@@ -25,6 +25,11 @@ def add_commands(commands: Any) -> None:
 
     parser = _add(commands, "claims", claims, "judge the claims of the paper on reduced datasets")
     _add_reduced(parser)
+    parser.add_argument(
+        "--open-questions",
+        action="store_true",
+        help="judge what the paper leaves open, not what it claims of its own experiments",
+    )
     parser.add_argument("--json", required=True, metavar="FILE", help="verdicts for programs")
     parser.add_argument("--markdown", required=True, metavar="FILE", help="verdicts for people")
 
@@ -51,10 +56,11 @@ def figure(options: argparse.Namespace) -> None:
 
 
 def claims(options: argparse.Namespace) -> None:
-    """Judge the claims of the paper."""
-    from roughgas.claims import judge
+    """Judge the claims of the paper, or what it leaves open."""
+    from roughgas.claims import OPEN_QUESTIONS, PAPER, judge
 
-    judge(options.inputs, options.json, options.markdown)
+    subject = OPEN_QUESTIONS if options.open_questions else PAPER
+    judge(options.inputs, options.json, options.markdown, subject)
 
 
 def _add(commands: Any, name: str, command: Any, summary: str) -> argparse.ArgumentParser:
