@@ -37,6 +37,9 @@ PARAMETERS = {
 }
 NEEDS = [("gravity", "floor"), ("floor", "gravity"), ("friction", "spin")]
 EXCLUDES = [("walls", "shear"), ("shaken_walls", "shear"), ("walls", "shaken_walls")]
+# A bed in space that is sheared between its sides heats up without end: flights grow long while
+# images slide past by thousands, and a scene may take minutes
+ENDLESS = {"gravity", "shear"}
 WITHOUT_SPIN = {"roughness": -1.0, "spin_share": 0.0}  # what parameters are where nothing spins
 
 
@@ -61,7 +64,9 @@ def covering(strength):
     for any so many effects (the dimension counts as one), every legal pattern of there and not
     there. Wave forms of the floor, each with code of its own, take turns.
     """
-    legal = [(one, D) for one in every_set() for D in (2, 3) if is_legal(one, D)]
+    legal = [
+        (one, D) for one in every_set() for D in (2, 3) if is_legal(one, D) and not one >= ENDLESS
+    ]
     found, missing = [], set().union(*(_patterns(*one, strength) for one in legal))
     while missing:
         best = max(legal, key=lambda one: len(missing & _patterns(*one, strength)))

@@ -32,7 +32,7 @@ class Probe(NamedTuple):
 
 
 @jit
-def restitution(probe, index, r, state, i, j, time):
+def restitution(probe, index, r, state, i, j, time, speed):
     if j >= 0:
         scene = probe.scene
         position_i, velocity_i = arrive(state, scene, i, time)
