@@ -20,7 +20,8 @@ from roughgas.kernel.record import Plan, columns, record
 from roughgas.kernel.vectors import dot, subtract
 from roughgas.scene import Scene, build
 
-Probed = namedtuple("Probed", [*Effects._fields, "probe"])
+_NAMES = [*Effects._fields, "probe"]
+Probed = namedtuple("Probed", _NAMES, defaults=[None] * len(_NAMES))
 _record = entry(record.py_func)  # not that of the product, whose cache must not know of probes
 
 
