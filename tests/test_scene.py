@@ -13,6 +13,8 @@ FLOOR = {"floor": {"amplitude": 5, "period": 1, "restitution": 1, "roughness": -
 WALLS = {"walls": {"restitution": 1, "roughness": 1}}
 SHEAR = {"shear": {"velocity": 2}}
 TIME = {"contact_time": {"duration": 1e-5}}
+FRICTION = {"friction": {"mu": 0.5}}
+HEAT = {"thermostat": {"power": 1, "spin_share": 0.5, "interval": 0.5}}
 BED = SPIN | GRAVITY | FLOOR
 
 
@@ -89,6 +91,17 @@ ILLEGAL = {
     "effects.walls.restitution": [BED | {"walls": {"restitution": 2, "roughness": 0}}],
     "effects.walls.roughness": [BED | {"walls": {"restitution": 1, "roughness": -2}}],
     "effects.shear.velocity": [SPIN | {"shear": {"velocity": U}} for U in (0, -2, math.nan)],
+    "effects.friction.mu": [SPIN | {"friction": {"mu": mu}} for mu in (-0.1, math.inf, "rough")],
+    "effects.thermostat.power": [
+        SPIN | {"thermostat": HEAT["thermostat"] | {"power": p}} for p in (0, -1, math.nan)
+    ],
+    "effects.thermostat.spin_share": [
+        SPIN | {"thermostat": HEAT["thermostat"] | {"spin_share": s}} for s in (-0.1, 1.1, None)
+    ],
+    "effects.thermostat.interval": [
+        SPIN | {"thermostat": HEAT["thermostat"] | {"interval": t}} for t in (0, -1, math.inf)
+    ],
+    "effects.friction: key": [SPIN | {"friction": {"mu": 1, "nu": 1}}],
     "effects.contact_time.duration": [
         SPIN | {"contact_time": {"duration": t}} for t in (0, -1e-5, math.nan)
     ],
@@ -135,6 +148,122 @@ def test_what_does_not_go_together(box, effects, key):
     assert caught.value.key == key and "\n" not in str(caught.value)
 
 
+MISMATCHES = {
+    # what: (box, effects, beta, schedule or target, the whole message)
+    "walls and shear": (
+        (50, 50),
+        SPIN | WALLS | SHEAR,
+        0.0,
+        {},
+        "effects = walls and shear: must not close the axis that is sheared along",
+    ),
+    "a floor without gravity": (
+        (50, "open"),
+        SPIN | FLOOR,
+        0.0,
+        {},
+        "effects.floor = without gravity: must come with gravity, without which nothing comes back "
+        "to it",
+    ),
+    "gravity without a floor": (
+        (50, "open"),
+        SPIN | GRAVITY,
+        0.0,
+        {},
+        "effects.gravity = without floor: must come with a floor, without which all falls for ever",
+    ),
+    "friction without spin": (
+        (50, 50),
+        FRICTION,
+        -1.0,
+        {},
+        "effects.friction = without spin: must come with spin, which it acts on",
+    ),
+    "heat for spins that are not there": (
+        (50, 50),
+        HEAT,
+        -1.0,
+        {},
+        "effects.thermostat.spin_share = 0.5: must be 0 where nothing spins",
+    ),
+    "rough walls without spin": (
+        (50, 50),
+        WALLS,
+        -1.0,
+        {},
+        "effects.walls.roughness = 1: must be -1 where particles do not spin",
+    ),
+    "a rough floor without spin": (
+        (50, "open"),
+        GRAVITY | {"floor": FLOOR["floor"] | {"roughness": 0.5}},
+        -1.0,
+        {},
+        "effects.floor.roughness = 0.5: must be -1 where particles do not spin",
+    ),
+    "rough particles without spin": (
+        (50, 50),
+        {},
+        0.5,
+        {},
+        "roughness beta = 0.5: must be -1 where particles do not spin",
+    ),
+    "cooling with a drive": (
+        (50, 50),
+        SPIN | HEAT,
+        0.0,
+        {"schedule": {"kind": "cooling"}},
+        "schedule.kind = cooling: must be steady where there is a drive: thermostat",
+    ),
+    "cooling with two drives": (
+        (50, 50, "open"),
+        BED | SHEAR,
+        0.0,
+        {"schedule": {"kind": "cooling"}},
+        "schedule.kind = cooling: must be steady where there is a drive: floor, shear",
+    ),
+    "steady without a drive": (
+        (50, 50),
+        SPIN | FRICTION,
+        0.0,
+        {"schedule": {"kind": "steady"}},
+        "schedule.kind = steady: must be cooling where no effect drives the gas",
+    ),
+    "a target without spin": (
+        (50, 50),
+        {},
+        -1.0,
+        {"target_stderr": 0.01},
+        "target_stderr = 0.01: must not be given where nothing spins: R is 0",
+    ),
+}
+
+
+@pytest.mark.parametrize("what", MISMATCHES)
+def test_what_does_not_go_together_is_said_in_one_line(what):
+    """By key, value and what is legal; what is built all the same is refused when checked."""
+    box, effects, beta, settings, message = MISMATCHES[what]
+    with pytest.raises(InputError) as caught:
+        build(experiment(box, **effects), 0.9, beta)
+        check(experiment(box, **effects) | settings)
+    assert str(caught.value) == message
+
+
+@pytest.mark.parametrize(
+    ("box", "effects", "settings"),
+    [
+        ((50, 50), {}, {"schedule": {"kind": "cooling"}}),
+        ((50, 50), WALLS | {"walls": {"restitution": 1, "roughness": "particles"}}, {}),
+        ((50, 50), {"thermostat": HEAT["thermostat"] | {"spin_share": 0}}, {}),
+        ((50, 50), SPIN | HEAT | FRICTION | SHEAR, {"schedule": {"kind": "steady"}}),
+        ((50, 50), SPIN, {"schedule": {"kind": "cooling"}, "target_stderr": 0.01}),
+        ((50, 50, "open"), BED | SHEAR | HEAT | FRICTION | TIME, {}),
+        ((50, "open"), GRAVITY | FLOOR | TIME, {"schedule": {"kind": "steady"}}),
+    ],
+)
+def test_what_goes_together(box, effects, settings):
+    check(experiment(box, **effects) | settings)
+
+
 def test_too_many_particles_for_the_box():
     check(experiment((8.1, 8.1), 16, **SPIN))
     with pytest.raises(InputError) as caught:
@@ -148,6 +277,12 @@ def test_one_particle_alone(effects):
     with pytest.raises(InputError) as caught:
         check(experiment((50, 50), 1, **effects))
     assert caught.value.key == "particles" and "\n" not in str(caught.value)
+
+
+def test_one_particle_has_nobody_to_be_kicked_with():
+    check(experiment((50, "open"), 2, **BED, **HEAT))
+    with pytest.raises(InputError, match="at least 2 where a thermostat kicks pairs"):
+        check(experiment((50, "open"), 1, **BED, **HEAT))
 
 
 def test_the_narrowest_boxes():

@@ -2,7 +2,8 @@
 
 from brute_force.beside import Beside, compare, largest_overlap, snapshot
 from brute_force.scenes import KERNELS, begin, run, scene_of, settings
-from brute_force.simulation import BruteForce, Event, Snapshot, World
+from brute_force.simulation import BruteForce
+from brute_force.world import Event, Snapshot, World
 
 __all__ = [
     "KERNELS",

@@ -4,8 +4,10 @@ from collections import Counter
 
 import numpy as np
 
+from brute_force.kicks import Drive
 from brute_force.scenes import run
-from brute_force.simulation import BruteForce, Snapshot
+from brute_force.simulation import BruteForce
+from brute_force.world import Snapshot
 from roughgas.kernel.state import BASE, BOUNDARY_HITS, LAST_FIRST, LAST_SECOND, NOW
 
 ROUNDINGS = 1e-15
@@ -27,12 +29,21 @@ def snapshot(state, scene):
         position[:, -1] -= 0.5 * g * elapsed**2
         velocity[:, -1] -= g * elapsed
     spin = None if state.spin is None else state.spin[order]
-    return Snapshot(state.clock[BASE] + now, position, velocity, spin)
+    return Snapshot(state.clock[BASE] + now, position, velocity, spin, drive_of(state, order))
+
+
+def drive_of(state, order):
+    """Where the kicks of a kernel's state stand."""
+    due = state.moments.thermostat
+    if due is None:
+        return None
+    return Drive(list(state.clock[BASE] + due[order]), state.random[0], list(state.label))
 
 
 def brute_force_from(world, shot, last_contact=None):
     """A brute-force simulation that starts where the kernel stands."""
-    return BruteForce(world, shot.position, shot.velocity, shot.spin, shot.time, last_contact)
+    *particles, drive = shot[1:]
+    return BruteForce(world, *particles, shot.time, last_contact, drive)
 
 
 def largest_overlap(state, scene, world):
@@ -82,7 +93,8 @@ class Beside:
             pair = {int(counts[LAST_FIRST]), int(counts[LAST_SECOND])}
             assert {step[-1].i, step[-1].j} == pair, (step[-1], pair)
             events.update(event.kind for event in step)
-        assert counts[BOUNDARY_HITS] - hits == events.total() - collisions
+        assert counts[BOUNDARY_HITS] - hits == events.total() - collisions - events["kick"]
+        assert not brute.kicks or brute.kicks.random.word == self.state.random[0]
         other.run(collisions)
         self.last_contact = brute.last
         self.events += events

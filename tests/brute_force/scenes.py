@@ -7,7 +7,7 @@ import functools
 
 import numpy as np
 
-from brute_force.simulation import World
+from brute_force.world import World
 from roughgas.initial import initial_state
 from roughgas.kernel.record import Plan, columns, record
 from roughgas.scene import build
@@ -20,6 +20,8 @@ _BED = _DISKS | {
     "gravity": {"acceleration": 1.0},
     "floor": {"amplitude": 5.0, "period": 1.0, "restitution": 1.0, "roughness": -1.0},
 }
+_FRICTION = {"friction": {"mu": 0.5}}
+_HEAT = {"thermostat": {"power": 1.0, "spin_share": 0.5, "interval": 0.5}}
 KERNELS = {
     "gas": {"particles": 160, "box": [100, 100], "effects": _DISKS},
     "smooth": {"particles": 160, "box": [100, 100], "effects": {}},
@@ -43,6 +45,29 @@ KERNELS = {
         "box": [12, 12, 12],
         "effects": {"spin": {"inertia": 0.4}, "contact_time": {"duration": NEVER}},
     },
+    "friction": {"particles": 160, "box": [100, 100], "effects": _DISKS | _FRICTION},
+    "rubbed bed": {
+        "particles": 160,
+        "box": [50, "open"],
+        "effects": _BED | {"walls": {"restitution": 1.0, "roughness": 1.0}} | _FRICTION,
+    },
+    "shaken": {
+        "particles": 160,
+        "box": [50, 50],
+        "effects": _DISKS
+        | {"shaken_walls": {"amplitude": 1, "period": 2, "restitution": 1, "roughness": 0.5}},
+    },
+    "heated": {"particles": 160, "box": [100, 100], "effects": _DISKS | _HEAT},
+    "heated, smooth": {
+        "particles": 160,
+        "box": [100, 100],
+        "effects": {"thermostat": _HEAT["thermostat"] | {"spin_share": 0.0}},
+    },
+    "heated spheres": {
+        "particles": 64,
+        "box": [12, 12, 12],
+        "effects": {"spin": {"inertia": 0.4}} | _HEAT | _FRICTION,
+    },
 }
 
 
@@ -61,7 +86,8 @@ def scene_of(experiment, r, beta):
     """(kernel's scene, brute force's world) of the same experiment."""
     effects = experiment["effects"]
     periods = [None if side == "open" else float(side) for side in experiment["box"]]
-    floor, walls = effects.get("floor"), effects.get("walls")
+    floor, heat, shaken = (effects.get(name) for name in ("floor", "thermostat", "shaken_walls"))
+    walls = effects.get("walls", shaken)
     if walls:
         width, periods[0] = periods[0], None
     world = World(
@@ -69,10 +95,13 @@ def scene_of(experiment, r, beta):
         r=r,
         beta=beta,
         q=effects["spin"]["inertia"] if "spin" in effects else None,
+        mu=effects.get("friction", {}).get("mu"),
+        thermostat=heat and (heat["power"], heat["spin_share"], heat["interval"]),
         gravity=effects.get("gravity", {}).get("acceleration", 0.0),
         floor=floor
         and (floor["amplitude"], floor["period"], floor["restitution"], floor["roughness"]),
         walls=walls and (width, walls["restitution"], walls["roughness"]),
+        shaken=shaken and (shaken["amplitude"], shaken["period"]),
         shear=effects.get("shear", {}).get("velocity", 0.0),
         contact_time=effects.get("contact_time", {}).get("duration", 0.0),
         wave=(floor or {}).get("wave", "sawtooth"),

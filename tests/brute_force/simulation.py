@@ -7,9 +7,12 @@ event to the next. Absolute times, textbook roots. Units: a = m = T = 1.
 
 import itertools
 import math
-from typing import NamedTuple
 
 import numpy as np
+
+from brute_force.formulas import cut_by_friction, falling_time, in_space, meeting_times
+from brute_force.kicks import Kicks
+from brute_force.world import Event, Snapshot
 
 # Strokes that make up a period of the floor: when they begin and end, in periods, and at what
 # height, in amplitudes; of the sine, the whole period
@@ -22,41 +25,10 @@ STROKES = {
 INSTANTS = np.linspace(0.0, 1.0, 2001) ** 2  # at which a floor without a formula is looked for
 
 
-class World(NamedTuple):
-    """What is simulated; None and 0 stand for what is absent."""
-
-    box: tuple[float | None, ...]  # periods; None is open, or closed by walls
-    r: float
-    beta: float
-    q: float | None  # None: particles do not spin
-    gravity: float = 0.0  # along the last axis
-    floor: tuple[float, float, float, float] | None = None  # amplitude, period, r, beta
-    walls: tuple[float, float, float] | None = None  # width, r, beta; along the first axis
-    shear: float = 0.0  # U: velocity, along the first axis, of the image above along the second
-    contact_time: float = 0.0
-    wave: str = "sawtooth"  # of the floor
-
-
-class Snapshot(NamedTuple):
-    """All particles at one instant."""
-
-    time: float  # absolute
-    position: np.ndarray  # (N, D), in any image
-    velocity: np.ndarray
-    spin: np.ndarray | None  # (N, 2D - 3)
-
-
-class Event(NamedTuple):
-    time: float
-    kind: str  # pair, floor, left, right
-    i: int
-    j: int  # -1: none
-
-
 class BruteForce:
     """A simulation under way; `step` carries out one event, `run` so many pair collisions."""
 
-    def __init__(self, world, position, velocity, spin, time=0.0, last_contact=None):
+    def __init__(self, world, position, velocity, spin, time=0.0, last_contact=None, drive=None):
         self.world = world
         self.x, self.v = np.array(position, float), np.array(velocity, float)
         self.number, self.dimension = self.x.shape
@@ -71,6 +43,8 @@ class BruteForce:
         self.stroke = int(whole) * len(self.strokes) + begun - 1
         self.last = np.full(self.number, -np.inf) if last_contact is None else last_contact.copy()
         self.pairs = np.array(list(itertools.combinations(range(self.number), 2))).reshape(-1, 2)
+        drawn = drive and world.thermostat
+        self.kicks = Kicks(drawn, world.q, self.dimension, drive) if drawn else None
         self._fold()
 
     def run(self, collisions):
@@ -126,7 +100,7 @@ class BruteForce:
         speed = amplitude * (high - low) / ((end - begin) * period)
         return (whole + begin) * period, (whole + end) * period, amplitude * low, speed
 
-    def _surface(self, wait):
+    def surface(self, wait):
         """(height, speed) of the floor after a time, within the stroke that is under way."""
         amplitude, period = self.world.floor[:2]
         if self.world.wave == "sine":
@@ -143,6 +117,8 @@ class BruteForce:
             waits = self._pair_waits()
             first = int(np.argmin(waits))
             found.append((waits[first], "pair", *map(int, self.pairs[first])))
+        if self.kicks:
+            found.append(self.kicks.next(self.time))
         return [event for event in found if event[0] <= limit]
 
     def _pair_waits(self):
@@ -151,7 +127,7 @@ class BruteForce:
         x, v = self.x[i] - self.x[j], self.v[i] - self.v[j]
         best = np.full(len(x), np.inf)
         for shift, drift in self.images():
-            best = np.minimum(best, _waits(x + shift, v + drift))
+            best = np.minimum(best, meeting_times(x + shift, v + drift))
         return best
 
     def images(self):
@@ -184,12 +160,12 @@ class BruteForce:
     def _floor_wait(self, i, limit):
         """Time until particle i meets the floor, if that is before the limit."""
         height, v, g = self.x[i, -1] - 1.0, self.v[i, -1], self.world.gravity
-        level, speed = self._surface(0.0)
+        level, speed = self.surface(0.0)
         if self.world.wave != "sine" or (height - level <= 1e-12 and v < speed):
-            return _fall(height - level, v - speed, g)
+            return falling_time(height - level, v - speed, g)
 
         def gap(wait):
-            return height + v * wait - g * wait**2 / 2.0 - self._surface(wait)[0]
+            return height + v * wait - g * wait**2 / 2.0 - self.surface(wait)[0]
 
         waits = limit * INSTANTS
         below = np.flatnonzero(gap(waits[1:]) < 0.0)
@@ -226,12 +202,21 @@ class BruteForce:
 
     def _resolve(self, kind, i, j):
         world = self.world
-        if kind == "pair":
+        if kind == "kick":
+            self.kicks.give(i, self.v, self.w)
+        elif kind == "pair":
             self._collide(i, j)
         elif kind == "floor":
-            self._bounce(i, self.dimension - 1, 1.0, self._surface(0.0)[1], *world.floor[2:])
+            self._bounce(i, self.dimension - 1, 1.0, self.surface(0.0)[1], *world.floor[2:])
         else:
-            self._bounce(i, 0, 1.0 if kind == "left" else -1.0, 0.0, *world.walls[1:])
+            self._bounce(i, 0, 1.0 if kind == "left" else -1.0, self._shaking(), *world.walls[1:])
+
+    def _shaking(self):
+        """Velocity of the side walls, along the last axis."""
+        if self.world.shaken is None:
+            return 0.0
+        amplitude, period = self.world.shaken
+        return 2.0 * np.pi * amplitude / period * np.cos(2.0 * np.pi * self.time / period)
 
     def _restitution(self, r, *particles):
         recent = max(self.last[k] for k in particles)
@@ -245,7 +230,7 @@ class BruteForce:
         world = self.world
         x, v = self.x[i] - self.x[j], self.v[i] - self.v[j]
         shift, drift = min(self.images(), key=lambda image: ((x + image[0]) ** 2).sum())
-        n, v = _in_space(x + shift), _in_space(v + drift)
+        n, v = in_space(x + shift), in_space(v + drift)
         n /= math.sqrt(n @ n)
         r = self._restitution(world.r, i, j)
         v_n = (v @ n) * n
@@ -253,47 +238,32 @@ class BruteForce:
         if world.q is not None:
             q, beta = world.q, world.beta
             v_t, v_r = v - v_n, -np.cross(self.w[i] + self.w[j], n)
-            push = push + q * (1.0 + beta) / (2.0 * q + 2.0) * (v_t + v_r)
-            turn = (1.0 + beta) / (2.0 * q + 2.0) * np.cross(n, v_t + v_r)
+            along = cut_by_friction(
+                world.mu, push, q * (1.0 + beta) / (2.0 * q + 2.0) * (v_t + v_r)
+            )
+            push = push + along
+            turn = np.cross(n, along) / q
             self.w[i] += turn
             self.w[j] += turn
         self.v[i] -= push[: self.dimension]
         self.v[j] += push[: self.dimension]
 
-    def _bounce(self, i, axis, direction, wall_speed, r, beta):
-        """As with a partner of infinite mass: both prefactors of Eq. (collrule) double."""
-        n = np.zeros(3)
+    def _bounce(self, i, axis, direction, speed, r, beta):
+        """As with a partner of infinite mass: both prefactors of Eq. (collrule) double.
+
+        The partner moves along the last axis.
+        """
+        world, n = self.world, np.zeros(3)
         n[axis] = direction
-        g = _in_space(self.v[i])
-        g[axis] -= wall_speed
+        g = in_space(self.v[i])
+        g[self.dimension - 1] -= speed
         g -= np.cross(self.w[i], n)
         r = self._restitution(r, i)
         g_n = (g @ n) * n
         push = (1.0 + r) * g_n
-        if self.world.q is not None:
-            q = self.world.q
-            push = push + q * (1.0 + beta) / (1.0 + q) * (g - g_n)
-            self.w[i] += (1.0 + beta) / (1.0 + q) * np.cross(n, g - g_n)
+        if world.q is not None:
+            q = world.q
+            along = cut_by_friction(world.mu, push, q * (1.0 + beta) / (1.0 + q) * (g - g_n))
+            push = push + along
+            self.w[i] += np.cross(n, along) / q
         self.v[i] -= push[: self.dimension]
-
-
-def _in_space(vector):
-    full = np.zeros(3)
-    full[: len(vector)] = vector
-    return full
-
-
-def _waits(x, v):
-    """First root of |x + v t| = 2 for each row, if the pair approaches; overlapping is now."""
-    b, vv, c = (x * v).sum(axis=1), (v * v).sum(axis=1), (x * x).sum(axis=1) - 4.0
-    discriminant = b * b - vv * c
-    with np.errstate(invalid="ignore", divide="ignore"):
-        root = np.maximum(0.0, (-b - np.sqrt(discriminant)) / vv)
-    return np.where((b < 0.0) & (discriminant >= 0.0), root, np.inf)
-
-
-def _fall(gap, speed, gravity):
-    """First time at which gap + speed t - gravity t^2/2 vanishes, from above."""
-    if gap <= 1e-12 and speed < 0.0:
-        return 0.0
-    return (speed + math.sqrt(speed * speed + 2.0 * gravity * max(gap, 0.0))) / gravity

@@ -1,31 +1,85 @@
-"""Absent effects are absent: no memory, no code."""
+"""Absent effects are absent: no code, no memory, no events, nothing in the dataset."""
 
-from brute_force import begin, run, settings
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
 
+import numpy as np
+import pytest
+from brute_force import KERNELS, begin, run, settings
+from machine_code import checksums, sections
+from schedules import COOLING, STEADY
+
+from roughgas.dataset import VARIABLES, read_point, write_point
+from roughgas.effects import KINDS
+from roughgas.kernel import random
 from roughgas.kernel.record import columns, record
+from roughgas.kernel.state import BOUNDARY, BOUNDARY_HITS
+from roughgas.simulate import run_point
+
+PROGRAM = Path(__file__).parent.parent / "machine_code.py"
+SMALL = {2: (16, [20, 20]), 3: (16, [12, 12, 12])}
+MOMENTS = {"contact_time", "thermostat"}  # what keeps a time for each particle
+EVENTS = {"floor", "walls", "shaken_walls", "thermostat"}  # what has events of its own
+PHASES = {"floor", "shaken_walls", "shear"}
 
 
-def test_a_scene_without_spin_has_no_spins():
-    scene, state = begin(settings("smooth", 16, [20, 20]), 0.9, -1.0, 1)
-    assert state.spin is None and state.moments.contact_time is None
-    rows = run(state, scene, 5, collisions=10)
-    assert not {"ww", "w"} & set(rows)
-    assert rows["collisions"][-1] == 50
-    assert not {"ww", "w"} & set(columns(2, False))
-    assert columns(2, True)[-2:] == ["ww", "w"]
-    assert columns(3, True)[-4:] == ["ww", "w_x", "w_y", "w_z"]
+def small(kernel):
+    """Settings of a kernel with 16 particles."""
+    box = KERNELS[kernel]["box"]
+    number, lengths = SMALL[len(box)]
+    top = "open" if box[-1] == "open" else lengths[-1]
+    return settings(kernel, number, [*lengths[:-1], top])
 
 
-def test_a_scene_without_contact_time_remembers_no_contacts():
-    assert begin(settings("gas", 16, [20, 20]), 0.9, 0.0)[1].moments.contact_time is None
-    _, state = begin(settings("spheres", 16), 0.9, 0.0)
-    assert len(state.moments.contact_time) == 16
+def spinning(kernel):
+    return "spin" in KERNELS[kernel]["effects"]
+
+
+# ---------------------------------------------------------------------- code
+
+
+def poisoned(folder, kernel, *effects):
+    """What a kernel is compiled to, in a process of its own, while all absent effects and those
+
+    named cannot be compiled.
+    """
+    environment = os.environ | {"ROUGHGAS_CACHE_DIR": str(folder)}
+    environment["PYTHONPATH"] = os.pathsep.join(path for path in sys.path if path)
+    command = [sys.executable, str(PROGRAM), kernel, *effects]
+    return subprocess.run(command, env=environment, capture_output=True, text=True, timeout=600)
+
+
+EVERY_EFFECT = ["sheared", "walled", "shaken", "heated spheres"]
+"""Kernels in which each effect is there at least once; from the barest one all are absent."""
+
+
+@pytest.mark.parametrize(
+    "kernel",
+    ["smooth", *(pytest.param(kernel, marks=pytest.mark.slow) for kernel in EVERY_EFFECT)],
+)
+def test_the_machine_code_is_the_same_where_absent_effects_could_not_be_compiled(kernel, tmp_path):
+    """Every byte of the instructions and the constants of a scene."""
+    result = poisoned(tmp_path, kernel)
+    assert result.returncode == 0, result.stderr
+    found = json.loads(result.stdout)
+    assert found == checksums(kernel)
+    assert set(KINDS) == {name for one in EVERY_EFFECT for name in KERNELS[one]["effects"]}
+    assert sum(length for name, (length, _) in found.items() if "text" in name) > 10_000
+
+
+def test_an_effect_that_is_there_could_not_be_compiled_so(tmp_path):
+    """What the test above rests on."""
+    for kernel, effect in (("friction", "friction"), ("heated, smooth", "thermostat")):
+        result = poisoned(tmp_path, kernel, effect)
+        assert result.returncode != 0 and "no_such_thing" in result.stderr
 
 
 def test_each_composition_has_machine_code_of_its_own():
     for name in ("gas", "smooth"):
-        scene, state = begin(settings(name, 16, [20, 20]), 0.9, -1.0)
-        run(state, scene, 0)
+        run(*reversed(begin(small(name), 0.9, -1.0)), 0)
     scenes = {str(signature[1]) for signature in record.signatures}
     without, having = (
         [scene for scene in scenes if ("Spin" in scene) == present] for present in (False, True)
@@ -33,11 +87,153 @@ def test_each_composition_has_machine_code_of_its_own():
     assert without and having
 
 
+def test_the_barest_gas_has_the_least_code():
+    lengths = {
+        kernel: sum(len(bits) for name, bits in sections(kernel).items() if "text" in name)
+        for kernel in ("smooth", "gas", "friction", "heated")
+    }
+    assert lengths["smooth"] < lengths["gas"] < lengths["friction"]
+    assert lengths["gas"] < lengths["heated"]
+
+
+@pytest.mark.parametrize("kernel", ["smooth", "gas", "friction", "heated", "heated, smooth"])
+def test_the_multipliers_of_random_numbers_are_where_they_are_drawn(kernel):
+    """SplitMix64's constants, which are in nothing else."""
+    code = b"".join(sections(kernel).values())
+    heated = "thermostat" in KERNELS[kernel]["effects"]
+    for number in (random.STEP, random.FIRST, random.SECOND):
+        assert (np.uint64(number).tobytes() in code) == heated
+
+
+# ---------------------------------------------------------------------- memory and events
+
+
+def arrays(part, name=""):
+    """Name -> array of all that a state holds."""
+    if isinstance(part, np.ndarray):
+        return {name: part}
+    if not hasattr(part, "_fields"):
+        return {}
+    inner = [arrays(getattr(part, key), f"{name}.{key}".strip(".")) for key in part._fields]
+    return {key: array for found in inner for key, array in found.items()}
+
+
+EVERYWHERE = (
+    {"trajectory", "changes", "label", "ledger", "clock", "counts"}
+    | {f"agenda.{name}" for name in ("key", "kind", "filled", "complete_until")}
+    | {f"agenda.slot_{name}" for name in ("time", "partner", "change")}
+    | {"queue.bits", "queue.least", "shortlist.found", "shortlist.paths", "shortlist.when"}
+    | {f"sweep.{name}" for name in ("lines", "marks", "words", "bits", "bit_words")}
+)
+
+
+@pytest.mark.parametrize("kernel", KERNELS)
+def test_a_state_holds_what_its_effects_need(kernel):
+    """Every array by name; nothing else is allocated for a particle or an effect."""
+    scene, state = begin(small(kernel), 0.9, -1.0)
+    there = set(KERNELS[kernel]["effects"])
+    found = arrays(state)
+    needed = {f"moments.{name}" for name in there & MOMENTS}
+    needed |= {"spin"} if "spin" in there else set()
+    needed |= {"agenda.boundary_time", "agenda.boundary_code"} if there & EVENTS else set()
+    needed |= {"phase"} if there & PHASES else set()
+    needed |= {"random"} if "thermostat" in there else set()
+    assert set(found) == EVERYWHERE | needed
+    assert found["ledger"].shape == (2, len(there) + 1, 2)
+    for name in needed & {"moments.contact_time", "moments.thermostat", "agenda.boundary_time"}:
+        assert found[name].shape == (16,)
+    if "spin" in there:
+        assert found["spin"].shape == (16, 2 * len(scene.box) - 3)
+
+
+@pytest.mark.parametrize("kernel", ["gas", "heated", "spheres", "walled"])
+def test_what_an_effect_needs_is_what_it_adds(kernel):
+    """In bytes, beside the barest gas of as many particles: a spin of one component or three, a
+
+    time of each particle, an event of each, a word of random numbers, a phase of each effect.
+    """
+    scene, state = begin(small(kernel), 0.9, -1.0)
+    there, dimension = set(KERNELS[kernel]["effects"]), len(scene.box)
+    bare = small(kernel) | {"effects": {}, "box": SMALL[dimension][1]}
+    size, least = (
+        sum(array.nbytes for array in arrays(one).values())
+        for one in (state, begin(bare, 0.9, -1.0)[1])
+    )
+    added = 16 * 8 * (2 * dimension - 3) * ("spin" in there)
+    added += 16 * 8 * len(there & MOMENTS) + 16 * (8 + 4) * bool(there & EVENTS)
+    added += 8 * ("thermostat" in there) + 8 * len(there) * bool(there & PHASES)
+    assert size - least == added + 2 * 2 * 8 * len(there)
+
+
+@pytest.mark.parametrize("kernel", ["smooth", "gas", "sheared", "friction", "heated"])
+def test_no_events_of_absent_effects_are_foreseen(kernel):
+    """At any of 300 instants; with a thermostat, only what is its own."""
+    scene, state = begin(small(kernel), 0.9, -1.0, 1)
+    kicks = 0
+    for _ in range(300):
+        run(state, scene, 1, collisions=1)
+        kicks += np.count_nonzero(state.agenda.kind == BOUNDARY)
+    assert state.counts[BOUNDARY_HITS] == 0
+    if kernel != "heated":
+        assert kicks == 0
+    else:
+        assert kicks > 0
+        rank = 1  # the second of the effects that are there
+        assert set(state.agenda.boundary_code) == {8 * rank}
+
+
+def test_columns_without_spin():
+    scene, state = begin(small("smooth"), 0.9, -1.0, 1)
+    rows = run(state, scene, 5, collisions=10)
+    assert rows["collisions"][-1] == 50
+    assert not {"ww", "w"} & set(rows)
+    assert not {"ww", "w"} & set(columns(2, False))
+    assert columns(2, True)[-2:] == ["ww", "w"]
+    assert columns(3, True)[-4:] == ["ww", "w_x", "w_y", "w_z"]
+
+
 def test_smooth_disks_move_as_rough_ones_at_beta_minus_1():
     """The same positions and velocities, to the last bit."""
     trajectories = []
     for name in ("gas", "smooth"):
-        scene, state = begin(settings(name, 16, [20, 20]), 0.9, -1.0, 3)
+        scene, state = begin(small(name), 0.9, -1.0, 3)
         run(state, scene, 10, collisions=10)
         trajectories.append(state.trajectory.tobytes())
     assert trajectories[0] == trajectories[1]
+
+
+# ---------------------------------------------------------------------- dataset
+
+OF_SPIN = {
+    *("R", "R_stderr", "R_dof", "R_ci95", "R_ci95_trusted", "R_ratio_of_means", "R_replica"),
+    *("R_series", "R_series_stderr", "E_rot", "E_rot_series", "autocorrelation_time"),
+}
+OF_SHEAR = {"R_unsubtracted", "E_trans_unsubtracted", "E_rot_unsubtracted"}
+OF_CONTACT_TIME = {"contact_time", "contact_time_fraction"}
+WORK = ("floor", "walls", "shaken_walls", "shear", "thermostat")  # what does work has an account
+
+
+@pytest.mark.parametrize("kernel", KERNELS)
+def test_a_point_holds_nothing_of_absent_effects(kernel, tmp_path):
+    """By whatever protocol fits; written and read."""
+    there = set(KERNELS[kernel]["effects"])
+    driven = there & {"floor", "shaken_walls", "shear", "thermostat"}
+    experiment = small(kernel) | {"schedule": STEADY if driven else COOLING}
+    point = run_point(experiment, 0.9, 0.2 if "spin" in there else -1.0, 1)
+    found = set(point.variables)
+    assert found <= set(VARIABLES)
+    assert bool(found & OF_SPIN) == ("spin" in there)
+    assert bool(found & OF_CONTACT_TIME) == ("contact_time" in there)
+    wanted = OF_SHEAR & found
+    assert bool(wanted) == ("shear" in there)
+    assert ("inertia" in point.attributes) == ("spin" in there)
+    sources = [name for name in WORK if name in there]
+    assert point.variables["source"] == [*sources, "contacts"]
+    assert point.variables["energy_imbalance"] < 1e-12
+
+    point.attributes.update(experiment="one", scale="small")
+    write_point(tmp_path / "point.nc", point)
+    data = read_point(tmp_path / "point.nc")
+    assert set(data.variables) == found
+    if "spin" not in there:
+        assert np.all(data.energy_input.sel(motion="rotation") == 0.0)

@@ -20,7 +20,8 @@ from roughgas.kernel.record import Plan, columns, record
 from roughgas.kernel.vectors import dot, subtract
 from roughgas.scene import Scene, build
 
-Probed = namedtuple("Probed", [*Effects._fields, "probe"])
+_NAMES = [*Effects._fields, "probe"]
+Probed = namedtuple("Probed", _NAMES, defaults=[None] * len(_NAMES))
 _record = entry(record.py_func)  # not that of the product, whose cache must not know of probes
 
 
@@ -32,7 +33,7 @@ class Probe(NamedTuple):
 
 
 @jit
-def restitution(probe, index, r, state, i, j, time):
+def restitution(probe, index, r, state, i, j, time, speed):
     if j >= 0:
         scene = probe.scene
         position_i, velocity_i = arrive(state, scene, i, time)

@@ -1,68 +1,38 @@
 """Random scenes."""
 
-import itertools
 import math
 
 import numpy as np
-from brute_force import begin, largest_overlap, scene_of, snapshot
+from brute_force import KERNELS, begin, largest_overlap, scene_of, snapshot
+from brute_force.beside import brute_force_from
 from hypothesis import Phase, given, settings
-from hypothesis import strategies as st
 
 from hard_cases.catalogue import hard_case
+from hard_cases.compositions import (
+    PARAMETERS,
+    covering,
+    every_set,
+    is_legal,
+    parameters,
+    scenes,
+)
+from roughgas.effects import KINDS
+from roughgas.effects import parameters as effect_parameters
+from roughgas.errors import InputError
 from roughgas.initial import lattice
 from roughgas.kernel.record import Plan, columns, record
-from roughgas.kernel.state import BOUNDARY_HITS, COLLISIONS
+from roughgas.kernel.state import BOUNDARY_HITS, COLLISIONS, LAST_FIRST, LAST_SECOND
 from roughgas.protocols.books import books, imbalance
+from roughgas.scene import build, check
 
 ROUNDING = 2.0**-53
-KINDS = {  # effects besides spin and contact time, and whether there is a top
-    "gas": ((), True),
-    "sheared": (("shear",), True),
-    "channel": (("walls",), True),
-    "bed": (("gravity", "floor"), False),
-    "walled bed": (("gravity", "floor", "walls"), False),
-}
-FEW = [("gas", True, False, 2), ("sheared", True, False, 2), ("walled bed", True, True, 2)]
-ALL = [
-    *itertools.product(KINDS, (True, False), (True,), (2,)),
-    *(("bed", True, False, 2), ("walled bed", True, False, 2)),
-    *itertools.product(("gas", "sheared", "walled bed"), (True,), (True,), (3,)),
+BOUNDARIES = {"floor", "walls", "shaken_walls"}
+QUICK = ("gas", "sheared", "walled", "rubbed bed", "heated, smooth", "heated spheres")
+FEW = [
+    (set(KERNELS[name]["effects"]), len(KERNELS[name]["box"]), "sawtooth")  # the floor's, if any
+    for name in QUICK
 ]
-"""Compositions (kind, spin, contact time, dimension): each is a kernel of its own."""
-
-material = {
-    "restitution": st.sampled_from([0.3, 0.7, 0.9, 1.0]),
-    "roughness": st.sampled_from([-1.0, -0.4, 0.5, 1.0]),
-}
-PARAMETERS = {
-    "spin": st.fixed_dictionaries({"inertia": st.floats(0.05, 1.0)}),
-    "gravity": st.fixed_dictionaries({"acceleration": st.floats(0.1, 10.0)}),
-    "floor": st.fixed_dictionaries(
-        {"amplitude": st.floats(0.1, 8.0), "period": st.floats(0.2, 3.0), **material}
-    ),
-    "walls": st.fixed_dictionaries(material),
-    "shear": st.fixed_dictionaries({"velocity": st.floats(0.01, 100.0)}),
-    "contact_time": st.fixed_dictionaries({"duration": st.sampled_from([1e-5, 1e-3, 1e-1])}),
-}
-
-
-@st.composite
-def scenes(draw, compositions):
-    """(settings of an experiment, r, beta) of a legal scene with 2 to 40 particles."""
-    kind, spin, contact_time, dimension = draw(st.sampled_from(compositions))
-    names, closed = KINDS[kind]
-    names = (("spin",) if spin else ()) + names + (("contact_time",) if contact_time else ())
-    box = [draw(st.floats(7.0, 40.0)) for _ in range(dimension)]
-    if not closed:
-        box[-1] = "open"
-    # what is more inelastic than that may collapse, and has a contact time
-    r = draw(st.floats(0.2 if contact_time and kind != "channel" else 0.9, 1.0))
-    effects = {name: draw(PARAMETERS[name]) for name in names}
-    return (
-        {"particles": draw(st.integers(2, 40)), "box": box, "effects": effects},
-        r,
-        draw(st.floats(-1.0, 1.0)),
-    )
+"""Compositions that other tests run, too: each is a kernel of its own."""
 
 
 class Worst:
@@ -70,40 +40,110 @@ class Worst:
 
     def __init__(self):
         self.tried = self.collisions = self.stopped = 0
-        self.imbalance = self.overlap = self.outside = self.broken = 0.0
+        self.imbalance = self.overlap = self.outside = self.broken = self.backwards = 0.0
+        self.momentum = self.gained = self.cone = 0.0
 
     def see(self, experiment, r, beta):
         """Simulate a scene for some hundreds of collisions."""
         scene, state = begin(experiment, r, beta, self.tried)
         _, world = scene_of(experiment, r, beta)
+        self.broken += (state.spin is None) != ("spin" not in experiment["effects"])
         row = np.empty((1, len(columns(len(scene.box), scene.effects.spin is not None))))
-        before = books(state, scene)
+        before, first, last = books(state, scene), snapshot(state, scene), -1.0
         for _ in range(4):
             if record(state, scene, Plan(20.0, 150, 0), row) == 0:
                 self.stopped += 1
                 break
-            after = books(state, scene)
-            booked = after.ledger - before.ledger
-            missing = imbalance(booked, after.energy - before.energy)
-            scale = np.abs(booked).sum() / (np.abs(booked).sum() + np.abs(before.energy).sum())
-            contacts = state.counts[COLLISIONS] + state.counts[BOUNDARY_HITS]
-            self.imbalance = max(self.imbalance, missing * scale / ROUNDING / (10 + contacts))
+            self._see_books(before, books(state, scene), contacts_of(state))
+            shot = snapshot(state, scene)
             self.overlap = max(self.overlap, largest_overlap(state, scene, world))
-            self.outside = max(self.outside, outside(snapshot(state, scene), scene, world))
-            self.broken += not np.all(np.isfinite(state.trajectory))
+            self.outside = max(self.outside, outside(shot, world))
+            if not BOUNDARIES & set(experiment["effects"]):
+                self.momentum = max(self.momentum, gain_of_momentum(first, shot, world))
+            self.backwards += row[0, 0] <= last
+            last = row[0, 0]
+            self.broken += not (np.all(np.isfinite(state.trajectory)) and np.all(np.isfinite(row)))
+            self.broken += state.spin is not None and not np.all(np.isfinite(state.spin))
+        else:
+            self._see_contacts(state, scene, world, row)
         self.tried += 1
-        self.collisions += int(state.counts[COLLISIONS] + state.counts[BOUNDARY_HITS])
+        self.collisions += contacts_of(state)
+
+    def _see_books(self, before, after, contacts):
+        booked = after.ledger - before.ledger
+        missing = imbalance(booked, after.energy - before.energy)
+        exchanged = np.abs(booked).sum()
+        scale = exchanged / (exchanged + np.abs(before.energy).sum())
+        self.imbalance = max(self.imbalance, missing * scale / ROUNDING / (10 + contacts))
+        self.gained = max(self.gained, booked[-1].sum() / (exchanged + np.abs(before.energy).sum()))
+
+    def _see_contacts(self, state, scene, world, row):
+        """Ten more, one by one."""
+        if world.mu is None or world.shear:  # where images slide the same velocity has two values
+            return
+        for _ in range(10):
+            before, changes = snapshot(state, scene), changes_by_label(state)
+            made = state.counts[COLLISIONS]
+            record(state, scene, Plan(20.0, 1, 0), row)
+            if state.counts[COLLISIONS] == made:
+                return
+            pair = state.counts[[LAST_FIRST, LAST_SECOND]]
+            if np.all(changes_by_label(state)[pair] == changes[pair] + 1):  # by this contact alone
+                after = snapshot(state, scene)
+                self.cone = max(self.cone, beyond_cone(before, after, pair, world))
 
 
-def outside(shot, scene, world):
+def contacts_of(state):
+    """Contacts made so far, those with boundaries among them."""
+    return int(state.counts[COLLISIONS] + state.counts[BOUNDARY_HITS])
+
+
+def changes_by_label(state):
+    """How often each particle's velocity has changed, in the order of the start."""
+    return state.changes[np.argsort(state.label)]
+
+
+def gain_of_momentum(before, after, world):
+    """Change of the momentum beside the mean flow, over the sum of all speeds.
+
+    A particle that becomes another image loses U at the height L: v_x - U y/L stays.
+    """
+    drifts = []
+    for shot in (before, after):
+        v = shot.velocity.copy()
+        if world.shear:
+            v[:, 0] -= world.shear * shot.position[:, 1] / world.box[1]
+        drifts.append(v.sum(axis=0))
+    # places are rounded on the scale of the box, and what crosses it on that of U
+    size = np.abs(after.velocity).sum() + world.shear * (1.0 + world.shear * after.time / 7.0)
+    return np.abs(drifts[1] - drifts[0]).max() / size
+
+
+def beyond_cone(before, after, pair, world):
+    """(|J_t| - mu |J_n|)/|J| of the contact of a pair that is over at this instant."""
+    i, j = pair
+    impulse = after.velocity[i] - before.velocity[i]
+    impulse[-1] += world.gravity * (after.time - before.time)
+    x = after.position[i] - after.position[j]
+    lengths = np.array([side or 1e300 for side in world.box])  # of an open axis: no image
+    n = x - lengths * np.round(x / lengths)
+    n /= np.linalg.norm(n)
+    size = np.linalg.norm(impulse)
+    # a velocity is known to a rounding of itself, of which a weak impulse is little
+    speed = np.abs(before.velocity[[i, j]]).max() + world.gravity * (after.time - before.time)
+    normal = impulse @ n
+    along = np.linalg.norm(impulse - normal * n)
+    return max(0.0, along - world.mu * abs(normal)) / (size + 1e-3 * speed)
+
+
+def outside(shot, world):
     """By how much a particle reaches through a wall or the floor, in a."""
     depth = 0.0
     if world.walls is not None:
         x = shot.position[:, 0]
         depth = max(depth, (1.0 - x).max(), (x + 1.0 - world.walls[0]).max())
     if world.floor is not None:
-        amplitude, period = world.floor[:2]
-        surface = amplitude * math.fmod(shot.time, period) / period
+        surface, _ = brute_force_from(world, shot).surface(0.0)
         depth = max(depth, (surface + 1.0 - shot.position[:, -1]).max())
     return depth
 
@@ -118,13 +158,82 @@ def fits(experiment, r, beta):
     return True
 
 
+JUNK = (math.nan, math.inf, -7, "x", None, True, [], {})
+"""What no parameter may be, but None where there is a default."""
+
+
+@hard_case(
+    "any set of effects, legal or not",
+    "a composition that makes no sense is simulated, or one that does is refused, or ends in an "
+    "error that no user understands",
+)
+def test_every_set_of_effects_is_accepted_or_refused_in_one_line(margins):
+    """All sets of effects, in two and three dimensions, closed and open above, and with parameters
+
+    that are none. What is legal is said in compositions.py.
+    """
+    assert set(PARAMETERS) == set(KINDS)
+    tried = wrong = junk = accepted = 0
+
+    @settings(
+        max_examples=margins.size(3, 30), phases=[Phase.generate], derandomize=True, database=None
+    )
+    @given(parameters([*KINDS]), parameters([name for name in KINDS if name != "spin"]))
+    def see(spinning, smooth):
+        nonlocal tried, wrong, junk, accepted
+        for effects in every_set():
+            chosen = {name: (spinning if "spin" in effects else smooth)[name] for name in effects}
+            for dimension, top in ((2, 30), (2, "open"), (3, 30), (3, "open")):
+                legal = is_legal(effects, dimension) and (top == "open") == ("gravity" in effects)
+                wrong += accepts(chosen, dimension, top) != legal
+                tried += 1
+                for changed in spoiled(chosen) if legal else ():
+                    accepted += accepts(changed, dimension, top)
+                    junk += 1
+
+    see()
+    margins.at_most("sets of effects misjudged", wrong, 0, tried, "sets and boxes")
+    margins.at_most("parameters that are none, and accepted", accepted, 0, junk, "of legal sets")
+
+
+def spoiled(chosen):
+    """These settings of effects with each parameter in turn being each thing that it may not be."""
+    for name in chosen:
+        for key, about in effect_parameters(name).items():
+            for value in JUNK:
+                if value is not None or about.default is None:
+                    yield chosen | {name: chosen[name] | {key: value}}
+
+
+def accepts(effects, dimension, top):
+    """Whether a scene is built and checked; errors but an InputError of one line get through."""
+    experiment = {"particles": 5, "box": [30] * (dimension - 1) + [top], "effects": effects}
+    verdicts = {
+        verdict(build, experiment, 0.9, 0.3 if "spin" in effects else -1.0),
+        verdict(check, experiment),
+    }
+    assert len(verdicts) == 1, experiment
+    return verdicts.pop()
+
+
+def verdict(judge, *arguments):
+    """Whether a function takes what it is given, or else refuses it in one line."""
+    try:
+        judge(*arguments)
+    except InputError as error:
+        assert "\n" not in str(error) and ": must " in str(error)
+        return False
+    return True
+
+
 @hard_case(
     "any legal composition of effects, at random",
-    "effects that are right on their own disturb each other: energy comes from nowhere, particles "
-    "leave the box or each other's way, numbers cease to be numbers",
+    "effects that are right on their own disturb each other: energy or momentum comes from "
+    "nowhere, particles leave the box or each other's way, time runs backwards, numbers cease to "
+    "be numbers",
 )
 def test_invariants_of_random_scenes(margins):
-    """Change of the energy = what floor, walls, shear and contacts have booked, to rounding.
+    """Change of the energy = what its sources and the contacts have booked, to rounding.
 
     A particle may be held for ever in the corner of a rough floor that rises and a rough wall:
     then the simulation stops with an error, as it must.
@@ -132,13 +241,13 @@ def test_invariants_of_random_scenes(margins):
     worst = Worst()
 
     @settings(
-        max_examples=margins.size(60, 1500),
+        max_examples=margins.size(90, 1500),
         phases=[Phase.generate],
         derandomize=True,
         database=None,
         deadline=None,
     )
-    @given(scenes(ALL if margins.full else FEW))
+    @given(scenes(FEW + covering(3) if margins.full else FEW))
     def see(scene):
         if fits(*scene):
             worst.see(*scene)
@@ -147,9 +256,14 @@ def test_invariants_of_random_scenes(margins):
     tried = {"tried": worst.tried, "unit": f"scenes, {worst.collisions} contacts"}
     what = "energy missing in the books, in roundings of it a contact"
     margins.at_most(what, worst.imbalance, 10.0, **tried)
+    margins.at_most("energy that contacts give, over all", worst.gained, 1e-12, **tried)
+    what = "momentum gained without boundaries, over the sum of speeds"
+    margins.at_most(what, worst.momentum, 1e-12, **tried)
+    margins.at_most("impulses beyond the cone of friction", worst.cone, 1e-10, **tried)
     margins.at_most("overlap, in a", worst.overlap, 1e-11, **tried)
     margins.at_most("depth in a wall or the floor, in a", worst.outside, 1e-11, **tried)
     margins.at_most("scenes with numbers that are none", worst.broken, 0, **tried)
+    margins.at_most("samples no later than the one before", worst.backwards, 0, **tried)
     stopped = worst.stopped / worst.tried
     margins.at_most("share of scenes that are stopped", stopped, 0.05, **tried)
 

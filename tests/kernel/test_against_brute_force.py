@@ -49,6 +49,12 @@ CASES = {
         0.2,
         13,
     ),
+    "gas between shaken walls": (
+        settings("shaken", 12, [12, 12], shaken_walls={"restitution": 0.9, "amplitude": 0.5}),
+        0.95,
+        0.2,
+        16,
+    ),
     "spheres": (settings("spheres", 8, [7, 7, 7]), 0.98, 0.2, 14),
     "spheres, contact time": (
         settings("spheres", 12, [7, 8, 6.5], contact_time={"duration": 0.1}),

@@ -62,3 +62,53 @@ def test_the_transient_is_that_of_the_rate_equations_within_limits():
         rate = theory.relaxation_rate(r, beta)
         expected = np.clip(8.0 / rate, *cooling.TRANSIENT)
         assert cooling.transient_length(begin(gas, r, beta)[0], 8) == pytest.approx(expected)
+
+
+def heated(kernel, **thermostat):
+    steady = {"kind": "steady", "equilibrate": 40, "measure": 960, "sample_every": 0.5}
+    return settings(kernel, 40, [50, 50], thermostat=thermostat) | {"schedule": steady}
+
+
+def test_a_steady_heated_gas():
+    """R near the rate equations', within 5 % and four standard errors; no period is needed."""
+    experiment = heated("heated", spin_share=0.5)
+    scene, _ = begin(experiment, 0.9, 0.2)
+    measured = steady.run(scene, experiment, 1, Recorder())
+    assert measured["equilibrated"]
+    expected = theory.stationary_ratio(0.9, 0.2, 2, 0.5, 0.5)
+    assert abs(measured["R"] - expected) < 0.05 * expected + 4.0 * measured["R_stderr"]
+    assert measured["source"] == ["thermostat", "contacts"]
+    put_in = measured["energy_input"][0].sum() / 1000.0
+    assert put_in == pytest.approx(1.0, rel=0.1)  # three standard errors of the kicks
+
+
+def test_a_heated_gas_without_spin_has_a_temperature_only():
+    """Stationary where collisions take what the thermostat puts in: nu (1 - r^2) T_tr/2 = power.
+
+    That is the rate equation of T_tr; nu of dilute disks is Enskog's. Within 5 %.
+    """
+    experiment = heated("heated, smooth")
+    scene, _ = begin(experiment, 0.9, -1.0)
+    measured = steady.run(scene, experiment, 1, Recorder())
+    assert not [name for name in measured if name.startswith("R")]
+    assert not {"E_rot", "E_rot_series", "autocorrelation_time"} & set(measured)
+    assert measured["equilibrated"] and measured["E_trans_stderr"] > 0.0
+    T_tr = 2.0 * measured["E_trans"]
+    frequency = theory.collision_frequency(T_tr, 40 * np.pi / 50**2, 2)
+    lost = frequency * (1.0 - 0.9**2) * T_tr / 2.0
+    error = 1.5 * measured["E_trans_stderr"] / measured["E_trans"]  # of T_tr^(3/2)
+    assert abs(lost - 1.0) < 0.05 + 4.0 * error
+    assert error < 0.05
+
+
+def test_a_cooling_gas_without_spin_follows_haff():
+    """In collisions per particle its energy decays exponentially, by (1 - r^2)/2 of it each."""
+    experiment = COOLING | settings("smooth", 40, [50, 50])
+    scene, _ = begin(experiment, 0.95, -1.0)
+    assert cooling.transient_length(scene, 8) == cooling.TRANSIENT[0]
+    measured = cooling.run(scene, experiment, 1, Recorder())
+    assert not [name for name in measured if name.startswith("R")] and "E_rot" not in measured
+    assert measured["measured_from"] == 10.0 and measured["equilibrated"]
+    E, n = measured["E_trans_series"], measured["collisions_per_particle"]
+    rate = -np.log(E[-1] / E[0]) / (n[-1] - n[0])
+    assert rate == pytest.approx((1.0 - 0.95**2) / 2.0, rel=0.05)

@@ -1,0 +1,36 @@
+"""Textbook roots, and Coulomb's friction."""
+
+import math
+
+import numpy as np
+
+
+def meeting_times(x, v):
+    """First root of |x + v t| = 2 for each row, if the pair approaches; overlapping is now."""
+    b, vv, c = (x * v).sum(axis=1), (v * v).sum(axis=1), (x * x).sum(axis=1) - 4.0
+    discriminant = b * b - vv * c
+    with np.errstate(invalid="ignore", divide="ignore"):
+        root = np.maximum(0.0, (-b - np.sqrt(discriminant)) / vv)
+    return np.where((b < 0.0) & (discriminant >= 0.0), root, np.inf)
+
+
+def falling_time(gap, speed, gravity):
+    """First time at which gap + speed t - gravity t^2/2 vanishes, from above."""
+    if gap <= 1e-12 and speed < 0.0:
+        return 0.0
+    return (speed + math.sqrt(speed * speed + 2.0 * gravity * max(gap, 0.0))) / gravity
+
+
+def cut_by_friction(mu, push, along):
+    """The tangential impulse that would stick, cut to mu times the normal one if that is less."""
+    if mu is None:
+        return along
+    most, size = mu * math.sqrt(push @ push), math.sqrt(along @ along)
+    return along * (most / size) if size > most else along
+
+
+def in_space(vector):
+    """A vector in the plane or in space as one in space."""
+    full = np.zeros(3)
+    full[: len(vector)] = vector
+    return full

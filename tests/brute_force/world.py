@@ -1,0 +1,42 @@
+"""What the brute force simulates, and what it tells."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from brute_force.kicks import Drive
+
+
+class World(NamedTuple):
+    """What is simulated; None and 0 stand for what is absent."""
+
+    box: tuple[float | None, ...]  # periods; None is open, or closed by walls
+    r: float
+    beta: float
+    q: float | None  # None: particles do not spin
+    mu: float | None = None  # coefficient of friction; None: contacts never slide
+    thermostat: tuple[float, float, float] | None = None  # power, share of spin, interval
+    gravity: float = 0.0  # along the last axis
+    floor: tuple[float, float, float, float] | None = None  # amplitude, period, r, beta
+    walls: tuple[float, float, float] | None = None  # width, r, beta; along the first axis
+    shaken: tuple[float, float] | None = None  # amplitude, period of these walls' displacement
+    shear: float = 0.0  # U: velocity, along the first axis, of the image above along the second
+    contact_time: float = 0.0
+    wave: str = "sawtooth"  # of the floor
+
+
+class Snapshot(NamedTuple):
+    """All particles at one instant."""
+
+    time: float  # absolute
+    position: np.ndarray  # (N, D), in any image
+    velocity: np.ndarray
+    spin: np.ndarray | None  # (N, 2D - 3)
+    drive: Drive | None = None
+
+
+class Event(NamedTuple):
+    time: float
+    kind: str  # pair, floor, left, right, kick
+    i: int
+    j: int  # -1: none

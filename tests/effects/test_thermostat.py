@@ -1,0 +1,154 @@
+"""Random kicks that heat a gas."""
+
+import numpy as np
+import pytest
+from brute_force import Beside, begin, run, scene_of, settings, snapshot
+
+from roughgas import theory
+from roughgas.kernel.random import STEP
+from roughgas.kernel.state import BASE, COLLISIONS, NOW
+from roughgas.measure.energies import energies, ratio
+from roughgas.measure.errors import blocking_stderr
+from roughgas.protocols.books import books, imbalance
+
+INTERVAL = 0.5
+DRAWS = {"heated": 5, "heated, smooth": 3, "heated spheres": 10}
+"""Random numbers of a kick: a partner, a velocity, and two spins."""
+
+
+def heated(kernel="heated", particles=40, box=(25, 25), **thermostat):
+    return settings(kernel, particles, list(box), thermostat=thermostat)
+
+
+CASES = {
+    # experiment, r, beta, seed
+    "both": (heated(particles=8, box=(12, 12)), 0.9, 0.4, 1),
+    "translation": (heated(particles=8, box=(12, 12), spin_share=0.0), 0.98, -0.5, 2),
+    "spins": (heated(particles=8, box=(12, 12), spin_share=1.0, interval=0.1), 0.9, 1.0, 3),
+    "hard kicks": (heated(particles=6, box=(9, 11), power=1e4, interval=2.0), 0.8, 0.2, 4),
+    "a pair": (heated(particles=2, box=(9, 9)), 0.9, 0.2, 5),
+    "no spin": (heated("heated, smooth", 8, (12, 12)), 0.95, -1.0, 6),
+    "spheres": (heated("heated spheres", 8, (7, 7, 7), spin_share=0.3), 0.9, 0.5, 7),
+}
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_the_kernel_makes_the_same_kicks_and_collisions_as_brute_force(case):
+    """The same 200 pairs in the same order, and the same random numbers between them."""
+    *point, seed = CASES[case]
+    scene, world = scene_of(*point)
+    _, state = begin(*point, seed)
+    beside = Beside(state, scene, world)
+    # chaos is the faster the fewer particles there are
+    beside.assert_same(segments=20, collisions=min(10, 2 * len(state.changes) - 2))
+    assert beside.events["kick"] > 10
+
+
+@pytest.mark.parametrize("kernel", DRAWS)
+def test_a_particle_starts_one_kick_an_interval(kernel):
+    box = (12, 12, 12) if "spheres" in kernel else (25, 25)
+    scene, state = begin(heated(kernel, 40, box, interval=INTERVAL), 0.9, -1.0, 1)
+    first, word = state.moments.thermostat.copy(), int(state.random[0])
+    assert np.sort(first) == pytest.approx(INTERVAL * np.arange(1, 41) / 40)
+    assert not np.all(np.diff(first) > 0.0)  # in a random order
+    run(state, scene, 30, interval=INTERVAL)
+    due = state.clock[BASE] + state.moments.thermostat
+    assert due == pytest.approx(first + 30 * INTERVAL, abs=1e-11)
+    draws = (int(state.random[0]) - word) * pow(int(STEP), -1, 2**64) % 2**64
+    assert draws == 30 * 40 * DRAWS[kernel]
+
+
+@pytest.mark.parametrize("kernel", DRAWS)
+def test_momentum_is_kept_and_the_books_explain_the_energy(kernel):
+    box = (12, 12, 12) if "spheres" in kernel else (25, 25)
+    scene, state = begin(heated(kernel, 40, box), 0.9, -1.0 if "smooth" in kernel else 0.3, 2)
+    before = books(state, scene)
+    run(state, scene, 100, interval=1.0)
+    after = books(state, scene)
+    booked = after.ledger - before.ledger
+    assert imbalance(booked, after.energy - before.energy) < 1e-13
+    drive = sum(effect is not None for effect in scene.effects[:5])  # its row: after the spin's
+    assert booked[drive].sum() > 0.0 > booked[-1].sum()
+    assert np.abs(snapshot(state, scene).velocity.sum(axis=0)).max() < 1e-11
+
+
+@pytest.mark.parametrize("share", [0.0, 0.3, 1.0])
+@pytest.mark.parametrize("interval", [0.1, 2.0])
+def test_the_power_and_its_share_are_what_was_asked_for(share, interval):
+    """Within 4 sigma (chance of failure 1e-4 each): kicks are independent of what they are given
+
+    to, so that the energy of one scatters by <(v.k)^2> = 2 T_tr <k^2>/D in translation, and
+    likewise by q^2 <w^2> <k_w^2> for each of two spins, besides by that of k^2 itself.
+    """
+    number, time, power, q = 40, 500.0, 2.0, 0.5
+    scene, state = begin(heated(power=power, spin_share=share, interval=interval), 0.9, 0.2, 3)
+    run(state, scene, 1, interval=20.0)
+    before = books(state, scene)
+    E = energies(run(state, scene, 1000, interval=time / 1000), number, q)
+    put_in = (books(state, scene).ledger - before.ledger)[1]
+    kicks = number * time / interval
+    T_tr, T_rot = 2.0 * E.translational.mean(), 2.0 * E.rotational.mean()
+    k, turn = scene.effects.thermostat[:2]
+    # the variance of x^2 is 4 k^4/45 where x is uniform in [-k, k]; of energies: 2 x^2/2, twice
+    # q x^2/2
+    scatter = [
+        2 * (2 * T_tr * k**2 / 3 + 4 * k**4 / 45),
+        2 * (q * T_rot * turn**2 / 3 + (q / 2) ** 2 * 4 * turn**4 / 45),
+    ]
+    expected = number * time * power * np.array([1.0 - share, share])
+    assert np.all(np.abs(put_in - expected) <= 4.0 * np.sqrt(kicks * np.array(scatter)))
+    assert np.all(np.sqrt(kicks * np.array(scatter)) < 0.05 * number * time * power)
+
+
+@pytest.mark.parametrize("kernel", ["heated", "heated spheres"])
+def test_the_same_seed_gives_the_same_kicks(kernel):
+    box = (12, 12, 12) if "spheres" in kernel else (25, 25)
+    ends = []
+    for seed in (4, 4, 5):
+        scene, state = begin(heated(kernel, 40, box), 0.9, 0.3, seed)
+        run(state, scene, 5, interval=2.0)
+        ends.append((state.trajectory.tobytes(), state.spin.tobytes(), int(state.random[0])))
+    assert ends[0] == ends[1] != ends[2]
+
+
+@pytest.mark.slow
+def test_kicks_do_not_depend_on_how_particles_are_found():
+    """1000 particles are sorted into cells, and anew now and then: momentum, books and kicks."""
+    scene, state = begin(heated(particles=1000, box=(150, 150), interval=INTERVAL), 0.9, 0.2, 5)
+    assert state.cells is not None
+    before, due = books(state, scene), np.sort(state.moments.thermostat)
+    run(state, scene, 20, interval=INTERVAL)
+    after = books(state, scene)
+    assert imbalance(after.ledger - before.ledger, after.energy - before.energy) < 1e-12
+    assert np.abs(snapshot(state, scene).velocity.sum(axis=0)).max() < 1e-10
+    assert np.sort(state.clock[BASE] + state.moments.thermostat) == pytest.approx(
+        due + 20 * INTERVAL, abs=1e-11
+    )
+    assert state.counts[COLLISIONS] > 1000 and state.clock[BASE] + state.clock[NOW] == 10.0
+
+
+@pytest.mark.parametrize("share", [0.0, 0.5, 1.0])
+@pytest.mark.parametrize(("r", "beta"), [(0.95, 0.2), (0.99, -0.5)])
+def test_a_dilute_heated_gas_settles_where_the_rate_equations_say(share, r, beta):
+    """R within 2 % of theory's and 4 standard errors of a run of 2000 T, some 900 collisions per
+    particle. At share 0 that is Eq. (lun)."""
+    scene, state = begin(heated(particles=160, box=(100, 100), spin_share=share), r, beta, 1)
+    run(state, scene, 1, interval=200.0)
+    R = ratio(energies(run(state, scene, 4000, interval=INTERVAL), 160, 0.5))
+    error = blocking_stderr(R)
+    expected = theory.stationary_ratio(r, beta, 2, 0.5, share)
+    assert error < 0.005
+    assert abs(R.mean() - expected) < 4.0 * error + 0.02 * expected
+    if share == 0.0:
+        assert expected == pytest.approx(theory.lun_ratio(beta, 0.5))
+
+
+def test_an_elastic_gas_heats_up_by_the_power():
+    """Nothing is taken out: what it gains is what the kicks have booked, to rounding."""
+    scene, state = begin(heated("heated, smooth"), 1.0, -1.0, 6)
+    before = books(state, scene)
+    run(state, scene, 1, interval=50.0)
+    after = books(state, scene)
+    booked = (after.ledger - before.ledger)[0, 0]
+    assert (after.energy - before.energy)[0] == pytest.approx(booked, rel=1e-12)
+    assert booked > 1000.0

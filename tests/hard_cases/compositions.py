@@ -1,0 +1,111 @@
+"""What scenes may be composed of, said once more and apart from the package: an effect is a line in
+
+PARAMETERS, and one in NEEDS or EXCLUDES if it does not go with everything.
+"""
+
+import itertools
+
+from hypothesis import strategies as st
+
+from roughgas.effects import KINDS
+from roughgas.effects import parameters as parameters_of
+
+WAVES = parameters_of("floor")["wave"].words
+MATERIAL = {
+    "restitution": st.sampled_from([0.3, 0.7, 0.9, 1.0]),
+    "roughness": st.sampled_from([-1.0, -0.4, 0.5, 1.0]),
+}
+PARAMETERS = {
+    "spin": {"inertia": st.floats(0.05, 1.0)},
+    "gravity": {"acceleration": st.floats(0.1, 10.0)},
+    "floor": {
+        "amplitude": st.floats(0.1, 8.0),
+        "period": st.floats(0.2, 3.0),
+        "wave": st.sampled_from(WAVES),
+        **MATERIAL,
+    },
+    "walls": MATERIAL,
+    "shaken_walls": {"amplitude": st.floats(0.0, 5.0), "period": st.floats(0.2, 5.0), **MATERIAL},
+    "shear": {"velocity": st.floats(0.01, 100.0)},
+    "thermostat": {
+        "power": st.floats(0.1, 10.0),
+        "spin_share": st.sampled_from([0.0, 0.3, 1.0]),
+        "interval": st.floats(0.02, 5.0),
+    },
+    "friction": {"mu": st.sampled_from([0.0, 0.05, 0.3, 1.0, 20.0])},
+    "contact_time": {"duration": st.sampled_from([1e-5, 1e-3, 1e-1])},
+}
+NEEDS = [("gravity", "floor"), ("floor", "gravity"), ("friction", "spin")]
+EXCLUDES = [("walls", "shear"), ("shaken_walls", "shear"), ("walls", "shaken_walls")]
+# A bed in space that is sheared between its sides heats up without end: flights grow long while
+# images slide past by thousands, and a scene may take minutes
+ENDLESS = {"gravity", "shear"}
+WITHOUT_SPIN = {"roughness": -1.0, "spin_share": 0.0}  # what parameters are where nothing spins
+
+
+def is_legal(effects, dimension):
+    """Whether these effects go together in a box that is open above where there is gravity."""
+    return (
+        all(needed in effects for one, needed in NEEDS if one in effects)
+        and not any(effects >= {*pair} for pair in EXCLUDES)
+        and not (dimension == 2 and effects >= {"gravity", "shear"})  # sheared between its sides
+    )
+
+
+def every_set():
+    """Every set of effects, legal or not."""
+    for chosen in itertools.product((False, True), repeat=len(KINDS)):
+        yield {name for name, there in zip(KINDS, chosen, strict=True) if there}
+
+
+def covering(strength):
+    """Legal compositions (effects, dimension, wave) in which all choices occur together that can:
+
+    for any so many effects (the dimension counts as one), every legal pattern of there and not
+    there. Wave forms of the floor, each with code of its own, take turns.
+    """
+    legal = [
+        (one, D) for one in every_set() for D in (2, 3) if is_legal(one, D) and not one >= ENDLESS
+    ]
+    found, missing = [], set().union(*(_patterns(*one, strength) for one in legal))
+    while missing:
+        best = max(legal, key=lambda one: len(missing & _patterns(*one, strength)))
+        missing -= _patterns(*best, strength)
+        found.append((*best, WAVES[len(found) % len(WAVES)]))
+    return found
+
+
+def _patterns(effects, dimension, strength):
+    choices = [*((name, name in effects) for name in KINDS), ("dimension", dimension)]
+    return set(itertools.combinations(choices, strength))
+
+
+@st.composite
+def scenes(draw, compositions):
+    """(settings of an experiment, r, beta) of a legal scene with 2 to 40 particles."""
+    names, dimension, wave = draw(st.sampled_from(compositions))
+    effects = draw(parameters(names))
+    if "floor" in names:
+        effects["floor"]["wave"] = wave
+    box = [draw(st.floats(7.0, 40.0)) for _ in range(dimension)]
+    if "gravity" in names:
+        box[-1] = "open"
+    # what is more inelastic than that may collapse, and has a contact time
+    narrow = names & {"walls", "shaken_walls"} and "gravity" not in names
+    r = draw(st.floats(0.2 if "contact_time" in names and not narrow else 0.9, 1.0))
+    return (
+        {"particles": draw(st.integers(2, 40)), "box": box, "effects": effects},
+        r,
+        draw(st.floats(-1.0, 1.0)) if "spin" in names else -1.0,
+    )
+
+
+@st.composite
+def parameters(draw, names):
+    """Legal parameters of these effects."""
+    fixed = {} if "spin" in names else WITHOUT_SPIN
+    return {
+        name: {key: fixed.get(key, draw(kind)) for key, kind in PARAMETERS[name].items()}
+        for name in KINDS
+        if name in names
+    }
