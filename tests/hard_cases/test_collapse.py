@@ -182,13 +182,16 @@ def test_spin_draws_three_particles_into_a_collapse(margins):
     margins.at_least("share that is noticed as a collapse", stopped, 1.0, **tried)
     contacts = max(contacts for _, contacts in spinning)
     margins.at_most("contacts made until it is noticed", contacts, 5000, **tried)
+    kept = [squeezed(angle, -30.0, contact_time={"duration": 1e-4}) for angle in angles]
+    margins.at_most("contacts made with the model", max(c for _, c in kept), 20, **tried)
     margins.at_most("share without spin", np.mean([c for c, _ in still]), 0.0, **tried)
     margins.at_most("their contacts", max(contacts for _, contacts in still), 20, **tried)
 
 
-def squeezed(angle, spin):
+def squeezed(angle, spin, **model):
     """(whether they collapse, contacts) of three disks that meet at an angle."""
-    scene, _ = begin(settings("gas", 3, [60, 60]), 0.6, -0.95)
+    gas = settings("gas", 3, [60, 60])
+    scene, _ = begin(gas | {"effects": gas["effects"] | model}, 0.6, -0.95)
     across, along = 2.001 * np.sin(angle / 2), 2.001 * np.cos(angle / 2)
     position = 30.0 + np.array([[-across, -along], [0.0, 0.0], [across, -along]])
     velocity = np.array([[0.1, 0.0], [0.0, -0.2], [-0.1, 0.0]])
