@@ -36,8 +36,8 @@ def settings_of_kernels(wildcards, output):
 
 
 rule compile_kernel:
-    # Before the fan-out, and one at a time (see the profile): two compilers upset numba's cache. One
-    # job for all variants, since most of them run the same machine code.
+    # Before the fan-out, and few at a time (see the profile). One job for all variants, since most
+    # of them run the same machine code.
     # Its output also stands for all sources that shape a point. They are inputs here, and not once
     # more of each of a thousand points: at every step the scheduler looks at every input of every
     # job, which took it longer than the points take. So it holds their checksums: were it the same

@@ -36,3 +36,12 @@ def test_a_small_deviation_fades_at_this_rate(r, beta, dimension, mu):
 def test_decoupled_spin_does_not_relax():
     assert theory.friction_relaxation_rate(0.9, 0.0, 0.0) == 0.0
     assert theory.friction_relaxation_rate(0.9, -1.0, 0.5) == 0.0
+
+
+@pytest.mark.parametrize(("r", "beta", "dimension"), GASES)
+def test_spins_that_dominate_are_kept_up_to_the_critical_friction(r, beta, dimension):
+    """d ln theta/dn at theta = 1e8, a little below mu_c and a little above."""
+    critical = theory.critical_friction(r)
+    for mu, kept in ((0.99 * critical, True), (1.01 * critical, False)):
+        T_tr, T_rot = theory.friction_changes(1.0, 1e8, r, beta, mu, dimension)
+        assert (T_rot / 1e8 > T_tr) == kept

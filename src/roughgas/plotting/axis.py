@@ -32,9 +32,9 @@ class Axis(NamedTuple):
             axes.set_xscale("log")
         axes.set_xlim(*self.limits)
         if not self.logarithmic:
-            span = self.drawn[1] - self.drawn[0]
-            axes.xaxis.set_major_locator(MultipleLocator(0.25 * span))
-            axes.xaxis.set_minor_locator(MultipleLocator(0.05 * span))
+            step = 0.5 if self.limits[1] - self.limits[0] > 2 else 0.2
+            axes.xaxis.set_major_locator(MultipleLocator(step))
+            axes.xaxis.set_minor_locator(MultipleLocator(step / 5))
 
     def aside(self, at: np.ndarray, steps: float) -> np.ndarray:
         """Places so many steps beside others."""
@@ -48,6 +48,9 @@ BETA = Axis("beta", r"tangential restitution $\beta$", (-1.06, 1.06), (-1, 1))
 FRICTION = Axis("mu", r"coefficient of friction $\mu$", (0.007, 14), (0.007, 14), True)
 INERTIA = Axis("inertia", r"moment of inertia $q = I/(ma^2)$", (0.008, 1.25), (0.008, 1), True)
 SPIN_SHARE = Axis(
-    "spin_share", "share $s$ of the drive's power\nthat goes into rotation", (-0.03, 1.03), (0, 1)
+    "spin_share",
+    "share $s$ of the drive's power\nthat goes into rotation",
+    (-0.15, 1.03),
+    (-0.12, 1),
 )
 ROUGHNESS = Axis("roughness", r"roughness of the boundary", (-1.06, 1.06), (-1, 1))

@@ -1,15 +1,17 @@
 """Fig. 4: Coulomb friction. R against its coefficient, for several beta_0, forced and cooling."""
 
+import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from roughgas import theory
 from roughgas.plotting import panel
 from roughgas.plotting.axis import FRICTION
 from roughgas.plotting.style import LOOKS
 
 RESTITUTION = 0.9
-NAMES = {"vibrated_friction": "Vibrated bed", "cooling_friction": "Cooling gas"}
-EXPERIMENTS = tuple(NAMES)
+EXPERIMENTS = ("vibrated_friction", "cooling_friction")
 
 
 def draw(bed: xr.Dataset, cooling: xr.Dataset) -> Figure:
@@ -18,21 +20,34 @@ def draw(bed: xr.Dataset, cooling: xr.Dataset) -> Figure:
     mu = 0, where R = 0, has no place on a logarithmic axis; it is in the data.
     """
     figure, panels = panel.ratio_panels([FRICTION] * 2, width=panel.TWO_WIDE)
-    every, places = [], dict(zip(NAMES.values(), ("upper left", "upper right"), strict=True))
-    for data, name, (main, residual, axis) in zip(
-        (bed, cooling), NAMES.values(), panels, strict=True
-    ):
-        data = data.sel(mu=data.mu > 0.0)
-        drawn = [
-            panel.series(data, rf"$\beta_0 = {beta:g}$", look, r=RESTITUTION, beta=beta)
-            for beta, look in zip(data.beta.values, LOOKS, strict=False)
-        ]
-        panel.draw_series(main, residual, drawn, axis)
-        for beta, look in zip(data.beta.values, LOOKS, strict=False):
-            panel.draw_theory(main, data, look, axis, r=RESTITUTION, beta=beta)
-        panel.legend(main, drawn, "", title="lines: rate equations", loc=places[name])
-        panel.caption(main, [data], rf"{name}, $r = {RESTITUTION:g}$")
-        every += drawn
-    for _, residual, _ in panels:
-        panel.frame_residuals(residual, every, every)
+    bed, cooling = (data.sel(mu=data.mu > 0.0) for data in (bed, cooling))
+    _shade_where_two_are_stable(panels[1].main, cooling)
+    every = [_draw(one, data) for one, data in zip(panels, (bed, cooling), strict=True)]
+    beyond = theory.critical_friction(RESTITUTION)
+    alone = [one._replace(steady=one.steady & (one.at > beyond)) for one in every[1]]
+    for one, drawn in zip(panels, every, strict=True):
+        panel.frame_residuals(one.residual, drawn, [*every[0], *alone])
+    for one, drawn, place in zip(panels, every, ("upper left", "upper right"), strict=True):
+        panel.legend(one.main, drawn, "", title="lines: rate equations", loc=place)
+    panel.caption(panels[0].main, [bed], rf"Vibrated bed, $r = {RESTITUTION:g}$")
+    panel.caption(panels[1].main, [cooling], rf"Cooling gas, $r = {RESTITUTION:g}$")
     return figure
+
+
+def _draw(one: panel.Panel, data: xr.Dataset) -> list[panel.Series]:
+    drawn = []
+    for beta, look in zip(data.beta.values, LOOKS, strict=False):
+        place = {"r": RESTITUTION, "beta": beta}
+        panel.draw_theory(one.main, data, look, one.axis, **place)
+        drawn.append(panel.series(data, rf"$\beta_0 = {beta:g}$", look, **place))
+    panel.draw_series(one.main, one.residual, drawn, one.axis)
+    return drawn
+
+
+def _shade_where_two_are_stable(main: Axes, cooling: xr.Dataset) -> None:
+    """From where theory has a stationary R < 1 up to where R = 1 ceases to be stable."""
+    expected = panel.prediction(cooling, r=RESTITUTION, beta=0.0, mu=FRICTION.grid)
+    first = FRICTION.grid[np.argmax(expected < 1.0)]
+    last = theory.critical_friction(RESTITUTION)
+    label = r"two stable states, $R = 1$ the other"
+    main.axvspan(first, last, color="0.9", linewidth=0, zorder=0, label=label)

@@ -34,6 +34,7 @@ from roughgas.theory.frequencies import (
     number_density,
 )
 from roughgas.theory.friction import (
+    critical_friction,
     friction_changes,
     friction_ratio,
     friction_relaxation_rate,
@@ -62,6 +63,7 @@ __all__ = [
     "contact_value",
     "cooling_K",
     "cooling_ratio",
+    "critical_friction",
     "decay_rate",
     "drive_changes",
     "friction_changes",

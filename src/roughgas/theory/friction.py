@@ -23,6 +23,7 @@ from roughgas.theory.arguments import (
     Material,
     check_between,
     check_not_negative,
+    check_restitution,
     check_share,
     material,
 )
@@ -99,6 +100,16 @@ def friction_ratio(r, beta, mu, dimension=2, inertia=None, spin_share=None) -> n
         grows = growth(middle) > 0
         low, high = np.where(grows, middle, low), np.where(grows, high, middle)
     return np.where((mu == 0) | (gas.beta == -1), decoupled, high)[()]
+
+
+def critical_friction(r) -> np.ndarray:
+    """mu_c = sqrt((1-r)/(1+r)), up to which a cooling gas whose spins dominate keeps them: R = 1.
+
+    What sliding contacts then add to translation makes up for what inelastic ones take, in 2D and
+    3D, whatever beta and q. Raises InputError.
+    """
+    r = check_restitution(r)
+    return np.sqrt((1 - r) / (1 + r))[()]
 
 
 def friction_relaxation_rate(r, beta, mu, dimension=2, inertia=None) -> np.ndarray:
