@@ -56,6 +56,8 @@ CASES = {
         16,
     ),
     "spheres": (settings("spheres", 8, [7, 7, 7]), 0.98, 0.2, 14),
+    "sheared spheres": (settings("sheared", 8, [8, 7, 9], spin={"inertia": 0.4}), 0.9, 0.2, 17),
+    "bed of spheres": (settings("bed", 16, [7, 8, "open"], spin={"inertia": 0.4}), 0.8, 0.2, 18),
     "spheres, contact time": (
         settings("spheres", 12, [7, 8, 6.5], contact_time={"duration": 0.1}),
         0.9,

@@ -72,12 +72,8 @@ def rate_of(scene: Scene) -> float:
     q = inertia(scene.effects)
     if q is None:
         return math.inf
-    r, beta, dimension, friction = (
-        scene.restitution,
-        scene.roughness,
-        len(scene.box),
-        scene.effects.friction,
-    )
+    r, beta, dimension = scene.restitution, scene.roughness, len(scene.box)
+    friction = scene.effects.friction
     if friction is None:
         return float(relaxation_rate(r, beta, dimension, q))
     return float(friction_relaxation_rate(r, beta, friction.mu, dimension, q))
