@@ -12,10 +12,7 @@ from roughgas.errors import InputError
 
 CONFIG = Path(__file__).parent.parent / "config.yaml"
 NAN, INF = float("nan"), float("inf")
-EXPERIMENTS = (
-    "cooling, sheared, vibrated, "
-    "vibrated_particle_walls, vibrated_rough_walls, vibrated_smooth_walls"
-)
+EXPERIMENTS = ", ".join(sorted(read_yaml(CONFIG)["experiments"]))
 
 
 @pytest.fixture(scope="module")
@@ -229,7 +226,7 @@ MISTAKES = [
     (
         "scales.small.foo",
         {},
-        "key of scales.small = 'foo': must be one of accuracy, cooling, sheared",
+        "key of scales.small = 'foo': must be one of accuracy, cooling, cooling_fric",
     ),
     ("scales.small.showcase.frames", 0, "scales.small.showcase.frames = 0: must be a whole number"),
     ("showcase.beta", "2", "showcase.beta = '2': must lie in [-1, 1]"),

@@ -30,8 +30,9 @@ CASES = {
 def test_no_overlap_no_momentum_no_spin(case):
     experiment = CASES[case]
     for seed in range(3):
-        scene, state = begin(experiment, 0.9, 0.0, seed)
-        _, world = scene_of(experiment, 0.9, 0.0)
+        beta = 0.0 if "spin" in experiment["effects"] else -1.0
+        scene, state = begin(experiment, 0.9, beta, seed)
+        _, world = scene_of(experiment, 0.9, beta)
         number, dimension = experiment["particles"], len(scene.box)
         position, velocity = np.split(state.trajectory[:, :-1], 2, axis=1)
         assert position.shape == (number, dimension)

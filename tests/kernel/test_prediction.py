@@ -84,7 +84,8 @@ def test_any_number_of_particles(number):
     _, state = begin(experiment, 1.0, 0.5, number)
     state.trajectory[:, 2:4] *= 50.0  # too fast to meet only one image within the horizon
     state.trajectory[0, 2:4] *= 40.0
-    found, expected = first_contact(scene, world, *snapshot(state, scene)[1:])
+    shot = snapshot(state, scene)
+    found, expected = first_contact(scene, world, shot.position, shot.velocity, shot.spin)
     assert found[0] == expected[0]
     assert found[1] == pytest.approx(expected[1], rel=1e-9)
 
