@@ -34,11 +34,10 @@ class Row(NamedTuple):
     effects: dict  # as in config.yaml
     box: list = SQUARE
     r: float = 1.0  # elastic, where nothing drives the gas or takes energy away
-    beta: float = 1.0  # of particles that spin
+    beta: float = 1.0  # of particles that spin; the others are smooth
 
 
 SMOOTH = {"restitution": 1, "roughness": -1}
-SHAKEN = SMOOTH | {"amplitude": 1, "period": 1}
 OPEN = [50, "open"]
 BED = {
     "gravity": {"acceleration": 1},
@@ -52,7 +51,6 @@ ROWS = (  # the barest gas comes first
     Row("+ shear", {"shear": {"velocity": 2}}, r=0.9),
     Row("+ gravity and floor", BED, OPEN, 0.9),
     Row("+ gravity and floor, sine", BED | {"floor": BED["floor"] | {"wave": "sine"}}, OPEN, 0.9),
-    Row("+ shaken walls", {"shaken_walls": SHAKEN}, r=0.9),
     Row("+ thermostat", {"thermostat": {"power": 0.1, "interval": 1, "spin_share": 0}}, r=0.9),
     Row("+ spin, friction", {"spin": {"inertia": 0.5}, "friction": {"mu": 0.5}}),
     Row("+ third dimension", {}, box=CUBE),
@@ -96,7 +94,7 @@ def measure(rows=ROWS, runs: int = RUNS) -> list[Cost]:
 def prepare(row: Row):
     """(scene, state) of a row, in the steady state."""
     experiment = {"particles": PARTICLES, "box": row.box, "effects": row.effects}
-    scene = build(experiment, row.r, row.beta)
+    scene = build(experiment, row.r, row.beta if "spin" in row.effects else -1.0)
     state = initial_state(scene, experiment, np.random.default_rng(1))
     advance(scene, state, time=SETTLING)
     return scene, state

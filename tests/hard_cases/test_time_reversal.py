@@ -44,7 +44,7 @@ class Gas(NamedTuple):
 
     def flown(self, **stop):
         """(the gas later on, collisions per particle on the way)."""
-        state = new_state(self.scene, *self.shot[1:])
+        state = new_state(self.scene, *self.shot[1:4])
         run(state, self.scene, 1, **stop)
         later = self._replace(shot=snapshot(state, self.scene))
         return later, 2.0 * state.counts[COLLISIONS] / self.number
@@ -56,12 +56,12 @@ class Gas(NamedTuple):
 
     def moved(self, step):
         """The gas with its positions, velocities and spins off by a step."""
-        fields = zip(self.shot[1:], step, strict=True)
+        fields = zip(self.shot[1:4], step, strict=True)
         return self._replace(shot=type(self.shot)(self.shot.time, *(x + d for x, d in fields)))
 
     def step_to(self, other):
         """What has to be added to positions, velocities and spins."""
-        x, v, w = (b - a for a, b in zip(self.shot[1:], other.shot[1:], strict=True))
+        x, v, w = (b - a for a, b in zip(self.shot[1:4], other.shot[1:4], strict=True))
         box = np.array(self.scene.box)
         return x - box * np.round(x / box), v, w
 
@@ -84,7 +84,7 @@ def equilibrium(experiment, beta, seed):
 def lyapunov_exponent(gas, steps, rng):
     """Per collision per particle, from a second path set back to SEPARATION after each."""
     interval = gas.flown(collisions=gas.number)[0].shot.time / 2.0
-    step = [rng.standard_normal(x.shape) for x in gas.shot[1:]]
+    step = [rng.standard_normal(x.shape) for x in gas.shot[1:4]]
     growth = collisions = 0.0
     for k in range(steps):
         other = gas.moved([SEPARATION / length(step) * d for d in step])
