@@ -39,20 +39,23 @@ class Row(NamedTuple):
 
 SMOOTH = {"restitution": 1, "roughness": -1}
 OPEN = [50, "open"]
+SPIN = {"spin": {"inertia": 0.5}}
+HEAT = {"power": 0.1, "interval": 1, "spin_share": 0}
 BED = {
     "gravity": {"acceleration": 1},
     "floor": {"amplitude": 5, "period": 1, **SMOOTH},
 }
 ROWS = (  # the barest gas comes first
     Row("barest gas: smooth disks", {}),
-    Row("+ spin", {"spin": {"inertia": 0.5}}),
+    Row("+ spin", SPIN),
     Row("+ contact time", {"contact_time": {"duration": 1e-4}}),
     Row("+ side walls", {"walls": SMOOTH}),
     Row("+ shear", {"shear": {"velocity": 2}}, r=0.9),
     Row("+ gravity and floor", BED, OPEN, 0.9),
     Row("+ gravity and floor, sine", BED | {"floor": BED["floor"] | {"wave": "sine"}}, OPEN, 0.9),
-    Row("+ thermostat", {"thermostat": {"power": 0.1, "interval": 1, "spin_share": 0}}, r=0.9),
-    Row("+ spin, friction", {"spin": {"inertia": 0.5}, "friction": {"mu": 0.5}}),
+    Row("+ thermostat", {"thermostat": HEAT}, r=0.9),
+    Row("+ spin, thermostat", SPIN | {"thermostat": HEAT}, r=0.9),
+    Row("+ spin, thermostat, friction", SPIN | {"thermostat": HEAT, "friction": {"mu": 1}}, r=0.9),
     Row("+ third dimension", {}, box=CUBE),
 )
 
