@@ -22,7 +22,8 @@ SPIN_ALONE = 1 - 1e-6
 
 
 def follows_rates_when_strong(cooling: xr.Dataset) -> Finding:
-    """The same of a cooling gas where friction is too strong for spin to outlive translation."""
+    """R of a cooling gas - the rate equations is as good as zero, where friction is too strong for
+    spin to outlive translation."""
     strong = cooling.mu > float(theory.critical_friction(cooling.r.values.min()))
     if not strong.any():
         raise NotTestedError("no mu of the sweep is beyond the critical one")
