@@ -8,6 +8,7 @@ import xarray as xr
 
 from roughgas.claims.statistics import Sample, pooled_errors
 from roughgas.reduce import EQUILIBRATED, GRID, predicted_ratio, read_reduced
+from roughgas.theory.arguments import NET_SHARES
 
 
 class NotTestedError(Exception):
@@ -61,10 +62,6 @@ def deviation(data: xr.Dataset) -> Sample:
     return sample(data.deviation, data.error, data.attrs["freedom"])
 
 
-LEGAL_SHARES = (-1.0, 2.0)
-"""Of rotation in what sources put in, as theory takes them."""
-
-
 def deviation_at_shares(data: xr.Dataset) -> Sample:
     """R - the rate equations for a drive with the share of rotation that the energy books say.
 
@@ -72,7 +69,7 @@ def deviation_at_shares(data: xr.Dataset) -> Sample:
     """
     share, uncertainty = spin_shares(data)
     measured, step = np.nan_to_num(share.values), np.nan_to_num(uncertainty.values)
-    ends = (np.clip(end, *LEGAL_SHARES) for end in (measured - step, measured, measured + step))
+    ends = (np.clip(end, *NET_SHARES) for end in (measured - step, measured, measured + step))
     low, expected, high = (theory_of(data, spin_share=end) for end in ends)
     spread = np.where(np.isfinite(uncertainty), np.fmax(high - expected, expected - low), np.nan)
     values = (data.R - expected).where(np.isfinite(share))

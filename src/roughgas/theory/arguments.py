@@ -11,6 +11,9 @@ import numpy as np
 
 from roughgas.errors import InputError
 
+NET_SHARES = (-1, 2)
+"""Shares of a drive's net power that may go into spin."""
+
 
 class Material(NamedTuple):
     """Checked properties of the particles: r, beta and q are arrays, D an int."""
@@ -61,8 +64,8 @@ def check_share(spin_share) -> np.ndarray:
 
 
 def check_net_share(spin_share) -> np.ndarray:
-    """The same of a drive that may take energy out of one motion, in [-1, 2]."""
-    return check_between("net spin share of the drive", spin_share, -1, 2)
+    """The same of a drive that may take energy out of one motion, in NET_SHARES."""
+    return check_between("net spin share of the drive", spin_share, *NET_SHARES)
 
 
 def check_between(key: str, value, low: float, high: float) -> np.ndarray:
