@@ -7,6 +7,9 @@ SCALE ?= paper
 SNAKEFILES := Snakefile rules
 BIN := .venv/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check install -qq
+LOCK := uv pip compile --quiet --generate-hashes --no-emit-index-url --no-header --universal \
+    --python-version 3.11 pyproject.toml
+EXTRA_TESTS := remedy or browser or slurm
 
 help: ## say what there is to make
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /  make \1\t/' | expand -t 18
@@ -23,10 +26,13 @@ plan: setup ## say what all experiments at SCALE will cost, from pilot runs
 	@cat results/$(SCALE)/plan.md
 
 test: setup ## run the tests
-	$(BIN)/python -m pytest -n $(JOBS) --dist loadfile -m "not remedy"
+	$(BIN)/python -m pytest -n $(JOBS) --dist loadfile -m "not ($(EXTRA_TESTS))"
 
-remedies: setup ## show that hard cases fail once a remedy is taken out: some minutes more
-	$(BIN)/python -m pytest -n $(JOBS) -m remedy tests/hard_cases
+extras: .venv/with-browser .venv-slurm/ready ## run what takes minutes more, a browser, or Slurm
+	$(BIN)/python -m pytest -n $(JOBS) --dist loadgroup -m "$(EXTRA_TESTS)"
+
+docs: .venv/with-docs ## run the tutorial, and build the documentation: docs/_build/index.html
+	$(BIN)/python -m sphinx --fail-on-warning --keep-going -q docs docs/_build
 
 bench: setup ## measure the speed: docs/benchmarks.md
 	$(BIN)/python -m benchmarks
@@ -60,12 +66,28 @@ setup: .venv/ready ## install what is needed into .venv
 	@$(PIP) --no-deps --no-build-isolation --editable .
 	@touch $@
 
+# what only some need: requirements/*.lock
+.venv/with-%: requirements/%.lock .venv/ready
+	@echo "Installing what \`$*\` needs into .venv, once."
+	@$(PIP) --require-hashes --requirement $<
+	@touch $@
+
+# apart, since with the plugin installed every snakemake looks for a Slurm first
+.venv-slurm/ready: requirements/slurm.lock .venv/ready
+	@echo "Installing Snakemake with its Slurm plugin into .venv-slurm, once."
+	@$(BIN)/python -m venv --clear .venv-slurm
+	@.venv-slurm/bin/python -m pip --disable-pip-version-check install -qq --require-hashes --requirement $<
+	@.venv-slurm/bin/python -m pip --disable-pip-version-check install -qq --no-deps --no-build-isolation --editable .
+	@touch $@
+
 lock: ## choose and pin the newest versions of all dependencies (needs uv)
-	uv pip compile --quiet --upgrade --extra dev --generate-hashes --no-emit-index-url --no-header \
-	    --universal --python-version 3.11 --output-file requirements.lock pyproject.toml
+	$(LOCK) --upgrade --extra dev --output-file requirements.lock
+	$(LOCK) --upgrade --extra docs --constraint requirements.lock --output-file requirements/docs.lock
+	$(LOCK) --upgrade --extra browser --constraint requirements.lock --output-file requirements/browser.lock
+	$(LOCK) --upgrade --extra slurm --constraint requirements.lock --output-file requirements/slurm.lock
 
 clean: ## remove all results; the environment and the committed figures stay
-	rm -rf results logs .snakemake figures/*.pdf figures/*/ .pytest_cache .ruff_cache .hypothesis
+	rm -rf results logs .snakemake figures/*.pdf figures/*/ docs/_build .pytest_cache .ruff_cache .hypothesis
 
-.PHONY: help figures plan test remedies bench lint format setup lock clean
+.PHONY: help figures plan test extras docs bench lint format setup lock clean
 .DELETE_ON_ERROR:

@@ -35,7 +35,7 @@ def urgency_of_task(wildcards):
 
 
 def sources_of_study(wildcards):
-    return sources(f"accuracy/{wildcards.study}", "simulate", "config", "cli/studies")
+    return sources(f"accuracy/{wildcards.study}", "point", "config", "cli/studies")
 
 
 def study_of_figure(wildcards):

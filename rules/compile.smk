@@ -18,7 +18,7 @@ def kernel_of_point(wildcards):
 def kinds_of_kernels(wildcards):
     """What decides which kernels an experiment needs at some r, all variants in its sweep together:
     one more value that is like the others concerns no point that is there."""
-    from roughgas.simulate import kernels
+    from roughgas.point import kernels
 
     found = settings(wildcards.scale, wildcards.experiment)
     every = roughgas.config.every_variant(wildcards.experiment, found).values()
@@ -43,7 +43,7 @@ rule compile_kernel:
     # job, which took it longer than the points take. So it holds their checksums: were it the same
     # after an edit, points that an interrupted run has left as they were would pass for new.
     input:
-        sources("simulate", "dataset"),
+        sources("point", "dataset"),
         "src/roughgas/cli/run.py",
         "src/roughgas/config/labels.py",
     output:

@@ -29,7 +29,7 @@ def urgency_of_family(wildcards):
 rule family:
     # other families start while this one compiles: the kernels of all are the same few
     input:
-        sources("simulate", "dataset", "cli"),
+        sources("point", "dataset", "cli"),
         SHARED,
         cases="tests/hard_cases/test_{family}.py",
     output:

@@ -25,7 +25,7 @@ def seeds_of_job(wildcards, output):
 
 def urgency(wildcards):
     """Longest points first, lest one of them is left alone on one core at the end."""
-    from roughgas.simulate import effort
+    from roughgas.point import effort
 
     experiment = settings(wildcards.scale, wildcards.experiment)
     return effort(experiment, float(wildcards.r), float(wildcards.beta))

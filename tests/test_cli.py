@@ -175,7 +175,7 @@ def test_an_interrupt_ends_in_one_line(tmp_path, capsys, monkeypatch):
     def interrupted(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("roughgas.simulate.run_point", interrupted)
+    monkeypatch.setattr("roughgas.point.run_point", interrupted)
     assert run(tmp_path / "point.nc", config=CONFIG) == 130
     assert capsys.readouterr().err == "roughgas: error: interrupted, nothing half-written\n"
     assert list(tmp_path.iterdir()) == []

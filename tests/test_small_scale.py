@@ -14,7 +14,7 @@ import pytest
 
 from roughgas import config
 from roughgas.reduce import predicted_ratio
-from roughgas.simulate import run_point
+from roughgas.point import run_point
 from roughgas.theory import cooling_ratio, lun_ratio
 
 CONFIG = Path(__file__).parent.parent / "config.yaml"

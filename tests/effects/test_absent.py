@@ -17,7 +17,7 @@ from roughgas.effects import KINDS
 from roughgas.kernel import random
 from roughgas.kernel.record import columns, record
 from roughgas.kernel.state import BOUNDARY, BOUNDARY_HITS
-from roughgas.simulate import run_point
+from roughgas.point import run_point
 
 PROGRAM = Path(__file__).parent.parent / "machine_code.py"
 SMALL = {2: (16, [20, 20]), 3: (16, [12, 12, 12])}

@@ -18,7 +18,7 @@ import roughgas
 from effects import page
 from roughgas import theory
 from roughgas.dataset import read_point
-from roughgas.simulate import run_point
+from roughgas.point import run_point
 
 PACKAGE = Path(roughgas.__file__).parent
 TESTS = Path(__file__).parents[1]

@@ -13,7 +13,7 @@ from roughgas.kernel.state import LAST_FIRST, LAST_SECOND
 from roughgas.measure.energies import energies, ratio
 from roughgas.protocols.cooling import SAMPLES_PER_REFRESH
 from roughgas.protocols.recorder import Recorder
-from roughgas.simulate import run_point
+from roughgas.point import run_point
 
 GAS = settings("gas")  # 160 disks on (100 a)^2, as in Fig. 2b
 BLOCKS = 20

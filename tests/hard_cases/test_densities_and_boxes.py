@@ -13,7 +13,7 @@ from schedules import COOLING, STEADY
 from hard_cases.catalogue import hard_case
 from roughgas.errors import InputError
 from roughgas.scene import check
-from roughgas.simulate import run_point
+from roughgas.point import run_point
 
 DISKS = (0.001, 0.01, 0.1, 0.3, 0.5, 0.7, 0.8)  # shares of the area
 SPHERES = (0.001, 0.01, 0.1, 0.3, 0.5, 0.6)  # shares of the volume
@@ -247,7 +247,7 @@ def test_without_the_refusal_of_one_alone(without):
     without(
         "a point of one particle that nothing drives is refused",
         test_few_particles,
-        "simulate.py",
+        "point.py",
         "    check_company(scene, experiment)\n",
         "",
     )

@@ -17,7 +17,7 @@ from roughgas.planning.pilot import (
 )
 from roughgas.planning.plan import plan_point
 from roughgas.planning.reach import completed
-from roughgas.simulate import run_point
+from roughgas.point import run_point
 
 TIMES = ("seconds", "seconds_per_length")
 

@@ -7,7 +7,7 @@ from schedules import COOLING, STEADY
 
 from roughgas.dataset import read_point, write_point
 from roughgas.protocols.books import books, exchange, imbalance
-from roughgas.simulate import run_point
+from roughgas.point import run_point
 
 SOURCES = {
     "bed": (settings("bed", 20, [10, "open"]) | {"schedule": STEADY}, ["floor", "contacts"]),

@@ -95,7 +95,7 @@ def test_every_module_that_a_point_imports_counts(made):
     target = "results/tiny/vibrated/r0.9/compiled.txt"
     summary = made.succeed("--config", "scale=tiny", "--detailed-summary", "--", target)
     (row,) = (line for line in summary.splitlines() if line.startswith(target))
-    script = "import sys, roughgas.simulate, roughgas.dataset; print(*sys.modules)"
+    script = "import sys, roughgas.point, roughgas.dataset; print(*sys.modules)"
     done = subprocess.run(
         [sys.executable, "-c", script], capture_output=True, text=True, check=True
     )

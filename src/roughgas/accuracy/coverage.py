@@ -128,7 +128,7 @@ def _schedules(usual, changes, reference):
 
 
 def _point(experiment, schedule, corner, seed) -> list[float]:
-    from roughgas.simulate import run_point
+    from roughgas.point import run_point
 
     settings = {**experiment, "schedule": schedule}
     measured = run_point(settings, float(corner["r"]), float(corner["beta"]), seed).variables

@@ -70,7 +70,7 @@ def run(options: argparse.Namespace) -> None:
         raise InputError("--output", " ".join(options.output), f"name {len(seeds)}, one a seed")
 
     from roughgas.planning.reach import complete
-    from roughgas.simulate import run_point
+    from roughgas.point import run_point
 
     settings = complete(config.point_settings(settings), r, beta)
     for label, seed, output in zip(options.seed, seeds, options.output, strict=True):
@@ -86,7 +86,7 @@ def compile_kernel(options: argparse.Namespace) -> None:
 
     r, settings = config.restitution(options.r), _settings(options)
 
-    from roughgas.simulate import compile_kernels
+    from roughgas.point import compile_kernels
 
     every = config.every_variant(options.experiment, settings).values()
     compile_kernels([one | {"sweep": {"r": [r]}} for one in every])

@@ -10,7 +10,7 @@ from roughgas.dataset import Point
 from roughgas.measure.intervals import Error, pooled
 from roughgas.planning.pilot import Pilot, explore
 from roughgas.planning.plan import Plan, plan_point
-from roughgas.simulate import run_point
+from roughgas.point import run_point
 
 MOST = 4  # times the planned number of seeds: a pilot cannot be further off
 

@@ -6,7 +6,7 @@ from brute_force import settings
 from schedules import COOLING, STEADY
 
 from roughgas.errors import InputError
-from roughgas.simulate import compile_kernels, run_point
+from roughgas.point import compile_kernels, run_point
 
 SWEEP = {"r": ["0.9"], "beta": ["0"], "seeds": 1}
 POINTS = {
