@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 
 from roughgas import config
-from roughgas.reduce import predicted_ratio
 from roughgas.point import run_point
+from roughgas.reduce import predicted_ratio
 from roughgas.theory import cooling_ratio, lun_ratio
 
 CONFIG = Path(__file__).parent.parent / "config.yaml"

@@ -11,9 +11,9 @@ from roughgas.config import experiment, load
 from roughgas.kernel import record
 from roughgas.kernel.state import LAST_FIRST, LAST_SECOND
 from roughgas.measure.energies import energies, ratio
+from roughgas.point import run_point
 from roughgas.protocols.cooling import SAMPLES_PER_REFRESH
 from roughgas.protocols.recorder import Recorder
-from roughgas.point import run_point
 
 GAS = settings("gas")  # 160 disks on (100 a)^2, as in Fig. 2b
 BLOCKS = 20

@@ -12,8 +12,8 @@ from schedules import COOLING, STEADY
 
 from hard_cases.catalogue import hard_case
 from roughgas.errors import InputError
-from roughgas.scene import check
 from roughgas.point import run_point
+from roughgas.scene import check
 
 DISKS = (0.001, 0.01, 0.1, 0.3, 0.5, 0.7, 0.8)  # shares of the area
 SPHERES = (0.001, 0.01, 0.1, 0.3, 0.5, 0.6)  # shares of the volume

@@ -6,8 +6,8 @@ from brute_force import begin, run, settings
 from schedules import COOLING, STEADY
 
 from roughgas.dataset import read_point, write_point
-from roughgas.protocols.books import books, exchange, imbalance
 from roughgas.point import run_point
+from roughgas.protocols.books import books, exchange, imbalance
 
 SOURCES = {
     "bed": (settings("bed", 20, [10, "open"]) | {"schedule": STEADY}, ["floor", "contacts"]),
