@@ -2,6 +2,8 @@
 
 from collections.abc import Iterable
 
+SIMILAR = 0.8  # how alike, from 0 to 1, a name is to one that may have been meant
+
 
 class InputError(ValueError):
     """A value that is not legal: `key` names it, `legal` completes the sentence "it must ...".
@@ -25,7 +27,7 @@ def not_one_of(key: str, value: object, known: Iterable[str]) -> InputError:
 
     known = list(known)
     legal = f"be one of {', '.join(known)}"
-    meant = difflib.get_close_matches(str(value).strip("'"), known, 1)
+    meant = difflib.get_close_matches(str(value).strip("'"), known, 1, SIMILAR)
     return InputError(key, value, f"{legal}; did you mean {meant[0]}?" if meant else legal)
 
 

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from roughgas.dataset import COMMON_ATTRIBUTES, ENERGY, TIME, Variable, whole_netcdf
+from roughgas.errors import InputError
 
 if TYPE_CHECKING:
     import xarray
@@ -73,10 +74,15 @@ def write_film(
 
 
 def read_film(path: str | Path) -> "xarray.Dataset":
-    """The dataset at `path` as an xarray.Dataset in memory, the file closed."""
+    """The dataset at `path` as an xarray.Dataset in memory, the file closed.
+
+    Raises InputError for a dataset of another kind."""
     import xarray
 
-    return xarray.load_dataset(path, engine="netcdf4")
+    film = xarray.load_dataset(path, engine="netcdf4")
+    if "frame" not in film.dims:
+        raise InputError("film", path, "be a dataset of `roughgas clustering`")
+    return film
 
 
 def disks_of(film: "xarray.Dataset", frame: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -136,9 +136,11 @@ def _summary(path: Path) -> Summary:
 
     with netCDF4.Dataset(path) as file:
         file.set_auto_mask(False)
+        attributes = {name: file.getncattr(name) for name in file.ncattrs()}
+        if "seed" not in attributes:
+            raise InputError("file to reduce", path, "be the dataset of a point")
         found = [name for name, about in VARIABLES.items() if not about.dims]
         scalars = {name: file[name][...].item() for name in found if name in file.variables}
-        attributes = {name: file.getncattr(name) for name in file.ncattrs()}
         scalars["measured_for"], scalars["R_drift"] = _window(file, scalars)
     return Summary(scalars, attributes)
 

@@ -6,6 +6,7 @@ status 1, Ctrl-C and SIGTERM with 130; none of them leaves half a file behind.
 
 import argparse
 import gc
+import logging
 import os
 import signal
 import sys
@@ -13,6 +14,7 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 from roughgas import __version__
+from roughgas.atomic import check_place
 from roughgas.cli import doctor, planning, products, run, showcase, studies
 from roughgas.cli.streams import mend_streams
 from roughgas.errors import CollapseError, InputError
@@ -41,6 +43,8 @@ def process() -> NoReturn:
         if signal.getsignal(number) is not signal.SIG_IGN:
             signal.signal(number, _stop)
     mend_streams()
+    os.environ["MPLBACKEND"] = "agg"  # whatever it was: nothing is shown on a screen
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)  # such as on folders it cannot write
     try:
         status = main()
     except SystemExit as end:  # argparse has said what there is to say
@@ -71,6 +75,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line `arguments` (by default the process's own); its exit status."""
     try:
         options = _parser().parse_args(arguments)
+        for place in _outputs(options):
+            check_place(place)
         options.command(options)
     except InputError as error:
         return _fail(BAD_INPUT, str(error))
@@ -89,6 +95,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(f"roughgas: stopped: {stop if stop.args else GO_ON}", file=sys.stderr)
         return INTERRUPTED
     return 0
+
+
+def _outputs(options: argparse.Namespace) -> list[str]:
+    """The files, or folders, that a command is to write."""
+    named = getattr(options, "output", None) or []
+    return [named] if isinstance(named, str) else named
 
 
 def _fail(status: int, message: str) -> int:

@@ -33,12 +33,16 @@ CHECKS: dict[str, Callable[[], Finding]] = {
 
 def examine() -> Iterator[tuple[str, Finding]]:
     """The name and the finding of each check, one after the other; takes some seconds."""
+    remedy = installation.ANEW
     for name, check in CHECKS.items():
         try:
-            yield name, check()
+            found = check()
         except Exception as error:  # what a broken library raises is what is looked for
             said = " ".join(str(error).split())
-            yield name, Finding(PROBLEM, f"{type(error).__name__}: {said}", installation.ANEW)
+            found = Finding(PROBLEM, f"{type(error).__name__}: {said}", remedy)
+        yield name, found
+        if found.verdict == PROBLEM and remedy == installation.ANEW:
+            remedy = f"most likely because of {name}, above"
 
 
 def in_words(name: str, finding: Finding) -> str:

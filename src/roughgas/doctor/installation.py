@@ -52,13 +52,13 @@ def packages() -> Finding:
         place = _place(name)
         if place is None:
             return Finding(PROBLEM, f"{name} is not installed", "`make setup`")
+        if not _is_ours(place):
+            strangers.append(place)
         try:
             importlib.import_module(name)
         except Exception as error:  # whatever its first lines may raise
             said = f"{name} cannot be imported from {place}: {' '.join(str(error).split())}"
-            return Finding(PROBLEM, said, _how_to_import(place))
-        if not _is_ours(place):
-            strangers.append(place)
+            return Finding(PROBLEM, said, _how_to_import((*strangers, place)[0]))
     if strangers:
         said = f"not of this environment: {', '.join(map(str, strangers))}"
         return Finding(WARNING, said, _how_to_import(strangers[0]))

@@ -51,7 +51,7 @@ def clean() -> str:
 
 def this_folder() -> Finding:
     """Whether results can be written here, and whether there is room for them."""
-    return _room(Path.cwd(), "results and figures are written here", RESULTS)
+    return _room(Path.cwd(), RESULTS, "make it writable: results and figures are written here")
 
 
 def temporary_files() -> Finding:
@@ -60,7 +60,7 @@ def temporary_files() -> Finding:
         folder = Path(tempfile.gettempdir())
     except FileNotFoundError as error:
         return Finding(PROBLEM, error.strerror, "set TMPDIR to a folder that can be written")
-    return _room(folder, "or set TMPDIR to another folder", GIB // 16)
+    return _room(folder, GIB // 16, "set TMPDIR to another folder")
 
 
 def cores_and_memory() -> Finding:
@@ -79,15 +79,14 @@ def slurm() -> Finding:
     return Finding(OK, sbatch or "there is none here; only clusters have it")
 
 
-def _room(folder: Path, why: str, enough: int) -> Finding:
+def _room(folder: Path, enough: int, remedy: str) -> Finding:
     free = shutil.disk_usage(folder).free
     said = f"{folder}, {free / GIB:.1f} GiB free"
     try:
         with tempfile.TemporaryFile(dir=folder) as file:
             file.write(b"room?" * 1000)
     except OSError as error:
-        said = f"{folder} cannot be written: {error.strerror}"
-        return Finding(PROBLEM, said, f"make it so, since {why}" if enough == RESULTS else why)
+        return Finding(PROBLEM, f"{folder} cannot be written: {error.strerror}", remedy)
     if free < enough:
         return Finding(WARNING, said, f"make room: {enough / GIB:.2g} GiB are enough")
     return Finding(OK, said)

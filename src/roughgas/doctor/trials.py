@@ -29,7 +29,7 @@ def kernel() -> Finding:
     if ran.returncode < 0:
         return Finding(PROBLEM, f"crashed with signal {-ran.returncode}", REDO)
     if ran.returncode:
-        return Finding(PROBLEM, _last_line(ran.stderr), ANEW)
+        raise RuntimeError(_last_line(ran.stderr))
     if ran.stdout.strip() != KNOWN:
         said = "the trial run gives other bits than on other machines"
         promised = platform.machine() in PROMISED
