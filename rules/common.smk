@@ -122,8 +122,9 @@ def forget_dead_locks():
     Each Snakemake in this folder holds a shared lock of the system's for as long as it lives: who
     can have it alone knows that no other one is alive.
     """
-    Path(".snakemake/locks").mkdir(parents=True, exist_ok=True)
-    alive = open(".snakemake/alive", "w")
+    with one_line():
+        Path(".snakemake/locks").mkdir(parents=True, exist_ok=True)
+        alive = open(".snakemake/alive", "w")
     with suppress(OSError):  # another one is alive, or there are no such locks on this disk
         fcntl.flock(alive, fcntl.LOCK_EX | fcntl.LOCK_NB)
         for lock in Path(".snakemake/locks").glob("*.lock"):

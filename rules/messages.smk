@@ -7,7 +7,7 @@ TARGETS = (
     "A target is a file, such as results/paper/cooling/r0.9/beta0/seed1.nc or figures/fig1a.png, or"
     " one of figures, extensions, showcase, accuracy, coverage, hard_cases, plan, everything."
 )
-SILENT = "(it said nothing: killed, such as for lack of memory?)"
+SILENT = "(it said nothing: a full disk, or killed for lack of memory?)"
 # what the message of the failed job, and the last line, say better
 REPEATED = ("RuleException:\nCalledProcessError", "WorkflowError:\nAt least one job did not")
 

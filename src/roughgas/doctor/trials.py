@@ -1,12 +1,14 @@
 """A little of all that the pipeline does, tried out."""
 
 import hashlib
+import os
 import platform
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
+from roughgas.atomic import check_place
 from roughgas.doctor.finding import OK, PROBLEM, WARNING, Finding
 from roughgas.doctor.installation import ANEW, PROMISED
 
@@ -124,6 +126,12 @@ def snakemake() -> Finding:
     ran = subprocess.run([program, "--version"], capture_output=True, text=True)
     if ran.returncode:
         return Finding(PROBLEM, f"{program}: {_last_line(ran.stderr)}", ANEW)
+    caches = Path(os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache"))
+    try:
+        check_place(caches / "snakemake")
+    except OSError as error:
+        remedy = "Snakemake needs a place: export XDG_CACHE_HOME=(a folder that can be written)"
+        return Finding(PROBLEM, f"{caches}: {error.strerror}", remedy)
     return Finding(OK, f"{ran.stdout.strip()}: {program}")
 
 
