@@ -12,7 +12,10 @@
 
 include: "rules/common.smk"
 include: "rules/sources.smk"
+include: "rules/messages.smk"
 
+
+be_brief()
 
 if workflow.is_main_process:
     alive = forget_dead_locks()  # held until this process ends
@@ -71,4 +74,4 @@ onstart:
 
 
 onerror:
-    print("Stopped: the same command goes on from here.", file=sys.stderr)
+    say_how_to_go_on()

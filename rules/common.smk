@@ -8,7 +8,7 @@ from pathlib import Path
 
 try:
     import roughgas.config
-    from roughgas.errors import InputError
+    from roughgas.errors import InputError, not_one_of
 except ModuleNotFoundError as error:
     sys.exit(f"roughgas: error: no module {error.name}: `make setup`, then .venv/bin/snakemake")
 
@@ -96,7 +96,7 @@ def reduced(scale, experiments):
 def data_of_figure(wildcards):
     with one_line():
         if wildcards.figure not in FIGURES:
-            raise InputError("figure", wildcards.figure, f"be one of {', '.join(sorted(FIGURES))}")
+            raise not_one_of("figure", wildcards.figure, sorted(FIGURES))
     return reduced(wildcards.folder.rstrip("/") or "paper", FIGURES[wildcards.figure])
 
 

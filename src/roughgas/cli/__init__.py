@@ -1,21 +1,24 @@
 """The command `roughgas`: one subcommand for each step of the pipeline.
 
 Bad input ends a command with one line on stderr and exit status 2, a failing disk and the like with
-status 1; neither leaves a file behind.
+status 1, Ctrl-C and SIGTERM with 130; none of them leaves half a file behind.
 """
 
 import argparse
 import gc
 import os
+import signal
 import sys
 from collections.abc import Sequence
 from typing import NoReturn
 
 from roughgas import __version__
-from roughgas.cli import planning, products, run, showcase, studies
+from roughgas.cli import doctor, planning, products, run, showcase, studies
+from roughgas.cli.streams import mend_streams
 from roughgas.errors import CollapseError, InputError
 
-BAD_INPUT, FAILED, INTERRUPTED = 2, 1, 130
+BAD_INPUT, FAILED, INTERRUPTED, NOBODY_READS = 2, 1, 130, 141
+GO_ON = "nothing is half-written; the same command begins anew"
 
 
 class Parser(argparse.ArgumentParser):
@@ -34,26 +37,57 @@ def process() -> NoReturn:
     """
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     gc.set_threshold(100_000)  # imports make few cycles and many objects
-    status = main()
-    sys.stdout.flush()
-    sys.stderr.flush()
-    os._exit(status)
+    for number in (signal.SIGINT, signal.SIGTERM):  # of a person, of a cluster
+        if signal.getsignal(number) is not signal.SIG_IGN:
+            signal.signal(number, _stop)
+    mend_streams()
+    try:
+        status = main()
+    except SystemExit as end:  # argparse has said what there is to say
+        status = end.code
+    os._exit(_flush(status))
+
+
+def _stop(*_: object) -> NoReturn:
+    """End the command as Ctrl-C does, and do not let an impatient second one disturb that."""
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, signal.SIG_IGN)
+    raise KeyboardInterrupt
+
+
+def _flush(status: int) -> int:
+    """Get out what has been printed; the exit status after that."""
+    try:
+        sys.stdout.flush()
+        sys.stderr.flush()
+    except BrokenPipeError:
+        return NOBODY_READS
+    except OSError as error:
+        return _fail(FAILED, f"standard output: {error.strerror}")
+    return status
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line `arguments` (by default the process's own); its exit status."""
-    options = _parser().parse_args(arguments)
     try:
+        options = _parser().parse_args(arguments)
         options.command(options)
     except InputError as error:
         return _fail(BAD_INPUT, str(error))
     except CollapseError as error:
         return _fail(FAILED, str(error))
+    except BrokenPipeError:  # such as of `| head`, which has seen enough
+        return NOBODY_READS
     except OSError as error:
         where = f"{error.filename}: " if error.filename else ""
         return _fail(FAILED, f"{where}{error.strerror or error}")
+    except MemoryError as error:
+        return _fail(FAILED, f"out of memory. {error}".strip())
+    except ImportError as error:
+        return _fail(FAILED, f"{error}: `roughgas doctor` says what is wrong")
     except KeyboardInterrupt as stop:
-        return _fail(INTERRUPTED, f"interrupted, {stop if stop.args else 'nothing half-written'}")
+        print(f"roughgas: stopped: {stop if stop.args else GO_ON}", file=sys.stderr)
+        return INTERRUPTED
     return 0
 
 
@@ -75,4 +109,5 @@ def _parser() -> Parser:
     products.add_commands(commands)
     showcase.add_commands(commands)
     studies.add_commands(commands)
+    doctor.add_commands(commands)
     return parser
