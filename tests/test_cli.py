@@ -10,7 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from roughgas import __version__, simulate
+from roughgas import __version__
+from roughgas import point as points
 from roughgas.cli import main
 from roughgas.cli.progress import FilmProgress, Progress
 from roughgas.dataset import WALL_CLOCK, read_point
@@ -234,14 +235,14 @@ def test_a_mistake_in_one_seed_stops_all_of_them(tmp_path, capsys, seeds, files,
 
 
 def test_what_is_done_stays_when_a_later_seed_fails(tmp_path, monkeypatch):
-    run_point = simulate.run_point
+    run_point = points.run_point
 
     def second_collapses(experiment, r, beta, seed, progress):
         if seed == 2:
             raise CollapseError("inelastic collapse")
         return run_point(experiment, r, beta, seed, progress)
 
-    monkeypatch.setattr(simulate, "run_point", second_collapses)
+    monkeypatch.setattr(points, "run_point", second_collapses)
     assert run_seeds(tmp_path, "123", ["1.nc", "2.nc", "3.nc"]) == 1
     assert [path.name for path in tmp_path.iterdir()] == ["1.nc"]
 

@@ -124,12 +124,22 @@ def write_point(path: str | Path, point: Point) -> None:
 
     lengths = _dimensions(point)
     with whole_netcdf(path) as draft, netCDF4.Dataset(draft, "w") as file:
-        file.setncatts(COMMON_ATTRIBUTES | point.attributes)
-        for name, length in lengths.items():
-            file.createDimension(name, length)
-        for name in VARIABLES:
-            if name in point.variables:
-                _write_variable(file, name, point.variables)
+        _fill(file, point, lengths)
+
+
+def as_dataset(point: Point) -> "xarray.Dataset":
+    """What `read_point` gives of the file that `write_point` makes of `point`, without that file.
+
+    Raises ValueError as `write_point` does.
+    """
+    import netCDF4
+    import xarray
+
+    lengths = _dimensions(point)
+    file = netCDF4.Dataset("point.nc", "w", memory=1)  # which never gets to a disk
+    _fill(file, point, lengths)
+    file = netCDF4.Dataset("point.nc", memory=file.close())
+    return xarray.load_dataset(xarray.backends.NetCDF4DataStore(file))  # which closes it
 
 
 @contextmanager
@@ -160,6 +170,15 @@ def variable_attributes(name: str, cooling: bool) -> dict[str, str]:
     about = VARIABLES[name]
     units = COOLING_UNITS.get(about.units, about.units) if cooling else about.units
     return {"long_name": about.long_name, **unit_attributes(units)}
+
+
+def _fill(file: "netCDF4.Dataset", point: Point, lengths: dict[str, int]) -> None:
+    file.setncatts(COMMON_ATTRIBUTES | point.attributes)
+    for name, length in lengths.items():
+        file.createDimension(name, length)
+    for name in VARIABLES:
+        if name in point.variables:
+            _write_variable(file, name, point.variables)
 
 
 def _write_variable(file: "netCDF4.Dataset", name: str, variables: dict[str, Any]) -> None:
