@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 from roughgas import __version__
-from roughgas.cli import planning, products, run, showcase, studies
+from roughgas.cli import page, planning, products, run, showcase, studies
 from roughgas.errors import CollapseError, InputError
 
 BAD_INPUT, FAILED, INTERRUPTED = 2, 1, 130
@@ -73,6 +73,7 @@ def _parser() -> Parser:
     run.add_commands(commands)
     planning.add_commands(commands)
     products.add_commands(commands)
+    page.add_commands(commands)
     showcase.add_commands(commands)
     studies.add_commands(commands)
     return parser
