@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 from roughgas import __version__
-from roughgas.cli import doctor, planning, products, run, showcase, studies
+from roughgas.cli import doctor, page, planning, products, run, showcase, studies
 from roughgas.cli.streams import mend_streams
 from roughgas.errors import CollapseError, InputError
 
@@ -107,6 +107,7 @@ def _parser() -> Parser:
     run.add_commands(commands)
     planning.add_commands(commands)
     products.add_commands(commands)
+    page.add_commands(commands)
     showcase.add_commands(commands)
     studies.add_commands(commands)
     doctor.add_commands(commands)
