@@ -76,16 +76,13 @@ def browser(tmp_path_factory):
 
 @pytest.fixture(scope="session")
 def ran(tmp_path_factory):
-    """A project with a finished run at a tiny scale: two r and three beta where there are several,
-    a third axis, and the report."""
+    """A project with a finished run at a tiny scale, two r and three beta, and its report."""
     project = Project(tmp_path_factory.mktemp("browsed"))
 
     def change(config):
         tiny = config["scales"]["tiny"]
         for name in ("vibrated", "sheared", "cooling"):
             tiny[name]["sweep"] = SWEEP
-        friction = {"friction.mu": ["0.5", "0.1"]}
-        tiny["vibrated_friction"] = {"sweep": {"r": ["0.9"], "beta": ["0"], "seeds": 2} | friction}
 
     project.configure(change)
     project.succeed("-j2", "--config", "scale=tiny", "--", *TARGETS)

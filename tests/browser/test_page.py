@@ -3,11 +3,13 @@
 import re
 
 import pytest
+from page.conftest import points_in
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.select import Select
 
 from roughgas.dataset import read_point
+from roughgas.page import write_page
 from roughgas.reduce import predicted_ratio, read_reduced
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
@@ -59,7 +61,9 @@ def shows(page, ran, experiment, r, beta):
     assert close(found["R − theory"].lstrip("+−"), abs(R - theory), stderr)
     assert found["steady state"] == ("found" if place.equilibrated > 0.5 else "not found")
     assert int(found["collisions"].replace(",", "")) == place.collisions
-    assert float(found["CPU time"].split()[0]) == pytest.approx(place.kernel_seconds, rel=6e-3)
+    assert float(found["CPU time"].split()[0]) == pytest.approx(
+        place.kernel_seconds.item(), rel=6e-3
+    )
     assert found["seeds"] == "2"
     target = f"results/tiny/{experiment}/r{r}/beta{beta}/seed1.nc"
     assert page.text("#target") == f"snakemake -j1 --force {target}"
@@ -96,12 +100,8 @@ def test_a_click_on_a_point_chooses_it(page, ran):
         const box = plot.getBoundingClientRect(), at = trace.x.indexOf(0.5);
         return [box.x + xaxis._offset + xaxis.l2p(trace.x[at]),
           box.y + yaxis._offset + yaxis.l2p(trace.y[at])].map(Math.round);"""
-    x, y = page.script(where)
-    pointer = ActionChains(page.driver).w3c_actions.pointer_action
-    pointer.move_to_location(x, y)
-    ActionChains(page.driver).pause(0.5).perform()
     actions = ActionChains(page.driver)
-    actions.w3c_actions.pointer_action.move_to_location(x, y)
+    actions.w3c_actions.pointer_action.move_to_location(*page.script(where))
     actions.pause(0.3).click().perform()
     page.wait(lambda: fragment(page).endswith("/r0.8/beta0.5"))
     assert shows(page, ran, "cooling", "0.8", "0.5")
@@ -115,7 +115,11 @@ def test_what_is_drawn_are_the_datasets(page, ran):
           .filter(one => one.legendgroup === "0.8" && one.mode === "markers");
         const over = document.getElementById("over-time").data[0];
         return [above.x, above.y, above.error_y.array, beneath.y, over.y.length];""")
-    assert drawn[:3] == [data.beta.values.tolist(), data.R.values.tolist(), data.R_stderr.values.tolist()]
+    assert drawn[:3] == [
+        data.beta.values.tolist(),
+        data.R.values.tolist(),
+        data.R_stderr.values.tolist(),
+    ]
     residual = data.R - predicted_ratio(data.attrs, 0.8, data.beta.values)
     assert drawn[3] == pytest.approx(residual.values.tolist(), abs=1e-12)
     assert 0 < drawn[4] <= 200
@@ -128,6 +132,27 @@ def test_a_choice_can_be_shared(ran, browser):
     assert "no point sheared/r0.8/beta7" in browser.text("#status")
     assert shows(browser, ran, "vibrated", "0.9", "-0.5")
     assert browser.complaints() == []
+
+
+def test_a_third_axis_is_chosen_too(browser, tmp_path):
+    points = points_in(tmp_path / "small")
+    write_page(
+        [points / f"{name}.nc" for name in ("sheared", "cooling_friction")],
+        points,
+        tmp_path / "e.html",
+    )
+    browser.open(tmp_path / "e.html")
+    assert not browser.find("#variant")[0].is_displayed()
+    select(browser, "experiment", "cooling_friction")
+    assert browser.text("#variant-name") == "friction.mu"
+    select(browser, "variant", "1")
+    assert fragment(browser) == "#cooling_friction/mu1/r0.9/beta-0.5"
+    assert browser.text("#title") == "cooling_friction, mu1: 40 disks"
+    select(browser, "beta", "0.50")
+    assert numbers(browser)["R"] == "0.3510(40)"
+    assert browser.text("#target").endswith("/small/cooling_friction/mu1/r0.9/beta0.50/seed1.nc")
+    assert "mean over a block of 3 samples" in browser.text("#thinned")
+    assert browser.complaints() == [] and browser.requests() == []
 
 
 def test_the_command_is_copied(page):

@@ -32,7 +32,9 @@ def write(folder, experiment, r, beta, seed=1, cooling=False, **about):
     }
     if cooling:
         variables["plateau_end"] = 400.0
-    path = folder / experiment / about.get("variant", "") / f"r{r}" / f"beta{beta}" / f"seed{seed}.nc"
+    path = (
+        folder / experiment / about.get("variant", "") / f"r{r}" / f"beta{beta}" / f"seed{seed}.nc"
+    )
     attributes = {
         "experiment": experiment,
         "scale": "small",
@@ -50,10 +52,8 @@ def write(folder, experiment, r, beta, seed=1, cooling=False, **about):
     return path
 
 
-@pytest.fixture
-def points(tmp_path):
-    """The folder of a sheared and of a cooling gas, and of one that sweeps friction; reduced."""
-    folder = tmp_path / "small"
+def points_in(folder):
+    """A sheared and a cooling gas, and one that sweeps friction, in `folder`; reduced."""
     paths = {"sheared": [], "cooling": [], "cooling_friction": []}
     for beta in ("-0.5", "0.50"):
         paths["sheared"] += [write(folder, "sheared", "0.9", beta, seed) for seed in (1, 2)]
@@ -65,3 +65,8 @@ def points(tmp_path):
     for name, files in paths.items():
         reduce_points(files, folder / f"{name}.nc")
     return folder
+
+
+@pytest.fixture
+def points(tmp_path):
+    return points_in(tmp_path / "small")

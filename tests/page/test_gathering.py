@@ -73,7 +73,9 @@ def test_where_a_target_is_set_its_folder_is_what_to_ask_for(points):
         for seed in (1, 2):
             (folder / f"seed{seed}.nc").rename(folder / "seeds" / f"seed{seed}.nc")
     (variant,) = experiment(points / "sheared.nc", points)["variants"]
-    assert variant["series"][0]["points"][0]["target"] == str(points / "sheared/r0.9/beta-0.5/seeds")
+    assert variant["series"][0]["points"][0]["target"] == str(
+        points / "sheared/r0.9/beta-0.5/seeds"
+    )
 
 
 def test_time_series_are_means_over_blocks(points):
