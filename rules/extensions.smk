@@ -23,7 +23,7 @@ rule table_of_extensions:
             "results/{scale}/extensions.csv",
             caption="captions/table.rst",
             category=BEYOND,
-            labels=titled("Every number, to download (CSV)"),
+            labels=titled("Table: every number (CSV, to download)"),
         ),
     log:
         "logs/{scale}/extensions.log",

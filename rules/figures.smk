@@ -47,7 +47,7 @@ rule table:
             "results/{scale}/R.csv",
             caption="captions/table.rst",
             category=THE_PAPER,
-            labels=titled("Every number, to download (CSV)"),
+            labels=titled("Table: every number (CSV, to download)"),
         ),
     log:
         "logs/{scale}/table.log",

@@ -43,7 +43,7 @@ rule effective_config:
             "results/{scale}/config.yaml",
             caption="captions/config.rst",
             category=THIS_RUN,
-            labels=titled("Configuration, to download and run"),
+            labels=titled("Configuration (YAML, to download)"),
         ),
     log:
         "logs/{scale}/config.log",
