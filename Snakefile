@@ -4,6 +4,7 @@
 #   snakemake -j2 figures --config scale=small  the same in a minute, with wide error bars
 #   snakemake -j2 extensions                    beyond the paper: spheres, friction, other drives ...
 #   snakemake -j1 explore                       a page in which to look at every point
+#   snakemake -j2 movies                        the scenes as they move, one GIF each
 #   snakemake -j1 showcase                      a large cooling gas forms clusters: a movie
 #   snakemake -j2 accuracy                      what the next digit costs, in CPU seconds
 #   snakemake -j2 coverage                      whether error bars hold the truth as often as they say
@@ -34,6 +35,7 @@ wildcard_constraints:
     seed="[^/]+",
     folder="([^/]+/)?",
     figure=r"(?!clustering\.|hard_cases|accuracy\.|coverage\.)[^/]+",  # these have their own rules
+    movie="[^/]+",
     study="[^/]+",
     task="[^/]+",
     study_figure="accuracy|coverage",
@@ -48,6 +50,7 @@ include: "rules/reduce.smk"
 include: "rules/figures.smk"
 include: "rules/extensions.smk"
 include: "rules/showcase.smk"
+include: "rules/movies.smk"
 include: "rules/hard_cases.smk"
 include: "rules/accuracy.smk"
 include: "rules/page.smk"
@@ -72,6 +75,7 @@ rule everything:
         rules.extensions.input,
         reduced(SCALE, config["experiments"]),
         rules.showcase.input,
+        rules.movies.input,
         rules.hard_cases.input,
         rules.accuracy.input,
         rules.coverage.input,

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 from roughgas import __version__
-from roughgas.cli import doctor, page, planning, products, run, showcase, studies
+from roughgas.cli import doctor, movie, page, planning, products, run, showcase, studies
 from roughgas.cli.streams import mend_streams
 from roughgas.errors import CollapseError, InputError
 
@@ -105,6 +105,7 @@ def _parser() -> Parser:
     parser.add_argument("--version", action="version", version=f"roughgas {__version__}")
     commands = parser.add_subparsers(metavar="COMMAND", required=True)
     run.add_commands(commands)
+    movie.add_commands(commands)
     planning.add_commands(commands)
     products.add_commands(commands)
     page.add_commands(commands)
