@@ -5,10 +5,10 @@ import json
 import pytest
 
 from roughgas import cli
-from roughgas import point as points
 from roughgas.cli import main
 from roughgas.config.reading import read_yaml
 from roughgas.dataset import read_point
+from roughgas.point import kernels
 
 SCHEDULE = {"replicas": 2, "thermalise": 1, "relaxation_times": 1, "plateau": 5}
 GAS = {"particles": 5, "box": [20, 20], "effects": {"spin": {"inertia": 0.5}}}
@@ -68,11 +68,11 @@ def test_bad_input_is_refused_in_one_line(configuration, tmp_path, capsys, name,
 )
 def test_all_variants_are_compiled_at_once(configuration, monkeypatch, name, inertia):
     told = []
-    monkeypatch.setattr(points, "compile_kernels", told.extend)
+    monkeypatch.setattr("roughgas.point.compile_kernels", told.extend)
     assert main(["compile", name, configuration, "--r=0.9"]) == 0
     assert [one["effects"]["spin"]["inertia"] for one in told] == inertia
     assert all(one["sweep"] == {"r": [0.9]} for one in told)
-    assert len(points.kernels(told)) == 1
+    assert len(kernels(told)) == 1
 
 
 def test_a_plan_has_a_row_for_each_variant(configuration, tmp_path, capsys):
