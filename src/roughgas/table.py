@@ -38,18 +38,24 @@ COLUMNS = (
     "contact_time_fraction",
 )
 THEORY = ("theory", "R_theory", "residual")
+HEAD = (*ABOUT, *GRID, *COLUMNS, *THEORY)
 
 
 def write_table(reduced_paths: Iterable[str | Path], csv_path: str | Path) -> None:
     """Write one tidy CSV: a row for each experiment, value of its third axis, r and beta that holds
     data."""
-    head = (*ABOUT, *GRID, *COLUMNS, *THEORY)
     with whole_file(csv_path) as draft, open(draft, "w", newline="", encoding="utf-8") as file:
         table = csv.writer(file, lineterminator="\n")
-        table.writerow(head)
+        table.writerow(HEAD)
         for path in reduced_paths:
-            for variant in _variants(read_reduced(path)):
-                table.writerows(_rows(variant, head))
+            table.writerows(map(_cell, row) for row in rows(read_reduced(path), HEAD))
+
+
+def rows(dataset: "xarray.Dataset", head: Sequence[str]) -> Iterator[list[Any]]:
+    """The rows of a reduced dataset, ascending in the third axis, r and beta: of the columns in
+    `head` what there is, be it of HEAD, a variable over the grid or an attribute, else ""."""
+    for variant in _variants(dataset):
+        yield from _rows(variant, head)
 
 
 def _variants(dataset: "xarray.Dataset") -> Iterator["xarray.Dataset"]:
@@ -63,15 +69,15 @@ def _variants(dataset: "xarray.Dataset") -> Iterator["xarray.Dataset"]:
         yield dataset.isel({name: index}, drop=True).assign_attrs(about)
 
 
-def _rows(dataset: "xarray.Dataset", head: Sequence[str]) -> Iterator[list[str]]:
+def _rows(dataset: "xarray.Dataset", head: Sequence[str]) -> Iterator[list[Any]]:
     """The rows of a dataset over (r, beta), ascending in them."""
     flat = dataset.drop_dims("seed").stack(point=GRID)
     prediction = predicted_ratio(dataset.attrs, flat.r.values, flat.beta.values)
     for index in np.flatnonzero(flat["n_seeds"].values):
-        row = {name: flat[name].values[index] for name in (*GRID, *COLUMNS) if name in flat}
+        row = {name: flat[name].values[index] for name in head if name in flat}
         residual = row.get("R", math.nan) - prediction[index]
         row |= {"R_theory": prediction[index], "residual": residual}
-        yield [_cell(row.get(name, dataset.attrs.get(name, ""))) for name in head]
+        yield [row.get(name, dataset.attrs.get(name, "")) for name in head]
 
 
 def _cell(value: Any) -> str:

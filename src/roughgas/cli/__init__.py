@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 from roughgas import __version__
-from roughgas.cli import planning, products, run, showcase, studies
+from roughgas.cli import export, planning, products, run, showcase, studies
 from roughgas.errors import CollapseError, InputError
 
 BAD_INPUT, FAILED, INTERRUPTED = 2, 1, 130
@@ -75,4 +75,5 @@ def _parser() -> Parser:
     products.add_commands(commands)
     showcase.add_commands(commands)
     studies.add_commands(commands)
+    export.add_commands(commands)
     return parser
