@@ -16,6 +16,7 @@ from roughgas.cli import (
     bench,
     completion,
     doctor,
+    export,
     movie,
     page,
     planning,
@@ -137,6 +138,7 @@ def _parser() -> Parser:
     page.add_commands(commands)
     showcase.add_commands(commands)
     studies.add_commands(commands)
+    export.add_commands(commands)
     doctor.add_commands(commands)
     more = "`roughgas COMMAND --help` explains a command, with examples."
     parser.epilog = f"{commands.overview(FOR_PEOPLE)}\n\n{more}"
