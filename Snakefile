@@ -3,6 +3,8 @@
 #   snakemake -j2 figures                       the four figures of the paper, a table, its claims
 #   snakemake -j2 figures --config scale=small  the same in a minute, with wide error bars
 #   snakemake -j2 extensions                    beyond the paper: spheres, friction, other drives ...
+#   snakemake -j1 explore                       a page in which to look at every point
+#   snakemake -j2 movies                        the scenes as they move, one GIF each
 #   snakemake -j1 showcase                      a large cooling gas forms clusters: a movie
 #   snakemake -j2 accuracy                      what the next digit costs, in CPU seconds
 #   snakemake -j2 coverage                      whether error bars hold the truth as often as they say
@@ -20,6 +22,7 @@ be_brief()
 if workflow.is_main_process:
     alive = forget_dead_locks()  # held until this process ends
 
+CHANGES = {key: change for key, change in config.items() if key != "scale"}  # the command line's
 config = checked_config("config.yaml", config)
 SCALE = config["scale"]
 
@@ -32,12 +35,14 @@ wildcard_constraints:
     seed="[^/]+",
     folder="([^/]+/)?",
     figure=r"(?!clustering\.|hard_cases|accuracy\.|coverage\.)[^/]+",  # these have their own rules
+    movie="[^/]+",
     study="[^/]+",
     task="[^/]+",
     study_figure="accuracy|coverage",
     family="[^/]+",
 
 
+include: "rules/report.smk"
 include: "rules/compile.smk"
 include: "rules/simulate.smk"
 include: "rules/planning.smk"
@@ -45,8 +50,13 @@ include: "rules/reduce.smk"
 include: "rules/figures.smk"
 include: "rules/extensions.smk"
 include: "rules/showcase.smk"
+include: "rules/movies.smk"
 include: "rules/hard_cases.smk"
 include: "rules/accuracy.smk"
+include: "rules/page.smk"
+
+
+report: "rules/captions/workflow.rst"
 
 
 rule figures:
@@ -56,6 +66,7 @@ rule figures:
         f"results/{SCALE}/R.csv",
         f"results/{SCALE}/claims.json",
         f"results/{SCALE}/claims.md",
+        documents("claims", "run_times", "config"),
 
 
 rule everything:
@@ -64,9 +75,12 @@ rule everything:
         rules.extensions.input,
         reduced(SCALE, config["experiments"]),
         rules.showcase.input,
+        rules.movies.input,
         rules.hard_cases.input,
         rules.accuracy.input,
         rules.coverage.input,
+        rules.explore.input,
+        rules.explore_extensions.input,
 
 
 onstart:

@@ -53,9 +53,6 @@ DAMAGES = {
     "code cut": ("*.nbc", lambda content: content[:-100]),
     "code empty": ("*.nbc", lambda content: b""),
     "a hole in the code": ("*.nbc", lambda content: content[:900] + bytes(999) + content[1899:]),
-        "*.nbc",
-        lambda c: c[: len(c) // 3] + bytes(999) + c[len(c) // 3 + 999 :],
-    ),
     "code removed": ("*.nbc", None),
     "index removed": ("*.nbi", None),
 }

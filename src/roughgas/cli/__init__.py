@@ -15,19 +15,40 @@ from typing import NoReturn
 
 from roughgas import __version__
 from roughgas.atomic import check_place
-from roughgas.cli import doctor, planning, products, run, showcase, studies
+from roughgas.cli import (
+    bench,
+    completion,
+    doctor,
+    export,
+    movie,
+    page,
+    planning,
+    products,
+    run,
+    show,
+    showcase,
+    studies,
+    theory,
+)
+from roughgas.cli.parser import BAD_INPUT, Commands, Formatter, Parser
 from roughgas.cli.streams import mend_streams
 from roughgas.errors import CollapseError, InputError
 
-BAD_INPUT, FAILED, INTERRUPTED, NOBODY_READS = 2, 1, 130, 141
+FAILED, INTERRUPTED, NOBODY_READS = 1, 130, 141
 GO_ON = "nothing is half-written; the same command begins anew"
-
-
-class Parser(argparse.ArgumentParser):
-    """A parser that refuses in one line."""
-
-    def error(self, message: str) -> NoReturn:
-        self.exit(BAD_INPUT, f"roughgas: error: {message} (see `{self.prog} --help`)\n")
+FOR_PEOPLE = (
+    "run",
+    "movie",
+    "show",
+    "theory",
+    "plan",
+    "bench",
+    "export",
+    "crate",
+    "doctor",
+    "completion",
+)
+"""What help lists first; all other commands are steps of the workflow."""
 
 
 def process() -> NoReturn:
@@ -74,7 +95,9 @@ def _flush(status: int) -> int:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line `arguments` (by default the process's own); its exit status."""
     try:
-        options = _parser().parse_args(arguments)
+        parser = _parser()
+        completion.answer(parser)
+        options = parser.parse_args(arguments)
         for place in _outputs(options):
             check_place(place)
         options.command(options)
@@ -111,15 +134,25 @@ def _fail(status: int, message: str) -> int:
 def _parser() -> Parser:
     parser = Parser(
         prog="roughgas",
+        usage="roughgas [-h] [--version] COMMAND ...",
         description="Event-driven simulation of gases of rough, inelastic disks and spheres.",
-        epilog="`roughgas COMMAND --help` explains a command, with an example.",
+        formatter_class=Formatter,
     )
     parser.add_argument("--version", action="version", version=f"roughgas {__version__}")
-    commands = parser.add_subparsers(metavar="COMMAND", required=True)
+    commands = Commands(parser)
     run.add_commands(commands)
+    movie.add_commands(commands)
+    show.add_commands(commands)
+    theory.add_commands(commands)
     planning.add_commands(commands)
+    bench.add_commands(commands)
+    completion.add_commands(commands)
     products.add_commands(commands)
+    page.add_commands(commands)
     showcase.add_commands(commands)
     studies.add_commands(commands)
+    export.add_commands(commands)
     doctor.add_commands(commands)
+    more = "`roughgas COMMAND --help` explains a command, with examples."
+    parser.epilog = f"{commands.overview(FOR_PEOPLE)}\n\n{more}"
     return parser
