@@ -47,15 +47,18 @@ logging.getLogger("traitlets").setLevel(logging.WARNING)
 
 default_role = "code"
 autodoc_member_order = "bysource"
-autodoc_typehints = "description"
 add_module_names = False
+python_maximum_signature_line_length = 160
+autodoc_preserve_defaults = True
+autodoc_default_options = {"no-value": True}
 napoleon_google_docstring = False
 
 
 def setup(app):
     app.connect("source-read", take_readme_in)
     app.connect("env-get-outdated", lambda *_: ["tutorial"])  # it runs at each build
-    app.connect("autodoc-process-docstring", leave_bars_alone)
+    app.connect("autodoc-process-docstring", as_prose)
+    app.connect("autodoc-skip-member", skip_fields)
     app.connect("build-finished", refuse_what_is_loaded)
 
 
@@ -88,14 +91,25 @@ def linked(text, base, folder):
     return LINK.sub(here, text)
 
 
-def leave_bars_alone(app, what, name, thing, options, lines):
-    """Bars in docstrings are those of |v|, and mark no substitution."""
-    lines[:] = ["`".join(_escaped(line.split("`"))) for line in lines]
+def as_prose(app, what, name, thing, options, lines):
+    """Docstrings are prose, no markup: bars are those of |v|, what is indented is a formula."""
+    found = ["", ""]
+    for line in lines:
+        after_prose = found[-2][:1].isalpha() and not found[-1]
+        if line.startswith("    ") and after_prose:
+            found += ["::", ""]
+        found.append("`".join(_escaped(line.split("`"))) if line[:1] != " " else line)
+    lines[:] = found[2:]
 
 
 def _escaped(parts):
     """Parts of a line between backquotes: every other one is code."""
     return [part if i % 2 else part.replace("|", r"\|") for i, part in enumerate(parts)]
+
+
+def skip_fields(app, what, name, thing, skip, options):
+    """Fields of a NamedTuple stand in its signature; about them Python says `Alias for ...`."""
+    return skip or type(thing).__name__ == "_tuplegetter"
 
 
 def refuse_what_is_loaded(app, exception):
