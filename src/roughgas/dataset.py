@@ -97,7 +97,7 @@ VARIABLES = {
 CLOCKS = ("time", "collisions_per_particle")
 REQUIRED = ("E_trans", "collisions", "kernel_seconds", "equilibrated")
 REQUIRED_OF_SPIN = ("R", "R_stderr", "R_dof", "R_ci95", "R_ratio_of_means", "E_rot")
-"""What a point holds besides, where particles spin: where it has the attribute `inertia`."""
+"""What a point holds besides where particles spin, and so has the attribute `inertia`."""
 REQUIRED_ATTRIBUTES = ("experiment", "scale", "r", "beta", "seed", "dimension", "particles")
 WALL_CLOCK = ("kernel_seconds", "planned_seconds")
 """The only variables that differ when the same point is run again."""
