@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 from roughgas import __version__
-from roughgas.cli import export, planning, products, run, showcase, studies
+from roughgas.cli import crate, export, planning, products, run, showcase, studies
 from roughgas.errors import CollapseError, InputError
 
 BAD_INPUT, FAILED, INTERRUPTED = 2, 1, 130
@@ -76,4 +76,5 @@ def _parser() -> Parser:
     showcase.add_commands(commands)
     studies.add_commands(commands)
     export.add_commands(commands)
+    crate.add_commands(commands)
     return parser
