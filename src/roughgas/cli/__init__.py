@@ -18,6 +18,7 @@ from roughgas.atomic import check_place
 from roughgas.cli import (
     bench,
     completion,
+    crate,
     doctor,
     export,
     movie,
@@ -152,6 +153,7 @@ def _parser() -> Parser:
     showcase.add_commands(commands)
     studies.add_commands(commands)
     export.add_commands(commands)
+    crate.add_commands(commands)
     doctor.add_commands(commands)
     more = "`roughgas COMMAND --help` explains a command, with examples."
     parser.epilog = f"{commands.overview(FOR_PEOPLE)}\n\n{more}"
