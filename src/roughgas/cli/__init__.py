@@ -8,37 +8,39 @@ import gc
 import os
 import sys
 from collections.abc import Sequence
+from importlib import import_module
 from typing import NoReturn
 
 from roughgas import __version__
-from roughgas.cli import (
-    bench,
-    completion,
-    planning,
-    products,
-    run,
-    show,
-    showcase,
-    studies,
-    theory,
-)
 from roughgas.cli.parser import BAD_INPUT, Commands, Formatter, Parser
 from roughgas.errors import CollapseError, InputError
 
 FAILED, INTERRUPTED = 1, 130
-FOR_PEOPLE = (
-    "run",
-    "movie",
-    "show",
-    "theory",
-    "plan",
-    "bench",
-    "export",
-    "crate",
-    "doctor",
-    "completion",
-)
-"""What help lists first; all other commands are steps of the workflow."""
+FOR_PEOPLE = {
+    "run": "run",
+    "show": "show",
+    "theory": "theory",
+    "plan": "planning",
+    "bench": "bench",
+    "completion": "completion",
+}
+"""Commands that people give, in the order of help, and the module here that has each."""
+OF_THE_WORKFLOW = {
+    "compile": "run",
+    "pilot": "planning",
+    "reach": "planning",
+    "costs": "planning",
+    "reduce": "products",
+    "table": "products",
+    "figure": "products",
+    "claims": "products",
+    "clustering": "showcase",
+    "film": "showcase",
+    "study": "studies",
+    "combine": "studies",
+    "tables": "studies",
+}
+"""The same of those that the rules give."""
 
 
 def process() -> NoReturn:
@@ -58,8 +60,13 @@ def process() -> NoReturn:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line `arguments` (by default the process's own); its exit status."""
-    parser = _parser()
-    completion.answer(parser)
+    if arguments is None:
+        arguments = sys.argv[1:]
+    parser = _parser(*arguments[:1])
+    if "_ARGCOMPLETE" in os.environ:  # a shell asks how its line may go on
+        from argcomplete import autocomplete
+
+        autocomplete(parser)
     options = parser.parse_args(arguments)
     try:
         options.command(options)
@@ -80,7 +87,8 @@ def _fail(status: int, message: str) -> int:
     return status
 
 
-def _parser() -> Parser:
+def _parser(command: str = "") -> Parser:
+    """The parser of `command`, whose module alone is imported; of all commands if it is none."""
     parser = Parser(
         prog="roughgas",
         usage="roughgas [-h] [--version] COMMAND ...",
@@ -89,15 +97,10 @@ def _parser() -> Parser:
     )
     parser.add_argument("--version", action="version", version=f"roughgas {__version__}")
     commands = Commands(parser)
-    run.add_commands(commands)
-    show.add_commands(commands)
-    theory.add_commands(commands)
-    planning.add_commands(commands)
-    bench.add_commands(commands)
-    completion.add_commands(commands)
-    products.add_commands(commands)
-    showcase.add_commands(commands)
-    studies.add_commands(commands)
+    known = FOR_PEOPLE | OF_THE_WORKFLOW
+    for module in [known[command]] if command in known else dict.fromkeys(known.values()):
+        import_module(f"roughgas.cli.{module}").add_commands(commands)
     more = "`roughgas COMMAND --help` explains a command, with examples."
-    parser.epilog = f"{commands.overview(FOR_PEOPLE)}\n\n{more}"
+    groups = {"commands": FOR_PEOPLE, "commands that the workflow gives": OF_THE_WORKFLOW}
+    parser.epilog = f"{commands.overview(groups)}\n\n{more}"
     return parser
