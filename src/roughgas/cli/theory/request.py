@@ -28,7 +28,7 @@ def gases(options: argparse.Namespace) -> list[Gas]:
     share = float(check_share(_number("--spin-share", options.spin_share)))
     mu = None
     if options.mu is not None:
-        mu = float(check_between("friction mu", _number("--mu", options.mu), 0.0, math.inf))
+        mu = float(check_between("friction mu", _number("--mu", options.mu), 0, math.inf))
     found = []
     for dimension in [int(options.dimension)] if options.dimension else [2, 3]:
         q = theory.moment_of_inertia(dimension)
