@@ -5,12 +5,14 @@ import json
 import sys
 from typing import Any
 
+from roughgas.cli.parser import examples
 from roughgas.errors import InputError
 
-EXAMPLE = """examples:
-  roughgas crate results/paper/*.nc results/paper/R.csv figures/fig*.png -o run.zip
-  roughgas crate --verify run.zip
-  roughgas crate --verify run.zip point.nc     is point.nc one of its points, to the last bit?"""
+EXAMPLES = examples(
+    "roughgas crate results/paper/*.nc results/paper/R.csv figures/fig*.png -o run.zip",
+    "roughgas crate --verify run.zip",
+    "roughgas crate --verify run.zip results/paper/cooling/r0.9/beta0/seed1.nc",
+)
 
 
 def add_commands(commands: Any) -> None:
@@ -20,8 +22,7 @@ def add_commands(commands: Any) -> None:
         help="pack a finished run as an RO-Crate, or check one",
         description="Pack what a run in this folder has made, with its configuration, code and "
         "environment, as an RO-Crate with checksums; the same files give the same bytes.",
-        epilog=EXAMPLE,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
+        epilog=EXAMPLES,
     )
     parser.add_argument(
         "files", nargs="*", metavar="FILE", help="results and figures; with --verify, points"
