@@ -31,8 +31,8 @@ test: setup ## run the tests
 extras: .venv/with-browser .venv-slurm/ready ## run what takes minutes more, a browser, or Slurm
 	$(BIN)/python -m pytest -n $(JOBS) --dist loadgroup -m "$(EXTRA_TESTS)"
 
-docs: .venv/with-docs ## run the tutorial, and build the documentation: docs/_build/index.html
-	$(BIN)/python -m sphinx --fail-on-warning --keep-going -q docs docs/_build
+docs: .venv/with-docs ## run the tutorial, and build the documentation: docs/_build/html/index.html
+	$(BIN)/python -m sphinx --fail-on-warning --keep-going -q docs docs/_build/html
 
 bench: setup ## measure the speed: docs/benchmarks.md
 	$(BIN)/python -m benchmarks

@@ -9,6 +9,7 @@
 #   snakemake -j2 accuracy                      what the next digit costs, in CPU seconds
 #   snakemake -j2 coverage                      whether error bars hold the truth as often as they say
 #   snakemake -j2 hard_cases                    where simulations go wrong, and how far from it we are
+#   snakemake -j2 crate                         the run as one file: an RO-Crate with checksums
 #   snakemake -j1 results/paper/cooling/r0.87/beta-0.33/seed7.nc     any one point
 
 
@@ -54,6 +55,7 @@ include: "rules/movies.smk"
 include: "rules/hard_cases.smk"
 include: "rules/accuracy.smk"
 include: "rules/page.smk"
+include: "rules/crate.smk"
 
 
 report: "rules/captions/workflow.rst"

@@ -66,11 +66,6 @@ def points_of_experiment(wildcards):
     return points(wildcards.scale, wildcards.experiment)
 
 
-def points_of(scale, figures):
-    """The datasets of all points that some figures show."""
-    return [point for experiment in shown_in(figures) for point in points(scale, experiment)]
-
-
 def points(scale, experiment):
     """The datasets of all points in the sweep of an experiment, or the folders that hold them."""
     found = settings(scale, experiment)

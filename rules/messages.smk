@@ -5,7 +5,8 @@ from snakemake.logging import DefaultFormatter, logger
 
 TARGETS = (
     "A target is a file, such as results/paper/cooling/r0.9/beta0/seed1.nc or figures/fig1a.png, or"
-    " one of figures, extensions, showcase, accuracy, coverage, hard_cases, plan, movies, everything."
+    " one of figures, extensions, movies, showcase, accuracy, coverage, hard_cases, plan,"
+    " everything."
 )
 SILENT = "(it said nothing: a full disk, or killed for lack of memory?)"
 # what the message of the failed job, and the last line, say better

@@ -3,11 +3,13 @@ LOOKS = sorted(str(path) for path in (PACKAGE / "page").glob("*.*") if path.suff
 
 
 def points_of_paper(wildcards):
-    return points_of(wildcards.scale, PAPER)
+    """The datasets of all points that the paper's figures show."""
+    return [point for name in shown_in(PAPER) for point in points(wildcards.scale, name)]
 
 
 def points_of_extensions(wildcards):
-    return points_of(wildcards.scale, EXTENSIONS)
+    """The datasets of all points that the figures beyond it show."""
+    return [point for name in shown_in(EXTENSIONS) for point in points(wildcards.scale, name)]
 
 
 rule document:

@@ -2,13 +2,12 @@
 
 import numpy as np
 import xarray as xr
-from tests.synthetic import reduced
 
 from roughgas import accuracy, film
 from roughgas.accuracy.files import combine, write_task
-from roughgas.cf import COMMON_ATTRIBUTES, completed
 from roughgas.config import as_text
 from roughgas.dataset import Point, write_point
+from roughgas.reduce import reduce_points
 
 ABOUT = {
     "experiment": "vibrated",
@@ -26,18 +25,28 @@ def write_all(folder):
     """The paths of the files, by kind."""
     paths = {kind: folder / f"{kind}.nc" for kind in ("point", "reduced", "film", "studies")}
     write_point(paths["point"], point())
-    data = reduced("waves", r=(0.8, 0.9), beta=(-0.5, 0.5), third=("floor.wave", ("sine", "saw")))
-    completed(data.assign_attrs(COMMON_ATTRIBUTES)).to_netcdf(paths["reduced"])
-    film.write_film(paths["film"], frames(), {"box": [8.0, 8.0], "window": 4.0})
+    reduce_points(_points(folder), paths["reduced"])
+    film.write_film(paths["film"], frames(), {"title": "made up", "box": [8.0, 8.0]})
     write_studies(paths["studies"], folder)
     return paths
 
 
-def point():
-    rng = np.random.default_rng(1)
+def _points(folder):
+    """Points of two seeds at two places of a sweep with a third axis."""
+    for number, (wave, r) in enumerate((("sine", 0.9), ("sine", 0.8), ("saw", 0.9), ("saw", 0.8))):
+        place = {"r": r, "swept": "floor.wave", "swept_value": wave}
+        for seed in (1, 2):
+            made = point(seed + 10 * number)
+            path = folder / f"points/{wave}{r}_{seed}.nc"
+            write_point(path, made._replace(attributes=ABOUT | place | {"seed": seed}))
+            yield path
+
+
+def point(seed=1):
+    rng = np.random.default_rng(seed)
     return Point(
         {
-            "R": 0.1 + 0.2,
+            "R": 0.1 + 0.2 * rng.random(),
             "R_stderr": 1 / 3,
             "R_dof": 12.0,
             "R_ci95": 0.022,

@@ -96,12 +96,13 @@ def test_a_file_of_a_newer_schema_is_refused(tmp_path):
 
 
 def test_a_cooling_gas_counts_collisions_and_initial_energies(tmp_path):
-    cooling = point(R_replica=np.array([0.2, 0.3]), plateau_end=40.0)
+    cooling = point(R_replica=np.array([0.2, 0.3]), plateau_end=40.0, contact_time=1e-4)
     cooling.variables["collisions_per_particle"] = cooling.variables.pop("time")
     write_point(tmp_path / "a.nc", cooling)
     data = read_point(tmp_path / "a.nc")
     counted = {data[name].reduced_units for name in ("measured_from", "plateau_end")}
     assert counted == {"collisions per particle"}
+    assert data.contact_time.reduced_units == "T"
     assert data.E_rot.reduced_units == "initial E_trans" and "reduced_units" not in data.R.attrs
     assert data.R_replica.dims == ("replica",)
     assert "collisions_per_particle" in data.R_series.coords

@@ -94,10 +94,12 @@ VARIABLES = {
     "E_trans_series": _series("translational energy per degree of freedom", ENERGY),
     "E_rot_series": _series("rotational energy per degree of freedom", ENERGY),
 }
+OF_SETTINGS = ("contact_time",)
+"""Variables that are in T in a cooling gas, too, since the settings are."""
 CLOCKS = ("time", "collisions_per_particle")
 REQUIRED = ("E_trans", "collisions", "kernel_seconds", "equilibrated")
 REQUIRED_OF_SPIN = ("R", "R_stderr", "R_dof", "R_ci95", "R_ratio_of_means", "E_rot")
-"""What a point holds besides, where particles spin: where it has the attribute `inertia`."""
+"""What a point holds besides where particles spin, and so has the attribute `inertia`."""
 REQUIRED_ATTRIBUTES = ("experiment", "scale", "r", "beta", "seed", "dimension", "particles")
 WALL_CLOCK = ("kernel_seconds", "planned_seconds")
 """The only variables that differ when the same point is run again."""
@@ -168,7 +170,8 @@ def read_point(path: str | Path) -> "xarray.Dataset":
 def variable_attributes(name: str, cooling: bool) -> dict[str, str]:
     """long_name and units of a variable of a cooling gas or of a forced one."""
     about = VARIABLES[name]
-    units = COOLING_UNITS.get(about.units, about.units) if cooling else about.units
+    counted = cooling and name not in OF_SETTINGS
+    units = COOLING_UNITS.get(about.units, about.units) if counted else about.units
     return {"long_name": about.long_name, **unit_attributes(units)}
 
 

@@ -29,15 +29,15 @@ class Schedule(TypedDict, total=False):
     `cooling`, and its lengths in collisions per particle.
     """
 
-    kind: Literal["steady", "cooling"]
-    sample_every: float  # between samples
-    equilibrate: float  # steady: before the measurement
-    measure: float  # steady: length of the measurement
-    period: float  # steady: of the drive; averages are over whole periods
-    replicas: int  # cooling: independent runs
-    thermalise: float  # cooling: as smooth elastic particles, at the start
-    relaxation_times: float  # cooling: e-folds of theory until R is on its plateau
-    plateau: float  # cooling: length of the plateau
+    kind: Literal["steady", "cooling"]  #: driven, or not
+    sample_every: float  #: between samples
+    equilibrate: float  #: (steady) before the measurement
+    measure: float  #: (steady) length of the measurement
+    period: float  #: (steady) of the drive; averages are over whole periods
+    replicas: int  #: (cooling) independent runs
+    thermalise: float  #: (cooling) as smooth elastic particles, at the start
+    relaxation_times: float  #: (cooling) e-folds of theory until R is on its plateau
+    plateau: float  #: (cooling) length of the plateau
 
 
 def simulate(
@@ -79,7 +79,7 @@ def simulate(
         ``"open"`` above where there is gravity.
     effects
         What acts, such as ``{"friction": {"mu": 0.3}}``; None takes an effect away, as in
-        ``{"contact_time": None}``. The page on effects lists them all.
+        ``{"contact_time": None}``. docs/effects.md lists them all.
     schedule
         How long to simulate, such as ``{"measure": 200}``; see `Schedule`.
     scale
@@ -115,15 +115,17 @@ def simulate(
 
     >>> from roughgas import simulate, theory
     >>> gas = simulate("cooling", r=0.9, beta=0.5, scale="small", progress=False)
-    >>> print(f"{gas.R:.2f} +- {gas.R_stderr:.2f}, theory {theory.cooling_ratio(0.9, 0.5):.2f}")
-    0.45 +- 0.01, theory 0.44
+    >>> print(f"{gas.R:.2f} +- {gas.R_stderr:.2f}")
+    0.45 +- 0.01
+    >>> print(f"{theory.cooling_ratio(0.9, 0.5):.2f}")
+    0.44
 
     One that is changed, here a small bed with friction:
 
     >>> bed = simulate(
     ...     "vibrated", r=0.9, beta=0, seed=3, particles=40, box=(12.5, "open"),
-    ...     effects={"friction": {"mu": 0.3}}, schedule={"equilibrate": 50, "measure": 100},
-    ...     progress=False,
+    ...     effects={"friction": {"mu": 0.3}},
+    ...     schedule={"equilibrate": 50, "measure": 100}, progress=False,
     ... )
     >>> bed.R_series.dims, bed.R_series.size
     (('sample',), 400)
@@ -131,10 +133,11 @@ def simulate(
     A scene of one's own:
 
     >>> own = simulate(
-    ...     r=0.9, beta=0.5, particles=40, box=(25, 25),
+    ...     r=0.9, beta=0.5, particles=40, box=(25, 25), progress=False,
     ...     effects={"spin": {"inertia": 0.5}, "shear": {"velocity": 1}},
-    ...     schedule={"kind": "steady", "equilibrate": 50, "measure": 100, "sample_every": 1},
-    ...     progress=False,
+    ...     schedule={
+    ...         "kind": "steady", "equilibrate": 50, "measure": 100, "sample_every": 1,
+    ...     },
     ... )
     >>> own.title
     'scene: r = 0.9, beta = 0.5'

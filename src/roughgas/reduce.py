@@ -58,6 +58,8 @@ DERIVED = {
     "measured_for": "length of the measured window, mean over seeds",
     "n_seeds": "number of seeds found",
 }
+LIKE = {"measured_for": "measured_from", "E_trans_stderr": "E_trans"}
+"""Variables of points that those of DERIVED have the units of, where they are not those of R."""
 
 
 class Summary(NamedTuple):
@@ -273,8 +275,8 @@ def _about(name: str, cooling: bool) -> dict[str, str]:
     """long_name and units of a reduced variable."""
     if name not in DERIVED:
         return variable_attributes(name, cooling)
-    like = {"measured_for": "measured_from", "E_trans_stderr": "E_trans"}.get(name, "R")
-    return variable_attributes(like, cooling) | {"long_name": DERIVED[name]}
+    like = variable_attributes(LIKE.get(name, "R"), cooling)
+    return like | {"long_name": DERIVED[name]}
 
 
 def _common_attributes(points: Sequence[Summary]) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""Snakemake's report in a real browser: its headings, its pictures and their captions, its tables."""
+"""Snakemake's report in a real browser: headings, pictures with their captions, tables."""
 
 import pytest
 

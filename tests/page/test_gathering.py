@@ -5,8 +5,8 @@ import re
 
 import numpy as np
 import pytest
-from page.conftest import SAMPLES
 
+from page.conftest import SAMPLES
 from roughgas.cli import main
 from roughgas.dataset import read_point
 from roughgas.errors import InputError

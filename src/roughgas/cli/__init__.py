@@ -11,44 +11,50 @@ import os
 import signal
 import sys
 from collections.abc import Sequence
+from importlib import import_module
 from typing import NoReturn
 
 from roughgas import __version__
 from roughgas.atomic import check_place
-from roughgas.cli import (
-    bench,
-    completion,
-    doctor,
-    export,
-    movie,
-    page,
-    planning,
-    products,
-    run,
-    show,
-    showcase,
-    studies,
-    theory,
-)
 from roughgas.cli.parser import BAD_INPUT, Commands, Formatter, Parser
 from roughgas.cli.streams import mend_streams
 from roughgas.errors import CollapseError, InputError
 
 FAILED, INTERRUPTED, NOBODY_READS = 1, 130, 141
 GO_ON = "nothing is half-written; the same command begins anew"
-FOR_PEOPLE = (
-    "run",
-    "movie",
-    "show",
-    "theory",
-    "plan",
-    "bench",
-    "export",
-    "crate",
-    "doctor",
-    "completion",
-)
-"""What help lists first; all other commands are steps of the workflow."""
+FOR_PEOPLE = {
+    "run": "run",
+    "movie": "movie",
+    "show": "show",
+    "theory": "theory",
+    "plan": "planning",
+    "bench": "bench",
+    "export": "export",
+    "crate": "crate",
+    "doctor": "doctor",
+    "completion": "completion",
+}
+"""Commands that people give, in the order of help, and the module here that has each."""
+OF_THE_WORKFLOW = {
+    "compile": "run",
+    "pilot": "planning",
+    "reach": "planning",
+    "costs": "planning",
+    "reduce": "products",
+    "table": "products",
+    "figure": "products",
+    "claims": "products",
+    "page": "page",
+    "html": "page",
+    "times": "page",
+    "config": "page",
+    "clustering": "showcase",
+    "film": "showcase",
+    "study": "studies",
+    "combine": "studies",
+    "tables": "studies",
+}
+"""The same of those that the rules give."""
 
 
 def process() -> NoReturn:
@@ -95,11 +101,7 @@ def _flush(status: int) -> int:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line `arguments` (by default the process's own); its exit status."""
     try:
-        parser = _parser()
-        completion.answer(parser)
-        options = parser.parse_args(arguments)
-        for place in _outputs(options):
-            check_place(place)
+        options = _options(sys.argv[1:] if arguments is None else arguments)
         options.command(options)
     except InputError as error:
         return _fail(BAD_INPUT, str(error))
@@ -120,6 +122,19 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return 0
 
 
+def _options(arguments: Sequence[str]) -> argparse.Namespace:
+    """What the command line says; raises OSError where what it is to write could not be."""
+    parser = _parser(*arguments[:1])
+    if "_ARGCOMPLETE" in os.environ:  # a shell asks how its line may go on
+        from argcomplete import autocomplete
+
+        autocomplete(parser)
+    options = parser.parse_args(arguments)
+    for place in _outputs(options):
+        check_place(place)
+    return options
+
+
 def _outputs(options: argparse.Namespace) -> list[str]:
     """The files, or folders, that a command is to write."""
     named = getattr(options, "output", None) or []
@@ -131,7 +146,8 @@ def _fail(status: int, message: str) -> int:
     return status
 
 
-def _parser() -> Parser:
+def _parser(command: str = "") -> Parser:
+    """The parser of `command`, whose module alone is imported; of all commands if it is none."""
     parser = Parser(
         prog="roughgas",
         usage="roughgas [-h] [--version] COMMAND ...",
@@ -140,19 +156,10 @@ def _parser() -> Parser:
     )
     parser.add_argument("--version", action="version", version=f"roughgas {__version__}")
     commands = Commands(parser)
-    run.add_commands(commands)
-    movie.add_commands(commands)
-    show.add_commands(commands)
-    theory.add_commands(commands)
-    planning.add_commands(commands)
-    bench.add_commands(commands)
-    completion.add_commands(commands)
-    products.add_commands(commands)
-    page.add_commands(commands)
-    showcase.add_commands(commands)
-    studies.add_commands(commands)
-    export.add_commands(commands)
-    doctor.add_commands(commands)
+    known = FOR_PEOPLE | OF_THE_WORKFLOW
+    for module in [known[command]] if command in known else dict.fromkeys(known.values()):
+        import_module(f"roughgas.cli.{module}").add_commands(commands)
     more = "`roughgas COMMAND --help` explains a command, with examples."
-    parser.epilog = f"{commands.overview(FOR_PEOPLE)}\n\n{more}"
+    groups = {"commands": FOR_PEOPLE, "commands that the workflow gives": OF_THE_WORKFLOW}
+    parser.epilog = f"{commands.overview(groups)}\n\n{more}"
     return parser

@@ -1,35 +1,22 @@
 """`roughgas bench`: how fast this machine simulates."""
 
 import argparse
-from collections.abc import Mapping, Sequence
-from statistics import median
-from typing import Any, NamedTuple
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
 
 from roughgas.cli.layout import as_json, columns
 from roughgas.cli.parser import examples
-from roughgas.cli.progress import Bar
 from roughgas.cli.settings import add_experiments, add_scale
 from roughgas.errors import InputError
+
+if TYPE_CHECKING:
+    from roughgas.speed import Speed
 
 EXAMPLES = examples(
     "roughgas bench",
     "roughgas bench cooling vibrated --r 0.8 --beta 0.5 --runs 9",
     "roughgas bench cooling --scale small --json",
 )
-WARM_UP = 100  # collisions per particle, before anything is timed
-SECONDS = 0.3  # of CPU time, about, that a run takes
-REFRESH = 4  # samples, as in the protocol of a cooling gas
-
-
-class Speed(NamedTuple):
-    """What was measured of an experiment: collisions a second of CPU time, in each run."""
-
-    experiment: str
-    r: float
-    beta: float
-    particles: int
-    dimension: int
-    rates: Sequence[float]
 
 
 def add_commands(commands: Any) -> None:
@@ -47,7 +34,7 @@ def add_commands(commands: Any) -> None:
     add_scale(parser)
     parser.add_argument("--r", default="0.9", help="normal restitution, in [0, 1] (default: 0.9)")
     parser.add_argument("--beta", default="0", help="roughness, in [-1, 1] (default: 0)")
-    parser.add_argument("--runs", default="5", help=f"of about {SECONDS} s each (default: 5)")
+    parser.add_argument("--runs", default="5", help="of about 0.3 s each (default: 5)")
     parser.add_argument("--json", action="store_true", help="for scripts")
     parser.set_defaults(command=bench)
 
@@ -61,47 +48,19 @@ def bench(options: argparse.Namespace) -> None:
         raise InputError("--runs", options.runs, "be a whole number >= 1")
     found, runs = _experiments(options), int(options.runs)
 
+    from roughgas.cli.progress import Bar
     from roughgas.machine import description
+    from roughgas.speed import measure
 
     speeds = []
     with Bar("bench", len(found) * (runs + 1), "runs") as bar:
         for name, settings in found.items():
-            speeds.append(measure(name, settings, r, beta, runs, bar))
+            speeds.append(measure(name, settings, r, beta, runs, bar.advance))
     machine = description()
     if options.json:
         print(as_json({"machine": machine, "speeds": [_record(one) for one in speeds]}))
     else:
         print(f"{_table(speeds)}\n\n{columns(machine.items())}")
-
-
-def measure(
-    name: str, settings: Mapping[str, Any], r: float, beta: float, runs: int, bar: Bar
-) -> Speed:
-    """The speed of an experiment, from a gas that has made WARM_UP collisions per particle.
-
-    Raises InputError for illegal values, CollapseError where contacts accumulate without end.
-    """
-    import numpy as np
-
-    from roughgas.initial import initial_state
-    from roughgas.protocols.recorder import Recorder
-    from roughgas.scene import build, check_company
-
-    scene = build(settings, r, beta)
-    check_company(scene, settings)
-    state = initial_state(scene, settings, np.random.default_rng(0))
-    refresh = REFRESH if settings["schedule"]["kind"] == "cooling" else 0
-    each = max(1, settings["particles"] // 2)  # a collision has two partners
-
-    def rate(samples):
-        recorder = Recorder()
-        recorder.in_collisions(state, scene, each, samples, refresh)
-        bar.advance(name)
-        return recorder.collisions / max(recorder.seconds, 1e-9)
-
-    samples = max(1, round(rate(WARM_UP) * SECONDS / each))
-    rates = [rate(samples) for _ in range(runs)]
-    return Speed(name, r, beta, settings["particles"], len(scene.box), rates)
 
 
 def _experiments(options: argparse.Namespace) -> dict[str, dict[str, Any]]:
@@ -118,19 +77,19 @@ def _experiments(options: argparse.Namespace) -> dict[str, dict[str, Any]]:
     return found
 
 
-def _record(speed: Speed) -> dict[str, Any]:
+def _record(speed: "Speed") -> dict[str, Any]:
     about = {
-        "collisions_per_second": median(speed.rates),
+        "collisions_per_second": speed.median,
         "slowest": min(speed.rates),
         "fastest": max(speed.rates),
     }
     return speed._asdict() | about
 
 
-def _table(speeds: Sequence[Speed]) -> str:
+def _table(speeds: Sequence["Speed"]) -> str:
     rows = [["experiment", "r", "beta", "particles", "collisions / s", "slowest", "fastest"]]
     for one in speeds:
-        rates = (median(one.rates), min(one.rates), max(one.rates))
+        rates = (one.median, min(one.rates), max(one.rates))
         place = [one.experiment, f"{one.r:g}", f"{one.beta:g}", str(one.particles)]
         rows.append(place + [f"{float(f'{rate:.3g}'):,.0f}" for rate in rates])
     return columns(rows, numbers=True)

@@ -1,7 +1,6 @@
-"""`roughgas completion` prints what makes a shell complete this command, and ask `answer`."""
+"""`roughgas completion` prints what makes a shell complete this command; what it completes."""
 
 import argparse
-import os
 from typing import Any
 
 from roughgas.cli.parser import examples
@@ -33,14 +32,6 @@ def completion(options: argparse.Namespace) -> None:
     import argcomplete
 
     print(argcomplete.shellcode(["roughgas"], shell=options.shell))
-
-
-def answer(parser: argparse.ArgumentParser) -> None:
-    """Where a shell asks how its line may go on, tell it, and end the process."""
-    if "_ARGCOMPLETE" in os.environ:
-        import argcomplete
-
-        argcomplete.autocomplete(parser)
 
 
 def experiments(prefix: str, parsed_args: argparse.Namespace, **_: Any) -> list[str]:

@@ -3,11 +3,13 @@
 import argparse
 from typing import Any
 
+from roughgas.cli.parser import examples
+
 DESCRIPTION = (
     "Check Python, libraries, compiled kernels, folders and the configuration, say what is wrong "
     "with them and what to do about it. Exit status 1 where there is a problem."
 )
-EXAMPLE = "example: roughgas doctor"
+EXAMPLE = examples("roughgas doctor")
 
 
 def add_commands(commands: Any) -> None:

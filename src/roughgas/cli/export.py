@@ -5,7 +5,9 @@ import sys
 from pathlib import Path
 from typing import Any
 
-EXAMPLE = "example: roughgas export results/paper/vibrated.nc -o vibrated.csv"
+from roughgas.cli.parser import examples
+
+EXAMPLE = examples("roughgas export results/paper/vibrated.nc -o vibrated.csv")
 
 
 def add_commands(commands: Any) -> None:

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 from functools import partial
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from roughgas.cli.parser import examples
 from roughgas.cli.run import add_point, point_of
 from roughgas.errors import InputError
 
@@ -13,7 +14,7 @@ if TYPE_CHECKING:
     from roughgas.scene import Scene
     from roughgas.snapshots import Take
 
-EXAMPLE = "example: roughgas movie vibrated --r 0.9 --beta 0.5 -o bed.mp4 bed.gif"
+EXAMPLE = examples("roughgas movie vibrated --r 0.9 --beta 0.5 -o bed.mp4 bed.gif")
 FRAMES = 2, 10_000
 RATES = 1.0, 50.0
 Item = TypeVar("Item")

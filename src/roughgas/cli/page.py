@@ -3,12 +3,14 @@
 import argparse
 from typing import Any
 
-PAGE_EXAMPLE = (
-    "example: roughgas page results/small/vibrated.nc --points results/small -o explore.html"
+from roughgas.cli.parser import examples
+
+PAGE_EXAMPLE = examples(
+    "roughgas page results/small/vibrated.nc --points results/small -o explore.html"
 )
-HTML_EXAMPLE = "example: roughgas html results/small/claims.md -o claims.html"
-TIMES_EXAMPLE = "example: roughgas times results/small/vibrated.nc -o run_times.md"
-CONFIG_EXAMPLE = "example: roughgas config --scale small -o config_small.yaml"
+HTML_EXAMPLE = examples("roughgas html results/small/claims.md -o claims.html")
+TIMES_EXAMPLE = examples("roughgas times results/small/vibrated.nc -o run_times.md")
+CONFIG_EXAMPLE = examples("roughgas config --scale small -o config_small.yaml")
 
 
 def add_commands(commands: Any) -> None:

@@ -3,7 +3,7 @@ two groups."""
 
 import argparse
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping
 from typing import Any, NoReturn
 
 BAD_INPUT = 2
@@ -44,17 +44,18 @@ class Commands:
         self._summaries[name] = help
         return self._parsers.add_parser(name, formatter_class=Formatter, **about)
 
-    def overview(self, first: Sequence[str]) -> str:
-        """A line for each command: those in `first`, in this order, and those that are not."""
-        known = [name for name in first if name in self._summaries]
-        others = [name for name in self._summaries if name not in first]
-        return f"commands:\n{self._lines(known)}\n\n" + (
-            f"commands that the workflow is made of:\n{self._lines(others)}"
-        )
-
-    def _lines(self, names: Sequence[str]) -> str:
+    def overview(self, groups: Mapping[str, Iterable[str]]) -> str:
+        """For each group, by its title, a line for each of its commands that was added."""
         width = max(map(len, self._summaries))
-        return "\n".join(f"  {name:{width}}  {self._summaries[name]}" for name in names)
+        return "\n\n".join(
+            f"{title}:\n"
+            + "\n".join(
+                f"  {name:{width}}  {self._summaries[name]}"
+                for name in names
+                if name in self._summaries
+            )
+            for title, names in groups.items()
+        )
 
 
 def examples(*commands: str) -> str:

@@ -83,13 +83,15 @@ def run(options: argparse.Namespace) -> None:
     for label, seed, output in zip(options.seed, seeds, outputs, strict=True):
         with Progress(f"{options.experiment}, seed {label}", settings, r, beta) as progress:
             point = run_point(settings, r, beta, seed, progress)
-        written = write_seed(options, settings, label, output, point)
+        written = _write(options, settings, label, output, point)
         if options.json:
             print(as_json(_record(output, written), indent=None), flush=True)
         elif options.output is None:
             from roughgas.cli.show import summary
 
             print(summary(output), flush=True)
+        else:
+            _say_done(output, point)
 
 
 def compile_kernel(options: argparse.Namespace) -> None:
@@ -127,9 +129,15 @@ def _settings(options: argparse.Namespace) -> dict[str, Any]:
 
 def write_seed(
     options: argparse.Namespace, settings: dict[str, Any], seed: str, output: str, point: "Point"
+) -> None:
+    """Write the dataset of a seed, which says how to make it again, and say that it is done."""
+    _write(options, settings, seed, output, point)
+    _say_done(output, point)
+
+
+def _write(
+    options: argparse.Namespace, settings: dict[str, Any], seed: str, output: str, point: "Point"
 ) -> "Point":
-    """Write the dataset of a seed, which says how to make it again, and say that it is done; what
-    was written."""
     from roughgas.dataset import write_point
     from roughgas.provenance import provenance
 
@@ -137,7 +145,6 @@ def write_seed(
     about = provenance(options.experiment, settings, labels, options.scale, output)
     written = point._replace(attributes=about | point.attributes)
     write_point(output, written)
-    print(_closing_line(output, point), file=sys.stderr)
     return written
 
 
@@ -161,9 +168,9 @@ def _has_axes(value: Any) -> bool:
     return getattr(value, "ndim", 0) > 0 or isinstance(value, list | tuple)
 
 
-def _closing_line(output: str, point: "Point") -> str:
+def _say_done(output: str, point: "Point") -> None:
     found = point.variables
     name = "R" if "R" in found else "E_trans"
     value = with_error(float(found[name]), float(found[f"{name}_stderr"]))
     took = f"{int(found['collisions']):,} collisions in {float(found['kernel_seconds']):.1f} s"
-    return f"{output}: {name} = {value}, {took}"
+    print(f"{output}: {name} = {value}, {took}", file=sys.stderr)

@@ -69,8 +69,8 @@ def _encoder(path, draft, size, per_second):
 
 
 def _finish(encoder, path):
-    """Wait for the encoder's end; raises OSError, with what it last said, where it failed."""
+    """Wait for the encoder's end; raises OSError, with what it first said, where it failed."""
     _, said = encoder.communicate()
     if encoder.returncode:
-        lines = said.decode(errors="replace").split("\n")
-        raise OSError(None, f"not encoded: {' '.join(lines[-2:]).strip()}", str(path))
+        why, *_ = said.decode(errors="replace").splitlines() or ["the encoder was stopped"]
+        raise OSError(None, f"not encoded: {why}", str(path))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from roughgas.cli.layout import columns, decimals_of, with_error
-from roughgas.cli.theory import equation
+from roughgas.cli.theory.quantities import equation
 from roughgas.dataset import VARIABLES
 from roughgas.dataset import read_point as read
 

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 from roughgas.cli.layout import columns, with_error
 from roughgas.cli.show.point import SHAPES, cost
-from roughgas.cli.theory import equation
+from roughgas.cli.theory.quantities import equation
 from roughgas.reduce import EQUILIBRATED, third_axis
 from roughgas.reduce import read_reduced as read
 from roughgas.table import rows as rows_of
