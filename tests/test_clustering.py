@@ -201,7 +201,7 @@ def test_an_interrupt_says_how_to_go_on(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(clustering.checkpoint, "save", save_once)
     assert main(arguments(tmp_path / "a.nc", 4)) == 130
     said = capsys.readouterr().err.splitlines()
-    assert said[-1] == ("roughgas: error: interrupted, the same command goes on from frame 4 of 12")
+    assert said[-1] == ("roughgas: stopped: the same command goes on from frame 4 of 12")
     assert [path.name for path in tmp_path.iterdir()] == ["a.nc.checkpoint.npz"]
     assert main(arguments(tmp_path / "b.nc", 4)) == 130
     assert "no checkpoint written yet" in capsys.readouterr().err
