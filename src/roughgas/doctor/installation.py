@@ -26,6 +26,7 @@ MODULES = (
     "jsonschema",
     "emcee",
     "plotly",
+    "rocrate",
     "tqdm",
     "imageio_ffmpeg",
     "snakemake",
