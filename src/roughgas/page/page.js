@@ -205,8 +205,8 @@ function drawRatios() {
     legend: { orientation: "h", y: 1.02, yanchor: "bottom", x: 0 },
     xaxis: axis("roughness β", { range: [-1.05, 1.05], anchor: "y2" }),
     yaxis: axis("R", { domain: [0.36, 1] }),
-    yaxis2: axis("R − theory", { domain: [0, 0.32], rangemode: "tozero", zeroline: true,
-      zerolinecolor: THEORY }),
+    yaxis2: axis("R − theory", { domain: [0, 0.32], autorangeoptions: { include: 0 },
+      zeroline: true, zerolinecolor: THEORY }),
   }, CONFIG);
 }
 
