@@ -124,7 +124,8 @@ def test_an_interrupt_ends_in_one_line(tmp_path, capsys, monkeypatch):
 
     monkeypatch.setattr("roughgas.point.run_point", interrupted)
     assert run(tmp_path / "point.nc", config=CONFIG) == 130
-    assert capsys.readouterr().err == "roughgas: error: interrupted, nothing half-written\n"
+    said = "roughgas: stopped: nothing is half-written; the same command begins anew\n"
+    assert capsys.readouterr().err == said
     assert list(tmp_path.iterdir()) == []
 
 

@@ -2,7 +2,7 @@
 
 import csv
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -49,14 +49,15 @@ def write_table(reduced_paths: Iterable[str | Path], csv_path: str | Path) -> No
         table.writerow(HEAD)
         for path in reduced_paths:
             for row in rows(read_reduced(path)):
-                table.writerow([_cell(row[name]) for name in HEAD])
+                table.writerow(map(_cell, row.values()))
 
 
-def rows(dataset: "xarray.Dataset") -> Iterator[dict[str, Any]]:
-    """The rows of a reduced dataset, by the names in HEAD: "" where it has no such thing, NaN where
-    a number is not known. Ascending in the third axis, r and beta."""
+def rows(dataset: "xarray.Dataset", head: Sequence[str] = HEAD) -> Iterator[dict[str, Any]]:
+    """The rows of a reduced dataset, ascending in the third axis, r and beta: by the names in
+    `head` what there is of each, be it of HEAD, a variable over the grid or an attribute, else "".
+    NaN is a number that is not known."""
     for variant in _variants(dataset):
-        yield from _rows_of_variant(variant)
+        yield from _rows_of_variant(variant, head)
 
 
 def _variants(dataset: "xarray.Dataset") -> Iterator["xarray.Dataset"]:
@@ -70,14 +71,14 @@ def _variants(dataset: "xarray.Dataset") -> Iterator["xarray.Dataset"]:
         yield dataset.isel({name: index}, drop=True).assign_attrs(about)
 
 
-def _rows_of_variant(dataset: "xarray.Dataset") -> Iterator[dict[str, Any]]:
+def _rows_of_variant(dataset: "xarray.Dataset", head: Sequence[str]) -> Iterator[dict[str, Any]]:
     flat = dataset.drop_dims("seed").stack(point=GRID)
     prediction = predicted_ratio(dataset.attrs, flat.r.values, flat.beta.values)
     for index in np.flatnonzero(flat["n_seeds"].values):
-        row = {name: flat[name].values[index] for name in (*GRID, *COLUMNS) if name in flat}
+        row = {name: flat[name].values[index] for name in head if name in flat}
         residual = row.get("R", math.nan) - prediction[index]
         row |= {"R_theory": prediction[index], "residual": residual}
-        yield {name: row.get(name, dataset.attrs.get(name, "")) for name in HEAD}
+        yield {name: row.get(name, dataset.attrs.get(name, "")) for name in head}
 
 
 def _cell(value: Any) -> str:

@@ -1,7 +1,6 @@
 """`roughgas run` simulates a point of an experiment; `roughgas compile` prepares its kernel."""
 
 import argparse
-import shlex
 import sys
 from typing import TYPE_CHECKING, Any
 
@@ -111,11 +110,12 @@ def compile_kernel(options: argparse.Namespace) -> None:
 def point_of(options: argparse.Namespace) -> tuple[float, float, dict[str, Any]]:
     """r, beta and the settings of the experiment, or of its variant."""
     from roughgas import config
+    from roughgas.provenance import variant_attributes
 
     r, beta = config.restitution(options.r), config.roughness(options.beta)
     settings = _settings(options)
     config.check_one_variant(options.experiment, settings)
-    _variant(options.experiment, settings)
+    variant_attributes(options.experiment, settings)  # which refuses a name that is not theirs
     return r, beta, settings
 
 
@@ -139,8 +139,10 @@ def _write(
     options: argparse.Namespace, settings: dict[str, Any], seed: str, output: str, point: "Point"
 ) -> "Point":
     from roughgas.dataset import write_point
+    from roughgas.provenance import provenance
 
-    about = _provenance(options, settings, seed, output)
+    labels = options.r, options.beta, seed
+    about = provenance(options.experiment, settings, labels, options.scale, output)
     written = point._replace(attributes=about | point.attributes)
     write_point(output, written)
     return written
@@ -164,47 +166,6 @@ def _record(output: str, point: "Point") -> dict[str, Any]:
 
 def _has_axes(value: Any) -> bool:
     return getattr(value, "ndim", 0) > 0 or isinstance(value, list | tuple)
-
-
-def _provenance(
-    options: argparse.Namespace, settings: dict[str, Any], seed: str, output: str
-) -> dict[str, Any]:
-    """The attributes of a dataset that say how to make it again, it alone."""
-    from roughgas import config
-
-    text = config.as_text(config.point_settings(settings))
-    command = ["roughgas", "run", options.experiment, "--scale", options.scale]
-    # joined by =, lest a negative number be taken for an option
-    command += [f"--r={options.r}", f"--beta={options.beta}", f"--seed={seed}"]
-    command += ["--settings", text, "--output", output]
-    return {
-        "title": f"{options.experiment}: r = {options.r}, beta = {options.beta}",
-        **_variant(options.experiment, settings),
-        "scale": options.scale,
-        "r_label": options.r,
-        "beta_label": options.beta,
-        "experiment_json": text,
-        "command": shlex.join(command),
-    }
-
-
-def _variant(name: str, settings: dict[str, Any]) -> dict[str, Any]:
-    """The attributes of a dataset that say which experiment, and which variant of it, it is of.
-
-    Raises InputError where name and settings disagree.
-    """
-    from roughgas import config
-
-    base, slash, variant = name.partition("/")
-    key = settings.get(config.SWEPT)
-    if key is None and not slash:
-        return {"experiment": base}
-    effect, _, parameter = (key or "").partition(".")
-    value = settings["effects"].get(effect, {}).get(parameter)
-    label = variant.removeprefix(parameter)
-    if value is None or label == variant or config.level(label) != value:
-        raise InputError("experiment", name, "be the variant that --settings are of")
-    return {"experiment": base, "variant": variant, "swept": key, "swept_value": value}
 
 
 def _say_done(output: str, point: "Point") -> None:
