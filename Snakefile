@@ -46,6 +46,13 @@ include: "rules/hard_cases.smk"
 include: "rules/accuracy.smk"
 
 
+# on a cluster, these take less than sending them there
+localrules:
+    figure,
+    table,
+    claims,
+
+
 rule figures:
     default_target: True
     input:

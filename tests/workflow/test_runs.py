@@ -6,7 +6,7 @@ import sys
 import time
 
 import pytest
-from conftest import POINTS, SWEEP
+from project import POINTS, SWEEP
 
 from roughgas.dataset import WALL_CLOCK, read_point
 

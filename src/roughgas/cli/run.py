@@ -3,6 +3,7 @@
 import argparse
 import shlex
 import sys
+from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Any
 
 from roughgas.cli.settings import add_settings
@@ -21,10 +22,11 @@ def add_commands(commands: Any) -> None:
         "run",
         help="simulate a point and write its dataset",
         description="Simulate a point of an experiment, for one seed or for several one after the "
-        "other, and write a dataset for each.",
+        "other, and write a dataset for each. With several --beta, do so for each of them.",
         epilog=RUN_EXAMPLE,
     )
-    add_point(parser)
+    _add_experiment(parser)
+    parser.add_argument("--beta", required=True, action="append", help="roughness, in [-1, 1]")
     parser.add_argument(
         "--seed", required=True, nargs="+", help="seeds of the random generator, 0, 1, ..."
     )
@@ -60,23 +62,39 @@ def _add_experiment(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> None:
-    """Simulate the point that `options` name, and write a dataset as soon as its seed is done."""
+    """Simulate the points that `options` name, and write a dataset as soon as its seed is done."""
     from roughgas import config
-    from roughgas.cli.progress import Progress
 
     seeds = [config.seed(label) for label in options.seed]
-    r, beta, settings = point_of(options)
-    if len(options.output) != len(seeds):
-        raise InputError("--output", " ".join(options.output), f"name {len(seeds)}, one a seed")
+    number = len(options.beta) * len(seeds)
+    if len(options.output) != number:
+        raise InputError("--output", " ".join(options.output), f"name {number}, one a seed")
+    each = [argparse.Namespace(**vars(options) | {"beta": beta}) for beta in options.beta]
+    points = [point_of(one) for one in each]
+    outputs = iter(options.output)
+    for one, point in zip(each, points, strict=True):
+        _run_seeds(one, *point, seeds, outputs)
 
+
+def _run_seeds(
+    options: argparse.Namespace,
+    r: float,
+    beta: float,
+    settings: dict[str, Any],
+    seeds: Iterable[int],
+    outputs: Iterator[str],
+) -> None:
+    """Simulate a point for each seed, whose datasets are the next of `outputs`."""
+    from roughgas import config
+    from roughgas.cli.progress import Progress
     from roughgas.planning.reach import complete
     from roughgas.point import run_point
 
     settings = complete(config.point_settings(settings), r, beta)
-    for label, seed, output in zip(options.seed, seeds, options.output, strict=True):
+    for label, seed in zip(options.seed, seeds, strict=True):
         with Progress(options.experiment, settings["schedule"]) as progress:
             point = run_point(settings, r, beta, seed, progress)
-        write_seed(options, settings, label, output, point)
+        write_seed(options, settings, label, next(outputs), point)
 
 
 def compile_kernel(options: argparse.Namespace) -> None:
