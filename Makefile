@@ -31,8 +31,8 @@ test: setup ## run the tests
 extras: .venv/with-browser .venv-slurm/ready ## run what takes minutes more, a browser, or Slurm
 	$(BIN)/python -m pytest -n $(JOBS) --dist loadgroup -m "$(EXTRA_TESTS)"
 
-docs: .venv/with-docs ## run the tutorial, and build the documentation: docs/_build/index.html
-	$(BIN)/python -m sphinx --fail-on-warning --keep-going -q docs docs/_build
+docs: .venv/with-docs ## run the tutorial, and build the documentation: docs/_build/html/index.html
+	$(BIN)/python -m sphinx --fail-on-warning --keep-going -q docs docs/_build/html
 
 bench: setup ## measure the speed: docs/benchmarks.md
 	$(BIN)/python -m benchmarks
@@ -87,7 +87,8 @@ lock: ## choose and pin the newest versions of all dependencies (needs uv)
 	$(LOCK) --upgrade --extra slurm --constraint requirements.lock --output-file requirements/slurm.lock
 
 clean: ## remove all results; the environment and the committed figures stay
-	rm -rf results logs .snakemake figures/*.pdf figures/*/ docs/_build .pytest_cache .ruff_cache .hypothesis
+	rm -rf results logs .snakemake figures/*.pdf docs/_build .pytest_cache .ruff_cache .hypothesis \
+	    $(filter-out figures/movies/,$(wildcard figures/*/))
 
 .PHONY: help figures plan test extras docs bench lint format setup lock clean
 .DELETE_ON_ERROR:

@@ -83,11 +83,19 @@ rule study_figure:
         sources("plotting"),
         data=study_of_figure,
     output:
-        multiext("figures/{folder}{study_figure}", ".pdf", ".png"),
+        "figures/{folder}{study_figure}.pdf",
+        report(
+            "figures/{folder}{study_figure}.png",
+            caption="captions/study.rst",
+            category=ACCURACY,
+            labels=labels_of_study,
+        ),
     log:
         "logs/figures/{folder}{study_figure}.log",
     benchmark:
         "logs/figures/{folder}{study_figure}.tsv"
+    params:
+        studies=studies_of_figure,
     message:
         "draw {wildcards.folder}{wildcards.study_figure}"
     shell:
@@ -114,9 +122,11 @@ rule accuracy:
     input:
         drawn(["accuracy"]),
         f"results/{SCALE}/accuracy.md",
+        documents("accuracy"),
 
 
 rule coverage:
     input:
         drawn(["coverage"]),
         f"results/{SCALE}/coverage.md",
+        documents("coverage"),

@@ -8,7 +8,7 @@ from pathlib import Path
 
 try:
     import roughgas.config
-    from roughgas.errors import InputError
+    from roughgas.errors import InputError, not_one_of
 except ModuleNotFoundError as error:
     sys.exit(f"roughgas: error: no module {error.name}: `make setup`, then .venv/bin/snakemake")
 
@@ -63,8 +63,11 @@ def variants(scale, experiment):
 
 
 def points_of_experiment(wildcards):
+    return points(wildcards.scale, wildcards.experiment)
+
+
+def points(scale, experiment):
     """The datasets of all points in the sweep of an experiment, or the folders that hold them."""
-    scale, experiment = wildcards.scale, wildcards.experiment
     found = settings(scale, experiment)
     if "target_stderr" in found:
         return swept(SEEDS, scale, experiment)
@@ -96,7 +99,7 @@ def reduced(scale, experiments):
 def data_of_figure(wildcards):
     with one_line():
         if wildcards.figure not in FIGURES:
-            raise InputError("figure", wildcards.figure, f"be one of {', '.join(sorted(FIGURES))}")
+            raise not_one_of("figure", wildcards.figure, sorted(FIGURES))
     return reduced(wildcards.folder.rstrip("/") or "paper", FIGURES[wildcards.figure])
 
 
@@ -122,8 +125,9 @@ def forget_dead_locks():
     Each Snakemake in this folder holds a shared lock of the system's for as long as it lives: who
     can have it alone knows that no other one is alive.
     """
-    Path(".snakemake/locks").mkdir(parents=True, exist_ok=True)
-    alive = open(".snakemake/alive", "w")
+    with one_line():
+        Path(".snakemake/locks").mkdir(parents=True, exist_ok=True)
+        alive = open(".snakemake/alive", "w")
     with suppress(OSError):  # another one is alive, or there are no such locks on this disk
         fcntl.flock(alive, fcntl.LOCK_EX | fcntl.LOCK_NB)
         for lock in Path(".snakemake/locks").glob("*.lock"):

@@ -19,7 +19,12 @@ rule table_of_extensions:
         sources("table"),
         data=data_of_extensions,
     output:
-        "results/{scale}/extensions.csv",
+        report(
+            "results/{scale}/extensions.csv",
+            caption="captions/table.rst",
+            category=BEYOND,
+            labels=titled("Table: every number (CSV, to download)"),
+        ),
     log:
         "logs/{scale}/extensions.log",
     benchmark:
@@ -54,3 +59,4 @@ rule extensions:
         f"results/{SCALE}/extensions.csv",
         f"results/{SCALE}/open_questions.json",
         f"results/{SCALE}/open_questions.md",
+        documents("open_questions", "run_times_extensions"),

@@ -19,11 +19,19 @@ rule figure:
         sources("plotting"),
         data=data_of_figure,
     output:
-        multiext("figures/{folder}{figure}", ".pdf", ".png"),
+        "figures/{folder}{figure}.pdf",
+        report(
+            "figures/{folder}{figure}.png",
+            caption="captions/figure.rst",
+            category=heading_of_figure,
+            labels=labels_of_figure,
+        ),
     log:
         "logs/figures/{folder}{figure}.log",
     benchmark:
         "logs/figures/{folder}{figure}.tsv"
+    params:
+        experiments=experiments_of_figure,
     message:
         "draw {wildcards.folder}{wildcards.figure}"
     shell:
@@ -35,7 +43,12 @@ rule table:
         sources("table"),
         data=data_of_paper,
     output:
-        "results/{scale}/R.csv",
+        report(
+            "results/{scale}/R.csv",
+            caption="captions/table.rst",
+            category=THE_PAPER,
+            labels=titled("Table: every number (CSV, to download)"),
+        ),
     log:
         "logs/{scale}/table.log",
     benchmark:

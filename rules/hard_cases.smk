@@ -54,9 +54,8 @@ rule catalogue:
         families=expand("results/{{folder}}hard_cases/{family}.json", family=FAMILIES),
     output:
         table="results/{folder}hard_cases.md",
-        pictures=expand(
-            "figures/{{folder}}{picture}{kind}", picture=PICTURES, kind=[".pdf", ".png"]
-        ),
+        pictures=expand("figures/{{folder}}{picture}.pdf", picture=PICTURES),
+        shown=[picture(name) for name in PICTURES],
     log:
         "logs/{folder}hard_cases.log",
     benchmark:
@@ -67,9 +66,10 @@ rule catalogue:
         "write {output.table}"
     shell:
         "PYTHONPATH=tests python -m hard_cases.report {input.families} {params.size}"
-        " --table {output.table} --pictures {output.pictures} > {log} 2>&1"
+        " --table {output.table} --pictures {output.pictures} {output.shown} > {log} 2>&1"
 
 
 rule hard_cases:
     input:
         f"results/{'' if SCALE == 'paper' else SCALE + '/'}hard_cases.md",
+        documents("hard_cases"),

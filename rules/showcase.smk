@@ -44,11 +44,19 @@ rule film:
         sources("plotting"),
         data=film_of_figure,
     output:
-        multiext("figures/{folder}clustering", ".pdf", ".png", ".mp4"),
+        multiext("figures/{folder}clustering", ".pdf", ".mp4"),
+        report(
+            "figures/{folder}clustering.png",
+            caption="captions/clustering.rst",
+            category=LARGE,
+            labels=titled("Clusters in a cooling gas"),
+        ),
     log:
         "logs/figures/{folder}clustering.log",
     benchmark:
         "logs/figures/{folder}clustering.tsv"
+    params:
+        showcase=showcase_of_figure,
     message:
         "draw the picture and the movie of the cooling gas"
     shell:
@@ -58,3 +66,4 @@ rule film:
 rule showcase:
     input:
         drawn(["clustering"], (".pdf", ".png", ".mp4")),
+        documents("clustering"),

@@ -9,9 +9,10 @@ import sys
 from pathlib import Path
 
 from roughgas.config.reading import read_yaml
+from roughgas.crate import PROJECT
 
 ROOT = Path(__file__).parent.parent
-COPIED = ("Snakefile", "config.yaml", "rules", "profiles", "src")
+COPIED = (*PROJECT, "rules", "profiles", "src")
 COPIED += tuple(f"tests/{name}" for name in ("hard_cases", "brute_force", "exact"))
 COPIED += tuple(f"tests/{name}.py" for name in ("conftest", "compiled", "schedules"))
 SWEEP = {"r": ["0.9"], "beta": ["0"], "seeds": 2}

@@ -1,6 +1,5 @@
 """The command line: what it refuses and how, and what a person sees."""
 
-import io
 import json
 import resource
 import shlex
@@ -10,11 +9,11 @@ from pathlib import Path
 
 import pytest
 
-from roughgas import __version__, simulate
+from roughgas import __version__
 from roughgas.cli import main
-from roughgas.cli.progress import FilmProgress, Progress
 from roughgas.dataset import WALL_CLOCK, read_point
 from roughgas.errors import CollapseError
+from roughgas.point import run_point
 
 CONFIG = str(Path(__file__).parent.parent / "config.yaml")
 SETTINGS = {
@@ -73,7 +72,7 @@ def test_bad_input_is_refused_in_one_line_and_leaves_no_file(tmp_path, capsys, c
     [
         ([], "the following arguments are required: COMMAND (see `roughgas --help`)"),
         (["fly"], "argument COMMAND: invalid choice: 'fly'"),
-        (["run", "cooling"], "the following arguments are required: --r, --beta, --seed"),
+        (["run", "cooling"], "the following arguments are required: --r, --beta (see `r"),
         (["run", "cooling", "--mu", "1"], "the following arguments are required"),
         (["figure", "fig1a"], "the following arguments are required: REDUCED"),
     ],
@@ -115,60 +114,8 @@ def test_help_imports_nothing_heavy():
         [sys.executable, "-c", script], capture_output=True, text=True, check=True
     )
     loaded = set(done.stdout.split())
-    assert loaded.isdisjoint({"numpy", "numba", "xarray", "netCDF4", "matplotlib", "jsonschema"})
-
-
-class Terminal(io.StringIO):
-    def isatty(self):
-        return True
-
-
-def test_progress_is_seen_on_a_terminal_and_cleared():
-    stream = Terminal()
-    with Progress("sheared", {"kind": "steady", "equilibrate": 2000, "measure": 5000}, stream) as p:
-        p(1234.5, 98_765)
-        p(1234.6, 98_766)  # too soon to be shown
-    assert stream.getvalue() == ("\r\x1b[Ksheared: t = 1,234 of 7,000 T, 98,765 collisions\r\x1b[K")
-
-
-def test_progress_of_a_cooling_gas_has_no_end():
-    stream = Terminal()
-    Progress("cooling", {"kind": "cooling"}, stream)(50.0, 7)
-    assert stream.getvalue().endswith("cooling: t = 50 T, 7 collisions")
-
-
-def test_progress_is_silent_elsewhere():
-    stream = io.StringIO()
-    with Progress("cooling", {"kind": "cooling"}, stream) as progress:
-        progress(1.0, 1)
-    assert stream.getvalue() == ""
-
-
-def test_progress_of_a_film_tells_the_time_that_is_left(monkeypatch):
-    clock = iter(range(1000, 2000, 50))
-    monkeypatch.setattr("roughgas.cli.progress.time.monotonic", lambda: next(clock))
-    stream = Terminal()
-    with FilmProgress(Path("c.npz"), 100, stream) as progress:
-        progress.reached(20, 5_000, False)
-        progress.reached(21, 6_000, True)
-    clear = "\r\x1b[K"
-    assert stream.getvalue() == (
-        "clustering: going on from c.npz\n"
-        f"{clear}clustering: frame 20 of 100, 5,000 collisions"
-        f"{clear}clustering: frame 21 of 100, 6,000 collisions, 131 min 40 s left{clear}"
-    )
-    assert progress.how_to_go_on() == "the same command goes on from frame 21 of 100"
-
-
-def test_a_log_has_a_line_for_each_checkpoint_of_a_film():
-    stream = io.StringIO()
-    with FilmProgress(Path("c.npz"), 4, stream) as progress:
-        progress.fresh("c.npz is damaged")
-        for frame in range(5):
-            progress.reached(frame, 10 * frame, frame == 2)
-    first, second = stream.getvalue().splitlines()
-    assert first == "clustering: c.npz is damaged: starting afresh"
-    assert second.startswith("clustering: frame 2 of 4, 20 collisions, 0 s left")
+    heavy = {"numpy", "numba", "xarray", "netCDF4", "matplotlib", "jsonschema", "yaml"}
+    assert loaded.isdisjoint(heavy | {"tqdm", "argcomplete"})
 
 
 def test_an_interrupt_ends_in_one_line(tmp_path, capsys, monkeypatch):
@@ -177,7 +124,8 @@ def test_an_interrupt_ends_in_one_line(tmp_path, capsys, monkeypatch):
 
     monkeypatch.setattr("roughgas.point.run_point", interrupted)
     assert run(tmp_path / "point.nc", config=CONFIG) == 130
-    assert capsys.readouterr().err == "roughgas: error: interrupted, nothing half-written\n"
+    said = "roughgas: stopped: nothing is half-written; the same command begins anew\n"
+    assert capsys.readouterr().err == said
     assert list(tmp_path.iterdir()) == []
 
 
@@ -234,14 +182,12 @@ def test_a_mistake_in_one_seed_stops_all_of_them(tmp_path, capsys, seeds, files,
 
 
 def test_what_is_done_stays_when_a_later_seed_fails(tmp_path, monkeypatch):
-    run_point = simulate.run_point
-
     def second_collapses(experiment, r, beta, seed, progress):
         if seed == 2:
             raise CollapseError("inelastic collapse")
         return run_point(experiment, r, beta, seed, progress)
 
-    monkeypatch.setattr(simulate, "run_point", second_collapses)
+    monkeypatch.setattr("roughgas.point.run_point", second_collapses)
     assert run_seeds(tmp_path, "123", ["1.nc", "2.nc", "3.nc"]) == 1
     assert [path.name for path in tmp_path.iterdir()] == ["1.nc"]
 
@@ -259,6 +205,7 @@ def test_a_run_imports_no_more_than_it_needs(point, tmp_path):
     )
     loaded = set(done.stdout.split())
     assert loaded.isdisjoint({"scipy", "xarray", "pandas", "matplotlib", "jsonschema", "snakemake"})
+    assert loaded.isdisjoint({"tqdm", "argcomplete"})
     assert "numba.np.linalg" not in loaded  # the compiler has not been set up
 
 

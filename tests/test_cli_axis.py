@@ -4,10 +4,11 @@ import json
 
 import pytest
 
-from roughgas import cli, simulate
+from roughgas import cli
 from roughgas.cli import main
 from roughgas.config.reading import read_yaml
 from roughgas.dataset import read_point
+from roughgas.point import kernels
 
 SCHEDULE = {"replicas": 2, "thermalise": 1, "relaxation_times": 1, "plateau": 5}
 GAS = {"particles": 5, "box": [20, 20], "effects": {"spin": {"inertia": 0.5}}}
@@ -47,7 +48,7 @@ SETTINGS = json.dumps(GAS | {"swept": "spin.inertia"})
         ("spun", None, "experiment = 'spun': must be followed by a variant, such as spun/inertia1"),
         ("plain/inertia1", None, "experiment = 'plain/inertia1': must be plain alone, which has"),
         ("spun/inertia2", None, "spun/inertia2.effects.spin.inertia = 2.0: must be a number in"),
-        ("spun", SETTINGS, "experiment = spun: must be the variant that --settings are of"),
+        ("spun", SETTINGS, "experiment = spun: must be the variant that its settings are of"),
         ("spun/inertia1", SETTINGS, "experiment = spun/inertia1: must be the variant that"),
         ("spun/inertia0.5", json.dumps(GAS), "experiment = spun/inertia0.5: must be the variant"),
         ("spun", json.dumps(GAS | {"sweep": SWEEP}), "experiment = 'spun': must be followed by"),
@@ -67,11 +68,11 @@ def test_bad_input_is_refused_in_one_line(configuration, tmp_path, capsys, name,
 )
 def test_all_variants_are_compiled_at_once(configuration, monkeypatch, name, inertia):
     told = []
-    monkeypatch.setattr(simulate, "compile_kernels", told.extend)
+    monkeypatch.setattr("roughgas.point.compile_kernels", told.extend)
     assert main(["compile", name, configuration, "--r=0.9"]) == 0
     assert [one["effects"]["spin"]["inertia"] for one in told] == inertia
     assert all(one["sweep"] == {"r": [0.9]} for one in told)
-    assert len(simulate.kernels(told)) == 1
+    assert len(kernels(told)) == 1
 
 
 def test_a_plan_has_a_row_for_each_variant(configuration, tmp_path, capsys):

@@ -9,6 +9,7 @@ import pytest
 
 from roughgas import dataset
 from roughgas.dataset import Point, read_point, write_point
+from roughgas.errors import InputError
 
 ATTRIBUTES = {
     "experiment": "vibrated",
@@ -65,24 +66,44 @@ def test_a_point_comes_back_as_written(tmp_path):
     np.testing.assert_array_equal(data.R_series, point().variables["R_series"])
     assert data.R_series.dims == ("sample",) and "time" in data.R_series.coords
     assert {name: data.attrs[name] for name in ATTRIBUTES} == ATTRIBUTES
-    assert data.attrs["schema_version"] == 1 and data.attrs["Conventions"].startswith("CF-")
+    assert data.attrs["schema_version"] == 2 and data.attrs["Conventions"].startswith("CF-")
 
 
 def test_every_variable_has_units_and_a_long_name(tmp_path):
     write_point(tmp_path / "a.nc", point())
     data = read_point(tmp_path / "a.nc")
     assert all(v.attrs["long_name"] and v.attrs["units"] for v in data.variables.values())
-    assert data.time.units == data.measured_from.units == "T"
-    assert data.E_trans.units == "m a^2 T^-2"
+    assert data.time.reduced_units == data.measured_from.reduced_units == "T"
+    assert data.E_trans.reduced_units == "m a^2 T^-2" and data.kernel_seconds.units == "s"
+    assert {v.attrs["units"] for v in data.variables.values()} == {"1", "s"}  # UDUNITS knows both
+
+
+def test_flags_and_what_is_known_of_errors_are_told_as_cf_has_it(tmp_path):
+    write_point(tmp_path / "a.nc", point(R_ci95_trusted=0))
+    data = read_point(tmp_path / "a.nc")
+    assert data.R.ancillary_variables.split() == ["R_stderr", "R_dof", "R_ci95", "R_ci95_trusted"]
+    for flag in (data.equilibrated, data.R_ci95_trusted):
+        assert list(flag.flag_values) == [0, 1] and len(flag.flag_meanings.split()) == 2
+        assert flag.flag_values.dtype == flag.dtype == np.int8
+
+
+def test_a_file_of_a_newer_schema_is_refused(tmp_path):
+    write_point(tmp_path / "a.nc", point()._replace(attributes=ATTRIBUTES | {"schema_version": 3}))
+    with pytest.raises(
+        InputError, match=r"^schema_version of .*a\.nc = 3: must be at most 2: a new"
+    ):
+        read_point(tmp_path / "a.nc")
 
 
 def test_a_cooling_gas_counts_collisions_and_initial_energies(tmp_path):
-    cooling = point(R_replica=np.array([0.2, 0.3]), plateau_end=40.0)
+    cooling = point(R_replica=np.array([0.2, 0.3]), plateau_end=40.0, contact_time=1e-4)
     cooling.variables["collisions_per_particle"] = cooling.variables.pop("time")
     write_point(tmp_path / "a.nc", cooling)
     data = read_point(tmp_path / "a.nc")
-    assert data.measured_from.units == data.plateau_end.units == "collisions per particle"
-    assert data.E_rot.units == "initial E_trans" and data.R.units == "1"
+    counted = {data[name].reduced_units for name in ("measured_from", "plateau_end")}
+    assert counted == {"collisions per particle"}
+    assert data.contact_time.reduced_units == "T"
+    assert data.E_rot.reduced_units == "initial E_trans" and "reduced_units" not in data.R.attrs
     assert data.R_replica.dims == ("replica",)
     assert "collisions_per_particle" in data.R_series.coords
 

@@ -93,13 +93,13 @@ def test_drift_and_length_of_the_measured_window(tmp_path):
     paths = [write(tmp_path, 0.9, 0.0, seed, 0.2) for seed in (1, 2)]
     reduce_points(paths, tmp_path / "sheared.nc")
     data = read_reduced(tmp_path / "sheared.nc")
-    assert data.measured_for.item() == 9.0 and data.measured_for.units == "T"
+    assert data.measured_for.item() == 9.0 and data.measured_for.reduced_units == "T"
     assert data.R_drift.item() == pytest.approx(0.02)
     plateau = [write(tmp_path, 0.8, 0.0, 1, 0.2, cooling=True, plateau_end=7.0)]
     reduce_points(plateau, tmp_path / "cooling.nc")
     data = read_reduced(tmp_path / "cooling.nc")
     assert data.measured_for.item() == 4.0
-    assert data.measured_for.units == "collisions per particle"
+    assert data.measured_for.reduced_units == "collisions per particle"
     assert data.R_drift.item() == pytest.approx(0.0, abs=1e-15)
 
 

@@ -1,3 +1,22 @@
 """Event-driven simulation of gases of rough, inelastic disks and spheres."""
 
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from roughgas.library import experiments, simulate
+
+__all__ = ["__version__", "experiments", "simulate"]
 __version__ = "0.1.0"
+
+
+def __getattr__(name: str) -> Any:
+    # found only when it is asked for, since every job of the pipeline imports this package, too
+    if name not in __all__:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from roughgas import library
+
+    return getattr(library, name)
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -1,5 +1,6 @@
 """Files appear under their final name only when they are whole."""
 
+import errno
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -13,9 +14,11 @@ def whole_file(path: str | Path) -> Iterator[Path]:
     Parent folders are created. The name, `path`.PID.tmp, is this process's own: a job that outlives
     a killed workflow must not spoil what its successor writes. After SIGKILL it remains, until the
     next writer of `path` finds that its process is gone.
-    Raises OSError when the folder cannot be written.
+    Raises OSError, which names `path`, when the folder cannot be written or the disk is full.
     """
     path = Path(path)
+    if path.exists() and not path.is_file():  # root could replace even /dev/null
+        raise OSError(errno.EINVAL, "exists and is not a file", str(path))
     draft = path.with_name(f"{path.name}.{os.getpid()}.tmp")
     path.parent.mkdir(parents=True, exist_ok=True)
     remove_dead_drafts(path)
@@ -23,8 +26,23 @@ def whole_file(path: str | Path) -> Iterator[Path]:
         yield draft
         _flush(draft)
         os.replace(draft, path)
+    except OSError as error:
+        if error.filename in (None, str(draft)):
+            error.filename = str(path)
+        raise
     finally:
         draft.unlink(missing_ok=True)
+
+
+def check_place(path: str | Path) -> None:
+    """Raise OSError where `path`, a file or a folder, could not be written: before what takes long
+    rather than after it."""
+    path = Path(path).absolute()
+    if path.exists() and not (path.is_file() or path.is_dir()):
+        raise OSError(errno.EINVAL, "exists and is not a file", str(path))
+    folder = next(folder for folder in (path, *path.parents) if folder.is_dir())
+    if not os.access(folder, os.W_OK):
+        raise PermissionError(errno.EACCES, "cannot be written", str(folder))
 
 
 def remove_dead_drafts(path: Path) -> None:

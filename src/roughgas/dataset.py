@@ -14,12 +14,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from roughgas.atomic import whole_file
+from roughgas.cf import COMMON_ATTRIBUTES, ancillary, check_schema, unit_attributes
 
 if TYPE_CHECKING:
     import netCDF4
     import xarray
 
-SCHEMA_VERSION = 1
 TIME = "T"
 ENERGY = "m a^2 T^-2"
 COOLING_UNITS = {TIME: "collisions per particle", ENERGY: "initial E_trans"}
@@ -33,6 +33,7 @@ class Variable(NamedTuple):
     dims: tuple[str, ...] = ()
     dtype: str = "f8"
     over_seeds: str = "mean"
+    flags: str = ""  # what 0, 1, ... mean, a word each
 
 
 def _series(long_name: str, units: str = "1") -> Variable:
@@ -44,14 +45,18 @@ VARIABLES = {
     "R_stderr": Variable("standard error of R within this file", over_seeds=""),
     "R_dof": Variable("degrees of freedom that R_stderr is known with", over_seeds=""),
     "R_ci95": Variable("half width of the 95 % interval of R, by Student's t", over_seeds=""),
-    "R_ci95_trusted": Variable("1 where R_ci95 holds the truth as often as it says", dtype="i1"),
+    "R_ci95_trusted": Variable(
+        "whether R_ci95 holds the truth as often as it says", dtype="i1", flags="untrusted trusted"
+    ),
     "R_ratio_of_means": Variable("share of rotation in the energy, from the mean energies"),
     "E_trans": Variable("translational energy per degree of freedom", ENERGY),
     "E_trans_stderr": Variable("standard error of E_trans within this file", ENERGY, over_seeds=""),
     "E_rot": Variable("rotational energy per degree of freedom", ENERGY),
     "collisions": Variable("collisions simulated", dtype="i8", over_seeds="sum"),
     "kernel_seconds": Variable("CPU time spent in the kernel", "s", over_seeds="sum"),
-    "equilibrated": Variable("1 where a steady state was found, else 0", dtype="i1"),
+    "equilibrated": Variable(
+        "whether a steady state was found", dtype="i1", flags="drifting equilibrated"
+    ),
     "measured_from": Variable("begin of the measured window", TIME),
     "autocorrelation_time": Variable("integrated autocorrelation time of R", TIME),
     "target_stderr": Variable("standard error of R that was asked for"),
@@ -89,19 +94,15 @@ VARIABLES = {
     "E_trans_series": _series("translational energy per degree of freedom", ENERGY),
     "E_rot_series": _series("rotational energy per degree of freedom", ENERGY),
 }
+OF_SETTINGS = ("contact_time",)
+"""Variables that are in T in a cooling gas, too, since the settings are."""
 CLOCKS = ("time", "collisions_per_particle")
 REQUIRED = ("E_trans", "collisions", "kernel_seconds", "equilibrated")
 REQUIRED_OF_SPIN = ("R", "R_stderr", "R_dof", "R_ci95", "R_ratio_of_means", "E_rot")
-"""What a point holds besides, where particles spin: where it has the attribute `inertia`."""
+"""What a point holds besides where particles spin, and so has the attribute `inertia`."""
 REQUIRED_ATTRIBUTES = ("experiment", "scale", "r", "beta", "seed", "dimension", "particles")
 WALL_CLOCK = ("kernel_seconds", "planned_seconds")
 """The only variables that differ when the same point is run again."""
-
-COMMON_ATTRIBUTES = {
-    "Conventions": "CF-1.11",
-    "schema_version": SCHEMA_VERSION,
-    "units_of_measure": "a (particle radius) = m (particle mass) = T (time unit) = 1",
-}
 
 
 class Point(NamedTuple):
@@ -125,12 +126,22 @@ def write_point(path: str | Path, point: Point) -> None:
 
     lengths = _dimensions(point)
     with whole_netcdf(path) as draft, netCDF4.Dataset(draft, "w") as file:
-        file.setncatts(COMMON_ATTRIBUTES | point.attributes)
-        for name, length in lengths.items():
-            file.createDimension(name, length)
-        for name in VARIABLES:
-            if name in point.variables:
-                _write_variable(file, name, point.variables)
+        _fill(file, point, lengths)
+
+
+def as_dataset(point: Point) -> "xarray.Dataset":
+    """What `read_point` gives of the file that `write_point` makes of `point`, without that file.
+
+    Raises ValueError as `write_point` does.
+    """
+    import netCDF4
+    import xarray
+
+    lengths = _dimensions(point)
+    file = netCDF4.Dataset("point.nc", "w", memory=1)  # which never gets to a disk
+    _fill(file, point, lengths)
+    file = netCDF4.Dataset("point.nc", memory=file.close())
+    return xarray.load_dataset(xarray.backends.NetCDF4DataStore(file))  # which closes it
 
 
 @contextmanager
@@ -145,26 +156,46 @@ def whole_netcdf(path: str | Path) -> Iterator[Path]:
 
 
 def read_point(path: str | Path) -> "xarray.Dataset":
-    """The dataset at `path` as an xarray.Dataset in memory, the file closed."""
+    """The dataset at `path` as an xarray.Dataset in memory, the file closed.
+
+    Raises InputError where it is of a newer schema.
+    """
     import xarray
 
-    return xarray.load_dataset(path, engine="netcdf4")
+    found = xarray.load_dataset(path, engine="netcdf4")
+    check_schema(found.attrs, path)
+    return found
 
 
 def variable_attributes(name: str, cooling: bool) -> dict[str, str]:
-    """CF attributes (long_name, units) of a variable of a cooling gas or of a forced one."""
+    """long_name and units of a variable of a cooling gas or of a forced one."""
     about = VARIABLES[name]
-    units = COOLING_UNITS.get(about.units, about.units) if cooling else about.units
-    return {"long_name": about.long_name, "units": units}
+    counted = cooling and name not in OF_SETTINGS
+    units = COOLING_UNITS.get(about.units, about.units) if counted else about.units
+    return {"long_name": about.long_name, **unit_attributes(units)}
+
+
+def _fill(file: "netCDF4.Dataset", point: Point, lengths: dict[str, int]) -> None:
+    file.setncatts(COMMON_ATTRIBUTES | point.attributes)
+    for name, length in lengths.items():
+        file.createDimension(name, length)
+    for name in VARIABLES:
+        if name in point.variables:
+            _write_variable(file, name, point.variables)
 
 
 def _write_variable(file: "netCDF4.Dataset", name: str, variables: dict[str, Any]) -> None:
-    dims = VARIABLES[name].dims
-    packing = {"compression": "zlib", "complevel": 1, "shuffle": True}
-    words = VARIABLES[name].dtype == "str"
-    kind = str if words else VARIABLES[name].dtype
-    target = file.createVariable(name, kind, dims, **(packing if dims and not words else {}))
+    _, _, dims, dtype, _, flags = VARIABLES[name]
+    words = dtype == "str"
+    layout = {"compression": "zlib", "complevel": 1, "shuffle": True} if dims and not words else {}
+    if dtype == "f8" and name not in CLOCKS:
+        layout["fill_value"] = np.nan
+    target = file.createVariable(name, str if words else dtype, dims, **layout)
     target.setncatts(variable_attributes(name, cooling=CLOCKS[1] in variables))
+    target.setncatts(ancillary(name, variables))
+    if flags:
+        values = np.arange(len(flags.split()), dtype=dtype)
+        target.setncatts({"flag_values": values, "flag_meanings": flags})
     clock = next((clock for clock in CLOCKS if clock in variables), None)
     if dims == ("sample",) and clock and name not in CLOCKS:
         target.coordinates = clock

@@ -1,4 +1,8 @@
-"""The one error that bad input raises."""
+"""What goes wrong through bad input, and in a simulation."""
+
+from collections.abc import Iterable
+
+SIMILAR = 0.8  # how alike, from 0 to 1, a name is to one that may have been meant
 
 
 class InputError(ValueError):
@@ -15,6 +19,16 @@ class InputError(ValueError):
 
     def __str__(self) -> str:
         return f"{self.key} = {self.value}: must {self.legal}"
+
+
+def not_one_of(key: str, value: object, known: Iterable[str]) -> InputError:
+    """The error of a value that is none of the `known` ones, with a guess at what was meant."""
+    import difflib
+
+    known = list(known)
+    legal = f"be one of {', '.join(known)}"
+    meant = difflib.get_close_matches(str(value).strip("'"), known, 1, SIMILAR)
+    return InputError(key, value, f"{legal}; did you mean {meant[0]}?" if meant else legal)
 
 
 class CollapseError(RuntimeError):

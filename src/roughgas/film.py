@@ -11,7 +11,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from roughgas.dataset import COMMON_ATTRIBUTES, ENERGY, TIME, Variable, whole_netcdf
+from roughgas.cf import COMMON_ATTRIBUTES, check_schema, unit_attributes
+from roughgas.dataset import CLOCKS, ENERGY, TIME, Variable, whole_netcdf
+from roughgas.errors import InputError
 
 if TYPE_CHECKING:
     import xarray
@@ -65,18 +67,34 @@ def write_film(
             for dim, length in zip(about.dims, values.shape, strict=True):
                 if dim not in file.dimensions:
                     file.createDimension(dim, length)
-            packing = {"compression": "zlib", "complevel": 4, "shuffle": True} if about.dims else {}
-            target = file.createVariable(name, about.dtype, about.dims, **packing)
-            target.setncatts({"long_name": about.long_name, "units": about.units})
+            target = file.createVariable(name, about.dtype, about.dims, **_layout(name))
+            target.setncatts({"long_name": about.long_name, **unit_attributes(about.units)})
+            if "frame" in about.dims and name not in CLOCKS:
+                target.coordinates = " ".join(CLOCKS)
             target[...] = values
         file["disks"].sample_dimension = "disk"
 
 
+def _layout(name: str) -> dict[str, Any]:
+    """How a variable is stored; of numbers that may be missing, by which value."""
+    about = VARIABLES[name]
+    packing = {"compression": "zlib", "complevel": 4, "shuffle": True} if about.dims else {}
+    may_miss = about.dtype.startswith("f") and name not in (*about.dims, *CLOCKS)
+    return packing | ({"fill_value": np.nan} if may_miss else {})
+
+
 def read_film(path: str | Path) -> "xarray.Dataset":
-    """The dataset at `path` as an xarray.Dataset in memory, the file closed."""
+    """The dataset at `path` as an xarray.Dataset in memory, the file closed.
+
+    Raises InputError where it is of a newer schema, or no film.
+    """
     import xarray
 
-    return xarray.load_dataset(path, engine="netcdf4")
+    found = xarray.load_dataset(path, engine="netcdf4")
+    check_schema(found.attrs, path)
+    if "frame" not in found.dims:
+        raise InputError("film", path, "be a dataset of `roughgas clustering`")
+    return found
 
 
 def disks_of(film: "xarray.Dataset", frame: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -83,9 +83,13 @@ def effort(experiment: Mapping[str, Any], r: float, beta: float) -> float:
     """
     if "target_stderr" in experiment:
         return float(experiment["particles"])
+    return experiment["particles"] * length(experiment, r, beta)
+
+
+def length(experiment: Mapping[str, Any], r: float, beta: float) -> float:
+    """How much a point simulates: T, or of a gas that cools collisions per particle."""
     protocol = PROTOCOLS[experiment["schedule"]["kind"]]
-    length = protocol.length(build(experiment, r, beta), experiment["schedule"])
-    return experiment["particles"] * length
+    return protocol.length(build(experiment, r, beta), experiment["schedule"])
 
 
 def compile_kernels(experiments: Iterable[Mapping[str, Any]]) -> int:

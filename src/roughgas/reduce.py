@@ -13,13 +13,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from roughgas.dataset import (
-    CLOCKS,
-    COMMON_ATTRIBUTES,
-    VARIABLES,
-    variable_attributes,
-    whole_netcdf,
-)
+from roughgas.cf import COMMON_ATTRIBUTES, check_schema, completed
+from roughgas.dataset import CLOCKS, VARIABLES, variable_attributes, whole_netcdf
 from roughgas.errors import InputError
 from roughgas.measure.intervals import pooled
 
@@ -51,6 +46,8 @@ DERIVED = {
     "R_stderr": "standard error of R: scatter over seeds and error within them, pooled",
     "R_dof": "degrees of freedom that R_stderr is known with",
     "R_ci95": "half width of the 95 % interval of R, by Student's t",
+    "R_ci95_trusted": "share of seeds whose R_ci95 holds the truth as often as it says",
+    "equilibrated": "share of seeds that were found in a steady state",
     "R_stderr_over_seeds": "standard error of R from the scatter over seeds alone",
     "R_stderr_within": "standard error of R from within the files, combined over seeds",
     "R_unsubtracted_stderr": "standard error of R_unsubtracted: scatter over seeds",
@@ -61,6 +58,8 @@ DERIVED = {
     "measured_for": "length of the measured window, mean over seeds",
     "n_seeds": "number of seeds found",
 }
+LIKE = {"measured_for": "measured_from", "E_trans_stderr": "E_trans"}
+"""Variables of points that those of DERIVED have the units of, where they are not those of R."""
 
 
 class Summary(NamedTuple):
@@ -99,10 +98,15 @@ def _files(path: Path) -> list[Path]:
 
 
 def read_reduced(path: str | Path) -> "xarray.Dataset":
-    """The reduced dataset at `path` in memory, the file closed."""
+    """The reduced dataset at `path` in memory, the file closed.
+
+    Raises InputError where it is of a newer schema.
+    """
     import xarray
 
-    return xarray.load_dataset(path, engine="netcdf4")
+    found = xarray.load_dataset(path, engine="netcdf4")
+    check_schema(found.attrs, path)
+    return found
 
 
 def third_axis(attributes: Mapping[str, Any]) -> str | None:
@@ -136,9 +140,12 @@ def _summary(path: Path) -> Summary:
 
     with netCDF4.Dataset(path) as file:
         file.set_auto_mask(False)
+        attributes = {name: file.getncattr(name) for name in file.ncattrs()}
+        check_schema(attributes, path)
+        if "seed" not in attributes:
+            raise InputError("file to reduce", path, "be the dataset of a point")
         found = [name for name, about in VARIABLES.items() if not about.dims]
         scalars = {name: file[name][...].item() for name in found if name in file.variables}
-        attributes = {name: file.getncattr(name) for name in file.ncattrs()}
         scalars["measured_for"], scalars["R_drift"] = _window(file, scalars)
     return Summary(scalars, attributes)
 
@@ -176,12 +183,12 @@ def _combined(points: Sequence[Summary]) -> "xarray.Dataset":
     }
     coordinates = dict(zip((*grid, "seed"), map(_coordinate, axes), strict=True))
     dataset = xarray.Dataset(variables, coordinates, attributes)
-    dataset.r.attrs.update(long_name="normal restitution", units="1")
-    dataset.beta.attrs.update(long_name="tangential restitution", units="1")
+    dataset.r.attrs.update(long_name="normal restitution")
+    dataset.beta.attrs.update(long_name="tangential restitution")
     dataset.seed.attrs.update(long_name="seed of the random generator")
     if swept is not None:
         dataset[swept].attrs.update(long_name=f"parameter of an effect: {attributes['swept']}")
-    return dataset
+    return completed(dataset)
 
 
 def _ascending(value: Any) -> tuple[bool, Any]:
@@ -265,12 +272,11 @@ def _standard_error(values: np.ndarray) -> np.ndarray:
 
 
 def _about(name: str, cooling: bool) -> dict[str, str]:
-    """CF attributes of a reduced variable."""
+    """long_name and units of a reduced variable."""
     if name not in DERIVED:
         return variable_attributes(name, cooling)
-    like = {"measured_for": "measured_from", "E_trans_stderr": "E_trans"}.get(name, "R")
-    units = variable_attributes(like, cooling)["units"]
-    return {"long_name": DERIVED[name], "units": units}
+    like = variable_attributes(LIKE.get(name, "R"), cooling)
+    return like | {"long_name": DERIVED[name]}
 
 
 def _common_attributes(points: Sequence[Summary]) -> dict[str, Any]:

@@ -38,18 +38,26 @@ COLUMNS = (
     "contact_time_fraction",
 )
 THEORY = ("theory", "R_theory", "residual")
+HEAD = (*ABOUT, *GRID, *COLUMNS, *THEORY)
 
 
 def write_table(reduced_paths: Iterable[str | Path], csv_path: str | Path) -> None:
     """Write one tidy CSV: a row for each experiment, value of its third axis, r and beta that holds
     data."""
-    head = (*ABOUT, *GRID, *COLUMNS, *THEORY)
     with whole_file(csv_path) as draft, open(draft, "w", newline="", encoding="utf-8") as file:
         table = csv.writer(file, lineterminator="\n")
-        table.writerow(head)
+        table.writerow(HEAD)
         for path in reduced_paths:
-            for variant in _variants(read_reduced(path)):
-                table.writerows(_rows(variant, head))
+            for row in rows(read_reduced(path)):
+                table.writerow(map(_cell, row.values()))
+
+
+def rows(dataset: "xarray.Dataset", head: Sequence[str] = HEAD) -> Iterator[dict[str, Any]]:
+    """The rows of a reduced dataset, ascending in the third axis, r and beta: by the names in
+    `head` what there is of each, be it of HEAD, a variable over the grid or an attribute, else "".
+    NaN is a number that is not known."""
+    for variant in _variants(dataset):
+        yield from _rows_of_variant(variant, head)
 
 
 def _variants(dataset: "xarray.Dataset") -> Iterator["xarray.Dataset"]:
@@ -63,15 +71,14 @@ def _variants(dataset: "xarray.Dataset") -> Iterator["xarray.Dataset"]:
         yield dataset.isel({name: index}, drop=True).assign_attrs(about)
 
 
-def _rows(dataset: "xarray.Dataset", head: Sequence[str]) -> Iterator[list[str]]:
-    """The rows of a dataset over (r, beta), ascending in them."""
+def _rows_of_variant(dataset: "xarray.Dataset", head: Sequence[str]) -> Iterator[dict[str, Any]]:
     flat = dataset.drop_dims("seed").stack(point=GRID)
     prediction = predicted_ratio(dataset.attrs, flat.r.values, flat.beta.values)
     for index in np.flatnonzero(flat["n_seeds"].values):
-        row = {name: flat[name].values[index] for name in (*GRID, *COLUMNS) if name in flat}
+        row = {name: flat[name].values[index] for name in head if name in flat}
         residual = row.get("R", math.nan) - prediction[index]
         row |= {"R_theory": prediction[index], "residual": residual}
-        yield [_cell(row.get(name, dataset.attrs.get(name, ""))) for name in head]
+        yield {name: row.get(name, dataset.attrs.get(name, "")) for name in head}
 
 
 def _cell(value: Any) -> str:

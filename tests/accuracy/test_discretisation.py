@@ -7,6 +7,7 @@ import sys
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
+from tests.schema_page import check_study
 
 from roughgas.accuracy import discretisation
 from roughgas.accuracy.discretisation_fits import (
@@ -100,6 +101,7 @@ def test_jobs_are_independent(parts):
 def test_everything_in_the_group_is_described(group):
     for name, values in group.variables.items():
         assert values.attrs["long_name"] and values.attrs["units"], name
+    check_study("discretisation", group)
     assert group.soft_R.dims == ("steps", "contact_time") and group.attrs["seed"] == 3
     assert group.reference_collisions == 12000
     assert np.all(np.isfinite(group.soft_matched_seconds))

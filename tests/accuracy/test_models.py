@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from matplotlib.figure import Figure
+from tests.schema_page import check_study
 
 from roughgas import theory
 from roughgas.accuracy import models
@@ -134,6 +135,7 @@ def test_every_variable_says_what_it_is(data):
     for name in data.variables:
         assert data[name].attrs["long_name"] and data[name].attrs["units"], name
     assert data.attrs["seed"] == 1
+    check_study("models", data)
 
 
 def test_results_are_what_they_are_made_of(parts, data):

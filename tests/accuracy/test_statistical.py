@@ -7,6 +7,7 @@ import pytest
 from brute_force import settings
 from matplotlib.figure import Figure
 from schedules import COOLING, STEADY
+from tests.schema_page import check_study
 
 from roughgas.accuracy import statistical
 from roughgas.accuracy.chain import Chain
@@ -106,6 +107,7 @@ def test_a_study_from_end_to_end(parts):
     share = (data.seconds_needed - data.equilibration_seconds).values
     np.testing.assert_allclose(share[:, 2], 100 * share[:, 0])  # 0.1 % and 1 %
     assert all({"long_name", "units"} <= set(data[name].attrs) for name in data.data_vars)
+    check_study("statistical", data)
 
 
 def test_no_estimate_is_used_twice_and_none_is_the_references(parts):

@@ -7,7 +7,7 @@ import signal
 
 import pytest
 from cluster import until
-from conftest import OnCluster
+from on_cluster import OnCluster
 from project import Project
 
 from roughgas.dataset import WALL_CLOCK, read_point

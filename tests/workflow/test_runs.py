@@ -1,13 +1,20 @@
 """The workflow as it is really run: twice, in another order, and killed in between."""
 
+import hashlib
+import json
+import os
 import shlex
 import subprocess
 import sys
 import time
+import zipfile
+from urllib.parse import unquote
 
 import pytest
 from project import POINTS, SWEEP
+from rocrate.rocrate import ROCrate
 
+from roughgas.crate import rows_of, verify
 from roughgas.dataset import WALL_CLOCK, read_point
 
 pytestmark = pytest.mark.slow
@@ -53,6 +60,30 @@ def test_a_point_is_the_same_when_it_is_run_alone(undisturbed, tmp_path):
     one, other = read_point(path), read_point(tmp_path / "alone.nc")
     one, other = (data.drop_vars(WALL_CLOCK, errors="ignore").drop_attrs() for data in (one, other))
     assert one.identical(other)
+
+
+def test_a_run_is_packed_with_all_that_it_takes_to_repeat_it(undisturbed, tmp_path):
+    packed = undisturbed.copy_to(tmp_path / "packed")
+    packed.succeed("-j1", "--config", "scale=tiny", "--", "crate")
+    with zipfile.ZipFile(packed.folder / "results/tiny/crate.zip") as archive:
+        archive.extractall(tmp_path / "crate")
+    found = ROCrate(tmp_path / "crate")
+    for file in found.get_by_type("File"):
+        content = (tmp_path / "crate" / unquote(file.id)).read_bytes()
+        assert hashlib.sha256(content).hexdigest() == file["sha256"], file.id
+    results = {file.id for file in found.dereference("#run")["result"]}
+    assert {"results/tiny/R.csv", "results/tiny/claims.md", "figures/tiny/fig1a.png"} <= results
+    configuration = json.loads((tmp_path / "crate/configuration.json").read_text())
+    assert configuration["scale"] == "tiny" and configuration["scales"]["tiny"]
+    rows = rows_of(tmp_path / "crate/points.csv")
+    assert len(rows) == POINTS
+    # what is in the crate, and nothing else, makes a point of it again
+    program, *arguments = shlex.split(rows[0]["command"])
+    assert program == "roughgas"
+    command = [sys.executable, "-m", "roughgas", *arguments]
+    sources = {"PYTHONPATH": str(tmp_path / "crate/src")}
+    subprocess.run(command, cwd=tmp_path, env=os.environ | sources, check=True)
+    assert not verify(tmp_path / "crate", [tmp_path / rows[0]["point"]])
 
 
 def test_a_second_run_does_nothing(undisturbed):

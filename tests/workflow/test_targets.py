@@ -47,8 +47,17 @@ def test_the_default_are_the_figures_which_need_every_point_of_the_sweep_once(pr
         "figure": 4,
         "table": 1,
         "claims": 1,
+        "run_times": 1,
+        "effective_config": 1,
+        "document": 3,
         "figures": 1,
     }
+
+
+def test_a_page_is_made_of_points_and_their_reduction(project):
+    planned = {"compile_kernel": 6, "seeds": JOBS, "reduce": 6, "page": 1, "explore": 1}
+    assert project.planned("explore") == planned
+    assert project.planned("explore_extensions")["page_of_extensions"] == 1
 
 
 def test_each_seed_can_be_a_job_of_its_own(tmp_path):
@@ -106,6 +115,8 @@ def test_what_lies_beyond_the_paper_is_a_target_of_its_own(project):
         "figure": 6,
         "table_of_extensions": 1,
         "open_questions": 1,
+        "run_times_of_extensions": 1,
+        "document": 2,
         "extensions": 1,
     }
     assert project.planned("figures")["seeds"] == JOBS
@@ -131,7 +142,8 @@ def test_everything_has_the_experiments_that_were_added(tmp_path):
 def test_the_hard_cases_are_those_of_the_catalogue(project):
     families = list((project.folder / "tests" / "hard_cases").glob("test_*.py"))
     planned = project.planned("hard_cases")
-    assert planned == {"family": len(families), "catalogue": 1, "hard_cases": 1}
+    drawn = {"catalogue": 1, "document": 1}
+    assert planned == {"family": len(families), "hard_cases": 1} | drawn
     assert len(families) > 10
 
 
@@ -141,7 +153,7 @@ def test_a_study_is_a_job_for_each_of_its_tasks(project):
         name: len(accuracy.study(name).tasks(roughgas.config.study(config, name, "tiny")["study"]))
         for name in accuracy.STUDIES
     }
-    drawn = {"study_figure": 1, "study_table": 1}
+    drawn = {"study_figure": 1, "study_table": 1, "document": 1}
     expected = {"study": tasks.pop("coverage"), "combined_studies": 1, "coverage": 1}
     assert project.planned("coverage") == expected | drawn
     expected = {"study": sum(tasks.values()), "combined_studies": 1, "accuracy": 1}

@@ -8,7 +8,7 @@ are in config.yaml, under `accuracy`.
 from importlib import import_module
 from types import ModuleType
 
-from roughgas.errors import InputError
+from roughgas.errors import not_one_of
 
 PANELS = ("statistical", "models", "discretisation")
 """The studies that the work-precision figure shows, one a panel."""
@@ -18,5 +18,5 @@ STUDIES = (*PANELS, "coverage")
 def study(name: str) -> ModuleType:
     """The module of a study. Raises InputError for an unknown one."""
     if name not in STUDIES:
-        raise InputError("study", name, f"be one of {', '.join(STUDIES)}")
+        raise not_one_of("study", name, STUDIES)
     return import_module(f"roughgas.accuracy.{name}")

@@ -82,6 +82,8 @@ def combine(parts: Mapping[str, "xarray.Dataset"], settings: Mapping[str, Any]) 
     coordinates = {CORNER: tasks(settings), WAY: list(WAYS), LEVEL: list(LEVELS)}
     attributes = {"seed": settings["seed"], "unit_of_length": UNIT}
     dataset = xarray.Dataset(variables, coordinates, attributes)
+    for name, about in AXES.items():
+        dataset[name].attrs["long_name"] = about
     for key, about in NAMED.items():
         labels = [corner[key] for corner in settings["corners"]]
         dataset[key] = (CORNER, labels, _attributes(about, ""))
@@ -92,6 +94,11 @@ NAMED = {
     "experiment": "experiment",
     "r": "normal restitution, as written in the settings",
     "beta": "tangential restitution, as written in the settings",
+}
+AXES = {
+    CORNER: "experiment, r and beta",
+    WAY: "how the interval is found",
+    LEVEL: "share of the intervals that should hold the truth",
 }
 UNIT = "T; in a cooling gas a collision per particle"
 ABOUT = {

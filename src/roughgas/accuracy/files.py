@@ -9,14 +9,16 @@ import xarray as xr
 
 from roughgas.accuracy import STUDIES, study, tables
 from roughgas.atomic import write_text
-from roughgas.dataset import COMMON_ATTRIBUTES, whole_netcdf
+from roughgas.cf import COMMON_ATTRIBUTES, check_schema, completed
+from roughgas.dataset import whole_netcdf
 from roughgas.errors import InputError
 
 
 def write_task(path: str | Path, data: xr.Dataset, about: Mapping[str, Any]) -> None:
     """Write what a task has found; `about` names study, task and settings (JSON)."""
     with whole_netcdf(path) as draft:
-        data.assign_attrs(COMMON_ATTRIBUTES | dict(about)).to_netcdf(draft, engine="netcdf4")
+        whole = completed(data).assign_attrs(COMMON_ATTRIBUTES | dict(about))
+        whole.to_netcdf(draft, engine="netcdf4")
 
 
 def combine(paths: Iterable[str | Path], output: str | Path) -> None:
@@ -27,14 +29,20 @@ def combine(paths: Iterable[str | Path], output: str | Path) -> None:
     found: dict[str, dict[str, xr.Dataset]] = {}
     for path in paths:
         data = xr.load_dataset(path, engine="netcdf4")
+        check_schema(data.attrs, path)
         found.setdefault(data.attrs["study"], {})[data.attrs["task"]] = data
     groups = {f"/{name}": _combined(name, parts) for name, parts in found.items()}
+    groups["/"] = xr.Dataset(attrs=COMMON_ATTRIBUTES | {"title": "Studies of accuracy"})
     with whole_netcdf(output) as draft:
         xr.DataTree.from_dict(groups).to_netcdf(draft, engine="netcdf4")
 
 
 def read_study(path: str | Path, name: str) -> xr.Dataset:
-    """The group of a study in the file at `path`, in memory, the file closed."""
+    """The group of a study in the file at `path`, in memory, the file closed.
+
+    Raises InputError where it is of a newer schema.
+    """
+    check_schema(xr.load_dataset(path, engine="netcdf4").attrs, path)
     return xr.load_dataset(path, group=name, engine="netcdf4")
 
 
@@ -57,4 +65,4 @@ def _combined(name: str, parts: Mapping[str, xr.Dataset]) -> xr.Dataset:
         raise InputError(f"tasks of {name}", f"without {sorted(missing)[0]}", "be complete")
     scales = {data.attrs["scale"] for data in parts.values()}
     data = study(name).combine(dict(parts), settings)
-    return data.assign_attrs(COMMON_ATTRIBUTES | {"scale": ", ".join(sorted(scales))})
+    return completed(data).assign_attrs(title=name, scale=", ".join(sorted(scales)))

@@ -193,9 +193,17 @@ def combine(parts: Mapping[str, "xarray.Dataset"], settings: Mapping[str, Any]) 
         ACCURACY: list(RELATIVE_ERRORS),
     }
     attributes = {key: settings[key] for key in ("r", "beta", "seed")}
-    return xarray.Dataset(variables, coordinates, attributes)
+    dataset = xarray.Dataset(variables, coordinates, attributes)
+    for name, about in AXES.items():
+        dataset[name].attrs["long_name"] = about
+    return dataset
 
 
+AXES = {
+    SCENE: "what is simulated",
+    WAY: "what is made longer or more: runs or seeds",
+    ACCURACY: "error of R relative to R",
+}
 LENGTH_UNITS = {
     "vibrated": "T",
     "sheared": "T",

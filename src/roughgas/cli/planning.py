@@ -7,13 +7,22 @@ import time
 from pathlib import Path
 from typing import Any
 
+from roughgas.cli.layout import as_json
+from roughgas.cli.parser import examples
 from roughgas.cli.run import add_point, point_of, write_seed
-from roughgas.cli.settings import add_settings
+from roughgas.cli.settings import add_experiments, add_scale
 from roughgas.errors import InputError
 
-PILOT_EXAMPLE = "example: roughgas pilot sheared --r 0.9 --beta 0 -o pilot.json"
-REACH_EXAMPLE = "example: roughgas reach sheared --scale fine --r 0.9 --beta 0 -o seeds"
-PLAN_EXAMPLE = "example: roughgas plan --scale fine --cores 8"
+PILOT_EXAMPLE = examples("roughgas pilot sheared --r 0.9 --beta 0 -o pilot.json")
+REACH_EXAMPLE = examples("roughgas reach sheared --scale fine --r 0.9 --beta 0 -o seeds")
+PLAN_EXAMPLES = examples(
+    "roughgas plan sheared --scale small",
+    "roughgas plan --scale fine --cores 8",
+    "roughgas plan vibrated cooling --scale fine --json",
+)
+COSTS_EXAMPLE = examples(
+    "roughgas costs results/fine/sheared.nc --fixed '{}' -o costs.md",
+)
 PILOT = "{experiment}/r{r}/beta{beta}/pilot.json"
 
 
@@ -46,12 +55,14 @@ def add_commands(commands: Any) -> None:
         help="say what all experiments will cost, and how accurate they will be",
         description="Print a table of points, seeds, errors and times, from pilot runs. Those that "
         "are not there yet are run first; nothing else is.",
-        epilog=PLAN_EXAMPLE,
+        epilog=PLAN_EXAMPLES,
     )
-    add_settings(parser)
-    parser.add_argument("experiments", nargs="*", metavar="EXPERIMENT", help="default: all")
-    parser.add_argument("--cores", default=str(os.cpu_count()), help="for the wall time")
+    add_experiments(parser, dest="experiments", nargs="*", help="default: all")
+    add_scale(parser)
+    cores = str(os.cpu_count())
+    parser.add_argument("--cores", default=cores, help="for the wall time (default: all here)")
     parser.add_argument("--pilots", metavar="FOLDER", help="of pilots (default: results/SCALE)")
+    parser.add_argument("--json", action="store_true", help="print the table as JSON; times in s")
     parser.add_argument("-o", "--output", metavar="FILE", help="file for the table, too")
     parser.set_defaults(command=plan)
 
@@ -59,6 +70,7 @@ def add_commands(commands: Any) -> None:
         "costs",
         help="compare what was planned with what happened",
         description="Write, from reduced datasets, what was planned beside what happened.",
+        epilog=COSTS_EXAMPLE,
     )
     parser.add_argument("inputs", nargs="+", metavar="REDUCED", help="reduced datasets")
     parser.add_argument("--fixed", required=True, metavar="JSON", help="schedules to compare with")
@@ -78,6 +90,8 @@ def reach(options: argparse.Namespace) -> None:
     """Run a point until it is as accurate as its experiment says."""
     from roughgas.cli.progress import Progress
     from roughgas.planning.pilot import explore, read_pilot
+    from roughgas.planning.plan import plan_point
+    from roughgas.planning.reach import completed
     from roughgas.planning.reach import reach as run
 
     r, beta, settings = point_of(options)
@@ -89,7 +103,9 @@ def reach(options: argparse.Namespace) -> None:
         output = str(Path(options.output, f"seed{seed}.nc"))
         write_seed(options, chosen, str(seed), output, point)
 
-    with Progress(options.experiment, {"kind": ""}) as progress:
+    expected = plan_point(settings, r, beta, known)
+    run_settings = completed(settings, expected)
+    with Progress(options.experiment, run_settings, r, beta, expected.seeds) as progress:
         planned, error, seeds = run(settings, r, beta, known, keep, progress)
     met = "met" if error.stderr <= settings["target_stderr"] else "NOT met"
     print(
@@ -103,7 +119,7 @@ def plan(options: argparse.Namespace) -> None:
     """Print what experiments will cost."""
     from roughgas import config
     from roughgas.atomic import write_text
-    from roughgas.planning.table import as_markdown, row
+    from roughgas.planning.table import as_markdown, as_numbers, row
 
     if not options.cores.isdecimal() or int(options.cores) < 1:
         raise InputError("--cores", options.cores, "be a whole number >= 1")
@@ -118,7 +134,8 @@ def plan(options: argparse.Namespace) -> None:
     block = loaded.get("seeds_per_job", config.SEEDS_PER_JOB)
     rows = [row(name, settings, pilots[name][0], block) for name, settings in found.items()]
     start_up -= sum(seconds for _, seconds in pilots.values())
-    text = as_markdown(rows, int(options.cores), start_up)
+    table = rows, int(options.cores), start_up
+    text = as_json(as_numbers(*table)) + "\n" if options.json else as_markdown(*table)
     print(text, end="")
     if options.output:
         write_text(options.output, text)
@@ -133,16 +150,16 @@ def costs(options: argparse.Namespace) -> None:
 
 def _pilots(name: str, settings: dict[str, Any], folder: Path):
     """The pilots of a sweep by (r, beta), and the CPU seconds spent on missing ones."""
-    from roughgas.cli.progress import Line
+    from roughgas.cli.progress import Bar
     from roughgas.planning.pilot import explore, read_pilot, write_pilot
 
     axes, found, begin = settings["sweep"], {}, time.process_time()
-    with Line(f"pilots of {name}") as line:
+    with Bar(f"pilots of {name}", len(axes["r"]) * len(axes["beta"]), "points") as bar:
         for r in axes["r"]:
             for beta in axes["beta"]:
+                bar.reach(len(found), f"r = {r}, beta = {beta}")
                 path = folder / PILOT.format(experiment=name, r=r, beta=beta)
                 if not path.exists():
-                    line.show(f"r = {r}, beta = {beta}")
                     write_pilot(path, explore(settings, float(r), float(beta)))
                 found[str(r), str(beta)] = read_pilot(path)
     return found, time.process_time() - begin

@@ -3,27 +3,53 @@
 import argparse
 from typing import Any
 
+from roughgas.cli.parser import examples
+
 
 def add_commands(commands: Any) -> None:
     """Add the four subcommands to argparse's `commands`."""
-    parser = _add(commands, "reduce", reduce, "combine the points of an experiment")
+    parser = _add(
+        commands,
+        "reduce",
+        reduce,
+        "combine the points of an experiment",
+        "roughgas reduce results/paper/sheared/r*/beta*/seed*.nc -o sheared.nc",
+    )
     parser.add_argument(
         "inputs", nargs="+", metavar="POINT", help="datasets of points, or folders of them"
     )
     parser.add_argument("-o", "--output", required=True, metavar="FILE", help="reduced dataset")
 
-    parser = _add(commands, "table", table, "write reduced datasets as one CSV table")
+    parser = _add(
+        commands,
+        "table",
+        table,
+        "write reduced datasets as one CSV table",
+        "roughgas table results/paper/sheared.nc results/paper/cooling.nc -o R.csv",
+    )
     _add_reduced(parser)
     parser.add_argument("-o", "--output", required=True, metavar="FILE", help="CSV file")
 
-    parser = _add(commands, "figure", figure, "draw a figure from reduced datasets")
+    parser = _add(
+        commands,
+        "figure",
+        figure,
+        "draw a figure from reduced datasets",
+        "roughgas figure fig2b results/paper/cooling.nc -o fig2b.pdf fig2b.png",
+    )
     parser.add_argument("name", metavar="NAME", help="of the figure, such as fig1a")
     _add_reduced(parser)
     parser.add_argument(
         "-o", "--output", required=True, nargs="+", metavar="FILE", help=".pdf or .png files"
     )
 
-    parser = _add(commands, "claims", claims, "judge the claims of the paper on reduced datasets")
+    parser = _add(
+        commands,
+        "claims",
+        claims,
+        "judge the claims of the paper on reduced datasets",
+        "roughgas claims results/paper/*.nc --json claims.json --markdown claims.md",
+    )
     _add_reduced(parser)
     parser.add_argument(
         "--open-questions",
@@ -63,8 +89,11 @@ def claims(options: argparse.Namespace) -> None:
     judge(options.inputs, options.json, options.markdown, subject)
 
 
-def _add(commands: Any, name: str, command: Any, summary: str) -> argparse.ArgumentParser:
-    parser = commands.add_parser(name, help=summary, description=f"{summary.capitalize()}.")
+def _add(
+    commands: Any, name: str, command: Any, summary: str, example: str
+) -> argparse.ArgumentParser:
+    about = f"{summary[0].upper()}{summary[1:]}."
+    parser = commands.add_parser(name, help=summary, description=about, epilog=examples(example))
     parser.set_defaults(command=command)
     return parser
 

@@ -1,4 +1,4 @@
-"""What a person sees while a simulation runs: how far it is, in the terms of the simulation."""
+"""How far a long command is, and how long it will go on: bars on a terminal, nothing elsewhere."""
 
 import sys
 import time
@@ -6,86 +6,137 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Self
 
-SECONDS_BETWEEN = 0.2
+BAR = "{desc}: {percentage:3.0f}%|{bar}| {n_fmt} of {total_fmt}{unit}, {remaining} left{postfix}"
 
 
-class Line:
-    """A line on a terminal that is overwritten again and again, and cleared in the end."""
+class Bar:
+    """How much of a known amount of work is done; silent where there is no terminal."""
 
-    def __init__(self, name: str, stream: Any = None) -> None:
-        self._name = name
-        self._stream = sys.stderr if stream is None else stream
-        self._shown = self._stream.isatty()
-        self._due = 0.0
+    def __init__(self, name: str, total: float | None, unit: str = "", stream: Any = None) -> None:
+        """`unit` is that of `total`; None where the amount is not known yet."""
+        self._bar, self._stream = None, sys.stderr if stream is None else stream
+        if self._stream.isatty():
+            from tqdm import tqdm  # takes a tenth of a short job's time
+
+            self._bar = tqdm(
+                desc=name,
+                total=total,
+                unit=f" {unit}" if unit else "",
+                bar_format=BAR,
+                file=self._stream,
+                leave=False,
+                miniters=1,  # looks at the clock whenever it is told something
+                dynamic_ncols=True,
+            )
 
     def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_: object) -> None:
         """Clear the line."""
-        if self._due:
-            self._overwrite("")
+        if self._bar is not None:
+            self._bar.close()
 
-    def show(self, text: str) -> None:
-        """Overwrite the line with the name and `text`, unless it has only just been written."""
-        now = time.monotonic()
-        if self._shown and now >= self._due:
-            self._due = now + SECONDS_BETWEEN
-            self._overwrite(f"{self._name}: {text}")
+    @property
+    def shown(self) -> bool:
+        """Whether there is a terminal to see it on."""
+        return self._bar is not None
+
+    def reach(self, done: float, note: str = "", total: float | None = None) -> None:
+        """So much is done; `total` where it has become known."""
+        if self._bar is None:
+            return
+        if total is not None:
+            self._bar.total = total
+        self._bar.set_postfix_str(note, refresh=False)
+        self._bar.update(done - self._bar.n)
+
+    def advance(self, note: str = "") -> None:
+        """One more is done."""
+        if self._bar is not None:
+            self.reach(self._bar.n + 1, note)
+
+    def begin(self, done: float) -> None:
+        """So much was done before: it says nothing of how fast work goes."""
+        if self._bar is not None:
+            self._bar.n = self._bar.initial = self._bar.last_print_n = done
 
     def say(self, text: str) -> None:
         """Write a line that stays."""
-        self.__exit__()
-        self._stream.write(f"{self._name}: {text}\n")
-        self._stream.flush()
-
-    def _overwrite(self, text: str) -> None:
-        self._stream.write(f"\r\x1b[K{text}")
-        self._stream.flush()
+        if self._bar is None:
+            print(text, file=self._stream, flush=True)
+        else:
+            self._bar.write(text, file=self._stream)
 
 
-class Progress(Line):
-    """How far one point is; silent where there is no terminal."""
+class Progress(Bar):
+    """How far the simulations of one point are: in T, or in collisions per particle, of all seeds
+    and all replicas together."""
 
-    def __init__(self, name: str, schedule: Mapping[str, Any], stream: Any = None) -> None:
-        """`schedule` is that of the experiment `name`; a steady one says when it will be over."""
-        super().__init__(name, stream)
-        self._end = ""
-        if schedule["kind"] == "steady":
-            self._end = f" of {schedule['equilibrate'] + schedule['measure']:,g}"
+    def __init__(
+        self,
+        name: str,
+        experiment: Mapping[str, Any],
+        r: float,
+        beta: float,
+        seeds: int = 1,
+        stream: Any = None,
+    ) -> None:
+        """`experiment` is a complete one: it says how long it is run."""
+        from roughgas.point import effort
+
+        self._particles = experiment["particles"]
+        self._driven = experiment["schedule"]["kind"] == "steady"
+        self._before = self._now = 0.0  # lengths: of the simulations that are over, of this one
+        length = seeds * effort(experiment, r, beta) / self._particles
+        unit = "T" if self._driven else "collisions per particle"
+        super().__init__(name, round(length), unit, stream)
 
     def __call__(self, simulated: float, collisions: int) -> None:
-        """Show that `simulated` (in T) and so many `collisions` are over."""
-        self.show(f"t = {simulated:,.0f}{self._end} T, {collisions:,} collisions")
+        """Of the present simulation `simulated` (in T) and so many `collisions` are over."""
+        now = simulated if self._driven else 2.0 * collisions / self._particles
+        if now < self._now:  # another one has begun
+            self._before += self._now
+        self._now = now
+        self.reach(round(self._before + now))
 
 
-class FilmProgress(Line):
+class FilmProgress:
     """How far a film is and how long it will take: a line for each checkpoint where there is no
     terminal, such as in a log."""
 
     def __init__(self, checkpoint: Path, frames: int, stream: Any = None) -> None:
-        super().__init__("clustering", stream)
+        self._bar = Bar("clustering", frames, "frames", stream)
         self._checkpoint, self._frames = checkpoint, frames
         self._saved = 0  # the frame of the last checkpoint
         self._begun: tuple[int, float] | None = None
 
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """Clear the bar."""
+        self._bar.__exit__()
+
     def fresh(self, why: str) -> None:
         """The run begins anew, although there is a checkpoint."""
-        self.say(f"{why}: starting afresh")
+        self._bar.say(f"clustering: {why}: starting afresh")
 
     def reached(self, frame: int, collisions: int, saved: bool) -> None:
         """So many frames and collisions are over; `saved`: a checkpoint now holds them."""
         if self._begun is None:
             self._begun = frame, time.monotonic()
+            self._bar.begin(frame)
             if frame:
                 self._saved = frame
-                self.say(f"going on from {self._checkpoint}")
-        text = f"frame {frame} of {self._frames}, {collisions:,} collisions{self._left(frame)}"
+                self._bar.say(f"clustering: going on from {self._checkpoint}")
+        text = f"{collisions:,} collisions"
         if saved:
             self._saved = frame
-            if not self._shown:
-                self.say(text)
-        self.show(text)
+            if not self._bar.shown:
+                where = f"frame {frame} of {self._frames}"
+                self._bar.say(f"clustering: {where}, {text}{self._left(frame)}")
+        self._bar.reach(frame, text)
 
     def how_to_go_on(self) -> str:
         """What somebody who interrupts the run is told."""

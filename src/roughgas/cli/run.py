@@ -1,37 +1,46 @@
 """`roughgas run` simulates a point of an experiment; `roughgas compile` prepares its kernel."""
 
 import argparse
-import shlex
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from roughgas.cli.settings import add_settings
+from roughgas.cli.layout import as_json, with_error
+from roughgas.cli.parser import examples
+from roughgas.cli.settings import add_experiments, add_settings
 from roughgas.errors import InputError
 
 if TYPE_CHECKING:
     from roughgas.dataset import Point
 
-RUN_EXAMPLE = "example: roughgas run cooling --r 0.9 --beta -0.5 --seed 1 -o point.nc"
-COMPILE_EXAMPLE = "example: roughgas compile cooling --r 0.9"
+RUN_EXAMPLES = examples(
+    "roughgas run cooling --r 0.9 --beta -0.5",
+    "roughgas run vibrated --r 0.87 --beta 0.5 --seed 1 2 3 --scale small --json",
+    "roughgas run vibrated_inertia/inertia0.3 --r 0.9 --beta 1 -o hollow.nc",
+)
+BETA = "roughness, in [-1, 1]: -1 is smooth, 1 perfectly rough"
+COMPILE_EXAMPLE = examples("roughgas compile cooling --r 0.9")
 
 
 def add_commands(commands: Any) -> None:
     """Add the two subcommands to argparse's `commands`."""
     parser = commands.add_parser(
         "run",
-        help="simulate a point and write its dataset",
+        help="simulate a point, and write its dataset",
         description="Simulate a point of an experiment, for one seed or for several one after the "
-        "other, and write a dataset for each. With several --beta, do so for each of them.",
-        epilog=RUN_EXAMPLE,
+        "other, and write a dataset for each. Without -o it goes into the present folder, under a "
+        "name made from the point's, and its summary is printed, which `roughgas show` does too. "
+        "--beta may be given several times: each seed is then run at each beta.",
+        epilog=RUN_EXAMPLES,
     )
     _add_experiment(parser)
-    parser.add_argument("--beta", required=True, action="append", help="roughness, in [-1, 1]")
+    parser.add_argument("--beta", required=True, action="append", help=BETA)
     parser.add_argument(
-        "--seed", required=True, nargs="+", help="seeds of the random generator, 0, 1, ..."
+        "--seed", nargs="+", default=["1"], help="of the random generator, 0, 1, ... (default: 1)"
     )
+    parser.add_argument("-o", "--output", nargs="+", metavar="FILE", help="datasets, one a seed")
     parser.add_argument(
-        "-o", "--output", required=True, nargs="+", metavar="FILE", help="datasets, one a seed"
+        "--json", action="store_true", help="print a line of JSON for each seed, as it is done"
     )
     parser.set_defaults(command=run)
 
@@ -48,17 +57,14 @@ def add_commands(commands: Any) -> None:
 def add_point(parser: argparse.ArgumentParser) -> None:
     """Add what names a point, but for its seed."""
     _add_experiment(parser)
-    parser.add_argument("--beta", required=True, help="roughness, in [-1, 1]")
+    parser.add_argument("--beta", required=True, help=BETA)
 
 
 def _add_experiment(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "experiment",
-        metavar="EXPERIMENT",
-        help="its name in the configuration, or that of a variant: EXPERIMENT/VARIANT",
-    )
+    name = "its name in the configuration, or that of a variant: EXPERIMENT/VARIANT"
+    add_experiments(parser, dest="experiment", help=name)
     add_settings(parser)
-    parser.add_argument("--r", required=True, help="normal restitution, in [0, 1]")
+    parser.add_argument("--r", required=True, help="normal restitution, in [0, 1]: 1 is elastic")
 
 
 def run(options: argparse.Namespace) -> None:
@@ -66,14 +72,15 @@ def run(options: argparse.Namespace) -> None:
     from roughgas import config
 
     seeds = [config.seed(label) for label in options.seed]
-    number = len(options.beta) * len(seeds)
-    if len(options.output) != number:
-        raise InputError("--output", " ".join(options.output), f"name {number}, one a seed")
     each = [argparse.Namespace(**vars(options) | {"beta": beta}) for beta in options.beta]
     points = [point_of(one) for one in each]
-    outputs = iter(options.output)
-    for one, point in zip(each, points, strict=True):
-        _run_seeds(one, *point, seeds, outputs)
+    outputs = options.output or [_own_name(one, seed) for one in each for seed in options.seed]
+    if len(outputs) != len(points) * len(seeds):
+        legal = f"name {len(points) * len(seeds)}, one a seed"
+        raise InputError("--output", " ".join(outputs), legal)
+    remaining = iter(outputs)
+    for one, (r, beta, settings) in zip(each, points, strict=True):
+        _run_seeds(one, r, beta, settings, seeds, [next(remaining) for _ in seeds])
 
 
 def _run_seeds(
@@ -81,20 +88,28 @@ def _run_seeds(
     r: float,
     beta: float,
     settings: dict[str, Any],
-    seeds: Iterable[int],
-    outputs: Iterator[str],
+    seeds: Sequence[int],
+    outputs: Sequence[str],
 ) -> None:
-    """Simulate a point for each seed, whose datasets are the next of `outputs`."""
+    """Simulate a point, for each seed an output."""
     from roughgas import config
     from roughgas.cli.progress import Progress
     from roughgas.planning.reach import complete
     from roughgas.point import run_point
 
     settings = complete(config.point_settings(settings), r, beta)
-    for label, seed in zip(options.seed, seeds, strict=True):
-        with Progress(options.experiment, settings["schedule"]) as progress:
+    for label, seed, output in zip(options.seed, seeds, outputs, strict=True):
+        with Progress(f"{options.experiment}, seed {label}", settings, r, beta) as progress:
             point = run_point(settings, r, beta, seed, progress)
-        write_seed(options, settings, label, next(outputs), point)
+        written = _write(options, settings, label, output, point)
+        if options.json:
+            print(as_json(_record(output, written), indent=None), flush=True)
+        elif options.output is None:
+            from roughgas.cli.show import summary
+
+            print(summary(output), flush=True)
+        else:
+            _say_done(output, point)
 
 
 def compile_kernel(options: argparse.Namespace) -> None:
@@ -113,11 +128,12 @@ def compile_kernel(options: argparse.Namespace) -> None:
 def point_of(options: argparse.Namespace) -> tuple[float, float, dict[str, Any]]:
     """r, beta and the settings of the experiment, or of its variant."""
     from roughgas import config
+    from roughgas.provenance import variant_attributes
 
     r, beta = config.restitution(options.r), config.roughness(options.beta)
     settings = _settings(options)
     config.check_one_variant(options.experiment, settings)
-    _variant(options.experiment, settings)
+    variant_attributes(options.experiment, settings)  # which refuses a name that is not theirs
     return r, beta, settings
 
 
@@ -133,58 +149,46 @@ def write_seed(
     options: argparse.Namespace, settings: dict[str, Any], seed: str, output: str, point: "Point"
 ) -> None:
     """Write the dataset of a seed, which says how to make it again, and say that it is done."""
+    _write(options, settings, seed, output, point)
+    _say_done(output, point)
+
+
+def _write(
+    options: argparse.Namespace, settings: dict[str, Any], seed: str, output: str, point: "Point"
+) -> "Point":
     from roughgas.dataset import write_point
+    from roughgas.provenance import provenance
 
-    about = _provenance(options, settings, seed, output)
-    write_point(output, point._replace(attributes=about | point.attributes))
-    print(_closing_line(output, point), file=sys.stderr)
-
-
-def _provenance(
-    options: argparse.Namespace, settings: dict[str, Any], seed: str, output: str
-) -> dict[str, Any]:
-    """The attributes of a dataset that say how to make it again, it alone."""
-    from roughgas import config
-
-    text = config.as_text(config.point_settings(settings))
-    command = ["roughgas", "run", options.experiment, "--scale", options.scale]
-    # joined by =, lest a negative number be taken for an option
-    command += [f"--r={options.r}", f"--beta={options.beta}", f"--seed={seed}"]
-    command += ["--settings", text, "--output", output]
-    return {
-        "title": f"{options.experiment}: r = {options.r}, beta = {options.beta}",
-        **_variant(options.experiment, settings),
-        "scale": options.scale,
-        "r_label": options.r,
-        "beta_label": options.beta,
-        "experiment_json": text,
-        "command": shlex.join(command),
-    }
+    labels = options.r, options.beta, seed
+    about = provenance(options.experiment, settings, labels, options.scale, output)
+    written = point._replace(attributes=about | point.attributes)
+    write_point(output, written)
+    return written
 
 
-def _variant(name: str, settings: dict[str, Any]) -> dict[str, Any]:
-    """The attributes of a dataset that say which experiment, and which variant of it, it is of.
-
-    Raises InputError where name and settings disagree.
-    """
-    from roughgas import config
-
-    base, slash, variant = name.partition("/")
-    key = settings.get(config.SWEPT)
-    if key is None and not slash:
-        return {"experiment": base}
-    effect, _, parameter = (key or "").partition(".")
-    value = settings["effects"].get(effect, {}).get(parameter)
-    label = variant.removeprefix(parameter)
-    if value is None or label == variant or config.level(label) != value:
-        raise InputError("experiment", name, "be the variant that --settings are of")
-    return {"experiment": base, "variant": variant, "swept": key, "swept_value": value}
+def _own_name(options: argparse.Namespace, seed: str) -> str:
+    """The file of a point that was not given a name, in the present folder."""
+    parts = [options.experiment.replace("/", "_"), f"r{options.r}", f"beta{options.beta}"]
+    if options.scale != "paper":
+        parts.insert(1, options.scale)
+    return "_".join([*parts, f"seed{seed}.nc"])
 
 
-def _closing_line(output: str, point: "Point") -> str:
+def _record(output: str, point: "Point") -> dict[str, Any]:
+    """What a script reads of a point: what names it, and all its variables that are one number."""
+    names = ("experiment", "variant", "scale", "r", "beta", "seed")
+    about = {name: point.attributes[name] for name in names if name in point.attributes}
+    found = {name: value for name, value in point.variables.items() if not _has_axes(value)}
+    return {"file": output} | about | found
+
+
+def _has_axes(value: Any) -> bool:
+    return getattr(value, "ndim", 0) > 0 or isinstance(value, list | tuple)
+
+
+def _say_done(output: str, point: "Point") -> None:
     found = point.variables
     name = "R" if "R" in found else "E_trans"
-    return (
-        f"{output}: {name} = {float(found[name]):.4f} +- {float(found[f'{name}_stderr']):.4f}, "
-        f"{int(found['collisions']):,} collisions in {float(found['kernel_seconds']):.1f} s"
-    )
+    value = with_error(float(found[name]), float(found[f"{name}_stderr"]))
+    took = f"{int(found['collisions']):,} collisions in {float(found['kernel_seconds']):.1f} s"
+    print(f"{output}: {name} = {value}, {took}", file=sys.stderr)

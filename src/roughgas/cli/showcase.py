@@ -6,10 +6,11 @@ import sys
 from pathlib import Path
 from typing import Any
 
+from roughgas.cli.parser import examples
 from roughgas.cli.settings import add_settings
 
-EXAMPLE = "example: roughgas clustering --scale small -o clustering.nc"
-FILM_EXAMPLE = "example: roughgas film clustering.nc -o clustering.png clustering.mp4"
+EXAMPLE = examples("roughgas clustering --scale small -o clustering.nc")
+FILM_EXAMPLE = examples("roughgas film clustering.nc -o clustering.png clustering.mp4")
 
 
 def add_commands(commands: Any) -> None:
@@ -23,9 +24,7 @@ def add_commands(commands: Any) -> None:
         epilog=EXAMPLE,
     )
     add_settings(parser)
-    parser.add_argument(
-        "--checkpoint-every", default="10", metavar="FRAMES", help="1, 2, ... (default: 10)"
-    )
+    parser.add_argument("--checkpoint-every", default="10", metavar="FRAMES", help="default: 10")
     parser.add_argument("-o", "--output", required=True, metavar="FILE", help="dataset to write")
     parser.set_defaults(command=clustering)
 
@@ -53,7 +52,6 @@ def clustering(options: argparse.Namespace) -> None:
 
     checkpoint = Path(f"{options.output}.checkpoint.npz")
     with FilmProgress(checkpoint, settings["frames"]) as progress:
-        progress.show("bringing the gas into equilibrium")
         try:
             variables, attributes = run(settings, checkpoint, every, progress)
         except KeyboardInterrupt:

@@ -4,9 +4,12 @@ import argparse
 import json
 from typing import Any
 
+from roughgas.cli.parser import examples
 from roughgas.cli.settings import add_settings
 
-EXAMPLE = "example: roughgas study statistical cooling-reference --scale small -o reference.nc"
+EXAMPLE = examples("roughgas study statistical cooling-reference --scale small -o reference.nc")
+COMBINE_EXAMPLE = examples("roughgas combine results/small/accuracy/*/*.nc -o accuracy.nc")
+TABLES_EXAMPLE = examples("roughgas tables results/small/accuracy.nc -o accuracy.md")
 
 
 def add_commands(commands: Any) -> None:
@@ -27,6 +30,7 @@ def add_commands(commands: Any) -> None:
         "combine",
         help="combine the tasks of studies into one dataset",
         description="Combine the tasks of studies into one dataset, with a group for each study.",
+        epilog=COMBINE_EXAMPLE,
     )
     parser.add_argument("inputs", nargs="+", metavar="TASK", help="datasets of tasks")
     parser.add_argument("-o", "--output", required=True, metavar="FILE", help="dataset to write")
@@ -36,6 +40,7 @@ def add_commands(commands: Any) -> None:
         "tables",
         help="write what studies have found as tables",
         description="Write what the studies in a combined dataset have found as Markdown.",
+        epilog=TABLES_EXAMPLE,
     )
     parser.add_argument("input", metavar="COMBINED", help="dataset of `roughgas combine`")
     parser.add_argument("-o", "--output", required=True, metavar="FILE", help="Markdown file")
@@ -45,7 +50,7 @@ def add_commands(commands: Any) -> None:
 def study(options: argparse.Namespace) -> None:
     """Run a task."""
     from roughgas import accuracy
-    from roughgas.cli.progress import Line
+    from roughgas.cli.progress import Bar
     from roughgas.errors import InputError
 
     module, text = accuracy.study(options.study), _settings(options)
@@ -56,12 +61,12 @@ def study(options: argparse.Namespace) -> None:
 
     from roughgas.accuracy.files import write_task
 
-    with Line(options.task) as line:
+    with Bar(options.task, None) as bar:
         found = module.run(
             options.task,
             settings["study"],
             settings["experiments"],
-            lambda done, total: line.show(f"{done} of {total}"),
+            lambda done, total: bar.reach(done, total=total),
         )
     about = {"study": options.study, "task": options.task, "scale": options.scale}
     write_task(options.output, found, about | {"settings_json": text})

@@ -21,7 +21,7 @@ from roughgas.config.axis import (
 )
 from roughgas.config.labels import level, restitution, roughness, seed
 from roughgas.config.schema import check_schema, first_repeated, shown
-from roughgas.errors import InputError
+from roughgas.errors import InputError, not_one_of
 
 __all__ = [
     "SWEPT",
@@ -278,4 +278,4 @@ def _check_ancestors(name: str, known: Mapping[str, Any], source: str) -> None:
 
 def _one_of(key: str, value: Any, known: Iterable[str]) -> None:
     if value not in known:
-        raise InputError(key, shown(value), f"be one of {', '.join(sorted(known))}")
+        raise not_one_of(key, shown(value), sorted(known))

@@ -35,7 +35,7 @@ def read_yaml(path: str | Path) -> Any:
     """
     name = Path(path).name
     try:
-        text = Path(path).read_text(encoding="utf-8")
+        text = _text(path)
         loader = Loader(text)
     except (UnicodeDecodeError, yaml.reader.ReaderError) as error:
         raise InputError(name, "(not text)", "be YAML in UTF-8") from error
@@ -45,9 +45,23 @@ def read_yaml(path: str | Path) -> Any:
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         line = text.splitlines()[mark.line : mark.line + 1]
-        raise InputError(_place(mark), repr("".join(line)), f"be YAML: {error.problem}") from error
+        raise InputError(_place(mark), repr("".join(line)), _legal(error.problem)) from error
     finally:
         loader.dispose()
+
+
+def _text(path: str | Path) -> str:
+    try:
+        return Path(path).read_text(encoding="utf-8")
+    except FileNotFoundError as error:
+        hint = f"{error.strerror}; go to the project's folder, where config.yaml is"
+        raise FileNotFoundError(error.errno, hint, str(path)) from error
+
+
+def _legal(problem: str) -> str:
+    if r"'\t'" in problem:
+        return "be indented with spaces, not with a tab"
+    return f"be YAML: {problem}"
 
 
 def _place(mark: yaml.Mark) -> str:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from roughgas.config.labels import LEGAL_LEVEL, level, restitution, roughness
-from roughgas.errors import InputError
+from roughgas.errors import InputError, not_one_of
 
 if TYPE_CHECKING:
     from jsonschema import Draft202012Validator, ValidationError
@@ -103,7 +103,7 @@ def _input_error(error: "ValidationError", source: str, separator: str) -> Input
             if name not in known and not any(re.search(pattern, name) for pattern in patterns)
         )
         legal = [*sorted(known), *(about["title"] for about in patterns.values())]
-        return InputError(f"{key}: key", shown(unknown), f"be one of {', '.join(legal)}")
+        return not_one_of(f"{key}: key", shown(unknown), legal)
     if error.validator == "required":
         missing = next(name for name in error.validator_value if name not in error.instance)
         return InputError(f"{key}.{missing}", "(nothing)", "be given")

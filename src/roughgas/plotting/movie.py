@@ -1,5 +1,6 @@
-"""A figure that moves, as an .mp4 file that any browser plays."""
+"""A figure that moves: an .mp4 that any browser plays, or a .gif that goes round for ever."""
 
+import subprocess
 from collections.abc import Callable, Iterable
 from pathlib import Path
 
@@ -7,17 +8,21 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from roughgas.atomic import whole_file
+from roughgas.errors import InputError
 
-QUALITY = 28  # x264's constant rate factor: lower is better and larger
-ENCODER = {
-    "codec": "libx264",
-    "pix_fmt_in": "rgba",
-    "pix_fmt_out": "yuv420p",
-    "quality": None,
-    "macro_block_size": 2,
-    # the draft's name does not say what kind of file it is
-    "output_params": ["-crf", str(QUALITY), "-preset", "slow", "-f", "mp4"],
-}
+# x264's constant rate factor: lower is better and larger
+MP4 = "-vcodec libx264 -pix_fmt yuv420p -crf 28 -preset slow -f mp4"
+# one palette for all frames, and of each frame the part that changes; dots would flicker
+PALETTE = "split[a][b];[a]palettegen=max_colors=48[p];[b][p]paletteuse=dither=none"
+GIF = f"-filter_complex {PALETTE}:diff_mode=rectangle -loop 0 -f gif"
+ENCODERS = {".mp4": MP4, ".gif": GIF}
+KINDS = tuple(ENCODERS)
+
+
+def check_kind(path: str | Path) -> None:
+    """Raise InputError where `path` does not end as a movie does."""
+    if Path(path).suffix not in KINDS:
+        raise InputError("file", path, f"end in {' or '.join(KINDS)}")
 
 
 def write_movie(
@@ -27,23 +32,45 @@ def write_movie(
     frames: Iterable[int],
     per_second: float,
 ) -> None:
-    """Write the movie of `figure`, which `show` brings to each of `frames`, to `path` (.mp4).
+    """Write the movie of `figure`, which `show` brings to each of `frames`, to `path`.
 
-    Whole or not at all; what is drawn may not change the figure's layout. Raises OSError.
+    Whole or not at all; what is drawn may not change the figure's layout. Its width and height must
+    be even numbers of pixels. Raises InputError for another kind of file, OSError.
     """
-    import imageio_ffmpeg
-
+    check_kind(path)
     canvas = FigureCanvasAgg(figure)
     canvas.draw()
     figure.set_layout_engine("none")  # as it is now
     with whole_file(path) as draft:
-        size = canvas.get_width_height()
-        encoder = imageio_ffmpeg.write_frames(str(draft), size, fps=per_second, **ENCODER)
-        encoder.send(None)
+        encoder = _encoder(path, draft, canvas.get_width_height(), per_second)
         try:
             for frame in frames:
                 show(frame)
                 canvas.draw()
-                encoder.send(bytes(canvas.buffer_rgba()))
+                encoder.stdin.write(canvas.buffer_rgba())
+            _finish(encoder, path)
+        except BrokenPipeError:
+            _finish(encoder, path)
         finally:
-            encoder.close()
+            encoder.kill()
+            encoder.wait()
+
+
+def _encoder(path, draft, size, per_second):
+    from imageio_ffmpeg import get_ffmpeg_exe
+
+    command = [get_ffmpeg_exe(), "-y", "-v", "error", "-f", "rawvideo", "-pix_fmt", "rgba"]
+    command += ["-s", "{}x{}".format(*size), "-r", f"{per_second:g}", "-i", "-"]
+    command += [*ENCODERS[Path(path).suffix].split(), str(draft)]
+    # in a session of its own, lest Ctrl-C reach it first
+    return subprocess.Popen(
+        command, stdin=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True
+    )
+
+
+def _finish(encoder, path):
+    """Wait for the encoder's end; raises OSError, with what it first said, where it failed."""
+    _, said = encoder.communicate()
+    if encoder.returncode:
+        why, *_ = said.decode(errors="replace").splitlines() or ["the encoder was stopped"]
+        raise OSError(None, f"not encoded: {why}", str(path))

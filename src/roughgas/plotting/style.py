@@ -7,12 +7,19 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import NamedTuple
 
+from matplotlib import rcParamsDefault
 from matplotlib.figure import Figure
 
 from roughgas.atomic import whole_file
 
 WIDTH, HEIGHT = 4.8, 5.0  # inches; prints at 85 % in one column of a journal
-PARAMETERS = {
+# all that a matplotlibrc of the user's might have changed, but for where figures are shown
+PLAIN = {
+    name: value
+    for name, value in rcParamsDefault.items()
+    if not name.startswith(("backend", "interactive", "toolbar", "webagg"))
+}
+PARAMETERS = PLAIN | {
     "font.family": "DejaVu Sans",  # comes with matplotlib, so that figures are the same anywhere
     "mathtext.fontset": "dejavusans",
     "font.size": 9,

@@ -83,7 +83,7 @@ def _cool(state, scene, schedule, number, samples, recorder):
     """One replica, from when dissipation is switched on."""
     per_unit = number / 2  # a collision has two partners
     thermal = math.ceil(per_unit * schedule["thermalise"])
-    before = recorder.in_collisions(state, _elastic(scene), thermal, 1)
+    before = recorder.in_collisions(state, elastic(scene), thermal, 1)
     q = inertia(scene.effects)
     start = energies(before, number, q).translational[0]
     opened = books(state, scene)
@@ -94,7 +94,7 @@ def _cool(state, scene, schedule, number, samples, recorder):
     return Cooled(present, rows["exponent"].astype(int), opened, closed)
 
 
-def _elastic(scene):
+def elastic(scene: Scene) -> Scene:
     """The scene with smooth elastic particles, and side walls if it has any."""
     walls = scene.effects.walls
     if walls is not None:

@@ -53,6 +53,11 @@ class Recorder:
         """
         return self._run(state, scene, Plan(np.inf, collisions, refresh), samples)
 
+    def once(self, state: State, scene: Scene, interval: float, collisions: int):
+        """One sample (name -> array of length 1), after `interval` T or so many collisions,
+        whichever comes first."""
+        return self._run(state, scene, Plan(float(interval), collisions, 0), 1)
+
     def _run(self, state, scene, plan, samples):
         names = columns(len(scene.box), scene.effects.spin is not None)
         rows = np.empty((samples, len(names)))

@@ -1,0 +1,119 @@
+"""How the site is built from these pages, README.md, the tutorial, and the docstrings: `make docs`.
+
+It can be read without a network: nothing in it is loaded from elsewhere.
+"""
+
+import logging
+import os.path
+import re
+from pathlib import Path
+
+from jupyter_client.manager import KernelManager
+from sphinx.errors import SphinxError
+
+import roughgas
+
+DOCS = Path(__file__).resolve().parent
+README = DOCS.parent / "README.md"
+LINK = re.compile(r"\[([^\]]*)\]\(([^)#\s]+)(#[^)\s]*)?\)")
+LOADED = re.compile(
+    r"""<(?:script|img|iframe|source)\b[^>]*\bsrc=["']?(?:https?:)?//"""
+    r"""|<link\b[^>]*\bhref=["']?(?:https?:)?//|url\(["']?(?:https?:)?//|@import"""
+)
+
+project = "roughgas"
+author = "The roughgas developers"
+version = release = roughgas.__version__
+
+extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.autosummary", "sphinx.ext.napoleon"]
+exclude_patterns = ["_build", "**.ipynb_checkpoints"]
+nitpicky = True
+nitpick_ignore_regex = [
+    ("py:.*", r"(numpy|xarray|pathlib|collections)\..*"),  # whose pages are not here
+    ("py:class", r"roughgas\.(kernel|effects)\..*"),  # no library, but what is compiled
+]
+
+html_theme = "furo"
+html_title = f"roughgas {version}"
+html_show_sourcelink = html_show_sphinx = html_copy_source = False
+
+myst_heading_anchors = 4
+nb_execution_mode = "force"
+nb_execution_raise_on_error = True
+nb_execution_timeout = 300  # s a cell: a kernel may have to be compiled
+nb_output_stderr = "remove"  # progress bars
+KernelManager.transport_encryption.default_value = "auto"  # others use this machine, too
+logging.getLogger("traitlets").setLevel(logging.WARNING)
+
+default_role = "code"
+autodoc_member_order = "bysource"
+add_module_names = False
+python_maximum_signature_line_length = 160
+autodoc_preserve_defaults = True
+autodoc_default_options = {"no-value": True}
+napoleon_google_docstring = False
+
+
+def setup(app):
+    app.connect("source-read", take_readme_in)
+    app.connect("env-get-outdated", lambda *_: ["tutorial"])  # it runs at each build
+    app.connect("autodoc-process-docstring", as_prose)
+    app.connect("autodoc-skip-member", skip_fields)
+    app.connect("build-finished", refuse_what_is_loaded)
+
+
+def take_readme_in(app, docname, source):
+    """README.md opens the first page; links in all pages, which are right where the repository is
+    read, become right here."""
+    folder = (DOCS / docname).parent
+    source[0] = linked(source[0], folder, folder)
+    if docname == "index":
+        app.env.note_dependency(str(README))
+        source[0] = linked(README.read_text(), README.parent, folder) + source[0]
+
+
+def linked(text, base, folder):
+    """Links in `text` that are relative to `base`, made relative to `folder`.
+
+    Those to README.md become links to the first page, those to folders of sources mere text.
+    """
+
+    def here(link):
+        label, path, anchor = link.groups("")
+        target = Path(os.path.normpath(base / path))
+        if not target.exists():  # an address, or nothing: Sphinx will say so
+            return link[0]
+        if target.is_dir():
+            return label
+        path = os.path.relpath(DOCS / "index.md" if target == README else target, folder)
+        return f"[{label}]({path}{anchor})"
+
+    return LINK.sub(here, text)
+
+
+def as_prose(app, what, name, thing, options, lines):
+    """Docstrings are prose, no markup: bars are those of |v|, what is indented is a formula."""
+    found = ["", ""]
+    for line in lines:
+        after_prose = found[-2][:1].isalpha() and not found[-1]
+        if line.startswith("    ") and after_prose:
+            found += ["::", ""]
+        found.append("`".join(_escaped(line.split("`"))) if line[:1] != " " else line)
+    lines[:] = found[2:]
+
+
+def _escaped(parts):
+    """Parts of a line between backquotes: every other one is code."""
+    return [part if i % 2 else part.replace("|", r"\|") for i, part in enumerate(parts)]
+
+
+def skip_fields(app, what, name, thing, skip, options):
+    """Fields of a NamedTuple stand in its signature; about them Python says `Alias for ...`."""
+    return skip or type(thing).__name__ == "_tuplegetter"
+
+
+def refuse_what_is_loaded(app, exception):
+    """End the build where a page would load anything from another place than the site itself."""
+    for path in Path(app.outdir).rglob("*.*"):
+        if path.suffix in (".html", ".css") and (found := LOADED.search(path.read_text())):
+            raise SphinxError(f"{path}: loads from elsewhere: {found[0]}")

@@ -1,0 +1,27 @@
+# A finished run of the paper as one file to keep and to share: an RO-Crate.
+from roughgas.crate import project_files
+
+
+def data_of_run(wildcards):
+    return reduced(SCALE, shown_in(PAPER))
+
+
+rule crate:
+    input:
+        project_files(),
+        data=data_of_run,
+        tables=multiext(f"results/{SCALE}/", "R.csv", "claims.json", "claims.md"),
+        figures=drawn(PAPER),
+    output:
+        f"results/{SCALE}/crate.zip",
+    log:
+        f"logs/{SCALE}/crate.log",
+    benchmark:
+        f"logs/{SCALE}/crate.tsv"
+    params:
+        configuration=roughgas.config.as_text(config),
+    message:
+        "pack the run into {output}"
+    shell:
+        "roughgas crate {input.data} {input.tables} {input.figures} --output {output}"
+        " --configuration {params.configuration:q} > {log} 2>&1"

@@ -1,0 +1,49 @@
+# One short movie a scene, for the README. To add one, add a line here: its name, its experiment or
+# variant, and what else `roughgas movie` is told (docs/movies.md).
+MOVIES = {
+    "vibrated": ("vibrated", "--r=0.9 --beta=0.5 --length=4 --frames=80"),
+    "sheared": ("sheared", "--r=0.9 --beta=0.5 --frames=80"),
+    "cooling": ("cooling", "--r=0.9 --beta=0.5 --length=10 --frames=100"),
+    "rough_walls": ("vibrated_rough_walls", "--r=0.9 --beta=-1 --length=4 --frames=80"),
+    "shaken_walls": ("shaken_walls/roughness1", "--r=0.9 --beta=0 --length=4 --frames=80"),
+    "vibrated_spheres": ("vibrated_spheres", "--r=0.9 --beta=0.5 --length=3 --frames=60"),
+}
+
+
+def settings_of_movie(wildcards):
+    """All in config.yaml that a movie depends on, as JSON."""
+    with one_line():
+        if wildcards.movie not in MOVIES:
+            raise InputError("movie", wildcards.movie, f"be one of {', '.join(MOVIES)}")
+    found = settings(wildcards.folder.rstrip("/") or "paper", MOVIES[wildcards.movie][0])
+    return roughgas.config.as_text(roughgas.config.point_settings(found))
+
+
+def told_of_movie(wildcards):
+    return " ".join(MOVIES[wildcards.movie])
+
+
+rule movie:
+    # at the scale `paper` into figures/movies/, at others into a folder below figures/{scale}/
+    input:
+        sources("snapshots", "plotting"),
+        "src/roughgas/cli/movie.py",
+    output:
+        "figures/{folder}movies/{movie}.gif",
+    log:
+        "logs/figures/{folder}movies/{movie}.log",
+    benchmark:
+        "logs/figures/{folder}movies/{movie}.tsv"
+    params:
+        settings=settings_of_movie,
+        told=told_of_movie,
+    message:
+        "show {wildcards.folder}{wildcards.movie} as it moves"
+    shell:
+        "roughgas movie {params.told} --fps=20 --settings {params.settings:q} --checked"
+        " --output {output} > {log} 2>&1"
+
+
+rule movies:
+    input:
+        drawn([f"movies/{movie}" for movie in MOVIES], [".gif"]),

@@ -1,0 +1,37 @@
+"""Studies of accuracy, combined in one file: their tables."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from roughgas.accuracy import STUDIES
+from roughgas.cli.show import task
+
+if TYPE_CHECKING:
+    import xarray
+
+__all__ = ["STUDIES", "read", "record", "text"]
+
+
+def read(path: str | Path) -> dict[str, "xarray.Dataset"]:
+    """The datasets of all studies in a file."""
+    import netCDF4
+
+    from roughgas.accuracy.files import read_study
+
+    with netCDF4.Dataset(path) as file:
+        names = [name for name in STUDIES if name in file.groups]
+    return {name: read_study(path, name) for name in names}
+
+
+def record(studies: dict[str, "xarray.Dataset"]) -> dict[str, Any]:
+    """Attributes, sizes and single numbers of each study, for a script."""
+    return {"studies": {name: task.record(data) for name, data in studies.items()}}
+
+
+def text(studies: dict[str, "xarray.Dataset"]) -> str:
+    """For a person: what `roughgas tables` writes."""
+    from roughgas.accuracy import tables
+
+    scales = {data.attrs["scale"] for data in studies.values()}
+    parts = [getattr(tables, name)(data).strip() for name, data in studies.items()]
+    return "\n\n".join([f"scale {', '.join(sorted(scales))}", *parts])

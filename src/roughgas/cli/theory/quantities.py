@@ -1,0 +1,83 @@
+"""What theory says of gases: every number with its equation."""
+
+from typing import Any, NamedTuple
+
+from roughgas import theory
+from roughgas.reduce import predicted_ratio
+
+PAPER = "S. McNamara, S. Luding, Phys. Rev. E 58, 2247 (1998)"
+TOLERANCE = 0.01  # of R, within which it counts as settled
+
+
+class Gas(NamedTuple):
+    """Points (r, beta) of one dimension, arrays of equal shape, and what is the same at all."""
+
+    r: Any
+    beta: Any
+    dimension: int
+    inertia: float
+    spin_share: float
+    mu: float | None
+
+
+class Quantity(NamedTuple):
+    """What is computed: an array over the points, what it is, and which equation it is from."""
+
+    values: Any
+    meaning: str
+    source: str
+
+
+def equation(theory: str, dimension: int, spin_share: float = 0.0, mu: float | None = None) -> str:
+    """Where R of a cooling gas, `theory` "K", or of a driven one, "lun", is from."""
+    if mu is not None:
+        return "rate equations with Coulomb friction"
+    if theory == "K":
+        return "Eq. (K)" if dimension == 2 else "Eq. (Goldshtein)"
+    return "Eq. (lun)" if spin_share == 0.0 else f"rate equations, spin share {spin_share:g}"
+
+
+def quantities(gas: Gas) -> dict[str, Quantity]:
+    """All that theory says of a gas, by name."""
+    about = {"dimension": gas.dimension, "inertia": gas.inertia, "spin_share": gas.spin_share}
+    if gas.mu is not None:
+        about["mu"] = gas.mu
+    drive = "through translation" if gas.spin_share == 0.0 else f"spin share {gas.spin_share:g}"
+    found = {}
+    for name, kind, way in (("driven", "lun", f"driven, {drive}"), ("cooling", "K", "cooling")):
+        found[f"R_{name}"] = Quantity(
+            predicted_ratio(about | {"theory": kind}, gas.r, gas.beta),
+            f"R, {way}",
+            equation(kind, gas.dimension, gas.spin_share, gas.mu),
+        )
+    return found | (_relaxation(gas) if gas.mu is None else _friction(gas))
+
+
+def _relaxation(gas: Gas) -> dict[str, Quantity]:
+    """How R settles, and how energy decays."""
+    material, source = (gas.r, gas.beta), "rate equations"
+    spins = {"dimension": gas.dimension, "inertia": gas.inertia}
+    found = {}
+    for name, share in (("driven", gas.spin_share), ("cooling", None)):
+        rate = theory.relaxation_rate(*material, **spins, spin_share=share)
+        needed = theory.collisions_to_relax(*material, TOLERANCE, **spins, spin_share=share)
+        found[f"rate_{name}"] = Quantity(rate, f"rate at which R settles, {name}", source)
+        found[f"settled_{name}"] = Quantity(
+            needed, f"collisions per particle until R is there to {TOLERANCE:.0%}, {name}", source
+        )
+    decay = theory.decay_rate(*material, **spins)
+    return found | {"decay": Quantity(decay, "rate at which energy decays, cooling", "Haff's law")}
+
+
+def _friction(gas: Gas) -> dict[str, Quantity]:
+    """What there is to know where contacts may slide."""
+    spins, source = (gas.mu, gas.dimension, gas.inertia), "rate equations with Coulomb friction"
+    rate = theory.friction_relaxation_rate(gas.r, gas.beta, *spins)
+    R = theory.friction_ratio(gas.r, gas.beta, *spins, gas.spin_share)
+    sliding = theory.sliding_fraction(1.0 - R, R, gas.r, gas.beta, *spins)
+    legal = "mu below which a gas of fast spins keeps them, cooling"
+    return {
+        "rate_cooling": Quantity(rate, "rate at which R settles, cooling", source),
+        "sliding": Quantity(sliding, "share of contacts that slide, driven", source),
+        "mu_c": Quantity(theory.critical_friction(gas.r), legal, "sqrt((1 - r)/(1 + r))"),
+    }

@@ -1,0 +1,270 @@
+"""roughgas in a notebook or a script: a scene from keyword arguments, its dataset back.
+
+The names of this module are there as `roughgas.simulate` and `roughgas.experiments`.
+"""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal, Self, TypedDict
+
+if TYPE_CHECKING:
+    import xarray
+
+SHIPPED = Path(__file__).with_name("config.yaml")
+"""The experiments that come with the package: in a clone of the repository, its config.yaml."""
+UNNAMED = "scene"
+"""What a dataset calls the experiment where it has no name."""
+BAR = "{l_bar}{bar}| {n:,.0f} of {total:,.0f} {unit} [{elapsed}, {remaining} left]"
+
+Side = float | Literal["open"]
+"""Length of a box along one axis in a; the last axis may be open above."""
+Effects = Mapping[str, Mapping[str, float | str] | None]
+"""Parameters of effects by the effects' names; None takes away one that the experiment has."""
+
+
+class Schedule(TypedDict, total=False):
+    """How long to simulate and what to measure, as `schedule` in config.yaml.
+
+    A driven gas has the kind `steady`, and its lengths in T; one that nothing drives has the kind
+    `cooling`, and its lengths in collisions per particle.
+    """
+
+    kind: Literal["steady", "cooling"]  #: driven, or not
+    sample_every: float  #: between samples
+    equilibrate: float  #: (steady) before the measurement
+    measure: float  #: (steady) length of the measurement
+    period: float  #: (steady) of the drive; averages are over whole periods
+    replicas: int  #: (cooling) independent runs
+    thermalise: float  #: (cooling) as smooth elastic particles, at the start
+    relaxation_times: float  #: (cooling) e-folds of theory until R is on its plateau
+    plateau: float  #: (cooling) length of the plateau
+
+
+def simulate(
+    experiment: str | None = None,
+    *,
+    r: float,
+    beta: float,
+    seed: int = 1,
+    particles: int | None = None,
+    box: Sequence[Side] | None = None,
+    effects: Effects | None = None,
+    schedule: Schedule | None = None,
+    scale: str = "paper",
+    config: str | Path | None = None,
+    progress: bool = True,
+) -> "xarray.Dataset":
+    """Simulate one point of an experiment, and measure it.
+
+    The keyword arguments `particles`, `box`, `effects` and `schedule` are the keys of an experiment
+    in config.yaml. Given besides a name they are merged over what it stands for, key by key;
+    without a name they are the scene, and all of them must be given. The same arguments give the
+    same numbers to the last bit (all but `kernel_seconds`), and the same as `roughgas run` writes.
+
+    Parameters
+    ----------
+    experiment
+        Name of an experiment (see `experiments`), such as ``"vibrated"``, ``"sheared"`` or
+        ``"cooling"``, or of a variant, such as ``"vibrated_friction/mu0.3"``.
+    r
+        Normal restitution of the particles, in [0, 1]; 1 is elastic.
+    beta
+        Tangential restitution (roughness), in [-1, 1]; -1 is smooth, 1 perfectly rough.
+    seed
+        Of the random generator, from 0 to 2^63 - 1.
+    particles
+        Number N of particles.
+    box
+        Lengths of the box in a, two for disks and three for spheres; the last one is vertical, and
+        ``"open"`` above where there is gravity.
+    effects
+        What acts, such as ``{"friction": {"mu": 0.3}}``; None takes an effect away, as in
+        ``{"contact_time": None}``. docs/effects.md lists them all.
+    schedule
+        How long to simulate, such as ``{"measure": 200}``; see `Schedule`.
+    scale
+        The scale that the experiment is taken at: ``"paper"``, ``"small"`` (a quarter of the
+        particles, and short), ``"coarse"`` or ``"fine"`` (as long as a pilot says).
+    config
+        A configuration to take the experiment from, in place of the one that roughgas comes with.
+    progress
+        Whether to show a progress bar.
+
+    Returns
+    -------
+    xarray.Dataset
+        In memory. ``R`` is the share of rotation in the energy, ``R_stderr`` its standard error;
+        ``R_series`` (sample), ``E_trans_series`` and ``E_rot_series`` are what it is the mean of,
+        with the coordinate ``time`` (T) or, cooling, ``collisions_per_particle``; ``R_replica``
+        (replica) has the cooling runs one by one. Every variable has its ``units`` and its
+        ``long_name``; the attributes say how to make it again.
+
+    Raises
+    ------
+    roughgas.errors.InputError
+        For values that are illegal or contradict each other; its text is one line naming key,
+        value and what is legal. It is a ValueError.
+    roughgas.errors.CollapseError
+        Where contacts accumulate without end, as in a bed of r = 0.6 without ``contact_time``.
+    OSError
+        Where `config` cannot be read.
+
+    Examples
+    --------
+    An experiment that is known by name, and what theory says of it:
+
+    >>> from roughgas import simulate, theory
+    >>> gas = simulate("cooling", r=0.9, beta=0.5, scale="small", progress=False)
+    >>> print(f"{gas.R:.2f} +- {gas.R_stderr:.2f}")
+    0.45 +- 0.01
+    >>> print(f"{theory.cooling_ratio(0.9, 0.5):.2f}")
+    0.44
+
+    One that is changed, here a small bed with friction:
+
+    >>> bed = simulate(
+    ...     "vibrated", r=0.9, beta=0, seed=3, particles=40, box=(12.5, "open"),
+    ...     effects={"friction": {"mu": 0.3}},
+    ...     schedule={"equilibrate": 50, "measure": 100}, progress=False,
+    ... )
+    >>> bed.R_series.dims, bed.R_series.size
+    (('sample',), 400)
+
+    A scene of one's own:
+
+    >>> own = simulate(
+    ...     r=0.9, beta=0.5, particles=40, box=(25, 25), progress=False,
+    ...     effects={"spin": {"inertia": 0.5}, "shear": {"velocity": 1}},
+    ...     schedule={
+    ...         "kind": "steady", "equilibrate": 50, "measure": 100, "sample_every": 1,
+    ...     },
+    ... )
+    >>> own.title
+    'scene: r = 0.9, beta = 0.5'
+    """
+    from roughgas.config import restitution, roughness
+    from roughgas.config import seed as legal_seed
+
+    point = restitution(r), roughness(beta), legal_seed(seed)
+    changes = {"particles": particles, "box": box, "effects": effects, "schedule": schedule}
+    given = {key: _plain(value) for key, value in changes.items() if value is not None}
+    settings = _settings(experiment, given, scale, SHIPPED if config is None else config)
+
+    from roughgas.dataset import as_dataset
+    from roughgas.planning.reach import complete
+    from roughgas.point import run_point
+    from roughgas.provenance import provenance
+
+    name = experiment or UNNAMED
+    settings = complete(settings, *point[:2])
+    about = provenance(name, settings, (str(r), str(beta), str(seed)), scale, "point.nc")
+    with _Bar(name, settings, *point[:2], shown=progress) as bar:
+        found = run_point(settings, *point, bar)
+    return as_dataset(found._replace(attributes=about | found.attributes))
+
+
+def experiments(config: str | Path | None = None) -> dict[str, str]:
+    """The experiments that `simulate` knows by name, and what each is.
+
+    Parameters
+    ----------
+    config
+        The configuration that they are in, in place of the one that roughgas comes with.
+
+    Raises
+    ------
+    roughgas.errors.InputError
+        Where the configuration is illegal.
+    OSError
+        Where it cannot be read.
+
+    Examples
+    --------
+    >>> from roughgas import experiments
+    >>> experiments()["cooling"]
+    'A gas that nothing drives, started from equilibrium as smooth elastic disks.'
+    """
+    from roughgas.config import load
+
+    known = load(SHIPPED if config is None else config)["experiments"]
+    return {name: settings.get("description", "") for name, settings in known.items()}
+
+
+def _settings(
+    name: str | None, changes: Mapping[str, Any], scale: str, path: str | Path
+) -> dict[str, Any]:
+    """The settings of a point, as checked as those of the pipeline."""
+    from roughgas import config, scene
+    from roughgas.config.schema import check_schema
+
+    known = {} if name is None else config.experiment(config.load(path), name, scale)
+    settings = config.merged(config.point_settings(known), changes)
+    for part in ("experiment", "point"):
+        check_schema(settings, name or UNNAMED, part)
+    scene.check(settings)
+    return settings
+
+
+def _plain(value: Any) -> Any:
+    """A value as JSON would have it: numbers of numpy as Python's, tuples and arrays as lists."""
+    if isinstance(value, Mapping):
+        return {str(key): _plain(inner) for key, inner in value.items()}
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    if isinstance(value, Sequence) and not isinstance(value, str):
+        return [_plain(inner) for inner in value]
+    return value
+
+
+class _Bar:
+    """A progress bar for one point: in T, or where the gas cools in collisions per particle."""
+
+    def __init__(self, name: str, settings: Mapping[str, Any], r: float, beta: float, shown: bool):
+        from roughgas.point import length
+
+        self._name, self._particles = name, settings["particles"]
+        self._cools = settings["schedule"]["kind"] == "cooling"
+        self._begun = False
+        self._over = self._present = 0  # collisions of replicas that are over, and of this one
+        self._bar = _tqdm()(
+            total=length(settings, r, beta),
+            desc=f"{name} (compiling)",
+            unit="collisions per particle" if self._cools else "T",
+            bar_format=BAR,
+            disable=not shown,
+        )
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, kind: type | None, *_: object) -> None:
+        if kind is None:
+            self._show(self._bar.total)
+        self._bar.close()
+
+    def __call__(self, simulated: float, collisions: int) -> None:
+        """Show how far the simulation is: at this time (T), after so many collisions."""
+        if not self._begun:
+            self._begun = True
+            self._bar.set_description(self._name, refresh=False)
+            self._bar.unpause()  # compiling says nothing of the time that is left
+        if collisions < self._present:
+            self._over += self._present
+        self._present = collisions
+        passed = 2.0 * (self._over + collisions) / self._particles  # a collision has two partners
+        self._show(passed if self._cools else simulated)
+
+    def _show(self, passed: float) -> None:
+        self._bar.update(min(passed, self._bar.total) - self._bar.n)
+
+
+def _tqdm() -> Any:
+    """The progress bar that suits a notebook or a terminal."""
+    import warnings
+
+    from tqdm import TqdmWarning
+
+    with warnings.catch_warnings():  # a notebook without widgets has a bar of characters instead
+        warnings.simplefilter("ignore", TqdmWarning)
+        from tqdm.auto import tqdm
+    return tqdm

@@ -1,0 +1,177 @@
+"""The interactive page in a real browser: chosen, clicked, shared, copied from."""
+
+import re
+
+import pytest
+from page.conftest import points_in
+from selenium.webdriver.common.action_chains import ActionChains
+from selenium.webdriver.common.keys import Keys
+from selenium.webdriver.support.select import Select
+
+from roughgas.dataset import read_point
+from roughgas.page import write_page
+from roughgas.reduce import predicted_ratio, read_reduced
+
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
+
+POINT = re.compile(r"([\d.]+)\((\d+)\)")
+
+
+@pytest.fixture
+def page(ran, browser):
+    browser.open(ran.folder / "results/tiny/explore.html")
+    browser.wait(lambda: browser.find("#ratios .main-svg") and browser.find("#over-time .main-svg"))
+    yield browser
+    assert browser.complaints() == []
+    assert browser.requests() == []
+
+
+def numbers(page):
+    """The table of the chosen point."""
+    rows = [row.text for row in page.find("#numbers th")]
+    return dict(zip(rows, [cell.text for cell in page.find("#numbers td")], strict=True))
+
+
+def fragment(page):
+    return page.script("return decodeURIComponent(location.hash)")
+
+
+def select(page, name, text):
+    Select(page.find(f"#{name}")[0]).select_by_visible_text(text)
+
+
+def close(shown, value, error):
+    """Whether text such as 0.357(12) says this number and this error, to its last digit."""
+    number, digits = POINT.search(shown.replace("−", "-")).groups()
+    unit = 10.0 ** -len(number.partition(".")[2])
+    return abs(float(number) - value) <= unit and abs(int(digits) * unit - error) <= unit
+
+
+def shows(page, ran, experiment, r, beta):
+    """Whether the page shows the numbers of this point's datasets."""
+    data = read_reduced(ran.folder / f"results/tiny/{experiment}.nc")
+    place, found = data.sel(r=float(r), beta=float(beta)), numbers(page)
+    R, stderr, ci95 = (place[name].item() for name in ("R", "R_stderr", "R_ci95"))
+    theory = float(predicted_ratio(data.attrs, float(r), float(beta)))
+    assert close(found["R"], R, stderr)
+    low, high = map(float, found["95 % interval"].replace("−", "-").split(" to "))
+    assert (low, high) == pytest.approx((R - ci95, R + ci95), abs=0.06 * ci95)
+    (shown,) = (value for name, value in found.items() if name.startswith("theory"))
+    assert float(shown) == pytest.approx(theory, abs=5.1e-5)
+    assert close(found["R − theory"].lstrip("+−"), abs(R - theory), stderr)
+    assert found["steady state"] == ("found" if place.equilibrated > 0.5 else "not found")
+    assert int(found["collisions"].replace(",", "")) == place.collisions
+    assert float(found["CPU time"].split()[0]) == pytest.approx(
+        place.kernel_seconds.item(), rel=6e-3
+    )
+    assert found["seeds"] == "2"
+    target = f"results/tiny/{experiment}/r{r}/beta{beta}/seed1.nc"
+    assert page.text("#target") == f"snakemake -j1 --force {target}"
+    assert page.text("#command") == read_point(ran.folder / target).attrs["command"]
+    assert fragment(page) == f"#{experiment}/r{r}/beta{beta}"
+    return True
+
+
+def test_it_begins_with_a_point_and_shows_any_other(page, ran):
+    assert shows(page, ran, "vibrated", "0.9", "-0.5")
+    select(page, "beta", "0.5")
+    assert shows(page, ran, "vibrated", "0.9", "0.5")
+    select(page, "r", "0.8")
+    assert shows(page, ran, "vibrated", "0.8", "0.5")
+    select(page, "experiment", "cooling")
+    assert shows(page, ran, "cooling", "0.8", "0.5")
+    select(page, "experiment", "vibrated_smooth_walls")
+    assert shows(page, ran, "vibrated_smooth_walls", "0.9", "0")
+
+
+def test_the_keyboard_is_enough(page, ran):
+    page.find("#experiment")[0].send_keys("sh", Keys.TAB)
+    page.driver.switch_to.active_element.send_keys(Keys.DOWN, Keys.TAB)
+    page.driver.switch_to.active_element.send_keys(Keys.DOWN)
+    assert shows(page, ran, "sheared", "0.8", "0")
+
+
+def test_a_click_on_a_point_chooses_it(page, ran):
+    page.script("location.hash = '#cooling/r0.9/beta-0.5'")
+    page.wait(lambda: page.text("#title").startswith("cooling"))
+    where = """
+        const plot = document.getElementById("ratios"), { xaxis, yaxis } = plot._fullLayout;
+        const trace = plot.data.find(one => one.name === "r = 0.8" && one.mode === "markers");
+        const box = plot.getBoundingClientRect(), at = trace.x.indexOf(0.5);
+        return [box.x + xaxis._offset + xaxis.l2p(trace.x[at]),
+          box.y + yaxis._offset + yaxis.l2p(trace.y[at])].map(Math.round);"""
+    actions = ActionChains(page.driver)
+    actions.w3c_actions.pointer_action.move_to_location(*page.script(where))
+    actions.pause(0.3).click().perform()
+    page.wait(lambda: fragment(page).endswith("/r0.8/beta0.5"))
+    assert shows(page, ran, "cooling", "0.8", "0.5")
+
+
+def test_what_is_drawn_are_the_datasets(page, ran):
+    select(page, "experiment", "sheared")
+    data = read_reduced(ran.folder / "results/tiny/sheared.nc").sel(r=0.8)
+    drawn = page.script("""
+        const [above, beneath] = document.getElementById("ratios").data
+          .filter(one => one.legendgroup === "0.8" && one.mode === "markers");
+        const over = document.getElementById("over-time").data[0];
+        return [above.x, above.y, above.error_y.array, beneath.y, over.y.length];""")
+    assert drawn[:3] == [
+        data.beta.values.tolist(),
+        data.R.values.tolist(),
+        data.R_stderr.values.tolist(),
+    ]
+    residual = data.R - predicted_ratio(data.attrs, 0.8, data.beta.values)
+    assert drawn[3] == pytest.approx(residual.values.tolist(), abs=1e-12)
+    assert 0 < drawn[4] <= 200
+
+
+def test_a_choice_can_be_shared(ran, browser):
+    browser.open(ran.folder / "results/tiny/explore.html", "#sheared/r0.8/beta0")
+    assert shows(browser, ran, "sheared", "0.8", "0")
+    browser.open(ran.folder / "results/tiny/explore.html", "#sheared/r0.8/beta7")
+    assert "no point sheared/r0.8/beta7" in browser.text("#status")
+    assert shows(browser, ran, "vibrated", "0.9", "-0.5")
+    assert browser.complaints() == []
+
+
+def test_a_third_axis_is_chosen_too(browser, tmp_path):
+    points = points_in(tmp_path / "small")
+    write_page(
+        [points / f"{name}.nc" for name in ("sheared", "cooling_friction")],
+        points,
+        tmp_path / "e.html",
+    )
+    browser.open(tmp_path / "e.html")
+    assert not browser.find("#variant")[0].is_displayed()
+    select(browser, "experiment", "cooling_friction")
+    assert browser.text("#variant-name") == "friction.mu"
+    select(browser, "variant", "1")
+    assert fragment(browser) == "#cooling_friction/mu1/r0.9/beta-0.5"
+    assert browser.text("#title") == "cooling_friction, mu1: 40 disks"
+    select(browser, "beta", "0.50")
+    assert numbers(browser)["R"] == "0.3510(40)"
+    assert browser.text("#target").endswith("/small/cooling_friction/mu1/r0.9/beta0.50/seed1.nc")
+    assert "mean over a block of 3 samples" in browser.text("#thinned")
+    assert browser.complaints() == [] and browser.requests() == []
+
+
+def test_the_command_is_copied(page):
+    page.find("button[data-copies=target]")[0].click()
+    page.wait(lambda: page.text("button[data-copies=target]") == "Copied")
+    page.script("document.body.append(document.createElement('textarea'))")
+    (field,) = page.find("textarea")
+    field.send_keys(Keys.CONTROL, "v")
+    assert field.get_attribute("value") == page.text("#target")
+
+
+def test_it_fits_on_a_phone(page):
+    page.driver.execute_cdp_cmd(
+        "Emulation.setDeviceMetricsOverride",
+        {"width": 360, "height": 740, "deviceScaleFactor": 2, "mobile": True},
+    )
+    try:
+        page.wait(lambda: page.script("return innerWidth") == 360)
+        page.wait(lambda: page.find("#ratios .main-svg")[0].size["width"] <= 360)
+        assert page.script("return document.documentElement.scrollWidth") <= 360
+    finally:
+        page.driver.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})

@@ -1,0 +1,94 @@
+"""Snakemake's report in a real browser: headings, pictures with their captions, tables."""
+
+import pytest
+
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
+
+OF_SNAKEMAKE = (
+    "cdn.tailwindcss.com should not be used in production",
+    "The input spec uses Vega-Lite v3",
+)
+"""What Snakemake's own page warns of, whatever the workflow: how its style sheet is made, and the
+version that its statistics are written for. Nothing is loaded from that address."""
+
+
+@pytest.fixture
+def report(ran, browser):
+    browser.open(ran.folder / "report.html")
+    browser.wait(lambda: browser.find("nav li"))
+    yield browser
+    complaints = browser.complaints()
+    assert [one for one in complaints if not any(known in one for known in OF_SNAKEMAKE)] == []
+    assert browser.requests() == []
+
+
+def follow(report, text):
+    """Click on a heading of the menu, from the menu."""
+    report.find("nav a")[1].click()  # home
+    entries = report.wait(lambda: [one for one in report.find("nav li a") if one.text == text])
+    entries[0].click()
+
+
+def buttons(report, product):
+    """The eye of a product, and the symbol of its caption."""
+    rows = report.wait(lambda: [one for one in report.find("nav tbody tr") if one.text == product])
+    return rows[0].find_elements("css selector", "a")
+
+
+def caption(report, product):
+    buttons(report, product)[1].click()
+    return report.wait(lambda: report.find("nav .prose"))[0].text
+
+
+def frame(report, selector):
+    """The text of what is shown in the report's frame."""
+    (shown,) = report.wait(lambda: report.find("iframe"))
+    report.driver.switch_to.frame(shown)
+    found = [element.text for element in report.wait(lambda: report.find(selector))]
+    report.driver.switch_to.default_content()
+    return found
+
+
+def test_it_opens_on_what_it_is_about(report):
+    assert "scale tiny" in report.wait(lambda: report.find("#app .prose"))[0].text
+    headings = [one.text for one in report.find("nav li a") if one.text]
+    assert headings == ["Workflow", "Statistics", "About", "1 The paper", "6 This run"]
+
+
+def test_every_figure_is_shown_with_the_parameters_of_this_run(report):
+    titles = {
+        "Fig. 1a: a vibrated bed": "fig1a",
+        "Fig. 1b: its side walls": "fig1b",
+        "Fig. 2a: a sheared gas": "fig2a",
+        "Fig. 2b: a freely cooling gas": "fig2b",
+    }
+    for title, name in titles.items():
+        follow(report, "1 The paper")
+        buttons(report, title)[0].click()
+        wanted = f"#app .grow img[src*='filename={name}.png']"
+        (picture,) = report.wait(lambda wanted=wanted: report.find(wanted))
+        report.wait(lambda shown=picture: report.script("return arguments[0].naturalWidth", shown))
+        text = caption(report, title)
+        assert "What to notice." in text and "scale tiny" in text
+        assert "10 particles in a box of" in text and "2 seeds of each point" in text
+    assert "cooling: A gas that nothing drives" in text and "beta: -0.5, 0, 0.5" in text
+    assert "replicas 3" in text and "plateau 20" in text
+
+
+def test_the_tables_are_read_in_place(report):
+    follow(report, "1 The paper")
+    buttons(report, "Table: the paper's claims")[0].click()
+    assert frame(report, "h1") == ["The verdict on the paper"]
+    follow(report, "6 This run")
+    buttons(report, "Run times: the paper")[0].click()
+    report.wait(lambda: frame(report, "h1") == ["Run times"])
+    assert "cooling" in frame(report, "td")
+    follow(report, "6 This run")
+    buttons(report, "Configuration")[0].click()
+    (text,) = report.wait(lambda: frame(report, "pre"))
+    assert "scale: tiny" in text and "particles: 10" in text
+
+
+def test_run_times_are_there(report):
+    follow(report, "Statistics")
+    assert report.wait(lambda: report.find("#runtimes canvas, #runtimes svg"))

@@ -1,0 +1,42 @@
+"""A small gas, and what the pipeline makes of it."""
+
+import json
+import shutil
+from pathlib import Path
+
+import pytest
+
+from roughgas.cli import main
+
+ROOT = Path(__file__).parents[2]
+GAS = {
+    "particles": 20,
+    "box": [20, 20],
+    "effects": {"spin": {"inertia": 0.5}},
+    "schedule": {
+        "kind": "cooling",
+        "replicas": 4,
+        "thermalise": 2,
+        "relaxation_times": 2,
+        "plateau": 20,
+        "sample_every": 1,
+    },
+}
+
+
+@pytest.fixture(scope="package")
+def product(tmp_path_factory):
+    """A folder with points of a cooling gas, what they are reduced to, and a pilot."""
+    folder = tmp_path_factory.mktemp("products")
+    shutil.copy(ROOT / "config.yaml", folder)
+    settings = f"--settings={json.dumps(GAS)}"
+    for beta in ("-0.5", "0.5"):
+        files = [str(folder / f"beta{beta}_{seed}.nc") for seed in (1, 2)]
+        place = ["--r=0.9", f"--beta={beta}"]
+        run = ["run", "cooling", settings, *place, "--seed", "1", "2", "-o", *files]
+        assert main(run) == 0
+    points = sorted(map(str, folder.glob("beta*.nc")))
+    assert main(["reduce", *points, "-o", str(folder / "reduced.nc")]) == 0
+    pilot = ["pilot", "cooling", settings, *place, "-o", str(folder / "pilot.json")]
+    assert main(pilot) == 0
+    return folder

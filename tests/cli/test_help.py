@@ -1,0 +1,79 @@
+"""What help says: of every command, and with examples that work."""
+
+import argparse
+import shutil
+from pathlib import Path
+
+import pytest
+from tests.cli.parsers import commands, examples
+
+from roughgas import cli
+from roughgas.cli import main
+
+COMMANDS = commands()
+ROOT = Path(__file__).parents[2]
+REALLY_RUN = [
+    "run cooling --r 0.9 --beta -0.5",
+    "run vibrated --r 0.87 --beta 0.5 --seed 1 2 3 --scale small --json",
+    "theory --r 0.9 --beta 0.5",
+    "theory --r 0.9 --beta -1:1:0.1 --dimension 2",
+    "theory --r 0.8 0.9 0.99 --beta 0 --inertia 0.1 --json",
+    "theory --r 0.9 --beta 0.5 --mu 0.3",
+    "theory --r 0.9 --beta -0.9:0.9:0.1 --spin-share 0.2 --csv",
+    "compile cooling --r 0.9",
+    "pilot sheared --r 0.9 --beta 0 -o pilot.json",
+    "plan sheared --scale small",
+    "bench cooling --scale small --json",
+    "clustering --scale small -o clustering.nc",
+]
+
+
+def test_every_command_is_in_one_group_and_built_alone_as_with_all(capsys):
+    assert list(COMMANDS) and not set(cli.FOR_PEOPLE) & set(cli.OF_THE_WORKFLOW)
+    assert set(COMMANDS) == {*cli.FOR_PEOPLE, *cli.OF_THE_WORKFLOW}
+    for name, parser in COMMANDS.items():
+        with pytest.raises(SystemExit):
+            main([name, "--help"])
+        assert capsys.readouterr().out == parser.format_help()
+
+
+def test_the_overview_has_people_first(capsys):
+    with pytest.raises(SystemExit):
+        main(["--help"])
+    shown = capsys.readouterr().out
+    places = [shown.index(f"\n  {name} ") for name in [*cli.FOR_PEOPLE, *cli.OF_THE_WORKFLOW]]
+    assert places == sorted(places)
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_help_explains_the_command_and_its_examples_parse(name):
+    parser = COMMANDS[name]
+    assert parser.description.endswith(".") and len(parser.description) > 30
+    assert all(one.help for one in parser._actions if one.help is not argparse.SUPPRESS)
+    found = examples(parser)
+    assert found
+    for arguments in found:
+        options = cli._parser().parse_args(arguments)
+        assert arguments[0] == name and callable(options.command)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """A folder with a configuration, as a person has it."""
+    path = tmp_path_factory.mktemp("folder")
+    shutil.copy(ROOT / "config.yaml", path)
+    return path
+
+
+@pytest.mark.parametrize("line", REALLY_RUN)
+def test_examples_run(folder, monkeypatch, capsys, line):
+    monkeypatch.chdir(folder)
+    assert line.split() in examples(COMMANDS[line.split()[0]])
+    before = set(folder.rglob("*"))
+    assert main(line.split()) == 0
+    made = {path.name for path in set(folder.rglob("*")) - before if path.is_file()}
+    said = capsys.readouterr()
+    assert said.out or made or line.startswith("compile")
+    assert "Traceback" not in said.err
+    if " -o " in line:
+        assert line.split()[-1] in made

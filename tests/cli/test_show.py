@@ -1,0 +1,139 @@
+"""`roughgas show`: a summary of whatever the pipeline writes."""
+
+import json
+
+import numpy as np
+import pytest
+import xarray
+
+from roughgas import theory
+from roughgas.accuracy.files import write_task
+from roughgas.cli import main
+from roughgas.cli.layout import with_error
+from roughgas.dataset import read_point
+from roughgas.reduce import read_reduced
+
+
+def shown(capsys, *arguments):
+    assert main(["show", *map(str, arguments)]) == 0
+    return capsys.readouterr().out
+
+
+def test_a_point(product, capsys):
+    path = product / "beta0.5_1.nc"
+    text, point = shown(capsys, path), read_point(path)
+    expected = float(theory.cooling_ratio(0.9, 0.5))
+    low, high = (float(point.R + sign * point.R_ci95) for sign in (-1, 1))
+    rows = dict(line.split("  ", 1) for line in text.splitlines() if "  " in line.strip())
+    rows = {name.strip(): value.strip() for name, value in rows.items()}
+    assert text.startswith(f"{path}: point\n")
+    assert rows["point"] == "r = 0.9, beta = 0.5, seed 1"
+    assert rows["gas"] == "20 disks, box 20 x 20 a"
+    assert rows["R"] == with_error(float(point.R), float(point.R_stderr))
+    interval, _, doubt = rows["95 % interval"].partition(" (")
+    ends = [float(end) for end in interval.split(" to ")]
+    assert ends == pytest.approx([low, high], abs=6e-4)
+    assert bool(doubt) != bool(point.R_ci95_trusted)
+    assert rows["theory"].startswith(f"{expected:.4f}, Eq. (K): R is ")
+    assert rows["cost"].startswith(f"{int(point.collisions):,} collisions in ")
+    assert len(rows["R(t)"].split()[0]) == min(48, point.sizes["sample"])
+    assert text.rstrip().endswith(point.attrs["command"])
+    assert "\n  contacts " in text and "the books miss" in text
+
+
+def test_a_point_for_a_script(product, capsys):
+    path = product / "beta0.5_1.nc"
+    found, point = json.loads(shown(capsys, path, "--json")), read_point(path)
+    assert found["kind"] == "point" and found["file"] == str(path)
+    assert found["attributes"]["experiment"] == "cooling" and found["attributes"]["seed"] == 1
+    assert found["variables"]["R"] == float(point.R)
+    assert found["variables"]["equilibrated"] is bool(point.equilibrated)
+    residual = float(point.R - theory.cooling_ratio(0.9, 0.5))
+    assert found["variables"]["residual"] == pytest.approx(residual)
+
+
+def test_a_reduced_dataset(product, capsys):
+    path = product / "reduced.nc"
+    text, data = shown(capsys, path), read_reduced(path)
+    rows = [line.split() for line in text.splitlines() if line.startswith("0.9 ")]
+    assert [row[:3] for row in rows] == [["0.9", "-0.5", "2"], ["0.9", "0.5", "2"]]
+    for row, R, stderr in zip(rows, data.R.values[0], data.R_stderr.values[0], strict=True):
+        assert row[3] == with_error(R, stderr)
+        expected = float(theory.cooling_ratio(0.9, float(row[1])))
+        assert row[5:7] == [f"{expected:.4f}", f"{R - expected:+.4f}"]
+    first, _ = json.loads(shown(capsys, path, "--json"))["points"]
+    assert (first["beta"], first["R"], first["theory"]) == (-0.5, data.R.values[0, 0], "K")
+
+
+def test_a_pilot(product, capsys):
+    path = product / "pilot.json"
+    known = json.loads(path.read_text())
+    assert f"variance              {known['variance']:.5g} " in shown(capsys, path)
+    assert json.loads(shown(capsys, path, "--json"))["variables"] == known
+
+
+def test_a_task_of_a_study(tmp_path, capsys):
+    data = xarray.Dataset({"R": ("chain", np.linspace(0.1, 0.2, 11)), "seconds": 1.5})
+    about = {"study": "models", "task": "dsmc", "scale": "small"}
+    settings = json.dumps({"study": {"groups": 3, "dsmc": [1, 2]}, "experiments": {}})
+    write_task(tmp_path / "task.nc", data, about | {"settings_json": settings})
+    text = shown(capsys, tmp_path / "task.nc")
+    assert "dsmc of the study models, scale small" in text and "groups  3\n" in text
+    assert "R         chain (11)  0.1 to 0.2, 0.15 on average\n" in text
+    assert "roughgas study models dsmc --scale small" in text
+    found = json.loads(shown(capsys, tmp_path / "task.nc", "--json"))
+    assert found["sizes"] == {"chain": 11} and found["variables"] == {"seconds": 1.5}
+
+
+def test_studies(tmp_path, capsys, monkeypatch):
+    group = xarray.Dataset({"bias": ("corner", [0.1])}, attrs={"scale": "small"})
+    groups = {"/coverage": group}
+    xarray.DataTree.from_dict(groups).to_netcdf(tmp_path / "all.nc", engine="netcdf4")
+    monkeypatch.setattr("roughgas.accuracy.tables.coverage", lambda data: f"{data.bias.values}\n")
+    assert shown(capsys, tmp_path / "all.nc").endswith("scale small\n\n[0.1]\n")
+    found = json.loads(shown(capsys, tmp_path / "all.nc", "--json"))
+    assert found["studies"]["coverage"]["sizes"] == {"corner": 1}
+
+
+def test_a_film(product, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(product)
+    film = tmp_path / "film.nc"
+    assert main(["clustering", "--scale=small", f"--output={film}"]) == 0
+    text = shown(capsys, film)
+    assert f"{film}: film of a cooling gas" in text and "61, of 31 x 31 cells" in text
+    assert "\n60 " in text and "roughgas clustering --scale small" in text
+    assert json.loads(shown(capsys, film, "--json"))["frames"] == 61
+
+
+def test_several_files(product, capsys):
+    text = shown(capsys, product / "beta0.5_1.nc", product / "beta0.5_2.nc")
+    assert text.count(": point\n") == 2
+    lines = shown(capsys, product / "beta0.5_1.nc", product / "pilot.json", "--json").splitlines()
+    assert [json.loads(line)["kind"] for line in lines] == ["point", "pilot of a point"]
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "status", "message"),
+    [
+        ("README.md", "words", 2, "must be a dataset of roughgas: a point, a reduced one"),
+        ("x.json", "{}", 2, "pilot = "),
+        ("x.nc", "", 2, "must be a dataset of roughgas"),
+        ("", None, 2, "must be a dataset of roughgas"),
+        ("no.nc", None, 1, "No such file or directory"),
+    ],
+)
+def test_what_is_none_of_them_is_refused_in_one_line(
+    tmp_path, capsys, name, content, status, message
+):
+    if content is not None:
+        (tmp_path / name).write_text(content)
+    assert main(["show", str(tmp_path / name)]) == status
+    said = capsys.readouterr()
+    assert said.out == "" and said.err.startswith("roughgas: error: ")
+    assert message in said.err and said.err.count("\n") == 1
+
+
+def test_a_foreign_netcdf_file_is_refused(tmp_path, capsys):
+    xarray.Dataset({"R": 1.0}).to_netcdf(tmp_path / "other.nc")
+    assert main(["show", str(tmp_path / "other.nc")]) == 2
+    assert "must be a dataset of roughgas" in capsys.readouterr().err

@@ -1,0 +1,94 @@
+"""`roughgas theory`: the numbers are theory's, on any road."""
+
+import csv
+import io
+import json
+
+import numpy as np
+import pytest
+
+from roughgas import theory
+from roughgas.cli import main
+
+
+def asked(capsys, *arguments):
+    assert main(["theory", *arguments]) == 0
+    return capsys.readouterr().out
+
+
+def points(capsys, *arguments):
+    return json.loads(asked(capsys, *arguments, "--json"))["points"]
+
+
+def test_a_point_in_both_dimensions(capsys):
+    text = asked(capsys, "--r", "0.9", "--beta", "-0.5")
+    flat, solid = points(capsys, "--r", "0.9", "--beta", "-0.5")
+    assert flat["R_driven"] == pytest.approx(theory.lun_ratio(-0.5, 0.5), rel=1e-14)
+    assert solid["R_driven"] == pytest.approx(theory.lun_ratio(-0.5, 0.4), rel=1e-14)
+    assert flat["R_cooling"] == pytest.approx(theory.cooling_ratio(0.9, -0.5), rel=1e-14)
+    assert solid["R_cooling"] == pytest.approx(theory.goldshtein_ratio(0.9, -0.5), rel=1e-14)
+    assert solid["rate_cooling"] == theory.relaxation_rate(0.9, -0.5, 3)
+    assert flat["settled_driven"] == theory.collisions_to_relax(0.9, -0.5, spin_share=0.0)
+    row = next(line for line in text.splitlines() if line.startswith("R, cooling"))
+    assert f"{flat['R_cooling']:.5g}" in row and f"{solid['R_cooling']:.5g}" in row
+    assert row.endswith("Eq. (K); Eq. (Goldshtein)")
+
+
+def test_a_curve_is_as_exact_as_its_range_is_written(capsys):
+    found = points(capsys, "--r", "0.8", "0.9", "--beta", "-1:1:0.1", "--dimension", "2")
+    betas = [float(f"{k / 10}") for k in range(-10, 11)]
+    assert [(one["r"], one["beta"]) for one in found] == [(r, b) for r in (0.8, 0.9) for b in betas]
+    driven = [one["R_driven"] for one in found[:21]]
+    np.testing.assert_allclose(driven, theory.lun_ratio(np.array(betas), 0.5), rtol=1e-14)
+    assert found[0]["settled_cooling"] is None  # never, as spin is decoupled there
+
+
+def test_table_csv_and_json_are_the_same_curve(capsys):
+    where = ("--r", "0.9", "--beta", "0:1:0.5")
+    rows = list(csv.DictReader(io.StringIO(asked(capsys, *where, "--csv"))))
+    exact = points(capsys, *where)
+    lines = [line.split() for line in asked(capsys, *where).splitlines()]
+    assert lines[0] == ["D", *list(rows[0])[1:-1]]
+    for row, point, line in zip(rows, exact, lines[1:], strict=False):
+        for name, shown in zip(point, line, strict=True):
+            assert float(row[name]) == pytest.approx(point[name], rel=1e-9)
+            assert float(shown) == pytest.approx(point[name], rel=1e-4)
+    assert "R_driven: Eq. (lun); R_cooling: Eq. (Goldshtein)" in rows[-1]["sources"]
+
+
+def test_what_a_drive_and_friction_change(capsys):
+    place = ("--r=0.9", "--beta=0.5", "--dimension=2")
+    (one,) = points(capsys, *place, "--inertia=0.1", "--spin-share=0.3")
+    assert one["R_driven"] == theory.stationary_ratio(0.9, 0.5, 2, 0.1, 0.3)
+    assert one["R_cooling"] == theory.stationary_ratio(0.9, 0.5, 2, 0.1)
+    (one,) = points(capsys, *place, "--mu=0.3")
+    assert one["R_driven"] == theory.friction_ratio(0.9, 0.5, 0.3, spin_share=0.0)
+    assert one["R_cooling"] == theory.friction_ratio(0.9, 0.5, 0.3)
+    assert one["mu_c"] == theory.critical_friction(0.9)
+    (rough,) = points(capsys, *place, "--mu=inf")
+    assert rough["R_driven"] == pytest.approx(theory.lun_ratio(0.5, 0.5), rel=1e-12)
+    assert rough["sliding"] == 0.0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["--r=1.1", "--beta=0"], "restitution r = 1.1: must lie in [0, 1]"),
+        (["--r=0.9", "--beta=rough"], "roughness beta = rough: must lie in [-1, 1]"),
+        (["--r=0.9", "--beta=-1:2:1"], "roughness beta = 2: must lie in [-1, 1]"),
+        (["--r=0.9", "--beta=0:1:0"], "--beta = 0:1:0: must be START:STOP:STEP, such as"),
+        (["--r=0.9", "--beta=0:1:nan"], "--beta = 0:1:nan: must be START:STOP:STEP"),
+        (["--r=0.9", "--beta=0:1:x"], "--beta = 0:1:x: must be START:STOP:STEP"),
+        (["--r=0.9", "--beta=1:0:0.1"], "--beta = 1:0:0.1: must go up from START to STOP"),
+        (["--r=0:1:1e-9", "--beta=0"], "--r = 0:1:1e-9: must go up from START to STOP in at most"),
+        (["--r=0.9", "--beta=0", "--inertia=0"], "inertia q = 0.0: must be a positive number"),
+        (["--r=0.9", "--beta=0", "--mu=-1"], "friction mu = -1.0: must lie in [0, inf]"),
+        (["--r=0.9", "--beta=0", "--mu=ice"], "--mu = ice: must be a number"),
+        (["--r=0.9", "--beta=0", "--spin-share=2"], "spin share of the drive = 2.0: must lie in"),
+    ],
+)
+def test_bad_values_are_refused_in_one_line(capsys, arguments, message):
+    assert main(["theory", *arguments]) == 2
+    said = capsys.readouterr()
+    assert said.out == "" and said.err.count("\n") == 1
+    assert said.err.startswith(f"roughgas: error: {message}")

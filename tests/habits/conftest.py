@@ -1,0 +1,101 @@
+"""Real processes on machines that are not as they should be."""
+
+import json
+import os
+import shlex
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from roughgas.kernel.cache import kernel_folder
+
+ROOT = Path(__file__).parent.parent.parent
+CONFIG = str(ROOT / "config.yaml")
+SCHEDULE = {
+    "kind": "cooling",
+    "replicas": 2,
+    "thermalise": 1,
+    "relaxation_times": 1,
+    "plateau": 5,
+    "sample_every": 1,
+}
+SETTINGS = {
+    "particles": 5,
+    "box": [20, 20],
+    "effects": {"spin": {"inertia": 0.5}},
+    "schedule": SCHEDULE,
+}
+ENDLESS = SETTINGS | {"schedule": SCHEDULE | {"plateau": 10**9}}
+TMPFS = "mount -t tmpfs -o {options} none {folder} && exec {command}"
+
+
+def environment(**changes):
+    """That of this process, with the session's compiled kernels, and the changes; None unsets."""
+    found = os.environ | {
+        "PYTHONPATH": str(ROOT / "src"),
+        "ROUGHGAS_CACHE_DIR": str(kernel_folder().parent),
+    }
+    return {name: value for name, value in (found | changes).items() if value is not None}
+
+
+def python(*arguments, cwd, mount=None, **changes):
+    """A finished process of this Python; `mount` are options and folder of a disk of its own."""
+    command = [sys.executable, *map(str, arguments)]
+    if mount:
+        options, folder = mount
+        script = TMPFS.format(options=options, folder=folder, command=shlex.join(command))
+        command = ["unshare", "--mount", "--map-root-user", "sh", "-c", script]
+    return subprocess.run(
+        command, cwd=cwd, env=environment(**changes), capture_output=True, text=True, timeout=300
+    )
+
+
+def roughgas(*arguments, **others):
+    """A finished process of `roughgas`."""
+    return python("-m", "roughgas", *arguments, **others)
+
+
+def point(output, settings=SETTINGS, seed=1):
+    """The arguments that simulate a tiny point."""
+    arguments = ["run", "cooling", "--r=0.9", "--beta=0", f"--seed={seed}"]
+    return [*arguments, "--settings", json.dumps(settings), "--output", str(output)]
+
+
+def catches(process, number):
+    """Whether a process has set up what it does at a signal."""
+    for line in Path(f"/proc/{process.pid}/status").read_text().splitlines():
+        if line.startswith("SigCgt:"):
+            return bool(int(line.split()[1], 16) >> (number - 1) & 1)
+    return False
+
+
+def wait_until(true, process=None):
+    """Wait for `true()`, as long as the process lives."""
+    deadline = time.monotonic() + 120
+    while not true():
+        assert time.monotonic() < deadline
+        assert process is None or process.poll() is None
+        time.sleep(0.02)
+
+
+def interrupt(process, number=signal.SIGINT):
+    """Send a signal to a process and its children, as a terminal does; all that it has said."""
+    os.killpg(process.pid, number)
+    said, _ = process.communicate(timeout=60)
+    return said
+
+
+@pytest.fixture(scope="session")
+def mounts():
+    """Skips where no disks can be mounted for a test."""
+    tried = subprocess.run(
+        ["unshare", "--mount", "--map-root-user", "mount", "-t", "tmpfs", "none", "/mnt"],
+        capture_output=True,
+        text=True,
+    )
+    if tried.returncode:
+        pytest.skip(f"no disk can be mounted here: {tried.stderr.strip()}")

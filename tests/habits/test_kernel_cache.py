@@ -1,0 +1,114 @@
+"""Compiled kernels on disks that are damaged, full or read-only. The kernel here is a small one,
+which takes no time to compile; the files are those of any other."""
+
+import os
+import pickle
+import shutil
+import tempfile
+from pathlib import Path
+
+import pytest
+
+from habits.conftest import python
+
+PROGRAM = """
+from roughgas.kernel.cache import load_without_compiler, one_writer_at_a_time
+from roughgas.kernel.jit import entry
+
+@entry(cache=True)
+def triple(x):
+    return 3.0 * x
+
+load_without_compiler(triple)
+one_writer_at_a_time(triple)
+assert triple(2.0) == 6.0
+print("loaded" if sum(triple.stats.cache_hits.values()) else "compiled")
+"""
+
+
+@pytest.fixture
+def program(tmp_path):
+    path = tmp_path / "program.py"
+    path.write_text(PROGRAM)
+    return path
+
+
+def run(program, **others):
+    """What the program says: whether its kernel was compiled or loaded, and warnings."""
+    done = python(program, cwd=program.parent, **others)
+    assert done.returncode == 0, done.stderr
+    return done.stdout.strip(), done.stderr
+
+
+def other_version(content):
+    index = pickle.loads(content)
+    assert isinstance(index, str)
+    return content.replace(index.encode(), b"9" * len(index))
+
+
+DAMAGES = {
+    "index cut": ("*.nbi", lambda content: content[:60]),
+    "index empty": ("*.nbi", lambda content: b""),
+    "index of another numba": ("*.nbi", other_version),
+    "code cut": ("*.nbc", lambda content: content[:-100]),
+    "code empty": ("*.nbc", lambda content: b""),
+    "a hole in the code": ("*.nbc", lambda content: content[:900] + bytes(999) + content[1899:]),
+    "code removed": ("*.nbc", None),
+    "index removed": ("*.nbi", None),
+}
+
+
+def test_damaged_kernels_are_compiled_again(program):
+    folder = program.parent / "kernels"
+    keep = {"ROUGHGAS_CACHE_DIR": str(folder)}
+    assert run(program, **keep) == ("compiled", "")
+    whole = program.parent / "whole"
+    shutil.copytree(folder, whole)
+    for name, (pattern, damage) in DAMAGES.items():
+        shutil.rmtree(folder)
+        shutil.copytree(whole, folder)
+        (file,) = folder.rglob(pattern)
+        if damage is None:
+            file.unlink()
+        else:
+            file.write_bytes(damage(file.read_bytes()))
+        assert run(program, **keep) == ("compiled", ""), name
+    assert run(program, **keep) == ("loaded", "")
+
+
+def test_a_full_disk_only_costs_time(program, mounts):
+    (program.parent / "kernels").mkdir()
+    keep = {"ROUGHGAS_CACHE_DIR": str(program.parent / "kernels")}
+    said, warning = run(program, mount=("size=8k", program.parent / "kernels"), **keep)
+    assert said == "compiled" and warning.count("\n") == 1
+    assert "No space left on device: the kernel is not kept" in warning
+
+
+@pytest.mark.parametrize("home", [{"HOME": None}, {"HOME": "/proc/nobody"}])
+def test_without_a_home_or_a_compiler_kernels_go_to_temporary_files(program, tmp_path, home):
+    """Numba needs no C compiler: there is none on an empty PATH."""
+    bare = {"ROUGHGAS_CACHE_DIR": None, "XDG_CACHE_HOME": "/proc/none", "PATH": "/nonexistent"}
+    bare |= home | {"TMPDIR": str(tmp_path)}
+    assert run(program, **bare) == ("compiled", "")
+    assert run(program, **bare) == ("loaded", "")
+    assert list(tmp_path.glob(f"roughgas-{os.getuid()}/kernels-*/*/*.nbc"))
+
+
+def test_a_read_only_cache_is_left_alone(program, tmp_path, mounts):
+    folder = tmp_path / "kernels"
+    folder.mkdir()
+    others = {"ROUGHGAS_CACHE_DIR": str(folder), "TMPDIR": str(tmp_path)}
+    assert run(program, mount=("ro", folder), **others) == ("compiled", "")
+    assert list(tmp_path.glob(f"roughgas-{os.getuid()}/kernels-*/*/*.nbc"))
+
+
+def test_a_folder_of_somebody_else_is_not_trusted(program):
+    if os.getuid():
+        pytest.skip("only root can give files away")
+    with tempfile.TemporaryDirectory() as folder:
+        private = Path(folder, "roughgas-0")
+        private.mkdir()
+        os.chown(private, 65534, 65534)
+        others = {"ROUGHGAS_CACHE_DIR": "/proc/none", "TMPDIR": folder}
+        done = python(program, cwd=program.parent, **others)
+    assert done.returncode != 0 and "belongs to somebody else" in done.stderr

@@ -1,0 +1,86 @@
+"""Ctrl-C and SIGTERM: a clean stop, and a line that says how to go on."""
+
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+from workflow.conftest import Project
+
+from habits.conftest import ENDLESS, SETTINGS, catches, environment, interrupt, point, wait_until
+
+LAST = "Stopped: the same command goes on from here."
+
+
+def start(command, cwd, **changes):
+    return subprocess.Popen(
+        command,
+        cwd=cwd,
+        env=environment(**changes),
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        start_new_session=True,
+    )
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("after", [0.0, 1.5])
+def test_a_simulation_stops_in_one_line(tmp_path, number, after):
+    command = [sys.executable, "-m", "roughgas", *point("new/point.nc", ENDLESS)]
+    running = start(command, tmp_path)
+    wait_until(lambda: catches(running, signal.SIGTERM), running)
+    time.sleep(after)
+    said = interrupt(running, number)
+    assert said == "roughgas: stopped: nothing is half-written; the same command begins anew\n"
+    assert running.returncode == 130
+    assert not [path for path in tmp_path.rglob("*") if path.is_file()]
+
+
+@pytest.fixture(scope="module")
+def project(tmp_path_factory):
+    project = Project(tmp_path_factory.mktemp("project"))
+    sweep = {"r": ["0.9"], "beta": ["0"], "seeds": 2}
+    scales = {
+        "endless": {"cooling": ENDLESS | {"sweep": sweep}},
+        "full": {"cooling": SETTINGS | {"particles": 10**8, "box": [10**6, 10**6], "sweep": sweep}},
+    }
+    project.configure(lambda config: config["scales"].update(scales))
+    return project
+
+
+def snakemake(project, scale):
+    command = [sys.executable, "-m", "snakemake", "-j2", "--config", f"scale={scale}"]
+    command += ["--", f"results/{scale}/cooling.nc"]
+    return start(command, project.folder, PYTHONPATH=str(project.folder / "src"))
+
+
+def test_a_workflow_stops_without_a_word_of_failure(project):
+    running = snakemake(project, "endless")
+    log = project.folder / "logs/endless/cooling/r0.9/beta0/seeds1-2.log"
+    wait_until(log.exists, running)
+    time.sleep(1.0)
+    lines = interrupt(running).splitlines()
+    assert lines[-1] == LAST
+    files = [f"results/endless/cooling/r0.9/beta0/seed{seed}.nc" for seed in (1, 2)]
+    assert f"Stopped on the way: {', '.join(files)}" in lines
+    assert not [line for line in lines if "rror" in line or "Traceback" in line]
+    assert not list(project.folder.rglob("*.tmp"))
+    planned = project.planned("results/endless/cooling.nc")
+    assert planned == {"seeds": 1, "reduce": 1}  # the kernel is not compiled again
+
+
+def test_a_job_that_fails_shows_what_it_said_and_no_more(project):
+    project.configure(lambda config: config["scales"]["full"]["cooling"].update(particles=50))
+    wrong = project.folder / "src/roughgas/protocols/cooling.py"
+    text = wrong.read_text()
+    wrong.write_text(text + '\ndef run(*_):\n    raise OSError(28, "No space left on device")\n')
+    running = snakemake(project, "full")
+    lines = running.communicate(timeout=120)[0].splitlines()
+    wrong.write_text(text)
+    assert running.returncode == 1 and lines[-1] == LAST
+    place = next(k for k, line in enumerate(lines) if line.startswith("Failed: "))
+    assert lines[place + 1] == "logs/full/cooling/r0.9/beta0/seeds1-2.log:"
+    assert lines[place + 2] == "    roughgas: error: No space left on device"
+    assert not [line for line in lines if "cksum" in line or "CalledProcessError" in line]

@@ -1,0 +1,195 @@
+"""roughgas as a library: the same numbers, the same names and the same errors as the pipeline's."""
+
+import doctest
+import shlex
+import subprocess
+import sys
+import tarfile
+import typing
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+import tqdm.auto
+from schedules import STEADY
+
+import roughgas
+from roughgas import experiments, library, simulate
+from roughgas.cli import main
+from roughgas.config.reading import read_yaml
+from roughgas.dataset import WALL_CLOCK, read_point
+from roughgas.errors import InputError
+from roughgas.theory import cooling_ratio
+
+ROOT = Path(__file__).parent.parent
+POINT = {"r": 0.9, "beta": 0.5}
+SHORT = {"equilibrate": 20, "measure": 40}
+OWN = {
+    "particles": 20,
+    "box": (25, 25),
+    "effects": {"spin": {"inertia": 0.5}, "shear": {"velocity": 1}},
+    "schedule": STEADY,
+}
+CHANGED = {"particles": 20, "box": (12.5, "open"), "schedule": SHORT}
+POINTS = {
+    "as it is": ("cooling", {"scale": "small"}),
+    "changed": ("vibrated", CHANGED | {"seed": 3, "effects": {"contact_time": None}}),
+    "with an effect more": ("vibrated", CHANGED | {"effects": {"friction": {"mu": 0.3}}}),
+    "a variant": ("vibrated_friction/mu0.3", CHANGED),
+    "of numpy's numbers": ("cooling", {"box": np.array([30, 30]), "particles": np.int64(20)}),
+    "of one's own": (None, OWN),
+}
+
+
+def same(one, other):
+    """Whether two points are equal in all but the time that they took."""
+    return one.drop_vars(WALL_CLOCK, errors="ignore").identical(
+        other.drop_vars(WALL_CLOCK, errors="ignore")
+    )
+
+
+@pytest.mark.parametrize("name", POINTS)
+def test_a_dataset_is_that_of_the_file_which_its_command_writes(name, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    experiment, changes = POINTS[name]
+    point = simulate(experiment, **POINT, **changes, progress=False)
+    assert list(tmp_path.iterdir()) == []
+    assert main(shlex.split(point.command)[1:]) == 0
+    assert same(point, read_point("point.nc"))
+    assert point.R.attrs["long_name"] and point.E_trans.attrs["units"]
+
+
+def test_a_named_experiment_is_the_pipelines(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    labels = ["--scale=small", "--r=0.9", "--beta=-0.8", "--seed=2", "--output=point.nc"]
+    assert main(["run", "cooling", f"--config={ROOT / 'config.yaml'}", *labels]) == 0
+    point = simulate("cooling", r=0.9, beta=-0.8, seed=2, scale="small", progress=False)
+    assert same(point, read_point("point.nc"))
+    assert point.R == pytest.approx(cooling_ratio(0.9, -0.8), abs=0.1)
+
+
+def test_an_experiment_of_another_configuration(tmp_path):
+    text = (ROOT / "config.yaml").read_text()
+    path = tmp_path / "mine.yaml"
+    path.write_text(text.replace("experiments:\n", "experiments:\n  mine: {extends: cooling}\n"))
+    small = {"particles": 10, "schedule": {"replicas": 2}, "progress": False}
+    mine = simulate("mine", **POINT, config=path, **small)
+    assert mine.experiment == "mine" and mine.R == simulate("cooling", **POINT, **small).R
+    assert "mine" in experiments(path) and "mine" not in experiments()
+
+
+@pytest.mark.parametrize(
+    ("name", "changes", "message"),
+    [
+        ("colling", {}, "experiment = 'colling': must be one of cooling, cooling_friction, "),
+        ("cooling", {"r": 1.5}, "restitution r = 1.5: must lie in [0, 1]"),
+        ("cooling", {"beta": np.nan}, "roughness beta = nan: must lie in [-1, 1]"),
+        ("cooling", {"seed": -1}, "seed = -1: must be a whole number in [0, 2^63 - 1]"),
+        ("cooling", {"scale": "big"}, "scale = 'big': must be one of coarse, fine, paper, small"),
+        ("cooling", {"particles": 0}, "cooling.particles = 0: must be a whole number >= 1"),
+        ("cooling", {"particles": 10**6}, "particles = 1000000: must be at most 2842 in this box"),
+        ("cooling", {"box": 50}, "cooling.box = 50: must be a list of 2 to 3 entries"),
+        ("cooling", {"effects": {"frction": {}}}, "cooling.effects: key = 'frction': must be one"),
+        ("cooling", {"schedule": {"measure": 9}}, "cooling.schedule: key = 'measure': must be one"),
+        ("vibrated", {"effects": {"gravity": None}}, "effects.floor = without gravity: must come"),
+        ("vibrated_friction", {}, "vibrated_friction.effects.friction.mu = (nothing): must be"),
+        (
+            "vibrated_friction/mu0.3",
+            {"effects": {"friction": {"mu": 0.5}}},
+            "experiment = vibrated_friction/mu0.3: must be the variant that its settings are of",
+        ),
+        (None, {}, "scene.particles = (nothing): must be given"),
+        (None, OWN | {"schedule": {"kind": "steady"}}, "scene.schedule.equilibrate = (nothing)"),
+    ],
+)
+def test_bad_input_is_refused_as_by_the_pipeline(name, changes, message):
+    with pytest.raises(InputError) as refusal:
+        simulate(name, **(POINT | changes))
+    assert str(refusal.value).startswith(message) and "\n" not in str(refusal.value)
+
+
+class Bar(tqdm.auto.tqdm):
+    """A progress bar that remembers, and is interrupted at some share of its way."""
+
+    made: typing.ClassVar[list] = []
+    interrupted_at = 2.0
+
+    def __init__(self, *arguments, **options):
+        super().__init__(*arguments, **options)
+        self.seen, self.closed = [], False
+        self.made.append(self)
+
+    def update(self, by=1):
+        super().update(by)
+        self.seen.append(self.n / self.total)
+        if self.seen[-1] > self.interrupted_at:
+            raise KeyboardInterrupt
+
+    def close(self):
+        super().close()
+        self.closed = True
+
+
+@pytest.fixture
+def bars(monkeypatch):
+    monkeypatch.setattr(tqdm.auto, "tqdm", Bar)
+    monkeypatch.setattr(Bar, "made", [])
+    return Bar.made
+
+
+@pytest.mark.parametrize("name", ["as it is", "changed"])
+def test_the_progress_bar_runs_from_none_to_all(name, bars, capsys):
+    experiment, changes = POINTS[name]
+    simulate(experiment, **POINT, **changes)
+    (bar,) = bars
+    assert bar.closed and bar.seen == sorted(bar.seen) and bar.seen[-1] == pytest.approx(1.0)
+    assert len(bar.seen) > 20 and bar.seen[-2] > 0.95 and np.diff(bar.seen).max() < 0.1
+    said = capsys.readouterr()
+    assert said.out == "" and f"{experiment} (compiling):   0%" in said.err
+    simulate(experiment, **POINT, **changes, progress=False)
+    assert capsys.readouterr() == ("", "")
+
+
+def test_an_interrupt_leaves_nothing_behind(bars, monkeypatch, tmp_path):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(Bar, "interrupted_at", 0.5)
+    with pytest.raises(KeyboardInterrupt):
+        simulate(**POINT, **OWN)
+    (bar,) = bars
+    assert bar.closed and 0.5 < bar.seen[-1] < 0.6
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_schedule_that_is_typed_is_the_one_of_the_schema():
+    schema = read_yaml(Path(roughgas.__file__).parent / "config" / "schema.yaml")
+    assert set(typing.get_type_hints(library.Schedule)) == set(
+        schema["$defs"]["schedule"]["properties"]
+    )
+
+
+def test_the_examples_in_docstrings():
+    found = doctest.testmod(library)
+    assert found.attempted > 5 and not found.failed
+
+
+def test_importing_the_package_imports_none_of_what_it_needs():
+    code = "import sys, roughgas; from roughgas import simulate, experiments; print(*sys.modules)"
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    heavy = {"numpy", "numba", "xarray", "netCDF4", "yaml", "tqdm", "roughgas.kernel"}
+    assert "roughgas.library" in run.stdout.split() and not heavy & set(run.stdout.split())
+    assert {"simulate", "experiments", "__version__"} <= set(dir(roughgas))
+    with pytest.raises(AttributeError, match="module 'roughgas' has no attribute 'simulat'"):
+        roughgas.simulat  # noqa: B018
+
+
+def test_what_is_installed_elsewhere_knows_the_experiments(tmp_path, monkeypatch):
+    from flit_core.buildapi import build_sdist, build_wheel
+
+    monkeypatch.chdir(ROOT)
+    with tarfile.open(tmp_path / build_sdist(str(tmp_path))) as archive:
+        archive.extractall(tmp_path, filter="data")
+    monkeypatch.chdir(next(tmp_path.glob("roughgas-*/")))
+    with zipfile.ZipFile(tmp_path / build_wheel(str(tmp_path))) as wheel:
+        assert wheel.read("roughgas/config.yaml") == (ROOT / "config.yaml").read_bytes()
+        assert "roughgas/py.typed" in wheel.namelist()
