@@ -15,6 +15,12 @@
 
 include: "rules/common.smk"
 include: "rules/sources.smk"
+include: "rules/cluster.smk"
+
+
+become_own_task()
+
+
 include: "rules/messages.smk"
 
 
@@ -93,6 +99,7 @@ rule everything:
 
 
 onstart:
+    refuse_limit_of_jobs()
     lift_rate_limit()
 
 
