@@ -4,7 +4,7 @@ import subprocess
 import sys
 
 import pytest
-from conftest import JOBS
+from project import JOBS
 
 EACH = JOBS // 6
 AFTER_POINTS = {"claims": 1, "table": 1, "run_times": 1, "document": 2, "figures": 1}
@@ -67,8 +67,9 @@ def test_more_seeds_are_added_to_those_that_are_there(finished, wanted, jobs):
     assert finished.planned() == jobs | {"reduce": 1, "figure": 1} | AFTER_BOTH
 
 
-def test_which_job_has_made_a_point_does_not_matter(finished):
-    finished.configure(lambda config: config.update(seeds_per_job=1))
+@pytest.mark.parametrize("batch", [{"seeds_per_job": 1}, {"betas_per_job": 25}])
+def test_which_job_has_made_a_point_does_not_matter(finished, batch):
+    finished.configure(lambda config: config.update(batch))
     assert finished.planned() == CONFIGURED
 
 
