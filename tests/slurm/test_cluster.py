@@ -63,15 +63,14 @@ def test_the_run_ends_well(disturbed):
 
 def test_points_are_sent_as_arrays(disturbed):
     sent = re.findall(r"Submitted array job with Snakemake IDs ([\d,]+)", disturbed.log())
-    assert len(sent) >= 3  # of the bed, of the sheared and of the cooling gas: one at each r
-    assert all(jobs.count(",") == 3 for jobs in sent)
+    at_each_r = [jobs for jobs in sent if jobs.count(",") == 3]
+    assert len(at_each_r) >= 3  # of the bed, of the sheared and of the cooling gas
 
 
 def test_a_cancelled_job_is_sent_again(disturbed):
-    assert f"SLURM-job '{disturbed.cancelled}' failed, SLURM status is: 'CANCELLED'" in (
-        disturbed.log()
-    )
-    assert re.search(r"Trying to restart job \d+", disturbed.log())
+    said = disturbed.log()
+    failed = said.index(f"SLURM-job '{disturbed.cancelled}' failed, SLURM status is: 'CANCELLED'")
+    assert "Trying to restart job" in said[failed:]
 
 
 def test_nothing_is_lost(disturbed, local):
