@@ -5,8 +5,8 @@ import shutil
 from pathlib import Path
 
 import pytest
-from tests.cli.parsers import commands, examples
 
+from cli.parsers import commands, examples
 from roughgas import cli
 from roughgas.cli import main
 

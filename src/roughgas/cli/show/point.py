@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from roughgas.cli.layout import columns, decimals_of, with_error
+from roughgas.cli.layout import columns, decimals_of, unit_of, with_error
 from roughgas.cli.theory.quantities import equation
 from roughgas.dataset import VARIABLES
 from roughgas.dataset import read_point as read
@@ -123,14 +123,14 @@ def _energies(point: "xarray.Dataset") -> list[list[str]]:
     for name in ("E_trans", "E_rot"):
         if name in point:
             error = float(point[f"{name}_stderr"]) if f"{name}_stderr" in point else math.nan
-            value, units = with_error(float(point[name]), error), point[name].attrs["units"]
+            value, units = with_error(float(point[name]), error), unit_of(point[name].attrs)
             rows.append([name, f"{value} {units}, per degree of freedom"])
     return rows
 
 
 def _steady(point: "xarray.Dataset") -> str:
     found = "yes" if point.equilibrated else "NOT found: energies or R still drift"
-    begin, units = float(point.measured_from), point.measured_from.attrs["units"]
+    begin, units = float(point.measured_from), unit_of(point.measured_from.attrs)
     end = f" to {float(point.plateau_end):g}" if "plateau_end" in point else " on"
     return f"{found}; measured from {begin:g}{end}, in {units}"
 
@@ -142,5 +142,5 @@ def _books(point: "xarray.Dataset") -> str:
         rows.append([f"  {source}", *(f"{one:.6g}" for one in energies)])
     rows.append(["  what the gas has gained", *(f"{one:.6g}" for one in point.energy_gain.values)])
     imbalance = float(point.energy_imbalance)
-    units = point.energy_gain.attrs["units"]
+    units = unit_of(point.energy_gain.attrs)
     return f"{columns(rows, numbers=True)}\n  in {units}; the books miss {imbalance:.1g} of it all"

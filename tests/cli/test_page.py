@@ -1,0 +1,29 @@
+"""docs/command_line.md: its commands print what it says."""
+
+import pytest
+
+from cli import page
+from roughgas import cli
+
+BLOCKS = [block for block in page.blocks() if not block.startswith("$ roughgas bench")]
+"""All but what prints nothing that does not depend on the machine."""
+
+
+@pytest.fixture(scope="module")
+def folder():
+    """Where all blocks are run: later ones show what earlier ones have made."""
+    with page.folder() as path:
+        yield path
+
+
+@pytest.mark.parametrize("block", BLOCKS, ids=lambda block: block.splitlines()[0])
+def test_a_block_is_what_its_commands_print(folder, block):
+    found = page.written(block, page.in_this_process)
+    assert page.without_machine(found) == page.without_machine(block), (
+        "write it anew: python tests/cli/page.py"
+    )
+
+
+def test_every_command_for_people_is_on_the_page():
+    text = page.PAGE.read_text(encoding="utf-8")
+    assert [name for name in cli.FOR_PEOPLE if f"roughgas {name}" not in text] == []
