@@ -7,7 +7,7 @@ from roughgas.errors import not_one_of
 
 @pytest.mark.parametrize(
     ("name", "guess"),
-    [("'coolng'", "cooling"), ("'schedul'", "schedule"), ("fig9", None), ("'tide'", None), (7, None)],
+    [("'coolng'", "cooling"), ("'schedul'", "schedule"), ("fig9", None), (7, None)],
 )
 def test_a_guess_is_made_where_a_name_is_close(name, guess):
     text = str(not_one_of("key", name, ["cooling", "schedule", "fig8"]))
