@@ -4,6 +4,7 @@
 PYTHON ?= python3.11 python3.12 python3.13 python3.14 python3
 JOBS ?= 2
 SCALE ?= paper
+REPORTED ?= figures
 SNAKEFILES := Snakefile rules
 BIN := .venv/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check install -qq
@@ -20,6 +21,13 @@ figures: setup ## simulate, and draw the four figures of the paper
 	@echo "Look at  figures/fig1a.png  figures/fig1b.png  figures/fig2a.png  figures/fig2b.png"
 	@echo "What the paper claims, and what we find:  results/paper/claims.md"
 	@echo "Every number in them:  results/paper/R.csv"
+
+report: setup ## one HTML file with all that REPORTED has (default: figures), and an interactive page
+	$(BIN)/snakemake -j$(JOBS) --config scale=$(SCALE) -- $(REPORTED) explore
+	$(BIN)/snakemake --config scale=$(SCALE) --report results/$(SCALE)/report.html -- $(REPORTED)
+	@echo
+	@echo "Look at  results/$(SCALE)/report.html  and  results/$(SCALE)/explore.html:"
+	@echo "each is one file, to be sent as it is. More in the first: make REPORTED='figures extensions' report"
 
 plan: setup ## say what all experiments at SCALE will cost, from pilot runs
 	$(BIN)/snakemake -j$(JOBS) --quiet all --config scale=$(SCALE) -- plan
@@ -90,5 +98,5 @@ clean: ## remove all results; the environment and the committed figures stay
 	rm -rf results logs .snakemake figures/*.pdf docs/_build .pytest_cache .ruff_cache .hypothesis \
 	    $(filter-out figures/movies/,$(wildcard figures/*/))
 
-.PHONY: help figures plan test extras docs bench lint format setup lock clean
+.PHONY: help figures report plan test extras docs bench lint format setup lock clean
 .DELETE_ON_ERROR:

@@ -15,6 +15,12 @@
 
 include: "rules/common.smk"
 include: "rules/sources.smk"
+include: "rules/cluster.smk"
+
+
+become_own_task()
+
+
 include: "rules/messages.smk"
 
 
@@ -61,6 +67,13 @@ include: "rules/crate.smk"
 report: "rules/captions/workflow.rst"
 
 
+# on a cluster, these take less than sending them there
+localrules:
+    figure,
+    table,
+    claims,
+
+
 rule figures:
     default_target: True
     input:
@@ -86,6 +99,7 @@ rule everything:
 
 
 onstart:
+    refuse_limit_of_jobs()
     lift_rate_limit()
 
 

@@ -6,7 +6,8 @@ def kernel_of_point(wildcards):
     """What says that the kernel of a point is compiled; ends the workflow for an illegal point."""
     with one_line(f"results/{wildcards.scale}/{wildcards.experiment}"):
         roughgas.config.restitution(wildcards.r)
-        roughgas.config.roughness(wildcards.beta)
+        if "beta" in wildcards.keys():
+            roughgas.config.roughness(wildcards.beta)
         if "seed" in wildcards.keys():
             roughgas.config.seed(wildcards.seed)
         found = settings(wildcards.scale, wildcards.experiment)

@@ -24,7 +24,8 @@ class Brief(DefaultFormatter):
         made, said = ", ".join(msg["output"]), "\n".join(map(last_lines, msg["log"]))
         if "roughgas: stopped" in said:
             return f"Stopped on the way: {made}"
-        return f"Failed: {made}\n{said}"
+        why = (msg["rule_msg"] or "").partition(". ")[0]  # what became of a cluster's job
+        return f"Failed: {made}{why and f' ({why})'}\n{said}"
 
 
 def last_lines(log, most=20):

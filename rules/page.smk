@@ -14,7 +14,7 @@ def points_of_extensions(wildcards):
 
 rule document:
     input:
-        sources("page"),
+        sources("page/document"),
         LOOKS,
         shown=source_of_document,
     output:
@@ -38,7 +38,7 @@ rule document:
 
 rule effective_config:
     input:
-        sources("config"),
+        files_of("config"),
         file="config.yaml",
     output:
         report(
@@ -62,7 +62,7 @@ rule effective_config:
 
 rule run_times:
     input:
-        sources("page"),
+        sources("page/times"),
         data=data_of_paper,
     output:
         "results/{scale}/run_times.md",
@@ -78,7 +78,7 @@ rule run_times:
 
 use rule run_times as run_times_of_extensions with:
     input:
-        sources("page"),
+        sources("page/times"),
         data=data_of_extensions,
     output:
         "results/{scale}/run_times_extensions.md",

@@ -88,22 +88,27 @@ def source_of_document(wildcards):
     return shown.format(scale=wildcards.scale, folder=folder)
 
 
-def experiments_of_figure(wildcards):
-    """The settings of the experiments that a figure shows, for its caption."""
+def experiments_of_figure(wildcards, output):
+    """The settings of the experiments that a figure shows, for its caption: not recorded, as those of
+    `seeds_of_job`, here and below. A description that changes is no reason to draw anew."""
     scale = wildcards.folder.rstrip("/") or "paper"
     return {name: settings(scale, name) for name in FIGURES[wildcards.figure]}
 
 
-def studies_of_figure(wildcards):
+def studies_of_figure(wildcards, output):
     """The settings of the studies that a figure shows, for its caption."""
     scale = wildcards.folder.rstrip("/") or "paper"
-    names = SHOWN[wildcards.study_figure]
-    return {name: roughgas.config.study(config, name, scale)["study"] for name in names}
+    with one_line(f"figures/{wildcards.folder}{wildcards.study_figure}"):
+        return {
+            name: roughgas.config.study(config, name, scale)["study"]
+            for name in SHOWN[wildcards.study_figure]
+        }
 
 
-def showcase_of_figure(wildcards):
+def showcase_of_figure(wildcards, output):
     """The settings of the showcase, for its caption."""
-    return roughgas.config.showcase(config, wildcards.folder.rstrip("/") or "paper")
+    with one_line(f"figures/{wildcards.folder}clustering"):
+        return roughgas.config.showcase(config, wildcards.folder.rstrip("/") or "paper")
 
 
 def documents(*names):

@@ -1,12 +1,11 @@
 # From an experiment's settings to its points, where their lengths are set (where a target is set
-# instead: planning.smk). Of a point in the sweep, `seeds_per_job` seeds are made
-# by one job (see config.yaml); any other seed is a job of its own.
+# instead: planning.smk). Of the sweep, `seeds_per_job` seeds at `betas_per_job` values of beta are
+# made by one job (see config.yaml); any other point is a job of its own.
 import re
 
 RUN = (
-    "roughgas run {wildcards.experiment} --scale {wildcards.scale} --r={wildcards.r}"
-    " --beta={wildcards.beta} --seed {params.seeds} --settings {params.settings:q}"
-    " --checked --output {output} > {log} 2>&1"
+    "roughgas run {wildcards.experiment} --scale {wildcards.scale} --r={wildcards.r} {params.points}"
+    " --settings {params.settings:q} --checked --output {output} > {log} 2>&1"
 )
 
 
@@ -17,18 +16,22 @@ def settings_of_points(wildcards):
     return roughgas.config.as_text(roughgas.config.point_settings(found))
 
 
-def seeds_of_job(wildcards, output):
-    """The seeds of a job's outputs. Snakemake does not record params that are made from outputs: a
-    point is up to date whichever job has made it."""
-    return " ".join(Path(file).stem.removeprefix("seed") for file in output)
+def points_of_job(wildcards, output):
+    """The betas and seeds of a job's outputs, each with each. Snakemake does not record params that
+    are made from outputs: a point is up to date whichever job has made it."""
+    files = [Path(file) for file in output]
+    betas = dict.fromkeys(file.parent.name.removeprefix("beta") for file in files)
+    seeds = dict.fromkeys(file.stem.removeprefix("seed") for file in files)
+    return " ".join([*(f"--beta={beta}" for beta in betas), "--seed", *seeds])
 
 
 def urgency(wildcards):
-    """Longest points first, lest one of them is left alone on one core at the end."""
+    """Longest points first, lest one of them is left alone on one core at the end. A job on several
+    betas counts as if they were 0."""
     from roughgas.point import effort
 
     experiment = settings(wildcards.scale, wildcards.experiment)
-    return effort(experiment, float(wildcards.r), float(wildcards.beta))
+    return effort(experiment, float(wildcards.r), float(wildcards.get("beta", "0")))
 
 
 def one_of(labels):
@@ -48,7 +51,7 @@ rule point:
     priority: urgency
     params:
         settings=settings_of_points,
-        seeds=seeds_of_job,
+        points=points_of_job,
     message:
         "{wildcards.experiment}: r = {wildcards.r}, beta = {wildcards.beta}, seed = {wildcards.seed}"
     shell:
@@ -58,8 +61,11 @@ rule point:
 for experiment in config["experiments"]:
     found = roughgas.config.experiment(config, experiment, SCALE)
     axes = found["sweep"]
-    for seeds in roughgas.config.seed_blocks(axes.get("seeds", 0), config):
-        together = f"{experiment}_seeds_{seeds[0]}_to_{seeds[-1]}"
+    for number, (betas, seeds) in enumerate(roughgas.config.blocks(axes, config), start=1):
+        together = f"{experiment}_block_{number}"
+        first, last = betas[0], betas[-1]
+        span = first if first == last else f"{first}to{last}"
+        log_of_job = f"logs/{{scale}}/{{experiment}}/r{{r}}/beta{span}/seeds{seeds[0]}-{seeds[-1]}"
 
         rule:
             name:
@@ -67,11 +73,15 @@ for experiment in config["experiments"]:
             input:
                 kernel_of_point,
             output:
-                [POINT.replace("{seed}", seed) for seed in seeds],
+                [
+                    POINT.replace("{beta}", beta).replace("{seed}", seed)
+                    for beta in betas
+                    for seed in seeds
+                ],
             log:
-                f"logs/{{scale}}/{{experiment}}/r{{r}}/beta{{beta}}/seeds{seeds[0]}-{seeds[-1]}.log",
+                f"{log_of_job}.log",
             benchmark:
-                f"logs/{{scale}}/{{experiment}}/r{{r}}/beta{{beta}}/seeds{seeds[0]}-{seeds[-1]}.tsv"
+                f"{log_of_job}.tsv"
             wildcard_constraints:
                 scale=SCALE,
                 experiment=one_of(roughgas.config.variants(experiment, found)),
@@ -80,10 +90,9 @@ for experiment in config["experiments"]:
             priority: urgency
             params:
                 settings=settings_of_points,
-                seeds=seeds_of_job,
+                points=points_of_job,
             message:
-                "{wildcards.experiment}: r = {wildcards.r}, beta = {wildcards.beta},"
-                " seeds {params.seeds}"
+                "{wildcards.experiment}: r = {wildcards.r}, {params.points}"
             shell:
                 RUN
 

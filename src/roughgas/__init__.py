@@ -1,21 +1,20 @@
 """Event-driven simulation of gases of rough, inelastic disks and spheres."""
 
-from typing import TYPE_CHECKING, Any
+__all__ = ["__version__", "experiments", "simulate"]
+__version__ = "0.1.0"
+TYPE_CHECKING = False  # but for type checkers; importing typing would take ten times as long
 
 if TYPE_CHECKING:
     from roughgas.library import experiments, simulate
+else:
 
-__all__ = ["__version__", "experiments", "simulate"]
-__version__ = "0.1.0"
+    def __getattr__(name: str) -> object:
+        # found only when it is asked for, since every job of the pipeline imports this package, too
+        if name not in __all__:
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        from roughgas import library
 
-
-def __getattr__(name: str) -> Any:
-    # found only when it is asked for, since every job of the pipeline imports this package, too
-    if name not in __all__:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    from roughgas import library
-
-    return getattr(library, name)
+        return getattr(library, name)
 
 
 def __dir__() -> list[str]:

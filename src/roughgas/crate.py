@@ -40,7 +40,7 @@ PROJECT = (
     "pyproject.toml",
     "requirements.lock",
 )
-FOLDERS, KINDS = ("profiles", "rules", "src"), (".py", ".smk", ".yaml")
+FOLDERS = ("profiles", "rules", "src")
 CONFIGURATION, ENVIRONMENT, POINTS = "configuration.json", "environment.json", "points.csv"
 COLUMNS = ("point", "digest", "command")
 
@@ -50,7 +50,7 @@ def project_files(root: str | Path = ".") -> list[str]:
     root = Path(root)
     found = [root / name for name in PROJECT]
     for folder in FOLDERS:
-        found += sorted(path for path in (root / folder).rglob("*") if path.suffix in KINDS)
+        found += sorted(path for path in (root / folder).rglob("*.*") if path.suffix != ".pyc")
     return [str(path.relative_to(root)) for path in found]
 
 

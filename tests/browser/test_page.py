@@ -12,7 +12,7 @@ from roughgas.dataset import read_point
 from roughgas.page import write_page
 from roughgas.reduce import predicted_ratio, read_reduced
 
-pytestmark = [pytest.mark.browser, pytest.mark.slow]
+pytestmark = [pytest.mark.browser, pytest.mark.slow, pytest.mark.xdist_group("browser")]
 
 POINT = re.compile(r"([\d.]+)\((\d+)\)")
 
@@ -147,7 +147,7 @@ def test_a_third_axis_is_chosen_too(browser, tmp_path):
     assert browser.text("#variant-name") == "friction.mu"
     select(browser, "variant", "1")
     assert fragment(browser) == "#cooling_friction/mu1/r0.9/beta-0.5"
-    assert browser.text("#title") == "cooling_friction, mu1: 40 disks"
+    assert browser.text("#title") == "cooling_friction, friction.mu = 1: 40 disks"
     select(browser, "beta", "0.50")
     assert numbers(browser)["R"] == "0.3510(40)"
     assert browser.text("#target").endswith("/small/cooling_friction/mu1/r0.9/beta0.50/seed1.nc")

@@ -29,7 +29,7 @@ SETTINGS = {
     "effects": {"spin": {"inertia": 0.5}},
     "schedule": SCHEDULE,
 }
-ENDLESS = SETTINGS | {"schedule": SCHEDULE | {"plateau": 10**9}}
+LONG = SETTINGS | {"schedule": SCHEDULE | {"plateau": 5_000_000}}
 TMPFS = "mount -t tmpfs -o {options} none {folder} && exec {command}"
 
 

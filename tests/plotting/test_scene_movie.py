@@ -179,7 +179,7 @@ def test_an_mp4_has_every_frame(tmp_path):
 
 
 def test_an_encoder_that_fails_leaves_nothing_and_says_why(tmp_path, monkeypatch):
-    monkeypatch.setitem(movie.ENCODERS, ".gif", "-vcodec nonsense")
+    monkeypatch.setitem(movie.ENCODERS, ".gif", "-vcodec nonsense -f gif")
     path = tmp_path / "gas.gif"
     with pytest.raises(OSError, match=r"not encoded: .*nonsense") as failure:
         write(path, subject("gas", [SIDE, SIDE]), shots(), 20.0)

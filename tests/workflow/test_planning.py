@@ -3,7 +3,7 @@
 import copy
 
 import pytest
-from conftest import TINY, Project
+from project import TINY, Project
 
 from roughgas.dataset import read_point
 from roughgas.reduce import read_reduced

@@ -4,10 +4,12 @@ import subprocess
 import sys
 
 import pytest
-from conftest import JOBS
+from project import JOBS
 
 EACH = JOBS // 6
-AFTER_POINTS = {"claims": 1, "table": 1, "figures": 1}
+AFTER_POINTS = {"claims": 1, "table": 1, "run_times": 1, "document": 2, "figures": 1}
+CONFIGURED = {"effective_config": 1, "document": 1, "figures": 1}
+AFTER_BOTH = AFTER_POINTS | CONFIGURED | {"document": 3}
 ALL = {"compile_kernel": 6, "seeds": JOBS, "reduce": 6, "figure": 4} | AFTER_POINTS
 
 
@@ -31,9 +33,10 @@ def test_only_contents_count(finished):
         ("reduce.py", {"reduce": 6, "figure": 4} | AFTER_POINTS),
         ("table.py", {"table": 1, "figures": 1}),
         ("plotting/style.py", {"figure": 4, "figures": 1}),
-        ("claims/report.py", {"claims": 1, "figures": 1}),
-        ("config/__init__.py", {}),
-        ("config/axis.py", {}),
+        ("claims/report.py", {"claims": 1, "document": 1, "figures": 1}),
+        ("page/document.py", {"document": 3, "figures": 1}),
+        ("config/__init__.py", CONFIGURED),
+        ("config/axis.py", CONFIGURED),
     ],
 )
 def test_an_edit_in_the_package(finished, module, expected):
@@ -50,7 +53,7 @@ def test_an_edit_of_one_experiment(finished):
     finished.configure(
         lambda config: config["experiments"]["sheared"]["effects"]["shear"].update(velocity=3)
     )
-    expected = {"compile_kernel": 1, "seeds": EACH, "reduce": 1, "figure": 1} | AFTER_POINTS
+    expected = {"compile_kernel": 1, "seeds": EACH, "reduce": 1, "figure": 1} | AFTER_BOTH
     assert finished.planned() == expected
 
 
@@ -61,19 +64,20 @@ def test_more_seeds_are_added_to_those_that_are_there(finished, wanted, jobs):
         config["scales"]["tiny"]["cooling"]["sweep"].update(seeds=wanted)
 
     finished.configure(change)
-    assert finished.planned() == jobs | {"reduce": 1, "figure": 1} | AFTER_POINTS
+    assert finished.planned() == jobs | {"reduce": 1, "figure": 1} | AFTER_BOTH
 
 
-def test_which_job_has_made_a_point_does_not_matter(finished):
-    finished.configure(lambda config: config.update(seeds_per_job=1))
-    assert finished.planned() == {}
+@pytest.mark.parametrize("batch", [{"seeds_per_job": 1}, {"betas_per_job": 25}])
+def test_which_job_has_made_a_point_does_not_matter(finished, batch):
+    finished.configure(lambda config: config.update(batch))
+    assert finished.planned() == CONFIGURED
 
 
 def test_a_description_concerns_no_point(finished):
     finished.configure(
         lambda config: config["experiments"]["cooling"].update(description="colder and colder")
     )
-    assert finished.planned() == {}
+    assert finished.planned() == CONFIGURED
 
 
 def test_an_edit_is_not_forgotten_when_a_run_is_interrupted(finished):
@@ -117,4 +121,5 @@ def test_a_reduced_dataset_does_not_depend_on_the_kernel(made):
 def test_an_edit_of_a_family_of_hard_cases_concerns_it_alone(finished):
     assert finished.planned("hard_cases") == {}
     finished.append("tests/hard_cases/test_ties.py")
-    assert finished.planned("hard_cases") == {"family": 1, "catalogue": 1, "hard_cases": 1}
+    expected = {"family": 1, "catalogue": 1, "document": 1, "hard_cases": 1}
+    assert finished.planned("hard_cases") == expected

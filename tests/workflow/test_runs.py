@@ -11,7 +11,7 @@ import zipfile
 from urllib.parse import unquote
 
 import pytest
-from conftest import POINTS, SWEEP
+from project import POINTS, SWEEP
 from rocrate.rocrate import ROCrate
 
 from roughgas.crate import rows_of, verify

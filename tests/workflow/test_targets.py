@@ -1,7 +1,7 @@
 """What can be asked for, and how the rest is refused."""
 
 import pytest
-from conftest import BEYOND, JOBS, POINTS, Project
+from project import BEYOND, JOBS, POINTS, Project
 
 import roughgas.config
 from roughgas import accuracy
@@ -77,6 +77,21 @@ def test_seeds_that_fill_no_job_are_jobs_nevertheless(tmp_path):
     project.configure(change)
     planned = project.planned("results/tiny/cooling.nc")
     assert planned == {"compile_kernel": 1, "seeds": 2, "point": 1, "reduce": 1}
+
+
+def test_one_job_makes_points_at_several_betas(tmp_path):
+    project = Project(tmp_path)
+
+    def change(config):
+        config["betas_per_job"] = 2
+        sweep = {"r": ["0.9", "0.8"], "beta": ["-0.5", "0", "0.5"], "seeds": 1}
+        config["scales"]["tiny"]["cooling"].update(sweep=sweep)
+
+    project.configure(change)
+    expected = {"compile_kernel": 2, "seeds": 2, "point": 2, "reduce": 1}
+    assert project.planned("results/tiny/cooling.nc") == expected
+    assert project.planned("results/tiny/cooling/r0.8/beta0.5/seed1.nc")["point"] == 1
+    assert project.planned("results/tiny/cooling/r0.8/beta0.1/seed1.nc")["point"] == 1
 
 
 def test_a_point_with_a_target_is_one_job_after_its_pilot(project):

@@ -5,7 +5,7 @@ import subprocess
 import sys
 
 import pytest
-from conftest import BEYOND, JOBS, Project
+from project import BEYOND, JOBS, Project
 from test_targets import refusal
 
 from roughgas.dataset import read_point

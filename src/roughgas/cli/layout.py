@@ -2,7 +2,7 @@
 
 import json
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 DIGITS = 2  # of an error
@@ -21,6 +21,11 @@ def with_error(value: float, error: float) -> str:
         return f"{round(value, decimals):.0f}({round(error, decimals):.0f})"
     shown = f"{error:.{decimals}f}" if error >= 1.0 else str(round(error * 10**decimals))
     return f"{value:.{decimals}f}({shown})"
+
+
+def unit_of(attributes: Mapping[str, str]) -> str:
+    """The unit of a variable with these attributes: of the gas's own ones, where it is in such."""
+    return attributes.get("reduced_units", attributes["units"])
 
 
 def decimals_of(error: float) -> int:

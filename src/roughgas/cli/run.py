@@ -2,6 +2,7 @@
 
 import argparse
 import sys
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from roughgas.cli.layout import as_json, with_error
@@ -17,6 +18,7 @@ RUN_EXAMPLES = examples(
     "roughgas run vibrated --r 0.87 --beta 0.5 --seed 1 2 3 --scale small --json",
     "roughgas run vibrated_inertia/inertia0.3 --r 0.9 --beta 1 -o hollow.nc",
 )
+BETA = "roughness, in [-1, 1]: -1 is smooth, 1 perfectly rough"
 COMPILE_EXAMPLE = examples("roughgas compile cooling --r 0.9")
 
 
@@ -27,10 +29,12 @@ def add_commands(commands: Any) -> None:
         help="simulate a point, and write its dataset",
         description="Simulate a point of an experiment, for one seed or for several one after the "
         "other, and write a dataset for each. Without -o it goes into the present folder, under a "
-        "name made from the point's, and its summary is printed, which `roughgas show` does too.",
+        "name made from the point's, and its summary is printed, which `roughgas show` does too. "
+        "--beta may be given several times: each seed is then run at each beta.",
         epilog=RUN_EXAMPLES,
     )
-    add_point(parser)
+    _add_experiment(parser)
+    parser.add_argument("--beta", required=True, action="append", help=BETA)
     parser.add_argument(
         "--seed", nargs="+", default=["1"], help="of the random generator, 0, 1, ... (default: 1)"
     )
@@ -53,9 +57,7 @@ def add_commands(commands: Any) -> None:
 def add_point(parser: argparse.ArgumentParser) -> None:
     """Add what names a point, but for its seed."""
     _add_experiment(parser)
-    parser.add_argument(
-        "--beta", required=True, help="roughness, in [-1, 1]: -1 is smooth, 1 perfectly rough"
-    )
+    parser.add_argument("--beta", required=True, help=BETA)
 
 
 def _add_experiment(parser: argparse.ArgumentParser) -> None:
@@ -66,16 +68,32 @@ def _add_experiment(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> None:
-    """Simulate the point that `options` name, and write a dataset as soon as its seed is done."""
+    """Simulate the points that `options` name, and write a dataset as soon as its seed is done."""
     from roughgas import config
-    from roughgas.cli.progress import Progress
 
     seeds = [config.seed(label) for label in options.seed]
-    r, beta, settings = point_of(options)
-    outputs = options.output or [_own_name(options, label) for label in options.seed]
-    if len(outputs) != len(seeds):
-        raise InputError("--output", " ".join(outputs), f"name {len(seeds)}, one a seed")
+    each = [argparse.Namespace(**vars(options) | {"beta": beta}) for beta in options.beta]
+    points = [point_of(one) for one in each]
+    outputs = options.output or [_own_name(one, seed) for one in each for seed in options.seed]
+    if len(outputs) != len(points) * len(seeds):
+        legal = f"name {len(points) * len(seeds)}, one a seed"
+        raise InputError("--output", " ".join(outputs), legal)
+    remaining = iter(outputs)
+    for one, (r, beta, settings) in zip(each, points, strict=True):
+        _run_seeds(one, r, beta, settings, seeds, [next(remaining) for _ in seeds])
 
+
+def _run_seeds(
+    options: argparse.Namespace,
+    r: float,
+    beta: float,
+    settings: dict[str, Any],
+    seeds: Sequence[int],
+    outputs: Sequence[str],
+) -> None:
+    """Simulate a point, for each seed an output."""
+    from roughgas import config
+    from roughgas.cli.progress import Progress
     from roughgas.planning.reach import complete
     from roughgas.point import run_point
 

@@ -26,6 +26,7 @@ from roughgas.errors import InputError, not_one_of
 __all__ = [
     "SWEPT",
     "as_text",
+    "blocks",
     "check",
     "check_one_variant",
     "common",
@@ -41,7 +42,6 @@ __all__ = [
     "restitution",
     "roughness",
     "seed",
-    "seed_blocks",
     "showcase",
     "study",
     "sweep",
@@ -201,15 +201,22 @@ def sweep(settings: Mapping[str, Any]) -> Iterator[tuple[str, str, str]]:
                 yield str(r), str(beta), str(number)
 
 
-def seed_blocks(seeds: int, config: Mapping[str, Any]) -> list[list[str]]:
-    """The labels of `seeds` swept seeds that one job makes, each block being a job of two or more.
+def blocks(axes: Mapping[str, Any], config: Mapping[str, Any]) -> list[tuple[list[str], list[str]]]:
+    """The labels (betas, seeds) of swept points that one job makes, each beta with each seed.
 
-    A seed that is left over is a job of its own, and in no block.
+    Where a job has a single beta the label is `{beta}`, which stands for any. Each block has two
+    points or more: one that is left over is a job of its own, and in no block.
     """
-    size = config.get("seeds_per_job", SEEDS_PER_JOB)
-    labels = [str(number) for number in range(1, seeds + 1)]
-    blocks = [labels[first : first + size] for first in range(0, seeds, size)]
-    return [block for block in blocks if len(block) > 1]
+    labels = [str(number) for number in range(1, axes.get("seeds", 0) + 1)]
+    by_seed = _chunks(labels, config.get("seeds_per_job", SEEDS_PER_JOB))
+    size = config.get("betas_per_job", 1)
+    by_beta = [["{beta}"]] if size == 1 else _chunks([str(beta) for beta in axes["beta"]], size)
+    pairs = [(betas, seeds) for betas in by_beta for seeds in by_seed]
+    return [(betas, seeds) for betas, seeds in pairs if len(betas) * len(seeds) > 1]
+
+
+def _chunks(labels: list[str], size: int) -> list[list[str]]:
+    return [labels[first : first + size] for first in range(0, len(labels), size)]
 
 
 def as_text(settings: Mapping[str, Any]) -> str:

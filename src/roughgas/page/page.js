@@ -102,11 +102,17 @@ function rows(point) {
   return found;
 }
 
+// The value on the third axis: mu0.1 is the folder of friction.mu = 0.1.
+function level(experiment, variant) {
+  const [, parameter] = experiment.swept?.split(".") ?? [];
+  return parameter ? variant.name.slice(parameter.length) : "";
+}
+
 function showNumbers() {
   const { experiment, variant, series, point } = chosen;
   const kind = experiment.dimension === 3 ? "spheres" : "disks";
-  const which = variant.name === null ? "" : `, ${variant.name}`;
-  at("title").textContent = `${experiment.name}${which}: ${experiment.particles} ${kind}`;
+  const which = experiment.swept ? `, ${experiment.swept} = ${level(experiment, variant)}` : "";
+  at("title").textContent = minus(`${experiment.name}${which}: ${experiment.particles} ${kind}`);
   at("theory").textContent = experiment.theory;
   at("point-title").textContent = minus(`r = ${series.r}, β = ${point.beta}`);
   at("numbers").replaceChildren(...rows(point).map(([name, value]) => {
@@ -134,9 +140,8 @@ function showSelects() {
   const { experiment, variant, series, point } = chosen;
   at("variant-label").hidden = experiment.swept === null;
   at("variant-name").textContent = experiment.swept ?? "";
-  const parameter = experiment.swept?.split(".")[1] ?? "";
   fill("experiment", DATA.experiments, one => one.name, experiment);
-  fill("variant", experiment.variants, one => (one.name ?? "").slice(parameter.length), variant);
+  fill("variant", experiment.variants, one => level(experiment, one), variant);
   fill("r", variant.series, one => one.r, series);
   fill("beta", series.points, one => minus(one.beta), point);
 }
@@ -162,7 +167,7 @@ function points(series, look, index, values, more) {
   return {
     x: series.points.map(point => Number(point.beta)), y: values, mode: "markers",
     error_y: { array: series.points.map(point => point.stderr), thickness: 1, width: 2 },
-    marker: { color: look.colour, symbol: symbols(series, look), size: 8 },
+    marker: { color: look.colour, symbol: symbols(series, look), size: Math.max(10 - 1.5 * index, 5) },
     customdata: series.points.map((_, number) => [index, number]),
     text: series.points.map(point => `r = ${series.r}, β = ${minus(point.beta)}<br>`
       + `R = ${withError(point.R, point.stderr)}<br>R − theory = ${residual(point)}`),
@@ -205,8 +210,8 @@ function drawRatios() {
     legend: { orientation: "h", y: 1.02, yanchor: "bottom", x: 0 },
     xaxis: axis("roughness β", { range: [-1.05, 1.05], anchor: "y2" }),
     yaxis: axis("R", { domain: [0.36, 1] }),
-    yaxis2: axis("R − theory", { domain: [0, 0.32], rangemode: "tozero", zeroline: true,
-      zerolinecolor: THEORY }),
+    yaxis2: axis("R − theory", { domain: [0, 0.32], autorangeoptions: { include: 0 },
+      zeroline: true, zerolinecolor: THEORY }),
   }, CONFIG);
 }
 

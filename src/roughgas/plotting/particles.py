@@ -17,6 +17,7 @@ SPIN = ScalarMappable(Normalize(-2.0, 2.0), "PuOr")
 AMOUNT = ScalarMappable(Normalize(0.0, 2.0), "viridis")
 PLAIN = np.array(to_rgba("#9ecae1"))  # of particles that do not spin
 EDGE = np.array(to_rgba("#333333"))
+LUMINANCE, DARK = np.array([0.299, 0.587, 0.114]), 0.4  # below which a mark is white
 IMAGE = 0.35  # opacity of the sliding images
 WALL, SCRATCH = "#777777", "#dddddd"
 # A sphere in light from the upper left: radii, displacements and shares of white of its disks
@@ -88,7 +89,8 @@ class Disks:
         tip = np.stack([np.cos(shot.angle[seen.of]), np.sin(shot.angle[seen.of])], axis=-1)
         middle = np.stack([seen.x, seen.y], axis=-1)
         self._marks.set_segments(np.stack([middle, middle + 0.9 * tip], axis=1))
-        self._marks.set_color(_with(EDGE, opacity))
+        dark = colours[:, :3] @ LUMINANCE < DARK
+        self._marks.set_color(_with(np.where(dark[:, None], 1.0, EDGE), opacity))
 
 
 class Spheres:

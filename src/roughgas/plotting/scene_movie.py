@@ -166,7 +166,7 @@ def _graph(axes: Axes, subject: Subject, shots: Sequence[Snapshot]) -> Callable[
     at = at - begun
     since = rf"$(t - {begun}\,T)\,/\,T$" if begun else "$t/T$"
     axes.set(xlabel=PER_PARTICLE if cooling else since, xlim=_limits(at))
-    axes.xaxis.set_major_locator(MaxNLocator(6))
+    axes.xaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 5, 10]))
     axes.plot(at, values, color="#cccccc", linewidth=0.9)
     (line,) = axes.plot([], [], color=style.LOOKS[0].colour)
     (point,) = axes.plot([], [], "o", color=style.THEORY)

@@ -11,6 +11,9 @@ import numpy as np
 
 from roughgas.errors import InputError
 
+Numbers = float | np.ndarray
+"""What functions of theory take: a plain number, or an array."""
+
 NET_SHARES = (-1, 2)
 """Shares of a drive's net power that may go into spin."""
 
@@ -29,56 +32,58 @@ def moment_of_inertia(dimension: int) -> float:
     return {2: 1 / 2, 3: 2 / 5}[check_dimension(dimension)]
 
 
-def material(r, beta, dimension=2, inertia=None) -> Material:
+def material(
+    r: Numbers, beta: Numbers, dimension: int = 2, inertia: Numbers | None = None
+) -> Material:
     """Check r, beta, D and q at once; q defaults to that of uniform disks or spheres."""
     dimension = check_dimension(dimension)
     inertia = moment_of_inertia(dimension) if inertia is None else inertia
     return Material(check_restitution(r), check_roughness(beta), dimension, check_inertia(inertia))
 
 
-def check_restitution(r) -> np.ndarray:
+def check_restitution(r: Numbers) -> np.ndarray:
     """Normal restitution r, in [0, 1]."""
     return check_between("restitution r", r, 0, 1)
 
 
-def check_roughness(beta) -> np.ndarray:
+def check_roughness(beta: Numbers) -> np.ndarray:
     """Tangential restitution beta, in [-1, 1]: smooth at -1, perfectly rough at 1."""
     return check_between("roughness beta", beta, -1, 1)
 
 
-def check_inertia(q) -> np.ndarray:
+def check_inertia(q: Numbers) -> np.ndarray:
     """Dimensionless moment of inertia q, positive and finite."""
     return _checked("inertia q", q, "be a positive number", lambda x: (x > 0) & (x < np.inf))
 
 
-def check_dimension(dimension) -> int:
+def check_dimension(dimension: int) -> int:
     """Number of dimensions D, 2 or 3."""
     if np.ndim(dimension) or dimension not in (2, 3):
         raise InputError("dimension", dimension, "be 2 or 3")
     return int(dimension)
 
 
-def check_share(spin_share) -> np.ndarray:
+def check_share(spin_share: Numbers) -> np.ndarray:
     """Share s of a drive's power that goes into spin, in [0, 1]."""
     return check_between("spin share of the drive", spin_share, 0, 1)
 
 
-def check_net_share(spin_share) -> np.ndarray:
+def check_net_share(spin_share: Numbers) -> np.ndarray:
     """The same of a drive that may take energy out of one motion, in NET_SHARES."""
     return check_between("net spin share of the drive", spin_share, *NET_SHARES)
 
 
-def check_between(key: str, value, low: float, high: float) -> np.ndarray:
+def check_between(key: str, value: Numbers, low: float, high: float) -> np.ndarray:
     """A number in [low, high]."""
     return _checked(key, value, f"lie in [{low}, {high}]", lambda x: (x >= low) & (x <= high))
 
 
-def check_not_negative(key: str, value) -> np.ndarray:
+def check_not_negative(key: str, value: Numbers) -> np.ndarray:
     """A finite number that is zero or positive."""
     return _checked(key, value, "be a number >= 0", lambda x: (x >= 0) & (x < np.inf))
 
 
-def check_fraction(key: str, value) -> np.ndarray:
+def check_fraction(key: str, value: Numbers) -> np.ndarray:
     """A number in (0, 1), the ends excluded."""
     return _checked(key, value, "lie in (0, 1)", lambda x: (x > 0) & (x < 1))
 

@@ -7,18 +7,24 @@ InputError for r outside [0, 1], beta outside [-1, 1], q <= 0, D other than 2 or
 
 import numpy as np
 
-from roughgas.theory.arguments import check_inertia, check_restitution, check_roughness, material
+from roughgas.theory.arguments import (
+    Numbers,
+    check_inertia,
+    check_restitution,
+    check_roughness,
+    material,
+)
 from roughgas.theory.shares import positive_root, quotient, shares
 
 
-def lun_ratio(beta, inertia) -> np.ndarray:
+def lun_ratio(beta: Numbers, inertia: Numbers) -> np.ndarray:
     """R of a gas whose drive adds translational energy only: Eq. (lun), for any D and r."""
     beta, q = check_roughness(beta), check_inertia(inertia)
     gain = q * (1 + beta)
     return gain / (gain + (1 - beta) + 2 * q)
 
 
-def goldshtein_ratio(r, beta, inertia=2 / 5) -> np.ndarray:
+def goldshtein_ratio(r: Numbers, beta: Numbers, inertia: Numbers = 2 / 5) -> np.ndarray:
     """R of a freely cooling gas of spheres: Eq. (Goldshtein), without its cancellation for a_G > 0.
 
     Limits as in `cooling_ratio`.
@@ -31,7 +37,9 @@ def goldshtein_ratio(r, beta, inertia=2 / 5) -> np.ndarray:
     return np.where((a > 0) | (root == 0), rough, smooth)[()]
 
 
-def cooling_ratio(r, beta, dimension=2, inertia=None) -> np.ndarray:
+def cooling_ratio(
+    r: Numbers, beta: Numbers, dimension: int = 2, inertia: Numbers | None = None
+) -> np.ndarray:
     """R = 1/(1 + K) of a freely cooling gas, K from Eq. (K).
 
     Accurate to 1e-14 of R up to the ends of the ranges of r and beta, apart from what the
@@ -43,7 +51,9 @@ def cooling_ratio(r, beta, dimension=2, inertia=None) -> np.ndarray:
     return _cooling_shares(r, beta, dimension, inertia)[1][()]
 
 
-def cooling_K(r, beta, dimension=2, inertia=None) -> np.ndarray:
+def cooling_K(
+    r: Numbers, beta: Numbers, dimension: int = 2, inertia: Numbers | None = None
+) -> np.ndarray:
     """K = E_tr/E_rot of a freely cooling gas: the positive root of Eq. (K).
 
     Limits as in `cooling_ratio`: K = 0 at beta = -1 and r < 1, K infinite at beta = -1 and r = 1.
@@ -51,19 +61,19 @@ def cooling_K(r, beta, dimension=2, inertia=None) -> np.ndarray:
     return quotient(*_cooling_shares(r, beta, dimension, inertia))
 
 
-def a_G(r, beta, inertia) -> np.ndarray:
+def a_G(r: Numbers, beta: Numbers, inertia: Numbers) -> np.ndarray:
     """a_G = (1 - beta^2)(1 - q)/(1 + q) - 1 + r^2, below Eq. (Goldshtein)."""
     r, beta, q = check_restitution(r), check_roughness(beta), check_inertia(inertia)
     return (1 - beta) * (1 + beta) * (1 - q) / (1 + q) - (1 - r) * (1 + r)
 
 
-def b_G(beta, inertia) -> np.ndarray:
+def b_G(beta: Numbers, inertia: Numbers) -> np.ndarray:
     """b_G = 2 q (1 + beta)^2/(1 + q)^2, below Eq. (Goldshtein)."""
     beta, q = check_roughness(beta), check_inertia(inertia)
     return 2 * q * ((1 + beta) / (1 + q)) ** 2
 
 
-def c_G(beta, inertia) -> np.ndarray:
+def c_G(beta: Numbers, inertia: Numbers) -> np.ndarray:
     """c_G = (1 + beta)(2 q + q^2 - beta q^2)/(1 + q)^2, below Eq. (K)."""
     beta, q = check_roughness(beta), check_inertia(inertia)
     return (1 + beta) * (2 * q + q**2 * (1 - beta)) / (1 + q) ** 2

@@ -8,6 +8,7 @@ are in a^2/T^2, energies in m a^2/T^2. Source: McNamara & Luding (1998).
 import numpy as np
 
 from roughgas.theory.arguments import (
+    Numbers,
     check_dimension,
     check_inertia,
     check_not_negative,
@@ -17,7 +18,13 @@ from roughgas.theory.arguments import (
 
 
 def translational_energy_change(
-    normal_squared, tangential_squared, tangential_dot_spin, spin_squared, r, beta, inertia
+    normal_squared: Numbers,
+    tangential_squared: Numbers,
+    tangential_dot_spin: Numbers,
+    spin_squared: Numbers,
+    r: Numbers,
+    beta: Numbers,
+    inertia: Numbers,
 ) -> np.ndarray:
     """Change of the pair's total translational kinetic energy, N D Delta E_tr: Eq. (deltaEt).
 
@@ -34,7 +41,11 @@ def translational_energy_change(
 
 
 def rotational_energy_change(
-    tangential_squared, tangential_dot_spin, spin_squared, beta, inertia
+    tangential_squared: Numbers,
+    tangential_dot_spin: Numbers,
+    spin_squared: Numbers,
+    beta: Numbers,
+    inertia: Numbers,
 ) -> np.ndarray:
     """Change of the pair's total rotational kinetic energy, N (2D-3) Delta E_rot: Eq. (deltaEr).
 
@@ -48,7 +59,7 @@ def rotational_energy_change(
     )
 
 
-def mean_normal_squared(E_tr) -> np.ndarray:
+def mean_normal_squared(E_tr: Numbers) -> np.ndarray:
     """<v_n^2> = 8 E_tr/m over the collisions of a Maxwellian gas, in 2D and 3D.
 
     E_tr is the translational energy per degree of freedom, >= 0. Below Eq. (Energybalance), as are
@@ -57,12 +68,12 @@ def mean_normal_squared(E_tr) -> np.ndarray:
     return 8 * check_not_negative("energy E_tr", E_tr)
 
 
-def mean_tangential_squared(E_tr, dimension=2) -> np.ndarray:
+def mean_tangential_squared(E_tr: Numbers, dimension: int = 2) -> np.ndarray:
     """<v_t^2> = 4 (D-1) E_tr/m over the collisions of a Maxwellian gas."""
     return 4 * (check_dimension(dimension) - 1) * check_not_negative("energy E_tr", E_tr)
 
 
-def mean_spin_squared(E_rot, dimension, inertia) -> np.ndarray:
+def mean_spin_squared(E_rot: Numbers, dimension: int, inertia: Numbers) -> np.ndarray:
     """<v_r^2> = 4 (D-1) E_rot/(q m), for any distribution of isotropic, uncorrelated spins.
 
     E_rot is the rotational energy per degree of freedom, >= 0.

@@ -21,6 +21,7 @@ import numpy as np
 
 from roughgas.theory.arguments import (
     Material,
+    Numbers,
     check_between,
     check_not_negative,
     check_restitution,
@@ -37,7 +38,15 @@ STEP = 1e-4  # of ln theta, for a slope
 NEARLY = 1e-9  # what R lacks to 1 where spin outlives translation, as good as nothing
 
 
-def sliding_fraction(T_tr, T_rot, r, beta, mu, dimension=2, inertia=None) -> np.ndarray:
+def sliding_fraction(
+    T_tr: Numbers,
+    T_rot: Numbers,
+    r: Numbers,
+    beta: Numbers,
+    mu: Numbers,
+    dimension: int = 2,
+    inertia: Numbers | None = None,
+) -> np.ndarray:
     """Share of the contacts that slide; 0 for beta = -1, where nothing holds them.
 
     All arguments but D broadcast; raises InputError.
@@ -49,7 +58,14 @@ def sliding_fraction(T_tr, T_rot, r, beta, mu, dimension=2, inertia=None) -> np.
 
 
 def friction_changes(
-    T_tr, T_rot, r, beta, mu, dimension=2, inertia=None, frequency=1.0
+    T_tr: Numbers,
+    T_rot: Numbers,
+    r: Numbers,
+    beta: Numbers,
+    mu: Numbers,
+    dimension: int = 2,
+    inertia: Numbers | None = None,
+    frequency: Numbers = 1.0,
 ) -> tuple[np.ndarray, np.ndarray]:
     """dT_tr/dt and dT_rot/dt due to collisions, `temperature_changes` at infinite mu.
 
@@ -66,7 +82,14 @@ def friction_changes(
     )
 
 
-def friction_ratio(r, beta, mu, dimension=2, inertia=None, spin_share=None) -> np.ndarray:
+def friction_ratio(
+    r: Numbers,
+    beta: Numbers,
+    mu: Numbers,
+    dimension: int = 2,
+    inertia: Numbers | None = None,
+    spin_share: Numbers | None = None,
+) -> np.ndarray:
     """Stationary R that a gas started without spin reaches, to 1e-13.
 
     Without a drive (spin_share None), or driven with a share of its power into spin. At infinite mu
@@ -102,7 +125,7 @@ def friction_ratio(r, beta, mu, dimension=2, inertia=None, spin_share=None) -> n
     return np.where((mu == 0) | (gas.beta == -1), decoupled, high)[()]
 
 
-def critical_friction(r) -> np.ndarray:
+def critical_friction(r: Numbers) -> np.ndarray:
     """mu_c = sqrt((1-r)/(1+r)), up to which a cooling gas whose spins dominate keeps them: R = 1.
 
     What sliding contacts then add to translation makes up for what inelastic ones take, in 2D and
@@ -112,7 +135,9 @@ def critical_friction(r) -> np.ndarray:
     return np.sqrt((1 - r) / (1 + r))[()]
 
 
-def friction_relaxation_rate(r, beta, mu, dimension=2, inertia=None) -> np.ndarray:
+def friction_relaxation_rate(
+    r: Numbers, beta: Numbers, mu: Numbers, dimension: int = 2, inertia: Numbers | None = None
+) -> np.ndarray:
     """Rate at which R of a cooling gas goes to `friction_ratio`, per collision per particle.
 
     From the linear stability of ln theta, by a central difference; where R = 1 the rate at which

@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from roughgas.theory.arguments import (
+    Numbers,
     check_dimension,
     check_net_share,
     check_not_negative,
@@ -37,7 +38,9 @@ class Rates(NamedTuple):
     rotational_loss: np.ndarray
 
 
-def collision_rates(r, beta, dimension=2, inertia=None) -> Rates:
+def collision_rates(
+    r: Numbers, beta: Numbers, dimension: int = 2, inertia: Numbers | None = None
+) -> Rates:
     """Coefficients of the rate equations; r, beta and q broadcast. Raises InputError."""
     r, beta, dimension, q = material(r, beta, dimension, inertia)
     eta = q * (1 + beta) / (2 * (1 + q))
@@ -54,7 +57,13 @@ def collision_rates(r, beta, dimension=2, inertia=None) -> Rates:
 
 
 def temperature_changes(
-    T_tr, T_rot, r, beta, dimension=2, inertia=None, frequency=1.0
+    T_tr: Numbers,
+    T_rot: Numbers,
+    r: Numbers,
+    beta: Numbers,
+    dimension: int = 2,
+    inertia: Numbers | None = None,
+    frequency: Numbers = 1.0,
 ) -> tuple[np.ndarray, np.ndarray]:
     """dT_tr/dt and dT_rot/dt due to collisions, `frequency` being nu, e.g. `collision_frequency`.
 
@@ -71,14 +80,22 @@ def temperature_changes(
     )
 
 
-def drive_changes(power, spin_share, dimension=2) -> tuple[np.ndarray, np.ndarray]:
+def drive_changes(
+    power: Numbers, spin_share: Numbers, dimension: int = 2
+) -> tuple[np.ndarray, np.ndarray]:
     """dT_tr/dt and dT_rot/dt due to a drive of `power` per particle (m a^2/T^3)."""
     power, share = check_not_negative("power", power), check_share(spin_share)
     dimension = check_dimension(dimension)
     return 2 * (1 - share) * power / dimension, 2 * share * power / (2 * dimension - 3)
 
 
-def stationary_ratio(r, beta, dimension=2, inertia=None, spin_share=None) -> np.ndarray:
+def stationary_ratio(
+    r: Numbers,
+    beta: Numbers,
+    dimension: int = 2,
+    inertia: Numbers | None = None,
+    spin_share: Numbers | None = None,
+) -> np.ndarray:
     """Stationary R = T_rot/(T_rot + T_tr): Eq. (K) without a drive, Eq. (lun) at spin_share 0.
 
     At spin_share 1 it is theta = A/B, the loss over the gain of T_tr. In general translation and
@@ -90,13 +107,25 @@ def stationary_ratio(r, beta, dimension=2, inertia=None, spin_share=None) -> np.
     return stationary_shares(r, beta, dimension, inertia, spin_share)[1][()]
 
 
-def stationary_theta(r, beta, dimension=2, inertia=None, spin_share=None) -> np.ndarray:
+def stationary_theta(
+    r: Numbers,
+    beta: Numbers,
+    dimension: int = 2,
+    inertia: Numbers | None = None,
+    spin_share: Numbers | None = None,
+) -> np.ndarray:
     """Stationary theta = T_rot/T_tr; infinite where R = 1. See `stationary_ratio`."""
     translational, rotational = stationary_shares(r, beta, dimension, inertia, spin_share)
     return quotient(rotational, translational)
 
 
-def stationary_shares(r, beta, dimension=2, inertia=None, spin_share=None):
+def stationary_shares(
+    r: Numbers,
+    beta: Numbers,
+    dimension: int = 2,
+    inertia: Numbers | None = None,
+    spin_share: Numbers | None = None,
+) -> tuple[np.ndarray, np.ndarray]:
     """Stationary T_tr and T_rot as shares of their sum: 1 - R and R."""
     r, beta, dimension, q = material(r, beta, dimension, inertia)
     rates = collision_rates(r, beta, dimension, q)

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roughgas.theory.arguments import check_fraction, check_not_negative, check_share
+from roughgas.theory.arguments import Numbers, check_fraction, check_not_negative, check_share
 from roughgas.theory.haff import slow_decay
 from roughgas.theory.rate_equations import collision_rates, stationary_shares
 from roughgas.theory.shares import quotient
@@ -25,7 +25,13 @@ class Relaxation(NamedTuple):
     T_rot: np.ndarray
 
 
-def relaxation_rate(r, beta, dimension=2, inertia=None, spin_share=None) -> np.ndarray:
+def relaxation_rate(
+    r: Numbers,
+    beta: Numbers,
+    dimension: int = 2,
+    inertia: Numbers | None = None,
+    spin_share: Numbers | None = None,
+) -> np.ndarray:
     """Gamma: rate at which a small deviation of theta dies out, per collision per particle.
 
     From the linear stability of theta, and positive, except at beta = -1 (spin decoupled) where
@@ -41,7 +47,15 @@ def relaxation_rate(r, beta, dimension=2, inertia=None, spin_share=None) -> np.n
     )
 
 
-def relax(theta0, r, beta, collisions, dimension=2, inertia=None, spin_share=None) -> Relaxation:
+def relax(
+    theta0: Numbers,
+    r: Numbers,
+    beta: Numbers,
+    collisions: Numbers,
+    dimension: int = 2,
+    inertia: Numbers | None = None,
+    spin_share: Numbers | None = None,
+) -> Relaxation:
     """Temperatures after `collisions` (>= 0) per particle, from theta0 = T_rot/T_tr (>= 0) on.
 
     Exact solution of the rate equations: a mixture of the initial and the stationary state, of
@@ -59,7 +73,13 @@ def relax(theta0, r, beta, collisions, dimension=2, inertia=None, spin_share=Non
 
 
 def collisions_to_relax(
-    r, beta, tolerance=0.01, dimension=2, inertia=None, spin_share=None, theta0=0.0
+    r: Numbers,
+    beta: Numbers,
+    tolerance: Numbers = 0.01,
+    dimension: int = 2,
+    inertia: Numbers | None = None,
+    spin_share: Numbers | None = None,
+    theta0: Numbers = 0.0,
 ) -> np.ndarray:
     """Collisions per particle after which R is within `tolerance` (a fraction) of its stationary R.
 

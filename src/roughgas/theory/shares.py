@@ -2,8 +2,10 @@
 
 import numpy as np
 
+from roughgas.theory.arguments import Numbers
 
-def shares(first, second, neither) -> tuple[np.ndarray, np.ndarray]:
+
+def shares(first: Numbers, second: Numbers, neither: Numbers) -> tuple[np.ndarray, np.ndarray]:
     """`first` and `second` (both >= 0, broadcast) divided by their sum.
 
     Where both vanish, `neither` is the share of the second.
@@ -17,7 +19,9 @@ def shares(first, second, neither) -> tuple[np.ndarray, np.ndarray]:
     )
 
 
-def positive_root(square, linear, constant) -> tuple[np.ndarray, np.ndarray]:
+def positive_root(
+    square: Numbers, linear: Numbers, constant: Numbers
+) -> tuple[np.ndarray, np.ndarray]:
     """Positive root x = n/d of `square` x^2 - `linear` x - `constant` = 0, as the pair (n, d).
 
     `square` and `constant` are >= 0 and `linear` has any sign. Of the two forms of the root the one
@@ -29,7 +33,7 @@ def positive_root(square, linear, constant) -> tuple[np.ndarray, np.ndarray]:
     return numerator, denominator
 
 
-def quotient(numerator, denominator) -> np.ndarray:
+def quotient(numerator: Numbers, denominator: Numbers) -> np.ndarray:
     """`numerator`/`denominator` of numbers >= 0: infinite over a vanishing one, zero for 0/0."""
     numerator, denominator = np.broadcast_arrays(numerator, denominator)
     zero = np.zeros(numerator.shape)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from roughgas.cli.layout import columns, decimals_of, with_error
+from roughgas.cli.layout import columns, decimals_of, unit_of, with_error
 from roughgas.cli.theory.quantities import equation
 from roughgas.dataset import VARIABLES
 from roughgas.dataset import read_point as read
@@ -123,21 +123,16 @@ def _energies(point: "xarray.Dataset") -> list[list[str]]:
     for name in ("E_trans", "E_rot"):
         if name in point:
             error = float(point[f"{name}_stderr"]) if f"{name}_stderr" in point else math.nan
-            value = with_error(float(point[name]), error)
-            rows.append([name, f"{value} {_units(point[name])}, per degree of freedom"])
+            value, units = with_error(float(point[name]), error), unit_of(point[name].attrs)
+            rows.append([name, f"{value} {units}, per degree of freedom"])
     return rows
 
 
 def _steady(point: "xarray.Dataset") -> str:
     found = "yes" if point.equilibrated else "NOT found: energies or R still drift"
-    begin, units = float(point.measured_from), _units(point.measured_from)
+    begin, units = float(point.measured_from), unit_of(point.measured_from.attrs)
     end = f" to {float(point.plateau_end):g}" if "plateau_end" in point else " on"
     return f"{found}; measured from {begin:g}{end}, in {units}"
-
-
-def _units(variable: "xarray.DataArray") -> str:
-    """What a variable is a multiple of, in the gas's own units."""
-    return variable.attrs.get("reduced_units", variable.attrs["units"])
 
 
 def _books(point: "xarray.Dataset") -> str:
@@ -146,5 +141,6 @@ def _books(point: "xarray.Dataset") -> str:
     for source, energies in zip(point.source.values, point.energy_input.values, strict=True):
         rows.append([f"  {source}", *(f"{one:.6g}" for one in energies)])
     rows.append(["  what the gas has gained", *(f"{one:.6g}" for one in point.energy_gain.values)])
-    imbalance, units = float(point.energy_imbalance), _units(point.energy_gain)
+    imbalance = float(point.energy_imbalance)
+    units = unit_of(point.energy_gain.attrs)
     return f"{columns(rows, numbers=True)}\n  in {units}; the books miss {imbalance:.1g} of it all"

@@ -1,0 +1,148 @@
+"""A copy of the project, in which Snakemake itself is run on a tiny scale."""
+
+import copy
+import json
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+from roughgas.config.reading import read_yaml
+from roughgas.crate import PROJECT
+
+ROOT = Path(__file__).parent.parent
+COPIED = (*PROJECT, "rules", "profiles", "src")
+COPIED += tuple(f"tests/{name}" for name in ("hard_cases", "brute_force", "exact"))
+COPIED += tuple(f"tests/{name}.py" for name in ("conftest", "compiled", "schedules"))
+SWEEP = {"r": ["0.9"], "beta": ["0"], "seeds": 2}
+STEADY = {"equilibrate": 20, "measure": 20}
+TINY = {
+    "vibrated": {"particles": 10, "box": [10, "open"], "sweep": SWEEP, "schedule": STEADY},
+    "vibrated_rough_walls": {"sweep": {"beta": ["-1"]}},
+    "vibrated_particle_walls": {"sweep": {"beta": ["0"]}},
+    "vibrated_smooth_walls": {"sweep": {"beta": ["0"]}},
+    "sheared": {"particles": 10, "box": [20, 20], "sweep": SWEEP, "schedule": STEADY},
+    "cooling": {
+        "particles": 10,
+        "box": [20, 20],
+        "sweep": SWEEP,
+        "schedule": {"replicas": 3, "plateau": 20},
+    },
+    "showcase": {
+        "particles": 40,
+        "box": [40, 40],
+        "effects": {"contact_time": None},
+        "collisions": 20,
+        "frames": 10,
+        "window": 30,
+    },
+}
+POINTS = 6 * SWEEP["seeds"]
+JOBS = 6  # one makes both seeds of a point
+BEYOND = {  # the experiments beyond the paper, and the third axis of their sweeps
+    "cooling_spheres": {},
+    "sheared_spheres": {},
+    "vibrated_spheres": {},
+    "vibrated_friction": {"friction.mu": ["0.5"]},
+    "cooling_friction": {"friction.mu": ["0.5"]},
+    "heated": {"thermostat.spin_share": ["0.5"]},
+    "shaken_walls": {"shaken_walls.roughness": ["1"]},
+    "waves": {"floor.wave": ["sine"]},
+    "vibrated_inertia": {"spin.inertia": ["0.1"]},
+    "cooling_inertia": {"spin.inertia": ["0.1"]},
+    "floor_materials": {"floor.roughness": ["1"]},
+    "wall_materials": {"walls.roughness": ["1"]},
+}
+TINY |= {name: {"sweep": SWEEP | axis} for name, axis in BEYOND.items()}
+for name, box in (
+    ("cooling_spheres", [10, 10, 10]),
+    ("sheared_spheres", [10, 10, 10]),
+    ("vibrated_spheres", [10, 10, "open"]),
+    ("heated", [20, 20]),
+    ("shaken_walls", [20, 20]),
+):
+    TINY[name] |= {"particles": 10, "box": box}
+
+
+class Project:
+    """A copy of the project in `folder`, with a scale `tiny`."""
+
+    def __init__(self, folder):
+        self.folder = folder
+        (folder / "tests").mkdir()
+        for name in COPIED:
+            if (ROOT / name).is_dir():
+                shutil.copytree(ROOT / name, folder / name)
+            else:
+                shutil.copy2(ROOT / name, folder / name)
+        self.configure(lambda config: config["scales"].update(tiny=copy.deepcopy(TINY)))
+
+    def copy_to(self, folder):
+        """Another such project, as far run as this one."""
+        shutil.copytree(self.folder, folder)
+        other = copy.copy(self)
+        other.folder = folder
+        return other
+
+    def configure(self, change):
+        """Let `change` edit config.yaml, given as a dictionary."""
+        path = self.folder / "config.yaml"
+        config = read_yaml(path)
+        change(config)
+        path.write_text(json.dumps(config))  # which is YAML, too, and has no aliases
+
+    def append(self, path, text="\n# edited\n"):
+        """Edit a source file."""
+        with open(self.folder / path, "a") as file:
+            file.write(text)
+
+    def start(self, *arguments):
+        """Snakemake, running."""
+        return subprocess.Popen(
+            self._command(arguments),
+            cwd=self.folder,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            start_new_session=True,
+        )
+
+    def snakemake(self, *arguments):
+        """Exit status and all output of a run of Snakemake."""
+        done = subprocess.run(
+            self._command(arguments),
+            cwd=self.folder,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+        )
+        return done.returncode, done.stdout
+
+    def succeed(self, *arguments):
+        status, output = self.snakemake(*arguments)
+        assert status == 0, output
+        return output
+
+    def planned(self, *targets):
+        """Number of jobs of each rule that a run would start; those that make several points are
+        counted together, as `seeds`."""
+        output = self.succeed("-n", "--config", "scale=tiny", "--", *targets)
+        if "Nothing to be done" in output:
+            return {}
+        table = output.rsplit("Job stats:", 1)[1].split("total")[0]
+        found = {}
+        for rule, count in re.findall(r"^(\w+) +(\d+)$", table, re.M):
+            name = re.sub(r"\w+_block_\d+", "seeds", rule)
+            found[name] = found.get(name, 0) + int(count)
+        return found
+
+    def files(self):
+        """All files but Snakemake's own."""
+        return {
+            str(path.relative_to(self.folder))
+            for path in self.folder.rglob("*")
+            if path.is_file() and ".snakemake" not in path.parts and path.suffix != ".pyc"
+        }
+
+    def _command(self, arguments):
+        return [sys.executable, "-m", "snakemake", *arguments]

@@ -1,0 +1,50 @@
+"""Movies as Snakemake makes them: what is asked for, what an edit concerns, and one made."""
+
+import pytest
+from PIL import Image
+
+NAMES = ("vibrated", "sheared", "cooling", "rough_walls", "shaken_walls", "vibrated_spheres")
+TINY = ("--config", "scale=tiny", "--")
+
+
+def test_movies_need_no_point(project):
+    assert project.planned("movies") == {"movie": len(NAMES), "movies": 1}
+    assert project.planned(*(f"figures/movies/{name}.gif" for name in NAMES)) == {"movie": 6}
+    assert project.planned("everything")["movie"] == len(NAMES)
+    assert "movie" not in project.planned("figures")
+
+
+@pytest.mark.parametrize(
+    ("module", "count"),
+    [
+        ("kernel/pairs.py", 6),
+        ("snapshots.py", 6),
+        ("plotting/particles.py", 6),
+        ("cli/movie.py", 6),
+        ("claims/report.py", 0),
+    ],
+)
+def test_an_edit_in_the_package(finished, module, count):
+    finished.append(f"src/roughgas/{module}")
+    assert finished.planned("movies").get("movie", 0) == count
+
+
+def test_an_edit_of_an_experiment_concerns_its_movie(finished):
+    def change(config):
+        config["scales"]["tiny"]["cooling"]["particles"] = 9
+
+    finished.configure(change)
+    assert finished.planned("movies")["movie"] == 1
+
+
+def test_an_unknown_movie_is_refused_in_one_line(project):
+    status, output = project.snakemake("-j1", "figures/movies/flow.gif")
+    assert status != 0
+    assert "roughgas: error: movie = flow: must be one of vibrated, sheared, cooling" in output
+
+
+def test_one_is_made(project, tmp_path):
+    copy = project.copy_to(tmp_path / "copy")
+    copy.succeed("-j1", *TINY, "figures/tiny/movies/cooling.gif")
+    with Image.open(copy.folder / "figures/tiny/movies/cooling.gif") as image:
+        assert image.n_frames == 100 and image.width == 480
