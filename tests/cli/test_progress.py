@@ -39,7 +39,7 @@ class Terminal(io.StringIO):
 
 @pytest.fixture(autouse=True)
 def every_step_is_shown(monkeypatch):
-    monkeypatch.setenv("TQDM_MININTERVAL", "0")
+    monkeypatch.setattr("roughgas.cli.progress.SECONDS_BETWEEN", 0.0)
 
 
 def test_a_bar_says_how_far_how_long_and_what_and_is_cleared():

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any, Self
 
 BAR = "{desc}: {percentage:3.0f}%|{bar}| {n_fmt} of {total_fmt}{unit}, {remaining} left{postfix}"
+SECONDS_BETWEEN = 0.1  # looks of a bar
 
 
 class Bar:
@@ -25,6 +26,7 @@ class Bar:
                 bar_format=BAR,
                 file=self._stream,
                 leave=False,
+                mininterval=SECONDS_BETWEEN,
                 miniters=1,  # looks at the clock whenever it is told something
                 dynamic_ncols=True,
             )
