@@ -16,4 +16,5 @@ rule reduce:
     message:
         "reduce {wildcards.experiment}"
     shell:
-        "roughgas reduce {input.points} --output {output} > {log} 2>&1"
+        # a hundred thousand points are more than a command line holds
+        "printf '%s\\n' {input.points} | roughgas reduce - --output {output} > {log} 2>&1"

@@ -1,5 +1,6 @@
 """The command line: what it refuses and how, and what a person sees."""
 
+import io
 import json
 import resource
 import shlex
@@ -168,6 +169,26 @@ def test_several_seeds_are_the_same_as_each_alone(tmp_path, capsys):
         assert one.drop_vars(WALL_CLOCK, errors="ignore").identical(
             other.drop_vars(WALL_CLOCK, errors="ignore")
         )
+
+
+def test_several_betas_each_with_each_seed(tmp_path):
+    names = [f"{beta}_{seed}.nc" for beta in ("-1e-1", "0.5") for seed in "12"]
+    arguments = ["run", "cooling", "--r=0.9", "--beta=-1e-1", "--beta=0.5", "--seed", "1", "2"]
+    arguments += ["--settings", json.dumps(SETTINGS), "--output"]
+    assert main([*arguments, *(str(tmp_path / name) for name in names)]) == 0
+    for name in names:
+        command = shlex.split(read_point(tmp_path / name).attrs["command"])
+        beta, _, seed = name.removesuffix(".nc").partition("_")
+        assert f"--beta={beta}" in command and f"--seed={seed}" in command
+        assert main([*command[1:-1], str(tmp_path / "alone.nc")]) == 0
+        assert read_point(tmp_path / name).R == read_point(tmp_path / "alone.nc").R
+
+
+def test_points_to_reduce_are_read_from_standard_input(point, tmp_path, monkeypatch):
+    for given, name in ((str(point), "named.nc"), ("-", "piped.nc")):
+        monkeypatch.setattr("sys.stdin", io.StringIO(f"{point}\n"))
+        assert main(["reduce", given, "--output", str(tmp_path / name)]) == 0
+    assert (tmp_path / "named.nc").read_bytes() == (tmp_path / "piped.nc").read_bytes()
 
 
 @pytest.mark.parametrize(

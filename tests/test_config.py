@@ -244,7 +244,7 @@ MISTAKES = [
     (
         "n_particles",
         5,
-        "config.yaml: key = 'n_particles': must be one of accuracy, experiments, scale",
+        "config.yaml: key = 'n_particles': must be one of accuracy, betas_per_job, experiments",
     ),
 ]
 

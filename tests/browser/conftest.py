@@ -4,7 +4,7 @@ import json
 import time
 
 import pytest
-from workflow.conftest import Project
+from project import Project
 
 CHROMIUM, DRIVER = "/usr/bin/chromium", "/usr/bin/chromedriver"
 FLAGS = """--headless=new --no-sandbox --disable-gpu --disable-quic --no-first-run

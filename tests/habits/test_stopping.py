@@ -6,7 +6,7 @@ import sys
 import time
 
 import pytest
-from workflow.conftest import Project
+from project import Project
 
 from habits.conftest import LONG, SETTINGS, catches, environment, interrupt, point, wait_until
 

@@ -99,3 +99,8 @@ def test_after_an_interrupt_the_same_command_goes_on(cluster, tmp_path):
     project.succeed(*ONE)
     assert len(project.points()) == 32
     assert sum(path.stat().st_mtime_ns == when for path, when in kept.items()) >= len(kept) // 2
+
+
+def test_a_limit_that_would_hold_arrays_back_is_refused(disturbed):
+    status, said = disturbed.snakemake("-j5", "--forcerun", "reduce", *ONE)
+    assert status != 0 and "roughgas: error: --jobs = 5: must be 100000 or more" in said

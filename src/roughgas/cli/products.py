@@ -1,6 +1,7 @@
 """What is made from points: `roughgas reduce`, `table`, `figure` and `claims`."""
 
 import argparse
+import sys
 from typing import Any
 
 from roughgas.cli.parser import examples
@@ -16,7 +17,11 @@ def add_commands(commands: Any) -> None:
         "roughgas reduce results/paper/sheared/r*/beta*/seed*.nc -o sheared.nc",
     )
     parser.add_argument(
-        "inputs", nargs="+", metavar="POINT", help="datasets of points, or folders of them"
+        "inputs",
+        nargs="+",
+        metavar="POINT",
+        help="datasets of points, or folders of them; - reads their names from standard input, a "
+        "line each: there may be more of them than fit on a command line",
     )
     parser.add_argument("-o", "--output", required=True, metavar="FILE", help="reduced dataset")
 
@@ -64,7 +69,8 @@ def reduce(options: argparse.Namespace) -> None:
     """Combine points into a reduced dataset."""
     from roughgas.reduce import reduce_points
 
-    reduce_points(options.inputs, options.output)
+    piped = options.inputs == ["-"]
+    reduce_points(sys.stdin.read().splitlines() if piped else options.inputs, options.output)
 
 
 def table(options: argparse.Namespace) -> None:
