@@ -10,7 +10,7 @@ BIN := .venv/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check install -qq
 LOCK := uv pip compile --quiet --generate-hashes --no-emit-index-url --no-header --universal \
     --python-version 3.11 pyproject.toml
-EXTRA_TESTS := remedy or browser or slurm
+EXTRA_TESTS := slow or remedy or browser or slurm
 
 help: ## say what there is to make
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /  make \1\t/' | expand -t 18
@@ -33,8 +33,8 @@ plan: setup ## say what all experiments at SCALE will cost, from pilot runs
 	$(BIN)/snakemake -j$(JOBS) --quiet all --config scale=$(SCALE) -- plan
 	@cat results/$(SCALE)/plan.md
 
-test: setup ## run the tests
-	$(BIN)/python -m pytest -n $(JOBS) --dist loadfile -m "not ($(EXTRA_TESTS))"
+test: setup ## run the tests, but for those of `make extras`
+	$(BIN)/python -m pytest -n $(JOBS) --dist loadgroup -m "not ($(EXTRA_TESTS))"
 
 extras: .venv/with-browser .venv-slurm/ready ## run what takes minutes more, a browser, or Slurm
 	$(BIN)/python -m pytest -n $(JOBS) --dist loadgroup -m "$(EXTRA_TESTS)"

@@ -177,7 +177,7 @@ def test_an_illegal_target_is_refused_in_one_line(project, target, message):
         ("seeds_per_job=0", "seeds_per_job = 0: must be a whole number >= 1"),
         (
             "n_particles=5",
-            "key = 'n_particles': must be one of accuracy, betas_per_job, experiments, scale, scales,",
+            "key = 'n_particles': must be one of accuracy, betas_per_job, experiments, scale,",
         ),
     ],
 )
