@@ -110,7 +110,7 @@ class Cluster:
     def running(self):
         """(job, node) of all that is running."""
         rows = self("squeue", "--noheader", "--states=R", "--format=%i %N")
-        return [tuple(row.split()) for row in rows.splitlines()]
+        return {tuple(row.split()) for row in rows.splitlines()}
 
     def _write_settings(self):
         for name in ("munge", "state", "bin", *NODES):
