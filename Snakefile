@@ -72,6 +72,9 @@ localrules:
     figure,
     table,
     claims,
+    document,
+    effective_config,
+    run_times,
 
 
 rule figures:

@@ -8,6 +8,7 @@ import socket
 import subprocess
 import tempfile
 import time
+from contextlib import suppress
 from pathlib import Path
 
 import psutil
@@ -22,7 +23,7 @@ SlurmctldPort={ports[0]}
 SlurmUser={user}
 SlurmdUser={user}
 AuthType=auth/munge
-AuthInfo=socket={folder}/munge/socket
+AuthInfo=socket={folder}/munge/socket,cred_expire=10
 CredType=cred/munge
 StateSaveLocation={folder}/state
 SlurmctldPidFile={folder}/slurmctld.pid
@@ -81,11 +82,11 @@ class Cluster:
 
     def kill_node(self, node):
         """As a power cut does: its daemon, and all that runs there, at once."""
-        for process in self._processes(node):
-            try:
-                process.kill()
-            except psutil.NoSuchProcess:
-                continue
+        while processes := self._processes(node):
+            for process in processes:
+                with suppress(psutil.NoSuchProcess):
+                    process.kill()
+            time.sleep(0.1)  # for what was just starting
 
     def stop(self):
         """End all daemons and jobs, and remove the folder."""
@@ -110,7 +111,7 @@ class Cluster:
     def running(self):
         """(job, node) of all that is running."""
         rows = self("squeue", "--noheader", "--states=R", "--format=%i %N")
-        return [tuple(row.split()) for row in rows.splitlines()]
+        return {tuple(row.split()) for row in rows.splitlines()}
 
     def _write_settings(self):
         for name in ("munge", "state", "bin", *NODES):
@@ -151,12 +152,20 @@ class Cluster:
         return f"{self.folder}/{node}"
 
     def _processes(self, node):
-        """Those of a node: its daemon, its steps, and what these have started."""
-        found = []
+        """Those of a node: its daemon, the jobs there, and Slurm's keepers of these, whose own
+        environment cannot be read."""
+        found = set()
         for process in psutil.process_iter():
             try:
-                if process.environ().get(MARK) == self._mark(node):
-                    found += [process, *process.children(recursive=True)]
+                environment = process.environ()
+                if environment.get(MARK) == self._mark(node):
+                    found.add(process)
+                elif (environment.get("SLURM_CONF"), environment.get("SLURMD_NODENAME")) == (
+                    str(self.settings),
+                    node,
+                ):
+                    keepers = (one for one in process.parents() if one.name() == "slurmstepd")
+                    found |= {process, *keepers}
             except psutil.Error:
                 continue
         return found
