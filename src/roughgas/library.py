@@ -5,7 +5,7 @@ The names of this module are there as `roughgas.simulate` and `roughgas.experime
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, Self, TypedDict
+from typing import TYPE_CHECKING, Any, Literal, TypedDict
 
 if TYPE_CHECKING:
     import xarray
@@ -14,7 +14,6 @@ SHIPPED = Path(__file__).with_name("config.yaml")
 """The experiments that come with the package: in a clone of the repository, its config.yaml."""
 UNNAMED = "scene"
 """What a dataset calls the experiment where it has no name."""
-BAR = "{l_bar}{bar}| {n:,.0f} of {total:,.0f} {unit} [{elapsed}, {remaining} left]"
 
 Side = float | Literal["open"]
 """Length of a box along one axis in a; the last axis may be open above."""
@@ -88,7 +87,7 @@ def simulate(
     config
         A configuration to take the experiment from, in place of the one that roughgas comes with.
     progress
-        Whether to show a progress bar.
+        Whether to show a progress bar, in a notebook or on a terminal.
 
     Returns
     -------
@@ -153,12 +152,13 @@ def simulate(
     from roughgas.dataset import as_dataset
     from roughgas.planning.reach import complete
     from roughgas.point import run_point
+    from roughgas.progress import Progress
     from roughgas.provenance import provenance
 
     name = experiment or UNNAMED
     settings = complete(settings, *point[:2])
     about = provenance(name, settings, (str(r), str(beta), str(seed)), scale, "point.nc")
-    with _Bar(name, settings, *point[:2], shown=progress) as bar:
+    with Progress(name, settings, *point[:2], quiet=not progress) as bar:
         found = run_point(settings, *point, bar)
     return as_dataset(found._replace(attributes=about | found.attributes))
 
@@ -214,57 +214,3 @@ def _plain(value: Any) -> Any:
     if isinstance(value, Sequence) and not isinstance(value, str):
         return [_plain(inner) for inner in value]
     return value
-
-
-class _Bar:
-    """A progress bar for one point: in T, or where the gas cools in collisions per particle."""
-
-    def __init__(self, name: str, settings: Mapping[str, Any], r: float, beta: float, shown: bool):
-        from roughgas.point import length
-
-        self._name, self._particles = name, settings["particles"]
-        self._cools = settings["schedule"]["kind"] == "cooling"
-        self._begun = False
-        self._over = self._present = 0  # collisions of replicas that are over, and of this one
-        self._bar = _tqdm()(
-            total=length(settings, r, beta),
-            desc=f"{name} (compiling)",
-            unit="collisions per particle" if self._cools else "T",
-            bar_format=BAR,
-            disable=not shown,
-        )
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, kind: type | None, *_: object) -> None:
-        if kind is None:
-            self._show(self._bar.total)
-        self._bar.close()
-
-    def __call__(self, simulated: float, collisions: int) -> None:
-        """Show how far the simulation is: at this time (T), after so many collisions."""
-        if not self._begun:
-            self._begun = True
-            self._bar.set_description(self._name, refresh=False)
-            self._bar.unpause()  # compiling says nothing of the time that is left
-        if collisions < self._present:
-            self._over += self._present
-        self._present = collisions
-        passed = 2.0 * (self._over + collisions) / self._particles  # a collision has two partners
-        self._show(passed if self._cools else simulated)
-
-    def _show(self, passed: float) -> None:
-        self._bar.update(min(passed, self._bar.total) - self._bar.n)
-
-
-def _tqdm() -> Any:
-    """The progress bar that suits a notebook or a terminal."""
-    import warnings
-
-    from tqdm import TqdmWarning
-
-    with warnings.catch_warnings():  # a notebook without widgets has a bar of characters instead
-        warnings.simplefilter("ignore", TqdmWarning)
-        from tqdm.auto import tqdm
-    return tqdm

@@ -48,8 +48,8 @@ def bench(options: argparse.Namespace) -> None:
         raise InputError("--runs", options.runs, "be a whole number >= 1")
     found, runs = _experiments(options), int(options.runs)
 
-    from roughgas.cli.progress import Bar
     from roughgas.machine import description
+    from roughgas.progress import Bar
     from roughgas.speed import measure
 
     speeds = []

@@ -2,9 +2,8 @@
 
 import argparse
 import sys
-from collections.abc import Iterable, Iterator
 from functools import partial
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
 from roughgas.cli.parser import examples
 from roughgas.cli.run import add_point, point_of
@@ -17,7 +16,6 @@ if TYPE_CHECKING:
 EXAMPLE = examples("roughgas movie vibrated --r 0.9 --beta 0.5 -o bed.mp4 bed.gif")
 FRAMES = 2, 10_000
 RATES = 1.0, 50.0
-Item = TypeVar("Item")
 
 
 def add_commands(commands: Any) -> None:
@@ -54,6 +52,7 @@ def movie(options: argparse.Namespace) -> None:
         check_kind(output)
 
     from roughgas.plotting.scene_movie import Subject, write
+    from roughgas.progress import watched
     from roughgas.scene import build
     from roughgas.snapshots import snapshots
 
@@ -61,11 +60,15 @@ def movie(options: argparse.Namespace) -> None:
     take = _take(options, settings, scene)
     name = options.experiment
     shots = list(
-        _watched(f"{name}: simulated", take.frames, snapshots(settings, r, beta, seed, take))
+        watched(
+            f"{name}: simulated", take.frames, "frames", snapshots(settings, r, beta, seed, take)
+        )
     )
     subject = Subject(name, settings, scene, seed)
     for output in options.output:
-        write(output, subject, shots, fps, partial(_watched, f"{output}: drawn", len(shots)))
+        write(
+            output, subject, shots, fps, partial(watched, f"{output}: drawn", len(shots), "frames")
+        )
         print(f"{output}: {len(shots)} frames", file=sys.stderr)
 
 
@@ -97,10 +100,3 @@ def _number(key: str, text: str, low: float, high: float) -> float:
     if not low <= value <= high:  # NaN fails, too
         raise InputError(key, text, f"be a number in [{low:g}, {high:g}]")
     return value
-
-
-def _watched(label: str, total: int, items: Iterable[Item]) -> Iterator[Item]:
-    """The same items; on a terminal a bar says how many there have been, and the time left."""
-    from tqdm import tqdm
-
-    yield from tqdm(items, label, total, unit=" frames", leave=False, disable=None)

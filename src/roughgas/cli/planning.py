@@ -88,11 +88,11 @@ def pilot(options: argparse.Namespace) -> None:
 
 def reach(options: argparse.Namespace) -> None:
     """Run a point until it is as accurate as its experiment says."""
-    from roughgas.cli.progress import Progress
     from roughgas.planning.pilot import explore, read_pilot
     from roughgas.planning.plan import plan_point
     from roughgas.planning.reach import completed
     from roughgas.planning.reach import reach as run
+    from roughgas.progress import Progress
 
     r, beta, settings = point_of(options)
     if "target_stderr" not in settings:
@@ -150,8 +150,8 @@ def costs(options: argparse.Namespace) -> None:
 
 def _pilots(name: str, settings: dict[str, Any], folder: Path):
     """The pilots of a sweep by (r, beta), and the CPU seconds spent on missing ones."""
-    from roughgas.cli.progress import Bar
     from roughgas.planning.pilot import explore, read_pilot, write_pilot
+    from roughgas.progress import Bar
 
     axes, found, begin = settings["sweep"], {}, time.process_time()
     with Bar(f"pilots of {name}", len(axes["r"]) * len(axes["beta"]), "points") as bar:

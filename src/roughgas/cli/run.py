@@ -93,9 +93,9 @@ def _run_seeds(
 ) -> None:
     """Simulate a point, for each seed an output."""
     from roughgas import config
-    from roughgas.cli.progress import Progress
     from roughgas.planning.reach import complete
     from roughgas.point import run_point
+    from roughgas.progress import Progress
 
     settings = complete(config.point_settings(settings), r, beta)
     for label, seed, output in zip(options.seed, seeds, outputs, strict=True):

@@ -46,9 +46,9 @@ def clustering(options: argparse.Namespace) -> None:
     settings, every = _settings(options), _frames(options.checkpoint_every)
 
     from roughgas.checkpoint import discard
-    from roughgas.cli.progress import FilmProgress
     from roughgas.clustering import run
     from roughgas.film import write_film
+    from roughgas.progress import FilmProgress
 
     checkpoint = Path(f"{options.output}.checkpoint.npz")
     with FilmProgress(checkpoint, settings["frames"]) as progress:

@@ -50,8 +50,8 @@ def add_commands(commands: Any) -> None:
 def study(options: argparse.Namespace) -> None:
     """Run a task."""
     from roughgas import accuracy
-    from roughgas.cli.progress import Bar
     from roughgas.errors import InputError
+    from roughgas.progress import Bar
 
     module, text = accuracy.study(options.study), _settings(options)
     settings = json.loads(text)

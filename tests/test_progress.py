@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from roughgas.cli.progress import Bar, FilmProgress, Progress
+from roughgas.progress import Bar, FilmProgress, Progress
 
 DRIVEN = {
     "particles": 10,
@@ -39,7 +39,7 @@ class Terminal(io.StringIO):
 
 @pytest.fixture(autouse=True)
 def every_step_is_shown(monkeypatch):
-    monkeypatch.setattr("roughgas.cli.progress.SECONDS_BETWEEN", 0.0)
+    monkeypatch.setattr("roughgas.progress.SECONDS_BETWEEN", 0.0)
 
 
 def test_a_bar_says_how_far_how_long_and_what_and_is_cleared():
@@ -92,7 +92,7 @@ def test_a_film_that_goes_on_counts_from_where_it_was():
 
 def test_a_log_has_a_line_for_each_checkpoint_of_a_film(monkeypatch):
     clock = iter(range(1000, 2000, 50))
-    monkeypatch.setattr("roughgas.cli.progress.time.monotonic", lambda: next(clock))
+    monkeypatch.setattr("roughgas.progress.time.monotonic", lambda: next(clock))
     stream = io.StringIO()
     with FilmProgress(Path("c.npz"), 100, stream) as progress:
         progress.fresh("c.npz is damaged")

@@ -1,25 +1,34 @@
-"""How far a long command is, and how long it will go on: bars on a terminal, nothing elsewhere."""
+"""How far long work is, and how long it will go on: bars on a terminal and in a notebook, nothing
+elsewhere."""
 
 import sys
 import time
-from collections.abc import Mapping
+import warnings
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
-from typing import Any, Self
+from typing import Any, Self, TypeVar
 
 BAR = "{desc}: {percentage:3.0f}%|{bar}| {n_fmt} of {total_fmt}{unit}, {remaining} left{postfix}"
 SECONDS_BETWEEN = 0.1  # looks of a bar
+NOTEBOOK = "ipykernel"  # what is imported where there is one
+Item = TypeVar("Item")
 
 
 class Bar:
-    """How much of a known amount of work is done; silent where there is no terminal."""
+    """How much of a known amount of work is done; silent where nobody would see it."""
 
-    def __init__(self, name: str, total: float | None, unit: str = "", stream: Any = None) -> None:
+    def __init__(
+        self,
+        name: str,
+        total: float | None,
+        unit: str = "",
+        stream: Any = None,
+        quiet: bool = False,
+    ) -> None:
         """`unit` is that of `total`; None where the amount is not known yet."""
         self._bar, self._stream = None, sys.stderr if stream is None else stream
-        if self._stream.isatty():
-            from tqdm import tqdm  # takes a tenth of a short job's time
-
-            self._bar = tqdm(
+        if not quiet and (NOTEBOOK in sys.modules or self._stream.isatty()):
+            self._bar = _tqdm()(
                 desc=name,
                 total=total,
                 unit=f" {unit}" if unit else "",
@@ -41,7 +50,7 @@ class Bar:
 
     @property
     def shown(self) -> bool:
-        """Whether there is a terminal to see it on."""
+        """Whether there is something to see it on."""
         return self._bar is not None
 
     def reach(self, done: float, note: str = "", total: float | None = None) -> None:
@@ -57,6 +66,12 @@ class Bar:
         """One more is done."""
         if self._bar is not None:
             self.reach(self._bar.n + 1, note)
+
+    def call(self, name: str) -> None:
+        """Give it another name; what was done before says nothing of how fast work goes."""
+        if self._bar is not None:
+            self._bar.set_description_str(name, refresh=False)
+            self._bar.unpause()
 
     def begin(self, done: float) -> None:
         """So much was done before: it says nothing of how fast work goes."""
@@ -83,24 +98,54 @@ class Progress(Bar):
         beta: float,
         seeds: int = 1,
         stream: Any = None,
+        quiet: bool = False,
     ) -> None:
         """`experiment` is a complete one: it says how long it is run."""
-        from roughgas.point import effort
+        from roughgas.point import length
 
+        self._name, self._compiling = name, True
         self._particles = experiment["particles"]
         self._driven = experiment["schedule"]["kind"] == "steady"
         self._before = self._now = 0.0  # lengths: of the simulations that are over, of this one
-        length = seeds * effort(experiment, r, beta) / self._particles
+        total = round(seeds * length(experiment, r, beta))
         unit = "T" if self._driven else "collisions per particle"
-        super().__init__(name, round(length), unit, stream)
+        super().__init__(f"{name} (compiling)", total, unit, stream, quiet)
 
     def __call__(self, simulated: float, collisions: int) -> None:
         """Of the present simulation `simulated` (in T) and so many `collisions` are over."""
+        if self._compiling:
+            self._compiling = False
+            self.call(self._name)
         now = simulated if self._driven else 2.0 * collisions / self._particles
         if now < self._now:  # another one has begun
             self._before += self._now
         self._now = now
         self.reach(round(self._before + now))
+
+
+def watched(name: str, total: int, unit: str, items: Iterable[Item]) -> Iterator[Item]:
+    """The same items; a bar says how many there have been."""
+    with Bar(name, total, unit) as bar:
+        for item in items:
+            yield item
+            bar.advance()
+
+
+def _tqdm() -> Any:
+    """The bar that suits a notebook or a terminal; it takes a tenth of a short job's time.
+
+    Without widgets a notebook has a bar of characters, of which tqdm would warn.
+    """
+    if NOTEBOOK not in sys.modules:
+        from tqdm import tqdm
+
+        return tqdm
+    from tqdm import TqdmWarning
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", TqdmWarning)
+        from tqdm.auto import tqdm
+    return tqdm
 
 
 class FilmProgress:
