@@ -22,6 +22,7 @@ WIDEST = 140
 MACHINE = [
     (r"[\d.]+ s of CPU time, [\d,]+ a second", "some time"),
     (r'"kernel_seconds": [^,}]+', "some time"),
+    (r" in [\d.]+ s\b", " in some time"),
     (r"\| +[\d.]+ (s|min|h) +", "| some time "),
     (r"With [\d.]+ s|with [\d.]+ s", "with some time"),
     (r"(roughgas|numpy|Python|numba|llvmlite) [\d.]+", "a version"),
