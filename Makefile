@@ -21,6 +21,7 @@ figures: setup ## simulate, and draw the four figures of the paper
 	@echo "Look at  figures/fig1a.png  figures/fig1b.png  figures/fig2a.png  figures/fig2b.png"
 	@echo "What the paper claims, and what we find:  results/paper/claims.md"
 	@echo "Every number in them:  results/paper/R.csv"
+	@echo "Every point, to click on, and one file to share:  make report"
 
 report: setup ## one HTML file with all that REPORTED has (default: figures), and an interactive page
 	$(BIN)/snakemake -j$(JOBS) --config scale=$(SCALE) -- $(REPORTED) explore
