@@ -1,7 +1,12 @@
 """What all tests share; its being here also lets them import `synthetic`."""
 
+import signal
+
 import pytest
 from hypothesis import settings
+
+# a shell's job in the background ignores Ctrl-C, and so would every process that tests start
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 # how long an example takes says nothing where compilers and other jobs share the cores
 settings.register_profile("shared machine", deadline=None)

@@ -10,8 +10,8 @@ from roughgas.cli.run import add_point, point_of
 from roughgas.errors import InputError
 
 if TYPE_CHECKING:
+    from roughgas.movies.snapshots import Take
     from roughgas.scene import Scene
-    from roughgas.snapshots import Take
 
 EXAMPLE = examples("roughgas movie vibrated --r 0.9 --beta 0.5 -o bed.mp4 bed.gif")
 FRAMES = 2, 10_000
@@ -51,10 +51,10 @@ def movie(options: argparse.Namespace) -> None:
     for output in options.output:
         check_kind(output)
 
-    from roughgas.plotting.scene_movie import Subject, write
+    from roughgas.movies.drawing import Subject, write
+    from roughgas.movies.snapshots import snapshots
     from roughgas.progress import watched
     from roughgas.scene import build
-    from roughgas.snapshots import snapshots
 
     scene = build(settings, r, beta)
     take = _take(options, settings, scene)
@@ -73,7 +73,7 @@ def movie(options: argparse.Namespace) -> None:
 
 
 def _take(options: argparse.Namespace, settings: dict[str, Any], scene: "Scene") -> "Take":
-    from roughgas.snapshots import usual_take
+    from roughgas.movies.snapshots import usual_take
 
     take = usual_take(settings, scene)
     if options.start is not None:

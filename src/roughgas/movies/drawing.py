@@ -12,11 +12,11 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from roughgas.config import SWEPT
+from roughgas.movies.particles import Boundaries, Disks, Spheres, View
+from roughgas.movies.snapshots import Snapshot
 from roughgas.plotting import style
 from roughgas.plotting.movie import write_movie
-from roughgas.plotting.particles import Boundaries, Disks, Spheres, View
 from roughgas.scene import Scene
-from roughgas.snapshots import Snapshot
 
 WIDTH = 4.8  # inches
 DPI = {".gif": 100, ".mp4": 200}

@@ -11,7 +11,7 @@ from matplotlib.colors import Normalize, to_rgba
 from matplotlib.patches import Rectangle
 
 from roughgas.effects import Effects
-from roughgas.snapshots import Snapshot
+from roughgas.movies.snapshots import Snapshot
 
 SPIN = ScalarMappable(Normalize(-2.0, 2.0), "PuOr")
 AMOUNT = ScalarMappable(Normalize(0.0, 2.0), "viridis")

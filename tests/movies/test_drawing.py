@@ -7,10 +7,10 @@ from imageio_ffmpeg import read_frames
 from PIL import Image
 from schedules import COOLING, STEADY
 
+from roughgas.movies.drawing import Subject, picture, spin_scales, view_of, write
+from roughgas.movies.snapshots import Snapshot
 from roughgas.plotting import movie, particles
-from roughgas.plotting.scene_movie import Subject, picture, spin_scales, view_of, write
 from roughgas.scene import build
-from roughgas.snapshots import Snapshot
 
 SIDE = 12.0
 SPIN, ANGLE = [[0.5], [-0.5], [0.0]], [0.0, np.pi / 2, 3.0]

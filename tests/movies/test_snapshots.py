@@ -9,9 +9,9 @@ from brute_force.beside import brute_force_from
 from schedules import COOLING, STEADY
 
 from roughgas.initial import initial_state
+from roughgas.movies.snapshots import Take, displacement, height, snapshots, usual_take
 from roughgas.point import run_point
 from roughgas.scene import build
-from roughgas.snapshots import Take, displacement, height, snapshots, usual_take
 
 R, BETA, SEED = 0.9, 0.3, 7
 TINY = 1e-9

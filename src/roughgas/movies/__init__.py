@@ -1,0 +1,1 @@
+"""A point seen as it moves: its trajectory, frame by frame, and how it is drawn."""
