@@ -7,9 +7,10 @@ from imageio_ffmpeg import read_frames
 from PIL import Image
 from schedules import COOLING, STEADY
 
+from roughgas.movies import particles
 from roughgas.movies.drawing import Subject, picture, spin_scales, view_of, write
 from roughgas.movies.snapshots import Snapshot
-from roughgas.plotting import movie, particles
+from roughgas.plotting import movie
 from roughgas.scene import build
 
 SIDE = 12.0
