@@ -85,7 +85,7 @@ def wait_until(true, process=None):
 def interrupt(process, number=signal.SIGINT):
     """Send a signal to a process and its children, as a terminal does; all that it has said."""
     os.killpg(process.pid, number)
-    said, _ = process.communicate(timeout=60)
+    said, _ = process.communicate(timeout=300)
     return said
 
 
