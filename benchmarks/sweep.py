@@ -58,7 +58,7 @@ def dry_run(points: int, **settings: Any) -> Plan:
             open(Path(folder) / "output", "w+") as output,
             subprocess.Popen(command, cwd=folder, stdout=output, stderr=output) as process,
         ):
-            # unlike what `wait` tells, this is of that process alone
+            # of that process alone, if this one is small: what it held at the fork counts, too
             _, status, usage = os.wait4(process.pid, 0)
             process.returncode = os.waitstatus_to_exitcode(status)
             wall = time.monotonic() - begin
