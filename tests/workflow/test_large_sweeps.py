@@ -20,8 +20,8 @@ print(json.dumps(dry_run({points}, betas_per_job={betas})))
 
 
 def planned(points, betas):
-    """Jobs by rule, and peak memory, told by a small process: one that a large process starts counts
-    the memory of that one, too."""
+    """Jobs by rule, and peak memory, told by a small process: what a large one starts counts the
+    memory of that one, too."""
     command = [sys.executable, "-c", PROGRAM.format(points=points, betas=betas)]
     jobs, *_, memory = json.loads(subprocess.check_output(command, cwd=ROOT))
     return jobs, memory
