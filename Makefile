@@ -35,10 +35,10 @@ plan: setup ## say what all experiments at SCALE will cost, from pilot runs
 	@cat results/$(SCALE)/plan.md
 
 test: setup ## run the tests, but for those of `make extras`
-	$(BIN)/python -m pytest -n $(JOBS) --dist loadgroup -m "not ($(EXTRA_TESTS))"
+	$(BIN)/python -m pytest -n $(JOBS) --dist loadfile -m "not ($(EXTRA_TESTS))"
 
 extras: .venv/with-browser .venv-slurm/ready ## run what takes minutes more, a browser, or Slurm
-	$(BIN)/python -m pytest -n $(JOBS) --dist loadgroup -m "$(EXTRA_TESTS)"
+	$(BIN)/python -m pytest -n $(JOBS) --dist loadfile -m "$(EXTRA_TESTS)"
 
 docs: .venv/with-docs ## run the tutorial, and build the documentation: docs/_build/html/index.html
 	$(BIN)/python -m sphinx --fail-on-warning --keep-going -q docs docs/_build/html

@@ -12,7 +12,7 @@ from roughgas.dataset import read_point
 from roughgas.page import write_page
 from roughgas.reduce import predicted_ratio, read_reduced
 
-pytestmark = [pytest.mark.browser, pytest.mark.slow, pytest.mark.xdist_group("browser")]
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 POINT = re.compile(r"([\d.]+)\((\d+)\)")
 
