@@ -12,7 +12,7 @@ from project import Project
 
 from roughgas.dataset import WALL_CLOCK, read_point
 
-pytestmark = [pytest.mark.slurm]
+pytestmark = pytest.mark.slurm
 SMALL = ("--config", "scale=small", "--")
 WALLS = [f"vibrated_{walls}_walls/r0.9" for walls in ("rough", "particle", "smooth")]
 AT_EACH_R = ("vibrated", "sheared", "cooling")
