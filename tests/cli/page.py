@@ -19,12 +19,13 @@ ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "command_line.md"
 BLOCK = re.compile(r"^```console\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 WIDEST = 140
+NUMBER = r"[\d.]+(?:e\+\d+)?"
 MACHINE = [
-    (r"[\d.]+ s of CPU time, [\d,]+ a second", "some time"),
+    (rf"{NUMBER} s of CPU time, [\d,]+ a second", "some time"),
     (r'"kernel_seconds": [^,}]+', "some time"),
-    (r" in [\d.]+ s\b", " in some time"),
-    (r"\| +[\d.]+ (s|min|h) +", "| some time "),
-    (r"With [\d.]+ s|with [\d.]+ s", "with some time"),
+    (rf" in {NUMBER} s\b", " in some time"),
+    (rf"\| +{NUMBER} (s|min|h) +", "| some time "),
+    (rf"[Ww]ith {NUMBER} s", "with some time"),
     (r"(roughgas|numpy|Python|numba|llvmlite) [\d.]+", "a version"),
     (r"[\d.]+e-1\d", "rounding"),
     (r"-+", "-"),
