@@ -6,22 +6,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from files import ABOUT
 
 from roughgas import dataset
 from roughgas.dataset import Point, read_point, write_point
 from roughgas.errors import InputError
 
-ATTRIBUTES = {
-    "experiment": "vibrated",
-    "scale": "small",
-    "r": 0.9,
-    "beta": -0.5,
-    "seed": 3,
-    "dimension": 2,
-    "inertia": 0.5,
-    "particles": 40,
-    "command": "roughgas run ...",
-}
+ATTRIBUTES = ABOUT | {"command": "roughgas run ..."}
 CAPTURED = {"capture_output": True, "text": True, "check": True}
 
 
