@@ -50,6 +50,7 @@ lint: setup ## check style and format
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/snakefmt --check $(SNAKEFILES)
+	$(BIN)/lint-imports
 
 format: setup ## bring the sources into format
 	$(BIN)/ruff check --fix

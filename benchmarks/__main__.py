@@ -14,7 +14,7 @@ import time
 from benchmarks import effects, generality, kernel, machine, pipeline, plot, yardstick
 from benchmarks.report import report
 from benchmarks.scenes import CASES, DOCS
-from roughgas.atomic import write_text
+from roughgas.base.files import write_text
 
 QUICK = 10_000  # particles at most
 

@@ -16,9 +16,9 @@ import numpy as np
 from benchmarks.generality import run_kernel
 from benchmarks.kernel import Counts, counts_of
 from benchmarks.scenes import DOCS, SETTLING, advance
-from roughgas.initial import initial_state
 from roughgas.kernel.state import COLLISIONS
 from roughgas.scene import build
+from roughgas.scene.initial import initial_state
 
 PARTICLES = 160
 SQUARE = [50, 50]  # packing 0.2

@@ -15,9 +15,9 @@ import numpy as np
 
 from benchmarks import handwritten
 from benchmarks.scenes import Case, advance, settings
-from roughgas.initial import initial_state
 from roughgas.kernel.state import COLLISIONS
 from roughgas.scene import build
+from roughgas.scene.initial import initial_state
 
 # Rough and elastic: spins turn, and the gas stays as hot and as dense everywhere
 CASES = (Case("packing 0.05", "cooling", 1.0, 1.0), Case("packing 0.2", "cooling", 1.0, 1.0, 0.5))

@@ -20,9 +20,9 @@ import numba
 import numpy as np
 
 from benchmarks.scenes import CASES, advance, settings
-from roughgas.initial import initial_state
 from roughgas.kernel.state import COLLISIONS
 from roughgas.scene import build
+from roughgas.scene.initial import initial_state
 
 CASE = CASES[1]
 LINE = 64  # bytes

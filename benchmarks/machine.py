@@ -4,7 +4,7 @@ import datetime
 import subprocess
 from pathlib import Path
 
-from roughgas import machine
+from roughgas.base import machine
 
 
 def description() -> dict[str, str]:

@@ -10,7 +10,7 @@ from benchmarks.effects import Cost
 from benchmarks.kernel import Timing
 from benchmarks.yardstick import Rate
 from roughgas.kernel.layout import FEW
-from roughgas.plotting.style import FAINT, LOOKS, PARAMETERS, THEORY, WIDTH, save
+from roughgas.show.style import FAINT, LOOKS, PARAMETERS, THEORY, WIDTH, save
 
 
 def draw(timings: list[Timing], yardstick: list[Rate], output: Path) -> None:

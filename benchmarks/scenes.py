@@ -12,11 +12,11 @@ from typing import NamedTuple
 import numpy as np
 
 from roughgas import config
-from roughgas.initial import initial_state
 from roughgas.kernel.layout import new_state
 from roughgas.kernel.record import Plan, columns, record
 from roughgas.kernel.state import NOW
 from roughgas.scene import build
+from roughgas.scene.initial import initial_state
 
 ROOT = Path(__file__).parent.parent
 CONFIGURATION, DOCS = ROOT / "config.yaml", ROOT / "docs"

@@ -13,11 +13,11 @@ from collections import Counter
 import numpy as np
 
 from benchmarks.scenes import CASES, settings
-from roughgas.initial import initial_state
 from roughgas.kernel.jit import entry
 from roughgas.kernel.shortlist import decide
 from roughgas.kernel.sweep import mark_candidates
 from roughgas.scene import Scene, build
+from roughgas.scene.initial import initial_state
 
 ARITHMETIC = re.compile(
     r"^\s+v?((?:add|sub|mul|div|sqrt|fn?m(?:add|sub)\d*)p[sd])\s.*%([xyz]mm)", re.MULTILINE

@@ -35,7 +35,7 @@ def urgency_of_task(wildcards):
 
 
 def sources_of_study(wildcards):
-    return sources(f"accuracy/{wildcards.study}", "point", "config", "cli/studies")
+    return sources(f"studies.accuracy.{wildcards.study}", "config", "cli.studies")
 
 
 def study_of_figure(wildcards):
@@ -64,7 +64,7 @@ rule study:
 
 rule combined_studies:
     input:
-        sources("accuracy"),
+        sources("studies.accuracy"),
         tasks=tasks_of_figure,
     output:
         "results/{scale}/{study_figure}.nc",
@@ -80,7 +80,7 @@ rule combined_studies:
 
 rule study_figure:
     input:
-        sources("plotting"),
+        sources("studies.figures"),
         data=study_of_figure,
     output:
         "figures/{folder}{study_figure}.pdf",
@@ -104,7 +104,7 @@ rule study_figure:
 
 rule study_table:
     input:
-        sources("accuracy"),
+        sources("studies.accuracy"),
         data="results/{scale}/{study_figure}.nc",
     output:
         "results/{scale}/{study_figure}.md",

@@ -8,7 +8,7 @@ from pathlib import Path
 
 try:
     import roughgas.config
-    from roughgas.errors import InputError, not_one_of
+    from roughgas.base.errors import InputError, not_one_of
 except ModuleNotFoundError as error:
     sys.exit(f"roughgas: error: no module {error.name}: `make setup`, then .venv/bin/snakemake")
 

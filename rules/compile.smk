@@ -19,7 +19,7 @@ def kernel_of_point(wildcards):
 def kinds_of_kernels(wildcards):
     """What decides which kernels an experiment needs at some r, all variants in its sweep together:
     one more value that is like the others concerns no point that is there."""
-    from roughgas.point import kernels
+    from roughgas.simulation.point import kernels
 
     found = settings(wildcards.scale, wildcards.experiment)
     every = roughgas.config.every_variant(wildcards.experiment, found).values()
@@ -44,7 +44,7 @@ rule compile_kernel:
     # job, which took it longer than the points take. So it holds their checksums: were it the same
     # after an edit, points that an interrupted run has left as they were would pass for new.
     input:
-        sources("point", "dataset"),
+        sources("simulation.point", "data.point"),
         "src/roughgas/cli/run.py",
         "src/roughgas/config/labels.py",
     output:

@@ -1,5 +1,5 @@
 # A finished run of the paper as one file to keep and to share: an RO-Crate.
-from roughgas.crate import project_files
+from roughgas.results.crate import project_files
 
 
 def data_of_run(wildcards):

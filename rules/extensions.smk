@@ -16,7 +16,7 @@ def data_of_extensions(wildcards):
 
 rule table_of_extensions:
     input:
-        sources("table"),
+        sources("results.table"),
         data=data_of_extensions,
     output:
         report(

@@ -16,7 +16,7 @@ FIGURES |= PAPER
 rule figure:
     # at the scale `paper` into figures/, at others into a folder below it
     input:
-        sources("plotting"),
+        sources("show.figures"),
         data=data_of_figure,
     output:
         "figures/{folder}{figure}.pdf",
@@ -40,7 +40,7 @@ rule figure:
 
 rule table:
     input:
-        sources("table"),
+        sources("results.table"),
         data=data_of_paper,
     output:
         report(

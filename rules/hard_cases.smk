@@ -29,7 +29,7 @@ def urgency_of_family(wildcards):
 rule family:
     # other families start while this one compiles: the kernels of all are the same few
     input:
-        sources("point", "dataset", "cli"),
+        sources("simulation.point", "data.point", "cli"),
         SHARED,
         cases="tests/hard_cases/test_{family}.py",
     output:
@@ -49,7 +49,7 @@ rule family:
 
 rule catalogue:
     input:
-        sources("plotting"),
+        sources("show.figures"),
         DRAWING,
         families=expand("results/{{folder}}hard_cases/{family}.json", family=FAMILIES),
     output:

@@ -26,7 +26,7 @@ def told_of_movie(wildcards):
 rule movie:
     # at the scale `paper` into figures/movies/, at others into a folder below figures/{scale}/
     input:
-        sources("movies"),
+        sources("show.movies.drawing"),
         "src/roughgas/cli/movie.py",
     output:
         "figures/{folder}movies/{movie}.gif",

@@ -14,7 +14,7 @@ def points_of_extensions(wildcards):
 
 rule document:
     input:
-        sources("page/document"),
+        sources("show.page.document"),
         LOOKS,
         shown=source_of_document,
     output:
@@ -62,7 +62,7 @@ rule effective_config:
 
 rule run_times:
     input:
-        sources("page/times"),
+        sources("results.times"),
         data=data_of_paper,
     output:
         "results/{scale}/run_times.md",
@@ -78,7 +78,7 @@ rule run_times:
 
 use rule run_times as run_times_of_extensions with:
     input:
-        sources("page/times"),
+        sources("results.times"),
         data=data_of_extensions,
     output:
         "results/{scale}/run_times_extensions.md",
@@ -90,7 +90,7 @@ use rule run_times as run_times_of_extensions with:
 
 rule page:
     input:
-        sources("page"),
+        sources("show.page", "show.page.gather"),
         LOOKS,
         points_of_paper,
         data=data_of_paper,
@@ -109,7 +109,7 @@ rule page:
 
 use rule page as page_of_extensions with:
     input:
-        sources("page"),
+        sources("show.page", "show.page.gather"),
         LOOKS,
         points_of_extensions,
         data=data_of_extensions,

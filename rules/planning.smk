@@ -72,7 +72,7 @@ rule reach:
 
 rule plan_of_scale:
     input:
-        sources("planning"),
+        sources("planning.table", "planning.reach", "planning.pilot"),
         "config.yaml",
         pilots=pilots,
     output:
@@ -92,7 +92,7 @@ rule plan_of_scale:
 
 rule costs_of_scale:
     input:
-        sources("planning"),
+        sources("planning.table", "planning.reach", "planning.pilot"),
         data=planned_data,
     output:
         "results/{scale}/costs.md",

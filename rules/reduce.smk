@@ -3,7 +3,7 @@
 
 rule reduce:
     input:
-        sources("reduce"),
+        sources("results.reduce"),
         points=points_of_experiment,
     output:
         REDUCED,

@@ -21,7 +21,7 @@ rule clustering:
     # It leaves checkpoints beside its output. They are no output: Snakemake would delete them where
     # a job fails, while from the last one the same command goes on after a kill.
     input:
-        sources("clustering", "film"),
+        sources("simulation.clustering", "data.film"),
         "src/roughgas/cli/showcase.py",
     output:
         FILM,
@@ -41,7 +41,7 @@ rule clustering:
 
 rule film:
     input:
-        sources("plotting"),
+        sources("show.figures.clustering"),
         data=film_of_figure,
     output:
         multiext("figures/{folder}clustering", ".pdf", ".mp4"),

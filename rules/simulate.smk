@@ -28,7 +28,7 @@ def points_of_job(wildcards, output):
 def urgency(wildcards):
     """Longest points first, lest one of them is left alone on one core at the end. A job on several
     betas counts as if they were 0."""
-    from roughgas.point import effort
+    from roughgas.simulation.point import effort
 
     experiment = settings(wildcards.scale, wildcards.experiment)
     return effort(experiment, float(wildcards.r), float(wildcards.get("beta", "0")))

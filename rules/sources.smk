@@ -2,37 +2,48 @@
 # change, and nothing else.
 import ast
 
-PACKAGE = Path("src/roughgas")
+SOURCE = Path("src")
 
 
-def sources(*rooms):
-    """Source files of these rooms of the package (modules or folders), and of those they import."""
-    todo, found = list(rooms), {}
+def sources(*modules):
+    """Source files of these modules of the package, such as "simulation.point", of the packages
+    that they are in, and of all that they import."""
+    todo, found = [f"roughgas.{module}" for module in modules], {}
     while todo:
-        room = todo.pop()
-        if room not in found and (files := files_of(room)):
-            found[room] = files
-            todo += imported_rooms(files)
-    return sorted(str(file) for files in found.values() for file in files)
+        module = todo.pop()
+        if module not in found and (file := file_of(module)):
+            found[module] = file
+            todo += [*imported_modules(file), *submodules(module), module.rpartition(".")[0]]
+    return sorted(str(file) for file in found.values())
 
 
 @functools.cache
-def files_of(room):
-    """The files of a room; none where the package has no such room."""
-    single = PACKAGE / f"{room}.py"
-    return (single,) if single.exists() else tuple(sorted((PACKAGE / room).rglob("*.py")))
+def file_of(module):
+    """The file of a module; None where there is none of that name."""
+    path = SOURCE.joinpath(*module.split("."))
+    files = (path.with_suffix(".py"), path / "__init__.py")
+    return next((file for file in files if module and file.exists()), None)
 
 
 @functools.cache
-def imported_rooms(files):
-    """The rooms that files import from, anywhere in them."""
-    rooms = set()
-    for node in (node for file in files for node in ast.walk(ast.parse(file.read_bytes()))):
+def submodules(module):
+    """Those that a package imports by names made at run time: see IMPORTED_BY_NAME."""
+    folder = SOURCE.joinpath(*module.split("."))
+    if module not in IMPORTED_BY_NAME:
+        return ()
+    return tuple(f"{module}.{file.stem}" for file in sorted(folder.glob("*.py")))
+
+
+IMPORTED_BY_NAME = ("roughgas.show.figures", "roughgas.studies.figures", "roughgas.studies.accuracy")
+
+
+@functools.cache
+def imported_modules(file):
+    """The modules that a file imports from, anywhere in it."""
+    modules = set()
+    for node in ast.walk(ast.parse(file.read_bytes())):
         if isinstance(node, ast.Import):
-            names = [alias.name for alias in node.names]
+            modules |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
-            names = [f"{node.module}.{alias.name}" for alias in node.names]
-        else:
-            continue
-        rooms |= {name.split(".")[1] for name in names if name.startswith("roughgas.")}
-    return rooms
+            modules |= {node.module} | {f"{node.module}.{alias.name}" for alias in node.names}
+    return {module for module in modules if module.startswith("roughgas.")}

@@ -3,11 +3,12 @@
 import numpy as np
 import xarray as xr
 
-from roughgas import accuracy, film
-from roughgas.accuracy.files import combine, write_task
 from roughgas.config import as_text
-from roughgas.dataset import Point, write_point
-from roughgas.reduce import reduce_points
+from roughgas.data import film
+from roughgas.data.point import Point, write_point
+from roughgas.results.reduce import reduce_points
+from roughgas.studies import accuracy
+from roughgas.studies.accuracy.files import combine, write_task
 
 ABOUT = {
     "experiment": "vibrated",

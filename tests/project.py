@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 
 from roughgas.config.reading import read_yaml
-from roughgas.crate import PROJECT
+from roughgas.results.crate import PROJECT
 
 ROOT = Path(__file__).parent.parent
 COPIED = (*PROJECT, "rules", "profiles", "src")

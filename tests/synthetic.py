@@ -5,7 +5,8 @@ from collections.abc import Callable
 import numpy as np
 import xarray as xr
 
-from roughgas.reduce import predicted_ratio, third_axis
+from roughgas.data.reduced import third_axis
+from roughgas.theory.prediction import predicted_ratio
 
 BETA = (-0.95, *(round(-0.9 + 0.1 * step, 1) for step in range(20)))
 

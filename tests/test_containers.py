@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from roughgas.crate import project_files
+from roughgas.results.crate import project_files
 
 ROOT = Path(__file__).parents[1]
 

@@ -16,10 +16,10 @@ from schedules import STEADY
 
 import roughgas
 from roughgas import experiments, library, simulate
+from roughgas.base.errors import InputError
 from roughgas.cli import main
 from roughgas.config.reading import read_yaml
-from roughgas.dataset import WALL_CLOCK, read_point
-from roughgas.errors import InputError
+from roughgas.data.point import WALL_CLOCK, read_point
 from roughgas.theory import cooling_ratio
 
 ROOT = Path(__file__).parent.parent
@@ -135,7 +135,7 @@ class Bar(tqdm.auto.tqdm):
 def bars(monkeypatch):
     """Those that are shown, as if in a notebook."""
     monkeypatch.setattr(tqdm.auto, "tqdm", Bar)
-    monkeypatch.setattr("roughgas.progress.NOTEBOOK", "pytest")
+    monkeypatch.setattr("roughgas.simulation.progress.NOTEBOOK", "pytest")
     monkeypatch.setattr(Bar, "made", [])
     return Bar.made
 

@@ -13,9 +13,9 @@ import numpy as np
 import pytest
 
 from roughgas import config
-from roughgas.point import run_point
-from roughgas.reduce import predicted_ratio
+from roughgas.simulation.point import run_point
 from roughgas.theory import cooling_ratio, lun_ratio
+from roughgas.theory.prediction import predicted_ratio
 
 CONFIG = Path(__file__).parent.parent / "config.yaml"
 SIGMAS = 3

@@ -1,7 +1,8 @@
 """Event-driven simulation of gases of rough, inelastic disks and spheres."""
 
+from roughgas.base.version import __version__
+
 __all__ = ["__version__", "experiments", "simulate"]
-__version__ = "0.1.0"
 TYPE_CHECKING = False  # but for type checkers; importing typing would take ten times as long
 
 if TYPE_CHECKING:

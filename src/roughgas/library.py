@@ -100,10 +100,10 @@ def simulate(
 
     Raises
     ------
-    roughgas.errors.InputError
+    roughgas.base.errors.InputError
         For values that are illegal or contradict each other; its text is one line naming key,
         value and what is legal. It is a ValueError.
-    roughgas.errors.CollapseError
+    roughgas.base.errors.CollapseError
         Where contacts accumulate without end, as in a bed of r = 0.6 without ``contact_time``.
     OSError
         Where `config` cannot be read.
@@ -149,11 +149,11 @@ def simulate(
     given = {key: _plain(value) for key, value in changes.items() if value is not None}
     settings = _settings(experiment, given, scale, SHIPPED if config is None else config)
 
-    from roughgas.dataset import as_dataset
+    from roughgas.config.provenance import provenance
+    from roughgas.data.point import as_dataset
     from roughgas.planning.reach import complete
-    from roughgas.point import run_point
-    from roughgas.progress import Progress
-    from roughgas.provenance import provenance
+    from roughgas.simulation.point import run_point
+    from roughgas.simulation.progress import Progress
 
     name = experiment or UNNAMED
     settings = complete(settings, *point[:2])
@@ -173,7 +173,7 @@ def experiments(config: str | Path | None = None) -> dict[str, str]:
 
     Raises
     ------
-    roughgas.errors.InputError
+    roughgas.base.errors.InputError
         Where the configuration is illegal.
     OSError
         Where it cannot be read.

@@ -3,14 +3,15 @@
 import re
 
 import pytest
-from page.conftest import points_in
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.select import Select
+from show.page.conftest import points_in
 
-from roughgas.dataset import read_point
-from roughgas.page import write_page
-from roughgas.reduce import predicted_ratio, read_reduced
+from roughgas.data.point import read_point
+from roughgas.data.reduced import read_reduced
+from roughgas.show.page import write_page
+from roughgas.theory.prediction import predicted_ratio
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 

@@ -8,9 +8,9 @@ import functools
 import numpy as np
 
 from brute_force.world import World
-from roughgas.initial import initial_state
 from roughgas.kernel.record import Plan, columns, record
 from roughgas.scene import build
+from roughgas.scene.initial import initial_state
 
 NEVER = 1e-300  # a contact time
 UNLIMITED = 2**60

@@ -3,10 +3,10 @@ import json
 import pytest
 from synthetic import BETA, reduced
 
+from roughgas.base.errors import InputError
 from roughgas.claims import OPEN_QUESTIONS, PAPER, judge
 from roughgas.claims.finding import NOT_TESTED
 from roughgas.cli import main
-from roughgas.errors import InputError
 
 
 @pytest.fixture

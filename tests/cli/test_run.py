@@ -5,11 +5,11 @@ import json
 import pytest
 
 from cli.conftest import GAS
-from roughgas import speed
 from roughgas.cli import main
 from roughgas.cli.show import summary
-from roughgas.dataset import read_point
-from roughgas.point import run_point
+from roughgas.data.point import read_point
+from roughgas.simulation import speed
+from roughgas.simulation.point import run_point
 
 PLACE = ("--r=0.9", "--beta=-0.50", f"--settings={json.dumps(GAS)}")
 
@@ -34,7 +34,7 @@ def test_a_script_reads_a_line_for_each_seed_as_it_is_done(tmp_path, monkeypatch
         told.append(capsys.readouterr().out)
         return run_point(*arguments)
 
-    monkeypatch.setattr("roughgas.point.run_point", watched)
+    monkeypatch.setattr("roughgas.simulation.point.run_point", watched)
     files = [str(tmp_path / name) for name in ("1.nc", "2.nc")]
     assert main(["run", "cooling", *PLACE, "--seed", "1", "2", "--json", "-o", *files]) == 0
     first, second = told[1], capsys.readouterr().out

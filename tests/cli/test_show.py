@@ -7,11 +7,11 @@ import pytest
 import xarray
 
 from roughgas import theory
-from roughgas.accuracy.files import write_task
 from roughgas.cli import main
 from roughgas.cli.layout import with_error
-from roughgas.dataset import read_point
-from roughgas.reduce import read_reduced
+from roughgas.data.point import read_point
+from roughgas.data.reduced import read_reduced
+from roughgas.studies.accuracy.files import write_task
 
 
 def shown(capsys, *arguments):
@@ -89,7 +89,9 @@ def test_studies(tmp_path, capsys, monkeypatch):
     group = xarray.Dataset({"bias": ("corner", [0.1])}, attrs={"scale": "small"})
     groups = {"/coverage": group}
     xarray.DataTree.from_dict(groups).to_netcdf(tmp_path / "all.nc", engine="netcdf4")
-    monkeypatch.setattr("roughgas.accuracy.tables.coverage", lambda data: f"{data.bias.values}\n")
+    monkeypatch.setattr(
+        "roughgas.studies.accuracy.tables.coverage", lambda data: f"{data.bias.values}\n"
+    )
     assert shown(capsys, tmp_path / "all.nc").endswith("scale small\n\n[0.1]\n")
     found = json.loads(shown(capsys, tmp_path / "all.nc", "--json"))
     assert found["studies"]["coverage"]["sizes"] == {"corner": 1}

@@ -12,12 +12,12 @@ from brute_force import KERNELS, begin, run, settings
 from machine_code import checksums, sections
 from schedules import COOLING, STEADY
 
-from roughgas.dataset import VARIABLES, read_point, write_point
+from roughgas.data.point import VARIABLES, read_point, write_point
 from roughgas.effects import KINDS
 from roughgas.kernel import random
 from roughgas.kernel.record import columns, record
 from roughgas.kernel.state import BOUNDARY, BOUNDARY_HITS
-from roughgas.point import run_point
+from roughgas.simulation.point import run_point
 
 PROGRAM = Path(__file__).parent.parent / "machine_code.py"
 SMALL = {2: (16, [20, 20]), 3: (16, [12, 12, 12])}

@@ -5,8 +5,8 @@ import yaml
 
 from effects import page
 from roughgas import config
+from roughgas.base.errors import InputError
 from roughgas.effects import KINDS
-from roughgas.errors import InputError
 from roughgas.scene import build
 
 REFUSED = [[cell.strip("`") for cell in row] for row in page.rows(page.section("What is refused"))]

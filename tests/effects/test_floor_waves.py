@@ -9,11 +9,11 @@ from brute_force import Beside, BruteForce, begin, run, scene_of, settings, snap
 from compiled import from_python
 from hard_cases.waves import DIGITS, exact, level, sine, triangle
 
+from roughgas.base.errors import InputError
 from roughgas.effects import Floor, sine_floor, triangular_floor
 from roughgas.effects.settings import Surroundings
 from roughgas.effects.sine_floor import SineFloor
 from roughgas.effects.triangular_floor import FALLING, RISING, TriangularFloor
-from roughgas.errors import InputError
 from roughgas.kernel.layout import new_state
 from roughgas.kernel.state import BASE, BOUNDARY_HITS, NOW
 

@@ -12,7 +12,7 @@ from roughgas.effects import Effects
 from roughgas.effects.friction import Friction
 from roughgas.effects.spin import Spin
 from roughgas.kernel.contact import response as compiled_response
-from roughgas.protocols.books import books
+from roughgas.simulation.books import books
 
 PAIR, WALL = 0.5, 1.0
 response = from_python(compiled_response)

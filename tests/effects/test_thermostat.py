@@ -7,9 +7,9 @@ from brute_force import Beside, begin, run, scene_of, settings, snapshot
 from roughgas import theory
 from roughgas.kernel.random import STEP
 from roughgas.kernel.state import BASE, COLLISIONS, NOW
-from roughgas.measure.energies import energies, ratio
-from roughgas.measure.errors import blocking_stderr
-from roughgas.protocols.books import books, imbalance
+from roughgas.simulation.books import books, imbalance
+from roughgas.simulation.energies import energies, ratio
+from roughgas.statistics.errors import blocking_stderr
 
 INTERVAL = 0.5
 DRAWS = {"heated": 5, "heated, smooth": 3, "heated spheres": 10}

@@ -17,8 +17,8 @@ from schedules import COOLING
 import roughgas
 from effects import page
 from roughgas import theory
-from roughgas.dataset import read_point
-from roughgas.point import run_point
+from roughgas.data.point import read_point
+from roughgas.simulation.point import run_point
 
 PACKAGE = Path(roughgas.__file__).parent
 TESTS = Path(__file__).parents[1]

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
 from hard_cases.catalogue import Margin
-from roughgas.plotting.style import FAINT, GREY, LOOKS, PARAMETERS, THEORY, WIDTH
+from roughgas.show.style import FAINT, GREY, LOOKS, PARAMETERS, THEORY, WIDTH
 from roughgas.theory import cooling_ratio
 
 Series = Mapping[str, Mapping[str, list[float]]]

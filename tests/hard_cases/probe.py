@@ -11,7 +11,6 @@ from typing import NamedTuple
 import numpy as np
 
 from roughgas.effects import Effects
-from roughgas.initial import initial_state
 from roughgas.kernel import hooks
 from roughgas.kernel.flight import arrive
 from roughgas.kernel.images import image_numbers, shifted, slid
@@ -19,6 +18,7 @@ from roughgas.kernel.jit import entry, jit
 from roughgas.kernel.record import Plan, columns, record
 from roughgas.kernel.vectors import dot, subtract
 from roughgas.scene import Scene, build
+from roughgas.scene.initial import initial_state
 
 _NAMES = [*Effects._fields, "probe"]
 Probed = namedtuple("Probed", _NAMES, defaults=[None] * len(_NAMES))

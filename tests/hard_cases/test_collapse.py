@@ -7,12 +7,12 @@ import numpy as np
 from brute_force import begin, run, settings, snapshot
 
 from hard_cases.catalogue import hard_case
-from roughgas.errors import CollapseError
+from roughgas.base.errors import CollapseError
 from roughgas.kernel.layout import new_state
 from roughgas.kernel.record import Plan, columns, record
 from roughgas.kernel.state import BASE, COLLISIONS, NOW, TOUCHED
-from roughgas.measure.energies import energies, ratio
-from roughgas.protocols.recorder import UNLIMITED, Recorder
+from roughgas.simulation.energies import energies, ratio
+from roughgas.simulation.recorder import UNLIMITED, Recorder
 
 BED = settings("bed")  # 160 disks on 50 a, as in Fig. 1a
 THRESHOLD = 7.0 - 4.0 * math.sqrt(3.0)  # of r, for three particles on a line

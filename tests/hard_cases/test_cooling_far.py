@@ -10,10 +10,10 @@ from hard_cases.catalogue import hard_case
 from roughgas.config import experiment, load
 from roughgas.kernel import record
 from roughgas.kernel.state import LAST_FIRST, LAST_SECOND
-from roughgas.measure.energies import energies, ratio
-from roughgas.point import run_point
-from roughgas.protocols.cooling import SAMPLES_PER_REFRESH
-from roughgas.protocols.recorder import Recorder
+from roughgas.simulation.cooling import SAMPLES_PER_REFRESH
+from roughgas.simulation.energies import energies, ratio
+from roughgas.simulation.point import run_point
+from roughgas.simulation.recorder import Recorder
 
 GAS = settings("gas")  # 160 disks on (100 a)^2, as in Fig. 2b
 BLOCKS = 20

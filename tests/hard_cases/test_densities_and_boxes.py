@@ -11,9 +11,9 @@ from brute_force import Beside, begin, largest_overlap, run, scene_of, settings
 from schedules import COOLING, STEADY
 
 from hard_cases.catalogue import hard_case
-from roughgas.errors import InputError
-from roughgas.point import run_point
+from roughgas.base.errors import InputError
 from roughgas.scene import check
+from roughgas.simulation.point import run_point
 
 DISKS = (0.001, 0.01, 0.1, 0.3, 0.5, 0.7, 0.8)  # shares of the area
 SPHERES = (0.001, 0.01, 0.1, 0.3, 0.5, 0.6)  # shares of the volume

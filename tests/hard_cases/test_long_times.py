@@ -4,7 +4,7 @@ import numpy as np
 from brute_force import Beside, begin, run, scene_of, settings
 
 from hard_cases.catalogue import hard_case
-from roughgas.checkpoint import arrays_of
+from roughgas.data.checkpoint import arrays_of
 from roughgas.kernel.state import BASE, COLLISIONS, NOW
 
 LATE = (

@@ -16,14 +16,14 @@ from hard_cases.compositions import (
     parameters,
     scenes,
 )
+from roughgas.base.errors import InputError
 from roughgas.effects import KINDS
 from roughgas.effects import parameters as effect_parameters
-from roughgas.errors import InputError
-from roughgas.initial import lattice
 from roughgas.kernel.record import Plan, columns, record
 from roughgas.kernel.state import BOUNDARY_HITS, COLLISIONS, LAST_FIRST, LAST_SECOND
-from roughgas.protocols.books import books, imbalance
 from roughgas.scene import build, check
+from roughgas.scene.initial import lattice
+from roughgas.simulation.books import books, imbalance
 
 ROUNDING = 2.0**-53
 BOUNDARIES = {"floor", "walls", "shaken_walls"}

@@ -10,8 +10,8 @@ import numpy as np
 from brute_force import begin, run, settings
 
 from hard_cases.catalogue import hard_case
-from roughgas.measure.energies import energies, ratio
-from roughgas.measure.errors import blocking_stderr
+from roughgas.simulation.energies import energies, ratio
+from roughgas.statistics.errors import blocking_stderr
 
 INTERVALS = 0.125, 0.5, 2.0, 4.0  # in T; in the finest a particle loses a tenth of its energy
 NUMBER, POWER, R, BETA = 160, 1.0, 0.8, 0.0

@@ -5,8 +5,8 @@ import pytest
 from brute_force import begin, run, settings
 
 from roughgas import theory
-from roughgas.measure.energies import energies, ratio
-from roughgas.measure.errors import blocking_stderr
+from roughgas.simulation.energies import energies, ratio
+from roughgas.statistics.errors import blocking_stderr
 
 
 def test_a_rough_elastic_gas_shares_its_energy_equally():

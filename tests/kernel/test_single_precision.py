@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from brute_force import largest_overlap, run, scene_of, settings
 
-from roughgas.initial import initial_state
+from roughgas.scene.initial import initial_state
 
 SINGLE = 2.0**-24  # half the spacing of single precision just above 1
 

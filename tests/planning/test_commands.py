@@ -7,9 +7,10 @@ import pytest
 
 from roughgas.cli import main
 from roughgas.config.reading import read_yaml
-from roughgas.dataset import read_point
-from roughgas.planning.costs import cost, saved
-from roughgas.reduce import read_reduced, reduce_points
+from roughgas.data.point import read_point
+from roughgas.data.reduced import read_reduced
+from roughgas.results.costs import cost, saved
+from roughgas.results.reduce import reduce_points
 
 SWEEP = {"r": ["0.9"], "beta": ["0", "0.5"]}
 

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from roughgas.errors import InputError
+from roughgas.base.errors import InputError
 from roughgas.planning.pilot import (
     CHAINS,
     MEASURED,
@@ -17,7 +17,7 @@ from roughgas.planning.pilot import (
 )
 from roughgas.planning.plan import plan_point
 from roughgas.planning.reach import completed
-from roughgas.point import run_point
+from roughgas.simulation.point import run_point
 
 TIMES = ("seconds", "seconds_per_length")
 

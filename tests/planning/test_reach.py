@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from tests.planning.test_plan import PILOT, with_target
 
-from roughgas.dataset import Point
+from roughgas.data.point import Point
 from roughgas.planning import reach as module
 from roughgas.planning.pilot import explore
 from roughgas.planning.plan import RESERVE

@@ -10,7 +10,7 @@ from cluster import until
 from on_cluster import OnCluster
 from project import Project
 
-from roughgas.dataset import WALL_CLOCK, read_point
+from roughgas.data.point import WALL_CLOCK, read_point
 
 pytestmark = pytest.mark.slurm
 SMALL = ("--config", "scale=small", "--")

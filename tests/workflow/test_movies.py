@@ -18,8 +18,8 @@ def test_movies_need_no_point(project):
     ("module", "count"),
     [
         ("kernel/pairs.py", 6),
-        ("movies/snapshots.py", 6),
-        ("movies/particles.py", 6),
+        ("show/movies/snapshots.py", 6),
+        ("show/movies/particles.py", 6),
         ("cli/movie.py", 6),
         ("claims/report.py", 0),
     ],

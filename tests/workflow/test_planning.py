@@ -5,8 +5,8 @@ import copy
 import pytest
 from project import TINY, Project
 
-from roughgas.dataset import read_point
-from roughgas.reduce import read_reduced
+from roughgas.data.point import read_point
+from roughgas.data.reduced import read_reduced
 
 pytestmark = pytest.mark.slow
 NAMES = ("sheared", "cooling")

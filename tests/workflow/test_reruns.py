@@ -30,11 +30,11 @@ def test_only_contents_count(finished):
         ("kernel/pairs.py", ALL),
         ("theory/relaxation.py", ALL),
         ("cli/run.py", ALL),
-        ("reduce.py", {"reduce": 6, "figure": 4} | AFTER_POINTS),
-        ("table.py", {"table": 1, "figures": 1}),
-        ("plotting/style.py", {"figure": 4, "figures": 1}),
+        ("results/reduce.py", {"reduce": 6, "figure": 4} | AFTER_POINTS),
+        ("results/table.py", {"table": 1, "figures": 1}),
+        ("show/style.py", {"figure": 4, "figures": 1}),
         ("claims/report.py", {"claims": 1, "document": 1, "figures": 1}),
-        ("page/document.py", {"document": 3, "figures": 1}),
+        ("show/page/document.py", {"document": 3, "figures": 1}),
         ("config/__init__.py", CONFIGURED),
         ("config/axis.py", CONFIGURED),
     ],
@@ -82,7 +82,7 @@ def test_a_description_concerns_no_point(finished):
 
 def test_an_edit_is_not_forgotten_when_a_run_is_interrupted(finished):
     """What stands between the sources and the points is made again, the points are not yet."""
-    finished.append("src/roughgas/measure/plateau.py")
+    finished.append("src/roughgas/statistics/plateau.py")
     finished.succeed("-j1", "results/tiny/cooling/r0.9/compiled.txt")
     assert finished.planned("results/tiny/cooling.nc") == {"seeds": EACH, "reduce": 1}
 
@@ -90,7 +90,7 @@ def test_an_edit_is_not_forgotten_when_a_run_is_interrupted(finished):
 def test_an_edit_counts_where_what_was_compiled_has_been_deleted(finished):
     (finished.folder / "results/tiny/cooling/r0.9/compiled.txt").unlink()
     assert finished.planned() == {}
-    finished.append("src/roughgas/measure/plateau.py")
+    finished.append("src/roughgas/statistics/plateau.py")
     assert finished.planned("results/tiny/cooling.nc")["seeds"] == EACH
 
 
@@ -99,7 +99,7 @@ def test_every_module_that_a_point_imports_counts(made):
     target = "results/tiny/vibrated/r0.9/compiled.txt"
     summary = made.succeed("--config", "scale=tiny", "--detailed-summary", "--", target)
     (row,) = (line for line in summary.splitlines() if line.startswith(target))
-    script = "import sys, roughgas.point, roughgas.dataset; print(*sys.modules)"
+    script = "import sys, roughgas.simulation.point, roughgas.data.point; print(*sys.modules)"
     done = subprocess.run(
         [sys.executable, "-c", script], capture_output=True, text=True, check=True
     )

@@ -14,8 +14,8 @@ import pytest
 from project import POINTS, SWEEP
 from rocrate.rocrate import ROCrate
 
-from roughgas.crate import rows_of, verify
-from roughgas.dataset import WALL_CLOCK, read_point
+from roughgas.data.point import WALL_CLOCK, read_point
+from roughgas.results.crate import rows_of, verify
 
 pytestmark = pytest.mark.slow
 TARGET = ("--config", "scale=tiny", "--", "figures")

@@ -8,7 +8,7 @@ import time
 
 import pytest
 
-from roughgas.film import read_film
+from roughgas.data.film import read_film
 
 FILM = "results/tiny/showcase/clustering.nc"
 CHECKPOINT = f"{FILM}.checkpoint.npz"
@@ -31,7 +31,7 @@ def test_everything_has_the_showcase_in_it(project):
     [
         ("kernel/pairs.py", {"clustering": 1} | DRAWN),
         ("checkpoint.py", {"clustering": 1} | DRAWN),
-        ("plotting/movie.py", DRAWN),
+        ("show/encoding.py", DRAWN),
         ("claims/report.py", {}),
     ],
 )
@@ -50,7 +50,7 @@ def test_every_module_that_a_film_imports_counts(made):
     """Found out by importing, where the rules find out by reading the sources."""
     summary = made.succeed("--config", "scale=tiny", "--detailed-summary", "--", FILM)
     (row,) = (line for line in summary.splitlines() if line.startswith(FILM))
-    script = "import sys, roughgas.clustering, roughgas.film; print(*sys.modules)"
+    script = "import sys, roughgas.simulation.clustering, roughgas.data.film; print(*sys.modules)"
     done = subprocess.run(
         [sys.executable, "-c", script], capture_output=True, text=True, check=True
     )

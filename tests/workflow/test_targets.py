@@ -4,7 +4,7 @@ import pytest
 from project import BEYOND, JOBS, POINTS, Project
 
 import roughgas.config
-from roughgas import accuracy
+from roughgas.studies import accuracy
 
 LEGAL = [
     "results/paper/cooling/r0.87/beta-0.33/seed7.nc",

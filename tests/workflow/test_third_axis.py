@@ -8,8 +8,8 @@ import pytest
 from project import BEYOND, JOBS, Project
 from test_targets import refusal
 
-from roughgas.dataset import read_point
-from roughgas.reduce import read_reduced
+from roughgas.data.point import read_point
+from roughgas.data.reduced import read_reduced
 
 EXPERIMENTS = {
     "spun": {"extends": "sheared", "sweep": {"spin.inertia": ["1", "0.1"]}},

@@ -4,13 +4,13 @@ own experiments, and on the questions that it leaves open."""
 from collections.abc import Iterable
 from pathlib import Path
 
-from roughgas.atomic import write_text
+from roughgas.base.errors import InputError
+from roughgas.base.files import write_text
 from roughgas.claims import beyond, cooling, shear, vibration, walls
 from roughgas.claims.beyond.proportion import FAR, NEAR
 from roughgas.claims.evidence import load_all
 from roughgas.claims.finding import Row, examine
 from roughgas.claims.report import Subject, as_json, as_markdown
-from roughgas.errors import InputError
 
 REFERENCE = """\
 S. McNamara and S. Luding, *Energy nonequipartition in systems of inelastic, rough spheres*,

@@ -24,7 +24,7 @@ from roughgas.claims.finding import (
     worse,
 )
 from roughgas.claims.statistics import Sample
-from roughgas.reduce import predicted_ratio
+from roughgas.theory.prediction import predicted_ratio
 
 NEAR = 0.08
 """Fraction of R by which points are counted as near Eq. (K)."""

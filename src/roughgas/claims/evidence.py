@@ -7,8 +7,9 @@ import numpy as np
 import xarray as xr
 
 from roughgas.claims.statistics import Sample, pooled_errors
-from roughgas.reduce import EQUILIBRATED, GRID, predicted_ratio, read_reduced
+from roughgas.data.reduced import EQUILIBRATED, GRID, read_reduced
 from roughgas.theory.arguments import NET_SHARES
+from roughgas.theory.prediction import predicted_ratio
 
 
 class NotTestedError(Exception):

@@ -8,7 +8,7 @@ import xarray as xr
 
 from roughgas.claims.evidence import NotTestedError
 from roughgas.claims.statistics import SIGNIFICANT, Estimate, Sample, written
-from roughgas.reduce import GRID
+from roughgas.data.reduced import GRID
 
 HOLDS = "holds"
 QUALIFIED = "holds with a qualification"

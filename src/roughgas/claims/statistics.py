@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roughgas.measure.errors import gaussian_sigmas
+from roughgas.statistics.errors import gaussian_sigmas
 
 SIGNIFICANT = 3.0
 """Sigma from which a difference counts as real."""

@@ -4,15 +4,7 @@ import numpy as np
 import xarray as xr
 
 from roughgas.claims.evidence import NotTestedError, deviation, effect_of_restitution, sample
-from roughgas.claims.finding import (
-    HOLDS,
-    QUALIFIED,
-    Finding,
-    Statement,
-    agreement,
-    tendency,
-    text,
-)
+from roughgas.claims.finding import HOLDS, QUALIFIED, Finding, Statement, agreement, tendency, text
 from roughgas.claims.statistics import Estimate, Sample
 
 INTERMEDIATE = 0.5

@@ -14,11 +14,11 @@ from collections.abc import Sequence
 from importlib import import_module
 from typing import NoReturn
 
-from roughgas import __version__
-from roughgas.atomic import check_place
+from roughgas.base.errors import CollapseError, InputError
+from roughgas.base.files import check_place
+from roughgas.base.version import __version__
 from roughgas.cli.parser import BAD_INPUT, Commands, Formatter, Parser
 from roughgas.cli.streams import mend_streams
-from roughgas.errors import CollapseError, InputError
 
 FAILED, INTERRUPTED, NOBODY_READS = 1, 130, 141
 GO_ON = "nothing is half-written; the same command begins anew"

@@ -4,13 +4,13 @@ import argparse
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
+from roughgas.base.errors import InputError
 from roughgas.cli.layout import as_json, columns
 from roughgas.cli.parser import examples
 from roughgas.cli.settings import add_experiments, add_scale
-from roughgas.errors import InputError
 
 if TYPE_CHECKING:
-    from roughgas.speed import Speed
+    from roughgas.simulation.speed import Speed
 
 EXAMPLES = examples(
     "roughgas bench",
@@ -48,9 +48,9 @@ def bench(options: argparse.Namespace) -> None:
         raise InputError("--runs", options.runs, "be a whole number >= 1")
     found, runs = _experiments(options), int(options.runs)
 
-    from roughgas.machine import description
-    from roughgas.progress import Bar
-    from roughgas.speed import measure
+    from roughgas.base.machine import description
+    from roughgas.simulation.progress import Bar
+    from roughgas.simulation.speed import measure
 
     speeds = []
     with Bar("bench", len(found) * (runs + 1), "runs") as bar:

@@ -5,8 +5,8 @@ import json
 import sys
 from typing import Any
 
+from roughgas.base.errors import InputError
 from roughgas.cli.parser import examples
-from roughgas.errors import InputError
 
 EXAMPLES = examples(
     "roughgas crate results/paper/*.nc results/paper/R.csv figures/fig*.png -o run.zip",
@@ -41,7 +41,7 @@ def add_commands(commands: Any) -> None:
 def crate(options: argparse.Namespace) -> None:
     """Write or check a crate."""
     from roughgas import config
-    from roughgas.crate import verify, write_crate
+    from roughgas.results.crate import verify, write_crate
 
     if options.verify is not None:
         wrong = verify(options.verify, options.files)

@@ -29,8 +29,8 @@ def add_commands(commands: Any) -> None:
 
 def export(options: argparse.Namespace) -> None:
     """Write the tables, and say where."""
-    from roughgas.errors import InputError
-    from roughgas.export import export as export_dataset
+    from roughgas.base.errors import InputError
+    from roughgas.results.export import export as export_dataset
 
     output = Path(options.output or Path(options.input).with_suffix(".csv"))
     if output.suffix != ".csv":

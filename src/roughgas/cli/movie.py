@@ -5,13 +5,13 @@ import sys
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
+from roughgas.base.errors import InputError
 from roughgas.cli.parser import examples
 from roughgas.cli.run import add_point, point_of
-from roughgas.errors import InputError
 
 if TYPE_CHECKING:
-    from roughgas.movies.snapshots import Take
     from roughgas.scene import Scene
+    from roughgas.show.movies.snapshots import Take
 
 EXAMPLE = examples("roughgas movie vibrated --r 0.9 --beta 0.5 -o bed.mp4 bed.gif")
 FRAMES = 2, 10_000
@@ -43,7 +43,7 @@ def add_commands(commands: Any) -> None:
 def movie(options: argparse.Namespace) -> None:
     """Simulate a point, and write its movie."""
     from roughgas import config
-    from roughgas.plotting.movie import check_kind
+    from roughgas.show.encoding import check_kind
 
     seed = config.seed(options.seed)
     r, beta, settings = point_of(options)
@@ -51,10 +51,10 @@ def movie(options: argparse.Namespace) -> None:
     for output in options.output:
         check_kind(output)
 
-    from roughgas.movies.drawing import Subject, write
-    from roughgas.movies.snapshots import snapshots
-    from roughgas.progress import watched
     from roughgas.scene import build
+    from roughgas.show.movies.drawing import Subject, write
+    from roughgas.show.movies.snapshots import snapshots
+    from roughgas.simulation.progress import watched
 
     scene = build(settings, r, beta)
     take = _take(options, settings, scene)
@@ -73,7 +73,7 @@ def movie(options: argparse.Namespace) -> None:
 
 
 def _take(options: argparse.Namespace, settings: dict[str, Any], scene: "Scene") -> "Take":
-    from roughgas.movies.snapshots import usual_take
+    from roughgas.show.movies.snapshots import usual_take
 
     take = usual_take(settings, scene)
     if options.start is not None:

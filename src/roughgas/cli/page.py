@@ -68,21 +68,21 @@ def add_commands(commands: Any) -> None:
 
 def page(options: argparse.Namespace) -> None:
     """Write the interactive page."""
-    from roughgas.page import write_page
+    from roughgas.show.page import write_page
 
     write_page(options.inputs, options.points, options.output)
 
 
 def html(options: argparse.Namespace) -> None:
     """Write a file as HTML."""
-    from roughgas.page.document import write_document
+    from roughgas.show.page.document import write_document
 
     write_document(options.input, options.output)
 
 
 def times(options: argparse.Namespace) -> None:
     """Write how long experiments took."""
-    from roughgas.page.times import write_times
+    from roughgas.results.times import write_times
 
     write_times(options.inputs, options.output)
 

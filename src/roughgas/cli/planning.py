@@ -7,11 +7,11 @@ import time
 from pathlib import Path
 from typing import Any
 
+from roughgas.base.errors import InputError
 from roughgas.cli.layout import as_json
 from roughgas.cli.parser import examples
 from roughgas.cli.run import add_point, point_of, write_seed
 from roughgas.cli.settings import add_experiments, add_scale
-from roughgas.errors import InputError
 
 PILOT_EXAMPLE = examples("roughgas pilot sheared --r 0.9 --beta 0 -o pilot.json")
 REACH_EXAMPLE = examples("roughgas reach sheared --scale fine --r 0.9 --beta 0 -o seeds")
@@ -92,7 +92,7 @@ def reach(options: argparse.Namespace) -> None:
     from roughgas.planning.plan import plan_point
     from roughgas.planning.reach import completed
     from roughgas.planning.reach import reach as run
-    from roughgas.progress import Progress
+    from roughgas.simulation.progress import Progress
 
     r, beta, settings = point_of(options)
     if "target_stderr" not in settings:
@@ -118,7 +118,7 @@ def reach(options: argparse.Namespace) -> None:
 def plan(options: argparse.Namespace) -> None:
     """Print what experiments will cost."""
     from roughgas import config
-    from roughgas.atomic import write_text
+    from roughgas.base.files import write_text
     from roughgas.planning.table import as_markdown, as_numbers, row
 
     if not options.cores.isdecimal() or int(options.cores) < 1:
@@ -143,7 +143,7 @@ def plan(options: argparse.Namespace) -> None:
 
 def costs(options: argparse.Namespace) -> None:
     """Write what was planned beside what happened."""
-    from roughgas.planning.costs import write_costs
+    from roughgas.results.costs import write_costs
 
     write_costs(options.inputs, options.fixed, options.output)
 
@@ -151,7 +151,7 @@ def costs(options: argparse.Namespace) -> None:
 def _pilots(name: str, settings: dict[str, Any], folder: Path):
     """The pilots of a sweep by (r, beta), and the CPU seconds spent on missing ones."""
     from roughgas.planning.pilot import explore, read_pilot, write_pilot
-    from roughgas.progress import Bar
+    from roughgas.simulation.progress import Bar
 
     axes, found, begin = settings["sweep"], {}, time.process_time()
     with Bar(f"pilots of {name}", len(axes["r"]) * len(axes["beta"]), "points") as bar:

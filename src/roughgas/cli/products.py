@@ -67,7 +67,7 @@ def add_commands(commands: Any) -> None:
 
 def reduce(options: argparse.Namespace) -> None:
     """Combine points into a reduced dataset."""
-    from roughgas.reduce import reduce_points
+    from roughgas.results.reduce import reduce_points
 
     piped = options.inputs == ["-"]
     reduce_points(sys.stdin.read().splitlines() if piped else options.inputs, options.output)
@@ -75,16 +75,20 @@ def reduce(options: argparse.Namespace) -> None:
 
 def table(options: argparse.Namespace) -> None:
     """Write reduced datasets as one table."""
-    from roughgas.table import write_table
+    from roughgas.results.table import write_table
 
     write_table(options.inputs, options.output)
 
 
 def figure(options: argparse.Namespace) -> None:
     """Draw one figure."""
-    from roughgas.plotting import draw
+    from roughgas.show import figures
+    from roughgas.studies import figures as of_studies
 
-    draw(options.name, options.inputs, options.output)
+    if options.name in of_studies.FIGURES:
+        of_studies.draw(options.name, *options.inputs, options.output)
+    else:
+        figures.draw(options.name, options.inputs, options.output)
 
 
 def claims(options: argparse.Namespace) -> None:

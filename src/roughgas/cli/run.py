@@ -5,13 +5,13 @@ import sys
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
+from roughgas.base.errors import InputError
 from roughgas.cli.layout import as_json, with_error
 from roughgas.cli.parser import examples
 from roughgas.cli.settings import add_experiments, add_settings
-from roughgas.errors import InputError
 
 if TYPE_CHECKING:
-    from roughgas.dataset import Point
+    from roughgas.data.point import Point
 
 RUN_EXAMPLES = examples(
     "roughgas run cooling --r 0.9 --beta -0.5",
@@ -94,8 +94,8 @@ def _run_seeds(
     """Simulate a point, for each seed an output."""
     from roughgas import config
     from roughgas.planning.reach import complete
-    from roughgas.point import run_point
-    from roughgas.progress import Progress
+    from roughgas.simulation.point import run_point
+    from roughgas.simulation.progress import Progress
 
     settings = complete(config.point_settings(settings), r, beta)
     for label, seed, output in zip(options.seed, seeds, outputs, strict=True):
@@ -119,7 +119,7 @@ def compile_kernel(options: argparse.Namespace) -> None:
 
     r, settings = config.restitution(options.r), _settings(options)
 
-    from roughgas.point import compile_kernels
+    from roughgas.simulation.point import compile_kernels
 
     every = config.every_variant(options.experiment, settings).values()
     compile_kernels([one | {"sweep": {"r": [r]}} for one in every])
@@ -128,7 +128,7 @@ def compile_kernel(options: argparse.Namespace) -> None:
 def point_of(options: argparse.Namespace) -> tuple[float, float, dict[str, Any]]:
     """r, beta and the settings of the experiment, or of its variant."""
     from roughgas import config
-    from roughgas.provenance import variant_attributes
+    from roughgas.config.provenance import variant_attributes
 
     r, beta = config.restitution(options.r), config.roughness(options.beta)
     settings = _settings(options)
@@ -156,8 +156,8 @@ def write_seed(
 def _write(
     options: argparse.Namespace, settings: dict[str, Any], seed: str, output: str, point: "Point"
 ) -> "Point":
-    from roughgas.dataset import write_point
-    from roughgas.provenance import provenance
+    from roughgas.config.provenance import provenance
+    from roughgas.data.point import write_point
 
     labels = options.r, options.beta, seed
     about = provenance(options.experiment, settings, labels, options.scale, output)

@@ -45,10 +45,10 @@ def clustering(options: argparse.Namespace) -> None:
     """Film the gas, from the last checkpoint on where there is one."""
     settings, every = _settings(options), _frames(options.checkpoint_every)
 
-    from roughgas.checkpoint import discard
-    from roughgas.clustering import run
-    from roughgas.film import write_film
-    from roughgas.progress import FilmProgress
+    from roughgas.data.checkpoint import discard
+    from roughgas.data.film import write_film
+    from roughgas.simulation.clustering import run
+    from roughgas.simulation.progress import FilmProgress
 
     checkpoint = Path(f"{options.output}.checkpoint.npz")
     with FilmProgress(checkpoint, settings["frames"]) as progress:
@@ -64,7 +64,7 @@ def clustering(options: argparse.Namespace) -> None:
 
 def film(options: argparse.Namespace) -> None:
     """Draw a film."""
-    from roughgas.plotting.clustering import draw
+    from roughgas.show.figures.clustering import draw
 
     draw(options.input, options.output)
 
@@ -80,7 +80,7 @@ def _settings(options: argparse.Namespace) -> dict[str, Any]:
 
 
 def _frames(text: str) -> int:
-    from roughgas.errors import InputError
+    from roughgas.base.errors import InputError
 
     if not text.isdecimal() or int(text) < 1:
         raise InputError("--checkpoint-every", text, "be a whole number of frames >= 1")

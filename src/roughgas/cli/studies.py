@@ -49,9 +49,9 @@ def add_commands(commands: Any) -> None:
 
 def study(options: argparse.Namespace) -> None:
     """Run a task."""
-    from roughgas import accuracy
-    from roughgas.errors import InputError
-    from roughgas.progress import Bar
+    from roughgas.base.errors import InputError
+    from roughgas.simulation.progress import Bar
+    from roughgas.studies import accuracy
 
     module, text = accuracy.study(options.study), _settings(options)
     settings = json.loads(text)
@@ -59,7 +59,7 @@ def study(options: argparse.Namespace) -> None:
     if options.task not in tasks:
         raise InputError("task", options.task, f"be one of {', '.join(tasks)}")
 
-    from roughgas.accuracy.files import write_task
+    from roughgas.studies.accuracy.files import write_task
 
     with Bar(options.task, None) as bar:
         found = module.run(
@@ -74,14 +74,14 @@ def study(options: argparse.Namespace) -> None:
 
 def combine(options: argparse.Namespace) -> None:
     """Combine tasks."""
-    from roughgas.accuracy import files
+    from roughgas.studies.accuracy import files
 
     files.combine(options.inputs, options.output)
 
 
 def tables(options: argparse.Namespace) -> None:
     """Write tables."""
-    from roughgas.accuracy.files import write_tables
+    from roughgas.studies.accuracy.files import write_tables
 
     write_tables(options.input, options.output)
 

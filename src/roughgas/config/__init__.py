@@ -9,6 +9,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+from roughgas.base.errors import InputError, not_one_of
 from roughgas.config.axis import (
     SWEPT,
     check_axis,
@@ -21,7 +22,6 @@ from roughgas.config.axis import (
 )
 from roughgas.config.labels import level, restitution, roughness, seed
 from roughgas.config.schema import check_schema, first_repeated, shown
-from roughgas.errors import InputError, not_one_of
 
 __all__ = [
     "SWEPT",

@@ -8,9 +8,9 @@ vibrated_inertia/inertia0.1: an experiment like any other, whose effects have th
 from collections.abc import Mapping
 from typing import Any
 
+from roughgas.base.errors import InputError
 from roughgas.config.labels import level
 from roughgas.config.schema import first_repeated, shown
-from roughgas.errors import InputError
 
 SWEPT = "swept"
 """Key in the settings of a variant: what its experiment sweeps, such as spin.inertia."""

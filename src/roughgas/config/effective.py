@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from roughgas import config as settings
-from roughgas.atomic import write_text
+from roughgas.base.files import write_text
 
 HEAD = """\
 # The complete configuration of the scale `{scale}`: what experiments take over from each other, and

@@ -4,7 +4,7 @@ lines."""
 import re
 from typing import Any
 
-from roughgas.errors import InputError
+from roughgas.base.errors import InputError
 
 NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 WORD = re.compile(r"[a-z][a-z0-9_]*")

@@ -6,7 +6,7 @@ from typing import Any
 
 import yaml
 
-from roughgas.errors import InputError
+from roughgas.base.errors import InputError
 
 # YAML 1.1 takes 1e-5 for text, since it has no point
 SCIENTIFIC = re.compile(r"[-+]?[0-9]+(\.[0-9]*)?[eE][-+]?[0-9]+")

@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from roughgas.base.errors import InputError, not_one_of
 from roughgas.config.labels import LEGAL_LEVEL, level, restitution, roughness
-from roughgas.errors import InputError, not_one_of
 
 if TYPE_CHECKING:
     from jsonschema import Draft202012Validator, ValidationError

@@ -9,7 +9,7 @@ import sysconfig
 from importlib import metadata, util
 from pathlib import Path
 
-from roughgas import __version__
+from roughgas.base.version import __version__
 from roughgas.doctor.finding import OK, PROBLEM, WARNING, Finding
 
 ANEW = "install anew: `rm -r .venv` and `make setup` in the project's folder"

@@ -8,7 +8,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from roughgas.atomic import check_place
+from roughgas.base.files import check_place
 from roughgas.doctor.finding import OK, PROBLEM, WARNING, Finding
 from roughgas.doctor.installation import ANEW, PROMISED
 
@@ -49,10 +49,10 @@ def fingerprint() -> str:
     """
     import numpy as np
 
-    from roughgas.initial import lattice
     from roughgas.kernel.layout import new_state
     from roughgas.kernel.record import Plan, columns, record
     from roughgas.scene import build
+    from roughgas.scene.initial import lattice
 
     scene = build(SETTINGS, 0.9, 0.3)
     position = lattice(scene, SETTINGS)[:PARTICLES]
@@ -83,7 +83,7 @@ def figure() -> Finding:
     import matplotlib
     from matplotlib.figure import Figure
 
-    from roughgas.plotting.style import PARAMETERS
+    from roughgas.show.style import PARAMETERS
 
     with tempfile.TemporaryDirectory() as folder, matplotlib.rc_context(PARAMETERS):
         drawing = Figure()
@@ -107,7 +107,7 @@ def movie() -> Finding:
 def configuration() -> Finding:
     """Whether the configuration of this folder is legal."""
     from roughgas import config
-    from roughgas.errors import InputError
+    from roughgas.base.errors import InputError
 
     if not Path("config.yaml").exists():
         return Finding(OK, "there is none in this folder: go to the project's to run experiments")

@@ -10,8 +10,8 @@ mu times the normal one, and slides with just that impulse if it would:
 import math
 from typing import NamedTuple
 
+from roughgas.base.errors import InputError
 from roughgas.effects.settings import Number, read
-from roughgas.errors import InputError
 from roughgas.kernel.jit import jit
 from roughgas.kernel.vectors import dot
 

@@ -7,7 +7,7 @@ messages quote, is made from that.
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
-from roughgas.errors import InputError
+from roughgas.base.errors import InputError
 
 
 class Surroundings(NamedTuple):

@@ -6,9 +6,9 @@ stays where it is: only the velocity that particles meet there changes.
 
 from typing import NamedTuple
 
+from roughgas.base.errors import InputError
 from roughgas.effects import walls
 from roughgas.effects.settings import MATERIAL, Number, read
-from roughgas.errors import InputError
 from roughgas.kernel.contact import collide_with_wall
 from roughgas.kernel.jit import jit
 from roughgas.kernel.turns import TURN, sine_and_cosine

@@ -9,8 +9,8 @@ it, where the impulses on the two partners are opposite but the velocities at wh
 
 from typing import NamedTuple
 
+from roughgas.base.errors import InputError
 from roughgas.effects.settings import Number, read
-from roughgas.errors import InputError
 from roughgas.kernel.jit import jit
 
 SETTINGS = {"velocity": Number("Velocity U of the images above relative to the box, in a/T.")}

@@ -13,8 +13,8 @@ s into rotation. Units: a = m = T = 1.
 import math
 from typing import NamedTuple
 
+from roughgas.base.errors import InputError
 from roughgas.effects.settings import Number, read
-from roughgas.errors import InputError
 from roughgas.kernel.flight import come_in, put
 from roughgas.kernel.hooks import unless_absent
 from roughgas.kernel.jit import jit

@@ -17,10 +17,10 @@ import tempfile
 from contextlib import suppress
 from pathlib import Path
 
-from roughgas.errors import InputError
+from roughgas.base.errors import InputError
 
 PACKAGE = Path(__file__).resolve().parent.parent
-COMPILED_ROOMS = ("kernel", "effects", "dsmc", "soft_spheres")
+COMPILED_ROOMS = ("kernel", "effects", "studies/dsmc", "studies/soft_spheres")
 
 
 def source_hash():

@@ -29,14 +29,7 @@ from roughgas.kernel.state import (
     TOUCHED,
     TYPICAL_SPEED,
 )
-from roughgas.kernel.vectors import (
-    add_scaled,
-    cross_to_spin,
-    dot,
-    scale,
-    spin_cross,
-    subtract,
-)
+from roughgas.kernel.vectors import add_scaled, cross_to_spin, dot, scale, spin_cross, subtract
 
 # Where r leaves nothing of the normal velocity but rounding, a pair would go on colliding for ever:
 # particles part at no less than this share of the typical speed

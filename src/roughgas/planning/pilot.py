@@ -11,22 +11,22 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from roughgas.atomic import write_text
+from roughgas.base.errors import InputError
+from roughgas.base.files import write_text
 from roughgas.config.labels import LARGEST_SEED
-from roughgas.errors import InputError
-from roughgas.initial import initial_state
-from roughgas.measure.averages import period_means
-from roughgas.measure.energies import Energies, ratio
-from roughgas.measure.errors import (
+from roughgas.scene import Scene, build, check_company
+from roughgas.scene.initial import initial_state
+from roughgas.simulation import cooling, steady
+from roughgas.simulation.energies import Energies, ratio
+from roughgas.simulation.recorder import Recorder
+from roughgas.statistics.averages import period_means
+from roughgas.statistics.errors import (
     autocorrelation_time,
     blocking,
     gaussian_sigmas,
     stderr_over_seeds,
 )
-from roughgas.measure.intervals import degrees_of_freedom
-from roughgas.protocols import cooling, steady
-from roughgas.protocols.recorder import Recorder
-from roughgas.scene import Scene, build, check_company
+from roughgas.statistics.intervals import degrees_of_freedom
 
 SEED = LARGEST_SEED  # of pilots: none that a point would take
 CHAINS = 10  # which the transient of a driven gas is seen with

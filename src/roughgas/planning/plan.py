@@ -6,8 +6,8 @@ from statistics import NormalDist
 from typing import Any, NamedTuple
 
 from roughgas.planning.pilot import Pilot
-from roughgas.protocols.cooling import TRANSIENT, rate_of, transient_length
 from roughgas.scene import Scene, build
+from roughgas.simulation.cooling import TRANSIENT, rate_of, transient_length
 from roughgas.theory import collisions_to_relax, cooling_ratio, lun_ratio
 
 BIAS = 0.1  # of the target: what may be left of the transient

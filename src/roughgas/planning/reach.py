@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from roughgas.dataset import Point
-from roughgas.measure.intervals import Error, pooled
+from roughgas.data.point import Point
 from roughgas.planning.pilot import Pilot, explore
 from roughgas.planning.plan import Plan, plan_point
-from roughgas.point import run_point
+from roughgas.simulation.point import run_point
+from roughgas.statistics.intervals import Error, pooled
 
 MOST = 4  # times the planned number of seeds: a pilot cannot be further off
 

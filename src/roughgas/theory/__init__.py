@@ -2,7 +2,7 @@
 
 Everything is a function of plain numbers or numpy arrays that broadcast against each other, in
 double precision; plain numbers give a numpy float back. Arguments are checked: an illegal one
-raises `roughgas.errors.InputError`.
+raises `roughgas.base.errors.InputError`.
 
 Units: particle radius a, mass m and time unit T are 1. A granular temperature is T = 2 E, twice the
 kinetic energy per degree of freedom: T_tr = m <v^2>/D and T_rot = m q a^2 <omega^2>/(2D-3), in

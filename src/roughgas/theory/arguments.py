@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roughgas.errors import InputError
+from roughgas.base.errors import InputError
 
 Numbers = float | np.ndarray
 """What functions of theory take: a plain number, or an array."""

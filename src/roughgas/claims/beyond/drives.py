@@ -2,12 +2,7 @@
 
 import xarray as xr
 
-from roughgas.claims.evidence import (
-    NotTestedError,
-    deviation,
-    deviation_at_shares,
-    spin_shares,
-)
+from roughgas.claims.evidence import NotTestedError, deviation, deviation_at_shares, spin_shares
 from roughgas.claims.finding import Finding, Statement, agreement, points
 
 QUOTE = "Possible future work includes boundary conditions with non-zero rotational energy input"

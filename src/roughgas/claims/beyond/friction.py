@@ -6,13 +6,7 @@ import xarray as xr
 from roughgas import theory
 from roughgas.claims.beyond.proportion import agreement_in_proportion
 from roughgas.claims.evidence import NotTestedError, sample
-from roughgas.claims.finding import (
-    AGREE,
-    Finding,
-    Statement,
-    agreement,
-    text,
-)
+from roughgas.claims.finding import AGREE, Finding, Statement, agreement, text
 
 QUOTE = (
     "calculating R for the more realistic interaction model that accounts also for Coulomb-friction"

@@ -3,13 +3,7 @@
 import numpy as np
 import xarray as xr
 
-from roughgas.claims.evidence import (
-    NotTestedError,
-    deviation,
-    difference,
-    sample,
-    spin_shares,
-)
+from roughgas.claims.evidence import NotTestedError, deviation, difference, sample, spin_shares
 from roughgas.claims.finding import (
     AGREE,
     FAILS,

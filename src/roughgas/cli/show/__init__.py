@@ -5,9 +5,9 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+from roughgas.base.errors import InputError
 from roughgas.cli.layout import as_json
 from roughgas.cli.parser import examples
-from roughgas.errors import InputError
 
 EXAMPLES = examples(
     "roughgas show results/paper/vibrated/r0.9/beta0.5/seed1.nc",

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 from roughgas.cli.layout import columns
 from roughgas.cli.show.point import cost, settings
-from roughgas.film import read_film as read
+from roughgas.data.film import read_film as read
 
 if TYPE_CHECKING:
     import xarray

@@ -9,8 +9,8 @@ import numpy as np
 
 from roughgas.cli.layout import columns, decimals_of, unit_of, with_error
 from roughgas.cli.theory.quantities import equation
-from roughgas.dataset import VARIABLES
-from roughgas.dataset import read_point as read
+from roughgas.data.point import VARIABLES
+from roughgas.data.point import read_point as read
 
 if TYPE_CHECKING:
     import xarray
@@ -77,7 +77,7 @@ def _theory(point: "xarray.Dataset") -> dict[str, float]:
     """R of theory, and what the gas has more, where particles spin."""
     if "R" not in point:
         return {}
-    from roughgas.reduce import predicted_ratio
+    from roughgas.theory.prediction import predicted_ratio
 
     about = point.attrs | {"theory": _kind(point)}
     expected = float(predicted_ratio(about, about["r"], about["beta"]))

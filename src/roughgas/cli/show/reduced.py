@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any
 from roughgas.cli.layout import columns, with_error
 from roughgas.cli.show.point import SHAPES, cost
 from roughgas.cli.theory.quantities import equation
-from roughgas.reduce import EQUILIBRATED, third_axis
-from roughgas.reduce import read_reduced as read
-from roughgas.table import rows as rows_of
+from roughgas.data.reduced import EQUILIBRATED, third_axis
+from roughgas.data.reduced import read_reduced as read
+from roughgas.results.table import rows as rows_of
 
 if TYPE_CHECKING:
     import xarray

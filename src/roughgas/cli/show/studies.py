@@ -3,8 +3,8 @@
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from roughgas.accuracy import STUDIES
 from roughgas.cli.show import task
+from roughgas.studies.accuracy import STUDIES
 
 if TYPE_CHECKING:
     import xarray
@@ -16,7 +16,7 @@ def read(path: str | Path) -> dict[str, "xarray.Dataset"]:
     """The datasets of all studies in a file."""
     import netCDF4
 
-    from roughgas.accuracy.files import read_study
+    from roughgas.studies.accuracy.files import read_study
 
     with netCDF4.Dataset(path) as file:
         names = [name for name in STUDIES if name in file.groups]
@@ -30,7 +30,7 @@ def record(studies: dict[str, "xarray.Dataset"]) -> dict[str, Any]:
 
 def text(studies: dict[str, "xarray.Dataset"]) -> str:
     """For a person: what `roughgas tables` writes."""
-    from roughgas.accuracy import tables
+    from roughgas.studies.accuracy import tables
 
     scales = {data.attrs["scale"] for data in studies.values()}
     parts = [getattr(tables, name)(data).strip() for name, data in studies.items()]

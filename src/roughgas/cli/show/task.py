@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from roughgas.cli.layout import columns
-from roughgas.dataset import read_point as read
+from roughgas.data.point import read_point as read
 
 if TYPE_CHECKING:
     import xarray

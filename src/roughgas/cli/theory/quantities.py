@@ -3,7 +3,7 @@
 from typing import Any, NamedTuple
 
 from roughgas import theory
-from roughgas.reduce import predicted_ratio
+from roughgas.theory.prediction import predicted_ratio
 
 PAPER = "S. McNamara, S. Luding, Phys. Rev. E 58, 2247 (1998)"
 TOLERANCE = 0.01  # of R, within which it counts as settled

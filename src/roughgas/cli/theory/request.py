@@ -9,8 +9,8 @@ from decimal import Decimal
 import numpy as np
 
 from roughgas import config, theory
+from roughgas.base.errors import InputError
 from roughgas.cli.theory.quantities import Gas
-from roughgas.errors import InputError
 from roughgas.theory.arguments import check_between, check_inertia, check_share
 
 RANGE = re.compile(r"([^:]+):([^:]+):([^:]+)")

@@ -1,0 +1,54 @@
+"""What a point's dataset says of where it comes from: enough to make it again, it alone."""
+
+import shlex
+from collections.abc import Mapping
+from typing import Any
+
+from roughgas import config
+from roughgas.base.errors import InputError
+
+
+def provenance(
+    experiment: str,
+    settings: Mapping[str, Any],
+    point: tuple[str, str, str],
+    scale: str,
+    output: str,
+) -> dict[str, Any]:
+    """The attributes of a dataset that say how to make it again.
+
+    `point` are its labels (r, beta, seed), `output` is where the command that they give writes it.
+    Raises InputError where the name of the experiment and the settings disagree.
+    """
+    text = config.as_text(config.point_settings(settings))
+    r, beta, seed = point
+    command = ["roughgas", "run", experiment, "--scale", scale]
+    # joined by =, lest a negative number be taken for an option
+    command += [f"--r={r}", f"--beta={beta}", f"--seed={seed}"]
+    command += ["--settings", text, "--output", output]
+    return {
+        "title": f"{experiment}: r = {r}, beta = {beta}",
+        **variant_attributes(experiment, settings),
+        "scale": scale,
+        "r_label": r,
+        "beta_label": beta,
+        "experiment_json": text,
+        "command": shlex.join(command),
+    }
+
+
+def variant_attributes(name: str, settings: Mapping[str, Any]) -> dict[str, Any]:
+    """The attributes of a dataset that say which experiment, and which variant of it, it is of.
+
+    Raises InputError where name and settings disagree.
+    """
+    base, slash, variant = name.partition("/")
+    key = settings.get(config.SWEPT)
+    if key is None and not slash:
+        return {"experiment": base}
+    effect, _, parameter = (key or "").partition(".")
+    value = settings["effects"].get(effect, {}).get(parameter)
+    label = variant.removeprefix(parameter)
+    if value is None or label == variant or config.level(label) != value:
+        raise InputError("experiment", name, "be the variant that its settings are of")
+    return {"experiment": base, "variant": variant, "swept": key, "swept_value": value}

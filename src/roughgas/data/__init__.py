@@ -1,0 +1,1 @@
+"""Datasets: what files hold, how they are written and read."""

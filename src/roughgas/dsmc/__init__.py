@@ -1,5 +1,0 @@
-"""Direct simulation Monte Carlo: a homogeneous gas of rough particles, without their positions."""
-
-from roughgas.dsmc.gas import Gas, Material, Samples, material, new_gas, run
-
-__all__ = ["Gas", "Material", "Samples", "material", "new_gas", "run"]

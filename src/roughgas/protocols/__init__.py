@@ -1,1 +1,0 @@
-"""How an experiment is run and measured: one file a kind of schedule."""

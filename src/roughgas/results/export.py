@@ -1,0 +1,128 @@
+"""Datasets as CSV files that any program reads: a table for each set of dimensions, and one that
+says what the columns mean.
+
+Numbers are written such that the same bits are read back; what is missing is an empty cell.
+"""
+
+import csv
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from roughgas.base.errors import InputError
+from roughgas.base.files import whole_file
+from roughgas.data.cf import check_schema
+from roughgas.results import table
+
+if TYPE_CHECKING:
+    import xarray
+
+MAIN = ("sample",), ("frame",)
+"""The dimensions of the table that a point, or a film, is about; it gets the plain name."""
+ABOUT = ("name", "file", "value", "units", "meaning")
+
+
+def export(path: str | Path, output: str | Path) -> list[Path]:
+    """Write the dataset at `path`, of whatever kind, to `output` and to files beside it.
+
+    `output` (`bed.csv`) gets the time series of a point, the frames of a film, or the grid of a
+    reduced dataset; variables of other dimensions go to files such as `bed.replica.csv`; scalars,
+    attributes and the meaning of all columns to `bed.about.csv`. Of a file of studies each group
+    becomes such a set of files, `bed.GROUP.about.csv` and so on. Returns the paths.
+
+    Raises InputError where the pipeline has not written the file, or a newer version has.
+    """
+    import netCDF4
+    import xarray
+
+    with netCDF4.Dataset(path) as file:
+        groups = list(file.groups)
+        attributes = {name: file.getncattr(name) for name in file.ncattrs()}
+    if "schema_version" not in attributes:
+        raise InputError("dataset", path, "be a file that the pipeline wrote")
+    check_schema(attributes, path)
+    written = []
+    for group in groups or [None]:
+        dataset = xarray.load_dataset(path, engine="netcdf4", group=group)
+        base = Path(output) if group is None else _beside(output, group)
+        written += _export(dataset, base)
+    return written
+
+
+def _export(dataset: "xarray.Dataset", output: Path) -> list[Path]:
+    """Write one dataset; the paths of its files, the one that describes it last."""
+    files, found_in = [], {}
+    for dims, names in _columns(dataset).items():
+        is_grid = "n_seeds" in dataset and dims == dataset["n_seeds"].dims
+        file = output if is_grid or dims in MAIN else _beside(output, "-".join(dims))
+        if is_grid:
+            head = (*table.HEAD, *(name for name in names if name not in table.HEAD))
+            _write(file, head, (row.values() for row in table.rows(dataset, head)))
+        else:
+            _write_columns(file, dataset, dims, names)
+        files.append(file)
+        axes = () if is_grid else dims  # there the third axis is a column `value`
+        found_in = dict.fromkeys(axes, file.name) | found_in | dict.fromkeys(names, file.name)
+    about = _beside(output, "about")
+    _write(about, ABOUT, _descriptions(dataset, found_in))
+    return [*files, about]
+
+
+def _columns(dataset: "xarray.Dataset") -> dict[tuple[str, ...], list[str]]:
+    """The names of variables by their dimensions, coordinates first; without scalars and axes."""
+    found: dict[tuple[str, ...], list[str]] = {}
+    variables = dataset.reset_coords()[[*dataset.coords, *dataset.data_vars]].variables
+    for name, variable in variables.items():
+        if variable.dims and name not in dataset.dims:
+            found.setdefault(variable.dims, []).append(name)
+    return found
+
+
+def _write_columns(
+    file: Path, dataset: "xarray.Dataset", dims: Sequence[str], names: Sequence[str]
+) -> None:
+    """Write the variables of the same dimensions: their places along these, then the values.
+
+    The disks of a film come with the number of their frame.
+    """
+    data = dataset.reset_coords()[list(names)]
+    columns = data.to_dataframe(dim_order=list(dims)).reset_index()[[*dims, *names]]
+    if dims == ("disk",):
+        counts = dataset["disks"].values
+        columns.insert(0, "frame", np.repeat(np.arange(len(counts)), counts))
+    with whole_file(file) as draft:
+        columns.to_csv(draft, index=False, lineterminator="\n")
+
+
+def _descriptions(
+    dataset: "xarray.Dataset", found_in: Mapping[str, str]
+) -> Iterator[tuple[Any, ...]]:
+    """A row for each variable, with the value where it is a scalar, and for each attribute, whose
+    names begin with a colon, as ncdump has it."""
+    for name, variable in dataset.variables.items():
+        about = variable.attrs
+        units = about.get("reduced_units", about.get("units", ""))
+        value = "" if variable.dims else variable.values.item()
+        yield name, found_in.get(name, ""), value, units, about.get("long_name", "")
+    for name, value in dataset.attrs.items():
+        yield f":{name}", "", value, "", "attribute"
+
+
+def _write(file: Path, head: Sequence[str], rows: Iterable[Sequence[Any]]) -> None:
+    with whole_file(file) as draft, open(draft, "w", newline="", encoding="utf-8") as text:
+        lines = csv.writer(text, lineterminator="\n")
+        lines.writerow(head)
+        lines.writerows(map(_cell, row) for row in rows)
+
+
+def _cell(value: Any) -> Any:
+    """`value`, or an empty cell where it is not a number though it should be."""
+    return "" if isinstance(value, float) and np.isnan(value) else value
+
+
+def _beside(output: str | Path, part: str) -> Path:
+    """`bed.PART.csv` for `bed.csv`."""
+    output = Path(output)
+    return output.with_name(f"{output.stem}.{part}{output.suffix}")

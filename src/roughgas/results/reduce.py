@@ -1,0 +1,256 @@
+"""From points to one reduced dataset an experiment.
+
+A reduced dataset has the dimensions (r, beta, seed), before them the parameter that the experiment
+sweeps besides, if there is one (`third_axis`). The error bar pools the scatter over independent
+seeds with the errors within them (statistics/intervals.py), since a scatter over few seeds alone is
+known badly; each of the two is kept beside it.
+"""
+
+import math
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from roughgas.base.errors import InputError
+from roughgas.data.cf import COMMON_ATTRIBUTES, check_schema, completed
+from roughgas.data.point import CLOCKS, VARIABLES, variable_attributes, whole_netcdf
+from roughgas.data.reduced import GRID, third_axis
+from roughgas.statistics.intervals import pooled
+
+if TYPE_CHECKING:
+    import netCDF4
+    import xarray
+
+SAME = (
+    "experiment",
+    "scale",
+    "dimension",
+    "inertia",
+    "spin_share",
+    "mu",
+    "particles",
+    "swept",
+)
+OF_A_POINT = ("r", "beta", "seed", "r_label", "beta_label", "variant", "swept_value", "command")
+PROVENANCE = ("roughgas_version", "numpy_version", "numba_version", "kernel_source_hash")
+SCATTERED = ("R", "R_unsubtracted", "R_drift", "E_trans", "input_spin_share")
+"""Means over seeds that carry a standard error, `<name>_stderr`."""
+
+DERIVED = {
+    "R_seed": "R of each seed",
+    "R_stderr": "standard error of R: scatter over seeds and error within them, pooled",
+    "R_dof": "degrees of freedom that R_stderr is known with",
+    "R_ci95": "half width of the 95 % interval of R, by Student's t",
+    "R_ci95_trusted": "share of seeds whose R_ci95 holds the truth as often as it says",
+    "equilibrated": "share of seeds that were found in a steady state",
+    "R_stderr_over_seeds": "standard error of R from the scatter over seeds alone",
+    "R_stderr_within": "standard error of R from within the files, combined over seeds",
+    "R_unsubtracted_stderr": "standard error of R_unsubtracted: scatter over seeds",
+    "E_trans_stderr": "standard error of E_trans: scatter over seeds",
+    "input_spin_share_stderr": "standard error of input_spin_share: scatter over seeds",
+    "R_drift": "mean of R in the second half of the measured window minus that in the first",
+    "R_drift_stderr": "standard error of R_drift: scatter over seeds",
+    "measured_for": "length of the measured window, mean over seeds",
+    "n_seeds": "number of seeds found",
+}
+LIKE = {"measured_for": "measured_from", "E_trans_stderr": "E_trans"}
+"""Variables of points that those of DERIVED have the units of, where they are not those of R."""
+
+
+class Summary(NamedTuple):
+    """The scalars and attributes of one point's file."""
+
+    scalars: dict[str, float]
+    attributes: dict[str, Any]
+
+    @property
+    def place(self) -> tuple[Any, ...]:
+        """Its (r, beta, seed), before them the value of the parameter that is swept besides."""
+        about = self.attributes
+        swept = (about["swept_value"],) if "swept" in about else ()
+        return (*swept, float(about["r"]), float(about["beta"]), int(about["seed"]))
+
+
+def reduce_points(paths: Iterable[str | Path], output: str | Path) -> None:
+    """Combine the points at `paths` (of one experiment, in any order) into the dataset `output`.
+
+    A path is that of a dataset, or of a folder of them, one a seed.
+
+    Seeds missing at an (r, beta) are NaN in R_seed and absent from n_seeds and the means.
+    Raises InputError where the paths are none, of several experiments, or the same point twice.
+    """
+    points = [_summary(file) for path in map(Path, paths) for file in _files(path)]
+    if not points:
+        raise InputError("number of points to reduce", 0, "be at least 1")
+    dataset = _combined(points)
+    with whole_netcdf(output) as draft:
+        dataset.to_netcdf(draft, engine="netcdf4")
+
+
+def _files(path: Path) -> list[Path]:
+    """The dataset at `path`, or those in the folder that it is."""
+    return sorted(path.glob("seed*.nc")) if path.is_dir() else [path]
+
+
+def _summary(path: Path) -> Summary:
+    import netCDF4
+
+    with netCDF4.Dataset(path) as file:
+        file.set_auto_mask(False)
+        attributes = {name: file.getncattr(name) for name in file.ncattrs()}
+        check_schema(attributes, path)
+        if "seed" not in attributes:
+            raise InputError("file to reduce", path, "be the dataset of a point")
+        found = [name for name, about in VARIABLES.items() if not about.dims]
+        scalars = {name: file[name][...].item() for name in found if name in file.variables}
+        scalars["measured_for"], scalars["R_drift"] = _window(file, scalars)
+    return Summary(scalars, attributes)
+
+
+def _window(file: "netCDF4.Dataset", scalars: dict[str, float]) -> tuple[float, float]:
+    """Length of the measured window, and how far R moves from its first half to its second."""
+    clock = next((name for name in CLOCKS if name in file.variables), None)
+    begin = scalars.get("measured_from", math.nan)
+    if clock is None or "R_series" not in file.variables or math.isnan(begin):
+        return math.nan, math.nan
+    at, ratio = file[clock][...], file["R_series"][...]
+    end = scalars.get("plateau_end", math.nan)
+    inside = (at >= begin) & (at <= (at[-1] if math.isnan(end) else end))
+    halves = np.array_split(ratio[inside], 2)
+    if not halves[1].size:
+        return math.nan, math.nan
+    return float(np.ptp(at[inside])), float(halves[1].mean() - halves[0].mean())
+
+
+def _combined(points: Sequence[Summary]) -> "xarray.Dataset":
+    """The reduced dataset of points of one experiment."""
+    import xarray
+
+    attributes = _common_attributes(points)
+    columns = zip(*(point.place for point in points), strict=True)
+    axes = [sorted(set(column), key=_ascending) for column in columns]
+    swept = third_axis(attributes)
+    grid = GRID if swept is None else (swept, *GRID)
+    stacks = _stacks(points, axes)
+    cooling = "plateau_end" in stacks
+    attributes.setdefault("theory", "K" if cooling else "lun")
+    variables = {
+        name: ((*grid, "seed")[: values.ndim], values, _about(name, cooling))
+        for name, values in _over_seeds(stacks).items()
+    }
+    coordinates = dict(zip((*grid, "seed"), map(_coordinate, axes), strict=True))
+    dataset = xarray.Dataset(variables, coordinates, attributes)
+    dataset.r.attrs.update(long_name="normal restitution")
+    dataset.beta.attrs.update(long_name="tangential restitution")
+    dataset.seed.attrs.update(long_name="seed of the random generator")
+    if swept is not None:
+        dataset[swept].attrs.update(long_name=f"parameter of an effect: {attributes['swept']}")
+    return completed(dataset)
+
+
+def _ascending(value: Any) -> tuple[bool, Any]:
+    """Sorts numbers, and words after them."""
+    return isinstance(value, str), value
+
+
+def _coordinate(values: Sequence[Any]) -> np.ndarray:
+    """Numbers as they are; text where some are words."""
+    if any(isinstance(value, str) for value in values):
+        values = [value if isinstance(value, str) else f"{value:.10g}" for value in values]
+    return np.array(values)
+
+
+def _stacks(points: Sequence[Summary], axes: Sequence[Sequence[Any]]) -> dict[str, np.ndarray]:
+    """Every scalar over the axes, NaN where no point is."""
+    places = [{value: index for index, value in enumerate(axis)} for axis in axes]
+    shape = tuple(map(len, axes))
+    stacks = {name: np.full(shape, math.nan) for point in points for name in point.scalars}
+    seen = set()
+    for point in points:
+        if point.place in seen:
+            raise InputError("point (..., r, beta, seed)", point.place, "be given once")
+        seen.add(point.place)
+        index = tuple(where[value] for where, value in zip(places, point.place, strict=True))
+        for name, value in point.scalars.items():
+            stacks[name][index] = value
+    return stacks
+
+
+def _over_seeds(stacks: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """What a reduced dataset holds, by name."""
+    reduced = {"n_seeds": np.isfinite(stacks["E_trans"]).sum(-1)}
+    for name, values in stacks.items():
+        how = VARIABLES[name].over_seeds if name in VARIABLES else "mean"
+        if how == "sum":
+            reduced[name] = np.nansum(values, -1).astype(VARIABLES[name].dtype)
+        elif how == "mean":
+            reduced[name] = _mean(values)
+        if name in SCATTERED:
+            reduced[f"{name}_stderr"] = _standard_error(values)
+    return reduced | _errors(stacks, reduced) if "R" in stacks else reduced
+
+
+def _errors(stacks: dict[str, np.ndarray], reduced: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """R of each seed, and all that is known of how sure R is."""
+    there = np.isfinite(stacks["R"])
+    count = there.sum(-1)
+    square = np.where(there, stacks["R_stderr"] ** 2, 0.0).sum(-1)
+    within = np.sqrt(square) / np.maximum(count, 1)
+    return {
+        "R_seed": stacks["R"],
+        "R_stderr_within": np.where(count > 0, within, math.nan),
+        "R_stderr_over_seeds": reduced["R_stderr"],
+    } | _pooled_errors(stacks, there)
+
+
+def _pooled_errors(stacks: dict[str, np.ndarray], there: np.ndarray) -> dict[str, np.ndarray]:
+    """R's error, its degrees of freedom and its interval at every place; NaN where no point is."""
+    names = ("R_stderr", "R_dof", "R_ci95")
+    found = {name: np.full(there.shape[:-1], math.nan) for name in names}
+    for place in zip(*np.nonzero(there.any(-1)), strict=True):
+        runs = (stacks[name][place][there[place]] for name in ("R", "R_stderr", "R_dof"))
+        error = pooled(*runs)
+        for name, value in zip(names, (*error, error.half_width(0.95)), strict=True):
+            found[name][place] = value
+    return found
+
+
+def _mean(values: np.ndarray) -> np.ndarray:
+    """Mean over the last axis of what is there, NaN where nothing is."""
+    count = np.isfinite(values).sum(-1)
+    return np.where(count > 0, np.nansum(values, -1) / np.maximum(count, 1), math.nan)
+
+
+def _standard_error(values: np.ndarray) -> np.ndarray:
+    """Standard error of the mean over the last axis (ddof = 1), NaN below two values."""
+    count = np.isfinite(values).sum(-1)
+    square = np.nansum((values - _mean(values)[..., None]) ** 2, -1)
+    return np.where(count > 1, np.sqrt(square / np.maximum(count * (count - 1), 1)), math.nan)
+
+
+def _about(name: str, cooling: bool) -> dict[str, str]:
+    """long_name and units of a reduced variable."""
+    if name not in DERIVED:
+        return variable_attributes(name, cooling)
+    like = variable_attributes(LIKE.get(name, "R"), cooling)
+    return like | {"long_name": DERIVED[name]}
+
+
+def _common_attributes(points: Sequence[Summary]) -> dict[str, Any]:
+    """Attributes that all points share; versions that differ are listed, not hidden."""
+    shared = dict(points[0].attributes)
+    swept = third_axis(shared)
+    for name in (name for name in SAME if name != swept):
+        values = {str(point.attributes.get(name, "(none)")) for point in points}
+        if len(values) > 1:
+            raise InputError(f"{name} of the points", " and ".join(sorted(values)), "be the same")
+    for name in list(shared):
+        values = {str(point.attributes.get(name, "")) for point in points}
+        if len(values) > 1 and name in PROVENANCE:
+            shared[name] = ", ".join(sorted(values))
+        elif len(values) > 1 or name in OF_A_POINT or name == swept:
+            del shared[name]
+    over = "r and beta" if swept is None else f"{swept}, r and beta"
+    return shared | COMMON_ATTRIBUTES | {"title": f"{shared['experiment']}: R over {over}"}

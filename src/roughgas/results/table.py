@@ -1,0 +1,89 @@
+"""From reduced datasets to one table: a row for each point of the grid."""
+
+import csv
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from roughgas.base.files import whole_file
+from roughgas.data.reduced import GRID, read_reduced, third_axis
+from roughgas.theory.prediction import predicted_ratio
+
+if TYPE_CHECKING:
+    import xarray
+
+ABOUT = ("experiment", "scale", "particles", "dimension", "inertia", "parameter", "value")
+COLUMNS = (
+    "n_seeds",
+    "R",
+    "R_stderr",
+    "R_dof",
+    "R_ci95",
+    "R_ci95_trusted",
+    "R_stderr_over_seeds",
+    "R_stderr_within",
+    "R_ratio_of_means",
+    "R_unsubtracted",
+    "R_unsubtracted_stderr",
+    "E_trans",
+    "E_trans_stderr",
+    "E_rot",
+    "input_spin_share",
+    "equilibrated",
+    "measured_from",
+    "measured_for",
+    "collisions",
+    "contact_time_fraction",
+)
+THEORY = ("theory", "R_theory", "residual")
+HEAD = (*ABOUT, *GRID, *COLUMNS, *THEORY)
+
+
+def write_table(reduced_paths: Iterable[str | Path], csv_path: str | Path) -> None:
+    """Write one tidy CSV: a row for each experiment, value of its third axis, r and beta that holds
+    data."""
+    with whole_file(csv_path) as draft, open(draft, "w", newline="", encoding="utf-8") as file:
+        table = csv.writer(file, lineterminator="\n")
+        table.writerow(HEAD)
+        for path in reduced_paths:
+            for row in rows(read_reduced(path)):
+                table.writerow(map(_cell, row.values()))
+
+
+def rows(dataset: "xarray.Dataset", head: Sequence[str] = HEAD) -> Iterator[dict[str, Any]]:
+    """The rows of a reduced dataset, ascending in the third axis, r and beta: by the names in
+    `head` what there is of each, be it of HEAD, a variable over the grid or an attribute, else "".
+    NaN is a number that is not known."""
+    for variant in _variants(dataset):
+        yield from _rows_of_variant(variant, head)
+
+
+def _variants(dataset: "xarray.Dataset") -> Iterator["xarray.Dataset"]:
+    """A dataset over (r, beta) for each value of the third axis, which its attributes then tell."""
+    name = third_axis(dataset.attrs)
+    if name is None:
+        yield dataset
+        return
+    for index, value in enumerate(dataset[name].values):
+        about = {name: value, "parameter": name, "value": value}
+        yield dataset.isel({name: index}, drop=True).assign_attrs(about)
+
+
+def _rows_of_variant(dataset: "xarray.Dataset", head: Sequence[str]) -> Iterator[dict[str, Any]]:
+    flat = dataset.drop_dims("seed").stack(point=GRID)
+    prediction = predicted_ratio(dataset.attrs, flat.r.values, flat.beta.values)
+    for index in np.flatnonzero(flat["n_seeds"].values):
+        row = {name: flat[name].values[index] for name in head if name in flat}
+        residual = row.get("R", math.nan) - prediction[index]
+        row |= {"R_theory": prediction[index], "residual": residual}
+        yield {name: row.get(name, dataset.attrs.get(name, "")) for name in head}
+
+
+def _cell(value: Any) -> str:
+    """Numbers to ten digits, what is not a number as an empty cell."""
+    if isinstance(value, str):
+        return value
+    return "" if math.isnan(value) else format(value, ".10g")

@@ -1,0 +1,112 @@
+"""What is simulated: a box, its particles' material, and the effects that act. Computes nothing.
+
+Units: particle radius a = particle mass m = time unit T = 1.
+"""
+
+import math
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+from roughgas.base.errors import InputError
+from roughgas.effects import KINDS, Effects
+from roughgas.effects.settings import Surroundings
+from roughgas.kernel import hooks
+
+DIAMETER = 2.0
+# Of a periodic box, in a: below two diameters a particle could meet two images of another, and a
+# little above that contacts are foreseen for moments only
+NARROWEST = 4.01
+NARROWEST_CHANNEL = 2.01  # between side walls, in a
+FAR_APART = 8.0  # nothing comes round at walls: those nearer than this shorten no outlook
+
+
+class Scene(NamedTuple):
+    """A scene as the kernel takes it; what is None is compiled away."""
+
+    box: tuple[float | None, ...]  # period of each axis in a, None where it has none
+    restitution: float
+    roughness: float
+    effects: Effects
+    extent: float  # least distance after which something comes round: a period or a width, in a
+    middle: float  # height that the mean flow vanishes at, in a
+
+
+def build(experiment: Mapping[str, Any], r: float, beta: float) -> Scene:
+    """The scene of an experiment's settings with particles of restitution r and roughness beta.
+
+    Raises InputError for values that are illegal or contradict each other.
+    """
+    _check_range("restitution r", r, 0.0, 1.0)
+    _check_range("roughness beta", beta, -1.0, 1.0)
+    lengths = tuple(None if side == "open" else float(side) for side in experiment["box"])
+    chosen = experiment["effects"]
+    effects = _effects(chosen, Surroundings(lengths, float(r), float(beta), chosen))
+    if effects.spin is None and beta != -1.0:
+        raise InputError("roughness beta", beta, "be -1 where particles do not spin")
+    closed = is_closed(effects)
+    _check_composition(lengths, effects, closed)
+    return Scene(
+        box=(None, *lengths[1:]) if closed else lengths,
+        restitution=float(r),
+        roughness=float(beta),
+        effects=effects,
+        extent=_extent(lengths, closed),
+        middle=0.0 if lengths[1] is None else lengths[1] / 2.0,
+    )
+
+
+def check_company(scene: Scene, experiment: Mapping[str, Any]) -> None:
+    """Raise InputError where a single particle would rest in its box, and have no energy, or have
+    nobody to be kicked with."""
+    if experiment["particles"] == 1 and scene.effects.gravity is None:
+        raise InputError("particles", 1, "be at least 2 where there is no floor to meet")
+    if experiment["particles"] == 1 and scene.effects.thermostat is not None:
+        raise InputError("particles", 1, "be at least 2 where a thermostat kicks pairs")
+
+
+def is_closed(effects: Effects) -> bool:
+    """Whether walls close the first axis of the box."""
+    return bool(hooks.present(effects, "CLOSES"))
+
+
+def _effects(settings, around):
+    for name in settings:
+        if name not in KINDS:
+            raise InputError("effect", name, f"be one of {', '.join(KINDS)}")
+    return Effects(
+        **{
+            name: kind.from_settings(settings[name], around)
+            for name, kind in KINDS.items()
+            if name in settings
+        }
+    )
+
+
+def _extent(lengths, closed):
+    across = max(lengths[0], FAR_APART) if closed else lengths[0]
+    return min(length for length in (across, *lengths[1:]) if length is not None)
+
+
+def _check_range(key, value, low, high):
+    if not low <= value <= high:  # NaN fails, too
+        raise InputError(key, value, f"lie in [{low:g}, {high:g}]")
+
+
+def _check_composition(lengths, effects, closed):
+    open_axes = [k for k, length in enumerate(lengths) if length is None]
+    if open_axes not in ([], [len(lengths) - 1]):
+        raise InputError("box", list(lengths), "be open along its last axis only")
+    for k, length in enumerate(lengths):
+        least = NARROWEST_CHANNEL if k == 0 and closed else NARROWEST
+        if length is not None and not least <= length < math.inf:
+            raise InputError(f"box[{k}]", length, f"be a number of at least {least:g}")
+    if effects.gravity is None and effects.floor is not None:
+        legal = "come with gravity, without which nothing comes back to it"
+        raise InputError("effects.floor", "without gravity", legal)
+    if effects.gravity is not None and effects.floor is None:
+        legal = "come with a floor, without which all falls for ever"
+        raise InputError("effects.gravity", "without floor", legal)
+    if (effects.gravity is None) == bool(open_axes):
+        raise InputError("box", list(lengths), "be open above exactly where there is gravity")
+    if closed and effects.shear is not None:
+        raise InputError("effects", "walls and shear", "not close the axis that is sheared along")

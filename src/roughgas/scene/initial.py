@@ -1,0 +1,109 @@
+"""Where a simulation starts: no overlap, Maxwellian velocities, no spin, no total momentum."""
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from roughgas.base.errors import InputError
+from roughgas.kernel.layout import new_state
+from roughgas.kernel.state import State
+from roughgas.scene.composition import DIAMETER, Scene
+
+TEMPERATURE = 1.0  # m a^2/T^2
+VACANCIES = 1.3  # lattice sites a particle, where there is room
+LOOSE_PACKING = 0.2  # volume fraction of a gas with an open top
+LEAST = DIAMETER * (1.0 + 1e-9)  # distance of two sites, in a
+# Where the sites are in a cell of the closer lattice: in space a cube with centred faces
+CENTRED = {
+    2: [(0.25, 0.25), (0.75, 0.75)],
+    3: [(0.25, 0.25, 0.25), (0.25, 0.75, 0.75), (0.75, 0.25, 0.75), (0.75, 0.75, 0.25)],
+}
+
+
+def initial_state(
+    scene: Scene,
+    experiment: Mapping[str, Any],
+    rng: np.random.Generator,
+    precision: type = np.float64,
+) -> State:
+    """A random state of `experiment["particles"]` particles.
+
+    They sit on random sites of a square (cubic) lattice, or of a centred one where only that holds
+    them, with Maxwellian velocities at temperature 1 m a^2/T^2 relative to the mean flow and none
+    of them spinning. `precision` is that in which trajectories and spins are kept. Raises
+    InputError where they do not fit.
+    """
+    number = experiment["particles"]
+    sites = lattice(scene, experiment)
+    position = sites[np.sort(rng.permutation(len(sites))[:number])]
+    velocity = math.sqrt(TEMPERATURE) * rng.standard_normal(position.shape)
+    velocity -= velocity.mean(axis=0)
+    shear = scene.effects.shear
+    if shear is not None:
+        height = position[:, 1] - scene.middle
+        velocity[:, 0] += shear.velocity / (2.0 * scene.middle) * height
+    spin = np.zeros((number, 2 * position.shape[1] - 3))
+    return new_state(scene, position, velocity, spin, precision, rng)
+
+
+def lattice(scene: Scene, experiment: Mapping[str, Any]) -> np.ndarray:
+    """Sites (M, D) of a lattice that fills the box, M >= the number of particles, in a."""
+    number, dimension = experiment["particles"], len(scene.box)
+    lengths, bottom = _room(scene, experiment)
+    spacing = max(LEAST, (math.prod(lengths) / (VACANCIES * number)) ** (1.0 / dimension))
+    counts = [max(1, math.floor(length / spacing)) for length in lengths]
+    if math.prod(counts) < number:  # too dense for vacancies: as many sites as there is room for
+        counts = [math.floor(length / LEAST) for length in lengths]
+    sites = _sites(lengths, counts, [(0.5,) * dimension])
+    if len(sites) < number and None not in scene.box:  # too dense for one site to a cell
+        counts = _closest(lengths)
+        sites = max(sites, _sites(lengths, counts, CENTRED[dimension]), key=len)
+    if len(sites) < number:
+        raise InputError("particles", number, f"be at most {len(sites)} in this box")
+    sites[:, -1] += bottom
+    return sites
+
+
+def _sites(lengths, counts, within):
+    """Sites of a lattice of so many cells along each axis, at the given places within each cell."""
+    parts = []
+    for place in within:
+        axes = [
+            (np.arange(count) + share) * (length / count)
+            for count, length, share in zip(counts, lengths, place, strict=True)
+        ]
+        parts.append(np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1))
+    return np.concatenate([part.reshape(-1, len(lengths)) for part in parts])
+
+
+def _closest(lengths):
+    """Numbers of cells along each axis of the centred lattice that has the most sites.
+
+    No cell is narrower than LEAST, nor a face of it, from corner to corner, than twice that.
+    """
+    *others, last = lengths
+    choices = [np.arange(1, math.floor(length / LEAST) + 1) for length in others]
+    counts = np.stack(np.meshgrid(*choices, indexing="ij"), axis=-1).reshape(-1, len(others))
+    sides = np.array(others) / counts
+    beside = np.sqrt(np.maximum(4.0 * LEAST**2 - sides**2, LEAST**2))
+    possible = np.all(sides[:, 1:] >= beside[:, :1], axis=1)
+    layers = np.floor(last / beside.max(axis=1)).astype(int) * possible
+    best = np.argmax(counts.prod(axis=1) * layers)
+    return [*counts[best].tolist(), int(layers[best])]
+
+
+def _room(scene, experiment):
+    """Lengths of the region to fill, and where it begins along the last axis."""
+    number = experiment["particles"]
+    lengths = [None if side == "open" else float(side) for side in experiment["box"]]
+    if lengths[-1] is not None:
+        return lengths, 0.0
+    volume = math.pi if len(lengths) == 2 else 4.0 * math.pi / 3.0
+    base = math.prod(lengths[:-1])
+    layers = math.ceil(number * volume / (LOOSE_PACKING * base) / DIAMETER + 1.0)
+    # there is always room above
+    layers = max(layers, -(-number // math.prod(math.floor(side / LEAST) for side in lengths[:-1])))
+    lengths[-1] = layers * LEAST
+    return lengths, scene.effects.floor.amplitude

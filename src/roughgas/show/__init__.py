@@ -1,0 +1,1 @@
+"""What people look at: figures, movies, and the interactive page."""

@@ -1,0 +1,182 @@
+"""The movie of a scene: particles that move and spin, boundaries, and R(t) running beneath."""
+
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from matplotlib import rc_context
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+
+from roughgas.config import SWEPT
+from roughgas.scene import Scene
+from roughgas.show import style
+from roughgas.show.encoding import write_movie
+from roughgas.show.movies.particles import Boundaries, Disks, Spheres, View
+from roughgas.show.movies.snapshots import Snapshot
+
+WIDTH = 4.8  # inches
+DPI = {".gif": 100, ".mp4": 200}
+TALLEST = 1.5  # of what is shown, in widths of the box
+SLIDING_IMAGES = 0.15  # of the images above and below that is shown, in heights of the box
+FRAME_SPACE, GRAPH = 0.85, 1.25  # inches: title and label, and the graph beneath
+PER_PARTICLE = "collisions per particle"
+
+
+class Subject(NamedTuple):
+    """What a movie is of."""
+
+    name: str  # of the experiment
+    settings: Mapping[str, Any]
+    scene: Scene
+    seed: int
+
+
+def write(
+    path: str | Path,
+    subject: Subject,
+    shots: Sequence[Snapshot],
+    per_second: float,
+    watch: Callable[[Iterable[int]], Iterable[int]] = iter,
+) -> None:
+    """Write the movie of `shots` to `path` (.mp4 or .gif), whole or not at all.
+
+    `watch` is handed the frames' numbers as they are drawn, and hands them on. Raises InputError
+    for another kind of file, OSError.
+    """
+    with rc_context(style.PARAMETERS):
+        figure, show = picture(subject, shots)
+        figure.set_dpi(DPI[Path(path).suffix])
+        write_movie(path, figure, show, watch(range(len(shots))), per_second)
+
+
+def picture(subject: Subject, shots: Sequence[Snapshot]) -> tuple[Figure, Callable[[int], None]]:
+    """The figure at its first frame, and what brings it to another one."""
+    view = view_of(subject, shots)
+    room = min(3.9, 3.4 * (view.top - view.bottom) / (view.right - view.left))
+    inches = math.ceil(10 * (room + FRAME_SPACE + GRAPH)) / 10  # even numbers of pixels
+    figure = Figure(figsize=(WIDTH, inches), layout="constrained")
+    above, below = figure.subplots(2, 1, height_ratios=(room + FRAME_SPACE, GRAPH))
+    figure.suptitle(_title(subject, view), fontsize=9, linespacing=1.4)
+    _set_up(above, subject.scene, view)
+    kind = Disks if len(subject.scene.box) == 2 else Spheres
+    particles = kind(above, view, spin_scales(subject, shots))
+    boundaries = Boundaries(above, view, subject.scene.effects)
+    if shots[0].spin is not None:
+        bar = figure.colorbar(particles.coloured, ax=above, shrink=0.9, pad=0.02)
+        bar.set_label(f"{particles.quantity} / thermal spin")
+        bar.minorticks_off()
+    present = _graph(below, subject, shots)
+
+    def show(frame: int) -> None:
+        particles.show(frame, shots[frame])
+        boundaries.show(shots[frame])
+        present(frame)
+
+    show(0)
+    return figure, show
+
+
+def view_of(subject: Subject, shots: Sequence[Snapshot]) -> View:
+    """What is seen of the box: all of it, but no more than TALLEST widths high; from the side in
+    space, so that the vertical axis is that of gravity, or of the gradient of shear."""
+    scene, lengths = subject.scene, subject.settings["box"]
+    vertical = len(lengths) - 1 if scene.effects.gravity is not None else 1
+    width, tall = float(lengths[0]), lengths[vertical]
+    bottom = 0.0
+    if scene.box[vertical] is None:
+        tall = 1.0 + max(shot.position[:, vertical].max() for shot in shots)
+        bottom = -0.05 * width
+    shown = min(tall, TALLEST * width)
+    margin = 0.04 * width if scene.box[0] is None else 0.0
+    images = SLIDING_IMAGES * tall if scene.effects.shear is not None else 0.0
+    return View(
+        left=-margin,
+        right=width + margin,
+        bottom=bottom - images,
+        top=shown + images,
+        vertical=vertical,
+        periods=(scene.box[0], scene.box[vertical]),
+        cropped=shown < tall,
+    )
+
+
+def spin_scales(subject: Subject, shots: Sequence[Snapshot]) -> np.ndarray | None:
+    """The thermal spin of each frame, in a/T: its r.m.s. were the energy of the frame, in a driven
+    gas of all frames, shared equally."""
+    effects = subject.scene.effects
+    if effects.spin is None:
+        return None
+    dimension = len(subject.scene.box)
+    parts = np.array([[shot.E_trans, shot.E_rot] for shot in shots])
+    weights = dimension, 2 * dimension - 3
+    energy = np.average(parts, axis=1, weights=weights)
+    if subject.settings["schedule"]["kind"] != "cooling":
+        energy = np.full(len(shots), energy.mean())
+    return np.sqrt(2.0 * weights[1] * energy / effects.spin.inertia)
+
+
+def _set_up(axes: Axes, scene: Scene, view: View) -> None:
+    vertical = "xyz"[view.vertical]
+    axes.set(xlim=(view.left, view.right), ylim=(view.bottom, view.top), aspect="equal")
+    axes.set(xlabel=r"$x/a$", ylabel=rf"${vertical}/a$")
+    axes.minorticks_off()
+    axes.tick_params(top=False, right=False, direction="out")
+    if scene.effects.shear is not None:
+        for edge in (0.0, scene.box[1]):
+            axes.axhline(edge, color=style.GREY, linewidth=0.6, linestyle="--")
+
+
+def _title(subject: Subject, view: View) -> str:
+    scene = subject.scene
+    about = [rf"$r = {scene.restitution:g}$"]
+    if scene.effects.spin is not None:
+        about.append(rf"$\beta = {scene.roughness:g}$")
+    about += [rf"$N = {subject.settings['particles']}$", f"seed {subject.seed}"]
+    if view.cropped:
+        about.append(rf"seen up to ${'xyz'[view.vertical]} = {view.top:g}\,a$")
+    return f"{_name(subject)}\n{', '.join(about)}"
+
+
+def _name(subject: Subject) -> str:
+    """The experiment, and what is special of a variant, such as `waves, wave = sine`."""
+    base, _, variant = subject.name.partition("/")
+    name = base.replace("_", " ")
+    if not variant:
+        return name
+    parameter = subject.settings[SWEPT].partition(".")[2]
+    return f"{name}, {parameter.replace('_', ' ')} = {variant.removeprefix(parameter)}"
+
+
+def _graph(axes: Axes, subject: Subject, shots: Sequence[Snapshot]) -> Callable[[int], None]:
+    """The curve up to the present; R, or the energy where nothing spins."""
+    cooling = subject.settings["schedule"]["kind"] == "cooling"
+    at = np.array([shot.collisions if cooling else shot.time for shot in shots])
+    if shots[0].R is None:
+        values = np.array([shot.E_trans for shot in shots])
+        axes.set(ylabel=r"$\bar{E}$ / ($m a^2/T^2$)", yscale="log" if cooling else "linear")
+    else:
+        values = np.array([shot.R for shot in shots])
+        axes.set(ylabel=r"$R$", ylim=(0.0, 1.05 * max(0.6, values.max())))
+        axes.axhline(0.5, color=style.FAINT, linewidth=0.6, linestyle=":")
+    begun = 0 if cooling else math.floor(at[0])
+    at = at - begun
+    since = rf"$(t - {begun}\,T)\,/\,T$" if begun else "$t/T$"
+    axes.set(xlabel=PER_PARTICLE if cooling else since, xlim=_limits(at))
+    axes.xaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 5, 10]))
+    axes.plot(at, values, color="#cccccc", linewidth=0.9)
+    (line,) = axes.plot([], [], color=style.LOOKS[0].colour)
+    (point,) = axes.plot([], [], "o", color=style.THEORY)
+
+    def show(frame: int) -> None:
+        line.set_data(at[: frame + 1], values[: frame + 1])
+        point.set_data(at[frame : frame + 1], values[frame : frame + 1])
+
+    return show
+
+
+def _limits(at):
+    return (at[0], at[-1]) if at[0] < at[-1] else (at[0] - 0.5, at[0] + 0.5)

@@ -1,0 +1,90 @@
+"""One look for all figures: readable in print, in grey and by the colour-blind.
+
+The same data give the same bytes. No pyplot, hence no display and no state shared between figures.
+"""
+
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import NamedTuple
+
+from matplotlib import rc_context, rcParamsDefault
+from matplotlib.figure import Figure
+
+from roughgas.base.errors import InputError
+from roughgas.base.files import whole_file
+
+WIDTH, HEIGHT = 4.8, 5.0  # inches; prints at 85 % in one column of a journal
+# all that a matplotlibrc of the user's might have changed, but for where figures are shown
+PLAIN = {
+    name: value
+    for name, value in rcParamsDefault.items()
+    if not name.startswith(("backend", "interactive", "toolbar", "webagg"))
+}
+PARAMETERS = PLAIN | {
+    "font.family": "DejaVu Sans",  # comes with matplotlib, so that figures are the same anywhere
+    "mathtext.fontset": "dejavusans",
+    "font.size": 9,
+    "axes.labelsize": 10,
+    "legend.fontsize": 7.5,
+    "axes.linewidth": 0.7,
+    "xtick.direction": "in",
+    "ytick.direction": "in",
+    "xtick.top": True,
+    "ytick.right": True,
+    "xtick.minor.visible": True,
+    "ytick.minor.visible": True,
+    "lines.linewidth": 1.1,
+    "lines.markersize": 4.5,
+    "legend.title_fontsize": 7.5,
+    "legend.labelspacing": 0.3,
+    "legend.handlelength": 1.7,
+    "legend.edgecolor": "none",
+    "legend.framealpha": 0.8,
+    "pdf.fonttype": 42,
+    "savefig.dpi": 200,
+}
+METADATA = {
+    ".pdf": {"CreationDate": None, "Creator": "roughgas"},
+    ".png": {"Software": "roughgas"},
+}
+
+
+class Look(NamedTuple):
+    """How a series is told from the others: by colour, marker and line at once."""
+
+    colour: str
+    marker: str
+    line: str | tuple
+
+
+LOOKS = (  # colours of Okabe and Ito
+    Look("#0072B2", "o", "-"),
+    Look("#D55E00", "s", "--"),
+    Look("#009E73", "^", "-."),
+    Look("#CC79A7", "D", ":"),
+    Look("#E69F00", "v", (0, (5, 1, 1, 1, 1, 1))),
+)
+THEORY = "#222222"
+GREY = "#555555"
+FAINT = "#888888"
+
+
+def draw(figure: Callable[[], Figure], outputs: Iterable[str | Path]) -> None:
+    """Draw `figure()` in this style into each of `outputs`.
+
+    Raises InputError where one of them is neither a .pdf nor a .png.
+    """
+    outputs = [Path(output) for output in outputs]
+    for output in outputs:
+        if output.suffix not in METADATA:
+            raise InputError("figure file", output, f"end in {' or '.join(METADATA)}")
+    with rc_context(PARAMETERS):
+        save(figure(), outputs)
+
+
+def save(figure: Figure, outputs: Iterable[str | Path]) -> None:
+    """Write `figure` to each of `outputs` (.pdf or .png), whole or not at all."""
+    for output in map(Path, outputs):
+        with whole_file(output) as draft:
+            kind = output.suffix
+            figure.savefig(draft, format=kind.removeprefix("."), metadata=METADATA[kind])

@@ -1,0 +1,1 @@
+"""Scenes run and measured: one point of an experiment from its settings to its numbers."""

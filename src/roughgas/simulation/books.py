@@ -1,0 +1,84 @@
+"""The books of a simulation's energy: how much each source has put in, and each sink taken out.
+
+Effects that do work, and the contacts, each have an account in the kernel's ledger. All that they
+have booked is the change of the energy, to rounding. Gravity has no account: its potential counts
+as translational energy.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from roughgas.kernel import hooks
+from roughgas.kernel.state import EXPONENT, State
+from roughgas.scene import Scene
+
+MOTIONS = ("translation", "rotation")
+CONTACTS = "contacts"
+
+
+class Books(NamedTuple):
+    """The energies of all particles, in m a^2/T^2."""
+
+    energy: np.ndarray  # (2,) of translation and rotation
+    ledger: np.ndarray  # (accounts, 2) what each effect, and last the contacts, have put into them
+
+
+def books(state: State, scene: Scene) -> Books:
+    """The books at the present instant."""
+    unit = np.ldexp(1.0, 2 * int(state.counts[EXPONENT]))
+    return Books(energy(state, scene) * unit, state.ledger[0] * unit + state.ledger[1])
+
+
+def energy(state: State, scene: Scene) -> np.ndarray:
+    """Translational (kinetic and potential) and rotational energy, in the kernel's present units.
+
+    Velocities are those of the images that the particles last were in, as in the ledger.
+    """
+    dimension, gravity, spin = len(scene.box), scene.effects.gravity, scene.effects.spin
+    velocity = state.trajectory[:, dimension:-1]
+    translational = 0.5 * np.sum(velocity**2)
+    if gravity is not None:
+        # free flight keeps the sum of both: take it where the flight began
+        translational += gravity.acceleration * np.sum(state.trajectory[:, dimension - 1])
+    rotational = 0.0 if spin is None else 0.5 * spin.inertia * np.sum(state.spin**2)
+    return np.array([translational, rotational])
+
+
+def exchange(before: Books, after: Books, scene: Scene, particles: int) -> dict[str, Any]:
+    """Variables of a point (see roughgas.data.point): what was put in between two instants."""
+    booked = (after.ledger - before.ledger) / particles
+    gain = (after.energy - before.energy) / particles
+    accounts = _accounts(scene)
+    return {
+        "source": list(accounts),
+        "motion": list(MOTIONS),
+        "energy_input": booked[list(accounts.values())],
+        "energy_gain": gain,
+        "energy_imbalance": imbalance(booked, gain),
+    } | _shared_input(booked, accounts, scene)
+
+
+def _shared_input(booked, accounts, scene):
+    """How what drives put in is shared, where there are any, and particles spin."""
+    sources = [number for name, number in accounts.items() if name != CONTACTS]
+    put_in = booked[sources].sum(axis=0)
+    if scene.effects.spin is None or not hooks.present(scene.effects, "DRIVES"):
+        return {}
+    return {"input_spin_share": put_in[1] / put_in.sum()}
+
+
+def imbalance(booked: np.ndarray, gain: np.ndarray) -> float:
+    """Largest energy of a motion that the books do not explain, over all that was exchanged."""
+    exchanged = np.abs(booked).sum()
+    missing = np.abs(gain - booked.sum(axis=0)).max()
+    return float(missing / exchanged) if exchanged > 0.0 else float(missing)
+
+
+def _accounts(scene):
+    """Name -> number of the accounts that can change: those of effects that do work."""
+    effects = scene.effects
+    working = [part for hook in ("resolve", "transfer") for part in hooks.present(effects, hook)]
+    ranks = {effects._fields[part.place]: part.rank for part in working}
+    last = sum(effect is not None for effect in effects)
+    return dict(sorted(ranks.items(), key=lambda item: item[1])) | {CONTACTS: last}

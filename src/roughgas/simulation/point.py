@@ -1,0 +1,117 @@
+"""One point of an experiment: from its settings to the dataset's variables."""
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+import numpy as np
+
+from roughgas.base.version import __version__
+from roughgas.data.point import Point
+from roughgas.kernel.cache import source_hash
+from roughgas.scene import Scene, build, check_company
+from roughgas.scene.initial import initial_state
+from roughgas.simulation import cooling, steady
+from roughgas.simulation.recorder import Progress, Recorder
+
+PROTOCOLS = {"steady": steady, "cooling": cooling}
+
+
+def run_point(
+    experiment: Mapping[str, Any],
+    r: float,
+    beta: float,
+    seed: int,
+    progress: Progress | None = None,
+) -> Point:
+    """Simulate one point and measure it.
+
+    `experiment` is an experiment's settings as roughgas.config.experiment gives them; the same
+    settings, r, beta and seed give the same numbers to the last bit, but for `kernel_seconds`.
+    `progress(time, collisions)` is called as the simulation goes on. Raises InputError for illegal
+    values, CollapseError where contacts accumulate without end.
+    """
+    scene = build(experiment, r, beta)
+    check_company(scene, experiment)
+    recorder = Recorder(progress)
+    protocol = PROTOCOLS[experiment["schedule"]["kind"]]
+    measured = protocol.run(scene, experiment, seed, recorder)
+    return Point(
+        variables=measured
+        | {"collisions": recorder.collisions, "kernel_seconds": recorder.seconds}
+        | _contact_time(scene, recorder),
+        attributes={
+            "r": float(r),
+            "beta": float(beta),
+            "seed": int(seed),
+            "particles": experiment["particles"],
+            "dimension": len(scene.box),
+            **_known_to_theory(scene, experiment),
+            "roughgas_version": __version__,
+            "numpy_version": np.__version__,
+            "kernel_source_hash": source_hash(),
+        },
+    )
+
+
+def _known_to_theory(scene, experiment):
+    """The parameters of effects that R depends on in theory."""
+    effects = scene.effects
+    found = {}
+    if effects.spin is not None:
+        found["inertia"] = effects.spin.inertia
+    if effects.friction is not None:
+        found["mu"] = effects.friction.mu
+    if effects.thermostat is not None:
+        found["spin_share"] = float(experiment["effects"]["thermostat"]["spin_share"])
+    return found
+
+
+def _contact_time(scene, recorder):
+    """What is known of the contact-time model, where there is one."""
+    model = scene.effects.contact_time
+    if model is None:
+        return {}
+    fraction = recorder.touched / max(1, recorder.collisions)
+    return {"contact_time": model.duration, "contact_time_fraction": fraction}
+
+
+def effort(experiment: Mapping[str, Any], r: float, beta: float) -> float:
+    """About how much work a point is compared with others, in particles times collisions of each.
+
+    Meant for the order of jobs: a driven gas is taken for one whose particles meet once a T, and a
+    point with a target for one that takes as long as any other.
+    """
+    if "target_stderr" in experiment:
+        return float(experiment["particles"])
+    return experiment["particles"] * length(experiment, r, beta)
+
+
+def length(experiment: Mapping[str, Any], r: float, beta: float) -> float:
+    """How much a point simulates: T, or of a gas that cools collisions per particle."""
+    protocol = PROTOCOLS[experiment["schedule"]["kind"]]
+    return protocol.length(build(experiment, r, beta), experiment["schedule"])
+
+
+def compile_kernels(experiments: Iterable[Mapping[str, Any]]) -> int:
+    """Compile, into numba's cache, every kernel that the experiments' sweeps need; how many."""
+    needed = kernels(experiments)
+    for scene, experiment in needed.values():
+        state = initial_state(scene, experiment, np.random.default_rng(0))
+        Recorder().in_time(state, scene, 1.0, 0)
+    return len(needed)
+
+
+def kernels(experiments: Iterable[Mapping[str, Any]]) -> dict[Any, tuple[Scene, Mapping[str, Any]]]:
+    """By composition, a scene and its experiment for every kernel that the sweeps over r need."""
+    needed = {}
+    for experiment in experiments:
+        for r in experiment["sweep"]["r"]:
+            scene = build(experiment, float(r), -1.0)
+            needed.setdefault(_composition(scene), (scene, experiment))
+    return needed
+
+
+def _composition(scene):
+    """What decides which machine code a scene runs: the types in it."""
+    effects = tuple(None if effect is None else type(effect) for effect in scene.effects)
+    return effects, tuple(side is None for side in scene.box)

@@ -1,0 +1,1 @@
+"""Means, standard errors, confidence intervals, steady states: of any series, without physics."""

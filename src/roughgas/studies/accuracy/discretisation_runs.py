@@ -1,0 +1,208 @@
+"""The jobs behind roughgas.studies.accuracy.discretisation, one function a kind.
+
+Each takes the part's settings, those of the experiment, and progress, and returns numbers by name.
+"""
+
+import math
+import time
+
+import numpy as np
+
+from roughgas.kernel.layout import new_state
+from roughgas.kernel.state import EXPONENT, STARTED
+from roughgas.scene import build
+from roughgas.scene.initial import initial_state
+from roughgas.simulation.energies import energies, ratio
+from roughgas.simulation.recorder import Recorder
+from roughgas.statistics.errors import blocking_stderr
+from roughgas.studies.soft_spheres import new_gas, springs
+from roughgas.studies.soft_spheres.stepping import COLUMNS, step
+from roughgas.theory import collision_frequency, stationary_theta
+
+SETTLING = 100.0  # collisions per particle, before anything is measured
+SAMPLED_EVERY = 0.5  # collisions per particle, in the event-driven gas
+REFRESHED_EVERY = 4  # samples
+LEG = 1.0  # collisions per particle between two rescalings with the contact-time model
+SOFT_LEG = 0.1  # and with soft spheres
+SKIN = 1.0  # of the soft spheres' list of neighbours, in a
+PARTS = 40  # that a long run is cut into, to tell how far it is
+ELASTIC = {"r": 1.0, "beta": 1.0}  # conserves the energy
+ELASTIC_SAMPLES = 100
+STREAMS = {"reference": 1, "event": 2, "single": 3, "model": 4, "soft": 5, "elastic": 6}
+
+
+def reference(settings, cooling, progress, place):
+    return _summary(*_events(settings, cooling, progress, ("reference", place)))
+
+
+def event(settings, cooling, progress):
+    """A run of its own, of which each sample is kept, for the statistical error of such runs."""
+    R, collisions, seconds = _events(settings, cooling, progress, ("event",))
+    return _summary(R, collisions, seconds) | {"R_series": R}
+
+
+def single(settings, cooling, progress):
+    """Trajectories and spins in single precision, and how an elastic gas's energy then drifts."""
+    found = _summary(*_events(settings, cooling, progress, ("single",), np.float32))
+    for name, precision in (("single", np.float32), ("double", np.float64)):
+        found |= _drift(name, settings, cooling, precision)
+    return found
+
+
+def soft(settings, cooling, progress, steps, place):
+    """Soft spheres, `steps` to a contact of t_c nu = settings["contact_times"][place]."""
+    gas, spheres, plan = _soft_gas(settings, cooling, steps, place)
+    (dt, per_leg), number = plan, len(gas.position)
+    nu = _frequency(settings)
+    settling, legs = (
+        math.ceil(length / (nu * dt * per_leg))
+        for length in (SETTLING, settings["soft_collisions"])
+    )
+    step(gas, spheres, dt, per_leg, 1.0, np.empty((settling, len(COLUMNS))))
+    rows = np.empty((legs, len(COLUMNS)))
+    begun, seconds = gas.counts[1], time.process_time()
+    for done, part in _parts(rows, progress):
+        if step(gas, spheres, dt, per_leg, 1.0, part) < len(part):
+            raise RuntimeError(f"soft spheres are too crowded after {done} of {legs} legs")
+    seconds = time.process_time() - seconds
+    translational = rows[:, 0] / (2 * number)
+    rotational = spheres.springs.inertia * rows[:, 1] / number
+    collisions = 2.0 * (rows[-1, 2] - begun) / number
+    found = _summary(rotational / (rotational + translational), collisions, seconds)
+    return found | {"frequency": collisions / (legs * per_leg * dt) / nu, "steps": legs * per_leg}
+
+
+def model(settings, cooling, progress, place):
+    """The kernel with the contact-time model, t_c nu being held as for soft spheres."""
+    duration = settings["model_contact_times"][place] / _frequency(settings)
+    effects = {"contact_time": {"duration": duration}}
+    scene, *where = _start(settings, cooling, ("model", place), effects)
+    state, recorder = new_state(scene, *where), Recorder()
+    number, q = len(where[0]), scene.effects.spin.inertia
+    per_leg = round(LEG * number / 2)
+    settling, legs = (round(length / LEG) for length in (SETTLING, settings["model_collisions"]))
+    for _ in range(settling):
+        recorder.in_collisions(state, scene, per_leg, 1, 1)
+        _heat(state)
+    recorder.touched, recorder.seconds, R = 0, 0.0, np.empty(legs)
+    for _, part in _parts(R, progress):
+        for k in range(len(part)):
+            rows = recorder.in_collisions(state, scene, per_leg, 1, 1)
+            part[k] = ratio(energies(rows, number, q))[0]
+            _heat(state)
+    collisions = 2.0 * legs * per_leg / number
+    return _summary(R, collisions, recorder.seconds) | {
+        "touched": recorder.touched / (legs * per_leg)
+    }
+
+
+JOBS = {
+    "reference": reference,
+    "event": event,
+    "single": single,
+    "model": model,
+    "soft": soft,
+}
+
+
+def _random(settings, kind, *places):
+    key = (STREAMS[kind], *places)
+    return np.random.default_rng(np.random.SeedSequence(settings["seed"], spawn_key=key))
+
+
+def _frequency(settings):
+    """Enskog's nu at temperature 1, in 1/T."""
+    return float(collision_frequency(1.0, settings["packing"]))
+
+
+def _start(settings, cooling, stream, effects=None):
+    """Scene, positions, velocities and spins, the latter at the temperature of theory.
+
+    The experiment's particles at the packing that the settings ask for, with spin and `effects`.
+    """
+    side = math.sqrt(cooling["particles"] * math.pi / settings["packing"])
+    spin = {"spin": cooling["effects"]["spin"]}
+    gas = {
+        "particles": cooling["particles"],
+        "box": [side, side],
+        "effects": spin | (effects or {}),
+    }
+    scene, rng = build(gas, settings["r"], settings["beta"]), _random(settings, *stream)
+    q = scene.effects.spin.inertia
+    theta = stationary_theta(settings["r"], settings["beta"], len(scene.box), q)
+    position, velocity = np.split(initial_state(scene, gas, rng).trajectory[:, :-1], 2, axis=1)
+    return scene, position, velocity, math.sqrt(theta / q) * rng.standard_normal((len(position), 1))
+
+
+def _soft_gas(settings, cooling, steps, place):
+    """Gas, spheres, and (step in T, steps between two rescalings)."""
+    scene, *where = _start(settings, cooling, ("soft", steps, place))
+    nu = _frequency(settings)
+    duration = settings["contact_times"][place] / nu
+    forces = springs(settings["r"], settings["beta"], scene.effects.spin.inertia, duration)
+    dt = duration / steps
+    return *new_gas(*where, scene.box, forces, SKIN), (dt, max(1, round(SOFT_LEG / (nu * dt))))
+
+
+def _heat(state):
+    """Scale a gas that has just been refreshed to temperature 1, and let it forget its units."""
+    velocity = state.trajectory[:, 2:4]
+    factor = math.sqrt(velocity.size / float(np.sum(velocity**2)))
+    velocity *= factor
+    state.spin[:] *= factor
+    state.moments.contact_time[:] /= factor
+    state.counts[EXPONENT] = 0
+    state.counts[STARTED] = 0
+
+
+def _events(settings, cooling, progress, stream, precision=np.float64):
+    """R at each sample, collisions per particle, CPU seconds, of the plain event-driven gas."""
+    scene, *where = _start(settings, cooling, stream)
+    state, recorder = new_state(scene, *where, precision), Recorder()
+    number, q = len(where[0]), scene.effects.spin.inertia
+    every = max(1, round(SAMPLED_EVERY * number / 2))
+    length = settings["reference_collisions" if stream[0] == "reference" else "event_collisions"]
+    recorder.in_collisions(state, scene, every, round(SETTLING / SAMPLED_EVERY), REFRESHED_EVERY)
+    R, seconds = np.empty(round(length / SAMPLED_EVERY)), time.process_time()
+    for _, part in _parts(R, progress):
+        rows = recorder.in_collisions(state, scene, every, len(part), REFRESHED_EVERY)
+        part[:] = ratio(energies(rows, number, q))
+    return R, len(R) * SAMPLED_EVERY, time.process_time() - seconds
+
+
+def _parts(rows, progress):
+    """(number of the first row, part of the rows), each a whole number of refreshed samples."""
+    length = max(1, -(-len(rows) // (PARTS * REFRESHED_EVERY))) * REFRESHED_EVERY
+    for first in range(0, len(rows), length):
+        progress(first, len(rows))
+        yield first, rows[first : first + length]
+
+
+def _drift(name, settings, cooling, precision):
+    """Relative change of an elastic gas's energy per collision, its speed and frequency."""
+    scene, *where = _start(settings | ELASTIC, cooling, ("elastic",))
+    state, recorder = new_state(scene, *where, precision), Recorder()
+    number, q = len(where[0]), scene.effects.spin.inertia
+    every = max(1, round(settings["event_collisions"] * number / 40 / ELASTIC_SAMPLES))
+    recorder.in_collisions(state, scene, every, 1)
+    seconds = time.process_time()
+    rows = recorder.in_collisions(state, scene, every, ELASTIC_SAMPLES)
+    seconds = time.process_time() - seconds
+    found = energies(rows, number, q)
+    changes = np.diff(np.log(2.0 * found.translational + found.rotational)) / every
+    elapsed = rows["time"][-1] - rows["time"][0]
+    return {
+        f"drift_{name}": changes.mean(),
+        f"drift_stderr_{name}": changes.std(ddof=1) / math.sqrt(len(changes)),
+        f"speed_{name}": every * len(rows["time"]) / seconds,
+        f"frequency_{name}": 2.0 * every * len(changes) / number / elapsed,
+    }
+
+
+def _summary(R, collisions, seconds):
+    return {
+        "R": R.mean(),
+        "R_stderr": blocking_stderr(R),
+        "collisions": float(collisions),
+        "cpu_seconds": seconds,
+    }

@@ -1,0 +1,18 @@
+"""The figures of the studies, each drawn from one combined dataset."""
+
+from collections.abc import Iterable
+from importlib import import_module
+from pathlib import Path
+
+FIGURES = ("accuracy", "coverage")
+
+
+def draw(name: str, data: str | Path, outputs: Iterable[str | Path]) -> None:
+    """Draw the figure `name` of FIGURES from the combined dataset at `data` into `outputs`.
+
+    Raises InputError for other files than .pdf and .png.
+    """
+    from roughgas.show import style
+
+    figure = import_module(f"roughgas.studies.figures.{name}")
+    style.draw(lambda: figure.draw(data), outputs)

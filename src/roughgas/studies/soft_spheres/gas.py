@@ -1,0 +1,88 @@
+"""What changes while soft spheres move: where they are, how fast, and which are neighbours."""
+
+import itertools
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from roughgas.base.errors import InputError
+from roughgas.studies.soft_spheres.springs import Springs
+
+DIAMETER = 2.0
+# Entries of Gas.reach
+TRAVELLED, FASTEST = range(2)
+# Entries of Gas.counts
+PAIRS, CONTACTS, BUILDS = range(3)
+CROWD = 2.0  # room for so many times the neighbours that fit without overlap
+NOBODY = -1
+
+
+class Spheres(NamedTuple):
+    """What is simulated: the box (a), its cells, the neighbourhood and the forces."""
+
+    box: tuple[float, ...]
+    cells: tuple[int, ...]  # along each axis; none narrower than the neighbourhood
+    skin: float  # pairs are listed up to DIAMETER + skin, in a
+    springs: Springs
+
+
+class Gas(NamedTuple):
+    """Arrays of N particles in D dimensions, and the list of pairs that may touch soon."""
+
+    position: np.ndarray  # (N, D) in a, outside the box by what was travelled since the last list
+    velocity: np.ndarray  # (N, D) in a/T
+    spin: np.ndarray  # (N, 2 D - 3) surface velocity a w, in a/T
+    pair: np.ndarray  # (room, 2) the first particle has the smaller number
+    image: np.ndarray  # (room, D) what to subtract from their separation, in a
+    stretch: np.ndarray  # (room, D) of the tangential spring, in a
+    touching: np.ndarray  # (room,) whether the pair was in contact when last looked at
+    old_pair: np.ndarray  # (N, 2) pairs in contact, while the list is made anew
+    old_stretch: np.ndarray  # (N, D)
+    first: np.ndarray  # (cells,) first particle of each cell's list
+    following: np.ndarray  # (N,) the next particle of the same list
+    home: np.ndarray  # (N,) the cell that each is in
+    beside: np.ndarray  # (cells, 3^D or fewer) each cell and those around it
+    reach: np.ndarray  # (2,) least upper bounds: way since the last list, and present speed
+    counts: np.ndarray  # (3,) pairs listed, contacts begun, lists made
+
+
+def new_gas(position, velocity, spin, box, springs, skin=2.0) -> tuple[Gas, Spheres]:
+    """A gas from positions (N, D) in a, velocities (N, D) and spins (N, 2 D - 3) in a/T.
+
+    Raises InputError where the box is so narrow that a particle would have two images of another
+    in its neighbourhood, DIAMETER + skin.
+    """
+    number, dimension = position.shape
+    near = DIAMETER + skin
+    for axis, length in enumerate(box):
+        if not 2.0 * near <= length < math.inf:
+            raise InputError(f"box[{axis}]", length, f"be at least {2.0 * near:g} for soft spheres")
+    cells = tuple(math.floor(length / near) for length in box)
+    room = number * math.ceil(CROWD * (near + 1.0) ** dimension / 2.0)
+    gas = Gas(
+        position=np.array(position, float),
+        velocity=np.array(velocity, float),
+        spin=np.array(spin, float),
+        pair=np.zeros((room, 2), np.int32),
+        image=np.zeros((room, dimension)),
+        stretch=np.zeros((room, dimension)),
+        touching=np.zeros(room, np.bool_),
+        old_pair=np.zeros((6 * number, 2), np.int32),
+        old_stretch=np.zeros((6 * number, dimension)),
+        first=np.full(math.prod(cells), NOBODY, np.int32),
+        following=np.full(number, NOBODY, np.int32),
+        home=np.zeros(number, np.int32),
+        beside=_cells_beside(cells),
+        reach=np.array([math.inf, 0.0]),
+        counts=np.zeros(3, np.int64),
+    )
+    return gas, Spheres(tuple(map(float, box)), cells, float(skin), springs)
+
+
+def _cells_beside(counts):
+    """Numbers of each cell and of those around it, each once, the last axis running fastest."""
+    numbers = np.arange(math.prod(counts), dtype=np.int32).reshape(counts)
+    steps = itertools.product(*[range(-1, 2) if count > 2 else range(count) for count in counts])
+    axes = tuple(range(len(counts)))
+    return np.stack([np.roll(numbers, step, axes).ravel() for step in steps], axis=1)

@@ -1,0 +1,124 @@
+"""Which pairs may touch soon: a list (Verlet, Phys. Rev. 159, 98 (1967)) made from cells.
+
+It holds until a particle may have travelled half the skin.
+"""
+
+import math
+
+from roughgas.kernel.images import periods
+from roughgas.kernel.jit import compiled, jit
+from roughgas.kernel.vectors import read, write
+from roughgas.studies.soft_spheres.gas import BUILDS, DIAMETER, FASTEST, NOBODY, PAIRS, TRAVELLED
+
+
+@jit
+def keep_list(gas, spheres, half):
+    """Make the list anew where a pair could be missing that overlaps within +-half of now.
+
+    Returns False where there is no room for it.
+    """
+    if gas.reach[TRAVELLED] + gas.reach[FASTEST] * half <= 0.5 * spheres.skin:
+        return True
+    return _list_pairs(gas, spheres)
+
+
+@jit
+def survey(gas):
+    """Note how fast the fastest particle is."""
+    fastest = 0.0
+    for i in range(gas.velocity.shape[0]):
+        square = 0.0
+        for k in range(gas.velocity.shape[1]):
+            square += gas.velocity[i, k] ** 2
+        fastest = max(fastest, square)
+    gas.reach[FASTEST] = math.sqrt(fastest)
+
+
+@compiled
+def _list_pairs(gas, spheres):
+    kept = _set_aside(gas)
+    _sort_into_cells(gas, spheres)
+    survey(gas)
+    gas.reach[TRAVELLED] = 0.0
+    gas.counts[BUILDS] += 1
+    gas.counts[PAIRS] = 0
+    for i in range(len(gas.following)):
+        begin = gas.counts[PAIRS]
+        if not _list_of(gas, spheres, i):
+            return False
+        for k in range(kept):
+            if gas.old_pair[k, 0] == i:
+                _take_up(gas, spheres, begin, k)
+    return True
+
+
+@jit
+def _set_aside(gas):
+    """Copy the contacts under way, which are few; how many there are."""
+    kept = 0
+    for p in range(gas.counts[PAIRS]):
+        if gas.touching[p]:
+            for k in range(2):
+                gas.old_pair[kept, k] = gas.pair[p, k]
+            for k in range(gas.stretch.shape[1]):
+                gas.old_stretch[kept, k] = gas.stretch[p, k]
+            kept += 1
+    return kept
+
+
+@jit
+def _take_up(gas, spheres, begin, old):
+    for p in range(begin, gas.counts[PAIRS]):
+        if gas.pair[p, 1] == gas.old_pair[old, 1]:
+            gas.touching[p] = True
+            write(gas.stretch, p, 0, read(gas.old_stretch, old, 0, spheres.box))
+
+
+@jit
+def _sort_into_cells(gas, spheres):
+    """Particles go back into the box, and onto the list of their cell."""
+    for cell in range(len(gas.first)):
+        gas.first[cell] = NOBODY
+    for i in range(len(gas.following)):
+        cell = 0
+        for k in range(len(spheres.box)):
+            length, count = spheres.box[k], spheres.cells[k]
+            inside = gas.position[i, k] - length * math.floor(gas.position[i, k] / length)
+            gas.position[i, k] = inside
+            cell = cell * count + min(int(inside / length * count), count - 1)
+        gas.home[i] = cell
+        gas.following[i] = gas.first[cell]
+        gas.first[cell] = i
+
+
+@jit
+def _list_of(gas, spheres, i):
+    """Add the neighbours of particle i with greater numbers; False where the list is full."""
+    near = (DIAMETER + spheres.skin) ** 2
+    home = gas.home[i]
+    for place in range(gas.beside.shape[1]):
+        j = gas.first[gas.beside[home, place]]
+        while j != NOBODY:
+            p = gas.counts[PAIRS]
+            if j > i and _separation(gas, spheres, i, j, p) <= near:
+                if p + 1 >= len(gas.touching):
+                    return False
+                gas.pair[p, 0] = i
+                gas.pair[p, 1] = j
+                gas.touching[p] = False
+                for k in range(len(spheres.box)):
+                    gas.stretch[p, k] = 0.0
+                gas.counts[PAIRS] += 1
+            j = gas.following[j]
+    return True
+
+
+@jit
+def _separation(gas, spheres, i, j, p):
+    """Square of the distance of the nearest images; what leads to these goes to gas.image[p]."""
+    square = 0.0
+    for k in range(len(spheres.box)):
+        x = gas.position[i, k] - gas.position[j, k]
+        gas.image[p, k] = periods(x, spheres.box[k]) * spheres.box[k]
+        square += (x - gas.image[p, k]) ** 2
+    return square

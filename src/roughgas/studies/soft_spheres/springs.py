@@ -1,0 +1,47 @@
+"""From (r, beta) and the duration of a contact to the forces that act in it."""
+
+import math
+from typing import NamedTuple
+
+from roughgas.base.errors import InputError
+
+
+class Springs(NamedTuple):
+    """What acts in a contact, per reduced mass; all in 1/T but q.
+
+    The overlap x obeys x'' + 2 gamma x' + (w^2 + gamma^2) x = 0, and the tangential surface
+    velocity is g_t(t) = g_t(0) cos(w_t t) while the normal stands still.
+    """
+
+    frequency: float  # w
+    damping: float  # gamma
+    turning: float  # w_t
+    inertia: float  # q
+
+
+def springs(r: float, beta: float, inertia: float, duration: float) -> Springs:
+    """The forces by which two spheres part after `duration` (T) with restitution r, roughness beta.
+
+    Normal: the overlap is zero again after t_c = pi/sqrt(w0^2 - gamma^2), at exp(-gamma t_c) = r
+    times the speed of approach (Luding, Granular Matter 10, 235 (2008), Eqs. 5 and 6). The force is
+    attractive towards the end, and is left so. Tangential: an undamped spring turns g_t into
+    cos(w_t t_c) g_t = -beta g_t, for every beta in [-1, 1]; what energy is left in it when the
+    contact ends is lost. A dashpot would do for beta < 0 only, where g_t does not change its sign.
+
+    Raises InputError for r outside (0, 1]: at r = 0 the contact would never end.
+    """
+    _check("restitution r of a soft sphere", r, 0.0 < r <= 1.0, "lie in (0, 1]")
+    _check("roughness beta", beta, -1.0 <= beta <= 1.0, "lie in [-1, 1]")
+    _check("inertia", inertia, 0.0 < inertia < math.inf, "be positive")
+    _check("duration of a contact", duration, 0.0 < duration < math.inf, "be positive")
+    return Springs(
+        frequency=math.pi / duration,
+        damping=-math.log(r) / duration,
+        turning=math.acos(-beta) / duration,
+        inertia=float(inertia),
+    )
+
+
+def _check(key, value, legal, text):
+    if not legal:  # NaN is not
+        raise InputError(key, value, text)

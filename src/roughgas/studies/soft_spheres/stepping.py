@@ -1,0 +1,112 @@
+"""Soft spheres stepped through time, and sampled."""
+
+import math
+
+from roughgas.kernel.cache import load_without_compiler, one_writer_at_a_time
+from roughgas.kernel.jit import compiled, entry, jit
+from roughgas.kernel.vectors import dot, read, subtract
+from roughgas.studies.soft_spheres.contacts import act
+from roughgas.studies.soft_spheres.gas import CONTACTS, DIAMETER, FASTEST, PAIRS, TRAVELLED
+from roughgas.studies.soft_spheres.neighbours import keep_list, survey
+
+COLUMNS = ("vv", "ww", "contacts")
+"""What `step` fills in: sums of v^2 and (a w)^2 over the particles, and contacts begun so far."""
+
+
+@entry(cache=True)
+def step(gas, spheres, dt, steps, temperature, rows):
+    """Make `steps` steps of dt (T) for each of the rows, and fill these (see COLUMNS).
+
+    After each row momentum is removed and all velocities are scaled so that m <v^2>/D is
+    `temperature` (m a^2/T^2); with 0 the gas is left as it is. Returns the number of rows
+    filled: fewer where the particles were so crowded that the list of neighbours is full.
+    """
+    for k in range(len(rows)):
+        if not _advance(gas, spheres, dt, steps):
+            return k
+        _sample(gas, rows[k])
+        if temperature > 0.0:
+            _rescale(gas, temperature)
+    return len(rows)
+
+
+load_without_compiler(step)
+one_writer_at_a_time(step)
+
+
+@jit
+def _advance(gas, spheres, dt, steps):
+    """Flights and the springs' action in turn; half a flight first and last. Second order."""
+    half = 0.5 * dt
+    for k in range(steps):
+        _fly(gas, dt if k > 0 else half)
+        if not keep_list(gas, spheres, half):
+            return False
+        _act_all(gas, spheres, half)
+    _fly(gas, half)
+    return True
+
+
+@jit
+def _fly(gas, time):
+    position, velocity = gas.position.reshape(-1), gas.velocity.reshape(-1)
+    for k in range(len(position)):
+        position[k] += velocity[k] * time
+    gas.reach[TRAVELLED] += gas.reach[FASTEST] * time
+
+
+@jit
+def _act_all(gas, spheres, half):
+    """The springs of all pairs that may overlap within +-half."""
+    box = spheres.box
+    near = (DIAMETER + 2.0 * gas.reach[FASTEST] * half) ** 2
+    for p in range(gas.counts[PAIRS]):
+        x = subtract(
+            read(gas.position, gas.pair[p, 0], 0, box), read(gas.position, gas.pair[p, 1], 0, box)
+        )
+        x = subtract(x, read(gas.image, p, 0, box))
+        if dot(x, x) < near or gas.touching[p]:
+            act(gas, spheres, p, x, half)
+
+
+@compiled
+def _sample(gas, row):
+    row[0] = _squares(gas.velocity)
+    row[1] = _squares(gas.spin)
+    row[2] = gas.counts[CONTACTS]
+
+
+@compiled
+def _squares(array):
+    total = 0.0
+    for i in range(array.shape[0]):
+        for k in range(array.shape[1]):
+            total += array[i, k] ** 2
+    return total
+
+
+@compiled
+def _rescale(gas, temperature):
+    """Contacts under way are scaled with the rest, but for their overlap."""
+    number, dimension = gas.velocity.shape
+    for k in range(dimension):
+        mean = 0.0
+        for i in range(number):
+            mean += gas.velocity[i, k]
+        mean /= number
+        for i in range(number):
+            gas.velocity[i, k] -= mean
+    factor = math.sqrt(number * dimension * temperature / _squares(gas.velocity))
+    _scale(gas.velocity, factor)
+    _scale(gas.spin, factor)
+    for p in range(gas.counts[PAIRS]):
+        for k in range(dimension):
+            gas.stretch[p, k] *= factor
+    survey(gas)
+
+
+@jit
+def _scale(array, factor):
+    for i in range(array.shape[0]):
+        for k in range(array.shape[1]):
+            array[i, k] *= factor

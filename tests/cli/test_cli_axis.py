@@ -1,0 +1,85 @@
+"""Variants of an experiment on the command line."""
+
+import json
+
+import pytest
+
+from roughgas import cli
+from roughgas.cli import main
+from roughgas.config.reading import read_yaml
+from roughgas.data.point import read_point
+from roughgas.simulation.point import kernels
+
+SCHEDULE = {"replicas": 2, "thermalise": 1, "relaxation_times": 1, "plateau": 5}
+GAS = {"particles": 5, "box": [20, 20], "effects": {"spin": {"inertia": 0.5}}}
+GAS["schedule"] = SCHEDULE | {"kind": "cooling", "sample_every": 1}
+SWEEP = {"r": ["0.9"], "beta": ["0"], "seeds": 1, "spin.inertia": ["1", "0.1"]}
+PLACE = ("--r=0.9", "--beta=0")
+
+
+@pytest.fixture
+def configuration(tmp_path):
+    """A file with an experiment that has a third axis, and one that has none."""
+    whole = read_yaml("config.yaml")
+    plain = {key: value for key, value in SWEEP.items() if key != "spin.inertia"}
+    gases = {"spun": GAS | {"sweep": SWEEP}, "plain": GAS | {"sweep": plain}}
+    whole |= {"experiments": gases, "scales": {"paper": {}}}
+    (tmp_path / "config.yaml").write_text(json.dumps(whole))
+    return f"--config={tmp_path / 'config.yaml'}"
+
+
+def test_a_variant_is_run_by_its_name(configuration, tmp_path):
+    path = tmp_path / "point.nc"
+    assert main(["run", "spun/inertia0.30", configuration, *PLACE, "--seed=1", f"-o={path}"]) == 0
+    point = read_point(path)
+    assert point.attrs["experiment"] == "spun" and point.attrs["variant"] == "inertia0.30"
+    assert point.attrs["swept_value"] == point.attrs["inertia"] == 0.3
+    other = tmp_path / "plain.nc"
+    assert main(["run", "plain", configuration, *PLACE, "--seed=1", f"-o={other}"]) == 0
+    assert not {"variant", "swept", "swept_value"} & set(read_point(other).attrs)
+
+
+SETTINGS = json.dumps(GAS | {"swept": "spin.inertia"})
+
+
+@pytest.mark.parametrize(
+    ("name", "settings", "message"),
+    [
+        ("spun", None, "experiment = 'spun': must be followed by a variant, such as spun/inertia1"),
+        ("plain/inertia1", None, "experiment = 'plain/inertia1': must be plain alone, which has"),
+        ("spun/inertia2", None, "spun/inertia2.effects.spin.inertia = 2.0: must be a number in"),
+        ("spun", SETTINGS, "experiment = spun: must be the variant that its settings are of"),
+        ("spun/inertia1", SETTINGS, "experiment = spun/inertia1: must be the variant that"),
+        ("spun/inertia0.5", json.dumps(GAS), "experiment = spun/inertia0.5: must be the variant"),
+        ("spun", json.dumps(GAS | {"sweep": SWEEP}), "experiment = 'spun': must be followed by"),
+    ],
+)
+def test_bad_input_is_refused_in_one_line(configuration, tmp_path, capsys, name, settings, message):
+    source = configuration if settings is None else f"--settings={settings}"
+    command = ["run", name, source, *PLACE, "--seed=1", "-o", str(tmp_path / "new" / "point.nc")]
+    assert main(command) == cli.BAD_INPUT
+    said = capsys.readouterr().err
+    assert said.startswith(f"roughgas: error: {message}") and said.count("\n") == 1
+    assert not (tmp_path / "new").exists()
+
+
+@pytest.mark.parametrize(
+    ("name", "inertia"), [("spun", [1, 0.1]), ("spun/inertia1", [1]), ("plain", [0.5])]
+)
+def test_all_variants_are_compiled_at_once(configuration, monkeypatch, name, inertia):
+    told = []
+    monkeypatch.setattr("roughgas.simulation.point.compile_kernels", told.extend)
+    assert main(["compile", name, configuration, "--r=0.9"]) == 0
+    assert [one["effects"]["spin"]["inertia"] for one in told] == inertia
+    assert all(one["sweep"] == {"r": [0.9]} for one in told)
+    assert len(kernels(told)) == 1
+
+
+def test_a_plan_has_a_row_for_each_variant(configuration, tmp_path, capsys):
+    command = ["plan", configuration, f"--pilots={tmp_path}", "--cores=2"]
+    assert main(command) == 0
+    names = [line.split("|")[1].strip() for line in capsys.readouterr().out.splitlines()[2:6]]
+    assert names == ["spun/inertia1", "spun/inertia0.1", "plain", "in all"]
+    assert (tmp_path / "spun/inertia0.1/r0.9/beta0/pilot.json").exists()
+    assert main([*command, "spun/inertia0.3"]) == 0
+    assert "| spun/inertia0.3 |" in capsys.readouterr().out

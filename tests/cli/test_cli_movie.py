@@ -1,0 +1,100 @@
+"""`roughgas movie`: a movie from a command, or one line that says why there is none."""
+
+import json
+from pathlib import Path
+
+import pytest
+from PIL import Image
+from schedules import COOLING, STEADY
+
+from roughgas.cli import main
+from roughgas.show.movies import encoding as movie
+
+SMALL = {"particles": 8, "box": [12, 12], "effects": {"spin": {"inertia": 0.5}}}
+CONFIG = str(Path(__file__).parents[2] / "config.yaml")
+
+
+def make(*outputs, experiment="cooling", settings=SMALL | {"schedule": COOLING}, **others):
+    told = {"r": "0.9", "beta": "0.5", "frames": "3"} | others
+    told |= {"settings": json.dumps(settings)} if settings else {}
+    arguments = [f"--{key}={value}" for key, value in told.items()]
+    return main(["movie", experiment, *arguments, "--output", *map(str, outputs)])
+
+
+def test_every_file_that_is_asked_for_is_made(tmp_path, capsys):
+    outputs = [tmp_path / "gas.mp4", tmp_path / "gas.gif"]
+    assert make(*outputs, fps="10") == 0
+    assert sorted(tmp_path.iterdir()) == sorted(outputs)
+    with Image.open(outputs[1]) as image:
+        assert image.n_frames == 3 and image.info["duration"] == 100
+    said = capsys.readouterr()
+    assert said.out == "" and said.err.splitlines() == [f"{path}: 3 frames" for path in outputs]
+
+
+def test_the_same_seed_gives_the_same_bytes(tmp_path):
+    for name, seed in (("a", "1"), ("b", "1"), ("c", "2")):
+        assert make(tmp_path / f"{name}.gif", seed=seed) == 0
+    one, same, other = ((tmp_path / f"{name}.gif").read_bytes() for name in "abc")
+    assert one == same != other
+
+
+@pytest.mark.parametrize(
+    ("choice", "message"),
+    [
+        ({"frames": "1"}, "--frames = 1: must be a whole number in [2, 10000]"),
+        ({"frames": "many"}, "--frames = many: must be a whole number"),
+        ({"fps": "0"}, "--fps = 0: must be a number in [1, 50]"),
+        ({"length": "0"}, "--length = 0: must be a number in [1e-09, 1e+09]"),
+        ({"start": "-1"}, "--start = -1: must be a number in [0, 1e+09]"),
+        ({"start": "nan"}, "--start = nan: must be a number"),
+        ({"seed": "x"}, "seed = x: must be a whole number"),
+        ({"r": "2"}, "restitution r = 2: must lie in [0, 1]"),
+        (
+            {"experiment": "coolin", "settings": None, "config": CONFIG},
+            "experiment = 'coolin': must be one of cooling",
+        ),
+        (
+            {"settings": SMALL | {"particles": 1, "schedule": COOLING}},
+            "particles = 1: must be at least 2",
+        ),
+    ],
+)
+def test_bad_input_is_refused_in_one_line(tmp_path, capsys, choice, message):
+    assert make(tmp_path / "new" / "gas.gif", **choice) == 2
+    said = capsys.readouterr()
+    assert said.err.startswith(f"roughgas: error: {message}") and said.err.count("\n") == 1
+    assert said.out == "" and list(tmp_path.iterdir()) == []
+
+
+def test_another_kind_of_file_is_refused_before_anything_is_simulated(tmp_path, capsys):
+    assert make(tmp_path / "gas.gif", tmp_path / "gas.avi") == 2
+    message = f"file = {tmp_path / 'gas.avi'}: must end in .mp4 or .gif\n"
+    assert capsys.readouterr().err == f"roughgas: error: {message}"
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_collapse_is_told_in_one_line(tmp_path, capsys):
+    bed = {
+        "particles": 12,
+        "box": [6, "open"],
+        "effects": {
+            "spin": {"inertia": 0.5},
+            "gravity": {"acceleration": 1},
+            "floor": {"amplitude": 0, "period": 1, "restitution": 0.1, "roughness": -1},
+        },
+        "schedule": STEADY,
+    }
+    assert make(tmp_path / "bed.gif", settings=bed, r="0.1", beta="0", start="100") == 1
+    said = capsys.readouterr().err
+    assert said.startswith("roughgas: error: inelastic collapse at t =") and said.count("\n") == 1
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_an_interruption_leaves_nothing(tmp_path, capsys, monkeypatch):
+    def stop(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(movie, "_finish", stop)
+    assert make(tmp_path / "gas.mp4") == 130
+    assert capsys.readouterr().err.startswith("roughgas: stopped: ")
+    assert list(tmp_path.iterdir()) == []

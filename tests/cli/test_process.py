@@ -1,0 +1,248 @@
+"""The command line: what it refuses and how, and what a person sees."""
+
+import io
+import json
+import resource
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from roughgas.base.errors import CollapseError
+from roughgas.base.version import __version__
+from roughgas.cli import main
+from roughgas.data.point import WALL_CLOCK, read_point
+from roughgas.simulation.point import run_point
+
+CONFIG = str(Path(__file__).parents[2] / "config.yaml")
+SETTINGS = {
+    "particles": 5,
+    "box": [20, 20],
+    "effects": {"spin": {"inertia": 0.5}},
+    "schedule": {
+        "kind": "cooling",
+        "replicas": 2,
+        "thermalise": 1,
+        "relaxation_times": 1,
+        "plateau": 5,
+        "sample_every": 1,
+    },
+}
+
+
+def run(output, experiment="cooling", r="0.9", beta="0", seed="1", **others):
+    arguments = ["run", experiment, f"--r={r}", f"--beta={beta}", f"--seed={seed}"]
+    arguments += [f"--{name}={value}" for name, value in others.items()]
+    return main([*arguments, "--output", str(output)])
+
+
+@pytest.mark.parametrize(
+    ("choice", "message"),
+    [
+        ({"r": "1.5"}, "restitution r = 1.5: must lie in [0, 1]"),
+        ({"r": "nan"}, "restitution r = nan: must lie in [0, 1]"),
+        ({"beta": "-2"}, "roughness beta = -2: must lie in [-1, 1]"),
+        ({"beta": "rough"}, "roughness beta = rough: must lie in [-1, 1]"),
+        ({"seed": "-1"}, "seed = -1: must be a whole number in [0, 2^63 - 1]"),
+        ({"experiment": "foo"}, "experiment = 'foo': must be one of cooling, cooling_friction, "),
+        ({"scale": "large"}, "scale = 'large': must be one of coarse, fine, paper, small"),
+        ({"config": "no.yaml"}, "no.yaml: No such file or directory"),
+        ({"settings": "{"}, "--settings = '{': must be JSON"),
+        (
+            {"settings": json.dumps(SETTINGS | {"particles": 0})},
+            "--settings.particles = 0: must be a whole number >= 1",
+        ),
+        ({"settings": json.dumps(SETTINGS | {"particles": 10_000})}, "particles = 10000: must"),
+        ({"settings": json.dumps(SETTINGS | {"box": [3, 3]})}, "box[0] = 3"),
+    ],
+)
+def test_bad_input_is_refused_in_one_line_and_leaves_no_file(tmp_path, capsys, choice, message):
+    status = run(tmp_path / "new" / "point.nc", **({"config": CONFIG} | choice))
+    said = capsys.readouterr()
+    assert status != 0
+    assert said.out == ""
+    assert said.err.startswith(f"roughgas: error: {message}")
+    assert said.err.count("\n") == 1
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ([], "the following arguments are required: COMMAND (see `roughgas --help`)"),
+        (["fly"], "argument COMMAND: invalid choice: 'fly'"),
+        (["run", "cooling"], "the following arguments are required: --r, --beta (see `r"),
+        (["run", "cooling", "--mu", "1"], "the following arguments are required"),
+        (["figure", "fig1a"], "the following arguments are required: REDUCED"),
+    ],
+)
+def test_bad_arguments_are_refused_in_one_line(capsys, arguments, message):
+    with pytest.raises(SystemExit) as stop:
+        main(arguments)
+    said = capsys.readouterr()
+    assert stop.value.code == 2
+    assert said.err.startswith(f"roughgas: error: {message}")
+    assert said.err.count("\n") == 1
+
+
+def test_a_figure_that_does_not_exist(tmp_path, capsys):
+    assert main(["figure", "fig9", "x.nc", "--output", str(tmp_path / "f.png")]) == 2
+    assert capsys.readouterr().err.startswith("roughgas: error: figure = fig9: must")
+
+
+def test_a_dataset_that_does_not_exist(tmp_path, capsys):
+    assert main(["reduce", str(tmp_path / "no.nc"), "--output", str(tmp_path / "x.nc")]) == 1
+    said = capsys.readouterr().err
+    assert said.startswith("roughgas: error: ") and said.count("\n") == 1
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_version(capsys):
+    with pytest.raises(SystemExit):
+        main(["--version"])
+    assert capsys.readouterr().out == f"roughgas {__version__}\n"
+
+
+def test_help_imports_nothing_heavy():
+    script = (
+        "import sys\nfrom roughgas.cli import main\n"
+        "try: main(['--help'])\n"
+        "except SystemExit: print(*sys.modules)\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, check=True
+    )
+    loaded = set(done.stdout.split())
+    heavy = {"numpy", "numba", "xarray", "netCDF4", "matplotlib", "jsonschema", "yaml"}
+    assert loaded.isdisjoint(heavy | {"tqdm", "argcomplete"})
+
+
+def test_an_interrupt_ends_in_one_line(tmp_path, capsys, monkeypatch):
+    def interrupted(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("roughgas.simulation.point.run_point", interrupted)
+    assert run(tmp_path / "point.nc", config=CONFIG) == 130
+    said = "roughgas: stopped: nothing is half-written; the same command begins anew\n"
+    assert capsys.readouterr().err == said
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.fixture(scope="module")
+def point(tmp_path_factory):
+    path = tmp_path_factory.mktemp("point") / "a" / "b" / "point.nc"
+    assert run(path, beta="-0.50", settings=json.dumps(SETTINGS)) == 0
+    return path
+
+
+def test_a_point_says_how_to_run_it_again(point, tmp_path):
+    dataset = read_point(point)
+    assert dataset.attrs["experiment"] == "cooling"
+    assert dataset.attrs["scale"] == "paper"
+    assert dataset.attrs["beta"] == -0.5 and dataset.attrs["beta_label"] == "-0.50"
+    assert json.loads(dataset.attrs["experiment_json"]) == SETTINGS
+    program, *arguments = shlex.split(dataset.attrs["command"])
+    assert program == "roughgas"
+    arguments[-1] = str(tmp_path / "again.nc")
+    assert main(arguments) == 0
+    again = read_point(tmp_path / "again.nc")
+    assert dataset.drop_vars(WALL_CLOCK, errors="ignore").equals(
+        again.drop_vars(WALL_CLOCK, errors="ignore")
+    )
+
+
+def run_seeds(folder, seeds, files):
+    arguments = ["run", "cooling", "--r=0.9", "--beta=0", "--seed", *seeds]
+    arguments += ["--settings", json.dumps(SETTINGS), "--output"]
+    return main([*arguments, *(str(folder / name) for name in files)])
+
+
+def test_several_seeds_are_the_same_as_each_alone(tmp_path, capsys):
+    assert run_seeds(tmp_path, "123", ["1.nc", "2.nc", "3.nc"]) == 0
+    assert capsys.readouterr().err.count(": R = ") == 3
+    for seed in "312":
+        assert run_seeds(tmp_path, seed, ["alone.nc"]) == 0
+        one, other = read_point(tmp_path / f"{seed}.nc"), read_point(tmp_path / "alone.nc")
+        assert one.attrs.pop("command") == other.attrs.pop("command").replace("alone", seed)
+        assert one.drop_vars(WALL_CLOCK, errors="ignore").identical(
+            other.drop_vars(WALL_CLOCK, errors="ignore")
+        )
+
+
+def test_several_betas_each_with_each_seed(tmp_path):
+    names = [f"{beta}_{seed}.nc" for beta in ("-1e-1", "0.5") for seed in "12"]
+    arguments = ["run", "cooling", "--r=0.9", "--beta=-1e-1", "--beta=0.5", "--seed", "1", "2"]
+    arguments += ["--settings", json.dumps(SETTINGS), "--output"]
+    assert main([*arguments, *(str(tmp_path / name) for name in names)]) == 0
+    for name in names:
+        command = shlex.split(read_point(tmp_path / name).attrs["command"])
+        beta, _, seed = name.removesuffix(".nc").partition("_")
+        assert f"--beta={beta}" in command and f"--seed={seed}" in command
+        assert main([*command[1:-1], str(tmp_path / "alone.nc")]) == 0
+        assert read_point(tmp_path / name).R == read_point(tmp_path / "alone.nc").R
+
+
+def test_points_to_reduce_are_read_from_standard_input(point, tmp_path, monkeypatch):
+    for given, name in ((str(point), "named.nc"), ("-", "piped.nc")):
+        monkeypatch.setattr("sys.stdin", io.StringIO(f"{point}\n"))
+        assert main(["reduce", given, "--output", str(tmp_path / name)]) == 0
+    assert (tmp_path / "named.nc").read_bytes() == (tmp_path / "piped.nc").read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("seeds", "files", "message"),
+    [("12", ["1.nc"], "must name 2, one a seed"), (["1", "x"], ["1.nc", "x.nc"], "seed = x: must")],
+)
+def test_a_mistake_in_one_seed_stops_all_of_them(tmp_path, capsys, seeds, files, message):
+    assert run_seeds(tmp_path, seeds, files) == 2
+    said = capsys.readouterr().err
+    assert message in said and said.count("\n") == 1
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_what_is_done_stays_when_a_later_seed_fails(tmp_path, monkeypatch):
+    def second_collapses(experiment, r, beta, seed, progress):
+        if seed == 2:
+            raise CollapseError("inelastic collapse")
+        return run_point(experiment, r, beta, seed, progress)
+
+    monkeypatch.setattr("roughgas.simulation.point.run_point", second_collapses)
+    assert run_seeds(tmp_path, "123", ["1.nc", "2.nc", "3.nc"]) == 1
+    assert [path.name for path in tmp_path.iterdir()] == ["1.nc"]
+
+
+def test_a_run_imports_no_more_than_it_needs(point, tmp_path):
+    """Each of these would cost every job a tenth of a second; `point` has the kernel compiled."""
+    script = (
+        "import sys\nfrom roughgas.cli import main\n"
+        "assert main(sys.argv[1:]) == 0\nprint(*sys.modules)\n"
+    )
+    arguments = ["run", "cooling", "--r=0.9", "--beta=0", "--seed=1", "--checked"]
+    arguments += [f"--settings={json.dumps(SETTINGS)}", f"--output={tmp_path / 'point.nc'}"]
+    done = subprocess.run(
+        [sys.executable, "-c", script, *arguments], capture_output=True, text=True, check=True
+    )
+    loaded = set(done.stdout.split())
+    assert loaded.isdisjoint({"scipy", "xarray", "pandas", "matplotlib", "jsonschema", "snakemake"})
+    assert loaded.isdisjoint({"tqdm", "argcomplete"})
+    assert "numba.np.linalg" not in loaded  # the compiler has not been set up
+
+
+def test_a_full_disk_is_named_and_leaves_no_file(point, tmp_path):
+    def nothing_fits():
+        resource.setrlimit(resource.RLIMIT_FSIZE, (1024, 1024))
+
+    arguments = ["run", "cooling", "--r=0.9", "--beta=0", "--seed=1", "--output=point.nc"]
+    done = subprocess.run(
+        [sys.executable, "-m", "roughgas", *arguments, "--settings", json.dumps(SETTINGS)],
+        cwd=tmp_path,
+        preexec_fn=nothing_fits,
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 1
+    assert done.stderr.startswith("roughgas: error: cannot write point.nc")
+    assert done.stderr.count("\n") == 1
+    assert list(tmp_path.iterdir()) == []

@@ -1,0 +1,205 @@
+"""The third axis of a sweep: variants of an experiment, and what is said about mistakes."""
+
+import copy
+from pathlib import Path
+
+import pytest
+
+from roughgas import config
+from roughgas.base.errors import InputError
+from roughgas.config import schema
+from roughgas.data.point import VARIABLES
+from roughgas.results.reduce import DERIVED, SAME
+
+CONFIG = Path(__file__).parents[2] / "config.yaml"
+INERTIA = {"extends": "sheared", "sweep": {"r": ["0.9"], "spin.inertia": ["1", "0.50", "1e-3"]}}
+
+
+def with_experiments(**experiments):
+    whole = copy.deepcopy(config.load(CONFIG))
+    whole["experiments"] |= experiments
+    return whole
+
+
+@pytest.fixture(scope="module")
+def whole():
+    walls = {"extends": "vibrated_rough_walls", "sweep": {"walls.roughness": ["particles", 0.5]}}
+    child = {"extends": "spun", "particles": 80}
+    still = {"extends": "spun", "sweep": {"spin.inertia": None}}
+    found = with_experiments(spun=INERTIA, walls=walls, child=child, still=still)
+    found["scales"]["small"]["spun"] = {"sweep": {"spin.inertia": ["0.2"]}}
+    config.check(found)
+    return found
+
+
+def refusal(function, *arguments):
+    with pytest.raises(InputError) as caught:
+        function(*arguments)
+    assert "\n" not in str(caught.value)
+    return str(caught.value)
+
+
+def test_a_value_is_a_variant(whole):
+    written = config.experiment(whole, "spun", "paper")
+    names = config.variants("spun", written)
+    assert names == ["spun/inertia1", "spun/inertia0.50", "spun/inertia1e-3"]
+    values = [config.experiment(whole, name, "paper")["effects"]["spin"] for name in names]
+    assert values == [{"inertia": 1.0}, {"inertia": 0.5}, {"inertia": 0.001}]
+    assert written["effects"]["spin"] == {"inertia": 0.5}  # as written: that of `sheared`
+
+
+def test_a_variant_is_an_experiment_like_others(whole):
+    found = config.experiment(whole, "spun/inertia1", "paper")
+    plain = config.experiment(whole, "sheared", "paper")
+    assert found["sweep"] == plain["sweep"] | {"r": ["0.9"]}
+    assert found["effects"] == plain["effects"] | {"spin": {"inertia": 1}}
+    assert config.variants("spun/inertia1", found) == ["spun/inertia1"]
+    assert config.variants("sheared", plain) == ["sheared"]
+    config.check_one_variant("spun/inertia1", found)
+
+
+def test_any_value_makes_a_variant_in_the_sweep_or_not(whole):
+    found = config.experiment(whole, "spun/inertia0.33", "paper")
+    assert found["effects"]["spin"]["inertia"] == 0.33
+
+
+def test_values_are_words_or_numbers(whole):
+    for label, value in (("particles", "particles"), ("0.5", 0.5), ("-1", -1.0)):
+        found = config.experiment(whole, f"walls/roughness{label}", "paper")
+        assert found["effects"]["walls"] == {"restitution": 1, "roughness": value}
+
+
+def test_the_axis_is_inherited_and_null_takes_it_away(whole):
+    assert config.variants("child", config.experiment(whole, "child", "paper"))[0] == (
+        "child/inertia1"
+    )
+    still = config.experiment(whole, "still", "paper")
+    assert config.variants("still", still) == ["still"] and set(still["sweep"]) == {
+        "r",
+        "beta",
+        "seeds",
+    }
+
+
+def test_a_scale_has_its_own_values(whole):
+    for name in ("spun", "child"):
+        found = config.experiment(whole, name, "small")
+        assert config.variants(name, found) == [f"{name}/inertia0.2"]
+
+
+def test_a_target_holds_for_every_variant(whole):
+    found = config.experiment(whole, "child/inertia1", "fine")
+    assert found["target_stderr"] == 0.002 and set(found["sweep"]) == {"r", "beta"}
+
+
+def test_the_effect_need_not_give_a_value_beside_the_sweep():
+    bare = {"extends": "vibrated", "effects": {"walls": {"restitution": 1}}}
+    whole = with_experiments(bare=bare | {"sweep": {"walls.roughness": ["0"]}})
+    config.check(whole)
+    walls = config.experiment(whole, "bare/roughness1", "paper")["effects"]["walls"]
+    assert walls == {"restitution": 1, "roughness": 1}
+
+
+def test_settings_of_a_variant_survive_the_way_through_text(whole):
+    settings = config.point_settings(config.experiment(whole, "spun/inertia1", "paper"))
+    assert settings["swept"] == "spin.inertia" and "sweep" not in settings
+    assert config.from_text(config.as_text(settings), "--settings") == settings
+
+
+def test_what_variants_share_does_not_depend_on_their_values(whole):
+    more = copy.deepcopy(whole)
+    more["experiments"]["spun"]["sweep"]["spin.inertia"].append("0.7")
+    one, other = (config.experiment(each, "spun", "paper") for each in (whole, more))
+    one, other = (config.pilot_settings(config.common(each)) for each in (one, other))
+    assert one == other and one["effects"]["spin"] == {}
+    assert config.kernel_settings(config.experiment(whole, "spun", "paper"))["sweep"] == {
+        "spin.inertia": ["1", "0.50", "1e-3"]
+    }
+
+
+def test_no_parameter_has_a_name_that_datasets_need():
+    """A third axis is a dimension named by its parameter; attributes that theory needs give way."""
+    taken = set(VARIABLES) | set(DERIVED) | set(SAME) | {"r", "beta", "seed"}
+    effects = schema._validator("experiment").schema["$defs"]["effects"]["properties"]
+    parameters = {name for about in effects.values() for name in about["properties"]}
+    assert parameters & taken == {"inertia", "mu", "spin_share"}
+
+
+SWEPT = "experiments.spun.sweep"
+MISTAKES = [
+    (
+        {"spn.inertia": ["1"]},
+        f"{SWEPT}: key = 'spn.inertia': must begin with an effect of this experiment: "
+        "contact_time, shear, spin",
+    ),
+    ({"floor.roughness": ["1"]}, "key = 'floor.roughness': must begin with an effect of this exp"),
+    (
+        {"spin.mass": ["1"]},
+        "experiments.spun/mass1.effects.spin: key = 'mass': must be one of inertia",
+    ),
+    ({"inertia": ["1"]}, "sweep: key = 'inertia': must be one of beta, r, seeds, EFFECT.PARAMETER"),
+    ({"spin.inertia": []}, "sweep.spin.inertia = []: must be a list of at least 1"),
+    ({"spin.inertia": "1"}, "sweep.spin.inertia = '1': must be a list of at least 1"),
+    ({"spin.inertia": ["1", "1.0"]}, "sweep.spin.inertia = '1.0': must be given once"),
+    (
+        {"spin.inertia": ["0.5", "2"]},
+        "experiments.spun/inertia2.effects.spin.inertia = 2.0: must be a number in (0, 1]",
+    ),
+    (
+        {"spin.inertia": ["sine"]},
+        "experiments.spun/inertiasine.effects.spin.inertia = 'sine': must be a number in (0, 1]",
+    ),
+    (
+        {"spin.inertia": ["0.5/1"]},
+        "sweep.spin.inertia[0] = '0.5/1': must be a number, or a word of lower-case letters",
+    ),
+    ({"spin.inertia": [True]}, "sweep.spin.inertia[0] = True: must be a number, or a word"),
+    (
+        {"spin.inertia": ["1"], "shear.velocity": ["2"]},
+        f"{SWEPT}: key = 'shear.velocity': must not stand beside spin.inertia",
+    ),
+]
+
+
+@pytest.mark.parametrize(("sweep", "message"), MISTAKES)
+def test_a_mistake_is_named_in_one_line(sweep, message):
+    whole = with_experiments(spun={"extends": "sheared", "sweep": sweep})
+    said = refusal(config.check, whole)
+    assert said.startswith("config.yaml: ") and message in said
+
+
+def test_a_mistake_at_a_scale_is_named():
+    whole = with_experiments(spun=INERTIA)
+    whole["scales"]["small"]["spun"] = {"sweep": {"spin.inertia": ["3"]}}
+    assert "experiments.spun/inertia3 at scale small.effects.spin.inertia = 3.0" in refusal(
+        config.check, whole
+    )
+
+
+def test_swept_is_not_for_people():
+    whole = with_experiments(spun=INERTIA | {"swept": "spin.inertia"})
+    assert "experiments.spun.swept = 'spin.inertia': must not be given here" in refusal(
+        config.check, whole
+    )
+
+
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [
+        ("sheared/inertia1", "= 'sheared/inertia1': must be sheared alone, which has no third"),
+        ("spun/mass1", "= 'spun/mass1': must name a value of inertia, such as spun/inertia1"),
+        ("spun/", "= 'spun/': must name a value of inertia, such as spun/inertia1"),
+        ("spun/inertia", "spun: spin.inertia = : must be a number, or a word"),
+        ("spun/inertia1/r0.9", "spun: spin.inertia = 1/r0.9: must be a number, or a word"),
+        ("spun/inertia2", "spun/inertia2.effects.spin.inertia = 2.0: must be a number in (0, 1]"),
+        ("spin/inertia1", "experiment = 'spin': must be one of"),
+    ],
+)
+def test_what_is_no_variant(whole, name, message):
+    assert message in refusal(config.experiment, whole, name, "paper")
+
+
+def test_a_point_needs_its_variant(whole):
+    written = config.experiment(whole, "spun", "paper")
+    said = refusal(config.check_one_variant, "spun", written)
+    assert said == "experiment = 'spun': must be followed by a variant, such as spun/inertia1"

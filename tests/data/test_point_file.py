@@ -1,0 +1,188 @@
+import os
+import resource
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from files import ABOUT
+
+from roughgas.base.errors import InputError
+from roughgas.data import point as dataset
+from roughgas.data.point import Point, read_point, write_point
+
+ATTRIBUTES = ABOUT | {"command": "roughgas run ..."}
+CAPTURED = {"capture_output": True, "text": True, "check": True}
+
+
+def point(samples: int = 200, **others) -> Point:
+    rng = np.random.default_rng(1)
+    variables = {
+        "R": 0.25,
+        "R_stderr": 0.01,
+        "R_dof": 12.0,
+        "R_ci95": 0.022,
+        "R_ratio_of_means": 0.24,
+        "E_trans": 3.0,
+        "E_rot": 1.0,
+        "collisions": 2**40,
+        "kernel_seconds": 0.5,
+        "equilibrated": 1,
+        "measured_from": 5.0,
+        "time": np.arange(samples) / 4,
+        "R_series": rng.random(samples),
+    }
+    return Point(variables | others, dict(ATTRIBUTES))
+
+
+def same_bits(path_a: Path, path_b: Path) -> bool:
+    """Whether two points are equal to the last bit, wall-clock fields aside."""
+
+    def content(path: Path) -> tuple:
+        data = read_point(path).drop_vars(dataset.WALL_CLOCK, errors="ignore")
+        bits = {name: (v.dims, v.dtype, v.values.tobytes()) for name, v in data.variables.items()}
+        return bits, data.attrs
+
+    return content(path_a) == content(path_b)
+
+
+def test_a_point_comes_back_as_written(tmp_path):
+    path = tmp_path / "new" / "folders" / "seed3.nc"
+    write_point(path, point())
+    data = read_point(path)
+    assert data.R.item() == 0.25 and data.R.dtype == np.float64
+    assert data.collisions.item() == 2**40 and data.collisions.dtype == np.int64
+    assert data.equilibrated.dtype == np.int8
+    np.testing.assert_array_equal(data.R_series, point().variables["R_series"])
+    assert data.R_series.dims == ("sample",) and "time" in data.R_series.coords
+    assert {name: data.attrs[name] for name in ATTRIBUTES} == ATTRIBUTES
+    assert data.attrs["schema_version"] == 2 and data.attrs["Conventions"].startswith("CF-")
+
+
+def test_every_variable_has_units_and_a_long_name(tmp_path):
+    write_point(tmp_path / "a.nc", point())
+    data = read_point(tmp_path / "a.nc")
+    assert all(v.attrs["long_name"] and v.attrs["units"] for v in data.variables.values())
+    assert data.time.reduced_units == data.measured_from.reduced_units == "T"
+    assert data.E_trans.reduced_units == "m a^2 T^-2" and data.kernel_seconds.units == "s"
+    assert {v.attrs["units"] for v in data.variables.values()} == {"1", "s"}  # UDUNITS knows both
+
+
+def test_flags_and_what_is_known_of_errors_are_told_as_cf_has_it(tmp_path):
+    write_point(tmp_path / "a.nc", point(R_ci95_trusted=0))
+    data = read_point(tmp_path / "a.nc")
+    assert data.R.ancillary_variables.split() == ["R_stderr", "R_dof", "R_ci95", "R_ci95_trusted"]
+    for flag in (data.equilibrated, data.R_ci95_trusted):
+        assert list(flag.flag_values) == [0, 1] and len(flag.flag_meanings.split()) == 2
+        assert flag.flag_values.dtype == flag.dtype == np.int8
+
+
+def test_a_file_of_a_newer_schema_is_refused(tmp_path):
+    write_point(tmp_path / "a.nc", point()._replace(attributes=ATTRIBUTES | {"schema_version": 3}))
+    with pytest.raises(
+        InputError, match=r"^schema_version of .*a\.nc = 3: must be at most 2: a new"
+    ):
+        read_point(tmp_path / "a.nc")
+
+
+def test_a_cooling_gas_counts_collisions_and_initial_energies(tmp_path):
+    cooling = point(R_replica=np.array([0.2, 0.3]), plateau_end=40.0, contact_time=1e-4)
+    cooling.variables["collisions_per_particle"] = cooling.variables.pop("time")
+    write_point(tmp_path / "a.nc", cooling)
+    data = read_point(tmp_path / "a.nc")
+    counted = {data[name].reduced_units for name in ("measured_from", "plateau_end")}
+    assert counted == {"collisions per particle"}
+    assert data.contact_time.reduced_units == "T"
+    assert data.E_rot.reduced_units == "initial E_trans" and "reduced_units" not in data.R.attrs
+    assert data.R_replica.dims == ("replica",)
+    assert "collisions_per_particle" in data.R_series.coords
+
+
+def test_nan_stays_nan(tmp_path):
+    write_point(tmp_path / "a.nc", point(contact_time=np.nan))
+    assert np.isnan(read_point(tmp_path / "a.nc").contact_time.item())
+
+
+def test_same_point_same_bits_wall_clock_aside(tmp_path):
+    paths = [tmp_path / name for name in ("a.nc", "b.nc", "c.nc")]
+    write_point(paths[0], point())
+    turned_round = dict(reversed(point(kernel_seconds=0.7).variables.items()))
+    write_point(paths[1], Point(turned_round, dict(ATTRIBUTES)))
+    write_point(paths[2], point(R=np.nextafter(0.25, 1)))
+    assert same_bits(paths[0], paths[1])
+    assert not same_bits(paths[0], paths[2])
+    assert not [name for name in os.listdir(tmp_path) if name.endswith(".tmp")]
+
+
+@pytest.mark.parametrize(
+    ("others", "message"),
+    [
+        ({"R_serie": 1.0}, "unknown variables of a point: R_serie"),
+        ({"R_series": 1.0}, "R_series has shape"),
+        ({"E_rot_series": np.zeros(7)}, "E_rot_series has 7 values along sample, others 200"),
+    ],
+)
+def test_what_the_table_does_not_know_is_refused(tmp_path, others, message):
+    with pytest.raises(ValueError, match=message):
+        write_point(tmp_path / "a.nc", point(**others))
+    assert not list(tmp_path.iterdir())
+
+
+def test_missing_variables_and_attributes_are_refused(tmp_path):
+    incomplete = point()
+    del incomplete.variables["E_rot"]
+    with pytest.raises(ValueError, match="missing variables of a point: E_rot"):
+        write_point(tmp_path / "a.nc", incomplete)
+    incomplete = point()
+    del incomplete.attributes["seed"]
+    with pytest.raises(ValueError, match="missing attributes of a point: seed"):
+        write_point(tmp_path / "a.nc", incomplete)
+
+
+def test_a_write_that_fails_leaves_nothing(tmp_path, monkeypatch):
+    def full(*_):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(os, "fsync", full)
+    with pytest.raises(OSError, match="No space left"):
+        write_point(tmp_path / "a.nc", point())
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("room", [0, 4096, 100_000])
+def test_no_room_for_the_file_leaves_nothing(tmp_path, room):
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (room, hard))
+    try:
+        with pytest.raises(OSError, match=r"cannot write .*a\.nc.* is the disk full"):
+            write_point(tmp_path / "a.nc", point(samples=100_000))
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_failed_write_keeps_the_file_that_was_there(tmp_path, monkeypatch):
+    write_point(tmp_path / "a.nc", point())
+    before = (tmp_path / "a.nc").read_bytes()
+    monkeypatch.setattr(os, "replace", lambda *_: 1 / 0)
+    with pytest.raises(ZeroDivisionError):
+        write_point(tmp_path / "a.nc", point(R=0.3))
+    assert (tmp_path / "a.nc").read_bytes() == before
+    assert os.listdir(tmp_path) == ["a.nc"]
+
+
+def test_what_a_killed_run_left_behind_is_removed(tmp_path):
+    gone = subprocess.run([sys.executable, "-c", "import os; print(os.getpid())"], **CAPTURED)
+    (tmp_path / f"a.nc.{int(gone.stdout)}.tmp").write_bytes(b"half a file")
+    write_point(tmp_path / "a.nc", point())
+    assert os.listdir(tmp_path) == ["a.nc"]
+    assert read_point(tmp_path / "a.nc").R.item() == 0.25
+
+
+def test_writing_a_point_does_not_import_xarray():
+    code = (
+        "import sys, roughgas.data.point; print('xarray' in sys.modules, 'netCDF4' in sys.modules)"
+    )
+    run = subprocess.run([sys.executable, "-c", code], **CAPTURED)
+    assert run.stdout.split() == ["False", "False"]

@@ -1,0 +1,187 @@
+import csv
+import math
+import os
+import random
+
+import numpy as np
+import pytest
+
+from roughgas import theory
+from roughgas.base.errors import InputError
+from roughgas.data.point import Point, write_point
+from roughgas.data.reduced import read_reduced
+from roughgas.results.reduce import reduce_points
+from roughgas.results.table import write_table
+from roughgas.theory.prediction import predicted_ratio
+
+ABOUT = {"experiment": "sheared", "scale": "small", "dimension": 2, "inertia": 0.5, "particles": 40}
+
+
+def write(folder, r, beta, seed, ratio, cooling=False, attributes=None, **others):
+    """One point on disk; R_series rises by 0.02 at the middle of the measured window."""
+    clock = np.arange(0.0, 13.0)
+    variables = {
+        "R": ratio,
+        "R_stderr": 0.01 * seed,
+        "R_dof": 0.0,
+        "R_ci95": math.nan,
+        "R_ratio_of_means": ratio - 0.01,
+        "E_trans": 2.0,
+        "E_rot": 1.0,
+        "collisions": 100,
+        "kernel_seconds": 0.5,
+        "equilibrated": 1,
+        "measured_from": 3.0,
+        "R_series": np.where(clock < 8, ratio, ratio + 0.02),
+        "collisions_per_particle" if cooling else "time": clock,
+    }
+    about = ABOUT | {"r": r, "beta": beta, "seed": seed, "kernel_source_hash": "k"}
+    about |= attributes or {}
+    path = folder / f"r{r}" / f"beta{beta}" / f"seed{seed}.nc"
+    write_point(path, Point(variables | others, about))
+    return path
+
+
+@pytest.fixture
+def paths(tmp_path):
+    """Two r, two beta, and three seeds, two, one and none at the four places."""
+    ratios = {1: 0.20, 2: 0.22, 3: 0.27}
+    points = [write(tmp_path, 0.9, -0.5, seed, ratio) for seed, ratio in ratios.items()]
+    points += [
+        write(tmp_path, 0.9, 0.5, seed, ratios[seed], equilibrated=seed % 2) for seed in (1, 2)
+    ]
+    return [*points, write(tmp_path, 0.8, 0.5, 3, 0.3)]
+
+
+def test_means_and_errors_over_seeds(paths, tmp_path):
+    reduce_points(paths, tmp_path / "out" / "sheared.nc")
+    data = read_reduced(tmp_path / "out" / "sheared.nc")
+    assert list(data.r) == [0.8, 0.9] and list(data.beta) == [-0.5, 0.5]
+    assert list(data.seed) == [1, 2, 3]
+    full = data.sel(r=0.9, beta=-0.5)
+    assert full.R.item() == pytest.approx(0.23)
+    scatter = pytest.approx(np.std([0.2, 0.22, 0.27], ddof=1) / math.sqrt(3))
+    assert full.R_stderr_over_seeds.item() == scatter
+    # nothing is known of these runs' own errors
+    assert full.R_stderr.item() == scatter and full.R_dof.item() == 2
+    assert full.R_ci95.item() == pytest.approx(4.303 * full.R_stderr.item(), rel=0.05)
+    assert full.R_stderr_within.item() == pytest.approx(0.01 * math.sqrt(1 + 4 + 9) / 3)
+    assert full.R_ratio_of_means.item() == pytest.approx(0.22)
+    assert full.collisions.item() == 300 and full.collisions.dtype == np.int64
+    assert full.kernel_seconds.item() == 1.5
+    np.testing.assert_array_equal(full.R_seed, [0.2, 0.22, 0.27])
+
+
+def test_missing_seeds_and_places(paths, tmp_path):
+    reduce_points(paths, tmp_path / "sheared.nc")
+    data = read_reduced(tmp_path / "sheared.nc")
+    np.testing.assert_array_equal(data.n_seeds, [[0, 1], [3, 2]])
+    two = data.sel(r=0.9, beta=0.5)
+    assert np.isnan(two.R_seed.sel(seed=3)) and two.R.item() == pytest.approx(0.21)
+    assert two.equilibrated.item() == 0.5
+    one = data.sel(r=0.8, beta=0.5)
+    assert one.R.item() == 0.3 and one.R_stderr.item() == one.R_stderr_within.item() == 0.03
+    none = data.sel(r=0.8, beta=-0.5)
+    assert np.isnan(none.R) and np.isnan(none.R_stderr) and np.isnan(none.R_stderr_within)
+
+
+def test_an_error_unknown_within_one_file_stays_unknown(tmp_path):
+    paths = [write(tmp_path, 0.9, 0.0, seed, 0.2, R_stderr=np.nan) for seed in (1, 2)]
+    reduce_points(paths, tmp_path / "sheared.nc")
+    assert np.isnan(read_reduced(tmp_path / "sheared.nc").R_stderr_within.item())
+
+
+def test_drift_and_length_of_the_measured_window(tmp_path):
+    paths = [write(tmp_path, 0.9, 0.0, seed, 0.2) for seed in (1, 2)]
+    reduce_points(paths, tmp_path / "sheared.nc")
+    data = read_reduced(tmp_path / "sheared.nc")
+    assert data.measured_for.item() == 9.0 and data.measured_for.reduced_units == "T"
+    assert data.R_drift.item() == pytest.approx(0.02)
+    plateau = [write(tmp_path, 0.8, 0.0, 1, 0.2, cooling=True, plateau_end=7.0)]
+    reduce_points(plateau, tmp_path / "cooling.nc")
+    data = read_reduced(tmp_path / "cooling.nc")
+    assert data.measured_for.item() == 4.0
+    assert data.measured_for.reduced_units == "collisions per particle"
+    assert data.R_drift.item() == pytest.approx(0.0, abs=1e-15)
+
+
+def test_the_order_of_the_points_does_not_matter(paths, tmp_path):
+    reduce_points(paths, tmp_path / "a.nc")
+    random.Random(1).shuffle(paths)
+    reduce_points(paths, tmp_path / "b.nc")
+    assert read_reduced(tmp_path / "a.nc").identical(read_reduced(tmp_path / "b.nc"))
+    assert (tmp_path / "a.nc").read_bytes() == (tmp_path / "b.nc").read_bytes()
+
+
+def test_attributes_shared_by_all_points_are_kept(paths, tmp_path):
+    reduce_points(paths, tmp_path / "a.nc")
+    about = read_reduced(tmp_path / "a.nc").attrs
+    assert {name: about[name] for name in ABOUT} == ABOUT
+    assert about["theory"] == "lun" and about["kernel_source_hash"] == "k"
+    assert not {"r", "beta", "seed"} & set(about)
+
+
+def test_points_of_several_kernels_say_so(paths, tmp_path):
+    paths.append(write(tmp_path, 0.8, -0.5, 1, 0.2, attributes={"kernel_source_hash": "j"}))
+    reduce_points(paths, tmp_path / "a.nc")
+    assert read_reduced(tmp_path / "a.nc").attrs["kernel_source_hash"] == "j, k"
+
+
+def test_sheared_points_keep_the_unsubtracted_ratio(tmp_path):
+    paths = [write(tmp_path, 0.9, 0.0, s, 0.2, R_unsubtracted=0.1 * s) for s in (1, 2)]
+    reduce_points(paths, tmp_path / "a.nc")
+    data = read_reduced(tmp_path / "a.nc")
+    assert data.R_unsubtracted.item() == pytest.approx(0.15)
+    assert data.R_unsubtracted_stderr.item() == pytest.approx(0.05)
+
+
+def test_what_cannot_be_reduced_is_refused(paths, tmp_path):
+    out = tmp_path / "out.nc"
+    with pytest.raises(InputError, match="number of points"):
+        reduce_points([], out)
+    with pytest.raises(InputError, match="given once"):
+        reduce_points([*paths, paths[0]], out)
+    other = write(tmp_path, 0.7, 0.0, 1, 0.2, attributes={"experiment": "cooling"})
+    with pytest.raises(InputError, match="cooling and sheared: must be the same"):
+        reduce_points([*paths, other], out)
+    assert not out.exists()
+
+
+def test_a_full_disk_leaves_no_reduced_dataset(paths, tmp_path, monkeypatch):
+    def full(*_):
+        raise OSError(28, "No space left on device")
+
+    (tmp_path / "out").mkdir()
+    monkeypatch.setattr(os, "fsync", full)
+    with pytest.raises(OSError, match="No space left"):
+        reduce_points(paths, tmp_path / "out" / "a.nc")
+    assert not list((tmp_path / "out").iterdir())
+
+
+def test_theory_of_forced_and_cooling_gases():
+    forced = {"theory": "lun", "inertia": 0.5, "dimension": 2}
+    np.testing.assert_allclose(predicted_ratio(forced, 0.9, [0.0, 1.0]), [0.2, 0.5])
+    cooling = predicted_ratio(forced | {"theory": "K"}, [[0.8], [0.9]], [0.0, 0.5])
+    assert cooling.shape == (2, 2)
+    assert cooling[1, 0] == pytest.approx(theory.cooling_ratio(0.9, 0.0, 2, 0.5))
+
+
+def test_the_table_has_one_row_for_each_place_with_data(paths, tmp_path):
+    reduce_points(paths, tmp_path / "sheared.nc")
+    cooling = [write(tmp_path, 0.7, 0.0, 1, 0.3, True, {"experiment": "cooling"}, plateau_end=9.0)]
+    reduce_points(cooling, tmp_path / "cooling.nc")
+    write_table([tmp_path / "sheared.nc", tmp_path / "cooling.nc"], tmp_path / "R.csv")
+    rows = list(csv.DictReader(open(tmp_path / "R.csv", encoding="utf-8")))
+    places = [(row["experiment"], row["r"], row["beta"]) for row in rows]
+    assert places == [
+        ("sheared", "0.8", "0.5"),
+        ("sheared", "0.9", "-0.5"),
+        ("sheared", "0.9", "0.5"),
+        ("cooling", "0.7", "0"),
+    ]
+    row = rows[1]
+    assert (row["particles"], row["n_seeds"], row["theory"]) == ("40", "3", "lun")
+    assert float(row["R"]) == pytest.approx(0.23)
+    assert float(row["residual"]) == pytest.approx(0.23 - theory.lun_ratio(-0.5, 0.5))
+    assert row["R_unsubtracted"] == "" and "kernel_seconds" not in row
+    assert float(rows[3]["R_theory"]) == pytest.approx(theory.cooling_ratio(0.7, 0.0, 2, 0.5))

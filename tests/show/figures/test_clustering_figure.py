@@ -1,0 +1,136 @@
+"""The picture and the movie of a film that is known beforehand."""
+
+import numpy as np
+import pytest
+from matplotlib.image import imread
+
+from roughgas import theory
+from roughgas.base.errors import InputError
+from roughgas.cli import main
+from roughgas.data.film import VARIABLES, read_film, write_film
+from roughgas.show.figures import clustering
+
+FRAMES, CELLS, SIDE, PER_CELL = 5, 30, 120.0, 3
+BLOB = 21, 9  # (x, y) cell in which everything ends up
+ATTRIBUTES = {
+    "particles": PER_CELL * CELLS**2,
+    "r": 0.8,
+    "beta": 0.0,
+    "inertia": 0.5,
+    "packing": np.pi * PER_CELL * CELLS**2 / SIDE**2,
+    "box": [SIDE, SIDE],
+    "window": 100.0,
+}
+
+
+@pytest.fixture(scope="module")
+def path(tmp_path_factory):
+    """A film that follows theory, but for one dense spot on its last map."""
+    rng = np.random.default_rng(1)
+    passed = np.linspace(0.0, 40.0, FRAMES)
+    haff = theory.relax(0.0, 0.8, 0.0, passed, 2, 0.5)
+    count = np.full((FRAMES, CELLS, CELLS), PER_CELL)
+    count[-1, BLOB[1], BLOB[0]] = 40
+    disks = np.arange(3, 3 + FRAMES)
+    middles = (np.arange(CELLS) + 0.5) * SIDE / CELLS
+    variables = dict.fromkeys(VARIABLES, 0.0) | {
+        "x": middles,
+        "y": middles,
+        "time": passed**2,
+        "collisions_per_particle": passed,
+        "E_trans": haff.T_tr,
+        "E_rot": haff.T_rot,
+        "R": haff.theta / (1 + haff.theta),
+        "count": count,
+        "disks": disks,
+        "disk_x": rng.uniform(10, 110, disks.sum()),
+        "disk_y": rng.uniform(10, 110, disks.sum()),
+        "disk_spin": rng.standard_normal(disks.sum()),
+    }
+    path = tmp_path_factory.mktemp("film") / "film.nc"
+    write_film(path, variables, ATTRIBUTES)
+    return path
+
+
+def panels(figure):
+    """Axes by the first letter of their title."""
+    return {axes.get_title(loc="left")[:1]: axes for axes in figure.axes}
+
+
+def test_the_picture_and_the_movie_are_drawn(path, tmp_path):
+    outputs = [tmp_path / "figures" / f"c.{kind}" for kind in ("mp4", "pdf", "png")]
+    assert main(["film", str(path), "--output", *map(str, outputs)]) == 0
+    assert sorted((tmp_path / "figures").iterdir()) == outputs
+    movie, document, image = outputs
+    assert movie.read_bytes()[4:8] == b"ftyp" and movie.stat().st_size > 10_000
+    assert document.read_bytes().startswith(b"%PDF")
+    assert imread(image).shape[0] > 800 and imread(image).std() > 0.05
+
+
+def test_the_same_film_gives_the_same_bytes(path, tmp_path):
+    content = []
+    for _ in range(2):
+        outputs = [tmp_path / "a.pdf", tmp_path / "a.png"]
+        clustering.draw(path, outputs)
+        content.append([output.read_bytes() for output in outputs])
+    assert content[0] == content[1]
+
+
+def test_smoothing_keeps_the_particles(path):
+    film = read_film(path)
+    even, uneven = clustering.packing(film, 0), clustering.packing(film, -1)
+    cell = (SIDE / CELLS) ** 2
+    assert even == pytest.approx(np.full_like(even, np.pi * PER_CELL / cell))
+    added = uneven - even
+    assert added.sum() * cell == pytest.approx(np.pi * 37)
+    assert np.unravel_index(added.argmax(), added.shape) == (BLOB[1], BLOB[0])
+    spread = SIDE / CELLS * (np.arange(CELLS) - BLOB[0])
+    assert (added.sum(0) @ spread**2) / added.sum() == pytest.approx(36, rel=0.1)
+
+
+def test_the_square_lies_where_the_gas_is_densest_within_the_window(path):
+    film = read_film(path)
+    left, bottom, side = clustering.closeup(film)
+    assert side == 100.0 and (left, bottom) == (10.0, 10.0)  # no room to choose
+    film.attrs["window"] = 500.0
+    assert clustering.closeup(film) == (0.0, 0.0, 120.0)
+
+
+def test_a_small_square_is_centred_on_the_densest_spot(path, monkeypatch):
+    monkeypatch.setattr(clustering, "CLOSEUP", 40.0)
+    left, bottom, side = clustering.closeup(read_film(path))
+    middle = [(cell + 0.5) * SIDE / CELLS for cell in BLOB]
+    assert [left + side / 2, bottom + side / 2] == pytest.approx(middle)
+
+
+def test_a_gas_that_stays_homogeneous_lies_on_the_line_of_theory(path):
+    drawn = panels(clustering.picture(read_film(path)))
+    assert set("abcdefg") <= set(drawn)
+    for letter, data, line in (("e", 0, 2), ("e", 1, 3), ("f", 0, 1)):
+        x, y = drawn[letter].lines[data].get_data()
+        theory_x, theory_y = drawn[letter].lines[line].get_data()
+        assert np.interp(x, theory_x, theory_y) == pytest.approx(y, rel=1e-3), letter
+
+
+def test_the_instants_of_the_maps_are_told(path):
+    drawn = panels(clustering.picture(read_film(path)))
+    titles = [drawn[letter].get_title(loc="left") for letter in "abc"]
+    passed = [0, 10, 40]
+    assert titles == [
+        f"{letter}   {n} collisions per particle" for letter, n in zip("abc", passed, strict=True)
+    ]
+    for letter in "efg":
+        marks = [line.get_xdata()[0] for line in drawn[letter].lines if len(line.get_xdata()) == 2]
+        assert marks[-3:] == passed
+
+
+def test_disks_are_as_large_as_they_are(path):
+    (disks,) = panels(clustering.picture(read_film(path)))["d"].collections
+    assert np.all(disks.get_widths() == 2.0) and len(disks.get_offsets()) == 7
+    assert disks.get_rasterized()
+
+
+def test_another_kind_of_file_is_refused(path, tmp_path):
+    with pytest.raises(InputError, match=r"a\.gif: must end in \.pdf, \.png, \.mp4"):
+        clustering.draw(path, [tmp_path / "a.png", tmp_path / "a.gif"])
+    assert list(tmp_path.iterdir()) == []

@@ -1,0 +1,248 @@
+import numpy as np
+import pytest
+from matplotlib.image import imread
+from synthetic import BETA, reduced
+
+from roughgas.base.errors import InputError
+from roughgas.show.figures import (
+    FIGURES,
+    draw,
+    fig1a,
+    fig1b,
+    fig2a,
+    fig2b,
+    fig4,
+    fig5,
+    fig6,
+    fig7,
+    fig8,
+    panel,
+)
+from roughgas.show.style import LOOKS
+from roughgas.theory.prediction import predicted_ratio
+
+
+def walls():
+    bed = reduced("vibrated")
+    kinds = ("rough", "particle", "smooth")
+    sides = [reduced(f"vibrated_{k}_walls", r=(0.9,), beta=(-1.0, *BETA)) for k in kinds]
+    sides[0]["R"] = sides[0].R + 0.3
+    return bed, *sides
+
+
+def sheared():
+    data = reduced("sheared")
+    return data.assign(R_unsubtracted=data.R - 0.1)
+
+
+def over(experiment, parameter, values, **others):
+    beta = (-0.5, 0.0, 0.5, 1.0)
+    return reduced(experiment, r=(0.9,), beta=beta, third=(parameter, values), **others)
+
+
+def boundaries(experiment):
+    shares = np.array([-0.02, 0.0, 0.1])[:, None, None] + np.zeros((3, 1, 4))
+    values = (-1.0, 0.0, 1.0)
+    known = {"input_spin_share": shares, "input_spin_share_stderr": 0.002}
+    return over(experiment, "walls.roughness", values, **known)
+
+
+SCENES = ("cooling", "sheared", "vibrated")
+WAVES = ("reversed_sawtooth", "sawtooth", "sine", "triangle")
+DATA = {
+    "fig1a": lambda: (reduced("vibrated"),),
+    "fig1b": walls,
+    "fig2a": lambda: (sheared(),),
+    "fig2b": lambda: (reduced("cooling"),),
+    "fig3": lambda: tuple(reduced(f"{scene}_spheres") for scene in SCENES),
+    "fig4": lambda: tuple(over(name, "friction.mu", (0.0, 0.1, 1.0)) for name in fig4.EXPERIMENTS),
+    "fig5": lambda: (
+        over("heated", "thermostat.spin_share", (0.0, 0.5, 1.0)),
+        boundaries("floor_materials"),
+        boundaries("shaken_walls"),
+    ),
+    "fig6": lambda: (over("waves", "floor.wave", WAVES),),
+    "fig7": lambda: tuple(over(name, "spin.inertia", (0.01, 1.0)) for name in fig7.EXPERIMENTS),
+    "fig8": lambda: tuple(boundaries(name) for name in fig8.EXPERIMENTS),
+}
+
+
+def inputs(name, folder):
+    paths = []
+    for data in DATA[name]():
+        paths.append(folder / f"{data.attrs['experiment']}.nc")
+        data.to_netcdf(paths[-1])
+    return paths
+
+
+def bars(axes):
+    """Middles of the error bars in an axes, one array a series."""
+    return [np.column_stack(box[0].get_xydata().T) for box in axes.containers]
+
+
+def words(axes):
+    return [text.get_text() for text in axes.get_legend().get_texts()]
+
+
+@pytest.mark.parametrize("name", FIGURES)
+def test_a_figure_is_drawn_as_pdf_and_png(name, tmp_path):
+    outputs = [tmp_path / "figures" / f"{name}.{kind}" for kind in ("pdf", "png")]
+    draw(name, inputs(name, tmp_path), outputs)
+    image = imread(outputs[1])
+    assert image.shape[0] > 800 and image.shape[1] > 800 and image.std() > 0.05
+    assert outputs[0].read_bytes().startswith(b"%PDF")
+    assert sorted((tmp_path / "figures").iterdir()) == outputs
+
+
+def test_the_same_data_in_any_order_give_the_same_bytes(tmp_path):
+    paths, content = inputs("fig1b", tmp_path), []
+    for order in (paths, paths[::-1]):
+        outputs = [tmp_path / "a.pdf", tmp_path / "a.png"]
+        draw("fig1b", order, outputs)
+        content.append([output.read_bytes() for output in outputs])
+    assert content[0] == content[1]
+    assert b"CreationDate" not in content[0][0]
+
+
+def test_points_are_the_data_and_residuals_are_data_minus_theory():
+    data = reduced("vibrated", lambda r, beta: 0.03 + 0 * r * beta)
+    main, residual = fig1a.draw(data).axes
+    points = [column for column in bars(main) if len(column)]
+    assert len(points) == 3
+    np.testing.assert_allclose(points[0][:, 1], data.R.sel(r=0.99))
+    beneath = [column for column in bars(residual) if len(column)]
+    theory = predicted_ratio(data.attrs, 0.8, np.array(BETA))
+    np.testing.assert_allclose(beneath[2][:, 1], data.R.sel(r=0.8) - theory)
+    np.testing.assert_allclose(beneath[2][:, 0], BETA, atol=0.03)
+    low, high = residual.get_ylim()
+    assert low < 0 < 0.03 < high
+
+
+def test_theory_of_forced_gases_is_one_smooth_line():
+    main, _ = fig1a.draw(reduced("vibrated")).axes
+    lines = [line for line in main.lines if len(line.get_xdata()) > 200]
+    assert len(lines) == 1
+    beta, ratio = lines[0].get_data()
+    assert beta[0] == -1 and beta[-1] == 1
+    assert np.interp([0, 1], beta, ratio) == pytest.approx([0.2, 0.5])
+
+
+def test_theory_of_cooling_gases_has_a_line_for_each_r_in_the_look_of_its_points():
+    main, _ = fig2b.draw(reduced("cooling")).axes
+    lines = [line for line in main.lines if len(line.get_xdata()) > 200]
+    assert [line.get_color() for line in lines] == [look.colour for look in LOOKS[:3]]
+    assert len({line.get_linestyle() for line in lines}) == 3
+    np.testing.assert_allclose(np.interp(0.0, *lines[1].get_data()), 0.32, atol=0.005)
+
+
+def test_series_differ_in_more_than_colour():
+    assert len({look.marker for look in LOOKS}) == len(LOOKS)
+    assert len({look.colour for look in LOOKS}) == len(LOOKS)
+
+
+def test_captions_say_what_how_large_and_which_error_bars():
+    data = reduced("vibrated")
+    main, _ = fig1a.draw(data).axes
+    title = main.get_title(loc="left")
+    assert "N = 160" in title and "small scale" in title
+    assert "standard error from 4 seeds" in title
+    data["n_seeds"][0, 0] = 2
+    assert "from 2 to 4 seeds" in fig1a.draw(data).axes[0].get_title(loc="left")
+    alone = fig1a.draw(reduced("vibrated", seeds=1)).axes[0]
+    assert "standard error within the run" in alone.get_title(loc="left")
+
+
+def test_points_without_a_steady_state_are_open_and_explained():
+    data = reduced("vibrated")
+    assert not any("open" in word for word in words(fig1a.draw(data).axes[0]))
+    data["equilibrated"][0, :3] = 0.25
+    main, _ = fig1a.draw(data).axes
+    assert any("open: no steady state" in word for word in words(main))
+    empty = [box[0] for box in main.containers if box[0].get_fillstyle() == "none"]
+    assert sum(len(line.get_xdata()) for line in empty) == 3
+
+
+def test_points_that_the_contact_time_model_touched_are_ringed_and_explained():
+    data = reduced("vibrated", r=(0.6, 0.8, 0.9, 0.99))
+    data["contact_time_fraction"][0] = 1e-3
+    main, _ = fig1a.draw(data).axes
+    assert any("ringed: contact-time model" in word for word in words(main))
+    rings = [line for line in main.lines if line.get_markersize() == panel.RING["markersize"]]
+    assert sum(len(line.get_xdata()) for line in rings) == len(BETA)
+
+
+def test_residuals_beyond_the_scale_become_arrows():
+    main, residual = fig1b.draw(*walls()).axes
+    assert residual.get_ylim()[1] < 0.1
+    assert "arrows: beyond this scale" in residual.get_title(loc="right")
+    arrows = [line for line in residual.lines if line.get_markersize() == 3]
+    assert max(len(line.get_xdata()) for line in arrows) == len(BETA) + 1
+    assert {"periodic, no walls", "theory, Eq. (lun)"} <= set(words(main))
+
+
+def test_fig1b_needs_its_restitution():
+    bed, *others = walls()
+    with pytest.raises(InputError, match=r"r of vibrated = .* must include 0\.9"):
+        fig1b.draw(bed.sel(r=[0.8]), *others)
+
+
+def test_unsubtracted_ratio_is_shown_small_where_there_is_one():
+    main, _ = fig2a.draw(sheared()).axes
+    small = [line for line in main.lines if line.get_alpha() == 0.5 and len(line.get_xdata())]
+    assert len(small) == 3
+    assert any("not removed" in word for word in words(main))
+    main, _ = fig2a.draw(reduced("sheared")).axes
+    assert not any("not removed" in word for word in words(main))
+
+
+def test_places_without_data_are_left_out():
+    data = reduced("cooling")
+    data["R"][:, :4] = np.nan
+    data["R"][0] = np.nan
+    main, _ = fig2b.draw(data).axes
+    assert sum(len(column) for column in bars(main)) == 2 * (len(BETA) - 4)
+
+
+def test_what_cannot_be_drawn_is_refused_and_leaves_no_file(tmp_path):
+    paths = inputs("fig1a", tmp_path)
+    with pytest.raises(InputError, match=r"figure = fig9: must be one of fig1a"):
+        draw("fig9", paths, [tmp_path / "a.pdf"])
+    with pytest.raises(InputError, match=r"must end in \.pdf or \.png"):
+        draw("fig1a", paths, [tmp_path / "a.svg"])
+    with pytest.raises(InputError, match=r"data of fig2b = vibrated: must be cooling"):
+        draw("fig2b", paths, [tmp_path / "a.pdf"])
+    assert {path.name for path in tmp_path.iterdir()} == {"vibrated.nc"}
+
+
+def test_friction_of_zero_is_left_out_of_a_logarithmic_axis():
+    main = fig4.draw(*DATA["fig4"]()).axes[0]
+    assert main.get_xscale() == "log"
+    assert all(np.all(column[:, 0] > 0.0) for column in bars(main) if len(column))
+
+
+def test_boundary_drives_stand_at_their_measured_shares():
+    heated, floor, walls = DATA["fig5"]()
+    main, residual = fig5.draw(heated, floor, walls).axes
+    points = [column for column in bars(main) if len(column)]
+    assert len(points) == 3 * heated.beta.size
+    np.testing.assert_allclose(points[-1][:, 0], walls.input_spin_share.sel(r=0.9, beta=1.0))
+    beneath = [column for column in bars(residual) if len(column)]
+    share, ratio = (walls[name].sel(r=0.9, beta=1.0) for name in ("input_spin_share", "R"))
+    expected = predicted_ratio(walls.attrs | {"spin_share": share.values}, 0.9, 1.0)
+    np.testing.assert_allclose(beneath[-1][:, 1], ratio - expected)
+
+
+def test_wave_forms_are_compared_with_the_sawtooth():
+    (waves,) = DATA["fig6"]()
+    _, residual = fig6.draw(waves).axes
+    first, second, *_ = (column for column in bars(residual) if len(column))
+    assert np.all(first[:, 1] == 0.0)
+    one, other = (waves.R.sel(r=0.9, wave=wave) for wave in ("reversed_sawtooth", "sawtooth"))
+    np.testing.assert_allclose(second[:, 1], one - other)
+
+
+def test_the_share_of_rotation_is_shown_beneath_R():
+    floor, walls = DATA["fig8"]()
+    axes = fig8.draw(floor, walls).axes
+    beneath = [column for column in bars(axes[2]) if len(column)]
+    np.testing.assert_allclose(beneath[0][:, 1], floor.input_spin_share.sel(r=0.9, beta=-0.5))

@@ -1,0 +1,188 @@
+"""The movie of a scene: what is drawn is what there is, and the file is whole."""
+
+import numpy as np
+import pytest
+from brute_force import settings
+from imageio_ffmpeg import read_frames
+from PIL import Image
+from schedules import COOLING, STEADY
+
+from roughgas.scene import build
+from roughgas.show.movies import encoding as movie
+from roughgas.show.movies import particles
+from roughgas.show.movies.drawing import Subject, picture, spin_scales, view_of, write
+from roughgas.show.movies.snapshots import Snapshot
+
+SIDE = 12.0
+SPIN, ANGLE = [[0.5], [-0.5], [0.0]], [0.0, np.pi / 2, 3.0]
+STILL = Snapshot(
+    time=10.0,
+    collisions=0.0,
+    position=np.array([[3.0, 4.0], [6.0, 5.0], [11.5, 11.7]]),
+    spin=np.array(SPIN),
+    angle=np.array(ANGLE),
+    E_trans=1.0,
+    E_rot=1.0,
+    R=0.5,
+    floor=None,
+    slide=None,
+    walls=None,
+)
+
+
+def subject(kernel, box, beta=0.5, schedule=STEADY, **others):
+    experiment = settings(kernel, 3, box) | {"schedule": schedule} | others
+    return Subject(kernel, experiment, build(experiment, 0.9, beta), 7)
+
+
+def shots(number=3, **changes):
+    return [STILL._replace(time=10.0 + 0.1 * k, collisions=k, **changes) for k in range(number)]
+
+
+def drawn(about, frames, frame=0):
+    """The axes of the particles, with their disks and the marks on them."""
+    figure, show = picture(about, frames)
+    show(frame)
+    above = figure.axes[0]
+    disks, *lines = above.collections
+    return above, disks, lines
+
+
+def test_a_disk_has_the_colour_of_its_spin_and_a_mark_at_its_angle():
+    _, disks, (marks,) = drawn(subject("gas", [SIDE, SIDE]), shots())
+    assert disks.get_offsets()[:2].tolist() == [[3.0, 4.0], [6.0, 5.0]]
+    assert np.all(disks.get_widths() == 2.0)
+    left, right, none = disks.get_facecolor()[:3, :3]
+    assert left[2] > left[0] and right[0] > right[2] and np.ptp(none) < 0.02
+    (start, tip), (_, other) = marks.get_segments()[:2]
+    assert start == pytest.approx([3.0, 4.0]) and tip == pytest.approx([3.9, 4.0])
+    assert other == pytest.approx([6.0, 5.9])
+
+
+def test_a_disk_on_the_edge_is_seen_on_both_sides_of_it():
+    _, disks, _ = drawn(subject("gas", [SIDE, SIDE]), shots())
+    corners = {(11.5, 11.7), (-0.5, 11.7), (11.5, -0.3), (-0.5, -0.3)}
+    assert {tuple(np.round(x, 9)) for x in disks.get_offsets()[2:]} == corners
+
+
+def test_the_images_above_and_below_slide():
+    about = subject("sheared", [SIDE, SIDE])
+    axes, disks, (marks, *_) = drawn(about, shots(slide=2.5))
+    bottom, top = axes.get_ylim()
+    assert bottom < -1.5 and top > SIDE + 1.5
+    places = np.round(disks.get_offsets(), 9).tolist()
+    assert [2.0, 11.7] not in places  # 11.5 + 2.5 - 12 is where the image above it is
+    assert [9.0, -0.3] in places and [11.5, 11.7] in places
+    opacity = dict(zip(map(tuple, places), disks.get_facecolor()[:, 3], strict=True))
+    assert opacity[9.0, -0.3] == particles.IMAGE and opacity[11.5, 11.7] == 1.0
+    assert len(marks.get_segments()) == len(places)
+
+
+def test_the_floor_is_a_bar_that_moves():
+    about = subject("bed", [SIDE, "open"])
+    heights = (0.0, 2.0, 4.0)
+    frames = [STILL._replace(floor=height) for height in heights]
+    for frame, height in enumerate(heights):
+        axes, *_ = drawn(about, frames, frame)
+        (bar,) = axes.patches
+        assert bar.get_y() + bar.get_height() == pytest.approx(height)
+        assert axes.get_ylim()[1] == pytest.approx(12.7)  # that of the highest disk's top
+
+
+def test_shaken_walls_stand_at_the_sides_and_their_scratches_move():
+    about = subject("shaken", [SIDE, 2 * SIDE])
+    frames = [STILL._replace(walls=0.0), STILL._replace(walls=0.3)]
+    axes, _, (_, scratches) = drawn(about, frames)
+    edges = [(bar.get_x(), bar.get_x() + bar.get_width()) for bar in axes.patches]
+    assert edges[0][1] == pytest.approx(0.0) and edges[1][0] == pytest.approx(SIDE)
+    moved = drawn(about, frames, 1)[2][1]
+    shift = np.subtract(moved.get_segments(), scratches.get_segments())
+    assert shift[..., 0] == pytest.approx(0.0) and shift[..., 1] == pytest.approx(0.3)
+    assert axes.get_ylim() == (0.0, 1.5 * SIDE)  # no more of a tall box
+
+
+def test_without_spin_there_are_neither_marks_nor_a_colour_bar_and_the_energy_is_shown():
+    bare = {"spin": None, "angle": None, "E_rot": None, "R": None}
+    about = subject("smooth", [SIDE, SIDE], -1.0, COOLING)
+    figure, _ = picture(about, shots(**bare))
+    above, below = figure.axes
+    assert not any(line.get_segments() for line in above.collections[1:])
+    assert below.get_ylabel().startswith(r"$\bar{E}$") and below.get_yscale() == "log"
+    assert spin_scales(about, shots(**bare)) is None
+
+
+@pytest.mark.parametrize("top", [SIDE, "open"])
+def test_of_spheres_the_nearest_is_drawn_last(top):
+    """A bed is seen along the second axis, a gas along the third, from above."""
+    about = subject("bed" if top == "open" else "spheres", [SIDE, SIDE, top])
+    position = np.array([[3.0, 6.0, 6.0], [4.0, 5.0, 4.0], [5.0, 4.0, 8.0]])
+    frames = shots(position=position, spin=np.eye(3), angle=None, floor=0.0)
+    _, disks, *_ = drawn(about, frames)
+    each = disks.get_offsets()[:: len(particles.SHADES), 0]
+    assert each.tolist() == ([3.0, 4.0, 5.0] if top == "open" else [4.0, 3.0, 5.0])
+
+
+def test_colours_are_relative_to_the_thermal_spin():
+    frames = shots(E_trans=3.0, E_rot=3.0)
+    frames[1] = frames[1]._replace(E_trans=12.0, E_rot=12.0)
+    thermal = np.sqrt(2 * np.array([3.0, 12.0, 3.0]) / 0.5)
+    cooling = subject("gas", [SIDE, SIDE], schedule=COOLING)
+    assert spin_scales(cooling, frames) == pytest.approx(thermal)
+    driven = np.sqrt(2 * np.full(3, 6.0) / 0.5)
+    assert spin_scales(subject("sheared", [SIDE, SIDE]), frames) == pytest.approx(driven)
+
+
+def test_time_runs_beneath():
+    figure, show = picture(subject("gas", [SIDE, SIDE]), shots(R=0.3))
+    below = figure.axes[1]
+    for frame in range(3):
+        show(frame)
+        _, _, past, present = below.lines
+        assert past.get_xdata() == pytest.approx([0.1 * k for k in range(frame + 1)])
+        assert present.get_ydata() == pytest.approx([0.3])
+    assert below.get_xlabel() == r"$(t - 10\,T)\,/\,T$"
+
+
+def test_the_title_tells_what_is_seen():
+    about = subject("gas", [SIDE, 3 * SIDE])
+    about = about._replace(name="waves/wavesine", settings=about.settings | {"swept": "floor.wave"})
+    figure, _ = picture(about, shots())
+    first, second = figure.get_suptitle().split("\n")
+    assert first == "waves, wave = sine"
+    for part in ("r = 0.9", r"\beta = 0.5", "N = 3", "seed 7", "up to $y = 18"):
+        assert part in second
+    assert view_of(about, shots()).cropped
+
+
+def test_a_gif_has_every_frame_and_goes_round(tmp_path):
+    path = tmp_path / "new" / "gas.gif"
+    frames = [
+        shot._replace(position=shot.position + k * np.array([0.3, 0.1]))
+        for k, shot in enumerate(shots(5))
+    ]
+    write(path, subject("gas", [SIDE, SIDE]), frames, 20.0)
+    with Image.open(path) as image:
+        assert image.n_frames == 5 and image.info["loop"] == 0 and image.info["duration"] == 50
+        assert image.width == 480 and 400 < image.height <= 600
+        pixels = np.asarray(image.convert("RGB"))
+    assert pixels.std() > 20
+    assert path.stat().st_size < 100_000
+    assert list(path.parent.iterdir()) == [path]
+
+
+def test_an_mp4_has_every_frame(tmp_path):
+    path = tmp_path / "gas.mp4"
+    write(path, subject("gas", [SIDE, SIDE]), shots(5), 25.0)
+    reader = read_frames(str(path))
+    about = next(reader)
+    assert about["fps"] == 25.0 and about["size"][0] == 960 and about["codec"] == "h264"
+    assert len(list(reader)) == 5
+
+
+def test_an_encoder_that_fails_leaves_nothing_and_says_why(tmp_path, monkeypatch):
+    monkeypatch.setitem(movie.ENCODERS, ".gif", "-vcodec nonsense -f gif")
+    path = tmp_path / "gas.gif"
+    with pytest.raises(OSError, match=r"not encoded: .*nonsense") as failure:
+        write(path, subject("gas", [SIDE, SIDE]), shots(), 20.0)
+    assert "\n" not in str(failure.value) and failure.value.filename == str(path)
+    assert list(tmp_path.iterdir()) == []

@@ -1,0 +1,157 @@
+"""Snapshots of a point: they lie on its trajectory, and disks have turned as far as they spun."""
+
+import math
+
+import numpy as np
+import pytest
+from brute_force import scene_of, settings, snapshot
+from brute_force.beside import brute_force_from
+from schedules import COOLING, STEADY
+
+from roughgas.scene import build
+from roughgas.scene.initial import initial_state
+from roughgas.show.movies.snapshots import Take, displacement, height, snapshots, usual_take
+from roughgas.simulation.point import run_point
+
+R, BETA, SEED = 0.9, 0.3, 7
+TINY = 1e-9
+DRIVEN = {
+    "bed": settings("bed", 16, [10, "open"]),
+    "walled": settings("walled", 16, [12, "open"]),
+    "sheared": settings("sheared", 16, [12, 12]),
+    "shaken": settings("shaken", 16, [12, 12]),
+    "heated": settings("heated", 16, [12, 12]),
+    "heated, smooth": settings("heated, smooth", 16, [12, 12]),
+}
+
+
+def start_of(scene, experiment):
+    return initial_state(scene, experiment, np.random.default_rng(SEED))
+
+
+@pytest.mark.parametrize("name", DRIVEN)
+def test_energies_of_a_driven_gas_are_those_of_its_point(name):
+    experiment = DRIVEN[name] | {"schedule": STEADY}
+    beta = BETA if "spin" in experiment["effects"] else -1.0
+    point = run_point(experiment, R, beta, SEED).variables
+    start, every = point["time"][0] - STEADY["sample_every"] / 2, STEADY["sample_every"]
+    take = Take(start, 40 * every, 40)
+    shots = list(snapshots(experiment, R, beta, SEED, take))
+    assert [shot.time for shot in shots] == pytest.approx(point["time"][:40], rel=1e-12)
+    for field, series in (("R", "R_series"), ("E_trans", "E_trans_series")):
+        found = [getattr(shot, field) for shot in shots]
+        if series in point:
+            # roundings of the instants, and nothing else: chaos would make any more of it
+            assert found == pytest.approx(point[series][:40], rel=1e-9)
+        else:
+            assert found == [None] * 40
+
+
+def test_a_cooling_gas_is_the_first_replica_of_its_point():
+    experiment = settings("gas", 20, [30, 30]) | {"schedule": COOLING}
+    point = run_point(experiment, R, BETA, SEED).variables
+    first, last = point["measured_from"], point["plateau_end"]
+    shots = list(snapshots(experiment, R, BETA, SEED, Take(0.0, 1.3 * last, 4000)))
+    passed = np.array([shot.collisions for shot in shots])
+    # R changes at collisions only: the first frame after one has its value
+    plateau = [
+        shots[np.searchsorted(passed, n)].R
+        for n in point["collisions_per_particle"]
+        if first <= n <= last
+    ]
+    assert len(plateau) > 10 and passed[-1] > last
+    assert np.mean(plateau) == pytest.approx(point["R_replica"][0], rel=1e-12)
+    start = next(snapshots(experiment, R, BETA, SEED, Take(5.0, 1.0, 2)))
+    assert start.collisions == 5.0 and start.R == shots[np.searchsorted(passed, 5.0)].R
+
+
+def test_frames_of_a_cooling_gas_are_equally_spaced_in_scaled_time():
+    experiment = settings("gas", 20, [30, 30]) | {"schedule": COOLING}
+    shots = list(snapshots(experiment, R, BETA, SEED, Take(0.0, 60.0, 240)))
+    speed = np.sqrt([shot.E_trans for shot in shots])
+    intervals = np.diff([shot.time for shot in shots])
+    assert intervals[-1] > 4 * intervals[0]
+    assert intervals * speed[:-1] == pytest.approx(intervals[0] * speed[0])
+    assert shots[-1].collisions == pytest.approx(60, rel=0.2)
+
+
+def turned_until(brute, time):
+    """Angles by which disks turn while the brute force goes on to an instant, event by event."""
+    angle, event = np.zeros(brute.number), True
+    while event is not None:
+        begun, spin = brute.time, brute.w[:, 2].copy()
+        event = brute.step(time)
+        angle += spin * (brute.time - begun)
+    return angle
+
+
+@pytest.mark.parametrize("name", ["bed", "walled", "sheared", "shaken"])
+def test_particles_are_where_brute_force_has_them_and_have_turned_as_far(name):
+    experiment = DRIVEN[name] | {"schedule": STEADY}
+    scene, world = scene_of(experiment, R, BETA)
+    brute = brute_force_from(world, snapshot(start_of(scene, experiment), scene))
+    angle = 0.0
+    for shot in snapshots(experiment, R, BETA, SEED, Take(0.0, 1.5, 12)):
+        angle += turned_until(brute, shot.time)
+        apart = [np.abs(shot.position - brute.x + s).max(axis=1) for s, _ in brute.images()]
+        assert np.min(apart, axis=0).max() < TINY
+        assert shot.spin[:, 0] == pytest.approx(brute.w[:, 2], abs=TINY)
+        assert shot.angle == pytest.approx(angle, abs=TINY)
+        if world.floor:
+            assert shot.floor == pytest.approx(brute.surface(0.0)[0], abs=TINY)
+        for axis, length in enumerate(scene.box):
+            if length is not None:
+                assert np.all((shot.position[:, axis] >= 0) & (shot.position[:, axis] <= length))
+    assert np.abs(angle).max() > 0.5
+
+
+def test_many_particles_keep_their_numbers():
+    """They are sorted into cells, hence anew in memory now and then, and turn none the less."""
+    experiment = settings("gas", 900, [80, 80]) | {"schedule": COOLING}
+    shots = list(snapshots(experiment, R, 1.0, SEED, Take(0.0, 3.0, 300)))
+    length = np.array(experiment["box"])
+    moved = np.diff([shot.position for shot in shots], axis=0)
+    moved -= length * np.round(moved / length)
+    assert np.abs(moved).max() < 3.0
+    turned = np.diff([shot.angle for shot in shots], axis=0)
+    spins = np.array([shot.spin[:, 0] for shot in shots])
+    intervals = np.diff([shot.time for shot in shots])[:, None]
+    alike = spins[1:] == spins[:-1]  # those that met nobody
+    assert alike.mean() > 0.9
+    assert turned[alike] == pytest.approx((spins[:-1] * intervals)[alike], abs=1e-12)
+
+
+@pytest.mark.parametrize("wave", ["sawtooth", "reversed_sawtooth", "triangle", "sine"])
+def test_the_floor_is_where_brute_force_has_it(wave):
+    floor = {"amplitude": 2.0, "period": 1.5, "wave": wave}
+    experiment = settings("bed", 4, [10, "open"], floor=floor)
+    scene, world = scene_of(experiment, R, BETA)
+    brute = brute_force_from(world, snapshot(start_of(scene, experiment), scene))
+    for time in (0.1, 0.4, 1.0, 1.4, 1.6, 2.9):
+        brute.run_until(time)
+        assert height(scene.effects.floor, time) == pytest.approx(brute.surface(0.0)[0])
+
+
+def test_shaken_walls_move_as_fast_as_they_are_met():
+    walls = build(DRIVEN["shaken"], R, BETA).effects.shaken_walls
+    assert displacement(walls, walls.period / 4) == pytest.approx(1.0)
+    step = 1e-6
+    for time in (0.0, 0.3, 1.1):
+        speed = (displacement(walls, time + step) - displacement(walls, time - step)) / (2 * step)
+        expected = walls.speed * math.cos(2 * math.pi * time / walls.period)
+        assert speed == pytest.approx(expected, abs=1e-6)
+
+
+def test_what_is_shown_unless_told_otherwise():
+    def usual(name, schedule=STEADY, **others):
+        experiment = settings(name) | {"schedule": schedule} | others
+        return usual_take(experiment, build(experiment, R, -1.0))
+
+    assert usual("bed") == (20, 5.0, 125)
+    assert usual("shaken") == (20, 10.0, 125)
+    assert usual("sheared") == (20, 25.0, 125)
+    assert usual("heated") == (20, 25.0, 125)
+    assert usual("gas", COOLING) == (0.0, 16.0, 160)
+    without = {"kind": "steady", "sample_every": 1}
+    assert usual("bed", without).start == 1000
+    assert usual("bed", particles=10**6).start == 1

@@ -1,0 +1,77 @@
+"""Tables, configurations and movies as HTML, run times, and the configuration of a scale."""
+
+import base64
+import json
+from pathlib import Path
+
+import pytest
+
+from roughgas import config
+from roughgas.cli import main
+from roughgas.data.reduced import read_reduced
+from roughgas.results.times import write_times
+
+CONFIG = Path(__file__).parents[3] / "config.yaml"
+
+
+def html(source, tmp_path):
+    assert main(["html", str(source), "--output", str(tmp_path / "shown.html")]) == 0
+    return (tmp_path / "shown.html").read_text("utf-8")
+
+
+def test_markdown_becomes_tables_and_stays_text(tmp_path):
+    source = tmp_path / "claims.md"
+    source.write_text("# Verdict\n\n| R | β |\n| --- | --- |\n| a < b | **holds** |\n\n<b>$x</b>\n")
+    text = html(source, tmp_path)
+    assert "<h1>Verdict</h1>" in text and "<th>R</th>" in text
+    assert "<td>a &lt; b</td>" in text and "<td><strong>holds</strong></td>" in text
+    assert "&lt;b&gt;$x&lt;/b&gt;" in text
+
+
+def test_other_files_are_shown_as_what_they_are(tmp_path):
+    (tmp_path / "config.yaml").write_text("box: [1, <2>]\n")
+    assert "<pre>box: [1, &lt;2&gt;]\n</pre>" in html(tmp_path / "config.yaml", tmp_path)
+    (tmp_path / "bed.mp4").write_bytes(b"\0movie")
+    data = base64.b64encode(b"\0movie").decode()
+    assert f'src="data:video/mp4;base64,{data}"' in html(tmp_path / "bed.mp4", tmp_path)
+
+
+def test_an_unknown_kind_is_refused(tmp_path, capsys):
+    (tmp_path / "a.txt").write_text("text")
+    assert main(["html", str(tmp_path / "a.txt"), "-o", str(tmp_path / "a.html")]) == 2
+    assert "must end in one of .md, .yaml, .mp4, .gif" in capsys.readouterr().err
+    assert not (tmp_path / "a.html").exists()
+
+
+def test_run_times_are_sums_over_points_and_seeds(points, tmp_path):
+    write_times([points / "sheared.nc", points / "cooling.nc"], tmp_path / "times.md")
+    rows = [line for line in (tmp_path / "times.md").read_text().splitlines() if line[:1] == "|"]
+    assert rows[2:] == [
+        "| sheared | 40 | 2 | 4 | 4,936 | 1.0 | 4,936 |",
+        "| cooling | 40 | 4 | 4 | 4,936 | 1.0 | 4,936 |",
+        "| together |  | 6 | 8 | 9,872 | 2.0 | 4,936 |",
+    ]
+    assert read_reduced(points / "sheared.nc").kernel_seconds.sum().item() == 1.0
+
+
+@pytest.mark.parametrize("scale", ["paper", "small", "fine"])
+def test_the_complete_configuration_says_the_same_and_can_be_run(scale, tmp_path):
+    path = tmp_path / "config.yaml"
+    changes = {"experiments": {"cooling": {"particles": 99}}, "seeds_per_job": 2}
+    arguments = [f"--config={CONFIG}", f"--scale={scale}", f"--changes={json.dumps(changes)}"]
+    assert main(["config", *arguments, "--output", str(path)]) == 0
+    given, found = config.load(CONFIG, changes), config.load(path)
+    assert found["scale"] == scale and list(found["scales"]) == [scale]
+    assert found["seeds_per_job"] == 2
+    for name in given["experiments"]:
+        assert config.experiment(found, name, scale) == config.experiment(given, name, scale)
+    assert config.showcase(found, scale) == config.showcase(given, scale)
+    for study in found["accuracy"]:
+        assert config.study(found, study, scale) == config.study(given, study, scale)
+
+
+def test_the_configuration_of_no_scale_is_refused(tmp_path, capsys):
+    path = tmp_path / "config.yaml"
+    assert main(["config", f"--config={CONFIG}", "--scale=large", f"-o={path}"]) == 2
+    assert "scale = 'large': must be one of" in capsys.readouterr().err
+    assert not path.exists()

@@ -1,0 +1,124 @@
+"""The numbers in the page are those of the datasets, its theory is that of the figures."""
+
+import json
+import re
+
+import numpy as np
+import pytest
+
+from roughgas.base.errors import InputError
+from roughgas.cli import main
+from roughgas.data.point import read_point
+from roughgas.data.reduced import read_reduced
+from roughgas.show.page import write_page
+from roughgas.show.page.gather import GRID, NUMBERS, experiment
+from roughgas.show.page.series import LONGEST, block_means
+from roughgas.theory.prediction import predicted_ratio
+from show.page.conftest import SAMPLES
+
+EXPERIMENTS = ("sheared", "cooling", "cooling_friction")
+
+
+def data_in(page):
+    """The data that a page holds."""
+    text = page.read_text("utf-8")
+    (found,) = re.findall(r'<script id="data" type="application/json">(.*?)</script>', text, re.S)
+    return json.loads(found)
+
+
+def places(found):
+    """Every point of an experiment with its (value on the third axis, r, beta)."""
+    for variant in found["variants"]:
+        value = None if variant["name"] is None else float(variant["name"].removeprefix("mu"))
+        for series in variant["series"]:
+            for point in series["points"]:
+                yield (value, float(series["r"]), float(point["beta"])), series, point
+
+
+@pytest.mark.parametrize("name", EXPERIMENTS)
+def test_every_number_is_that_of_the_reduced_dataset(points, name):
+    data = read_reduced(points / f"{name}.nc")
+    found = list(places(experiment(points / f"{name}.nc", points)))
+    assert len(found) == np.count_nonzero(data.n_seeds)
+    for (mu, r, beta), _, point in found:
+        place = data.sel(r=r, beta=beta) if mu is None else data.sel(mu=mu, r=r, beta=beta)
+        for shown, column in NUMBERS.items():
+            assert point[shown] == place[column].item(), (shown, mu, r, beta)
+        assert point["steady"] is True
+
+
+@pytest.mark.parametrize("name", EXPERIMENTS)
+def test_theory_is_predicted_ratio_at_the_points_and_along_the_curve(points, name):
+    attributes = read_reduced(points / f"{name}.nc").attrs
+    for (mu, r, beta), series, point in places(experiment(points / f"{name}.nc", points)):
+        about = attributes if mu is None else attributes | {"mu": mu}
+        assert point["theory"] == float(predicted_ratio(about, r, beta))
+        curve = np.array(series["curve"], float)
+        np.testing.assert_allclose(curve, predicted_ratio(about, r, GRID), rtol=6e-5)
+
+
+def test_a_point_is_found_by_its_labels_and_says_how_to_run_it_again(points):
+    (variant,) = experiment(points / "sheared.nc", points)["variants"]
+    (series,) = variant["series"]
+    assert (series["r"], [one["beta"] for one in series["points"]]) == ("0.9", ["-0.5", "0.50"])
+    point = series["points"][1]
+    path = points / "sheared/r0.9/beta0.50/seed1.nc"
+    assert point["target"] == str(path)
+    assert point["command"] == read_point(path).attrs["command"]
+
+
+def test_where_a_target_is_set_its_folder_is_what_to_ask_for(points):
+    for place in ("beta-0.5", "beta0.50"):
+        folder = points / "sheared/r0.9" / place
+        (folder / "seeds").mkdir()
+        for seed in (1, 2):
+            (folder / f"seed{seed}.nc").rename(folder / "seeds" / f"seed{seed}.nc")
+    (variant,) = experiment(points / "sheared.nc", points)["variants"]
+    assert variant["series"][0]["points"][0]["target"] == str(
+        points / "sheared/r0.9/beta-0.5/seeds"
+    )
+
+
+def test_time_series_are_means_over_blocks(points):
+    (variant,) = experiment(points / "cooling.nc", points)["variants"]
+    shown = variant["series"][0]["points"][0]["over_time"]
+    whole = read_point(points / "cooling/r1/beta-0.5/seed1.nc")
+    assert shown["clock"] == "collisions_per_particle" and shown["measured"] == [100.0, 400.0]
+    assert shown["block"] == 3 and len(shown["at"]) == SAMPLES / 3 <= LONGEST
+    for name in ("R", "E_trans", "E_rot"):
+        expected = whole[f"{name}_series"].values.reshape(-1, 3).mean(1)
+        np.testing.assert_allclose(shown[name], expected, rtol=6e-5)
+    np.testing.assert_array_equal(block_means(np.arange(5.0), 2), [0.5, 2.5, 4.0])
+
+
+def test_the_page_holds_its_data_and_asks_for_nothing(points, tmp_path):
+    reduced = [str(points / f"{name}.nc") for name in EXPERIMENTS]
+    page = tmp_path / "out" / "explore.html"
+    assert main(["page", *reduced, "--points", str(points), "--output", str(page)]) == 0
+    found = data_in(page)
+    assert found["experiments"] == [experiment(path, points) for path in reduced]
+    assert [one["theory"] for one in found["experiments"]] == [
+        "Eq. (lun)",
+        "Eq. (K)",
+        "rate equations",
+    ]
+    text = page.read_text("utf-8")
+    assert not re.search(r'<(script|link|img|iframe)[^>]*(src|href)="(?!data:)', text)
+
+
+def test_what_is_not_there_is_named_in_one_line(points, tmp_path, capsys):
+    (points / "cooling/r1/beta0.50/seed1.nc").unlink()
+    page = tmp_path / "explore.html"
+    assert main(["page", str(points / "cooling.nc"), f"--points={points}", f"-o={page}"]) == 2
+    assert capsys.readouterr().err == (
+        "roughgas: error: point (..., r, beta) = 1.0, 0.5: must have its seed 1 in the folder of"
+        " points\n"
+    )
+    assert not page.exists()
+
+
+def test_several_scales_do_not_mix(points, tmp_path):
+    other = read_reduced(points / "sheared.nc").assign_attrs(scale="paper")
+    other.to_netcdf(tmp_path / "other.nc")
+    with pytest.raises(InputError, match="scale of the datasets = paper and small: must be one"):
+        write_page([points / "cooling.nc", tmp_path / "other.nc"], points, tmp_path / "page.html")

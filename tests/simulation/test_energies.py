@@ -1,0 +1,102 @@
+import numpy as np
+import pytest
+
+from roughgas.simulation.energies import (
+    Energies,
+    energies,
+    fluctuation_energies,
+    ratio,
+    ratio_of_means,
+)
+
+PARTICLES, BOX, SHEAR_RATE = 12, 50.0, 0.04
+
+
+def columns_of(v, spin, y):
+    """The kernel's columns; v (samples, N, D), spin (samples, N, 2 D - 3), y - L/2 (samples, N)."""
+    columns = {
+        "ww": (spin**2).sum(axis=(1, 2)),
+        "yy": (y**2).sum(axis=1),
+        "yv_x": (y * v[:, :, 0]).sum(axis=1),
+    }
+    for i, axis in enumerate("xyz"[: v.shape[2]]):
+        columns[f"vv_{axis}"] = (v[:, :, i] ** 2).sum(axis=1)
+    for i, name in enumerate(["w"] if spin.shape[2] == 1 else ["w_x", "w_y", "w_z"]):
+        columns[name] = spin[:, :, i].sum(axis=1)
+    return columns
+
+
+@pytest.fixture(params=[2, 3], ids=["disks", "spheres"])
+def gas(request):
+    dimension = request.param
+    rng = np.random.default_rng(dimension)
+    v = rng.normal(size=(5, PARTICLES, dimension))
+    spin = rng.normal(0.3, 1.0, size=(5, PARTICLES, 2 * dimension - 3))
+    return (
+        v,
+        spin,
+        rng.uniform(-BOX / 2, BOX / 2, size=(5, PARTICLES)),
+        0.5 if dimension == 2 else 0.4,
+    )
+
+
+def test_energies_are_those_of_the_definition(gas):
+    v, spin, y, q = gas
+    result = energies(columns_of(v, spin, y), PARTICLES, q)
+    np.testing.assert_allclose(
+        result.translational, (v**2 / 2).sum(axis=2).mean(axis=1) / v.shape[2]
+    )
+    np.testing.assert_allclose(
+        result.rotational, (q * spin**2 / 2).sum(axis=2).mean(axis=1) / spin.shape[2]
+    )
+
+
+def test_fluctuation_energies_are_those_about_the_mean_flow_and_the_mean_spin(gas):
+    v, spin, y, q = gas
+    result = fluctuation_energies(columns_of(v, spin, y), PARTICLES, q, SHEAR_RATE)
+    peculiar = v.copy()
+    peculiar[:, :, 0] -= SHEAR_RATE * y
+    np.testing.assert_allclose(result.translational, (peculiar**2 / 2).mean(axis=(1, 2)))
+    np.testing.assert_allclose(result.rotational, (q * spin.var(axis=1) / 2).mean(axis=1))
+
+
+def test_fluctuation_energies_do_not_feel_shear_or_spin_of_the_whole(gas):
+    v, spin, y, q = gas
+    still = fluctuation_energies(columns_of(v, spin, y), PARTICLES, q, 0.0)
+    flow = np.zeros_like(v)
+    flow[:, :, 0] = SHEAR_RATE * y
+    sheared = fluctuation_energies(columns_of(v + flow, spin - 0.7, y), PARTICLES, q, SHEAR_RATE)
+    np.testing.assert_allclose(sheared, still, rtol=1e-12)
+
+
+def test_no_bias_of_order_one_over_n_when_momentum_and_mean_spin_are_removed():
+    """Equipartition reads R = 1/2 even for N = 8, where one spin in eight is taken away."""
+    rng = np.random.default_rng(1)
+    samples, particles, q = 20000, 8, 0.5
+    v = rng.normal(size=(samples, particles, 2))
+    v -= v.mean(axis=1, keepdims=True)
+    spin = rng.normal(size=(samples, particles, 1)) / np.sqrt(q)
+    result = fluctuation_energies(
+        columns_of(v, spin, np.zeros((samples, particles))), particles, q, SHEAR_RATE
+    )
+    # It scatters by sqrt(2/14 + 2/7)/(4 sqrt(20000)) = 0.0012: 3 sigma, by chance 1 in 370.
+    assert ratio_of_means(result) == pytest.approx(0.5, abs=0.0035)
+    # As they are, with the whole spin kept: 1/(1 + 7/8), 27 sigma from 1/2.
+    whole = energies(columns_of(v, spin, np.zeros((samples, particles))), particles, q)
+    assert ratio_of_means(whole) == pytest.approx(8 / 15, abs=0.0035)
+
+
+def test_ratio_of_each_sample_and_of_the_means():
+    some = Energies(np.array([1.0, 3.0]), np.array([1.0, 1.0]))
+    np.testing.assert_allclose(ratio(some), [1 / 2, 1 / 4])
+    assert ratio_of_means(some) == pytest.approx(1 / 3)
+
+
+def test_ratio_of_means_over_replicas_keeps_the_samples():
+    some = Energies(np.array([[1.0, 3.0], [3.0, 3.0]]), np.array([[1.0, 1.0], [1.0, 5.0]]))
+    np.testing.assert_allclose(ratio_of_means(some, axis=0), [1 / 3, 1 / 2])
+
+
+def test_ratio_without_any_energy_is_undefined_and_silent(recwarn):
+    assert np.isnan(ratio(Energies(np.zeros(1), np.zeros(1))))
+    assert not recwarn.list

@@ -1,0 +1,105 @@
+"""Progress: bars on a terminal, nothing elsewhere, and a film's lines in a log."""
+
+import io
+from pathlib import Path
+
+import pytest
+
+from roughgas.simulation.progress import Bar, FilmProgress, Progress
+
+DRIVEN = {
+    "particles": 10,
+    "box": [50, 50],
+    "effects": {"spin": {"inertia": 0.5}, "shear": {"velocity": 1}},
+    "schedule": {"kind": "steady", "equilibrate": 2000, "measure": 5000, "sample_every": 1},
+}
+COOLING = DRIVEN | {
+    "effects": {"spin": {"inertia": 0.5}},
+    "schedule": {
+        "kind": "cooling",
+        "replicas": 4,
+        "thermalise": 10,
+        "relaxation_times": 16,
+        "plateau": 50,
+        "sample_every": 1,
+    },
+}
+
+
+class Terminal(io.StringIO):
+    """A stream that says it is a terminal; `shown` is what each bar in turn looked like."""
+
+    def isatty(self):
+        return True
+
+    @property
+    def shown(self):
+        return [line for line in self.getvalue().split("\r") if line.strip()]
+
+
+@pytest.fixture(autouse=True)
+def every_step_is_shown(monkeypatch):
+    monkeypatch.setattr("roughgas.simulation.progress.SECONDS_BETWEEN", 0.0)
+
+
+def test_a_bar_says_how_far_how_long_and_what_and_is_cleared():
+    stream = Terminal()
+    with Bar("pilots", 4, "points", stream) as bar:
+        bar.reach(1, "r = 0.9")
+        bar.advance("r = 0.8")
+    assert stream.shown[1].startswith("pilots:  25%|") and stream.shown[1].endswith(", r = 0.9")
+    assert "| 2 of 4 points, 00:00 left, r = 0.8" in stream.shown[2]
+    assert stream.getvalue().endswith("\r") and not stream.getvalue().split("\r")[-2].strip()
+
+
+def test_a_driven_gas_is_followed_in_time():
+    stream = Terminal()
+    with Progress("sheared", DRIVEN, 0.9, 0.0, stream=stream) as progress:
+        progress(1750.0, 98_765)
+    assert stream.shown[-1].startswith("sheared:  25%|") and "1750 of 7000 T" in stream.shown[-1]
+
+
+def test_a_cooling_gas_is_followed_through_its_replicas():
+    """So many collisions per particle: 10 to thermalise, the transient, 50 on the plateau."""
+    stream = Terminal()
+    with Progress("cooling", COOLING, 1.0, 1.0, stream=stream) as progress:
+        total = int(stream.shown[0].split(" of ")[1].split()[0])
+        replica = total / 4
+        for _ in range(4):
+            for part in (0.5, 1.0):
+                progress(123.0, round(part * replica * 5))
+    shown = [int(one.split("| ")[1].split()[0]) for one in stream.shown[1:]]
+    assert shown == pytest.approx([total * part / 8 for part in range(1, 9)], abs=1)
+    assert stream.shown[-1].startswith("cooling: 100%|")
+
+
+def test_progress_is_silent_elsewhere():
+    stream = io.StringIO()
+    with Progress("cooling", COOLING, 0.9, 0.0, stream=stream) as progress:
+        progress(1.0, 1)
+    assert stream.getvalue() == ""
+
+
+def test_a_film_that_goes_on_counts_from_where_it_was():
+    stream = Terminal()
+    with FilmProgress(Path("c.npz"), 100, stream) as progress:
+        progress.reached(20, 5_000, False)
+        progress.reached(21, 6_000, True)
+    assert "clustering: going on from c.npz\n" in stream.getvalue()
+    assert "| 21 of 100 frames, " in stream.shown[-1] and "6,000 collisions" in stream.shown[-1]
+    assert progress.how_to_go_on() == "the same command goes on from frame 21 of 100"
+
+
+def test_a_log_has_a_line_for_each_checkpoint_of_a_film(monkeypatch):
+    clock = iter(range(1000, 2000, 50))
+    monkeypatch.setattr("roughgas.simulation.progress.time.monotonic", lambda: next(clock))
+    stream = io.StringIO()
+    with FilmProgress(Path("c.npz"), 100, stream) as progress:
+        progress.fresh("c.npz is damaged")
+        progress.reached(20, 5_000, False)
+        progress.reached(21, 6_000, True)
+    assert stream.getvalue().splitlines() == [
+        "clustering: c.npz is damaged: starting afresh",
+        "clustering: going on from c.npz",
+        "clustering: frame 21 of 100, 6,000 collisions, 65 min 50 s left",
+    ]

@@ -1,0 +1,114 @@
+"""The two ways of running an experiment, on gases whose R is known well enough."""
+
+import numpy as np
+import pytest
+from brute_force import begin, settings
+
+from roughgas import theory
+from roughgas.simulation import cooling, steady
+from roughgas.simulation.recorder import Recorder
+
+BED = settings("bed", 40, [12.5, "open"]) | {
+    "schedule": {
+        "kind": "steady",
+        "equilibrate": 100,
+        "measure": 300,
+        "sample_every": 0.25,
+        "period": 1,
+    }
+}
+COOLING = settings("gas", 40, [50, 50]) | {
+    "schedule": {
+        "kind": "cooling",
+        "replicas": 8,
+        "thermalise": 20,
+        "relaxation_times": 8,
+        "plateau": 60,
+        "sample_every": 1,
+    }
+}
+
+
+def test_a_steady_bed():
+    """R near Eq. (lun), within the paper's 0.06 and four standard errors."""
+    scene, _ = begin(BED, 0.9, 0.0)
+    measured = steady.run(scene, BED, 1, Recorder())
+    assert measured["equilibrated"]
+    assert measured["measured_from"] >= 100.0
+    assert measured["measured_from"] == round(measured["measured_from"])  # whole periods
+    assert measured["time"][0] == pytest.approx(measured["measured_from"] + 0.25)
+    assert len(measured["R_series"]) == len(measured["time"]) == len(measured["E_rot_series"])
+    expected = theory.lun_ratio(0.0, 0.5)
+    assert abs(measured["R"] - expected) < 0.06 + 4.0 * measured["R_stderr"]
+
+
+def test_a_cooling_gas():
+    """R near Eq. (K), within 8 % and four standard errors of 8 replicas of 40 disks."""
+    scene, _ = begin(COOLING, 0.9, 0.0)
+    measured = cooling.run(scene, COOLING, 1, Recorder())
+    expected = theory.cooling_ratio(0.9, 0.0)
+    assert abs(measured["R"] - expected) < 0.08 * expected + 4.0 * measured["R_stderr"]
+    assert measured["R_replica"].shape == (8,)
+    assert measured["R"] == pytest.approx(measured["R_replica"].mean())
+    assert np.all(np.diff(measured["E_trans_series"]) < 0.0)
+    assert 0.5 < measured["E_trans_series"][0] < 1.0  # in units of the gas before it cooled
+    assert measured["collisions_per_particle"][0] == 1.0
+    assert measured["measured_from"] >= cooling.transient_length(scene, 8)
+
+
+def test_the_transient_is_that_of_the_rate_equations_within_limits():
+    gas = settings("gas")
+    for r, beta in ((0.9, -0.6), (0.9, 0.5), (0.9999, -0.9999), (0.5, 1.0)):
+        rate = theory.relaxation_rate(r, beta)
+        expected = np.clip(8.0 / rate, *cooling.TRANSIENT)
+        assert cooling.transient_length(begin(gas, r, beta)[0], 8) == pytest.approx(expected)
+
+
+def heated(kernel, **thermostat):
+    steady = {"kind": "steady", "equilibrate": 40, "measure": 960, "sample_every": 0.5}
+    return settings(kernel, 40, [50, 50], thermostat=thermostat) | {"schedule": steady}
+
+
+def test_a_steady_heated_gas():
+    """R near the rate equations', within 5 % and four standard errors; no period is needed."""
+    experiment = heated("heated", spin_share=0.5)
+    scene, _ = begin(experiment, 0.9, 0.2)
+    measured = steady.run(scene, experiment, 1, Recorder())
+    assert measured["equilibrated"]
+    expected = theory.stationary_ratio(0.9, 0.2, 2, 0.5, 0.5)
+    assert abs(measured["R"] - expected) < 0.05 * expected + 4.0 * measured["R_stderr"]
+    assert measured["source"] == ["thermostat", "contacts"]
+    put_in = measured["energy_input"][0].sum() / 1000.0
+    assert put_in == pytest.approx(1.0, rel=0.1)  # three standard errors of the kicks
+
+
+def test_a_heated_gas_without_spin_has_a_temperature_only():
+    """Stationary where collisions take what the thermostat puts in: nu (1 - r^2) T_tr/2 = power.
+
+    That is the rate equation of T_tr; nu of dilute disks is Enskog's. Within 5 %.
+    """
+    experiment = heated("heated, smooth")
+    scene, _ = begin(experiment, 0.9, -1.0)
+    measured = steady.run(scene, experiment, 1, Recorder())
+    assert not [name for name in measured if name.startswith("R")]
+    assert not {"E_rot", "E_rot_series", "autocorrelation_time"} & set(measured)
+    assert measured["equilibrated"] and measured["E_trans_stderr"] > 0.0
+    T_tr = 2.0 * measured["E_trans"]
+    frequency = theory.collision_frequency(T_tr, 40 * np.pi / 50**2, 2)
+    lost = frequency * (1.0 - 0.9**2) * T_tr / 2.0
+    error = 1.5 * measured["E_trans_stderr"] / measured["E_trans"]  # of T_tr^(3/2)
+    assert abs(lost - 1.0) < 0.05 + 4.0 * error
+    assert error < 0.05
+
+
+def test_a_cooling_gas_without_spin_follows_haff():
+    """In collisions per particle its energy decays exponentially, by (1 - r^2)/2 of it each."""
+    experiment = COOLING | settings("smooth", 40, [50, 50])
+    scene, _ = begin(experiment, 0.95, -1.0)
+    assert cooling.transient_length(scene, 8) == cooling.TRANSIENT[0]
+    measured = cooling.run(scene, experiment, 1, Recorder())
+    assert not [name for name in measured if name.startswith("R")] and "E_rot" not in measured
+    assert measured["measured_from"] == 10.0 and measured["equilibrated"]
+    E, n = measured["E_trans_series"], measured["collisions_per_particle"]
+    rate = -np.log(E[-1] / E[0]) / (n[-1] - n[0])
+    assert rate == pytest.approx((1.0 - 0.95**2) / 2.0, rel=0.05)

@@ -1,0 +1,128 @@
+import math
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from roughgas.statistics.averages import period_means
+from roughgas.statistics.errors import (
+    autocorrelation_time,
+    blocking_stderr,
+    gaussian_sigmas,
+    stderr_from_autocorrelation,
+    stderr_over_seeds,
+    student_t,
+)
+
+# Samples and integrated autocorrelation time of AR(1) series, at least 20 such times long.
+CASES = [(100, 1), (100, 5), (500, 0.5), (500, 5), (500, 25), (2000, 1), (2000, 39), (2000, 100)]
+
+
+@pytest.mark.parametrize("samples, tau", CASES)
+def test_blocking_is_calibrated(ar1, samples, tau):
+    """The root mean square over 200 series: the stated 7 %, plus 3 sigma of its own scatter."""
+    series = ar1.series(np.random.default_rng(11), tau, samples, 200)
+    estimates = np.array([blocking_stderr(one) for one in series]) / ar1.stderr(tau, samples)
+    rms, scatter = np.sqrt(np.mean(estimates**2)), estimates.std() / np.sqrt(200)
+    assert abs(rms - 1) < 0.07 + 3 * scatter
+    assert estimates.std() < 0.36
+
+
+@pytest.mark.parametrize("samples, tau", [case for case in CASES if case[1] >= 1])
+def test_autocorrelation_is_calibrated(ar1, samples, tau):
+    """As above; emcee's window makes it 5 to 10 % wrong at n = 20 tau."""
+    series = ar1.series(np.random.default_rng(12), tau, samples, 200)
+    estimates = np.array([stderr_from_autocorrelation(one) for one in series]) / ar1.stderr(
+        tau, samples
+    )
+    rms, scatter = np.sqrt(np.mean(estimates**2)), estimates.std() / np.sqrt(200)
+    assert abs(rms - 1) < 0.10 + 3 * scatter
+
+
+def test_coverage_of_two_standard_errors(ar1):
+    """93 to 94 %, for the error has noise of its own; 5 sigma of 400 series are 6 %."""
+    series = ar1.series(np.random.default_rng(13), 10, 2000, 400)
+    covered = [abs(one.mean()) < 2 * blocking_stderr(one) for one in series]
+    assert np.mean(covered) > 0.88
+
+
+def test_autocorrelation_time_of_replicas_is_sharper_than_of_one(ar1):
+    """Of 20 series of 400 samples with tau = 8: 4 % scatter, tested at 4 sigma."""
+    series = ar1.series(np.random.default_rng(14), 8, 400, 20)
+    assert autocorrelation_time(series) == pytest.approx(8, rel=0.16)
+
+
+def test_anticorrelation_is_given_no_credit(ar1):
+    series = ar1.series(np.random.default_rng(15), 0.2, 1000, 1)[0]
+    assert autocorrelation_time(series) == 1.0
+
+
+def test_raw_samples_of_a_periodic_drive_mislead_and_period_means_do_not(ar1):
+    """Four phases a period over noise of tau = 80 samples, which raw samples hide."""
+    slow = 0.01 * ar1.series(np.random.default_rng(16), 80, 16000, 20)
+    raw = slow + np.tile([0.18, 0.24, 0.26, 0.21], 4000)
+    truth = 0.01 * ar1.stderr(80, 16000)
+    naive = np.array([stderr_from_autocorrelation(one) for one in raw])
+    assert naive.max() < 0.6 * truth
+    for estimate in (blocking_stderr, stderr_from_autocorrelation):
+        estimates = np.array([estimate(period_means(one, 4)) for one in raw])
+        # One scatters by 15 %, the root mean square of 20 by 4 %: 4 sigma.
+        assert np.sqrt(np.mean(estimates**2)) == pytest.approx(truth, rel=0.16)
+
+
+def test_constant_series_have_no_error_and_no_autocorrelation_time(recwarn):
+    constant = np.full(100, 0.1)
+    assert blocking_stderr(constant) == stderr_from_autocorrelation(constant) == 0
+    assert math.isnan(autocorrelation_time(constant))
+    assert not recwarn.list
+
+
+@pytest.mark.parametrize(
+    "estimate", [blocking_stderr, stderr_from_autocorrelation, stderr_over_seeds]
+)
+def test_one_value_has_no_error(estimate):
+    assert math.isnan(estimate(np.array([0.3])))
+
+
+def test_stderr_over_seeds():
+    assert stderr_over_seeds([1.0, 2.0, 3.0, 4.0]) == pytest.approx(math.sqrt(5 / 3) / 2)
+
+
+@pytest.mark.parametrize(
+    "dof, t, sigmas",
+    # Student's t whose two-sided probability is that of 1, 2, 3 and 4 sigma of a Gaussian.
+    [
+        (3, 1.1969, 1),
+        (3, 3.3068, 2),
+        (3, 9.2189, 3),
+        (8, 1.0665, 1),
+        (8, 2.3664, 2),
+        (8, 4.2766, 3),
+        (8, 7.5951, 4),
+    ],
+)
+def test_gaussian_sigmas(dof, t, sigmas):
+    assert gaussian_sigmas(t, dof) == pytest.approx(sigmas, abs=0.06)
+    assert gaussian_sigmas(-t, dof) == -gaussian_sigmas(t, dof)
+    assert student_t(float(gaussian_sigmas(t, dof)), dof) == pytest.approx(t)
+
+
+def test_the_estimator_is_emcees_but_imports_neither_emcee_nor_scipy():
+    """Every job pays for what is imported: emcee asks for scipy.stats, 0.7 s."""
+    code = (
+        "import sys; from roughgas.statistics.errors import autocorrelation_time as time;"
+        "time([0, 1, 3, 2, 5, 4]);"
+        "sys.exit('scipy' in sys.modules or 'emcee' in sys.modules)"
+    )
+    environment = {"PYTHONPATH": os.pathsep.join(sys.path)}
+    assert subprocess.run([sys.executable, "-c", code], env=environment).returncode == 0
+
+
+def test_autocorrelation_time_is_emcees_with_the_correction_for_a_short_series(ar1):
+    from emcee.autocorr import integrated_time
+
+    series = ar1.series(np.random.default_rng(17), 5, 1000, 1)[0]
+    time = integrated_time(series, c=3, tol=0)[0]
+    assert autocorrelation_time(series) == pytest.approx(time * (1 + 6 * time / 1000))

@@ -1,0 +1,119 @@
+"""Coverage: its estimators on numbers of known law, and a corner from end to end."""
+
+import math
+
+import numpy as np
+import pytest
+from brute_force import settings
+from schedules import COOLING, STEADY
+
+from roughgas.studies.accuracy import coverage
+from roughgas.studies.accuracy.calibration import REGROUPINGS, Runs, calibrate, one_run, several
+from roughgas.studies.accuracy.tables import coverage as table
+from roughgas.studies.figures.coverage import draw_figure
+
+DOF = 8
+EXPERIMENTS = {
+    "bed": settings("bed", 10, [10, "open"]) | {"schedule": STEADY},
+    "gas": settings("gas", 10, [20, 20]) | {"schedule": COOLING},
+}
+SETTINGS = {
+    "seed": 1,
+    "repetitions": 8,
+    "pooled": 4,
+    "reference": {"seeds": 2, "length": 20},
+    "corners": [
+        {"experiment": "bed", "r": "0.9", "beta": "-0.5", "schedule": {"measure": 30}},
+        {"experiment": "gas", "r": "0.9", "beta": "0", "schedule": {"plateau": 30}},
+    ],
+}
+
+
+def honest(rng, runs, excess=1.0, bias=0.0):
+    """Runs of unit scatter whose errors, known with DOF degrees of freedom, are `excess` as big."""
+    stderr = excess * np.sqrt(rng.chisquare(DOF, runs) / DOF)
+    return Runs(rng.standard_normal(runs) + bias, stderr, np.full(runs, float(DOF)))
+
+
+def calibrated(runs, seed=0):
+    return calibrate(runs, 0.0, 0.0, (0.68, 0.95), 4, np.random.default_rng(seed))
+
+
+def test_honest_runs_are_found_honest():
+    """At 4 sigma, 10 numbers: by chance once in 1600."""
+    found = calibrated(honest(np.random.default_rng(1), 2000))
+    off = np.array(found["coverage"]) - [0.68, 0.95]
+    assert np.all(np.abs(off) < 4 * np.array(found["coverage_stderr"]) + 0.004)  # of the quantile
+    assert abs(found["bias"]) < 4 * found["bias_stderr"]
+    assert abs(found["stated_over_true"] - 1) < 4 * found["stated_over_true_stderr"]
+
+
+def test_errors_that_are_too_small_and_a_bias_are_found():
+    found = calibrated(honest(np.random.default_rng(2), 1000, excess=0.7, bias=0.3))
+    assert found["stated_over_true"] == pytest.approx(0.7, abs=0.06)
+    assert found["bias"] == pytest.approx(0.3, abs=0.13)
+    assert np.all(np.array(found["coverage"])[:, 1] < 0.90)
+
+
+def test_the_errors_of_the_coverage_are_those_seen_over_many_studies():
+    """60 studies: each of four scatters is known to 9 %; at 4 sigma by chance once in 4000."""
+    studies = [calibrated(honest(np.random.default_rng((3, k)), 100), k) for k in range(60)]
+    seen = np.std([one["coverage"] for one in studies], axis=0, ddof=1)
+    stated = np.sqrt(np.mean(np.square([one["coverage_stderr"] for one in studies]), axis=0))
+    assert np.all(np.abs(seen / stated - 1) < 0.36)
+
+
+def test_groups_formed_again_and_again_tell_more_than_one_division():
+    runs = honest(np.random.default_rng(4), 400)
+    (share,) = several(runs, 0.0, [0.95], 4, np.random.default_rng(0))
+    assert share.stderr < 0.7 * math.sqrt(0.95 * 0.05 / 100)
+    assert REGROUPINGS > 1
+
+
+def test_runs_that_state_no_error_hold_no_truth():
+    nothing = Runs(np.zeros(3), np.full(3, math.nan), np.zeros(3))
+    (share,) = one_run(nothing, 0.0, [0.95])
+    assert share.value == 0.0
+    assert share.stderr > 0.0
+
+
+@pytest.fixture(scope="module")
+def parts():
+    return {task: coverage.run(task, SETTINGS, EXPERIMENTS) for task in coverage.tasks(SETTINGS)}
+
+
+def test_every_corner_has_its_runs_and_its_truth(parts):
+    data = coverage.combine(parts, SETTINGS)
+    assert list(data.corner.values) == ["bed_r0.9_beta-0.5", "gas_r0.9_beta0"]
+    assert np.all(data.repetitions == 8)
+    assert np.all((data.coverage >= 0) & (data.coverage <= 1))
+    assert np.all(data.cpu_seconds > 0)
+    assert all("long_name" in data[name].attrs for name in coverage.ABOUT)
+
+
+def test_the_truth_is_measured_for_longer_and_from_other_seeds(parts):
+    for part in parts.values():
+        assert not np.isin(part.truth_R, part.R).any()
+        assert len(np.unique(part.R)) == part.sizes["run"]
+    bed = parts["bed_r0.9_beta-0.5"]
+    assert bed.truth_R_stderr.max() < bed.R_stderr.mean()
+
+
+def test_the_same_settings_give_the_same_runs(parts):
+    for task, part in parts.items():
+        again = coverage.run(task, SETTINGS, EXPERIMENTS).drop_vars("cpu_seconds")
+        assert again.equals(part.drop_vars("cpu_seconds"))
+
+
+def test_figure_and_table_show_every_corner(parts):
+    data = coverage.combine(parts, SETTINGS)
+    data["experiment"] = ("corner", ["vibrated", "cooling"])
+    left, right = draw_figure(data).axes
+    assert len(left.containers) == len(right.containers) == 2 * len(coverage.WAYS)
+    names = [label.get_text() for label in left.get_yticklabels()]
+    assert names == ["vibrated, r = 0.9, β = −0.5", "cooling, r = 0.9, β = 0"]
+    head, _, *rows = table(data).splitlines()[2:]
+    assert [row.split(" | ")[0] for row in rows] == [f"| {name}" for name in names]
+    assert all(row.count("|") == head.count("|") for row in rows)
+    share = 100 * float(data.coverage.sel(corner="bed_r0.9_beta-0.5", way="one run", level=0.95))
+    assert float(rows[0].split(" | ")[3].split(" ± ")[0]) == pytest.approx(share, abs=0.5)

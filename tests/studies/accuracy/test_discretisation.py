@@ -1,0 +1,163 @@
+"""The part `discretisation`: its jobs, at tiny settings, and the fits, on data that are known."""
+
+import re
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+from tests.data.schema_page import check_study
+
+from roughgas.studies.accuracy import discretisation
+from roughgas.studies.accuracy.discretisation_fits import (
+    Power,
+    limit,
+    power_law,
+    slowdown,
+    statistical_error,
+)
+from roughgas.studies.figures.accuracy.discretisation import draw
+
+SETTINGS = {
+    "seed": 3,
+    "r": 0.9,
+    "beta": 0.0,
+    "packing": 0.1,
+    "contact_times": [0.2, 0.05],
+    "steps": [5, 10],
+    "soft_collisions": 600,
+    "model_contact_times": [0.01, 1.0],
+    "model_collisions": 300,
+    "event_collisions": 4000,
+    "reference_runs": 2,
+    "reference_collisions": 6000,
+}
+COOLING = {"particles": 40, "box": [50, 50], "effects": {"spin": {"inertia": 0.5}}}
+T = np.array([0.05, 0.02, 0.01, 0.005])
+
+
+def run(task, settings=SETTINGS):
+    calls = []
+    found = discretisation.run(task, settings, {"cooling": COOLING}, lambda *a: calls.append(a))
+    assert calls and all(0 <= done < total for done, total in calls)
+    return found
+
+
+@pytest.fixture(scope="module")
+def parts():
+    return {task: run(task) for task in discretisation.tasks(SETTINGS)}
+
+
+@pytest.fixture(scope="module")
+def group(parts):
+    return discretisation.combine(parts, SETTINGS)
+
+
+def test_names_of_the_jobs():
+    names = discretisation.tasks(SETTINGS)
+    assert len(set(names)) == len(names) == 4 + 2 + 1 + 1 + 2
+    assert all(re.fullmatch("[a-z0-9_.-]+", name) for name in names)
+    assert names[0] == "soft-10-1"  # the longest
+
+
+def test_naming_them_needs_neither_compiler_nor_xarray():
+    program = (
+        "import sys; from roughgas.studies.accuracy import discretisation; "
+        "sys.exit(any(name in sys.modules for name in ('numba', 'xarray', 'numpy')))"
+    )
+    assert subprocess.run([sys.executable, "-c", program]).returncode == 0
+
+
+def test_what_the_jobs_measure(parts):
+    for task, found in parts.items():
+        assert 0.15 < found.R < 0.4 and 0.0 < found.R_stderr < 0.05, task
+        assert found.cpu_seconds > 0.0, task
+    assert parts["event"].R.item() == parts["event"].R_series.values.mean()
+    assert parts["soft-5-0"].collisions == pytest.approx(600, rel=0.2)
+    assert parts["soft-10-1"].steps == pytest.approx(600 * 10 / 0.05, rel=0.02)
+    assert parts["model-0"].touched < 0.1 < 0.5 < parts["model-1"].touched
+
+
+def test_single_precision_conserves_energy_a_little_less(parts):
+    """And finds the same number of contacts: within 3 %, some 4 standard errors."""
+    found = parts["single"]
+    assert abs(found.drift_double) < 1e-15 < abs(found.drift_single) < 1e-8
+    assert found.frequency_single == pytest.approx(found.frequency_double.item(), rel=0.03)
+
+
+def test_the_same_settings_give_the_same_bits(parts):
+    for task in ("soft-5-0", "event", "single", "model-1"):
+        again = run(task)
+        for name in ("R", "R_stderr", "collisions"):
+            assert again[name].item() == parts[task][name].item()
+
+
+def test_jobs_are_independent(parts):
+    values = [found.R.item() for found in parts.values()]
+    assert len(set(values)) == len(values)
+
+
+def test_everything_in_the_group_is_described(group):
+    for name, values in group.variables.items():
+        assert values.attrs["long_name"] and values.attrs["units"], name
+    check_study("discretisation", group)
+    assert group.soft_R.dims == ("steps", "contact_time") and group.attrs["seed"] == 3
+    assert group.reference_collisions == 12000
+    assert np.all(np.isfinite(group.soft_matched_seconds))
+
+
+def test_long_contacts_lower_the_share_of_spin(group):
+    """By a fifth at t_c nu = 0.2, more than 3 standard errors, as does the model at 1."""
+    deviation, stderr = group.soft_deviation, group.soft_deviation_stderr
+    assert np.all((deviation < -3.0 * stderr).sel(contact_time=0.2))
+    assert (group.model_deviation < -0.1).sel(model_contact_time=1.0)
+
+
+def test_it_can_be_written_and_drawn(group, tmp_path):
+    group.to_netcdf(tmp_path / "accuracy.nc", group="discretisation")
+    axes = Figure().subplots()
+    draw(axes, group)
+    texts = [text.get_text() for text in axes.get_legend().get_texts()]
+    assert texts[0].startswith("events") and sum("5 steps" in text for text in texts) == 1
+    assert axes.get_xscale() == axes.get_yscale() == "log"
+
+
+def test_a_power_law_is_found():
+    """Without noise to the grid; with noise within 3.5 of the errors given, which are right."""
+    stderr = np.full(4, 1e-3)
+    exact = power_law(T, -1.5 * T**1.2, stderr)
+    assert exact.order == pytest.approx(1.2, abs=1e-3) and exact.chi_squared < 1e-4
+    assert exact.amplitude == pytest.approx(-1.5, rel=1e-2)
+    rng = np.random.default_rng(1)
+    fits = [power_law(T, -1.5 * T + stderr * rng.standard_normal(4), stderr) for _ in range(400)]
+    pulls = [(fit.order - 1.0) / fit.order_stderr for fit in fits]
+    assert np.std(pulls) == pytest.approx(1.0, abs=0.15)
+    assert abs(np.mean(pulls)) < 3.5 / np.sqrt(400)
+    assert np.mean([fit.chi_squared for fit in fits]) == pytest.approx(1.0, abs=3.5 / np.sqrt(400))
+
+
+def test_the_limit_of_a_parabola():
+    values, stderr = 0.31 - 0.5 * T + T**2, np.array([1e-3, 2e-3, 1e-3, 2e-3])
+    assert limit(T, values, stderr)[0] == pytest.approx(0.31, abs=1e-12)
+    rng = np.random.default_rng(2)
+    found = [limit(T, values + stderr * rng.standard_normal(4), stderr) for _ in range(400)]
+    spread, error = np.std([value for value, _ in found]), found[0][1]
+    assert spread == pytest.approx(error, rel=3.5 / np.sqrt(800))
+
+
+def test_the_error_of_parts_of_white_noise():
+    """sigma/sqrt(n), within 3.5 of its errors."""
+    series = 0.3 + 0.03 * np.random.default_rng(3).standard_normal(20000)
+    lengths, errors, spread = statistical_error(series, 0.3)
+    assert lengths[0] == 16 and len(series) // lengths[-1] >= 20
+    assert np.all(np.abs(errors - 0.03 / np.sqrt(lengths)) < 3.5 * spread)
+
+
+def test_how_much_slower_in_closed_form():
+    """Deviation A t and cost c/t: the least of c/[t (1 - (A t/e)^2)] is 3 sqrt(3)/2 A c/e."""
+    A, c, events = 1.5, 2e-6, 5e-5
+    for target in (0.03, 0.01, 0.003):
+        expected = 1.5 * np.sqrt(3.0) * A * c / target / events
+        found = slowdown(target, T, c / T, Power(1.0, 0.0, -A, 1.0), events)
+        assert found == pytest.approx(expected, rel=1e-3)

@@ -1,0 +1,68 @@
+"""Studies from their tasks to one file, its tables and its figure."""
+
+import json
+
+import pytest
+import xarray as xr
+from tests.studies.accuracy.test_coverage import EXPERIMENTS, SETTINGS
+
+from roughgas import config
+from roughgas.base.errors import InputError
+from roughgas.cli import main
+from roughgas.studies import accuracy
+from roughgas.studies.accuracy.files import combine, read_study, write_tables
+
+
+@pytest.fixture(scope="module")
+def tasks(tmp_path_factory):
+    """The files of a study's tasks, made by the command."""
+    folder, text = tmp_path_factory.mktemp("tasks"), settings()
+    names = accuracy.study("coverage").tasks(SETTINGS)
+    for name in names:
+        command = ["study", "coverage", name, "--settings", text, "-o", str(folder / f"{name}.nc")]
+        assert main(command) == 0
+    return [folder / f"{name}.nc" for name in names]
+
+
+def settings(**others):
+    return config.as_text({"study": SETTINGS | others, "experiments": EXPERIMENTS})
+
+
+def test_tasks_become_one_file_with_a_table_and_a_figure(tasks, tmp_path):
+    combined, table, figure = (tmp_path / name for name in ("all.nc", "all.md", "all.png"))
+    assert main(["combine", *map(str, tasks), "-o", str(combined)]) == 0
+    data = read_study(combined, "coverage")
+    assert data.sizes["corner"] == len(tasks) and data.attrs["scale"] == "paper"
+    for name in data.data_vars:
+        words = data[name].dtype.kind in "OU"
+        assert "long_name" in data[name].attrs and words != ("units" in data[name].attrs), name
+    write_tables(combined, table)
+    assert table.read_text().startswith("## Coverage of the stated intervals\n")
+    assert main(["figure", "coverage", str(combined), "-o", str(figure)]) == 0
+    assert figure.stat().st_size > 10_000
+
+
+def test_a_missing_task_is_named(tasks, tmp_path):
+    with pytest.raises(InputError, match=r"tasks of coverage = without gas_r0\.9_beta0: must be"):
+        combine(tasks[:1], tmp_path / "all.nc")
+
+
+def test_tasks_of_different_settings_are_refused(tasks, tmp_path):
+    other = xr.load_dataset(tasks[0])
+    other.attrs["settings_json"] = settings(repetitions=9)
+    other.to_netcdf(tmp_path / "other.nc")
+    with pytest.raises(InputError, match="settings of coverage = 2 different ones: must be the s"):
+        combine([tmp_path / "other.nc", tasks[1]], tmp_path / "all.nc")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["magic", "x"], "study = magic: must be one of statistical, models, discretisation"),
+        (["coverage", "x"], "task = x: must be one of vibrated_r0.99_beta-0.95"),
+    ],
+)
+def test_an_unknown_study_or_task_is_refused(arguments, message, tmp_path, capsys):
+    assert main(["study", *arguments, "-o", str(tmp_path / "x.nc")]) == 2
+    assert message in capsys.readouterr().err
+    assert json.dumps(list(tmp_path.iterdir())) == "[]"

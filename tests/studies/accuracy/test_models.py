@@ -1,0 +1,188 @@
+"""The part `models` of the accuracy studies: its solvers, error bars, and all of it in small."""
+
+import re
+
+import numpy as np
+import pytest
+import xarray as xr
+from matplotlib.figure import Figure
+from tests.data.schema_page import check_study
+
+from roughgas import theory
+from roughgas.studies.accuracy import models
+from roughgas.studies.accuracy.free_cooling import (
+    Point,
+    at_packing,
+    event_driven,
+    integrate,
+    simulated,
+)
+from roughgas.studies.accuracy.model_errors import METHODS, Measured, error_bar, power_law
+from roughgas.studies.figures.accuracy import models as plotting
+
+EXPERIMENT = {
+    "particles": 40,
+    "box": [50, 50],
+    "effects": {"spin": {"inertia": 0.5}, "contact_time": {"duration": 1e-4, "below_r": 0.75}},
+    "schedule": {"thermalise": 5},
+}
+SETTINGS = {
+    "seed": 1,
+    "r": "0.8",
+    "beta": "0",
+    "groups": 3,
+    "segment": 20,
+    "event_driven": [10, 20, 40],
+    "dsmc": [10, 40],
+    "rate_equations": [1, 10, 60],
+    "reference": {"jobs": 2, "length": 400},
+    "map": {"r": ["0.9", "0.6"], "beta": ["-0.5", "1"], "particles": 200, "precision": 3e-2},
+    "density": {
+        "points": [["0.8", "-0.3"]],
+        "packings": [0.01, 0.05],
+        "length": 100,
+        "precision": 3e-2,
+    },
+}
+
+
+@pytest.fixture(scope="module")
+def parts():
+    experiments = {"cooling": EXPERIMENT}
+    return {task: models.run(task, SETTINGS, experiments) for task in models.tasks(SETTINGS)}
+
+
+@pytest.fixture(scope="module")
+def data(parts):
+    return models.combine(parts, SETTINGS)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("duration", [0.05, 3.0, 40.0])
+def test_the_integrated_rate_equations_are_those_that_are_solved_exactly(dimension, duration):
+    r, beta, theta = 0.7, 0.2, 0.3
+    exact = theory.relax(theta, r, beta, duration, dimension)
+    T_tr, T_rot = integrate(theta, r, beta, duration, 0.1, dimension)
+    assert T_tr == pytest.approx(exact.T_tr, rel=1e-6)
+    assert T_rot == pytest.approx(exact.T_rot, rel=1e-6)
+
+
+def test_the_integrator_is_of_fourth_order():
+    exact = theory.relax(0.3, 0.7, 0.2, 3.0).T_tr
+    coarse, fine = (abs(integrate(0.3, 0.7, 0.2, 3.0, step)[0] - exact) for step in (0.15, 0.0375))
+    assert np.log(coarse / fine) / np.log(4) == pytest.approx(4.0, abs=0.2)
+
+
+def test_a_box_is_scaled_to_the_packing():
+    moved = at_packing(EXPERIMENT, 0.01)
+    assert 40 * np.pi / np.prod(moved["box"]) == pytest.approx(0.01)
+    assert EXPERIMENT["box"] == [50, 50]
+
+
+def test_error_bars_are_the_scatter_of_rms_errors():
+    """Over 4000 repetitions the scatter of an rms is known to 1.1 %, the Gaussian formula for 16
+    groups is good to some per cent."""
+    rng = np.random.default_rng(1)
+    for offset, common in ((0.0, 0.0), (3.0, 0.0), (3.0, 0.5)):
+        shift = offset + common * rng.standard_normal((4000, 1))
+        errors = shift + rng.standard_normal((4000, 16))
+        observed = np.sqrt(np.mean(errors**2, axis=1)).std()
+        assert np.median(error_bar(errors, common)) == pytest.approx(observed, rel=0.07)
+
+
+def test_the_only_group_has_the_error_of_the_reference():
+    assert error_bar(np.array([[0.04]]), 0.001) == pytest.approx([0.001])
+
+
+def test_power_laws_are_found():
+    """An exact one to rounding; and the slopes of noisy ones scatter as their errors say."""
+    x = np.geomspace(1, 100, 6)
+    slope, prefactor = power_law(x, 3 * x**-0.5, 0.1 * x**-0.5)
+    assert slope.value == pytest.approx(-0.5) and prefactor == pytest.approx(3.0)
+    rng = np.random.default_rng(2)
+    noisy = x**-0.5 * np.exp(0.1 * rng.standard_normal((2000, 6)))
+    slopes = [power_law(x, y, 0.1 * y)[0] for y in noisy]
+    values, errors = np.array(slopes).T
+    assert values.std() == pytest.approx(np.mean(errors), rel=0.07)  # 4 sigma of 2000
+    assert values.mean() == pytest.approx(-0.5, abs=0.005)
+
+
+def test_errors_of_quotients_add_up():
+    quotient = Measured(3.0, 0.3).over(Measured(2.0, 0.0))
+    assert quotient == pytest.approx((1.5, 0.15))
+    assert Measured(2.0, 0.06).over(Measured(2.0, 0.08)).stderr == pytest.approx(0.05)
+
+
+def test_the_same_seed_gives_the_same_bits_and_another_does_not():
+    point = Point(EXPERIMENT, 0.8, 0.0)
+    streams = [models.stream(SETTINGS, kind, 1) for kind in (models.DSMC, models.DSMC, models.MAP)]
+    first, same, other = (simulated(point, 20, np.random.default_rng(one)).R for one in streams)
+    assert first == same != other
+    runs = [event_driven(point, 40, 20, models.stream(SETTINGS, models.DSMC, 1)) for _ in range(2)]
+    assert np.array_equal(runs[0][0], runs[1][0])
+    assert len(set(runs[0][0])) == 2
+
+
+def test_names_of_jobs_can_be_files(parts):
+    names = models.tasks(SETTINGS)
+    assert len(set(names)) == len(names)
+    assert all(re.fullmatch(r"[a-z0-9_.-]+", name) for name in names)
+
+
+def test_jobs_draw_from_streams_of_their_own(parts):
+    """No replica of the reference is in another one, or in a point that is compared with it."""
+    R = np.concatenate([parts[f"reference-{k}"].R for k in range(2)])
+    assert len(R) == 20
+    drawn = np.concatenate([R, parts["event_driven"].R.values.ravel()])
+    assert len(set(drawn)) == len(drawn)
+
+
+def test_every_variable_says_what_it_is(data):
+    for name in data.variables:
+        assert data[name].attrs["long_name"] and data[name].attrs["units"], name
+    assert data.attrs["seed"] == 1
+    check_study("models", data)
+
+
+def test_results_are_what_they_are_made_of(parts, data):
+    reference = np.concatenate([parts[f"reference-{k}"].R for k in range(2)]).mean()
+    assert float(data.R_reference) == pytest.approx(reference)
+    assert float(data.closed_form_R) == pytest.approx(theory.cooling_ratio(0.8, 0.0))
+    # rate equations end at Eq. (K)
+    assert data.rate_equations_R.values[-1] == pytest.approx(float(data.closed_form_R), rel=1e-4)
+    first = parts["event_driven"].R.values[0] / reference - 1
+    assert data.event_driven_error.values[0] == pytest.approx(np.sqrt(np.mean(first**2)))
+    factors = [1 + float(data[name]) for name in ("of_maxwellian", "of_number", "of_dilution")]
+    assert np.prod(factors) == pytest.approx(float(data.closed_form_R) / reference)
+    assert data.map_gap.sel(map_r=0.6, map_beta=1.0) == pytest.approx(
+        parts["map-r0.6"].R.values[1] / theory.cooling_ratio(0.6, 1.0) - 1
+    )
+    part = parts["density-r0.8-beta-0.3"]
+    corrected = part.R.values.mean(axis=1) * float(part.R_many / part.R_few)
+    assert data.density_gap.values[0] == pytest.approx(
+        corrected / theory.cooling_ratio(0.8, -0.3) - 1
+    )
+
+
+def test_everything_has_an_error_bar_and_takes_time(data):
+    for method in METHODS:
+        for of in ("error", "error_stderr", "seconds"):
+            values = data[f"{method}_{of}"].values
+            assert np.all(np.isfinite(values)) and np.all(values > 0), (method, of)
+    assert np.all(data.map_gap_stderr > 0) and np.all(data.density_gap_stderr > 0)
+    assert 0 < data.closed_form_seconds < data.event_driven_seconds[0]
+
+
+def test_it_goes_through_a_file_and_is_drawn(data, tmp_path):
+    data.to_netcdf(tmp_path / "models.nc", group="models")
+    read = xr.load_dataset(tmp_path / "models.nc", group="models")
+    one, other = Figure().subplots(1, 2)
+    plotting.draw(one, read)
+    plotting.draw_map(other, read)
+    drawn = {container.get_label(): container for container in one.containers}
+    assert len(drawn) == 4
+    x, y = drawn["event-driven"].lines[0].get_data()
+    assert np.array_equal(x, data.event_driven_seconds)
+    assert np.array_equal(y, data.event_driven_error)
+    curve = next(c for c in other.containers if c.get_label() == "$r = 0.6$")
+    assert np.array_equal(curve.lines[0].get_ydata(), 100 * data.map_gap.sel(map_r=0.6))

@@ -1,0 +1,61 @@
+"""Direct simulation Monte Carlo against other solvers of the same gas."""
+
+import numpy as np
+import pytest
+
+from roughgas import theory
+from roughgas.statistics.errors import blocking_stderr
+from roughgas.studies import dsmc
+from roughgas.studies.accuracy.free_cooling import Point, at_packing, event_driven
+
+from .nanbu import ratios
+
+EXPERIMENT = {
+    "particles": 160,
+    "box": [100, 100],
+    "effects": {"spin": {"inertia": 0.5}},
+    "schedule": {"thermalise": 20},
+}
+
+
+def settled(r, beta, dimension, particles, samples, seed):
+    """R and its standard error once a cooling gas has settled."""
+    rng = np.random.default_rng(seed)
+    theta = theory.stationary_theta(r, beta, dimension)
+    gas, material = (
+        dsmc.new_gas(particles, theta, rng, dimension),
+        dsmc.material(r, beta, dimension),
+    )
+    skipped = round(10 / theory.relaxation_rate(r, beta, dimension))
+    R = dsmc.run(gas, material, rng, 1, skipped + samples).R[skipped:]
+    return R.mean(), blocking_stderr(R)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_another_scheme_finds_the_same_gas(dimension):
+    """Within 4 standard errors: by chance once in 16 000 times. The Maxwellian theory is refuted
+    by each of the two."""
+    r, beta = 0.6, 0.2
+    R, error = settled(r, beta, dimension, 10_000, 300, 1)
+    series = ratios(5_000, r, beta, dimension, 1600, 2)[400:]  # 0.12 collisions each a step
+    other, other_error = series.mean(), blocking_stderr(series)
+    theoretical = theory.cooling_ratio(r, beta, dimension)
+    assert R - other == pytest.approx(0.0, abs=4 * np.hypot(error, other_error))
+    assert theoretical - R > 5 * error and theoretical - other > 5 * other_error
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("r, beta", [(0.8, 0.0), (0.6, 0.2), (0.9, 0.5)])
+def test_a_dilute_event_driven_gas_is_homogeneous(r, beta):
+    """Within 4 standard errors, both of 160 particles, at a packing of 1e-4.
+
+    So few particles share their energy unevenly: the mean of R is not the R of the mean energies,
+    and momentum is short of one particle. That shifts R by some thousandths, in both alike. At a
+    packing of 0.01 R is some thousandths higher still, since neighbours come to move alike.
+    """
+    point = Point(at_packing(EXPERIMENT, 1e-4), r, beta)
+    R, _ = event_driven(point, 8000, 400, np.random.SeedSequence(3))
+    error = R.std(ddof=1) / np.sqrt(len(R))
+    simulated, simulated_error = settled(r, beta, 2, 160, 50_000, 4)
+    assert error < 4e-3 * R.mean()
+    assert R.mean() - simulated == pytest.approx(0.0, abs=4 * np.hypot(error, simulated_error))

@@ -1,0 +1,165 @@
+"""One contact of soft spheres: r and beta, orders, conservation, an independent integration."""
+
+import math
+
+import numpy as np
+import pytest
+
+from roughgas.base.errors import InputError
+from roughgas.studies.soft_spheres import new_gas, springs
+from studies.soft_spheres.pair import INERTIA, angular_momentum, collide, energy, momentum, shot
+
+PHASES = np.linspace(0.03, 1.03, 12, endpoint=False)  # in steps: where in a step a contact begins
+BETAS = [-1.0, -0.5, 0.0, 0.5, 1.0]
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("offset", [0.0, 1.0])
+@pytest.mark.parametrize("beta", BETAS)
+@pytest.mark.parametrize("r", [0.5, 0.75, 0.9, 1.0])
+def test_restitution_and_roughness_to_a_millionth(r, beta, offset, dimension):
+    """Small steps in a short contact: what is left of either error is less than 1e-6."""
+    duration, steps = 1e-7, 2000
+    found = collide(r, beta, duration, steps, shot(offset, dimension, 0.4 * duration / steps))
+    assert found.r == pytest.approx(r, abs=1e-6)
+    assert found.beta == pytest.approx(beta, abs=1e-6)
+
+
+def errors(r, beta, duration, steps, offset=1.0):
+    """Greatest errors of r and beta over the phases of a step."""
+    found = [
+        collide(r, beta, duration, steps, shot(offset, 2, phase * duration / steps))
+        for phase in PHASES
+    ]
+    return np.max([(abs(one.r - r), abs(one.beta - beta)) for one in found], axis=0)
+
+
+@pytest.mark.parametrize(("r", "beta"), [(0.5, 0.0), (0.7, -0.5), (0.9, 0.5)])
+def test_second_order_in_the_step(r, beta):
+    """Wherever in a step a contact begins; from 10 to 160 steps errors fall as steps^-p, p > 1.7.
+
+    The least r and beta tell: springs that are on for whole steps only would give p = 1.
+    """
+    coarse, fine = (errors(r, beta, 1e-8, steps) for steps in (10, 160))
+    orders = np.log(coarse / fine) / math.log(16.0)
+    assert np.all(orders > 1.7)
+
+
+def test_first_order_in_the_duration():
+    """The pair turns while it is in contact, by about t_c: an oblique contact is off by O(t_c)."""
+    long, short = (errors(0.8, 0.3, duration, 1000) for duration in (1e-2, 1e-3))
+    orders = np.log10(long / short)
+    assert orders == pytest.approx(1.0, abs=0.05)
+
+
+def test_a_central_contact_does_not_know_its_duration():
+    long, short = (
+        collide(0.8, -1.0, t_c, 50, shot(0.0, phase=0.3 * t_c / 50)) for t_c in (1, 1e-3)
+    )
+    assert long.r == pytest.approx(short.r, abs=1e-10)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("steps", [3, 20])
+def test_momentum_and_angular_momentum(steps, dimension):
+    """To rounding, however long the contact and coarse the step."""
+    found = collide(0.7, 0.3, 0.3, steps, shot(0.8, dimension, 0.01))
+    for of in (momentum, angular_momentum):
+        assert of(found.after) == pytest.approx(of(found.before), abs=2e-14)
+
+
+@pytest.mark.parametrize("beta", [-1.0, 1.0])
+def test_energy_of_elastic_spheres(beta):
+    """Smooth ones conserve it for any t_c, with perfectly rough ones what is left in the spring is
+    O(t_c^2); the step's part falls at least as its square."""
+    duration = 0.1 if beta == -1.0 else 1e-6
+    lost = [
+        max(abs(energy(one.after) / energy(one.before) - 1.0) for one in shots)
+        for shots in (
+            [collide(1.0, beta, duration, n, shot(1.0, 2, p * duration / n)) for p in PHASES]
+            for n in (10, 40, 160)
+        )
+    ]
+    assert lost[0] < 2e-4 and lost[1] < lost[0] / 14.0 and lost[2] < lost[1] / 14.0
+
+
+def test_nothing_happens_to_spheres_that_pass():
+    pair = shot(1.999)._replace(velocity=np.array([[-1.0, 0.0], [0.0, 0.0]]))
+    forces = springs(0.9, 0.0, 0.5, 0.01)
+    gas, spheres = new_gas(*pair, (8.0, 8.0), forces)
+    from roughgas.studies.soft_spheres.stepping import step
+
+    step(gas, spheres, 0.001, 500, 0.0, np.empty((1, 3)))
+    assert np.array_equal(gas.velocity, pair.velocity) and gas.counts[1] == 0
+
+
+def accelerations(forces, y):
+    """Plain Python: rates of (separation, relative velocity, sum of the spins, stretch)."""
+    x, u, w, stretch = y[:2], y[2:4], y[4], y[5]
+    distance = math.hypot(*x)
+    n = x / distance
+    t = np.array([-n[1], n[0]])
+    arm = distance / 2.0
+    slip = u @ t - arm * w
+    stiffness = forces.frequency**2 + forces.damping**2
+    normal = stiffness * (2.0 - distance) - 2.0 * forces.damping * (u @ n)
+    q = forces.inertia
+    pull = -(forces.turning**2) * q / (2.0 * (1.0 + q)) * stretch  # on the first particle
+    change = normal * n + 2.0 * pull * t
+    return np.array([*u, *change, -2.0 * arm * pull / q, slip])
+
+
+def test_against_a_plain_integration():
+    """Runge-Kutta of fourth order, its last step cut where the spheres part; t_c = 0.2 T."""
+    r, beta, duration, steps = 0.7, 0.3, 0.2, 10000
+    pair = shot(0.9)
+    forces = springs(r, beta, INERTIA[2], duration)
+    found = collide(r, beta, duration, steps, pair)
+    x, u = (array[0] - array[1] for array in pair[:2])
+    y = np.array([*x, *u, pair.spin.sum(), 0.0])
+    h = duration / 500
+    while True:
+        new = _runge_kutta(forces, y, h)
+        gap = 2.0 - math.hypot(*new[:2])
+        if gap <= 0.0:
+            break
+        y = new
+    for _ in range(60):  # bisection for the end
+        h *= 0.5
+        new = _runge_kutta(forces, y, h)
+        if math.hypot(*new[:2]) < 2.0:
+            y = new
+    after = found.after
+    assert after.velocity[0] - after.velocity[1] == pytest.approx(y[2:4], abs=2e-7)
+    assert after.spin.sum() == pytest.approx(y[4], abs=2e-7)
+
+
+def _runge_kutta(forces, y, h):
+    a = accelerations(forces, y)
+    b = accelerations(forces, y + 0.5 * h * a)
+    c = accelerations(forces, y + 0.5 * h * b)
+    d = accelerations(forces, y + h * c)
+    return y + h / 6.0 * (a + 2.0 * b + 2.0 * c + d)
+
+
+@pytest.mark.parametrize(
+    ("key", "values"),
+    [
+        ("restitution r of a soft sphere", (0.0, 0.0, 0.5, 1.0)),
+        ("restitution r of a soft sphere", (1.1, 0.0, 0.5, 1.0)),
+        ("restitution r of a soft sphere", (math.nan, 0.0, 0.5, 1.0)),
+        ("roughness beta", (0.9, 1.1, 0.5, 1.0)),
+        ("inertia", (0.9, 0.0, 0.0, 1.0)),
+        ("duration of a contact", (0.9, 0.0, 0.5, 0.0)),
+    ],
+)
+def test_what_springs_cannot_do_is_refused(key, values):
+    with pytest.raises(InputError) as caught:
+        springs(*values)
+    assert caught.value.key == key and "\n" not in str(caught.value)
+
+
+def test_a_narrow_box_is_refused():
+    with pytest.raises(InputError) as caught:
+        new_gas(*shot(0.0), (7.9, 8.0), springs(0.9, 0.0, 0.5, 1.0))
+    assert caught.value.key == "box[0]"
