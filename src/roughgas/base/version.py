@@ -1,3 +1,3 @@
-"""The version of this package, in one place; `roughgas.__version__` is the same."""
+"""The version of this package; pyproject.toml has the same, which a test compares."""
 
 __version__ = "0.1.0"
