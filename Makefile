@@ -97,7 +97,7 @@ lock: ## choose and pin the newest versions of all dependencies (needs uv)
 	$(LOCK) --upgrade --extra slurm --constraint requirements.lock --output-file requirements/slurm.lock
 
 clean: ## remove all results; the environment and the committed figures stay
-	rm -rf results logs .snakemake figures/*.pdf docs/_build .pytest_cache .ruff_cache .hypothesis \
+	rm -rf results logs .snakemake figures/*.pdf docs/_build .pytest_cache .ruff_cache .import_linter_cache .hypothesis \
 	    $(filter-out figures/movies/,$(wildcard figures/*/))
 
 .PHONY: help figures report plan test extras docs bench lint format setup lock clean

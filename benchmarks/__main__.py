@@ -52,7 +52,7 @@ def main() -> None:
     if not quick:
         write_text(DOCS / "benchmarks.md", page)
         plot.draw(timings, plain, DOCS / "benchmarks.png")
-        plot.draw_effects(costs, DOCS / "effects_cost.png")
+        effects.draw(costs, DOCS / "effects_cost.png")
     say("done")
 
 

@@ -9,11 +9,12 @@ machine does is about the same for either.
 import functools
 import statistics
 import time
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
-from benchmarks import handwritten
+from benchmarks import handwritten, tables
 from benchmarks.scenes import Case, advance, settings
 from roughgas.kernel.state import COLLISIONS
 from roughgas.scene import build
@@ -25,6 +26,15 @@ NUMBERS = (40, 160)
 WARM_UP = 100  # collisions per particle
 LENGTH = 400_000  # collisions that are timed in a run
 RUNS = 7
+
+EXPLANATION = f"""
+The kernel takes scenes of any composition. `benchmarks/handwritten.py` is its algorithm written by
+hand for one scene alone, a gas of rough disks in a periodic box, and makes the same collisions to
+the last bit. CPU time of the kernel over that of the program by hand, medians of {RUNS}
+runs in turns of {LENGTH:,} collisions, with the lowest and the highest: 1 is no cost at
+all, below 1 the kernel is the faster one. The kernel always keeps an account of the energy that
+collisions dissipate; by hand it can be left out. The gases are elastic and perfectly rough.
+""".strip()
 
 
 class Comparison(NamedTuple):
@@ -92,11 +102,24 @@ def agree(state, gas) -> bool:
     )
 
 
+def table(comparisons: Sequence[Comparison]) -> str:
+    """One row a scene and size."""
+    heads = ["gas", "N", "kernel, collisions/s", "by hand", "time, kernel / by hand"]
+    heads += ["lowest", "highest", "the same without account", "lowest", "highest"]
+    rows = []
+    for one in comparisons:
+        row = [one.case.title, f"{one.number:,}"]
+        row += [tables.short(rate(seconds)) for seconds in (one.kernel, one.by_hand)]
+        for beside in (one.by_hand, one.without_books):
+            found = ratios(one.kernel, beside)
+            row += [f"{x:.3f}" for x in (statistics.median(found), found[0], found[-1])]
+        rows.append(row)
+    return tables.table(heads, rows)
+
+
 def main() -> None:
     """Print the table."""
-    from benchmarks.report import generality_table  # which imports this file
-
-    print(generality_table([measure(case, number) for case in CASES for number in NUMBERS]))
+    print(table([measure(case, number) for case in CASES for number in NUMBERS]))
 
 
 if __name__ == "__main__":

@@ -1,12 +1,10 @@
 """Cost per collision against the number of particles, and with each effect."""
 
-import statistics
 from pathlib import Path
 
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
-from benchmarks.effects import Cost
 from benchmarks.kernel import Timing
 from benchmarks.yardstick import Rate
 from roughgas.kernel.layout import FEW
@@ -44,36 +42,4 @@ def draw(timings: list[Timing], yardstick: list[Rate], output: Path) -> None:
                 color=FAINT,
             )
         axes.legend()
-        save(figure, [output])
-
-
-def draw_effects(costs: list[Cost], output: Path) -> None:
-    """One bar a scene, with the spread of its runs and its rate over that of the first."""
-    with rc_context(PARAMETERS | {"ytick.minor.visible": False, "ytick.right": False}):
-        figure = Figure(figsize=(WIDTH, 0.6 + 0.3 * len(costs)), layout="constrained")
-        axes = figure.subplots()
-        labels, rates = [one.label for one in costs], [one.rate / 1e6 for one in costs]
-        low = [(one.rate - min(one.rates)) / 1e6 for one in costs]
-        high = [(max(one.rates) - one.rate) / 1e6 for one in costs]
-        axes.barh(
-            labels,
-            rates,
-            xerr=(low, high),
-            height=0.7,
-            color=[FAINT] + [LOOKS[0].colour] * (len(costs) - 1),
-            error_kw={"ecolor": THEORY, "elinewidth": 0.9, "capsize": 2},
-        )
-        for place, one in enumerate(costs):
-            share = 1 / statistics.median(one.relative)
-            axes.annotate(
-                f"{share:.2f}",
-                (0, place),
-                xytext=(4, 0),
-                textcoords="offset points",
-                va="center",
-                color="white",
-            )
-        axes.invert_yaxis()
-        axes.tick_params(axis="y", length=0)
-        axes.set_xlabel("million collisions per second")
         save(figure, [output])

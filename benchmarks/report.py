@@ -1,12 +1,10 @@
 """What was measured, as Markdown: for the terminal and for docs/benchmarks.md."""
 
-import statistics
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
 from benchmarks import effects, generality
-from benchmarks.effects import Cost
-from benchmarks.generality import Comparison
 from benchmarks.kernel import LONGEST, RUNS, WARM_UP, Timing
+from benchmarks.tables import short, table
 from benchmarks.yardstick import Rate
 
 REFERENCE = 160  # particles: what costs are relative to
@@ -41,23 +39,6 @@ Rough disks by the plainest compiled loop (`benchmarks/yardstick.py`), medians: 
 a change of machine.
 """.strip()
 
-GENERALITY = f"""
-The kernel takes scenes of any composition. `benchmarks/handwritten.py` is its algorithm written by
-hand for one scene alone, a gas of rough disks in a periodic box, and makes the same collisions to
-the last bit. CPU time of the kernel over that of the program by hand, medians of {generality.RUNS}
-runs in turns of {generality.LENGTH:,} collisions, with the lowest and the highest: 1 is no cost at
-all, below 1 the kernel is the faster one. The kernel always keeps an account of the energy that
-collisions dissipate; by hand it can be left out. The gases are elastic and perfectly rough.
-""".strip()
-
-EFFECTS = f"""
-Each effect is added alone to the barest gas, smooth disks in a periodic box; what a scene does
-without is compiled away. N = {effects.PARTICLES}, packing 0.2 (the bed finds its own), collisions
-per second of CPU, medians of {effects.RUNS} runs in turns of {effects.LENGTH:,} collisions, with
-the slowest and the fastest. `relative` is the time per collision over that of the barest gas;
-`hits` of walls or floor, renewals and stale entries per collision are as above.
-""".strip()
-
 
 def report(timings, yardstick, comparisons, costs, overhead, machine) -> str:
     """The whole page."""
@@ -73,13 +54,13 @@ def report(timings, yardstick, comparisons, costs, overhead, machine) -> str:
         YARDSTICK,
         yardstick_table(yardstick),
         "## What generality costs",
-        GENERALITY,
-        generality_table(comparisons),
+        generality.EXPLANATION,
+        generality.table(comparisons),
     ]
     if costs:
         parts += ["## What each effect costs", "![Collisions per second with each effect]"]
         parts[-1] += "(effects_cost.png)"
-        parts += [effects_table(costs), EFFECTS]
+        parts += [effects.table(costs), effects.EXPLANATION]
     if overhead:
         rows = [(words, format(overhead[key], form)) for key, words, form in OVERHEAD]
         parts += ["## The pipeline", table(["", "measured"], rows)]
@@ -96,7 +77,7 @@ def kernel_table(timings: Sequence[Timing], yardstick: Sequence[Rate]) -> str:
     for one in timings:
         low, high = one.extremes
         rows.append(
-            [one.case.title, f"{one.number:,}", *map(_short, (one.rate, low, high, one.events))]
+            [one.case.title, f"{one.number:,}", *map(short, (one.rate, low, high, one.events))]
             + [f"{one.cost:.2f}", f"{one.cost / reference.get(one.case, float('nan')):.2f}"]
             + [f"{one.rate / plain:.1f}"]
             + [f"{count / one.counts.collisions:.2f}" for count in one.counts[1:]]
@@ -108,59 +89,7 @@ def kernel_table(timings: Sequence[Timing], yardstick: Sequence[Rate]) -> str:
 def yardstick_table(yardstick: Sequence[Rate]) -> str:
     """One row a size."""
     rows = [
-        (f"{one.number:,}", *map(_short, (one.median, min(one.rates), max(one.rates))))
+        (f"{one.number:,}", *map(short, (one.median, min(one.rates), max(one.rates))))
         for one in yardstick
     ]
     return table(["N", "collisions/s", "slowest", "fastest"], rows)
-
-
-def generality_table(comparisons: Sequence[Comparison]) -> str:
-    """One row a scene and size."""
-    heads = ["gas", "N", "kernel, collisions/s", "by hand", "time, kernel / by hand"]
-    heads += ["lowest", "highest", "the same without account", "lowest", "highest"]
-    rows = []
-    for one in comparisons:
-        row = [one.case.title, f"{one.number:,}"]
-        row += [_short(generality.rate(seconds)) for seconds in (one.kernel, one.by_hand)]
-        for beside in (one.by_hand, one.without_books):
-            found = generality.ratios(one.kernel, beside)
-            row += [f"{x:.3f}" for x in (statistics.median(found), found[0], found[-1])]
-        rows.append(row)
-    return table(heads, rows)
-
-
-def effects_table(costs: Sequence[Cost]) -> str:
-    """One row a scene."""
-    heads = ["scene", "collisions/s", "slowest", "fastest", "relative"]
-    heads += ["hits", "renewals", "stale"]
-    rows = []
-    for one in costs:
-        rates = map(_short, (one.rate, min(one.rates), max(one.rates)))
-        shares = [f"{count / one.counts.collisions:.2f}" for count in one.counts[1:]]
-        rows.append([one.label, *rates, f"{statistics.median(one.relative):.2f}", *shares])
-    return table(heads, rows)
-
-
-def table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """A Markdown table that can be read as it stands: numbers to the right, words to the left."""
-    rows = [list(row) for row in rows]
-    widths = [max(len(row[k]) for row in [heads, *rows]) for k in range(len(heads))]
-    left = [
-        not all(row[k][:1].isdigit() or row[k] == "nan" for row in rows) for k in range(len(heads))
-    ]
-    rule = [
-        "-" * (width - 1) + ("-" if words else ":")
-        for width, words in zip(widths, left, strict=True)
-    ]
-    lines = []
-    for row in [heads, rule, *rows]:
-        columns = zip(row, widths, left, strict=True)
-        cells = [
-            cell.ljust(width) if words else cell.rjust(width) for cell, width, words in columns
-        ]
-        lines.append(f"| {' | '.join(cells)} |")
-    return "\n".join(lines)
-
-
-def _short(rate):
-    return f"{rate:.2e}".replace("e+0", "e")
