@@ -8,12 +8,12 @@ SOURCE = Path("src")
 def sources(*modules):
     """Source files of these modules of the package, such as "simulation.point", of the packages
     that they are in, and of all that they import."""
-    todo, found = [f"roughgas.{module}" for module in modules], {}
+    todo, found = [f"roughgas.{name}" for name in modules], {}
     while todo:
-        module = todo.pop()
-        if module not in found and (file := file_of(module)):
-            found[module] = file
-            todo += [*imported_modules(file), *submodules(module), module.rpartition(".")[0]]
+        name = todo.pop()
+        if name not in found and (file := file_of(name)):
+            found[name] = file
+            todo += [*imported_modules(file), *submodules(name), name.rpartition(".")[0]]
     return sorted(str(file) for file in found.values())
 
 
@@ -34,7 +34,11 @@ def submodules(module):
     return tuple(f"{module}.{file.stem}" for file in sorted(folder.glob("*.py")))
 
 
-IMPORTED_BY_NAME = ("roughgas.show.figures", "roughgas.studies.figures", "roughgas.studies.accuracy")
+IMPORTED_BY_NAME = (
+    "roughgas.show.figures",
+    "roughgas.studies.figures",
+    "roughgas.studies.accuracy",
+)
 
 
 @functools.cache
