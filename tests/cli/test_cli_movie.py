@@ -8,7 +8,7 @@ from PIL import Image
 from schedules import COOLING, STEADY
 
 from roughgas.cli import main
-from roughgas.show.movies import encoding as movie
+from roughgas.show import encoding as movie
 
 SMALL = {"particles": 8, "box": [12, 12], "effects": {"spin": {"inertia": 0.5}}}
 CONFIG = str(Path(__file__).parents[2] / "config.yaml")

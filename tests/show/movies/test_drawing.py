@@ -8,7 +8,7 @@ from PIL import Image
 from schedules import COOLING, STEADY
 
 from roughgas.scene import build
-from roughgas.show.movies import encoding as movie
+from roughgas.show import encoding as movie
 from roughgas.show.movies import particles
 from roughgas.show.movies.drawing import Subject, picture, spin_scales, view_of, write
 from roughgas.show.movies.snapshots import Snapshot
