@@ -5,6 +5,7 @@ import re
 from typing import Any
 
 from roughgas.base.errors import InputError
+from roughgas.base.legal import RESTITUTION, ROUGHNESS, Interval
 
 NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 WORD = re.compile(r"[a-z][a-z0-9_]*")
@@ -15,12 +16,12 @@ LEGAL_LEVEL = "be a number, or a word of lower-case letters, digits and _"
 
 def restitution(label: Any, key: str = "restitution r") -> float:
     """The normal restitution that `label` (text or a number) stands for, in [0, 1]."""
-    return _between(key, label, 0, 1)
+    return _number_in(RESTITUTION, key, label)
 
 
 def roughness(label: Any, key: str = "roughness beta") -> float:
     """The roughness that `label` (text or a number) stands for, in [-1, 1]."""
-    return _between(key, label, -1, 1)
+    return _number_in(ROUGHNESS, key, label)
 
 
 def seed(label: Any, key: str = "seed") -> int:
@@ -40,9 +41,7 @@ def level(label: Any, key: str = "swept parameter") -> float | str:
     raise InputError(key, label, LEGAL_LEVEL)
 
 
-def _between(key: str, label: Any, low: int, high: int) -> float:
-    """The number that `label` stands for; raises InputError where it is none in [low, high]."""
-    is_number = NUMBER.fullmatch(str(label)) is not None
-    if not is_number or not low <= float(label) <= high:
-        raise InputError(key, label, f"lie in [{low}, {high}]")
+def _number_in(interval: Interval, key: str, label: Any) -> float:
+    if not NUMBER.fullmatch(str(label)) or not interval.holds(float(label)):
+        raise interval.error(key, label)
     return float(label) + 0.0  # turns -0 into 0

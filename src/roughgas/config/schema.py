@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from roughgas.base.errors import InputError, not_one_of
+from roughgas.base.legal import RESTITUTION, ROUGHNESS
 from roughgas.config.labels import LEGAL_LEVEL, level, restitution, roughness
 
 if TYPE_CHECKING:
@@ -17,8 +18,8 @@ SCHEMA, STUDIES = (Path(__file__).with_name(name) for name in ("schema.yaml", "s
 LONGEST = 60
 FORMATS = {"restitution": restitution, "roughness": roughness, "level": level}
 LEGAL_FORMATS = {
-    "restitution": "lie in [0, 1]",
-    "roughness": "lie in [-1, 1]",
+    "restitution": RESTITUTION.legal,
+    "roughness": ROUGHNESS.legal,
     "level": LEGAL_LEVEL,
 }
 

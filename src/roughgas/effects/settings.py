@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from roughgas.base.errors import InputError
+from roughgas.base.legal import RESTITUTION, ROUGHNESS, Interval
 
 
 class Surroundings(NamedTuple):
@@ -30,29 +31,14 @@ class Number(NamedTuple):
         """The number as a float; raises InputError where it is none, or not in the interval."""
         if value is None and self.default is not None:
             return self.default
-        low, high = self._ends()
-        legal = (
-            isinstance(value, int | float)
-            and not isinstance(value, bool)
-            and (low < value or (self.interval[0] == "[" and value == low))
-            and (value < high or (self.interval[-1] == "]" and value == high))
-        )
-        if not legal:
+        is_number = isinstance(value, int | float) and not isinstance(value, bool)
+        if not is_number or not Interval(self.interval).holds(value):
             raise InputError(key, value, f"be a number in {self.interval}")
         return float(value)
 
     def schema(self) -> dict[str, Any]:
         """The same as a JSON schema."""
-        low, high = self._ends()
-        found = {"description": self.description, "type": "number"}
-        found["minimum" if self.interval[0] == "[" else "exclusiveMinimum"] = _plain(low)
-        if high < float("inf"):
-            found["maximum" if self.interval[-1] == "]" else "exclusiveMaximum"] = _plain(high)
-        return found
-
-    def _ends(self):
-        low, high = (float(end) for end in self.interval[1:-1].split(","))
-        return low, high
+        return {"description": self.description} | Interval(self.interval).schema()
 
 
 class Word(NamedTuple):
@@ -101,8 +87,10 @@ class OfParticles(NamedTuple):
 
 
 MATERIAL = {
-    "restitution": OfParticles(Number("Restitution of contacts with it", "[0, 1]"), "restitution"),
-    "roughness": OfParticles(Number("Roughness of contacts with it", "[-1, 1]"), "roughness"),
+    "restitution": OfParticles(
+        Number("Restitution of contacts with it", RESTITUTION.text), "restitution"
+    ),
+    "roughness": OfParticles(Number("Roughness of contacts with it", ROUGHNESS.text), "roughness"),
 }
 """The parameters of what particles bounce off."""
 
@@ -119,7 +107,3 @@ def read(
         name: kind.read(f"effects.{effect}.{name}", settings.get(name), around)
         for name, kind in kinds.items()
     }
-
-
-def _plain(number):
-    return int(number) if number == int(number) else number

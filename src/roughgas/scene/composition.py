@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from roughgas.base.errors import InputError
+from roughgas.base.legal import RESTITUTION, ROUGHNESS
 from roughgas.effects import KINDS, Effects
 from roughgas.effects.settings import Surroundings
 from roughgas.kernel import hooks
@@ -36,8 +37,8 @@ def build(experiment: Mapping[str, Any], r: float, beta: float) -> Scene:
 
     Raises InputError for values that are illegal or contradict each other.
     """
-    _check_range("restitution r", r, 0.0, 1.0)
-    _check_range("roughness beta", beta, -1.0, 1.0)
+    RESTITUTION.check("restitution r", r)
+    ROUGHNESS.check("roughness beta", beta)
     lengths = tuple(None if side == "open" else float(side) for side in experiment["box"])
     chosen = experiment["effects"]
     effects = _effects(chosen, Surroundings(lengths, float(r), float(beta), chosen))
@@ -85,11 +86,6 @@ def _effects(settings, around):
 def _extent(lengths, closed):
     across = max(lengths[0], FAR_APART) if closed else lengths[0]
     return min(length for length in (across, *lengths[1:]) if length is not None)
-
-
-def _check_range(key, value, low, high):
-    if not low <= value <= high:  # NaN fails, too
-        raise InputError(key, value, f"lie in [{low:g}, {high:g}]")
 
 
 def _check_composition(lengths, effects, closed):

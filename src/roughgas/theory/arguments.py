@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from roughgas.base.errors import InputError
+from roughgas.base.legal import RESTITUTION, ROUGHNESS, Interval
 
 Numbers = float | np.ndarray
 """What functions of theory take: a plain number, or an array."""
@@ -43,12 +44,12 @@ def material(
 
 def check_restitution(r: Numbers) -> np.ndarray:
     """Normal restitution r, in [0, 1]."""
-    return check_between("restitution r", r, 0, 1)
+    return _check_in(RESTITUTION, "restitution r", r)
 
 
 def check_roughness(beta: Numbers) -> np.ndarray:
     """Tangential restitution beta, in [-1, 1]: smooth at -1, perfectly rough at 1."""
-    return check_between("roughness beta", beta, -1, 1)
+    return _check_in(ROUGHNESS, "roughness beta", beta)
 
 
 def check_inertia(q: Numbers) -> np.ndarray:
@@ -75,7 +76,7 @@ def check_net_share(spin_share: Numbers) -> np.ndarray:
 
 def check_between(key: str, value: Numbers, low: float, high: float) -> np.ndarray:
     """A number in [low, high]."""
-    return _checked(key, value, f"lie in [{low}, {high}]", lambda x: (x >= low) & (x <= high))
+    return _check_in(Interval(f"[{low}, {high}]"), key, value)
 
 
 def check_not_negative(key: str, value: Numbers) -> np.ndarray:
@@ -85,7 +86,11 @@ def check_not_negative(key: str, value: Numbers) -> np.ndarray:
 
 def check_fraction(key: str, value: Numbers) -> np.ndarray:
     """A number in (0, 1), the ends excluded."""
-    return _checked(key, value, "lie in (0, 1)", lambda x: (x > 0) & (x < 1))
+    return _check_in(Interval("(0, 1)"), key, value)
+
+
+def _check_in(interval: Interval, key: str, value: Numbers) -> np.ndarray:
+    return _checked(key, value, interval.legal, interval.holds)
 
 
 def _checked(key: str, value, legal: str, accepts: Callable) -> np.ndarray:

@@ -4,6 +4,10 @@ import math
 from typing import NamedTuple
 
 from roughgas.base.errors import InputError
+from roughgas.base.legal import ROUGHNESS, Interval
+
+SOFT_RESTITUTION = Interval("(0, 1]")
+"""Restitution of soft spheres: at r = 0 a contact would never end."""
 
 
 class Springs(NamedTuple):
@@ -30,8 +34,8 @@ def springs(r: float, beta: float, inertia: float, duration: float) -> Springs:
 
     Raises InputError for r outside (0, 1]: at r = 0 the contact would never end.
     """
-    _check("restitution r of a soft sphere", r, 0.0 < r <= 1.0, "lie in (0, 1]")
-    _check("roughness beta", beta, -1.0 <= beta <= 1.0, "lie in [-1, 1]")
+    SOFT_RESTITUTION.check("restitution r of a soft sphere", r)
+    ROUGHNESS.check("roughness beta", beta)
     _check("inertia", inertia, 0.0 < inertia < math.inf, "be positive")
     _check("duration of a contact", duration, 0.0 < duration < math.inf, "be positive")
     return Springs(
