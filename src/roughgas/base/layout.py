@@ -1,0 +1,58 @@
+"""Tables for a terminal, tables in Markdown, and strict JSON."""
+
+import json
+import math
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+
+def columns(rows: Iterable[Sequence[str]], numbers: bool = False) -> str:
+    """Return rows as aligned columns, all but the first to the right if they are `numbers`."""
+    rows = list(rows)
+    align = "<" + (">" if numbers else "<") * (len(rows[0]) - 1)
+    return "\n".join("  ".join(row).rstrip() for row in _padded(rows, align))
+
+
+def markdown(
+    head: Iterable[str], rows: Iterable[Iterable[Any]], align: str = "", padded: bool = False
+) -> str:
+    """Return a Markdown table, with a newline at its end.
+
+    `align` has a character for each column, < (the default) or >. A `padded` table can be read as
+    it stands: cells of a column have one width.
+    """
+    table = [[str(cell) for cell in row] for row in (head, *rows)]
+    align = align or "<" * len(table[0])
+    rule = ["---:" if side == ">" else "---" for side in align]
+    if padded:
+        table = _padded(table, align)
+        rule = [f"{dashes[-1]:->{len(cell)}}" for cell, dashes in zip(table[0], rule, strict=True)]
+    return "".join(f"| {' | '.join(row)} |\n" for row in (table[0], rule, *table[1:]))
+
+
+def as_json(answer: Any, indent: int | None = 2) -> str:
+    """Return strict JSON of dictionaries, lists, numbers, and numpy's scalars and arrays.
+
+    Numbers that are not finite become null.
+    """
+    return json.dumps(_plain(answer), indent=indent, ensure_ascii=False, allow_nan=False)
+
+
+def _padded(rows: Sequence[Sequence[str]], align: str) -> list[list[str]]:
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    return [
+        [f"{cell:{side}{width}}" for cell, side, width in zip(row, align, widths, strict=True)]
+        for row in rows
+    ]
+
+
+def _plain(answer: Any) -> Any:
+    if isinstance(answer, dict):
+        return {str(key): _plain(value) for key, value in answer.items()}
+    if isinstance(answer, list | tuple):
+        return [_plain(value) for value in answer]
+    if hasattr(answer, "tolist"):
+        return _plain(answer.tolist())
+    if isinstance(answer, float) and not math.isfinite(answer):
+        return None
+    return answer
