@@ -80,7 +80,7 @@ localrules:
 rule figures:
     default_target: True
     input:
-        drawn(PAPER),
+        drawn(catalogue.figures_of("paper")),
         f"results/{SCALE}/R.csv",
         f"results/{SCALE}/claims.json",
         f"results/{SCALE}/claims.md",

@@ -1,9 +1,8 @@
 # What accuracy costs in time, and whether error bars are true: the studies in roughgas/accuracy, each
 # of them a few independent tasks.
-from roughgas import accuracy as studies
+from roughgas.studies import accuracy as studies
 
 TASK = "results/{scale}/accuracy/{study}/{task}.nc"
-SHOWN = {"accuracy": studies.PANELS, "coverage": ("coverage",)}  # the studies in each figure
 
 
 def settings_of_study(wildcards):
@@ -17,7 +16,7 @@ def tasks_of_figure(wildcards):
     """The files of all tasks of the studies that a figure shows."""
     return [
         TASK.format(scale=wildcards.scale, study=name, task=task)
-        for name in SHOWN[wildcards.study_figure]
+        for name in catalogue.FIGURES[wildcards.study_figure].shows
         for task in tasks_of_study(name, wildcards.scale)
     ]
 
@@ -87,7 +86,7 @@ rule study_figure:
         report(
             "figures/{folder}{study_figure}.png",
             caption="captions/study.rst",
-            category=ACCURACY,
+            category=catalogue.HEADINGS["accuracy"],
             labels=labels_of_study,
         ),
     log:

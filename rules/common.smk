@@ -9,6 +9,7 @@ from pathlib import Path
 try:
     import roughgas.config
     from roughgas.base.errors import InputError, not_one_of
+    from roughgas.show import catalogue
 except ModuleNotFoundError as error:
     sys.exit(f"roughgas: error: no module {error.name}: `make setup`, then .venv/bin/snakemake")
 
@@ -23,7 +24,7 @@ EXPERIMENT = r"(?!(?:accuracy|coverage)\.|(?:accuracy|showcase|hard_cases)/)[^/]
 VARIANT = r"(?:/(?!(?:r|beta|seed)[-+.\d])[^/]+)?"
 # rules call the `roughgas` beside this snakemake, wherever it was started from
 os.environ["PATH"] = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
-FIGURES = {}  # name -> the experiments that it shows; every file of figures adds its own
+DRAWN = catalogue.figures_of("paper", "beyond")  # the figures of experiments
 
 
 @contextmanager
@@ -98,19 +99,15 @@ def reduced(scale, experiments):
 
 def data_of_figure(wildcards):
     with one_line():
-        if wildcards.figure not in FIGURES:
-            raise not_one_of("figure", wildcards.figure, sorted(FIGURES))
-    return reduced(wildcards.folder.rstrip("/") or "paper", FIGURES[wildcards.figure])
+        if wildcards.figure not in DRAWN:
+            raise not_one_of("figure", wildcards.figure, DRAWN)
+    return reduced(
+        wildcards.folder.rstrip("/") or "paper", catalogue.FIGURES[wildcards.figure].shows
+    )
 
 
 def data_of_paper(wildcards):
-    return reduced(wildcards.scale, shown_in(PAPER))
-
-
-def shown_in(figures):
-    """The experiments that some figures show, each once."""
-    shown = [experiment for experiments in figures.values() for experiment in experiments]
-    return list(dict.fromkeys(shown))
+    return reduced(wildcards.scale, catalogue.shown_in("paper"))
 
 
 def drawn(figures, kinds=(".pdf", ".png")):

@@ -3,7 +3,7 @@ from roughgas.results.crate import project_files
 
 
 def data_of_run(wildcards):
-    return reduced(SCALE, shown_in(PAPER))
+    return reduced(SCALE, catalogue.shown_in("paper"))
 
 
 rule crate:
@@ -11,7 +11,7 @@ rule crate:
         project_files(),
         data=data_of_run,
         tables=multiext(f"results/{SCALE}/", "R.csv", "claims.json", "claims.md"),
-        figures=drawn(PAPER),
+        figures=drawn(catalogue.figures_of("paper")),
     output:
         f"results/{SCALE}/crate.zip",
     log:

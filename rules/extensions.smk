@@ -1,17 +1,8 @@
 # Beyond the paper: the experiments that it left for later, one table, and what they answer.
-EXTENSIONS = {
-    "fig3": ["cooling_spheres", "sheared_spheres", "vibrated_spheres"],
-    "fig4": ["vibrated_friction", "cooling_friction"],
-    "fig5": ["heated", "floor_materials", "shaken_walls"],
-    "fig6": ["waves"],
-    "fig7": ["vibrated_inertia", "cooling_inertia"],
-    "fig8": ["floor_materials", "wall_materials"],
-}
-FIGURES |= EXTENSIONS
 
 
 def data_of_extensions(wildcards):
-    return reduced(wildcards.scale, shown_in(EXTENSIONS))
+    return reduced(wildcards.scale, catalogue.shown_in("beyond"))
 
 
 rule table_of_extensions:
@@ -22,7 +13,7 @@ rule table_of_extensions:
         report(
             "results/{scale}/extensions.csv",
             caption="captions/table.rst",
-            category=BEYOND,
+            category=catalogue.HEADINGS["beyond"],
             labels=titled("Table: every number (CSV, to download)"),
         ),
     log:
@@ -55,7 +46,7 @@ rule open_questions:
 
 rule extensions:
     input:
-        drawn(EXTENSIONS),
+        drawn(catalogue.figures_of("beyond")),
         f"results/{SCALE}/extensions.csv",
         f"results/{SCALE}/open_questions.json",
         f"results/{SCALE}/open_questions.md",

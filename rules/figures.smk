@@ -1,22 +1,14 @@
 # The paper: its four figures, one table, and the verdict on what it claims. How any figure is drawn.
-PAPER = {
-    "fig1a": ["vibrated"],
-    "fig1b": [
-        "vibrated",
-        "vibrated_rough_walls",
-        "vibrated_particle_walls",
-        "vibrated_smooth_walls",
-    ],
-    "fig2a": ["sheared"],
-    "fig2b": ["cooling"],
-}
-FIGURES |= PAPER
+
+
+def sources_of_figure(wildcards):
+    return sources(f"show.figures.{wildcards.figure}", "show.style")
 
 
 rule figure:
     # at the scale `paper` into figures/, at others into a folder below it
     input:
-        sources("show.figures"),
+        sources_of_figure,
         data=data_of_figure,
     output:
         "figures/{folder}{figure}.pdf",
@@ -46,7 +38,7 @@ rule table:
         report(
             "results/{scale}/R.csv",
             caption="captions/table.rst",
-            category=THE_PAPER,
+            category=catalogue.HEADINGS["paper"],
             labels=titled("Table: every number (CSV, to download)"),
         ),
     log:

@@ -9,12 +9,7 @@ SHARED = [  # what a family may import
     if not path.name.startswith("test_") and path not in DRAWING
 ]
 LONGEST = ["long_times"]  # starts first
-PICTURES = [
-    "hard_cases",
-    "hard_cases_collapse",
-    "hard_cases_chaos",
-    "hard_cases_cooling",
-]
+PICTURES = catalogue.figures_of("hard_cases")
 
 
 def size_of_cases(wildcards):
@@ -49,7 +44,7 @@ rule family:
 
 rule catalogue:
     input:
-        sources("show.figures"),
+        sources("show.style"),
         DRAWING,
         families=expand("results/{{folder}}hard_cases/{family}.json", family=FAMILIES),
     output:

@@ -1,15 +1,19 @@
 # What is made to be looked at in a browser: documents for Snakemake's report, and interactive pages.
-LOOKS = sorted(str(path) for path in (PACKAGE / "page").glob("*.*") if path.suffix != ".py")
+LOOKS = sorted(str(path) for path in (PACKAGE / "show" / "page").glob("*.*") if path.suffix != ".py")
 
 
 def points_of_paper(wildcards):
     """The datasets of all points that the paper's figures show."""
-    return [point for name in shown_in(PAPER) for point in points(wildcards.scale, name)]
+    return [
+        point for name in catalogue.shown_in("paper") for point in points(wildcards.scale, name)
+    ]
 
 
 def points_of_extensions(wildcards):
     """The datasets of all points that the figures beyond it show."""
-    return [point for name in shown_in(EXTENSIONS) for point in points(wildcards.scale, name)]
+    return [
+        point for name in catalogue.shown_in("beyond") for point in points(wildcards.scale, name)
+    ]
 
 
 rule document:
@@ -29,7 +33,9 @@ rule document:
     benchmark:
         "logs/{scale}/{document}_html.tsv"
     wildcard_constraints:
-        document="|".join(DOCUMENTS),
+        document="|".join(catalogue.DOCUMENTS),
+    params:
+        caption=caption_of_document,
     message:
         "write {output}"
     shell:
@@ -44,7 +50,7 @@ rule effective_config:
         report(
             "results/{scale}/config.yaml",
             caption="captions/config.rst",
-            category=THIS_RUN,
+            category=catalogue.HEADINGS["this_run"],
             labels=titled("Configuration (YAML, to download)"),
         ),
     log:

@@ -48,8 +48,8 @@ rule film:
         report(
             "figures/{folder}clustering.png",
             caption="captions/clustering.rst",
-            category=LARGE,
-            labels=titled("Clusters in a cooling gas"),
+            category=catalogue.HEADINGS["large_gas"],
+            labels=titled(catalogue.FIGURES["clustering"].title),
         ),
     log:
         "logs/figures/{folder}clustering.log",

@@ -34,11 +34,7 @@ def submodules(module):
     return tuple(f"{module}.{file.stem}" for file in sorted(folder.glob("*.py")))
 
 
-IMPORTED_BY_NAME = (
-    "roughgas.show.figures",
-    "roughgas.studies.figures",
-    "roughgas.studies.accuracy",
-)
+IMPORTED_BY_NAME = ("roughgas.studies.figures", "roughgas.studies.accuracy")
 
 
 @functools.cache

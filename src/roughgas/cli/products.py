@@ -82,13 +82,13 @@ def table(options: argparse.Namespace) -> None:
 
 def figure(options: argparse.Namespace) -> None:
     """Draw one figure."""
-    from roughgas.show import figures
+    from roughgas.show import gallery
     from roughgas.studies import figures as of_studies
 
     if options.name in of_studies.FIGURES:
         of_studies.draw(options.name, *options.inputs, options.output)
     else:
-        figures.draw(options.name, options.inputs, options.output)
+        gallery.draw(options.name, options.inputs, options.output)
 
 
 def claims(options: argparse.Namespace) -> None:

@@ -9,18 +9,11 @@ from docutils.core import publish_parts
 from jinja2 import Environment
 
 from roughgas import config
-from roughgas.show.figures import FIGURES
+from roughgas.show.catalogue import DOCUMENTS, FIGURES, figures_of
 from roughgas.studies import accuracy
 
 ROOT = Path(__file__).parents[3]
 CAPTIONS = ROOT / "rules" / "captions"
-RULES = (ROOT / "rules" / "report.smk").read_text("utf-8")
-
-
-def keys(name):
-    """The keys of a dictionary in the rules."""
-    (body,) = re.findall(rf"^{name} = {{(.*?)^}}", RULES, re.M | re.S)
-    return re.findall(r'^    "(\w+)":', body, re.M)
 
 
 def rendered(caption, **about):
@@ -33,7 +26,7 @@ def rendered(caption, **about):
 
 
 @pytest.mark.parametrize("scale", ["paper", "fine"])
-@pytest.mark.parametrize("figure", FIGURES)
+@pytest.mark.parametrize("figure", figures_of("paper", "beyond"))
 def test_a_figure_says_what_it_shows_and_how_it_was_made(figure, scale, monkeypatch):
     monkeypatch.chdir(ROOT)
     loaded = config.load("config.yaml")
@@ -42,7 +35,6 @@ def test_a_figure_says_what_it_shows_and_how_it_was_made(figure, scale, monkeypa
     wildcards = SimpleNamespace(figure=figure, folder="")
     params = SimpleNamespace(experiments=experiments)
     text = re.sub(r"\s+", " ", rendered("figure", wildcards=wildcards, params=params))
-    assert figure in keys("TITLES")
     assert "What to notice." in text
     assert "160 particles in a box of 100 × 100" in text
     assert "21 values from -0.95 to 1" in text
@@ -58,19 +50,16 @@ def test_a_study_says_how_it_was_made(figure, monkeypatch):
     studies = {name: config.study(loaded, name, "paper")["study"] for name in accuracy.STUDIES}
     wildcards = SimpleNamespace(study_figure=figure, folder="")
     text = rendered("study", wildcards=wildcards, params=SimpleNamespace(studies=studies))
-    assert figure in keys("TITLES") and "What to notice." in text and "repetitions 600" in text
+    assert "What to notice." in text and "repetitions 600" in text
 
 
-@pytest.mark.parametrize("document", keys("DOCUMENTS"))
-def test_a_document_says_what_it_is(document, monkeypatch):
-    monkeypatch.chdir(ROOT)
-    assert "<p>" in rendered("document", wildcards=SimpleNamespace(document=document))
+@pytest.mark.parametrize("document", DOCUMENTS.values(), ids=DOCUMENTS)
+def test_a_document_says_what_it_is(document):
+    assert "<p>" in rendered("document", params=SimpleNamespace(caption=document.caption))
 
 
 def test_pictures_of_hard_cases_have_captions():
-    pictures = [name for name in keys("TITLES") if name.startswith("hard_cases")]
-    assert len(pictures) == 4
-    for name in pictures:
+    for name in figures_of("hard_cases"):
         assert "What to notice." in rendered(name, params=SimpleNamespace(size="--full"))
 
 
@@ -78,3 +67,15 @@ def test_the_showcase_says_how_it_was_made():
     settings = config.showcase(config.load(ROOT / "config.yaml"), "paper")
     text = rendered("clustering", params=SimpleNamespace(showcase=settings))
     assert "particles 200000" in text
+
+
+def test_each_caption_is_used():
+    shared = {"workflow", "figure", "study", "document", "config", "table"}
+    assert {path.stem for path in CAPTIONS.glob("*.rst")} == shared | set(FIGURES)
+
+
+@pytest.mark.parametrize("figure", figures_of("paper", "beyond"))
+def test_the_readme_shows_each_figure_under_its_title(figure):
+    number, title = FIGURES[figure].title.removeprefix("Fig. ").split(": ")
+    shown = f"![Fig. {number}](figures/{figure}.png) **{number}.** {title[0].upper()}{title[1:]}. |"
+    assert shown in (ROOT / "README.md").read_text("utf-8")

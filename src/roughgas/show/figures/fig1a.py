@@ -5,8 +5,6 @@ from matplotlib.figure import Figure
 
 from roughgas.show.figures import panel
 
-EXPERIMENTS = ("vibrated",)
-
 
 def draw(bed: xr.Dataset) -> Figure:
     """The figure, from the reduced dataset of the vibrated bed."""

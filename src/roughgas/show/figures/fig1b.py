@@ -14,7 +14,6 @@ NAMES = {
     "vibrated_particle_walls": r"walls with the particles' $r$ and $\beta$",
     "vibrated_smooth_walls": r"smooth elastic walls, $r = -\beta = 1$",
 }
-EXPERIMENTS = tuple(NAMES)
 
 
 def draw(bed: xr.Dataset, rough: xr.Dataset, particle: xr.Dataset, smooth: xr.Dataset) -> Figure:

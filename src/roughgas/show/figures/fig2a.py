@@ -7,8 +7,6 @@ from matplotlib.figure import Figure
 from roughgas.show.figures import panel
 from roughgas.show.style import GREY, LOOKS
 
-EXPERIMENTS = ("sheared",)
-
 
 def draw(sheared: xr.Dataset) -> Figure:
     """The figure, from the reduced dataset of the sheared gas."""

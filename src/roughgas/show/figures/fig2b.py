@@ -5,8 +5,6 @@ from matplotlib.figure import Figure
 
 from roughgas.show.figures import panel
 
-EXPERIMENTS = ("cooling",)
-
 
 def draw(cooling: xr.Dataset) -> Figure:
     """The figure, from the reduced dataset of the cooling gas."""

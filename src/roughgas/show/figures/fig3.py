@@ -14,7 +14,6 @@ NAMES = {
     "sheared_spheres": "Sheared spheres",
     "vibrated_spheres": "Vibrated spheres",
 }
-EXPERIMENTS = tuple(NAMES)
 
 
 def draw(cooling: xr.Dataset, sheared: xr.Dataset, bed: xr.Dataset) -> Figure:

@@ -11,7 +11,6 @@ from roughgas.show.figures.axis import FRICTION
 from roughgas.show.style import LOOKS
 
 RESTITUTION = 0.9
-EXPERIMENTS = ("vibrated_friction", "cooling_friction")
 
 
 def draw(bed: xr.Dataset, cooling: xr.Dataset) -> Figure:

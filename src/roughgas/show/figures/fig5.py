@@ -17,7 +17,6 @@ NAMES = {
     "floor_materials": ("rough floor", "^"),
     "shaken_walls": ("rough shaken walls", "D"),
 }
-EXPERIMENTS = tuple(NAMES)
 
 
 def draw(heated: xr.Dataset, floor: xr.Dataset, walls: xr.Dataset) -> Figure:

@@ -18,7 +18,6 @@ NAMES = {
     "triangle": "triangle",
     "sine": "sine",
 }
-EXPERIMENTS = ("waves",)
 
 
 def draw(waves: xr.Dataset) -> Figure:

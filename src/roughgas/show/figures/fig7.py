@@ -12,7 +12,6 @@ NAMES = {
     "vibrated_inertia": ("Vibrated bed", "lines: theory, Eq. (lun)"),
     "cooling_inertia": ("Cooling gas", "lines: theory, Eq. (K)"),
 }
-EXPERIMENTS = tuple(NAMES)
 
 
 def draw(bed: xr.Dataset, cooling: xr.Dataset) -> Figure:

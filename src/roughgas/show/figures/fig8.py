@@ -10,7 +10,6 @@ from roughgas.show.style import LOOKS
 
 RESTITUTION = 0.9
 NAMES = {"floor_materials": "Rough floor", "wall_materials": "Rough side walls"}
-EXPERIMENTS = tuple(NAMES)
 
 
 def draw(floor: xr.Dataset, walls: xr.Dataset) -> Figure:
