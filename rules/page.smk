@@ -1,5 +1,7 @@
 # What is made to be looked at in a browser: documents for Snakemake's report, and interactive pages.
-LOOKS = sorted(str(path) for path in (PACKAGE / "show" / "page").glob("*.*") if path.suffix != ".py")
+LOOKS = sorted(
+    str(path) for path in (SOURCE / "roughgas/show/page").glob("*.*") if path.suffix != ".py"
+)
 
 
 def points_of_paper(wildcards):
@@ -44,7 +46,7 @@ rule document:
 
 rule effective_config:
     input:
-        files_of("config"),
+        sources("config"),
         file="config.yaml",
     output:
         report(

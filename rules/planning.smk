@@ -1,5 +1,5 @@
 # Accuracy on demand: a pilot of each point says how many seeds it needs, and what they will cost.
-PLANNING = PACKAGE / "planning"
+PLANNING = SOURCE / "roughgas" / "planning"
 PLANNED = [
     name
     for name in config["experiments"]
