@@ -1,9 +1,9 @@
 """The machine code of a scene, as numba keeps it in its cache; and the same compiled where nothing
 that the scene does without could be compiled at all.
 
-As a program, `machine_code.py KERNEL [FILE ...]` prints what the kernel of that name (see
-brute_force.scenes) is compiled to while every function in the files of all absent effects, and in
-those named, is poisoned.
+As a program, `machine_code.py KERNEL [EFFECT ...]` prints what the kernel of that name (see
+brute_force.scenes) is compiled to while every hook of all absent effects, and of those named, is
+poisoned.
 """
 
 import hashlib
@@ -15,6 +15,8 @@ import numba
 from brute_force import begin, run, settings
 from numba.core.registry import cpu_target
 
+from roughgas.effects import KINDS
+from roughgas.kernel.hooks import Hooks
 from roughgas.kernel.jit import jit
 from roughgas.kernel.record import record
 
@@ -43,34 +45,20 @@ def checksums(kernel):
     }
 
 
-def absent(scene):
-    """The modules of roughgas.effects of no effect in the scene, nor used by one that is there."""
-    there = {type(effect).__module__ for effect in scene.effects if effect is not None}
-    there |= {
-        getattr(value, "__module__", "")
-        for module in there
-        for value in vars(sys.modules[module]).values()
-        if not isinstance(value, type)
-    }
-    every = {name for name in sys.modules if name.startswith("roughgas.effects.")}
-    return every - there - {"roughgas.effects.settings"}
-
-
-def poison(module):
-    """Replace every function of a module by one that neither compiles nor runs."""
+def poison(kind):
+    """Replace every hook of an effect by a function that neither compiles nor runs."""
 
     @jit
     def poisoned(*arguments):
         return no_such_thing(*arguments)  # noqa: F821
 
-    for name, value in list(vars(module).items()):
-        if callable(value) and not isinstance(value, type):
-            setattr(module, name, poisoned)
+    parts = kind.hooks._asdict()
+    kind.hooks = Hooks(**{name: poisoned if callable(own) else own for name, own in parts.items()})
 
 
 if __name__ == "__main__":
     kernel, *others = sys.argv[1:]
-    scene, _ = begin(settings(kernel), 0.9, -1.0)
-    for name in absent(scene) | {f"roughgas.effects.{file}" for file in others}:
-        poison(sys.modules[name])
+    absent = KINDS.keys() - settings(kernel)["effects"].keys()
+    for name in absent | set(others):
+        poison(KINDS[name])
     print(json.dumps(checksums(kernel)))

@@ -7,12 +7,10 @@ writes that table anew.
 
 import math
 import re
-import sys
 from pathlib import Path
 
-from roughgas.effects import KINDS, parameters
+from roughgas.effects import KINDS
 from roughgas.effects.settings import OfParticles, Word
-from roughgas.kernel import hooks
 
 ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "effects.md"
@@ -60,15 +58,9 @@ def written():
     return PAGE.read_text(encoding="utf-8").split(BEGIN)[1].split(END)[0]
 
 
-def hook_names():
-    """What the kernel asks of an effect's file, in the order in which hooks.py lists it."""
-    return re.findall(r"^    (\w+)(?:\(| = )", hooks.__doc__, re.MULTILINE)
-
-
 def _row(name, kind):
-    module = sys.modules[kind.__module__]
-    there = [f"`{hook}`" for hook in hook_names() if hasattr(module, hook)]
-    described = "<br>".join(_parameter(key, one) for key, one in parameters(name).items())
+    there = [f"`{hook}`" for hook, own in kind.hooks._asdict().items() if own]
+    described = "<br>".join(_parameter(key, one) for key, one in kind.parameters.items())
     return f"`{name}`", kind.__doc__, described, ", ".join(there)
 
 

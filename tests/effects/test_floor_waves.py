@@ -11,7 +11,7 @@ from hard_cases.waves import DIGITS, exact, level, sine, triangle
 
 from roughgas.base.errors import InputError
 from roughgas.effects import Floor, sine_floor, triangular_floor
-from roughgas.effects.settings import Surroundings
+from roughgas.effects.settings import Surroundings, make
 from roughgas.effects.sine_floor import SineFloor
 from roughgas.effects.triangular_floor import FALLING, RISING, TriangularFloor
 from roughgas.kernel.layout import new_state
@@ -33,7 +33,8 @@ SPIN = {"spin": {"inertia": 0.5}}
 
 def from_settings(**chosen):
     stated = {"amplitude": 5, "period": 2, "restitution": "particles", "roughness": 0.5}
-    return Floor.from_settings(stated | chosen, Surroundings((50.0, None), 0.9, 0.2, SPIN))
+    around = Surroundings((50.0, None), 0.9, 0.2, SPIN)
+    return make(Floor, "floor", stated | chosen, around)
 
 
 def test_the_wave_is_chosen_by_name():
@@ -90,12 +91,12 @@ def test_time_to_floor_against_forty_digits(make):
 def test_a_floor_that_does_not_move(speed):
     """Amplitude 0: a free fall to height 0; and nearly so where the amplitude is small."""
     fallen = speed + math.sqrt(speed**2 + 2.0 * 50.0)
-    for make in (sine, triangle):
-        assert time_to(make(0.0, 0.7), 1.0, 50.0, speed, 0.3) == pytest.approx(fallen, rel=1e-15)
+    for wave in (sine, triangle):
+        assert time_to(wave(0.0, 0.7), 1.0, 50.0, speed, 0.3) == pytest.approx(fallen, rel=1e-15)
         for amplitude in (1e-4, 1e-8, 1e-12):
-            time = time_to(make(amplitude, 0.7), 1.0, 50.0, speed, 0.3)
+            time = time_to(wave(amplitude, 0.7), 1.0, 50.0, speed, 0.3)
             assert fallen - amplitude < time <= fallen
-        resting = time_to(make(0.0, 0.7), 1.0, 0.0, 2.0, 0.3)
+        resting = time_to(wave(0.0, 0.7), 1.0, 0.0, 2.0, 0.3)
         assert resting == pytest.approx(4.0, rel=1e-15)
 
 

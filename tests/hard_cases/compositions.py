@@ -8,9 +8,8 @@ import itertools
 from hypothesis import strategies as st
 
 from roughgas.effects import KINDS
-from roughgas.effects import parameters as parameters_of
 
-WAVES = parameters_of("floor")["wave"].words
+WAVES = KINDS["floor"].parameters["wave"].words
 MATERIAL = {
     "restitution": st.sampled_from([0.3, 0.7, 0.9, 1.0]),
     "roughness": st.sampled_from([-1.0, -0.4, 0.5, 1.0]),

@@ -18,7 +18,6 @@ from hard_cases.compositions import (
 )
 from roughgas.base.errors import InputError
 from roughgas.effects import KINDS
-from roughgas.effects import parameters as effect_parameters
 from roughgas.kernel.record import Plan, columns, record
 from roughgas.kernel.state import BOUNDARY_HITS, COLLISIONS, LAST_FIRST, LAST_SECOND
 from roughgas.scene import build, check
@@ -199,7 +198,7 @@ def test_every_set_of_effects_is_accepted_or_refused_in_one_line(margins):
 def spoiled(chosen):
     """These settings of effects with each parameter in turn being each thing that it may not be."""
     for name in chosen:
-        for key, about in effect_parameters(name).items():
+        for key, about in KINDS[name].parameters.items():
             for value in JUNK:
                 if value is not None or about.default is None:
                     yield chosen | {name: chosen[name] | {key: value}}

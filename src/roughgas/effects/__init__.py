@@ -3,7 +3,6 @@
 The order is that in which effects act where several have a say (see kernel/hooks.py).
 """
 
-import sys
 from typing import Any, NamedTuple
 
 from roughgas.effects.contact_time import ContactTime
@@ -40,11 +39,6 @@ KINDS = {name: kind.__args__[0] for name, kind in Effects.__annotations__.items(
 """The effects by the names that they have in settings."""
 
 
-def parameters(name: str) -> dict[str, Any]:
-    """The parameters of an effect by name: see roughgas.effects.settings."""
-    return sys.modules[KINDS[name].__module__].SETTINGS
-
-
 def schema() -> dict[str, Any]:
     """What `effects` may hold in settings, as a JSON schema; what they do without is null."""
     return {
@@ -56,7 +50,7 @@ def schema() -> dict[str, Any]:
                 "description": kind.__doc__,
                 "type": ["object", "null"],
                 "additionalProperties": False,
-                "properties": {key: one.schema() for key, one in parameters(name).items()},
+                "properties": {key: one.schema() for key, one in kind.parameters.items()},
             }
             for name, kind in KINDS.items()
         },
@@ -67,9 +61,7 @@ def required() -> dict[str, Any]:
     """What must be there of each effect, once all settings are merged, as a JSON schema."""
     return {
         "properties": {
-            name: {
-                "required": [key for key, one in parameters(name).items() if one.default is None]
-            }
-            for name in KINDS
+            name: {"required": [key for key, one in kind.parameters.items() if one.default is None]}
+            for name, kind in KINDS.items()
         }
     }

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roughgas.effects.settings import Number, read
+from roughgas.effects.settings import Number, register
 from roughgas.kernel.jit import jit
 from roughgas.kernel.state import EXPONENT
 
@@ -32,9 +32,8 @@ class ContactTime(NamedTuple):
 
     @classmethod
     def from_settings(cls, settings, around):
-        """The model, or None where the particles are too elastic to need it."""
-        chosen = read(SETTINGS, "contact_time", settings, around)
-        return cls(chosen["duration"]) if around.restitution < chosen["below_r"] else None
+        """Return the model, or None where the particles are too elastic to need it."""
+        return cls(settings["duration"]) if around.restitution < settings["below_r"] else None
 
 
 def moment(model, number, rng):
@@ -53,3 +52,6 @@ def restitution(model, index, r, state, i, j, time, speed):
 @jit
 def contact_made(model, index, none, state, i, time):
     state.moments.contact_time[i] = time
+
+
+register(ContactTime, SETTINGS, restitution=restitution, contact_made=contact_made, moment=moment)

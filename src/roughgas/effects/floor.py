@@ -8,10 +8,9 @@ Floors of another wave form are in files of their own: each has its own way to b
 import math
 from typing import NamedTuple
 
-from roughgas.effects.settings import MATERIAL, Number, Word, read
+from roughgas.effects.settings import MATERIAL, Number, Word, register
 from roughgas.effects.sine_floor import SineFloor
-from roughgas.effects.surface import LEAST_DEPARTURE, bounce, fall, flight, until_back
-from roughgas.effects.surface import phase as phase
+from roughgas.effects.surface import LEAST_DEPARTURE, bounce, fall, flight, phase, until_back
 from roughgas.effects.triangular_floor import REVERSED_RISE, TriangularFloor
 from roughgas.kernel.jit import jit
 
@@ -25,7 +24,6 @@ SETTINGS = {
     ),
     **MATERIAL,
 }
-DRIVES = True
 
 
 class Floor(NamedTuple):
@@ -39,9 +37,8 @@ class Floor(NamedTuple):
 
     @classmethod
     def from_settings(cls, settings, around):
-        """The floor of the wave form that the settings name; raises InputError for illegal ones."""
-        chosen = read(SETTINGS, "floor", settings, around)
-        chosen["least_departure"] = LEAST_DEPARTURE
+        """Return the floor of the wave form that the settings name."""
+        chosen = settings | {"least_departure": LEAST_DEPARTURE}
         match chosen.pop("wave"):
             case "reversed_sawtooth":
                 return TriangularFloor(rise=REVERSED_RISE, **chosen)
@@ -88,3 +85,19 @@ def _stroke_to_meet(floor, gravity, height, speed, phase, time):
 @jit
 def resolve(floor, index, what, state, scene, i, time):
     return bounce(floor, index, state, scene, i, time, floor.amplitude / floor.period)
+
+
+def displacement(floor, time):
+    """Return the height of the surface at `time`, in a."""
+    return floor.amplitude * (time % floor.period / floor.period)
+
+
+register(
+    Floor,
+    SETTINGS,
+    predict=predict,
+    resolve=resolve,
+    phase=phase,
+    displacement=displacement,
+    drives=True,
+)

@@ -11,7 +11,7 @@ import math
 from typing import NamedTuple
 
 from roughgas.base.errors import InputError
-from roughgas.effects.settings import Number, read
+from roughgas.effects.settings import Number, register
 from roughgas.kernel.jit import jit
 from roughgas.kernel.vectors import dot
 
@@ -26,11 +26,11 @@ class Friction(NamedTuple):
 
     @classmethod
     def from_settings(cls, settings, around):
-        """The effect; raises InputError for illegal parameters, and where nothing spins."""
+        """Return the effect; raise InputError where nothing spins."""
         if "spin" not in around.effects:
             raise InputError("effects.friction", "without spin", "come with spin, which it acts on")
         inertia = around.effects["spin"]["inertia"]
-        return cls(**read(SETTINGS, "friction", settings, around), inertia=float(inertia))
+        return cls(**settings, inertia=float(inertia))
 
 
 @jit
@@ -38,3 +38,6 @@ def roughness(friction, index, beta, r, speed, slip):
     most = friction.mu * (1.0 + r) * (1.0 + 1.0 / friction.inertia) * abs(speed)
     sliding = math.sqrt(dot(slip, slip))
     return beta if (1.0 + beta) * sliding <= most else most / sliding - 1.0
+
+
+register(Friction, SETTINGS, roughness=roughness)

@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from roughgas.effects.settings import Number, read
+from roughgas.effects.settings import Number, register
 from roughgas.kernel.jit import jit
 
 SETTINGS = {"acceleration": Number("g, in a/T^2.")}
@@ -13,12 +13,10 @@ class Gravity(NamedTuple):
 
     acceleration: float
 
-    @classmethod
-    def from_settings(cls, settings, around):
-        """The effect; raises InputError for illegal parameters."""
-        return cls(**read(SETTINGS, "gravity", settings, around))
-
 
 @jit
 def acceleration(gravity, index, none):
     return gravity.acceleration
+
+
+register(Gravity, SETTINGS, acceleration=acceleration)

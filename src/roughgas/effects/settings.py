@@ -1,7 +1,7 @@
 """The parameters of effects: what each means, which values are legal, and how they are read.
 
-An effect's file names its parameters in SETTINGS; what config.yaml may hold, and what error
-messages quote, is made from that.
+An effect's file registers its parameters and its hooks; what config.yaml may hold, and what error
+messages quote, is made from the parameters.
 """
 
 from collections.abc import Mapping
@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 from roughgas.base.errors import InputError
 from roughgas.base.legal import RESTITUTION, ROUGHNESS, Interval
+from roughgas.kernel.hooks import Hooks
 
 
 class Surroundings(NamedTuple):
@@ -95,15 +96,31 @@ MATERIAL = {
 """The parameters of what particles bounce off."""
 
 
-def read(
-    kinds: Mapping[str, Any], effect: str, settings: Mapping[str, Any], around: Surroundings
-) -> dict[str, Any]:
-    """The values of an effect's parameters; raises InputError for illegal or unknown ones."""
-    for name in settings:
-        if name not in kinds:
-            legal = f"be one of {', '.join(kinds)}" if kinds else "not be given"
-            raise InputError(f"effects.{effect}: key", name, legal)
-    return {
-        name: kind.read(f"effects.{effect}.{name}", settings.get(name), around)
-        for name, kind in kinds.items()
+def register(kind: type, parameters: Mapping[str, Any] | None = None, **hooks: Any) -> None:
+    """Give an effect's class its parameters and its hooks (see roughgas.kernel.hooks.Hooks).
+
+    `parameters` maps names to Number, Word or OfParticles; None is a variant that another effect's
+    `from_settings` returns. A class without `from_settings` is made from its parameters as they
+    are. Raises TypeError for a hook that does not exist.
+    """
+    kind.hooks = Hooks(**hooks)
+    kind.parameters = parameters
+    if not hasattr(kind, "from_settings"):
+        kind.from_settings = lambda settings, around: kind(**settings)
+
+
+def make(kind: type, name: str, settings: Mapping[str, Any], around: Surroundings) -> Any:
+    """Return the effect called `name` from its settings, None where it has nothing to do.
+
+    Raises InputError for parameters that are illegal, unknown, or contradict their surroundings.
+    """
+    known = kind.parameters
+    for key in settings:
+        if key not in known:
+            legal = f"be one of {', '.join(known)}" if known else "not be given"
+            raise InputError(f"effects.{name}: key", key, legal)
+    values = {
+        key: parameter.read(f"effects.{name}.{key}", settings.get(key), around)
+        for key, parameter in known.items()
     }
+    return kind.from_settings(values, around)

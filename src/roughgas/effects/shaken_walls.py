@@ -4,11 +4,12 @@ They close the first axis and move along the last one as a sine, both alike. The
 stays where it is: only the velocity that particles meet there changes.
 """
 
+import math
 from typing import NamedTuple
 
 from roughgas.base.errors import InputError
 from roughgas.effects import walls
-from roughgas.effects.settings import MATERIAL, Number, read
+from roughgas.effects.settings import MATERIAL, Number, register
 from roughgas.kernel.contact import collide_with_wall
 from roughgas.kernel.jit import jit
 from roughgas.kernel.turns import TURN, sine_and_cosine
@@ -19,7 +20,6 @@ SETTINGS = {
     "period": Number("Period of the motion, in T."),
     **MATERIAL,
 }
-CLOSES = DRIVES = True
 
 
 class ShakenWalls(NamedTuple):
@@ -33,15 +33,11 @@ class ShakenWalls(NamedTuple):
 
     @classmethod
     def from_settings(cls, settings, around):
-        """The effect; raises InputError for illegal parameters, and beside walls at rest."""
+        """Return the effect; raise InputError beside walls at rest."""
         if "walls" in around.effects:
             raise InputError("effects", "walls and shaken_walls", "not close the same axis twice")
-        chosen = read(SETTINGS, "shaken_walls", settings, around)
-        speed = TURN * chosen.pop("amplitude") / chosen["period"]
-        return cls(width=around.box[0], speed=speed, **chosen)
-
-
-predict = walls.predict
+        amplitude, period, *material = settings.values()
+        return cls(around.box[0], TURN * amplitude / period, period, *material)
 
 
 @jit
@@ -57,3 +53,21 @@ def resolve(shaken, index, what, state, scene, i, time):
     moving = along_last(scene.box, shaken.speed * sine_and_cosine(turns)[1])
     material = (shaken.restitution, shaken.roughness)
     return collide_with_wall(state, scene, index, i, time, material, normal, moving, 0.0)
+
+
+def displacement(shaken, time):
+    """Return how far the walls are from their middle at `time`, in a."""
+    turn = TURN * (time % shaken.period) / shaken.period
+    return shaken.speed * shaken.period / TURN * math.sin(turn)
+
+
+register(
+    ShakenWalls,
+    SETTINGS,
+    predict=walls.predict,
+    resolve=resolve,
+    phase=phase,
+    displacement=displacement,
+    drives=True,
+    closes=True,
+)

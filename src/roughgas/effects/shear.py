@@ -10,11 +10,10 @@ it, where the impulses on the two partners are opposite but the velocities at wh
 from typing import NamedTuple
 
 from roughgas.base.errors import InputError
-from roughgas.effects.settings import Number, read
+from roughgas.effects.settings import Number, register
 from roughgas.kernel.jit import jit
 
 SETTINGS = {"velocity": Number("Velocity U of the images above relative to the box, in a/T.")}
-DRIVES = True
 
 
 class Shear(NamedTuple):
@@ -25,11 +24,11 @@ class Shear(NamedTuple):
 
     @classmethod
     def from_settings(cls, settings, around):
-        """The effect; raises InputError for illegal parameters, and a box not periodic."""
+        """Return the effect; raise InputError for a box that is not periodic."""
         if None in around.box[:2]:
             legal = "come with a box periodic in both directions"
             raise InputError("effects.shear", "given", legal)
-        return cls(**read(SETTINGS, "shear", settings, around), length=around.box[0])
+        return cls(**settings, length=around.box[0])
 
 
 @jit
@@ -46,3 +45,19 @@ def transfer(shear, index, none, state, work):
 @jit
 def sliding(shear, index, none, state):
     return state.phase[index], shear.velocity
+
+
+def displacement(shear, time):
+    """Return the offset of the image above at `time`, from 0 to L, in a."""
+    return (shear.velocity * time) % shear.length
+
+
+register(
+    Shear,
+    SETTINGS,
+    sliding=sliding,
+    transfer=transfer,
+    phase=phase,
+    displacement=displacement,
+    drives=True,
+)

@@ -8,13 +8,12 @@ cannot lead past a meeting.
 import math
 from typing import NamedTuple
 
-from roughgas.effects.surface import bounce, fall, flight, until_back
-from roughgas.effects.surface import phase as phase
+from roughgas.effects.settings import register
+from roughgas.effects.surface import bounce, fall, flight, phase, until_back
 from roughgas.kernel.jit import jit
 from roughgas.kernel.turns import TURN, sine_and_cosine
 
 ROUNDING = 2.0**-52
-DRIVES = True
 
 
 class SineFloor(NamedTuple):
@@ -98,3 +97,19 @@ def _stays_above(gap, speed, bend):
 def resolve(floor, index, what, state, scene, i, time):
     _, speed, _ = _motion(floor, state.phase[index] + time)
     return bounce(floor, index, state, scene, i, time, speed)
+
+
+def displacement(floor, time):
+    """Return the height of the surface at `time`, in a."""
+    turn = TURN * (time % floor.period / floor.period)
+    return floor.amplitude * (1.0 - math.cos(turn)) / 2.0
+
+
+register(
+    SineFloor,
+    predict=predict,
+    resolve=resolve,
+    phase=phase,
+    displacement=displacement,
+    drives=True,
+)

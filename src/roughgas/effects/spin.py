@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from roughgas.effects.settings import Number, read
+from roughgas.effects.settings import Number, register
 
 SETTINGS = {"inertia": Number("q = I/(m a^2), 1/2 for disks and 2/5 for spheres.", "(0, 1]")}
 
@@ -12,7 +12,5 @@ class Spin(NamedTuple):
 
     inertia: float
 
-    @classmethod
-    def from_settings(cls, settings, around):
-        """The effect; raises InputError for illegal parameters."""
-        return cls(**read(SETTINGS, "spin", settings, around))
+
+register(Spin, SETTINGS)

@@ -14,7 +14,7 @@ import math
 from typing import NamedTuple
 
 from roughgas.base.errors import InputError
-from roughgas.effects.settings import Number, read
+from roughgas.effects.settings import Number, register
 from roughgas.kernel.flight import come_in, put
 from roughgas.kernel.hooks import unless_absent
 from roughgas.kernel.jit import jit
@@ -27,7 +27,6 @@ SETTINGS = {
     "spin_share": Number("Share of it that goes into rotation.", "[0, 1]"),
     "interval": Number("Time between the kicks that a particle starts, in T."),
 }
-RANDOM = DRIVES = True
 
 
 class Thermostat(NamedTuple):
@@ -39,17 +38,16 @@ class Thermostat(NamedTuple):
 
     @classmethod
     def from_settings(cls, settings, around):
-        """The effect; raises InputError for illegal parameters, and a share of no spin."""
-        chosen = read(SETTINGS, "thermostat", settings, around)
-        dimension, share = len(around.box), chosen["spin_share"]
+        """Return the effect; raise InputError for a share of the spins where there are none."""
+        dimension, share = len(around.box), settings["spin_share"]
         if "spin" not in around.effects and share > 0.0:
             raise InputError("effects.thermostat.spin_share", share, "be 0 where nothing spins")
         inertia = around.effects["spin"]["inertia"] if "spin" in around.effects else 1.0
-        energy = chosen["power"] * chosen["interval"]  # of one kick: one a particle and interval
+        energy = settings["power"] * settings["interval"]  # of one kick
         # <x^2> = k^2/3; two particles with m v^2/2 each, and as many spins with q m (a w)^2/2 each
         push = math.sqrt(3.0 * (1.0 - share) * energy / dimension)
         turn = math.sqrt(3.0 * share * energy / (inertia * (2 * dimension - 3)))
-        return cls(push, turn, chosen["interval"])
+        return cls(push, turn, settings["interval"])
 
 
 def moment(thermostat, number, rng):
@@ -92,3 +90,14 @@ def _turn(spin, thermostat, index, state, scene, i):
     turn = random_vector(state.random, before, thermostat.turn)
     turn_spin(spin, i, before, turn)
     book_spin(before, turn, scene.effects.spin, state.ledger[0, index])
+
+
+register(
+    Thermostat,
+    SETTINGS,
+    moment=moment,
+    predict=predict,
+    resolve=resolve,
+    random=True,
+    drives=True,
+)

@@ -11,13 +11,12 @@ particle that it meets an infinite speed.
 import math
 from typing import NamedTuple
 
-from roughgas.effects.surface import bounce, fall, flight, until_back
-from roughgas.effects.surface import phase as phase
+from roughgas.effects.settings import register
+from roughgas.effects.surface import bounce, fall, flight, phase, until_back
 from roughgas.kernel.jit import jit
 
 REVERSED_RISE = 0.1  # of the reversed sawtooth's period
 RISING, FALLING = 0, 1
-DRIVES = True
 
 
 class TriangularFloor(NamedTuple):
@@ -87,3 +86,20 @@ def _piece_to_meet(floor, gravity, height, speed, phase, time):
 @jit
 def resolve(floor, index, what, state, scene, i, time):
     return bounce(floor, index, state, scene, i, time, speed_of(floor, what))
+
+
+def displacement(floor, time):
+    """Return the height of the surface at `time`, in a."""
+    done = time % floor.period / floor.period
+    share = done / floor.rise if done < floor.rise else (1.0 - done) / (1.0 - floor.rise)
+    return floor.amplitude * share
+
+
+register(
+    TriangularFloor,
+    predict=predict,
+    resolve=resolve,
+    phase=phase,
+    displacement=displacement,
+    drives=True,
+)

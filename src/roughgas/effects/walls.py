@@ -3,14 +3,12 @@
 import math
 from typing import NamedTuple
 
-from roughgas.effects.settings import MATERIAL, read
+from roughgas.effects.settings import MATERIAL, register
 from roughgas.kernel.contact import collide_with_wall
 from roughgas.kernel.flight import whereabouts
 from roughgas.kernel.jit import jit
 from roughgas.kernel.vectors import along_first
 
-SETTINGS = MATERIAL
-CLOSES = True
 LEFT, RIGHT = 0, 1
 
 
@@ -23,8 +21,8 @@ class Walls(NamedTuple):
 
     @classmethod
     def from_settings(cls, settings, around):
-        """The effect; raises InputError for illegal parameters."""
-        return cls(around.box[0], **read(SETTINGS, "walls", settings, around))
+        """Return the effect, as wide as the box."""
+        return cls(around.box[0], **settings)
 
 
 @jit
@@ -45,3 +43,6 @@ def resolve(walls, index, what, state, scene, i, time):
     material = (walls.restitution, walls.roughness)
     at_rest = along_first(scene.box, 0.0)
     return collide_with_wall(state, scene, index, i, time, material, normal, at_rest, 0.0)
+
+
+register(Walls, MATERIAL, predict=predict, resolve=resolve, closes=True)

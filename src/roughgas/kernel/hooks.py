@@ -1,56 +1,16 @@
 """How the kernel asks the effects of a scene, and only those, for their part.
 
-An effect is a NamedTuple in a file of its own; the functions beside it that bear the name of a hook
-are its part in the simulation. `scene.effects` has one entry an effect, None where the scene does
-without it. Each hook below is turned, while numba compiles and by the types of these entries, into
-the chain of the functions that are there: an absent effect leaves no instruction behind.
+An effect is a NamedTuple whose file registers its hooks: the functions that are its part in the
+simulation (effects/settings.py; docs/effects.md has an example). `scene.effects` has one entry per
+effect, None where the scene does without it. While numba compiles, the types of these entries turn
+each hook into a chain of the functions that are present: an absent effect leaves no instruction.
 
-Where several have a say, each gets the value as those listed before it in `Effects` have left it.
-
-What an effect's file must define: the NamedTuple, with `from_settings`, and SETTINGS, which are its
-parameters (see effects/settings.py; docs/effects.md has an example).
-
-What it may define, all jitted but for `moment`. A name that it merely imports counts, too. `index`
-is the effect's number among those that are there, and that of its account in State.ledger; `none`
-is there for the chain's sake, and holds nothing. Times count from the clock's base, and are, like
-velocities, in the units of a gas that is rescaled as it cools: a velocity in a/T is the present one
-times 2^e, a time in T the present one over 2^e, with e = State.counts[EXPONENT].
-
-    acceleration(effect, index, none)
-        downward acceleration along the last axis
-    sliding(effect, index, none, state)
-        (offset, velocity) along the first axis of the image above, at the clock's base
-    restitution(effect, index, r, state, i, j, time, speed)
-        normal restitution of one contact, from the value so far and the normal part of the relative
-        velocity, negative where the partners approach; j < 0 for a boundary
-    roughness(effect, index, beta, r, speed, slip)
-        tangential restitution of one contact of particles that spin, from the value so far, r and
-        speed as above, and the tangential relative velocity of the surfaces, a vector; it sees no
-        state, so it cannot depend on how fast all this is but by ratios
-    contact_made(effect, index, none, state, i, time)
-        take note that particle i has had a contact
-    predict(effect, index, state, scene, i)
-        (time, what) of particle i's next event that is no contact of a pair; 0 <= what < 8
-    resolve(effect, index, what, state, scene, i, time)
-        carry that event out, book the energy that it puts in, and count State.changes of whoever's
-        velocity it changes; returns another particle than i whose velocity it has changed, or
-        NOBODY
-    transfer(effect, index, none, state, work)
-        book the energy that particles gain where they, or their partners, change images
-    phase(effect, index, base)
-        the effect's own phase when the clock's base is at the absolute time `base`
-    moment(effect, number, rng)
-        a time for each of so many particles (array), kept in State.moments under the effect's name
-    RANDOM = True
-        the effect draws random numbers, from State.random
-    DRIVES = True
-        the effect puts energy in
-    CLOSES = True
-        the effect closes the first axis of the box
+Where several effects have a say, each gets the value as those listed before it in `Effects` have
+left it.
 """
 
-import sys
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
 from numba import types
 from numba.extending import overload, register_jitable
@@ -60,26 +20,80 @@ from roughgas.kernel.jit import jit
 CODES = 8  # kinds of event per effect
 
 
+class Hooks(NamedTuple):
+    """What an effect takes part in; None or False is what it leaves alone.
+
+    All functions are jitted but for `moment` and `displacement`. `index` is the effect's number
+    among those present, and that of its account in State.ledger; `none` holds nothing. Times count
+    from the clock's base. Times and velocities are in the units of a gas that is rescaled as it
+    cools: with e = State.counts[EXPONENT], a velocity in a/T is the present one times 2^e, a time
+    in T the present one over 2^e.
+    """
+
+    acceleration: Callable | None = None
+    """(effect, index, none) -> downward acceleration along the last axis"""
+    sliding: Callable | None = None
+    """(effect, index, none, state) -> (offset, velocity) along the first axis of the image above,
+    at the clock's base"""
+    restitution: Callable | None = None
+    """(effect, index, r, state, i, j, time, speed) -> normal restitution of a contact, from the
+    value so far and the normal relative velocity, negative where the partners approach; j < 0 for
+    a boundary"""
+    roughness: Callable | None = None
+    """(effect, index, beta, r, speed, slip) -> tangential restitution of a contact of particles
+    that spin, from the value so far, r and speed as above, and the tangential relative velocity of
+    the surfaces, a vector; without the state, it can depend on ratios of velocities only"""
+    contact_made: Callable | None = None
+    """(effect, index, none, state, i, time): note that particle i has had a contact"""
+    predict: Callable | None = None
+    """(effect, index, state, scene, i) -> (time, what) of particle i's next event that is not a
+    contact of a pair; 0 <= what < CODES"""
+    resolve: Callable | None = None
+    """(effect, index, what, state, scene, i, time): carry that event out, book the energy that it
+    puts in, and count in State.changes each particle whose velocity it changes; returns another
+    particle than i whose velocity has changed, or NOBODY"""
+    transfer: Callable | None = None
+    """(effect, index, none, state, work): book the energy that particles gain where they, or their
+    partners, change images"""
+    phase: Callable | None = None
+    """(effect, index, base) -> the effect's phase when the clock's base is at absolute time
+    `base`"""
+    moment: Callable | None = None
+    """(effect, number, rng) -> a time for each of `number` particles (array), which State.moments
+    keeps under the effect's name"""
+    displacement: Callable | None = None
+    """(effect, time) -> how far what the effect moves is from where it was at time 0, in a, for
+    movies; `time` is absolute, in T"""
+    random: bool = False
+    """The effect draws random numbers, from State.random"""
+    drives: bool = False
+    """The effect puts energy in"""
+    closes: bool = False
+    """The effect closes the first axis of the box"""
+
+
 class Part(NamedTuple):
-    """An effect's part in a hook, or what else its file defines."""
+    """An effect's part in a hook."""
 
     place: int  # in Effects
-    rank: int  # among the effects that are there
-    own: object  # the function
+    rank: int  # among the effects that are present
+    own: Any  # the function, or True
 
 
 def present(effects, name):
-    """The parts of every effect that is there and defines the hook, in listed order."""
-    if isinstance(effects, types.BaseTuple):
-        classes = [getattr(kind, "instance_class", None) for kind in effects.types]
-    else:
-        classes = [None if effect is None else type(effect) for effect in effects]
-    there = [(k, sys.modules[c.__module__]) for k, c in enumerate(classes) if c is not None]
-    return [
-        Part(place, rank, getattr(module, name))
-        for rank, (place, module) in enumerate(there)
-        if hasattr(module, name)
-    ]
+    """Return the parts of every effect that is there and has the hook, in listed order.
+
+    `effects` is an Effects, or its type in numba.
+    """
+    kinds = getattr(effects, "types", effects)
+    classes = [getattr(kind, "instance_class", type(kind)) for kind in kinds]
+    there = [(k, getattr(c.hooks, name)) for k, c in enumerate(classes) if hasattr(c, "hooks")]
+    return [Part(place, rank, own) for rank, (place, own) in enumerate(there) if own]
+
+
+def displacement(effect, time):
+    """Return how far an effect has moved what it moves by `time` (T), in a; None if absent."""
+    return None if effect is None else effect.hooks.displacement(effect, time)
 
 
 def _chain(parts, join):

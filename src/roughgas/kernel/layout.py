@@ -170,7 +170,7 @@ def _state(scene, arrays, **parts):
         moments=type(effects)(**moments),
         phase=np.zeros(there) if hooks.present(effects, "phase") else None,
         ledger=np.zeros((2, there + 1, 2)),
-        random=np.zeros(1, np.uint64) if hooks.present(effects, "RANDOM") else None,
+        random=np.zeros(1, np.uint64) if hooks.present(effects, "random") else None,
         clock=np.zeros(8),
         counts=np.zeros(12, np.int64),
         agenda=Agenda(**{name: arrays.get(name) for name in Agenda._fields}),

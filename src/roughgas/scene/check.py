@@ -22,7 +22,7 @@ def check(experiment: Mapping[str, Any]) -> None:
 
 
 def _check_schedule(effects, kind):
-    drives = [effects._fields[part.place] for part in hooks.present(effects, "DRIVES")]
+    drives = [effects._fields[part.place] for part in hooks.present(effects, "drives")]
     if kind == "cooling" and drives:
         legal = f"be steady where there is a drive: {', '.join(drives)}"
         raise InputError("schedule.kind", kind, legal)

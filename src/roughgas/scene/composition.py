@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 from roughgas.base.errors import InputError
 from roughgas.base.legal import RESTITUTION, ROUGHNESS
 from roughgas.effects import KINDS, Effects
-from roughgas.effects.settings import Surroundings
+from roughgas.effects.settings import Surroundings, make
 from roughgas.kernel import hooks
 
 DIAMETER = 2.0
@@ -67,7 +67,7 @@ def check_company(scene: Scene, experiment: Mapping[str, Any]) -> None:
 
 def is_closed(effects: Effects) -> bool:
     """Whether walls close the first axis of the box."""
-    return bool(hooks.present(effects, "CLOSES"))
+    return bool(hooks.present(effects, "closes"))
 
 
 def _effects(settings, around):
@@ -76,7 +76,7 @@ def _effects(settings, around):
             raise InputError("effect", name, f"be one of {', '.join(KINDS)}")
     return Effects(
         **{
-            name: kind.from_settings(settings[name], around)
+            name: make(kind, name, settings[name], around)
             for name, kind in KINDS.items()
             if name in settings
         }

@@ -63,7 +63,7 @@ def _shared_input(booked, accounts, scene):
     """How what drives put in is shared, where there are any, and particles spin."""
     sources = [number for name, number in accounts.items() if name != CONTACTS]
     put_in = booked[sources].sum(axis=0)
-    if scene.effects.spin is None or not hooks.present(scene.effects, "DRIVES"):
+    if scene.effects.spin is None or not hooks.present(scene.effects, "drives"):
         return {}
     return {"input_spin_share": put_in[1] / put_in.sum()}
 

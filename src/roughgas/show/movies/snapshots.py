@@ -11,10 +11,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from roughgas.effects.floor import Floor
-from roughgas.effects.sine_floor import SineFloor
+from roughgas.kernel.hooks import displacement
 from roughgas.kernel.state import BASE, COLLISIONS, EXPONENT, NOW
-from roughgas.kernel.turns import TURN
 from roughgas.scene import Scene, build, check_company
 from roughgas.scene.initial import initial_state
 from roughgas.simulation.cooling import SAMPLES_PER_REFRESH, elastic
@@ -174,7 +172,7 @@ class _Watched:
         """What there is to be seen at the present instant."""
         state, scene, effects = self._state, self._scene, self._scene.effects
         present, time = self.energies(), self.time
-        slide = effects.shear and (effects.shear.velocity * time) % effects.shear.length
+        slide = displacement(effects.shear, time)
         unit = 2.0 ** int(state.counts[EXPONENT])
         spin = None if state.spin is None else in_order(state, state.spin) * unit
         return Snapshot(
@@ -186,9 +184,9 @@ class _Watched:
             E_trans=float(present.translational),
             E_rot=None if spin is None else float(present.rotational),
             R=None if spin is None else float(ratio(present)),
-            floor=effects.floor and height(effects.floor, time),
+            floor=displacement(effects.floor, time),
             slide=slide,
-            walls=effects.shaken_walls and displacement(effects.shaken_walls, time),
+            walls=displacement(effects.shaken_walls, time),
         )
 
     def _step(self, interval):
@@ -247,18 +245,3 @@ def positions(state, scene: Scene, slide: float) -> np.ndarray:
         if length is not None:
             position[:, axis] %= length
     return position
-
-
-def height(floor, time: float) -> float:
-    """Height of a floor's surface at `time`, in a."""
-    phase = time % floor.period / floor.period
-    if isinstance(floor, SineFloor):
-        return floor.amplitude * (1.0 - math.cos(TURN * phase)) / 2.0
-    rise = 1.0 if isinstance(floor, Floor) else floor.rise
-    share = phase / rise if phase < rise else (1.0 - phase) / (1.0 - rise)
-    return floor.amplitude * share
-
-
-def displacement(walls, time: float) -> float:
-    """How far shaken walls are from their middle at `time`, in a."""
-    return walls.speed * walls.period / TURN * math.sin(TURN * (time % walls.period) / walls.period)
