@@ -4,8 +4,9 @@ import numpy as np
 import xarray as xr
 
 from roughgas.config import as_text
-from roughgas.data import film
+from roughgas.data.film import write_film
 from roughgas.data.point import Point, write_point
+from roughgas.data.variables import FILM
 from roughgas.results.reduce import reduce_points
 from roughgas.studies import accuracy
 from roughgas.studies.accuracy.files import combine, write_task
@@ -27,7 +28,7 @@ def write_all(folder):
     paths = {kind: folder / f"{kind}.nc" for kind in ("point", "reduced", "film", "studies")}
     write_point(paths["point"], point())
     reduce_points(_points(folder), paths["reduced"])
-    film.write_film(paths["film"], frames(), {"title": "made up", "box": [8.0, 8.0]})
+    write_film(paths["film"], frames(), {"title": "made up", "box": [8.0, 8.0]})
     write_studies(paths["studies"], folder)
     return paths
 
@@ -74,7 +75,7 @@ def point(seed=1):
 def frames():
     rng = np.random.default_rng(2)
     shapes = {"frame": 3, "x": 4, "y": 4, "disk": 6}
-    kinds = film.VARIABLES.items()
+    kinds = FILM.items()
     values = {name: rng.random([shapes[dim] for dim in kind.dims]) * 9 for name, kind in kinds}
     return values | {"disks": [1, 2, 3], "contact_time": np.nan}
 

@@ -8,8 +8,8 @@ import pytest
 from roughgas import config
 from roughgas.base.errors import InputError
 from roughgas.config import schema
-from roughgas.data.point import VARIABLES
-from roughgas.results.reduce import DERIVED, SAME
+from roughgas.data.variables import POINT, REDUCED
+from roughgas.results.reduce import SAME
 
 CONFIG = Path(__file__).parents[2] / "config.yaml"
 INERTIA = {"extends": "sheared", "sweep": {"r": ["0.9"], "spin.inertia": ["1", "0.50", "1e-3"]}}
@@ -119,7 +119,7 @@ def test_what_variants_share_does_not_depend_on_their_values(whole):
 
 def test_no_parameter_has_a_name_that_datasets_need():
     """A third axis is a dimension named by its parameter; attributes that theory needs give way."""
-    taken = set(VARIABLES) | set(DERIVED) | set(SAME) | {"r", "beta", "seed"}
+    taken = set(POINT) | set(REDUCED) | set(SAME)
     effects = schema._validator("experiment").schema["$defs"]["effects"]["properties"]
     parameters = {name for about in effects.values() for name in about["properties"]}
     assert parameters & taken == {"inertia", "mu", "spin_share"}

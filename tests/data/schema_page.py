@@ -1,6 +1,6 @@
 """The page docs/data.md: its tables of variables, which are made from the code.
 
-    .venv/bin/python -m tests.schema_page [STUDIES ...]
+    .venv/bin/python -m tests.data.schema_page [STUDIES ...]
 
 writes them anew; those of the studies, from files such as results/paper/accuracy.nc.
 """
@@ -12,40 +12,13 @@ from pathlib import Path
 import netCDF4
 import xarray as xr
 
-from roughgas.data import film
-from roughgas.data import point as dataset
-from roughgas.data.cf import unit_attributes
-from roughgas.results import reduce
+from roughgas.base.layout import markdown
+from roughgas.data.cf import unit_of
+from roughgas.data.variables import COOLING, FILM, GRID, POINT, REDUCED, SPIN
 
 PAGE = Path(__file__).parents[2] / "docs" / "data.md"
-BEGIN, END = "<!-- {}: made by tests/schema_page.py -->\n", "<!-- until here -->\n"
+BEGIN, END = "<!-- {}: made by tests/data/schema_page.py -->\n", "<!-- until here -->\n"
 ALWAYS = "always"
-SPIN, COOLING, DRIVEN = "where particles spin", "cooling gas", "driven gas"
-SHEARED, TARGET, CONTACT = (
-    "sheared gas",
-    "with a `target_stderr`",
-    "where the contact-time model acts",
-)
-WHEN = {  # of what is in points of some scenes only
-    **dict.fromkeys(dataset.REQUIRED_OF_SPIN, SPIN),
-    "R_ci95_trusted": SPIN,
-    "R_series": SPIN,
-    "E_rot_series": SPIN,
-    "autocorrelation_time": SPIN,
-    "R_series_stderr": f"{COOLING}, {SPIN}",
-    "R_replica": f"{COOLING}, {SPIN}",
-    "plateau_end": COOLING,
-    "collisions_per_particle": COOLING,
-    "time": DRIVEN,
-    "input_spin_share": f"{DRIVEN}, {SPIN}",
-    "R_unsubtracted": f"{SHEARED}, {SPIN}",
-    "E_trans_unsubtracted": SHEARED,
-    "E_rot_unsubtracted": f"{SHEARED}, {SPIN}",
-    "contact_time": CONTACT,
-    "contact_time_fraction": CONTACT,
-    **dict.fromkeys((name for name in dataset.VARIABLES if name.startswith("planned_")), TARGET),
-    "target_stderr": TARGET,
-}
 
 
 def tables():
@@ -73,7 +46,7 @@ def check_study(name, data):
 def of_study(data):
     """The table of the group of a study."""
     rows = [
-        (name, _dims(one.dims), _unit(one.attrs), one.attrs["long_name"])
+        (name, _dims(one.dims), unit_of(one.attrs), one.attrs["long_name"])
         for name, one in data.variables.items()
     ]
     return _table("variable | dimensions | units | meaning", rows)
@@ -81,53 +54,45 @@ def of_study(data):
 
 def _point():
     rows = [
-        (name, _dims(one.dims), one.dtype, _units(name), WHEN.get(name, ALWAYS), one.long_name)
-        for name, one in dataset.VARIABLES.items()
+        (name, _dims(v.dims), v.dtype, _units(v), ", ".join(v.when) or ALWAYS, v.long_name)
+        for name, v in POINT.items()
     ]
     return _table("variable | dimensions | type | units | when | meaning", rows)
 
 
 def _reduced():
     rows = [
-        (name, "grid", _units(name), f"{one.over_seeds} over seeds", one.long_name)
-        for name, one in dataset.VARIABLES.items()
-        if one.over_seeds and not one.dims and name not in reduce.DERIVED
+        (name, _dims(v.dims), _units(v), _combination(v), v.long_name)
+        for name, v in REDUCED.items()
     ]
-    for name, about in reduce.DERIVED.items():
-        dims = "grid, seed" if name == "R_seed" else "grid"
-        rows.append((name, dims, _units(reduce.LIKE.get(name, "R")), "derived", about))
     return _table("variable | dimensions | units | how | meaning", rows)
 
 
 def _film():
-    rows = [
-        (name, _dims(one.dims), one.dtype, _unit(unit_attributes(one.units)), one.long_name)
-        for name, one in film.VARIABLES.items()
-    ]
+    rows = [(name, _dims(v.dims), v.dtype, v.units, v.long_name) for name, v in FILM.items()]
     return _table("variable | dimensions | type | units | meaning", rows)
+
+
+def _combination(v):
+    if GRID not in v.dims:
+        return "axis"
+    return f"{v.over_seeds} over seeds" if v.over_seeds else "derived"
 
 
 def _dims(dims):
     return ", ".join(dims)
 
 
-def _units(name):
+def _units(v):
     """Of a driven gas; after a semicolon of a cooling one, where it has others."""
-    when = WHEN.get(name, ALWAYS)
-    gases = (True,) if when.startswith(COOLING) else (False,)
-    gases = (False, True) if when in (ALWAYS, SPIN) else gases
-    found = [_unit(dataset.variable_attributes(name, cooling)) for cooling in gases]
-    return "; ".join(dict.fromkeys(found))
-
-
-def _unit(attributes):
-    return attributes.get("reduced_units", attributes.get("units", ""))
+    gases = (True,) if COOLING in v.when else (False,)
+    gases = (False, True) if set(v.when) <= {SPIN} else gases
+    return "; ".join(dict.fromkeys(v.units_of(cooling) for cooling in gases))
 
 
 def _table(head, rows):
-    rule = "| --- " * (head.count("|") + 1) + "|\n"
-    lines = (f"| `{name}` | {' | '.join(cells)} |\n" for name, *cells in rows)
-    return f"| {head} |\n{rule}" + "".join(lines)
+    rows = [(f"`{name}`", *cells) for name, *cells in rows]
+    return markdown(head.split(" | "), rows)
 
 
 def _write(kind, table):

@@ -40,7 +40,7 @@ def on_grid(dims):
 @pytest.mark.parametrize("kind", ["point", "reduced", "film"])
 def test_the_tables_of_the_page_are_those_of_the_code(kind):
     table = page.tables()[kind]
-    assert page.written(kind) == table, "write it anew: python -m tests.schema_page"
+    assert page.written(kind) == table, "write it anew: python -m tests.data.schema_page"
 
 
 @pytest.mark.parametrize("kind", KINDS)

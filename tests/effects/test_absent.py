@@ -12,7 +12,8 @@ from brute_force import KERNELS, begin, run, settings
 from machine_code import checksums, sections
 from schedules import COOLING, STEADY
 
-from roughgas.data.point import VARIABLES, read_point, write_point
+from roughgas.data.point import read_point, write_point
+from roughgas.data.variables import POINT
 from roughgas.effects import KINDS
 from roughgas.kernel import random
 from roughgas.kernel.record import columns, record
@@ -221,7 +222,7 @@ def test_a_point_holds_nothing_of_absent_effects(kernel, tmp_path):
     experiment = small(kernel) | {"schedule": STEADY if driven else COOLING}
     point = run_point(experiment, 0.9, 0.2 if "spin" in there else -1.0, 1)
     found = set(point.variables)
-    assert found <= set(VARIABLES)
+    assert found <= set(POINT)
     assert bool(found & OF_SPIN) == ("spin" in there)
     assert bool(found & OF_CONTACT_TIME) == ("contact_time" in there)
     wanted = OF_SHEAR & found

@@ -6,13 +6,10 @@ has no dimension there: its `units` are 1, and `reduced_units` says what it is a
 
 from collections.abc import Collection, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from roughgas.base.errors import InputError
 from roughgas.base.version import __version__
-
-if TYPE_CHECKING:
-    import xarray
 
 SCHEMA_VERSION = 2
 COMMON_ATTRIBUTES = {
@@ -31,7 +28,7 @@ QUALITIES = ("stderr", "dof", "ci95", "ci95_trusted")
 
 
 def unit_attributes(unit: str) -> dict[str, str]:
-    """The attributes that tell a unit, such as "T", "1" or "s/T"; none for words, which have "".
+    """Return the attributes that tell a unit, such as "T", "1" or "s/T"; none for "", of words.
 
     CPU time in terms of a gas's own units is in seconds.
     """
@@ -42,31 +39,19 @@ def unit_attributes(unit: str) -> dict[str, str]:
     return {"units": "s" if unit.startswith("s/") else "1", "reduced_units": unit}
 
 
+def unit_of(attributes: Mapping[str, str]) -> str:
+    """Return the unit that `unit_attributes` tell; "" for words."""
+    return attributes.get("reduced_units", attributes.get("units", ""))
+
+
 def ancillary(name: str, names: Collection[str]) -> dict[str, str]:
-    """The attribute that names those of `names` which say how sure the variable `name` is."""
+    """Return the attribute that lists those of `names` that say how sure the variable `name` is."""
     found = [f"{name}_{quality}" for quality in QUALITIES if f"{name}_{quality}" in names]
     return {"ancillary_variables": " ".join(found)} if found else {}
 
 
-def completed(dataset: "xarray.Dataset") -> "xarray.Dataset":
-    """`dataset` with units as CF has them and with ancillary variables.
-
-    Coordinates that are numbers get the unit 1 where they have none, and declare no missing values,
-    which CF forbids in them.
-    """
-    dataset = dataset.copy()
-    for name, variable in dataset.variables.items():
-        is_axis = name in dataset.coords
-        unit = variable.attrs.pop("units", "1" if is_axis and variable.dtype.kind in "if" else "")
-        known = {"units": unit} if "reduced_units" in variable.attrs else unit_attributes(unit)
-        variable.attrs |= known | ancillary(name, dataset.data_vars)
-        if is_axis:
-            variable.encoding["_FillValue"] = None
-    return dataset
-
-
 def check_schema(attributes: Mapping[str, Any], path: str | Path) -> None:
-    """Raise InputError where the file at `path`, which has these global attributes, is of a newer
+    """Raise InputError if the file at `path`, which has these global attributes, is of a newer
     schema than this program knows. Files of older ones are read."""
     version = attributes.get("schema_version", SCHEMA_VERSION)
     if version > SCHEMA_VERSION:

@@ -14,14 +14,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from roughgas.base.errors import InputError
-from roughgas.data.cf import COMMON_ATTRIBUTES, check_schema, completed
-from roughgas.data.point import CLOCKS, VARIABLES, variable_attributes, whole_netcdf
+from roughgas.data.cf import COMMON_ATTRIBUTES, check_schema
+from roughgas.data.netcdf import Content, write_netcdf
 from roughgas.data.reduced import GRID, third_axis
+from roughgas.data.variables import CLOCKS, POINT, Array, described
 from roughgas.statistics.intervals import pooled
 
 if TYPE_CHECKING:
     import netCDF4
-    import xarray
 
 SAME = (
     "experiment",
@@ -37,26 +37,6 @@ OF_A_POINT = ("r", "beta", "seed", "r_label", "beta_label", "variant", "swept_va
 PROVENANCE = ("roughgas_version", "numpy_version", "numba_version", "kernel_source_hash")
 SCATTERED = ("R", "R_unsubtracted", "R_drift", "E_trans", "input_spin_share")
 """Means over seeds that carry a standard error, `<name>_stderr`."""
-
-DERIVED = {
-    "R_seed": "R of each seed",
-    "R_stderr": "standard error of R: scatter over seeds and error within them, pooled",
-    "R_dof": "degrees of freedom that R_stderr is known with",
-    "R_ci95": "half width of the 95 % interval of R, by Student's t",
-    "R_ci95_trusted": "share of seeds whose R_ci95 holds the truth as often as it says",
-    "equilibrated": "share of seeds that were found in a steady state",
-    "R_stderr_over_seeds": "standard error of R from the scatter over seeds alone",
-    "R_stderr_within": "standard error of R from within the files, combined over seeds",
-    "R_unsubtracted_stderr": "standard error of R_unsubtracted: scatter over seeds",
-    "E_trans_stderr": "standard error of E_trans: scatter over seeds",
-    "input_spin_share_stderr": "standard error of input_spin_share: scatter over seeds",
-    "R_drift": "mean of R in the second half of the measured window minus that in the first",
-    "R_drift_stderr": "standard error of R_drift: scatter over seeds",
-    "measured_for": "length of the measured window, mean over seeds",
-    "n_seeds": "number of seeds found",
-}
-LIKE = {"measured_for": "measured_from", "E_trans_stderr": "E_trans"}
-"""Variables of points that those of DERIVED have the units of, where they are not those of R."""
 
 
 class Summary(NamedTuple):
@@ -84,9 +64,7 @@ def reduce_points(paths: Iterable[str | Path], output: str | Path) -> None:
     points = [_summary(file) for path in map(Path, paths) for file in _files(path)]
     if not points:
         raise InputError("number of points to reduce", 0, "be at least 1")
-    dataset = _combined(points)
-    with whole_netcdf(output) as draft:
-        dataset.to_netcdf(draft, engine="netcdf4")
+    write_netcdf(output, _combined(points))
 
 
 def _files(path: Path) -> list[Path]:
@@ -103,7 +81,7 @@ def _summary(path: Path) -> Summary:
         check_schema(attributes, path)
         if "seed" not in attributes:
             raise InputError("file to reduce", path, "be the dataset of a point")
-        found = [name for name, about in VARIABLES.items() if not about.dims]
+        found = [name for name, about in POINT.items() if not about.dims]
         scalars = {name: file[name][...].item() for name in found if name in file.variables}
         scalars["measured_for"], scalars["R_drift"] = _window(file, scalars)
     return Summary(scalars, attributes)
@@ -124,10 +102,8 @@ def _window(file: "netCDF4.Dataset", scalars: dict[str, float]) -> tuple[float, 
     return float(np.ptp(at[inside])), float(halves[1].mean() - halves[0].mean())
 
 
-def _combined(points: Sequence[Summary]) -> "xarray.Dataset":
-    """The reduced dataset of points of one experiment."""
-    import xarray
-
+def _combined(points: Sequence[Summary]) -> Content:
+    """Return the reduced dataset of points of one experiment."""
     attributes = _common_attributes(points)
     columns = zip(*(point.place for point in points), strict=True)
     axes = [sorted(set(column), key=_ascending) for column in columns]
@@ -136,18 +112,13 @@ def _combined(points: Sequence[Summary]) -> "xarray.Dataset":
     stacks = _stacks(points, axes)
     cooling = "plateau_end" in stacks
     attributes.setdefault("theory", "K" if cooling else "lun")
-    variables = {
-        name: ((*grid, "seed")[: values.ndim], values, _about(name, cooling))
-        for name, values in _over_seeds(stacks).items()
-    }
     coordinates = dict(zip((*grid, "seed"), map(_coordinate, axes), strict=True))
-    dataset = xarray.Dataset(variables, coordinates, attributes)
-    dataset.r.attrs.update(long_name="normal restitution")
-    dataset.beta.attrs.update(long_name="tangential restitution")
-    dataset.seed.attrs.update(long_name="seed of the random generator")
+    third = {}
     if swept is not None:
-        dataset[swept].attrs.update(long_name=f"parameter of an effect: {attributes['swept']}")
-    return completed(dataset)
+        about = {"long_name": f"parameter of an effect: {attributes['swept']}"}
+        third[swept] = Array((swept,), coordinates.pop(swept), about)
+    variables = described("reduced", _over_seeds(stacks) | coordinates, cooling, grid)
+    return Content(third | variables, attributes)
 
 
 def _ascending(value: Any) -> tuple[bool, Any]:
@@ -182,9 +153,9 @@ def _over_seeds(stacks: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     """What a reduced dataset holds, by name."""
     reduced = {"n_seeds": np.isfinite(stacks["E_trans"]).sum(-1)}
     for name, values in stacks.items():
-        how = VARIABLES[name].over_seeds if name in VARIABLES else "mean"
+        how = POINT[name].over_seeds if name in POINT else "mean"
         if how == "sum":
-            reduced[name] = np.nansum(values, -1).astype(VARIABLES[name].dtype)
+            reduced[name] = np.nansum(values, -1)
         elif how == "mean":
             reduced[name] = _mean(values)
         if name in SCATTERED:
@@ -228,14 +199,6 @@ def _standard_error(values: np.ndarray) -> np.ndarray:
     count = np.isfinite(values).sum(-1)
     square = np.nansum((values - _mean(values)[..., None]) ** 2, -1)
     return np.where(count > 1, np.sqrt(square / np.maximum(count * (count - 1), 1)), math.nan)
-
-
-def _about(name: str, cooling: bool) -> dict[str, str]:
-    """long_name and units of a reduced variable."""
-    if name not in DERIVED:
-        return variable_attributes(name, cooling)
-    like = variable_attributes(LIKE.get(name, "R"), cooling)
-    return like | {"long_name": DERIVED[name]}
 
 
 def _common_attributes(points: Sequence[Summary]) -> dict[str, Any]:

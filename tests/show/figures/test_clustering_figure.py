@@ -7,7 +7,8 @@ from matplotlib.image import imread
 from roughgas import theory
 from roughgas.base.errors import InputError
 from roughgas.cli import main
-from roughgas.data.film import VARIABLES, read_film, write_film
+from roughgas.data.film import read_film, write_film
+from roughgas.data.variables import FILM
 from roughgas.show.figures import clustering
 
 FRAMES, CELLS, SIDE, PER_CELL = 5, 30, 120.0, 3
@@ -33,7 +34,7 @@ def path(tmp_path_factory):
     count[-1, BLOB[1], BLOB[0]] = 40
     disks = np.arange(3, 3 + FRAMES)
     middles = (np.arange(CELLS) + 0.5) * SIDE / CELLS
-    variables = dict.fromkeys(VARIABLES, 0.0) | {
+    variables = dict.fromkeys(FILM, 0.0) | {
         "x": middles,
         "y": middles,
         "time": passed**2,

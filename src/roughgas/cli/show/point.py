@@ -9,8 +9,8 @@ import numpy as np
 
 from roughgas.cli.layout import columns, decimals_of, unit_of, with_error
 from roughgas.cli.theory.quantities import equation
-from roughgas.data.point import VARIABLES
 from roughgas.data.point import read_point as read
+from roughgas.data.variables import POINT
 
 if TYPE_CHECKING:
     import xarray
@@ -24,8 +24,8 @@ SHAPES = {2: "disks", 3: "spheres"}
 def record(point: "xarray.Dataset") -> dict[str, Any]:
     """Attributes, single numbers, and theory, for a script."""
     scalars = {name: one.item() for name, one in point.data_vars.items() if not one.dims}
-    for name in scalars.keys() & VARIABLES.keys():
-        if VARIABLES[name].dtype == "i1":
+    for name in scalars.keys() & POINT.keys():
+        if POINT[name].flags:
             scalars[name] = bool(scalars[name])
     return {"attributes": point.attrs, "variables": scalars | _theory(point)}
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from roughgas.data.point import CLOCKS
+from roughgas.data.variables import CLOCKS
 from roughgas.show.page.numbers import exact, rounded
 
 LONGEST = 200

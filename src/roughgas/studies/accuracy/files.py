@@ -9,16 +9,13 @@ import xarray as xr
 
 from roughgas.base.errors import InputError
 from roughgas.base.files import write_text
-from roughgas.data.cf import COMMON_ATTRIBUTES, check_schema, completed
-from roughgas.data.point import whole_netcdf
+from roughgas.data.netcdf import Content, content_of, read_netcdf, write_netcdf
 from roughgas.studies.accuracy import STUDIES, study, tables
 
 
 def write_task(path: str | Path, data: xr.Dataset, about: Mapping[str, Any]) -> None:
     """Write what a task has found; `about` names study, task and settings (JSON)."""
-    with whole_netcdf(path) as draft:
-        whole = completed(data).assign_attrs(COMMON_ATTRIBUTES | dict(about))
-        whole.to_netcdf(draft, engine="netcdf4")
+    write_netcdf(path, content_of(data.assign_attrs(about)))
 
 
 def combine(paths: Iterable[str | Path], output: str | Path) -> None:
@@ -28,22 +25,13 @@ def combine(paths: Iterable[str | Path], output: str | Path) -> None:
     """
     found: dict[str, dict[str, xr.Dataset]] = {}
     for path in paths:
-        data = xr.load_dataset(path, engine="netcdf4")
-        check_schema(data.attrs, path)
+        data = read_netcdf(path)
         found.setdefault(data.attrs["study"], {})[data.attrs["task"]] = data
-    groups = {f"/{name}": _combined(name, parts) for name, parts in found.items()}
-    groups["/"] = xr.Dataset(attrs=COMMON_ATTRIBUTES | {"title": "Studies of accuracy"})
-    with whole_netcdf(output) as draft:
-        xr.DataTree.from_dict(groups).to_netcdf(draft, engine="netcdf4")
+    groups = {name: content_of(_combined(name, parts)) for name, parts in found.items()}
+    write_netcdf(output, Content({}, {"title": "Studies of accuracy"}), groups)
 
 
-def read_study(path: str | Path, name: str) -> xr.Dataset:
-    """The group of a study in the file at `path`, in memory, the file closed.
-
-    Raises InputError where it is of a newer schema.
-    """
-    check_schema(xr.load_dataset(path, engine="netcdf4").attrs, path)
-    return xr.load_dataset(path, group=name, engine="netcdf4")
+read_study = read_netcdf  # with the name of the study as its group
 
 
 def write_tables(path: str | Path, output: str | Path) -> None:
@@ -65,4 +53,4 @@ def _combined(name: str, parts: Mapping[str, xr.Dataset]) -> xr.Dataset:
         raise InputError(f"tasks of {name}", f"without {sorted(missing)[0]}", "be complete")
     scales = {data.attrs["scale"] for data in parts.values()}
     data = study(name).combine(dict(parts), settings)
-    return completed(data).assign_attrs(title=name, scale=", ".join(sorted(scales)))
+    return data.assign_attrs(title=name, scale=", ".join(sorted(scales)))

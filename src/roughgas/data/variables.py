@@ -1,0 +1,240 @@
+"""The registry of all variables: what each is, over which dimensions, and in which units.
+
+Writers, the tables of docs/data.md, and `roughgas show` read it. Points, films, and reduced
+datasets are registered here, and a study of accuracy by the module that makes it.
+
+Units: particle radius a = particle mass m = time unit T = 1. A freely cooling gas has no lasting
+time scale: there, times are counted in collisions per particle, energies in the initial E_trans.
+"""
+
+from collections.abc import Collection, Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+
+LENGTH = "a"
+TIME = "T"
+ENERGY = "m a^2 T^-2"
+START = "initial E_trans"
+COOLING_UNITS = {TIME: "collisions per particle", ENERGY: START}
+CLOCKS = ("time", "collisions_per_particle")
+"""What series run along: coordinates, though their dimension has another name."""
+GRID = "grid"
+"""Stands for the dimensions of a reduced dataset: r, beta, and what is swept besides."""
+
+SPIN, COOLING, DRIVEN = "where particles spin", "cooling gas", "driven gas"
+SHEARED, TARGET = "sheared gas", "with a `target_stderr`"
+CONTACT = "where the contact-time model acts"
+
+
+class Variable(NamedTuple):
+    """What a variable is."""
+
+    long_name: str
+    units: str = "1"  # "" for words
+    dims: tuple[str, ...] = ()
+    dtype: str = "f8"  # or "str"
+    when: tuple[str, ...] = ()  # which datasets have it; all by default
+    over_seeds: str = "mean"  # how a reduced dataset combines a scalar: mean, sum, or "" for not
+    flags: str = ""  # the meanings of 0, 1, ..., a word each
+    of_settings: bool = False  # in units of the settings even in a cooling gas
+
+    def units_of(self, cooling: bool) -> str:
+        """Return its units in a cooling gas, or in a driven one."""
+        counted = cooling and not self.of_settings
+        return COOLING_UNITS.get(self.units, self.units) if counted else self.units
+
+
+class Array(NamedTuple):
+    """A variable with its values; the fields are those of an xarray.Variable."""
+
+    dims: tuple[str, ...]
+    values: np.ndarray
+    attrs: dict[str, Any]
+
+
+def _series(long_name: str, units: str = "1", *when: str) -> Variable:
+    return Variable(long_name, units, ("sample",), when=when)
+
+
+def _of_spin(long_name: str, units: str = "1", *more: str, over_seeds: str = "mean") -> Variable:
+    return Variable(long_name, units, when=(*more, SPIN), over_seeds=over_seeds)
+
+
+def _of_target(long_name: str, units: str = "1") -> Variable:
+    return Variable(long_name, units, when=(TARGET,))
+
+
+POINT = {
+    "R": _of_spin("share of rotation in the energy, mean of E_rot / (E_rot + E_trans)"),
+    "R_stderr": _of_spin("standard error of R within this file", over_seeds=""),
+    "R_dof": _of_spin("degrees of freedom that R_stderr is known with", over_seeds=""),
+    "R_ci95": _of_spin("half width of the 95 % interval of R, by Student's t", over_seeds=""),
+    "R_ci95_trusted": Variable(
+        "whether R_ci95 holds the truth as often as it says",
+        dtype="i1",
+        when=(SPIN,),
+        flags="untrusted trusted",
+    ),
+    "R_ratio_of_means": _of_spin("share of rotation in the energy, from the mean energies"),
+    "E_trans": Variable("translational energy per degree of freedom", ENERGY),
+    "E_trans_stderr": Variable("standard error of E_trans within this file", ENERGY, over_seeds=""),
+    "E_rot": _of_spin("rotational energy per degree of freedom", ENERGY),
+    "collisions": Variable("collisions simulated", dtype="i8", over_seeds="sum"),
+    "kernel_seconds": Variable("CPU time spent in the kernel", "s", over_seeds="sum"),
+    "equilibrated": Variable(
+        "whether a steady state was found", dtype="i1", flags="drifting equilibrated"
+    ),
+    "measured_from": Variable("begin of the measured window", TIME),
+    "autocorrelation_time": _of_spin("integrated autocorrelation time of R", TIME),
+    "target_stderr": _of_target("standard error of R that was asked for"),
+    "planned_seeds": _of_target("seeds that its pilot run said the point would need"),
+    "planned_stderr": _of_target("standard error of R expected from these"),
+    "planned_collisions": _of_target("collisions expected in all of them"),
+    "planned_seconds": _of_target("CPU time of the kernel expected in all of them", "s"),
+    "contact_time": Variable(
+        "contact time t_c of the contact-time model", TIME, when=(CONTACT,), of_settings=True
+    ),
+    "contact_time_fraction": Variable(
+        "share of contacts changed by the contact-time model", when=(CONTACT,)
+    ),
+    "R_unsubtracted": _of_spin("R with the mean flow and the mean spin left in", "1", SHEARED),
+    "E_trans_unsubtracted": Variable("E_trans with the mean flow left in", ENERGY, when=(SHEARED,)),
+    "E_rot_unsubtracted": _of_spin("E_rot with the mean spin left in", ENERGY, SHEARED),
+    "plateau_end": Variable("end of the plateau of R", TIME, when=(COOLING,)),
+    "R_replica": Variable(
+        "plateau mean of R of each replica", dims=("replica",), when=(COOLING, SPIN)
+    ),
+    "energy_imbalance": Variable("energy that the books miss, over all that was exchanged"),
+    "source": Variable("what exchanged energy with the gas", "", ("source",), "str"),
+    "motion": Variable("motion that holds the energy", "", ("motion",), "str"),
+    "energy_input": Variable(
+        "energy per particle that a source has put in since the start (negative: taken out)",
+        ENERGY,
+        ("source", "motion"),
+    ),
+    "input_spin_share": _of_spin(
+        "share of rotation in the energy that all drives have put in", "1", DRIVEN
+    ),
+    "energy_gain": Variable(
+        "change of the energy per particle, kinetic and potential, since the start",
+        ENERGY,
+        ("motion",),
+    ),
+    "time": _series("time since the start", TIME, DRIVEN),
+    "collisions_per_particle": _series("collisions per particle since the start", TIME, COOLING),
+    "R_series": _series("share of rotation in the energy", "1", SPIN),
+    "R_series_stderr": _series("standard error of R_series over replicas", "1", COOLING, SPIN),
+    "E_trans_series": _series("translational energy per degree of freedom", ENERGY),
+    "E_rot_series": _series("rotational energy per degree of freedom", ENERGY, SPIN),
+}
+
+
+def _derived(long_name: str, units: str = "1", more: str = "", dtype: str = "f8") -> Variable:
+    return Variable(long_name, units, (GRID, more) if more else (GRID,), dtype, over_seeds="")
+
+
+REDUCED = {
+    name: about._replace(
+        dims=(GRID,), dtype=about.dtype if about.over_seeds == "sum" else "f8", flags=""
+    )
+    for name, about in POINT.items()
+    if about.over_seeds and not about.dims
+} | {
+    "R_seed": _derived("R of each seed", more="seed"),
+    "R_stderr": _derived("standard error of R: scatter over seeds and error within them, pooled"),
+    "R_dof": _derived("degrees of freedom that R_stderr is known with"),
+    "R_ci95": _derived("half width of the 95 % interval of R, by Student's t"),
+    "R_ci95_trusted": _derived("share of seeds whose R_ci95 holds the truth as often as it says"),
+    "equilibrated": _derived("share of seeds that were found in a steady state"),
+    "R_stderr_over_seeds": _derived("standard error of R from the scatter over seeds alone"),
+    "R_stderr_within": _derived("standard error of R from within the files, combined over seeds"),
+    "R_unsubtracted_stderr": _derived("standard error of R_unsubtracted: scatter over seeds"),
+    "E_trans_stderr": _derived("standard error of E_trans: scatter over seeds", ENERGY),
+    "input_spin_share_stderr": _derived("standard error of input_spin_share: scatter over seeds"),
+    "R_drift": _derived(
+        "mean of R in the second half of the measured window minus that in the first"
+    ),
+    "R_drift_stderr": _derived("standard error of R_drift: scatter over seeds"),
+    "measured_for": _derived("length of the measured window, mean over seeds", TIME),
+    "n_seeds": _derived("number of seeds found", dtype="i8"),
+    "r": Variable("normal restitution", dims=("r",)),
+    "beta": Variable("tangential restitution", dims=("beta",)),
+    "seed": Variable("seed of the random generator", dims=("seed",), dtype="i8"),
+}
+
+FILM = {
+    "x": Variable("middle of a cell of the map", LENGTH, ("x",)),
+    "y": Variable("middle of a cell of the map", LENGTH, ("y",)),
+    "time": Variable("time since cooling began", TIME, ("frame",)),
+    "collisions_per_particle": Variable(
+        "collisions per particle since cooling began", dims=("frame",)
+    ),
+    "E_trans": Variable("translational energy per degree of freedom", START, ("frame",)),
+    "E_rot": Variable("rotational energy per degree of freedom", START, ("frame",)),
+    "R": Variable("share of rotation in the energy, E_rot / (E_rot + E_trans)", dims=("frame",)),
+    "count": Variable("number of particle centres in a cell", "1", ("frame", "y", "x"), "u2"),
+    "disks": Variable("number of disks that reach into the window", "1", ("frame",), "i4"),
+    "disk_x": Variable("position of a disk", LENGTH, ("disk",), "f4"),
+    "disk_y": Variable("position of a disk", LENGTH, ("disk",), "f4"),
+    "disk_spin": Variable(
+        "spin of a disk", "root mean square spin of all disks in its frame", ("disk",), "f4"
+    ),
+    "E_trans_start": Variable("E_trans when cooling began", ENERGY),
+    "contact_time": Variable("contact time t_c of the contact-time model, NaN without it", TIME),
+    "contact_time_fraction": Variable("share of contacts changed by the contact-time model"),
+    "collisions": Variable("collisions simulated", dtype="i8"),
+    "kernel_seconds": Variable("time spent in the kernel", "s"),
+}
+
+REGISTRY: dict[str, Mapping[str, Variable]] = {"point": POINT, "reduced": REDUCED, "film": FILM}
+"""All variables by name, for each kind of dataset; each study of accuracy is a kind, too."""
+
+
+def register(kind: str, variables: Mapping[str, Variable]) -> Mapping[str, Variable]:
+    """Make the variables of a kind of dataset known, and return them."""
+    REGISTRY[kind] = variables
+    return variables
+
+
+def described(
+    kind: str, values: Mapping[str, Any], cooling: bool = False, grid: tuple[str, ...] = (GRID,)
+) -> dict[str, Array]:
+    """Return `values` with dimensions and attributes, in the order in which they are registered.
+
+    Attributes are `long_name`, `units`, and those of flags. `grid` are the dimensions that GRID
+    stands for. Raises ValueError for unregistered variables, and for shapes that disagree.
+    """
+    known = REGISTRY[kind]
+    refuse(f"unknown variables of a {kind}", set(values) - set(known))
+    found = {
+        name: _array(about, values[name], cooling, grid)
+        for name, about in known.items()
+        if name in values
+    }
+    lengths: dict[str, int] = {}
+    for name, (dims, array, _) in found.items():
+        if array.ndim != len(dims):
+            raise ValueError(f"{name} has shape {array.shape}, but dimensions {dims}")
+        for dim, length in zip(dims, array.shape, strict=True):
+            if lengths.setdefault(dim, length) != length:
+                raise ValueError(f"{name} has {length} values along {dim}, others {lengths[dim]}")
+    return found
+
+
+def refuse(what: str, names: Collection[str]) -> None:
+    """Raise ValueError if there are any `names`."""
+    if names:
+        raise ValueError(f"{what}: {', '.join(sorted(names))}")
+
+
+def _array(about: Variable, values: Any, cooling: bool, grid: tuple[str, ...]) -> Array:
+    attributes: dict[str, Any] = {"long_name": about.long_name}
+    if about.units:
+        attributes["units"] = about.units_of(cooling)
+    if about.flags:
+        meanings = np.arange(len(about.flags.split()), dtype=about.dtype)
+        attributes |= {"flag_values": meanings, "flag_meanings": about.flags}
+    dims = tuple(one for dim in about.dims for one in (grid if dim == GRID else (dim,)))
+    dtype = object if about.dtype == "str" else about.dtype
+    return Array(dims, np.asarray(values, dtype), attributes)
