@@ -29,6 +29,7 @@ rule table_of_extensions:
 rule open_questions:
     input:
         sources("claims"),
+        "src/roughgas/claims/open_questions.yaml",
         data=data_of_extensions,
     output:
         json="results/{scale}/open_questions.json",

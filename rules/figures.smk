@@ -54,6 +54,7 @@ rule table:
 rule claims:
     input:
         sources("claims"),
+        "src/roughgas/claims/paper.yaml",
         data=data_of_paper,
     output:
         json="results/{scale}/claims.json",

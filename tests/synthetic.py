@@ -53,9 +53,9 @@ def reduced(
     spread = ratio.std(-1, ddof=1) / np.sqrt(seeds) if seeds > 1 else np.full(exact.shape, error)
     values = {
         "R": ratio.mean(-1),
-        "R_stderr": spread,
+        "R_stderr": error,
         "R_stderr_over_seeds": spread,
-        "R_dof": seeds - 1.0,
+        "R_dof": 30.0 * seeds,
         "R_stderr_within": error,
         "n_seeds": seeds,
         "equilibrated": 1.0,

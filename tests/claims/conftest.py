@@ -21,7 +21,7 @@ def _judging(tmp_path, subject):
         for data in datasets:
             paths.append(tmp_path / f"{data.attrs['experiment']}.nc")
             data.to_netcdf(paths[-1])
-        rows = judge(paths, tmp_path / "claims.json", tmp_path / "claims.md", subject)
-        return {row.statement.name: row.finding for row in rows}
+        found = judge(paths, tmp_path / "claims.json", tmp_path / "claims.md", subject)
+        return dict(zip((one.name for one in subject.statements), found, strict=True))
 
     return judged

@@ -5,7 +5,7 @@ import pytest
 from synthetic import reduced
 
 from roughgas import theory
-from roughgas.claims.finding import FAILS, HOLDS, NOT_TESTED, QUALIFIED
+from roughgas.claims.verdicts import FAILS, HOLDS, NOT_TESTED, QUALIFIED
 
 FEW_BETA = (-0.5, 0.0, 0.5)
 VERDICTS = [(0.0, HOLDS), (0.03, QUALIFIED), (0.1, FAILS)]

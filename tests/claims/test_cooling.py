@@ -3,7 +3,7 @@ import pytest
 from synthetic import reduced
 
 from roughgas import theory
-from roughgas.claims.finding import FAILS, HOLDS, NOT_TESTED, QUALIFIED
+from roughgas.claims.verdicts import FAILS, HOLDS, NOT_TESTED, QUALIFIED
 
 ROUGH = tuple(round(0.1 * step, 1) for step in range(-5, 11))
 

@@ -5,7 +5,7 @@ from synthetic import BETA, reduced
 
 from roughgas.base.errors import InputError
 from roughgas.claims import OPEN_QUESTIONS, PAPER, judge
-from roughgas.claims.finding import NOT_TESTED
+from roughgas.claims.verdicts import NOT_TESTED
 from roughgas.cli import main
 
 
@@ -18,14 +18,15 @@ def paths(tmp_path):
 
 
 def test_one_row_for_each_statement_in_both_reports(paths, tmp_path):
-    rows = judge(paths, tmp_path / "claims.json", tmp_path / "claims.md")
+    findings = judge(paths, tmp_path / "claims.json", tmp_path / "claims.md")
     content = json.loads((tmp_path / "claims.json").read_text())
     assert [claim["id"] for claim in content["claims"]] == [one.name for one in PAPER.statements]
     assert content["scale"] == "small" and content["data"]["cooling"]["theory"] == "K"
     markdown = (tmp_path / "claims.md").read_text()
-    for row, claim in zip(rows, content["claims"], strict=True):
-        assert claim["verdict"] == row.finding.verdict and claim["reason"] == row.finding.reason
-        assert row.statement.quote in markdown and row.finding.reason in markdown
+    rows = zip(PAPER.statements, findings, content["claims"], strict=True)
+    for statement, finding, claim in rows:
+        assert claim["verdict"] == finding.verdict and claim["reason"] == finding.reason
+        assert statement.quote in markdown and finding.reason in markdown
         assert f"**{claim['verdict']}** |" in markdown
         if claim["verdict"] != NOT_TESTED:
             deciding = claim["numbers"][0]
@@ -74,9 +75,9 @@ def test_the_papers_own_experiments_leave_nothing_untested(tmp_path):
     for data in (reduced(), reduced("cooling"), sheared, *walls):
         paths.append(tmp_path / f"{data.attrs['experiment']}.nc")
         data.to_netcdf(paths[-1])
-    rows = judge(paths, tmp_path / "claims.json", tmp_path / "claims.md")
-    assert len(rows) == 17
-    assert not [row for row in rows if row.finding.verdict == NOT_TESTED]
+    findings = judge(paths, tmp_path / "claims.json", tmp_path / "claims.md")
+    assert len(findings) == 17
+    assert NOT_TESTED not in {finding.verdict for finding in findings}
 
 
 def test_each_table_says_what_it_is_about(tmp_path):
@@ -90,4 +91,4 @@ def test_each_table_says_what_it_is_about(tmp_path):
         assert tables[-1].startswith(f"# {title}\n\nS. McNamara")
     assert "17 statements: holds 0," in tables[0] and "`open_questions.md`" in tables[0]
     assert "16 statements: holds 1," in tables[1] and "`open_questions.md`" not in tables[1]
-    assert all("{" not in table and "Statistics and size" in table for table in tables)
+    assert all("{" not in table and "Significance and size" in table for table in tables)

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from synthetic import reduced
 
-from roughgas.claims.finding import FAILS, HOLDS, NOT_TESTED, QUALIFIED
+from roughgas.claims.verdicts import FAILS, HOLDS, NOT_TESTED, QUALIFIED
 
 
 def sheared(direct=0.1, error=0.004, **others):
@@ -43,7 +43,7 @@ def test_noisier(verdicts, error, expected):
     found = verdicts(sheared(error=error), reduced(error=0.001))["shear_noisier"]
     assert found.verdict == expected
     log = found.numbers[0][1]
-    assert log.value == pytest.approx(np.log(error / 0.001), abs=3 * log.error)
+    assert log.value == pytest.approx(np.log(error / 0.001), abs=3 * log.stderr)
 
 
 def test_noise_is_compared_at_the_papers_averaging_times(verdicts):

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from synthetic import reduced
 
-from roughgas.claims.finding import FAILS, HOLDS, NOT_TESTED, QUALIFIED
+from roughgas.claims.verdicts import FAILS, HOLDS, NOT_TESTED, QUALIFIED
 
 
 def bump(size):

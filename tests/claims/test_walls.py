@@ -1,7 +1,7 @@
 import pytest
 from synthetic import BETA, reduced
 
-from roughgas.claims.finding import FAILS, HOLDS, NOT_TESTED, QUALIFIED
+from roughgas.claims.verdicts import FAILS, HOLDS, NOT_TESTED, QUALIFIED
 
 
 def walls(rough=0.2, particle=0.0, smooth=0.0, beta=(-1.0, *BETA)):
@@ -63,7 +63,7 @@ def test_above_half_at_smooth_particles(verdicts, shift, expected):
     rough = rough.sel(beta=[-1.0])
     exact = 2 * shift - 0.5
     rough["R"] = 0 * rough.R + 0.5 + exact
-    rough["R_stderr_over_seeds"] = rough["R_stderr_within"] = 0 * rough.R + 0.0001
+    rough["R_stderr"] = 0 * rough.R + 0.0001
     found = verdicts(rough)["rough_walls_above_half"]
     assert found.verdict == expected
     assert found.numbers[0][1].value == pytest.approx(exact)

@@ -76,4 +76,6 @@ def test_estimates_without_or_with_zero_error():
 
 
 def test_difference_adds_errors_in_quadrature():
-    assert Estimate(0.5, 3.0, 9).minus(Estimate(0.2, 4.0, 5)) == (pytest.approx(0.3), 5.0, 5)
+    """Its degrees of freedom are those of Welch and Satterthwaite: 5^4 / (3^4/9 + 4^4/5)."""
+    found = Estimate(0.5, 3.0, 9).minus(Estimate(0.2, 4.0, 5))
+    assert found == (pytest.approx(0.3), 5.0, pytest.approx(5**4 / (3**4 / 9 + 4**4 / 5)))

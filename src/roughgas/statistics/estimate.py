@@ -39,8 +39,10 @@ class Estimate(NamedTuple):
 
     def minus(self, other: "Estimate") -> "Estimate":
         """Return the difference of two independent estimates."""
-        stderr = math.hypot(self.stderr, other.stderr)
-        return Estimate(self.value - other.value, stderr, min(self.dof, other.dof))
+        from roughgas.statistics.intervals import sum_error
+
+        stderr, dof = sum_error([self.stderr, other.stderr], [self.dof, other.dof])
+        return Estimate(self.value - other.value, float(stderr), float(dof))
 
     def scaled(self, factor: float) -> "Estimate":
         """Return the estimate in other units, such as per cent."""

@@ -79,6 +79,18 @@ def pooled(means: np.ndarray, within: np.ndarray, dof: np.ndarray) -> Error:
     return Error(math.sqrt(variance / runs), total)
 
 
+def sum_error(stderr: np.ndarray, dof: np.ndarray) -> Error:
+    """Return the error of sums of independent numbers along the first axis.
+
+    The degrees of freedom are those of Welch, Biometrika 34, 28 (1947), and Satterthwaite.
+    """
+    square = np.square(np.asarray(stderr, float))
+    total = square.sum(0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        effective = total**2 / (square**2 / np.asarray(dof, float)).sum(0)
+    return Error(np.sqrt(total), np.where(total > 0, effective, math.inf))
+
+
 def excess_sigmas(first: float, first_dof: float, second: float, second_dof: float) -> float:
     """How many sigma one estimate of a variance exceeds another.
 

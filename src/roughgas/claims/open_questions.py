@@ -1,0 +1,187 @@
+"""Judges of the statements in open_questions.yaml: drives that put in rotation, wave forms, and
+Coulomb friction."""
+
+import numpy as np
+import xarray as xr
+
+from roughgas import theory
+from roughgas.claims.evidence import (
+    NotTestedError,
+    deviation,
+    deviation_at_shares,
+    difference,
+    of_ratio,
+    over_seeds,
+    spin_shares,
+)
+from roughgas.claims.sample import Sample
+from roughgas.claims.verdicts import (
+    AGREE,
+    FAILS,
+    HOLDS,
+    QUALIFIED,
+    Finding,
+    agreement,
+    agreement_in_proportion,
+    points,
+    text,
+    worse,
+)
+from roughgas.statistics.estimate import Estimate
+
+SMOOTH = -1.0
+"""Roughness of a boundary that puts no rotation in: the bed that the others are compared with."""
+NO_ROTATION = 0.003
+"""Share of rotation up to which a drive puts in translation alone. It changes R by less than AGREE
+even at beta = -0.95, r = 0.9, where the response is strong: R - Eq. (lun) is 6 times the share."""
+REFERENCE = "sawtooth"
+SPIN_ALONE = 1 - 1e-6
+"""R of theory from which spin outlives translation: it is 1 but for rounding."""
+
+
+def without_rotation(heated: xr.Dataset) -> Sample:
+    """Return R - theory where a stochastic drive puts in translation alone."""
+    if 0.0 not in heated.spin_share:
+        raise NotTestedError("the sweep does not hold a drive of translation alone")
+    return deviation(heated.sel(spin_share=0.0, drop=True))
+
+
+def follows_its_share(driven: xr.Dataset) -> Finding:
+    """R - the rate equations, at the share that the energy books say, is as good as zero."""
+    found = agreement(deviation_at_shares(driven), "the rate equations at the measured share")
+    shares = spin_shares(driven)
+    low, high, taken = float(shares.min()), float(shares.max()), int((shares < 0).sum())
+    found = found.noting(f"The share is from {low:.3f} to {high:.3f}.")
+    return found.noting(f"At {points(taken)} rotation is taken out.") if taken else found
+
+
+def only_rotation_matters(bed: xr.Dataset) -> Finding:
+    """R with rough boundaries differs from R with smooth ones where they put in rotation; where
+    they do not, the difference is as good as zero."""
+    if SMOOTH not in bed.roughness:
+        raise NotTestedError(f"the sweep does not reach roughness = {SMOOTH:g}")
+    shares = spin_shares(bed)
+    rough = bed.where((bed.roughness > SMOOTH) & np.isfinite(shares))
+    spinning = np.abs(shares) >= NO_ROTATION
+    smooth = bed.sel(roughness=SMOOTH, drop=True)
+    if not np.isfinite(rough.R.where(spinning)).any():
+        raise NotTestedError(f"no boundary puts in {NO_ROTATION:g} of rotation")
+    shift = difference(rough.where(spinning), smooth)
+    largest, place = shift.largest()
+    off = int(shift.off(AGREE).sum())
+    reason = (
+        f"Where the share of rotation is {NO_ROTATION:g} or more in size, R is shifted by more "
+        f"than {AGREE:g} at {off} of {points(shift.size)}, by up to {text(largest)} at {place}. "
+    )
+    elsewhere = _elsewhere(rough.where(~spinning), smooth)
+    verdict = worse(elsewhere.verdict, HOLDS if off else FAILS)
+    numbers = (("largest shift where rotation is put in", largest), *elsewhere.numbers)
+    return Finding(verdict, reason + elsewhere.reason, (*numbers, *_roughest(bed)))
+
+
+def _elsewhere(still: xr.Dataset, smooth: xr.Dataset) -> Finding:
+    """Judge rough boundaries that put in translation alone."""
+    if not np.isfinite(still.R).any():
+        reason = "All rough boundaries put in that much; smooth ones put in none."
+        return Finding(QUALIFIED, reason)
+    rest = difference(still, smooth)
+    largest, place = rest.largest()
+    reason = f"Where the share is smaller, by up to {text(largest)} at {place}."
+    verdict = agreement(rest, "R with smooth boundaries").verdict
+    return Finding(verdict, reason, (("largest shift where none is put in", largest),))
+
+
+def _roughest(bed: xr.Dataset) -> list[tuple[str, Estimate]]:
+    """Return R - Eq. (lun), and the share of rotation, at the largest roughness."""
+    end = bed.sel(roughness=[bed.roughness.values.max()])
+    shares = over_seeds(end, spin_shares(end), "input_spin_share")
+    return [
+        (f"{size} {name} at roughness = {end.roughness.item():g}", number)
+        for name, found in (("R - Eq. (lun)", deviation(end)), ("share of rotation", shares))
+        for size, number in (("largest", found.largest()[0]), ("mean", found.mean()))
+    ]
+
+
+def wave_form_changes_nothing(waves: xr.Dataset) -> Finding:
+    """R over a floor that moves in any other wave - R over the sawtooth is as good as zero.
+
+    Waves are compared one by one, since the errors of the sawtooth are common to them.
+    """
+    others = [str(wave) for wave in waves.wave.values if wave != REFERENCE]
+    if not others or REFERENCE not in waves.wave:
+        raise NotTestedError(f"the sweep does not hold the wave {REFERENCE} and another")
+    sawtooth = waves.sel(wave=REFERENCE)
+    found = [
+        (wave, agreement(difference(waves.sel(wave=wave), sawtooth), "R over the sawtooth"))
+        for wave in others
+    ]
+    found.sort(key=lambda pair: -abs(pair[1].numbers[0][1].value))
+    numbers = [(f"{wave}: {label}", x) for wave, one in found for label, x in one.numbers]
+    reason = " ".join(f"{wave}: {one.reason}" for wave, one in found)
+    return Finding(worse(*(one.verdict for _, one in found)), reason, tuple(numbers))
+
+
+def follows_rates_when_strong(cooling: xr.Dataset) -> Finding:
+    """R of a cooling gas - the rate equations is as good as zero, where friction is too strong for
+    spin to outlive translation."""
+    strong = cooling.mu > float(theory.critical_friction(cooling.r.values.min()))
+    if not strong.any():
+        raise NotTestedError("no mu of the sweep is beyond the critical one")
+    found = follows_rates(cooling.sel(mu=strong))
+    least = float(cooling.mu[strong][0])
+    return found._replace(reason=f"For mu >= {least:g}: {found.reason}")
+
+
+def follows_rates(gas: xr.Dataset) -> Finding:
+    """R - the rate equations with friction is as good as zero."""
+    held = _with_friction(gas)
+    found = agreement_in_proportion(held, "the rate equations")
+    measured, expected = _rough_from(held.R), _rough_from(held.theory)
+    at = "; ".join(
+        f"beta = {beta:g}: {measured[beta]} (rate equations {expected[beta]})" for beta in measured
+    )
+    largest = held.mu.values[-1]
+    return found.noting(
+        f"Smallest mu from which R stays within {AGREE:g} of R at the largest, mu = {largest:g}: "
+        f"{at}."
+    )
+
+
+def _rough_from(ratio: xr.DataArray) -> dict[float, str]:
+    """Return for each beta the smallest mu from which R at every r stays within AGREE of R at the
+    largest mu; "none" where R at the largest is unknown."""
+    far = ~(np.abs(ratio - ratio.isel(mu=-1)) <= AGREE).all("r")
+    smallest = {}
+    for beta in ratio.beta.values:
+        beyond = ratio.mu[np.flatnonzero(np.append([True], far.sel(beta=beta)))[-1] :]
+        smallest[float(beta)] = f"{float(beyond[0]):g}" if beyond.size else "none"
+    return smallest
+
+
+def keeps_spin_when_weak(cooling: xr.Dataset) -> Finding:
+    """Where theory has R = 1 alone, R - 1 is as good as zero.
+
+    Between there and the critical mu theory has two stable states, and the one at R = 1 is reached
+    through the other. How far R is from that other state is reported, and does not decide.
+    """
+    held = _with_friction(cooling)
+    alone = held.theory > SPIN_ALONE
+    if not alone.any():
+        raise NotTestedError("no mu > 0 of the sweep has R = 1 in theory")
+    found = agreement(of_ratio(held, (held.R - 1).where(alone)), "1")
+    reason, numbers = f"Where theory has R = 1 alone, {found.reason}", found.numbers[:2]
+    between = ~alone & (held.mu <= theory.critical_friction(held.r))
+    if (between & np.isfinite(held.R)).any():
+        above = of_ratio(held, held.deviation.where(between))
+        largest, place = above.largest()
+        kept = int((above.value > AGREE).sum())
+        reason += f" Where theory has a second stable state, R is above it at {kept} of "
+        reason += f"{above.size} points, by up to {text(largest)} at {place}."
+        numbers = (*numbers, ("largest R - the second stable state", largest))
+    return Finding(found.verdict, reason, numbers)
+
+
+def _with_friction(gas: xr.Dataset) -> xr.Dataset:
+    """Return the part with mu > 0: without friction spin is decoupled, and R keeps its initial
+    value."""
+    return gas.sel(mu=gas.mu > 0.0)

@@ -1,0 +1,282 @@
+"""Judges of the statements in paper.yaml, by subject: bed (Fig. 1a), walls (1b), shear (2a), and
+cooling (2b)."""
+
+import math
+
+import numpy as np
+import xarray as xr
+
+from roughgas.claims.evidence import (
+    NotTestedError,
+    deviation,
+    deviation_in_proportion,
+    difference,
+    effect_of_restitution,
+    of_ratio,
+    over_seeds,
+)
+from roughgas.claims.sample import Sample
+from roughgas.claims.verdicts import (
+    AGREE,
+    FAILS,
+    FEW,
+    HOLDS,
+    LIMIT,
+    QUALIFIED,
+    Finding,
+    agreement,
+    graded,
+    tendency,
+    text,
+    worse,
+)
+from roughgas.statistics.estimate import SIGNIFICANT, Estimate
+from roughgas.theory.prediction import predicted_ratio
+
+INTERMEDIATE = 0.5
+"""|beta| up to which tangential dissipation, which is proportional to 1 - beta^2, is strong."""
+TIMES_OF_PAPER = (5000.0, 2000.0)
+"""How long the paper averages, in T: sheared and vibrated."""
+LENGTHS = {
+    "paper": "at the paper's averaging times",
+    "time": "at equal times",
+    "collision": "at equal numbers of collisions",
+}
+"""Lengths of runs at which two scatters are compared."""
+CONSIDERABLY = math.log(1.5)
+"""Logarithm of the ratio of two errors from which one is considerably larger."""
+NEAR = 0.08
+"""Fraction of R by which points are counted as near Eq. (K)."""
+
+
+def theory_underestimates(bed: xr.Dataset) -> Finding:
+    """The mean of R - Eq. (lun) at intermediate beta is positive at the lowest r, and larger there
+    than at the highest r."""
+    means = _mean_deviations(bed)
+    (low, strong), (high, weak) = means[0], means[-1]
+    numbers = tuple((f"mean R - Eq. (lun) at r = {r:g}", mean) for r, mean in means)
+    reason = f"At |beta| <= {INTERMEDIATE:g}, R - Eq. (lun) is {text(strong)} at r = {low:g}"
+    growth = strong.minus(weak)
+    if low == high:
+        reason += "; no other r to compare with."
+    else:
+        reason += f" and {text(weak)} at r = {high:g}; the difference is {text(growth)}."
+        numbers += (("growth from the highest r to the lowest", growth),)
+    verdict = tendency(strong)
+    if verdict == HOLDS and not (low < high and growth.real and growth.value > 0):
+        verdict = QUALIFIED
+    return Finding(verdict, reason, numbers)
+
+
+def _mean_deviations(bed: xr.Dataset) -> list[tuple[float, Estimate]]:
+    """Return mean R - Eq. (lun) over intermediate beta, for each r that has data, in ascending
+    r."""
+    middle = bed.sel(beta=np.abs(bed.beta) <= INTERMEDIATE)
+    there = [r for r in bed.r.values if np.isfinite(middle.deviation.sel(r=r)).any()]
+    if not there:
+        raise NotTestedError(f"no point with |beta| <= {INTERMEDIATE:g} in a steady state")
+    return [(float(r), deviation(middle.sel(r=[r])).mean()) for r in there]
+
+
+def beyond_half(*gases: xr.Dataset) -> Sample:
+    """Return R - 1/2 at beta = 1 of two gases."""
+    one, two = (of_ratio(gas, (gas.R - 0.5).where(gas.beta == 1.0)) for gas in gases)
+    return one.joined(two)
+
+
+def shift(bed: xr.Dataset, walls: xr.Dataset) -> Sample:
+    """Return R between walls minus R without."""
+    return difference(walls, bed)
+
+
+def only_rough_walls_matter(
+    bed: xr.Dataset, rough: xr.Dataset, particle: xr.Dataset, smooth: xr.Dataset
+) -> Finding:
+    """R with rough elastic walls differs from R without walls; with the other walls it does not."""
+    moved = shift(bed, rough)
+    largest, place = moved.largest()
+    reason = f"Rough elastic walls shift R by up to {text(largest)} at {place}"
+    numbers = [("largest shift by rough elastic walls", largest)]
+    verdict = HOLDS if largest.real and abs(largest.value) > AGREE else FAILS
+    for name, data in (("particle-like", particle), ("smooth", smooth)):
+        other = shift(bed, data)
+        still, where = other.largest()
+        reason += f", {name} ones by up to {text(still)} at {where}"
+        numbers.append((f"largest shift by {name} walls", still))
+        if verdict != FAILS and agreement(other, "R without walls").verdict != HOLDS:
+            verdict = QUALIFIED if other.rms() < moved.rms() / 3 else FAILS
+    return Finding(verdict, reason + ".", tuple(numbers))
+
+
+def rough_walls_push_to_half(bed: xr.Dataset, rough: xr.Dataset) -> Finding:
+    """Rough elastic walls raise R wherever it is below 1/2 without walls."""
+    moved = shift(bed.where(bed.R < 0.5 - AGREE), rough)
+    mean, down = moved.mean(), int((moved.off(AGREE) & (moved.value < 0)).sum())
+    reason = (
+        f"The mean shift of R by the walls is {text(mean)} where R < 1/2 without them; "
+        f"R falls at {down} of {moved.size} points."
+    )
+    verdict = tendency(mean)
+    verdict = QUALIFIED if verdict == HOLDS and down else verdict
+    return Finding(verdict, reason, (("mean shift", mean),))
+
+
+def above_half_at_smooth_particles(rough: xr.Dataset) -> Finding:
+    """At beta = -1 with rough elastic walls, R - 1/2 is positive."""
+    if not np.any(rough.beta == -1.0):
+        raise NotTestedError("the sweep does not reach beta = -1")
+    mean = of_ratio(rough, (rough.R - 0.5).where(rough.beta == -1.0)).mean()
+    reason = f"R - 1/2 at beta = -1 is {text(mean)}."
+    return Finding(tendency(mean), reason, (("R - 1/2 at beta = -1", mean),))
+
+
+def fails_unsubtracted(sheared: xr.Dataset) -> Finding:
+    """R - Eq. (lun), nothing removed, is not as good as zero, and worse than after removal."""
+    if "R_unsubtracted" not in sheared:
+        raise NotTestedError("the dataset holds no un-subtracted R")
+    gap = (sheared.R_unsubtracted - sheared.theory).where(np.isfinite(sheared.R))
+    direct, removed = over_seeds(sheared, gap, "R_unsubtracted"), deviation(sheared)
+    found = agreement(direct, "Eq. (lun)")
+    verdict = {HOLDS: FAILS, QUALIFIED: QUALIFIED, FAILS: HOLDS}[found.verdict]
+    if direct.rms() <= removed.rms():
+        verdict = FAILS
+    reason = f"With nothing removed, {found.reason} The rms difference is {direct.rms():.4f}"
+    reason += f" before and {removed.rms():.4f} after removal of the mean flow and the mean spin."
+    return found._replace(verdict=verdict, reason=reason)
+
+
+def noisier_than_vibration(sheared: xr.Dataset, bed: xr.Dataset) -> Finding:
+    """The scatter of R between runs as long as the paper's is larger under shear.
+
+    Measured as the mean over common points of ln(scatter sheared / scatter vibrated), each scatter
+    scaled from the measured time to the paper's by its square root; the error of that mean is
+    from its own scatter over the points.
+    """
+    logs = {name: _log_scatter_ratio(sheared, bed, name) for name in LENGTHS}
+    paper, time = logs["paper"], logs["time"]
+    verdict = FAILS
+    if paper.real and paper.value > 0:
+        verdict = HOLDS if paper.value >= CONSIDERABLY else QUALIFIED
+    elif time.real and time.value > 0:
+        verdict = QUALIFIED
+    elif paper.value + SIGNIFICANT * paper.stderr > CONSIDERABLY:
+        raise NotTestedError(f"the ratio of scatters, {_ratio(paper)}, is too uncertain")
+    ratios = ", ".join(f"{_ratio(logs[name])} {length}" for name, length in LENGTHS.items())
+    reason = f"The scatter between sheared runs is that between vibrated ones times {ratios}"
+    reason += f"; the first differs from 1 by {abs(paper.sigma):.1f} sigma."
+    numbers = ((f"ln(scatter sheared / vibrated) {LENGTHS[name]}", logs[name]) for name in logs)
+    return Finding(verdict, reason, tuple(numbers))
+
+
+def _ratio(log: Estimate) -> str:
+    """Return a logarithm as the ratio that it stands for."""
+    ratio = math.exp(log.value)
+    return f"{Estimate(ratio, ratio * log.stderr):.2f}"
+
+
+def _log_scatter_ratio(sheared: xr.Dataset, bed: xr.Dataset, per: str) -> Estimate:
+    """Return the mean of ln(scatter sheared / scatter vibrated) at one of LENGTHS."""
+    one, two = xr.align(_scatter(sheared), _scatter(bed), join="inner")
+    length = one.per_run / two.per_run if per == "collision" else one.measured_for
+    if per != "collision":
+        length = length / two.measured_for
+    if per == "paper":
+        length = length / (TIMES_OF_PAPER[0] / TIMES_OF_PAPER[1])
+    logs = (np.log(one.scatter / two.scatter) + np.log(length) / 2).values
+    logs = logs[np.isfinite(logs)]
+    if logs.size < 3:
+        raise NotTestedError("fewer than three common points have several seeds and a steady state")
+    error = float(logs.std(ddof=1)) / math.sqrt(logs.size)
+    return Estimate(float(logs.mean()), error, logs.size - 1)
+
+
+def _scatter(data: xr.Dataset) -> xr.Dataset:
+    """Return the standard deviation of R between runs (NaN for one seed), and the length and
+    collisions of a run."""
+    seeds = data.n_seeds.where((data.n_seeds > 1) & np.isfinite(data.R))
+    scatter = data.R_stderr_over_seeds * np.sqrt(seeds)
+    found = {"measured_for": data.measured_for, "per_run": data.collisions / seeds}
+    return xr.Dataset(found | {"scatter": scatter.where(scatter > 0)})
+
+
+def follows_k(cooling: xr.Dataset) -> Finding:
+    """R - Eq. (K) at every point is as good as zero."""
+    found = agreement(deviation(cooling), "Eq. (K)")
+    relative = deviation_in_proportion(cooling)
+    near = int((np.abs(relative.value) <= NEAR).sum())
+    largest, place = relative.largest()
+    return found.noting(
+        f"Relative to Eq. (K), {near} of {relative.size} points are within {NEAR:.0%}; the "
+        f"largest difference is {100 * largest.value:+.1f} % at {place}."
+    )
+
+
+def reaches_a_constant(cooling: xr.Dataset) -> Finding:
+    """R has a plateau, and does not move from its first half to its second."""
+    if "R_drift" not in cooling:
+        raise NotTestedError("the dataset holds no time series of R")
+    steady = cooling.R_drift.where(np.isfinite(cooling.R))
+    found = agreement(over_seeds(cooling, steady, "R_drift"), "no drift on the plateau")
+    total = cooling.attrs["points"]
+    plateaus = total - cooling.attrs["set_aside"]
+    share = 1 - plateaus / total
+    reason = f"A plateau was found at {plateaus} of {total} points. There, {found.reason}"
+    verdict = worse(found.verdict, graded(share <= FEW, share <= 0.5))
+    return found._replace(verdict=verdict, reason=reason)
+
+
+def depends_on_restitution(cooling: xr.Dataset) -> Finding:
+    """R at the lowest r - R at the highest is far from zero at some beta."""
+    effect = effect_of_restitution(cooling)
+    largest, _ = effect.largest()
+    size = abs(largest.value) if largest.real else 0.0
+    low, high = cooling.r.values[[0, -1]]
+    beta = effect.places["beta"][np.argmax(np.abs(effect.value))]
+    at_low, at_high = (predicted_ratio(cooling.attrs, r, beta) for r in (low, high))
+    reason = (
+        f"R at r = {low:g} differs from R at r = {high:g} by up to {text(largest)} at "
+        f"beta = {beta:g}, where Eq. (K) expects {at_low - at_high:+.4f}."
+    )
+    numbers = (("largest difference", largest), ("mean difference", effect.mean()))
+    return Finding(graded(size > LIMIT, size > AGREE), reason, numbers)
+
+
+def forcing_decides(cooling: xr.Dataset, bed: xr.Dataset) -> Finding:
+    """R cooling - R vibrated is far from zero and is what Eq. (K) - Eq. (lun) says."""
+    names = ("R", "theory")
+    change, expected = (
+        difference(*(gas.assign(R=gas[name].where(np.isfinite(gas.R))) for gas in (cooling, bed)))
+        for name in names
+    )
+    rest = change._replace(value=change.value - expected.value)
+    found = agreement(rest, "the difference of the two theories")
+    largest, place = change.largest()
+    if not (largest.real and abs(largest.value) > LIMIT):
+        found = found._replace(verdict=FAILS)
+    elif found.verdict == FAILS and rest.rms() < change.rms() / 3:
+        found = found._replace(verdict=QUALIFIED)
+    reason = f"R cooling - R vibrated is up to {text(largest)} at {place}. {found.reason}"
+    numbers = (("largest R cooling - R vibrated", largest), *found.numbers)
+    return found._replace(reason=reason, numbers=numbers)
+
+
+def restitution_matters_when_cooling(cooling: xr.Dataset, bed: xr.Dataset) -> Finding:
+    """The effect of r on R is several times larger in the cooling gas than in the vibrated one."""
+    r = np.intersect1d(cooling.r, bed.r)
+    effects = [effect_of_restitution(gas.sel(r=r)) for gas in (cooling, bed)]
+    (largest, _), (forced, _) = (effect.largest() for effect in effects)
+    free, driven = map(_rms_beyond_noise, effects)
+    ratio = free / max(driven, 1e-12)
+    matters = largest.real and abs(largest.value) > AGREE
+    times = f"{ratio:.1f} times as large" if ratio < 100 else "more than 100 times as large"
+    reason = (
+        f"From the highest r to the lowest, R changes by up to {text(largest)} when cooling, by up "
+        f"to {text(forced)} when vibrated; the rms change, noise removed, is {times}."
+    )
+    numbers = (("largest effect of r, cooling", largest), ("largest effect, vibrated", forced))
+    return Finding(graded(matters and ratio >= 3, matters and ratio > 1.5), reason, numbers)
+
+
+def _rms_beyond_noise(effect: Sample) -> float:
+    """Return the root mean square of the values, without the part that their errors explain."""
+    return float(np.sqrt(max(np.mean(effect.value**2 - effect.stderr**2), 0.0)))

@@ -1,0 +1,90 @@
+"""Tables of statements, read from YAML: quotations, the data that they are on, and their judges."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import NamedTuple
+
+import xarray as xr
+import yaml
+
+from roughgas.claims import evidence, open_questions, paper
+from roughgas.claims.evidence import NotTestedError
+from roughgas.claims.verdicts import (
+    FAR,
+    NEAR,
+    NOT_TESTED,
+    Finding,
+    agreement,
+    agreement_in_proportion,
+    points,
+)
+
+REFERENCE = """\
+S. McNamara and S. Luding, *Energy nonequipartition in systems of inelastic, rough spheres*,
+Phys. Rev. E 58, 2247 (1998)"""
+
+
+class Statement(NamedTuple):
+    """A testable statement: `judge` takes the datasets of `experiments`, in that order."""
+
+    name: str
+    quote: str
+    experiments: tuple[str, ...]
+    judge: Callable[..., Finding]
+
+
+class Subject(NamedTuple):
+    """What a table of verdicts is about: its texts, and its statements."""
+
+    title: str
+    about: str  # a paragraph
+    quotes: str  # the heading of the column of quotations
+    statements: tuple[Statement, ...]
+    after: str = ""  # a line below the table
+
+
+def read_subject(name: str) -> Subject:
+    """Return the table of statements in the file `name`.yaml of this room."""
+    table = yaml.safe_load(Path(__file__).with_name(f"{name}.yaml").read_text(encoding="utf-8"))
+    table["about"] = table["about"].format(reference=REFERENCE, near=NEAR, far=FAR)
+    table["statements"] = tuple(
+        _statement(name, **row) for name, row in table["statements"].items()
+    )
+    return Subject(**table)
+
+
+def _statement(
+    name: str,
+    quote: str,
+    experiments: list[str],
+    judge: str = "",
+    agrees_with: str = "",
+    sample: str = "deviation",
+    in_proportion: bool = False,
+) -> Statement:
+    def agrees(*datasets: xr.Dataset) -> Finding:
+        if in_proportion:
+            return agreement_in_proportion(*datasets, agrees_with)
+        return agreement(_function(sample)(*datasets), agrees_with)
+
+    return Statement(name, quote, tuple(experiments), _function(judge) if judge else agrees)
+
+
+def _function(name: str) -> Callable:
+    home = next(module for module in (paper, open_questions, evidence) if hasattr(module, name))
+    return getattr(home, name)
+
+
+def examine(statement: Statement, datasets: dict[str, xr.Dataset]) -> Finding:
+    """Judge `statement` on `datasets` (by experiment), or say why it cannot be judged."""
+    missing = [name for name in statement.experiments if name not in datasets]
+    try:
+        if missing:
+            raise NotTestedError(f"no data of {', '.join(missing)}")
+        used = [datasets[name] for name in statement.experiments]
+        finding = statement.judge(*used)
+    except NotTestedError as lack:
+        reason = str(lack)
+        return Finding(NOT_TESTED, f"{reason[0].upper()}{reason[1:]}.")
+    aside = sum(data.attrs["set_aside"] for data in used)
+    return finding.noting(f"{points(aside)} not in a steady state set aside.") if aside else finding
