@@ -13,7 +13,7 @@ import numpy as np
 
 from roughgas import config
 from roughgas.kernel.layout import new_state
-from roughgas.kernel.record import Plan, columns, record
+from roughgas.kernel.record import Sampling, columns, record
 from roughgas.kernel.state import NOW
 from roughgas.scene import build
 from roughgas.scene.initial import initial_state
@@ -75,7 +75,7 @@ def steady(case: Case, number: int):
 def advance(scene, state, time=np.inf, collisions=UNLIMITED):
     """Run for so long, or for so many collisions, whichever comes first."""
     row = np.empty((1, len(columns(len(scene.box), scene.effects.spin is not None))))
-    record(state, scene, Plan(float(time), collisions, 0), row)
+    record(state, scene, Sampling(float(time), collisions, 0), row)
 
 
 def _copied(scene, state, copies, rng):

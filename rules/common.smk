@@ -52,7 +52,7 @@ def settings(scale, experiment):
         found = roughgas.config.experiment(config, experiment, scale)
     for name, variant in roughgas.config.every_variant(experiment, found).items():
         with one_line(f"config.yaml: experiments.{name} at scale {scale}"):
-            from roughgas.scene import check
+            from roughgas.simulation.schedule import check
 
             check(variant)
     return found

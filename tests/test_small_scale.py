@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from roughgas import config
+from roughgas.scene import build
 from roughgas.simulation.point import run_point
 from roughgas.theory import cooling_ratio, lun_ratio
 from roughgas.theory.prediction import predicted_ratio
@@ -45,7 +46,7 @@ def points_of_seeds(name, r, beta):
     """The point of each seed of the sweep."""
     experiment = config.experiment(config.load(CONFIG), name, "small")
     seeds = range(1, experiment["sweep"]["seeds"] + 1)
-    return [run_point(experiment, r, beta, seed) for seed in seeds]
+    return [run_point(build(experiment, r, beta), experiment, seed) for seed in seeds]
 
 
 def mean_ratio(points):

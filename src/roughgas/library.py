@@ -152,14 +152,16 @@ def simulate(
     from roughgas.config.provenance import provenance
     from roughgas.data.point import as_dataset
     from roughgas.planning.reach import complete
+    from roughgas.scene import build
     from roughgas.simulation.point import run_point
     from roughgas.simulation.progress import Progress
 
     name = experiment or UNNAMED
-    settings = complete(settings, *point[:2])
+    scene = build(settings, *point[:2])
+    settings = complete(scene, settings)
     about = provenance(name, settings, (str(r), str(beta), str(seed)), scale, "point.nc")
-    with Progress(name, settings, *point[:2], quiet=not progress) as bar:
-        found = run_point(settings, *point, bar)
+    with Progress(name, scene, settings, quiet=not progress) as bar:
+        found = run_point(scene, settings, point[2], bar)
     return as_dataset(found._replace(attributes=about | found.attributes))
 
 
@@ -194,14 +196,15 @@ def _settings(
     name: str | None, changes: Mapping[str, Any], scale: str, path: str | Path
 ) -> dict[str, Any]:
     """The settings of a point, as checked as those of the pipeline."""
-    from roughgas import config, scene
+    from roughgas import config
     from roughgas.config.schema import check_schema
+    from roughgas.simulation.schedule import check
 
     known = {} if name is None else config.experiment(config.load(path), name, scale)
     settings = config.merged(config.point_settings(known), changes)
     for part in ("experiment", "point"):
         check_schema(settings, name or UNNAMED, part)
-    scene.check(settings)
+    check(settings)
     return settings
 
 

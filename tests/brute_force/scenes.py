@@ -8,7 +8,7 @@ import functools
 import numpy as np
 
 from brute_force.world import World
-from roughgas.kernel.record import Plan, columns, record
+from roughgas.kernel.record import Sampling, columns, record
 from roughgas.scene import build
 from roughgas.scene.initial import initial_state
 
@@ -119,7 +119,7 @@ def run(state, scene, samples, interval=np.inf, collisions=UNLIMITED, refresh=0)
     """Advance the kernel; columns by name. Fails where the gas collapses."""
     names = _columns(len(scene.box), scene.effects.spin is not None)
     rows = np.empty((samples, len(names)))
-    assert record(state, scene, Plan(float(interval), collisions, refresh), rows) == samples
+    assert record(state, scene, Sampling(float(interval), collisions, refresh), rows) == samples
     return dict(zip(names, rows.T, strict=True))
 
 

@@ -203,10 +203,10 @@ def test_a_mistake_in_one_seed_stops_all_of_them(tmp_path, capsys, seeds, files,
 
 
 def test_what_is_done_stays_when_a_later_seed_fails(tmp_path, monkeypatch):
-    def second_collapses(experiment, r, beta, seed, progress):
+    def second_collapses(scene, experiment, seed, progress):
         if seed == 2:
             raise CollapseError("inelastic collapse")
-        return run_point(experiment, r, beta, seed, progress)
+        return run_point(scene, experiment, seed, progress)
 
     monkeypatch.setattr("roughgas.simulation.point.run_point", second_collapses)
     assert run_seeds(tmp_path, "123", ["1.nc", "2.nc", "3.nc"]) == 1

@@ -18,6 +18,7 @@ from roughgas.effects import KINDS
 from roughgas.kernel import random
 from roughgas.kernel.record import columns, record
 from roughgas.kernel.state import BOUNDARY, BOUNDARY_HITS
+from roughgas.scene import build
 from roughgas.simulation.point import run_point
 
 PROGRAM = Path(__file__).parent.parent / "machine_code.py"
@@ -220,7 +221,7 @@ def test_a_point_holds_nothing_of_absent_effects(kernel, tmp_path):
     there = set(KERNELS[kernel]["effects"])
     driven = there & {"floor", "shaken_walls", "shear", "thermostat"}
     experiment = small(kernel) | {"schedule": STEADY if driven else COOLING}
-    point = run_point(experiment, 0.9, 0.2 if "spin" in there else -1.0, 1)
+    point = run_point(build(experiment, 0.9, 0.2 if "spin" in there else -1.0), experiment, 1)
     found = set(point.variables)
     assert found <= set(POINT)
     assert bool(found & OF_SPIN) == ("spin" in there)

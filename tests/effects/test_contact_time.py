@@ -5,7 +5,7 @@ import pytest
 from brute_force import begin, run, settings
 
 from roughgas.kernel.layout import new_state
-from roughgas.kernel.record import Plan, columns, record
+from roughgas.kernel.record import Sampling, columns, record
 from roughgas.kernel.state import COLLISIONS, TOUCHED
 
 BED = settings(
@@ -81,5 +81,5 @@ def test_t_c_is_a_time_however_slow_the_gas_has_become():
         state = new_state(scene, position, slow * velocity, spin)
         run(state, scene, 1, interval=2.0**-10, refresh=1)
         rows = np.empty((2, len(columns(3, True))))
-        record(state, scene, Plan(np.inf, 1, 0), rows)
+        record(state, scene, Sampling(np.inf, 1, 0), rows)
         assert state.counts[TOUCHED] == touched, duration

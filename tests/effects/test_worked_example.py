@@ -18,6 +18,7 @@ import roughgas
 from effects import page
 from roughgas import theory
 from roughgas.data.point import read_point
+from roughgas.scene import build
 from roughgas.simulation.point import run_point
 
 PACKAGE = Path(roughgas.__file__).parent
@@ -141,7 +142,7 @@ def test_a_pair_head_on(changed):
 def test_far_from_the_yield_speed(changed, yield_speed, r):
     """To the last bit: above it the gas is the one without the effect, below it that of r = 1."""
     found = changed.point_of("gas", gas_with(yield_speed))["R_series"]
-    expected = run_point(GAS, r, BETA, SEED).variables["R_series"]
+    expected = run_point(build(GAS, r, BETA), GAS, SEED).variables["R_series"]
     both = min(len(found), len(expected))  # theory's transient is not that of r = 1
     assert both >= 20 and np.array_equal(found[:both], expected[:both])
 

@@ -15,7 +15,7 @@ from roughgas.kernel import hooks
 from roughgas.kernel.flight import arrive
 from roughgas.kernel.images import image_numbers, shifted, slid
 from roughgas.kernel.jit import entry, jit
-from roughgas.kernel.record import Plan, columns, record
+from roughgas.kernel.record import Sampling, columns, record
 from roughgas.kernel.vectors import dot, subtract
 from roughgas.scene import Scene, build
 from roughgas.scene.initial import initial_state
@@ -54,5 +54,5 @@ def gaps_at_contacts(experiment, r, beta, collisions, seed=1):
     scene = plain._replace(effects=Probed(*plain.effects, probe))
     state = initial_state(scene, experiment, np.random.default_rng(seed))
     row = np.empty((1, len(columns(len(scene.box), scene.effects.spin is not None))))
-    assert _record(state, scene, Plan(np.inf, collisions, 0), row) == 1
+    assert _record(state, scene, Sampling(np.inf, collisions, 0), row) == 1
     return probe.gaps

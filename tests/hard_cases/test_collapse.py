@@ -9,7 +9,7 @@ from brute_force import begin, run, settings, snapshot
 from hard_cases.catalogue import hard_case
 from roughgas.base.errors import CollapseError
 from roughgas.kernel.layout import new_state
-from roughgas.kernel.record import Plan, columns, record
+from roughgas.kernel.record import Sampling, columns, record
 from roughgas.kernel.state import BASE, COLLISIONS, NOW, TOUCHED
 from roughgas.simulation.energies import energies, ratio
 from roughgas.simulation.recorder import UNLIMITED, Recorder
@@ -49,7 +49,7 @@ def collapse(seed):
     time, collapsed = 0.0, False
     while time < 60.0 and not collapsed:
         before = state.counts[COLLISIONS]
-        collapsed = record(state, scene, Plan(0.25, UNLIMITED, 0), row) == 0
+        collapsed = record(state, scene, Sampling(0.25, UNLIMITED, 0), row) == 0
         contacts = state.counts[COLLISIONS] - before
         time = state.clock[BASE] + state.clock[NOW]
     shot = snapshot(state, scene)
@@ -96,7 +96,7 @@ def test_a_dense_bed_is_not_taken_for_a_collapse(margins):
     for r in (0.8, 0.7):
         scene, state = begin(BED, r, 0.0, 1)
         rows = np.empty((samples, len(columns(2, True))))
-        missing += samples - record(state, scene, Plan(0.25, UNLIMITED, 0), rows)
+        missing += samples - record(state, scene, Sampling(0.25, UNLIMITED, 0), rows)
     tried = {"tried": samples // 2, "unit": "T"}
     margins.at_most("quarters of T that are missing", missing, 0, **tried)
 
@@ -197,7 +197,7 @@ def squeezed(angle, spin, **model):
     velocity = np.array([[0.1, 0.0], [0.0, -0.2], [-0.1, 0.0]])
     state = new_state(scene, position, velocity, np.array([[spin], [0.0], [-spin]]))
     row = np.empty((1, len(columns(2, True))))
-    collapsed = record(state, scene, Plan(50.0, UNLIMITED, 0), row) == 0
+    collapsed = record(state, scene, Sampling(50.0, UNLIMITED, 0), row) == 0
     return collapsed, int(state.counts[COLLISIONS])
 
 

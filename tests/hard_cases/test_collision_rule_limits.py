@@ -11,7 +11,7 @@ from roughgas.effects import Effects
 from roughgas.effects.spin import Spin
 from roughgas.kernel import contact
 from roughgas.kernel.layout import new_state
-from roughgas.kernel.record import Plan, columns, record
+from roughgas.kernel.record import Sampling, columns, record
 from roughgas.kernel.state import COLLISIONS
 
 response = from_python(contact.response)
@@ -209,7 +209,7 @@ def test_parting(margins, dimension):
         velocity = rng.standard_normal(dimension) + np.array([0.0 * n, across - approach * n])
         state = new_state(scene, position, velocity, np.zeros((2, 2 * dimension - 3)))
         # a pair that does is stopped, as a collapse would be: here it is only counted
-        record(state, scene, Plan(1.0, 100, 0), row)
+        record(state, scene, Sampling(1.0, 100, 0), row)
         most = max(most, state.counts[COLLISIONS])
     margins.at_most(f"contacts of a pair, D = {dimension}", most, 1, pairs_tried, "pairs")
 

@@ -10,6 +10,7 @@ from hard_cases.catalogue import hard_case
 from roughgas.config import experiment, load
 from roughgas.kernel import record
 from roughgas.kernel.state import LAST_FIRST, LAST_SECOND
+from roughgas.scene import build
 from roughgas.simulation.cooling import SAMPLES_PER_REFRESH
 from roughgas.simulation.energies import energies, ratio
 from roughgas.simulation.point import run_point
@@ -130,7 +131,7 @@ def test_a_point_may_cool_below_the_smallest_number(margins):
     """1000 collisions per particle at r = 0.4 take e^380 off the energy; doubles reach e^-745."""
     point = experiment(load("config.yaml", {}), "cooling", "small")
     point["schedule"] |= {"replicas": 4, "plateau": margins.size(quick=2500, full=10_000)}
-    found = run_point(point, 0.4, 0.0, 1).variables
+    found = run_point(build(point, 0.4, 0.0), point, 1).variables
     series = found["R_series"]
     tried = {"tried": 4 * len(series), "unit": "samples"}
     margins.at_most("samples without an R", np.sum(~np.isfinite(series)), 0, **tried)

@@ -12,7 +12,7 @@ from schedules import COOLING, STEADY
 
 from hard_cases.catalogue import hard_case
 from roughgas.base.errors import InputError
-from roughgas.scene import check
+from roughgas.scene import build, check
 from roughgas.simulation.point import run_point
 
 DISKS = (0.001, 0.01, 0.1, 0.3, 0.5, 0.7, 0.8)  # shares of the area
@@ -164,6 +164,10 @@ ALONE = {
 }
 
 
+def point(experiment, r, beta):
+    return run_point(build(experiment, r, beta), experiment, 1)
+
+
 @hard_case(
     "one, two, three particles",
     "a single particle in a periodic box has no energy, and its R would be 0/0; two may wait for "
@@ -175,7 +179,7 @@ def test_few_particles(margins):
         for number in (1, 2, 3):
             for r, beta in ((0.9, 0.2), (0.5, -0.5), (1.0, 1.0)):
                 try:
-                    found = run_point(alone | {"particles": number}, r, beta, 1).variables
+                    found = point(alone | {"particles": number}, r, beta).variables
                 except InputError:
                     assert number == 1
                     refused += 1
@@ -208,7 +212,7 @@ def test_the_impossible_is_refused_in_one_line(margins, tmp_path):
     accepted = lines = 0
     for experiment in REFUSED.values():
         try:
-            run_point({"schedule": COOLING} | experiment, 0.9, 0.2, 1)
+            point({"schedule": COOLING} | experiment, 0.9, 0.2)
             accepted += 1
         except InputError as error:
             lines = max(lines, str(error).count("\n") + 1)
@@ -247,7 +251,7 @@ def test_without_the_refusal_of_one_alone(without):
     without(
         "a point of one particle that nothing drives is refused",
         test_few_particles,
-        "point.py",
-        "    check_company(scene, experiment)\n",
+        "composition.py",
+        '    _check_company(experiment.get("particles"), effects)\n',
         "",
     )

@@ -18,7 +18,7 @@ from hard_cases.compositions import (
 )
 from roughgas.base.errors import InputError
 from roughgas.effects import KINDS
-from roughgas.kernel.record import Plan, columns, record
+from roughgas.kernel.record import Sampling, columns, record
 from roughgas.kernel.state import BOUNDARY_HITS, COLLISIONS, LAST_FIRST, LAST_SECOND
 from roughgas.scene import build, check
 from roughgas.scene.initial import lattice
@@ -50,7 +50,7 @@ class Worst:
         row = np.empty((1, len(columns(len(scene.box), scene.effects.spin is not None))))
         before, first, last = books(state, scene), snapshot(state, scene), -1.0
         for _ in range(4):
-            if record(state, scene, Plan(20.0, 150, 0), row) == 0:
+            if record(state, scene, Sampling(20.0, 150, 0), row) == 0:
                 self.stopped += 1
                 break
             self._see_books(before, books(state, scene), contacts_of(state))
@@ -83,7 +83,7 @@ class Worst:
         for _ in range(10):
             before, changes = snapshot(state, scene), changes_by_label(state)
             made = state.counts[COLLISIONS]
-            record(state, scene, Plan(20.0, 1, 0), row)
+            record(state, scene, Sampling(20.0, 1, 0), row)
             if state.counts[COLLISIONS] == made:
                 return
             pair = state.counts[[LAST_FIRST, LAST_SECOND]]

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from tests.planning.test_plan import planned
 
 from roughgas.base.errors import InputError
 from roughgas.planning.pilot import (
@@ -15,11 +16,15 @@ from roughgas.planning.pilot import (
     read_pilot,
     write_pilot,
 )
-from roughgas.planning.plan import plan_point
 from roughgas.planning.reach import completed
+from roughgas.scene import build
 from roughgas.simulation.point import run_point
 
 TIMES = ("seconds", "seconds_per_length")
+
+
+def explored(experiment, beta):
+    return explore(build(experiment, 0.9, beta), experiment)
 
 
 def numbers(pilot):
@@ -27,11 +32,11 @@ def numbers(pilot):
 
 
 def test_the_same_pilot_twice(sheared):
-    assert numbers(explore(sheared, 0.9, 0.0)) == numbers(explore(sheared, 0.9, 0.0))
+    assert numbers(explored(sheared, 0.0)) == numbers(explored(sheared, 0.0))
 
 
 def test_a_driven_pilot_has_seen_enough(sheared):
-    pilot = explore(sheared, 0.9, 0.0)
+    pilot = explored(sheared, 0.0)
     assert pilot.settled and pilot.seconds > 0
     measured = pilot.length - CHAINS * pilot.transient
     assert measured >= MEASURED * pilot.autocorrelation_time
@@ -44,18 +49,20 @@ def test_the_expected_error_is_the_scatter_of_independent_runs(name, request):
     """24 runs: their variance is known to 29 % (1 sigma), that of the pilot to about 23 %. Within
     a factor 3, more than 3 sigma on either side: fails by chance less than once in 300."""
     experiment = request.getfixturevalue(name)
-    plan = plan_point(experiment, 0.9, 0.0, explore(experiment, 0.9, 0.0))
+    plan = planned(experiment, 0.0, explored(experiment, 0.0))
+    scene = build(experiment, 0.9, 0.0)
     settings = completed(experiment, plan)
-    found = [run_point(settings, 0.9, 0.0, seed).variables["R"] for seed in range(24)]
+    found = [run_point(scene, settings, seed).variables["R"] for seed in range(24)]
     expected = plan.stderr**2 * plan.seeds
     assert expected / 3 < np.var(found, ddof=1) < 3 * expected
 
 
 def test_expected_collisions_are_those_that_happen(sheared):
-    plan = plan_point(sheared, 0.9, 0.0, explore(sheared, 0.9, 0.0))
+    plan = planned(sheared, 0.0, explored(sheared, 0.0))
+    scene = build(sheared, 0.9, 0.0)
     settings = completed(sheared, plan)
     made = sum(
-        run_point(settings, 0.9, 0.0, seed).variables["collisions"] for seed in range(plan.seeds)
+        run_point(scene, settings, seed).variables["collisions"] for seed in range(plan.seeds)
     )
     assert plan.collisions == pytest.approx(made, rel=0.1)
 
@@ -82,9 +89,9 @@ def test_noise_is_seldom_taken_for_a_transient():
 
 def test_a_gas_that_nothing_makes_spin(sheared):
     """R is 0 for ever: no scatter, no memory, and the least that is ever run."""
-    pilot = explore(sheared, 0.9, -1.0)
+    pilot = explored(sheared, -1.0)
     assert pilot.variance == 0 and math.isnan(pilot.autocorrelation_time)
-    plan = plan_point(sheared, 0.9, -1.0, pilot)
+    plan = planned(sheared, -1.0, pilot)
     assert plan.stderr == 0 and plan.seeds == 1
 
 

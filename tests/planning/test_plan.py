@@ -32,12 +32,16 @@ PILOT = Pilot(
 )
 
 
+def planned(experiment, beta, pilot):
+    return plan_point(build(experiment, 0.9, beta), experiment, pilot)
+
+
 def with_target(experiment, target):
     return experiment | {"target_stderr": target}
 
 
 def test_seeds_are_as_many_as_the_error_calls_for_and_no_more(sheared):
-    plan = plan_point(with_target(sheared, 0.004), 0.9, 0.0, PILOT)
+    plan = planned(with_target(sheared, 0.004), 0.0, PILOT)
     length = plan.schedule["measure"]
     assert math.sqrt(PILOT.variance / (plan.seeds * length)) == pytest.approx(plan.stderr)
     aim = RESERVE * 0.004
@@ -49,32 +53,28 @@ def test_half_the_error_costs_four_times_as_much(name, request):
     """But for whole seeds, and for one more half-life of what is left of the transient."""
     experiment = request.getfixturevalue(name)
     pilot = PILOT._replace(variance=2.0)
-    one, two = (
-        plan_point(with_target(experiment, target), 0.9, 0.0, pilot) for target in (0.004, 0.002)
-    )
+    one, two = (planned(with_target(experiment, target), 0.0, pilot) for target in (0.004, 0.002))
     assert two.seconds / one.seconds == pytest.approx(4, rel=0.1)
     assert two.seeds / one.seeds == pytest.approx(4, rel=0.1)
 
 
 def test_a_run_waits_for_the_slower_of_energies_and_spin(sheared):
-    slow, fast = (
-        plan_point(sheared, 0.9, beta, PILOT).schedule["equilibrate"] for beta in (-0.95, 0.5)
-    )
+    slow, fast = (planned(sheared, beta, PILOT).schedule["equilibrate"] for beta in (-0.95, 0.5))
     scene = build(sheared, 0.9, -0.95)
     assert fast == TWICE * PILOT.transient
     assert slow == math.ceil(relaxation(scene, BIAS * 0.01, cooling=False) / PILOT.pace) > fast
 
 
 def test_a_run_is_measured_for_many_times_what_it_remembers(sheared):
-    assert plan_point(sheared, 0.9, 0.5, PILOT).schedule["measure"] == 200
+    assert planned(sheared, 0.5, PILOT).schedule["measure"] == 200
     forgetful = PILOT._replace(autocorrelation_time=0.1)
-    plan = plan_point(sheared, 0.9, 0.5, forgetful)
+    plan = planned(sheared, 0.5, forgetful)
     assert plan.schedule["measure"] == plan.schedule["equilibrate"]
 
 
 def test_a_run_is_no_longer_than_it_need_be(sheared):
     still = PILOT._replace(variance=1e-5, autocorrelation_time=0.1)
-    plan = plan_point(sheared, 0.9, 0.5, still)
+    plan = planned(sheared, 0.5, still)
     assert plan.schedule["measure"] == 20 and plan.seeds == 1
     assert plan.stderr < sheared["target_stderr"] / 2
 
@@ -102,7 +102,7 @@ def test_lengths_that_are_set_are_taken_as_they_are(sheared):
     schedule = sheared["schedule"] | {"equilibrate": 100, "measure": 400}
     experiment = {key: value for key, value in sheared.items() if key != "target_stderr"}
     experiment |= {"schedule": schedule, "sweep": {"seeds": 3}}
-    plan = plan_point(experiment, 0.9, 0.0, PILOT)
+    plan = planned(experiment, 0.0, PILOT)
     assert plan.schedule == schedule and plan.seeds == 3
     assert plan.stderr == pytest.approx(math.sqrt(PILOT.variance / 1200))
     assert plan.seconds == pytest.approx(1.5)
@@ -110,7 +110,7 @@ def test_lengths_that_are_set_are_taken_as_they_are(sheared):
 
 
 def test_a_cooling_seed_is_several_replicas(cooling):
-    plan = plan_point(cooling, 0.9, 0.0, PILOT)
+    plan = planned(cooling, 0.0, PILOT)
     assert plan.schedule["replicas"] == REPLICAS
     assert plan.stderr == pytest.approx(
         math.sqrt(PILOT.variance / (plan.seeds * REPLICAS * plan.schedule["plateau"]))

@@ -9,6 +9,7 @@ from roughgas.planning import reach as module
 from roughgas.planning.pilot import explore
 from roughgas.planning.plan import RESERVE
 from roughgas.planning.reach import MOST, complete, reach
+from roughgas.scene import build
 
 
 @pytest.fixture
@@ -16,7 +17,7 @@ def scatter(monkeypatch):
     """Stands in for the simulation: runs of given scatter, whose own errors are known well."""
 
     def of(size):
-        def run(settings, r, beta, seed, progress):
+        def run(scene, settings, seed, tell):
             rng = np.random.default_rng(seed)
             return Point({"R": rng.normal(0.3, size), "R_stderr": size, "R_dof": 30.0}, {})
 
@@ -27,7 +28,8 @@ def scatter(monkeypatch):
 
 def run(experiment, pilot=PILOT):
     kept = {}
-    found = reach(experiment, 0.9, 0.0, pilot, lambda seed, *one: kept.update({seed: one}), None)
+    scene = build(experiment, 0.9, 0.0)
+    found = reach(scene, experiment, pilot, lambda seed, *one: kept.update({seed: one}), None)
     assert list(kept) == list(range(1, found[2] + 1))
     return *found, kept
 
@@ -61,7 +63,7 @@ def test_each_seed_knows_the_plan(sheared, scatter):
 
 
 def test_a_real_point_meets_its_target(sheared):
-    pilot = explore(sheared, 0.9, 0.0)
+    pilot = explore(build(sheared, 0.9, 0.0), sheared)
     _, error, seeds, kept = run(sheared, pilot)
     assert error.stderr <= sheared["target_stderr"] and seeds >= 2
-    assert kept[1][1] == complete(sheared, 0.9, 0.0)
+    assert kept[1][1] == complete(build(sheared, 0.9, 0.0), sheared)

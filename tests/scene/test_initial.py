@@ -8,7 +8,6 @@ from roughgas.base.errors import InputError
 
 CASES = {
     **{name: settings(name) for name in KERNELS},
-    "one": settings("gas", 1, [10, 10]),
     "two in the smallest box": settings("gas", 2, [4.01, 4.01]),
     "dense": settings("gas", 100, [20.1, 20.1]),
     "narrow": settings("gas", 30, [4.5, 300]),

@@ -207,27 +207,6 @@ MISMATCHES = {
         {},
         "roughness beta = 0.5: must be -1 where particles do not spin",
     ),
-    "cooling with a drive": (
-        (50, 50),
-        SPIN | HEAT,
-        0.0,
-        {"schedule": {"kind": "cooling"}},
-        "schedule.kind = cooling: must be steady where there is a drive: thermostat",
-    ),
-    "cooling with two drives": (
-        (50, 50, "open"),
-        BED | SHEAR,
-        0.0,
-        {"schedule": {"kind": "cooling"}},
-        "schedule.kind = cooling: must be steady where there is a drive: floor, shear",
-    ),
-    "steady without a drive": (
-        (50, 50),
-        SPIN | FRICTION,
-        0.0,
-        {"schedule": {"kind": "steady"}},
-        "schedule.kind = steady: must be cooling where no effect drives the gas",
-    ),
     "a target without spin": (
         (50, 50),
         {},
@@ -251,13 +230,13 @@ def test_what_does_not_go_together_is_said_in_one_line(what):
 @pytest.mark.parametrize(
     ("box", "effects", "settings"),
     [
-        ((50, 50), {}, {"schedule": {"kind": "cooling"}}),
+        ((50, 50), {}, {}),
         ((50, 50), WALLS | {"walls": {"restitution": 1, "roughness": "particles"}}, {}),
         ((50, 50), {"thermostat": HEAT["thermostat"] | {"spin_share": 0}}, {}),
-        ((50, 50), SPIN | HEAT | FRICTION | SHEAR, {"schedule": {"kind": "steady"}}),
-        ((50, 50), SPIN, {"schedule": {"kind": "cooling"}, "target_stderr": 0.01}),
+        ((50, 50), SPIN | HEAT | FRICTION | SHEAR, {}),
+        ((50, 50), SPIN, {"target_stderr": 0.01}),
         ((50, 50, "open"), BED | SHEAR | HEAT | FRICTION | TIME, {}),
-        ((50, "open"), GRAVITY | FLOOR | TIME, {"schedule": {"kind": "steady"}}),
+        ((50, "open"), GRAVITY | FLOOR | TIME, {}),
     ],
 )
 def test_what_goes_together(box, effects, settings):

@@ -6,6 +6,7 @@ from brute_force import begin, run, settings
 from schedules import COOLING, STEADY
 
 from roughgas.data.point import read_point, write_point
+from roughgas.scene import build
 from roughgas.simulation.books import books, exchange, imbalance
 from roughgas.simulation.point import run_point
 
@@ -23,7 +24,7 @@ SOURCES = {
 @pytest.mark.parametrize("name", SOURCES)
 def test_a_point_says_what_each_source_has_put_in(name, tmp_path):
     experiment, sources = SOURCES[name]
-    point = run_point(experiment, 0.9, 0.2, 3)
+    point = run_point(build(experiment, 0.9, 0.2), experiment, 3)
     point.attributes.update(experiment="one", scale="small")
     write_point(tmp_path / "point.nc", point)
     data = read_point(tmp_path / "point.nc")

@@ -6,6 +6,7 @@ from brute_force import settings
 from schedules import COOLING, STEADY
 
 from roughgas.base.errors import InputError
+from roughgas.scene import build
 from roughgas.simulation.point import compile_kernels, run_point
 
 SWEEP = {"r": ["0.9"], "beta": ["0"], "seeds": 1}
@@ -16,9 +17,13 @@ POINTS = {
 }
 
 
+def point(experiment, r, beta, seed, tell=None):
+    return run_point(build(experiment, r, beta), experiment, seed, tell)
+
+
 @pytest.mark.parametrize("name", POINTS)
 def test_the_same_point_twice_and_another_seed(name):
-    one, same, other = (run_point(POINTS[name], 0.9, 0.2, seed) for seed in (3, 3, 4))
+    one, same, other = (point(POINTS[name], 0.9, 0.2, seed) for seed in (3, 3, 4))
     for key, value in one.variables.items():
         if key != "kernel_seconds":
             np.testing.assert_array_equal(value, same.variables[key], err_msg=key)
@@ -30,20 +35,20 @@ def test_the_same_point_twice_and_another_seed(name):
 
 @pytest.mark.parametrize("name", POINTS)
 def test_what_a_point_holds(name):
-    point = run_point(POINTS[name], 0.9, 0.2, 3)
+    found = point(POINTS[name], 0.9, 0.2, 3)
     for key in ("R", "R_stderr", "R_ratio_of_means", "E_trans", "E_rot", "autocorrelation_time"):
-        assert np.isfinite(point.variables[key]), key
-    assert 0.0 < point.variables["R"] < 0.5
-    assert point.variables["collisions"] > 100
-    assert not {"contact_time", "contact_time_fraction"} & set(point.variables)
-    assert ("R_unsubtracted" in point.variables) == (name == "sheared")
-    assert ("R_replica" in point.variables) == (name == "gas")
-    assert "time" in point.variables or "collisions_per_particle" in point.variables
+        assert np.isfinite(found.variables[key]), key
+    assert 0.0 < found.variables["R"] < 0.5
+    assert found.variables["collisions"] > 100
+    assert not {"contact_time", "contact_time_fraction"} & set(found.variables)
+    assert ("R_unsubtracted" in found.variables) == (name == "sheared")
+    assert ("R_replica" in found.variables) == (name == "gas")
+    assert "time" in found.variables or "collisions_per_particle" in found.variables
 
 
 def test_progress_is_told():
     told = []
-    run_point(POINTS["bed"], 0.9, 0.2, 3, lambda *progress: told.append(progress))
+    point(POINTS["bed"], 0.9, 0.2, 3, lambda *progress: told.append(progress))
     times, collisions = zip(*told, strict=True)
     assert 20 <= len(told) <= 60 and times[-1] == pytest.approx(60.0)
     assert list(times) == sorted(times) and list(collisions) == sorted(collisions)
@@ -52,7 +57,7 @@ def test_progress_is_told():
 @pytest.mark.parametrize(("r", "beta"), [(1.5, 0.0), (0.9, -2.0), (np.nan, 0.0)])
 def test_illegal_points(r, beta):
     with pytest.raises(InputError):
-        run_point(POINTS["gas"], r, beta, 1)
+        point(POINTS["gas"], r, beta, 1)
 
 
 def test_each_composition_is_compiled_once():

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from roughgas.scene import build
 from roughgas.simulation.progress import Bar, FilmProgress, Progress
 
 DRIVEN = {
@@ -54,7 +55,7 @@ def test_a_bar_says_how_far_how_long_and_what_and_is_cleared():
 
 def test_a_driven_gas_is_followed_in_time():
     stream = Terminal()
-    with Progress("sheared", DRIVEN, 0.9, 0.0, stream=stream) as progress:
+    with Progress("sheared", build(DRIVEN, 0.9, 0.0), DRIVEN, stream=stream) as progress:
         progress(1750.0, 98_765)
     assert stream.shown[-1].startswith("sheared:  25%|") and "1750 of 7000 T" in stream.shown[-1]
 
@@ -62,7 +63,7 @@ def test_a_driven_gas_is_followed_in_time():
 def test_a_cooling_gas_is_followed_through_its_replicas():
     """So many collisions per particle: 10 to thermalise, the transient, 50 on the plateau."""
     stream = Terminal()
-    with Progress("cooling", COOLING, 1.0, 1.0, stream=stream) as progress:
+    with Progress("cooling", build(COOLING, 1.0, 1.0), COOLING, stream=stream) as progress:
         total = int(stream.shown[0].split(" of ")[1].split()[0])
         replica = total / 4
         for _ in range(4):
@@ -75,7 +76,7 @@ def test_a_cooling_gas_is_followed_through_its_replicas():
 
 def test_progress_is_silent_elsewhere():
     stream = io.StringIO()
-    with Progress("cooling", COOLING, 0.9, 0.0, stream=stream) as progress:
+    with Progress("cooling", build(COOLING, 0.9, 0.0), COOLING, stream=stream) as progress:
         progress(1.0, 1)
     assert stream.getvalue() == ""
 

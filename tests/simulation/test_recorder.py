@@ -5,6 +5,7 @@ import pytest
 from brute_force import begin, run, settings
 
 from roughgas.kernel.state import EXPONENT
+from roughgas.scene import initial_state
 from roughgas.simulation.energies import energies, restored
 from roughgas.simulation.recorder import Recorder
 
@@ -57,6 +58,7 @@ def test_it_sums_up_over_runs():
 
 def test_a_gas_that_never_collides_comes_to_an_end():
     """One particle, sampled by collisions: the samples are taken all the same."""
-    scene, state = begin(settings("gas", 1, [10, 10]), 0.9, 0.2)
+    scene, _ = begin(GAS, 0.9, 0.2)
+    state = initial_state(scene, settings("gas", 1, [25, 25]), np.random.default_rng(0))
     rows = Recorder().in_collisions(state, scene, 10, 5)
     assert np.all(rows["collisions"] == 0) and np.all(np.diff(rows["time"]) > 0.0)

@@ -81,9 +81,10 @@ def add_commands(commands: Any) -> None:
 def pilot(options: argparse.Namespace) -> None:
     """Run the pilot of a point."""
     from roughgas.planning.pilot import explore, write_pilot
+    from roughgas.scene import build
 
     r, beta, settings = point_of(options)
-    write_pilot(options.output, explore(settings, r, beta))
+    write_pilot(options.output, explore(build(settings, r, beta), settings))
 
 
 def reach(options: argparse.Namespace) -> None:
@@ -92,21 +93,23 @@ def reach(options: argparse.Namespace) -> None:
     from roughgas.planning.plan import plan_point
     from roughgas.planning.reach import completed
     from roughgas.planning.reach import reach as run
+    from roughgas.scene import build
     from roughgas.simulation.progress import Progress
 
     r, beta, settings = point_of(options)
     if "target_stderr" not in settings:
         raise InputError("target_stderr", "(nothing)", f"be set for {options.experiment}")
-    known = read_pilot(options.pilot) if options.pilot else explore(settings, r, beta)
+    scene = build(settings, r, beta)
+    known = read_pilot(options.pilot) if options.pilot else explore(scene, settings)
 
     def keep(seed, point, chosen):
         output = str(Path(options.output, f"seed{seed}.nc"))
         write_seed(options, chosen, str(seed), output, point)
 
-    expected = plan_point(settings, r, beta, known)
+    expected = plan_point(scene, settings, known)
     run_settings = completed(settings, expected)
-    with Progress(options.experiment, run_settings, r, beta, expected.seeds) as progress:
-        planned, error, seeds = run(settings, r, beta, known, keep, progress)
+    with Progress(options.experiment, scene, run_settings, expected.seeds) as progress:
+        planned, error, seeds = run(scene, settings, known, keep, progress)
     met = "met" if error.stderr <= settings["target_stderr"] else "NOT met"
     print(
         f"{options.output}: {seeds} seeds ({planned.seeds} planned), standard error "
@@ -151,6 +154,7 @@ def costs(options: argparse.Namespace) -> None:
 def _pilots(name: str, settings: dict[str, Any], folder: Path):
     """The pilots of a sweep by (r, beta), and the CPU seconds spent on missing ones."""
     from roughgas.planning.pilot import explore, read_pilot, write_pilot
+    from roughgas.scene import build
     from roughgas.simulation.progress import Bar
 
     axes, found, begin = settings["sweep"], {}, time.process_time()
@@ -160,6 +164,7 @@ def _pilots(name: str, settings: dict[str, Any], folder: Path):
                 bar.reach(len(found), f"r = {r}, beta = {beta}")
                 path = folder / PILOT.format(experiment=name, r=r, beta=beta)
                 if not path.exists():
-                    write_pilot(path, explore(settings, float(r), float(beta)))
+                    scene = build(settings, float(r), float(beta))
+                    write_pilot(path, explore(scene, settings))
                 found[str(r), str(beta)] = read_pilot(path)
     return found, time.process_time() - begin

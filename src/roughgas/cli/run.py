@@ -94,13 +94,15 @@ def _run_seeds(
     """Simulate a point, for each seed an output."""
     from roughgas import config
     from roughgas.planning.reach import complete
+    from roughgas.scene import build
     from roughgas.simulation.point import run_point
     from roughgas.simulation.progress import Progress
 
-    settings = complete(config.point_settings(settings), r, beta)
+    scene = build(settings, r, beta)
+    settings = complete(scene, config.point_settings(settings))
     for label, seed, output in zip(options.seed, seeds, outputs, strict=True):
-        with Progress(f"{options.experiment}, seed {label}", settings, r, beta) as progress:
-            point = run_point(settings, r, beta, seed, progress)
+        with Progress(f"{options.experiment}, seed {label}", scene, settings) as progress:
+            point = run_point(scene, settings, seed, progress)
         written = _write(options, settings, label, output, point)
         if options.json:
             print(as_json(_record(output, written), indent=None), flush=True)

@@ -50,7 +50,7 @@ def fingerprint() -> str:
     import numpy as np
 
     from roughgas.kernel.layout import new_state
-    from roughgas.kernel.record import Plan, columns, record
+    from roughgas.kernel.record import Sampling, columns, record
     from roughgas.scene import build
     from roughgas.scene.initial import lattice
 
@@ -60,7 +60,7 @@ def fingerprint() -> str:
     velocity = (numbers * 37 % 101 - 50) / 32.0
     state = new_state(scene, position, velocity, np.zeros((PARTICLES, 1)))
     rows = np.empty((10, len(columns(2, True))))
-    record(state, scene, Plan(np.inf, 100, 0), rows)
+    record(state, scene, Sampling(np.inf, 100, 0), rows)
     return hashlib.sha256(rows.tobytes()).hexdigest()[:16]
 
 

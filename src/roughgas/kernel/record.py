@@ -23,7 +23,7 @@ from roughgas.kernel.state import (
 PATIENCE = 1000.0  # spans to wait for collisions that may never come
 
 
-class Plan(NamedTuple):
+class Sampling(NamedTuple):
     """When to sample: every `interval` of time, or every `collisions`, whichever comes first.
 
     `refresh` is the number of samples after which a cooling gas is refreshed (0: never).

@@ -14,9 +14,8 @@ import numpy as np
 from roughgas.base.errors import InputError
 from roughgas.base.files import write_text
 from roughgas.config.labels import LARGEST_SEED
-from roughgas.scene import Scene, build, check_company
-from roughgas.scene.initial import initial_state
-from roughgas.simulation import cooling, steady
+from roughgas.scene import Scene
+from roughgas.simulation import cooling, schedule, steady
 from roughgas.simulation.energies import Energies, ratio
 from roughgas.simulation.recorder import Recorder
 from roughgas.statistics.averages import period_means
@@ -55,15 +54,14 @@ class Pilot(NamedTuple):
     seconds: float  # CPU time of the kernel that the pilot took
 
 
-def explore(experiment: Mapping[str, Any], r: float, beta: float) -> Pilot:
+def explore(scene: Scene, experiment: Mapping[str, Any]) -> Pilot:
     """Run the pilot of a point. Apart from the times, the same settings give the same numbers.
 
-    Raises InputError for illegal values, CollapseError where contacts accumulate without end.
+    Raises InputError where particles do not fit, CollapseError where contacts accumulate without
+    end.
     """
-    scene = build(experiment, r, beta)
-    check_company(scene, experiment)
-    explorers = {"steady": _explore_driven, "cooling": _explore_cooling}
-    return explorers[experiment["schedule"]["kind"]](scene, experiment)
+    explorers = {steady: _explore_driven, cooling: _explore_cooling}
+    return explorers[schedule.of(experiment)](scene, experiment)
 
 
 def write_pilot(path: str | Path, pilot: Pilot) -> None:
@@ -90,16 +88,15 @@ class Chains(NamedTuple):
 
 def _explore_driven(scene: Scene, experiment: Mapping[str, Any]) -> Pilot:
     """Chains that are made twice as long until they show a steady state and enough of it."""
-    schedule, number = experiment["schedule"], experiment["particles"]
-    every, per_period = schedule["sample_every"], steady.samples_per_period(schedule)
-    recorder = Recorder()
+    every = experiment["schedule"]["sample_every"]
+    per_period = steady.samples_per_period(experiment["schedule"])
+    recorder, number = Recorder(), experiment["particles"]
     streams = np.random.SeedSequence(SEED).spawn(CHAINS)
-    states = [initial_state(scene, experiment, np.random.default_rng(one)) for one in streams]
-    known, periods = [[] for _ in states], SHORTEST
+    gases = [steady.start(scene, experiment, stream, recorder) for stream in streams]
+    known, periods = [[] for _ in gases], SHORTEST
     while True:
-        for state, pieces in zip(states, known, strict=True):
-            rows = recorder.in_time(state, scene, every, periods * per_period)
-            pieces.append(steady.fluctuations(scene, rows, number))
+        for gas, pieces in zip(gases, known, strict=True):
+            pieces.append(gas.energies(gas.in_time(every, periods * per_period)))
         chains = _together(known, per_period)
         length = chains.R.shape[1] * per_period * every
         pace = 2.0 * recorder.collisions / (number * CHAINS * length)

@@ -6,7 +6,7 @@ from statistics import NormalDist
 from typing import Any, NamedTuple
 
 from roughgas.planning.pilot import Pilot
-from roughgas.scene import Scene, build
+from roughgas.scene import Scene
 from roughgas.simulation.cooling import TRANSIENT, rate_of, transient_length
 from roughgas.theory import collisions_to_relax, cooling_ratio, lun_ratio
 
@@ -52,14 +52,13 @@ class Lengths(NamedTuple):
         return self.runs * (self.before + self.transient + self.measured)
 
 
-def plan_point(experiment: Mapping[str, Any], r: float, beta: float, pilot: Pilot) -> Plan:
+def plan_point(scene: Scene, experiment: Mapping[str, Any], pilot: Pilot) -> Plan:
     """The plan of a point: for its `target_stderr`, or for the lengths and seeds that are set.
 
     Half of a run, or more where R remembers long, is measured; the number of seeds follows. So,
     where a point needs more than the fewest seeds, its cost is proportional to the inverse square
-    of its error, but for the logarithm of what may be left of the transient. Raises InputError.
+    of its error, but for the logarithm of what may be left of the transient.
     """
-    scene = build(experiment, r, beta)
     if "target_stderr" in experiment:
         schedule, lengths = _chosen(scene, experiment, pilot)
         enough = pilot.variance / (lengths.runs * lengths.measured * _target(experiment) ** 2)

@@ -9,6 +9,7 @@ import numpy as np
 from roughgas.data.point import Point
 from roughgas.planning.pilot import Pilot, explore
 from roughgas.planning.plan import Plan, plan_point
+from roughgas.scene import Scene
 from roughgas.simulation.point import run_point
 from roughgas.statistics.intervals import Error, pooled
 
@@ -18,7 +19,7 @@ Keep = Callable[[int, Point, dict[str, Any]], None]
 
 
 def reach(
-    experiment: Mapping[str, Any], r: float, beta: float, pilot: Pilot, keep: Keep, progress: Any
+    scene: Scene, experiment: Mapping[str, Any], pilot: Pilot, keep: Keep, tell: Any
 ) -> tuple[Plan, Error, int]:
     """Make seeds 1, 2, ... of a point until its `target_stderr` is met; the plan, the error reached
     and the number of seeds.
@@ -27,13 +28,13 @@ def reach(
     that seed again. The planned number comes first; where the error is then still larger than the
     target, as many more as its size calls for, and so on, up to MOST times as many as planned.
     """
-    plan = plan_point(experiment, r, beta, pilot)
+    plan = plan_point(scene, experiment, pilot)
     settings = completed(experiment, plan)
     expected = expectations(experiment, plan)
     runs, wanted = [], plan.seeds
     while True:
         while len(runs) < wanted:
-            point = run_point(settings, r, beta, len(runs) + 1, progress)
+            point = run_point(scene, settings, len(runs) + 1, tell)
             runs.append([point.variables[name] for name in ("R", "R_stderr", "R_dof")])
             keep(len(runs), point._replace(variables=point.variables | expected), settings)
         error = pooled(*np.array(runs, float).T)
@@ -48,11 +49,11 @@ def completed(experiment: Mapping[str, Any], plan: Plan) -> dict[str, Any]:
     return settings | {"schedule": plan.schedule}
 
 
-def complete(experiment: Mapping[str, Any], r: float, beta: float) -> dict[str, Any]:
+def complete(scene: Scene, experiment: Mapping[str, Any]) -> dict[str, Any]:
     """The same for a point without a plan; the settings as they are where they have no target."""
     if "target_stderr" not in experiment:
         return dict(experiment)
-    return completed(experiment, plan_point(experiment, r, beta, explore(experiment, r, beta)))
+    return completed(experiment, plan_point(scene, experiment, explore(scene, experiment)))
 
 
 def expectations(experiment: Mapping[str, Any], plan: Plan) -> dict[str, float]:

@@ -5,6 +5,7 @@ from typing import Any, NamedTuple
 
 from roughgas.planning.pilot import Pilot
 from roughgas.planning.plan import Plan, plan_point
+from roughgas.scene import build
 
 HEAD = {
     "experiment": "experiment",
@@ -37,7 +38,8 @@ class Row(NamedTuple):
 def row(name: str, experiment: Mapping[str, Any], pilots: Mapping[tuple[str, str], Pilot], block):
     """The row of an experiment, from the pilots of its points; `block` seeds are made by a job."""
     plans = [
-        plan_point(experiment, float(r), float(beta), pilot) for (r, beta), pilot in pilots.items()
+        plan_point(build(experiment, float(r), float(beta)), experiment, pilot)
+        for (r, beta), pilot in pilots.items()
     ]
     target = experiment.get("target_stderr")
     jobs = sum(1 if target else -(-plan.seeds // block) for plan in plans)

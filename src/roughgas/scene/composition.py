@@ -46,6 +46,7 @@ def build(experiment: Mapping[str, Any], r: float, beta: float) -> Scene:
         raise InputError("roughness beta", beta, "be -1 where particles do not spin")
     closed = is_closed(effects)
     _check_composition(lengths, effects, closed)
+    _check_company(experiment.get("particles"), effects)
     return Scene(
         box=(None, *lengths[1:]) if closed else lengths,
         restitution=float(r),
@@ -54,15 +55,6 @@ def build(experiment: Mapping[str, Any], r: float, beta: float) -> Scene:
         extent=_extent(lengths, closed),
         middle=0.0 if lengths[1] is None else lengths[1] / 2.0,
     )
-
-
-def check_company(scene: Scene, experiment: Mapping[str, Any]) -> None:
-    """Raise InputError where a single particle would rest in its box, and have no energy, or have
-    nobody to be kicked with."""
-    if experiment["particles"] == 1 and scene.effects.gravity is None:
-        raise InputError("particles", 1, "be at least 2 where there is no floor to meet")
-    if experiment["particles"] == 1 and scene.effects.thermostat is not None:
-        raise InputError("particles", 1, "be at least 2 where a thermostat kicks pairs")
 
 
 def is_closed(effects: Effects) -> bool:
@@ -106,3 +98,11 @@ def _check_composition(lengths, effects, closed):
         raise InputError("box", list(lengths), "be open above exactly where there is gravity")
     if closed and effects.shear is not None:
         raise InputError("effects", "walls and shear", "not close the axis that is sheared along")
+
+
+def _check_company(particles, effects):
+    """Refuse a single particle that would rest in its box, or that nothing could be kicked with."""
+    if particles == 1 and effects.gravity is None:
+        raise InputError("particles", 1, "be at least 2 where there is no floor to meet")
+    if particles == 1 and effects.thermostat is not None:
+        raise InputError("particles", 1, "be at least 2 where a thermostat kicks pairs")

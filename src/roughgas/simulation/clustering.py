@@ -16,10 +16,9 @@ from roughgas.base.version import __version__
 from roughgas.config import as_text
 from roughgas.data import checkpoint
 from roughgas.kernel.cache import PACKAGE, source_hash
-from roughgas.kernel.state import State
-from roughgas.scene import DIAMETER, Scene, build
-from roughgas.scene.initial import initial_state
-from roughgas.simulation.energies import energies, restored
+from roughgas.scene import DIAMETER, build
+from roughgas.simulation.energies import restored
+from roughgas.simulation.gas import Gas
 from roughgas.simulation.recorder import Recorder
 
 SHAPING = (
@@ -27,6 +26,7 @@ SHAPING = (
     "scene/initial.py",
     "simulation/clustering.py",
     "simulation/energies.py",
+    "simulation/gas.py",
     "simulation/recorder.py",
 )
 """Sources that shape a film besides those that are compiled."""
@@ -55,22 +55,23 @@ def run(
     OSError where the checkpoint cannot be written.
     """
     scene = build(settings, float(settings["r"]), float(settings["beta"]))
-    recorder = Recorder()
-    state = initial_state(scene, settings, np.random.default_rng(settings["seed"]))
+    gas = Gas.start(scene, settings, np.random.default_rng(settings["seed"]))
+    leg = gas.count(settings["collisions"] / settings["frames"])
     owner = belongs_to(settings)
-    film = _resumed(path, owner, state, recorder, watcher)
+    film = _resumed(path, owner, gas, watcher)
     if film is None:
-        film = _begin(state, scene, settings, recorder)
+        film = _begin(gas, settings)
+    gas.cool(refresh_every=leg)
     first, last = sum(map(len, film["time"])), settings["frames"]
-    watcher.reached(first - 1, recorder.collisions, False)
+    watcher.reached(first - 1, gas.recorder.collisions, False)
     for frame in range(first, last + 1):
-        rows = recorder.in_collisions(state, scene, _leg(settings), 1, refresh=1)
-        _add_frame(film, frame, rows, state, scene, settings)
+        gas.in_collisions(leg, 1)
+        _add_frame(film, frame * leg, gas, settings)
         saved = frame % every == 0 and frame < last
         if saved:
-            checkpoint.save(path, owner, state, _joined(film) | _books(recorder))
-        watcher.reached(frame, recorder.collisions, saved)
-    return _variables(film, scene, settings, recorder), _attributes(settings)
+            checkpoint.save(path, owner, gas.state, _joined(film) | _costs(gas.recorder))
+        watcher.reached(frame, gas.recorder.collisions, saved)
+    return _variables(film, gas, settings), _attributes(settings)
 
 
 def belongs_to(settings: Mapping[str, Any]) -> str:
@@ -82,48 +83,43 @@ def belongs_to(settings: Mapping[str, Any]) -> str:
     return as_text(about | {"numpy": np.__version__})
 
 
-def _resumed(path, owner, state, recorder, watcher) -> Film | None:
-    """The film so far, `state` and `recorder` as they were; None where there is none to go on."""
+def _resumed(path, owner, gas, watcher) -> Film | None:
+    """Return the film so far, and bring `gas` to its end; None without a checkpoint."""
     try:
-        saved = checkpoint.restore(path, owner, state)
+        saved = checkpoint.restore(path, owner, gas.state)
     except FileNotFoundError:
         return None
     except checkpoint.UnusableCheckpoint as error:
         watcher.fresh(f"{path} {error}")
         return None
-    for name in _books(recorder):
-        setattr(recorder, name, saved.pop(name).item())
+    for name in _costs(gas.recorder):
+        setattr(gas.recorder, name, saved.pop(name).item())
     return {name: [array] for name, array in saved.items()}
 
 
-def _begin(state, scene, settings, recorder) -> Film:
-    """A gas in equilibrium as smooth elastic disks, and its frame."""
-    elastic = scene._replace(restitution=1.0, roughness=-1.0)
-    thermal = max(1, round(settings["thermalise"] * settings["particles"] / 2))
-    rows = recorder.in_collisions(state, elastic, thermal, 1, refresh=1)
+def _begin(gas, settings) -> Film:
+    """Return the frame of a gas in equilibrium as smooth elastic disks."""
+    gas.thermalise(settings["thermalise"])
+    gas.refresh()
     film: Film = {}
-    _add_frame(film, 0, rows, state, scene, settings)
+    _add_frame(film, 0, gas, settings)
     return film
 
 
-def _leg(settings) -> int:
-    """Collisions from one frame to the next; a collision has two partners."""
-    return max(1, round(settings["collisions"] * settings["particles"] / 2 / settings["frames"]))
-
-
-def _add_frame(film, frame, rows, state, scene, settings) -> None:
-    number = settings["particles"]
-    present = energies(rows, number, scene.effects.spin.inertia)
-    E_trans, E_rot = restored(present, rows["exponent"])
-    x, y, spin = _particles(state, scene)
+def _add_frame(film, collisions, gas, settings) -> None:
+    """Add the frame of a gas just refreshed, so many collisions since it began to cool."""
+    box = gas.scene.box
+    E_trans, E_rot = restored(gas.energies(gas.sample), gas.sample["exponent"])
+    x, y = (np.mod(gas.state.trajectory[:, k], box[k]) for k in range(2))
+    spin = gas.state.spin[:, 0]
     square = np.mean(spin**2)
-    seen = _in_window(x, y, scene.box, settings["window"])
+    seen = _in_window(x, y, box, settings["window"])
     added = {
-        "time": rows["time"],
-        "collisions_per_particle": np.array([frame * _leg(settings) * 2.0 / number]),
+        "time": gas.sample["time"],
+        "collisions_per_particle": np.array([collisions * 2.0 / gas.particles]),
         "E_trans": E_trans,
         "E_rot": E_rot,
-        "count": _count(x, y, scene.box, settings["cell"])[None],
+        "count": _count(x, y, box, settings["cell"])[None],
         "disks": np.array([seen.sum()]),
         "disk_x": x[seen].astype(np.float32),
         "disk_y": y[seen].astype(np.float32),
@@ -131,12 +127,6 @@ def _add_frame(film, frame, rows, state, scene, settings) -> None:
     }
     for name, values in added.items():
         film.setdefault(name, []).append(values)
-
-
-def _particles(state: State, scene: Scene) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """x, y, folded into the box, and spin of all particles, just refreshed: at one instant."""
-    x, y = (np.mod(state.trajectory[:, k], scene.box[k]) for k in range(2))
-    return x, y, state.spin[:, 0]
 
 
 def _in_window(x, y, box, side) -> np.ndarray:
@@ -163,18 +153,18 @@ def _joined(film: Film) -> dict[str, np.ndarray]:
     return {name: np.concatenate(parts) for name, parts in film.items()}
 
 
-def _books(recorder: Recorder) -> dict[str, np.ndarray]:
-    """What a recorder sums up over its runs."""
+def _costs(recorder: Recorder) -> dict[str, np.ndarray]:
+    """Return what a recorder sums up over its runs."""
     return {
         name: np.array(getattr(recorder, name)) for name in ("seconds", "collisions", "touched")
     }
 
 
-def _variables(film, scene, settings, recorder) -> dict[str, Any]:
-    found = _joined(film)
+def _variables(film, gas, settings) -> dict[str, Any]:
+    found, recorder = _joined(film), gas.recorder
     start = found["E_trans"][0]
-    model = scene.effects.contact_time
-    for name, length in zip("xy", scene.box, strict=True):
+    model = gas.scene.effects.contact_time
+    for name, length in zip("xy", gas.scene.box, strict=True):
         number = cells(length, settings["cell"])
         found[name] = (np.arange(number) + 0.5) * (length / number)
     return found | {

@@ -6,16 +6,20 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from roughgas.base.errors import InputError
 from roughgas.effects import inertia
 from roughgas.scene import Scene
-from roughgas.scene.initial import initial_state
-from roughgas.simulation.books import Books, books, exchange
-from roughgas.simulation.energies import Energies, energies, ratio, ratio_of_means, restored
+from roughgas.simulation.books import Books, exchange
+from roughgas.simulation.energies import Columns, Energies, ratio, ratio_of_means, restored
+from roughgas.simulation.gas import Gas, elastic  # noqa: F401  (elastic: for movies, until they drive a Gas)
+from roughgas.simulation.recorder import Recorder
 from roughgas.statistics.errors import autocorrelation_time
 from roughgas.statistics.intervals import Error
 from roughgas.statistics.plateau import find_plateau
 from roughgas.theory import friction_relaxation_rate, relaxation_rate
 
+UNIT = "collisions per particle"
+LENGTH = "plateau"  # key of the schedule: how long R is measured
 SAMPLES_PER_REFRESH = 4
 TRANSIENT = 10.0, 1000.0  # collisions per particle: theory's estimate is kept between these
 
@@ -29,35 +33,60 @@ class Cooled(NamedTuple):
     after: Books
 
 
-def run(scene: Scene, experiment: Mapping[str, Any], seed: int, recorder) -> dict[str, Any]:
+def check(drives: list[str]) -> None:
+    """Raise InputError where effects of a scene, those named, drive the gas."""
+    if drives:
+        legal = f"be steady where there is a drive: {', '.join(drives)}"
+        raise InputError("schedule.kind", "cooling", legal)
+
+
+def length(scene: Scene, schedule: Mapping[str, Any]) -> float:
+    """Return the collisions per particle that a point simulates, in all replicas together."""
+    transient = transient_length(scene, schedule["relaxation_times"])
+    return schedule["replicas"] * (schedule["thermalise"] + transient + schedule["plateau"])
+
+
+def passed(time: float, collisions: int, particles: int) -> float:
+    """Return how long a simulation has been, in collisions per particle."""
+    return 2.0 * collisions / particles
+
+
+def start(scene: Scene, experiment: Mapping[str, Any], seed: Any, recorder=None) -> Gas:
+    """Return the first replica of a point, thermalised, as dissipation is switched on.
+
+    A random generator as `seed` is used as it is.
+    """
+    stream = seed if isinstance(seed, np.random.Generator) else _streams(seed, 1)[0]
+    return _replica(scene, experiment, stream, recorder)
+
+
+def sample(gas: Gas, every: float, samples: int) -> Columns:
+    """Return columns, sampled every so many collisions per particle."""
+    return gas.in_collisions(gas.count(every), samples)
+
+
+def run(
+    scene: Scene, experiment: Mapping[str, Any], seed: int, recorder: Recorder
+) -> dict[str, Any]:
     """Variables of the point (see roughgas.data.point), from `replicas` independent simulations.
 
     Each starts as a smooth elastic gas, thermalised for `thermalise` collisions per particle. Then
     dissipation is switched on for the time that the rate equations say R needs to settle,
     `relaxation_times` of its e-folds, and for `plateau` collisions per particle more.
     """
-    schedule, number = experiment["schedule"], experiment["particles"]
+    schedule = experiment["schedule"]
     transient = transient_length(scene, schedule["relaxation_times"])
     every = schedule["sample_every"]
     samples = math.ceil((transient + schedule["plateau"]) / every)
-    seeds = np.random.SeedSequence(seed).spawn(schedule["replicas"])
-    runs = []
-    for one in seeds:
-        state = initial_state(scene, experiment, np.random.default_rng(one))
-        runs.append(_cool(state, scene, schedule, number, samples, recorder))
-    ensemble = _together(runs)
+    streams = _streams(seed, schedule["replicas"])
+    gases = (_replica(scene, experiment, stream, recorder) for stream in streams)
+    ensemble = _together([_cool(gas, every, samples) for gas in gases])
     passed = every * np.arange(1, samples + 1)
-    exchanged = exchange(ensemble.before, ensemble.after, scene, number)
+    exchanged = exchange(ensemble.before, ensemble.after, scene, experiment["particles"])
     if scene.effects.spin is None:
         first = min(math.ceil(transient / every), samples) - 1
         return _decay(ensemble, passed, first) | exchanged
     return _measure(ensemble, passed, transient, every) | exchanged
-
-
-def length(scene: Scene, schedule: Mapping[str, Any]) -> float:
-    """Collisions per particle to be simulated, in all replicas together."""
-    transient = transient_length(scene, schedule["relaxation_times"])
-    return schedule["replicas"] * (schedule["thermalise"] + transient + schedule["plateau"])
 
 
 def transient_length(scene: Scene, relaxation_times: float) -> float:
@@ -79,28 +108,25 @@ def rate_of(scene: Scene) -> float:
     return float(friction_relaxation_rate(r, beta, friction.mu, dimension, q))
 
 
-def _cool(state, scene, schedule, number, samples, recorder):
+def _streams(seed, replicas):
+    return np.random.SeedSequence(seed).spawn(replicas)
+
+
+def _replica(scene, experiment, stream, recorder):
+    gas = Gas.start(scene, experiment, np.random.default_rng(stream), recorder)
+    gas.thermalise(experiment["schedule"]["thermalise"])
+    gas.cool(SAMPLES_PER_REFRESH * gas.count(experiment["schedule"]["sample_every"]))
+    return gas
+
+
+def _cool(gas, every, samples):
     """One replica, from when dissipation is switched on."""
-    per_unit = number / 2  # a collision has two partners
-    thermal = math.ceil(per_unit * schedule["thermalise"])
-    before = recorder.in_collisions(state, elastic(scene), thermal, 1)
-    q = inertia(scene.effects)
-    start = energies(before, number, q).translational[0]
-    opened = books(state, scene)
-    collisions = max(1, round(per_unit * schedule["sample_every"]))
-    rows = recorder.in_collisions(state, scene, collisions, samples, SAMPLES_PER_REFRESH)
-    present = energies(rows, number, q).map(lambda part: part / start)
-    opened, closed = (Books(*(part / start for part in b)) for b in (opened, books(state, scene)))
-    return Cooled(present, rows["exponent"].astype(int), opened, closed)
-
-
-def elastic(scene: Scene) -> Scene:
-    """The scene with smooth elastic particles, and side walls if it has any."""
-    walls = scene.effects.walls
-    if walls is not None:
-        walls = walls._replace(restitution=1.0, roughness=-1.0)
-    effects = scene.effects._replace(walls=walls)
-    return scene._replace(restitution=1.0, roughness=-1.0, effects=effects)
+    unit = gas.energies(gas.sample).translational[0]
+    before = gas.books()
+    rows = sample(gas, every, samples)
+    present = gas.energies(rows).map(lambda part: part / unit)
+    before, after = (Books(*(part / unit for part in b)) for b in (before, gas.books()))
+    return Cooled(present, rows["exponent"].astype(int), before, after)
 
 
 def _together(runs):

@@ -1,6 +1,6 @@
 """One point of an experiment: from its settings to the dataset's variables."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 import numpy as np
@@ -8,40 +8,35 @@ import numpy as np
 from roughgas.base.version import __version__
 from roughgas.data.point import Point
 from roughgas.kernel.cache import source_hash
-from roughgas.scene import Scene, build, check_company
-from roughgas.scene.initial import initial_state
-from roughgas.simulation import cooling, steady
-from roughgas.simulation.recorder import Progress, Recorder
-
-PROTOCOLS = {"steady": steady, "cooling": cooling}
+from roughgas.scene import Scene, build
+from roughgas.simulation import schedule
+from roughgas.simulation.gas import Gas
+from roughgas.simulation.recorder import Recorder
 
 
 def run_point(
+    scene: Scene,
     experiment: Mapping[str, Any],
-    r: float,
-    beta: float,
     seed: int,
-    progress: Progress | None = None,
+    tell: Callable[[float, int], None] | None = None,
 ) -> Point:
     """Simulate one point and measure it.
 
-    `experiment` is an experiment's settings as roughgas.config.experiment gives them; the same
-    settings, r, beta and seed give the same numbers to the last bit, but for `kernel_seconds`.
-    `progress(time, collisions)` is called as the simulation goes on. Raises InputError for illegal
-    values, CollapseError where contacts accumulate without end.
+    `experiment` is an experiment's settings as roughgas.config.experiment gives them, and `scene`
+    what roughgas.scene.build makes of them at r and beta. The same settings, r, beta and seed give
+    the same numbers to the last bit, but for `kernel_seconds`. `tell(time, collisions)` is called
+    as the simulation goes on. Raises InputError where the particles do not fit, CollapseError where
+    contacts accumulate without end.
     """
-    scene = build(experiment, r, beta)
-    check_company(scene, experiment)
-    recorder = Recorder(progress)
-    protocol = PROTOCOLS[experiment["schedule"]["kind"]]
-    measured = protocol.run(scene, experiment, seed, recorder)
+    recorder = Recorder(tell)
+    measured = schedule.of(experiment).run(scene, experiment, seed, recorder)
     return Point(
         variables=measured
         | {"collisions": recorder.collisions, "kernel_seconds": recorder.seconds}
         | _contact_time(scene, recorder),
         attributes={
-            "r": float(r),
-            "beta": float(beta),
+            "r": scene.restitution,
+            "beta": scene.roughness,
             "seed": int(seed),
             "particles": experiment["particles"],
             "dimension": len(scene.box),
@@ -76,28 +71,23 @@ def _contact_time(scene, recorder):
 
 
 def effort(experiment: Mapping[str, Any], r: float, beta: float) -> float:
-    """About how much work a point is compared with others, in particles times collisions of each.
+    """Return about how much work a point is, in particles times collisions of each.
 
     Meant for the order of jobs: a driven gas is taken for one whose particles meet once a T, and a
     point with a target for one that takes as long as any other.
     """
+    number = float(experiment["particles"])
     if "target_stderr" in experiment:
-        return float(experiment["particles"])
-    return experiment["particles"] * length(experiment, r, beta)
-
-
-def length(experiment: Mapping[str, Any], r: float, beta: float) -> float:
-    """How much a point simulates: T, or of a gas that cools collisions per particle."""
-    protocol = PROTOCOLS[experiment["schedule"]["kind"]]
-    return protocol.length(build(experiment, r, beta), experiment["schedule"])
+        return number
+    kind = schedule.of(experiment)
+    return number * kind.length(build(experiment, r, beta), experiment["schedule"])
 
 
 def compile_kernels(experiments: Iterable[Mapping[str, Any]]) -> int:
-    """Compile, into numba's cache, every kernel that the experiments' sweeps need; how many."""
+    """Compile, into numba's cache, the kernels of the experiments' sweeps; return how many."""
     needed = kernels(experiments)
     for scene, experiment in needed.values():
-        state = initial_state(scene, experiment, np.random.default_rng(0))
-        Recorder().in_time(state, scene, 1.0, 0)
+        Gas.start(scene, experiment, np.random.default_rng(0)).in_time(1.0, 0)
     return len(needed)
 
 

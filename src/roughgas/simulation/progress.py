@@ -6,7 +6,10 @@ import time
 import warnings
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
-from typing import Any, Self, TypeVar
+from typing import TYPE_CHECKING, Any, Self, TypeVar
+
+if TYPE_CHECKING:
+    from roughgas.scene import Scene
 
 BAR = "{desc}: {percentage:3.0f}%|{bar}| {n_fmt} of {total_fmt}{unit}, {remaining} left{postfix}"
 SECONDS_BETWEEN = 0.1  # looks of a bar
@@ -93,30 +96,27 @@ class Progress(Bar):
     def __init__(
         self,
         name: str,
+        scene: "Scene",
         experiment: Mapping[str, Any],
-        r: float,
-        beta: float,
         seeds: int = 1,
         stream: Any = None,
         quiet: bool = False,
     ) -> None:
-        """`experiment` is a complete one: it says how long it is run."""
-        from roughgas.simulation.point import length
+        """`experiment` must be complete: its schedule says how long it runs."""
+        from roughgas.simulation import schedule
 
         self._name, self._compiling = name, True
-        self._particles = experiment["particles"]
-        self._driven = experiment["schedule"]["kind"] == "steady"
+        self._particles, self._kind = experiment["particles"], schedule.of(experiment)
         self._before = self._now = 0.0  # lengths: of the simulations that are over, of this one
-        total = round(seeds * length(experiment, r, beta))
-        unit = "T" if self._driven else "collisions per particle"
-        super().__init__(f"{name} (compiling)", total, unit, stream, quiet)
+        total = round(seeds * self._kind.length(scene, experiment["schedule"]))
+        super().__init__(f"{name} (compiling)", total, self._kind.UNIT, stream, quiet)
 
     def __call__(self, simulated: float, collisions: int) -> None:
-        """Of the present simulation `simulated` (in T) and so many `collisions` are over."""
+        """Report simulated time (T) and collisions of the present simulation so far."""
         if self._compiling:
             self._compiling = False
             self.call(self._name)
-        now = simulated if self._driven else 2.0 * collisions / self._particles
+        now = self._kind.passed(simulated, collisions, self._particles)
         if now < self._now:  # another one has begun
             self._before += self._now
         self._now = now

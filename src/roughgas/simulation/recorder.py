@@ -7,7 +7,7 @@ import numpy as np
 
 from roughgas.base.errors import CollapseError
 from roughgas.kernel.clock import INSTANT
-from roughgas.kernel.record import Plan, columns, record
+from roughgas.kernel.record import Sampling, columns, record
 from roughgas.kernel.state import (
     BASE,
     COLLISIONS,
@@ -26,58 +26,55 @@ REPORTS = 50
 NAMED = 8  # of the particles in a collapse
 UNLIMITED = 2**62
 
-Progress = Callable[[float, int], None]
-
 
 class Recorder:
-    """Runs scenes and sums up, over all its runs, the kernel's seconds, collisions, and contacts
+    """Sums up what gases have cost together: CPU seconds in the kernel, collisions, and contacts
     that the contact-time model touched.
 
-    `progress(time, collisions)` is called some fifty times a run.
+    `tell(time, collisions)` is called some fifty times a run.
     """
 
-    def __init__(self, progress: Progress | None = None):
+    def __init__(self, tell: Callable[[float, int], None] | None = None):
         self.seconds = 0.0
         self.collisions = 0
         self.touched = 0
-        self.progress = progress
+        self._tell = tell
 
-    def in_time(self, state: State, scene: Scene, interval: float, samples: int):
-        """Columns (name -> array of length `samples`), sampled every `interval` T."""
-        return self._run(state, scene, Plan(float(interval), UNLIMITED, 0), samples)
+    def run(
+        self, state: State, scene: Scene, sampling: Sampling, samples: int
+    ) -> dict[str, np.ndarray]:
+        """Advance `state`; return columns (name -> array of length `samples`).
 
-    def in_collisions(self, state: State, scene: Scene, collisions: int, samples: int, refresh=0):
-        """The same, sampled every so many collisions; the gas is refreshed every `refresh` samples.
-
-        That changes the unit of velocity, to 2^exponent a/T: see measure.energies.restored.
+        Raises CollapseError where contacts accumulate without end.
         """
-        return self._run(state, scene, Plan(np.inf, collisions, refresh), samples)
-
-    def once(self, state: State, scene: Scene, interval: float, collisions: int):
-        """One sample (name -> array of length 1), after `interval` T or so many collisions,
-        whichever comes first."""
-        return self._run(state, scene, Plan(float(interval), collisions, 0), 1)
-
-    def _run(self, state, scene, plan, samples):
         names = columns(len(scene.box), scene.effects.spin is not None)
         rows = np.empty((samples, len(names)))
-        record(state, scene, plan, rows[:0])  # compiles, or fetches the kernel from its cache
+        record(state, scene, sampling, rows[:0])  # compiles, or fetches the kernel from its cache
         begin = time.process_time()
         before = state.counts.copy()
         length = max(1, -(-samples // REPORTS))
-        if plan.refresh > 0:  # which the kernel counts from the start of each call
-            length = -(-length // plan.refresh) * plan.refresh
+        if sampling.refresh > 0:  # which the kernel counts from the start of each call
+            length = -(-length // sampling.refresh) * sampling.refresh
         for first in range(0, samples, length):
             part = rows[first : first + length]
-            filled = record(state, scene, plan, part)
-            if filled < len(part):
+            if record(state, scene, sampling, part) < len(part):
                 raise _collapse(state, scene)
-            if self.progress:
-                self.progress(float(part[-1, 0]), int(part[-1, 1]))
+            if self._tell:
+                self._tell(float(part[-1, 0]), int(part[-1, 1]))
         self.seconds += time.process_time() - begin
         self.collisions += state.counts[COLLISIONS] - before[COLLISIONS]
         self.touched += state.counts[TOUCHED] - before[TOUCHED]
         return dict(zip(names, rows.T, strict=True))
+
+    # for callers that do not drive a Gas yet
+    def in_time(self, state: State, scene: Scene, interval: float, samples: int):
+        return self.run(state, scene, Sampling(float(interval), UNLIMITED, 0), samples)
+
+    def in_collisions(self, state: State, scene: Scene, collisions: int, samples: int, refresh=0):
+        return self.run(state, scene, Sampling(np.inf, collisions, refresh), samples)
+
+    def once(self, state: State, scene: Scene, interval: float, collisions: int):
+        return self.run(state, scene, Sampling(float(interval), collisions, 0), 1)
 
 
 def _collapse(state, scene):

@@ -6,10 +6,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from roughgas.scene import build, check_company
-from roughgas.scene.initial import initial_state
-from roughgas.simulation.cooling import SAMPLES_PER_REFRESH
-from roughgas.simulation.recorder import Recorder
+from roughgas.scene import build
+from roughgas.simulation import schedule
 
 WARM_UP = 100  # collisions per particle, before anything is timed
 SECONDS = 0.3  # of CPU time, about, that a run takes
@@ -45,17 +43,15 @@ def measure(
     Raises InputError for illegal values, CollapseError where contacts accumulate without end.
     """
     scene = build(settings, r, beta)
-    check_company(scene, settings)
-    state = initial_state(scene, settings, np.random.default_rng(0))
-    refresh = SAMPLES_PER_REFRESH if settings["schedule"]["kind"] == "cooling" else 0
-    each = max(1, settings["particles"] // 2)  # a collision has two partners
+    gas = schedule.of(settings).start(scene, settings, np.random.default_rng(0))
+    recorder, each = gas.recorder, gas.count(1.0)
 
     def rate(samples):
-        recorder = Recorder()
-        recorder.in_collisions(state, scene, each, samples, refresh)
+        collisions, seconds = recorder.collisions, recorder.seconds
+        gas.in_collisions(each, samples)
         done()
-        return recorder.collisions / max(recorder.seconds, 1e-9)
+        return (recorder.collisions - collisions) / max(recorder.seconds - seconds, 1e-9)
 
     samples = max(1, round(rate(WARM_UP) * SECONDS / each))
     rates = [rate(samples) for _ in range(runs)]
-    return Speed(name, r, beta, settings["particles"], len(scene.box), rates)
+    return Speed(name, r, beta, gas.particles, len(scene.box), rates)

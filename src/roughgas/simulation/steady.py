@@ -5,26 +5,59 @@ from typing import Any
 
 import numpy as np
 
+from roughgas.base.errors import InputError
 from roughgas.effects import inertia
 from roughgas.scene import Scene
-from roughgas.scene.initial import initial_state
-from roughgas.simulation.books import books, exchange
+from roughgas.simulation.books import exchange
 from roughgas.simulation.energies import (
+    Columns,
     Energies,
     energies,
     fluctuation_energies,
     ratio,
     ratio_of_means,
 )
+from roughgas.simulation.gas import Gas
+from roughgas.simulation.recorder import Recorder
 from roughgas.statistics.averages import period_means
 from roughgas.statistics.equilibration import detect_start, is_equilibrated
 from roughgas.statistics.errors import autocorrelation_time, blocking
 from roughgas.statistics.intervals import Error, degrees_of_freedom, is_trusted
 
+UNIT = "T"
+LENGTH = "measure"  # key of the schedule: how long R is measured
 LEAST_LEFT = 0.5  # share of the planned measurement below which a late start is not worth having
 
 
-def run(scene: Scene, experiment: Mapping[str, Any], seed: int, recorder) -> dict[str, Any]:
+def check(drives: list[str]) -> None:
+    """Raise InputError where none of a scene's effects drives the gas."""
+    if not drives:
+        raise InputError("schedule.kind", "steady", "be cooling where no effect drives the gas")
+
+
+def length(scene: Scene, schedule: Mapping[str, Any]) -> float:
+    """Return the T that a point simulates."""
+    return schedule["equilibrate"] + schedule["measure"]
+
+
+def passed(time: float, collisions: int, particles: int) -> float:
+    """Return how long a simulation has been, in T."""
+    return time
+
+
+def start(scene: Scene, experiment: Mapping[str, Any], seed: Any, recorder=None) -> Gas:
+    """Return the gas of a point as it begins; `seed` may be a random generator."""
+    return Gas.start(scene, experiment, np.random.default_rng(seed), recorder)
+
+
+def sample(gas: Gas, every: float, samples: int) -> Columns:
+    """Return columns, sampled every so many T."""
+    return gas.in_time(every, samples)
+
+
+def run(
+    scene: Scene, experiment: Mapping[str, Any], seed: int, recorder: Recorder
+) -> dict[str, Any]:
     """Variables of the point (see roughgas.data.point), from one simulation.
 
     The schedule gives `equilibrate` and `measure` (T), `sample_every` (T), and `period` (T), over
@@ -33,25 +66,25 @@ def run(scene: Scene, experiment: Mapping[str, Any], seed: int, recorder) -> dic
     would be lost or the energies drift in what is left.
     """
     schedule = experiment["schedule"]
-    every, number = schedule["sample_every"], experiment["particles"]
+    every = schedule["sample_every"]
     planned, length = (round(schedule[part] / every) for part in ("equilibrate", "measure"))
     per_period = samples_per_period(schedule)
-    state = initial_state(scene, experiment, np.random.default_rng(seed))
-    before = books(state, scene)
-    rows = recorder.in_time(state, scene, every, planned + length)
-    series = fluctuations(scene, rows, number)
-    start, found = _start(series, planned, length, per_period)
-    window = series.map(lambda part: part[start:])
+    gas = start(scene, experiment, seed, recorder)
+    before = gas.books()
+    rows = sample(gas, every, planned + length)
+    series = gas.energies(rows)
+    first, found = _start(series, planned, length, per_period)
+    window = series.map(lambda part: part[first:])
     translational = period_means(window.translational, per_period)
     return {
         "E_trans": window.translational.mean(),
         "E_trans_stderr": blocking(translational)[0],
         **(_shared(window, per_period, every) if window.rotational is not None else {}),
-        **_unsubtracted(scene, rows, number, start),
-        **exchange(before, books(state, scene), scene, number),
+        **_unsubtracted(gas, rows, first),
+        **exchange(before, gas.books(), scene, gas.particles),
         "equilibrated": found,
-        "measured_from": start * every,
-        "time": rows["time"][start:],
+        "measured_from": first * every,
+        "time": rows["time"][first:],
         "E_trans_series": window.translational,
     }
 
@@ -76,11 +109,6 @@ def _shared(window, per_period, every):
     }
 
 
-def length(scene: Scene, schedule: Mapping[str, Any]) -> float:
-    """T to be simulated."""
-    return schedule["equilibrate"] + schedule["measure"]
-
-
 def samples_per_period(schedule: Mapping[str, Any]) -> int:
     """Samples in a period of the drive; 1 where there is none."""
     return max(
@@ -88,20 +116,20 @@ def samples_per_period(schedule: Mapping[str, Any]) -> int:
     )
 
 
-def fluctuations(scene: Scene, rows: Mapping[str, np.ndarray], number: int) -> Energies:
-    """Energies of samples, in a sheared gas without the mean flow and the mean spin."""
+def fluctuations(scene: Scene, rows: Columns, number: int) -> Energies:
+    """Energies of samples: for callers that do not drive a Gas yet."""
     shear, q = scene.effects.shear, inertia(scene.effects)
     if shear is None:
         return energies(rows, number, q)
     return fluctuation_energies(rows, number, q, shear.velocity / (2.0 * scene.middle))
 
 
-def _unsubtracted(scene, rows, number, start):
-    """The sheared gas with its mean flow and mean spin left in, which is not what is meant by R."""
-    if scene.effects.shear is None:
+def _unsubtracted(gas, rows, first):
+    """The energies of a sheared gas with its mean flow and mean spin left in: no fair R."""
+    if gas.scene.effects.shear is None:
         return {}
-    every = energies(rows, number, inertia(scene.effects))
-    window = every.map(lambda part: part[start:])
+    every = energies(rows, gas.particles, inertia(gas.scene.effects))
+    window = every.map(lambda part: part[first:])
     found = {"E_trans_unsubtracted": window.translational.mean()}
     if window.rotational is not None:
         found["E_rot_unsubtracted"] = window.rotational.mean()

@@ -34,7 +34,7 @@ def start_of(scene, experiment):
 def test_energies_of_a_driven_gas_are_those_of_its_point(name):
     experiment = DRIVEN[name] | {"schedule": STEADY}
     beta = BETA if "spin" in experiment["effects"] else -1.0
-    point = run_point(experiment, R, beta, SEED).variables
+    point = run_point(build(experiment, R, beta), experiment, SEED).variables
     start, every = point["time"][0] - STEADY["sample_every"] / 2, STEADY["sample_every"]
     take = Take(start, 40 * every, 40)
     shots = list(snapshots(experiment, R, beta, SEED, take))
@@ -50,7 +50,7 @@ def test_energies_of_a_driven_gas_are_those_of_its_point(name):
 
 def test_a_cooling_gas_is_the_first_replica_of_its_point():
     experiment = settings("gas", 20, [30, 30]) | {"schedule": COOLING}
-    point = run_point(experiment, R, BETA, SEED).variables
+    point = run_point(build(experiment, R, BETA), experiment, SEED).variables
     first, last = point["measured_from"], point["plateau_end"]
     shots = list(snapshots(experiment, R, BETA, SEED, Take(0.0, 1.3 * last, 4000)))
     passed = np.array([shot.collisions for shot in shots])

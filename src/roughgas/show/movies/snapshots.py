@@ -13,7 +13,7 @@ import numpy as np
 
 from roughgas.kernel.hooks import displacement
 from roughgas.kernel.state import BASE, COLLISIONS, EXPONENT, NOW
-from roughgas.scene import Scene, build, check_company
+from roughgas.scene import Scene, build
 from roughgas.scene.initial import initial_state
 from roughgas.simulation.cooling import SAMPLES_PER_REFRESH, elastic
 from roughgas.simulation.energies import ratio, restored
@@ -81,7 +81,6 @@ def snapshots(
     Raises InputError for illegal values, CollapseError where contacts accumulate without end.
     """
     scene = build(experiment, r, beta)
-    check_company(scene, experiment)
     if experiment["schedule"]["kind"] == "cooling":
         yield from _cooling(scene, experiment, seed, take)
     else:

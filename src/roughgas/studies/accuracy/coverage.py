@@ -135,10 +135,12 @@ def _schedules(usual, changes, reference):
 
 
 def _point(experiment, schedule, corner, seed) -> list[float]:
+    from roughgas.scene import build
     from roughgas.simulation.point import run_point
 
     settings = {**experiment, "schedule": schedule}
-    measured = run_point(settings, float(corner["r"]), float(corner["beta"]), seed).variables
+    scene = build(settings, float(corner["r"]), float(corner["beta"]))
+    measured = run_point(scene, settings, seed).variables
     return [measured[name] for name in MEASURED]
 
 

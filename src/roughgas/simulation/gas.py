@@ -1,0 +1,150 @@
+"""A gas under way: the one loop that points, pilots, movies, films and studies drive.
+
+A Gas is a scene and a state. Whoever drives it says how far it goes and when it is sampled. Samples
+only look at the state: a run that is cut into pieces keeps its bits, if a cooling gas is refreshed
+after the same collisions.
+"""
+
+import math
+from collections.abc import Mapping
+from typing import Any, Protocol, Self
+
+import numpy as np
+
+from roughgas.effects import inertia
+from roughgas.kernel.record import Sampling
+from roughgas.kernel.state import BASE, COLLISIONS, EXPONENT, NOW, ORIGIN, State
+from roughgas.scene import Scene, initial_state
+from roughgas.simulation.books import Books, books
+from roughgas.simulation.energies import Columns, Energies, energies, fluctuation_energies
+from roughgas.simulation.recorder import UNLIMITED, Recorder
+
+
+class Watcher(Protocol):
+    """Looks at the state before and after each step of a gas (see Gas.step), and changes nothing.
+
+    When `after` is called, a cooling gas has not been refreshed yet.
+    """
+
+    def before(self, state: State) -> None: ...
+
+    def after(self, state: State) -> None: ...
+
+
+class Gas:
+    """A scene, the state that it has reached, and the recorder of what this has cost.
+
+    `sample` holds the columns of the last sample, arrays of length 1. A cooling gas is refreshed
+    after every `refresh_every` collisions (0: never).
+    """
+
+    def __init__(self, scene: Scene, state: State, recorder: Recorder | None = None) -> None:
+        self.scene, self.state = scene, state
+        self.recorder = Recorder() if recorder is None else recorder
+        self.watcher: Watcher | None = None
+        self.sample: Columns = {}
+        self.refresh_every = self._begun = 0
+
+    @classmethod
+    def start(
+        cls,
+        scene: Scene,
+        experiment: Mapping[str, Any],
+        rng: np.random.Generator,
+        recorder: Recorder | None = None,
+    ) -> Self:
+        """Return a gas of the experiment's particles on a lattice. Raises InputError."""
+        return cls(scene, initial_state(scene, experiment, rng), recorder)
+
+    @property
+    def particles(self) -> int:
+        """Number of particles."""
+        return len(self.state.changes)
+
+    @property
+    def time(self) -> float:
+        """T since the start."""
+        clock, unit = self.state.clock, 2.0 ** -int(self.state.counts[EXPONENT])
+        return float(clock[ORIGIN] + (clock[BASE] + clock[NOW]) * unit)
+
+    @property
+    def collisions(self) -> int:
+        """Collisions since the start, or since `cool` was called."""
+        return int(self.state.counts[COLLISIONS]) - self._begun
+
+    def count(self, per_particle: float) -> int:
+        """Return the collisions in the whole gas, each with two partners; at least one."""
+        return max(1, round(self.particles / 2 * per_particle))
+
+    def thermalise(self, per_particle: float) -> None:
+        """Let particles, and side walls, collide as smooth elastic ones, so often per particle."""
+        sampling = Sampling(np.inf, math.ceil(self.particles / 2 * per_particle), 0)
+        self._run(sampling, 1, elastic(self.scene))
+
+    def cool(self, refresh_every: int) -> None:
+        """Count collisions anew, and refresh the gas after each `refresh_every` of them."""
+        self.refresh_every, self._begun = refresh_every, int(self.state.counts[COLLISIONS])
+
+    def in_time(self, interval: float, samples: int) -> Columns:
+        """Return columns (name -> array of length `samples`), sampled every `interval` T."""
+        return self._run(Sampling(float(interval), UNLIMITED, 0), samples)
+
+    def in_collisions(self, collisions: int, samples: int) -> Columns:
+        """Return the same, sampled every so many collisions, a divisor of `refresh_every`.
+
+        Refreshing is counted from the start of the call. It changes the unit of velocity, to
+        2^exponent a/T: see roughgas.simulation.energies.restored.
+        """
+        return self._run(Sampling(np.inf, collisions, self.refresh_every // collisions), samples)
+
+    def look(self) -> None:
+        """Take a sample of the present instant."""
+        self._run(Sampling(0.0, 0, 0), 1)
+
+    def refresh(self) -> None:
+        """Take a sample, then bring all particles to the present instant, without momentum."""
+        self._run(Sampling(np.inf, 0, 1), 1)
+
+    def step(self, until: float, collisions: int) -> bool:
+        """Advance to an instant (T) or by so many collisions, whichever comes first.
+
+        A step ends where a cooling gas is refreshed. Returns whether collisions ended it.
+        """
+        begun, every = self.collisions, self.refresh_every
+        most = min(collisions, every - begun % every) if every else collisions
+        if self.watcher:
+            self.watcher.before(self.state)
+        interval = (until - self.time) * 2.0 ** int(self.state.counts[EXPONENT])
+        self._run(Sampling(interval, most, 0), 1)
+        if self.watcher:
+            self.watcher.after(self.state)
+        made = self.collisions - begun
+        if every and made and self.collisions % every == 0:
+            self.refresh()
+        return made == most
+
+    def energies(self, columns: Columns) -> Energies:
+        """Return the energies of samples, of a sheared gas without mean flow and mean spin."""
+        effects, q = self.scene.effects, inertia(self.scene.effects)
+        if effects.shear is None:
+            return energies(columns, self.particles, q)
+        shear_rate = effects.shear.velocity / (2.0 * self.scene.middle)
+        return fluctuation_energies(columns, self.particles, q, shear_rate)
+
+    def books(self) -> Books:
+        """Return the books of energy at the present instant."""
+        return books(self.state, self.scene)
+
+    def _run(self, sampling: Sampling, samples: int, scene: Scene | None = None) -> Columns:
+        columns = self.recorder.run(self.state, scene or self.scene, sampling, samples)
+        self.sample = {name: column[-1:] for name, column in columns.items()}
+        return columns
+
+
+def elastic(scene: Scene) -> Scene:
+    """Return the scene with smooth elastic particles, and side walls if it has any."""
+    walls = scene.effects.walls
+    if walls is not None:
+        walls = walls._replace(restitution=1.0, roughness=-1.0)
+    effects = scene.effects._replace(walls=walls)
+    return scene._replace(restitution=1.0, roughness=-1.0, effects=effects)

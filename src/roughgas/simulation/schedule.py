@@ -1,0 +1,54 @@
+"""Kinds of schedule: all that depends on whether a gas is driven or cools, by one look-up."""
+
+from collections.abc import Mapping
+from typing import Any, Protocol
+
+from roughgas import scene
+from roughgas.kernel import hooks
+from roughgas.scene import Scene
+from roughgas.simulation import cooling, steady
+from roughgas.simulation.energies import Columns
+from roughgas.simulation.gas import Gas
+from roughgas.simulation.recorder import Recorder
+
+
+class Kind(Protocol):
+    """What a module of this room says of schedules of its kind."""
+
+    UNIT: str  # of lengths
+    LENGTH: str  # key of the schedule: how long R is measured
+
+    def check(self, drives: list[str]) -> None:
+        """Raise InputError unless the effects that drive a gas suit the kind."""
+
+    def run(
+        self, scene: Scene, experiment: Mapping[str, Any], seed: int, recorder: Recorder
+    ) -> dict[str, Any]:
+        """Return the variables of a point (see roughgas.data.point)."""
+
+    def length(self, scene: Scene, schedule: Mapping[str, Any]) -> float:
+        """Return how much a point simulates, in UNIT."""
+
+    def passed(self, time: float, collisions: int, particles: int) -> float:
+        """Return how long one simulation has been, in UNIT."""
+
+    def start(self, scene: Scene, experiment: Mapping[str, Any], seed: Any, recorder=None) -> Gas:
+        """Return the gas of a point as its time begins to count; of several, the first."""
+
+    def sample(self, gas: Gas, every: float, samples: int) -> Columns:
+        """Advance a gas; return columns, sampled at intervals of `every` UNIT."""
+
+
+KINDS: dict[str, Kind] = {"steady": steady, "cooling": cooling}
+
+
+def of(experiment: Mapping[str, Any]) -> Kind:
+    """Return the kind of an experiment's schedule."""
+    return KINDS[experiment["schedule"]["kind"]]
+
+
+def check(experiment: Mapping[str, Any]) -> None:
+    """Raise InputError where no point of the experiment could be simulated."""
+    effects = scene.check(experiment).effects
+    drives = [effects._fields[part.place] for part in hooks.present(effects, "drives")]
+    of(experiment).check(drives)
