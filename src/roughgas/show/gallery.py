@@ -7,32 +7,11 @@ from roughgas.base.errors import InputError, not_one_of
 from roughgas.data.reduced import read_reduced
 from roughgas.show import style
 from roughgas.show.catalogue import FIGURES
-from roughgas.show.figures import (
-    fig1a,
-    fig1b,
-    fig2a,
-    fig2b,
-    fig3,
-    fig4,
-    fig5,
-    fig6,
-    fig7,
-    fig8,
-)
+from roughgas.show.figures import fig1a, fig1b, fig2a, fig2b, fig3, fig4, fig5, fig6, fig7, fig8
 
-DRAWN = {
-    "fig1a": fig1a.draw,
-    "fig1b": fig1b.draw,
-    "fig2a": fig2a.draw,
-    "fig2b": fig2b.draw,
-    "fig3": fig3.draw,
-    "fig4": fig4.draw,
-    "fig5": fig5.draw,
-    "fig6": fig6.draw,
-    "fig7": fig7.draw,
-    "fig8": fig8.draw,
-}
-"""What draws a figure: given the datasets of the experiments that the catalogue has for it."""
+MODULES = (fig1a, fig1b, fig2a, fig2b, fig3, fig4, fig5, fig6, fig7, fig8)
+DRAWN = {module.__name__.rpartition(".")[2]: module.draw for module in MODULES}
+"""The function that draws each figure from the datasets of what the catalogue says it shows."""
 
 
 def draw(name: str, inputs: Iterable[str | Path], outputs: Iterable[str | Path]) -> None:

@@ -78,23 +78,22 @@ def words(axes):
 
 
 @pytest.mark.parametrize("name", DRAWN)
-def test_a_figure_is_drawn_as_pdf_and_png(name, tmp_path):
-    outputs = [tmp_path / "figures" / f"{name}.{kind}" for kind in ("pdf", "png")]
-    draw(name, inputs(name, tmp_path), outputs)
-    image = imread(outputs[1])
+def test_a_figure_is_drawn(name, tmp_path):
+    output = tmp_path / "figures" / f"{name}.png"
+    draw(name, inputs(name, tmp_path), [output])
+    image = imread(output)
     assert image.shape[0] > 800 and image.shape[1] > 800 and image.std() > 0.05
-    assert outputs[0].read_bytes().startswith(b"%PDF")
-    assert sorted((tmp_path / "figures").iterdir()) == outputs
 
 
 def test_the_same_data_in_any_order_give_the_same_bytes(tmp_path):
-    paths, content = inputs("fig1b", tmp_path), []
+    paths, content = inputs("fig7", tmp_path), []
     for order in (paths, paths[::-1]):
-        outputs = [tmp_path / "a.pdf", tmp_path / "a.png"]
-        draw("fig1b", order, outputs)
+        outputs = [tmp_path / "out" / "a.pdf", tmp_path / "out" / "a.png"]
+        draw("fig7", order, outputs)
         content.append([output.read_bytes() for output in outputs])
     assert content[0] == content[1]
-    assert b"CreationDate" not in content[0][0]
+    assert content[0][0].startswith(b"%PDF") and b"CreationDate" not in content[0][0]
+    assert sorted((tmp_path / "out").iterdir()) == outputs
 
 
 def test_points_are_the_data_and_residuals_are_data_minus_theory():

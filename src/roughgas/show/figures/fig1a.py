@@ -3,16 +3,10 @@
 import xarray as xr
 from matplotlib.figure import Figure
 
-from roughgas.show.figures import panel
+from roughgas.show.figures.panel import Part, ratio_figure, series_for_each
 
 
 def draw(bed: xr.Dataset) -> Figure:
-    """The figure, from the reduced dataset of the vibrated bed."""
-    figure, main, residual = panel.ratio_panel()
-    drawn = panel.series_of_all_r(bed)
-    panel.draw_series(main, residual, drawn)
-    panel.draw_theory(main, bed, r=1.0)
-    panel.frame_residuals(residual, drawn, drawn)
-    panel.legend(main, drawn, "theory, Eq. (lun), any $r$", loc="upper left")
-    panel.caption(main, [bed], "Vibrated bed")
-    return figure
+    """Draw the figure from the reduced dataset of the vibrated bed."""
+    drawn = series_for_each(bed, "r", "r")
+    return ratio_figure(Part("Vibrated bed", [bed], drawn, theory="theory, Eq. (lun), any $r$"))

@@ -4,29 +4,30 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from roughgas.show.figures import panel
-from roughgas.show.style import GREY, LOOKS
+from roughgas.show.figures.panel import Part, Series, ratio_figure, series_for_each
+from roughgas.show.style import GREY
+
+FAINT = {"alpha": 0.5, "markersize": 2.6, "markeredgewidth": 0, "zorder": 0}
 
 
 def draw(sheared: xr.Dataset) -> Figure:
-    """The figure, from the reduced dataset of the sheared gas."""
-    figure, main, residual = panel.ratio_panel()
-    drawn = panel.series_of_all_r(sheared)
-    panel.draw_series(main, residual, drawn)
-    panel.draw_theory(main, sheared, r=1.0)
-    _draw_unsubtracted(main, sheared)
-    panel.frame_residuals(residual, drawn, drawn)
-    panel.legend(main, drawn, "theory, Eq. (lun), any $r$", loc="upper left")
-    panel.caption(main, [sheared], "Sheared gas")
-    return figure
+    """Draw the figure from the reduced dataset of the sheared gas."""
+    drawn = series_for_each(sheared, "r", "r")
+    part = Part(
+        "Sheared gas",
+        [sheared],
+        drawn,
+        theory="theory, Eq. (lun), any $r$",
+        extra=lambda main: _draw_unsubtracted(main, drawn),
+    )
+    return ratio_figure(part)
 
 
-def _draw_unsubtracted(main: Axes, sheared: xr.Dataset) -> None:
-    """R with the mean flow and the mean spin left in: small and faint, as it is not the result."""
-    if "R_unsubtracted" not in sheared:
+def _draw_unsubtracted(main: Axes, drawn: list[Series]) -> None:
+    """Draw R with mean flow and mean spin left in, small and faint, since it is not the result."""
+    if "R_unsubtracted" not in drawn[0].data:
         return
-    style = {"alpha": 0.5, "markersize": 2.6, "markeredgewidth": 0, "zorder": 0}
-    for r, look in zip(sorted(sheared.r.values, reverse=True), LOOKS, strict=False):
-        ratio = sheared.R_unsubtracted.sel(r=r).values
-        main.plot(sheared.beta, ratio, look.marker, color=look.colour, **style)
-    main.plot([], [], "o", color=GREY, label="small: mean flow and spin not removed", **style)
+    for one in drawn:
+        ratio = one.data.R_unsubtracted.values
+        main.plot(one.at, ratio, one.look.marker, color=one.look.colour, **FAINT)
+    main.plot([], [], "o", color=GREY, label="small: mean flow and spin not removed", **FAINT)

@@ -7,13 +7,12 @@ are those from the sawtooth, not from theory.
 import xarray as xr
 from matplotlib.figure import Figure
 
-from roughgas.show.figures import panel
+from roughgas.show.figures.panel import Part, ratio_figure, series
 from roughgas.show.style import LOOKS
 
 RESTITUTION = 0.9
-REFERENCE = "sawtooth"
-NAMES = {
-    REFERENCE: "sawtooth (the paper's)",
+LABELS = {
+    "sawtooth": "sawtooth (the paper's)",
     "reversed_sawtooth": "reversed sawtooth",
     "triangle": "triangle",
     "sine": "sine",
@@ -21,17 +20,13 @@ NAMES = {
 
 
 def draw(waves: xr.Dataset) -> Figure:
-    """The figure, from the reduced dataset of a bed shaken in several ways."""
-    figure, main, residual = panel.ratio_panel()
+    """Draw the figure from the reduced dataset of a bed shaken in several ways."""
     drawn = [
-        panel.series(waves, label, look, r=RESTITUTION, wave=wave)
-        for (wave, label), look in zip(NAMES.items(), LOOKS, strict=False)
+        series(waves, label, look, r=RESTITUTION, wave=wave)
+        for (wave, label), look in zip(LABELS.items(), LOOKS, strict=False)
     ]
-    beside = [one._replace(theory=drawn[0].ratio) for one in drawn]
-    panel.draw_series(main, residual, beside)
-    panel.draw_theory(main, waves, r=RESTITUTION)
-    residual.set_ylabel(r"$R - R_\mathrm{sawtooth}$")
-    panel.frame_residuals(residual, beside, beside)
-    panel.legend(main, drawn, "theory, Eq. (lun)", loc="upper left")
-    panel.caption(main, [waves], f"Vibrated bed, $r = {RESTITUTION:g}$")
+    beside = [one._replace(theory=drawn[0].data.R.values) for one in drawn]
+    title = f"Vibrated bed, $r = {RESTITUTION:g}$"
+    figure = ratio_figure(Part(title, [waves], beside, theory="theory, Eq. (lun)"))
+    figure.axes[1].set_ylabel(r"$R - R_\mathrm{sawtooth}$")
     return figure

@@ -1,6 +1,6 @@
 """R against one parameter, residuals beneath: the form that all figures of R share."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,10 +16,37 @@ from roughgas.show.style import FAINT, GREY, HEIGHT, LOOKS, THEORY, WIDTH, Look
 from roughgas.theory.prediction import predicted_ratio
 
 ENERGY_RATIO = r"$R = E^\circ\!/(E^\circ + \bar{E})$"
-ONE_WIDE, TWO_WIDE, THREE_WIDE = 5.6, 7.6, 10.4
-"""Width of a figure of so many panels with much to tell, in inches."""
+TWO_WIDE = 7.6  # inches, for two panels
 SIZE = 5.2
-"""Symbols of the first series; each further one is smaller, so that none hides another."""
+"""Marker size of the first series; each further one is smaller, so that none hides another."""
+DOTS = (0, (1, 2))
+RING = {"marker": "o", "markersize": 8, "markeredgewidth": 0.6, "fillstyle": "none"}
+
+
+class Series(NamedTuple):
+    """Measured R along an axis, beside theory, and how it is drawn."""
+
+    label: str
+    look: Look
+    data: xr.Dataset  # (n,) along the axis
+    at: np.ndarray  # (n,) where it is drawn
+    theory: np.ndarray  # (n,) predicted R
+    predict: Callable[..., np.ndarray]  # R of theory at other values of the axis, given by name
+
+    @property
+    def residual(self) -> np.ndarray:
+        """Measured minus predicted R, (n,)."""
+        return self.data.R.values - self.theory
+
+    @property
+    def steady(self) -> np.ndarray:
+        """Whether a steady state was found, (n,)."""
+        return self.data.equilibrated.values > EQUILIBRATED
+
+    @property
+    def touched(self) -> np.ndarray:
+        """Whether the contact-time model acted, (n,)."""
+        return self.data.get("contact_time_fraction", 0 * self.data.R).values > 0
 
 
 class Panel(NamedTuple):
@@ -30,58 +57,64 @@ class Panel(NamedTuple):
     axis: Axis
 
 
-class Series(NamedTuple):
-    """Measured R along an axis: arrays, with the prediction, and how it is drawn."""
+class Part(NamedTuple):
+    """What a figure shows in one of its panels."""
 
-    label: str
-    look: Look
-    at: np.ndarray
-    ratio: np.ndarray
-    error: np.ndarray
-    theory: np.ndarray
-    steady: np.ndarray
-    contact_time: np.ndarray
-
-    @property
-    def residual(self) -> np.ndarray:
-        """Measured minus predicted R."""
-        return self.ratio - self.theory
+    title: str
+    data: Sequence[xr.Dataset]  # whose size and seeds the title gives
+    drawn: Sequence[Series]
+    theory: str = ""  # of all series: a black line, so called in the legend
+    theories: str = ""  # of each series: a line in its look; the title of the legend
+    loc: str = "upper left"  # of the legend
+    axis: Axis = BETA
+    scale: Sequence[Series] | None = None  # whose residuals are to fit; None: those of all
+    extra: Callable[[Axes], None] = lambda main: None  # draws what only this figure has
 
 
 def series(data: xr.Dataset, label: str, look: Look, **place: Any) -> Series:
-    """The points of a reduced dataset that hold data, along the one axis that `place` leaves."""
+    """Return the points that hold data along the one axis that `place` leaves, beside theory."""
     row = data.sel(place)
     (axis,) = row.R.dims
     row = row.isel({axis: np.isfinite(row.R.values)})
+
+    def predict(**others):
+        settings = data.attrs | place | others
+        return predicted_ratio(settings, settings["r"], settings["beta"])
+
     at = row[axis].values
-    touched = row.get("contact_time_fraction", 0 * row.R).values > 0
-    steady = row.equilibrated.values > EQUILIBRATED
-    theory = prediction(data, **place, **{axis: at})
-    return Series(label, look, at, row.R.values, row.R_stderr.values, theory, steady, touched)
+    return Series(label, look, row, at, predict(**{axis: at}), predict)
 
 
-def prediction(data: xr.Dataset, r: Any, beta: Any, **place: Any) -> np.ndarray:
-    """R of theory at these coordinates of a reduced dataset."""
-    return predicted_ratio(data.attrs | place, r, beta)
-
-
-def series_of_all_r(data: xr.Dataset) -> list[Series]:
-    """One series over beta for each r of a reduced dataset, from nearly elastic downwards."""
-    descending = sorted(data.r.values, reverse=True)
-    looks = [LOOKS[index % len(LOOKS)] for index in range(len(descending))]
+def series_for_each(
+    data: xr.Dataset, name: str, symbol: str, looks: Sequence[Look] = LOOKS, **place: Any
+) -> list[Series]:
+    """Return one series for each value of the coordinate `name`: from nearly elastic r downwards,
+    of others the smallest first."""
+    values = sorted(data[name].values, reverse=name == "r")
     return [
-        series(data, f"$r = {r:g}$", look, r=r) for r, look in zip(descending, looks, strict=True)
+        series(data, f"${symbol} = {value:g}$", looks[i % len(looks)], **{name: value}, **place)
+        for i, value in enumerate(values)
     ]
 
 
-def ratio_panel() -> tuple[Figure, Axes, Axes]:
-    """A figure with R above and residuals beneath, both over beta."""
-    figure, (panel,) = ratio_panels([BETA])
-    return figure, panel.main, panel.residual
+def ratio_figure(*parts: Part, width: float = WIDTH) -> Figure:
+    """Draw the parts side by side: points above theory, minus theory beneath, legends, titles."""
+    figure, panels = ratio_panels([part.axis for part in parts], width)
+    for part, panel in zip(parts, panels, strict=True):
+        draw_series(panel, part.drawn)
+        draw_theory(panel, part.drawn[:1] if part.theory else part.drawn, black=bool(part.theory))
+        part.extra(panel.main)
+        add_legend(panel.main, part.drawn, part.theory, title=part.theories or None, loc=part.loc)
+        add_title(panel.main, part.data, part.title)
+    scales = [part.drawn if part.scale is None else part.scale for part in parts]
+    scale = [one for of_part in scales for one in of_part]
+    for part, panel in zip(parts, panels, strict=True):
+        frame_residuals(panel.residual, part.drawn, scale)
+    return figure
 
 
 def ratio_panels(axes: Sequence[Axis], width: float = WIDTH) -> tuple[Figure, list[Panel]]:
-    """A figure of several such panels side by side, one an axis; R has the same scale in all."""
+    """Return an empty figure, and its panels side by side; R has the same scale in all."""
     figure = Figure(figsize=(width, HEIGHT), layout="constrained")
     above, beneath = figure.subplots(
         2, len(axes), sharex="col", sharey="row", height_ratios=(2.3, 1), squeeze=False
@@ -90,7 +123,7 @@ def ratio_panels(axes: Sequence[Axis], width: float = WIDTH) -> tuple[Figure, li
     beneath[0].set_ylabel(r"$R - R_\mathrm{theory}$")
     panels = [Panel(*parts) for parts in zip(above, beneath, axes, strict=True)]
     for main, residual, axis in panels:
-        main.axhline(0.5, color=FAINT, linewidth=0.8, linestyle=(0, (1, 2)), zorder=0)
+        main.axhline(0.5, color=FAINT, linewidth=0.8, linestyle=DOTS, zorder=0)
         residual.axhline(0, color=THEORY, linewidth=0.8)
         residual.yaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
         axis.prepare(residual)
@@ -98,62 +131,61 @@ def ratio_panels(axes: Sequence[Axis], width: float = WIDTH) -> tuple[Figure, li
     return figure, panels
 
 
-def draw_theory(
-    main: Axes, data: xr.Dataset, look: Look | None = None, axis: Axis = BETA, **place: Any
-) -> None:
-    """The predicted R along an axis as a line: black, or in the look of a series."""
-    colour, line = (look.colour, look.line) if look else (THEORY, "-")
-    predicted = prediction(data, **place, **{axis.name: axis.grid})
-    main.plot(axis.grid, predicted, linestyle=line, color=colour, zorder=1)
+def draw_theory(panel: Panel, drawn: Sequence[Series], black: bool = False) -> None:
+    """Draw the predicted R of each series along the axis: in its look, or black."""
+    for one in drawn:
+        colour, line = (THEORY, "-") if black else (one.look.colour, one.look.line)
+        predicted = one.predict(**{panel.axis.name: panel.axis.grid})
+        panel.main.plot(panel.axis.grid, predicted, linestyle=line, color=colour, zorder=1)
 
 
-def draw_series(main: Axes, residual: Axes, drawn: Sequence[Series], axis: Axis = BETA) -> None:
-    """The points with error bars above; minus theory, a little apart, beneath."""
-    draw_points(main, drawn)
+def draw_series(panel: Panel, drawn: Sequence[Series]) -> None:
+    """Draw points with error bars above; beneath them, residuals, set apart sideways."""
+    draw_points(panel.main, drawn)
     for index, one in enumerate(drawn):
         steps = index - (len(drawn) - 1) / 2
-        _points(residual, one, axis.aside(one.at, steps), one.residual, size=4)
+        _draw_points(panel.residual, one, panel.axis.aside(one.at, steps), one.residual, size=4)
 
 
 def draw_points(main: Axes, drawn: Sequence[Series]) -> None:
-    """The points with error bars."""
+    """Draw points with error bars."""
     for index, one in enumerate(drawn):
-        _points(main, one, one.at, one.ratio, size=max(SIZE - 0.6 * index, 3.0))
+        _draw_points(main, one, one.at, one.data.R.values, size=max(SIZE - 0.6 * index, 3.0))
 
 
 def frame_residuals(residual: Axes, drawn: Sequence[Series], scale: Sequence[Series]) -> None:
-    """Scale the residuals to the steady points of `scale`; for those beyond, arrows at the rim."""
+    """Scale residuals to the steady points of `scale`; draw arrows for those beyond."""
     low, high = -0.005, 0.005
     for one in scale:
-        bar, middle = np.nan_to_num(one.error)[one.steady], one.residual[one.steady]
-        low = np.min(middle - bar, initial=low)
-        high = np.max(middle + bar, initial=high)
+        bar = np.nan_to_num(one.data.R_stderr.values)[one.steady]
+        low = np.min(one.residual[one.steady] - bar, initial=low)
+        high = np.max(one.residual[one.steady] + bar, initial=high)
     room = 0.12 * (high - low)
     residual.set_ylim(low - room, high + room)
-    beyond = [_arrows(residual, one) for one in drawn]
+    beyond = [_draw_arrows(residual, one) for one in drawn]
     note = "series set apart sideways" + ("; arrows: beyond this scale" if any(beyond) else "")
     residual.set_title(note, fontsize=6.5, color=GREY, loc="right", pad=2)
 
 
-def legend(main: Axes, drawn: Sequence[Series], theory: str, **place: Any) -> None:
-    """What points and lines are; `theory` names a common black line, if empty each has its own."""
+def add_legend(main: Axes, drawn: Sequence[Series], theory: str = "", **how: Any) -> None:
+    """Say what points and lines are. `theory` names a black line; without it each has its own."""
     handles = [
         _key(one.look.colour, one.label, one.look.marker, "none" if theory else one.look.line)
         for one in drawn
     ]
     if theory:
         handles.append(_key(THEORY, theory, "", "-"))
-    handles.append(_key(FAINT, "equipartition, $R = 1/2$", "", (0, (1, 2))))
+    handles.append(_key(FAINT, "equipartition, $R = 1/2$", "", DOTS))
     if not all(one.steady.all() for one in drawn):
         handles.append(_key(GREY, "open: no steady state found", "o", fillstyle="none"))
-    if any(one.contact_time.any() for one in drawn):
+    if any(one.touched.any() for one in drawn):
         handles.append(_key(GREY, "ringed: contact-time model acted", **RING))
     handles += main.get_legend_handles_labels()[0]
-    main.legend(handles=handles, **place)
+    main.legend(handles=handles, **how)
 
 
-def caption(main: Axes, datasets: Sequence[xr.Dataset], what: str) -> None:
-    """Two lines above the figure: what is shown, how large, and what the error bars are."""
+def add_title(main: Axes, datasets: Sequence[xr.Dataset], what: str) -> None:
+    """Write two lines above: what is shown, how large it is, and what the error bars are."""
     counts = np.concatenate([data.n_seeds.values.ravel() for data in datasets])
     low, high = counts[counts > 0].min(), counts.max()
     seeds = f"{high} seeds" if low == high else f"{low} to {high} seeds"
@@ -163,25 +195,21 @@ def caption(main: Axes, datasets: Sequence[xr.Dataset], what: str) -> None:
     main.set_title(text, fontsize=8, loc="left")
 
 
-RING = {"marker": "o", "markersize": 8, "markeredgewidth": 0.6, "fillstyle": "none"}
-
-
 def _key(colour: str, label: str, marker: str, linestyle: Any = "none", **how: Any) -> Line2D:
     return Line2D([], [], color=colour, label=label, marker=marker, linestyle=linestyle, **how)
 
 
-def _points(axes: Axes, one: Series, at: np.ndarray, values: np.ndarray, size: float) -> None:
-    """Filled symbols in a steady state, open ones elsewhere, rings where contact times mattered."""
+def _draw_points(axes: Axes, one: Series, at: np.ndarray, values: np.ndarray, size: float) -> None:
+    """Draw symbols: filled in a steady state, else open; ringed where contact times acted."""
     common = {"color": one.look.colour, "fmt": one.look.marker, "elinewidth": 0.8, "capsize": 1.5}
-    common["markersize"] = size
     for part, fill in ((one.steady, "full"), (~one.steady, "none")):
-        axes.errorbar(at[part], values[part], one.error[part], fillstyle=fill, **common)
-    ringed = one.contact_time
-    axes.plot(at[ringed], values[ringed], color=GREY, linestyle="none", **RING)
+        bars = one.data.R_stderr.values[part]
+        axes.errorbar(at[part], values[part], bars, fillstyle=fill, markersize=size, **common)
+    axes.plot(at[one.touched], values[one.touched], color=GREY, linestyle="none", **RING)
 
 
-def _arrows(residual: Axes, one: Series) -> bool:
-    """An arrow at the rim for each residual outside the scale; whether there are any."""
+def _draw_arrows(residual: Axes, one: Series) -> bool:
+    """Draw an arrow at the rim for each residual beyond the scale; return whether there are any."""
     low, high = residual.get_ylim()
     above, below = one.residual > high, one.residual < low
     for beyond, height, marker in ((above, 0.95, "^"), (below, 0.05, "v")):
