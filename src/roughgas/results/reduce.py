@@ -19,6 +19,7 @@ from roughgas.data.netcdf import Content, write_netcdf
 from roughgas.data.reduced import GRID, third_axis
 from roughgas.data.variables import CLOCKS, POINT, Array, described
 from roughgas.statistics.intervals import pooled
+from roughgas.theory.prediction import equation_of
 
 if TYPE_CHECKING:
     import netCDF4
@@ -111,7 +112,7 @@ def _combined(points: Sequence[Summary]) -> Content:
     grid = GRID if swept is None else (swept, *GRID)
     stacks = _stacks(points, axes)
     cooling = "plateau_end" in stacks
-    attributes.setdefault("theory", "K" if cooling else "lun")
+    attributes["theory"] = equation_of(attributes, stacks).kind
     coordinates = dict(zip((*grid, "seed"), map(_coordinate, axes), strict=True))
     third = {}
     if swept is not None:

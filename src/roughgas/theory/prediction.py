@@ -1,17 +1,44 @@
 """Which equation a dataset obeys, and what it says of R."""
 
 import math
-from typing import Any
+from collections.abc import Container, Mapping
+from typing import Any, NamedTuple
 
 import numpy as np
 
 
-def predicted_ratio(attributes: dict[str, Any], r: Any, beta: Any) -> np.ndarray:
-    """R of theory: Eq. (K) for a freely cooling gas, Eq. (lun) for one whose drive adds translation
-    only, and what the rate equations say of other drives, and of friction.
+class Equation(NamedTuple):
+    """What R of a gas is compared with."""
 
-    `attributes` are those of a reduced dataset, with what is its third axis: `inertia`,
-    `spin_share` (of the drive), `mu`; these broadcast with `r` and `beta`. NaN where nothing spins.
+    kind: str  # "K" for a freely cooling gas, "lun" for a driven one: the attribute `theory`
+    name: str  # "Eq. (K)", "rate equations with Coulomb friction"...
+
+
+def equation_of(attributes: Mapping[str, Any], variables: Container[str] = ()) -> Equation:
+    """Return the equation that a point or a reduced dataset obeys.
+
+    A point has no attribute `theory`: there, `variables` tell whether R has a plateau that ends,
+    as in a cooling gas. A parameter that is swept, and so is no attribute, has no single value.
+    """
+    kind = attributes.get("theory", "K" if "plateau_end" in variables else "lun")
+    swept = attributes.get("swept", "").rpartition(".")[2]
+    if "mu" in attributes or swept == "mu":
+        return Equation(kind, "rate equations with Coulomb friction")
+    if kind == "K":
+        return Equation(kind, "Eq. (K)" if attributes["dimension"] == 2 else "Eq. (Goldshtein)")
+    if "spin_share" not in attributes and swept == "spin_share":
+        return Equation(kind, "rate equations")
+    share = attributes.get("spin_share", 0.0)
+    return Equation(kind, f"rate equations, spin share {share:g}" if share else "Eq. (lun)")
+
+
+def predicted_ratio(attributes: Mapping[str, Any], r: Any, beta: Any) -> np.ndarray:
+    """Return R of theory, over the broadcast shape of its arguments; NaN where nothing spins.
+
+    That is Eq. (K) for a freely cooling gas, Eq. (lun) for one whose drive adds translation only,
+    and the result of the rate equations for other drives, and for friction. `attributes` are those
+    of a reduced dataset, with what is its third axis: `inertia`, `spin_share` (of the drive), or
+    `mu`; these broadcast with `r` and `beta`.
     """
     from roughgas import theory
 

@@ -100,7 +100,7 @@ def test_the_page_holds_its_data_and_asks_for_nothing(points, tmp_path):
     assert [one["theory"] for one in found["experiments"]] == [
         "Eq. (lun)",
         "Eq. (K)",
-        "rate equations",
+        "rate equations with Coulomb friction",
     ]
     text = page.read_text("utf-8")
     assert not re.search(r'<(script|link|img|iframe)[^>]*(src|href)="(?!data:)', text)

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from roughgas.cli.layout import columns, decimals_of, unit_of, with_error
-from roughgas.cli.theory.quantities import equation
 from roughgas.data.point import read_point as read
 from roughgas.data.variables import POINT
+from roughgas.theory.prediction import equation_of, predicted_ratio
 
 if TYPE_CHECKING:
     import xarray
@@ -77,15 +77,9 @@ def _theory(point: "xarray.Dataset") -> dict[str, float]:
     """R of theory, and what the gas has more, where particles spin."""
     if "R" not in point:
         return {}
-    from roughgas.theory.prediction import predicted_ratio
-
-    about = point.attrs | {"theory": _kind(point)}
+    about = point.attrs | {"theory": equation_of(point.attrs, point).kind}
     expected = float(predicted_ratio(about, about["r"], about["beta"]))
     return {"R_theory": expected, "residual": float(point.R) - expected}
-
-
-def _kind(point: "xarray.Dataset") -> str:
-    return "K" if "plateau_end" in point else "lun"
 
 
 def _ratio(point: "xarray.Dataset") -> list[list[str]]:
@@ -94,8 +88,7 @@ def _ratio(point: "xarray.Dataset") -> list[list[str]]:
     about, found, R, half = point.attrs, _theory(point), float(point.R), float(point.R_ci95)
     digits = decimals_of(half) if 0.0 < half < 1.0 else 4
     trust = "" if point.R_ci95_trusted else " (the run is too short to trust it)"
-    share, mu = about.get("spin_share", 0.0), about.get("mu")
-    source = equation(_kind(point), about["dimension"], share, mu)
+    source = equation_of(about, point).name
     return [
         ["R", with_error(R, float(point.R_stderr))],
         ["95 % interval", f"{R - half:.{digits}f} to {R + half:.{digits}f}{trust}"],

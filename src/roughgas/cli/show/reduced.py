@@ -5,10 +5,10 @@ from typing import TYPE_CHECKING, Any
 
 from roughgas.cli.layout import columns, with_error
 from roughgas.cli.show.point import SHAPES, cost
-from roughgas.cli.theory.quantities import equation
 from roughgas.data.reduced import EQUILIBRATED, third_axis
 from roughgas.data.reduced import read_reduced as read
 from roughgas.results.table import rows as rows_of
+from roughgas.theory.prediction import equation_of
 
 if TYPE_CHECKING:
     import xarray
@@ -68,10 +68,7 @@ def _error(value: Any) -> float:
 def _notes(about: dict[str, Any], spins: bool) -> str:
     if not spins:
         return "Energies per degree of freedom; their error is the scatter over seeds."
-    mu = about.get("mu", 0.0 if third_axis(about) == "mu" else None)
-    shared = math.nan if third_axis(about) == "spin_share" else about.get("spin_share", 0.0)
-    source = equation(about["theory"], int(about["dimension"]), shared, mu)
     return (
         "95 %: half width of the interval; ?: it may be too narrow, the run being short.\n"
-        f"Theory: {source.removesuffix(', spin share nan')}."
+        f"Theory: {equation_of(about).name}."
     )

@@ -3,7 +3,7 @@
 from typing import Any, NamedTuple
 
 from roughgas import theory
-from roughgas.theory.prediction import predicted_ratio
+from roughgas.theory.prediction import equation_of, predicted_ratio
 
 PAPER = "S. McNamara, S. Luding, Phys. Rev. E 58, 2247 (1998)"
 TOLERANCE = 0.01  # of R, within which it counts as settled
@@ -28,15 +28,6 @@ class Quantity(NamedTuple):
     source: str
 
 
-def equation(theory: str, dimension: int, spin_share: float = 0.0, mu: float | None = None) -> str:
-    """Where R of a cooling gas, `theory` "K", or of a driven one, "lun", is from."""
-    if mu is not None:
-        return "rate equations with Coulomb friction"
-    if theory == "K":
-        return "Eq. (K)" if dimension == 2 else "Eq. (Goldshtein)"
-    return "Eq. (lun)" if spin_share == 0.0 else f"rate equations, spin share {spin_share:g}"
-
-
 def quantities(gas: Gas) -> dict[str, Quantity]:
     """All that theory says of a gas, by name."""
     about = {"dimension": gas.dimension, "inertia": gas.inertia, "spin_share": gas.spin_share}
@@ -45,11 +36,9 @@ def quantities(gas: Gas) -> dict[str, Quantity]:
     drive = "through translation" if gas.spin_share == 0.0 else f"spin share {gas.spin_share:g}"
     found = {}
     for name, kind, way in (("driven", "lun", f"driven, {drive}"), ("cooling", "K", "cooling")):
-        found[f"R_{name}"] = Quantity(
-            predicted_ratio(about | {"theory": kind}, gas.r, gas.beta),
-            f"R, {way}",
-            equation(kind, gas.dimension, gas.spin_share, gas.mu),
-        )
+        obeying = about | {"theory": kind}
+        R = predicted_ratio(obeying, gas.r, gas.beta)
+        found[f"R_{name}"] = Quantity(R, f"R, {way}", equation_of(obeying).name)
     return found | (_relaxation(gas) if gas.mu is None else _friction(gas))
 
 

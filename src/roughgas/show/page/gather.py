@@ -13,7 +13,7 @@ from roughgas.base.errors import InputError
 from roughgas.data.reduced import EQUILIBRATED, read_reduced, third_axis
 from roughgas.show.page.numbers import exact, rounded
 from roughgas.show.page.series import time_series
-from roughgas.theory.prediction import predicted_ratio
+from roughgas.theory.prediction import equation_of, predicted_ratio
 
 if TYPE_CHECKING:
     import xarray
@@ -31,10 +31,6 @@ NUMBERS = {
 }
 """What is shown of a point: its name in the page, and in the reduced dataset."""
 
-THEORY = {"K": "Eq. (K)", "lun": "Eq. (lun)"}
-RATE_EQUATIONS = "rate equations"
-BEYOND = ("mu", "spin_share")
-"""Third axes along which theory is that of the rate equations."""
 GRID = np.linspace(-1.0, 1.0, 161)
 """Roughness at which theory is drawn as a curve."""
 
@@ -64,7 +60,7 @@ def experiment(reduced_path: str | Path, points: Path) -> dict[str, Any]:
         "particles": int(data.attrs["particles"]),
         "dimension": int(data.attrs["dimension"]),
         "swept": data.attrs.get("swept"),
-        "theory": RATE_EQUATIONS if swept in BEYOND else THEORY[data.attrs["theory"]],
+        "theory": equation_of(data.attrs).name,
         "variants": [_variant(data, swept, value, runs) for value in values],
     }
 
