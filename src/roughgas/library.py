@@ -200,7 +200,7 @@ def _settings(
     from roughgas.config.schema import check_schema
     from roughgas.simulation.schedule import check
 
-    known = {} if name is None else config.experiment(config.load(path), name, scale)
+    known = {} if name is None else config.load_experiment(path, name, scale)
     settings = config.merged(config.point_settings(known), changes)
     for part in ("experiment", "point"):
         check_schema(settings, name or UNNAMED, part)

@@ -8,6 +8,7 @@ import pytest
 
 from roughgas import config
 from roughgas.base.errors import InputError
+from roughgas.config import checking
 from roughgas.config.reading import read_yaml
 
 CONFIG = Path(__file__).parents[2] / "config.yaml"
@@ -101,7 +102,7 @@ def test_a_target_replaces_lengths_and_seeds(paper, name):
 def test_a_target_of_what_is_extended_counts_before_own_seeds(paper):
     whole = copy.deepcopy(paper)
     whole["experiments"]["wide"] = {"extends": "cooling", "sweep": {"seeds": 1}}
-    config.check(whole)
+    checking.check(whole)
     assert config.experiment(whole, "wide", "paper")["sweep"]["seeds"] == 1
     assert "seeds" not in config.experiment(whole, "wide", "fine")["sweep"]
 
@@ -141,7 +142,7 @@ def test_settings_of_a_point_survive_the_way_through_text(paper):
 
 def test_numbers_may_stand_in_a_sweep_without_quotes(paper):
     whole = changed(paper, "experiments.cooling.sweep.r", [0.9, 1])
-    config.check(whole)
+    checking.check(whole)
     points = set(config.sweep(config.experiment(whole, "cooling", "paper")))
     assert ("0.9", "0", "1") in points and ("1", "0", "4") in points
 
@@ -251,7 +252,7 @@ MISTAKES = [
 
 @pytest.mark.parametrize(("path", "value", "message"), MISTAKES)
 def test_a_mistake_is_named_in_one_line(paper, path, value, message):
-    said = refusal(config.check, changed(paper, path, value))
+    said = refusal(checking.check, changed(paper, path, value))
     assert said.startswith("config.yaml: ")
     assert message in said
     assert path.split(".")[0] in said
@@ -260,12 +261,12 @@ def test_a_mistake_is_named_in_one_line(paper, path, value, message):
 def test_the_first_mistake_in_the_file_is_named(paper):
     whole = changed(paper, "experiments.sheared.particles", 0)
     whole = changed(whole, "experiments.vibrated.particles", "x")
-    assert "experiments.vibrated.particles = 'x'" in refusal(config.check, whole)
+    assert "experiments.vibrated.particles = 'x'" in refusal(checking.check, whole)
 
 
 def test_a_long_value_is_shortened(paper):
     whole = changed(paper, "experiments.cooling.particles", list(range(1000)))
-    assert len(refusal(config.check, whole)) < 150
+    assert len(refusal(checking.check, whole)) < 150
 
 
 def test_unknown_names(paper):
@@ -324,3 +325,18 @@ def test_illegal_roughness(label):
 @pytest.mark.parametrize("label", ["-1", "x", "1.0", "", str(2**63)])
 def test_illegal_seed(label):
     assert refusal(config.seed, label).startswith(f"seed = {label}: must be a whole number")
+
+
+def test_one_experiment_is_read_without_checking_every_scale(tmp_path):
+    """The form of the whole file is checked, but nothing that is wrong elsewhere once merged."""
+    path = tmp_path / "config.yaml"
+    broken = '  broken: {cooling_inertia: {sweep: {spin.inertia: ["2"]}}}'
+    text = CONFIG.read_text().replace("\nscales:\n", f"\nscales:\n{broken}\n")
+    path.write_text(text)
+    message = "at scale broken.effects.spin.inertia = 2.0: must be a number in (0, 1]"
+    assert message in refusal(config.load, path)
+    found = config.load_experiment(path, "cooling", "small")
+    assert found == config.experiment(config.load(CONFIG), "cooling", "small")
+    assert message in refusal(config.load_experiment, path, "cooling_inertia", "broken")
+    path.write_text(text.replace("particles: 160", "particles: few", 1))
+    assert "particles = 'few'" in refusal(config.load_experiment, path, "cooling", "small")

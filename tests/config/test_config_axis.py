@@ -7,7 +7,7 @@ import pytest
 
 from roughgas import config
 from roughgas.base.errors import InputError
-from roughgas.config import schema
+from roughgas.config import checking, schema
 from roughgas.data.variables import POINT, REDUCED
 from roughgas.results.reduce import SAME
 
@@ -28,7 +28,7 @@ def whole():
     still = {"extends": "spun", "sweep": {"spin.inertia": None}}
     found = with_experiments(spun=INERTIA, walls=walls, child=child, still=still)
     found["scales"]["small"]["spun"] = {"sweep": {"spin.inertia": ["0.2"]}}
-    config.check(found)
+    checking.check(found)
     return found
 
 
@@ -95,7 +95,7 @@ def test_a_target_holds_for_every_variant(whole):
 def test_the_effect_need_not_give_a_value_beside_the_sweep():
     bare = {"extends": "vibrated", "effects": {"walls": {"restitution": 1}}}
     whole = with_experiments(bare=bare | {"sweep": {"walls.roughness": ["0"]}})
-    config.check(whole)
+    checking.check(whole)
     walls = config.experiment(whole, "bare/roughness1", "paper")["effects"]["walls"]
     assert walls == {"restitution": 1, "roughness": 1}
 
@@ -164,7 +164,7 @@ MISTAKES = [
 @pytest.mark.parametrize(("sweep", "message"), MISTAKES)
 def test_a_mistake_is_named_in_one_line(sweep, message):
     whole = with_experiments(spun={"extends": "sheared", "sweep": sweep})
-    said = refusal(config.check, whole)
+    said = refusal(checking.check, whole)
     assert said.startswith("config.yaml: ") and message in said
 
 
@@ -172,14 +172,14 @@ def test_a_mistake_at_a_scale_is_named():
     whole = with_experiments(spun=INERTIA)
     whole["scales"]["small"]["spun"] = {"sweep": {"spin.inertia": ["3"]}}
     assert "experiments.spun/inertia3 at scale small.effects.spin.inertia = 3.0" in refusal(
-        config.check, whole
+        checking.check, whole
     )
 
 
 def test_swept_is_not_for_people():
     whole = with_experiments(spun=INERTIA | {"swept": "spin.inertia"})
     assert "experiments.spun.swept = 'spin.inertia': must not be given here" in refusal(
-        config.check, whole
+        checking.check, whole
     )
 
 

@@ -36,7 +36,6 @@ def test_only_contents_count(finished):
         ("claims/report.py", {"claims": 1, "document": 1, "figures": 1}),
         ("show/page/document.py", {"document": 3, "figures": 1}),
         ("config/__init__.py", CONFIGURED),
-        ("config/axis.py", CONFIGURED),
     ],
 )
 def test_an_edit_in_the_package(finished, module, expected):

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 
+LONGEST = 60  # characters of a value in a message
 SIMILAR = 0.8  # how alike, from 0 to 1, a name is to one that may have been meant
 
 
@@ -19,6 +20,12 @@ class InputError(ValueError):
 
     def __str__(self) -> str:
         return f"{self.key} = {self.value}: must {self.legal}"
+
+
+def shown(value: object) -> str:
+    """Return a value as a message quotes it: as Python writes it, on one line, not too long."""
+    text = " ".join(repr(value).split())
+    return text if len(text) <= LONGEST else text[: LONGEST - 3] + "..."
 
 
 def not_one_of(key: str, value: object, known: Iterable[str]) -> InputError:

@@ -1,7 +1,11 @@
-"""config.yaml: read, checked against its schema, and merged into one experiment at one scale.
+"""config.yaml: read, checked, and merged into the settings of one experiment at one scale.
 
-An experiment whose sweep has a third axis (axis.py) consists of variants, named EXPERIMENT/VARIANT.
-Everything illegal raises an InputError, whose text is one line naming key, value and what is legal.
+A sweep may have a third axis: one parameter of one effect, as EFFECT.PARAMETER with its labels,
+such as `spin.inertia: ["1", "0.1"]`. Each label makes a variant of the experiment, named
+EXPERIMENT/PARAMETERLABEL, such as vibrated_inertia/inertia0.1: an experiment like any other, whose
+effects have that value.
+
+All functions raise InputError, with a text of one line, for unknown names and illegal values.
 """
 
 import json
@@ -9,47 +13,19 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from roughgas.base.errors import InputError, not_one_of
-from roughgas.config.axis import (
-    SWEPT,
-    check_axis,
-    check_one_variant,
-    common,
-    every_variant,
-    third_axis,
-    variant,
-    variants,
-)
-from roughgas.config.labels import level, restitution, roughness, seed
-from roughgas.config.schema import check_schema, first_repeated, shown
+from roughgas.base.errors import InputError, not_one_of, shown
+from roughgas.config.labels import level
+from roughgas.config.labels import restitution as restitution
+from roughgas.config.labels import roughness as roughness
+from roughgas.config.labels import seed as seed
 
-__all__ = [
-    "SWEPT",
-    "as_text",
-    "blocks",
-    "check",
-    "check_one_variant",
-    "common",
-    "every_variant",
-    "experiment",
-    "from_text",
-    "kernel_settings",
-    "level",
-    "load",
-    "merged",
-    "pilot_settings",
-    "point_settings",
-    "restitution",
-    "roughness",
-    "seed",
-    "showcase",
-    "study",
-    "sweep",
-    "variants",
-]
+# checking and YAML are imported where they are used: a job whose settings have been checked needs
+# neither
 
 SOURCE = "config.yaml"
 SHOWCASE, ACCURACY = "showcase", "accuracy"
+SWEPT = "swept"
+"""Key in the settings of a variant: what its experiment sweeps, such as spin.inertia."""
 SEEDS_PER_JOB = 4
 NOT_OF_A_POINT = ("description", "sweep")
 """Settings of an experiment that do not concern any single point of it."""
@@ -61,66 +37,53 @@ REPLACED = {
 
 
 def load(path: str | Path, overrides: Mapping[str, Any] | None = None) -> dict[str, Any]:
-    """The configuration at `path`, `overrides` (from a command line) merged into it, checked.
+    """Return the configuration at `path`, with `overrides` merged into it, all of it checked.
 
-    Raises InputError for anything illegal, OSError where the file cannot be read.
+    Raises OSError where the file cannot be read.
     """
-    from roughgas.config.reading import read_yaml
+    from roughgas.config.checking import check, read
 
-    source = Path(path).name
-    config = read_yaml(path)
-    if not isinstance(config, dict):
-        raise InputError(source, shown(config), "hold the keys scale, experiments, scales")
-    if overrides:
-        source += " with the command line's changes"
-        config = merged(config, overrides)
+    config, source = read(path, overrides)
     check(config, source)
     return config
 
 
-def check(config: Mapping[str, Any], source: str = SOURCE) -> None:
-    """Raise an InputError for the first illegal thing in `config`, if there is any."""
-    check_schema(config, source)
-    known, scales = config["experiments"], config["scales"]
-    _one_of(f"{source}: scale", config["scale"], scales)
-    for name in (SHOWCASE, ACCURACY):
-        if name in known:
-            raise InputError(f"{source}: key of experiments", name, "be another name")
-    for name in known:
-        _check_ancestors(name, known, source)
-    for name, settings in known.items():
-        _check_target(settings, f"{source}: experiments.{name}")
-    for scale, changes in scales.items():
-        for name, settings in changes.items():
-            if name in known:
-                _check_target(settings, f"{source}: scales.{scale}.{name}")
-            _one_of(f"{source}: key of scales.{scale}", name, [*known, SHOWCASE, ACCURACY])
-        check_schema(showcase(config, scale), f"{source}: {SHOWCASE} at scale {scale}", "filmed")
-        check_schema(_studies(config, scale), f"{source}: {ACCURACY} at scale {scale}", "studied")
-        for name in known:
-            at_scale = "" if scale == config["scale"] else f" at scale {scale}"
-            _check_complete(name, experiment(config, name, scale), source, at_scale)
+def load_experiment(path: str | Path, name: str, scale: str) -> dict[str, Any]:
+    """Return one experiment, or variant, at `scale` from the configuration at `path`.
+
+    Other experiments and scales are checked against the schema only. Raises OSError where the file
+    cannot be read.
+    """
+    from roughgas.config.checking import check_file, check_one, read
+
+    config, source = read(path)
+    check_file(config, source)
+    found = experiment(config, name, scale)
+    check_one(config, name.partition("/")[0], scale, source)
+    return found
 
 
 def experiment(config: Mapping[str, Any], name: str, scale: str) -> dict[str, Any]:
-    """The experiment `name` at `scale`: what it extends, its own settings, the scale's changes.
+    """Return the experiment `name` at `scale`: what it extends, its own settings, and the scale's
+    changes.
 
     What it extends is taken as it is at this scale. `name` may be that of a variant, whether or not
-    its value is in the sweep. Raises InputError for unknown names, and for illegal values of a
-    variant.
+    its value is in the sweep.
     """
     base, slash, _ = name.partition("/")
     settings = _experiment(config, base, scale)
     if not slash:
         return settings
+    from roughgas.config.schema import check_schema
+
     chosen = variant(name, settings)
     check_schema(chosen, name, "experiment")
     return chosen
 
 
 def _experiment(config: Mapping[str, Any], name: str, scale: str) -> dict[str, Any]:
-    _one_of("experiment", name, config["experiments"])
-    _one_of("scale", scale, config["scales"])
+    one_of("experiment", name, config["experiments"])
+    one_of("scale", scale, config["scales"])
     own = dict(config["experiments"][name])
     parent = own.pop("extends", None)
     settings = _experiment(config, parent, scale) if parent else {}
@@ -130,39 +93,37 @@ def _experiment(config: Mapping[str, Any], name: str, scale: str) -> dict[str, A
 
 
 def _without_lengths(settings: Mapping[str, Any]) -> dict[str, Any]:
-    replaced = {
-        part: {key: value for key, value in settings[part].items() if key not in names}
-        for part, names in REPLACED.items()
-        if part in settings
-    }
-    return dict(settings) | replaced
+    gone = {part: dict.fromkeys(REPLACED[part]) for part in REPLACED if part in settings}
+    return merged(settings, gone)
 
 
 def showcase(config: Mapping[str, Any], scale: str) -> dict[str, Any]:
-    """The settings of the showcase at `scale`. Raises InputError for an unknown scale."""
-    _one_of("scale", scale, config["scales"])
-    settings = merged(config[SHOWCASE], config["scales"][scale].get(SHOWCASE, {}))
-    return {key: value for key, value in settings.items() if key not in NOT_OF_A_POINT}
+    """Return the settings of the showcase at `scale`."""
+    return point_settings(_at_scale(config, SHOWCASE, scale))
+
+
+def studies(config: Mapping[str, Any], scale: str) -> dict[str, Any]:
+    """Return the settings of the studies of accuracy at `scale`, by name."""
+    return _at_scale(config, ACCURACY, scale)
 
 
 def study(config: Mapping[str, Any], name: str, scale: str) -> dict[str, Any]:
-    """The settings of a study of accuracy at `scale`, as `study`, and those of the experiments that
-    it may run, as `experiments`. Raises InputError for unknown names."""
-    _one_of("scale", scale, config["scales"])
-    settings = _studies(config, scale)
-    _one_of("study", name, settings)
-    experiments = {
-        one: point_settings(experiment(config, one, scale)) for one in config["experiments"]
-    }
+    """Return the settings of a study of accuracy at `scale`, as `study`, and those of the
+    experiments that it may run, as `experiments`."""
+    settings = studies(config, scale)
+    one_of("study", name, settings)
+    known = config["experiments"]
+    experiments = {one: point_settings(experiment(config, one, scale)) for one in known}
     return {"study": settings[name], "experiments": experiments}
 
 
-def _studies(config: Mapping[str, Any], scale: str) -> dict[str, Any]:
-    return merged(config[ACCURACY], config["scales"][scale].get(ACCURACY, {}))
+def _at_scale(config: Mapping[str, Any], part: str, scale: str) -> dict[str, Any]:
+    one_of("scale", scale, config["scales"])
+    return merged(config[part], config["scales"][scale].get(part, {}))
 
 
 def merged(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
-    """`base` with `changes` merged in, key by key at every depth; a change to None takes away."""
+    """Return `base` with `changes` merged in at every depth; a change to None removes a key."""
     result = dict(base)
     for key, change in changes.items():
         if change is None:
@@ -176,24 +137,26 @@ def merged(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any
 
 
 def point_settings(settings: Mapping[str, Any]) -> dict[str, Any]:
-    """The settings of an experiment that shape its points, whichever of them are asked for."""
+    """Return the settings of an experiment that shape its points, whichever are asked for."""
     return {key: value for key, value in settings.items() if key not in NOT_OF_A_POINT}
 
 
 def pilot_settings(settings: Mapping[str, Any]) -> dict[str, Any]:
-    """The settings of an experiment that shape the pilots of its points, whatever the target."""
+    """Return the settings of an experiment that shape the pilots of its points, whatever the
+    target."""
     return merged(_without_lengths(point_settings(settings)), {"target_stderr": None})
 
 
 def kernel_settings(settings: Mapping[str, Any]) -> dict[str, Any]:
-    """The settings of an experiment that its kernels are compiled from: with its third axis."""
+    """Return the settings of an experiment that its kernels are compiled from, third axis
+    included."""
     key = third_axis(settings)
     swept = {} if key is None else {"sweep": {key: settings["sweep"][key]}}
     return pilot_settings(settings) | swept
 
 
 def sweep(settings: Mapping[str, Any]) -> Iterator[tuple[str, str, str]]:
-    """The labels (r, beta, seed) of every point of an experiment, or of each of its variants."""
+    """Yield the labels (r, beta, seed) of every point of an experiment, or of each variant."""
     axes = settings["sweep"]
     for r in axes["r"]:
         for beta in axes["beta"]:
@@ -202,10 +165,11 @@ def sweep(settings: Mapping[str, Any]) -> Iterator[tuple[str, str, str]]:
 
 
 def blocks(axes: Mapping[str, Any], config: Mapping[str, Any]) -> list[tuple[list[str], list[str]]]:
-    """The labels (betas, seeds) of swept points that one job makes, each beta with each seed.
+    """Return the labels (betas, seeds) of swept points that one job makes, each beta with each
+    seed.
 
     Where a job has a single beta the label is `{beta}`, which stands for any. Each block has two
-    points or more: one that is left over is a job of its own, and in no block.
+    points or more: a point that is left over has a job of its own, and is in no block.
     """
     labels = [str(number) for number in range(1, axes.get("seeds", 0) + 1)]
     by_seed = _chunks(labels, config.get("seeds_per_job", SEEDS_PER_JOB))
@@ -220,62 +184,92 @@ def _chunks(labels: list[str], size: int) -> list[list[str]]:
 
 
 def as_text(settings: Mapping[str, Any]) -> str:
-    """Settings as JSON on one line, the same for equal settings."""
+    """Return settings as JSON on one line, the same for equal settings."""
     return json.dumps(settings, sort_keys=True, separators=(",", ":"))
 
 
 def from_text(
     text: str, source: str, checked: bool = False, parts: Iterable[str] = ("experiment", "point")
 ) -> dict[str, Any]:
-    """The settings of a point from their JSON; `checked` says that they are known to be legal.
+    """Return the settings of a point from their JSON; `checked` says that they are known to be
+    legal.
 
-    `parts` are the definitions of the schema that they must else fulfil.
+    Otherwise they must fulfil `parts`, definitions of the schema.
     """
     try:
         settings = json.loads(text)
     except ValueError as error:
         raise InputError(source, shown(text), "be JSON") from error
     if not checked:
+        from roughgas.config.schema import check_schema
+
         for part in parts:
             check_schema(settings, source, part)
     return settings
 
 
-def _check_complete(name: str, settings: Mapping[str, Any], source: str, at_scale: str) -> None:
-    where = f"{source}: experiments.{name}{at_scale}"
-    check_axis(settings, where)
-    for one, chosen in every_variant(name, settings).items():
-        for part in ("experiment", "point") if one != name else ("point",):
-            check_schema(chosen, f"{source}: experiments.{one}{at_scale}", part)
-    check_schema(settings, where, "swept")
-    for key, value_of in (("r", restitution), ("beta", roughness)):
-        repeated = first_repeated(settings["sweep"][key], value_of)
-        if repeated is not None:
-            raise InputError(f"{where}.sweep.{key}", shown(repeated), "be given once")
+def axes_besides(settings: Mapping[str, Any]) -> list[str]:
+    """Return the keys of all axes in a sweep besides r and beta: legal is one at most."""
+    return [key for key in settings.get("sweep", {}) if "." in key]
 
 
-def _check_target(settings: Mapping[str, Any], where: str) -> None:
-    """Raise an InputError where a target and what it replaces are given side by side."""
-    if "target_stderr" not in settings:
-        return
-    for part, names in REPLACED.items():
-        for name in names:
-            if settings.get(part, {}).get(name) is not None:
-                value = settings[part][name]
-                raise InputError(f"{where}.{part}.{name}", value, "not stand beside target_stderr")
+def third_axis(settings: Mapping[str, Any]) -> str | None:
+    """Return the key of the third axis in the sweep of an experiment, or None."""
+    return next(iter(axes_besides(settings)), None)
 
 
-def _check_ancestors(name: str, known: Mapping[str, Any], source: str) -> None:
-    """Raise an InputError where the chain of `extends` breaks or runs in a circle."""
-    seen = [name]
-    while parent := known[seen[-1]].get("extends"):
-        key = f"{source}: experiments.{seen[-1]}.extends"
-        _one_of(key, parent, known)
-        if parent in seen:
-            raise InputError(key, parent, "be an experiment that does not itself build on this one")
-        seen.append(parent)
+def variants(name: str, settings: Mapping[str, Any]) -> list[str]:
+    """Return the names of all variants in a sweep; [name] where it has no third axis."""
+    key = third_axis(settings)
+    if key is None:
+        return [name]
+    _, parameter = key.split(".")
+    return [f"{name}/{parameter}{label}" for label in settings["sweep"][key]]
 
 
-def _one_of(key: str, value: Any, known: Iterable[str]) -> None:
+def every_variant(name: str, settings: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
+    """Return the settings of these variants by name; those given where there is no third axis."""
+    if third_axis(settings) is None:
+        return {name: dict(settings)}
+    return {one: variant(one, settings) for one in variants(name, settings)}
+
+
+def variant(name: str, settings: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the settings of the variant `name`, in the sweep or not, from its experiment's."""
+    base, _, folder = name.partition("/")
+    key = third_axis(settings)
+    if key is None:
+        raise InputError("experiment", shown(name), f"be {base} alone, which has no third axis")
+    _, parameter = key.split(".")
+    if not folder.startswith(parameter):
+        legal = f"name a value of {parameter}, such as {variants(base, settings)[0]}"
+        raise InputError("experiment", shown(name), legal)
+    value = level(folder.removeprefix(parameter), f"{base}: {key}")
+    swept = {one: labels for one, labels in settings["sweep"].items() if one != key}
+    return _changed(settings, key, {parameter: value}) | {"sweep": swept, SWEPT: key}
+
+
+def common(settings: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the settings of an experiment without the parameter that it sweeps."""
+    key = third_axis(settings)
+    return dict(settings) if key is None else _changed(settings, key, {})
+
+
+def check_one_variant(name: str, settings: Mapping[str, Any]) -> None:
+    """Raise an InputError where a point of `name` must say which variant it belongs to."""
+    if third_axis(settings) is not None:
+        legal = f"be followed by a variant, such as {variants(name, settings)[0]}"
+        raise InputError("experiment", shown(name), legal)
+
+
+def _changed(settings: Mapping[str, Any], key: str, value: Mapping[str, Any]) -> dict[str, Any]:
+    """Return settings with `value` in place of the parameter `key`."""
+    effect, parameter = key.split(".")
+    rest = {one: kept for one, kept in settings["effects"][effect].items() if one != parameter}
+    return dict(settings) | {"effects": settings["effects"] | {effect: rest | value}}
+
+
+def one_of(key: str, value: Any, known: Iterable[str]) -> None:
+    """Raise an InputError where `value` is none of the `known` ones."""
     if value not in known:
         raise not_one_of(key, shown(value), sorted(known))

@@ -9,26 +9,24 @@ from roughgas import config as settings
 from roughgas.base.files import write_text
 
 HEAD = """\
-# The complete configuration of the scale `{scale}`: what experiments take over from each other, and
-# what the scale and the command line change, is written out. In place of config.yaml it gives the
-# same results.
+# The complete configuration of the scale `{scale}`: what experiments inherit from each other, and
+# what the scale and the command line change, is written out. Used in place of config.yaml, it gives
+# the same results.
 """
 
 
 def effective(config: Mapping[str, Any], scale: str) -> dict[str, Any]:
-    """A configuration whose only scale is `scale`, which changes nothing: all is said above it.
+    """Return a configuration whose only scale is `scale`, which changes nothing.
 
     Raises InputError for an unknown scale.
     """
     names = config["experiments"]
-    experiments = {name: settings.experiment(config, name, scale) for name in names}
-    changes = config["scales"][scale]
     return {
         "scale": scale,
         "seeds_per_job": config.get("seeds_per_job", settings.SEEDS_PER_JOB),
-        "experiments": experiments,
-        "showcase": settings.showcase(config, scale),
-        "accuracy": settings.merged(config["accuracy"], changes.get("accuracy", {})),
+        "experiments": {name: settings.experiment(config, name, scale) for name in names},
+        settings.SHOWCASE: settings.showcase(config, scale),
+        settings.ACCURACY: settings.studies(config, scale),
         "scales": {scale: {}},
     }
 

@@ -1,4 +1,4 @@
-"""What a point's dataset says of where it comes from: enough to make it again, it alone."""
+"""The attributes of a dataset that say where it comes from, enough to make it again by itself."""
 
 import shlex
 from collections.abc import Mapping
@@ -15,15 +15,15 @@ def provenance(
     scale: str,
     output: str,
 ) -> dict[str, Any]:
-    """The attributes of a dataset that say how to make it again.
+    """Return the attributes of a point's dataset that say how to make it again.
 
-    `point` are its labels (r, beta, seed), `output` is where the command that they give writes it.
+    `point` has its labels (r, beta, seed); the command among the attributes writes to `output`.
     Raises InputError where the name of the experiment and the settings disagree.
     """
     text = config.as_text(config.point_settings(settings))
     r, beta, seed = point
     command = ["roughgas", "run", experiment, "--scale", scale]
-    # joined by =, lest a negative number be taken for an option
+    # joined by =, so that a negative number is not taken for an option
     command += [f"--r={r}", f"--beta={beta}", f"--seed={seed}"]
     command += ["--settings", text, "--output", output]
     return {
@@ -38,7 +38,7 @@ def provenance(
 
 
 def variant_attributes(name: str, settings: Mapping[str, Any]) -> dict[str, Any]:
-    """The attributes of a dataset that say which experiment, and which variant of it, it is of.
+    """Return the attributes of a dataset that name its experiment, and its variant if any.
 
     Raises InputError where name and settings disagree.
     """

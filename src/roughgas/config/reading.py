@@ -8,7 +8,7 @@ import yaml
 
 from roughgas.base.errors import InputError
 
-# YAML 1.1 takes 1e-5 for text, since it has no point
+# YAML 1.1 reads 1e-5 as text, since it has no decimal point
 SCIENTIFIC = re.compile(r"[-+]?[0-9]+(\.[0-9]*)?[eE][-+]?[0-9]+")
 
 
@@ -16,7 +16,7 @@ class Loader(yaml.SafeLoader):
     """PyYAML's safe loader, with the two differences named above."""
 
     def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
-        """A mapping; raises InputError where a key is there twice."""
+        """Return a mapping; raise InputError where a key is given twice."""
         seen = set()
         for key in (key for key, _ in node.value if isinstance(key, yaml.ScalarNode)):
             if key.value in seen:
@@ -29,14 +29,17 @@ Loader.add_implicit_resolver("tag:yaml.org,2002:float", SCIENTIFIC, list("-+0123
 
 
 def read_yaml(path: str | Path) -> Any:
-    """What the YAML file at `path` holds.
+    """Return what the YAML file at `path` holds.
 
     Raises InputError where it is not YAML, OSError where it cannot be read.
     """
     name = Path(path).name
     try:
-        text = _text(path)
+        text = Path(path).read_text(encoding="utf-8")
         loader = Loader(text)
+    except FileNotFoundError as error:
+        hint = f"{error.strerror}; go to the project's folder, where config.yaml is"
+        raise FileNotFoundError(error.errno, hint, str(path)) from error
     except (UnicodeDecodeError, yaml.reader.ReaderError) as error:
         raise InputError(name, "(not text)", "be YAML in UTF-8") from error
     loader.name = name
@@ -44,24 +47,13 @@ def read_yaml(path: str | Path) -> Any:
         return loader.get_single_data()
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
-        line = text.splitlines()[mark.line : mark.line + 1]
-        raise InputError(_place(mark), repr("".join(line)), _legal(error.problem)) from error
+        line = "".join(text.splitlines()[mark.line : mark.line + 1])
+        legal = f"be YAML: {error.problem}"
+        if r"'\t'" in error.problem:
+            legal = "be indented with spaces, not with a tab"
+        raise InputError(_place(mark), repr(line), legal) from error
     finally:
         loader.dispose()
-
-
-def _text(path: str | Path) -> str:
-    try:
-        return Path(path).read_text(encoding="utf-8")
-    except FileNotFoundError as error:
-        hint = f"{error.strerror}; go to the project's folder, where config.yaml is"
-        raise FileNotFoundError(error.errno, hint, str(path)) from error
-
-
-def _legal(problem: str) -> str:
-    if r"'\t'" in problem:
-        return "be indented with spaces, not with a tab"
-    return f"be YAML: {problem}"
 
 
 def _place(mark: yaml.Mark) -> str:

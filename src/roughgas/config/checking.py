@@ -1,0 +1,118 @@
+"""Checks of a whole configuration, and of one experiment in it.
+
+The schema says what each part may hold; here is what it cannot say. All functions raise an
+InputError for the first illegal thing, with the file and the key in it.
+"""
+
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+from roughgas import config as settings_of
+from roughgas.base.errors import InputError, shown
+from roughgas.config.labels import level, restitution, roughness
+from roughgas.config.reading import read_yaml
+from roughgas.config.schema import check_schema
+
+RESERVED = (settings_of.SHOWCASE, settings_of.ACCURACY)
+"""Names that no experiment may have, since scales change these parts under them."""
+
+
+def read(
+    path: str | Path, overrides: Mapping[str, Any] | None = None
+) -> tuple[dict[str, Any], str]:
+    """Return the unchecked configuration at `path`, `overrides` merged into it, and what messages
+    call it."""
+    source = Path(path).name
+    config = read_yaml(path)
+    if not isinstance(config, dict):
+        raise InputError(source, shown(config), "hold the keys scale, experiments, scales")
+    if not overrides:
+        return config, source
+    return settings_of.merged(config, overrides), f"{source} with the command line's changes"
+
+
+def check(config: Mapping[str, Any], source: str = settings_of.SOURCE) -> None:
+    """Check a configuration: its form, and every experiment, variant and study at every scale."""
+    check_file(config, source)
+    for scale in config["scales"]:
+        for part, whole, of in (
+            (settings_of.SHOWCASE, "filmed", settings_of.showcase),
+            (settings_of.ACCURACY, "studied", settings_of.studies),
+        ):
+            check_schema(of(config, scale), f"{source}: {part} at scale {scale}", whole)
+        for name in config["experiments"]:
+            check_one(config, name, scale, source)
+
+
+def check_file(config: Mapping[str, Any], source: str) -> None:
+    """Check the form of a configuration: what can be said without merging anything."""
+    check_schema(config, source)
+    known, scales = config["experiments"], config["scales"]
+    settings_of.one_of(f"{source}: scale", config["scale"], scales)
+    for name, settings in known.items():
+        if name in RESERVED:
+            raise InputError(f"{source}: key of experiments", name, "be another name")
+        _check_ancestors(name, known, source)
+        _check_target(settings, f"{source}: experiments.{name}")
+    for scale, changes in scales.items():
+        for name, settings in changes.items():
+            settings_of.one_of(f"{source}: key of scales.{scale}", name, [*known, *RESERVED])
+            _check_target(settings, f"{source}: scales.{scale}.{name}")
+
+
+def check_one(config: Mapping[str, Any], name: str, scale: str, source: str) -> None:
+    """Check an experiment and its variants at one scale, all that they extend merged."""
+    settings = settings_of.experiment(config, name, scale)
+    at_scale = "" if scale == config["scale"] else f" at scale {scale}"
+    where = f"{source}: experiments.{name}{at_scale}"
+    _check_axis(settings, where)
+    for one, chosen in settings_of.every_variant(name, settings).items():
+        for part in ("experiment", "point") if one != name else ("point",):
+            check_schema(chosen, f"{source}: experiments.{one}{at_scale}", part)
+    check_schema(settings, where, "swept")
+    for key, value_of in (("r", restitution), ("beta", roughness)):
+        _check_distinct(settings["sweep"][key], value_of, f"{where}.sweep.{key}")
+
+
+def _check_axis(settings: Mapping[str, Any], where: str) -> None:
+    """Refuse two third axes, one of an effect that the experiment does not list, and a value given
+    twice. Whether a value is legal is left to the check of its variant."""
+    keys = settings_of.axes_besides(settings)
+    for key in keys[1:]:
+        raise InputError(f"{where}.sweep: key", shown(key), f"not stand beside {keys[0]}")
+    for key in keys:
+        effect, _ = key.split(".")
+        listed = settings.get("effects", {})
+        if effect not in listed:
+            legal = f"begin with an effect of this experiment: {', '.join(sorted(listed))}"
+            raise InputError(f"{where}.sweep: key", shown(key), legal)
+        _check_distinct(settings["sweep"][key], level, f"{where}.sweep.{key}")
+
+
+def _check_distinct(labels: Iterable[Any], value_of: Callable[[Any], Any], key: str) -> None:
+    seen = set()
+    for label in labels:
+        if value_of(label) in seen:
+            raise InputError(key, shown(label), "be given once")
+        seen.add(value_of(label))
+
+
+def _check_target(settings: Mapping[str, Any], where: str) -> None:
+    """Refuse a target beside what it replaces."""
+    for part, names in settings_of.REPLACED.items() if "target_stderr" in settings else ():
+        for name in names:
+            value = settings.get(part, {}).get(name)
+            if value is not None:
+                raise InputError(f"{where}.{part}.{name}", value, "not stand beside target_stderr")
+
+
+def _check_ancestors(name: str, known: Mapping[str, Any], source: str) -> None:
+    """Refuse a chain of `extends` that breaks or runs in a circle."""
+    seen = [name]
+    while parent := known[seen[-1]].get("extends"):
+        key = f"{source}: experiments.{seen[-1]}.extends"
+        settings_of.one_of(key, parent, known)
+        if parent in seen:
+            raise InputError(key, parent, "be an experiment that does not itself build on this one")
+        seen.append(parent)
