@@ -29,8 +29,8 @@ REALLY_RUN = [
 
 
 def test_every_command_is_in_one_group_and_built_alone_as_with_all(capsys):
-    assert list(COMMANDS) and not set(cli.FOR_PEOPLE) & set(cli.OF_THE_WORKFLOW)
-    assert set(COMMANDS) == {*cli.FOR_PEOPLE, *cli.OF_THE_WORKFLOW}
+    assert list(COMMANDS) and not set(cli.COMMANDS) & set(cli.STEPS)
+    assert set(COMMANDS) == {*cli.COMMANDS, *cli.STEPS}
     for name, parser in COMMANDS.items():
         with pytest.raises(SystemExit):
             main([name, "--help"])
@@ -41,7 +41,7 @@ def test_the_overview_has_people_first(capsys):
     with pytest.raises(SystemExit):
         main(["--help"])
     shown = capsys.readouterr().out
-    places = [shown.index(f"\n  {name} ") for name in [*cli.FOR_PEOPLE, *cli.OF_THE_WORKFLOW]]
+    places = [shown.index(f"\n  {name} ") for name in [*cli.COMMANDS, *cli.STEPS]]
     assert places == sorted(places)
 
 
@@ -53,7 +53,7 @@ def test_help_explains_the_command_and_its_examples_parse(name):
     found = examples(parser)
     assert found
     for arguments in found:
-        options = cli._parser().parse_args(arguments)
+        options = cli.parser_of().parse_args(arguments)
         assert arguments[0] == name and callable(options.command)
 
 

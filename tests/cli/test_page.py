@@ -26,4 +26,4 @@ def test_a_block_is_what_its_commands_print(folder, block):
 
 def test_every_command_for_people_is_on_the_page():
     text = page.PAGE.read_text(encoding="utf-8")
-    assert [name for name in cli.FOR_PEOPLE if f"roughgas {name}" not in text] == []
+    assert [name for name in cli.COMMANDS if f"roughgas {name}" not in text] == []

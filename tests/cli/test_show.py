@@ -8,9 +8,9 @@ import xarray
 
 from roughgas import theory
 from roughgas.cli import main
-from roughgas.cli.layout import with_error
 from roughgas.data.point import read_point
 from roughgas.data.reduced import read_reduced
+from roughgas.statistics.estimate import Estimate
 from roughgas.studies.accuracy.files import write_task
 
 
@@ -29,7 +29,7 @@ def test_a_point(product, capsys):
     assert text.startswith(f"{path}: point\n")
     assert rows["point"] == "r = 0.9, beta = 0.5, seed 1"
     assert rows["gas"] == "20 disks, box 20 x 20 a"
-    assert rows["R"] == with_error(float(point.R), float(point.R_stderr))
+    assert rows["R"] == f"{Estimate(float(point.R), float(point.R_stderr))}"
     interval, _, doubt = rows["95 % interval"].partition(" (")
     ends = [float(end) for end in interval.split(" to ")]
     assert ends == pytest.approx([low, high], abs=6e-4)
@@ -58,7 +58,7 @@ def test_a_reduced_dataset(product, capsys):
     rows = [line.split() for line in text.splitlines() if line.startswith("0.9 ")]
     assert [row[:3] for row in rows] == [["0.9", "-0.5", "2"], ["0.9", "0.5", "2"]]
     for row, R, stderr in zip(rows, data.R.values[0], data.R_stderr.values[0], strict=True):
-        assert row[3] == with_error(R, stderr)
+        assert row[3] == f"{Estimate(R, stderr)}"
         expected = float(theory.cooling_ratio(0.9, float(row[1])))
         assert row[5:7] == [f"{expected:.4f}", f"{R - expected:+.4f}"]
     first, _ = json.loads(shown(capsys, path, "--json"))["points"]

@@ -1,70 +1,49 @@
 """`roughgas bench`: how fast this machine simulates."""
 
-import argparse
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from argparse import Namespace
+from typing import Any
 
-from roughgas.base.errors import InputError
-from roughgas.cli.layout import as_json, columns
-from roughgas.cli.parser import examples
-from roughgas.cli.settings import add_experiments, add_scale
+from roughgas.cli.options import whole_number
 
-if TYPE_CHECKING:
-    from roughgas.simulation.speed import Speed
-
-EXAMPLES = examples(
-    "roughgas bench",
-    "roughgas bench cooling vibrated --r 0.8 --beta 0.5 --runs 9",
-    "roughgas bench cooling --scale small --json",
-)
+HEAD = ["experiment", "r", "beta", "particles", "collisions / s", "slowest", "fastest"]
 
 
-def add_commands(commands: Any) -> None:
-    """Add the subcommand to argparse's `commands`."""
-    parser = commands.add_parser(
-        "bench",
-        help="how fast this machine simulates",
-        description="Measure how many collisions a second of CPU time experiments make on one core "
-        "of this machine, after compiling: the median of several runs, and the slowest and the "
-        "fastest. Kernels that are not there yet are compiled first, 12 s for each kind of scene.",
-        epilog=EXAMPLES,
-    )
-    default = "default: those that extend no other"
-    add_experiments(parser, dest="experiments", nargs="*", help=default)
-    add_scale(parser)
-    parser.add_argument("--r", default="0.9", help="normal restitution, in [0, 1] (default: 0.9)")
-    parser.add_argument("--beta", default="0", help="roughness, in [-1, 1] (default: 0)")
-    parser.add_argument("--runs", default="5", help="of about 0.3 s each (default: 5)")
-    parser.add_argument("--json", action="store_true", help="for scripts")
-    parser.set_defaults(command=bench)
-
-
-def bench(options: argparse.Namespace) -> None:
-    """Print the speeds."""
+def bench(options: Namespace) -> None:
+    """Measure and print the speeds of experiments."""
     from roughgas import config
+    from roughgas.base.layout import as_json, columns
+    from roughgas.base.machine import description
 
     r, beta = config.restitution(options.r), config.roughness(options.beta)
-    if not options.runs.isdecimal() or int(options.runs) < 1:
-        raise InputError("--runs", options.runs, "be a whole number >= 1")
-    found, runs = _experiments(options), int(options.runs)
+    runs = whole_number("--runs", options.runs, 1)
+    found = _experiments(options)
 
-    from roughgas.base.machine import description
     from roughgas.simulation.progress import Bar
     from roughgas.simulation.speed import measure
 
-    speeds = []
     with Bar("bench", len(found) * (runs + 1), "runs") as bar:
-        for name, settings in found.items():
-            speeds.append(measure(name, settings, r, beta, runs, bar.advance))
+        speeds = [
+            measure(name, settings, r, beta, runs, bar.advance) for name, settings in found.items()
+        ]
+    about = [(one.median, min(one.rates), max(one.rates)) for one in speeds]
     machine = description()
     if options.json:
-        print(as_json({"machine": machine, "speeds": [_record(one) for one in speeds]}))
-    else:
-        print(f"{_table(speeds)}\n\n{columns(machine.items())}")
+        names = ("collisions_per_second", "slowest", "fastest")
+        records = [
+            one._asdict() | dict(zip(names, rates, strict=True))
+            for one, rates in zip(speeds, about, strict=True)
+        ]
+        print(as_json({"machine": machine, "speeds": records}))
+        return
+    rows = [HEAD]
+    for one, rates in zip(speeds, about, strict=True):
+        place = [one.experiment, f"{one.r:g}", f"{one.beta:g}", str(one.particles)]
+        rows.append([*place, *(f"{float(f'{rate:.3g}'):,.0f}" for rate in rates)])
+    print(f"{columns(rows, numbers=True)}\n\n{columns(machine.items())}")
 
 
-def _experiments(options: argparse.Namespace) -> dict[str, dict[str, Any]]:
-    """The settings by name: of a third axis, unless it is said, the first variant."""
+def _experiments(options: Namespace) -> dict[str, dict[str, Any]]:
+    """Return settings by name: for an experiment with a third axis, its first variant's."""
     from roughgas import config
 
     loaded = config.load(options.config)
@@ -75,21 +54,3 @@ def _experiments(options: argparse.Namespace) -> dict[str, dict[str, Any]]:
         first = next(iter(every))
         found[first] = every[first]
     return found
-
-
-def _record(speed: "Speed") -> dict[str, Any]:
-    about = {
-        "collisions_per_second": speed.median,
-        "slowest": min(speed.rates),
-        "fastest": max(speed.rates),
-    }
-    return speed._asdict() | about
-
-
-def _table(speeds: Sequence["Speed"]) -> str:
-    rows = [["experiment", "r", "beta", "particles", "collisions / s", "slowest", "fastest"]]
-    for one in speeds:
-        rates = (one.median, min(one.rates), max(one.rates))
-        place = [one.experiment, f"{one.r:g}", f"{one.beta:g}", str(one.particles)]
-        rows.append(place + [f"{float(f'{rate:.3g}'):,.0f}" for rate in rates])
-    return columns(rows, numbers=True)

@@ -1,65 +1,120 @@
-"""argparse as `roughgas` uses it: errors in one line, examples as they are written, and commands in
-two groups."""
+"""Commands declared as data, and argparse built from them: errors in one line, examples as they
+are written, commands in groups."""
 
 import argparse
 import re
-from collections.abc import Iterable, Mapping
-from typing import Any, NoReturn
+from collections.abc import Callable, Mapping
+from importlib import import_module
+from textwrap import fill
+from typing import Any, NamedTuple, NoReturn
 
 BAD_INPUT = 2
+WIDTH = 78
+Option = Callable[[Any], None]
+"""Adds an argument, or several, to a parser or to a group of one."""
+
+
+class Command(NamedTuple):
+    """A subcommand.
+
+    `calls` names a function, "room.module:function". One of `cli` is given all options (an
+    argparse.Namespace); one of another room is given their values, in the order of `options`.
+    """
+
+    calls: str
+    summary: str
+    options: tuple[Option, ...]
+    examples: tuple[str, ...]
+    description: str
+
+    def __call__(self, options: argparse.Namespace) -> None:
+        """Import and call the function."""
+        module, _, name = self.calls.partition(":")
+        function = getattr(import_module(f"roughgas.{module}"), name)
+        if module.startswith("cli."):
+            function(options)
+        else:
+            function(*(value for key, value in vars(options).items() if key != "command"))
+
+
+def command(
+    calls: str, summary: str, *options: Option, examples: tuple[str, ...], about: str = ""
+) -> Command:
+    """Declare a command; without `about`, its summary describes it."""
+    about = about or f"{summary[0].upper()}{summary[1:]}."
+    return Command(calls, summary, options, examples, about)
+
+
+def value(name: str, help: str, *, completer: Any = None, **settings: Any) -> Option:
+    """Declare an option with a value, or a positional argument, as argparse's `add_argument`.
+
+    `name` is such as "-o --output FILE"; a default is added to the help; `completer` lists what a
+    shell may complete the value to.
+    """
+    names = name.split()
+    if names[-1].isupper():
+        settings["metavar"] = names.pop()
+    if isinstance(settings.get("default"), str):
+        help += " (default: %(default)s)"
+
+    def add(parser: Any) -> None:
+        action = parser.add_argument(*names, help=help, **settings)
+        if completer:
+            action.completer = completer
+
+    return add
+
+
+def flag(name: str, help: str) -> Option:
+    """Declare an option without a value."""
+    return value(name, help, action="store_true")
+
+
+def output(help: str, metavar: str = "FILE", required: bool = True, **settings: Any) -> Option:
+    """Declare -o, --output."""
+    return value(f"-o --output {metavar}", help, required=required, **settings)
+
+
+def one_of(*options: Option, required: bool = False) -> Option:
+    """Declare options that exclude each other."""
+
+    def add(parser: argparse.ArgumentParser) -> None:
+        group = parser.add_mutually_exclusive_group(required=required)
+        for option in options:
+            option(group)
+
+    return add
 
 
 class Parser(argparse.ArgumentParser):
-    """A parser that refuses in one line, and takes what begins like a negative number for a value:
-    --beta -1:1:0.1."""
+    """A parser that reports errors in one line, and takes whatever begins like a negative number
+    as a value: --beta -1:1:0.1."""
 
     def __init__(self, *arguments: Any, **others: Any) -> None:
-        super().__init__(*arguments, **others)
+        form = argparse.RawDescriptionHelpFormatter  # which leaves examples as they are
+        super().__init__(*arguments, formatter_class=form, **others)
         self._negative_number_matcher = re.compile(r"-\.?\d")
 
     def error(self, message: str) -> NoReturn:
+        """Exit with the message."""
         self.exit(BAD_INPUT, f"roughgas: error: {message} (see `{self.prog} --help`)\n")
 
 
-class Formatter(argparse.HelpFormatter):
-    """Wraps paragraphs, but leaves those with indented lines, which are examples, as they are."""
-
-    def _fill_text(self, text: str, width: int, indent: str) -> str:
-        fill = super()._fill_text
-        paragraphs = text.split("\n\n")
-        return "\n\n".join(one if "\n " in one else fill(one, width, indent) for one in paragraphs)
-
-
-class Commands:
-    """The commands of a parser: added as with argparse's `add_subparsers`, shown in groups."""
-
-    def __init__(self, parser: Parser) -> None:
-        self._parsers = parser.add_subparsers(
-            prog=parser.prog, metavar="COMMAND", required=True, help=argparse.SUPPRESS
-        )
-        self._summaries: dict[str, str] = {}
-
-    def add_parser(self, name: str, *, help: str, **about: Any) -> Parser:
-        """The parser of a command; `help` is its line in the overview."""
-        self._summaries[name] = help
-        return self._parsers.add_parser(name, formatter_class=Formatter, **about)
-
-    def overview(self, groups: Mapping[str, Iterable[str]]) -> str:
-        """For each group, by its title, a line for each of its commands that was added."""
-        width = max(map(len, self._summaries))
-        return "\n\n".join(
-            f"{title}:\n"
-            + "\n".join(
-                f"  {name:{width}}  {self._summaries[name]}"
-                for name in names
-                if name in self._summaries
-            )
-            for title, names in groups.items()
-        )
-
-
-def examples(*commands: str) -> str:
-    """The end of a command's help: command lines that work."""
-    return "\n".join(
-        ["examples:" if len(commands) > 1 else "example:"] + [f"  {c}" for c in commands]
+def add_commands(parser: Parser, commands: Mapping[str, Command]) -> None:
+    """Add subcommands to a parser."""
+    parsers = parser.add_subparsers(
+        prog=parser.prog, metavar="COMMAND", required=True, help=argparse.SUPPRESS
     )
+    for name, command in commands.items():
+        title = "example:" if len(command.examples) == 1 else "examples:"
+        epilog = "\n  ".join([title, *command.examples])
+        one = parsers.add_parser(name, description=fill(command.description, WIDTH), epilog=epilog)
+        for option in command.options:
+            option(one)
+        one.set_defaults(command=command)
+
+
+def overview(title: str, commands: Mapping[str, Command]) -> str:
+    """Return a line for each command, below a title."""
+    lines = [f"  {name:10}  {command.summary}" for name, command in commands.items()]
+    return "\n".join([f"{title}:", *lines])

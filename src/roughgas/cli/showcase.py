@@ -1,49 +1,18 @@
-"""The showcase: `roughgas clustering` films a large cooling gas, `roughgas film` draws the film."""
+"""`roughgas clustering` films a large cooling gas."""
 
-import argparse
 import shlex
 import sys
+from argparse import Namespace
 from pathlib import Path
 from typing import Any
 
-from roughgas.cli.parser import examples
-from roughgas.cli.settings import add_settings
-
-EXAMPLE = examples("roughgas clustering --scale small -o clustering.nc")
-FILM_EXAMPLE = examples("roughgas film clustering.nc -o clustering.png clustering.mp4")
+from roughgas.cli.options import whole_number
 
 
-def add_commands(commands: Any) -> None:
-    """Add the two subcommands to argparse's `commands`."""
-    parser = commands.add_parser(
-        "clustering",
-        help="film a large cooling gas until it forms clusters",
-        description="Film a large cooling gas until it forms clusters. A run that was interrupted"
-        " or killed goes on from its last checkpoint, FILE.checkpoint.npz, when the same command"
-        " is given again; the result is the same to the last bit.",
-        epilog=EXAMPLE,
-    )
-    add_settings(parser)
-    parser.add_argument("--checkpoint-every", default="10", metavar="FRAMES", help="default: 10")
-    parser.add_argument("-o", "--output", required=True, metavar="FILE", help="dataset to write")
-    parser.set_defaults(command=clustering)
-
-    parser = commands.add_parser(
-        "film",
-        help="draw the picture and the movie of a film",
-        description="Draw what `roughgas clustering` has seen, as a picture or as a movie.",
-        epilog=FILM_EXAMPLE,
-    )
-    parser.add_argument("input", metavar="FILM", help="dataset of a film")
-    parser.add_argument(
-        "-o", "--output", required=True, nargs="+", metavar="FILE", help=".pdf, .png, .mp4 files"
-    )
-    parser.set_defaults(command=film)
-
-
-def clustering(options: argparse.Namespace) -> None:
-    """Film the gas, from the last checkpoint on where there is one."""
-    settings, every = _settings(options), _frames(options.checkpoint_every)
+def clustering(options: Namespace) -> None:
+    """Film the gas, from the last checkpoint on if there is one."""
+    settings = _settings(options)
+    every = whole_number("--checkpoint-every", options.checkpoint_every, 1, of="of frames ")
 
     from roughgas.data.checkpoint import discard
     from roughgas.data.film import write_film
@@ -62,14 +31,7 @@ def clustering(options: argparse.Namespace) -> None:
     print(f"{options.output}: {settings['frames']} frames, {took}", file=sys.stderr)
 
 
-def film(options: argparse.Namespace) -> None:
-    """Draw a film."""
-    from roughgas.show.figures.clustering import draw
-
-    draw(options.input, options.output)
-
-
-def _settings(options: argparse.Namespace) -> dict[str, Any]:
+def _settings(options: Namespace) -> dict[str, Any]:
     from roughgas import config
 
     if options.settings is not None:
@@ -79,16 +41,8 @@ def _settings(options: argparse.Namespace) -> dict[str, Any]:
     return config.showcase(config.load(options.config), options.scale)
 
 
-def _frames(text: str) -> int:
-    from roughgas.base.errors import InputError
-
-    if not text.isdecimal() or int(text) < 1:
-        raise InputError("--checkpoint-every", text, "be a whole number of frames >= 1")
-    return int(text)
-
-
-def _provenance(options: argparse.Namespace, settings: dict[str, Any]) -> dict[str, Any]:
-    """The attributes of a film that say how to make it again."""
+def _provenance(options: Namespace, settings: dict[str, Any]) -> dict[str, Any]:
+    """Return the attributes of a film that say how to make it again."""
     from roughgas.config import as_text
 
     command = ["roughgas", "clustering", "--scale", options.scale]

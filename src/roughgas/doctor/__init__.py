@@ -4,6 +4,7 @@ A check is a function without arguments that returns a Finding; what it raises i
 Nothing is imported here that may be what is broken.
 """
 
+import json
 from collections.abc import Callable, Iterator
 
 from roughgas.doctor import installation, machine, trials
@@ -57,3 +58,24 @@ def summary(findings: list[Finding]) -> str:
     counts = {verdict: verdicts.count(verdict) for verdict in (PROBLEM, WARNING)}
     parts = [f"{n} {verdict}{'s' if n > 1 else ''}" for verdict, n in counts.items() if n]
     return ", ".join(parts) if parts else "Nothing is wrong."
+
+
+def doctor(as_json: bool, clean: bool) -> None:
+    """Print what is wrong with the installation; exit with status 1 if there is a problem.
+
+    `clean`: only remove the compiled kernels of other versions.
+    """
+    if clean:
+        print(machine.clean())
+        return
+    found = {}
+    for name, finding in examine():
+        found[name] = finding
+        if not as_json:
+            print(in_words(name, finding), flush=True)
+    if as_json:
+        print(json.dumps({name: finding._asdict() for name, finding in found.items()}, indent=2))
+    else:
+        print(f"\n{summary(list(found.values()))}")
+    if any(finding.verdict == PROBLEM for finding in found.values()):
+        raise SystemExit(1)

@@ -3,8 +3,8 @@
 import json
 from typing import TYPE_CHECKING, Any
 
-from roughgas.cli.layout import columns
-from roughgas.cli.show.point import cost, settings
+from roughgas.base.layout import columns
+from roughgas.cli.show.parts import cost, scalars, settings
 from roughgas.data.film import read_film as read
 
 if TYPE_CHECKING:
@@ -13,18 +13,18 @@ if TYPE_CHECKING:
 __all__ = ["read", "record", "text"]
 
 ROWS = 8  # instants that are shown
+HEAD = ["frame", "collisions per particle", "time / T", "E_trans / initial", "R"]
+SHOWN = ("collisions_per_particle", "time", "E_trans", "R")
 
 
 def record(film: "xarray.Dataset") -> dict[str, Any]:
-    """Attributes, and single numbers, for a script."""
-    scalars = {name: one.item() for name, one in film.data_vars.items() if not one.dims}
-    return {"attributes": film.attrs, "frames": film.sizes["frame"], "variables": scalars}
+    """Return attributes and single numbers."""
+    return {"attributes": film.attrs, "frames": film.sizes["frame"], "variables": scalars(film)}
 
 
 def text(film: "xarray.Dataset") -> str:
-    """For a person."""
-    about = film.attrs
-    frames = film.sizes["frame"]
+    """Return a summary for a person."""
+    about, frames = film.attrs, film.sizes["frame"]
     head = [
         ["point", f"r = {about['r']:g}, beta = {about['beta']:g}, seed {about['seed']}"],
         *settings(json.loads(about["settings_json"]), 2),
@@ -32,9 +32,7 @@ def text(film: "xarray.Dataset") -> str:
         ["frames", f"{frames}, of {film.sizes['x']} x {film.sizes['y']} cells"],
         ["cost", cost(film)],
     ]
-    table = [["frame", "collisions per particle", "time / T", "E_trans / initial", "R"]]
-    for k in sorted({round(k * (frames - 1) / (ROWS - 1)) for k in range(ROWS)}):
-        names = ("collisions_per_particle", "time", "E_trans", "R")
-        table.append([str(k), *(f"{float(film[name][k]):.5g}" for name in names)])
+    shown = sorted({round(k * (frames - 1) / (ROWS - 1)) for k in range(ROWS)})
+    table = [[str(k), *(f"{float(film[name][k]):.5g}" for name in SHOWN)] for k in shown]
     again = f"To make it again:\n{about['command']}"
-    return "\n\n".join([columns(head), columns(table, numbers=True), again])
+    return "\n\n".join([columns(head), columns([HEAD, *table], numbers=True), again])

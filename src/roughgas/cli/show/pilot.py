@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from roughgas.cli.layout import columns
+from roughgas.base.layout import columns
 from roughgas.planning.pilot import Pilot
 from roughgas.planning.pilot import read_pilot as read
 
@@ -13,7 +13,7 @@ MEANING = {
     "transient": f"until energies are steady, in {UNIT}",
     "autocorrelation_time": f"of R, in {UNIT}",
     "variance": "of the mean of R over a length of one",
-    "dof": "degrees of freedom that the variance is known with",
+    "dof": "degrees of freedom of the variance",
     "pace": "collisions per particle in a length of one",
     "seconds_per_length": "s of CPU time",
     "settled": "whether a steady state was found",
@@ -23,12 +23,12 @@ MEANING = {
 
 
 def record(pilot: Pilot) -> dict[str, Any]:
-    """All of it, for a script."""
+    """Return all of it."""
     return {"variables": pilot._asdict()}
 
 
 def text(pilot: Pilot) -> str:
-    """For a person."""
+    """Return a summary for a person."""
     rows = []
     for name, value in pilot._asdict().items():
         shown = ("no", "yes")[value] if isinstance(value, bool) else f"{value:.5g}"

@@ -13,7 +13,7 @@ __all__ = ["STUDIES", "read", "record", "text"]
 
 
 def read(path: str | Path) -> dict[str, "xarray.Dataset"]:
-    """The datasets of all studies in a file."""
+    """Return the datasets of all studies in a file."""
     import netCDF4
 
     from roughgas.studies.accuracy.files import read_study
@@ -24,12 +24,12 @@ def read(path: str | Path) -> dict[str, "xarray.Dataset"]:
 
 
 def record(studies: dict[str, "xarray.Dataset"]) -> dict[str, Any]:
-    """Attributes, sizes and single numbers of each study, for a script."""
+    """Return attributes, sizes and single numbers of each study."""
     return {"studies": {name: task.record(data) for name, data in studies.items()}}
 
 
 def text(studies: dict[str, "xarray.Dataset"]) -> str:
-    """For a person: what `roughgas tables` writes."""
+    """Return what `roughgas tables` writes."""
     from roughgas.studies.accuracy import tables
 
     scales = {data.attrs["scale"] for data in studies.values()}

@@ -5,7 +5,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from roughgas.cli.layout import columns
+from roughgas.base.layout import columns
+from roughgas.cli.show.parts import scalars
 from roughgas.data.point import read_point as read
 
 if TYPE_CHECKING:
@@ -17,28 +18,26 @@ MOST_VALUES = 4  # of a variable, that are all shown
 
 
 def record(data: "xarray.Dataset") -> dict[str, Any]:
-    """Attributes, sizes and single numbers, for a script."""
-    scalars = {name: one.item() for name, one in data.variables.items() if not one.dims}
-    return {"attributes": data.attrs, "sizes": dict(data.sizes), "variables": scalars}
+    """Return attributes, sizes and single numbers."""
+    return {"attributes": data.attrs, "sizes": dict(data.sizes), "variables": scalars(data)}
 
 
 def text(data: "xarray.Dataset") -> str:
-    """For a person."""
+    """Return a summary for a person."""
     about = data.attrs
-    again = f"roughgas study {about['study']} {about['task']} --scale {about['scale']} -o task.nc"
     chosen = json.loads(about["settings_json"])["study"]
     head = [["task", f"{about['task']} of the study {about['study']}, scale {about['scale']}"]]
-    simple = {name: value for name, value in chosen.items() if not isinstance(value, dict | list)}
-    head += [[name, str(value)] for name, value in simple.items()]
+    head += [[key, str(one)] for key, one in chosen.items() if not isinstance(one, dict | list)]
     table = [["variable", "over", "value"]]
     for name, one in data.variables.items():
         over = ", ".join(f"{dim} ({data.sizes[dim]})" for dim in one.dims)
         table.append([name, over, _values(one.values)])
+    again = f"roughgas study {about['study']} {about['task']} --scale {about['scale']} -o task.nc"
     return "\n\n".join([columns(head), columns(table), f"To make it again: {again}"])
 
 
 def _values(values: np.ndarray) -> str:
-    """Few values as they are, many as their range."""
+    """Return few values as they are, many as their range."""
     if values.size <= MOST_VALUES or values.dtype.kind not in "fiu":
         return ", ".join(_one(value) for value in values.ravel()[:MOST_VALUES])
     there = values[np.isfinite(values)]

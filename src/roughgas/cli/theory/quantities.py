@@ -5,12 +5,11 @@ from typing import Any, NamedTuple
 from roughgas import theory
 from roughgas.theory.prediction import equation_of, predicted_ratio
 
-PAPER = "S. McNamara, S. Luding, Phys. Rev. E 58, 2247 (1998)"
 TOLERANCE = 0.01  # of R, within which it counts as settled
 
 
 class Gas(NamedTuple):
-    """Points (r, beta) of one dimension, arrays of equal shape, and what is the same at all."""
+    """Points (r, beta), arrays of equal shape, and what they share; no friction: `mu` is None."""
 
     r: Any
     beta: Any
@@ -21,7 +20,7 @@ class Gas(NamedTuple):
 
 
 class Quantity(NamedTuple):
-    """What is computed: an array over the points, what it is, and which equation it is from."""
+    """An array over the points, what it is, and which equation it is from."""
 
     values: Any
     meaning: str
@@ -29,7 +28,7 @@ class Quantity(NamedTuple):
 
 
 def quantities(gas: Gas) -> dict[str, Quantity]:
-    """All that theory says of a gas, by name."""
+    """Return all that theory says of a gas, by name."""
     about = {"dimension": gas.dimension, "inertia": gas.inertia, "spin_share": gas.spin_share}
     if gas.mu is not None:
         about["mu"] = gas.mu
@@ -43,30 +42,29 @@ def quantities(gas: Gas) -> dict[str, Quantity]:
 
 
 def _relaxation(gas: Gas) -> dict[str, Quantity]:
-    """How R settles, and how energy decays."""
-    material, source = (gas.r, gas.beta), "rate equations"
+    """Return how fast R settles and energy decays."""
+    point, source = (gas.r, gas.beta), "rate equations"
     spins = {"dimension": gas.dimension, "inertia": gas.inertia}
+    until = f"collisions per particle until R is there to {TOLERANCE:.0%}"
     found = {}
     for name, share in (("driven", gas.spin_share), ("cooling", None)):
-        rate = theory.relaxation_rate(*material, **spins, spin_share=share)
-        needed = theory.collisions_to_relax(*material, TOLERANCE, **spins, spin_share=share)
+        rate = theory.relaxation_rate(*point, **spins, spin_share=share)
+        needed = theory.collisions_to_relax(*point, TOLERANCE, **spins, spin_share=share)
         found[f"rate_{name}"] = Quantity(rate, f"rate at which R settles, {name}", source)
-        found[f"settled_{name}"] = Quantity(
-            needed, f"collisions per particle until R is there to {TOLERANCE:.0%}, {name}", source
-        )
-    decay = theory.decay_rate(*material, **spins)
+        found[f"settled_{name}"] = Quantity(needed, f"{until}, {name}", source)
+    decay = theory.decay_rate(*point, **spins)
     return found | {"decay": Quantity(decay, "rate at which energy decays, cooling", "Haff's law")}
 
 
 def _friction(gas: Gas) -> dict[str, Quantity]:
-    """What there is to know where contacts may slide."""
+    """Return how fast R settles and how often contacts slide, if they can."""
     spins, source = (gas.mu, gas.dimension, gas.inertia), "rate equations with Coulomb friction"
     rate = theory.friction_relaxation_rate(gas.r, gas.beta, *spins)
     R = theory.friction_ratio(gas.r, gas.beta, *spins, gas.spin_share)
     sliding = theory.sliding_fraction(1.0 - R, R, gas.r, gas.beta, *spins)
-    legal = "mu below which a gas of fast spins keeps them, cooling"
+    critical = "mu below which a gas of fast spins keeps them, cooling"
     return {
         "rate_cooling": Quantity(rate, "rate at which R settles, cooling", source),
         "sliding": Quantity(sliding, "share of contacts that slide, driven", source),
-        "mu_c": Quantity(theory.critical_friction(gas.r), legal, "sqrt((1 - r)/(1 + r))"),
+        "mu_c": Quantity(theory.critical_friction(gas.r), critical, "sqrt((1 - r)/(1 + r))"),
     }

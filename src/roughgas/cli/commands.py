@@ -1,0 +1,175 @@
+"""The commands that people give: what each takes, says and calls."""
+
+import os
+
+from roughgas.cli import completion
+from roughgas.cli.options import (
+    CONFIG,
+    KERNEL,
+    POINT,
+    RESTITUTION,
+    ROUGHNESS,
+    experiments,
+)
+from roughgas.cli.parser import command, flag, one_of, output, value
+
+CORES = str(os.cpu_count())
+COMMANDS = {
+    "run": command(
+        "cli.run:run",
+        "simulate a point, and write its dataset",
+        *KERNEL,
+        value("--beta", ROUGHNESS, required=True, action="append"),
+        value("--seed", "seeds: 0, 1, ... (default: 1)", nargs="+", default=["1"]),
+        output("datasets, one a seed", required=False, nargs="+"),
+        flag("--json", "print a line of JSON as each seed is done"),
+        examples=(
+            "roughgas run cooling --r 0.9 --beta -0.5",
+            "roughgas run vibrated --r 0.87 --beta 0.5 --seed 1 2 3 --scale small --json",
+            "roughgas run vibrated_inertia/inertia0.3 --r 0.9 --beta 1 -o hollow.nc",
+        ),
+        about="Simulate a point of an experiment, for one seed or for several in turn, and write "
+        "a dataset for each. Without -o the dataset goes into the present folder, under a name "
+        "made from the point's, and its summary is printed, as by `roughgas show`. --beta may be "
+        "given several times: each seed is then run at each beta.",
+    ),
+    "movie": command(
+        "cli.movie:movie",
+        "show a point as it moves",
+        *POINT,
+        value("--seed", "seed of the random generator", default="1"),
+        value("--start TIME", "time of the first frame (default: when steady)"),
+        value("--length TIME", "time shown (default: by experiment)"),
+        value("--frames NUMBER", "number of frames (default: 125 or 160)"),
+        value("--fps RATE", "frames a second", default="25"),
+        output(".mp4 or .gif files", nargs="+"),
+        examples=("roughgas movie vibrated --r 0.9 --beta 0.5 -o bed.mp4 bed.gif",),
+        about="Simulate a point of an experiment, and draw its particles as they move and spin, "
+        "its boundaries, and R(t). The trajectory is that of `roughgas run` with the same seed. "
+        "Times are in T; for a cooling gas, in collisions per particle.",
+    ),
+    "show": command(
+        "cli.show:show",
+        "summarise any dataset that the pipeline wrote",
+        value("files FILE", "datasets", nargs="+"),
+        flag("--json", "print attributes and single numbers, a line of JSON for each file"),
+        examples=(
+            "roughgas show results/paper/vibrated/r0.9/beta0.5/seed1.nc",
+            "roughgas show results/paper/vibrated.nc",
+            "roughgas show results/paper/accuracy.nc",
+            "roughgas show results/paper/sheared.nc --json",
+        ),
+        about="Print what a dataset holds: what was simulated, R with its error, theory, "
+        "energies, cost, and how to make it again. It may be a point, a reduced dataset, a film, "
+        "a study of accuracy or one task of it, or a pilot.json. 0.3565(30) is 0.3565 with a "
+        "standard error of 0.0030.",
+    ),
+    "theory": command(
+        "cli.theory:theory",
+        "print what theory says of R, at a point or along a curve",
+        value("--r VALUE", RESTITUTION, required=True, nargs="+"),
+        value("--beta VALUE", ROUGHNESS, required=True, nargs="+"),
+        value("--dimension", "default: both", choices=("2", "3")),
+        value(
+            "--inertia Q", "moment of inertia in m a^2 (default: 0.5 for disks, 0.4 for spheres)"
+        ),
+        value("--spin-share S", "share of the drive's power that goes into rotation", default="0"),
+        value("--mu", "Coulomb friction (default: none, contacts never slide)"),
+        one_of(flag("--json", "for scripts"), flag("--csv", "for spreadsheets")),
+        examples=(
+            "roughgas theory --r 0.9 --beta 0.5",
+            "roughgas theory --r 0.9 --beta -1:1:0.1 --dimension 2",
+            "roughgas theory --r 0.8 0.9 0.99 --beta 0 --inertia 0.1 --json",
+            "roughgas theory --r 0.9 --beta 0.5 --mu 0.3",
+            "roughgas theory --r 0.9 --beta -0.9:0.9:0.1 --spin-share 0.2 --csv",
+        ),
+        about="Print R = E_rot/(E_rot + E_trans) of theory, driven and freely cooling, how fast "
+        "it is reached, and how fast energy decays, with the equation behind each number. r and "
+        "beta take several values, or a range START:STOP:STEP with both ends.",
+    ),
+    "plan": command(
+        "cli.planning:plan",
+        "predict what experiments will cost, and how accurate they will be",
+        *experiments("default: all"),
+        value("--cores", "for the wall time (default: all of them)", default=CORES),
+        value("--pilots FOLDER", "folder of pilots (default: results/SCALE)"),
+        flag("--json", "print the table as JSON; times in s"),
+        output("a file for the table as well", required=False),
+        examples=(
+            "roughgas plan sheared --scale small",
+            "roughgas plan --scale fine --cores 8",
+            "roughgas plan vibrated cooling --scale fine --json",
+        ),
+        about="Print a table of points, seeds, errors and times, from pilot runs. Missing pilots "
+        "are run first; nothing else is.",
+    ),
+    "bench": command(
+        "cli.bench:bench",
+        "measure how fast this machine simulates",
+        *experiments("default: those that extend no other"),
+        value("--r", "normal restitution, in [0, 1]", default="0.9"),
+        value("--beta", "roughness, in [-1, 1]", default="0"),
+        value("--runs", "number of runs, 0.3 s each", default="5"),
+        flag("--json", "for scripts"),
+        examples=(
+            "roughgas bench",
+            "roughgas bench cooling vibrated --r 0.8 --beta 0.5 --runs 9",
+            "roughgas bench cooling --scale small --json",
+        ),
+        about="Measure how many collisions a second of CPU time experiments make on one core of "
+        "this machine: the median of several runs, the slowest and the fastest. Missing kernels "
+        "are compiled first, which takes 12 s for each kind of scene and is not counted.",
+    ),
+    "export": command(
+        "cli.products:export",
+        "write a dataset as CSV tables",
+        value("input DATASET", "dataset that the pipeline wrote"),
+        output("CSV file (default: DATASET with the ending .csv)", required=False),
+        examples=("roughgas export results/paper/vibrated.nc -o vibrated.csv",),
+        about="Write any dataset of the pipeline as CSV: the time series of a point, the grid of "
+        "a reduced dataset or the frames of a film to the file named; beside it other tables, "
+        "and FILE.about.csv with scalars, units and meanings.",
+    ),
+    "crate": command(
+        "cli.products:crate",
+        "pack a finished run as an RO-Crate, or check one",
+        value("files FILE", "results and figures; with --verify, points", nargs="*"),
+        one_of(
+            output(".zip file, or a new folder", "CRATE", required=False),
+            value("--verify CRATE", "check the checksums in a crate"),
+            required=True,
+        ),
+        flag("--points", "pack the points' files too, and not only their list"),
+        CONFIG,
+        value("--configuration JSON", "the configuration, in place of --config"),
+        examples=(
+            "roughgas crate results/paper/*.nc results/paper/R.csv figures/fig*.png -o run.zip",
+            "roughgas crate --verify run.zip",
+            "roughgas crate --verify run.zip results/paper/cooling/r0.9/beta0/seed1.nc",
+        ),
+        about="Pack what a run in this folder has made, with its configuration, code and "
+        "environment, as an RO-Crate with checksums; the same files give the same bytes.",
+    ),
+    "doctor": command(
+        "doctor:doctor",
+        "say what is wrong with the installation",
+        flag("--json", "for programs, or to send it on"),
+        flag("--clean", "remove compiled kernels of other versions, and do nothing else"),
+        examples=("roughgas doctor",),
+        about="Check Python, libraries, compiled kernels, folders and the configuration, and say "
+        "what is wrong and what to do about it. The exit status is 1 if there is a problem.",
+    ),
+    "completion": command(
+        "cli.completion:completion",
+        "complete commands, options and experiments in your shell",
+        value("shell", "bash, zsh or fish", choices=completion.SHELLS),
+        examples=(
+            'eval "$(roughgas completion bash)"      # in ~/.bashrc',
+            'eval "$(roughgas completion zsh)"       # in ~/.zshrc, after compinit',
+            "roughgas completion fish | source       # in ~/.config/fish/config.fish",
+        ),
+        about="Print the lines that make a shell complete this command when Tab is pressed: "
+        "commands, options, files, and the experiments and scales of the configuration in the "
+        "present folder.",
+    ),
+}

@@ -1,0 +1,59 @@
+"""Options that several commands share, and the numbers that they stand for."""
+
+import math
+
+from roughgas.base.errors import InputError
+from roughgas.cli import completion
+from roughgas.cli.parser import Option, flag, value
+
+SCALE = value(
+    "--scale",
+    "a scale of the configuration: small, ...",
+    default="paper",
+    completer=completion.scales,
+)
+CONFIG = value("--config FILE", "the configuration", default="config.yaml")
+SETTINGS = (
+    SCALE,
+    CONFIG,
+    value("--settings JSON", "the settings, in place of --config"),
+    flag("--checked", "trust --settings, which saves 0.1 s"),
+)
+"""Where the settings of a simulation come from."""
+EXPERIMENT = value(
+    "experiment EXPERIMENT",
+    "its name in the configuration, or that of a variant: EXPERIMENT/VARIANT",
+    completer=completion.experiments,
+)
+RESTITUTION = "normal restitution, in [0, 1]: 1 is elastic"
+ROUGHNESS = "roughness, in [-1, 1]: -1 is smooth, 1 perfectly rough"
+KERNEL = (EXPERIMENT, *SETTINGS, value("--r", RESTITUTION, required=True))
+POINT = (*KERNEL, value("--beta", ROUGHNESS, required=True))
+"""What names a point, except for its seed."""
+REDUCED = value("inputs REDUCED", "reduced datasets", nargs="+")
+
+
+def experiments(help: str) -> tuple[Option, ...]:
+    """Declare the arguments that choose experiments of a configuration."""
+    names = value("experiments EXPERIMENT", help, nargs="*", completer=completion.experiments)
+    return names, SCALE, CONFIG
+
+
+def whole_number(key: str, text: str, low: int, high: float = math.inf, of: str = "") -> int:
+    """Return the number that the option `key` was given. Raises InputError outside [low, high]."""
+    if text.isdecimal() and low <= int(text) <= high:
+        return int(text)
+    legal = f"in [{low}, {high}]" if high < math.inf else f">= {low}"
+    raise InputError(key, text, f"be a whole number {of}{legal}")
+
+
+def number(key: str, text: str, low: float = -math.inf, high: float = math.inf) -> float:
+    """Return the number that the option `key` was given. Raises InputError outside [low, high]."""
+    try:
+        found = float(text)
+    except ValueError:
+        found = math.nan
+    if not low <= found <= high:  # NaN fails, too
+        within = f" in [{low:g}, {high:g}]" if high < math.inf else ""
+        raise InputError(key, text, f"be a number{within}")
+    return found

@@ -1,0 +1,145 @@
+"""The commands that the workflow gives: what each takes, says and calls."""
+
+from roughgas.cli.options import CONFIG, KERNEL, POINT, REDUCED, SCALE, SETTINGS
+from roughgas.cli.parser import command, flag, output, value
+
+STEPS = {
+    "compile": command(
+        "cli.run:compile_kernel",
+        "compile the kernel of a point ahead of it",
+        *KERNEL,
+        examples=("roughgas compile cooling --r 0.9",),
+    ),
+    "pilot": command(
+        "cli.planning:pilot",
+        "measure what a point costs and how much it scatters, in a short run",
+        *POINT,
+        output("JSON file"),
+        examples=("roughgas pilot sheared --r 0.9 --beta 0 -o pilot.json",),
+    ),
+    "reach": command(
+        "cli.planning:reach",
+        "run as many seeds of a point as its target_stderr needs",
+        *POINT,
+        value("--pilot FILE", "pilot of the point (default: run one first)"),
+        output("folder for the datasets", "FOLDER"),
+        examples=("roughgas reach sheared --scale fine --r 0.9 --beta 0 -o seeds",),
+    ),
+    "costs": command(
+        "results.costs:write_costs",
+        "compare what was planned with what happened",
+        REDUCED,
+        value("--fixed JSON", "schedules to compare with", required=True),
+        output("Markdown file"),
+        examples=("roughgas costs results/fine/sheared.nc --fixed '{}' -o costs.md",),
+    ),
+    "reduce": command(
+        "cli.products:reduce",
+        "combine the points of an experiment",
+        value(
+            "inputs POINT",
+            "datasets, or folders of them; - reads their names from standard input, one a line",
+            nargs="+",
+        ),
+        output("reduced dataset"),
+        examples=("roughgas reduce results/paper/sheared/r*/beta*/seed*.nc -o sheared.nc",),
+    ),
+    "table": command(
+        "results.table:write_table",
+        "write reduced datasets as one CSV table",
+        REDUCED,
+        output("CSV file"),
+        examples=("roughgas table results/paper/sheared.nc results/paper/cooling.nc -o R.csv",),
+    ),
+    "figure": command(
+        "cli.products:figure",
+        "draw a figure from reduced datasets",
+        value("name NAME", "name of the figure, such as fig1a"),
+        REDUCED,
+        output(".pdf or .png files", nargs="+"),
+        examples=("roughgas figure fig2b results/paper/cooling.nc -o fig2b.pdf fig2b.png",),
+    ),
+    "claims": command(
+        "cli.products:claims",
+        "judge the claims of the paper on reduced datasets",
+        REDUCED,
+        flag("--open-questions", "judge what the paper leaves open, not what it claims"),
+        value("--json FILE", "verdicts for programs", required=True),
+        value("--markdown FILE", "verdicts for people", required=True),
+        examples=("roughgas claims results/paper/*.nc --json claims.json --markdown claims.md",),
+    ),
+    "page": command(
+        "show.page:write_page",
+        "write an interactive page of experiments and their points",
+        REDUCED,
+        value("--points FOLDER", "folder of their points: results/SCALE", required=True),
+        output("HTML file"),
+        examples=(
+            "roughgas page results/small/vibrated.nc --points results/small -o explore.html",
+        ),
+    ),
+    "html": command(
+        "show.page.document:write_document",
+        "write a Markdown, YAML, MP4 or GIF file as one page of HTML",
+        value("input FILE", "file to show"),
+        output("HTML file"),
+        examples=("roughgas html results/small/claims.md -o claims.html",),
+    ),
+    "times": command(
+        "results.times:write_times",
+        "write how long experiments took, in CPU seconds",
+        REDUCED,
+        output("Markdown file"),
+        examples=("roughgas times results/small/vibrated.nc -o run_times.md",),
+    ),
+    "config": command(
+        "cli.products:effective_config",
+        "write the complete configuration of a scale",
+        SCALE,
+        CONFIG,
+        value("--changes JSON", "changes to the configuration", default="{}"),
+        output("YAML file"),
+        examples=("roughgas config --scale small -o config_small.yaml",),
+    ),
+    "clustering": command(
+        "cli.showcase:clustering",
+        "film a large cooling gas until it forms clusters",
+        *SETTINGS,
+        value("--checkpoint-every FRAMES", "frames from one checkpoint to the next", default="10"),
+        output("dataset"),
+        examples=("roughgas clustering --scale small -o clustering.nc",),
+        about="Film a large cooling gas until it forms clusters. If a run was interrupted or "
+        "killed, the same command goes on from its last checkpoint, FILE.checkpoint.npz; the "
+        "result is the same to the last bit.",
+    ),
+    "film": command(
+        "show.figures.clustering:draw",
+        "draw the film of `roughgas clustering` as a picture or as a movie",
+        value("input FILM", "dataset"),
+        output(".pdf, .png, .mp4 files", nargs="+"),
+        examples=("roughgas film clustering.nc -o clustering.png clustering.mp4",),
+    ),
+    "study": command(
+        "cli.studies:study",
+        "run one of the independent tasks of a study of accuracy",
+        value("study STUDY", "statistical, models, ..."),
+        value("task TASK", "name of the task"),
+        *SETTINGS,
+        output("dataset"),
+        examples=("roughgas study statistical cooling-reference --scale small -o reference.nc",),
+    ),
+    "combine": command(
+        "studies.accuracy.files:combine",
+        "combine the tasks of studies into one dataset",
+        value("inputs TASK", "datasets", nargs="+"),
+        output("dataset"),
+        examples=("roughgas combine results/small/accuracy/*/*.nc -o accuracy.nc",),
+    ),
+    "tables": command(
+        "studies.accuracy.files:write_tables",
+        "write what studies have found as tables in Markdown",
+        value("input COMBINED", "combined dataset"),
+        output("Markdown file"),
+        examples=("roughgas tables results/small/accuracy.nc -o accuracy.md",),
+    ),
+}
