@@ -15,7 +15,7 @@ from project import POINTS, SWEEP
 from rocrate.rocrate import ROCrate
 
 from roughgas.data.point import WALL_CLOCK, read_point
-from roughgas.results.crate import rows_of, verify
+from roughgas.results.crate import points_in, verify
 
 pytestmark = pytest.mark.slow
 TARGET = ("--config", "scale=tiny", "--", "figures")
@@ -75,7 +75,7 @@ def test_a_run_is_packed_with_all_that_it_takes_to_repeat_it(undisturbed, tmp_pa
     assert {"results/tiny/R.csv", "results/tiny/claims.md", "figures/tiny/fig1a.png"} <= results
     configuration = json.loads((tmp_path / "crate/configuration.json").read_text())
     assert configuration["scale"] == "tiny" and configuration["scales"]["tiny"]
-    rows = rows_of(tmp_path / "crate/points.csv")
+    rows = points_in(tmp_path / "crate")
     assert len(rows) == POINTS
     # what is in the crate, and nothing else, makes a point of it again
     program, *arguments = shlex.split(rows[0]["command"])

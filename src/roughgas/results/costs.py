@@ -9,58 +9,53 @@ import numpy as np
 import xarray as xr
 
 from roughgas.base.files import write_text
+from roughgas.base.layout import markdown
 from roughgas.data.reduced import read_reduced
 
-HEAD = """\
+TEXT = """\
 # What was planned, and what happened
 
 A pilot run of each point foretells how many seeds its target needs and what they cost. A point that
 is still above its target then gets more. Times are CPU seconds of the kernel; the ratios are spent
 over planned, of times and of collisions.
 
-| experiment | points | target | met by | planned | made | s planned | spent | ratio | collisions |
-| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |
-"""
-SAVED = """
+{}
 ## Against a fixed length
 
 Each point is run as long as it needs, instead of as long as the slowest. How many times as much CPU
 time fixed runs take: *at equal error*, and *to bring every point to the target* with whole runs.
 
-| experiment | fixed run | at equal error | to the target |
-| --- | --- | --- | --- |
-"""
+{}"""
+COLUMNS = "experiment | points | target | met by | planned | made | s planned | spent | ratio"
+AGAINST = ("experiment", "fixed run", "at equal error", "to the target")
+
+
+SPENT = {"seeds": "n_seeds", "seconds": "kernel_seconds", "collisions": "collisions"}
 
 
 class Cost(NamedTuple):
-    """Sums over the points of an experiment."""
+    """Sums over the points of an experiment; arrays have what was planned, and what was spent."""
 
-    name: str
     points: int
-    target: float
     met: int
-    seeds: tuple[int, int]  # planned, made
-    seconds: tuple[float, float]
-    collisions: tuple[float, float]
+    seeds: np.ndarray
+    seconds: np.ndarray
+    collisions: np.ndarray
 
 
 def cost(data: xr.Dataset) -> Cost:
-    """What a reduced dataset says of plan and outcome."""
-    there = np.isfinite(data.R)
-    return Cost(
-        name=data.attrs["experiment"],
-        points=int(there.sum()),
-        target=float(data.target_stderr.max()),
-        met=int((data.R_stderr <= data.target_stderr).sum()),
-        seeds=(int(data.planned_seeds.sum()), int(data.n_seeds.sum())),
-        seconds=(float(data.planned_seconds.sum()), float(data.kernel_seconds.sum())),
-        collisions=(float(data.planned_collisions.sum()), float(data.collisions.sum())),
-    )
+    """Return what a reduced dataset says of plan and outcome."""
+    there, met = np.isfinite(data.R), data.R_stderr <= data.target_stderr
+    names = ((f"planned_{what}", spent) for what, spent in SPENT.items())
+    pairs = (np.array([float(data[name].sum()) for name in pair]) for pair in names)
+    return Cost(int(there.sum()), int(met.sum()), *pairs)
 
 
 def saved(data: xr.Dataset, schedule: Mapping[str, float]) -> tuple[float, float]:
-    """How many times as much the fixed `schedule` (equilibrate, measure, in T) would cost: at equal
-    error, and to bring every point to its target in whole runs."""
+    """Return how many times as much the fixed `schedule` (equilibrate, measure, in T) would cost.
+
+    That is at equal error, and to bring every point to its target in whole runs.
+    """
     wait, measure = schedule["equilibrate"], schedule["measure"]
     simulated = data.n_seeds * (data.measured_from + data.measured_for)
     per_length = data.kernel_seconds / simulated
@@ -74,30 +69,21 @@ def saved(data: xr.Dataset, schedule: Mapping[str, float]) -> tuple[float, float
 
 def write_costs(paths: Iterable[str | Path], fixed: str, output: str | Path) -> None:
     """Write the comparison as Markdown; `fixed` has schedules by experiment, as JSON."""
-    datasets, schedules = [read_reduced(path) for path in paths], json.loads(fixed)
-    costs = [cost(data) for data in datasets]
-    text = HEAD + "".join(map(_line, [*costs, _total(costs)])) + SAVED
-    for data in datasets:
-        schedule = schedules[data.attrs["experiment"]]
+    schedules, costs, targets, rows, against = json.loads(fixed), [], [], [], []
+    for data in map(read_reduced, paths):
+        name, schedule = data.attrs["experiment"], schedules[data.attrs["experiment"]]
+        costs.append(cost(data))
+        targets.append(float(data.target_stderr.max()))
+        rows.append(_row(name, targets[-1], costs[-1]))
         if schedule["kind"] == "steady":
-            equal, whole = saved(data, schedule)
             length = schedule["equilibrate"] + schedule["measure"]
-            text += f"| {data.attrs['experiment']} | {length:g} T | {equal:.1f} | {whole:.1f} |\n"
-    write_text(output, text)
+            against.append([name, f"{length:g} T", *(f"{x:.1f}" for x in saved(data, schedule))])
+    rows.append(_row("in all", max(targets), Cost(*map(sum, zip(*costs, strict=True)))))
+    head = [*COLUMNS.split(" | "), "collisions"]
+    write_text(output, TEXT.format(markdown(head, rows), markdown(AGAINST, against)))
 
 
-def _total(costs: list[Cost]) -> Cost:
-    def sums(name):
-        return tuple(sum(pair) for pair in zip(*(getattr(c, name) for c in costs), strict=True))
-
-    points, met = sum(c.points for c in costs), sum(c.met for c in costs)
-    target = max(c.target for c in costs)
-    return Cost("in all", points, target, met, *map(sums, ("seeds", "seconds", "collisions")))
-
-
-def _line(c: Cost) -> str:
-    return (
-        f"| {c.name} | {c.points} | {c.target:g} | {c.met} | {c.seeds[0]} | {c.seeds[1]} "
-        f"| {c.seconds[0]:.1f} | {c.seconds[1]:.1f} | {c.seconds[1] / c.seconds[0]:.2f} "
-        f"| {c.collisions[1] / c.collisions[0]:.2f} |\n"
-    )
+def _row(name: str, target: float, c: Cost) -> list[str]:
+    seeds, seconds = (f"{n:.0f}" for n in c.seeds), (f"{s:.1f}" for s in c.seconds)
+    ratios = (f"{spent / planned:.2f}" for planned, spent in (c.seconds, c.collisions))
+    return [name, str(c.points), f"{target:g}", str(c.met), *seeds, *seconds, *ratios]

@@ -2,10 +2,10 @@
 
 import hashlib
 import mimetypes
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from io import StringIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
-from urllib.parse import unquote
 
 from roughgas.base.version import __version__
 from roughgas.config.reading import read_yaml
@@ -13,79 +13,75 @@ from roughgas.config.reading import read_yaml
 if TYPE_CHECKING:
     from rocrate.rocrate import ROCrate
 
-RUN_TERMS = "https://w3id.org/ro/terms/workflow-run#"
 PROFILES = {
     "https://w3id.org/ro/wfrun/process/0.5": "Process Run Crate",
     "https://w3id.org/ro/wfrun/workflow/0.5": "Workflow Run Crate",
     "https://w3id.org/workflowhub/workflow-ro-crate/1.0": "Workflow RO-Crate",
 }
 WORKFLOW = "Snakefile"
+CONFIGURATION, ENVIRONMENT, POINTS = "configuration.json", "environment.json", "points.csv"
 MEANINGS = {
-    "configuration.json": "the configuration that the run had, with what its command line changed",
-    "environment.json": "Python, the machine, and the version of every package installed",
-    "points.csv": "each point simulated: a digest of its numbers, the command that makes it again",
+    CONFIGURATION: "the configuration that the run had, with what its command line changed",
+    ENVIRONMENT: "Python, the machine, and the version of every package installed",
+    POINTS: "each point simulated: a digest of its numbers, the command that makes it again",
     "config.yaml": "every experiment as data",
     "requirements.lock": "the pinned environment",
-    "Snakefile": "the workflow",
+    WORKFLOW: "the workflow",
 }
-NETCDF = "application/x-netcdf"
 
 
-def write(content: Path, products: Sequence[str], date: str, commit: str | None) -> None:
-    """Describe the files below the folder `content` in its ro-crate-metadata.json.
+def described(
+    texts: Mapping[str, str],
+    files: Sequence[str],
+    products: Sequence[str],
+    date: str,
+    commit: str | None,
+) -> "ROCrate":
+    """Return a crate of `texts`, by their names in it, and of `files` in the present folder.
 
-    `products` are those that the run made, `date` the day on which it ended, `commit` the version
-    of its code where it is known.
+    `products` are those files that the run made, `date` is the day on which it ended, and `commit`
+    the version of its code where it is known.
     """
     from rocrate.rocrate import ROCrate
 
     crate = ROCrate(version="1.1")
-    crate.metadata.extra_terms["sha256"] = f"{RUN_TERMS}sha256"
-    files = sorted(path for path in content.rglob("*") if path.is_file())
-    for path in files:
-        name = str(path.relative_to(content))
+    crate.metadata.extra_terms["sha256"] = "https://w3id.org/ro/terms/workflow-run#sha256"
+    for name in sorted((*texts, *files)):
+        content = texts[name].encode() if name in texts else Path(name).read_bytes()
+        about = _about(name, content)
         if name == WORKFLOW:
-            about = _about(path, name) | {"name": "roughgas", "version": _version(commit)}
-            crate.add_workflow(path, name, main=True, lang="snakemake", properties=about)
+            version = __version__ if commit is None else f"{__version__}, commit {commit}"
+            about |= {"name": "roughgas", "version": version}
+            crate.add_workflow(name, name, main=True, lang="snakemake", properties=about)
         else:
-            crate.add_file(path, name, properties=_about(path, name))
-    _describe(crate, read_yaml(content / "CITATION.cff"), date)
-    _tell_the_run(crate, products, date)
-    crate.metadata.write(content)
+            source = StringIO(texts[name]) if name in texts else name
+            crate.add_file(source, name, properties=about)
+    _describe_project(crate, date)
+    _describe_run(crate, products, date)
+    return crate
 
 
-def checksums(content: Path) -> dict[str, str]:
-    """The sha256 of each file of the crate in the folder `content`, by name. Raises ValueError or
-    KeyError where it is no crate, OSError where it cannot be read."""
-    from rocrate.rocrate import ROCrate
-
-    files = ROCrate(content).get_by_type("File")
-    return {unquote(file.id): file["sha256"] for file in files}
+def sha256(content: bytes) -> str:
+    """Return the checksum of the content of a file."""
+    return hashlib.sha256(content).hexdigest()
 
 
-def sha256(path: Path) -> str:
-    """The checksum of a file."""
-    with open(path, "rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()
-
-
-def _about(path: Path, name: str) -> dict[str, Any]:
-    kind = NETCDF if path.suffix == ".nc" else mimetypes.guess_type(name)[0] or "text/plain"
+def _about(name: str, content: bytes) -> dict[str, Any]:
+    kind = mimetypes.guess_type(name)[0] or "text/plain"
     found = {
         "name": name,
-        "contentSize": str(path.stat().st_size),
-        "encodingFormat": kind,
-        "sha256": sha256(path),
+        "contentSize": str(len(content)),
+        "encodingFormat": "application/x-netcdf" if name.endswith(".nc") else kind,
+        "sha256": sha256(content),
     }
     return found | ({"description": MEANINGS[name]} if name in MEANINGS else {})
 
 
-def _describe(crate: "ROCrate", cited: dict[str, Any], date: str) -> None:
-    """Title, authors, licence and the paper, as CITATION.cff has them."""
-    root = crate.root_dataset
+def _describe_project(crate: "ROCrate", date: str) -> None:
+    """Add title, authors, licence and the paper, as CITATION.cff has them."""
+    root, cited = crate.root_dataset, read_yaml("CITATION.cff")
     for profile, name in PROFILES.items():
-        about = {"@type": "CreativeWork", "name": name, "version": profile.rsplit("/", 1)[1]}
-        _add(crate, profile, about)
+        _add(crate, profile, "CreativeWork", name, version=profile.rsplit("/", 1)[1])
     root["conformsTo"] = [{"@id": profile} for profile in PROFILES]
     root["name"] = f"A run of {cited['title']}"
     root["description"] = (
@@ -94,41 +90,38 @@ def _describe(crate: "ROCrate", cited: dict[str, Any], date: str) -> None:
     )
     root["datePublished"] = date
     root["author"] = [
-        _add(crate, f"#author-{number}", _person(author))
+        _add(crate, f"#author-{number}", *_person(author))
         for number, author in enumerate(cited["authors"], 1)
     ]
-    license = f"https://spdx.org/licenses/{cited['license']}"
-    root["license"] = _add(crate, license, {"@type": "CreativeWork", "name": cited["license"]})
-    root["citation"] = [_paper(crate, work) for work in cited["references"]]
+    license = cited["license"]
+    root["license"] = _add(crate, f"https://spdx.org/licenses/{license}", "CreativeWork", license)
+    root["citation"] = [
+        _add(
+            crate,
+            f"https://doi.org/{work['doi']}",
+            "ScholarlyArticle",
+            work["title"],
+            author=[_person(author)[1] for author in work["authors"]],
+            datePublished=str(work["year"]),
+            isPartOf=f"{work['journal']} {work['volume']}, {work['start']}",
+        )
+        for work in cited["references"]
+    ]
 
 
-def _person(author: dict[str, str]) -> dict[str, str]:
+def _person(author: Mapping[str, str]) -> tuple[str, str]:
+    """Return the type and the name of an author."""
     if "name" in author:
-        return {"@type": "Organization", "name": author["name"]}
-    return {"@type": "Person", "name": f"{author['given-names']} {author['family-names']}"}
+        return "Organization", author["name"]
+    return "Person", f"{author['given-names']} {author['family-names']}"
 
 
-def _paper(crate: "ROCrate", work: dict[str, Any]) -> Any:
-    about = {
-        "@type": "ScholarlyArticle",
-        "name": work["title"],
-        "author": [_person(author)["name"] for author in work["authors"]],
-        "datePublished": str(work["year"]),
-        "isPartOf": f"{work['journal']} {work['volume']}, {work['start']}",
-    }
-    return _add(crate, f"https://doi.org/{work['doi']}", about)
-
-
-def _version(commit: str | None) -> str:
-    return __version__ if commit is None else f"{__version__}, commit {commit}"
-
-
-def _tell_the_run(crate: "ROCrate", products: Sequence[str], date: str) -> None:
-    """The action that made the products from the configuration."""
-    action = crate.add_action(
+def _describe_run(crate: "ROCrate", products: Sequence[str], date: str) -> None:
+    """Add the action that made the products from the configuration."""
+    crate.root_dataset["mentions"] = crate.add_action(
         instrument=crate.mainEntity,
         identifier="#run",
-        object=[crate.dereference(name) for name in ("configuration.json", "config.yaml")],
+        object=[crate.dereference(name) for name in (CONFIGURATION, "config.yaml")],
         result=[crate.dereference(name) for name in products],
         properties={
             "name": "The run",
@@ -137,10 +130,7 @@ def _tell_the_run(crate: "ROCrate", products: Sequence[str], date: str) -> None:
             "description": "in the environment of environment.json; points as listed in points.csv",
         },
     )
-    crate.root_dataset["mentions"] = action
 
 
-def _add(crate: "ROCrate", identifier: str, properties: dict[str, Any]) -> Any:
-    from rocrate.model.contextentity import ContextEntity
-
-    return crate.add(ContextEntity(crate, identifier, properties=properties))
+def _add(crate: "ROCrate", identifier: str, kind: str, name: str, **properties: Any) -> Any:
+    return crate.add_jsonld({"@id": identifier, "@type": kind, "name": name} | properties)
