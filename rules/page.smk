@@ -98,7 +98,7 @@ use rule run_times as run_times_of_extensions with:
 
 rule page:
     input:
-        sources("show.page", "show.page.gather"),
+        sources("show.page.explore"),
         LOOKS,
         points_of_paper,
         data=data_of_paper,
@@ -117,7 +117,7 @@ rule page:
 
 use rule page as page_of_extensions with:
     input:
-        sources("show.page", "show.page.gather"),
+        sources("show.page.explore"),
         LOOKS,
         points_of_extensions,
         data=data_of_extensions,

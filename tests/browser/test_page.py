@@ -10,7 +10,7 @@ from show.page.conftest import points_in
 
 from roughgas.data.point import read_point
 from roughgas.data.reduced import read_reduced
-from roughgas.show.page import write_page
+from roughgas.show.page.explore import write_page
 from roughgas.theory.prediction import predicted_ratio
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]

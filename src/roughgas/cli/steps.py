@@ -69,7 +69,7 @@ STEPS = {
         examples=("roughgas claims results/paper/*.nc --json claims.json --markdown claims.md",),
     ),
     "page": command(
-        "show.page:write_page",
+        "show.page.explore:write_page",
         "write an interactive page of experiments and their points",
         REDUCED,
         value("--points FOLDER", "folder of their points: results/SCALE", required=True),

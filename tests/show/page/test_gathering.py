@@ -10,7 +10,7 @@ from roughgas.base.errors import InputError
 from roughgas.cli import main
 from roughgas.data.point import read_point
 from roughgas.data.reduced import read_reduced
-from roughgas.show.page import write_page
+from roughgas.show.page.explore import write_page
 from roughgas.show.page.gather import GRID, NUMBERS, experiment
 from roughgas.show.page.series import LONGEST, block_means
 from roughgas.theory.prediction import predicted_ratio

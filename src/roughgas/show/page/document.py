@@ -1,10 +1,9 @@
-"""What the pipeline writes for people, as HTML pages: Snakemake's report shows these, and pictures,
-where it would only offer other files for download."""
+"""Tables, configurations and movies as HTML pages: Snakemake's report shows HTML and pictures in
+place, and other files only as downloads."""
 
 import base64
-from collections.abc import Callable
+from functools import partial
 from html import escape
-from importlib.resources import files
 from pathlib import Path
 from string import Template
 
@@ -13,44 +12,40 @@ from roughgas.base.files import write_text
 
 
 def write_document(source: str | Path, output: str | Path) -> None:
-    """Write the file at `source` as one HTML page that asks for nothing.
+    """Write the file at `source` as one HTML page that loads nothing.
 
     Raises InputError for a kind of file that KINDS does not have.
     """
     source = Path(source)
     if source.suffix not in KINDS:
         raise InputError("document", source, f"end in one of {', '.join(KINDS)}")
-    here = files("roughgas.show.page")
+    here, title = Path(__file__), escape(source.name)
+    page = Template(here.with_name("document.html").read_text("utf-8"))
+    css = here.with_name("document.css").read_text("utf-8")
     body = KINDS[source.suffix](source.read_bytes())
-    css = here.joinpath("document.css").read_text("utf-8")
-    page = Template(here.joinpath("document.html").read_text("utf-8"))
-    write_text(output, page.substitute(title=escape(source.name), css=css, body=body))
+    write_text(output, page.substitute(title=title, css=css, body=body))
 
 
-def _markdown(content: bytes) -> str:
+def _markdown(content):
     from markdown_it import MarkdownIt
 
     return MarkdownIt("commonmark", {"html": False}).enable("table").render(content.decode("utf-8"))
 
 
-def _text(content: bytes) -> str:
+def _text(content):
     return f"<pre>{escape(content.decode('utf-8'))}</pre>"
 
 
-def _movie(content: bytes) -> str:
-    data = base64.b64encode(content).decode("ascii")
-    return f'<video controls loop muted autoplay src="data:video/mp4;base64,{data}"></video>'
+def _embedded(content, html):
+    return html.format(base64.b64encode(content).decode("ascii"))
 
 
-def _picture(content: bytes) -> str:
-    data = base64.b64encode(content).decode("ascii")
-    return f'<img alt="" src="data:image/gif;base64,{data}">'
-
-
-KINDS: dict[str, Callable[[bytes], str]] = {
+MOVIE = '<video controls loop muted autoplay src="data:video/mp4;base64,{}"></video>'
+PICTURE = '<img alt="" src="data:image/gif;base64,{}">'
+KINDS = {
     ".md": _markdown,
     ".yaml": _text,
-    ".mp4": _movie,
-    ".gif": _picture,
+    ".mp4": partial(_embedded, html=MOVIE),
+    ".gif": partial(_embedded, html=PICTURE),
 }
-"""How the content of a file becomes HTML, by its suffix."""
+"""How the content (bytes) of a file becomes HTML, by its suffix."""

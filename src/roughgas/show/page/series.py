@@ -1,4 +1,4 @@
-"""The time series of a point, thinned to what a screen can show."""
+"""The time series of a point, thinned to what a screen can show, and numbers as JSON has them."""
 
 import math
 from pathlib import Path
@@ -7,28 +7,28 @@ from typing import Any
 import numpy as np
 
 from roughgas.data.variables import CLOCKS
-from roughgas.show.page.numbers import exact, rounded
 
 LONGEST = 200
-"""So many values of a time series are shown at most."""
+"""The most values that are shown of a time series."""
 SHOWN = ("R", "E_trans", "E_rot")
+DIGITS = 5
 
 
 def time_series(path: Path) -> dict[str, Any]:
-    """R and both energies over time from the dataset of a seed: means over blocks of equal length.
+    """Return R and both energies over time, from the dataset of a seed, as means over blocks.
 
-    `clock` is "time", in T, or "collisions_per_particle"; `block` counts the samples in a mean;
-    `measured` has the begin and the end of the window that R is measured in, None where unknown.
+    `clock` is "time", in T, or "collisions_per_particle"; `block` is the number of samples in a
+    mean; `measured` is the window in which R is measured, its ends None where they are unknown.
     """
     import netCDF4
 
     with netCDF4.Dataset(path) as file:
         file.set_auto_mask(False)
-        clock = next(name for name in CLOCKS[::-1] if name in file.variables)
-        columns = {"at": file[clock][...]}
-        columns |= {name: file[f"{name}_series"][...] for name in SHOWN}
+        found = file.variables
+        clock = next(name for name in CLOCKS[::-1] if name in found)
+        columns = {"at": found[clock][...]} | {name: found[f"{name}_series"][...] for name in SHOWN}
         window = [
-            exact(file[name][...]) if name in file.variables else None
+            exact(found[name][...]) if name in found else None
             for name in ("measured_from", "plateau_end")
         ]
     block = math.ceil(columns["at"].size / LONGEST)
@@ -37,6 +37,17 @@ def time_series(path: Path) -> dict[str, Any]:
 
 
 def block_means(values: np.ndarray, block: int) -> np.ndarray:
-    """Means over blocks of so many values; the last block may be shorter."""
+    """Return the means over blocks of `block` values; the last block may be shorter."""
     begins = np.arange(0, values.size, block)
     return np.add.reduceat(values, begins) / np.diff(np.append(begins, values.size))
+
+
+def exact(value: Any) -> float | int | None:
+    """Return a number as it is, to the last bit; None if it is not finite."""
+    number = np.asarray(value).item()
+    return number if math.isfinite(number) else None
+
+
+def rounded(values: Any) -> list[float | None]:
+    """Return numbers to DIGITS digits, for what is only looked at; None if one is not finite."""
+    return [float(f"{x:.{DIGITS}g}") if math.isfinite(x) else None for x in np.asarray(values)]
