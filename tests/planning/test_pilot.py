@@ -7,16 +7,10 @@ import pytest
 from tests.planning.test_plan import planned
 
 from roughgas.base.errors import InputError
-from roughgas.planning.pilot import (
-    CHAINS,
-    MEASURED,
-    Pilot,
-    _settling,
-    explore,
-    read_pilot,
-    write_pilot,
-)
+from roughgas.planning.pilot import Pilot, read_pilot, write_pilot
+from roughgas.planning.plan import explore
 from roughgas.planning.reach import completed
+from roughgas.planning.steady import CHAINS, MEASURED, settling
 from roughgas.scene import build
 from roughgas.simulation.point import run_point
 
@@ -77,13 +71,13 @@ def chains(transient, noise, seed=1, count=10, periods=512):
 def test_the_transient_is_where_the_energies_settle():
     """With 1 % of noise: after 3 to 6 e-folds, the windows growing by 30 %."""
     for e_fold in (4, 16):
-        assert 3 * e_fold <= _settling(chains(e_fold, 0.01)) <= 8 * e_fold
-    assert _settling(chains(0, 0.0)) == 0
+        assert 3 * e_fold <= settling(chains(e_fold, 0.01)) <= 8 * e_fold
+    assert settling(chains(0, 0.0)) == 0
 
 
 def test_noise_is_seldom_taken_for_a_transient():
     """20 windows at 3 sigma: an alarm in one of 20 sets of chains."""
-    alarms = [_settling(chains(0, 0.3, seed)) > 64 for seed in range(60)]
+    alarms = [settling(chains(0, 0.3, seed)) > 64 for seed in range(60)]
     assert np.mean(alarms) < 0.15
 
 

@@ -5,17 +5,11 @@ import math
 import numpy as np
 import pytest
 
+from roughgas.planning.cooling import REPLICAS
+from roughgas.planning.lengths import BIAS, CARE, RESERVE, relaxation
 from roughgas.planning.pilot import Pilot
-from roughgas.planning.plan import (
-    BIAS,
-    CARE,
-    REPLICAS,
-    RESERVE,
-    TWICE,
-    added,
-    plan_point,
-    relaxation,
-)
+from roughgas.planning.plan import added, plan_point
+from roughgas.planning.steady import TWICE
 from roughgas.scene import build
 from roughgas.theory import cooling_ratio, lun_ratio, relax
 
@@ -62,7 +56,11 @@ def test_a_run_waits_for_the_slower_of_energies_and_spin(sheared):
     slow, fast = (planned(sheared, beta, PILOT).schedule["equilibrate"] for beta in (-0.95, 0.5))
     scene = build(sheared, 0.9, -0.95)
     assert fast == TWICE * PILOT.transient
-    assert slow == math.ceil(relaxation(scene, BIAS * 0.01, cooling=False) / PILOT.pace) > fast
+    assert (
+        slow
+        == math.ceil(relaxation(scene, BIAS * 0.01, lun_ratio(-0.95, 0.5), 0.0) / PILOT.pace)
+        > fast
+    )
 
 
 def test_a_run_is_measured_for_many_times_what_it_remembers(sheared):
@@ -92,9 +90,10 @@ def test_added_seeds_are_those_of_gaussian_noise(needed, dof):
 @pytest.mark.parametrize("cooling", [True, False])
 def test_after_the_relaxation_theory_is_within_what_is_tolerated(sheared, beta, cooling):
     scene, tolerated = build(sheared, 0.9, beta), 0.001
-    needed = relaxation(scene, tolerated, cooling) / CARE
     final = cooling_ratio(0.9, beta) if cooling else lun_ratio(beta, 0.5)
-    theta = relax(0.0, 0.9, beta, needed, spin_share=None if cooling else 0.0).theta
+    share = None if cooling else 0.0
+    needed = relaxation(scene, tolerated, final, share) / CARE
+    theta = relax(0.0, 0.9, beta, needed, spin_share=share).theta
     assert abs(theta / (1 + theta) - final) == pytest.approx(tolerated, rel=1e-6)
 
 

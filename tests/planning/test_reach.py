@@ -6,8 +6,8 @@ from tests.planning.test_plan import PILOT, with_target
 
 from roughgas.data.point import Point
 from roughgas.planning import reach as module
-from roughgas.planning.pilot import explore
-from roughgas.planning.plan import RESERVE
+from roughgas.planning.lengths import RESERVE
+from roughgas.planning.plan import explore
 from roughgas.planning.reach import MOST, complete, reach
 from roughgas.scene import build
 

@@ -4,7 +4,6 @@ import pytest
 from roughgas.simulation.energies import (
     Energies,
     energies,
-    fluctuation_energies,
     ratio,
     ratio_of_means,
 )
@@ -53,7 +52,7 @@ def test_energies_are_those_of_the_definition(gas):
 
 def test_fluctuation_energies_are_those_about_the_mean_flow_and_the_mean_spin(gas):
     v, spin, y, q = gas
-    result = fluctuation_energies(columns_of(v, spin, y), PARTICLES, q, SHEAR_RATE)
+    result = energies(columns_of(v, spin, y), PARTICLES, q, SHEAR_RATE)
     peculiar = v.copy()
     peculiar[:, :, 0] -= SHEAR_RATE * y
     np.testing.assert_allclose(result.translational, (peculiar**2 / 2).mean(axis=(1, 2)))
@@ -62,10 +61,10 @@ def test_fluctuation_energies_are_those_about_the_mean_flow_and_the_mean_spin(ga
 
 def test_fluctuation_energies_do_not_feel_shear_or_spin_of_the_whole(gas):
     v, spin, y, q = gas
-    still = fluctuation_energies(columns_of(v, spin, y), PARTICLES, q, 0.0)
+    still = energies(columns_of(v, spin, y), PARTICLES, q, 0.0)
     flow = np.zeros_like(v)
     flow[:, :, 0] = SHEAR_RATE * y
-    sheared = fluctuation_energies(columns_of(v + flow, spin - 0.7, y), PARTICLES, q, SHEAR_RATE)
+    sheared = energies(columns_of(v + flow, spin - 0.7, y), PARTICLES, q, SHEAR_RATE)
     np.testing.assert_allclose(sheared, still, rtol=1e-12)
 
 
@@ -76,9 +75,7 @@ def test_no_bias_of_order_one_over_n_when_momentum_and_mean_spin_are_removed():
     v = rng.normal(size=(samples, particles, 2))
     v -= v.mean(axis=1, keepdims=True)
     spin = rng.normal(size=(samples, particles, 1)) / np.sqrt(q)
-    result = fluctuation_energies(
-        columns_of(v, spin, np.zeros((samples, particles))), particles, q, SHEAR_RATE
-    )
+    result = energies(columns_of(v, spin, np.zeros((samples, particles))), particles, q, SHEAR_RATE)
     # It scatters by sqrt(2/14 + 2/7)/(4 sqrt(20000)) = 0.0012: 3 sigma, by chance 1 in 370.
     assert ratio_of_means(result) == pytest.approx(0.5, abs=0.0035)
     # As they are, with the whole spin kept: 1/(1 + 7/8), 27 sigma from 1/2.

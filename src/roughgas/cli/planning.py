@@ -15,7 +15,8 @@ PILOT = "{experiment}/r{r}/beta{beta}/pilot.json"
 
 def pilot(options: Namespace) -> None:
     """Run the pilot of a point."""
-    from roughgas.planning.pilot import explore, write_pilot
+    from roughgas.planning.pilot import write_pilot
+    from roughgas.planning.plan import explore
 
     scene, settings = point_of(options, options.beta)
     write_pilot(options.output, explore(scene, settings))
@@ -23,8 +24,8 @@ def pilot(options: Namespace) -> None:
 
 def reach(options: Namespace) -> None:
     """Run seeds of a point until its standard error is the target of its experiment."""
-    from roughgas.planning.pilot import explore, read_pilot
-    from roughgas.planning.plan import plan_point
+    from roughgas.planning.pilot import read_pilot
+    from roughgas.planning.plan import explore, plan_point
     from roughgas.planning.reach import completed
     from roughgas.planning.reach import reach as run
     from roughgas.simulation.progress import Progress
@@ -78,7 +79,8 @@ def plan(options: Namespace) -> None:
 
 def _pilots(name: str, settings: dict[str, Any], folder: Path):
     """Return the pilots of a sweep by (r, beta), and the CPU seconds spent on missing ones."""
-    from roughgas.planning.pilot import explore, read_pilot, write_pilot
+    from roughgas.planning.pilot import read_pilot, write_pilot
+    from roughgas.planning.plan import explore
     from roughgas.scene import build
     from roughgas.simulation.progress import Bar
 

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from roughgas.data.point import Point
-from roughgas.planning.pilot import Pilot, explore
-from roughgas.planning.plan import Plan, plan_point
+from roughgas.planning.pilot import Pilot
+from roughgas.planning.plan import Plan, explore, plan_point
 from roughgas.scene import Scene
 from roughgas.simulation.point import run_point
 from roughgas.statistics.intervals import Error, pooled
@@ -21,16 +21,22 @@ Keep = Callable[[int, Point, dict[str, Any]], None]
 def reach(
     scene: Scene, experiment: Mapping[str, Any], pilot: Pilot, keep: Keep, tell: Any
 ) -> tuple[Plan, Error, int]:
-    """Make seeds 1, 2, ... of a point until its `target_stderr` is met; the plan, the error reached
-    and the number of seeds.
+    """Run seeds 1, 2, ... of a point until its `target_stderr` is met.
 
-    `keep(seed, point, settings)` is called with each seed's point, the settings being such as make
-    that seed again. The planned number comes first; where the error is then still larger than the
-    target, as many more as its size calls for, and so on, up to MOST times as many as planned.
+    Returns the plan, the error reached and the number of seeds. `keep(seed, point, settings)` is
+    called with each seed's point, and the settings that make this seed again. The planned number
+    comes first; while the error is larger than the target, as many more as its size calls for,
+    up to MOST times as many as planned.
     """
     plan = plan_point(scene, experiment, pilot)
     settings = completed(experiment, plan)
-    expected = expectations(experiment, plan)
+    expected = {
+        "target_stderr": experiment["target_stderr"],
+        "planned_seeds": plan.seeds,
+        "planned_stderr": plan.stderr,
+        "planned_collisions": plan.collisions,
+        "planned_seconds": plan.seconds,
+    }
     runs, wanted = [], plan.seeds
     while True:
         while len(runs) < wanted:
@@ -44,31 +50,20 @@ def reach(
 
 
 def completed(experiment: Mapping[str, Any], plan: Plan) -> dict[str, Any]:
-    """The settings of an experiment with the lengths of its runs in place of a target."""
+    """Return an experiment's settings with the lengths of its runs in place of a target."""
     settings = {key: value for key, value in experiment.items() if key != "target_stderr"}
     return settings | {"schedule": plan.schedule}
 
 
 def complete(scene: Scene, experiment: Mapping[str, Any]) -> dict[str, Any]:
-    """The same for a point without a plan; the settings as they are where they have no target."""
+    """Return the same of a point without a plan; settings without a target as they are."""
     if "target_stderr" not in experiment:
         return dict(experiment)
     return completed(experiment, plan_point(scene, experiment, explore(scene, experiment)))
 
 
-def expectations(experiment: Mapping[str, Any], plan: Plan) -> dict[str, float]:
-    """What a point's dataset holds of its plan, beside what then happened."""
-    return {
-        "target_stderr": experiment["target_stderr"],
-        "planned_seeds": plan.seeds,
-        "planned_stderr": plan.stderr,
-        "planned_collisions": plan.collisions,
-        "planned_seconds": plan.seconds,
-    }
-
-
 def _wanted(made: int, error: Error, target: float, planned: int) -> int:
-    """How many seeds there should be, by the error that those made so far have."""
+    """Return how many seeds there should be, by the error of those made so far."""
     if not error.stderr > target:
         return made
     enough = math.ceil(made * (error.stderr / target) ** 2)

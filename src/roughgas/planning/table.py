@@ -3,22 +3,10 @@
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
+from roughgas.base.layout import markdown
 from roughgas.planning.pilot import Pilot
 from roughgas.planning.plan import Plan, plan_point
 from roughgas.scene import build
-
-HEAD = {
-    "experiment": "experiment",
-    "target": "target",
-    "points": "points",
-    "seeds": "seeds",
-    "typical_error": "typical error",
-    "largest_error": "largest error",
-    "collisions": "collisions",
-    "kernel_seconds": "kernel CPU",
-    "cpu_seconds": "CPU",
-    "wall_seconds": "wall",
-}
 
 
 class Row(NamedTuple):
@@ -29,41 +17,34 @@ class Row(NamedTuple):
     plans: Sequence[Plan]
     jobs: int
 
-    @property
-    def kernel(self) -> float:
-        """CPU seconds in the kernel."""
-        return sum(plan.seconds for plan in self.plans)
 
-
-def row(name: str, experiment: Mapping[str, Any], pilots: Mapping[tuple[str, str], Pilot], block):
-    """The row of an experiment, from the pilots of its points; `block` seeds are made by a job."""
+def row(
+    name: str, experiment: Mapping[str, Any], pilots: Mapping[tuple[str, str], Pilot], block: int
+) -> Row:
+    """Return the row of an experiment, from its pilots by (r, beta); a job runs `block` seeds."""
     plans = [
         plan_point(build(experiment, float(r), float(beta)), experiment, pilot)
         for (r, beta), pilot in pilots.items()
     ]
     target = experiment.get("target_stderr")
-    jobs = sum(1 if target else -(-plan.seeds // block) for plan in plans)
-    return Row(name, target, plans, jobs)
+    return Row(name, target, plans, sum(1 if target else -(-p.seeds // block) for p in plans))
 
 
 def as_markdown(rows: Iterable[Row], cores: int, start_up: float) -> str:
-    """The table, its last row the sum; a job spends `start_up` CPU seconds besides its kernel."""
-    lines = [_cells(numbers) for numbers in as_numbers(rows, cores, start_up)]
-    widths = [max(map(len, column)) for column in zip(HEAD.values(), *lines, strict=True)]
-    rule = ["-" * width for width in widths]
-    text = [
-        " | ".join(x.ljust(w) for x, w in zip(line, widths, strict=True))
-        for line in [HEAD.values(), rule, *lines]
-    ]
-    notes = (
-        f"Errors are standard errors of R. CPU: with {start_up:.2g} s for the start of each job. "
-        f"Wall:\non {cores} cores, without compiling (10 to 15 s for each kind of scene, once)."
+    """Return the table; its last row is the sum.
+
+    A job spends `start_up` CPU seconds besides its kernel.
+    """
+    numbers = as_numbers(rows, cores, start_up)
+    cells = [[form(one[name]) for name, (_, form) in COLUMNS.items()] for one in numbers]
+    return markdown([title for title, _ in COLUMNS.values()], cells, padded=True) + (
+        f"\nErrors are standard errors of R. CPU: with {start_up:.2g} s for the start of each job. "
+        f"Wall:\non {cores} cores, without compiling (10 to 15 s for each kind of scene, once).\n"
     )
-    return "\n".join(f"| {line} |" for line in text) + f"\n\n{notes}\n"
 
 
 def as_numbers(rows: Iterable[Row], cores: int, start_up: float) -> list[dict[str, Any]]:
-    """The same by the names in HEAD: errors of R, times in seconds, None for no target."""
+    """Return the same by the names in COLUMNS; times are in seconds, no target is None."""
     rows = list(rows)
     plans, jobs = [plan for one in rows for plan in one.plans], sum(one.jobs for one in rows)
     return [_numbers(one, cores, start_up) for one in [*rows, Row("in all", None, plans, jobs)]]
@@ -71,7 +52,8 @@ def as_numbers(rows: Iterable[Row], cores: int, start_up: float) -> list[dict[st
 
 def _numbers(one: Row, cores: int, start_up: float) -> dict[str, Any]:
     errors = sorted(plan.stderr for plan in one.plans)
-    cpu = one.kernel + start_up * one.jobs
+    kernel = sum(plan.seconds for plan in one.plans)
+    cpu = kernel + start_up * one.jobs
     longest = start_up + max(plan.seconds for plan in one.plans)
     return {
         "experiment": one.name,
@@ -81,14 +63,10 @@ def _numbers(one: Row, cores: int, start_up: float) -> dict[str, Any]:
         "typical_error": errors[len(errors) // 2],
         "largest_error": errors[-1],
         "collisions": sum(plan.collisions for plan in one.plans),
-        "kernel_seconds": one.kernel,
+        "kernel_seconds": kernel,
         "cpu_seconds": cpu,
         "wall_seconds": max(cpu / cores, longest),
     }
-
-
-def _cells(numbers: Mapping[str, Any]) -> list[str]:
-    return [_FORMATS.get(name, str)(numbers[name]) for name in HEAD]
 
 
 def _time(seconds: float) -> str:
@@ -98,12 +76,16 @@ def _time(seconds: float) -> str:
     return f"{minutes} min" if minutes < 120 else f"{minutes / 60:.1f} h"
 
 
-_FORMATS = {
-    "target": lambda target: "" if target is None else f"{target:g}",
-    "typical_error": "{:.2g}".format,
-    "largest_error": "{:.2g}".format,
-    "collisions": "{:.2e}".format,
-    "kernel_seconds": _time,
-    "cpu_seconds": _time,
-    "wall_seconds": _time,
+COLUMNS = {
+    "experiment": ("experiment", str),
+    "target": ("target", lambda target: "" if target is None else f"{target:g}"),
+    "points": ("points", str),
+    "seeds": ("seeds", str),
+    "typical_error": ("typical error", "{:.2g}".format),
+    "largest_error": ("largest error", "{:.2g}".format),
+    "collisions": ("collisions", "{:.2e}".format),
+    "kernel_seconds": ("kernel CPU", _time),
+    "cpu_seconds": ("CPU", _time),
+    "wall_seconds": ("wall", _time),
 }
+"""By the name of a number, the title of its column and its form."""

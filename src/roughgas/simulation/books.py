@@ -25,19 +25,18 @@ class Books(NamedTuple):
 
 
 def books(state: State, scene: Scene) -> Books:
-    """The books at the present instant."""
+    """Return the books at the present instant."""
     unit = np.ldexp(1.0, 2 * int(state.counts[EXPONENT]))
-    return Books(energy(state, scene) * unit, state.ledger[0] * unit + state.ledger[1])
+    return Books(_energy(state, scene) * unit, state.ledger[0] * unit + state.ledger[1])
 
 
-def energy(state: State, scene: Scene) -> np.ndarray:
-    """Translational (kinetic and potential) and rotational energy, in the kernel's present units.
+def _energy(state, scene):
+    """Return translational (kinetic and potential) and rotational energy, in the kernel's units.
 
     Velocities are those of the images that the particles last were in, as in the ledger.
     """
     dimension, gravity, spin = len(scene.box), scene.effects.gravity, scene.effects.spin
-    velocity = state.trajectory[:, dimension:-1]
-    translational = 0.5 * np.sum(velocity**2)
+    translational = 0.5 * np.sum(state.trajectory[:, dimension:-1] ** 2)
     if gravity is not None:
         # free flight keeps the sum of both: take it where the flight began
         translational += gravity.acceleration * np.sum(state.trajectory[:, dimension - 1])
@@ -46,37 +45,36 @@ def energy(state: State, scene: Scene) -> np.ndarray:
 
 
 def exchange(before: Books, after: Books, scene: Scene, particles: int) -> dict[str, Any]:
-    """Variables of a point (see roughgas.data.point): what was put in between two instants."""
+    """Return variables of a point (see roughgas.data.point): what was put in between two instants.
+
+    With drives and spin, these say how the drives' input is shared between the two motions.
+    """
     booked = (after.ledger - before.ledger) / particles
     gain = (after.energy - before.energy) / particles
     accounts = _accounts(scene)
-    return {
+    found = {
         "source": list(accounts),
         "motion": list(MOTIONS),
         "energy_input": booked[list(accounts.values())],
         "energy_gain": gain,
         "energy_imbalance": imbalance(booked, gain),
-    } | _shared_input(booked, accounts, scene)
-
-
-def _shared_input(booked, accounts, scene):
-    """How what drives put in is shared, where there are any, and particles spin."""
+    }
+    if scene.effects.spin is None or not hooks.present(scene.effects, "drives"):
+        return found
     sources = [number for name, number in accounts.items() if name != CONTACTS]
     put_in = booked[sources].sum(axis=0)
-    if scene.effects.spin is None or not hooks.present(scene.effects, "drives"):
-        return {}
-    return {"input_spin_share": put_in[1] / put_in.sum()}
+    return found | {"input_spin_share": put_in[1] / put_in.sum()}
 
 
 def imbalance(booked: np.ndarray, gain: np.ndarray) -> float:
-    """Largest energy of a motion that the books do not explain, over all that was exchanged."""
+    """Return the largest energy of a motion that the books do not explain, over all exchanged."""
     exchanged = np.abs(booked).sum()
     missing = np.abs(gain - booked.sum(axis=0)).max()
     return float(missing / exchanged) if exchanged > 0.0 else float(missing)
 
 
 def _accounts(scene):
-    """Name -> number of the accounts that can change: those of effects that do work."""
+    """Return name -> number of the accounts that can change: those of effects that do work."""
     effects = scene.effects
     working = [part for hook in ("resolve", "transfer") for part in hooks.present(effects, hook)]
     ranks = {effects._fields[part.place]: part.rank for part in working}

@@ -11,15 +11,15 @@ from roughgas.effects import inertia
 from roughgas.scene import Scene
 from roughgas.simulation.books import Books, exchange
 from roughgas.simulation.energies import Columns, Energies, ratio, ratio_of_means, restored
-from roughgas.simulation.gas import Gas, elastic  # noqa: F401  (elastic: for movies, until they drive a Gas)
+from roughgas.simulation.gas import Gas, elastic  # noqa: F401
 from roughgas.simulation.recorder import Recorder
 from roughgas.statistics.errors import autocorrelation_time
 from roughgas.statistics.intervals import Error
 from roughgas.statistics.plateau import find_plateau
 from roughgas.theory import friction_relaxation_rate, relaxation_rate
 
-UNIT = "collisions per particle"
-LENGTH = "plateau"  # key of the schedule: how long R is measured
+# see roughgas.simulation.schedule.Kind
+UNIT, LENGTH = "collisions per particle", "plateau"
 SAMPLES_PER_REFRESH = 4
 TRANSIENT = 10.0, 1000.0  # collisions per particle: theory's estimate is kept between these
 
@@ -34,7 +34,7 @@ class Cooled(NamedTuple):
 
 
 def check(drives: list[str]) -> None:
-    """Raise InputError where effects of a scene, those named, drive the gas."""
+    """Raise InputError if effects of a scene, those named, drive the gas."""
     if drives:
         legal = f"be steady where there is a drive: {', '.join(drives)}"
         raise InputError("schedule.kind", "cooling", legal)
@@ -44,6 +44,27 @@ def length(scene: Scene, schedule: Mapping[str, Any]) -> float:
     """Return the collisions per particle that a point simulates, in all replicas together."""
     transient = transient_length(scene, schedule["relaxation_times"])
     return schedule["replicas"] * (schedule["thermalise"] + transient + schedule["plateau"])
+
+
+def transient_length(scene: Scene, relaxation_times: float) -> float:
+    """Return the collisions per particle that R needs to settle, by the rate equations."""
+    rate = rate_of(scene)
+    return min(max(relaxation_times / rate if rate > 0.0 else math.inf, TRANSIENT[0]), TRANSIENT[1])
+
+
+def rate_of(scene: Scene) -> float:
+    """Return the rate at which R relaxes, by the rate equations, per collision per particle.
+
+    Without spin there is nothing to relax: infinity.
+    """
+    q = inertia(scene.effects)
+    if q is None:
+        return math.inf
+    r, beta, dimension = scene.restitution, scene.roughness, len(scene.box)
+    friction = scene.effects.friction
+    if friction is None:
+        return float(relaxation_rate(r, beta, dimension, q))
+    return float(friction_relaxation_rate(r, beta, friction.mu, dimension, q))
 
 
 def passed(time: float, collisions: int, particles: int) -> float:
@@ -68,7 +89,7 @@ def sample(gas: Gas, every: float, samples: int) -> Columns:
 def run(
     scene: Scene, experiment: Mapping[str, Any], seed: int, recorder: Recorder
 ) -> dict[str, Any]:
-    """Variables of the point (see roughgas.data.point), from `replicas` independent simulations.
+    """Return the variables of the point (see roughgas.data.point), from `replicas` simulations.
 
     Each starts as a smooth elastic gas, thermalised for `thermalise` collisions per particle. Then
     dissipation is switched on for the time that the rate equations say R needs to settle,
@@ -89,38 +110,20 @@ def run(
     return _measure(ensemble, passed, transient, every) | exchanged
 
 
-def transient_length(scene: Scene, relaxation_times: float) -> float:
-    """Collisions per particle that R needs to settle, by the rate equations."""
-    rate = rate_of(scene)
-    return min(max(relaxation_times / rate if rate > 0.0 else math.inf, TRANSIENT[0]), TRANSIENT[1])
-
-
-def rate_of(scene: Scene) -> float:
-    """The rate at which R relaxes, by the rate equations, per collision per particle; without spin
-    there is nothing to relax."""
-    q = inertia(scene.effects)
-    if q is None:
-        return math.inf
-    r, beta, dimension = scene.restitution, scene.roughness, len(scene.box)
-    friction = scene.effects.friction
-    if friction is None:
-        return float(relaxation_rate(r, beta, dimension, q))
-    return float(friction_relaxation_rate(r, beta, friction.mu, dimension, q))
-
-
 def _streams(seed, replicas):
     return np.random.SeedSequence(seed).spawn(replicas)
 
 
 def _replica(scene, experiment, stream, recorder):
+    schedule = experiment["schedule"]
     gas = Gas.start(scene, experiment, np.random.default_rng(stream), recorder)
-    gas.thermalise(experiment["schedule"]["thermalise"])
-    gas.cool(SAMPLES_PER_REFRESH * gas.count(experiment["schedule"]["sample_every"]))
+    gas.thermalise(schedule["thermalise"])
+    gas.cool(SAMPLES_PER_REFRESH * gas.count(schedule["sample_every"]))
     return gas
 
 
 def _cool(gas, every, samples):
-    """One replica, from when dissipation is switched on."""
+    """Return what one replica does from when dissipation is switched on."""
     unit = gas.energies(gas.sample).translational[0]
     before = gas.books()
     rows = sample(gas, every, samples)
@@ -130,19 +133,15 @@ def _cool(gas, every, samples):
 
 
 def _together(runs):
-    """All replicas as one: energies stacked, books averaged."""
-    present, exponent, before, after = zip(*runs, strict=True)
-    return Cooled(
-        Energies(*map(np.array, zip(*(one.there() for one in present), strict=True))),
-        np.array(exponent),
-        *(
-            Books(*(np.mean(part, axis=0) for part in zip(*one, strict=True)))
-            for one in (before, after)
-        ),
-    )
+    """Return all replicas as one: energies stacked, books averaged."""
+    present, exponent, *books = zip(*runs, strict=True)
+    stacked = Energies(*map(np.array, zip(*(one.there() for one in present), strict=True)))
+    means = (Books(*(np.mean(part, axis=0) for part in zip(*one, strict=True))) for one in books)
+    return Cooled(stacked, np.array(exponent), *means)
 
 
 def _measure(ensemble, passed, transient, every):
+    """Return R on its plateau, and how the energies decay."""
     R = ratio(ensemble.energies)
     plateau = find_plateau(passed, R, transient)
     inside = (passed >= plateau.start) & (passed <= plateau.stop)
@@ -171,7 +170,7 @@ def _measure(ensemble, passed, transient, every):
 
 
 def _decay(ensemble, passed, first):
-    """How the translational energy decays, and what it is when the measurement begins."""
+    """Return how the translational energy decays, and what it is when the measurement begins."""
     E_trans = restored(ensemble.energies, ensemble.exponent).translational
     return {
         "E_trans": E_trans.mean(axis=0)[first],
@@ -185,5 +184,5 @@ def _decay(ensemble, passed, first):
 
 
 def _scatter(values):
-    """Standard error over replicas, those along the first axis."""
+    """Return the standard error over replicas, those along the first axis."""
     return values.std(axis=0, ddof=1) / math.sqrt(len(values))

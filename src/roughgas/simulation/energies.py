@@ -30,35 +30,37 @@ class Energies(NamedTuple):
         return Energies(*map(function, self.there()))
 
 
-def energies(columns: Columns, particles: int, inertia: float | None) -> Energies:
-    """Energies as they are: E_tr = sum m v^2/2 / (N D), E_rot = sum m q (a w)^2/2 / (N n_r).
+def energies(
+    columns: Columns, particles: int, inertia: float | None, shear_rate: float | None = None
+) -> Energies:
+    """Return E_tr = sum m v^2/2 / (N D) and E_rot = sum m q (a w)^2/2 / (N n_r).
 
     `particles` is N and `inertia` q (1/2 for disks, 2/5 for spheres), None where none spins. There
     are as many dimensions D as `vv_` columns, and n_r = 2 D - 3. McNamara & Luding (1998),
     Eq. (defE).
+
+    With a `shear_rate` Gamma (1/T) these are the energies that remain without the mean flow and the
+    mean spin, as in their second experiment. The mean flow is v_x = Gamma (y - L/2); the square of
+    v_x minus that expands in the columns. The mean spin is the one observed in each sample:
+    sum (w - <w>)^2 = sum w^2 - (sum w)^2/N. Removing it takes one of N spins from E_rot, just as
+    the conserved momentum takes one of N velocities from E_tr, so that their ratio has no bias of
+    order 1/N.
     """
-    speed_squared = sum(columns[name] for name in _components(columns, "vv"))
-    return _per_degree_of_freedom(columns, particles, inertia, speed_squared, columns.get("ww"))
-
-
-def fluctuation_energies(
-    columns: Columns, particles: int, inertia: float | None, shear_rate: float
-) -> Energies:
-    """Energies that remain once the mean flow and the mean spin are removed, for the sheared gas.
-
-    McNamara & Luding (1998), second experiment. The mean flow is v_x = Gamma (y - L/2), Gamma being
-    the `shear_rate` in 1/T; the square of v_x minus that expands in the columns. The mean spin is
-    the one observed in each sample: sum (w - <w>)^2 = sum w^2 - (sum w)^2/N. Removing it takes one
-    of N spins from E_rot, just as the conserved momentum takes one of N velocities from E_tr, so
-    that their ratio has no bias of order 1/N.
-    """
-    speed_squared = sum(columns[name] for name in _components(columns, "vv"))
-    speed_squared = speed_squared + shear_rate * (shear_rate * columns["yy"] - 2 * columns["yv_x"])
+    components = _components(columns, "vv")
+    speed_squared = sum(columns[name] for name in components)
     spin_squared = columns.get("ww")
-    if spin_squared is not None:
+    if shear_rate is not None:
+        flow = shear_rate * (shear_rate * columns["yy"] - 2 * columns["yv_x"])
+        speed_squared = speed_squared + flow
+    if shear_rate is not None and spin_squared is not None:
         mean_spin = sum(columns[name] ** 2 for name in _components(columns, "w")) / particles
         spin_squared = spin_squared - mean_spin
-    return _per_degree_of_freedom(columns, particles, inertia, speed_squared, spin_squared)
+    translational = speed_squared / (2 * particles * len(components))
+    if spin_squared is None:
+        return Energies(translational)
+    return Energies(
+        translational, inertia * spin_squared / (2 * particles * (2 * len(components) - 3))
+    )
 
 
 def restored(energies: Energies, exponent: np.ndarray) -> Energies:
@@ -81,15 +83,6 @@ def ratio(energies: Energies) -> np.ndarray:
 def ratio_of_means(energies: Energies, axis: int = -1) -> np.ndarray:
     """R of the energies averaged along `axis`: not the same as the mean of `ratio`."""
     return ratio(energies.map(lambda part: part.mean(axis)))
-
-
-def _per_degree_of_freedom(columns, particles, inertia, speed_squared, spin_squared) -> Energies:
-    dimension = len(_components(columns, "vv"))
-    translational = speed_squared / (2 * particles * dimension)
-    if spin_squared is None:
-        return Energies(translational)
-    rotational = inertia * spin_squared / (2 * particles * (2 * dimension - 3))
-    return Energies(translational, rotational)
 
 
 def _components(columns: Columns, quantity: str) -> list[str]:

@@ -13,11 +13,11 @@ import numpy as np
 
 from roughgas.effects import inertia
 from roughgas.kernel.record import Sampling
-from roughgas.kernel.state import BASE, COLLISIONS, EXPONENT, NOW, ORIGIN, State
+from roughgas.kernel.state import COLLISIONS, EXPONENT, State
 from roughgas.scene import Scene, initial_state
 from roughgas.simulation.books import Books, books
-from roughgas.simulation.energies import Columns, Energies, energies, fluctuation_energies
-from roughgas.simulation.recorder import UNLIMITED, Recorder
+from roughgas.simulation.energies import Columns, Energies, energies
+from roughgas.simulation.recorder import UNLIMITED, Recorder, now
 
 
 class Watcher(Protocol):
@@ -64,8 +64,7 @@ class Gas:
     @property
     def time(self) -> float:
         """T since the start."""
-        clock, unit = self.state.clock, 2.0 ** -int(self.state.counts[EXPONENT])
-        return float(clock[ORIGIN] + (clock[BASE] + clock[NOW]) * unit)
+        return now(self.state)
 
     @property
     def collisions(self) -> int:
@@ -125,11 +124,9 @@ class Gas:
 
     def energies(self, columns: Columns) -> Energies:
         """Return the energies of samples, of a sheared gas without mean flow and mean spin."""
-        effects, q = self.scene.effects, inertia(self.scene.effects)
-        if effects.shear is None:
-            return energies(columns, self.particles, q)
-        shear_rate = effects.shear.velocity / (2.0 * self.scene.middle)
-        return fluctuation_energies(columns, self.particles, q, shear_rate)
+        effects, shear = self.scene.effects, self.scene.effects.shear
+        shear_rate = None if shear is None else shear.velocity / (2.0 * self.scene.middle)
+        return energies(columns, self.particles, inertia(effects), shear_rate)
 
     def books(self) -> Books:
         """Return the books of energy at the present instant."""

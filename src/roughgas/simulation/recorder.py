@@ -1,4 +1,4 @@
-"""A simulation under way: advances the kernel, keeps its time, and tells how far it is."""
+"""The cost of simulations: calls the kernel, keeps its time, and tells how far it is."""
 
 import time
 from collections.abc import Callable
@@ -22,15 +22,15 @@ from roughgas.kernel.state import (
 )
 from roughgas.scene import Scene
 
+UNLIMITED = 2**62
 REPORTS = 50
 NAMED = 8  # of the particles in a collapse
-UNLIMITED = 2**62
 
 
 class Recorder:
-    """Sums up what gases have cost together: CPU seconds in the kernel, collisions, and contacts
-    that the contact-time model touched.
+    """Sums up what gases have cost together.
 
+    CPU seconds in the kernel, collisions, and contacts that the contact-time model touched.
     `tell(time, collisions)` is called some fifty times a run.
     """
 
@@ -45,13 +45,12 @@ class Recorder:
     ) -> dict[str, np.ndarray]:
         """Advance `state`; return columns (name -> array of length `samples`).
 
-        Raises CollapseError where contacts accumulate without end.
+        Raises CollapseError if contacts accumulate without end.
         """
         names = columns(len(scene.box), scene.effects.spin is not None)
         rows = np.empty((samples, len(names)))
         record(state, scene, sampling, rows[:0])  # compiles, or fetches the kernel from its cache
-        begin = time.process_time()
-        before = state.counts.copy()
+        begin, before = time.process_time(), state.counts.copy()
         length = max(1, -(-samples // REPORTS))
         if sampling.refresh > 0:  # which the kernel counts from the start of each call
             length = -(-length // sampling.refresh) * sampling.refresh
@@ -66,7 +65,7 @@ class Recorder:
         self.touched += state.counts[TOUCHED] - before[TOUCHED]
         return dict(zip(names, rows.T, strict=True))
 
-    # for callers that do not drive a Gas yet
+    # until all drive a Gas
     def in_time(self, state: State, scene: Scene, interval: float, samples: int):
         return self.run(state, scene, Sampling(float(interval), UNLIMITED, 0), samples)
 
@@ -77,29 +76,30 @@ class Recorder:
         return self.run(state, scene, Sampling(float(interval), collisions, 0), 1)
 
 
-def _collapse(state, scene):
-    clock = state.clock
-    time = clock[ORIGIN] + (clock[BASE] + clock[NOW]) * 2.0 ** -state.counts[EXPONENT]
+def now(state: State) -> float:
+    """Return the present instant, in T since the start."""
+    clock, unit = state.clock, 2.0 ** -int(state.counts[EXPONENT])
+    return float(clock[ORIGIN] + (clock[BASE] + clock[NOW]) * unit)
+
+
+def _collapse(state: State, scene: Scene) -> CollapseError:
     names = [str(label) for label in _collapsing(state)]
     others = f" and {len(names) - NAMED} more" if len(names) > NAMED else ""
+    effects, remedy = scene.effects, "raise r, or the duration of contact_time"
+    if effects.contact_time is None:
+        remedy = "add the contact_time effect to the experiment, or raise r"
+    elif effects.floor is not None or effects.walls is not None:
+        remedy = "raise r, or make floor or walls smoother, between which a particle may be held"
     return CollapseError(
-        f"inelastic collapse at t = {time:.6g} T of particles {', '.join(names[:NAMED])}{others}: "
-        + _remedy(scene.effects)
+        f"inelastic collapse at t = {now(state):.6g} T of particles "
+        f"{', '.join(names[:NAMED])}{others}: {remedy}"
     )
 
 
-def _remedy(effects):
-    if effects.contact_time is None:
-        return "add the contact_time effect to the experiment, or raise r"
-    if effects.floor is None and effects.walls is None:
-        return "raise r, or the duration of contact_time"
-    return "raise r, or make floor or walls smoother, between which a particle may be held"
-
-
 def _collapsing(state):
-    """Numbers of the particles whose last contact is simultaneous with the present instant.
+    """Return the numbers of particles whose last contact is simultaneous with the present instant.
 
-    Where the gas has just been refreshed all are brought to it: then those of the last contact.
+    A refresh brings all particles to the present: just after it, those of the last contact.
     """
     last = state.clock[NOW] - INSTANT * state.clock[SPAN]
     found = state.label[state.trajectory[:, -1] >= last]

@@ -47,6 +47,11 @@ def of(experiment: Mapping[str, Any]) -> Kind:
     return KINDS[experiment["schedule"]["kind"]]
 
 
+def measured(schedule: Mapping[str, Any]) -> float:
+    """Return how long R is measured in a run, all its replicas together."""
+    return schedule.get("replicas", 1) * schedule[KINDS[schedule["kind"]].LENGTH]
+
+
 def check(experiment: Mapping[str, Any]) -> None:
     """Raise InputError where no point of the experiment could be simulated."""
     effects = scene.check(experiment).effects

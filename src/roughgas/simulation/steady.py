@@ -9,14 +9,7 @@ from roughgas.base.errors import InputError
 from roughgas.effects import inertia
 from roughgas.scene import Scene
 from roughgas.simulation.books import exchange
-from roughgas.simulation.energies import (
-    Columns,
-    Energies,
-    energies,
-    fluctuation_energies,
-    ratio,
-    ratio_of_means,
-)
+from roughgas.simulation.energies import Columns, energies, ratio, ratio_of_means
 from roughgas.simulation.gas import Gas
 from roughgas.simulation.recorder import Recorder
 from roughgas.statistics.averages import period_means
@@ -24,13 +17,12 @@ from roughgas.statistics.equilibration import detect_start, is_equilibrated
 from roughgas.statistics.errors import autocorrelation_time, blocking
 from roughgas.statistics.intervals import Error, degrees_of_freedom, is_trusted
 
-UNIT = "T"
-LENGTH = "measure"  # key of the schedule: how long R is measured
+UNIT, LENGTH = "T", "measure"  # see roughgas.simulation.schedule.Kind
 LEAST_LEFT = 0.5  # share of the planned measurement below which a late start is not worth having
 
 
 def check(drives: list[str]) -> None:
-    """Raise InputError where none of a scene's effects drives the gas."""
+    """Raise InputError if none of a scene's effects drives the gas."""
     if not drives:
         raise InputError("schedule.kind", "steady", "be cooling where no effect drives the gas")
 
@@ -55,23 +47,28 @@ def sample(gas: Gas, every: float, samples: int) -> Columns:
     return gas.in_time(every, samples)
 
 
+def samples_per_period(schedule: Mapping[str, Any]) -> int:
+    """Return the samples in a period of the drive; 1 if it has none."""
+    every = schedule["sample_every"]
+    return max(1, round(schedule.get("period", every) / every))
+
+
 def run(
     scene: Scene, experiment: Mapping[str, Any], seed: int, recorder: Recorder
 ) -> dict[str, Any]:
-    """Variables of the point (see roughgas.data.point), from one simulation.
+    """Return the variables of the point (see roughgas.data.point), from one simulation.
 
     The schedule gives `equilibrate` and `measure` (T), `sample_every` (T), and `period` (T), over
-    whole multiples of which averages are formed. The measurement begins later than planned where
-    the energies say that the gas is not yet stationary, and the point is flagged where half of it
-    would be lost or the energies drift in what is left.
+    whole multiples of which averages are formed. The measurement begins later than planned if the
+    energies say that the gas is not yet stationary, and the point is flagged if half of it would be
+    lost or the energies drift in what is left.
     """
     schedule = experiment["schedule"]
-    every = schedule["sample_every"]
+    every, per_period = schedule["sample_every"], samples_per_period(schedule)
     planned, length = (round(schedule[part] / every) for part in ("equilibrate", "measure"))
-    per_period = samples_per_period(schedule)
     gas = start(scene, experiment, seed, recorder)
     before = gas.books()
-    rows = sample(gas, every, planned + length)
+    rows = gas.in_time(every, planned + length)
     series = gas.energies(rows)
     first, found = _start(series, planned, length, per_period)
     window = series.map(lambda part: part[first:])
@@ -89,8 +86,18 @@ def run(
     }
 
 
+def _start(series, planned, length, per_period):
+    """Return the first sample to measure, after whole periods, and whether the rest is steady."""
+    means = [period_means(part, per_period) for part in series.there()]
+    first = -(-planned // per_period) * per_period
+    start = per_period * detect_start(*means, planned=first // per_period)
+    if planned + length - start < LEAST_LEFT * length:
+        return first, False
+    return start, is_equilibrated(*means, start=start // per_period)
+
+
 def _shared(window, per_period, every):
-    """How the energy is shared between translation and rotation."""
+    """Return how the energy is shared between translation and rotation."""
     R = ratio(window)
     R_periods = period_means(R, per_period)
     stderr, blocks = blocking(R_periods)
@@ -109,27 +116,13 @@ def _shared(window, per_period, every):
     }
 
 
-def samples_per_period(schedule: Mapping[str, Any]) -> int:
-    """Samples in a period of the drive; 1 where there is none."""
-    return max(
-        1, round(schedule.get("period", schedule["sample_every"]) / schedule["sample_every"])
-    )
-
-
-def fluctuations(scene: Scene, rows: Columns, number: int) -> Energies:
-    """Energies of samples: for callers that do not drive a Gas yet."""
-    shear, q = scene.effects.shear, inertia(scene.effects)
-    if shear is None:
-        return energies(rows, number, q)
-    return fluctuation_energies(rows, number, q, shear.velocity / (2.0 * scene.middle))
-
-
 def _unsubtracted(gas, rows, first):
-    """The energies of a sheared gas with its mean flow and mean spin left in: no fair R."""
-    if gas.scene.effects.shear is None:
+    """Return energies of a sheared gas with its mean flow and mean spin left in, not meant by R."""
+    effects = gas.scene.effects
+    if effects.shear is None:
         return {}
-    every = energies(rows, gas.particles, inertia(gas.scene.effects))
-    window = every.map(lambda part: part[first:])
+    series = energies(rows, gas.particles, inertia(effects))
+    window = series.map(lambda part: part[first:])
     found = {"E_trans_unsubtracted": window.translational.mean()}
     if window.rotational is not None:
         found["E_rot_unsubtracted"] = window.rotational.mean()
@@ -137,11 +130,7 @@ def _unsubtracted(gas, rows, first):
     return found
 
 
-def _start(series, planned, length, per_period):
-    """First sample to be measured, a whole number of periods in, and whether the rest is steady."""
-    means = [period_means(part, per_period) for part in series.there()]
-    first = -(-planned // per_period) * per_period
-    start = per_period * detect_start(*means, planned=first // per_period)
-    if planned + length - start < LEAST_LEFT * length:
-        return first, False
-    return start, is_equilibrated(*means, start=start // per_period)
+def fluctuations(scene: Scene, rows: Columns, number: int):  # until all drive a Gas
+    shear, q = scene.effects.shear, inertia(scene.effects)
+    rate = None if shear is None else shear.velocity / (2.0 * scene.middle)
+    return energies(rows, number, q, rate)
