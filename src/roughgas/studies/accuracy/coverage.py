@@ -6,155 +6,121 @@ the experiment's own equilibration and other seeds. An interval at 95 % should h
 repetitions: that of one run, and that of several seeds pooled.
 """
 
-import time
-import zlib
-from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
+import xarray as xr
 
-from roughgas.studies.accuracy.calibration import Runs, calibrate
-
-if TYPE_CHECKING:
-    import xarray
+from roughgas.statistics.estimate import Estimate
+from roughgas.statistics.intervals import half_width, pooled
+from roughgas.studies.accuracy.tasks import corner_name
+from roughgas.studies.accuracy.variables import dataset, stacked
 
 LEVELS = (0.68, 0.95)
 WAYS = ("one run", "pooled seeds")
-CORNER, WAY, LEVEL = "corner", "way", "level"
-MEASURED = ("R", "R_stderr", "R_dof", "equilibrated", "autocorrelation_time", "measured_from")
-LENGTH = {"steady": "measure", "cooling": "plateau"}
-"""Which key of a schedule says how long R is measured."""
-
-
-def tasks(settings: Mapping[str, Any]) -> list[str]:
-    """The corners by name, in the order of the settings: put long ones first."""
-    return [_name(corner) for corner in settings["corners"]]
-
-
-def run(
-    task: str,
-    settings: Mapping[str, Any],
-    experiments: Mapping[str, Mapping[str, Any]],
-    progress: Callable[[int, int], None] = lambda done, total: None,
-) -> "xarray.Dataset":
-    """One corner: what each repetition states, and what each run of its reference (`truth_...`).
-
-    Raises InputError for settings that are illegal, CollapseError as a simulation does.
-    """
-    import xarray
-
-    corner = next(one for one in settings["corners"] if _name(one) == task)
-    stream = np.random.SeedSequence(settings["seed"], spawn_key=(zlib.crc32(task.encode()),))
-    seeds = stream.generate_state(settings["repetitions"] + settings["reference"]["seeds"], "u8")
-    seeds = (seeds >> 1).tolist()
-    experiment = experiments[corner["experiment"]]
-    short, long = _schedules(experiment["schedule"], corner["schedule"], settings["reference"])
-    work = [short] * settings["repetitions"] + [long] * settings["reference"]["seeds"]
-    _point(experiment, short, corner, 0)  # compiles
-    begin = time.process_time()
-    rows = []
-    for schedule, seed in zip(work, seeds, strict=True):
-        rows.append(_point(experiment, schedule, corner, seed))
-        progress(len(rows), len(work))
-    seconds = time.process_time() - begin
-    parts = np.split(np.array(rows, float), [settings["repetitions"]])
-    variables = {
-        prefix + name: (dimension, values)
-        for prefix, dimension, part in zip(("", "truth_"), ("run", "long_run"), parts, strict=True)
-        for name, values in zip(MEASURED, part.T, strict=True)
-    }
-    window = short[LENGTH[short["kind"]]] * short.get("replicas", 1)
-    return xarray.Dataset(variables | {"cpu_seconds": ((), seconds), "window": ((), window)})
-
-
-def combine(parts: Mapping[str, "xarray.Dataset"], settings: Mapping[str, Any]) -> "xarray.Dataset":
-    """Coverage, bias and the size of the stated errors at every corner (dimensions as named here).
-
-    `parts` holds the result of every job of `tasks`.
-    """
-    import xarray
-
-    rows = [_summary(parts[name], settings) for name in tasks(settings)]
-    variables = {
-        name: ((CORNER, *dims), np.array([row[name] for row in rows]), _attributes(about, units))
-        for name, (dims, about, units) in ABOUT.items()
-    }
-    coordinates = {CORNER: tasks(settings), WAY: list(WAYS), LEVEL: list(LEVELS)}
-    attributes = {"seed": settings["seed"], "unit_of_length": UNIT}
-    dataset = xarray.Dataset(variables, coordinates, attributes)
-    for name, about in AXES.items():
-        dataset[name].attrs["long_name"] = about
-    for key, about in NAMED.items():
-        labels = [corner[key] for corner in settings["corners"]]
-        dataset[key] = (CORNER, labels, _attributes(about, ""))
-    return dataset
-
-
-NAMED = {
-    "experiment": "experiment",
-    "r": "normal restitution, as written in the settings",
-    "beta": "tangential restitution, as written in the settings",
-}
-AXES = {
-    CORNER: "experiment, r and beta",
-    WAY: "how the interval is found",
-    LEVEL: "share of the intervals that should hold the truth",
-}
 UNIT = "T; in a cooling gas a collision per particle"
-ABOUT = {
-    "coverage": ((WAY, LEVEL), "share of the intervals that hold the truth", "1"),
-    "coverage_stderr": ((WAY, LEVEL), "standard error of the coverage", "1"),
-    "bias": ((), "mean of R minus the truth, in standard deviations of a run's R", "1"),
-    "bias_stderr": ((), "standard error of the bias, in the same", "1"),
-    "stated_over_true": ((), "root mean square of R_stderr over the scatter of R", "1"),
-    "stated_over_true_stderr": ((), "its standard error", "1"),
-    "truth": ((), "R of the reference", "1"),
-    "truth_stderr": ((), "standard error of R of the reference", "1"),
-    "scatter": ((), "standard deviation of R over the repetitions", "1"),
-    "dof": ((), "degrees of freedom that a run's error is known with, median", "1"),
-    "repetitions": ((), "number of repetitions", "1"),
-    "equilibrated": ((), "share of the repetitions found in a steady state", "1"),
-    "autocorrelation_time": ((), "integrated autocorrelation time of R", "length"),
-    "window": ((), "length of a run's measurement, of all replicas together", "length"),
-    "cpu_seconds": ((), "CPU time of all of the simulations", "s"),
-}
+REGROUPINGS = 100
 
 
-def _attributes(about, units):
-    return {"long_name": about, "units": units}
+class Runs(NamedTuple):
+    """What independent runs state: R, its error and degrees of freedom, arrays of shape (runs,)."""
+
+    R: np.ndarray
+    stderr: np.ndarray
+    dof: np.ndarray
 
 
-def _name(corner: Mapping[str, Any]) -> str:
-    return f"{corner['experiment']}_r{corner['r']}_beta{corner['beta']}"
+def combine(parts: Mapping[str, xr.Dataset], settings: Mapping[str, Any]) -> xr.Dataset:
+    """Return coverage, bias and the size of the stated errors at every corner, from all tasks."""
+    corners = settings["corners"]
+    names = [corner_name(corner) for corner in corners]
+    found = stacked([_corner(parts[name], settings) for name in names])
+    found |= {key: [corner[key] for corner in corners] for key in ("experiment", "r", "beta")}
+    found |= {"corner": names, "way": list(WAYS), "level": list(LEVELS)}
+    return dataset("coverage", found, seed=settings["seed"], unit_of_length=UNIT)
 
 
-def _schedules(usual, changes, reference):
-    """The schedule of a repetition, and that of a run of the reference: as usual, but longer."""
-    short, length = usual | changes, LENGTH[usual["kind"]]
-    return short, usual | {length: reference["length"] * short[length]}
+def calibrate(
+    runs: Runs, truth: Estimate, levels: Sequence[float], seeds: int, rng: np.random.Generator
+) -> dict[str, Any]:
+    """Return coverage over (way, level): of intervals of one run, and of `seeds` pooled; bias and
+    errors. That of the bias allows for that of the truth. `rng` puts the runs into groups.
+    """
+    number, scatter = len(runs.R), float(runs.R.std(ddof=1))
+    ways = one_run(runs, truth.value, levels), several(runs, truth.value, levels, seeds, rng)
+    shares = np.array([[share[:2] for share in way] for way in ways])
+    square = runs.stderr**2
+    stated = math.sqrt(square.mean()) / scatter
+    off = (runs.R - runs.R.mean()) ** 2
+    # Of a root of a quotient of two means: half of the relative errors of both
+    uncertain = math.hypot(off.std() / off.mean(), square.std() / square.mean()) / 2
+    bias = (float(runs.R.mean()) - truth.value) / scatter
+    return {
+        "coverage": Estimate(shares[..., 0], shares[..., 1]),
+        "bias": Estimate(bias, math.hypot(1 / math.sqrt(number), truth.stderr / scatter)),
+        "stated_over_true": Estimate(stated, stated * uncertain / math.sqrt(number)),
+        "scatter": scatter,
+    }
 
 
-def _point(experiment, schedule, corner, seed) -> list[float]:
-    from roughgas.scene import build
-    from roughgas.simulation.point import run_point
-
-    settings = {**experiment, "schedule": schedule}
-    scene = build(settings, float(corner["r"]), float(corner["beta"]))
-    measured = run_point(scene, settings, seed).variables
-    return [measured[name] for name in MEASURED]
+def one_run(runs: Runs, truth: float, levels: Sequence[float]) -> list[Estimate]:
+    """Return how often the intervals of single runs hold `truth`, at each of `levels`."""
+    return [_binomial(_held(runs, truth, level)) for level in levels]
 
 
-def _summary(part, settings) -> dict[str, Any]:
-    """Every variable of one corner by name."""
-    from roughgas.statistics.intervals import pooled
+def several(
+    runs: Runs, truth: float, levels: Sequence[float], seeds: int, rng: np.random.Generator
+) -> list[Estimate]:
+    """Return how often the intervals of `seeds` runs pooled hold `truth`, at each of `levels`.
 
-    long = [part[f"truth_{name}"].values for name in ("R", "R_stderr", "R_dof")]
-    truth, truth_stderr = float(long[0].mean()), pooled(*long).stderr
-    runs = Runs(*(part[name].values for name in ("R", "R_stderr", "R_dof")))
+    The runs are put into groups at random again and again: an incomplete U-statistic (Blom,
+    Biometrika 63, 573 (1976)), several times as precise as one division into groups. To leading
+    order its variance is that of Hoeffding, Ann. Math. Stat. 19, 293 (1948): seeds^2/runs times the
+    variance, over runs, of how often the groups with this run hold the truth.
+    """
+    number = len(runs.R) // seeds * seeds
+    groups = [rng.permutation(len(runs.R))[:number] for _ in range(REGROUPINGS)]
+    groups = np.concatenate(groups).reshape(-1, seeds)
+    errors = [pooled(*(part[group] for part in runs)) for group in groups]
+    pools = Runs(runs.R[groups].mean(axis=1), *np.array(errors).T)
+    return [_hoeffding(_held(pools, truth, level), groups, len(runs.R)) for level in levels]
+
+
+def _held(runs: Runs, truth: float, level: float) -> np.ndarray:
+    """Return whether the interval of each run holds the truth; without an interval it does not."""
+    widths = [half_width(*known, level) for known in zip(runs.stderr, runs.dof, strict=True)]
+    return np.abs(runs.R - truth) <= np.array(widths)
+
+
+def _binomial(held: np.ndarray) -> Estimate:
+    """The error is that of Laplace's estimate, (k + 1)/(n + 2), and does not vanish at 0 or 1."""
+    number = len(held)
+    likely = (held.sum() + 1) / (number + 2)
+    return Estimate(float(held.mean()), math.sqrt(likely * (1 - likely) / number))
+
+
+def _hoeffding(held: np.ndarray, groups: np.ndarray, runs: int) -> Estimate:
+    """Return the share of groups that hold the truth; never known better than to one run."""
+    seeds, value = groups.shape[1], float(held.mean())
+    times = np.bincount(groups.ravel(), minlength=runs)
+    with_run = np.bincount(groups.ravel(), np.repeat(held, seeds), minlength=runs) / times
+    chance = value * (1 - value) / times.mean()  # from a finite number of groups
+    variance = seeds**2 / runs * max(0.0, float(with_run.var(ddof=1)) - chance)
+    return Estimate(value, max(math.sqrt(variance + chance * seeds / runs), 1 / runs))
+
+
+def _corner(part: xr.Dataset, settings: Mapping[str, Any]) -> dict[str, Any]:
+    """Return every variable of one corner."""
+    runs, long = (
+        Runs(*(part[prefix + name].values for name in ("R", "R_stderr", "R_dof")))
+        for prefix in ("", "truth_")
+    )
+    truth = Estimate(float(long.R.mean()), pooled(*long).stderr)
     rng = np.random.default_rng(np.random.SeedSequence(settings["seed"], spawn_key=(0,)))
-    return calibrate(runs, truth, truth_stderr, LEVELS, settings["pooled"], rng) | {
+    return calibrate(runs, truth, LEVELS, settings["pooled"], rng) | {
         "truth": truth,
-        "truth_stderr": truth_stderr,
         "dof": float(np.median(runs.dof)),
         "repetitions": len(runs.R),
         "equilibrated": float(part.equilibrated.mean()),

@@ -5,12 +5,21 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
+import netCDF4
 import xarray as xr
 
 from roughgas.base.errors import InputError
 from roughgas.base.files import write_text
 from roughgas.data.netcdf import Content, content_of, read_netcdf, write_netcdf
-from roughgas.studies.accuracy import STUDIES, study, tables
+from roughgas.studies.accuracy import coverage, discretisation, models, statistical, tables
+from roughgas.studies.accuracy.tasks import STUDIES, tasks
+
+COMBINE = {
+    "statistical": statistical.combine,
+    "models": models.combine,
+    "discretisation": discretisation.combine,
+    "coverage": coverage.combine,
+}
 
 
 def write_task(path: str | Path, data: xr.Dataset, about: Mapping[str, Any]) -> None:
@@ -21,7 +30,7 @@ def write_task(path: str | Path, data: xr.Dataset, about: Mapping[str, Any]) -> 
 def combine(paths: Iterable[str | Path], output: str | Path) -> None:
     """Combine the files of tasks into one file, with a group for each study among them.
 
-    Raises InputError where a study's tasks are not all there, or come from different settings.
+    Raises InputError where tasks of a study are missing or come from different settings.
     """
     found: dict[str, dict[str, xr.Dataset]] = {}
     for path in paths:
@@ -31,16 +40,17 @@ def combine(paths: Iterable[str | Path], output: str | Path) -> None:
     write_netcdf(output, Content({}, {"title": "Studies of accuracy"}), groups)
 
 
-read_study = read_netcdf  # with the name of the study as its group
+def read_studies(path: str | Path) -> dict[str, xr.Dataset]:
+    """Return the groups of all studies in the file at `path`, by name."""
+    with netCDF4.Dataset(path) as file:
+        names = [name for name in STUDIES if name in file.groups]
+    return {name: read_netcdf(path, name) for name in names}
 
 
 def write_tables(path: str | Path, output: str | Path) -> None:
     """Write the tables of all studies in a combined file as Markdown."""
-    import netCDF4
-
-    with netCDF4.Dataset(path) as file:
-        names = [name for name in STUDIES if name in file.groups]
-    write_text(output, "\n".join(getattr(tables, name)(read_study(path, name)) for name in names))
+    found = read_studies(path).items()
+    write_text(output, "\n".join(tables.TABLES[name](data) for name, data in found))
 
 
 def _combined(name: str, parts: Mapping[str, xr.Dataset]) -> xr.Dataset:
@@ -48,9 +58,9 @@ def _combined(name: str, parts: Mapping[str, xr.Dataset]) -> xr.Dataset:
     if len(texts) > 1:
         raise InputError(f"settings of {name}", f"{len(texts)} different ones", "be the same")
     settings = json.loads(texts.pop())["study"]
-    missing = set(study(name).tasks(settings)) - set(parts)
+    missing = set(tasks(name, settings)) - set(parts)
     if missing:
         raise InputError(f"tasks of {name}", f"without {sorted(missing)[0]}", "be complete")
     scales = {data.attrs["scale"] for data in parts.values()}
-    data = study(name).combine(dict(parts), settings)
+    data = COMBINE[name](parts, settings)
     return data.assign_attrs(title=name, scale=", ".join(sorted(scales)))

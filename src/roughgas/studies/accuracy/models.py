@@ -5,212 +5,152 @@ experiment `cooling` at one (r, beta); and, over (r, beta), how far the homogene
 closed form, whose velocities are Maxwellian and uncorrelated.
 """
 
-from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
+import xarray as xr
 
-if TYPE_CHECKING:
-    import xarray as xr
+from roughgas.statistics.estimate import Estimate
+from roughgas.statistics.fits import power_law
+from roughgas.studies.accuracy.variables import dataset, stacked
 
-EXPERIMENT = "cooling"
-# Each kind of job draws from streams of its own
-REFERENCE, EVENT_DRIVEN, DSMC, MAP, DENSITY = range(5)
-SECONDS = 0.2  # of CPU, over which the time of one call is averaged
-WARM = 2.0  # collisions per particle that are simulated beforehand, to have the code compiled
+METHODS = ("rate_equations", "dsmc", "event_driven")
 
 
-def tasks(settings: Mapping[str, Any]) -> list[str]:
-    """Names of the independent jobs, the longest first."""
-    return [
-        *(f"reference-{k}" for k in range(settings["reference"]["jobs"])),
-        *(f"map-r{r}" for r in settings["map"]["r"]),
-        *(f"density-r{r}-beta{beta}" for r, beta in settings["density"]["points"]),
-        "event_driven",
-        "dsmc",
-        "theory",
-    ]
+def combine(parts: Mapping[str, xr.Dataset], settings: Mapping[str, Any]) -> xr.Dataset:
+    """Return errors and costs of all methods, and the map of what theory misses, from all tasks."""
+    density = settings["density"]
+    references = [parts[f"reference-{k}"] for k in range(settings["reference"]["jobs"])]
+    reference = _mean(np.concatenate([part.R.values for part in references]))
+    found = {
+        "R_reference": reference,
+        "reference_seconds": sum(float(part.seconds) for part in references),
+        "reference_replicas": sum(part.sizes["replica"] for part in references),
+        **_closed_form(parts["theory"], reference),
+        **_methods(parts, settings, reference),
+        **_shares(parts, reference),
+        **_map([parts[f"map-r{r}"] for r in settings["map"]["r"]]),
+        **_densities([parts[f"density-r{r}-beta{beta}"] for r, beta in density["points"]]),
+        "map_r": np.array(settings["map"]["r"], float),
+        "packing": np.array(density["packings"], float),
+    }
+    found["density_r"], found["density_beta"] = np.array(density["points"], float).T
+    about = {"r": float(settings["r"]), "beta": float(settings["beta"]), "seed": settings["seed"]}
+    return dataset("models", found, **about).set_coords(["density_r", "density_beta"])
 
 
-def run(
-    task: str,
-    settings: Mapping[str, Any],
-    experiments: Mapping[str, Any],
-    progress: Callable[[int, int], None] = lambda done, total: None,
-) -> "xr.Dataset":
-    """The dataset of one job: values of R, and CPU seconds without those of compiling."""
-    experiment = experiments[EXPERIMENT]
-    kind, _, rest = task.partition("-")
-    if kind == "map":
-        return _map(rest.removeprefix("r"), settings, experiment, progress)
-    if kind == "density":
-        r, beta = rest.removeprefix("r").split("-beta")
-        return _density(r, beta, settings, experiment)
-    point = _point(experiment, settings["r"], settings["beta"])
-    if kind == "reference":
-        return _reference(point, settings, int(rest))
-    jobs = {"event_driven": _event_driven, "dsmc": _dsmc, "theory": _theory}
-    return jobs[kind](point, settings, progress)
+def over(one: Estimate, other: Estimate) -> Estimate:
+    """Return the quotient of two independent estimates."""
+    quotient = one.value / other.value
+    error = np.hypot(one.stderr / one.value, other.stderr / other.value)
+    return Estimate(quotient, abs(quotient) * error)
 
 
-def combine(parts: Mapping[str, "xr.Dataset"], settings: Mapping[str, Any]) -> "xr.Dataset":
-    """The group `models` of the dataset of all accuracy studies."""
-    from roughgas.studies.accuracy.model_errors import combined
+def error_bar(errors: np.ndarray, reference_stderr: float) -> np.ndarray:
+    """Return the standard error of the rms over groups, axis -1, of Gaussian errors.
 
-    return combined(parts, settings)
-
-
-def stream(settings: Mapping[str, Any], *key: int) -> np.random.SeedSequence:
-    """The seed of the stream that belongs to a kind of job, and to whatever else it counts."""
-    return np.random.SeedSequence(settings["seed"], spawn_key=key)
-
-
-def _point(experiment, r, beta):
-    from roughgas.studies.accuracy.free_cooling import Point
-
-    return Point(experiment, float(r), float(beta))
+    It follows from their scatter about their mean, that mean, and the error of the reference, which
+    is common to all.
+    """
+    groups = errors.shape[-1]
+    square = np.mean(errors**2, axis=-1)
+    scatter = errors.var(axis=-1, ddof=1) if groups > 1 else np.zeros(errors.shape[:-1])
+    offset = np.maximum(square - scatter, 0.0)
+    variance = (scatter**2 / 2 + offset * scatter) / groups + offset * reference_stderr**2
+    return np.sqrt(variance / square)
 
 
-def _reference(point, settings, job):
-    import xarray as xr
-
-    from roughgas.studies.accuracy.free_cooling import event_driven
-
-    chosen = settings["reference"]
-    event_driven(point, WARM, WARM, stream(settings, REFERENCE))
-    seed = stream(settings, REFERENCE, 1 + job)
-    R, seconds = event_driven(point, chosen["length"] / chosen["jobs"], settings["segment"], seed)
-    return xr.Dataset({"R": ("replica", R), "seconds": seconds})
+def _mean(values: np.ndarray) -> Estimate:
+    return Estimate(values.mean(), values.std(ddof=1) / np.sqrt(len(values)))
 
 
-def _event_driven(point, settings, progress):
-    from roughgas.studies.accuracy.free_cooling import Result, event_driven
-
-    def result(length, seed):
-        R, seconds = event_driven(point, length, settings["segment"], seed)
-        return Result(R.mean(), seconds)
-
-    return _levels("event_driven", EVENT_DRIVEN, result, settings, progress)
-
-
-def _dsmc(point, settings, progress):
-    from roughgas.studies.accuracy.free_cooling import homogeneous, simulated
-
-    def result(length, seed):
-        return simulated(point, length, np.random.default_rng(seed))
-
-    levels = _levels("dsmc", DSMC, result, settings, progress)
-    rng = np.random.default_rng(stream(settings, MAP, DSMC))
-    large = homogeneous(point, settings["map"]["particles"], settings["density"]["precision"], rng)
-    return levels.assign({f"homogeneous_{name}": x for name, x in large._asdict().items()})
+def _closed_form(part, reference):
+    R = float(part.closed_form_R)
+    stderr = R / reference.value**2 * reference.stderr
+    return {
+        "closed_form_R": R,
+        "closed_form_error": Estimate(abs(R / reference.value - 1), stderr),
+        "closed_form_seconds": float(part.closed_form_seconds),
+    }
 
 
-def _levels(name, kind, result, settings, progress):
-    """R and CPU seconds of every length and group; all have random numbers of their own."""
-    import xarray as xr
+def _methods(parts, settings, reference):
+    """Return the rms relative error over groups of each length; rate equations have one group.
 
-    lengths, groups = settings[name], settings["groups"]
-    result(WARM, stream(settings, kind))
-    values = np.empty((2, len(lengths), groups))
-    for k, length in enumerate(lengths):
-        for group in range(groups):
-            values[:, k, group] = result(length, stream(settings, kind, 1 + k, group))
-            progress(k * groups + group + 1, len(lengths) * groups)
-    dims = (f"{name}_length", "group")
-    variables = {"R": (dims, values[0]), "seconds": (dims, values[1])}
-    return xr.Dataset(variables, {dims[0]: lengths})
+    The law is fitted to runs of whole segments: each of these has a transient to wait for.
+    """
+    found = {}
+    for method in METHODS:
+        part, lengths = parts.get(method, parts["theory"]), np.array(settings[method], float)
+        R, seconds = (part[x].values.reshape(len(lengths), -1) for x in ("R", "seconds"))
+        errors = R / reference.value - 1
+        bar = error_bar(errors, reference.stderr / reference.value)
+        found |= {
+            f"{method}_length": lengths,
+            f"{method}_R": R.mean(axis=-1),
+            f"{method}_error": Estimate(np.sqrt(np.mean(errors**2, axis=-1)), bar),
+            f"{method}_seconds": seconds.mean(axis=-1),
+            f"{method}_groups": R.shape[1],
+        }
+    whole = np.array(settings["event_driven"]) >= settings["segment"]
+    error, stderr, _ = found["event_driven_error"]
+    weight = (error / stderr) ** 2
+    law = power_law(found["event_driven_seconds"][whole], error[whole], weight[whole])
+    found["event_driven_slope"] = Estimate(law.exponent, law.stderr)
+    return found | {"event_driven_prefactor": law.prefactor}
 
 
-def _theory(point, settings, progress):
-    import xarray as xr
+def _shares(parts, reference):
+    """Return what each approximation adds to the error of the closed form: factors whose product
+    is that error, minus 1."""
+    part = parts["dsmc"]
+    many = Estimate(float(part.homogeneous_R), float(part.homogeneous_R_stderr))
+    few = _pooled(part.R.values, part.dsmc_length.values)
+    closed, dilution = Estimate(float(parts["theory"].closed_form_R), 0.0), over(few, reference)
+    factors = {"maxwellian": over(closed, many), "number": over(many, few), "dilution": dilution}
+    return {
+        "dsmc_floor": Estimate(abs(few.value / reference.value - 1), dilution.stderr),
+        "dsmc_many_R": many,
+        **{f"of_{name}": one._replace(value=one.value - 1) for name, one in factors.items()},
+    }
 
-    from roughgas.studies.accuracy.free_cooling import closed_form, rate_equations
 
-    closed = closed_form(point, _calls(closed_form(point, 10).seconds))
-    durations = settings["rate_equations"]
-    rates = []
-    for k, duration in enumerate(durations):
-        once = rate_equations(point, duration, 1).seconds
-        rates.append(rate_equations(point, duration, _calls(once)))
-        progress(k + 1, len(durations))
-    R, seconds = zip(*rates, strict=True)
-    return xr.Dataset(
-        {
-            "closed_form_R": closed.R,
-            "closed_form_seconds": closed.seconds,
-            "R": ("rate_equations_length", list(R)),
-            "seconds": ("rate_equations_length", list(seconds)),
-        },
-        {"rate_equations_length": durations},
+def _pooled(R, lengths):
+    """Return the mean of all runs, weighted by their lengths."""
+    weights = np.broadcast_to(lengths[:, np.newaxis], R.shape).astype(float)
+    weights /= weights.sum()
+    variances = R.var(axis=1, ddof=1)[:, np.newaxis]
+    return Estimate(np.sum(weights * R), np.sqrt(np.sum(weights**2 * variances)))
+
+
+def _map(rows: Sequence[xr.Dataset]):
+    found = stacked([{name: one.values for name, one in row.data_vars.items()} for row in rows])
+    theory, explained = found["theory"], found.pop("explained")
+    found["gap"] = Estimate(found["R"] / theory - 1, found["R_stderr"] / theory)
+    found["gap_explained"], found["beta"] = explained / theory - 1, rows[0].beta.values
+    return {f"map_{name}": values for name, values in found.items()}
+
+
+def _densities(parts: Sequence[xr.Dataset]):
+    return stacked([_density(part) for part in parts]) | {
+        "density_replicas": parts[0].sizes["replica"],
+        "density_seconds": sum(float(part.seconds.sum() + part.dsmc_seconds) for part in parts),
+    }
+
+
+def _density(part: xr.Dataset):
+    """Return R of an event-driven gas at each packing, and that over Eq. (K), its number of
+    particles corrected for by DSMC."""
+    many, few = (
+        Estimate(float(part[name]), float(part[f"{name}_stderr"])) for name in ("R_many", "R_few")
     )
-
-
-def _calls(seconds):
-    return max(1, round(SECONDS / max(seconds, 1e-7)))
-
-
-def _map(r, settings, experiment, progress):
-    """The homogeneous gas at one r and every beta."""
-    import xarray as xr
-
-    from roughgas.studies.accuracy.free_cooling import Homogeneous, homogeneous
-
-    chosen, rows = settings["map"], []
-    row = [str(one) for one in chosen["r"]].index(r)
-    homogeneous(_point(experiment, r, 1.0), 10, 1.0, np.random.default_rng(0))
-    for k, beta in enumerate(chosen["beta"]):
-        rng = np.random.default_rng(stream(settings, MAP, row, k))
-        point = _point(experiment, r, beta)
-        found = homogeneous(point, chosen["particles"], chosen["precision"], rng)
-        rows.append((*found, point.theory, point.with_cumulants(found.a20, found.a11)))
-        progress(k + 1, len(chosen["beta"]))
-    names = (*Homogeneous._fields, "theory", "explained")
-    columns = zip(names, np.transpose(rows), strict=True)
-    beta = [float(one) for one in chosen["beta"]]
-    return xr.Dataset({name: ("beta", x) for name, x in columns}, {"beta": beta, "r": float(r)})
-
-
-def _density(r, beta, settings, experiment):
-    """Event-driven dynamics at several packing fractions, and DSMC of as many particles and of
-    many: their ratio tells what is due to the number."""
-    import xarray as xr
-
-    from roughgas.studies.accuracy.free_cooling import homogeneous
-
-    chosen = settings["density"]
-    place = [[str(x) for x in one] for one in chosen["points"]].index([r, beta])
-    point = _point(experiment, r, beta)
-    R, seconds = zip(*_at_packings(point, place, settings), strict=True)
-    few, many = (
-        homogeneous(point, number, chosen["precision"], np.random.default_rng(seed))
-        for number, seed in zip(
-            (experiment["particles"], settings["map"]["particles"]),
-            stream(settings, DENSITY, place, len(R)).spawn(2),
-            strict=True,
-        )
+    theory = float(part.theory)
+    R = [_mean(values) for values in part.R.values]
+    gaps = [over(one, over(few, many)) for one in R]
+    return stacked(
+        [
+            {"density_R": one, "density_gap": Estimate(gap.value / theory - 1, gap.stderr / theory)}
+            for one, gap in zip(R, gaps, strict=True)
+        ]
     )
-    return xr.Dataset(
-        {
-            "R": (("packing", "replica"), np.array(R)),
-            "seconds": ("packing", list(seconds)),
-            "R_few": few.R,
-            "R_few_stderr": few.R_stderr,
-            "R_many": many.R,
-            "R_many_stderr": many.R_stderr,
-            "theory": point.theory,
-            "dsmc_seconds": few.seconds + many.seconds,
-        },
-        {"packing": list(chosen["packings"]), "r": float(r), "beta": float(beta)},
-    )
-
-
-def _at_packings(point, place, settings):
-    """R of the replicas, and CPU seconds, at each packing fraction."""
-    from roughgas.studies.accuracy.free_cooling import at_packing, event_driven
-
-    chosen = settings["density"]
-    event_driven(point, WARM, WARM, stream(settings, DENSITY))
-    for k, packing in enumerate(chosen["packings"]):
-        moved = point._replace(experiment=at_packing(point.experiment, packing))
-        seed = stream(settings, DENSITY, place, k)
-        yield event_driven(moved, chosen["length"], settings["segment"], seed)

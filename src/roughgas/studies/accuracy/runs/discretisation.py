@@ -1,19 +1,22 @@
-"""The jobs behind roughgas.studies.accuracy.discretisation, one function a kind.
+"""Soft spheres and events in the freely cooling gas, one function a kind of job.
 
-Each takes the part's settings, those of the experiment, and progress, and returns numbers by name.
+Each takes the study's settings, those of the experiment, and progress, and returns numbers by name.
+All jobs have random numbers of their own. CPU seconds are those of the simulation proper,
+everything compiled before, at equilibrium.
 """
 
 import math
 import time
+from collections.abc import Callable
 
 import numpy as np
+import xarray as xr
 
 from roughgas.kernel.layout import new_state
 from roughgas.kernel.state import EXPONENT, STARTED
-from roughgas.scene import build
-from roughgas.scene.initial import initial_state
-from roughgas.simulation.energies import energies, ratio
-from roughgas.simulation.recorder import Recorder
+from roughgas.scene import build, initial_state
+from roughgas.simulation.energies import ratio
+from roughgas.simulation.gas import Gas
 from roughgas.statistics.errors import blocking_stderr
 from roughgas.studies.soft_spheres import new_gas, springs
 from roughgas.studies.soft_spheres.stepping import COLUMNS, step
@@ -31,17 +34,26 @@ ELASTIC_SAMPLES = 100
 STREAMS = {"reference": 1, "event": 2, "single": 3, "model": 4, "soft": 5, "elastic": 6}
 
 
-def reference(settings, cooling, progress, place):
+def run(task: str, settings, experiments, progress: Callable[[int, int], None]) -> xr.Dataset:
+    """Return R of one run, and what else its kind of job measures. Raises InputError."""
+    kind, *places = task.split("-")
+    job = {"reference": _reference, "event": _event, "single": _single}
+    job |= {"model": _model, "soft": _soft}
+    found = job[kind](settings, experiments["cooling"], progress, *map(int, places))
+    return xr.Dataset({name: (("sample",) if np.ndim(x) else (), x) for name, x in found.items()})
+
+
+def _reference(settings, cooling, progress, place):
     return _summary(*_events(settings, cooling, progress, ("reference", place)))
 
 
-def event(settings, cooling, progress):
+def _event(settings, cooling, progress):
     """A run of its own, of which each sample is kept, for the statistical error of such runs."""
     R, collisions, seconds = _events(settings, cooling, progress, ("event",))
     return _summary(R, collisions, seconds) | {"R_series": R}
 
 
-def single(settings, cooling, progress):
+def _single(settings, cooling, progress):
     """Trajectories and spins in single precision, and how an elastic gas's energy then drifts."""
     found = _summary(*_events(settings, cooling, progress, ("single",), np.float32))
     for name, precision in (("single", np.float32), ("double", np.float64)):
@@ -49,7 +61,7 @@ def single(settings, cooling, progress):
     return found
 
 
-def soft(settings, cooling, progress, steps, place):
+def _soft(settings, cooling, progress, steps, place):
     """Soft spheres, `steps` to a contact of t_c nu = settings["contact_times"][place]."""
     gas, spheres, plan = _soft_gas(settings, cooling, steps, place)
     (dt, per_leg), number = plan, len(gas.position)
@@ -72,37 +84,24 @@ def soft(settings, cooling, progress, steps, place):
     return found | {"frequency": collisions / (legs * per_leg * dt) / nu, "steps": legs * per_leg}
 
 
-def model(settings, cooling, progress, place):
+def _model(settings, cooling, progress, place):
     """The kernel with the contact-time model, t_c nu being held as for soft spheres."""
     duration = settings["model_contact_times"][place] / _frequency(settings)
-    effects = {"contact_time": {"duration": duration}}
-    scene, *where = _start(settings, cooling, ("model", place), effects)
-    state, recorder = new_state(scene, *where), Recorder()
-    number, q = len(where[0]), scene.effects.spin.inertia
-    per_leg = round(LEG * number / 2)
+    gas = _gas(settings, cooling, ("model", place), {"contact_time": {"duration": duration}})
+    per_leg, recorder = gas.count(LEG), gas.recorder
+    gas.cool(per_leg)
     settling, legs = (round(length / LEG) for length in (SETTLING, settings["model_collisions"]))
     for _ in range(settling):
-        recorder.in_collisions(state, scene, per_leg, 1, 1)
-        _heat(state)
+        gas.in_collisions(per_leg, 1)
+        _heat(gas.state)
     recorder.touched, recorder.seconds, R = 0, 0.0, np.empty(legs)
     for _, part in _parts(R, progress):
         for k in range(len(part)):
-            rows = recorder.in_collisions(state, scene, per_leg, 1, 1)
-            part[k] = ratio(energies(rows, number, q))[0]
-            _heat(state)
-    collisions = 2.0 * legs * per_leg / number
-    return _summary(R, collisions, recorder.seconds) | {
-        "touched": recorder.touched / (legs * per_leg)
-    }
-
-
-JOBS = {
-    "reference": reference,
-    "event": event,
-    "single": single,
-    "model": model,
-    "soft": soft,
-}
+            part[k] = ratio(gas.energies(gas.in_collisions(per_leg, 1)))[0]
+            _heat(gas.state)
+    collisions = 2.0 * legs * per_leg / gas.particles
+    touched = recorder.touched / (legs * per_leg)
+    return _summary(R, collisions, recorder.seconds) | {"touched": touched}
 
 
 def _random(settings, kind, *places):
@@ -155,18 +154,21 @@ def _heat(state):
     state.counts[STARTED] = 0
 
 
+def _gas(settings, cooling, stream, effects=None, precision=np.float64):
+    scene, *where = _start(settings, cooling, stream, effects)
+    return Gas(scene, new_state(scene, *where, precision))
+
+
 def _events(settings, cooling, progress, stream, precision=np.float64):
     """R at each sample, collisions per particle, CPU seconds, of the plain event-driven gas."""
-    scene, *where = _start(settings, cooling, stream)
-    state, recorder = new_state(scene, *where, precision), Recorder()
-    number, q = len(where[0]), scene.effects.spin.inertia
-    every = max(1, round(SAMPLED_EVERY * number / 2))
+    gas = _gas(settings, cooling, stream, precision=precision)
+    every = gas.count(SAMPLED_EVERY)
+    gas.cool(REFRESHED_EVERY * every)
     length = settings["reference_collisions" if stream[0] == "reference" else "event_collisions"]
-    recorder.in_collisions(state, scene, every, round(SETTLING / SAMPLED_EVERY), REFRESHED_EVERY)
+    gas.in_collisions(every, round(SETTLING / SAMPLED_EVERY))
     R, seconds = np.empty(round(length / SAMPLED_EVERY)), time.process_time()
     for _, part in _parts(R, progress):
-        rows = recorder.in_collisions(state, scene, every, len(part), REFRESHED_EVERY)
-        part[:] = ratio(energies(rows, number, q))
+        part[:] = ratio(gas.energies(gas.in_collisions(every, len(part))))
     return R, len(R) * SAMPLED_EVERY, time.process_time() - seconds
 
 
@@ -180,22 +182,20 @@ def _parts(rows, progress):
 
 def _drift(name, settings, cooling, precision):
     """Relative change of an elastic gas's energy per collision, its speed and frequency."""
-    scene, *where = _start(settings | ELASTIC, cooling, ("elastic",))
-    state, recorder = new_state(scene, *where, precision), Recorder()
-    number, q = len(where[0]), scene.effects.spin.inertia
-    every = max(1, round(settings["event_collisions"] * number / 40 / ELASTIC_SAMPLES))
-    recorder.in_collisions(state, scene, every, 1)
+    gas = _gas(settings | ELASTIC, cooling, ("elastic",), precision=precision)
+    every = max(1, round(settings["event_collisions"] * gas.particles / 40 / ELASTIC_SAMPLES))
+    gas.in_collisions(every, 1)
     seconds = time.process_time()
-    rows = recorder.in_collisions(state, scene, every, ELASTIC_SAMPLES)
+    rows = gas.in_collisions(every, ELASTIC_SAMPLES)
     seconds = time.process_time() - seconds
-    found = energies(rows, number, q)
+    found = gas.energies(rows)
     changes = np.diff(np.log(2.0 * found.translational + found.rotational)) / every
     elapsed = rows["time"][-1] - rows["time"][0]
     return {
         f"drift_{name}": changes.mean(),
         f"drift_stderr_{name}": changes.std(ddof=1) / math.sqrt(len(changes)),
         f"speed_{name}": every * len(rows["time"]) / seconds,
-        f"frequency_{name}": 2.0 * every * len(changes) / number / elapsed,
+        f"frequency_{name}": 2.0 * every * len(changes) / gas.particles / elapsed,
     }
 
 

@@ -1,0 +1,205 @@
+"""Four ways to R of a freely cooling gas: each gives R, and the CPU seconds that it took.
+
+R is the mean over samples of R(t), one sample a collision per particle, once the gas has settled.
+Simulations start at theory's stationary T_rot/T_tr, so that only what theory misses has to settle.
+The rate equations start at equipartition, since there would be nothing to find otherwise.
+"""
+
+import math
+import time
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from roughgas import theory
+from roughgas.scene import build
+from roughgas.simulation.cooling import SAMPLES_PER_REFRESH
+from roughgas.simulation.energies import ratio
+from roughgas.simulation.gas import Gas
+from roughgas.statistics.errors import blocking_stderr
+from roughgas.studies import dsmc
+from roughgas.studies.accuracy.runs.cumulants import corrected_ratio
+
+E_FOLDS = 10.0  # of theory's relaxation before R is measured
+SHORTEST_TRANSIENT = 10.0  # collisions per particle, in which velocities forget to be Maxwellian
+MOST_SAMPLES = 10000  # of one run of a large gas
+
+
+class FreeCooling(NamedTuple):
+    """Where in the plane of r and beta a gas cools, and in which experiment."""
+
+    experiment: Mapping[str, Any]
+    r: float
+    beta: float
+
+    @property
+    def constants(self) -> tuple[float, float, int, float]:
+        """(r, beta, dimension, inertia), as theory takes them."""
+        inertia = self.experiment["effects"]["spin"]["inertia"]
+        return self.r, self.beta, len(self.experiment["box"]), inertia
+
+    @property
+    def theta(self) -> float:
+        """T_rot/T_tr of Eq. (K)."""
+        return float(theory.stationary_theta(*self.constants))
+
+    @property
+    def ratio(self) -> float:
+        """R of Eq. (K)."""
+        return float(theory.cooling_ratio(*self.constants))
+
+    @property
+    def transient(self) -> float:
+        """Collisions per particle from theory's theta until R has settled."""
+        return max(SHORTEST_TRANSIENT, E_FOLDS / float(theory.relaxation_rate(*self.constants)))
+
+    def at_packing(self, packing: float) -> "FreeCooling":
+        """Return the gas in a box of the same shape that its particles fill to `packing`."""
+        box, number = self.experiment["box"], self.experiment["particles"]
+        wanted = number / float(theory.number_density(packing, len(box)))
+        factor = (wanted / math.prod(box)) ** (1.0 / len(box))
+        box = [factor * side for side in box]
+        return self._replace(experiment=dict(self.experiment) | {"box": box})
+
+    def without_positions(self, particles: int, rng: np.random.Generator):
+        """Return a gas of `particles` and its material for direct simulation Monte Carlo."""
+        _, _, *kind = self.constants
+        return dsmc.new_gas(particles, self.theta, rng, *kind), dsmc.material(*self.constants)
+
+
+def closed_form(cooling: FreeCooling, calls: int) -> tuple[float, float]:
+    """Return R of Eq. (K), and the seconds of one of `calls` calls."""
+    constants, begin = cooling.constants, time.process_time()
+    for _ in range(calls):
+        R = theory.cooling_ratio(*constants)
+    return float(R), (time.process_time() - begin) / calls
+
+
+def rate_equations(cooling: FreeCooling, duration: float, calls: int) -> tuple[float, float]:
+    """Return R after `duration` collisions per particle from equipartition on, by the rate
+    equations, and the seconds of one of `calls` calls."""
+    constants, begin = cooling.constants, time.process_time()
+    for _ in range(calls):
+        T_tr, T_rot = integrate(1.0, duration, 0.1, *constants)
+    return T_rot / (T_tr + T_rot), (time.process_time() - begin) / calls
+
+
+def integrate(theta, duration, step, r, beta, dimension=2, inertia=None) -> tuple[float, float]:
+    """Return (T_tr, T_rot) after `duration` collisions per particle from (1, theta) on.
+
+    The rate equations in time, by the classical Runge-Kutta method; a step is `step` times the
+    present mean time between two collisions of a particle (units: that at the start). Collisions
+    are counted by an equation of their own, and the last step is shortened to end at `duration`.
+    """
+    rates = theory.collision_rates(r, beta, dimension, inertia)
+    loss, gain, spin_gain, spin_loss = map(float, rates)
+
+    def slope(T_tr, T_rot, _):
+        frequency = T_tr**0.5
+        return (
+            frequency * (gain * T_rot - loss * T_tr),
+            frequency * (spin_gain * T_tr - spin_loss * T_rot),
+            frequency,
+        )
+
+    state = (1.0, float(theta), 0.0)
+    while state[2] < duration * (1.0 - 1e-12):
+        h = min(step, duration - state[2]) / state[0] ** 0.5
+        state = _runge_kutta(slope, state, h)
+    return state[0], state[1]
+
+
+def _runge_kutta(slope, state, h):
+    def moved(k, h):
+        return [x + h * dx for x, dx in zip(state, k, strict=True)]
+
+    k1 = slope(*state)
+    k2 = slope(*moved(k1, h / 2))
+    k3 = slope(*moved(k2, h / 2))
+    k4 = slope(*moved(k3, h))
+    mean = [(a + 2 * b + 2 * c + d) / 6 for a, b, c, d in zip(k1, k2, k3, k4, strict=True)]
+    return tuple(moved(mean, h))
+
+
+def few_particles(cooling: FreeCooling, length: float, seed) -> tuple[float, float]:
+    """Return R and seconds of one run by direct simulation Monte Carlo.
+
+    It has as many particles as the experiment.
+    """
+    begin, rng = time.process_time(), np.random.default_rng(seed)
+    gas, material = cooling.without_positions(cooling.experiment["particles"], rng)
+    dsmc.run(gas, material, rng, 1, round(cooling.transient))
+    R = dsmc.run(gas, material, rng, 1, round(length)).R.mean()
+    return float(R), time.process_time() - begin
+
+
+def homogeneous(
+    cooling: FreeCooling, particles: int, precision: float, rng: np.random.Generator
+) -> dict[str, float]:
+    """Return means over a long run of a large gas by direct simulation Monte Carlo, by name.
+
+    R, its drift from the first to the second half of the run, and the standard errors of both; the
+    cumulants of dsmc.Samples; length in collisions per particle, and CPU seconds. The length is
+    what a relative error `precision` of R needs: that of Gaussian fluctuations, (1 - R)^2 3/N of
+    R^2 (disks), which live 1/Gamma, half as much again since they are larger, and at least five
+    transients.
+    """
+    gas, material = cooling.without_positions(particles, rng)
+    length = max(5.0 * cooling.transient, 1.5 * _gaussian_length(cooling, particles, precision))
+    every = max(1.0, length / MOST_SAMPLES)
+    begin = time.process_time()
+    dsmc.run(gas, material, rng, 1, round(cooling.transient))
+    samples = dsmc.run(gas, material, rng, every, round(length / every))
+    seconds = time.process_time() - begin
+    R, half = samples.R, len(samples.R) // 2
+    early, late = R[:half], R[half:]
+    return {
+        "R": R.mean(),
+        "R_stderr": blocking_stderr(R),
+        "drift": late.mean() - early.mean(),
+        "drift_stderr": np.hypot(blocking_stderr(early), blocking_stderr(late)),
+        **{name: getattr(samples, name).mean() for name in ("a20", "a02", "a11")},
+        "length": length,
+        "seconds": seconds,
+    }
+
+
+def with_cumulants(cooling: FreeCooling, a20: float, a11: float) -> float:
+    """Return R of Eq. (K), corrected for velocities that are not Maxwellian."""
+    r, beta, *kind = cooling.constants
+    return float(corrected_ratio(r, beta, a20, a11, *kind))
+
+
+def _gaussian_length(cooling, particles, precision):
+    dimension, R = len(cooling.experiment["box"]), cooling.theta / (1.0 + cooling.theta)
+    variance = (1.0 - R) ** 2 * (2.0 / dimension + 2.0 / (2 * dimension - 3)) / particles
+    e_folds = 2.0 * variance / precision**2
+    return e_folds * cooling.transient / E_FOLDS
+
+
+def event_driven(
+    cooling: FreeCooling, length: float, segment: float, seed: np.random.SeedSequence
+) -> tuple[np.ndarray, float]:
+    """Return R of each replica, shape (replicas,), and the CPU seconds of all.
+
+    Equal replicas of at most about `segment` collisions per particle are `length` long together,
+    the smooth elastic gas before and the transient not counted.
+    """
+    replicas = max(1, round(length / segment))
+    begin = time.process_time()
+    R = [_replica(cooling, length / replicas, child) for child in seed.spawn(replicas)]
+    return np.array(R), time.process_time() - begin
+
+
+def _replica(cooling, length, seed):
+    scene = build(cooling.experiment, cooling.r, cooling.beta)
+    rng = np.random.default_rng(seed)
+    gas = Gas.start(scene, cooling.experiment, rng)
+    spin = gas.state.spin
+    spin[:] = rng.standard_normal(spin.shape) * (cooling.theta / scene.effects.spin.inertia) ** 0.5
+    gas.thermalise(cooling.experiment["schedule"]["thermalise"])
+    gas.cool(SAMPLES_PER_REFRESH * gas.count(1.0))
+    skipped = round(cooling.transient)
+    rows = gas.in_collisions(gas.count(1.0), skipped + max(1, round(length)))
+    return float(ratio(gas.energies(rows))[skipped:].mean())
