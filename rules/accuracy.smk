@@ -34,7 +34,7 @@ def urgency_of_task(wildcards):
 
 
 def sources_of_study(wildcards):
-    return sources(f"studies.accuracy.{wildcards.study}", "config", "cli.studies")
+    return sources(f"studies.accuracy.runs.{wildcards.study}", "config", "cli.studies")
 
 
 def study_of_figure(wildcards):
@@ -63,7 +63,7 @@ rule study:
 
 rule combined_studies:
     input:
-        sources("studies.accuracy"),
+        sources("studies.accuracy.files"),
         tasks=tasks_of_figure,
     output:
         "results/{scale}/{study_figure}.nc",
@@ -103,7 +103,7 @@ rule study_figure:
 
 rule study_table:
     input:
-        sources("studies.accuracy"),
+        sources("studies.accuracy.tables"),
         data="results/{scale}/{study_figure}.nc",
     output:
         "results/{scale}/{study_figure}.md",

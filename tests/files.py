@@ -10,6 +10,7 @@ from roughgas.data.variables import FILM
 from roughgas.results.reduce import reduce_points
 from roughgas.studies import accuracy
 from roughgas.studies.accuracy.files import combine, write_task
+from roughgas.studies.accuracy.runs.coverage import MEASURED
 
 ABOUT = {
     "experiment": "vibrated",
@@ -87,7 +88,7 @@ def write_studies(path, folder):
     study = accuracy.study("coverage")
     rng = np.random.default_rng(3)
     parts = [
-        {prefix + name: (dim, rng.random(count)) for name in study.MEASURED}
+        {prefix + name: (dim, rng.random(count)) for name in MEASURED}
         for prefix, dim, count in (("", "run", 8), ("truth_", "long_run", 4))
     ]
     data = xr.Dataset(parts[0] | parts[1] | {"cpu_seconds": 1.0, "window": 1.0})

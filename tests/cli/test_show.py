@@ -12,6 +12,7 @@ from roughgas.data.point import read_point
 from roughgas.data.reduced import read_reduced
 from roughgas.statistics.estimate import Estimate
 from roughgas.studies.accuracy.files import write_task
+from roughgas.studies.accuracy.tables import TABLES
 
 
 def shown(capsys, *arguments):
@@ -89,9 +90,7 @@ def test_studies(tmp_path, capsys, monkeypatch):
     group = xarray.Dataset({"bias": ("corner", [0.1])}, attrs={"scale": "small"})
     groups = {"/coverage": group}
     xarray.DataTree.from_dict(groups).to_netcdf(tmp_path / "all.nc", engine="netcdf4")
-    monkeypatch.setattr(
-        "roughgas.studies.accuracy.tables.coverage", lambda data: f"{data.bias.values}\n"
-    )
+    monkeypatch.setitem(TABLES, "coverage", lambda data: f"{data.bias.values}\n")
     assert shown(capsys, tmp_path / "all.nc").endswith("scale small\n\n[0.1]\n")
     found = json.loads(shown(capsys, tmp_path / "all.nc", "--json"))
     assert found["studies"]["coverage"]["sizes"] == {"corner": 1}

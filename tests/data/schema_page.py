@@ -1,20 +1,18 @@
 """The page docs/data.md: its tables of variables, which are made from the code.
 
-    .venv/bin/python -m tests.data.schema_page [STUDIES ...]
+    .venv/bin/python -m tests.data.schema_page
 
-writes them anew; those of the studies, from files such as results/paper/accuracy.nc.
+writes them anew.
 """
 
 import re
-import sys
 from pathlib import Path
 
-import netCDF4
-import xarray as xr
-
 from roughgas.base.layout import markdown
-from roughgas.data.cf import unit_of
-from roughgas.data.variables import COOLING, FILM, GRID, POINT, REDUCED, SPIN
+from roughgas.data.variables import COOLING, FILM, GRID, POINT, REDUCED, REGISTRY, SPIN
+from roughgas.studies.accuracy import STUDIES, variables
+
+assert variables, "which registers those of the studies"
 
 PAGE = Path(__file__).parents[2] / "docs" / "data.md"
 BEGIN, END = "<!-- {}: made by tests/data/schema_page.py -->\n", "<!-- until here -->\n"
@@ -23,7 +21,8 @@ ALWAYS = "always"
 
 def tables():
     """The tables that follow from the code, by kind of file."""
-    return {"point": _point(), "reduced": _reduced(), "film": _film()}
+    studies = {name: _study(REGISTRY[name]) for name in STUDIES}
+    return {"point": _point(), "reduced": _reduced(), "film": _film()} | studies
 
 
 def written(kind):
@@ -38,18 +37,9 @@ def documented(kind):
 
 
 def check_study(name, data):
-    """Whether the page documents all that the combined data of a study hold, and nothing else."""
+    """Whether the combined data of a study hold all that the page documents, and nothing else."""
     found = {key: (one.dims, one.attrs["long_name"]) for key, one in data.variables.items()}
     assert documented(name) == found
-
-
-def of_study(data):
-    """The table of the group of a study."""
-    rows = [
-        (name, _dims(one.dims), unit_of(one.attrs), one.attrs["long_name"])
-        for name, one in data.variables.items()
-    ]
-    return _table("variable | dimensions | units | meaning", rows)
 
 
 def _point():
@@ -71,6 +61,11 @@ def _reduced():
 def _film():
     rows = [(name, _dims(v.dims), v.dtype, v.units, v.long_name) for name, v in FILM.items()]
     return _table("variable | dimensions | type | units | meaning", rows)
+
+
+def _study(known):
+    rows = [(name, _dims(v.dims), v.units, v.long_name) for name, v in known.items()]
+    return _table("variable | dimensions | units | meaning", rows)
 
 
 def _combination(v):
@@ -104,8 +99,3 @@ def _write(kind, table):
 if __name__ == "__main__":
     for kind, table in tables().items():
         _write(kind, table)
-    for path in sys.argv[1:]:
-        with netCDF4.Dataset(path) as file:
-            names = list(file.groups)
-        for name in names:
-            _write(name, of_study(xr.load_dataset(path, group=name, engine="netcdf4")))

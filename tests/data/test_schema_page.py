@@ -15,10 +15,11 @@ from tests.files import point, write_all
 from roughgas.base.errors import InputError
 from roughgas.data.cf import COMMON_ATTRIBUTES
 from roughgas.data.film import read_film
+from roughgas.data.netcdf import read_netcdf
 from roughgas.data.point import read_point, write_point
 from roughgas.data.reduced import read_reduced
 from roughgas.results.reduce import reduce_points
-from roughgas.studies.accuracy.files import combine, read_study
+from roughgas.studies.accuracy.files import combine
 
 KINDS = ("point", "reduced", "film", "studies")
 GROUP = {"studies": "coverage"}
@@ -37,7 +38,7 @@ def on_grid(dims):
     return ("grid", *dims[len(GRID) :]) if dims[: len(GRID)] == GRID else dims
 
 
-@pytest.mark.parametrize("kind", ["point", "reduced", "film"])
+@pytest.mark.parametrize("kind", page.tables())
 def test_the_tables_of_the_page_are_those_of_the_code(kind):
     table = page.tables()[kind]
     assert page.written(kind) == table, "write it anew: python -m tests.data.schema_page"
@@ -103,7 +104,7 @@ def test_numbers_that_miss_are_masked_for_those_who_read_masks(files):
         ("point", lambda path: reduce_points([path], path.with_name("reduced.nc"))),
         ("reduced", read_reduced),
         ("film", read_film),
-        ("studies", lambda path: read_study(path, "coverage")),
+        ("studies", lambda path: read_netcdf(path, "coverage")),
         ("task", lambda path: combine([path], path.with_name("studies.nc"))),
     ],
 )

@@ -9,7 +9,7 @@ EXPONENTS = np.linspace(0.2, 3.0, 2801)  # that `signed_power_law` tries
 
 
 class PowerLaw(NamedTuple):
-    """y = prefactor x^exponent, the standard error of the exponent, and chi^2 per degree of freedom.
+    """y = prefactor x^exponent, the exponent's standard error, and chi^2 per degree of freedom.
 
     `law(x)` is y.
     """

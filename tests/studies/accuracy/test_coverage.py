@@ -6,12 +6,15 @@ import numpy as np
 import pytest
 from brute_force import settings
 from schedules import COOLING, STEADY
+from tests.data.schema_page import check_study
 
-from roughgas.studies.accuracy import coverage
-from roughgas.studies.accuracy.calibration import REGROUPINGS, Runs, calibrate, one_run, several
+from roughgas.statistics.estimate import Estimate
+from roughgas.studies.accuracy import coverage, study
+from roughgas.studies.accuracy.coverage import REGROUPINGS, Runs, calibrate, one_run, several
 from roughgas.studies.accuracy.tables import coverage as table
 from roughgas.studies.figures.coverage import draw_figure
 
+tasks, run = study("coverage")
 DOF = 8
 EXPERIMENTS = {
     "bed": settings("bed", 10, [10, "open"]) | {"schedule": STEADY},
@@ -36,30 +39,30 @@ def honest(rng, runs, excess=1.0, bias=0.0):
 
 
 def calibrated(runs, seed=0):
-    return calibrate(runs, 0.0, 0.0, (0.68, 0.95), 4, np.random.default_rng(seed))
+    return calibrate(runs, Estimate(0.0, 0.0), (0.68, 0.95), 4, np.random.default_rng(seed))
 
 
 def test_honest_runs_are_found_honest():
     """At 4 sigma, 10 numbers: by chance once in 1600."""
     found = calibrated(honest(np.random.default_rng(1), 2000))
-    off = np.array(found["coverage"]) - [0.68, 0.95]
-    assert np.all(np.abs(off) < 4 * np.array(found["coverage_stderr"]) + 0.004)  # of the quantile
-    assert abs(found["bias"]) < 4 * found["bias_stderr"]
-    assert abs(found["stated_over_true"] - 1) < 4 * found["stated_over_true_stderr"]
+    off = found["coverage"].value - [0.68, 0.95]
+    assert np.all(np.abs(off) < 4 * found["coverage"].stderr + 0.004)  # of the quantile
+    assert abs(found["bias"].value) < 4 * found["bias"].stderr
+    assert abs(found["stated_over_true"].value - 1) < 4 * found["stated_over_true"].stderr
 
 
 def test_errors_that_are_too_small_and_a_bias_are_found():
     found = calibrated(honest(np.random.default_rng(2), 1000, excess=0.7, bias=0.3))
-    assert found["stated_over_true"] == pytest.approx(0.7, abs=0.06)
-    assert found["bias"] == pytest.approx(0.3, abs=0.13)
-    assert np.all(np.array(found["coverage"])[:, 1] < 0.90)
+    assert found["stated_over_true"].value == pytest.approx(0.7, abs=0.06)
+    assert found["bias"].value == pytest.approx(0.3, abs=0.13)
+    assert np.all(found["coverage"].value[:, 1] < 0.90)
 
 
 def test_the_errors_of_the_coverage_are_those_seen_over_many_studies():
     """60 studies: each of four scatters is known to 9 %; at 4 sigma by chance once in 4000."""
     studies = [calibrated(honest(np.random.default_rng((3, k)), 100), k) for k in range(60)]
-    seen = np.std([one["coverage"] for one in studies], axis=0, ddof=1)
-    stated = np.sqrt(np.mean(np.square([one["coverage_stderr"] for one in studies]), axis=0))
+    seen = np.std([one["coverage"].value for one in studies], axis=0, ddof=1)
+    stated = np.sqrt(np.mean(np.square([one["coverage"].stderr for one in studies]), axis=0))
     assert np.all(np.abs(seen / stated - 1) < 0.36)
 
 
@@ -79,7 +82,7 @@ def test_runs_that_state_no_error_hold_no_truth():
 
 @pytest.fixture(scope="module")
 def parts():
-    return {task: coverage.run(task, SETTINGS, EXPERIMENTS) for task in coverage.tasks(SETTINGS)}
+    return {task: run(task, SETTINGS, EXPERIMENTS) for task in tasks(SETTINGS)}
 
 
 def test_every_corner_has_its_runs_and_its_truth(parts):
@@ -88,7 +91,7 @@ def test_every_corner_has_its_runs_and_its_truth(parts):
     assert np.all(data.repetitions == 8)
     assert np.all((data.coverage >= 0) & (data.coverage <= 1))
     assert np.all(data.cpu_seconds > 0)
-    assert all("long_name" in data[name].attrs for name in coverage.ABOUT)
+    check_study("coverage", data)
 
 
 def test_the_truth_is_measured_for_longer_and_from_other_seeds(parts):
@@ -101,7 +104,7 @@ def test_the_truth_is_measured_for_longer_and_from_other_seeds(parts):
 
 def test_the_same_settings_give_the_same_runs(parts):
     for task, part in parts.items():
-        again = coverage.run(task, SETTINGS, EXPERIMENTS).drop_vars("cpu_seconds")
+        again = run(task, SETTINGS, EXPERIMENTS).drop_vars("cpu_seconds")
         assert again.equals(part.drop_vars("cpu_seconds"))
 
 

@@ -9,14 +9,9 @@ import pytest
 from matplotlib.figure import Figure
 from tests.data.schema_page import check_study
 
-from roughgas.studies.accuracy import discretisation
-from roughgas.studies.accuracy.discretisation_fits import (
-    Power,
-    limit,
-    power_law,
-    slowdown,
-    statistical_error,
-)
+from roughgas.statistics.fits import PowerLaw
+from roughgas.studies.accuracy import discretisation, study
+from roughgas.studies.accuracy.discretisation import slowdown, statistical_error
 from roughgas.studies.figures.accuracy.discretisation import draw
 
 SETTINGS = {
@@ -39,14 +34,16 @@ T = np.array([0.05, 0.02, 0.01, 0.005])
 
 def run(task, settings=SETTINGS):
     calls = []
-    found = discretisation.run(task, settings, {"cooling": COOLING}, lambda *a: calls.append(a))
+    found = study("discretisation").run(
+        task, settings, {"cooling": COOLING}, lambda *a: calls.append(a)
+    )
     assert calls and all(0 <= done < total for done, total in calls)
     return found
 
 
 @pytest.fixture(scope="module")
 def parts():
-    return {task: run(task) for task in discretisation.tasks(SETTINGS)}
+    return {task: run(task) for task in study("discretisation").tasks(SETTINGS)}
 
 
 @pytest.fixture(scope="module")
@@ -55,7 +52,7 @@ def group(parts):
 
 
 def test_names_of_the_jobs():
-    names = discretisation.tasks(SETTINGS)
+    names = study("discretisation").tasks(SETTINGS)
     assert len(set(names)) == len(names) == 4 + 2 + 1 + 1 + 2
     assert all(re.fullmatch("[a-z0-9_.-]+", name) for name in names)
     assert names[0] == "soft-10-1"  # the longest
@@ -63,7 +60,7 @@ def test_names_of_the_jobs():
 
 def test_naming_them_needs_neither_compiler_nor_xarray():
     program = (
-        "import sys; from roughgas.studies.accuracy import discretisation; "
+        "import sys; from roughgas.studies import accuracy; accuracy.study('models'); "
         "sys.exit(any(name in sys.modules for name in ('numba', 'xarray', 'numpy')))"
     )
     assert subprocess.run([sys.executable, "-c", program]).returncode == 0
@@ -123,33 +120,10 @@ def test_it_can_be_written_and_drawn(group, tmp_path):
     assert axes.get_xscale() == axes.get_yscale() == "log"
 
 
-def test_a_power_law_is_found():
-    """Without noise to the grid; with noise within 3.5 of the errors given, which are right."""
-    stderr = np.full(4, 1e-3)
-    exact = power_law(T, -1.5 * T**1.2, stderr)
-    assert exact.order == pytest.approx(1.2, abs=1e-3) and exact.chi_squared < 1e-4
-    assert exact.amplitude == pytest.approx(-1.5, rel=1e-2)
-    rng = np.random.default_rng(1)
-    fits = [power_law(T, -1.5 * T + stderr * rng.standard_normal(4), stderr) for _ in range(400)]
-    pulls = [(fit.order - 1.0) / fit.order_stderr for fit in fits]
-    assert np.std(pulls) == pytest.approx(1.0, abs=0.15)
-    assert abs(np.mean(pulls)) < 3.5 / np.sqrt(400)
-    assert np.mean([fit.chi_squared for fit in fits]) == pytest.approx(1.0, abs=3.5 / np.sqrt(400))
-
-
-def test_the_limit_of_a_parabola():
-    values, stderr = 0.31 - 0.5 * T + T**2, np.array([1e-3, 2e-3, 1e-3, 2e-3])
-    assert limit(T, values, stderr)[0] == pytest.approx(0.31, abs=1e-12)
-    rng = np.random.default_rng(2)
-    found = [limit(T, values + stderr * rng.standard_normal(4), stderr) for _ in range(400)]
-    spread, error = np.std([value for value, _ in found]), found[0][1]
-    assert spread == pytest.approx(error, rel=3.5 / np.sqrt(800))
-
-
 def test_the_error_of_parts_of_white_noise():
     """sigma/sqrt(n), within 3.5 of its errors."""
     series = 0.3 + 0.03 * np.random.default_rng(3).standard_normal(20000)
-    lengths, errors, spread = statistical_error(series, 0.3)
+    lengths, (errors, spread, _) = statistical_error(series, 0.3)
     assert lengths[0] == 16 and len(series) // lengths[-1] >= 20
     assert np.all(np.abs(errors - 0.03 / np.sqrt(lengths)) < 3.5 * spread)
 
@@ -159,5 +133,5 @@ def test_how_much_slower_in_closed_form():
     A, c, events = 1.5, 2e-6, 5e-5
     for target in (0.03, 0.01, 0.003):
         expected = 1.5 * np.sqrt(3.0) * A * c / target / events
-        found = slowdown(target, T, c / T, Power(1.0, 0.0, -A, 1.0), events)
+        found = slowdown(target, T, c / T, PowerLaw(1.0, 0.0, -A, 1.0), events)
         assert found == pytest.approx(expected, rel=1e-3)

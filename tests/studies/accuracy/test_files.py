@@ -10,7 +10,7 @@ from roughgas import config
 from roughgas.base.errors import InputError
 from roughgas.cli import main
 from roughgas.studies import accuracy
-from roughgas.studies.accuracy.files import combine, read_study, write_tables
+from roughgas.studies.accuracy.files import combine, read_studies, write_tables
 
 
 @pytest.fixture(scope="module")
@@ -31,7 +31,7 @@ def settings(**others):
 def test_tasks_become_one_file_with_a_table_and_a_figure(tasks, tmp_path):
     combined, table, figure = (tmp_path / name for name in ("all.nc", "all.md", "all.png"))
     assert main(["combine", *map(str, tasks), "-o", str(combined)]) == 0
-    data = read_study(combined, "coverage")
+    data = read_studies(combined)["coverage"]
     assert data.sizes["corner"] == len(tasks) and data.attrs["scale"] == "paper"
     for name in data.data_vars:
         words = data[name].dtype.kind in "OU"

@@ -9,17 +9,19 @@ from matplotlib.figure import Figure
 from tests.data.schema_page import check_study
 
 from roughgas import theory
-from roughgas.studies.accuracy import models
-from roughgas.studies.accuracy.free_cooling import (
-    Point,
-    at_packing,
+from roughgas.statistics.estimate import Estimate
+from roughgas.studies.accuracy import models, study
+from roughgas.studies.accuracy.models import METHODS, error_bar, over
+from roughgas.studies.accuracy.runs.free_cooling import (
+    FreeCooling,
     event_driven,
+    few_particles,
     integrate,
-    simulated,
 )
-from roughgas.studies.accuracy.model_errors import METHODS, Measured, error_bar, power_law
+from roughgas.studies.accuracy.runs.models import DSMC, MAP, stream
 from roughgas.studies.figures.accuracy import models as plotting
 
+tasks, run = study("models")
 EXPERIMENT = {
     "particles": 40,
     "box": [50, 50],
@@ -49,7 +51,7 @@ SETTINGS = {
 @pytest.fixture(scope="module")
 def parts():
     experiments = {"cooling": EXPERIMENT}
-    return {task: models.run(task, SETTINGS, experiments) for task in models.tasks(SETTINGS)}
+    return {task: run(task, SETTINGS, experiments) for task in tasks(SETTINGS)}
 
 
 @pytest.fixture(scope="module")
@@ -62,20 +64,20 @@ def data(parts):
 def test_the_integrated_rate_equations_are_those_that_are_solved_exactly(dimension, duration):
     r, beta, theta = 0.7, 0.2, 0.3
     exact = theory.relax(theta, r, beta, duration, dimension)
-    T_tr, T_rot = integrate(theta, r, beta, duration, 0.1, dimension)
+    T_tr, T_rot = integrate(theta, duration, 0.1, r, beta, dimension)
     assert T_tr == pytest.approx(exact.T_tr, rel=1e-6)
     assert T_rot == pytest.approx(exact.T_rot, rel=1e-6)
 
 
 def test_the_integrator_is_of_fourth_order():
     exact = theory.relax(0.3, 0.7, 0.2, 3.0).T_tr
-    coarse, fine = (abs(integrate(0.3, 0.7, 0.2, 3.0, step)[0] - exact) for step in (0.15, 0.0375))
+    coarse, fine = (abs(integrate(0.3, 3.0, step, 0.7, 0.2)[0] - exact) for step in (0.15, 0.0375))
     assert np.log(coarse / fine) / np.log(4) == pytest.approx(4.0, abs=0.2)
 
 
 def test_a_box_is_scaled_to_the_packing():
-    moved = at_packing(EXPERIMENT, 0.01)
-    assert 40 * np.pi / np.prod(moved["box"]) == pytest.approx(0.01)
+    moved = FreeCooling(EXPERIMENT, 0.8, 0.0).at_packing(0.01)
+    assert 40 * np.pi / np.prod(moved.experiment["box"]) == pytest.approx(0.01)
     assert EXPERIMENT["box"] == [50, 50]
 
 
@@ -94,37 +96,23 @@ def test_the_only_group_has_the_error_of_the_reference():
     assert error_bar(np.array([[0.04]]), 0.001) == pytest.approx([0.001])
 
 
-def test_power_laws_are_found():
-    """An exact one to rounding; and the slopes of noisy ones scatter as their errors say."""
-    x = np.geomspace(1, 100, 6)
-    slope, prefactor = power_law(x, 3 * x**-0.5, 0.1 * x**-0.5)
-    assert slope.value == pytest.approx(-0.5) and prefactor == pytest.approx(3.0)
-    rng = np.random.default_rng(2)
-    noisy = x**-0.5 * np.exp(0.1 * rng.standard_normal((2000, 6)))
-    slopes = [power_law(x, y, 0.1 * y)[0] for y in noisy]
-    values, errors = np.array(slopes).T
-    assert values.std() == pytest.approx(np.mean(errors), rel=0.07)  # 4 sigma of 2000
-    assert values.mean() == pytest.approx(-0.5, abs=0.005)
-
-
 def test_errors_of_quotients_add_up():
-    quotient = Measured(3.0, 0.3).over(Measured(2.0, 0.0))
-    assert quotient == pytest.approx((1.5, 0.15))
-    assert Measured(2.0, 0.06).over(Measured(2.0, 0.08)).stderr == pytest.approx(0.05)
+    assert over(Estimate(3.0, 0.3), Estimate(2.0, 0.0))[:2] == pytest.approx((1.5, 0.15))
+    assert over(Estimate(2.0, 0.06), Estimate(2.0, 0.08)).stderr == pytest.approx(0.05)
 
 
 def test_the_same_seed_gives_the_same_bits_and_another_does_not():
-    point = Point(EXPERIMENT, 0.8, 0.0)
-    streams = [models.stream(SETTINGS, kind, 1) for kind in (models.DSMC, models.DSMC, models.MAP)]
-    first, same, other = (simulated(point, 20, np.random.default_rng(one)).R for one in streams)
+    cooling = FreeCooling(EXPERIMENT, 0.8, 0.0)
+    streams = [stream(SETTINGS, kind, 1) for kind in (DSMC, DSMC, MAP)]
+    first, same, other = (few_particles(cooling, 20, one)[0] for one in streams)
     assert first == same != other
-    runs = [event_driven(point, 40, 20, models.stream(SETTINGS, models.DSMC, 1)) for _ in range(2)]
+    runs = [event_driven(cooling, 40, 20, stream(SETTINGS, DSMC, 1)) for _ in range(2)]
     assert np.array_equal(runs[0][0], runs[1][0])
     assert len(set(runs[0][0])) == 2
 
 
 def test_names_of_jobs_can_be_files(parts):
-    names = models.tasks(SETTINGS)
+    names = tasks(SETTINGS)
     assert len(set(names)) == len(names)
     assert all(re.fullmatch(r"[a-z0-9_.-]+", name) for name in names)
 

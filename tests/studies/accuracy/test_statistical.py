@@ -9,17 +9,13 @@ from matplotlib.figure import Figure
 from schedules import COOLING, STEADY
 from tests.data.schema_page import check_study
 
-from roughgas.studies.accuracy import statistical
-from roughgas.studies.accuracy.chain import Chain
-from roughgas.studies.accuracy.square_root_law import (
-    Levels,
-    noise,
-    observed,
-    slope,
-    time_from_blocks,
-)
+from roughgas.studies.accuracy import statistical, study
+from roughgas.studies.accuracy.runs.statistical import Chain, time_from_blocks
+from roughgas.studies.accuracy.statistical import noise, observed
+from roughgas.studies.accuracy.tasks import SCENES, WAYS
 from roughgas.studies.figures.accuracy.statistical import draw
 
+tasks, run = study("statistical")
 SETTINGS = {
     "seed": 1,
     "r": "0.9",
@@ -52,8 +48,8 @@ def test_slopes_are_unbiased_and_their_errors_honest(exponent):
     """300 studies: the mean to 0.06 of an error, their scatter to 4 %; at 4 sigma."""
     rng = np.random.default_rng(1)
     seconds = np.broadcast_to(LENGTHS[:, None], (8, 32))
-    lines = [slope(observed(estimates(rng, exponent), seconds, 0.3)) for _ in range(300)]
-    z = np.array([(line.slope - exponent) / line.stderr for line in lines])
+    lines = [observed(estimates(rng, exponent), seconds, 0.3)["slope"] for _ in range(300)]
+    z = np.array([(line.value - exponent) / line.stderr for line in lines])
     assert abs(z.mean()) < 0.24
     assert z.std() == pytest.approx(1, abs=0.17)
 
@@ -61,30 +57,23 @@ def test_slopes_are_unbiased_and_their_errors_honest(exponent):
 def test_observed_errors_and_the_noise_behind_them():
     """256 estimates: 4.4 % for the errors; 3.1 % for the noise; at 4 sigma."""
     R = estimates(np.random.default_rng(2), groups=256)
-    levels = observed(R, np.ones_like(R), 0.3)
-    np.testing.assert_allclose(levels.error, 0.02 * LENGTHS**-0.5, rtol=0.18)
-    np.testing.assert_allclose(levels.stderr, levels.error / math.sqrt(512))
-    mean, stderr = noise(levels, LENGTHS)
+    seconds = np.broadcast_to(LENGTHS[:, None], R.shape)
+    found = observed(R, seconds, 0.3)
+    error, stderr, _ = found["error"]
+    np.testing.assert_allclose(error, 0.02 * LENGTHS**-0.5, rtol=0.18)
+    np.testing.assert_allclose(stderr, error / math.sqrt(512))
+    mean, stderr, _ = noise(error, found["groups"], LENGTHS)
     assert abs(mean - 0.02**2) < 4 * stderr
     assert stderr == pytest.approx(mean * math.sqrt(2 / 2048))
 
 
-def test_levels_with_fewer_groups_weigh_less():
-    """Only the precise levels lie on a line of slope -1/2."""
-    levels = Levels(
-        np.array([1.0, 0.5, 0.25, 9.0]), np.ones(4), np.array([1.0, 4, 16, 64]), np.array([1e9] * 4)
-    )
-    assert slope(levels).slope > 0
-    unsure = levels._replace(groups=np.array([1e9, 1e9, 1e9, 1]))
-    assert slope(unsure).slope == pytest.approx(-0.5, abs=1e-6)
-
-
 def test_missing_groups_do_not_count():
     R = np.array([[0.1, 0.3, np.nan, np.nan], [0.1, 0.3, 0.1, 0.3]])
-    levels = observed(R, np.where(np.isfinite(R), 2.0, np.nan), 0.2)
-    np.testing.assert_allclose(levels.error, 0.1)
-    np.testing.assert_array_equal(levels.groups, [2, 4])
-    np.testing.assert_array_equal(levels.seconds, 2.0)
+    seconds = np.where(np.isfinite(R), [[2.0], [4.0]], np.nan)
+    levels = observed(R, seconds, 0.2)
+    np.testing.assert_allclose(levels["error"].value, 0.1)
+    np.testing.assert_array_equal(levels["groups"], [2, 4])
+    np.testing.assert_array_equal(levels["seconds"], [2.0, 4.0])
 
 
 def test_autocorrelation_time_from_blocks():
@@ -97,9 +86,7 @@ def test_autocorrelation_time_from_blocks():
 
 @pytest.fixture(scope="module")
 def parts():
-    return {
-        task: statistical.run(task, SETTINGS, EXPERIMENTS) for task in statistical.tasks(SETTINGS)
-    }
+    return {task: run(task, SETTINGS, EXPERIMENTS) for task in tasks(SETTINGS)}
 
 
 def test_a_study_from_end_to_end(parts):
@@ -112,31 +99,30 @@ def test_a_study_from_end_to_end(parts):
     assert np.all(data.cpu_seconds > data.seconds.sum(["way", "level"]))
     share = (data.seconds_needed - data.equilibration_seconds).values
     np.testing.assert_allclose(share[:, 2], 100 * share[:, 0])  # 0.1 % and 1 %
-    assert all({"long_name", "units"} <= set(data[name].attrs) for name in data.data_vars)
     check_study("statistical", data)
 
 
 def test_no_estimate_is_used_twice_and_none_is_the_references(parts):
-    for scene in statistical.SCENES:
-        R = np.concatenate([parts[f"{scene}-{way}"].R.values.ravel() for way in statistical.WAYS])
+    for scene in SCENES:
+        R = np.concatenate([parts[f"{scene}-{way}"].R.values.ravel() for way in WAYS])
         R = R[np.isfinite(R)]
         assert len(np.unique(R)) == len(R)
         assert not np.isin(parts[f"{scene}-reference"].R, R).any()
 
 
 def test_the_reference_is_as_much_longer_as_is_said(parts):
-    for scene in statistical.SCENES:
+    for scene in SCENES:
         longest = 4 * SETTINGS["scenes"][scene]["shortest"]
         assert parts[f"{scene}-reference"].time.sum() == SETTINGS["reference"] * longest
 
 
 def test_the_same_settings_give_the_same_numbers(parts):
     task = "sheared-seeds"
-    again = statistical.run(task, SETTINGS, EXPERIMENTS)
+    again = run(task, SETTINGS, EXPERIMENTS)
     np.testing.assert_array_equal(again.R, parts[task].R)
 
 
-@pytest.mark.parametrize("scene", statistical.SCENES)
+@pytest.mark.parametrize("scene", SCENES)
 def test_segments_continue_one_another(scene):
     """Two of them are one of their joint length: in a cooling gas up to a new unit of velocity."""
     chains = [Chain(EXPERIMENTS[scene], 0.9, 0.0, 8, np.random.default_rng(7)) for _ in range(2)]

@@ -6,7 +6,7 @@ import pytest
 from roughgas import theory
 from roughgas.statistics.errors import blocking_stderr
 from roughgas.studies import dsmc
-from roughgas.studies.accuracy.free_cooling import Point, at_packing, event_driven
+from roughgas.studies.accuracy.runs.free_cooling import FreeCooling, event_driven
 
 from .nanbu import ratios
 
@@ -53,8 +53,8 @@ def test_a_dilute_event_driven_gas_is_homogeneous(r, beta):
     and momentum is short of one particle. That shifts R by some thousandths, in both alike. At a
     packing of 0.01 R is some thousandths higher still, since neighbours come to move alike.
     """
-    point = Point(at_packing(EXPERIMENT, 1e-4), r, beta)
-    R, _ = event_driven(point, 8000, 400, np.random.SeedSequence(3))
+    cooling = FreeCooling(EXPERIMENT, r, beta).at_packing(1e-4)
+    R, _ = event_driven(cooling, 8000, 400, np.random.SeedSequence(3))
     error = R.std(ddof=1) / np.sqrt(len(R))
     simulated, simulated_error = settled(r, beta, 2, 160, 50_000, 4)
     assert error < 4e-3 * R.mean()

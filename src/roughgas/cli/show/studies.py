@@ -14,13 +14,9 @@ __all__ = ["STUDIES", "read", "record", "text"]
 
 def read(path: str | Path) -> dict[str, "xarray.Dataset"]:
     """Return the datasets of all studies in a file."""
-    import netCDF4
+    from roughgas.studies.accuracy.files import read_studies
 
-    from roughgas.studies.accuracy.files import read_study
-
-    with netCDF4.Dataset(path) as file:
-        names = [name for name in STUDIES if name in file.groups]
-    return {name: read_study(path, name) for name in names}
+    return read_studies(path)
 
 
 def record(studies: dict[str, "xarray.Dataset"]) -> dict[str, Any]:
@@ -30,8 +26,8 @@ def record(studies: dict[str, "xarray.Dataset"]) -> dict[str, Any]:
 
 def text(studies: dict[str, "xarray.Dataset"]) -> str:
     """Return what `roughgas tables` writes."""
-    from roughgas.studies.accuracy import tables
+    from roughgas.studies.accuracy.tables import TABLES
 
     scales = {data.attrs["scale"] for data in studies.values()}
-    parts = [getattr(tables, name)(data).strip() for name, data in studies.items()]
+    parts = [TABLES[name](data).strip() for name, data in studies.items()]
     return "\n\n".join([f"scale {', '.join(sorted(scales))}", *parts])

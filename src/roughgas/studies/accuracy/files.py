@@ -12,7 +12,7 @@ from roughgas.base.errors import InputError
 from roughgas.base.files import write_text
 from roughgas.data.netcdf import Content, content_of, read_netcdf, write_netcdf
 from roughgas.studies.accuracy import coverage, discretisation, models, statistical, tables
-from roughgas.studies.accuracy.tasks import STUDIES, tasks
+from roughgas.studies.accuracy.tasks import STUDIES, TASKS
 
 COMBINE = {
     "statistical": statistical.combine,
@@ -58,7 +58,7 @@ def _combined(name: str, parts: Mapping[str, xr.Dataset]) -> xr.Dataset:
     if len(texts) > 1:
         raise InputError(f"settings of {name}", f"{len(texts)} different ones", "be the same")
     settings = json.loads(texts.pop())["study"]
-    missing = set(tasks(name, settings)) - set(parts)
+    missing = set(TASKS[name](settings)) - set(parts)
     if missing:
         raise InputError(f"tasks of {name}", f"without {sorted(missing)[0]}", "be complete")
     scales = {data.attrs["scale"] for data in parts.values()}

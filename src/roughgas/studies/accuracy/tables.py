@@ -96,7 +96,8 @@ def coverage(data: xr.Dataset) -> str:
     data = in_order(data)
     head = ["corner", "runs", "68 %, one run", "95 %, one run", "68 %, pooled", "95 %, pooled"]
     head += ["bias / scatter", "stated / true error", "window / τ"]
-    return f"## Coverage of the stated intervals\n\n{markdown(head, map(_corner, along(data, 'corner')))}"
+    rows = map(_corner, along(data, "corner"))
+    return f"## Coverage of the stated intervals\n\n{markdown(head, rows)}"
 
 
 TABLES = {

@@ -3,8 +3,6 @@
 from collections.abc import Mapping
 from typing import Any
 
-from roughgas.base.errors import InputError, not_one_of
-
 PANELS = ("statistical", "models", "discretisation")
 """The studies that the work-precision figure shows, one a panel."""
 STUDIES = (*PANELS, "coverage")
@@ -12,29 +10,8 @@ SCENES = ("vibrated", "sheared", "cooling")
 WAYS = ("length", "seeds")
 PARTS = ("reference", *WAYS)
 
-Settings = Mapping[str, Any]
 
-
-def tasks(study: str, settings: Settings) -> list[str]:
-    """Return the names of a study's tasks, the longest first; InputError for an unknown study."""
-    if study not in STUDIES:
-        raise not_one_of("study", study, STUDIES)
-    return {
-        "statistical": _statistical,
-        "models": _models,
-        "discretisation": _discretisation,
-        "coverage": lambda settings: [corner_name(one) for one in settings["corners"]],
-    }[study](settings)
-
-
-def check_task(study: str, task: str, settings: Settings) -> None:
-    """Raise InputError where a study has no such task."""
-    known = tasks(study, settings)
-    if task not in known:
-        raise InputError("task", task, f"be one of {', '.join(known)}")
-
-
-def corner_name(corner: Settings) -> str:
+def corner_name(corner: Mapping[str, Any]) -> str:
     """Return the name of the task for a corner of the study of coverage."""
     return f"{corner['experiment']}_r{corner['r']}_beta{corner['beta']}"
 
@@ -64,3 +41,16 @@ def _discretisation(settings):
         "single",
         *(f"model-{k}" for k in range(len(settings["model_contact_times"]))),
     ]
+
+
+def _coverage(settings):
+    return [corner_name(corner) for corner in settings["corners"]]
+
+
+TASKS = {
+    "statistical": _statistical,
+    "models": _models,
+    "discretisation": _discretisation,
+    "coverage": _coverage,
+}
+"""For each study, what names its tasks by its settings, the longest first."""

@@ -32,7 +32,7 @@ def run(task: str, settings, experiments, progress: Callable[[int, int], None]) 
 
 
 def stream(settings: Mapping[str, Any], *key: int) -> np.random.SeedSequence:
-    """Return the seed of the stream that belongs to a kind of job, and to whatever else it counts."""
+    """Return the seed of the stream that belongs to a kind of job, and to what else it counts."""
     return np.random.SeedSequence(settings["seed"], spawn_key=key)
 
 

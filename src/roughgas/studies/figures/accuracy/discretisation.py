@@ -14,9 +14,10 @@ SMALL = {"fontsize": 6.5, "color": GREY}
 
 
 def draw(axes: Axes, data: xr.Dataset) -> None:
-    """The panel from the group of roughgas.studies.accuracy.discretisation."""
-    axes.set_xscale("log")
-    axes.set_yscale("log")
+    """Draw the panel from group `discretisation`."""
+    axes.set(
+        xscale="log", yscale="log", xlabel="CPU seconds", ylabel=r"relative error of $R$, r.m.s."
+    )
     _events(axes, data)
     for look, steps in zip(LOOKS, data.steps.values, strict=False):
         row = data.sel(steps=steps)
@@ -24,14 +25,8 @@ def draw(axes: Axes, data: xr.Dataset) -> None:
         _method(axes, row, "soft", look.colour, look.marker, look.line, label)
     _name_contact_times(axes, data)
     _method(axes, data, "model", THEORY, "x", ":", "events, contact-time model")
-    axes.set_xlabel("CPU seconds")
-    axes.set_ylabel(r"relative error of $R$, r.m.s.")
     axes.yaxis.set_major_formatter(FuncFormatter(lambda y, _: f"{100.0 * y:g} %"))
     axes.legend(loc="lower left")
-    about = f"$r = {data.attrs['r']:g}$, $\\beta = {data.attrs['beta']:g}$"
-    axes.set_title(
-        f"Free cooling, {about}, packing {data.attrs['packing']:g}", fontsize=8, loc="left"
-    )
 
 
 def _events(axes, data):
