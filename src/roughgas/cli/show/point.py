@@ -59,14 +59,11 @@ def _ratio(point: "xarray.Dataset") -> list[list[str]]:
     about, R, half, expected = point.attrs, float(point.R), float(point.R_ci95), _theory(point)
     digits = decimals_of(half) if 0.0 < half < 1.0 else 4
     trust = "" if point.R_ci95_trusted else " (the run is too short to trust it)"
-    side = "below" if R < expected else "above"
+    off = f"{abs(R - expected):.4f} {'below' if R < expected else 'above'}"
     return [
         ["R", f"{Estimate(R, float(point.R_stderr))}"],
         ["95 % interval", f"{R - half:.{digits}f} to {R + half:.{digits}f}{trust}"],
-        [
-            "theory",
-            f"{expected:.4f}, {equation_of(about, point).name}: R is {abs(R - expected):.4f} {side} it",
-        ],
+        ["theory", f"{expected:.4f}, {equation_of(about, point).name}: R is {off} it"],
         ["R(t)", _line(point.R_series.values)],
     ]
 
