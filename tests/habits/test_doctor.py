@@ -1,12 +1,14 @@
-"""`roughgas doctor` on installations that are broken on purpose, in processes of their own."""
+"""`roughgas doctor` on installations that are broken on purpose."""
 
 import json
 import sys
 
 import pytest
+from tests.habits.conftest import ROOT, python, roughgas
 
-from habits.conftest import ROOT, python, roughgas
-from roughgas.doctor import CHECKS, OK, PROBLEM, WARNING
+from roughgas import doctor
+from roughgas.doctor import checks
+from roughgas.doctor.checks import CHECKS, OK, PROBLEM, WARNING
 
 ONE = """
 import json, sys
@@ -16,7 +18,14 @@ print(json.dumps([found for _, found in doctor.examine()]))
 """
 
 
-def check(name, cwd, program=ONE, **others):
+def check(name, monkeypatch):
+    """The diagnosis of one check, as the doctor gives it."""
+    monkeypatch.setattr(doctor, "CHECKS", {name: CHECKS[name]})
+    ((_, found),) = doctor.examine()
+    return found
+
+
+def check_alone(name, cwd, program=ONE, **others):
     done = python("-c", program, name, cwd=cwd, **others)
     assert done.returncode == 0, done.stderr
     (found,) = json.loads(done.stdout)
@@ -30,93 +39,97 @@ def test_an_installation_as_it_should_be():
     problems = {name: about for name, about in found.items() if about["verdict"] == PROBLEM}
     assert (done.returncode, problems, done.stderr) == (0, {}, "")
     assert found["kernel"]["said"] == "the trial run gives the same bits as elsewhere"
+    assert sys.executable in found["packages"]["said"]
 
 
-def test_a_problem_is_told_in_words_and_by_the_exit_status(tmp_path):
-    (tmp_path / "config.yaml").write_text("scal: paper\n")
-    done = roughgas("doctor", cwd=tmp_path)
-    assert done.returncode == 1
-    lines = done.stdout.splitlines()
-    place = next(k for k, line in enumerate(lines) if line.startswith("problem"))
-    assert "config.yaml" in lines[place] and "did you mean scale?" in lines[place]
-    assert lines[place + 1].strip() == "-> correct it"
-    assert lines[-1].startswith("1 problem")
+def test_a_problem_is_told_in_words_and_by_the_exit_status(monkeypatch, capsys):
+    monkeypatch.setattr(doctor, "CHECKS", {"versions": checks.package, "movies": checks.movie})
+    monkeypatch.setenv("IMAGEIO_FFMPEG_EXE", "/bin/false")
+    with pytest.raises(SystemExit) as stop:
+        doctor.doctor(as_json=False, clean=False)
+    assert stop.value.code == 1
+    fine, problem, remedy, _, last = capsys.readouterr().out.splitlines()
+    assert fine.startswith("ok ") and problem.startswith("problem  movies ")
+    assert remedy.strip().startswith("-> unset IMAGEIO_FFMPEG_EXE") and last == "1 problem"
 
 
 @pytest.mark.parametrize(
     ("name", "changes", "verdict", "said", "remedy"),
     [
-        ("environment", {"NUMBA_OPT": "0"}, WARNING, "NUMBA_OPT=0", "unset NUMBA_OPT"),
         ("kernel", {"NUMBA_DISABLE_JIT": "1"}, PROBLEM, "NUMBA_DISABLE_JIT", ""),
         ("kernel cache", {"ROUGHGAS_CACHE_DIR": "/proc/x"}, WARNING, "/proc/x", "ROUGHGAS_CACHE"),
         ("movies", {"IMAGEIO_FFMPEG_EXE": "/bin/false"}, PROBLEM, "/bin/false", "unset IMAGEIO"),
-        ("Snakemake", {"XDG_CACHE_HOME": "/proc"}, PROBLEM, "cannot be written", "XDG_CACHE_HOME"),
+        ("Snakemake", {"XDG_CACHE_HOME": "/proc/sys"}, PROBLEM, "be written", "XDG_CACHE_HOME"),
     ],
 )
-def test_what_the_environment_breaks(tmp_path, name, changes, verdict, said, remedy):
-    if changes.get("XDG_CACHE_HOME") == "/proc":
-        changes = {"XDG_CACHE_HOME": "/proc/sys"}
-    found = check(name, tmp_path, **changes)
-    assert found[0] == verdict and said in found[1] and remedy in found[2], found
+def test_what_the_environment_breaks(monkeypatch, name, changes, verdict, said, remedy):
+    for variable, value in changes.items():
+        monkeypatch.setenv(variable, value)
+    found = check(name, monkeypatch)
+    assert found.verdict == verdict and said in found.said and remedy in found.remedy, found
 
 
-@pytest.mark.parametrize(
-    ("text", "verdict"), [("raise RuntimeError('no')", PROBLEM), ("__version__ = '1'", WARNING)]
-)
-def test_a_file_that_shadows_a_library(tmp_path, text, verdict):
-    (tmp_path / "emcee.py").write_text(text)
-    found = check("packages", tmp_path, PYTHONPATH=f"{tmp_path}:{ROOT / 'src'}")
-    assert found[0] == verdict and str(tmp_path / "emcee.py") in found[1] + found[2]
-    assert "move it away" in found[2]
+def test_a_file_that_shadows_a_library(tmp_path):
+    (tmp_path / "emcee.py").write_text("__version__ = '1'")
+    found = check_alone("packages", tmp_path, PYTHONPATH=f"{tmp_path}:{ROOT / 'src'}")
+    assert found[0] == WARNING and f"{tmp_path / 'emcee.py'} away" in found[2]
 
 
-def test_other_versions_than_the_pinned_ones(tmp_path):
+def test_a_library_that_is_missing_or_broken(monkeypatch):
+    monkeypatch.setitem(sys.modules, "emcee", None)
+    monkeypatch.setattr(checks, "MODULES", "emcee")
+    monkeypatch.setattr(checks.util, "find_spec", lambda _: None)
+    found = check("packages", monkeypatch)
+    assert found.verdict == PROBLEM and "emcee" in found.said and "make setup" in found.remedy
+
+
+def test_other_versions_than_the_pinned_ones(tmp_path, monkeypatch):
     lock = (ROOT / "requirements.lock").read_text()
     (tmp_path / "requirements.lock").write_text(lock.replace("pyyaml==", "pyyaml==99.", 1))
-    program = (
-        "from roughgas.doctor import installation\n"
-        "installation.PACKAGE = installation.Path('/nowhere/src/roughgas')\n" + ONE
-    )
-    found = check("versions", tmp_path, program)
-    assert found[0] == WARNING and "pyyaml" in found[1] and "99." in found[1]
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(checks, "PACKAGE", tmp_path / "nowhere" / "src" / "roughgas")
+    found = check("versions", monkeypatch)
+    assert found.verdict == WARNING and found.said.startswith("pyyaml ") and "99." in found.said
 
 
 @pytest.mark.parametrize(
-    ("break_it", "said"),
+    ("broken", "said"),
     [
-        ("trials.KNOWN = 'others'", "other bits"),
-        ("trials.PROGRAM = 'import os; os.kill(os.getpid(), 11)'", "crashed with signal 11"),
+        ({"KNOWN": "others"}, "other bits"),
+        ({"TRIAL": "import os; os.kill(os.getpid(), 11)"}, "crashed with signal 11"),
     ],
 )
-def test_a_kernel_that_is_wrong_or_crashes(tmp_path, break_it, said):
-    found = check("kernel", tmp_path, f"from roughgas.doctor import trials\n{break_it}\n{ONE}")
-    assert found[0] == PROBLEM and said in found[1] and "kernel cache" in found[2]
+def test_a_kernel_that_is_wrong_or_crashes(monkeypatch, broken, said):
+    for name, value in broken.items():
+        monkeypatch.setattr(checks, name, value)
+    found = check("kernel", monkeypatch)
+    assert found.verdict == PROBLEM and said in found.said and "kernel cache" in found.remedy
 
 
-def test_sources_of_another_folder(tmp_path):
+def test_sources_of_another_folder(tmp_path, monkeypatch):
     (tmp_path / "src" / "roughgas").mkdir(parents=True)
-    found = check("roughgas", tmp_path)
-    assert found[0] == WARNING and str(tmp_path) in found[1]
+    monkeypatch.chdir(tmp_path)
+    found = check("roughgas", monkeypatch)
+    assert found.verdict == WARNING and str(tmp_path) in found.said
 
 
 def test_disks_that_cannot_be_written_or_are_full(tmp_path, mounts):
     (tmp_path / "disk").mkdir()
     inside = f"import os; os.chdir('disk')\n{ONE}"
-    found = check("this folder", tmp_path, inside, mount=("ro", "disk"))
+    found = check_alone("this folder", tmp_path, inside, mount=("ro", "disk"))
     assert found[0] == PROBLEM and "cannot be written" in found[1]
-    found = check("this folder", tmp_path, inside, mount=("size=1m", "disk"))
+    found = check_alone("this folder", tmp_path, inside, mount=("size=1m", "disk"))
     assert found[0] == WARNING and "make room" in found[2]
-    found = check("temporary files", tmp_path, mount=("size=4k", "disk"), TMPDIR="disk")
+    found = check_alone("temporary files", tmp_path, mount=("size=4k", "disk"), TMPDIR="disk")
     assert found[0] != OK and "disk" in found[1]
 
 
-def test_kernels_of_other_versions_are_removed_on_request(tmp_path):
+def test_kernels_of_other_versions_are_removed_on_request(tmp_path, monkeypatch, capsys):
     old = tmp_path / "kernels-0123456789abcdef"
     old.mkdir()
     (old / "code.nbc").write_bytes(bytes(2**20))
-    keep = {"ROUGHGAS_CACHE_DIR": str(tmp_path)}
-    assert "1 folders of other versions, 1 MiB" in check("kernel cache", tmp_path, **keep)[1]
-    done = roughgas("doctor", "--clean", cwd=tmp_path, **keep)
-    assert done.returncode == 0 and done.stdout.endswith("1 MiB: removed\n")
+    monkeypatch.setenv("ROUGHGAS_CACHE_DIR", str(tmp_path))
+    doctor.doctor(as_json=False, clean=True)
+    assert capsys.readouterr().out.endswith("1 MiB: removed\n")
     assert [path.name.startswith("kernels-") for path in tmp_path.iterdir()] == [True]
-    assert not old.exists() and sys.executable in check("Python", tmp_path)[1]
+    assert not old.exists()

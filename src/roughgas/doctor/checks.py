@@ -1,0 +1,205 @@
+"""Checks of an installation: functions that return a Diagnosis; an exception is a problem, too.
+
+Nothing is imported at the top that may be what is broken.
+"""
+
+import os
+import platform
+import shutil
+import subprocess
+import sys
+import sysconfig
+import tempfile
+from importlib import import_module, metadata, util
+from pathlib import Path
+from typing import NamedTuple
+
+from roughgas.base.files import check_place
+from roughgas.base.version import __version__
+
+OK, WARNING, PROBLEM = "ok", "warning", "problem"
+ANEW = "install anew: `rm -r .venv` and `make setup` in the project's folder"
+PACKAGE = Path(__file__).resolve().parent.parent
+MODULES = "numpy numba netCDF4 xarray matplotlib yaml jsonschema emcee plotly rocrate tqdm"
+GIB = 2**30
+CACHE = "set ROUGHGAS_CACHE_DIR to a folder that can be written and has room"
+SETTINGS = {
+    "particles": 36,
+    "box": [20, 20],
+    "effects": {"spin": {"inertia": 0.5}},
+    "schedule": {"kind": "cooling", "replicas": 2, "thermalise": 1, "sample_every": 1}
+    | {"relaxation_times": 1, "plateau": 20},
+}
+KNOWN = "0x1.e218927b3f716p-2"
+TRIAL = "from roughgas.doctor.checks import trial; print(trial())"
+LONGEST = 600  # seconds to compile, on a machine that is slow and busy
+
+
+class Diagnosis(NamedTuple):
+    """A verdict (OK, WARNING or PROBLEM), what was seen, and what to do about it."""
+
+    verdict: str
+    said: str
+    remedy: str = ""
+
+
+def packages() -> Diagnosis:
+    """Check that all libraries can be imported, and are those of this environment."""
+    homes = [sysconfig.get_path(kind) for kind in ("purelib", "platlib")]
+    found = [one.origin for one in map(util.find_spec, MODULES.split()) if one and one.origin]
+    strangers = [file for file in found if not any(Path(file).is_relative_to(h) for h in homes)]
+    if strangers:
+        remedy = f"move {strangers[0]} away, or unset PYTHONPATH"
+        return Diagnosis(WARNING, f"not of this environment: {', '.join(strangers)}", remedy)
+    for name in MODULES.split():
+        import_module(name)
+    python = f"Python {platform.python_version()}, {platform.machine()}: {sys.executable}"
+    return Diagnosis(OK, f"{python}; all libraries can be imported")
+
+
+def versions() -> Diagnosis:
+    """Check that what is installed is what requirements.lock pins for this machine."""
+    from packaging.requirements import Requirement
+    from packaging.utils import canonicalize_name
+
+    locks = (PACKAGE.parent.parent / "requirements.lock", Path("requirements.lock").resolve())
+    lock = next((path for path in locks if path.exists()), None)
+    if lock is None:
+        return Diagnosis(OK, "there is no requirements.lock here to compare with")
+    there = {canonicalize_name(one.name): one.version for one in metadata.distributions()}
+    lines = [line for line in lock.read_text(encoding="utf-8").splitlines() if line[:1].isalnum()]
+    pinned = [Requirement(line.rstrip(" \\")) for line in lines]
+    others = [
+        f"{one.name} {there.get(one.name, 'missing')} ({one.specifier} is pinned)"
+        for one in pinned
+        if (one.marker is None or one.marker.evaluate())
+        and there.get(one.name, "") not in one.specifier
+    ]
+    if others:
+        return Diagnosis(WARNING, ", ".join(others), f"for the pinned versions, {ANEW}")
+    return Diagnosis(OK, f"as pinned in {lock}")
+
+
+def package() -> Diagnosis:
+    """Check that the sources are those of the folder that one works in."""
+    said, here = f"{__version__}, from {PACKAGE}", Path("src/roughgas").resolve()
+    if here.is_dir() and here != PACKAGE:
+        remedy = "use the .venv of this folder: `make setup`, then .venv/bin/roughgas"
+        return Diagnosis(WARNING, f"{said}, not from this folder's {here}", remedy)
+    return Diagnosis(OK, said)
+
+
+def kernel_cache() -> Diagnosis:
+    """Check that compiled kernels can be kept."""
+    from roughgas.kernel.cache import cache_root, kernel_folder
+
+    wanted, folder = cache_root(), kernel_folder()
+    if folder.parent != wanted:
+        said = f"{wanted} cannot be written; kernels are lost with temporary files, in {folder}"
+        return Diagnosis(WARNING, said, CACHE)
+    return _room(folder, 0.25, CACHE)
+
+
+def remove_stale_kernels() -> str:
+    """Remove the compiled kernels of other versions, and say how large they were."""
+    from roughgas.kernel.cache import kernel_folder
+
+    folder = kernel_folder()
+    stale = [other for other in folder.parent.glob("kernels-*") if other != folder]
+    files = [file for one in stale for file in one.rglob("*") if file.is_file()]
+    size = sum(file.stat().st_size for file in files) / 2**20
+    for one in stale:
+        shutil.rmtree(one)
+    return f"{len(stale)} folders of kernels of other versions, {size:.0f} MiB: removed"
+
+
+def kernel() -> Diagnosis:
+    """Check that a kernel compiles, or loads, and gives the numbers that it gives elsewhere.
+
+    In a process of its own, as a broken kernel may crash it.
+    """
+    ran = _ran([sys.executable, "-c", TRIAL])
+    if ran.returncode > 0:
+        raise RuntimeError((ran.stderr.strip().splitlines() or ["it said nothing"])[-1])
+    if ran.stdout.strip() == KNOWN:
+        return Diagnosis(OK, "the trial run gives the same bits as elsewhere")
+    remedy = f"remove the folder of the kernel cache; if that does not help, {ANEW}"
+    if ran.returncode:
+        return Diagnosis(PROBLEM, f"crashed with signal {-ran.returncode}", remedy)
+    promised = platform.machine() in ("x86_64", "AMD64")
+    said = "the trial run gives other bits than on other machines"
+    return Diagnosis(PROBLEM if promised else WARNING, said, remedy)
+
+
+def trial() -> str:
+    """Return R of a small cooling gas to the last bit, the same on every x86-64 machine."""
+    from roughgas.scene import build
+    from roughgas.simulation.point import run_point
+
+    point = run_point(build(SETTINGS, 0.9, 0.5), SETTINGS, 1)
+    return float(point.variables["R"]).hex()
+
+
+def figure() -> Diagnosis:
+    """Check that a figure with letters and formulae can be drawn."""
+    import matplotlib
+    from matplotlib.figure import Figure
+
+    with tempfile.TemporaryFile() as file:
+        drawing = Figure()
+        drawing.text(0.5, 0.5, r"$\beta$ = 0")
+        drawing.savefig(file, format="png")
+    return Diagnosis(OK, f"matplotlib {matplotlib.__version__}, which brings its fonts")
+
+
+def movie() -> Diagnosis:
+    """Check that the encoder of movies is there and runs."""
+    import imageio_ffmpeg
+
+    program = imageio_ffmpeg.get_ffmpeg_exe()
+    if "libx264" in _ran([program, "-hide_banner", "-encoders"]).stdout:
+        return Diagnosis(OK, program)
+    remedy = f"unset IMAGEIO_FFMPEG_EXE if it is set, or {ANEW}"
+    return Diagnosis(PROBLEM, f"{program} cannot encode H.264", remedy)
+
+
+def snakemake() -> Diagnosis:
+    """Check that Snakemake can be imported, and can write its cache."""
+    caches = Path(os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache"))
+    try:
+        check_place(caches / "snakemake")
+    except OSError as error:
+        remedy = "Snakemake needs a place: export XDG_CACHE_HOME=(a folder that can be written)"
+        return Diagnosis(PROBLEM, f"{caches}: {error.strerror}", remedy)
+    return Diagnosis(OK, f"{import_module('snakemake').__version__}, cache in {caches}")
+
+
+def _room(folder: Path, enough: float, remedy: str) -> Diagnosis:
+    """Check that a folder can be written, and that its disk has `enough` GiB left."""
+    free = shutil.disk_usage(folder).free / GIB
+    try:
+        with tempfile.TemporaryFile(dir=folder) as file:
+            file.write(b"room?" * 1000)
+    except OSError as error:
+        return Diagnosis(PROBLEM, f"{folder} cannot be written: {error.strerror}", remedy)
+    if free < enough:
+        return Diagnosis(WARNING, f"{folder}, only {free:.2g} GiB free", remedy)
+    return Diagnosis(OK, f"{folder}, {free:.1f} GiB free")
+
+
+def _ran(command: list[str]) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(command, capture_output=True, text=True, timeout=LONGEST)
+
+
+CHECKS = {
+    "packages": packages,
+    "versions": versions,
+    "roughgas": package,
+    "kernel cache": kernel_cache,
+    "kernel": kernel,
+    "figures": figure,
+    "movies": movie,
+    "Snakemake": snakemake,
+    "this folder": lambda: _room(Path.cwd(), 2, "make room for results: 2 GiB are enough"),
+    "temporary files": lambda: _room(Path(tempfile.gettempdir()), 0.1, "set TMPDIR to a folder"),
+}
