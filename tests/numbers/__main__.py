@@ -1,0 +1,22 @@
+"""Writes docs/numbers.json from datasets, then the numbers in the pages."""
+
+import json
+import sys
+from pathlib import Path
+
+from tests.numbers import SUMMARY, pages
+from tests.numbers.measured import measured
+
+
+def main(folder):
+    known = json.loads(SUMMARY.read_text(encoding="utf-8")) if SUMMARY.exists() else {}
+    found = known | measured(Path(folder))
+    SUMMARY.write_text(
+        json.dumps(dict(sorted(found.items())), indent=1, ensure_ascii=False) + "\n",
+        encoding="utf-8",
+    )
+    for path, text in pages().items():
+        path.write_text(text, encoding="utf-8")
+
+
+main(*sys.argv[1:])

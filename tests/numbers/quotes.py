@@ -1,0 +1,53 @@
+"""The sentences of the pages that quote numbers; {name:format} stands for each.
+
+A format is Python's for numbers; one that ends in () has the error in brackets, +() with a sign.
+"""
+
+QUOTES = {
+    "README.md": [
+        "in the vibrated bed by at most {vibrated_most_above:.3f} (r = {vibrated_most_at_r}, β = "
+        "{vibrated_most_at_beta}), for |β| ≤ 0.5 on average by {vibrated_mean_at_r099:.3f}, "
+        "{vibrated_mean_at_r09:.3f} and {vibrated_mean_at_r08:.3f} at r = 0.99, 0.9 and 0.8; in "
+        "the sheared gas by at most {sheared_most_above:.3f}.",
+        "R is off by up to {rough_walls_off:.1f}, and above 1/2 for smooth particles",
+        "Walls of the particles' own material change R by {particle_walls_shift:.3f} at most, "
+        "smooth ones by {smooth_walls_shift:.3f}.",
+        "within {cooling_off_percent:.1f} % at every point with r ≥ 0.8, and depends on r "
+        "strongly: at β = −0.8, R is {cooling_at_r099:.2f} at r = 0.99 and {cooling_at_r08:.2f} "
+        "at r = 0.8.",
+        "R is up to {vibrated_most_above_at_r06:.3f} above Eq. (lun) in the bed, "
+        "{sheared_most_above_at_r06:.3f} in the sheared gas, and up to "
+        "{cooling_below_percent_at_r06:.0f} % below Eq. (K).",
+        "The pipeline judges {claims_statements} statements of the paper in "
+        "`results/paper/claims.md`: {claims_hold} hold, {claims_qualified} hold with a "
+        "qualification (how closely Eqs. (lun) and (K) are followed, and how little r matters), "
+        "and {claims_fail} fail.",
+        "judges {open_questions_statements} statements in `results/paper/open_questions.md`",
+        "within {cooling_spheres_off:.3f} at all of {cooling_spheres_points:.0f} points, sheared "
+        "ones Eq. (lun) within {sheared_spheres_off:.3f}. A bed lies above it by up to "
+        "{vibrated_spheres_most_above:()}, more than",
+        "over contacts that stick and slide, within {vibrated_friction_off:.3f}, from R = "
+        "{vibrated_friction_least:.2f} at μ = {vibrated_friction_least_mu:g} to the rough gas",
+        "A cooling gas does within {cooling_friction_off:.3f} for μ ≥ "
+        "{cooling_friction_strong_mu:g}.",
+        "always below μ = {theory_friction_of_spin_alone:.2f} (r = 0.9). Between "
+        "{theory_friction_of_spin_alone:.2f} and {theory_critical_friction:.2f} both ends are "
+        "stable in theory",
+        "Random kicks of any s are within {heated_off:.3f} of the rate equations; a rough floor "
+        "and rough shaken walls, s from their energy books, within {rough_floor_off:.3f} and "
+        "{shaken_walls_off:.3f}.",
+        "by {wave_triangle:+()} for a triangle, {wave_sine:+()} for a sine, "
+        "{wave_reversed_sawtooth:+()} for a sawtooth that rises fast and falls slowly.",
+        "a cooling gas follows Eq. (K) within {cooling_inertia_off:.3f}. A bed follows Eq. (lun) "
+        "within {vibrated_inertia_off:.3f} for q of 0.05 to 0.3; it is {vibrated_rings_above:()} "
+        "above for rings, and at q ≤ 0.02 perfectly rough disks have R = "
+        "{vibrated_light_rough:.2f},",
+        "at most {boundaries_most_share_percent:.0f} % of the energy: where it puts in less than "
+        "0.3 %, R shifts by no more than {boundaries_shift_without_rotation:.3f}.",
+        "put in less than nothing, down to {boundaries_least_share_percent:.0f} %.",
+    ],
+    "docs/physics.md": [
+        "({theory_friction_of_spin_alone:.2f} for disks at r = 0.9, nearly independent of β)",
+        "At μ_s R drops, to {theory_ratio_beyond_spin_alone:.1f} there;",
+    ],
+}

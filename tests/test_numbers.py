@@ -1,0 +1,46 @@
+"""Numbers in README and docs are those of docs/numbers.json, which is made from datasets."""
+
+import pytest
+from tests.numbers import QUOTES, ROOT, Quantity, names, pages, pattern, summary
+from tests.numbers.measured import measured
+from tests.synthetic import reduced
+
+
+@pytest.mark.parametrize("path", [ROOT / name for name in QUOTES], ids=str)
+def test_pages_quote_the_numbers_of_the_datasets(path):
+    """If not: python -m tests.numbers FOLDER."""
+    assert path.read_text(encoding="utf-8") == pages()[path]
+
+
+def test_every_number_of_the_summary_is_quoted():
+    quoted = {name for quotes in QUOTES.values() for quote in quotes for name in names(quote)}
+    assert quoted >= set(summary())
+
+
+def test_numbers_as_pages_write_them():
+    assert f"{Quantity(-0.0063, 0.0012):+()}" == "−0.006(1)"
+    assert f"{Quantity(0.06712, 0.00096):()}" == "0.067(1)"
+    assert f"{Quantity(4.18):.1f} {Quantity('five')}" == "4.2 five"
+    assert (
+        pattern("within {off:.1f} % of it").search("It is within 4.2\n  % of it.").group(1) == "4.2"
+    )
+
+
+def test_numbers_are_measured_on_datasets(tmp_path):
+    places = {"r": (0.6, 0.8, 0.9, 0.99), "error": 1e-5}
+    bed = reduced("vibrated", lambda r, beta: 0.05 * ((r == 0.8) & (beta == 0.1)), **places)
+    waves = {
+        "r": (0.9,),
+        "third": ("floor.wave", ("sawtooth", "reversed_sawtooth", "sine", "triangle")),
+    }
+    waved = reduced("waves", lambda r, beta, wave: -0.01 * (wave == "sine"), error=1e-5, **waves)
+    cooled = reduced("cooling", **places)
+    for data in (bed, waved, cooled):
+        data.to_netcdf(tmp_path / f"{data.attrs['experiment']}.nc")
+    found = {name: Quantity(**about) for name, about in measured(tmp_path).items()}
+    assert f"{found['vibrated_most_above']:.3f} {found['vibrated_most_at_r']}" == "0.050 0.8"
+    assert f"{found['vibrated_most_at_beta']} {found['wave_sine']:+.3f}" == "0.1 −0.010"
+    assert f"{found['cooling_at_r08']:.2f} {found['cooling_off_percent']:.0f}" == "0.98 0"
+    assert set(found) < {
+        name for quotes in QUOTES.values() for quote in quotes for name in names(quote)
+    }
