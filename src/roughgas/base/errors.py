@@ -1,13 +1,13 @@
-"""What goes wrong through bad input, and in a simulation."""
+"""Errors of bad input, and of a simulation."""
 
 from collections.abc import Iterable
 
 LONGEST = 60  # characters of a value in a message
-SIMILAR = 0.8  # how alike, from 0 to 1, a name is to one that may have been meant
+SIMILAR = 0.8  # from 0 to 1: how alike a name must be to one that is suggested instead
 
 
 class InputError(ValueError):
-    """A value that is not legal: `key` names it, `legal` completes the sentence "it must ...".
+    """An illegal value: `key` names it, `legal` completes the sentence "it must ...".
 
     Its text is one line: `restitution r = 1.5: must lie in [0, 1]`.
     """
@@ -29,7 +29,7 @@ def shown(value: object) -> str:
 
 
 def not_one_of(key: str, value: object, known: Iterable[str]) -> InputError:
-    """The error of a value that is none of the `known` ones, with a guess at what was meant."""
+    """Return the error of a value that is not among the `known` ones, with a suggestion."""
     import difflib
 
     known = list(known)
@@ -39,4 +39,4 @@ def not_one_of(key: str, value: object, known: Iterable[str]) -> InputError:
 
 
 class CollapseError(RuntimeError):
-    """Inelastic collapse: contacts without end in a finite time. Its text is one line."""
+    """Inelastic collapse: infinitely many contacts in a finite time. Its text is one line."""

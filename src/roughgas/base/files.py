@@ -1,4 +1,4 @@
-"""Files appear under their final name only when they are whole."""
+"""Files get their final names only when they are whole."""
 
 import errno
 import os
@@ -9,12 +9,12 @@ from pathlib import Path
 
 @contextmanager
 def whole_file(path: str | Path) -> Iterator[Path]:
-    """Lend a name to write to; on success the file becomes `path`, else nothing stays.
+    """Yield a temporary path to write to; rename it to `path` on success, delete it otherwise.
 
     Parent folders are created. The name, `path`.PID.tmp, is this process's own: a job that outlives
-    a killed workflow must not spoil what its successor writes. After SIGKILL it remains, until the
-    next writer of `path` finds that its process is gone.
-    Raises OSError, which names `path`, when the folder cannot be written or the disk is full.
+    a killed workflow must not spoil what its successor writes. After SIGKILL the file remains until
+    the next writer of `path` finds that its process is gone.
+    Raises OSError, which names `path`, if the folder cannot be written or the disk is full.
     """
     path = Path(path)
     if path.exists() and not path.is_file():  # root could replace even /dev/null
@@ -24,7 +24,8 @@ def whole_file(path: str | Path) -> Iterator[Path]:
     remove_dead_drafts(path)
     try:
         yield draft
-        _flush(draft)
+        with open(draft, "rb") as file:
+            os.fsync(file.fileno())  # or a power cut could leave the new name without the content
         os.replace(draft, path)
     except OSError as error:
         if error.filename in (None, str(draft)):
@@ -35,8 +36,10 @@ def whole_file(path: str | Path) -> Iterator[Path]:
 
 
 def check_place(path: str | Path) -> None:
-    """Raise OSError where `path`, a file or a folder, could not be written: before what takes long
-    rather than after it."""
+    """Raise OSError if `path`, a file or a folder, could not be written.
+
+    Called before work that takes long, rather than after it.
+    """
     path = Path(path).absolute()
     if path.exists() and not (path.is_file() or path.is_dir()):
         raise OSError(errno.EINVAL, "exists and is not a file", str(path))
@@ -48,30 +51,15 @@ def check_place(path: str | Path) -> None:
 def remove_dead_drafts(path: Path) -> None:
     """Remove what killed writers of `path` have left."""
     for left in path.parent.glob(f"{path.name}.*.tmp"):
-        if not _alive(left.name.split(".")[-2]):
+        try:
+            os.kill(int(left.name.split(".")[-2]), 0)
+        except (ValueError, ProcessLookupError):
             left.unlink(missing_ok=True)
+        except PermissionError:  # alive, and somebody else's
+            pass
 
 
 def write_text(path: str | Path, text: str) -> None:
     """Write `text` (UTF-8, line ends as given) to `path`, whole or not at all."""
     with whole_file(path) as draft:
         draft.write_text(text, encoding="utf-8", newline="")
-
-
-def _alive(process: str) -> bool:
-    try:
-        os.kill(int(process), 0)
-    except (ValueError, ProcessLookupError):
-        return False
-    except PermissionError:  # somebody else's
-        return True
-    return True
-
-
-def _flush(path: Path) -> None:
-    """Force the bytes to the disk, lest a power cut leave the new name without the content."""
-    descriptor = os.open(path, os.O_RDONLY)
-    try:
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)

@@ -2,55 +2,50 @@
 
 import os
 import platform
+from importlib import metadata
 from pathlib import Path
-
-import llvmlite
-import numba
-import numpy
 
 from roughgas.base.version import __version__
 
 CACHES = Path("/sys/devices/system/cpu/cpu0/cache")
+PACKAGES = ("numba", "llvmlite", "numpy")
 
 
 def description() -> dict[str, str]:
-    """What to know about the machine, by name; what it does not tell is left out."""
-    told = {
+    """Return what is known about the machine, by name."""
+    from llvmlite import binding
+
+    memory = _field("/proc/meminfo", "MemTotal")
+    versions = (f"{name} {metadata.version(name)}" for name in PACKAGES)
+    known = {
         "processor": _field("/proc/cpuinfo", "model name"),
-        "instruction set": numba.config.CPU_NAME or llvmlite.binding.get_host_cpu_name(),
+        "instruction set": os.environ.get("NUMBA_CPU_NAME") or binding.get_host_cpu_name(),
         "cores": str(os.cpu_count()),
         "caches": _caches(),
-        "memory": _memory(),
+        "memory": memory and f"{int(memory.split()[0]) / 2**20:.0f} GiB",
         "system": f"{platform.system()} {platform.release()}, {platform.machine()}",
         "versions": f"roughgas {__version__}, Python {platform.python_version()}, "
-        f"numba {numba.__version__}, llvmlite {llvmlite.__version__}, numpy {numpy.__version__}",
+        + ", ".join(versions),
     }
-    return {name: value for name, value in told.items() if value}
+    return {name: value for name, value in known.items() if value}
 
 
-def _field(path, name):
-    """The value in the first line `name : value` of a file of the kernel's."""
+def _field(path: str, name: str) -> str:
+    """Return the value in the first line `name : value` of a file of Linux; "" if there is none."""
     try:
         lines = Path(path).read_text(encoding="utf-8").splitlines()
     except OSError:
-        return None
+        return ""
     pairs = (line.partition(":") for line in lines)
-    return next((value.strip() for key, _, value in pairs if key.strip() == name), None)
+    return next((value.strip() for key, _, value in pairs if key.strip() == name), "")
 
 
-def _memory():
-    total = _field("/proc/meminfo", "MemTotal")
-    return total and f"{int(total.split()[0]) / 2**20:.0f} GiB"
-
-
-def _caches():
-    """Such as `L1 32K Data, L2 1024K Unified, L3 32768K Unified`."""
-    levels = []
-    for folder in sorted(CACHES.glob("index*")):
-        level, size, kind = (
-            (folder / name).read_text(encoding="utf-8").strip()
-            for name in ("level", "size", "type")
-        )
-        if kind != "Instruction":
-            levels.append(f"L{level} {size} {kind.lower()}")
-    return ", ".join(levels)
+def _caches() -> str:
+    """Return such as `L1 32K data, L2 1024K unified, L3 32768K unified`."""
+    files = ("level", "size", "type")
+    found = [
+        [(folder / name).read_text(encoding="utf-8").strip() for name in files]
+        for folder in sorted(CACHES.glob("index*"))
+    ]
+    data = (cache for cache in found if cache[2] != "Instruction")
+    return ", ".join(f"L{level} {size} {kind.lower()}" for level, size, kind in data)
