@@ -8,7 +8,7 @@ import xarray as xr
 from roughgas.claims.sample import Sample
 from roughgas.data.reduced import EQUILIBRATED, GRID, read_reduced
 from roughgas.statistics.intervals import sum_error
-from roughgas.theory.arguments import NET_SHARES
+from roughgas.theory.arguments import NET_SHARE
 from roughgas.theory.prediction import predicted_ratio
 
 
@@ -89,7 +89,10 @@ def deviation_at_shares(data: xr.Dataset) -> Sample:
     share = spin_shares(data)
     measured = np.nan_to_num(share.values)
     step = np.nan_to_num(data.input_spin_share_stderr.values)
-    ends = (np.clip(end, *NET_SHARES) for end in (measured - step, measured, measured + step))
+    ends = (
+        np.clip(end, NET_SHARE.low, NET_SHARE.high)
+        for end in (measured - step, measured, measured + step)
+    )
     low, expected, high = (theory_of(data, spin_share=end) for end in ends)
     spread = np.fmax(high - expected, expected - low)
     spread = np.where(np.isfinite(data.input_spin_share_stderr), spread, np.nan)

@@ -8,6 +8,7 @@ InputError for r outside [0, 1], beta outside [-1, 1], q <= 0, D other than 2 or
 import numpy as np
 
 from roughgas.theory.arguments import (
+    Choice,
     Numbers,
     check_inertia,
     check_restitution,
@@ -38,7 +39,7 @@ def goldshtein_ratio(r: Numbers, beta: Numbers, inertia: Numbers = 2 / 5) -> np.
 
 
 def cooling_ratio(
-    r: Numbers, beta: Numbers, dimension: int = 2, inertia: Numbers | None = None
+    r: Numbers, beta: Numbers, dimension: int = 2, inertia: Choice = None
 ) -> np.ndarray:
     """R = 1/(1 + K) of a freely cooling gas, K from Eq. (K).
 
@@ -51,9 +52,7 @@ def cooling_ratio(
     return _cooling_shares(r, beta, dimension, inertia)[1][()]
 
 
-def cooling_K(
-    r: Numbers, beta: Numbers, dimension: int = 2, inertia: Numbers | None = None
-) -> np.ndarray:
+def cooling_K(r: Numbers, beta: Numbers, dimension: int = 2, inertia: Choice = None) -> np.ndarray:
     """K = E_tr/E_rot of a freely cooling gas: the positive root of Eq. (K).
 
     Limits as in `cooling_ratio`: K = 0 at beta = -1 and r < 1, K infinite at beta = -1 and r = 1.

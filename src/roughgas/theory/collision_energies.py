@@ -9,9 +9,9 @@ import numpy as np
 
 from roughgas.theory.arguments import (
     Numbers,
+    check,
     check_dimension,
     check_inertia,
-    check_not_negative,
     check_restitution,
     check_roughness,
 )
@@ -65,12 +65,12 @@ def mean_normal_squared(E_tr: Numbers) -> np.ndarray:
     E_tr is the translational energy per degree of freedom, >= 0. Below Eq. (Energybalance), as are
     the two averages that follow; <v_t.v_r> = 0, translation and spin being uncorrelated.
     """
-    return 8 * check_not_negative("energy E_tr", E_tr)
+    return 8 * check("energy E_tr", E_tr)
 
 
 def mean_tangential_squared(E_tr: Numbers, dimension: int = 2) -> np.ndarray:
     """<v_t^2> = 4 (D-1) E_tr/m over the collisions of a Maxwellian gas."""
-    return 4 * (check_dimension(dimension) - 1) * check_not_negative("energy E_tr", E_tr)
+    return 4 * (check_dimension(dimension) - 1) * check("energy E_tr", E_tr)
 
 
 def mean_spin_squared(E_rot: Numbers, dimension: int, inertia: Numbers) -> np.ndarray:
@@ -79,7 +79,7 @@ def mean_spin_squared(E_rot: Numbers, dimension: int, inertia: Numbers) -> np.nd
     E_rot is the rotational energy per degree of freedom, >= 0.
     """
     dimension, q = check_dimension(dimension), check_inertia(inertia)
-    return 4 * (dimension - 1) * check_not_negative("energy E_rot", E_rot) / q
+    return 4 * (dimension - 1) * check("energy E_rot", E_rot) / q
 
 
 def _prefactor(beta, q) -> np.ndarray:

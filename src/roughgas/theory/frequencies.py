@@ -6,7 +6,8 @@ D is the `dimension`. T_tr and packing broadcast. All raise InputError for illeg
 
 import numpy as np
 
-from roughgas.theory.arguments import Numbers, check_between, check_dimension, check_not_negative
+from roughgas.base.legal import Interval
+from roughgas.theory.arguments import Numbers, check, check_dimension
 from roughgas.theory.shares import quotient
 
 CLOSE_PACKING = {2: np.pi / np.sqrt(12), 3: np.pi / np.sqrt(18)}
@@ -36,7 +37,7 @@ def collision_frequency(T_tr: Numbers, packing: Numbers, dimension: int = 2) -> 
     nu = 4 a n chi sqrt(pi T_tr/m) in 2D and 16 sqrt(pi) a^2 n chi sqrt(T_tr/m) in 3D, for a
     Maxwellian gas of number density n. T_tr = m <v^2>/D >= 0.
     """
-    T_tr = check_not_negative("temperature T_tr", T_tr)
+    T_tr = check("temperature T_tr", T_tr)
     per_speed = {2: 4, 3: 16}[check_dimension(dimension)] * np.sqrt(np.pi)
     crowding = number_density(packing, dimension) * contact_value(packing, dimension)
     return per_speed * crowding * np.sqrt(T_tr)
@@ -53,4 +54,4 @@ def mean_free_path(packing: Numbers, dimension: int = 2) -> np.ndarray:
 
 def _packing(packing, dimension) -> tuple[np.ndarray, int]:
     dimension = check_dimension(dimension)
-    return check_between("packing", packing, 0, round(CLOSE_PACKING[dimension], 4)), dimension
+    return check("packing", packing, Interval(f"[0, {CLOSE_PACKING[dimension]:.4f}]")), dimension

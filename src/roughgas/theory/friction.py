@@ -20,12 +20,13 @@ its spin while translation dies out, O. Herbst, M. Huthmann & A. Zippelius found
 import numpy as np
 
 from roughgas.theory.arguments import (
+    FRICTION,
+    SHARE,
+    Choice,
     Material,
     Numbers,
-    check_between,
-    check_not_negative,
+    check,
     check_restitution,
-    check_share,
     material,
 )
 from roughgas.theory.rate_equations import Rates, collision_rates, stationary_ratio
@@ -45,7 +46,7 @@ def sliding_fraction(
     beta: Numbers,
     mu: Numbers,
     dimension: int = 2,
-    inertia: Numbers | None = None,
+    inertia: Choice = None,
 ) -> np.ndarray:
     """Share of the contacts that slide; 0 for beta = -1, where nothing holds them.
 
@@ -64,7 +65,7 @@ def friction_changes(
     beta: Numbers,
     mu: Numbers,
     dimension: int = 2,
-    inertia: Numbers | None = None,
+    inertia: Choice = None,
     frequency: Numbers = 1.0,
 ) -> tuple[np.ndarray, np.ndarray]:
     """dT_tr/dt and dT_rot/dt due to collisions, `temperature_changes` at infinite mu.
@@ -74,7 +75,7 @@ def friction_changes(
     """
     T_tr, T_rot = _temperatures(T_tr, T_rot)
     gas, mu = material(r, beta, dimension, inertia), _check_friction(mu)
-    nu = check_not_negative("frequency", frequency)
+    nu = check("frequency", frequency)
     rates = _rates(T_tr, T_rot, gas, mu)
     return (
         nu * (rates.translational_gain * T_rot - rates.translational_loss * T_tr),
@@ -87,8 +88,8 @@ def friction_ratio(
     beta: Numbers,
     mu: Numbers,
     dimension: int = 2,
-    inertia: Numbers | None = None,
-    spin_share: Numbers | None = None,
+    inertia: Choice = None,
+    spin_share: Choice = None,
 ) -> np.ndarray:
     """Stationary R that a gas started without spin reaches, to 1e-13.
 
@@ -108,7 +109,7 @@ def friction_ratio(
       2 q e/[1-e + sqrt((1-e)^2 + (q e/kappa)^2)], e = (1+beta)/(2+2q), kappa = mu (1+r)/2.
     """
     gas, mu = material(r, beta, dimension, inertia), _check_friction(mu)
-    share = None if spin_share is None else check_share(spin_share)
+    share = None if spin_share is None else check("spin share of the drive", spin_share, SHARE)
     decoupled = stationary_ratio(gas.r, -1, dimension, gas.inertia, share)
     shape = np.broadcast_shapes(gas.beta.shape, mu.shape, np.shape(decoupled))
 
@@ -136,7 +137,7 @@ def critical_friction(r: Numbers) -> np.ndarray:
 
 
 def friction_relaxation_rate(
-    r: Numbers, beta: Numbers, mu: Numbers, dimension: int = 2, inertia: Numbers | None = None
+    r: Numbers, beta: Numbers, mu: Numbers, dimension: int = 2, inertia: Choice = None
 ) -> np.ndarray:
     """Rate at which R of a cooling gas goes to `friction_ratio`, per collision per particle.
 
@@ -239,11 +240,11 @@ def _eta(gas: Material) -> np.ndarray:
 
 def _temperatures(T_tr, T_rot) -> tuple[np.ndarray, np.ndarray]:
     return (
-        check_not_negative("temperature T_tr", T_tr),
-        check_not_negative("temperature T_rot", T_rot),
+        check("temperature T_tr", T_tr),
+        check("temperature T_rot", T_rot),
     )
 
 
 def _check_friction(mu) -> np.ndarray:
     """Friction coefficient mu, >= 0 or infinite."""
-    return check_between("friction mu", mu, 0, np.inf)
+    return check("friction mu", mu, FRICTION)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from roughgas.theory.arguments import Numbers, check_not_negative, material
+from roughgas.theory.arguments import Choice, Numbers, check, material
 from roughgas.theory.rate_equations import collision_rates
 from roughgas.theory.shares import quotient
 
@@ -14,35 +14,29 @@ def haff_temperature(
     beta: Numbers,
     frequency: Numbers,
     dimension: int = 2,
-    inertia: Numbers | None = None,
+    inertia: Choice = None,
 ) -> np.ndarray:
     """T_tr = T0/(1 + t/t_h)^2 at `time` >= 0, from T_tr = T0 and the stationary R on.
 
     `frequency`: collisions per particle per time at T0, e.g. `collision_frequency(T0, packing)`.
     T_rot decays by the same factor. All arguments but D broadcast. Raises InputError.
     """
-    time, T0 = check_not_negative("time", time), check_not_negative("temperature T0", T0)
+    time, T0 = check("time", time), check("temperature T0", T0)
     return T0 / (1 + time / haff_time(r, beta, frequency, dimension, inertia)) ** 2
 
 
 def haff_time(
-    r: Numbers,
-    beta: Numbers,
-    frequency: Numbers,
-    dimension: int = 2,
-    inertia: Numbers | None = None,
+    r: Numbers, beta: Numbers, frequency: Numbers, dimension: int = 2, inertia: Choice = None
 ) -> np.ndarray:
     """t_h = 2/(frequency * decay_rate), nu being proportional to sqrt(T_tr); inf if nothing decays.
 
     `frequency` (> 0, 1/T) is that at the initial temperature.
     """
-    frequency = check_not_negative("frequency", frequency)
+    frequency = check("frequency", frequency)
     return quotient(2.0, frequency * decay_rate(r, beta, dimension, inertia))
 
 
-def decay_rate(
-    r: Numbers, beta: Numbers, dimension: int = 2, inertia: Numbers | None = None
-) -> np.ndarray:
+def decay_rate(r: Numbers, beta: Numbers, dimension: int = 2, inertia: Choice = None) -> np.ndarray:
     """-d ln T_tr/dn at the stationary R of a cooling gas, n in collisions per particle.
 
     At beta = -1 it is that of the smooth gas, (1 - r^2)/D, whose spin does nothing; in the limit
@@ -53,9 +47,7 @@ def decay_rate(
     return np.where(beta == -1, smooth, slow_decay(r, beta, dimension, q))[()]
 
 
-def slow_decay(
-    r: Numbers, beta: Numbers, dimension: int = 2, inertia: Numbers | None = None
-) -> np.ndarray:
+def slow_decay(r: Numbers, beta: Numbers, dimension: int = 2, inertia: Choice = None) -> np.ndarray:
     """Decay rate of the slower of the two modes of a cooling gas, per collision per particle.
 
     The product of both is a sum of positive terms, so that nothing cancels. Raises InputError.

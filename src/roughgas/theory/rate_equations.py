@@ -15,11 +15,12 @@ from typing import NamedTuple
 import numpy as np
 
 from roughgas.theory.arguments import (
+    NET_SHARE,
+    SHARE,
+    Choice,
     Numbers,
+    check,
     check_dimension,
-    check_net_share,
-    check_not_negative,
-    check_share,
     material,
 )
 from roughgas.theory.shares import positive_root, quotient, shares
@@ -38,9 +39,7 @@ class Rates(NamedTuple):
     rotational_loss: np.ndarray
 
 
-def collision_rates(
-    r: Numbers, beta: Numbers, dimension: int = 2, inertia: Numbers | None = None
-) -> Rates:
+def collision_rates(r: Numbers, beta: Numbers, dimension: int = 2, inertia: Choice = None) -> Rates:
     """Coefficients of the rate equations; r, beta and q broadcast. Raises InputError."""
     r, beta, dimension, q = material(r, beta, dimension, inertia)
     eta = q * (1 + beta) / (2 * (1 + q))
@@ -62,7 +61,7 @@ def temperature_changes(
     r: Numbers,
     beta: Numbers,
     dimension: int = 2,
-    inertia: Numbers | None = None,
+    inertia: Choice = None,
     frequency: Numbers = 1.0,
 ) -> tuple[np.ndarray, np.ndarray]:
     """dT_tr/dt and dT_rot/dt due to collisions, `frequency` being nu, e.g. `collision_frequency`.
@@ -70,9 +69,9 @@ def temperature_changes(
     With the frequency 1 left as it is, they are per collision per particle. All arguments but D
     broadcast; raises InputError for negative temperatures or frequencies too.
     """
-    T_tr = check_not_negative("temperature T_tr", T_tr)
-    T_rot = check_not_negative("temperature T_rot", T_rot)
-    nu = check_not_negative("frequency", frequency)
+    T_tr = check("temperature T_tr", T_tr)
+    T_rot = check("temperature T_rot", T_rot)
+    nu = check("frequency", frequency)
     rates = collision_rates(r, beta, dimension, inertia)
     return (
         nu * (rates.translational_gain * T_rot - rates.translational_loss * T_tr),
@@ -84,17 +83,13 @@ def drive_changes(
     power: Numbers, spin_share: Numbers, dimension: int = 2
 ) -> tuple[np.ndarray, np.ndarray]:
     """dT_tr/dt and dT_rot/dt due to a drive of `power` per particle (m a^2/T^3)."""
-    power, share = check_not_negative("power", power), check_share(spin_share)
+    power, share = check("power", power), check("spin share of the drive", spin_share, SHARE)
     dimension = check_dimension(dimension)
     return 2 * (1 - share) * power / dimension, 2 * share * power / (2 * dimension - 3)
 
 
 def stationary_ratio(
-    r: Numbers,
-    beta: Numbers,
-    dimension: int = 2,
-    inertia: Numbers | None = None,
-    spin_share: Numbers | None = None,
+    r: Numbers, beta: Numbers, dimension: int = 2, inertia: Choice = None, spin_share: Choice = None
 ) -> np.ndarray:
     """Stationary R = T_rot/(T_rot + T_tr): Eq. (K) without a drive, Eq. (lun) at spin_share 0.
 
@@ -108,11 +103,7 @@ def stationary_ratio(
 
 
 def stationary_theta(
-    r: Numbers,
-    beta: Numbers,
-    dimension: int = 2,
-    inertia: Numbers | None = None,
-    spin_share: Numbers | None = None,
+    r: Numbers, beta: Numbers, dimension: int = 2, inertia: Choice = None, spin_share: Choice = None
 ) -> np.ndarray:
     """Stationary theta = T_rot/T_tr; infinite where R = 1. See `stationary_ratio`."""
     translational, rotational = stationary_shares(r, beta, dimension, inertia, spin_share)
@@ -120,11 +111,7 @@ def stationary_theta(
 
 
 def stationary_shares(
-    r: Numbers,
-    beta: Numbers,
-    dimension: int = 2,
-    inertia: Numbers | None = None,
-    spin_share: Numbers | None = None,
+    r: Numbers, beta: Numbers, dimension: int = 2, inertia: Choice = None, spin_share: Choice = None
 ) -> tuple[np.ndarray, np.ndarray]:
     """Stationary T_tr and T_rot as shares of their sum: 1 - R and R."""
     r, beta, dimension, q = material(r, beta, dimension, inertia)
@@ -135,7 +122,7 @@ def stationary_shares(
             rates.translational_gain, difference, rates.rotational_gain
         )
         return shares(translational, rotational, neither=0)
-    s, spins = check_net_share(spin_share), 2 * dimension - 3
+    s, spins = check("net spin share of the drive", spin_share, NET_SHARE), 2 * dimension - 3
     rotational = s * dimension * rates.translational_loss + (1 - s) * spins * rates.rotational_gain
     translational = (
         s * dimension * rates.translational_gain + (1 - s) * spins * rates.rotational_loss

@@ -11,7 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roughgas.theory.arguments import Numbers, check_fraction, check_not_negative, check_share
+from roughgas.base.legal import Interval
+from roughgas.theory.arguments import SHARE, Choice, Numbers, check
 from roughgas.theory.haff import slow_decay
 from roughgas.theory.rate_equations import collision_rates, stationary_shares
 from roughgas.theory.shares import quotient
@@ -26,11 +27,7 @@ class Relaxation(NamedTuple):
 
 
 def relaxation_rate(
-    r: Numbers,
-    beta: Numbers,
-    dimension: int = 2,
-    inertia: Numbers | None = None,
-    spin_share: Numbers | None = None,
+    r: Numbers, beta: Numbers, dimension: int = 2, inertia: Choice = None, spin_share: Choice = None
 ) -> np.ndarray:
     """Gamma: rate at which a small deviation of theta dies out, per collision per particle.
 
@@ -41,7 +38,7 @@ def relaxation_rate(
     if spin_share is None:
         difference = rates.translational_loss - rates.rotational_loss
         return np.sqrt(difference**2 + 4 * rates.translational_gain * rates.rotational_gain)
-    s = check_share(spin_share)
+    s = check("spin share of the drive", spin_share, SHARE)
     return s * (rates.translational_loss + rates.rotational_gain) + (1 - s) * (
         rates.rotational_loss + rates.translational_gain
     )
@@ -53,15 +50,15 @@ def relax(
     beta: Numbers,
     collisions: Numbers,
     dimension: int = 2,
-    inertia: Numbers | None = None,
-    spin_share: Numbers | None = None,
+    inertia: Choice = None,
+    spin_share: Choice = None,
 ) -> Relaxation:
     """Temperatures after `collisions` (>= 0) per particle, from theta0 = T_rot/T_tr (>= 0) on.
 
     Exact solution of the rate equations: a mixture of the initial and the stationary state, of
     positive terms only. All arguments but D broadcast. Raises InputError.
     """
-    theta0, n = check_not_negative("theta0", theta0), check_not_negative("collisions", collisions)
+    theta0, n = check("theta0", theta0), check("collisions", collisions)
     translational, rotational = stationary_shares(r, beta, dimension, inertia, spin_share)
     weight = _stationary_weight(theta0, translational, rotational, dimension, spin_share)
     passed = relaxation_rate(r, beta, dimension, inertia, spin_share) * n
@@ -77,8 +74,8 @@ def collisions_to_relax(
     beta: Numbers,
     tolerance: Numbers = 0.01,
     dimension: int = 2,
-    inertia: Numbers | None = None,
-    spin_share: Numbers | None = None,
+    inertia: Choice = None,
+    spin_share: Choice = None,
     theta0: Numbers = 0.0,
 ) -> np.ndarray:
     """Collisions per particle after which R is within `tolerance` (a fraction) of its stationary R.
@@ -86,7 +83,7 @@ def collisions_to_relax(
     From theta0 = T_rot/T_tr on, by default a gas without spin. Infinite where R never gets there,
     as in a cooling gas without spin at beta = -1. All arguments but D broadcast. Raises InputError.
     """
-    tolerance, theta0 = check_fraction("tolerance", tolerance), check_not_negative("theta0", theta0)
+    tolerance, theta0 = check("tolerance", tolerance, Interval("(0, 1)")), check("theta0", theta0)
     translational, rotational = stationary_shares(r, beta, dimension, inertia, spin_share)
     weight = _stationary_weight(theta0, translational, rotational, dimension, spin_share)
     distance = np.abs(theta0 * translational - rotational)

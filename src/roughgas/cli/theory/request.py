@@ -1,6 +1,5 @@
 """What is asked for: gases, from the options of the command line."""
 
-import math
 import re
 from argparse import Namespace
 from collections.abc import Callable, Sequence
@@ -12,7 +11,7 @@ from roughgas import config, theory
 from roughgas.base.errors import InputError
 from roughgas.cli.options import number
 from roughgas.cli.theory.quantities import Gas
-from roughgas.theory.arguments import check_between, check_inertia, check_share
+from roughgas.theory.arguments import FRICTION, SHARE, check_inertia
 
 RANGE = re.compile(r"([^:]+):([^:]+):([^:]+)")
 MOST = 100_000  # values in a range
@@ -26,10 +25,10 @@ def gases(options: Namespace) -> list[Gas]:
     found_r = _values("--r", options.r, config.restitution)
     found_beta = _values("--beta", options.beta, config.roughness)
     r, beta = (axis.ravel() for axis in np.meshgrid(found_r, found_beta, indexing="ij"))
-    share = float(check_share(number("--spin-share", options.spin_share)))
+    share = SHARE.check("spin share of the drive", number("--spin-share", options.spin_share))
     mu = q = None
     if options.mu is not None:
-        mu = float(check_between("friction mu", number("--mu", options.mu), 0, math.inf))
+        mu = FRICTION.check("friction mu", number("--mu", options.mu))
     if options.inertia is not None:
         q = float(check_inertia(number("--inertia", options.inertia)))
     dimensions = [int(options.dimension)] if options.dimension else [2, 3]

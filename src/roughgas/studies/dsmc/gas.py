@@ -13,7 +13,7 @@ from roughgas.effects import Effects
 from roughgas.effects.spin import Spin
 from roughgas.studies.dsmc.collisions import COLUMNS, record
 from roughgas.theory import moment_of_inertia
-from roughgas.theory.arguments import check_not_negative, check_restitution, check_roughness
+from roughgas.theory.arguments import check, check_restitution, check_roughness
 
 FIRST_MAJORANT = 5.0  # standard deviations of the relative normal velocity; it rises where exceeded
 
@@ -65,7 +65,7 @@ def material(r, beta, dimension=2, inertia=None, crowding=1.0) -> Material:
     `crowding`, number density times chi, sets the unit of time only. Raises InputError.
     """
     spin = Spin(float(moment_of_inertia(dimension) if inertia is None else inertia))
-    crowding = float(check_not_negative("crowding", crowding))
+    crowding = float(check("crowding", crowding))
     r, beta = float(check_restitution(r)), float(check_roughness(beta))
     return Material(r, beta, Effects(spin=spin), crowding)
 
@@ -82,7 +82,7 @@ def new_gas(particles, theta, rng: np.random.Generator, dimension=2, inertia=Non
     velocity -= velocity.mean(axis=0)
     velocity /= math.sqrt(np.mean(velocity**2))
     spin = rng.standard_normal((particles, 2 * dimension - 3))
-    spin *= math.sqrt(check_not_negative("theta", theta) / (q * np.mean(spin**2)))
+    spin *= math.sqrt(check("theta", theta) / (q * np.mean(spin**2)))
     clock = np.array([0.0, 0.0, 0.0, FIRST_MAJORANT * math.sqrt(2.0)])
     return Gas(velocity, spin, clock, np.zeros(2, np.int64), (0.0,) * dimension)
 
