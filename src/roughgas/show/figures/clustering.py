@@ -16,7 +16,7 @@ from matplotlib.patches import Rectangle
 from roughgas import theory
 from roughgas.base.errors import InputError
 from roughgas.data.film import disks_of, read_film
-from roughgas.show import style
+from roughgas.show import circles, style
 from roughgas.show.encoding import write_movie
 
 KINDS = (*style.METADATA, ".mp4")
@@ -24,12 +24,12 @@ SHOWN = 0.05, 0.25, 1.0  # instants in the picture, as shares of the film
 SMOOTHING = 6.0  # in a: standard deviation of the Gaussian that packing is averaged with
 PACKING = {"cmap": "cividis", "vmin": 0.0, "vmax": 0.8, "interpolation": "bilinear"}
 SPIN = {"cmap": "RdBu_r", "clim": (-2.0, 2.0)}
-SPIN_LABEL = "spin / its r.m.s."
+SPIN_LABEL, PACKING_LABEL = "spin / its r.m.s.", "packing fraction"
 VOID = "#222222"
 CLOSEUP = 160.0  # side in a of the square in which single disks are shown
 TRANSLATION, ROTATION, UNEVENNESS = (look.colour for look in style.LOOKS[:3])
-FRAMES_PER_SECOND = 12
-LAST_FRAME = 1.5  # seconds that the movie rests on its last frame
+DOTTED = {"color": style.THEORY, "linestyle": ":"}
+FRAMES_PER_SECOND, LAST_FRAME = 12, 1.5  # seconds that the movie rests on its last frame
 LETTERS, TITLE = "abc", 9
 PER_PARTICLE = "collisions per particle"
 
@@ -45,7 +45,7 @@ class Square(NamedTuple):
 def draw(path: str | Path, outputs: Iterable[str | Path]) -> None:
     """Draw the film at `path` into each of `outputs`: .pdf or .png a picture, .mp4 a movie.
 
-    Raises InputError for another kind of file, OSError where one cannot be read or written.
+    Raises InputError for another kind of file, OSError if one cannot be read or written.
     """
     outputs = [Path(output) for output in outputs]
     for output in outputs:
@@ -56,57 +56,53 @@ def draw(path: str | Path, outputs: Iterable[str | Path]) -> None:
     with rc_context(style.PARAMETERS):
         style.save(picture(film), [output for output in outputs if output not in movies])
         for output in movies:
-            _movie(film, output)
+            _write_movie(film, output)
 
 
 def picture(film: xr.Dataset) -> Figure:
-    """Maps of packing at three instants, single disks, and how the gas cooled in between."""
+    """Return maps of packing at three instants, single disks, and how the gas cooled meanwhile."""
     figure = Figure(figsize=(9.2, 6.4), layout="constrained")
     above, below = figure.subfigures(2, 1, height_ratios=(1, 1.02))
     frames = [round(share * (film.sizes["frame"] - 1)) for share in SHOWN]
     maps = above.subplots(1, 3, sharey=True)
     for axes, frame, letter in zip(maps, frames, LETTERS, strict=True):
-        image = _map(axes, film, frame)
+        image = _draw_map(axes, film, frame)
         axes.set_title(f"{letter}   {_passed(film, frame)}", loc="left", fontsize=TITLE)
         axes.label_outer()
-    above.colorbar(image, ax=maps, label="packing fraction", pad=0.01)
+    above.colorbar(image, ax=maps, label=PACKING_LABEL, pad=0.01)
     square = closeup(film)
     _outline(maps[-1], square)
     above.suptitle(_caption(film), fontsize=TITLE)
     zoom, cooling, others = below.subfigures(1, 3, width_ratios=(1.15, 1, 1))
-    disks = _disks(axes := zoom.subplots(), film, frames[-1], square)
+    disks = _draw_disks(axes := zoom.subplots(), film, frames[-1], square)
     axes.set_title("d   the square in c", loc="left", fontsize=TITLE)
     zoom.colorbar(disks, ax=axes, label=SPIN_LABEL, shrink=0.62, pad=0.02)
     graphs = [cooling.subplots(), *others.subplots(2, 1, sharex=True)]
     for axes, draw_graph in zip(graphs, (_energies, _ratio, _unevenness), strict=True):
         draw_graph(axes, film)
-        _instants(axes, _at(film)[frames])
+        for at, letter in zip(_at(film)[frames], LETTERS, strict=True):
+            axes.axvline(at, color=style.FAINT, linewidth=0.6, zorder=0)
+            place = {"xytext": (-2, 3), "textcoords": "offset points", "ha": "right"}
+            axes.annotate(letter, (at, 0), xycoords=("data", "axes fraction"), fontsize=7, **place)
         axes.label_outer()
     return figure
 
 
 def packing(film: xr.Dataset, frame: int) -> np.ndarray:
-    """Packing fraction (y, x) around each cell of the map, averaged with a periodic Gaussian."""
+    """Return the packing fraction (y, x) at each cell of the map, averaged with a Gaussian."""
     count = film["count"].values[frame]
-    box = film.attrs["box"]
-    cell = box[0] / count.shape[1] * box[1] / count.shape[0]
-    kx = 2 * np.pi * np.fft.rfftfreq(count.shape[1], box[0] / count.shape[1])
-    ky = 2 * np.pi * np.fft.fftfreq(count.shape[0], box[1] / count.shape[0])
+    dx, dy = film.attrs["box"][0] / count.shape[1], film.attrs["box"][1] / count.shape[0]
+    kx = 2 * np.pi * np.fft.rfftfreq(count.shape[1], dx)
+    ky = 2 * np.pi * np.fft.fftfreq(count.shape[0], dy)
     kernel = np.exp(-0.5 * SMOOTHING**2 * (kx**2 + ky[:, None] ** 2))
-    return np.fft.irfft2(np.fft.rfft2(count * (np.pi / cell)) * kernel, s=count.shape)
-
-
-def _map(axes: Axes, film: xr.Dataset, frame: int) -> AxesImage:
-    box = film.attrs["box"]
-    axes.set(xlabel=r"$x/a$", ylabel=r"$y/a$")
-    axes.minorticks_off()
-    extent = (0, box[0], 0, box[1])
-    return axes.imshow(packing(film, frame), origin="lower", extent=extent, **PACKING)
+    return np.fft.irfft2(np.fft.rfft2(count * (np.pi / (dx * dy))) * kernel, s=count.shape)
 
 
 def closeup(film: xr.Dataset) -> Square:
-    """The square in which single disks are shown: it lies where the gas is
-    densest in the end, within the window in which they are known."""
+    """Return the square in which single disks are shown.
+
+    It lies where the gas is densest in the end, within the window in which disks are known.
+    """
     box, window = np.asarray(film.attrs["box"]), film.attrs["window"]
     side = min(CLOSEUP, window, *box)
     room = max(0.0, min(window, *box) - side) / 2
@@ -119,46 +115,50 @@ def closeup(film: xr.Dataset) -> Square:
     return Square(float(middle[0] - side / 2), float(middle[1] - side / 2), float(side))
 
 
+def _draw_map(axes: Axes, film: xr.Dataset, frame: int) -> AxesImage:
+    width, height = film.attrs["box"]
+    axes.set(xlabel=r"$x/a$", ylabel=r"$y/a$")
+    axes.minorticks_off()
+    shown = packing(film, frame)
+    return axes.imshow(shown, origin="lower", extent=(0, width, 0, height), **PACKING)
+
+
 def _outline(axes: Axes, square: Square) -> None:
     left, bottom, side = square
     axes.add_patch(Rectangle((left, bottom), side, side, fill=False, edgecolor="white"))
 
 
-def _disks(axes: Axes, film: xr.Dataset, frame: int, square: Square) -> EllipseCollection:
+def _draw_disks(axes: Axes, film: xr.Dataset, frame: int, square: Square) -> EllipseCollection:
     left, bottom, side = square
     axes.set(xlim=(left, left + side), ylim=(bottom, bottom + side), aspect="equal")
     axes.set(xlabel=r"$x/a$", ylabel=r"$y/a$", facecolor=VOID)
     axes.minorticks_off()
-    disks = EllipseCollection([], [], [], units="xy", offsets=[], transOffset=axes.transData)
-    disks.set(edgecolor=VOID, linewidth=0.2, rasterized=True, **SPIN)
-    axes.add_collection(disks)
+    disks = circles.add_circles(axes, edgecolor=VOID, linewidth=0.2, rasterized=True, **SPIN)
     _move(disks, film, frame, square)
     return disks
 
 
 def _move(disks: EllipseCollection, film: xr.Dataset, frame: int, square: Square) -> None:
     x, y, spin = disks_of(film, frame)
-    left, bottom, side = square
-    seen = (abs(x - left - side / 2) < side / 2 + 1) & (abs(y - bottom - side / 2) < side / 2 + 1)
-    size = np.full(seen.sum(), 2.0)
-    disks.set(widths=size, heights=size, angles=0 * size)
-    disks.set_offsets(np.column_stack([x, y])[seen])
+    reach = square.side / 2 + 1
+    seen = abs(x - square.left - square.side / 2) < reach
+    seen &= abs(y - square.bottom - square.side / 2) < reach
+    circles.move(disks, x[seen], y[seen])
     disks.set_array(spin[seen])
 
 
 def _homogeneous(film: xr.Dataset) -> tuple[np.ndarray, theory.Relaxation]:
-    """Collisions per particle, and the temperatures of a gas that stays homogeneous."""
+    """Return collisions per particle, and the temperatures of a gas that stays homogeneous."""
     n, about = np.linspace(0, _at(film)[-1], 1000), film.attrs
     return n, theory.relax(0.0, about["r"], about["beta"], n, 2, about["inertia"])
 
 
 def _energies(axes: Axes, film: xr.Dataset) -> None:
     n, (smooth, haff) = _at(film), _homogeneous(film)
-    dotted = {"color": style.THEORY, "linestyle": ":"}
     axes.plot(n, film.E_trans, color=TRANSLATION, label=r"translation, $\bar{E}$")
     axes.plot(n[1:], film.E_rot[1:], color=ROTATION, linestyle="--", label=r"rotation, $E^\circ$")
-    axes.plot(smooth, haff.T_tr, label="both, if homogeneous", **dotted)
-    axes.plot(smooth[1:], haff.T_rot[1:], **dotted)
+    axes.plot(smooth, haff.T_tr, label="both, if homogeneous", **DOTTED)
+    axes.plot(smooth[1:], haff.T_rot[1:], **DOTTED)
     low = film.E_rot.values[1:].min()
     axes.set(yscale="log", ylim=(low / 4, 3), xlim=(0, n[-1]))
     axes.set(xlabel=PER_PARTICLE, ylabel=r"energies / initial $\bar{E}$")
@@ -169,8 +169,7 @@ def _energies(axes: Axes, film: xr.Dataset) -> None:
 def _ratio(axes: Axes, film: xr.Dataset) -> None:
     smooth, haff = _homogeneous(film)
     axes.plot(_at(film), film.R, color=ROTATION)
-    homogeneous = haff.theta / (1 + haff.theta)
-    axes.plot(smooth, homogeneous, color=style.THEORY, linestyle=":", label="if homogeneous")
+    axes.plot(smooth, haff.theta / (1 + haff.theta), label="if homogeneous", **DOTTED)
     axes.set(ylabel=r"$R$", xlabel=PER_PARTICLE, xlim=(0, _at(film)[-1]), ylim=(0, None))
     axes.set_title("f   share of rotation", loc="left", fontsize=TITLE)
     axes.legend(loc="right")
@@ -181,14 +180,6 @@ def _unevenness(axes: Axes, film: xr.Dataset) -> None:
     axes.plot(_at(film), [one.std() / one.mean() for one in maps], color=UNEVENNESS)
     axes.set(xlabel=PER_PARTICLE, ylabel=r"$\delta\phi/\phi$", ylim=(0, None))
     axes.set_title("g   unevenness of the packing", loc="left", fontsize=TITLE)
-
-
-def _instants(axes: Axes, when: np.ndarray) -> None:
-    """Mark the instants of the three maps by their letters."""
-    for at, letter in zip(when, LETTERS, strict=True):
-        axes.axvline(at, color=style.FAINT, linewidth=0.6, zorder=0)
-        place = {"xytext": (-2, 3), "textcoords": "offset points", "ha": "right"}
-        axes.annotate(letter, (at, 0), xycoords=("data", "axes fraction"), fontsize=7, **place)
 
 
 def _at(film: xr.Dataset) -> np.ndarray:
@@ -207,22 +198,20 @@ def _caption(film: xr.Dataset) -> str:
     )
 
 
-def _movie(film: xr.Dataset, output: Path) -> None:
+def _write_movie(film: xr.Dataset, output: Path) -> None:
     figure = Figure(figsize=(8.4, 4.1), dpi=160, layout="constrained")
     squares, graphs = figure.subfigures(1, 2, width_ratios=(2.5, 1))
     whole, zoom = squares.subplots(1, 2)
     square = closeup(film)
-    image, disks = _map(whole, film, 0), _disks(zoom, film, 0, square)
+    image, disks = _draw_map(whole, film, 0), _draw_disks(zoom, film, 0, square)
     _outline(whole, square)
-    bar = {"location": "bottom", "shrink": 0.8}
-    squares.colorbar(image, ax=whole, label="packing fraction", **bar)
-    squares.colorbar(disks, ax=zoom, label=SPIN_LABEL, **bar)
+    for mappable, axes, label in ((image, whole, PACKING_LABEL), (disks, zoom, SPIN_LABEL)):
+        squares.colorbar(mappable, ax=axes, label=label, location="bottom", shrink=0.8)
     zoom.set_title("the square", fontsize=TITLE)
     squares.suptitle(_caption(film), fontsize=TITLE)
     marks = []
-    for axes, draw_graph in zip(
-        graphs.subplots(2, 1, sharex=True), (_energies, _ratio), strict=True
-    ):
+    above, below = graphs.subplots(2, 1, sharex=True)
+    for axes, draw_graph in ((above, _energies), (below, _ratio)):
         draw_graph(axes, film)
         axes.set_title("", loc="left")
         axes.legend(fontsize=6)

@@ -6,11 +6,12 @@ from typing import NamedTuple
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
-from matplotlib.collections import EllipseCollection, LineCollection
+from matplotlib.collections import LineCollection
 from matplotlib.colors import Normalize, to_rgba
 from matplotlib.patches import Rectangle
 
 from roughgas.effects import Effects
+from roughgas.show.circles import add_circles, move
 from roughgas.show.movies.snapshots import Snapshot
 
 SPIN = ScalarMappable(Normalize(-2.0, 2.0), "PuOr")
@@ -72,7 +73,7 @@ class Disks:
 
     def __init__(self, axes: Axes, view: View, scales: np.ndarray | None) -> None:
         self._view, self._scales = view, scales
-        self._disks = _ellipses(axes, edgecolor=EDGE, linewidth=0.4)
+        self._disks = add_circles(axes, edgecolor=EDGE, linewidth=0.4)
         self._marks = LineCollection([], color=EDGE, linewidth=0.9, capstyle="round")
         axes.add_collection(self._marks)
 
@@ -80,7 +81,7 @@ class Disks:
         """Bring them to a snapshot, the one of this frame."""
         seen = copies(self._view, shot.position[:, 0], shot.position[:, 1], shot.slide)
         opacity = np.where((seen.row != 0) & (shot.slide is not None), IMAGE, 1.0)
-        _place(self._disks, seen.x, seen.y, 2.0)
+        move(self._disks, seen.x, seen.y)
         if shot.spin is None:
             self._disks.set(facecolor=_with(PLAIN, opacity), edgecolor=_with(EDGE, opacity))
             return
@@ -101,7 +102,7 @@ class Spheres:
     def __init__(self, axes: Axes, view: View, scales: np.ndarray | None) -> None:
         self._view, self._scales = view, scales
         self._depth = 3 - view.vertical  # the axis that is neither across nor up
-        self._disks = _ellipses(axes, linewidth=0.3)
+        self._disks = add_circles(axes, linewidth=0.3)
 
     def show(self, frame: int, shot: Snapshot) -> None:
         """Bring them to a snapshot, the one of this frame."""
@@ -119,7 +120,7 @@ class Spheres:
         colours[:, :3] = _towards_white(colours[:, :3], white)
         opacity = np.where((row != 0) & (shot.slide is not None), IMAGE, 1.0)
         rim = np.where(white == 0.0, opacity, 0.0)
-        _place(self._disks, x - shift, y + shift, 2.0 * radius)
+        move(self._disks, x - shift, y + shift, 2.0 * radius)
         self._disks.set(facecolor=_with(colours, opacity), edgecolor=_with(EDGE, rim))
 
     def _colours(self, shot, frame):
@@ -157,19 +158,6 @@ class Boundaries:
             inner = view.right + view.left
             right = [((inner, one + spacing / 3), (view.right, one)) for one in y]
             self._scratches.set_segments(left + right)
-
-
-def _ellipses(axes, **look):
-    disks = EllipseCollection([], [], [], units="xy", offsets=[], transOffset=axes.transData)
-    disks.set(**look)
-    axes.add_collection(disks)
-    return disks
-
-
-def _place(disks, x, y, diameter):
-    size = np.full(len(x), 1.0) * diameter
-    disks.set(widths=size, heights=size, angles=0.0 * size)
-    disks.set_offsets(np.column_stack([x, y]))
 
 
 def _with(colours, opacity):
