@@ -1,4 +1,4 @@
-"""A figure that moves: an .mp4 that any browser plays, or a .gif that goes round for ever."""
+"""A figure that moves: an .mp4 that any browser plays, or a .gif that loops forever."""
 
 import subprocess
 from collections.abc import Callable, Iterable
@@ -12,17 +12,16 @@ from roughgas.base.files import whole_file
 
 # x264's constant rate factor: lower is better and larger
 MP4 = "-vcodec libx264 -pix_fmt yuv420p -crf 28 -preset slow -f mp4"
-# one palette for all frames, and of each frame the part that changes; dots would flicker
+# one palette for all frames, and only the part of each frame that changes; dithering would flicker
 PALETTE = "split[a][b];[a]palettegen=max_colors=48[p];[b][p]paletteuse=dither=none"
 GIF = f"-filter_complex {PALETTE}:diff_mode=rectangle -loop 0 -f gif"
 ENCODERS = {".mp4": MP4, ".gif": GIF}
-KINDS = tuple(ENCODERS)
 
 
 def check_kind(path: str | Path) -> None:
-    """Raise InputError where `path` does not end as a movie does."""
-    if Path(path).suffix not in KINDS:
-        raise InputError("file", path, f"end in {' or '.join(KINDS)}")
+    """Raise InputError if `path` does not end as a movie does."""
+    if Path(path).suffix not in ENCODERS:
+        raise InputError("file", path, f"end in {' or '.join(ENCODERS)}")
 
 
 def write_movie(
@@ -34,13 +33,14 @@ def write_movie(
 ) -> None:
     """Write the movie of `figure`, which `show` brings to each of `frames`, to `path`.
 
-    Whole or not at all; what is drawn may not change the figure's layout. Its width and height must
-    be even numbers of pixels. Raises InputError for another kind of file, OSError.
+    The file is written whole or not at all. The figure's width and height must be even numbers of
+    pixels; its layout stays as it is at the start. Raises InputError for another kind of file,
+    OSError.
     """
     check_kind(path)
     canvas = FigureCanvasAgg(figure)
     canvas.draw()
-    figure.set_layout_engine("none")  # as it is now
+    figure.set_layout_engine("none")
     with whole_file(path) as draft:
         encoder = _encoder(path, draft, canvas.get_width_height(), per_second)
         try:
@@ -62,14 +62,14 @@ def _encoder(path, draft, size, per_second):
     command = [get_ffmpeg_exe(), "-y", "-v", "error", "-f", "rawvideo", "-pix_fmt", "rgba"]
     command += ["-s", "{}x{}".format(*size), "-r", f"{per_second:g}", "-i", "-"]
     command += [*ENCODERS[Path(path).suffix].split(), str(draft)]
-    # in a session of its own, lest Ctrl-C reach it first
+    # in a session of its own, so that Ctrl-C does not reach it first
     return subprocess.Popen(
         command, stdin=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True
     )
 
 
 def _finish(encoder, path):
-    """Wait for the encoder's end; raises OSError, with what it first said, where it failed."""
+    """Wait for the encoder to end. Raises OSError, with its first message, if it failed."""
     _, said = encoder.communicate()
     if encoder.returncode:
         why, *_ = said.decode(errors="replace").splitlines() or ["the encoder was stopped"]

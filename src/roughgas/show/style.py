@@ -1,6 +1,7 @@
-"""One look for all figures: readable in print, in grey and by the colour-blind.
+"""One look for all figures: readable in print, in grey, and for the colour-blind.
 
-The same data give the same bytes. No pyplot, hence no display and no state shared between figures.
+The same data give the same bytes. There is no pyplot, hence no display, and no state that figures
+share.
 """
 
 from collections.abc import Callable, Iterable
@@ -14,7 +15,7 @@ from roughgas.base.errors import InputError
 from roughgas.base.files import whole_file
 
 WIDTH, HEIGHT = 4.8, 5.0  # inches; prints at 85 % in one column of a journal
-# all that a matplotlibrc of the user's might have changed, but for where figures are shown
+# what a matplotlibrc of the user may change, except where figures are shown
 PLAIN = {
     name: value
     for name, value in rcParamsDefault.items()
@@ -50,7 +51,7 @@ METADATA = {
 
 
 class Look(NamedTuple):
-    """How a series is told from the others: by colour, marker and line at once."""
+    """What tells a series from the others: colour, marker and line at once."""
 
     colour: str
     marker: str
@@ -72,7 +73,7 @@ FAINT = "#888888"
 def draw(figure: Callable[[], Figure], outputs: Iterable[str | Path]) -> None:
     """Draw `figure()` in this style into each of `outputs`.
 
-    Raises InputError where one of them is neither a .pdf nor a .png.
+    Raises InputError if one of them is neither a .pdf nor a .png.
     """
     outputs = [Path(output) for output in outputs]
     for output in outputs:

@@ -7,11 +7,11 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import MultipleLocator
 
 SIDESTEP = 0.0066
-"""Distance between the residuals of two series, as a share of the axis: else one hides another."""
+"""Distance between the residuals of two series, as a share of the axis: none hides another."""
 
 
 class Axis(NamedTuple):
-    """A coordinate of reduced datasets, and how it is drawn."""
+    """A coordinate of reduced datasets, drawn horizontally."""
 
     name: str
     label: str
@@ -21,12 +21,12 @@ class Axis(NamedTuple):
 
     @property
     def grid(self) -> np.ndarray:
-        """Where theory is drawn, closely."""
+        """Close values at which theory is drawn, (801,)."""
         spaced = np.geomspace if self.logarithmic else np.linspace
         return spaced(*self.drawn, 801)
 
     def prepare(self, axes: Axes) -> None:
-        """Label the axis, and set its scale and its ends."""
+        """Label the axis of a plot, and set its scale and its limits."""
         axes.set_xlabel(self.label)
         if self.logarithmic:
             axes.set_xscale("log")
@@ -37,7 +37,7 @@ class Axis(NamedTuple):
             axes.xaxis.set_minor_locator(MultipleLocator(step / 5))
 
     def aside(self, at: np.ndarray, steps: float) -> np.ndarray:
-        """Places so many steps beside others."""
+        """Return places that are `steps` steps beside those given."""
         low, high = self.limits
         if self.logarithmic:
             return at * (high / low) ** (SIDESTEP * steps)

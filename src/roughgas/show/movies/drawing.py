@@ -44,7 +44,7 @@ def write(
 ) -> None:
     """Write the movie of `shots` to `path` (.mp4 or .gif), whole or not at all.
 
-    `watch` is handed the frames' numbers as they are drawn, and hands them on. Raises InputError
+    `watch` gets the numbers of the frames, and yields each as it is to be drawn. Raises InputError
     for another kind of file, OSError.
     """
     with rc_context(style.PARAMETERS):
@@ -54,7 +54,7 @@ def write(
 
 
 def picture(subject: Subject, shots: Sequence[Snapshot]) -> tuple[Figure, Callable[[int], None]]:
-    """The figure at its first frame, and what brings it to another one."""
+    """Return the figure at its first frame, and a function that brings it to another one."""
     view = view_of(subject, shots)
     room = min(3.9, 3.4 * (view.top - view.bottom) / (view.right - view.left))
     inches = math.ceil(10 * (room + FRAME_SPACE + GRAPH)) / 10  # even numbers of pixels
@@ -81,8 +81,11 @@ def picture(subject: Subject, shots: Sequence[Snapshot]) -> tuple[Figure, Callab
 
 
 def view_of(subject: Subject, shots: Sequence[Snapshot]) -> View:
-    """What is seen of the box: all of it, but no more than TALLEST widths high; from the side in
-    space, so that the vertical axis is that of gravity, or of the gradient of shear."""
+    """Return what is seen of the box: all of it, but no more than TALLEST widths high.
+
+    In space it is seen from the side: the vertical axis is that of gravity, or of the gradient of
+    shear.
+    """
     scene, lengths = subject.scene, subject.settings["box"]
     vertical = len(lengths) - 1 if scene.effects.gravity is not None else 1
     width, tall = float(lengths[0]), lengths[vertical]
@@ -91,7 +94,7 @@ def view_of(subject: Subject, shots: Sequence[Snapshot]) -> View:
         tall = 1.0 + max(shot.position[:, vertical].max() for shot in shots)
         bottom = -0.05 * width
     shown = min(tall, TALLEST * width)
-    margin = 0.04 * width if scene.box[0] is None else 0.0
+    margin = 0.04 * width if scene.box[0] is None else 0.0  # where walls are drawn
     images = SLIDING_IMAGES * tall if scene.effects.shear is not None else 0.0
     return View(
         left=-margin,
@@ -105,8 +108,11 @@ def view_of(subject: Subject, shots: Sequence[Snapshot]) -> View:
 
 
 def spin_scales(subject: Subject, shots: Sequence[Snapshot]) -> np.ndarray | None:
-    """The thermal spin of each frame, in a/T: its r.m.s. were the energy of the frame, in a driven
-    gas of all frames, shared equally."""
+    """Return the thermal spin of each frame, in a/T; None without spin.
+
+    It is the r.m.s. that spins would have if the energy of the frame were shared equally; in a
+    driven gas, that of all frames.
+    """
     effects = subject.scene.effects
     if effects.spin is None:
         return None
@@ -114,7 +120,7 @@ def spin_scales(subject: Subject, shots: Sequence[Snapshot]) -> np.ndarray | Non
     parts = np.array([[shot.E_trans, shot.E_rot] for shot in shots])
     weights = dimension, 2 * dimension - 3
     energy = np.average(parts, axis=1, weights=weights)
-    if subject.settings["schedule"]["kind"] != "cooling":
+    if not _cools(subject):
         energy = np.full(len(shots), energy.mean())
     return np.sqrt(2.0 * weights[1] * energy / effects.spin.inertia)
 
@@ -142,7 +148,7 @@ def _title(subject: Subject, view: View) -> str:
 
 
 def _name(subject: Subject) -> str:
-    """The experiment, and what is special of a variant, such as `waves, wave = sine`."""
+    """Return the experiment's name, with the parameter of a variant: `waves, wave = sine`."""
     base, _, variant = subject.name.partition("/")
     name = base.replace("_", " ")
     if not variant:
@@ -152,8 +158,8 @@ def _name(subject: Subject) -> str:
 
 
 def _graph(axes: Axes, subject: Subject, shots: Sequence[Snapshot]) -> Callable[[int], None]:
-    """The curve up to the present; R, or the energy where nothing spins."""
-    cooling = subject.settings["schedule"]["kind"] == "cooling"
+    """Draw R over time, or the energy if nothing spins; return what shows it up to a frame."""
+    cooling = _cools(subject)
     at = np.array([shot.collisions if cooling else shot.time for shot in shots])
     if shots[0].R is None:
         values = np.array([shot.E_trans for shot in shots])
@@ -165,7 +171,8 @@ def _graph(axes: Axes, subject: Subject, shots: Sequence[Snapshot]) -> Callable[
     begun = 0 if cooling else math.floor(at[0])
     at = at - begun
     since = rf"$(t - {begun}\,T)\,/\,T$" if begun else "$t/T$"
-    axes.set(xlabel=PER_PARTICLE if cooling else since, xlim=_limits(at))
+    room = 0.0 if at[0] < at[-1] else 0.5
+    axes.set(xlabel=PER_PARTICLE if cooling else since, xlim=(at[0] - room, at[-1] + room))
     axes.xaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 5, 10]))
     axes.plot(at, values, color="#cccccc", linewidth=0.9)
     (line,) = axes.plot([], [], color=style.LOOKS[0].colour)
@@ -178,5 +185,5 @@ def _graph(axes: Axes, subject: Subject, shots: Sequence[Snapshot]) -> Callable[
     return show
 
 
-def _limits(at):
-    return (at[0], at[-1]) if at[0] < at[-1] else (at[0] - 0.5, at[0] + 0.5)
+def _cools(subject):
+    return subject.settings["schedule"]["kind"] == "cooling"
