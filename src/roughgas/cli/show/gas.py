@@ -1,53 +1,112 @@
-"""A point: one seed of one (r, beta) of an experiment."""
+"""The summary of one gas: of a point, or of a film."""
 
 import json
 import math
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from roughgas.base.layout import columns
-from roughgas.cli.show.parts import cost, scalars, settings
 from roughgas.data.cf import unit_of
-from roughgas.data.netcdf import read_netcdf as read
 from roughgas.statistics.estimate import Estimate, decimals_of
 from roughgas.theory.prediction import equation_of, predicted_ratio
 
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["read", "record", "text"]
-
+SHAPES = {2: "disks", 3: "spheres"}
 BLOCKS, WIDTH = "▁▂▃▄▅▆▇█", 48
+FRAMES = 8  # of a film, that are shown
+FILMED = {
+    "collisions per particle": "collisions_per_particle",
+    "time / T": "time",
+    "E_trans / initial": "E_trans",
+    "R": "R",
+}
 
 
-def record(point: "xarray.Dataset") -> dict[str, Any]:
-    """Return attributes, single numbers, and theory where particles spin."""
+def scalars(data: "xarray.Dataset") -> dict[str, Any]:
+    """Return the single numbers of a dataset by name, flags as True and False."""
+    return {
+        name: bool(one) if "flag_meanings" in one.attrs else one.item()
+        for name, one in data.variables.items()
+        if not one.dims
+    }
+
+
+def cost(data: "xarray.Dataset") -> str:
+    """Return collisions and CPU time."""
+    collisions, seconds = int(data.collisions), float(data.kernel_seconds)
+    rate = f", {float(f'{collisions / seconds:.2g}'):,.0f} a second" if seconds > 0.0 else ""
+    return f"{collisions:,} collisions in {seconds:.2f} s of CPU time{rate}"
+
+
+def point_record(point: "xarray.Dataset") -> dict[str, Any]:
+    """Return the single numbers of a point, and those of theory where particles spin."""
     found = scalars(point)
     if "R" in found:
         expected = _theory(point)
         found |= {"R_theory": expected, "residual": found["R"] - expected}
-    return {"attributes": point.attrs, "variables": found}
+    return {"variables": found}
 
 
-def text(point: "xarray.Dataset") -> str:
-    """Return a summary for a person."""
+def point_text(point: "xarray.Dataset") -> str:
+    """Return the summary of a point: one seed of one (r, beta) of an experiment."""
     about = point.attrs
     variant = f"/{about['variant']}" if "variant" in about else ""
     rows = [
         ["experiment", f"{about['experiment']}{variant}, scale {about['scale']}"],
-        ["point", f"r = {about['r']:g}, beta = {about['beta']:g}, seed {about['seed']}"],
-        *settings(json.loads(about["experiment_json"]), about["dimension"]),
+        *_settings(about, about["experiment_json"]),
         ["", ""],
         *(_ratio(point) if "R" in point else []),
         *(_energy(point, name) for name in ("E_trans", "E_rot") if name in point),
         ["steady state", _steady(point)],
         ["cost", cost(point)],
     ]
-    parts = [columns(rows)]
-    if "energy_input" in point:
-        parts.append(_books(point))
-    return "\n\n".join([*parts, f"To make it again:\n{about['command']}"])
+    books = [_books(point)] if "energy_input" in point else []
+    return "\n\n".join([columns(rows), *books, f"To make it again:\n{about['command']}"])
+
+
+def film_record(film: "xarray.Dataset") -> dict[str, Any]:
+    """Return the number of frames of a film, and its single numbers."""
+    return {"frames": film.sizes["frame"], "variables": scalars(film)}
+
+
+def film_text(film: "xarray.Dataset") -> str:
+    """Return the summary of a film of a gas that forms clusters."""
+    about, last = film.attrs, film.sizes["frame"] - 1
+    head = [
+        *_settings(about, about["settings_json"]),
+        ["packing", f"{about['packing']:.4g}"],
+        ["frames", f"{last + 1}, of {film.sizes['x']} x {film.sizes['y']} cells"],
+        ["cost", cost(film)],
+    ]
+    table = [["frame", *FILMED]]
+    for k in sorted({round(k * last / (FRAMES - 1)) for k in range(FRAMES)}):
+        table.append([str(k), *(f"{float(film[name][k]):.5g}" for name in FILMED.values())])
+    again = f"To make it again:\n{about['command']}"
+    return "\n\n".join([columns(head), columns(table, numbers=True), again])
+
+
+def _settings(about: Mapping[str, Any], text: str) -> list[list[str]]:
+    """Return rows with what was simulated, and for how long, from attributes and settings."""
+    experiment = json.loads(text)
+    box = " x ".join(f"{side:g}" if side != "open" else "open" for side in experiment["box"])
+    shape = SHAPES[len(experiment["box"])]
+    effects = [f"{name} ({_listed(one)})" for name, one in experiment["effects"].items()]
+    rows = [
+        ["point", f"r = {about['r']:g}, beta = {about['beta']:g}, seed {about['seed']}"],
+        ["gas", f"{experiment['particles']} {shape}, box {box} a"],
+        *(["" if k else "effects", one] for k, one in enumerate(effects)),
+    ]
+    if "schedule" in experiment:
+        rows.append(["schedule", _listed(experiment["schedule"])])
+    return rows
+
+
+def _listed(settings: Mapping[str, Any]) -> str:
+    return ", ".join(f"{name} {value}" for name, value in settings.items())
 
 
 def _theory(point: "xarray.Dataset") -> float:
