@@ -17,13 +17,18 @@ class NotTestedError(Exception):
 
 
 def load(path: str | Path) -> xr.Dataset:
-    """Return the reduced dataset at `path` with `theory` and `deviation` (R - theory) like its R.
+    """Return the reduced dataset at `path`, beside theory."""
+    return beside_theory(read_reduced(path))
+
+
+def beside_theory(data: xr.Dataset) -> xr.Dataset:
+    """Return a reduced dataset with `theory` and `deviation` (R - theory), which are like its R.
 
     Points that are not in a steady state cannot test a theory of one: their R is NaN, and the
     attribute `set_aside` counts them. Values of r that were simulated with the contact-time model
     are left out, since the paper has none.
     """
-    data = _without_contact_time(read_reduced(path))
+    data = _without_contact_time(data).copy()
     found, steady = np.isfinite(data.R), data.equilibrated > EQUILIBRATED
     data["theory"] = data.R.copy(data=theory_of(data))
     data["R"] = data.R.where(steady)

@@ -1,0 +1,303 @@
+"""The statements of the paper, on datasets of which the answer is known."""
+
+import numpy as np
+import pytest
+from tests.synthetic import BETA, reduced
+
+from roughgas import theory
+from roughgas.claims.verdicts import FAILS, HOLDS, NOT_TESTED, QUALIFIED
+
+ROUGH = tuple(round(0.1 * step, 1) for step in range(-5, 11))
+
+
+def bump(size):
+    """A difference that grows with dissipation: `size` at r = 0.8, beta = 0."""
+    return lambda r, beta: size * (1 - r) / 0.2 * (1 - beta**2)
+
+
+def constant(size):
+    return lambda r, beta: size + 0 * r * beta
+
+
+def walls(rough=0.2, particle=0.0, smooth=0.0, beta=(-1.0, *BETA)):
+    """The bed without walls, and with walls that shift R by so much at beta < 1."""
+
+    def shift(size):
+        return lambda r, beta: size * (1 - beta) + 0 * r
+
+    return (
+        reduced("vibrated"),
+        reduced("vibrated_rough_walls", shift(rough), r=(0.9,), beta=beta),
+        reduced("vibrated_particle_walls", shift(particle), r=(0.9,)),
+        reduced("vibrated_smooth_walls", shift(smooth), r=(0.9,)),
+    )
+
+
+def sheared(direct=0.1, error=0.004, **others):
+    """A sheared gas on Eq. (lun), whose un-subtracted R lies `direct` too low."""
+    data = reduced("sheared", error=error, measured_for=5000.0, **others)
+    data["R_unsubtracted"] = data.R - direct
+    data["R_unsubtracted_stderr"] = data.R_stderr
+    return data
+
+
+def cooling(shift=0.0, **others):
+    """A cooling gas on Eq. (K) but for a constant."""
+    return reduced("cooling", constant(shift), beta=ROUGH, **others)
+
+
+def cooling_as(ratio):
+    """A cooling gas with R = ratio(r, beta), whatever Eq. (K) says."""
+
+    def shift(r, beta):
+        return ratio(r, beta) - theory.cooling_ratio(r, beta, 2, 0.5)
+
+    return reduced("cooling", shift, beta=ROUGH)
+
+
+def lun(r, beta):
+    return theory.lun_ratio(beta, 0.5) + 0 * r
+
+
+CASES = {
+    "vibrated_follows_lun": (
+        lambda size: [reduced(shift=bump(size))],
+        {0.0: HOLDS, 0.015: HOLDS, 0.04: QUALIFIED, 0.09: FAILS},
+    ),
+    "vibrated_independent_of_r": (
+        lambda slope: [reduced(shift=lambda r, beta: slope * (0.99 - r) + 0 * beta)],
+        {0.0: HOLDS, 0.2: QUALIFIED, 0.5: FAILS},
+    ),
+    "forced_equipartition": (
+        lambda size: [
+            reduced(),
+            reduced("sheared", shift=lambda r, beta: size * (beta == 1) + 0 * r),
+        ],
+        {0: HOLDS, 0.04: QUALIFIED, -0.1: FAILS},
+    ),
+    "particle_walls_change_nothing": (
+        lambda size: walls(particle=size),
+        {0.0: HOLDS, 0.02: QUALIFIED, 0.1: FAILS},
+    ),
+    "smooth_walls_change_nothing": (
+        lambda size: walls(smooth=size),
+        {0.0: HOLDS, 0.02: QUALIFIED, 0.1: FAILS},
+    ),
+    "rough_walls_push_to_half": (
+        lambda size: walls(rough=size),
+        {0.2: HOLDS, 0.003: QUALIFIED, 0.0: FAILS, -0.2: FAILS},
+    ),
+    "sheared_follows_lun": (
+        lambda size: [sheared(shift=constant(size))],
+        {0: HOLDS, 0.04: QUALIFIED, 0.1: FAILS},
+    ),
+    "shear_fails_unsubtracted": (
+        lambda direct: [sheared(direct, error=0.002)],
+        {0.1: HOLDS, 0.04: QUALIFIED, 0.0: FAILS},
+    ),
+    "cooling_follows_k": (
+        lambda size: [cooling(size)],
+        {0.0: HOLDS, -0.012: HOLDS, 0.03: QUALIFIED, -0.07: FAILS},
+    ),
+    "cooling_depends_on_r": (
+        lambda slope: [cooling_as(lambda r, beta: lun(r, beta) + slope * (1 - r))],
+        {1.0: HOLDS, 0.2: QUALIFIED, 0.0: FAILS},
+    ),
+    "forcing_decides": (
+        lambda size: [cooling(size), reduced()],
+        {0.0: HOLDS, 0.04: QUALIFIED, 0.3: FAILS},
+    ),
+    "restitution_matters_when_cooling": (
+        lambda slope: [
+            cooling_as(lambda r, beta: lun(r, beta) + 1 - r),
+            reduced(shift=lambda r, beta: slope * (1 - r) + 0 * beta),
+        ],
+        {0.0: HOLDS, 0.5: QUALIFIED, 1.0: FAILS},
+    ),
+}
+
+
+@pytest.mark.parametrize(
+    ("name", "size", "expected"),
+    [
+        (name, size, verdict)
+        for name, (_, sizes) in CASES.items()
+        for size, verdict in sizes.items()
+    ],
+)
+def test_a_verdict_depends_on_the_size_of_an_effect(judged, name, size, expected):
+    assert judged(name, *CASES[name][0](size)).verdict == expected
+
+
+@pytest.mark.parametrize(
+    ("name", "datasets", "index", "value"),
+    [
+        ("vibrated_follows_lun", [reduced(shift=bump(0.04))], 0, 0.04),
+        ("vibrated_independent_of_r", [reduced(shift=bump(0.1), beta=(0.0,))], 1, 0.095),
+        ("cooling_follows_k", [cooling(-0.012)], 1, -0.012),
+    ],
+)
+def test_numbers_are_what_datasets_hold(judged, name, datasets, index, value):
+    _, number = judged(name, *datasets).numbers[index]
+    assert number.value == pytest.approx(value, abs=0.005) and number.real
+
+
+def test_one_stray_point_qualifies_but_does_not_refute(judged):
+    stray = reduced(shift=lambda r, beta: 0.1 * ((r == 0.9) & (beta == 0.3)))
+    finding = judged("vibrated_follows_lun", stray)
+    assert finding.verdict == QUALIFIED and "r = 0.9, beta = 0.3" in finding.reason
+
+
+@pytest.mark.parametrize(
+    ("name", "datasets", "reason"),
+    [
+        ("vibrated_follows_lun", [reduced(error=0.2)], "errors are too large"),
+        ("vibrated_follows_lun", [reduced(equilibrated=0.0)], "steady state"),
+        ("vibrated_independent_of_r", [reduced(r=(0.9,))], "fewer than two"),
+        ("theory_underestimates", [reduced(error=0.03)], "too large to tell a direction"),
+        ("rough_walls_above_half", walls(beta=BETA), "does not reach beta = -1"),
+        ("shear_fails_unsubtracted", [reduced("sheared")], "no un-subtracted R"),
+        ("shear_noisier", [sheared(seeds=1), reduced(seeds=1)], "several seeds"),
+        ("cooling_reaches_a_constant", [cooling().drop_vars("R_drift")], "no time series"),
+    ],
+)
+def test_what_cannot_be_told_is_not_tested(judged, name, datasets, reason):
+    finding = judged(name, *datasets)
+    assert finding.verdict == NOT_TESTED and reason in finding.reason
+
+
+def test_large_errors_neither_hold_nor_refute(judged):
+    finding = judged("vibrated_follows_lun", reduced(error=0.02))
+    assert finding.verdict == QUALIFIED and "too large to tell" in finding.reason
+
+
+def test_the_degrees_of_freedom_of_each_point_count(judged):
+    """Five standard errors are significant only if they are known well."""
+    shifted = {"shift": constant(0.03), "error": 0.006}
+    assert judged("vibrated_follows_lun", reduced(**shifted)).verdict == QUALIFIED
+    vague = judged("vibrated_follows_lun", reduced(R_dof=3.0, **shifted))
+    assert vague.verdict == NOT_TESTED
+    unknown = judged("vibrated_follows_lun", reduced(R_dof=0.0))
+    assert unknown.verdict == HOLDS and "error unknown" in unknown.reason
+
+
+@pytest.mark.parametrize(
+    ("shift", "expected"),
+    [
+        (bump(0.03), HOLDS),
+        (constant(0.01), QUALIFIED),
+        (bump(0.003), QUALIFIED),
+        (bump(0.0), FAILS),
+        (bump(-0.03), FAILS),
+    ],
+    ids=["grows", "everywhere the same", "a trifle", "none", "overestimates"],
+)
+def test_theory_underestimates(judged, shift, expected):
+    finding = judged("theory_underestimates", reduced(shift=shift, error=0.0005))
+    assert finding.verdict == expected and "at r = 0.8" in finding.reason
+
+
+def test_points_without_a_steady_state_are_set_aside(judged):
+    equilibrated = np.ones((3, 21))
+    equilibrated[0] = 0.25
+    data = reduced(shift=lambda r, beta: 0.3 * (r == 0.8) + 0 * beta, equilibrated=equilibrated)
+    finding = judged("vibrated_follows_lun", data)
+    assert finding.verdict == HOLDS and "42 of 42 points" in finding.reason
+    assert "21 points not in a steady state set aside" in finding.reason
+
+
+def test_points_with_the_contact_time_model_are_not_the_papers(judged):
+    """At r = 0.6 R is far off: nothing of it is judged."""
+    contact_time = np.array([[1e-4], [np.nan], [np.nan]])
+    elsewhere = {"shift": lambda r, beta: np.where(r == 0.6, 0.3, 0.0), "r": (0.6, 0.9, 0.99)}
+    modelled = reduced("vibrated", contact_time=contact_time, **elsewhere)
+    assert judged("vibrated_follows_lun", modelled).verdict == HOLDS
+    assert judged("vibrated_follows_lun", reduced("vibrated", **elsewhere)).verdict != HOLDS
+
+
+@pytest.mark.parametrize(
+    ("shifts", "expected"),
+    [
+        ({}, HOLDS),
+        ({"particle": 0.02}, QUALIFIED),
+        ({"smooth": 0.15}, FAILS),
+        ({"rough": 0.0}, FAILS),
+        ({"rough": 0.0, "smooth": 0.2}, FAILS),
+    ],
+    ids=["only rough", "others a little", "smooth as much", "none", "smooth alone"],
+)
+def test_only_rough_walls_matter(judged, shifts, expected):
+    assert judged("only_rough_walls_matter", *walls(**shifts)).verdict == expected
+
+
+def test_rough_walls_that_pull_somewhere_qualify(judged):
+    uneven = reduced("vibrated_rough_walls", lambda r, b: 0.2 - 0.3 * (b > 0.7) + 0 * r, r=(0.9,))
+    found = judged("rough_walls_push_to_half", reduced(), uneven)
+    assert found.verdict == QUALIFIED and "R falls at 2 of 20 points" in found.reason
+
+
+@pytest.mark.parametrize(
+    ("above", "expected"), [(0.1, HOLDS), (0.003, QUALIFIED), (0.0, FAILS), (-0.1, FAILS)]
+)
+def test_above_half_at_smooth_particles(judged, above, expected):
+    _, rough, _, _ = walls()
+    rough = rough.sel(beta=[-1.0])
+    rough = rough.assign(R=0 * rough.R + 0.5 + above, R_stderr=0 * rough.R + 0.0001)
+    found = judged("rough_walls_above_half", rough)
+    assert found.verdict == expected and found.numbers[0][1].value == pytest.approx(above)
+
+
+def test_unsubtracted_must_be_worse_than_subtracted(judged):
+    data = sheared(direct=0.05, shift=constant(0.1))
+    assert judged("shear_fails_unsubtracted", data).verdict == FAILS
+
+
+@pytest.mark.parametrize(
+    ("error", "expected"),
+    [(0.004, HOLDS), (0.0013, QUALIFIED), (0.001, QUALIFIED), (0.0005, FAILS)],
+)
+def test_noisier(judged, error, expected):
+    found = judged("shear_noisier", sheared(error=error), reduced(error=0.001))
+    assert found.verdict == expected
+    log = found.numbers[0][1]
+    assert log.value == pytest.approx(np.log(error / 0.001), abs=3 * log.stderr)
+
+
+def test_noise_is_compared_at_the_papers_averaging_times(judged):
+    short = sheared(error=0.004 * np.sqrt(10))
+    short["measured_for"] = 0 * short.R + 500.0
+    (first, paper), (second, time), (third, collision) = judged(
+        "shear_noisier", short, reduced(error=0.001)
+    ).numbers
+    assert "at the paper's averaging times" in first and "at equal times" in second
+    assert "at equal numbers of collisions" in third
+    assert paper.value == pytest.approx(np.log(4), abs=0.3)
+    assert time.value - paper.value == pytest.approx(np.log(5000 / 2000) / 2)
+    assert collision.value - time.value == pytest.approx(np.log(2000 / 500) / 2)
+
+
+def test_noise_from_few_points_is_not_tested(judged):
+    places = {"r": (0.9,), "beta": (-0.5, 0.0, 0.5)}
+    found = judged("shear_noisier", sheared(error=0.003, **places), reduced(**places))
+    assert found.verdict == NOT_TESTED and "too uncertain" in found.reason
+
+
+@pytest.mark.parametrize(
+    ("drift", "steady", "expected"),
+    [
+        (0.001, 1.0, HOLDS),
+        (0.04, 1.0, QUALIFIED),
+        (0.1, 1.0, FAILS),
+        (0.001, [[0.0], [1.0], [1.0]], QUALIFIED),
+        (0.001, [[0.0], [0.0], [1.0]], FAILS),
+    ],
+)
+def test_reaches_a_constant(judged, drift, steady, expected):
+    steady = np.broadcast_to(steady, (3, len(ROUGH)))
+    data = cooling(equilibrated=steady, R_drift=drift, R_drift_stderr=0.001)
+    found = judged("cooling_reaches_a_constant", data)
+    assert found.verdict == expected and "A plateau was found at" in found.reason
+
+
+def test_forcing_does_not_decide_where_both_gases_agree(judged):
+    assert judged("forcing_decides", cooling_as(lun), reduced()).verdict == FAILS
