@@ -39,8 +39,8 @@ def decisions(state, scene, i, number):
 def packed_instructions(loop, scene: Scene, state) -> Counter:
     """How often each (instruction, register) stands in the machine code of `loop` for a scene."""
     loop(state, scene, 0, 3)
-    (code,) = loop.inspect_asm().values()
-    loop.overloads.clear()
+    (code,) = loop.dispatcher.inspect_asm().values()
+    loop.dispatcher.overloads.clear()
     return Counter(ARITHMETIC.findall(code))
 
 

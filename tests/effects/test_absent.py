@@ -82,7 +82,7 @@ def test_an_effect_that_is_there_could_not_be_compiled_so(tmp_path):
 def test_each_composition_has_machine_code_of_its_own():
     for name in ("gas", "smooth"):
         run(*reversed(begin(small(name), 0.9, -1.0)), 0)
-    scenes = {str(signature[1]) for signature in record.signatures}
+    scenes = {str(signature[1]) for signature in record.dispatcher.signatures}
     without, having = (
         [scene for scene in scenes if ("Spin" in scene) == present] for present in (False, True)
     )

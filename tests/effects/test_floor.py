@@ -15,7 +15,7 @@ time_to_floor = from_python(floors.time_to_floor)
 
 
 def floor_of(amplitude=5.0, period=1.0):
-    return Floor(amplitude, period, 1.0, -1.0, 0.0)
+    return Floor(amplitude, period, 1.0, -1.0)
 
 
 def exact_time(floor, gravity, height, speed, phase):

@@ -12,17 +12,14 @@ import pytest
 from habits.conftest import python
 
 PROGRAM = """
-from roughgas.kernel.cache import load_without_compiler, one_writer_at_a_time
 from roughgas.kernel.jit import entry
 
 @entry(cache=True)
 def triple(x):
     return 3.0 * x
 
-load_without_compiler(triple)
-one_writer_at_a_time(triple)
 assert triple(2.0) == 6.0
-print("loaded" if sum(triple.stats.cache_hits.values()) else "compiled")
+print("loaded" if sum(triple.dispatcher.stats.cache_hits.values()) else "compiled")
 """
 
 

@@ -52,14 +52,14 @@ class Exact:
 
 def dyadic(rng):
     """A fall that ends exactly where a stroke does, or somewhat above or below."""
-    floor = Floor(*(2.0 ** rng.integers(-3, 3, 2)), 1.0, -1.0, 0.0)
+    floor = Floor(*(2.0 ** rng.integers(-3, 3, 2)), 1.0, -1.0)
     gravity, speed = 2.0 ** rng.integers(-4, 4), rng.integers(-64, 65) / 8.0
     phase = rng.integers(0, 64) / 16.0 * floor.period
     return _shortly_before_or_after(rng, floor, gravity, speed, phase)
 
 
 def general(rng):
-    floor = Floor(*(10.0 ** rng.uniform(-1, 1, 2)), 1.0, -1.0, 0.0)
+    floor = Floor(*(10.0 ** rng.uniform(-1, 1, 2)), 1.0, -1.0)
     gravity = 10.0 ** rng.uniform(-3, 2)
     speed = rng.choice((-1.0, 1.0)) * 10.0 ** rng.uniform(-1, 3)
     phase = rng.uniform(0.0, 100.0) * floor.period
@@ -83,7 +83,7 @@ def _shortly_before_or_after(rng, floor, gravity, speed, phase):
 
 def nearly_at_rest(rng):
     """On the first stroke's surface, or so; half of the starts are exactly on it or below."""
-    floor = Floor(10.0 ** rng.uniform(-1, 1), 2.0 ** rng.integers(10, 14), 1.0, -1.0, 0.0)
+    floor = Floor(10.0 ** rng.uniform(-1, 1), 2.0 ** rng.integers(10, 14), 1.0, -1.0)
     floor_speed, gravity = floor.amplitude / floor.period, 10.0 ** rng.uniform(-2, 2)
     phase = rng.choice((0.0, rng.uniform(0.0, 0.5) * floor.period))
     gap = rng.choice((0.0, -1e-16, 10.0 ** rng.uniform(-16, -10)))

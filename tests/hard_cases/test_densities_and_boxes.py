@@ -241,7 +241,7 @@ def test_without_the_centred_lattice(without):
     without(
         "a centred lattice for a start that is denser than a square one",
         test_densities,
-        "initial.py",
+        "scene/initial.py",
         "if len(sites) < number and None not in scene.box:",
         "if False:",
     )
@@ -251,7 +251,7 @@ def test_without_the_refusal_of_one_alone(without):
     without(
         "a point of one particle that nothing drives is refused",
         test_few_particles,
-        "composition.py",
+        "scene/composition.py",
         '    _check_company(experiment.get("particles"), effects)\n',
         "",
     )

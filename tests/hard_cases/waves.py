@@ -145,11 +145,11 @@ def exact(floor, *fall):
 
 
 def sine(amplitude, period):
-    return SineFloor(amplitude, period, 1.0, -1.0, 0.0)
+    return SineFloor(amplitude, period, 1.0, -1.0)
 
 
 def triangle(amplitude, period, rise=0.5):
-    return TriangularFloor(amplitude, period, rise, 1.0, -1.0, 0.0)
+    return TriangularFloor(amplitude, period, rise, 1.0, -1.0)
 
 
 def level(floor, phase):

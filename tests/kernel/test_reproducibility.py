@@ -76,7 +76,7 @@ def test_the_same_bits_without_a_cache_and_others_after_an_edit(tmp_path):
     scene, state = begin(settings("smooth", 20, [20, 20]), 0.9, -1.0, 11)
     rows = run(state, scene, 10, collisions=100)  # now the session's cache holds it
     here = {name: [x.hex() for x in column] for name, column in rows.items()}
-    session = os.environ.get("ROUGHGAS_CACHE_DIR") or Path(_cache_folder()).parent
+    session = cache.kernel_folder().parent
     processes = (
         start_elsewhere(PACKAGE.parent, tmp_path / "fresh"),
         start_elsewhere(edited, session),
@@ -89,47 +89,50 @@ def test_the_same_bits_without_a_cache_and_others_after_an_edit(tmp_path):
     shutil.rmtree(Path(session) / f"kernels-{other['hash']}")
 
 
-def _cache_folder():
-    import numba
-
-    return numba.config.CACHE_DIR
-
-
-@pytest.mark.parametrize("room", cache.COMPILED_ROOMS)
-def test_the_hash_covers_every_compiled_source(tmp_path, monkeypatch, room):
+def test_the_hash_covers_the_sources_of_the_kernel_and_no_others(tmp_path, monkeypatch):
     copy = tmp_path / "roughgas"
     shutil.copytree(PACKAGE, copy, ignore=shutil.ignore_patterns("__pycache__"))
     monkeypatch.setattr(cache, "PACKAGE", copy)
     hashes = {cache.source_hash()}
+    (copy / "studies" / "dsmc" / "collisions.py").write_text("")
     assert hashes == {cache.source_hash()}
-    sources = sorted((copy / room).glob("*.py"))
+    sources = [source for room in cache.ROOMS for source in sorted((copy / room).glob("*.py"))]
     for source in sources:
         source.write_bytes(source.read_bytes() + b"\n")
         hashes.add(cache.source_hash())
-    (copy / room / "another.py").write_text("")
+    (copy / "effects" / "another.py").write_text("")
     hashes.add(cache.source_hash())
     assert len(hashes) == len(sources) + 2
 
 
+def test_a_study_that_compiles_code_has_a_folder_for_its_own_sources(tmp_path, monkeypatch):
+    copy = tmp_path / "roughgas"
+    shutil.copytree(PACKAGE, copy, ignore=shutil.ignore_patterns("__pycache__"))
+    monkeypatch.setattr(cache, "PACKAGE", copy)
+    monkeypatch.setenv("ROUGHGAS_CACHE_DIR", str(tmp_path / "kept"))
+    study = copy / "studies" / "dsmc"
+    folders = [cache.folder_of(study / "collisions.py")]
+    for name in ("collisions.py", "nanbu.py"):
+        (study / name).write_text("")
+        folders.append(cache.folder_of(study / "collisions.py"))
+    assert len(set(folders)) == 3
+    assert {folder.parent for folder in folders} == {cache.kernel_folder()}
+    for file in (copy / "kernel" / "record.py", tmp_path / "program.py"):
+        assert cache.folder_of(file) == cache.kernel_folder()
+
+
 def test_every_compiled_function_lies_in_a_hashed_room():
-    """The decorators are used nowhere else, so that no compiled source escapes the hash."""
+    """In the kernel's, or in that of the entry which calls it: no source escapes the hash."""
+    marks = ["@jit\n", "@compiled\n", "@unrolled\n", "@entry", "njit"]
     for source in PACKAGE.rglob("*.py"):
-        compiled = any(
-            f"@{name}" in source.read_text() for name in ("jit", "compiled", "entry", "njit")
-        )
-        assert not compiled or source.parent.name in cache.COMPILED_ROOMS, source
+        if source.parent.name not in cache.ROOMS and any(m in source.read_text() for m in marks):
+            beside = [other.read_text() for other in source.parent.glob("*.py")]
+            assert any("@entry(cache=True)" in text for text in beside), source
 
 
 def test_an_unwritable_cache_is_replaced_by_a_temporary_one(tmp_path, monkeypatch):
-    import numba
-
-    before = numba.config.CACHE_DIR
     (tmp_path / "a file").write_text("")
     monkeypatch.setenv("ROUGHGAS_CACHE_DIR", str(tmp_path / "a file" / "below"))
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
-    try:
-        folder = cache.use_source_keyed_folder()
-        assert folder.is_relative_to(tmp_path) and folder.name.endswith(cache.source_hash())
-        assert numba.config.CACHE_DIR == str(folder)
-    finally:
-        numba.config.CACHE_DIR = before
+    folder = cache.kernel_folder()
+    assert folder.is_relative_to(tmp_path) and folder.name.endswith(cache.source_hash())

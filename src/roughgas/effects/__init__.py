@@ -31,7 +31,7 @@ class Effects(NamedTuple):
 
 
 def inertia(effects: Effects) -> float | None:
-    """q of the particles, None where they do not spin."""
+    """Return q of the particles, None where they do not spin."""
     return None if effects.spin is None else effects.spin.inertia
 
 
@@ -40,7 +40,7 @@ KINDS = {name: kind.__args__[0] for name, kind in Effects.__annotations__.items(
 
 
 def schema() -> dict[str, Any]:
-    """What `effects` may hold in settings, as a JSON schema; what they do without is null."""
+    """Return what `effects` may hold in settings, as a JSON schema; null takes an effect away."""
     return {
         "description": "What acts in this experiment; an effect that is not listed costs nothing.",
         "type": "object",
@@ -58,7 +58,7 @@ def schema() -> dict[str, Any]:
 
 
 def required() -> dict[str, Any]:
-    """What must be there of each effect, once all settings are merged, as a JSON schema."""
+    """Return what each effect must have once all settings are merged, as a JSON schema."""
     return {
         "properties": {
             name: {"required": [key for key, one in kind.parameters.items() if one.default is None]}

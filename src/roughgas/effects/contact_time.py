@@ -37,7 +37,7 @@ class ContactTime(NamedTuple):
 
 
 def moment(model, number, rng):
-    """When each particle had its previous contact."""
+    """Return when each particle had its previous contact."""
     return np.full(number, -math.inf)
 
 

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from roughgas.effects.settings import MATERIAL, Number, Word, register
 from roughgas.effects.sine_floor import SineFloor
-from roughgas.effects.surface import LEAST_DEPARTURE, bounce, fall, flight, phase, until_back
+from roughgas.effects.surface import bounce, fall, flight, phase, until_back
 from roughgas.effects.triangular_floor import REVERSED_RISE, TriangularFloor
 from roughgas.kernel.jit import jit
 
@@ -33,20 +33,15 @@ class Floor(NamedTuple):
     period: float
     restitution: float
     roughness: float
-    least_departure: float  # a particle leaves at no less than this speed, relative to the floor
 
     @classmethod
     def from_settings(cls, settings, around):
         """Return the floor of the wave form that the settings name."""
-        chosen = settings | {"least_departure": LEAST_DEPARTURE}
-        match chosen.pop("wave"):
-            case "reversed_sawtooth":
-                return TriangularFloor(rise=REVERSED_RISE, **chosen)
-            case "triangle":
-                return TriangularFloor(rise=0.5, **chosen)
-            case "sine":
-                return SineFloor(**chosen)
-        return cls(**chosen)
+        wave = settings.pop("wave")
+        rises = {"triangle": 0.5, "reversed_sawtooth": REVERSED_RISE}
+        if wave in rises:
+            return TriangularFloor(rise=rises[wave], **settings)
+        return (SineFloor if wave == "sine" else cls)(**settings)
 
 
 @jit
@@ -57,7 +52,7 @@ def predict(floor, index, state, scene, i):
 
 @jit
 def time_to_floor(floor, gravity, height, speed, phase):
-    """Time until a particle whose lowest point is at `height`, rising at `speed`, meets the floor.
+    """Return when a particle with its lowest point at `height`, rising at `speed`, meets the floor.
 
     phase is the time since some stroke began; gravity > 0. Times in T, lengths in a.
     """
@@ -77,7 +72,7 @@ def time_to_floor(floor, gravity, height, speed, phase):
 
 @jit
 def _stroke_to_meet(floor, gravity, height, speed, phase, time):
-    """The stroke under way at `time`, or when a particle above all strokes is back from there."""
+    """Return the stroke at `time`, or when a particle above all strokes is back from there."""
     time = until_back(floor.amplitude, gravity, height, speed, time)
     return math.floor((phase + time) / floor.period)
 

@@ -29,7 +29,7 @@ class Number(NamedTuple):
     default: float | None = None
 
     def read(self, key: str, value: Any, around: Surroundings) -> float:
-        """The number as a float; raises InputError where it is none, or not in the interval."""
+        """Return the number as a float; raise InputError unless it is one in the interval."""
         if value is None and self.default is not None:
             return self.default
         is_number = isinstance(value, int | float) and not isinstance(value, bool)
@@ -38,7 +38,7 @@ class Number(NamedTuple):
         return float(value)
 
     def schema(self) -> dict[str, Any]:
-        """The same as a JSON schema."""
+        """Return the same as a JSON schema."""
         return {"description": self.description} | Interval(self.interval).schema()
 
 
@@ -50,18 +50,18 @@ class Word(NamedTuple):
 
     @property
     def default(self) -> str:
-        """What it is if not given."""
+        """The word that is taken if none is given."""
         return self.words[0]
 
     def read(self, key: str, value: Any, around: Surroundings) -> str:
-        """The word; raises InputError for any other one."""
+        """Return the word; raise InputError for any other."""
         value = self.default if value is None else value
         if value not in self.words:
             raise InputError(key, value, f"be one of {', '.join(self.words)}")
         return value
 
     def schema(self) -> dict[str, Any]:
-        """The same as a JSON schema."""
+        """Return the same as a JSON schema."""
         return {"description": self.description, "enum": list(self.words)}
 
 
@@ -73,7 +73,7 @@ class OfParticles(NamedTuple):
     default = None
 
     def read(self, key: str, value: Any, around: Surroundings) -> float:
-        """The number; raises InputError where it is illegal, or a roughness that nothing feels."""
+        """Return the number; raise InputError if it is illegal, or a roughness without spins."""
         found = getattr(around, self.own) if value == "particles" else None
         found = self.number.read(key, value, around) if found is None else found
         if self.own == "roughness" and "spin" not in around.effects and found != -1.0:
@@ -81,7 +81,7 @@ class OfParticles(NamedTuple):
         return found
 
     def schema(self) -> dict[str, Any]:
-        """The same as a JSON schema."""
+        """Return the same as a JSON schema."""
         number = self.number.schema()
         description = f"{number.pop('description')}; `particles` takes the particles' own."
         return {"description": description, "anyOf": [number, {"const": "particles"}]}

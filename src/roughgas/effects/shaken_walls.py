@@ -42,7 +42,7 @@ class ShakenWalls(NamedTuple):
 
 @jit
 def phase(shaken, index, base):
-    """Time since a period began at which the clock's base lies."""
+    """Return the time from the beginning of a period to the clock's base."""
     return base % shaken.period
 
 

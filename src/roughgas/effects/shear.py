@@ -33,7 +33,7 @@ class Shear(NamedTuple):
 
 @jit
 def phase(shear, index, base):
-    """Offset of the image above at absolute time `base`, from 0 to L."""
+    """Return the offset of the image above at absolute time `base`, from 0 to L."""
     return shear.velocity * (base % (shear.length / abs(shear.velocity)))
 
 

@@ -23,7 +23,6 @@ class SineFloor(NamedTuple):
     period: float  # T
     restitution: float
     roughness: float
-    least_departure: float  # a particle leaves at no less than this speed, relative to the floor
 
 
 @jit
@@ -34,7 +33,7 @@ def predict(floor, index, state, scene, i):
 
 @jit
 def time_to_floor(floor, gravity, height, speed, phase):
-    """Time until a particle whose lowest point is at `height`, rising at `speed`, meets the floor.
+    """Return when a particle with its lowest point at `height`, rising at `speed`, meets the floor.
 
     phase is the time since some period began, negative before; gravity > 0. Times in T, lengths
     in a.
@@ -72,7 +71,7 @@ def time_to_floor(floor, gravity, height, speed, phase):
 
 @jit
 def _motion(floor, phase):
-    """(height, speed, acceleration) of the surface."""
+    """Return (height, speed, acceleration) of the surface."""
     rate = TURN / floor.period
     half = 0.5 * floor.amplitude
     sine, cosine = sine_and_cosine(phase / floor.period)
@@ -81,7 +80,7 @@ def _motion(floor, phase):
 
 @jit
 def _stays_above(gap, speed, bend):
-    """How long gap + speed t - bend t^2/2 >= 0 for sure; bend may be negative.
+    """Return how long gap + speed t - bend t^2/2 >= 0 is certain; bend may be negative.
 
     A gap that is negative by rounding, and opens, is none.
     """
@@ -106,10 +105,5 @@ def displacement(floor, time):
 
 
 register(
-    SineFloor,
-    predict=predict,
-    resolve=resolve,
-    phase=phase,
-    displacement=displacement,
-    drives=True,
+    SineFloor, predict=predict, resolve=resolve, phase=phase, displacement=displacement, drives=True
 )

@@ -7,13 +7,13 @@ from roughgas.kernel.contact import collide_with_wall
 from roughgas.kernel.jit import jit
 from roughgas.kernel.vectors import along_last
 
-# Below it a floor that takes energy would be hit infinitely often in a finite time (a/T)
+# Relative to the floor, a/T: any less, and a particle could hit it infinitely often in finite time
 LEAST_DEPARTURE = 1e-3
 
 
 @jit
 def phase(floor, index, base):
-    """Time since the period began in which the clock's base lies."""
+    """Return the time from the beginning of a period to the clock's base."""
     return base % floor.period
 
 
@@ -31,7 +31,7 @@ def flight(floor, index, state, scene, i):
 
 @jit
 def fall(gap, speed, gravity):
-    """First time at which gap + speed t - gravity t^2 / 2 = 0, without cancellation.
+    """Return the first time at which gap + speed t - gravity t^2 / 2 = 0, without cancellation.
 
     gravity > 0. What is on the surface, or below it by rounding, is met at once if it approaches,
     else after its hop.
@@ -44,7 +44,7 @@ def fall(gap, speed, gravity):
 
 @jit
 def until_back(amplitude, gravity, height, speed, time):
-    """When a particle that is above all strokes at `time` is back from there, else `time`.
+    """Return when a particle that is above all strokes at `time` is back from there, else `time`.
 
     A long flight passes over millions of strokes. Height and speed are those at time 0.
     """
@@ -60,5 +60,6 @@ def bounce(floor, index, state, scene, i, time, speed):
     normal = along_last(scene.box, 1.0)
     moving = along_last(scene.box, speed)
     material = (floor.restitution, floor.roughness)
-    least = floor.least_departure
-    return collide_with_wall(state, scene, index, i, time, material, normal, moving, least)
+    return collide_with_wall(
+        state, scene, index, i, time, material, normal, moving, LEAST_DEPARTURE
+    )

@@ -51,7 +51,7 @@ class Thermostat(NamedTuple):
 
 
 def moment(thermostat, number, rng):
-    """When each particle starts its next kick."""
+    """Return when each particle starts its next kick."""
     return thermostat.interval * (1.0 + rng.permutation(number)) / number
 
 
@@ -62,7 +62,7 @@ def predict(thermostat, index, state, scene, i):
 
 @jit
 def resolve(thermostat, index, what, state, scene, i, time):
-    """A kick to i and to another particle, which is returned."""
+    """Kick particle i and another one; return the other."""
     others = len(state.changes) - 1
     j = int(uniform(state.random) * others)
     j += j >= i
@@ -93,11 +93,5 @@ def _turn(spin, thermostat, index, state, scene, i):
 
 
 register(
-    Thermostat,
-    SETTINGS,
-    moment=moment,
-    predict=predict,
-    resolve=resolve,
-    random=True,
-    drives=True,
+    Thermostat, SETTINGS, moment=moment, predict=predict, resolve=resolve, random=True, drives=True
 )

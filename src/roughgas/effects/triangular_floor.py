@@ -27,7 +27,6 @@ class TriangularFloor(NamedTuple):
     rise: float  # share of the period in which it rises
     restitution: float
     roughness: float
-    least_departure: float  # a particle leaves at no less than this speed, relative to the floor
 
 
 @jit
@@ -63,7 +62,7 @@ def time_to_floor(floor, gravity, height, speed, phase):
 
 @jit
 def speed_of(floor, piece):
-    """Upward speed of the surface on a piece of its motion."""
+    """Return the upward speed of the surface on a piece of its motion."""
     if piece == RISING:
         return floor.amplitude / (floor.rise * floor.period)
     return -floor.amplitude / ((1.0 - floor.rise) * floor.period)
@@ -71,13 +70,13 @@ def speed_of(floor, piece):
 
 @jit
 def _begin(floor, number):
-    """When a piece begins; two are a period, and those of even number rise."""
+    """Return when a piece begins; a period has two, and those of even number rise."""
     return (number // 2 + (number & 1) * floor.rise) * floor.period
 
 
 @jit
 def _piece_to_meet(floor, gravity, height, speed, phase, time):
-    """The piece under way at `time`, or when a particle above all strokes is back from there."""
+    """Return the piece at `time`, or when a particle above all strokes is back from there."""
     periods = (phase + until_back(floor.amplitude, gravity, height, speed, time)) / floor.period
     whole = math.floor(periods)
     return 2 * whole + (FALLING if periods - whole > floor.rise else RISING)

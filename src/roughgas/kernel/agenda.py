@@ -17,7 +17,7 @@ def clear_contacts(agenda, i, complete_until):
 
 @jit
 def add_contact(agenda, i, time, partner, change, wanted):
-    """Add a contact to particle i's list if it is wanted; of a full list the latest one drops out.
+    """Add a contact to particle i's list if it is wanted; a full list drops its latest one.
 
     Whether it is wanted is a number to add, not a branch to take: the processor could not foresee
     which of the candidates it is.

@@ -2,20 +2,18 @@
 
 A cell is at least a diameter wide, so a particle has to enter a neighbouring cell before it can be
 met. Each particle foresees its contacts with the particles around it up to the time at which it
-leaves its cell; then it looks around again. Who has come into its neighbourhood in the meantime
-has looked around, too, and has found it. The paths do not know of the cells: like the sweep, they
-can be seen in no result.
+leaves its cell; then it looks around again. A particle that has entered its neighbourhood in the
+meantime has looked around, too, and has found it. Paths do not depend on the cells: like the sweep,
+they leave no trace in the results.
 
-Cells repeat with a period on each axis. That of an open axis has no meaning: what is a period away
-is looked at, and never met. Under shear each row of cells moves with the mean flow, row k of n by
-about (k + 1/2)/n - 1/2 of what the images above the box have slid: rows slide past each other
-slowly, and past the images no faster.
+Cells repeat with a period on each axis. That of an open axis has no meaning: particles a period
+away are considered, and never met. Under shear each row of cells moves with the mean flow, row k
+of n by about (k + 1/2)/n - 1/2 of what the images above the box have slid: rows slide past each
+other slowly, and past the images no faster.
 """
 
 import math
 import sys
-
-from numba.extending import overload
 
 from roughgas.kernel import hooks
 from roughgas.kernel.agenda import clear_contacts
@@ -23,8 +21,10 @@ from roughgas.kernel.flight import whereabouts
 from roughgas.kernel.hooks import either
 from roughgas.kernel.images import fold_into_box, image_numbers, shifted, slid
 from roughgas.kernel.jit import jit
+from roughgas.kernel.links import enter, strike_out
 from roughgas.kernel.shortlist import decide
 from roughgas.kernel.state import NOBODY, SPAN
+from roughgas.kernel.unroll import unrolled
 from roughgas.kernel.vectors import subtract
 
 ALL = -1  # every axis
@@ -34,7 +34,7 @@ FARTHEST = sys.float_info.max
 
 def find_around(cells, state, scene, i, time):
     """Foresee particle i's contacts with the particles around it; if it leaves its cell now, only
-    with those that come into its neighbourhood thereby."""
+    with those that enter its neighbourhood by that."""
     agenda = state.agenda
     moved_on = time >= cells.leave[i]
     axis, step = _move_on(state, scene, i, time) if moved_on else (ALL, 0)
@@ -74,29 +74,13 @@ def settle(state, scene, i, time):
 
 @jit
 def _enter(cells, i, home):
-    head = cells.first[home]
     cells.home[i] = home
-    cells.following[i] = head
-    cells.previous[i] = NOBODY
-    if head != NOBODY:
-        cells.previous[head] = i
-    cells.first[home] = i
-
-
-@jit
-def _strike_out(cells, i):
-    following, previous = cells.following[i], cells.previous[i]
-    if previous == NOBODY:
-        cells.first[cells.home[i]] = following
-    else:
-        cells.following[previous] = following
-    if following != NOBODY:
-        cells.previous[following] = previous
+    enter(cells.first, cells.following, cells.previous, home, i)
 
 
 @jit
 def _in_cell(state, scene, i, time):
-    """Position of particle i from the middle of its cell, and its velocity, as seen there."""
+    """Return particle i's position relative to the middle of its cell, and its velocity there."""
     cells = state.cells
     position, velocity = whereabouts(state, scene, i, time)
     slide = slid(hooks.sliding(scene.effects, None, state), time)
@@ -120,47 +104,24 @@ _beside_row = either(
 )
 
 
+@unrolled
 def places(counts, home):
-    """Which cell along each axis the cell with this number is."""
+    """Return which cell along each axis the cell with this number is."""
     if len(counts) == 2:
         return home % counts[0], home // counts[0]
-    return home % counts[0], home // counts[0] % counts[1], home // (counts[0] * counts[1])
+    else:
+        return home % counts[0], home // counts[0] % counts[1], home // (counts[0] * counts[1])
 
 
+@unrolled
 def middle_of(widths, places):
-    """Position of the middle of a cell."""
-    sides = zip(widths, places, strict=True)
-    return tuple(width * (place + ORIGIN + 0.5) for width, place in sides)
-
-
-@overload(places)
-def _compiled_places(counts, home):
-    if len(counts) == 2:
-        return lambda counts, home: (home % counts[0], home // counts[0])
-    return lambda counts, home: (
-        home % counts[0],
-        home // counts[0] % counts[1],
-        home // (counts[0] * counts[1]),
-    )
-
-
-@overload(middle_of)
-def _compiled_middle(widths, places):
-    if len(widths) == 2:
-        return lambda widths, places: (
-            widths[0] * (places[0] + ORIGIN + 0.5),
-            widths[1] * (places[1] + ORIGIN + 0.5),
-        )
-    return lambda widths, places: (
-        widths[0] * (places[0] + ORIGIN + 0.5),
-        widths[1] * (places[1] + ORIGIN + 0.5),
-        widths[2] * (places[2] + ORIGIN + 0.5),
-    )
+    """Return the position of the middle of a cell."""
+    return tuple(widths[k] * (places[k] + ORIGIN + 0.5) for k in range(len(widths)))
 
 
 @jit
 def _exit(d, u, widths, gravity):
-    """(time, axis, step) with which a particle leaves its cell, from there in free flight."""
+    """Return (time, axis, step) with which a particle in free flight leaves its cell."""
     last = len(d) - 1
     time, up = _fall_out(gravity, d[last], u[last], 0.5 * widths[last])
     axis = last
@@ -193,11 +154,11 @@ _fall_out = either(_fall_out_under_gravity, lambda gravity, d, u, half: _fly_out
 
 @jit
 def _move_on(state, scene, i, time):
-    """Take particle i into the next cell on its way; the axis along which that lies, and where."""
+    """Move particle i into the next cell on its way; return the axis and the step that it takes."""
     cells = state.cells
     d, u = _in_cell(state, scene, i, time)
     _, axis, step = _exit(d, u, cells.widths, hooks.acceleration(scene.effects, None))
-    _strike_out(cells, i)
+    strike_out(cells.first, cells.following, cells.previous, cells.home[i], i)
     cells.home[i] = _next_to(cells.counts, cells.home[i], axis, step)
     if axis == 1:
         _find_column(hooks.sliding(scene.effects, None, state), state, scene, i, time)
@@ -226,7 +187,7 @@ def _find_column(slide, state, scene, i, time):
 
 @jit
 def wrapped(place, count):
-    """A place up to one period off, brought back."""
+    """Return a place that is up to one period off, brought back."""
     return place + count if place < 0 else place - count if place >= count else place
 
 
@@ -240,10 +201,10 @@ _newcomers_in_one_slab = either(lambda slide, axis: axis > 1, lambda slide, axis
 
 @jit
 def _collect(state, i, slide, duration, axis, step, skipped):
-    """List the particles around particle i in the shortlist; how many there are in all.
+    """List the particles around particle i in the shortlist; return how many there are in all.
 
-    Those in all cells around, or only in those a step further along an axis. The first ones are
-    skipped: they have been on the list already, and there was no room for more.
+    Take all cells around, or only those a step further along an axis. Skip the first particles:
+    they have been on the list already, and there was no room for more.
     """
     cells, found, number = state.cells, state.shortlist.found, 0
     home = places(cells.counts, cells.home[i])
@@ -268,7 +229,7 @@ def _collect(state, i, slide, duration, axis, step, skipped):
 
 @jit
 def _steps(along, axis, step):
-    """First and end of the steps to be taken along an axis."""
+    """Return the first and the end of the steps to take along an axis."""
     return (step, step + 1) if along == axis else (-1, 2)
 
 

@@ -3,7 +3,7 @@
 import math
 
 from roughgas.kernel import hooks
-from roughgas.kernel.hooks import either, for_each
+from roughgas.kernel.hooks import either
 from roughgas.kernel.jit import jit
 from roughgas.kernel.state import (
     AT_ONCE,
@@ -16,24 +16,23 @@ from roughgas.kernel.state import (
     SPENT,
     TYPICAL_SPEED,
 )
+from roughgas.kernel.unroll import unrolled
 from roughgas.kernel.vectors import dot, read
 
-FLIGHTS = 2.5  # foresee about so many mean free flights
-CELLS = 16.0  # particles that are in cells are sorted anew after crossing about so many
-
-
-INSTANT = 2.0**-30  # of a span: so close to each other events count as simultaneous
+FLIGHTS = 2.5  # mean free flights to foresee
+CELLS = 16.0  # cells that a particle crosses before all are sorted anew
+INSTANT = 2.0**-30  # of a span; events as close as this count as simultaneous
 COLLAPSE = 10  # simultaneous contacts of particles that hardly approach
 STANDSTILL = 100_000, 10  # simultaneous events, and as many more for each particle
 
 
 @jit
 def moves_on(state, time):
-    """Note an event at `time`; False where events accumulate as if time stood still.
+    """Note an event at `time`; return False where events accumulate as if time stood still.
 
     In an inelastic collapse infinitely many contacts of a few particles are made in a finite time,
-    at less and less speed: contacts at speeds that are next to none are its sign. What is
-    simultaneous by symmetry are some events a particle; many more are a fault, which must not hang.
+    at less and less speed: contacts at almost no speed are its sign. Symmetry can make a few events
+    per particle simultaneous; many more are a fault, which must not hang.
     """
     clock, counts = state.clock, state.counts
     if time > clock[INSTANT_END]:
@@ -49,8 +48,8 @@ def moves_on(state, time):
 def rebase(state, scene):
     """Move the base up to the present, by a whole number of spans, and look at the gas afresh.
 
-    A span is a power of two, so that the base stays exact; it is about the time that a typical
-    particle takes to cross the box, or CELLS cells. Returns how far the base has moved; the times
+    A span is a power of two, so that the base stays exact, and about the time in which a typical
+    particle crosses the box, or CELLS cells. Returns how far the base has moved; the times
     on the agenda still count from the old one.
     """
     clock = state.clock
@@ -66,9 +65,11 @@ def rebase(state, scene):
     return step
 
 
-@for_each
-def _shift(times, i, step):
-    times[i] -= step
+@unrolled
+def _shift(moments, i, step):
+    for k in range(len(moments)):
+        if moments[k] is not None:
+            moments[k][i] -= step
 
 
 @jit
@@ -97,7 +98,7 @@ _stretch = either(
     lambda cells, scene: scene.extent,
 )
 
-_beside_flow = either(  # velocity relative to the mean flow of a sheared gas, but for a constant
+_beside_flow = either(  # velocity relative to the mean flow of a sheared gas, up to a constant
     lambda slide, box, x, v: (v[0] - slide[1] * (x[1] / box[1] - 0.5),) + v[1:],
     lambda slide, box, x, v: v,
 )

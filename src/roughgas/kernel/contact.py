@@ -11,9 +11,6 @@ A wall is a partner of infinite mass: both prefactors double, and n points into 
 
 import math
 
-from numba import types
-from numba.extending import overload
-
 from roughgas.kernel import hooks
 from roughgas.kernel.flight import come_in, put
 from roughgas.kernel.images import image_numbers, shifted, slid
@@ -29,9 +26,10 @@ from roughgas.kernel.state import (
     TOUCHED,
     TYPICAL_SPEED,
 )
+from roughgas.kernel.unroll import unrolled
 from roughgas.kernel.vectors import add_scaled, cross_to_spin, dot, scale, spin_cross, subtract
 
-# Where r leaves nothing of the normal velocity but rounding, a pair would go on colliding for ever:
+# Where r leaves only rounding of the normal velocity, a pair would go on colliding forever:
 # particles part at no less than this share of the typical speed
 STICKING = 1e-10
 
@@ -99,7 +97,7 @@ def collide_with_wall(state, scene, index, i, time, material, n, wall_velocity, 
 
 @jit
 def direction(x):
-    """The unit vector along the separation x of a pair in contact.
+    """Return the unit vector along the separation x of a pair in contact.
 
     Where |x| is 2 but for some roundings, the root of x.x and its reciprocal lie midway between two
     doubles half of the time, and then always on the same side of the middle: x times 1/|x| would be
@@ -112,26 +110,21 @@ def direction(x):
     return add_scaled(half, half, (4.0 - square) / (length * (2.0 + length)))
 
 
+@unrolled
 def response(spin, effects, material, n, v, w, share):
-    """Momentum exchanged and change of each spin a w in one contact, both per unit mass.
+    """Return the momentum exchanged and the change of each spin a w in one contact, per unit mass.
 
     material = (r, beta); n the normal, v the relative velocity, w the sum of the spins; share =
     1/2 between equal particles and 1 at a wall. Without spin (None) only the normal part is there.
     """
-    solve = _smooth if spin is None else _rough
-    return solve(spin, effects, material, n, v, w, share)
-
-
-@overload(response)
-def _compiled_response(spin, effects, material, n, v, w, share):
-    solve = _smooth if isinstance(spin, types.NoneType) else _rough
-    return lambda spin, effects, material, n, v, w, share: solve(
-        spin, effects, material, n, v, w, share
-    )
+    if spin is None:
+        return _smooth(material, n, v, share)
+    else:
+        return _rough(spin, effects, material, n, v, w, share)
 
 
 @jit
-def _smooth(spin, effects, material, n, v, w, share):
+def _smooth(material, n, v, share):
     return scale(n, share * (1.0 + material[0]) * dot(v, n)), None
 
 
@@ -148,7 +141,7 @@ def _rough(spin, effects, material, n, v, w, share):
 
 @jit
 def _parted(push, n, v, share, least):
-    """The push, made large enough that the partners part at no less than `least` along n."""
+    """Return the push, large enough for the partners to part at `least` or more along n."""
     lacking = least - dot(add_scaled(v, push, -1.0 / share), n)
     return add_scaled(push, n, -share * max(0.0, lacking))
 

@@ -8,7 +8,7 @@ from roughgas.kernel.vectors import add_scaled, dot, read, subtract, write
 
 @jit
 def fallen(position, velocity, elapsed, gravity):
-    """Position and velocity after `elapsed`, falling along the last axis where there is gravity."""
+    """Return position and velocity after `elapsed`, falling along the last axis under gravity."""
     moved = add_scaled(position, velocity, elapsed)
     if gravity is None:
         return moved, velocity
@@ -21,7 +21,7 @@ def fallen(position, velocity, elapsed, gravity):
 
 @jit
 def path_of(trajectory, i, box):
-    """Particle i's path: position, velocity, and the time at which they hold."""
+    """Return particle i's path: position, velocity, and the time at which they hold."""
     return (
         read(trajectory, i, 0, box),
         read(trajectory, i, len(box), box),
@@ -31,20 +31,20 @@ def path_of(trajectory, i, box):
 
 @jit
 def along(path, time, gravity):
-    """Position and velocity at `time` on a path."""
+    """Return position and velocity at `time` on a path."""
     return fallen(path[0], path[1], time - path[2], gravity)
 
 
 @jit
 def whereabouts(state, scene, i, time):
-    """Position and velocity of particle i at `time`, on the straight continuation of its path."""
+    """Return position and velocity of particle i at `time`, on the continuation of its path."""
     path = path_of(state.trajectory, i, scene.box)
     return along(path, time, hooks.acceleration(scene.effects, None))
 
 
 @jit
 def arrive(state, scene, i, time):
-    """Position and velocity of particle i at `time`, as its image inside the box has them."""
+    """Return position and velocity of particle i's image in the box at `time`."""
     position, velocity = whereabouts(state, scene, i, time)
     slide = hooks.sliding(scene.effects, None, state)
     return fold_into_box(position, velocity, scene.box, slid(slide, time))
@@ -52,7 +52,7 @@ def arrive(state, scene, i, time):
 
 @jit
 def come_in(state, scene, i, time):
-    """`arrive` for good: what the particle gains by becoming another image is booked."""
+    """Do as `arrive`, and book the energy that particle i gains by becoming another image."""
     _, before = whereabouts(state, scene, i, time)
     position, velocity = arrive(state, scene, i, time)
     gained = subtract(velocity, before)

@@ -12,10 +12,7 @@ left it.
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from numba import types
-from numba.extending import overload, register_jitable
-
-from roughgas.kernel.jit import jit
+from roughgas.kernel.jit import compiled, is_none, jit, overload
 
 CODES = 8  # kinds of event per effect
 
@@ -99,7 +96,7 @@ def displacement(effect, time):
 def _chain(parts, join):
     if not parts:
         return lambda effects, value, *args: value
-    rest = register_jitable(_chain(parts[:-1], join))
+    rest = compiled(_chain(parts[:-1], join))
     return join(*parts[-1], rest)
 
 
@@ -108,14 +105,14 @@ def _hook(name, join):
         return _chain(present(effects, name), join)(effects, value, *args)
 
     @overload(stub)
-    def compiled(effects, value, *args):
+    def chosen(effects, value, *args):
         return _chain(present(effects, name), join)
 
     return stub
 
 
 def _thread(place, rank, part, rest):
-    """The value passes through one effect after the other."""
+    """Pass the value through one effect after the other."""
 
     def step(effects, value, *args):
         return part(effects[place], rank, rest(effects, value, *args), *args)
@@ -124,7 +121,7 @@ def _thread(place, rank, part, rest):
 
 
 def _earliest(place, rank, part, rest):
-    """The earliest of the effects' events, as (time, code)."""
+    """Find the earliest of the effects' events, as (time, code)."""
 
     def step(effects, value, *args):
         before = rest(effects, value, *args)
@@ -137,7 +134,7 @@ def _earliest(place, rank, part, rest):
 
 
 def _addressed(place, rank, part, rest):
-    """Only the effect that the code names acts."""
+    """Let only the effect act that the code names."""
 
     def step(effects, value, *args):
         if value // CODES == rank:
@@ -148,7 +145,7 @@ def _addressed(place, rank, part, rest):
 
 
 def _stored(place, rank, part, rest):
-    """Each effect's value goes to its own place in an array."""
+    """Put each effect's value in its own place in an array."""
 
     def step(effects, value, *args):
         rest(effects, value, *args)
@@ -159,7 +156,7 @@ def _stored(place, rank, part, rest):
 
 
 def either(present, absent):
-    """A function that is `present` where its first argument is there, and `absent` where it is
+    """Return a function that is `present`, or `absent` where its first argument is
     None; the other one is compiled away. Both take all arguments."""
     present, absent = jit(present), jit(absent)
 
@@ -167,44 +164,16 @@ def either(present, absent):
         return (absent if first is None else present)(first, *args)
 
     @overload(stub)
-    def compiled(first, *args):
-        chosen = absent if isinstance(first, types.NoneType) else present
+    def chosen_for(first, *args):
+        chosen = absent if is_none(first) else present
         return lambda first, *args: chosen(first, *args)
 
     return stub
 
 
 def unless_absent(function):
-    """Jit `function`; where its first argument is None the call is compiled away and gives None."""
+    """Jit `function`; a call whose first argument is None is compiled away and gives None."""
     return either(function, lambda first, *args: None)
-
-
-def for_each(action):
-    """A function that does `action` with every part of a tuple that is there: not None."""
-    action = jit(action)
-
-    def stub(parts, *args):
-        for part in parts:
-            if part is not None:
-                action(part, *args)
-
-    def chain(places):
-        if not places:
-            return lambda parts, *args: None
-        place, rest = places[-1], register_jitable(chain(places[:-1]))
-
-        def step(parts, *args):
-            rest(parts, *args)
-            action(parts[place], *args)
-
-        return step
-
-    @overload(stub)
-    def compiled(parts, *args):
-        kinds = enumerate(parts.types)
-        return chain([k for k, kind in kinds if not isinstance(kind, types.NoneType)])
-
-    return stub
 
 
 acceleration = _hook("acceleration", _thread)

@@ -18,7 +18,7 @@ from roughgas.kernel.state import (
     Sweep,
 )
 
-FEW = 700  # up to so many particles all pairs are swept: measured, see docs/performance.md
+FEW = 700  # number of particles up to which all pairs are swept: see docs/performance.md
 LANES = 16  # the arrays that are swept are padded to whole vector registers
 BLOCK = 16  # particles to a block of the queue; divides LANES
 TOGETHER = 8  # candidates that are decided at once
@@ -32,15 +32,14 @@ FEWEST = 8  # cells along an axis: fewer would be met twice
 
 
 def new_state(scene, position, velocity, spin, precision=np.float64, rng=None):
-    """A state at time 0 from positions (N, D) in a, velocities (N, D) and spins (N, D') in a/T.
+    """Return a state at time 0: positions (N, D) in a, velocities (N, D) and spins (N, D') in a/T.
 
-    `rng`, a numpy generator, is what effects that are random start from; without it, a fixed seed.
+    `precision` is that of trajectories and spins. Effects that draw random numbers start from the
+    numpy generator `rng`, by default one of a fixed seed. A scene without spin leaves the spins
+    out. More than FEW particles are sorted into cells if the box has room for these.
 
-    The spin is left out where the scene has none. More than FEW particles are sorted into cells
-    if the box has room for these. `precision` is that in which trajectories and spins are kept.
-
-    Particles are kept in the order of their positions: where events coincide their order in memory
-    decides, and what happens must not depend on the numbers that they were given.
+    Particles are kept in the order of their positions: where events coincide, their order in memory
+    decides, and the result must not depend on how the particles were numbered.
     """
     number, dimension = position.shape
     grid = cell_grid(scene, position)
@@ -66,8 +65,10 @@ def new_state(scene, position, velocity, spin, precision=np.float64, rng=None):
 
 
 def cell_grid(scene, position):
-    """(number, width) of cells along each axis: PER_CELL particles to a cell if it is no narrower
-    than NARROWEST. Along an open axis they fill the height that the particles have at first."""
+    """Return (number, width) of cells along each axis, for PER_CELL particles to a cell or more.
+
+    None is narrower than NARROWEST. Along an open axis they fill the initial height of the gas.
+    """
     heights = np.ptp(position, axis=0) + NARROWEST
     lengths = [length or height for length, height in zip(scene.box, heights, strict=True)]
     volume = PER_CELL * math.prod(lengths) / len(position)
@@ -100,7 +101,7 @@ def _few(scene, number, dimension, precision):
 
 
 def _many(scene, number, dimension, precision, counts, widths):
-    """Each particle has one line of the cache for where it is, and one for what comes next."""
+    """Give each particle one line of the cache for where it is, and one for what comes next."""
     fields = _fields(scene, dimension, precision, SLOTS_OF_MANY)
     here = ["trajectory", "spin", "changes", "home", "following", "previous"]
     here += [name for name in fields if name.startswith(MOMENT)]
@@ -134,7 +135,7 @@ def _many(scene, number, dimension, precision, counts, widths):
 
 
 def _fields(scene, dimension, precision, slots):
-    """Type and number of what every particle has."""
+    """Return type and width of every array that has an entry for each particle."""
     effects = scene.effects
     fields = {
         "trajectory": (precision, 2 * dimension + 1),
@@ -196,7 +197,7 @@ def _array(number, kind, *width):
 
 
 def _records(number, fields):
-    """Arrays that lie in each other's gaps: all entries of a particle in the same cache lines."""
+    """Interleave arrays, so that all entries of a particle are in the same cache lines."""
     order = sorted(fields.items(), key=lambda field: -np.dtype(field[1][0]).itemsize)
     sizes = {name: np.dtype(kind).itemsize * math.prod(width) for name, (kind, *width) in order}
     size = _whole(sum(sizes.values()), 8)

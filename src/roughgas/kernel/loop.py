@@ -29,7 +29,7 @@ from roughgas.kernel.sweep import find_by_sweep, redraw_line
 
 @jit
 def advance(state, scene, until, collisions):
-    """Run to the absolute time `until`, or until so many pair collisions have been made in all.
+    """Run to the absolute time `until`, or to a total number of pair collisions.
 
     Returns False when the work per simulated time diverges (inelastic collapse), else True.
     """
@@ -54,7 +54,7 @@ def advance(state, scene, until, collisions):
 
 @jit
 def carry_out(state, scene, i, kind, time):
-    """One event of particle i; returns those whose future is to be foreseen anew, or NOBODY."""
+    """Carry out an event of particle i; return whose future must be foreseen anew, or NOBODY."""
     agenda = state.agenda
     if kind == HORIZON:
         return i, NOBODY
@@ -99,7 +99,7 @@ _find_contacts = either(find_around, find_by_sweep)
 
 @compiled
 def renew(state, scene):
-    """Move the clock's base up to the present, and what has been foreseen with it."""
+    """Move the clock's base up to the present, and all foreseen times with it."""
     step = rebase(state, scene)
     _carry_over(state.cells, state, scene, step)
 
@@ -139,7 +139,7 @@ def start(state, scene):
 
 @jit
 def foresee_all(state):
-    """Make it the next event of every particle that its future is foreseen."""
+    """Let the next event of every particle be that its future is foreseen."""
     for i in range(len(state.changes) - 1, -1, -1):
         state.agenda.kind[i] = HORIZON
         enter_in_queue(state.cells, state, i, state.clock[NOW])

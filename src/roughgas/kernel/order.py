@@ -1,13 +1,14 @@
 """The order in which many particles lie in memory: that of their cells.
 
-What is close in space is then close in memory, and mostly in the cache when it is needed. Particles
-move, so that they are numbered anew now and then; State.label keeps the numbers of the start.
+Neighbours in space are then neighbours in memory, and mostly in the cache when they are needed. As
+particles move they are numbered anew now and then; State.label keeps the numbers of the start.
 """
 
 from roughgas.kernel.cells import settle
-from roughgas.kernel.hooks import for_each, unless_absent
+from roughgas.kernel.hooks import unless_absent
 from roughgas.kernel.jit import jit
 from roughgas.kernel.state import NOBODY
+from roughgas.kernel.unroll import unrolled
 
 
 @jit
@@ -65,4 +66,8 @@ def _exchange_entries(array, i, j):
     array[i], array[j] = array[j], array[i]
 
 
-_exchange_moments = for_each(_exchange_entries.py_func)
+@unrolled
+def _exchange_moments(moments, i, j):
+    for k in range(len(moments)):
+        if moments[k] is not None:
+            _exchange_entries(moments[k], i, j)

@@ -1,7 +1,7 @@
 """When two particles meet: exact, in double precision, and a function of their paths alone.
 
-The time does not depend on when the question is asked, by whom, or which of the two asks, so that
-no scheduling choice can change a trajectory. A path is (position, velocity, time at which they
+The time does not depend on when it is computed, or for which of the two, so that no choice of the
+scheduler can change a trajectory. A path is (position, velocity, time at which they
 hold), and goes on in free flight.
 """
 
@@ -17,15 +17,15 @@ DIAMETER = 2.0
 
 @jit
 def time_to_contact(x, u):
-    """Time until two particles at separation x, with relative velocity u, touch; inf if never.
+    """Return the time until two particles at separation x, with relative velocity u, touch, or inf.
 
     Touching or overlapping (by rounding) and approaching is a contact now; receding never is one.
     The smaller root is formed by division, so that it does not cancel when the particles are
-    close, and the discriminant from the cross product, so that it does not when they are far. Of a
-    pair that touches but for a rounding, root - b may be nearly nothing: a contact is therefore not
-    put later than the closest approach. Roots and quotients are taken before anything is decided: a
-    branch that the processor cannot foresee would cost more than they do, and without branches
-    several pairs are done at once.
+    close, and the discriminant from the cross product, so that it does not when they are far. For
+    a pair that touches but for a rounding, root - b may be almost 0: a contact is therefore never
+    later than the closest approach. Roots and quotients are taken before anything is decided: a
+    branch that the processor cannot foresee would cost more, and without branches several pairs
+    are done at once.
     """
     b, uu = dot(x, u), dot(u, u)
     c = dot(x, x) - DIAMETER * DIAMETER
@@ -38,7 +38,7 @@ def time_to_contact(x, u):
 
 @jit
 def meeting(path_i, path_j, box, gravity, slide, middle, limit):
-    """Time of the first contact of two paths; NaN where a second image might be met.
+    """Return the time of the first contact of two paths; NaN if a second image might be met.
 
     The nearest image at `middle` is the only one that can be met as long as the pair moves less
     than half a box, less a diameter, from there: as long as it is not faster than the speed_limit.
@@ -56,7 +56,7 @@ def meeting(path_i, path_j, box, gravity, slide, middle, limit):
 
 @compiled
 def meeting_of_any_image(path_i, path_j, box, gravity, slide, start, end):
-    """Time of the first contact of two paths, of any images, between `start` and `end`, or inf.
+    """Return when, between `start` and `end`, any images of two paths first touch, or inf.
 
     The interval is cut until within each piece the nearest image decides.
     """

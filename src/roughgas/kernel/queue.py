@@ -3,13 +3,12 @@
 import math
 
 import numpy as np
-from numba import types
-from numba.extending import intrinsic, overload
 
 from roughgas.kernel.clock import FLIGHTS
 from roughgas.kernel.hooks import either
-from roughgas.kernel.jit import jit
+from roughgas.kernel.jit import jit, overload
 from roughgas.kernel.layout import BLOCK
+from roughgas.kernel.links import enter, strike_out
 from roughgas.kernel.state import LONGEST_HORIZON, NOBODY, NOW, TYPICAL_SPEED
 
 LAST_DAY = 2.0**62
@@ -17,9 +16,9 @@ EVENTS_A_DAY = 2.0  # this many make a day's list short and empty days rare
 
 
 def _enter_in_blocks(cells, state, i, time):
-    """Times are compared as integers, which order like the non-negative doubles they are the bits
-    of: integer minima have no NaN to mind and run through the vector registers. What is stored is
-    not loaded again at once: the processor would wait for it."""
+    """Times are compared as integers: the bits of doubles >= 0 order like their values, and minima
+    of integers need no care for NaN, so they use the vector registers. Nothing is loaded just after
+    it was stored, for which the processor would wait."""
     bits, block = state.queue.bits, i // BLOCK
     new = float_bits(time)
     least = new
@@ -44,38 +43,22 @@ def _earliest_in_blocks(cells, state):
 
 
 def _enter_in_calendar(cells, state, i, time):
-    """A day has one list; of a year ahead, the same. So an entry costs the same among a thousand
-    particles as among a million."""
+    """A day shares its list with the same day of other years. An entry costs the same among a
+    thousand particles as among a million."""
     queue, key = state.queue, state.agenda.key
     if key[i] < math.inf:
-        _strike_out(queue, i, day_of(queue, key[i]))
+        place = day_of(queue, key[i]) & (queue.first.size - 1)
+        strike_out(queue.first, queue.later, queue.sooner, place, i)
     key[i] = time
     if time < math.inf:
         day = day_of(queue, time)
-        place = day & (queue.first.size - 1)
-        head = queue.first[place]
-        queue.later[i] = head
-        queue.sooner[i] = NOBODY
-        if head != NOBODY:
-            queue.sooner[head] = i
-        queue.first[place] = i
+        enter(queue.first, queue.later, queue.sooner, day & (queue.first.size - 1), i)
         queue.today[0] = min(queue.today[0], day)
 
 
 @jit
-def _strike_out(queue, i, day):
-    later, sooner = queue.later[i], queue.sooner[i]
-    if sooner == NOBODY:
-        queue.first[day & (queue.first.size - 1)] = later
-    else:
-        queue.later[sooner] = later
-    if later != NOBODY:
-        queue.sooner[later] = sooner
-
-
-@jit
 def day_of(queue, time):
-    """The day on which a time lies; far ones share the last day."""
+    """Return the day of a time; far ones share the last day."""
     return int(min(time * queue.pace[0], LAST_DAY))
 
 
@@ -98,7 +81,7 @@ def _earliest_in_calendar(cells, state):
 
 @jit
 def _earliest_of_all(state):
-    """When nothing happens for a year."""
+    """Return whose event is the earliest when nothing happens for a year."""
     key = state.agenda.key
     place = 0
     for i in range(key.size):
@@ -130,18 +113,12 @@ earliest = either(_earliest_in_calendar, _earliest_in_blocks)
 
 
 def float_bits(x):
-    """The bits of a double as an integer."""
+    """Return the bits of a double as an integer."""
     return int(np.float64(x).view(np.int64))
-
-
-@intrinsic
-def _bitcast(context, x):
-    def generate(context, builder, signature, arguments):
-        return builder.bitcast(arguments[0], context.get_value_type(signature.return_type))
-
-    return types.int64(types.float64), generate
 
 
 @overload(float_bits)
 def _compiled_float_bits(x):
-    return lambda x: _bitcast(x)
+    from roughgas.kernel.compiler import bits_of
+
+    return lambda x: bits_of(x)

@@ -5,9 +5,9 @@ that the same seed gives the same numbers on every machine.
 """
 
 import numpy as np
-from numba.extending import overload
 
 from roughgas.kernel.jit import jit
+from roughgas.kernel.unroll import unrolled
 
 STEP = np.uint64(0x9E3779B97F4A7C15)
 FIRST, SECOND = np.uint64(0xBF58476D1CE4E5B9), np.uint64(0x94D049BB133111EB)
@@ -15,7 +15,7 @@ FIRST, SECOND = np.uint64(0xBF58476D1CE4E5B9), np.uint64(0x94D049BB133111EB)
 
 @jit
 def uniform(state):
-    """A number in [0, 1), a multiple of 2^-53; `state` is an array of one word, and moves on."""
+    """Draw a number in [0, 1), a multiple of 2^-53; `state`, an array of one word, moves on."""
     state[0] += STEP
     word = state[0]
     word = (word ^ (word >> np.uint64(30))) * FIRST
@@ -24,22 +24,10 @@ def uniform(state):
     return (word >> np.uint64(11)) * 2.0**-53
 
 
+@unrolled
 def random_vector(state, like, size):
-    """A vector of as many components as `like`, each uniform in [-size, size]."""
-    return tuple(_centred(state, size) for _ in like)
-
-
-@overload(random_vector)
-def _compiled_random_vector(state, like, size):
-    return {
-        1: lambda state, like, size: (_centred(state, size),),
-        2: lambda state, like, size: (_centred(state, size), _centred(state, size)),
-        3: lambda state, like, size: (
-            _centred(state, size),
-            _centred(state, size),
-            _centred(state, size),
-        ),
-    }[len(like)]
+    """Return a vector of as many components as `like`, each uniform in [-size, size]."""
+    return tuple(_centred(state, size) for k in range(len(like)))
 
 
 @jit

@@ -1,11 +1,10 @@
-"""Run a scene and write down, at given instants, the sums that every energy is made of."""
+"""Run a scene and write down, at given instants, the sums from which every energy is made."""
 
 import math
 from typing import NamedTuple
 
-from roughgas.kernel.cache import load_without_compiler, one_writer_at_a_time
 from roughgas.kernel.flight import arrive, come_in, put
-from roughgas.kernel.hooks import either, for_each, unless_absent
+from roughgas.kernel.hooks import either, unless_absent
 from roughgas.kernel.jit import compiled, entry, jit
 from roughgas.kernel.loop import advance, start
 from roughgas.kernel.spins import spin_of
@@ -19,6 +18,7 @@ from roughgas.kernel.state import (
     SPAN,
     STARTED,
 )
+from roughgas.kernel.unroll import unrolled
 
 PATIENCE = 1000.0  # spans to wait for collisions that may never come
 
@@ -35,7 +35,7 @@ class Sampling(NamedTuple):
 
 
 def columns(dimension, spinning):
-    """Names of the columns that `record` fills, in their order; sums over all particles."""
+    """Return the names of the columns that `record` fills, in order; sums over all particles."""
     axes = "xyz"[:dimension]
     spins = [] if not spinning else ["ww"] + (["w"] if dimension == 2 else ["w_x", "w_y", "w_z"])
     return (
@@ -68,13 +68,9 @@ def record(state, scene, plan, samples):
     return len(samples)
 
 
-load_without_compiler(record)
-one_writer_at_a_time(record)
-
-
 @compiled
 def take_sample(state, scene, row):
-    """Sums over the particles at the present instant; nothing is moved."""
+    """Fill a row with sums over the particles at the present instant; nothing is moved."""
     box = scene.box
     dimension = len(box)
     time = state.clock[NOW]
@@ -167,6 +163,8 @@ def _scale_spin(spin, i, factor):
         spin[i, k] *= factor
 
 
-@for_each
-def _scale_moments(times, i, now, factor):
-    times[i] = (times[i] - now) / factor
+@unrolled
+def _scale_moments(moments, i, now, factor):
+    for k in range(len(moments)):
+        if moments[k] is not None:
+            moments[k][i] = (moments[k][i] - now) / factor

@@ -1,33 +1,25 @@
 """Spins of the particles, as surface velocities a w; in a scene without spin all of this is None.
 
-One component in the plane, three in space.
+A spin has one component in the plane, three in space.
 """
 
-from numba.extending import overload
-
 from roughgas.kernel.hooks import unless_absent
-from roughgas.kernel.vectors import add_scaled, dot, read, write
+from roughgas.kernel.unroll import unrolled
+from roughgas.kernel.vectors import add_scaled, dot, write
 
 
-def _axes(box):
-    return (0.0,) * (2 * len(box) - 3)
-
-
-@overload(_axes)
-def _compiled_axes(box):
-    axes = (0.0,) * (2 * len(box) - 3)
-    return lambda box: axes
-
-
-@unless_absent
+@unrolled
 def spin_of(spin, box, i):
-    """Spin of particle i."""
-    return read(spin, i, 0, _axes(box))
+    """Return the spin of particle i."""
+    if spin is None:
+        return None
+    else:
+        return tuple(spin[i, k] for k in range(2 * len(box) - 3))
 
 
 @unless_absent
 def spin_sum(a, b):
-    """Sum of two spins, which is what the contact velocity depends on."""
+    """Return the sum of two spins, which the contact velocity depends on."""
     return add_scaled(a, b, 1.0)
 
 

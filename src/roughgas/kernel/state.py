@@ -3,9 +3,9 @@
 Arrays only, in NamedTuples that numba unpacks at compile time. Times are relative to a base that
 is moved along with the simulation (`clock[BASE]`), so that their resolution never wears out.
 
-How contacts are found, and how the next event is, depends on the number of particles: a few are
-all swept at once (State.sweep, queue Blocks), many are sorted into cells (State.cells, queue
-Calendar). The other part is None, and compiled away.
+The number of particles decides how contacts, and the next event, are found: a few are all swept at
+once (State.sweep, queue Blocks), many are sorted into cells (State.cells, queue Calendar). The
+other part is None, and compiled away.
 """
 
 from typing import NamedTuple
@@ -76,8 +76,7 @@ class Sweep(NamedTuple):
 
 
 class Cells(NamedTuple):
-    """The particles listed by the cell that they are in; cells repeat with a period on each axis,
-    also along an open one."""
+    """The particles listed by their cell; cells repeat along every axis, open ones included."""
 
     counts: tuple[int, ...]  # cells along each axis
     widths: tuple[float, ...]  # of a cell, in a

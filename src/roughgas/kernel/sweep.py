@@ -2,7 +2,7 @@
 
 The sweep works in single precision on straight lines r0 + v0 t from the clock's base and is only a
 sieve: with a margin for its rounding it never misses a contact, and what it lets through is decided
-in double precision (pairs.py). So neither its precision nor its order can be seen in the results.
+in double precision (pairs.py). So neither its precision nor its order shows in the results.
 
 For each pair, with x the separation at mid-interval (nearest image) and u the relative velocity,
 the line passes within a diameter s if |x cross u| <= s |u|, and does so within the interval of
@@ -12,8 +12,6 @@ half-length h if |x.u| <= u.u h + s |u|. Pairs too fast for one image are let th
 import math
 
 import numpy as np
-from numba.cpython.unsafe.numbers import trailing_zeros
-from numba.extending import overload
 
 from roughgas.kernel import hooks
 from roughgas.kernel.agenda import clear_contacts
@@ -21,10 +19,11 @@ from roughgas.kernel.arithmetic import multiply_add
 from roughgas.kernel.flight import whereabouts
 from roughgas.kernel.hooks import unless_absent
 from roughgas.kernel.images import exceeds, image_numbers, shifted, slid, speed_limit
-from roughgas.kernel.jit import jit
+from roughgas.kernel.jit import jit, overload
 from roughgas.kernel.pairs import DIAMETER
 from roughgas.kernel.shortlist import decide
 from roughgas.kernel.state import EXTENT, LONGEST_HORIZON, SPAN, TYPICAL_SPEED
+from roughgas.kernel.unroll import unrolled
 from roughgas.kernel.vectors import add_scaled, column, cross_squared, dot, read, subtract
 
 ROUNDING = 2.0**-24  # half the spacing of single precision just above 1
@@ -108,7 +107,7 @@ def _sweep(lines, marks, i, box, slide, limit, middle, reach, spare, square):
 
 @jit
 def collect_candidates(sweep, i, found):
-    """List the marked particles but i in `found`; how many there are."""
+    """List the marked particles but i in `found`; return their number."""
     number = 0
     _pack(sweep.words, sweep.bits)
     for word in range(sweep.bit_words.size):
@@ -123,26 +122,32 @@ def collect_candidates(sweep, i, found):
 
 @jit
 def _pack(words, bits):
-    """One bit for each of eight marks: the product moves bit 8k of a word to bit 56 + k."""
+    """Pack eight marks into bits: the product moves bit 8k of a word to bit 56 + k."""
     for word in range(words.size):
         bits[word] = (words[word] * np.uint64(0x0102040810204080)) >> np.uint64(56)
 
 
+def trailing_zeros(word):
+    """Return the number of zeros below the lowest bit of a word that is set."""
+    return (int(word) & -int(word)).bit_length() - 1
+
+
+@overload(trailing_zeros)
+def _compiled_trailing_zeros(word):
+    from roughgas.kernel.compiler import trailing_zeros
+
+    return lambda word: trailing_zeros(word)
+
+
+@unrolled
 def single(numbers):
-    """A tuple in single precision; None stays None, inside and out."""
-    return None if numbers is None else tuple(_single(x) for x in numbers)
+    """Return a tuple in single precision; None stays None, inside and out."""
+    if numbers is None:
+        return None
+    else:
+        return tuple(_single(numbers[k]) for k in range(len(numbers)))
 
 
 @unless_absent
 def _single(x):
     return np.float32(x)
-
-
-@overload(single)
-def _compiled_single(numbers):
-    if not hasattr(numbers, "types"):
-        return lambda numbers: None
-    return {
-        2: lambda numbers: (_single(numbers[0]), _single(numbers[1])),
-        3: lambda numbers: (_single(numbers[0]), _single(numbers[1]), _single(numbers[2])),
-    }[len(numbers)]

@@ -6,7 +6,7 @@ polynomials do the rest: the same bits on every machine.
 
 import math
 
-from numba.extending import register_jitable
+from roughgas.kernel.jit import compiled
 
 TURN = 6.283185307179586  # 2 pi, and what that lacks
 REMAINDER = 2.4492935982947064e-16
@@ -34,9 +34,9 @@ COSINE = (
 )
 
 
-@register_jitable
+@compiled
 def sine_and_cosine(turns):
-    """(sin, cos) of 2 pi turns, each within 1.5e-16, for |turns| < 2^50."""
+    """Return (sin, cos) of 2 pi turns, each within 1.5e-16, for |turns| < 2^50."""
     quarters = math.floor(4.0 * turns + 0.5)
     x = turns - 0.25 * quarters  # exact, by Sterbenz's lemma; |x| <= 1/8
     square = x * x
@@ -52,9 +52,9 @@ def sine_and_cosine(turns):
     return -cosine, sine
 
 
-@register_jitable
+@compiled
 def _series(c, x):
-    """The polynomial with coefficients c in x, in an order that keeps the processor busy."""
+    """Return the polynomial in x with coefficients c, in an order that keeps the processor busy."""
     x2 = x * x
     low = (c[0] + c[1] * x) + (c[2] + c[3] * x) * x2
     high = (c[4] + c[5] * x) + (c[6] + c[7] * x) * x2

@@ -11,11 +11,10 @@ All compiled code of the solver is in this file and in kernel/: numba's cache no
 
 import math
 
-from numba.extending import overload
-
 from roughgas.kernel.contact import response
 from roughgas.kernel.jit import compiled, entry
 from roughgas.kernel.spins import spin_of, spin_sum, turn_spin
+from roughgas.kernel.unroll import unrolled
 from roughgas.kernel.vectors import add_scaled, dot, read, scale, subtract, write
 
 # Entries of Gas.clock
@@ -99,19 +98,9 @@ def random_direction(axes, rng):
             return scale(x, 1.0 / math.sqrt(square))
 
 
+@unrolled
 def _in_cube(axes, rng):
-    return tuple(2.0 * rng.random() - 1.0 for _ in axes)
-
-
-@overload(_in_cube)
-def _compiled_in_cube(axes, rng):
-    def plane(axes, rng):
-        return 2.0 * rng.random() - 1.0, 2.0 * rng.random() - 1.0
-
-    def space(axes, rng):
-        return 2.0 * rng.random() - 1.0, 2.0 * rng.random() - 1.0, 2.0 * rng.random() - 1.0
-
-    return plane if len(axes) == 2 else space
+    return tuple(2.0 * rng.random() - 1.0 for k in range(len(axes)))
 
 
 @compiled
@@ -124,15 +113,13 @@ def pass_time(gas, material):
     clock[WAITED] = 0.0
 
 
+@unrolled
 def cross_section(axes):
     """Half the surface of the sphere of contact, of two radii: a pair meets on half of it."""
-    return 2.0 * math.pi if len(axes) == 2 else 8.0 * math.pi
-
-
-@overload(cross_section)
-def _compiled_cross_section(axes):
-    value = cross_section((0.0,) * len(axes))
-    return lambda axes: value
+    if len(axes) == 2:
+        return 2.0 * math.pi
+    else:
+        return 8.0 * math.pi
 
 
 @compiled
@@ -152,14 +139,13 @@ def take_sample(gas, row):
         row[8] += vw * vw
 
 
+@unrolled
 def _along(v, w):
     """v.w, which in the plane is 0."""
-    return dot(v, w) if len(v) == len(w) else 0.0
-
-
-@overload(_along)
-def _compiled_along(v, w):
-    return (lambda v, w: dot(v, w)) if len(v) == len(w) else (lambda v, w: 0.0)
+    if len(v) == len(w):
+        return dot(v, w)
+    else:
+        return 0.0
 
 
 @compiled

@@ -2,7 +2,6 @@
 
 import math
 
-from roughgas.kernel.cache import load_without_compiler, one_writer_at_a_time
 from roughgas.kernel.jit import compiled, entry, jit
 from roughgas.kernel.vectors import dot, read, subtract
 from roughgas.studies.soft_spheres.contacts import act
@@ -28,10 +27,6 @@ def step(gas, spheres, dt, steps, temperature, rows):
         if temperature > 0.0:
             _rescale(gas, temperature)
     return len(rows)
-
-
-load_without_compiler(step)
-one_writer_at_a_time(step)
 
 
 @jit

@@ -1,0 +1,157 @@
+"""All that is numba's: imported when compiled code is first called (kernel/jit.py).
+
+What is private to numba, and what it is needed for; checked with numba 0.68, and by
+tests/kernel/test_compiler.py:
+
+- `_nrt`: without it reference counting takes more than half of the time;
+- `no_cpython_wrapper`, `no_cfunc_wrapper`, `forceinline`: documented for `overload` only. Unpacking
+  a state for a call from Python takes more code, and time to compile it, than most functions do;
+- `_numba_type_`: how a value tells its type;
+- `_cache` and its methods, `rtsys`: to load a kernel without setting up the compiler, to seal files
+  with a checksum, to have one writer at a time.
+"""
+
+import fcntl
+import hashlib
+import pickle
+import sys
+from contextlib import suppress
+from pathlib import Path
+
+import numba
+from llvmlite import ir
+from numba import types
+from numba.core.runtime import rtsys
+from numba.extending import intrinsic, overload
+
+from roughgas.base.errors import InputError
+from roughgas.kernel.cache import folder_of
+
+INNER = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+
+
+def dispatcher(function, cache=False, inner=False, inline=False):
+    """Return numba's object for a function (see the decorators in kernel/jit.py).
+
+    Raises InputError where numba is told not to compile, OSError where no folder for compiled code
+    can be written.
+    """
+    if numba.config.DISABLE_JIT:
+        raise InputError("NUMBA_DISABLE_JIT", 1, "be unset: the kernels run compiled only")
+    options = INNER if inner else {}
+    if inline:
+        options = options | {"forceinline": True}
+    if cache:
+        numba.config.CACHE_DIR = str(folder_of(function.__code__.co_filename))
+    made = numba.njit(error_model="numpy", _nrt=False, cache=cache, **options)(function)
+    if cache:
+        _load_without_compiler(made._cache)
+        _let_one_write_at_a_time(made._cache)
+    return made
+
+
+def register(overloads):
+    """Tell numba of overloads, a list of (function, chooser), and empty the list."""
+    while overloads:
+        function, chooser = overloads.pop(0)
+        overload(function, strict=False, jit_options={"no_cfunc_wrapper": True})(chooser)
+
+
+def _load_without_compiler(cache):
+    """Have compiled code loaded from the disk without setting up the compiler before.
+
+    Numba first imports and registers all that it can compile, which takes three times as long as
+    loading. Where nothing is found in the cache, or nothing whole, compiling begins with that
+    anyway.
+    """
+    _seal_files(cache._cache_file)
+
+    def load(signature, target):
+        rtsys.initialize(target)  # which the loaded code takes its arguments apart with
+        try:
+            return cache._load_overload(signature, target)
+        except Exception:  # a damaged pickle may raise whatever it likes
+            with suppress(OSError):
+                cache.flush()
+            return None
+
+    cache.load_overload = load
+
+
+def _seal_files(files):
+    """Have numba's files end with a checksum, and those without a right one taken for missing.
+
+    Machine code with a hole in it, as a power cut leaves it, would crash every process to come.
+    """
+    dump = files._dump
+
+    def dump_sealed(content):
+        text = dump(content)  # a pickle, which does not mind what comes after it
+        return text + hashlib.sha256(text).digest()
+
+    def load_sealed(name):
+        content = Path(files._data_path(name)).read_bytes()
+        text, seal = content[:-32], content[-32:]
+        if hashlib.sha256(text).digest() != seal:
+            raise OSError("damaged")
+        return pickle.loads(text)
+
+    files._dump, files._load_data = dump_sealed, load_sealed
+
+
+def _let_one_write_at_a_time(cache):
+    """Keep processes that compile at the same time from spoiling numba's index for each other.
+
+    Numba reads its index, picks a free file number and writes both: two writers could pick the same
+    number, and one of them would later load the other's code. Where nothing can be written (a full
+    disk) the process goes on with what it has compiled, and says so.
+    """
+    save = cache.save_overload
+
+    def save_alone(signature, compiled):
+        folder = Path(cache.cache_path)
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            with (folder / "lock").open("w") as lock:
+                with suppress(OSError):  # some network disks have no locks
+                    fcntl.flock(lock, fcntl.LOCK_EX)
+                save(signature, compiled)
+        except OSError as error:
+            said = f"roughgas: warning: {folder}: {error.strerror}: the kernel is not kept"
+            print(said, file=sys.stderr)
+
+    cache.save_overload = save_alone
+
+
+@intrinsic
+def fused_multiply_add(context, a, b, c):
+    """Return a b + c, in one instruction where the machine has it."""
+
+    def generate(context, builder, signature, arguments):
+        kind = context.get_value_type(signature.return_type)
+        function = ir.FunctionType(kind, [kind] * 3)
+        return builder.call(
+            builder.module.declare_intrinsic("llvm.fmuladd", (kind,), function), arguments
+        )
+
+    return a(a, a, a), generate
+
+
+@intrinsic
+def bits_of(context, x):
+    """Return the bits of a double as an integer."""
+
+    def generate(context, builder, signature, arguments):
+        return builder.bitcast(arguments[0], context.get_value_type(signature.return_type))
+
+    return types.int64(types.float64), generate
+
+
+@intrinsic
+def trailing_zeros(context, word):
+    """Return the number of zeros below the lowest bit that is set."""
+
+    def generate(context, builder, signature, arguments):
+        return builder.cttz(arguments[0], ir.Constant(ir.IntType(1), 0))
+
+    return word(word), generate

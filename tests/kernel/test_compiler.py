@@ -1,0 +1,88 @@
+"""What kernel/compiler.py takes of numba's private parts does what it is there for."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numba
+import numpy as np
+import pytest
+
+import roughgas
+from roughgas.kernel import compiler
+from roughgas.kernel.jit import Compiled, compiled, entry, jit
+
+PACKAGE = Path(roughgas.__file__).parent
+
+
+def code_of(dispatcher):
+    """The code of a function of a float, as numba gives it to LLVM, and how it was compiled."""
+    dispatcher.compile((numba.float64,))
+    return dispatcher.overloads[(numba.float64,)].library.get_llvm_str()
+
+
+def double(x):
+    return 2.0 * x
+
+
+def test_the_kernel_has_no_reference_counts():
+    """So it cannot allocate."""
+    with pytest.raises(numba.TypingError, match="NRT required"):
+        entry(lambda: np.zeros(3))()
+    assert numba.njit(lambda: np.zeros(3))().size == 3
+
+
+def test_only_entries_have_a_way_in_from_python():
+    ways = ("7cpython", "cfunc.")
+    assert all(way in code_of(numba.njit(double)) for way in ways), "no longer needed"
+    assert not any(way in code_of(compiled(double).dispatcher) for way in ways)
+    assert entry(double)(3.0) == compiled(double)(3.0) == 6.0
+
+
+def test_what_runs_once_an_event_is_inlined():
+    assert "alwaysinline" in code_of(jit(double).dispatcher)
+    assert "alwaysinline" not in code_of(compiled(double).dispatcher)
+
+
+def test_numba_takes_compiled_functions_for_its_own():
+    inner = compiled(double)
+    assert numba.typeof(inner) == numba.typeof(inner.dispatcher)
+    assert entry(lambda x: inner(x))(3.0) == 6.0
+
+
+def test_intrinsics():
+    bits = numba.njit(lambda x: compiler.bits_of(x))
+    assert bits(1.5) == np.float64(1.5).view(np.int64)
+    zeros = numba.njit(lambda x: compiler.trailing_zeros(x))
+    assert [zeros(np.uint64(x)) for x in (1, 8, 2**63)] == [0, 3, 63]
+
+
+def test_the_cache_has_the_parts_that_are_replaced(tmp_path, monkeypatch):
+    """What they do is tested in tests/habits/test_kernel_cache.py."""
+    monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path))
+    cache = numba.njit(cache=True)(double)._cache
+    assert all(hasattr(cache, name) for name in ("_load_overload", "load_overload", "flush"))
+    assert all(hasattr(cache, name) for name in ("save_overload", "cache_path"))
+    assert all(hasattr(cache._cache_file, name) for name in ("_dump", "_load_data", "_data_path"))
+
+
+def test_reading_settings_takes_no_compiler(tmp_path):
+    """Neither numba nor a folder for kernels."""
+    program = (
+        "import sys\n"
+        "from roughgas.config import load\n"
+        "from roughgas.scene import check\n"
+        "settings = {'particles': 16, 'box': [20, 20], 'effects': {'spin': {'inertia': 0.5}}}\n"
+        "load('config.yaml'), check(settings)\n"
+        "sys.exit('numba' in sys.modules)"
+    )
+    environment = {"PYTHONPATH": str(PACKAGE.parent), "HOME": str(tmp_path)}
+    assert subprocess.run([sys.executable, "-c", program], env=environment).returncode == 0
+    assert not list(tmp_path.iterdir())
+
+
+def test_called_from_python_all_but_entries_are_plain_python():
+    calls = []
+    noted = Compiled(lambda x: calls.append(x))
+    noted([])
+    assert calls == [[]]
