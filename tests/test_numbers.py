@@ -2,14 +2,14 @@
 
 import numpy as np
 import pytest
-from tests.numbers import QUOTES, ROOT, Quantity, names, pages, pattern, summary
-from tests.numbers.measured import measured
+from tests.quoted import QUOTES, ROOT, Quantity, names, pages, pattern, summary
+from tests.quoted.measured import measured
 from tests.synthetic import reduced
 
 
 @pytest.mark.parametrize("path", [ROOT / name for name in QUOTES], ids=str)
 def test_pages_quote_the_numbers_of_the_datasets(path):
-    """If not: python -m tests.numbers FOLDER."""
+    """If not: python -m tests.quoted FOLDER."""
     assert path.read_text(encoding="utf-8") == pages()[path]
 
 

@@ -4,8 +4,8 @@ import json
 import sys
 from pathlib import Path
 
-from tests.numbers import SUMMARY, pages
-from tests.numbers.measured import measured
+from tests.quoted import SUMMARY, pages
+from tests.quoted.measured import measured
 
 
 def main(folder):

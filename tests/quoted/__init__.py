@@ -1,6 +1,6 @@
 """Numbers that README and docs quote: measured from datasets, kept in docs/numbers.json.
 
-    .venv/bin/python -m tests.numbers results/paper
+    .venv/bin/python -m tests.quoted results/paper
 
 measures all numbers whose datasets are in that folder, and writes them into docs/numbers.json and
 into the pages. A test holds the pages to docs/numbers.json.
@@ -11,7 +11,7 @@ import math
 import re
 from pathlib import Path
 
-from tests.numbers.quotes import QUOTES
+from tests.quoted.quotes import QUOTES
 
 ROOT = Path(__file__).parents[2]
 SUMMARY = ROOT / "docs" / "numbers.json"
