@@ -19,11 +19,11 @@ def bench(options: Namespace) -> None:
     found = _experiments(options)
 
     from roughgas.simulation.progress import Bar
-    from roughgas.simulation.speed import measure
+    from roughgas.simulation.speed import speed_of
 
     with Bar("bench", len(found) * (runs + 1), "runs") as bar:
         speeds = [
-            measure(name, settings, r, beta, runs, bar.advance) for name, settings in found.items()
+            speed_of(name, settings, r, beta, runs, bar.advance) for name, settings in found.items()
         ]
     about = [(one.median, min(one.rates), max(one.rates)) for one in speeds]
     machine = description()

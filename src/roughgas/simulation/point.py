@@ -22,18 +22,20 @@ def run_point(
 ) -> Point:
     """Simulate one point and measure it.
 
-    `experiment` is an experiment's settings as roughgas.config.experiment gives them, and `scene`
-    what roughgas.scene.build makes of them at r and beta. The same settings, r, beta and seed give
-    the same numbers to the last bit, but for `kernel_seconds`. `tell(time, collisions)` is called
-    as the simulation goes on. Raises InputError where the particles do not fit, CollapseError where
-    contacts accumulate without end.
+    `experiment` holds settings as roughgas.config.experiment gives them, and `scene` is what
+    roughgas.scene.build makes of them at r and beta. The same settings, r, beta and seed give the
+    same numbers to the last bit, but for `kernel_seconds`. `tell(time, collisions)` is called as
+    the simulation goes on. Raises InputError if the particles do not fit, CollapseError if contacts
+    accumulate without end.
     """
     recorder = Recorder(tell)
-    measured = schedule.of(experiment).run(scene, experiment, seed, recorder)
+    found = schedule.of(experiment).run(scene, experiment, seed, recorder)
+    found |= {"collisions": recorder.collisions, "kernel_seconds": recorder.seconds}
+    if scene.effects.contact_time is not None:
+        found["contact_time"] = scene.effects.contact_time.duration
+        found["contact_time_fraction"] = recorder.touched / max(1, recorder.collisions)
     return Point(
-        variables=measured
-        | {"collisions": recorder.collisions, "kernel_seconds": recorder.seconds}
-        | _contact_time(scene, recorder),
+        variables=found,
         attributes={
             "r": scene.restitution,
             "beta": scene.roughness,
@@ -49,9 +51,8 @@ def run_point(
 
 
 def _known_to_theory(scene, experiment):
-    """The parameters of effects that R depends on in theory."""
-    effects = scene.effects
-    found = {}
+    """Return the parameters of effects that R depends on in theory."""
+    effects, found = scene.effects, {}
     if effects.spin is not None:
         found["inertia"] = effects.spin.inertia
     if effects.friction is not None:
@@ -59,15 +60,6 @@ def _known_to_theory(scene, experiment):
     if effects.thermostat is not None:
         found["spin_share"] = float(experiment["effects"]["thermostat"]["spin_share"])
     return found
-
-
-def _contact_time(scene, recorder):
-    """What is known of the contact-time model, where there is one."""
-    model = scene.effects.contact_time
-    if model is None:
-        return {}
-    fraction = recorder.touched / max(1, recorder.collisions)
-    return {"contact_time": model.duration, "contact_time_fraction": fraction}
 
 
 def effort(experiment: Mapping[str, Any], r: float, beta: float) -> float:
@@ -92,16 +84,15 @@ def compile_kernels(experiments: Iterable[Mapping[str, Any]]) -> int:
 
 
 def kernels(experiments: Iterable[Mapping[str, Any]]) -> dict[Any, tuple[Scene, Mapping[str, Any]]]:
-    """By composition, a scene and its experiment for every kernel that the sweeps over r need."""
+    """Return a scene and its experiment for every kernel that the sweeps over r need.
+
+    The keys are what decides which machine code a scene runs: the types in it.
+    """
     needed = {}
     for experiment in experiments:
         for r in experiment["sweep"]["r"]:
             scene = build(experiment, float(r), -1.0)
-            needed.setdefault(_composition(scene), (scene, experiment))
+            effects = tuple(None if effect is None else type(effect) for effect in scene.effects)
+            key = effects, tuple(side is None for side in scene.box)
+            needed.setdefault(key, (scene, experiment))
     return needed
-
-
-def _composition(scene):
-    """What decides which machine code a scene runs: the types in it."""
-    effects = tuple(None if effect is None else type(effect) for effect in scene.effects)
-    return effects, tuple(side is None for side in scene.box)

@@ -21,11 +21,6 @@ class Kind(Protocol):
     def check(self, drives: list[str]) -> None:
         """Raise InputError unless the effects that drive a gas suit the kind."""
 
-    def run(
-        self, scene: Scene, experiment: Mapping[str, Any], seed: int, recorder: Recorder
-    ) -> dict[str, Any]:
-        """Return the variables of a point (see roughgas.data.point)."""
-
     def length(self, scene: Scene, schedule: Mapping[str, Any]) -> float:
         """Return how much a point simulates, in UNIT."""
 
@@ -33,10 +28,15 @@ class Kind(Protocol):
         """Return how long one simulation has been, in UNIT."""
 
     def start(self, scene: Scene, experiment: Mapping[str, Any], seed: Any, recorder=None) -> Gas:
-        """Return the gas of a point as its time begins to count; of several, the first."""
+        """Return the gas of a point, the first of several, as its time begins to count."""
 
     def sample(self, gas: Gas, every: float, samples: int) -> Columns:
         """Advance a gas; return columns, sampled at intervals of `every` UNIT."""
+
+    def run(
+        self, scene: Scene, experiment: Mapping[str, Any], seed: int, recorder: Recorder
+    ) -> dict[str, Any]:
+        """Return the variables of a point (see roughgas.data.point)."""
 
 
 KINDS: dict[str, Kind] = {"steady": steady, "cooling": cooling}
@@ -53,7 +53,7 @@ def measured(schedule: Mapping[str, Any]) -> float:
 
 
 def check(experiment: Mapping[str, Any]) -> None:
-    """Raise InputError where no point of the experiment could be simulated."""
+    """Raise InputError if no point of the experiment could be simulated."""
     effects = scene.check(experiment).effects
     drives = [effects._fields[part.place] for part in hooks.present(effects, "drives")]
     of(experiment).check(drives)

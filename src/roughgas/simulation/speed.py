@@ -14,7 +14,7 @@ SECONDS = 0.3  # of CPU time, about, that a run takes
 
 
 class Speed(NamedTuple):
-    """What was measured of an experiment: collisions a second of CPU time, in each run."""
+    """Collisions per second of CPU time of an experiment, in each run."""
 
     experiment: str
     r: float
@@ -25,11 +25,11 @@ class Speed(NamedTuple):
 
     @property
     def median(self) -> float:
-        """Of the runs."""
+        """Median over the runs."""
         return median(self.rates)
 
 
-def measure(
+def speed_of(
     name: str,
     settings: Mapping[str, Any],
     r: float,
@@ -37,10 +37,10 @@ def measure(
     runs: int,
     done: Callable[[], None],
 ) -> Speed:
-    """The speed of an experiment, from a gas that has made WARM_UP collisions per particle;
-    `done` is called after that, and after each run.
+    """Return the speed of an experiment, from a gas that has made WARM_UP collisions per particle.
 
-    Raises InputError for illegal values, CollapseError where contacts accumulate without end.
+    `done` is called after that, and after each run. Raises InputError for illegal values,
+    CollapseError if contacts accumulate without end.
     """
     scene = build(settings, r, beta)
     gas = schedule.of(settings).start(scene, settings, np.random.default_rng(0))
@@ -53,5 +53,6 @@ def measure(
         return (recorder.collisions - collisions) / max(recorder.seconds - seconds, 1e-9)
 
     samples = max(1, round(rate(WARM_UP) * SECONDS / each))
-    rates = [rate(samples) for _ in range(runs)]
-    return Speed(name, r, beta, gas.particles, len(scene.box), rates)
+    return Speed(
+        name, r, beta, gas.particles, len(scene.box), [rate(samples) for _ in range(runs)]
+    )
