@@ -11,8 +11,8 @@ from roughgas.base.errors import CollapseError
 from roughgas.kernel.layout import new_state
 from roughgas.kernel.record import Sampling, columns, record
 from roughgas.kernel.state import BASE, COLLISIONS, NOW, TOUCHED
-from roughgas.simulation.energies import energies, ratio
-from roughgas.simulation.recorder import UNLIMITED, Recorder
+from roughgas.simulation.energies import ratio
+from roughgas.simulation.gas import UNLIMITED, Gas
 
 BED = settings("bed")  # 160 disks on 50 a, as in Fig. 1a
 THRESHOLD = 7.0 - 4.0 * math.sqrt(3.0)  # of r, for three particles on a line
@@ -72,7 +72,7 @@ def test_the_error_names_time_particles_and_remedy():
     for seed in range(1, 20):
         scene, state = begin(BED, 0.6, 0.0, seed)
         try:
-            Recorder().in_time(state, scene, 0.25, 240)
+            Gas(scene, state).in_time(0.25, 240)
         except CollapseError as error:
             text = str(error)
             break
@@ -131,9 +131,8 @@ def bed_with(duration, seed, measure):
     """(R, share of contacts touched) of a bed between smooth walls, harmless by Fig. 1b."""
     experiment = settings("walled", walls={"roughness": -1.0}, contact_time={"duration": duration})
     scene, state = begin(experiment, 0.6, 0.0, seed)
-    settle, recorder = max(40, measure), Recorder()
-    rows = recorder.in_time(state, scene, 0.25, 4 * (settle + measure))
-    R = ratio(energies(rows, 160, 0.5))[4 * settle :]
+    gas, settle = Gas(scene, state), max(40, measure)
+    R = ratio(gas.energies(gas.in_time(0.25, 4 * (settle + measure))))[4 * settle :]
     return R.mean(), state.counts[TOUCHED] / state.counts[COLLISIONS]
 
 

@@ -12,9 +12,9 @@ from roughgas.kernel import record
 from roughgas.kernel.state import LAST_FIRST, LAST_SECOND
 from roughgas.scene import build
 from roughgas.simulation.cooling import SAMPLES_PER_REFRESH
-from roughgas.simulation.energies import energies, ratio
+from roughgas.simulation.energies import ratio
+from roughgas.simulation.gas import Gas
 from roughgas.simulation.point import run_point
-from roughgas.simulation.recorder import Recorder
 
 GAS = settings("gas")  # 160 disks on (100 a)^2, as in Fig. 2b
 BLOCKS = 20
@@ -50,14 +50,15 @@ def test_a_gas_cools_for_ever(margins):
 def cooled(r, samples):
     """A gas that is sampled once a collision per particle. It is given up once it flies as one
     lump: what happens inside is then as slow to simulate as it is small."""
-    scene, state = begin(GAS, r, 0.0, 1)
+    gas = Gas(*begin(GAS, r, 0.0, 1))
+    gas.cool(SAMPLES_PER_REFRESH * 80)
     legs, common = [], np.zeros(1)
     while LEG * len(legs) < samples and common.max() < 0.5:
-        leg = Recorder().in_collisions(state, scene, 80, LEG, SAMPLES_PER_REFRESH)
+        leg = gas.in_collisions(80, LEG)
         common = (leg["p_x"] ** 2 + leg["p_y"] ** 2) / 160 / (leg["vv_x"] + leg["vv_y"])
         legs.append(leg | {"common": common})
     rows = {name: np.concatenate([leg[name] for leg in legs]) for name in legs[0]}
-    present = energies(rows, 160, 0.5)
+    present = gas.energies(rows)
     power = 2.0 * rows["exponent"] * math.log10(2.0)
     return {
         "R": ratio(present),

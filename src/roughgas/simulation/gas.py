@@ -17,7 +17,9 @@ from roughgas.kernel.state import COLLISIONS, EXPONENT, State
 from roughgas.scene import Scene, initial_state
 from roughgas.simulation.books import Books, books
 from roughgas.simulation.energies import Columns, Energies, energies
-from roughgas.simulation.recorder import UNLIMITED, Recorder, now
+from roughgas.simulation.recorder import Recorder, now
+
+UNLIMITED = 2**62
 
 
 class Watcher(Protocol):

@@ -22,7 +22,6 @@ from roughgas.kernel.state import (
 )
 from roughgas.scene import Scene
 
-UNLIMITED = 2**62
 REPORTS = 50
 NAMED = 8  # of the particles in a collapse
 
@@ -67,7 +66,7 @@ class Recorder:
 
     # until all drive a Gas
     def in_time(self, state: State, scene: Scene, interval: float, samples: int):
-        return self.run(state, scene, Sampling(float(interval), UNLIMITED, 0), samples)
+        return self.run(state, scene, Sampling(float(interval), 2**62, 0), samples)
 
     def in_collisions(self, state: State, scene: Scene, collisions: int, samples: int, refresh=0):
         return self.run(state, scene, Sampling(np.inf, collisions, refresh), samples)

@@ -53,6 +53,4 @@ def speed_of(
         return (recorder.collisions - collisions) / max(recorder.seconds - seconds, 1e-9)
 
     samples = max(1, round(rate(WARM_UP) * SECONDS / each))
-    return Speed(
-        name, r, beta, gas.particles, len(scene.box), [rate(samples) for _ in range(runs)]
-    )
+    return Speed(name, r, beta, gas.particles, len(scene.box), [rate(samples) for _ in range(runs)])

@@ -1,0 +1,121 @@
+"""A gas under way: units, refreshing, steps, and what it costs."""
+
+import math
+
+import numpy as np
+import pytest
+from brute_force import begin, run, settings
+
+from roughgas.kernel.state import EXPONENT
+from roughgas.scene import build, initial_state
+from roughgas.simulation.energies import restored
+from roughgas.simulation.gas import Gas, elastic
+from roughgas.simulation.recorder import Recorder
+
+GAS = settings("gas", 20, [25, 25])
+
+
+def gas_of(r, beta, seed, refresh_every=0, recorder=None):
+    gas = Gas.start(build(GAS, r, beta), GAS, np.random.default_rng(seed), recorder)
+    gas.cool(refresh_every)
+    return gas
+
+
+def test_columns_are_those_of_the_kernel():
+    for interval, collisions in ((0.5, None), (None, 10)):
+        gas, (scene, same) = gas_of(0.9, 0.2, 1), begin(GAS, 0.9, 0.2, 1)
+        if interval:
+            rows, plain = gas.in_time(interval, 130), run(same, scene, 130, interval=interval)
+        else:
+            rows = gas.in_collisions(collisions, 130)
+            plain = run(same, scene, 130, collisions=collisions)
+        for name in rows:
+            assert np.array_equal(rows[name], plain[name]), name
+        assert gas.time == gas.sample["time"][0] == plain["time"][-1]
+
+
+def test_energies_of_a_refreshed_gas_can_be_restored():
+    """As far as chaos lets one compare: with and without refreshing."""
+    ends = []
+    for refresh_every in (0, 20):
+        gas = gas_of(0.5, 0.5, 2, refresh_every)
+        rows = gas.in_collisions(10, 10)
+        ends.append((rows, restored(gas.energies(rows), rows["exponent"])))
+    (plain, expected), (refreshed, found) = ends
+    assert refreshed["exponent"][-1] < 0.0
+    assert refreshed["time"] == pytest.approx(plain["time"], rel=1e-7)
+    for one, other in zip(found, expected, strict=True):
+        assert one == pytest.approx(other, rel=1e-6)
+
+
+@pytest.mark.parametrize("samples", [10, 130, 230])
+def test_a_gas_is_refreshed_however_its_run_is_cut_into_calls(samples):
+    gas, (scene, same) = gas_of(0.5, 0.5, 2, 40), begin(GAS, 0.5, 0.5, 2)
+    rows = gas.in_collisions(10, samples)
+    assert np.array_equal(rows["time"], run(same, scene, samples, collisions=10, refresh=4)["time"])
+    assert gas.state.counts[EXPONENT] == same.counts[EXPONENT] < 0
+
+
+class Watcher:
+    """Counts the steps of a gas; none may change the unit of velocity."""
+
+    steps = 0
+
+    def before(self, state):
+        self.exponent = state.counts[EXPONENT]
+
+    def after(self, state):
+        self.steps += 1
+        assert state.counts[EXPONENT] == self.exponent
+
+
+def test_steps_change_no_bit_of_a_run():
+    """Neither of time nor of refreshing, which a watcher never sees in the middle of a step."""
+    whole, cut = gas_of(0.5, 0.5, 2, 40), gas_of(0.5, 0.5, 2, 40)
+    cut.watcher = Watcher()
+    whole.in_collisions(40, 10)
+    while cut.collisions < 390:
+        assert cut.step(math.inf, 7)
+    assert not cut.step(cut.time, 7)
+    while cut.collisions < 400:
+        cut.step(math.inf, 1)
+    assert cut.watcher.steps > 60
+    assert cut.time == whole.time
+    assert np.array_equal(cut.state.trajectory, whole.state.trajectory)
+
+
+def test_a_step_ends_at_an_instant():
+    gas = gas_of(0.5, 0.5, 2, 40)
+    while gas.step(300.0, 7):
+        pass
+    assert gas.time == pytest.approx(300.0, rel=1e-14) and gas.state.counts[EXPONENT] < 0
+
+
+def test_thermalising_conserves_the_energy():
+    gas = gas_of(0.5, 0.5, 2)
+    gas.look()
+    before = gas.energies(gas.sample)
+    gas.thermalise(10.0)
+    assert gas.collisions == 100 == gas.count(10.0)
+    after = gas.energies(gas.sample)
+    assert after.translational == pytest.approx(before.translational, rel=1e-12)
+    assert after.rotational == 0.0
+    walls = elastic(build(settings("walled"), 0.5, 0.5)).effects.walls
+    assert (walls.restitution, walls.roughness) == (1.0, -1.0)
+
+
+def test_a_recorder_sums_up_over_gases():
+    recorder = Recorder()
+    for seed in (1, 2):
+        gas = gas_of(0.9, 0.2, seed, recorder=recorder)
+        gas.in_collisions(10, 7)
+        gas.in_collisions(5, 4)
+    assert recorder.collisions == 2 * (70 + 20) and recorder.seconds > 0.0
+
+
+def test_a_gas_that_never_collides_comes_to_an_end():
+    """One particle, sampled by collisions: the samples are taken all the same."""
+    scene = build(GAS, 0.9, 0.2)
+    alone = settings("gas", 1, [25, 25])
+    rows = Gas(scene, initial_state(scene, alone, np.random.default_rng(0))).in_collisions(10, 5)
+    assert np.all(rows["collisions"] == 0) and np.all(np.diff(rows["time"]) > 0.0)
