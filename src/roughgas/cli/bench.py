@@ -1,11 +1,13 @@
 """`roughgas bench`: how fast this machine simulates."""
 
 from argparse import Namespace
+from statistics import median
 from typing import Any
 
 from roughgas.cli.options import whole_number
 
 HEAD = ["experiment", "r", "beta", "particles", "collisions / s", "slowest", "fastest"]
+PICKS = {"collisions_per_second": median, "slowest": min, "fastest": max}
 
 
 def bench(options: Namespace) -> None:
@@ -18,27 +20,27 @@ def bench(options: Namespace) -> None:
     runs = whole_number("--runs", options.runs, 1)
     found = _experiments(options)
 
+    from roughgas.scene import build
     from roughgas.simulation.progress import Bar
-    from roughgas.simulation.speed import speed_of
+    from roughgas.simulation.speed import rates_of
 
+    speeds = []
     with Bar("bench", len(found) * (runs + 1), "runs") as bar:
-        speeds = [
-            speed_of(name, settings, r, beta, runs, bar.advance) for name, settings in found.items()
-        ]
-    about = [(one.median, min(one.rates), max(one.rates)) for one in speeds]
+        for name, settings in found.items():
+            scene = build(settings, r, beta)
+            rates = rates_of(scene, settings, runs, bar.advance)
+            about = {"particles": settings["particles"], "dimension": len(scene.box)}
+            speeds.append({"experiment": name, "r": r, "beta": beta, **about, "rates": rates})
+            for key, pick in PICKS.items():
+                speeds[-1][key] = pick(rates)
     machine = description()
     if options.json:
-        names = ("collisions_per_second", "slowest", "fastest")
-        records = [
-            one._asdict() | dict(zip(names, rates, strict=True))
-            for one, rates in zip(speeds, about, strict=True)
-        ]
-        print(as_json({"machine": machine, "speeds": records}))
+        print(as_json({"machine": machine, "speeds": speeds}))
         return
     rows = [HEAD]
-    for one, rates in zip(speeds, about, strict=True):
-        place = [one.experiment, f"{one.r:g}", f"{one.beta:g}", str(one.particles)]
-        rows.append([*place, *(f"{float(f'{rate:.3g}'):,.0f}" for rate in rates)])
+    for one in speeds:
+        place = [one["experiment"], f"{r:g}", f"{beta:g}", str(one["particles"])]
+        rows.append([*place, *(f"{float(f'{one[key]:.3g}'):,.0f}" for key in PICKS)])
     print(f"{columns(rows, numbers=True)}\n\n{columns(machine.items())}")
 
 

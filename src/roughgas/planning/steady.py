@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -33,14 +33,6 @@ TWICE = 2.0  # transients to wait for: whether a gas is steady is judged from ha
 MEMORIES = 20.0  # autocorrelation times in a run, at least: its error is estimated from blocks
 
 
-class Chains(NamedTuple):
-    """Energies per degree of freedom and R of several chains, (chains, periods)."""
-
-    E_trans: np.ndarray
-    E_rot: np.ndarray
-    R: np.ndarray
-
-
 def explore(scene: Scene, experiment: Mapping[str, Any]) -> Pilot:
     """Run chains, and double them until they show a steady state and enough of it."""
     every = experiment["schedule"]["sample_every"]
@@ -53,7 +45,7 @@ def explore(scene: Scene, experiment: Mapping[str, Any]) -> Pilot:
         for gas, pieces in zip(gases, known, strict=True):
             pieces.append(gas.energies(gas.in_time(every, periods * per_period)))
         chains = _together(known, per_period)
-        periods = chains.R.shape[1]
+        periods = chains.shape[2]
         length = periods * per_period * every
         pace = 2.0 * recorder.collisions / (number * CHAINS * length)
         pilot = _judged(chains, per_period * every, pace, recorder.seconds)
@@ -71,18 +63,19 @@ def choose(scene: Scene, given: Mapping[str, Any], pilot: Pilot, target: float) 
     return {**given, "equilibrate": transient, "measure": measure}
 
 
-def _together(known: list[list[Energies]], per_period: int) -> Chains:
-    whole = [Energies(*map(np.concatenate, zip(*pieces, strict=True))) for pieces in known]
-    series = ((*one, ratio(one)) for one in whole)
-    means = ([period_means(part, per_period) for part in parts] for parts in series)
-    return Chains(*map(np.array, zip(*means, strict=True)))
+def _together(known: list[list[Energies]], per_period: int) -> np.ndarray:
+    """Return E_trans, E_rot and R of each period of each chain, (3, chains, periods)."""
+    series = [Energies(*map(np.concatenate, zip(*pieces, strict=True))) for pieces in known]
+    means = [[period_means(part, per_period) for part in (*one, ratio(one))] for one in series]
+    return np.array([*zip(*means, strict=True)])
 
 
-def _judged(chains: Chains, period: float, pace: float, seconds: float) -> Pilot:
+def _judged(chains: np.ndarray, period: float, pace: float, seconds: float) -> Pilot:
     """Return the pilot that chains amount to, `period` being the length of one of their columns."""
-    count, periods = chains.R.shape
-    start = max(settling(part) for part in (chains.E_trans, chains.E_rot))
-    window = chains.R[:, min(start, periods // 2) :]
+    *energies, R = chains
+    count, periods = R.shape
+    start = max(map(settling, energies))
+    window = R[:, min(start, periods // 2) :]
     blocks = [blocking(one) for one in window]
     simulated = count * periods * period
     return Pilot(

@@ -46,8 +46,9 @@ def as_markdown(rows: Iterable[Row], cores: int, start_up: float) -> str:
 def as_numbers(rows: Iterable[Row], cores: int, start_up: float) -> list[dict[str, Any]]:
     """Return the same by the names in COLUMNS; times are in seconds, no target is None."""
     rows = list(rows)
-    plans, jobs = [plan for one in rows for plan in one.plans], sum(one.jobs for one in rows)
-    return [_numbers(one, cores, start_up) for one in [*rows, Row("in all", None, plans, jobs)]]
+    every = [plan for one in rows for plan in one.plans]
+    total = Row("in all", None, every, sum(one.jobs for one in rows))
+    return [_numbers(one, cores, start_up) for one in [*rows, total]]
 
 
 def _numbers(one: Row, cores: int, start_up: float) -> dict[str, Any]:

@@ -9,7 +9,7 @@ import numpy as np
 from roughgas.base.errors import InputError
 from roughgas.kernel.layout import new_state
 from roughgas.kernel.state import State
-from roughgas.scene.composition import DIAMETER, Scene
+from roughgas.scene.composition import DIAMETER, Scene, build
 
 TEMPERATURE = 1.0  # m a^2/T^2
 VACANCIES = 1.3  # lattice sites a particle, where there is room
@@ -20,6 +20,16 @@ CENTRED = {
     2: [(0.25, 0.25), (0.75, 0.75)],
     3: [(0.25, 0.25, 0.25), (0.25, 0.75, 0.75), (0.75, 0.25, 0.75), (0.75, 0.75, 0.25)],
 }
+
+
+def check(experiment: Mapping[str, Any]) -> Scene:
+    """Return the scene of some point. Raises InputError if no point could be simulated."""
+    scene = build(experiment, 0.5, 0.0 if "spin" in experiment["effects"] else -1.0)
+    lattice(scene, experiment)
+    if "target_stderr" in experiment and scene.effects.spin is None:
+        value = experiment["target_stderr"]
+        raise InputError("target_stderr", value, "not be given where nothing spins: R is 0")
+    return scene
 
 
 def initial_state(

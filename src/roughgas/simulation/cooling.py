@@ -6,7 +6,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from roughgas.base.errors import InputError
 from roughgas.effects import inertia
 from roughgas.scene import Scene
 from roughgas.simulation.books import Books, exchange
@@ -19,7 +18,7 @@ from roughgas.statistics.plateau import find_plateau
 from roughgas.theory import friction_relaxation_rate, relaxation_rate
 
 # see roughgas.simulation.schedule.Kind
-UNIT, LENGTH = "collisions per particle", "plateau"
+DRIVEN, UNIT, LENGTH = False, "collisions per particle", "plateau"
 SAMPLES_PER_REFRESH = 4
 TRANSIENT = 10.0, 1000.0  # collisions per particle: theory's estimate is kept between these
 
@@ -31,13 +30,6 @@ class Cooled(NamedTuple):
     exponent: np.ndarray
     before: Books
     after: Books
-
-
-def check(drives: list[str]) -> None:
-    """Raise InputError if effects of a scene, those named, drive the gas."""
-    if drives:
-        legal = f"be steady where there is a drive: {', '.join(drives)}"
-        raise InputError("schedule.kind", "cooling", legal)
 
 
 def length(scene: Scene, schedule: Mapping[str, Any]) -> float:
@@ -65,11 +57,6 @@ def rate_of(scene: Scene) -> float:
     if friction is None:
         return float(relaxation_rate(r, beta, dimension, q))
     return float(friction_relaxation_rate(r, beta, friction.mu, dimension, q))
-
-
-def passed(time: float, collisions: int, particles: int) -> float:
-    """Return how long a simulation has been, in collisions per particle."""
-    return 2.0 * collisions / particles
 
 
 def start(scene: Scene, experiment: Mapping[str, Any], seed: Any, recorder=None) -> Gas:

@@ -105,7 +105,7 @@ class Progress(Bar):
             self._bar.set_description_str(self._name, refresh=False)
             self._bar.unpause()  # how long compiling took says nothing of the simulation
         self._compiling = False
-        now = self._kind.passed(simulated, collisions, self._particles)
+        now = simulated if self._kind.DRIVEN else 2.0 * collisions / self._particles
         if now < self._now:  # another one has begun
             self._before += self._now
         self._now = now

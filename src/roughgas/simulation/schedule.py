@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from typing import Any, Protocol
 
 from roughgas import scene
+from roughgas.base.errors import InputError
 from roughgas.kernel import hooks
 from roughgas.scene import Scene
 from roughgas.simulation import cooling, steady
@@ -15,17 +16,12 @@ from roughgas.simulation.recorder import Recorder
 class Kind(Protocol):
     """What a module of this room says of schedules of its kind."""
 
+    DRIVEN: bool  # whether effects drive the gas; else progress is counted in collisions
     UNIT: str  # of lengths
     LENGTH: str  # key of the schedule: how long R is measured
 
-    def check(self, drives: list[str]) -> None:
-        """Raise InputError unless the effects that drive a gas suit the kind."""
-
     def length(self, scene: Scene, schedule: Mapping[str, Any]) -> float:
         """Return how much a point simulates, in UNIT."""
-
-    def passed(self, time: float, collisions: int, particles: int) -> float:
-        """Return how long one simulation has been, in UNIT."""
 
     def start(self, scene: Scene, experiment: Mapping[str, Any], seed: Any, recorder=None) -> Gas:
         """Return the gas of a point, the first of several, as its time begins to count."""
@@ -56,4 +52,9 @@ def check(experiment: Mapping[str, Any]) -> None:
     """Raise InputError if no point of the experiment could be simulated."""
     effects = scene.check(experiment).effects
     drives = [effects._fields[part.place] for part in hooks.present(effects, "drives")]
-    of(experiment).check(drives)
+    kind = experiment["schedule"]["kind"]
+    if drives and not KINDS[kind].DRIVEN:
+        legal = f"be steady where there is a drive: {', '.join(drives)}"
+        raise InputError("schedule.kind", kind, legal)
+    if KINDS[kind].DRIVEN and not drives:
+        raise InputError("schedule.kind", kind, "be cooling where no effect drives the gas")

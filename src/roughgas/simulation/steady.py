@@ -5,7 +5,6 @@ from typing import Any
 
 import numpy as np
 
-from roughgas.base.errors import InputError
 from roughgas.effects import inertia
 from roughgas.scene import Scene
 from roughgas.simulation.books import exchange
@@ -17,24 +16,13 @@ from roughgas.statistics.equilibration import detect_start, is_equilibrated
 from roughgas.statistics.errors import autocorrelation_time, blocking
 from roughgas.statistics.intervals import Error, degrees_of_freedom, is_trusted
 
-UNIT, LENGTH = "T", "measure"  # see roughgas.simulation.schedule.Kind
+DRIVEN, UNIT, LENGTH = True, "T", "measure"  # see roughgas.simulation.schedule.Kind
 LEAST_LEFT = 0.5  # share of the planned measurement below which a late start is not worth having
-
-
-def check(drives: list[str]) -> None:
-    """Raise InputError if none of a scene's effects drives the gas."""
-    if not drives:
-        raise InputError("schedule.kind", "steady", "be cooling where no effect drives the gas")
 
 
 def length(scene: Scene, schedule: Mapping[str, Any]) -> float:
     """Return the T that a point simulates."""
     return schedule["equilibrate"] + schedule["measure"]
-
-
-def passed(time: float, collisions: int, particles: int) -> float:
-    """Return how long a simulation has been, in T."""
-    return time
 
 
 def start(scene: Scene, experiment: Mapping[str, Any], seed: Any, recorder=None) -> Gas:
