@@ -64,16 +64,6 @@ class Recorder:
         self.touched += state.counts[TOUCHED] - before[TOUCHED]
         return dict(zip(names, rows.T, strict=True))
 
-    # until all drive a Gas
-    def in_time(self, state: State, scene: Scene, interval: float, samples: int):
-        return self.run(state, scene, Sampling(float(interval), 2**62, 0), samples)
-
-    def in_collisions(self, state: State, scene: Scene, collisions: int, samples: int, refresh=0):
-        return self.run(state, scene, Sampling(np.inf, collisions, refresh), samples)
-
-    def once(self, state: State, scene: Scene, interval: float, collisions: int):
-        return self.run(state, scene, Sampling(float(interval), collisions, 0), 1)
-
 
 def now(state: State) -> float:
     """Return the present instant, in T since the start."""

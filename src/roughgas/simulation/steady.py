@@ -116,9 +116,3 @@ def _unsubtracted(gas, rows, first):
         found["E_rot_unsubtracted"] = window.rotational.mean()
         found["R_unsubtracted"] = ratio(window).mean()
     return found
-
-
-def fluctuations(scene: Scene, rows: Columns, number: int):  # until all drive a Gas
-    shear, q = scene.effects.shear, inertia(scene.effects)
-    rate = None if shear is None else shear.velocity / (2.0 * scene.middle)
-    return energies(rows, number, q, rate)
