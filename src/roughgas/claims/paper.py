@@ -30,6 +30,7 @@ from roughgas.claims.verdicts import (
     text,
     worse,
 )
+from roughgas.statistics.errors import stderr_over_seeds
 from roughgas.statistics.estimate import SIGNIFICANT, Estimate
 from roughgas.theory.prediction import predicted_ratio
 
@@ -37,12 +38,6 @@ INTERMEDIATE = 0.5
 """|beta| up to which tangential dissipation, which is proportional to 1 - beta^2, is strong."""
 TIMES_OF_PAPER = (5000.0, 2000.0)
 """How long the paper averages, in T: sheared and vibrated."""
-LENGTHS = {
-    "paper": "at the paper's averaging times",
-    "time": "at equal times",
-    "collision": "at equal numbers of collisions",
-}
-"""Lengths of runs at which two scatters are compared."""
 CONSIDERABLY = math.log(1.5)
 """Logarithm of the ratio of two errors from which one is considerably larger."""
 NEAR = 0.08
@@ -69,8 +64,7 @@ def theory_underestimates(bed: xr.Dataset) -> Finding:
 
 
 def _mean_deviations(bed: xr.Dataset) -> list[tuple[float, Estimate]]:
-    """Return mean R - Eq. (lun) over intermediate beta, for each r that has data, in ascending
-    r."""
+    """Return mean R - Eq. (lun) over intermediate beta, for each r that has data."""
     middle = bed.sel(beta=np.abs(bed.beta) <= INTERMEDIATE)
     there = [r for r in bed.r.values if np.isfinite(middle.deviation.sel(r=r)).any()]
     if not there:
@@ -152,8 +146,16 @@ def noisier_than_vibration(sheared: xr.Dataset, bed: xr.Dataset) -> Finding:
     scaled from the measured time to the paper's by its square root; the error of that mean is
     from its own scatter over the points.
     """
-    logs = {name: _log_scatter_ratio(sheared, bed, name) for name in LENGTHS}
-    paper, time = logs["paper"], logs["time"]
+    one, two = xr.align(_scatter(sheared), _scatter(bed), join="inner")
+    times = one.measured_for / two.measured_for
+    lengths = {
+        "at the paper's averaging times": times / (TIMES_OF_PAPER[0] / TIMES_OF_PAPER[1]),
+        "at equal times": times,
+        "at equal numbers of collisions": one.per_run / two.per_run,
+    }
+    ratio = one.scatter / two.scatter
+    logs = {name: _mean_log(ratio * np.sqrt(length)) for name, length in lengths.items()}
+    paper, time, _ = logs.values()
     verdict = FAILS
     if paper.real and paper.value > 0:
         verdict = HOLDS if paper.value >= CONSIDERABLY else QUALIFIED
@@ -161,33 +163,11 @@ def noisier_than_vibration(sheared: xr.Dataset, bed: xr.Dataset) -> Finding:
         verdict = QUALIFIED
     elif paper.value + SIGNIFICANT * paper.stderr > CONSIDERABLY:
         raise NotTestedError(f"the ratio of scatters, {_ratio(paper)}, is too uncertain")
-    ratios = ", ".join(f"{_ratio(logs[name])} {length}" for name, length in LENGTHS.items())
+    ratios = ", ".join(f"{_ratio(log)} {length}" for length, log in logs.items())
     reason = f"The scatter between sheared runs is that between vibrated ones times {ratios}"
     reason += f"; the first differs from 1 by {abs(paper.sigma):.1f} sigma."
-    numbers = ((f"ln(scatter sheared / vibrated) {LENGTHS[name]}", logs[name]) for name in logs)
+    numbers = ((f"ln(scatter sheared / vibrated) {length}", log) for length, log in logs.items())
     return Finding(verdict, reason, tuple(numbers))
-
-
-def _ratio(log: Estimate) -> str:
-    """Return a logarithm as the ratio that it stands for."""
-    ratio = math.exp(log.value)
-    return f"{Estimate(ratio, ratio * log.stderr):.2f}"
-
-
-def _log_scatter_ratio(sheared: xr.Dataset, bed: xr.Dataset, per: str) -> Estimate:
-    """Return the mean of ln(scatter sheared / scatter vibrated) at one of LENGTHS."""
-    one, two = xr.align(_scatter(sheared), _scatter(bed), join="inner")
-    length = one.per_run / two.per_run if per == "collision" else one.measured_for
-    if per != "collision":
-        length = length / two.measured_for
-    if per == "paper":
-        length = length / (TIMES_OF_PAPER[0] / TIMES_OF_PAPER[1])
-    logs = (np.log(one.scatter / two.scatter) + np.log(length) / 2).values
-    logs = logs[np.isfinite(logs)]
-    if logs.size < 3:
-        raise NotTestedError("fewer than three common points have several seeds and a steady state")
-    error = float(logs.std(ddof=1)) / math.sqrt(logs.size)
-    return Estimate(float(logs.mean()), error, logs.size - 1)
 
 
 def _scatter(data: xr.Dataset) -> xr.Dataset:
@@ -197,6 +177,19 @@ def _scatter(data: xr.Dataset) -> xr.Dataset:
     scatter = data.R_stderr_over_seeds * np.sqrt(seeds)
     found = {"measured_for": data.measured_for, "per_run": data.collisions / seeds}
     return xr.Dataset(found | {"scatter": scatter.where(scatter > 0)})
+
+
+def _mean_log(ratios: xr.DataArray) -> Estimate:
+    logs = np.log(ratios.values[np.isfinite(ratios.values)])
+    if logs.size < 3:
+        raise NotTestedError("fewer than three common points have several seeds and a steady state")
+    return Estimate(float(logs.mean()), stderr_over_seeds(logs), logs.size - 1)
+
+
+def _ratio(log: Estimate) -> str:
+    """Return a logarithm as the ratio that it stands for."""
+    ratio = math.exp(log.value)
+    return f"{Estimate(ratio, ratio * log.stderr):.2f}"
 
 
 def follows_k(cooling: xr.Dataset) -> Finding:
