@@ -1,1 +1,1 @@
-"""Means, standard errors, confidence intervals, steady states: of any series, without physics."""
+"""Means, standard errors, intervals, steady states, and fits of any series, without physics."""

@@ -4,13 +4,13 @@ import numpy as np
 
 
 def period_means(series: np.ndarray, samples_per_period: int) -> np.ndarray:
-    """Means over consecutive blocks of `samples_per_period` samples, along the last axis.
+    """Return means over consecutive blocks of `samples_per_period` samples, along the last axis.
 
-    A vibrated bed sampled a few times per period meets the same few phases of its floor again and
-    again. Its raw samples are anticorrelated and autocorrelation estimates of them mislead, so
-    everything statistical is done on these means. An incomplete last block is left out. `series`
-    has shape (..., samples), the result (..., samples // samples_per_period). Raises ValueError
-    unless there is at least one whole period.
+    A vibrated bed that is sampled a few times per period shows the same few phases of its floor
+    again and again. Its raw samples are anticorrelated, and their autocorrelation misleads, so all
+    statistics are of these means. An incomplete last block is left out. `series` has shape (...,
+    samples), the result (..., samples // samples_per_period). Raises ValueError unless there is at
+    least one whole period.
     """
     series = np.asarray(series)
     periods = series.shape[-1] // samples_per_period if samples_per_period >= 1 else 0

@@ -1,8 +1,8 @@
 """Where the transient of a driven gas ends, and whether a run has reached its steady state.
 
-Both work on series of energies (period means for a vibrated bed, see `averages.period_means`), not
-on R: R may already be right while both energies still drift. The rotational energy is the slowest
-signal near beta = -1.
+Both are judged from series of energies (period means for a vibrated bed, see
+`averages.period_means`), not from R, which may already be right while both energies still drift.
+The rotational energy is the slowest signal near beta = -1.
 """
 
 from typing import NamedTuple
@@ -29,9 +29,9 @@ class Drift(NamedTuple):
 
 
 def detect_start(*series: np.ndarray, planned: int = 0) -> int:
-    """Index of the first sample, from `planned` on, after the transient of all `series`.
+    """Return the index of the first sample, from `planned` on, after the transient of all `series`.
 
-    Each has shape (samples,), and is cut later than planned only where it shows a transient there.
+    Each has shape (samples,), and is cut later than planned only if it shows a transient there.
 
     MSER-5 (White, Simulation 69, 323 (1997); White, Cobb & Spratt, Proc. Winter Simulation
     Conference (2000)): of all truncations, the one that leaves the smallest sum (x - mean)^2/n^2,
@@ -47,18 +47,18 @@ def detect_start(*series: np.ndarray, planned: int = 0) -> int:
 
 
 def is_equilibrated(*series: np.ndarray, start: int = 0) -> bool:
-    """Whether energies, each of shape (samples,), are stationary if measured from `start` on.
+    """Return whether energies, each of shape (samples,), are stationary from `start` on.
 
     Pass E_tr and E_rot of the whole run, and the index `start`. The test begins at `start`/2: a
-    relaxation slow enough to bias what is measured is seen best before that, for its amplitude at
-    `start`/2 is the root of what `start` leaves of it. Each series must pass two tests of its
+    relaxation slow enough to bias the measurement is seen best there, since the fraction of it that
+    is left at `start`/2 is the root of that left at `start`. Each series must pass two tests of its
     `drift` over that stretch:
 
     * It must not drift by more than 1 % and 3.5 sigma. White or AR(1) series fail by chance about
       once in 1000 or less if their autocorrelation time is below a fiftieth of the stretch, once
       in 700 at a twentieth, in 200 at a tenth.
-    * The drift must be shown, at 2 standard errors, to lie below half the energy: noise does not
-      pass for equilibrium.
+    * Its drift plus 2 standard errors must lie below half the energy: noise does not pass for
+      equilibrium.
 
     Series that leave fewer than 12 samples show nothing: False.
     """
@@ -66,12 +66,12 @@ def is_equilibrated(*series: np.ndarray, start: int = 0) -> bool:
 
 
 def drift(series: np.ndarray) -> Drift:
-    """Change from the first to the last third of a `series`, shape (samples,), with its error.
+    """Return the change from the first to the last third of a `series`, shape (samples,).
 
-    As Geweke (1992) compares the first and the last part of a chain, but with the noise from
-    blocking the residuals of a straight line through the last two thirds: neither an early
-    transient nor a steady trend hides in noise of its own making. `sigmas` accounts for the number
-    of blocks (Student's t). Raises ValueError for fewer than 12 samples.
+    Geweke (1992) compares the first and the last part of a chain in this way. Here the noise is
+    from blocking the residuals of a straight line through the last two thirds, so that neither an
+    early transient nor a steady trend counts as noise. `sigmas` accounts for the number of blocks
+    (Student's t). Raises ValueError for fewer than 12 samples.
     """
     series = np.asarray(series, dtype=float)
     if len(series) < SHORTEST_SERIES:
@@ -81,8 +81,8 @@ def drift(series: np.ndarray) -> Drift:
     change = late[third:].mean() - early.mean()
     scale = abs(late.mean()) or 1.0
     noise = blocking(late - _line_through(late))
-    # Twice: it is for one third instead of two, and for a difference of two such means. The root:
-    # the slope was taken from the same data.
+    # 2: the error is for one third instead of two, and for a difference of two such means.
+    # The root: the slope was fitted to the same data.
     stderr = 2 * noise.stderr * np.sqrt(noise.blocks / (noise.blocks - 1))
     if stderr == 0:
         return Drift(change / scale, 0.0, np.inf if change else 0.0)
@@ -113,7 +113,7 @@ def _start(series: np.ndarray, planned: int) -> int:
 
 
 def cut_sigmas(series: np.ndarray, cut: int) -> float:
-    """By how many sigma the mean of the first `cut` samples differs from that of all others.
+    """Return by how many sigma the mean of the first `cut` samples differs from that of all others.
 
     The noise is that of the others around a straight line, by blocking, as in `drift`. `series` has
     shape (samples,), 0 < cut < samples.
@@ -144,6 +144,6 @@ def _mser_start(series: np.ndarray) -> int:
 
 
 def _batch_means(series: np.ndarray, batches: int) -> np.ndarray:
-    """Means of equal consecutive batches, shape (batches,); a remainder is left out in front."""
+    """Return means of equal consecutive batches, shape (batches,), without a remainder in front."""
     length = len(series) // batches
     return series[len(series) - batches * length :].reshape(batches, length).mean(axis=1)

@@ -1,7 +1,8 @@
 """Standard errors of means: from blocks, from the autocorrelation, from independent seeds.
 
-The primary error is the spread over independent seeds; the others are its cross-check within one
-run. Feed them period means (`averages.period_means`), not raw samples of a periodically driven gas.
+A point's error pools the scatter over independent seeds with the errors within its runs
+(`intervals.pooled`). Pass period means (`averages.period_means`), not raw samples of a periodically
+driven gas.
 """
 
 import functools
@@ -25,22 +26,23 @@ class Blocking(NamedTuple):
 
 
 def blocking_stderr(series: np.ndarray) -> float:
-    """Standard error of the mean of a correlated series of shape (samples,), by `blocking`."""
+    """Return the standard error of the mean of a correlated series, shape (samples,)."""
     return blocking(series).stderr
 
 
 def blocking(series: np.ndarray) -> Blocking:
-    """Blocking analysis of a correlated series of shape (samples,).
+    """Return the standard error of the mean of a correlated series of shape (samples,).
 
     Blocking (Flyvbjerg & Petersen, J. Chem. Phys. 91, 461 (1989)) with overlapping blocks (Meketon
     & Schmeiser, Proc. Winter Simulation Conference (1984)), which use the data better than
     disjoint ones. The block length b grows until b^3 > 2 n tau^2, the optimum of Lee et al., Phys.
     Rev. E 83, 066706 (2011), and Wolff, Comput. Phys. Commun. 156, 143 (2004), where tau is the
     integrated autocorrelation time found on the way, or until few blocks are left. Blocks of
-    length b miss a share of about tau/(2 b) of the variance, which is put back.
+    length b miss a share of about tau/(2 b) of the variance, which is added again.
 
     On AR(1) series of 100 to 4000 samples with tau from 0.5 to n/20 the root mean square estimate
-    is within 7 % of the truth; one alone scatters by 5 % (tau = 1, n = 2000) to 30 % (tau = n/20).
+    is within 7 % of the truth; a single one scatters by 5 % (tau = 1, n = 2000) to 30 % (tau =
+    n/20).
     The error is NaN below two samples.
     """
     series = np.asarray(series, dtype=float)
@@ -62,13 +64,16 @@ def blocking(series: np.ndarray) -> Blocking:
 
 
 def autocorrelation_time(series: np.ndarray) -> float:
-    """Integrated autocorrelation time 1 + 2 sum rho(k), in samples, by emcee's `integrated_time`.
+    """Return the integrated autocorrelation time 1 + 2 sum rho(k), in samples.
+
+    The estimator is emcee's `integrated_time`.
 
     `series` has shape (samples,), or (replicas, samples) for replicas whose autocorrelation
-    functions are averaged. Sokal's window is 3 tau in this convention (his 6). That the mean is
-    taken from the series itself shortens the estimate, which is corrected to first order as in
-    Wolff (2004). Never below 1: anticorrelation is given no credit, for it mostly means samples at
-    fixed phases of a drive. NaN for a constant series. Reliable if the series is 20 tau long.
+    functions are averaged. Sokal's window is 3 tau in this convention (his 6). The estimate comes
+    out short because the mean is taken from the same series, which is corrected to first order as
+    in Wolff (2004). Never below 1: anticorrelation gets no credit, because it mostly comes from
+    samples at fixed phases of a drive. NaN for a constant series. Reliable if the series is 20 tau
+    long.
     """
     series = np.atleast_2d(np.asarray(series, dtype=float))
     samples = series.shape[1]
@@ -81,7 +86,7 @@ def autocorrelation_time(series: np.ndarray) -> float:
 
 @functools.cache
 def _integrated_time() -> Callable[..., np.ndarray]:
-    """emcee's function without the rest of emcee, which spends 0.7 s importing scipy.stats."""
+    """Return emcee's function without the rest of emcee, which spends 0.7 s on scipy.stats."""
     folder = Path(importlib.util.find_spec("emcee").origin).parent
     spec = importlib.util.spec_from_file_location("emcee_autocorr", folder / "autocorr.py")
     module = importlib.util.module_from_spec(spec)
@@ -89,18 +94,8 @@ def _integrated_time() -> Callable[..., np.ndarray]:
     return module.integrated_time
 
 
-def stderr_from_autocorrelation(series: np.ndarray) -> float:
-    """Standard error of the mean of a series, shape (samples,), by `autocorrelation_time`."""
-    series = np.asarray(series, dtype=float)
-    if len(series) < 2:
-        return math.nan
-    if np.ptp(series) == 0:
-        return 0.0
-    return math.sqrt(series.var(ddof=1) * autocorrelation_time(series) / len(series))
-
-
 def stderr_over_seeds(values: np.ndarray) -> float:
-    """Standard error of the mean of independent values, shape (seeds,); NaN for one value."""
+    """Return the standard error of the mean of independent values, shape (seeds,); NaN for one."""
     values = np.asarray(values, dtype=float)
     if len(values) < 2:
         return math.nan
@@ -108,7 +103,7 @@ def stderr_over_seeds(values: np.ndarray) -> float:
 
 
 def gaussian_sigmas(t: np.ndarray | float, degrees_of_freedom: float) -> np.ndarray:
-    """How many sigma of a Gaussian are as improbable as Student's `t`; keeps its sign.
+    """Return how many sigma of a Gaussian are as improbable as Student's `t`, with its sign.
 
     With four seeds (3 degrees of freedom) a difference of 3 standard errors is no rarer than 1.9
     sigma. Formula of Wallace, Ann. Math. Stat. 30, 1121 (1959), never too large; too small by 0.05
@@ -119,7 +114,7 @@ def gaussian_sigmas(t: np.ndarray | float, degrees_of_freedom: float) -> np.ndar
 
 
 def student_t(sigmas: float, degrees_of_freedom: float) -> float:
-    """How many standard errors are as safe a bound as `sigmas` >= 0 of a known Gaussian.
+    """Return how many standard errors are as safe a bound as `sigmas` >= 0 of a known Gaussian.
 
     The inverse of `gaussian_sigmas`: 2 sigma are 3.3 standard errors of four values, 2.4 of nine.
     """
@@ -132,7 +127,7 @@ def _wallace(degrees_of_freedom: float) -> float:
 
 
 def _overlapping_block_variance(series: np.ndarray, length: int) -> float:
-    """Variance of the mean from all blocks of `length` consecutive samples."""
+    """Return the variance of the mean from all blocks of `length` consecutive samples."""
     samples = len(series)
     sums = np.concatenate([[0.0], np.cumsum(series - series.mean())])
     means = (sums[length:] - sums[:-length]) / length

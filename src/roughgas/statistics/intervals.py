@@ -1,8 +1,8 @@
 """Error bars with a stated confidence: errors from several runs pooled, and Student's t.
 
-A standard error from a few numbers is itself uncertain, by 1/sqrt(2 dof) of itself. How many
-degrees of freedom stand behind it is therefore kept beside it, and decides how wide the interval
-is that holds the truth with a given probability.
+A standard error from a few numbers is itself uncertain, by a fraction 1/sqrt(2 dof). Its degrees of
+freedom are therefore kept beside it, and decide how wide the interval is that holds the truth with
+a given probability.
 """
 
 import math
@@ -18,20 +18,20 @@ SHORTEST = 10.0  # autocorrelation times, in a series whose interval at 95 % hol
 
 
 class Error(NamedTuple):
-    """A standard error, and the degrees of freedom it is known with."""
+    """A standard error, and the degrees of freedom that it is known with."""
 
     stderr: float
     dof: float
 
     def half_width(self, level: float) -> float:
-        """Half of the interval that holds the truth with probability `level`, in (0, 1)."""
+        """Return half the width of the interval that holds the truth at `level` in (0, 1)."""
         return half_width(self.stderr, self.dof, level)
 
 
 def half_width(stderr: float, dof: float, level: float) -> float:
-    """Half width of the interval at confidence `level` about a mean with this standard error.
+    """Return half the width of the interval at confidence `level` for this standard error.
 
-    NaN where nothing is known of the error (dof below 1, as for a single number).
+    NaN if the error is unknown (dof below 1, as for a single number).
     """
     if not dof >= 1:
         return math.nan
@@ -39,30 +39,33 @@ def half_width(stderr: float, dof: float, level: float) -> float:
 
 
 def is_trusted(samples: int, autocorrelation_time: float) -> bool:
-    """Whether a correlated series is long enough for its interval, by blocking, to be as wide as it
-    should be; `autocorrelation_time` in samples, NaN for a constant series, whose mean is exact."""
+    """Return whether a correlated series is long enough for its interval to be wide enough.
+
+    The interval is by blocking, `autocorrelation_time` in samples; it is NaN for a constant series,
+    whose mean is exact.
+    """
     return not samples < SHORTEST * autocorrelation_time
 
 
 def degrees_of_freedom(blocks: float) -> float:
-    """Of a standard error by `errors.blocking`, from how many blocks it says there are.
+    """Return the degrees of freedom of a standard error by `errors.blocking` with `blocks` blocks.
 
-    Blocks that overlap are worth 1.5 times as many degrees of freedom as disjoint ones (Meketon &
-    Schmeiser 1984) if their length is given. That it is chosen from the same series costs as much:
-    on AR(1) series of 20 to 1000 autocorrelation times the scatter of the squared error is that of
-    0.6 to 1.3 times as many as there are disjoint blocks, less one.
+    Overlapping blocks of a given length are worth 1.5 times as many degrees of freedom as disjoint
+    ones (Meketon & Schmeiser 1984). Choosing the length from the same series costs as much again:
+    on AR(1) series of 20 to 1000 autocorrelation times the squared error scatters as with 0.6 to
+    1.3 times the number of disjoint blocks, less one.
     """
     return max(0.0, blocks - 1.0)
 
 
 def pooled(means: np.ndarray, within: np.ndarray, dof: np.ndarray) -> Error:
-    """Standard error of the mean of runs, from their scatter and from what each says of itself.
+    """Return the standard error of the mean of runs, from their scatter and from their own errors.
 
     `means`, `within` (each run's own standard error) and `dof` (its degrees of freedom) have shape
     (runs,). Both sources estimate the variance of one run; they are averaged with their degrees of
-    freedom as weights, as in an analysis of variance. Where the scatter is larger than the runs'
-    own errors explain, by 2 sigma, these miss something (motion slower than a run), and the scatter
-    counts alone. A run's own error of which nothing is known has dof 0 (or NaN) and no weight.
+    freedom as weights, as in an analysis of variance. Where the scatter exceeds what the runs' own
+    errors explain by 2 sigma, these miss something (motion slower than a run), and only the scatter
+    counts. An unknown error of a run has dof 0 (or NaN) and no weight.
     """
     means, within = np.asarray(means, float), np.asarray(within, float)
     weights = np.where(np.isfinite(within), np.nan_to_num(dof), 0.0)
@@ -92,10 +95,10 @@ def sum_error(stderr: np.ndarray, dof: np.ndarray) -> Error:
 
 
 def excess_sigmas(first: float, first_dof: float, second: float, second_dof: float) -> float:
-    """How many sigma one estimate of a variance exceeds another.
+    """Return by how many sigma one estimate of a variance exceeds another.
 
     Their quotient follows an F distribution: normal approximation of Paulson, Ann. Math. Stat. 13,
-    233 (1942). -inf where the first is no estimate, inf where the second is zero and the first not.
+    233 (1942). -inf if the first is no estimate or zero, inf if only the second is zero.
     """
     if first_dof <= 0 or first == 0:
         return -math.inf

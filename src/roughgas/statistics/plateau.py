@@ -1,10 +1,10 @@
 """The plateau of R in a freely cooling gas, found from an ensemble of replicas.
 
-From spin 0, R rises to its plateau; later, in large or very dissipative systems, shear modes and
-clusters bring energy of flow into E_tr, and R falls for good. Neither scale is known beforehand,
-and one replica is too noisy to show them, so both ends are found from the ensemble, as Welch's
-method does for the warm-up of replicated simulations. The noise is the spread between replicas,
-which are independent, so no autocorrelation along s, the collisions per particle, is needed:
+From spin 0, R rises to its plateau. Later, in large or very dissipative systems, shear modes and
+clusters add energy of flow to E_tr, and R falls for good. Neither scale is known beforehand, and
+one replica is too noisy to show them, so both ends are found from the ensemble, as Welch's method
+does for the warm-up of replicated simulations. The noise is the spread between replicas, which are
+independent, so no autocorrelation along s, the collisions per particle, is needed:
 
 1. The samples are divided into about 60 blocks, nearly even in log s, as the scales of transient
    and departure may lie far apart. A window of blocks is stationary if, at either end, no stretch
@@ -16,15 +16,15 @@ which are independent, so no autocorrelation along s, the collisions per particl
    data then gives up another fifth of the window, because a transient at the limit of detection
    would still bias the mean by about its standard error.
 4. Of these windows, the plateau is the one that multiplies s by most, leaving out those that drift
-   (it must be shown, at 2 sigma, that the last third differs from the first by less than a quarter
-   of R) and those that R exceeds elsewhere, by 5 % and 3.5 sigma in a tenth of what is before or
-   after: a pause on the way up, or a later plateau where flow rules.
+   (the last third must differ from the first by less than a quarter of R, at 2 sigma) and those
+   that R exceeds elsewhere, by 5 % and 3.5 sigma in a tenth of what is before or after: a pause on
+   the way up, or a later plateau where flow dominates.
 
 On synthetic ensembles (relaxation in 4 to 60 collisions per particle, 10 to 60 replicas, series of
 50 to 800 samples, with and without a departure) the bias is below 0.7 of the standard error, and
-the 95 % interval holds the truth in 94 % of the cases, in 87 % where the `minimum_start` is only
-three relaxation times or a plateau lasts but twenty. It takes about ten replicas, and a series of
-ten relaxation times or a `minimum_start` of a few: what relaxes more slowly hides in the noise.
+the 95 % interval holds the truth in 94 % of the cases, or in 87 % if `minimum_start` is only three
+relaxation times or a plateau lasts only twenty. About ten replicas are needed, and a series of ten
+relaxation times or a `minimum_start` of a few: a slower relaxation hides in the noise.
 """
 
 from typing import NamedTuple
@@ -67,13 +67,13 @@ class Blocks(NamedTuple):
 def find_plateau(
     collisions_per_particle: np.ndarray, R: np.ndarray, minimum_start: float = 0.0
 ) -> Plateau:
-    """Plateau of `R`, shape (replicas, samples), over evenly spaced samples, shape (samples,).
+    """Return the plateau of `R`, shape (replicas, samples), over evenly spaced samples.
 
-    It begins at `minimum_start` at the earliest: pass a few of theory's relaxation scales. The mean
-    is that over replicas of their means in the window, `per_replica` of shape (replicas,), and
-    `stderr` comes from their spread. `found` is False if there is no plateau; the last third of the
-    samples is reported then, even if it begins before `minimum_start`. Raises ValueError for fewer
-    than two replicas.
+    It begins at `minimum_start` at the earliest: pass a few relaxation times of theory. `mean` is
+    over replicas, of their means in the window, `per_replica` of shape (replicas,), and `stderr`
+    comes from their spread. `found` is False if there is no plateau; the last third of the samples
+    is reported then, even if it begins before `minimum_start`. Raises ValueError for fewer than two
+    replicas.
     """
     s, R = np.asarray(collisions_per_particle, dtype=float), np.asarray(R, dtype=float)
     if R.ndim != 2 or len(R) < 2 or R.shape[1] != len(s):
@@ -87,7 +87,7 @@ def find_plateau(
 
 
 def _window(R: np.ndarray, s: np.ndarray, first: int) -> tuple[int, int] | None:
-    """The plateau as samples [start, stop) from `first` on, or None; `s` > 0."""
+    """Return the plateau as samples [start, stop) from `first` on, or None; `s` > 0."""
     if len(s) - first < SHORTEST_PLATEAU:
         return None
     even = np.geomspace(s[first], s[-1], BLOCKS + 1)[:-1] * (1 - ROUNDING)
@@ -106,14 +106,14 @@ def _window(R: np.ndarray, s: np.ndarray, first: int) -> tuple[int, int] | None:
 
 
 def _last_stationary_stop(blocks: Blocks, start: int) -> int:
-    """At which edge the longest stationary window from `start` on ends; 0 if there is none."""
+    """Return the edge at which the longest stationary window from `start` ends; 0 for none."""
     stops = np.arange(start + SHORTEST_PLATEAU, len(blocks.edges))
     stationary = np.maximum(*_edge_sigmas(blocks, start, stops)) < ALARM_SIGMAS
     return int(stops[stationary].max(initial=0))
 
 
 def _trimmed(blocks: Blocks, start: int, stop: int) -> tuple[int, int]:
-    """The window without the blocks at its ends that depart from it by 2 sigma."""
+    """Return the window without the blocks at its ends that depart from it by TRIM_SIGMAS."""
     while stop - start > SHORTEST_PLATEAU:
         at_start, at_stop = _edge_sigmas(blocks, start, stop)
         if max(at_start, at_stop) < TRIM_SIGMAS:
@@ -123,7 +123,7 @@ def _trimmed(blocks: Blocks, start: int, stop: int) -> tuple[int, int]:
 
 
 def _with_margin(edges: np.ndarray, start: int, stop: int) -> tuple[int, int]:
-    """The window as samples, less a margin at ends inside the data."""
+    """Return the window as samples, less a margin at ends inside the data."""
     margin = round(MARGIN * (edges[stop] - edges[start]))
     at_stop = stop < len(edges) - 1
     return int(edges[start] + margin * (start > 0)), int(edges[stop] - margin * at_stop)
@@ -132,7 +132,7 @@ def _with_margin(edges: np.ndarray, start: int, stop: int) -> tuple[int, int]:
 def _edge_sigmas(
     blocks: Blocks, start: int, stops: np.ndarray | int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """At most how many sigma the first, and the last, 1, 2, 4, ... blocks are off the rest."""
+    """Return the most sigma by which the first, and the last, 1, 2, 4, ... blocks are off."""
     stops = np.asarray(stops)[..., np.newaxis]
     widths = np.minimum(2 ** np.arange(BLOCKS.bit_length()), (stops - start) // 2)
     off_early = _sigmas(_contrasts(blocks, start, start + widths, stops))
@@ -141,7 +141,7 @@ def _edge_sigmas(
 
 
 def _contrasts(blocks: Blocks, start: int, split: np.ndarray, stop: np.ndarray) -> np.ndarray:
-    """Means over blocks [split, stop) minus those over [start, split), shape (replicas, ...)."""
+    """Return means over blocks [split, stop) less those over [start, split): (replicas, ...)."""
     sums, edges = blocks
     sums = sums - sums[:, [start]]
     late = (sums[:, stop] - sums[:, split]) / (edges[stop] - edges[split])
@@ -156,7 +156,7 @@ def _drift_is_small(R: np.ndarray) -> bool:
 
 
 def _is_exceeded(R: np.ndarray, start: int, stop: int) -> bool:
-    """Whether R is clearly above its mean in the window in a tenth of what is before or after."""
+    """Return whether R is clearly above its mean in the window in a tenth before or after it."""
     level = R[:, start:stop].mean(axis=1)
     outside = np.array_split(R[:, :start], 10, axis=1) + np.array_split(R[:, stop:], 10, axis=1)
     excess = [part.mean(axis=1) - level for part in outside if part.shape[1] > 0]
@@ -166,7 +166,7 @@ def _is_exceeded(R: np.ndarray, start: int, stop: int) -> bool:
 
 
 def _sigmas(values: np.ndarray) -> np.ndarray:
-    """How many sigma the means over replicas of `values`, shape (replicas, ...), lie from 0."""
+    """Return by how many sigma the means of `values`, shape (replicas, ...), differ from 0."""
     mean, stderr = _mean_and_stderr(values)
     return gaussian_sigmas(np.abs(mean) / np.maximum(stderr, ROUNDING), len(values) - 1)
 
