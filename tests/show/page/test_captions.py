@@ -25,11 +25,20 @@ def rendered(caption, **about):
     return publish_parts(source, writer="html", settings_overrides=settings)["body"]
 
 
-@pytest.mark.parametrize("scale", ["paper", "fine"])
-@pytest.mark.parametrize("figure", figures_of("paper", "beyond"))
-def test_a_figure_says_what_it_shows_and_how_it_was_made(figure, scale, monkeypatch):
+@pytest.fixture(scope="module")
+def loaded():
+    return config.load(ROOT / "config.yaml")
+
+
+OF_EXPERIMENTS = figures_of("paper", "beyond")
+SEEDS = {"paper": "4 seeds of each point", "fine": "a standard error of 0.002 takes"}
+
+
+@pytest.mark.parametrize(
+    ("figure", "scale"), [(one, "paper") for one in OF_EXPERIMENTS] + [("fig2b", "fine")]
+)
+def test_a_figure_says_what_it_shows_and_how_it_was_made(figure, scale, loaded, monkeypatch):
     monkeypatch.chdir(ROOT)
-    loaded = config.load("config.yaml")
     experiments = {"cooling": config.experiment(loaded, "cooling", scale)}
     experiments["waves"] = config.experiment(loaded, "waves", "small")
     wildcards = SimpleNamespace(figure=figure, folder="")
@@ -38,15 +47,13 @@ def test_a_figure_says_what_it_shows_and_how_it_was_made(figure, scale, monkeypa
     assert "What to notice." in text
     assert "160 particles in a box of 100 × 100" in text
     assert "21 values from -0.95 to 1" in text
-    seeds = "4 seeds of each point" if scale == "paper" else "a standard error of 0.002 takes"
-    assert seeds in text
+    assert SEEDS[scale] in text
     assert "sawtooth, reversed_sawtooth, triangle, sine" in text
 
 
-@pytest.mark.parametrize("figure", ["accuracy", "coverage"])
-def test_a_study_says_how_it_was_made(figure, monkeypatch):
+@pytest.mark.parametrize("figure", figures_of("accuracy"))
+def test_a_study_says_how_it_was_made(figure, loaded, monkeypatch):
     monkeypatch.chdir(ROOT)
-    loaded = config.load("config.yaml")
     studies = {name: config.study(loaded, name, "paper")["study"] for name in accuracy.STUDIES}
     wildcards = SimpleNamespace(study_figure=figure, folder="")
     text = rendered("study", wildcards=wildcards, params=SimpleNamespace(studies=studies))
@@ -63,8 +70,8 @@ def test_pictures_of_hard_cases_have_captions():
         assert "What to notice." in rendered(name, params=SimpleNamespace(size="--full"))
 
 
-def test_the_showcase_says_how_it_was_made():
-    settings = config.showcase(config.load(ROOT / "config.yaml"), "paper")
+def test_the_showcase_says_how_it_was_made(loaded):
+    settings = config.showcase(loaded, "paper")
     text = rendered("clustering", params=SimpleNamespace(showcase=settings))
     assert "particles 200000" in text
 
@@ -74,7 +81,7 @@ def test_each_caption_is_used():
     assert {path.stem for path in CAPTIONS.glob("*.rst")} == shared | set(FIGURES)
 
 
-@pytest.mark.parametrize("figure", figures_of("paper", "beyond"))
+@pytest.mark.parametrize("figure", OF_EXPERIMENTS)
 def test_the_readme_shows_each_figure_under_its_title(figure):
     number, title = FIGURES[figure].title.removeprefix("Fig. ").split(": ")
     shown = f"![Fig. {number}](figures/{figure}.png) **{number}.** {title[0].upper()}{title[1:]}. |"
