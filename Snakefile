@@ -14,20 +14,10 @@
 
 
 include: "rules/common.smk"
-include: "rules/sources.smk"
-include: "rules/cluster.smk"
-
-
-become_own_task()
-
-
 include: "rules/messages.smk"
 
 
 be_brief()
-
-if workflow.is_main_process:
-    alive = forget_dead_locks()  # held until this process ends
 
 CHANGES = {key: change for key, change in config.items() if key != "scale"}  # the command line's
 config = checked_config("config.yaml", config)
@@ -54,13 +44,11 @@ include: "rules/compile.smk"
 include: "rules/simulate.smk"
 include: "rules/planning.smk"
 include: "rules/reduce.smk"
-include: "rules/figures.smk"
-include: "rules/extensions.smk"
+include: "rules/products.smk"
+include: "rules/accuracy.smk"
 include: "rules/showcase.smk"
 include: "rules/movies.smk"
 include: "rules/hard_cases.smk"
-include: "rules/accuracy.smk"
-include: "rules/page.smk"
 include: "rules/crate.smk"
 
 
@@ -81,10 +69,66 @@ rule figures:
     default_target: True
     input:
         drawn(catalogue.figures_of("paper")),
-        f"results/{SCALE}/R.csv",
-        f"results/{SCALE}/claims.json",
-        f"results/{SCALE}/claims.md",
+        multiext(f"results/{SCALE}/", "R.csv", "claims.json", "claims.md"),
         documents("claims", "run_times", "config"),
+
+
+rule extensions:
+    input:
+        drawn(catalogue.figures_of("beyond")),
+        multiext(f"results/{SCALE}/", "extensions.csv", "open_questions.json", "open_questions.md"),
+        documents("open_questions", "run_times_extensions"),
+
+
+rule explore:
+    input:
+        f"results/{SCALE}/explore.html",
+
+
+rule explore_extensions:
+    input:
+        f"results/{SCALE}/explore_extensions.html",
+
+
+rule plan:
+    input:
+        f"results/{SCALE}/plan.md",
+
+
+rule costs:
+    input:
+        f"results/{SCALE}/costs.md",
+
+
+rule movies:
+    input:
+        drawn([f"movies/{movie}" for movie in MOVIES], [".gif"]),
+
+
+rule showcase:
+    input:
+        drawn(["clustering"], (".pdf", ".png", ".mp4")),
+        documents("clustering"),
+
+
+rule accuracy:
+    input:
+        drawn(["accuracy"]),
+        f"results/{SCALE}/accuracy.md",
+        documents("accuracy"),
+
+
+rule coverage:
+    input:
+        drawn(["coverage"]),
+        f"results/{SCALE}/coverage.md",
+        documents("coverage"),
+
+
+rule hard_cases:
+    input:
+        f"results/{'' if SCALE == 'paper' else SCALE + '/'}hard_cases.md",
+        documents("hard_cases"),
 
 
 rule everything:
@@ -102,7 +146,7 @@ rule everything:
 
 
 onstart:
-    refuse_limit_of_jobs()
+    be_alone()
     lift_rate_limit()
 
 

@@ -1,4 +1,4 @@
-# What accuracy costs in time, and whether error bars are true: the studies in roughgas/accuracy, each
+# What accuracy costs in time, and whether error bars are true: the studies in studies/accuracy, each
 # of them a few independent tasks.
 from roughgas.studies import accuracy as studies
 
@@ -16,7 +16,7 @@ def tasks_of_figure(wildcards):
     """The files of all tasks of the studies that a figure shows."""
     return [
         TASK.format(scale=wildcards.scale, study=name, task=task)
-        for name in catalogue.FIGURES[wildcards.study_figure].shows
+        for name in entry_of(wildcards).shows
         for task in tasks_of_study(name, wildcards.scale)
     ]
 
@@ -33,18 +33,20 @@ def urgency_of_task(wildcards):
     return len(names) - names.index(wildcards.task) if wildcards.task in names else 0
 
 
-def sources_of_study(wildcards):
-    return sources(f"studies.accuracy.runs.{wildcards.study}", "config", "cli.studies")
+def code_of_study(wildcards):
+    writing = ("cli.studies", "studies.accuracy.files")
+    return sources.code_of(f"studies.accuracy.runs.{wildcards.study}", alone=writing)
+
+
+def code_of_study_figure(wildcards):
+    return sources.code_of(f"studies.figures.{wildcards.study_figure}")
 
 
 def study_of_figure(wildcards):
-    scale = wildcards.folder.rstrip("/") or "paper"
-    return f"results/{scale}/{wildcards.study_figure}.nc"
+    return f"results/{scale_of(wildcards.folder)}/{wildcards.study_figure}.nc"
 
 
 rule study:
-    input:
-        sources_of_study,
     output:
         TASK,
     log:
@@ -53,6 +55,7 @@ rule study:
         "logs/{scale}/accuracy/{study}/{task}.tsv"
     priority: urgency_of_task
     params:
+        code=code_of_study,
         settings=settings_of_study,
     message:
         "accuracy, {wildcards.study}: {wildcards.task}"
@@ -63,14 +66,13 @@ rule study:
 
 rule combined_studies:
     input:
-        sources("studies.accuracy.files"),
         tasks=tasks_of_figure,
     output:
         "results/{scale}/{study_figure}.nc",
     log:
         "logs/{scale}/{study_figure}.log",
-    benchmark:
-        "logs/{scale}/{study_figure}.tsv"
+    params:
+        code=code_of("studies.accuracy.files"),
     message:
         "combine the studies of {wildcards.study_figure}"
     shell:
@@ -79,7 +81,6 @@ rule combined_studies:
 
 rule study_figure:
     input:
-        sources("studies.figures"),
         data=study_of_figure,
     output:
         "figures/{folder}{study_figure}.pdf",
@@ -87,13 +88,12 @@ rule study_figure:
             "figures/{folder}{study_figure}.png",
             caption="captions/study.rst",
             category=catalogue.HEADINGS["accuracy"],
-            labels=labels_of_study,
+            labels=labels_of,
         ),
     log:
         "logs/figures/{folder}{study_figure}.log",
-    benchmark:
-        "logs/figures/{folder}{study_figure}.tsv"
     params:
+        code=code_of_study_figure,
         studies=studies_of_figure,
     message:
         "draw {wildcards.folder}{wildcards.study_figure}"
@@ -103,29 +103,14 @@ rule study_figure:
 
 rule study_table:
     input:
-        sources("studies.accuracy.tables"),
         data="results/{scale}/{study_figure}.nc",
     output:
         "results/{scale}/{study_figure}.md",
     log:
         "logs/{scale}/{study_figure}_table.log",
-    benchmark:
-        "logs/{scale}/{study_figure}_table.tsv"
+    params:
+        code=code_of("studies.accuracy.tables"),
     message:
         "write {output}"
     shell:
         "roughgas tables {input.data} --output {output} > {log} 2>&1"
-
-
-rule accuracy:
-    input:
-        drawn(["accuracy"]),
-        f"results/{SCALE}/accuracy.md",
-        documents("accuracy"),
-
-
-rule coverage:
-    input:
-        drawn(["coverage"]),
-        f"results/{SCALE}/coverage.md",
-        documents("coverage"),

@@ -8,6 +8,7 @@ from pathlib import Path
 
 try:
     import roughgas.config
+    from roughgas.base import sources
     from roughgas.base.errors import InputError, not_one_of
     from roughgas.show import catalogue
 except ModuleNotFoundError as error:
@@ -24,7 +25,6 @@ EXPERIMENT = r"(?!(?:accuracy|coverage)\.|(?:accuracy|showcase|hard_cases)/)[^/]
 VARIANT = r"(?:/(?!(?:r|beta|seed)[-+.\d])[^/]+)?"
 # rules call the `roughgas` beside this snakemake, wherever it was started from
 os.environ["PATH"] = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
-DRAWN = catalogue.figures_of("paper", "beyond")  # the figures of experiments
 
 
 @contextmanager
@@ -46,8 +46,7 @@ def checked_config(path, changes):
 
 @functools.cache
 def settings(scale, experiment):
-    """The settings of an experiment, or of a variant, at a scale, found to be such as can be
-    simulated."""
+    """The settings of an experiment, or of a variant, at a scale, checked."""
     with one_line(f"results/{scale}/{experiment}"):
         found = roughgas.config.experiment(config, experiment, scale)
     for name, variant in roughgas.config.every_variant(experiment, found).items():
@@ -61,10 +60,6 @@ def settings(scale, experiment):
 def variants(scale, experiment):
     """The names of an experiment's variants: its own where its sweep has no third axis."""
     return roughgas.config.variants(experiment, settings(scale, experiment))
-
-
-def points_of_experiment(wildcards):
-    return points(wildcards.scale, wildcards.experiment)
 
 
 def points(scale, experiment):
@@ -97,17 +92,9 @@ def reduced(scale, experiments):
     return [REDUCED.format(scale=scale, experiment=experiment) for experiment in experiments]
 
 
-def data_of_figure(wildcards):
-    with one_line():
-        if wildcards.figure not in DRAWN:
-            raise not_one_of("figure", wildcards.figure, DRAWN)
-    return reduced(
-        wildcards.folder.rstrip("/") or "paper", catalogue.FIGURES[wildcards.figure].shows
-    )
-
-
-def data_of_paper(wildcards):
-    return reduced(wildcards.scale, catalogue.shown_in("paper"))
+def scale_of(folder):
+    """The scale of what is drawn into a folder of figures/: `paper` where it is figures/ itself."""
+    return folder.rstrip("/") or "paper"
 
 
 def drawn(figures, kinds=(".pdf", ".png")):
@@ -116,29 +103,39 @@ def drawn(figures, kinds=(".pdf", ".png")):
     return [f"figures/{folder}{figure}{kind}" for figure in figures for kind in kinds]
 
 
-def forget_dead_locks():
-    """Remove the locks that a killed Snakemake has left, so that the same command goes on.
+def code_of(*modules, alone=()):
+    """A param for the code that a result depends on: a hash of these modules, such as
+    "simulation.point", and of all that they import. Of those in `alone` their imports do not count.
 
-    Each Snakemake in this folder holds a shared lock of the system's for as long as it lives: who
-    can have it alone knows that no other one is alive.
+    As a param it makes Snakemake redo what an edit may change. Lists of files would rerun after an
+    edit of a comment, and at every step the scheduler looks at every input of every job.
     """
-    with one_line():
-        Path(".snakemake/locks").mkdir(parents=True, exist_ok=True)
-        alive = open(".snakemake/alive", "w")
-    with suppress(OSError):  # another one is alive, or there are no such locks on this disk
-        fcntl.flock(alive, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        for lock in Path(".snakemake/locks").glob("*.lock"):
-            lock.unlink()
-    with suppress(OSError):
-        fcntl.flock(alive, fcntl.LOCK_SH)
-    return alive
+
+    def code(wildcards):
+        return sources.code_of(*modules, alone=alone)
+
+    return code
+
+
+def be_alone():
+    """Hold a lock of the system's for as long as this process lives, so that no second Snakemake
+    works in this folder. Snakemake's own locks outlive a process that is killed: see `nolock` in
+    the profiles."""
+    global alive
+    alive = open(".snakemake/alive", "w")
+    with suppress(OSError):  # such as on a disk without such locks
+        try:
+            fcntl.flock(alive, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            sys.exit("roughgas: error: another Snakemake is at work in this folder")
 
 
 def lift_rate_limit():
     """Let a run on this machine start jobs as fast as it can, not a hundred a second.
 
-    To keep that limit, Snakemake looks at all jobs that are ready again a second after each time
-    that it has done so. These rounds add up, until they keep a core busy.
+    A patch (checked with Snakemake 9.27, tests/workflow/test_patches.py): to keep any limit, it
+    looks at all jobs that are ready again some time after each time that it has done so. These
+    rounds add up, and the option `max-jobs-per-timespan` only sets that time.
     """
     if workflow.local_exec:
         workflow.scheduler.job_rate_limiter = None

@@ -16,9 +16,8 @@ rule crate:
         f"results/{SCALE}/crate.zip",
     log:
         f"logs/{SCALE}/crate.log",
-    benchmark:
-        f"logs/{SCALE}/crate.tsv"
     params:
+        code=code_of("results.crate"),
         configuration=roughgas.config.as_text(config),
     message:
         "pack the run into {output}"

@@ -24,7 +24,6 @@ def urgency_of_family(wildcards):
 rule family:
     # other families start while this one compiles: the kernels of all are the same few
     input:
-        sources("simulation.point", "data.point", "cli"),
         SHARED,
         cases="tests/hard_cases/test_{family}.py",
     output:
@@ -35,6 +34,7 @@ rule family:
         "logs/{folder}hard_cases/{family}.tsv"
     priority: urgency_of_family
     params:
+        code=code_of("simulation.point", "data", "data.checkpoint", alone=["cli.run"]),
         size=size_of_cases,
     message:
         "hard cases: {wildcards.family}"
@@ -44,7 +44,6 @@ rule family:
 
 rule catalogue:
     input:
-        sources("show.style"),
         DRAWING,
         families=expand("results/{{folder}}hard_cases/{family}.json", family=FAMILIES),
     output:
@@ -53,18 +52,11 @@ rule catalogue:
         shown=[picture(name) for name in PICTURES],
     log:
         "logs/{folder}hard_cases.log",
-    benchmark:
-        "logs/{folder}hard_cases.tsv"
     params:
+        code=code_of("show.style"),
         size=size_of_cases,
     message:
         "write {output.table}"
     shell:
         "PYTHONPATH=tests python -m hard_cases.report {input.families} {params.size}"
         " --table {output.table} --pictures {output.pictures} {output.shown} > {log} 2>&1"
-
-
-rule hard_cases:
-    input:
-        f"results/{'' if SCALE == 'paper' else SCALE + '/'}hard_cases.md",
-        documents("hard_cases"),

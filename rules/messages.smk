@@ -3,22 +3,17 @@ import atexit
 
 from snakemake.logging import DefaultFormatter, logger
 
-TARGETS = (
-    "A target is a file, such as results/paper/cooling/r0.9/beta0/seed1.nc or figures/fig1a.png, or"
-    " one of figures, extensions, movies, showcase, accuracy, coverage, hard_cases, plan,"
-    " everything."
-)
 SILENT = "(it said nothing: a full disk, or killed for lack of memory?)"
 # what the message of the failed job, and the last line, say better
 REPEATED = ("RuleException:\nCalledProcessError", "WorkflowError:\nAt least one job did not")
 
 
 class Brief(DefaultFormatter):
-    """Snakemake's messages, but of a failed job only what it was to make, and what it said."""
+    """Snakemake's messages; of a failed job only what it was to make, and the end of its log.
 
-    def format(self, record):
-        text = super().format(record)
-        return f"{text.strip()}\n{TARGETS}" if "MissingRuleException" in text else text
+    A patch (checked with Snakemake 9.27, tests/workflow/test_patches.py): its own message repeats
+    the command with all settings of an experiment, some fifty lines, and no option shortens it.
+    """
 
     def format_job_error(self, msg):
         made, said = ", ".join(msg["output"]), "\n".join(map(last_lines, msg["log"]))
@@ -30,11 +25,14 @@ class Brief(DefaultFormatter):
 
 def last_lines(log, most=20):
     """The end of a log, below its name."""
-    try:
+    with suppress(OSError):
         lines = Path(log).read_text(encoding="utf-8", errors="replace").splitlines()
-    except OSError:
-        lines = []
-    return "\n    ".join([f"{log}:", *(lines[-most:] or [SILENT])])
+        return "\n    ".join([f"{log}:", *(lines[-most:] or [SILENT])])
+    return f"{log}:\n    {SILENT}"
+
+
+def is_news(record):
+    return not record.getMessage().startswith(REPEATED)
 
 
 def be_brief():
@@ -43,7 +41,7 @@ def be_brief():
     for handler in logger.handlers:
         if handler.name == "DefaultStreamHandler" and not settings.verbose:
             handler.setFormatter(Brief(settings.quiet))
-            handler.addFilter(lambda record: not record.getMessage().startswith(REPEATED))
+            handler.addFilter(is_news)
 
 
 def say_how_to_go_on():

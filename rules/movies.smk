@@ -15,7 +15,7 @@ def settings_of_movie(wildcards):
     with one_line():
         if wildcards.movie not in MOVIES:
             raise InputError("movie", wildcards.movie, f"be one of {', '.join(MOVIES)}")
-    found = settings(wildcards.folder.rstrip("/") or "paper", MOVIES[wildcards.movie][0])
+    found = settings(scale_of(wildcards.folder), MOVIES[wildcards.movie][0])
     return roughgas.config.as_text(roughgas.config.point_settings(found))
 
 
@@ -25,9 +25,6 @@ def told_of_movie(wildcards):
 
 rule movie:
     # at the scale `paper` into figures/movies/, at others into a folder below figures/{scale}/
-    input:
-        sources("show.movies.drawing"),
-        "src/roughgas/cli/movie.py",
     output:
         "figures/{folder}movies/{movie}.gif",
     log:
@@ -35,6 +32,7 @@ rule movie:
     benchmark:
         "logs/figures/{folder}movies/{movie}.tsv"
     params:
+        code=code_of("show.movies.drawing", alone=["cli.movie"]),
         settings=settings_of_movie,
         told=told_of_movie,
     message:
@@ -42,8 +40,3 @@ rule movie:
     shell:
         "roughgas movie {params.told} --fps=20 --settings {params.settings:q} --checked"
         " --output {output} > {log} 2>&1"
-
-
-rule movies:
-    input:
-        drawn([f"movies/{movie}" for movie in MOVIES], [".gif"]),

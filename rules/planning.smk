@@ -1,5 +1,4 @@
 # Accuracy on demand: a pilot of each point says how many seeds it needs, and what they will cost.
-PLANNING = SOURCE / "roughgas" / "planning"
 PLANNED = [
     name
     for name in config["experiments"]
@@ -13,7 +12,7 @@ def pilots(wildcards):
 
 
 def settings_without_lengths(wildcards):
-    """The settings of points but for run lengths and targets, on which no pilot depends, as JSON."""
+    """The settings of points without run lengths and targets, which no pilot depends on, as JSON."""
     found = settings(wildcards.scale, wildcards.experiment)
     return roughgas.config.as_text(roughgas.config.pilot_settings(found))
 
@@ -30,7 +29,6 @@ def fixed_schedules(wildcards):
 rule pilot:
     input:
         kernel_of_point,
-        PLANNING / "pilot.py",
     output:
         PILOT,
     log:
@@ -38,6 +36,7 @@ rule pilot:
     benchmark:
         "logs/{scale}/{experiment}/r{r}/beta{beta}/pilot.tsv"
     params:
+        code=code_of("planning.pilot", "planning.plan", alone=["cli.planning"]),
         settings=settings_without_lengths,
     message:
         "pilot of {wildcards.experiment}: r = {wildcards.r}, beta = {wildcards.beta}"
@@ -51,8 +50,6 @@ rule reach:
     # a folder, since only its making shows how many seeds it takes
     input:
         kernel_of_point,
-        PLANNING / "plan.py",
-        PLANNING / "reach.py",
         pilot=PILOT,
     output:
         directory(SEEDS),
@@ -61,6 +58,7 @@ rule reach:
     benchmark:
         "logs/{scale}/{experiment}/r{r}/beta{beta}/reach.tsv"
     params:
+        code=code_of_points,
         settings=settings_of_points,
     message:
         "{wildcards.experiment}: r = {wildcards.r}, beta = {wildcards.beta}, to its target"
@@ -72,16 +70,14 @@ rule reach:
 
 rule plan_of_scale:
     input:
-        sources("planning.table", "planning.reach", "planning.pilot"),
         "config.yaml",
         pilots=pilots,
     output:
         "results/{scale}/plan.md",
     log:
         "logs/{scale}/plan.log",
-    benchmark:
-        "logs/{scale}/plan.tsv"
     params:
+        code=code_of("planning.table"),
         cores=workflow.cores,
     message:
         "write {output}"
@@ -92,27 +88,15 @@ rule plan_of_scale:
 
 rule costs_of_scale:
     input:
-        sources("planning.table", "planning.reach", "planning.pilot"),
         data=planned_data,
     output:
         "results/{scale}/costs.md",
     log:
         "logs/{scale}/costs.log",
-    benchmark:
-        "logs/{scale}/costs.tsv"
     params:
+        code=code_of("results.costs"),
         fixed=fixed_schedules,
     message:
         "write {output}"
     shell:
         "roughgas costs {input.data} --fixed {params.fixed:q} --output {output} > {log} 2>&1"
-
-
-rule plan:
-    input:
-        f"results/{SCALE}/plan.md",
-
-
-rule costs:
-    input:
-        f"results/{SCALE}/costs.md",

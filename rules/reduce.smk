@@ -1,9 +1,12 @@
 # From points to one dataset an experiment, over r, beta and seed, and over its variants.
 
 
+def points_of_experiment(wildcards):
+    return points(wildcards.scale, wildcards.experiment)
+
+
 rule reduce:
     input:
-        sources("results.reduce"),
         points=points_of_experiment,
     output:
         REDUCED,
@@ -13,6 +16,8 @@ rule reduce:
         "logs/{scale}/{experiment}/reduced.tsv"
     wildcard_constraints:
         experiment=EXPERIMENT,
+    params:
+        code=code_of("results.reduce"),
     message:
         "reduce {wildcards.experiment}"
     shell:

@@ -1,5 +1,6 @@
-# What `snakemake --report` shows, and under which headings. Captions are in captions/: those of rules
-# with many products include the text of the product, and add the parameters of this run.
+# What `snakemake --report` shows, and under which headings: the catalogue of figures says so. Captions
+# are in captions/; those of figures add the parameters of this run.
+PAGES = sources.PACKAGE / "show/page"
 
 
 def titled(title):
@@ -17,60 +18,102 @@ def picture(name):
     )
 
 
-def heading_of_figure(wildcards):
-    return catalogue.FIGURES[wildcards.figure].heading
+def entry_of(wildcards):
+    """The entry in the catalogue of a figure or a document."""
+    if "document" in wildcards.keys():
+        return catalogue.DOCUMENTS[wildcards.document]
+    return catalogue.FIGURES[wildcards.get("figure") or wildcards.study_figure]
 
 
-def labels_of_figure(wildcards):
-    return titled(catalogue.FIGURES[wildcards.figure].title)
+def heading_of(wildcards):
+    return entry_of(wildcards).heading
 
 
-def labels_of_study(wildcards):
-    return titled(catalogue.FIGURES[wildcards.study_figure].title)
-
-
-def heading_of_document(wildcards):
-    return catalogue.DOCUMENTS[wildcards.document].heading
-
-
-def labels_of_document(wildcards):
-    return titled(catalogue.DOCUMENTS[wildcards.document].title)
+def labels_of(wildcards):
+    return titled(entry_of(wildcards).title)
 
 
 def source_of_document(wildcards):
-    shown = catalogue.DOCUMENTS[wildcards.document].source
+    shown = entry_of(wildcards).source
     folder = "" if wildcards.scale == "paper" else f"{wildcards.scale}/"
     return shown.format(scale=wildcards.scale, folder=folder)
 
 
 def caption_of_document(wildcards, output):
-    """Not recorded, as the settings below: a new caption is no reason to write the page anew."""
-    return catalogue.DOCUMENTS[wildcards.document].caption
+    """Made from the output and therefore not recorded, like the settings below: a new caption is no
+    reason to write the page again."""
+    return entry_of(wildcards).caption
 
 
 def experiments_of_figure(wildcards, output):
-    """The settings of the experiments that a figure shows, for its caption: not recorded, as those of
-    `seeds_of_job`, here and below. A description that changes is no reason to draw anew."""
-    scale = wildcards.folder.rstrip("/") or "paper"
-    return {name: settings(scale, name) for name in catalogue.FIGURES[wildcards.figure].shows}
+    """The settings of the experiments that a figure shows, for its caption."""
+    scale = scale_of(wildcards.folder)
+    return {name: settings(scale, name) for name in entry_of(wildcards).shows}
 
 
 def studies_of_figure(wildcards, output):
     """The settings of the studies that a figure shows, for its caption."""
-    scale = wildcards.folder.rstrip("/") or "paper"
+    scale = scale_of(wildcards.folder)
     with one_line(f"figures/{wildcards.folder}{wildcards.study_figure}"):
         return {
             name: roughgas.config.study(config, name, scale)["study"]
-            for name in catalogue.FIGURES[wildcards.study_figure].shows
+            for name in entry_of(wildcards).shows
         }
 
 
 def showcase_of_figure(wildcards, output):
     """The settings of the showcase, for its caption."""
     with one_line(f"figures/{wildcards.folder}clustering"):
-        return roughgas.config.showcase(config, wildcards.folder.rstrip("/") or "paper")
+        return roughgas.config.showcase(config, scale_of(wildcards.folder))
 
 
 def documents(*names):
     """The documents of these names at the scale of this run."""
     return [f"results/{SCALE}/{name}.html" for name in names]
+
+
+rule document:
+    input:
+        multiext(str(PAGES / "document"), ".css", ".html"),
+        shown=source_of_document,
+    output:
+        report(
+            "results/{scale}/{document}.html",
+            caption="captions/document.rst",
+            category=heading_of,
+            labels=labels_of,
+        ),
+    log:
+        "logs/{scale}/{document}_html.log",
+    wildcard_constraints:
+        document="|".join(catalogue.DOCUMENTS),
+    params:
+        code=code_of("show.page.document"),
+        caption=caption_of_document,
+    message:
+        "write {output}"
+    shell:
+        "roughgas html {input.shown} --output {output} > {log} 2>&1"
+
+
+rule effective_config:
+    input:
+        sorted(map(str, Path(sources.PACKAGE, "config").glob("*.yaml"))),
+        file="config.yaml",
+    output:
+        report(
+            "results/{scale}/config.yaml",
+            caption="captions/config.rst",
+            category=catalogue.HEADINGS["this_run"],
+            labels=titled("Configuration (YAML, to download)"),
+        ),
+    log:
+        "logs/{scale}/config.log",
+    params:
+        code=code_of("config"),
+        changes=roughgas.config.as_text(CHANGES),
+    message:
+        "write {output}"
+    shell:
+        "roughgas config --config {input.file} --scale {wildcards.scale} --changes {params.changes:q}"
+        " --output {output} > {log} 2>&1"

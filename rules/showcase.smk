@@ -3,7 +3,7 @@ FILM = "results/{scale}/showcase/clustering.nc"
 
 
 def settings_of_showcase(wildcards):
-    """The settings of the showcase at a scale, found to be such as can be simulated, as JSON."""
+    """The settings of the showcase at a scale, checked, as JSON."""
     with one_line(FILM.format(**wildcards)):
         found = roughgas.config.showcase(config, wildcards.scale)
     with one_line(f"config.yaml: showcase at scale {wildcards.scale}"):
@@ -14,15 +14,12 @@ def settings_of_showcase(wildcards):
 
 
 def film_of_figure(wildcards):
-    return FILM.format(scale=wildcards.folder.rstrip("/") or "paper")
+    return FILM.format(scale=scale_of(wildcards.folder))
 
 
 rule clustering:
     # It leaves checkpoints beside its output. They are no output: Snakemake would delete them where
     # a job fails, while from the last one the same command goes on after a kill.
-    input:
-        sources("simulation.clustering", "data.film"),
-        "src/roughgas/cli/showcase.py",
     output:
         FILM,
     log:
@@ -31,6 +28,7 @@ rule clustering:
         "logs/{scale}/showcase/clustering.tsv"
     priority: 5
     params:
+        code=code_of("simulation.clustering", "data.film", alone=["cli.showcase"]),
         settings=settings_of_showcase,
     message:
         "film a cooling gas; how far it is: {log}"
@@ -41,7 +39,6 @@ rule clustering:
 
 rule film:
     input:
-        sources("show.figures.clustering"),
         data=film_of_figure,
     output:
         multiext("figures/{folder}clustering", ".pdf", ".mp4"),
@@ -53,17 +50,10 @@ rule film:
         ),
     log:
         "logs/figures/{folder}clustering.log",
-    benchmark:
-        "logs/figures/{folder}clustering.tsv"
     params:
+        code=code_of("show.figures.clustering"),
         showcase=showcase_of_figure,
     message:
         "draw the picture and the movie of the cooling gas"
     shell:
         "roughgas film {input.data} --output {output} > {log} 2>&1"
-
-
-rule showcase:
-    input:
-        drawn(["clustering"], (".pdf", ".png", ".mp4")),
-        documents("clustering"),

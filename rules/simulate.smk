@@ -3,22 +3,26 @@
 # made by one job (see config.yaml); any other point is a job of its own.
 import re
 
-RUN = (
-    "roughgas run {wildcards.experiment} --scale {wildcards.scale} --r={wildcards.r} {params.points}"
-    " --settings {params.settings:q} --checked --output {output} > {log} 2>&1"
-)
+SIMULATING = ("simulation.point", "data.point")
+RECORDING = ("cli.run", "config.labels", "config.provenance")  # these hand on and write down
 
 
 def settings_of_points(wildcards):
-    """All in config.yaml that the points of an experiment depend on, whichever they are, as JSON:
-    what else changes there does not touch them."""
+    """All in config.yaml that the points of an experiment depend on, as JSON."""
     found = settings(wildcards.scale, wildcards.experiment)
     return roughgas.config.as_text(roughgas.config.point_settings(found))
 
 
+def code_of_points(wildcards):
+    """The code that points depend on. A point with a target plans its own lengths."""
+    planned = "target_stderr" in settings(wildcards.scale, wildcards.experiment)
+    planning = ("planning.reach",) if planned else ()
+    return sources.code_of(*SIMULATING, *planning, alone=RECORDING)
+
+
 def points_of_job(wildcards, output):
-    """The betas and seeds of a job's outputs, each with each. Snakemake does not record params that
-    are made from outputs: a point is up to date whichever job has made it."""
+    """The betas and seeds of a job's outputs, each with each. Made from the output and therefore
+    not recorded: a point is up to date whichever job has made it."""
     files = [Path(file) for file in output]
     betas = dict.fromkeys(file.parent.name.removeprefix("beta") for file in files)
     seeds = dict.fromkeys(file.stem.removeprefix("seed") for file in files)
@@ -26,8 +30,8 @@ def points_of_job(wildcards, output):
 
 
 def urgency(wildcards):
-    """Longest points first, lest one of them is left alone on one core at the end. A job on several
-    betas counts as if they were 0."""
+    """How long a point takes: the longest start first, so that none is left alone at the end. A job
+    on several betas counts as if they were 0."""
     from roughgas.simulation.point import effort
 
     experiment = settings(wildcards.scale, wildcards.experiment)
@@ -39,62 +43,58 @@ def one_of(labels):
     return "|".join(re.escape(str(label)) for label in labels)
 
 
-rule point:
-    input:
-        kernel_of_point,
-    output:
-        POINT,
-    log:
-        "logs/{scale}/{experiment}/r{r}/beta{beta}/seed{seed}.log",
-    benchmark:
-        "logs/{scale}/{experiment}/r{r}/beta{beta}/seed{seed}.tsv"
-    priority: urgency
-    params:
-        settings=settings_of_points,
-        points=points_of_job,
-    message:
-        "{wildcards.experiment}: r = {wildcards.r}, beta = {wildcards.beta}, seed = {wildcards.seed}"
-    shell:
-        RUN
+def jobs_of_points():
+    """(name, outputs, log, wildcard constraints) of the rules that make points. A rule has a fixed
+    number of outputs and the seeds of a sweep vary: so each block of points has a rule. With a job
+    for each seed the paper takes a third longer, since a process starts as long as some points run.
+    """
+    yield "point", [POINT], "beta{beta}/seed{seed}", {}
+    for experiment in config["experiments"]:
+        found = roughgas.config.experiment(config, experiment, SCALE)
+        axes = found["sweep"]
+        swept_values = {
+            "scale": SCALE,
+            "experiment": one_of(roughgas.config.variants(experiment, found)),
+            "r": one_of(axes["r"]),
+            "beta": one_of(axes["beta"]),
+        }
+        for number, (betas, seeds) in enumerate(roughgas.config.blocks(axes, config), start=1):
+            files = [
+                POINT.replace("{beta}", beta).replace("{seed}", seed)
+                for beta in betas
+                for seed in seeds
+            ]
+            span = betas[0] if len(betas) == 1 else f"{betas[0]}to{betas[-1]}"
+            log_of_block = f"beta{span}/seeds{seeds[0]}-{seeds[-1]}"
+            yield f"{experiment}_block_{number}", files, log_of_block, swept_values
 
 
-for experiment in config["experiments"]:
-    found = roughgas.config.experiment(config, experiment, SCALE)
-    axes = found["sweep"]
-    for number, (betas, seeds) in enumerate(roughgas.config.blocks(axes, config), start=1):
-        together = f"{experiment}_block_{number}"
-        first, last = betas[0], betas[-1]
-        span = first if first == last else f"{first}to{last}"
-        log_of_job = f"logs/{{scale}}/{{experiment}}/r{{r}}/beta{span}/seeds{seeds[0]}-{seeds[-1]}"
+for job, files, log_of_job, swept_values in jobs_of_points():
 
-        rule:
-            name:
-                together
-            input:
-                kernel_of_point,
-            output:
-                [
-                    POINT.replace("{beta}", beta).replace("{seed}", seed)
-                    for beta in betas
-                    for seed in seeds
-                ],
-            log:
-                f"{log_of_job}.log",
-            benchmark:
-                f"{log_of_job}.tsv"
-            wildcard_constraints:
-                scale=SCALE,
-                experiment=one_of(roughgas.config.variants(experiment, found)),
-                r=one_of(axes["r"]),
-                beta=one_of(axes["beta"]),
-            priority: urgency
-            params:
-                settings=settings_of_points,
-                points=points_of_job,
-            message:
-                "{wildcards.experiment}: r = {wildcards.r}, {params.points}"
-            shell:
-                RUN
+    rule:
+        name:
+            job
+        input:
+            kernel_of_point,
+        output:
+            files,
+        log:
+            f"logs/{{scale}}/{{experiment}}/r{{r}}/{log_of_job}.log",
+        benchmark:
+            f"logs/{{scale}}/{{experiment}}/r{{r}}/{log_of_job}.tsv"
+        wildcard_constraints:
+            **swept_values,
+        priority: urgency
+        params:
+            code=code_of_points,
+            settings=settings_of_points,
+            points=points_of_job,
+        message:
+            "{wildcards.experiment}: r = {wildcards.r}, {params.points}"
+        shell:
+            "roughgas run {wildcards.experiment} --scale {wildcards.scale} --r={wildcards.r}"
+            " {params.points} --settings {params.settings:q} --checked --output {output}"
+            " > {log} 2>&1"
 
-        # as `ruleorder` does, which takes no variables
-        workflow.ruleorder(together, "point")
+    if job != "point":
+        workflow.ruleorder(job, "point")  # the statement `ruleorder:` takes no variables

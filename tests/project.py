@@ -2,6 +2,7 @@
 
 import copy
 import json
+import os
 import re
 import shutil
 import subprocess
@@ -40,6 +41,8 @@ TINY = {
 }
 POINTS = 6 * SWEEP["seeds"]
 JOBS = 6  # one makes both seeds of a point
+AIMED = "results/tiny/aimed/r0.9/beta0/seed1.nc"  # one seed of an experiment with a target
+FINISHED = ("everything", "plan", AIMED)
 BEYOND = {  # the experiments beyond the paper, and the third axis of their sweeps
     "cooling_spheres": {},
     "sheared_spheres": {},
@@ -102,6 +105,7 @@ class Project:
         return subprocess.Popen(
             self._command(arguments),
             cwd=self.folder,
+            env=self.environment(),
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
             start_new_session=True,
@@ -112,11 +116,16 @@ class Project:
         done = subprocess.run(
             self._command(arguments),
             cwd=self.folder,
+            env=self.environment(),
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             text=True,
         )
         return done.returncode, done.stdout
+
+    def environment(self):
+        """That of this process, but that Python finds the copy of the package."""
+        return os.environ | {"PYTHONPATH": str(self.folder / "src")}
 
     def succeed(self, *arguments):
         status, output = self.snakemake(*arguments)
@@ -137,7 +146,7 @@ class Project:
         return found
 
     def files(self):
-        """All files but Snakemake's own."""
+        """All files except Snakemake's own."""
         return {
             str(path.relative_to(self.folder))
             for path in self.folder.rglob("*")

@@ -60,7 +60,11 @@ def test_a_workflow_stops_without_a_word_of_failure(project):
     running = snakemake(project, "long")
     log = project.folder / "logs/long/cooling/r0.9/beta0/seeds1-2.log"
     wait_until(log.exists, running)
-    time.sleep(1.0)
+    status, said = project.snakemake(
+        "-j1", "--config", "scale=long", "--", "results/long/cooling.nc"
+    )
+    assert status != 0
+    assert "roughgas: error: another Snakemake is at work in this folder" in said
     lines = interrupt(running).splitlines()
     assert lines[-1] == LAST
     files = [f"results/long/cooling/r0.9/beta0/seed{seed}.nc" for seed in (1, 2)]

@@ -65,12 +65,6 @@ def test_the_run_ends_well(disturbed):
     assert "Nothing to be done" in disturbed.succeed(*SMALL, "figures")
 
 
-def test_points_are_sent_as_arrays(disturbed):
-    sent = re.findall(r"Submitted array job with Snakemake IDs ([\d,]+)", disturbed.log())
-    at_each_r = [jobs for jobs in sent if jobs.count(",") == 3]
-    assert len(at_each_r) >= 3  # of the bed, of the sheared and of the cooling gas
-
-
 def test_jobs_that_were_cut_off_are_run_again(disturbed, cluster):
     assert re.search(r"(Failed|Stopped on the way): .*\n(.*\n)*?Trying to restart", disturbed.log())
     assert "due to failure of node n1" in (cluster.folder / "slurmctld.log").read_text()
@@ -104,8 +98,3 @@ def test_after_an_interrupt_the_same_command_goes_on(cluster, tmp_path):
     project.succeed(*ONE)
     assert len(project.points()) == 32
     assert sum(path.stat().st_mtime_ns == when for path, when in kept.items()) >= len(kept) // 2
-
-
-def test_a_limit_that_would_hold_arrays_back_is_refused(disturbed):
-    status, said = disturbed.snakemake("-j5", "--forcerun", "reduce", *ONE)
-    assert status != 0 and "roughgas: error: --jobs = 5: must be 100000 or more" in said

@@ -1,6 +1,5 @@
 """Movies as Snakemake makes them: what is asked for, what an edit concerns, and one made."""
 
-import pytest
 from PIL import Image
 
 NAMES = ("vibrated", "sheared", "cooling", "rough_walls", "shaken_walls", "vibrated_spheres")
@@ -12,21 +11,6 @@ def test_movies_need_no_point(project):
     assert project.planned(*(f"figures/movies/{name}.gif" for name in NAMES)) == {"movie": 6}
     assert project.planned("everything")["movie"] == len(NAMES)
     assert "movie" not in project.planned("figures")
-
-
-@pytest.mark.parametrize(
-    ("module", "count"),
-    [
-        ("kernel/pairs.py", 6),
-        ("show/movies/snapshots.py", 6),
-        ("show/movies/particles.py", 6),
-        ("cli/movie.py", 6),
-        ("claims/report.py", 0),
-    ],
-)
-def test_an_edit_in_the_package(finished, module, count):
-    finished.append(f"src/roughgas/{module}")
-    assert finished.planned("movies").get("movie", 0) == count
 
 
 def test_an_edit_of_an_experiment_concerns_its_movie(finished):

@@ -2,8 +2,6 @@
 
 import os
 import signal
-import subprocess
-import sys
 import time
 
 import pytest
@@ -26,37 +24,10 @@ def test_everything_has_the_showcase_in_it(project):
     assert project.planned("everything")["film"] == 1
 
 
-@pytest.mark.parametrize(
-    ("module", "expected"),
-    [
-        ("kernel/pairs.py", {"clustering": 1} | DRAWN),
-        ("checkpoint.py", {"clustering": 1} | DRAWN),
-        ("show/encoding.py", DRAWN),
-        ("claims/report.py", {}),
-    ],
-)
-def test_an_edit_in_the_package(finished, module, expected):
-    finished.append(f"src/roughgas/{module}")
-    assert finished.planned("showcase") == expected
-
-
 def test_an_edit_of_its_settings(finished):
     finished.configure(lambda config: config["scales"]["tiny"]["showcase"].update(beta="0.5"))
     assert finished.planned("showcase") == {"clustering": 1} | DRAWN
     assert set(finished.planned("figures")) == {"effective_config", "document", "figures"}
-
-
-def test_every_module_that_a_film_imports_counts(made):
-    """Found out by importing, where the rules find out by reading the sources."""
-    summary = made.succeed("--config", "scale=tiny", "--detailed-summary", "--", FILM)
-    (row,) = (line for line in summary.splitlines() if line.startswith(FILM))
-    script = "import sys, roughgas.simulation.clustering, roughgas.data.film; print(*sys.modules)"
-    done = subprocess.run(
-        [sys.executable, "-c", script], capture_output=True, text=True, check=True
-    )
-    for name in {name for name in done.stdout.split() if name.startswith("roughgas.")}:
-        path = "src/" + name.replace(".", "/")
-        assert f"{path}.py" in row or f"{path}/__init__.py" in row, name
 
 
 @pytest.mark.parametrize(

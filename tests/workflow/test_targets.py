@@ -57,7 +57,7 @@ def test_the_default_are_the_figures_which_need_every_point_of_the_sweep_once(pr
 def test_a_page_is_made_of_points_and_their_reduction(project):
     planned = {"compile_kernel": 6, "seeds": JOBS, "reduce": 6, "page": 1, "explore": 1}
     assert project.planned("explore") == planned
-    assert project.planned("explore_extensions")["page_of_extensions"] == 1
+    assert project.planned("explore_extensions")["page"] == 1
 
 
 def test_each_seed_can_be_a_job_of_its_own(tmp_path):
@@ -113,9 +113,9 @@ def test_what_lies_beyond_the_paper_is_a_target_of_its_own(project):
         "seeds": len(BEYOND),
         "reduce": len(BEYOND),
         "figure": 6,
-        "table_of_extensions": 1,
-        "open_questions": 1,
-        "run_times_of_extensions": 1,
+        "table": 1,
+        "claims": 1,
+        "run_times": 1,
         "document": 2,
         "extensions": 1,
     }

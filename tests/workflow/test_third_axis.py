@@ -185,7 +185,7 @@ def test_one_more_value_concerns_no_point_that_is_there(ran, tmp_path, labels):
 def test_an_edit_of_what_variants_share_concerns_them_all(ran, tmp_path):
     changed = ran.copy_to(tmp_path / "copy")
     changed.configure(lambda config: config["experiments"]["spun"].update(particles=12))
-    assert changed.planned(f"{SPUN}.nc") == {"compile_kernel": 1, "seeds": 2, "reduce": 1}
+    assert changed.planned(f"{SPUN}.nc") == {"seeds": 2, "reduce": 1}
 
 
 @pytest.mark.slow

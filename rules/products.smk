@@ -1,0 +1,146 @@
+# What is made of reduced datasets, both for the paper and beyond it: figures, tables, verdicts, pages.
+PARTS = {  # product -> the part of the catalogue of figures whose experiments it shows
+    "R": "paper",
+    "claims": "paper",
+    "run_times": "paper",
+    "explore": "paper",
+    "extensions": "beyond",
+    "open_questions": "beyond",
+    "run_times_extensions": "beyond",
+    "explore_extensions": "beyond",
+}
+
+
+def data_of_figure(wildcards):
+    drawn_from_data = catalogue.figures_of("paper", "beyond")
+    with one_line():
+        if wildcards.figure not in drawn_from_data:
+            raise not_one_of("figure", wildcards.figure, drawn_from_data)
+    return reduced(scale_of(wildcards.folder), entry_of(wildcards).shows)
+
+
+def code_of_figure(wildcards):
+    return sources.code_of(f"show.figures.{wildcards.figure}", "show.style")
+
+
+def experiments_of_product(wildcards):
+    return catalogue.shown_in(PARTS[wildcards.product])
+
+
+def data_of_product(wildcards):
+    return reduced(wildcards.scale, experiments_of_product(wildcards))
+
+
+def points_of_product(wildcards):
+    every = (points(wildcards.scale, name) for name in experiments_of_product(wildcards))
+    return [point for some in every for point in some]
+
+
+def heading_of_product(wildcards):
+    return catalogue.HEADINGS[PARTS[wildcards.product]]
+
+
+def which_claims(wildcards):
+    return "--open-questions" if wildcards.product == "open_questions" else ""
+
+
+rule figure:
+    # at the scale `paper` into figures/, at others into a folder below it
+    input:
+        data=data_of_figure,
+    output:
+        "figures/{folder}{figure}.pdf",
+        report(
+            "figures/{folder}{figure}.png",
+            caption="captions/figure.rst",
+            category=heading_of,
+            labels=labels_of,
+        ),
+    log:
+        "logs/figures/{folder}{figure}.log",
+    params:
+        code=code_of_figure,
+        experiments=experiments_of_figure,
+    message:
+        "draw {wildcards.folder}{wildcards.figure}"
+    shell:
+        "roughgas figure {wildcards.figure} {input.data} --output {output} > {log} 2>&1"
+
+
+rule table:
+    input:
+        data=data_of_product,
+    output:
+        report(
+            "results/{scale}/{product}.csv",
+            caption="captions/table.rst",
+            category=heading_of_product,
+            labels=titled("Table: every number (CSV, to download)"),
+        ),
+    log:
+        "logs/{scale}/{product}_csv.log",
+    wildcard_constraints:
+        product="R|extensions",
+    params:
+        code=code_of("results.table"),
+    message:
+        "write {output}"
+    shell:
+        "roughgas table {input.data} --output {output} > {log} 2>&1"
+
+
+rule claims:
+    input:
+        data=data_of_product,
+    output:
+        json="results/{scale}/{product}.json",
+        markdown="results/{scale}/{product}.md",
+    log:
+        "logs/{scale}/{product}.log",
+    wildcard_constraints:
+        product="claims|open_questions",
+    params:
+        code=code_of("claims"),
+        which=which_claims,
+    message:
+        "write {output}"
+    shell:
+        "roughgas claims {params.which} {input.data} --json {output.json} --markdown {output.markdown}"
+        " > {log} 2>&1"
+
+
+rule run_times:
+    input:
+        data=data_of_product,
+    output:
+        "results/{scale}/{product}.md",
+    log:
+        "logs/{scale}/{product}.log",
+    wildcard_constraints:
+        product="run_times|run_times_extensions",
+    params:
+        code=code_of("results.times"),
+    message:
+        "write {output}"
+    shell:
+        "roughgas times {input.data} --output {output} > {log} 2>&1"
+
+
+rule page:
+    input:
+        multiext(str(PAGES / "page"), ".css", ".html", ".js"),
+        points_of_product,
+        data=data_of_product,
+    output:
+        "results/{scale}/{product}.html",
+    log:
+        "logs/{scale}/{product}.log",
+    wildcard_constraints:
+        product="explore|explore_extensions",
+    params:
+        code=code_of("show.page.explore"),
+    message:
+        "write {output}"
+    shell:
+        "roughgas page {input.data} --points results/{wildcards.scale} --output {output}"
+        " > {log} 2>&1"

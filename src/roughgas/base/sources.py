@@ -1,0 +1,82 @@
+"""Which code a result depends on: that of the modules it uses, and of all that these import.
+
+The workflow makes a result again when the hash of this code changes. Comments, docstrings and
+layout do not count; a file of the same name, such as schema.yaml beside schema.py, does.
+"""
+
+import ast
+import functools
+import hashlib
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import Any
+
+PACKAGE = Path(__file__).resolve().parent.parent
+
+
+def code_of(*modules: str, alone: Iterable[str] = ()) -> str:
+    """Return a hash of the code of modules, such as "simulation.point", and of all they import.
+
+    Of modules in `alone` the imports do not count. Raises FileNotFoundError for an unknown one.
+    """
+    names = sorted(closure(*modules).union(alone))
+    text = "".join(f"{name} {_read(name)[0]}\n" for name in names)
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def closure(*modules: str) -> set[str]:
+    """Return the names of modules, of all that they import anywhere, and of their packages.
+
+    Of a package that is only around a module, imports inside functions do not count; nowhere those
+    that only type checkers see. The facade, `roughgas` itself, is not among them.
+    """
+    todo, found = [(name, True) for name in modules], {}
+    while todo:
+        name, whole = todo.pop()
+        if name and whole > found.get(name, -1):
+            found[name] = whole
+            _, imported = _read(name)
+            todo += [(name.rpartition(".")[0], False), *((one, True) for one in imported[whole])]
+    return set(found)
+
+
+@functools.cache
+def _read(name: str) -> tuple[str, tuple[set[str], set[str]]]:
+    """Return a hash of what a module says, and what it imports: at once, and in all."""
+    file = _file(name)
+    tree = ast.parse(file.read_bytes())
+    digest = hashlib.sha256(repr(_essence(tree)).encode())
+    for beside in sorted(set(file.parent.glob(f"{file.stem}.*")) - {file}):
+        digest.update(beside.read_bytes())
+    return digest.hexdigest(), (set(_imports(tree, False)), set(_imports(tree, True)))
+
+
+def _file(name: str) -> Path:
+    path = PACKAGE.joinpath(*name.split("."))
+    return path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
+
+
+def _imports(node: ast.AST, in_functions: bool) -> Iterator[str]:
+    """Generate the modules of the package that a syntax tree imports."""
+    if isinstance(node, ast.Import | ast.ImportFrom):
+        package = f"{node.module}." if isinstance(node, ast.ImportFrom) else ""
+        for alias in node.names:
+            name = (package + alias.name).removeprefix("roughgas.")
+            if (package + alias.name).startswith("roughgas."):
+                yield name if _file(name).exists() else name.rpartition(".")[0]
+    for_types = isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test)
+    for child in node.orelse if for_types else ast.iter_child_nodes(node):
+        if in_functions or not isinstance(child, ast.FunctionDef):
+            yield from _imports(child, in_functions)
+
+
+def _essence(node: Any) -> Any:
+    """Return a syntax tree as tuples, without docstrings, line numbers and empty fields."""
+    if isinstance(node, list):
+        bare = (one.value if isinstance(one, ast.Expr) else None for one in node)
+        texts = [isinstance(getattr(value, "value", None), str) for value in bare]
+        return [_essence(one) for one, text in zip(node, texts, strict=True) if not text]
+    if not isinstance(node, ast.AST):
+        return node
+    fields = ((name, getattr(node, name, None)) for name in node._fields)
+    return type(node).__name__, [(k, _essence(v)) for k, v in fields if v not in (None, [])]

@@ -1,0 +1,77 @@
+"""Which code a result depends on."""
+
+import subprocess
+import sys
+
+import pytest
+
+from roughgas.base import sources
+
+BEFORE = """
+from roughgas import one
+def f(*, a, b=1):
+    return "text"
+"""
+
+
+@pytest.fixture
+def package(tmp_path, monkeypatch):
+    """A package of four modules, of which the first imports the second in a function."""
+    monkeypatch.setattr(sources, "PACKAGE", tmp_path)
+    monkeypatch.setattr(sources, "_read", sources._read.__wrapped__)  # which is cached
+    (tmp_path / "room").mkdir()
+    files = {
+        "first": "def f():\n    import roughgas.room.second\n",
+        "room/second": "import math\n",
+        "room/__init__": "",
+        "typed": "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    import roughgas.first\n"
+        "else:\n    from roughgas.room import name\n",
+    }
+    for name, text in files.items():
+        (tmp_path / f"{name}.py").write_text(text)
+    return tmp_path
+
+
+def test_what_is_imported_anywhere_counts_with_the_packages_around(package):
+    assert sources.closure("first") == {"first", "room", "room.second"}
+    assert sources.closure("typed") == {"typed", "room"}
+    (package / "room" / "__init__.py").write_text("def f():\n    import roughgas.first\n")
+    assert sources.closure("room.second") == {"room", "room.second"}
+    assert sources.closure("room") == {"room", "first", "room.second"}
+    with pytest.raises(FileNotFoundError):
+        sources.closure("third")
+
+
+@pytest.mark.parametrize(
+    ("edit", "changed"),
+    [
+        ("# a comment\n" + BEFORE.replace("    return", "    return  "), False),
+        (
+            '"""A docstring."""\n' + BEFORE.replace("    return", '    """One."""\n    return'),
+            False,
+        ),
+        (BEFORE.replace("text", "text # no comment"), True),
+        (BEFORE.replace("a, b=1", "a=1, b"), True),
+        (BEFORE.replace("1", "1.0"), True),
+        (BEFORE.replace("one", "two"), True),
+    ],
+)
+def test_only_what_python_is_told_counts(package, edit, changed):
+    file = package / "edited.py"
+    file.write_text(BEFORE)
+    before = sources.code_of("first", alone=["edited"])
+    file.write_text(edit)
+    assert (sources.code_of("first", alone=["edited"]) != before) == changed
+
+
+def test_every_module_that_a_point_imports_counts():
+    """Found out by importing, where `closure` reads the sources."""
+    modules = ("roughgas.simulation.point", "roughgas.data.point", "roughgas.simulation.clustering")
+    script = f"import sys, {', '.join(modules)}; print(*sys.modules)"
+    done = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, check=True
+    )
+    imported = {name for name in done.stdout.split() if name.startswith("roughgas.")}
+    names = {name.removeprefix("roughgas.") for name in imported}
+    assert len(names) > 10
+    assert names <= sources.closure("simulation.point", "data.point", "simulation.clustering")
