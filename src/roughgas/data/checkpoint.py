@@ -1,7 +1,7 @@
-"""Checkpoints: a simulation under way, saved whole and taken up again with the same bits.
+"""Checkpoints: a simulation under way, saved whole and resumed with the same bits.
 
-A checkpoint is one .npz file. It holds every array of a State, whatever arrays that consists of,
-what the run has recorded so far, and a text that says what run it belongs to.
+A checkpoint is one .npz file. It holds every array of a State, what the run has recorded so far,
+and a text that says which run it belongs to.
 """
 
 import zipfile
@@ -16,17 +16,17 @@ from roughgas.base.files import remove_dead_drafts, whole_file
 
 OWNER, STATE, RECORD = "belongs to", "state.", "record."
 DAMAGE = (OSError, EOFError, KeyError, ValueError, RuntimeError, zipfile.BadZipFile, zlib.error)
-"""What zipfile and numpy raise, depending on where a file is damaged."""
+"""What zipfile and numpy raise; it depends on where a file is damaged."""
 
 
 class UnusableCheckpoint(ValueError):
-    """A checkpoint that a run cannot go on from; its text says why, as the end of a sentence."""
+    """A checkpoint that a run cannot resume from; its text says why, as the end of a sentence."""
 
 
 def save(path: str | Path, owner: str, state: Any, record: Mapping[str, np.ndarray]) -> None:
     """Write `state` and the arrays of `record` to `path`, whole or not at all.
 
-    `owner` says what run this is: only the same one may go on from here. Raises OSError.
+    `owner` says which run this is: only the same one may resume from here. Raises OSError.
     """
     content = {OWNER: np.array(owner)}
     content |= {STATE + name: array for name, array in arrays_of(state)}
@@ -36,11 +36,11 @@ def save(path: str | Path, owner: str, state: Any, record: Mapping[str, np.ndarr
 
 
 def restore(path: str | Path, owner: str, state: Any) -> dict[str, np.ndarray]:
-    """Fill `state`, a fresh one of the same scene and size, from `path`; returns the record.
+    """Fill `state`, a fresh one of the same scene and size, from `path`, and return the record.
 
-    The values are copied into the arrays that are there, so that those which share memory still
-    do. Raises FileNotFoundError where there is no checkpoint, and UnusableCheckpoint where it is
-    damaged or belongs to another run; `state` is then as it was.
+    Values are copied into the existing arrays, so that those that share memory still do. Raises
+    FileNotFoundError if there is no checkpoint, and UnusableCheckpoint if it is damaged or belongs
+    to another run; `state` is then as it was.
     """
     content = _content(path)
     if content.pop(OWNER, None) != owner:
@@ -59,15 +59,15 @@ def restore(path: str | Path, owner: str, state: Any) -> dict[str, np.ndarray]:
 
 
 def discard(path: str | Path) -> None:
-    """Remove a checkpoint that has served, and what a killed writer may have left of it."""
+    """Remove a checkpoint that is no longer needed, and what killed writers of it have left."""
     Path(path).unlink(missing_ok=True)
     remove_dead_drafts(Path(path))
 
 
 def arrays_of(state: Any, prefix: str = "") -> Iterator[tuple[str, np.ndarray]]:
-    """(dotted name, array) of every array in NamedTuples within NamedTuples.
+    """Yield (dotted name, array) for every array in nested NamedTuples.
 
-    None is left out, and so are plain tuples: these hold what follows from the scene.
+    None and plain tuples are left out: the latter hold what follows from the scene.
     """
     for name, part in zip(state._fields, state, strict=True):
         if isinstance(part, np.ndarray):
@@ -77,7 +77,7 @@ def arrays_of(state: Any, prefix: str = "") -> Iterator[tuple[str, np.ndarray]]:
 
 
 def _content(path: str | Path) -> dict[str, np.ndarray]:
-    """All arrays in the file, their checksums verified."""
+    """Return all arrays in the file, after verifying their checksums."""
     try:
         with zipfile.ZipFile(path) as archive:
             if archive.testzip() is not None:

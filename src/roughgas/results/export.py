@@ -1,7 +1,7 @@
 """Datasets as CSV files that any program reads: a table for each set of dimensions, and one that
 says what the columns mean.
 
-Numbers are written such that the same bits are read back; what is missing is an empty cell.
+Numbers are written so that the same bits are read back; missing ones are empty cells.
 """
 
 import csv
@@ -13,14 +13,15 @@ import numpy as np
 
 from roughgas.base.errors import InputError
 from roughgas.base.files import whole_file
-from roughgas.data.cf import check_schema
+from roughgas.data.cf import unit_of
+from roughgas.data.netcdf import read_netcdf
 from roughgas.results import table
 
 if TYPE_CHECKING:
     import xarray
 
 MAIN = ("sample",), ("frame",)
-"""The dimensions of the table that a point, or a film, is about; it gets the plain name."""
+"""The dimensions of the main table of a point, or of a film; it gets the plain name."""
 ABOUT = ("name", "file", "value", "units", "meaning")
 
 
@@ -29,30 +30,26 @@ def export(path: str | Path, output: str | Path) -> list[Path]:
 
     `output` (`bed.csv`) gets the time series of a point, the frames of a film, or the grid of a
     reduced dataset; variables of other dimensions go to files such as `bed.replica.csv`; scalars,
-    attributes and the meaning of all columns to `bed.about.csv`. Of a file of studies each group
+    attributes and the meaning of all columns to `bed.about.csv`. Each group of a file of studies
     becomes such a set of files, `bed.GROUP.about.csv` and so on. Returns the paths.
 
-    Raises InputError where the pipeline has not written the file, or a newer version has.
+    Raises InputError if the pipeline has not written the file, or a newer version has.
     """
     import netCDF4
-    import xarray
 
     with netCDF4.Dataset(path) as file:
         groups = list(file.groups)
-        attributes = {name: file.getncattr(name) for name in file.ncattrs()}
-    if "schema_version" not in attributes:
-        raise InputError("dataset", path, "be a file that the pipeline wrote")
-    check_schema(attributes, path)
+        if "schema_version" not in file.ncattrs():
+            raise InputError("dataset", path, "be a file that the pipeline wrote")
     written = []
     for group in groups or [None]:
-        dataset = xarray.load_dataset(path, engine="netcdf4", group=group)
         base = Path(output) if group is None else _beside(output, group)
-        written += _export(dataset, base)
+        written += _export(read_netcdf(path, group), base)
     return written
 
 
 def _export(dataset: "xarray.Dataset", output: Path) -> list[Path]:
-    """Write one dataset; the paths of its files, the one that describes it last."""
+    """Write one dataset; return the paths of its files, the one that describes it last."""
     files, found_in = [], {}
     for dims, names in _columns(dataset).items():
         is_grid = "n_seeds" in dataset and dims == dataset["n_seeds"].dims
@@ -71,19 +68,18 @@ def _export(dataset: "xarray.Dataset", output: Path) -> list[Path]:
 
 
 def _columns(dataset: "xarray.Dataset") -> dict[tuple[str, ...], list[str]]:
-    """The names of variables by their dimensions, coordinates first; without scalars and axes."""
+    """Return names of variables by their dimensions, coordinates first; no scalars, no axes."""
     found: dict[tuple[str, ...], list[str]] = {}
-    variables = dataset.reset_coords()[[*dataset.coords, *dataset.data_vars]].variables
-    for name, variable in variables.items():
-        if variable.dims and name not in dataset.dims:
-            found.setdefault(variable.dims, []).append(name)
+    for name in (*dataset.coords, *dataset.data_vars):
+        if dataset[name].dims and name not in dataset.dims:
+            found.setdefault(dataset[name].dims, []).append(name)
     return found
 
 
 def _write_columns(
     file: Path, dataset: "xarray.Dataset", dims: Sequence[str], names: Sequence[str]
 ) -> None:
-    """Write the variables of the same dimensions: their places along these, then the values.
+    """Write variables of the same dimensions: their places along these, then their values.
 
     The disks of a film come with the number of their frame.
     """
@@ -99,30 +95,27 @@ def _write_columns(
 def _descriptions(
     dataset: "xarray.Dataset", found_in: Mapping[str, str]
 ) -> Iterator[tuple[Any, ...]]:
-    """A row for each variable, with the value where it is a scalar, and for each attribute, whose
-    names begin with a colon, as ncdump has it."""
+    """Yield a row for each variable, with the value of a scalar, and for each attribute.
+
+    Names of attributes begin with a colon, as in ncdump.
+    """
     for name, variable in dataset.variables.items():
         about = variable.attrs
-        units = about.get("reduced_units", about.get("units", ""))
         value = "" if variable.dims else variable.values.item()
-        yield name, found_in.get(name, ""), value, units, about.get("long_name", "")
+        yield name, found_in.get(name, ""), value, unit_of(about), about.get("long_name", "")
     for name, value in dataset.attrs.items():
         yield f":{name}", "", value, "", "attribute"
 
 
-def _write(file: Path, head: Sequence[str], rows: Iterable[Sequence[Any]]) -> None:
+def _write(file: Path, head: Sequence[str], rows: Iterable[Iterable[Any]]) -> None:
     with whole_file(file) as draft, open(draft, "w", newline="", encoding="utf-8") as text:
         lines = csv.writer(text, lineterminator="\n")
         lines.writerow(head)
-        lines.writerows(map(_cell, row) for row in rows)
-
-
-def _cell(value: Any) -> Any:
-    """`value`, or an empty cell where it is not a number though it should be."""
-    return "" if isinstance(value, float) and np.isnan(value) else value
+        for row in rows:  # NaN is an empty cell
+            lines.writerow("" if isinstance(x, float) and np.isnan(x) else x for x in row)
 
 
 def _beside(output: str | Path, part: str) -> Path:
-    """`bed.PART.csv` for `bed.csv`."""
+    """Return `bed.PART.csv` for `bed.csv`."""
     output = Path(output)
     return output.with_name(f"{output.stem}.{part}{output.suffix}")

@@ -1,13 +1,13 @@
-"""From points to one reduced dataset an experiment.
+"""From points to one reduced dataset for each experiment.
 
-A reduced dataset has the dimensions (r, beta, seed), before them the parameter that the experiment
+A reduced dataset has the dimensions (r, beta, seed), preceded by the parameter that the experiment
 sweeps besides, if there is one (`third_axis`). The error bar pools the scatter over independent
 seeds with the errors within them (statistics/intervals.py), since a scatter over few seeds alone is
-known badly; each of the two is kept beside it.
+badly known; each of the two is kept beside it.
 """
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -24,16 +24,7 @@ from roughgas.theory.prediction import equation_of
 if TYPE_CHECKING:
     import netCDF4
 
-SAME = (
-    "experiment",
-    "scale",
-    "dimension",
-    "inertia",
-    "spin_share",
-    "mu",
-    "particles",
-    "swept",
-)
+SAME = ("experiment", "scale", "dimension", "inertia", "spin_share", "mu", "particles", "swept")
 OF_A_POINT = ("r", "beta", "seed", "r_label", "beta_label", "variant", "swept_value", "command")
 PROVENANCE = ("roughgas_version", "numpy_version", "numba_version", "kernel_source_hash")
 SCATTERED = ("R", "R_unsubtracted", "R_drift", "E_trans", "input_spin_share")
@@ -48,7 +39,7 @@ class Summary(NamedTuple):
 
     @property
     def place(self) -> tuple[Any, ...]:
-        """Its (r, beta, seed), before them the value of the parameter that is swept besides."""
+        """Its (r, beta, seed), preceded by the value of what is swept besides."""
         about = self.attributes
         swept = (about["swept_value"],) if "swept" in about else ()
         return (*swept, float(about["r"]), float(about["beta"]), int(about["seed"]))
@@ -57,20 +48,15 @@ class Summary(NamedTuple):
 def reduce_points(paths: Iterable[str | Path], output: str | Path) -> None:
     """Combine the points at `paths` (of one experiment, in any order) into the dataset `output`.
 
-    A path is that of a dataset, or of a folder of them, one a seed.
-
-    Seeds missing at an (r, beta) are NaN in R_seed and absent from n_seeds and the means.
-    Raises InputError where the paths are none, of several experiments, or the same point twice.
+    A path is that of a dataset, or of a folder with a dataset for each seed. Seeds that are missing
+    at an (r, beta) are NaN in R_seed, and do not count in n_seeds and the means.
+    Raises InputError if there are no paths, several experiments, or the same point twice.
     """
-    points = [_summary(file) for path in map(Path, paths) for file in _files(path)]
+    folders = (path.glob("seed*.nc") if path.is_dir() else [path] for path in map(Path, paths))
+    points = [_summary(file) for files in folders for file in sorted(files)]
     if not points:
         raise InputError("number of points to reduce", 0, "be at least 1")
     write_netcdf(output, _combined(points))
-
-
-def _files(path: Path) -> list[Path]:
-    """The dataset at `path`, or those in the folder that it is."""
-    return sorted(path.glob("seed*.nc")) if path.is_dir() else [path]
 
 
 def _summary(path: Path) -> Summary:
@@ -88,8 +74,8 @@ def _summary(path: Path) -> Summary:
     return Summary(scalars, attributes)
 
 
-def _window(file: "netCDF4.Dataset", scalars: dict[str, float]) -> tuple[float, float]:
-    """Length of the measured window, and how far R moves from its first half to its second."""
+def _window(file: "netCDF4.Dataset", scalars: Mapping[str, float]) -> tuple[float, float]:
+    """Return the length of the measured window, and the drift of R between its halves."""
     clock = next((name for name in CLOCKS if name in file.variables), None)
     begin = scalars.get("measured_from", math.nan)
     if clock is None or "R_series" not in file.variables or math.isnan(begin):
@@ -111,31 +97,30 @@ def _combined(points: Sequence[Summary]) -> Content:
     swept = third_axis(attributes)
     grid = GRID if swept is None else (swept, *GRID)
     stacks = _stacks(points, axes)
-    cooling = "plateau_end" in stacks
     attributes["theory"] = equation_of(attributes, stacks).kind
     coordinates = dict(zip((*grid, "seed"), map(_coordinate, axes), strict=True))
     third = {}
     if swept is not None:
         about = {"long_name": f"parameter of an effect: {attributes['swept']}"}
         third[swept] = Array((swept,), coordinates.pop(swept), about)
-    variables = described("reduced", _over_seeds(stacks) | coordinates, cooling, grid)
-    return Content(third | variables, attributes)
+    values = _over_seeds(stacks) | coordinates
+    return Content(third | described("reduced", values, "plateau_end" in stacks, grid), attributes)
 
 
 def _ascending(value: Any) -> tuple[bool, Any]:
-    """Sorts numbers, and words after them."""
+    """Return a key that sorts numbers, and words after them."""
     return isinstance(value, str), value
 
 
 def _coordinate(values: Sequence[Any]) -> np.ndarray:
-    """Numbers as they are; text where some are words."""
+    """Return numbers as they are, or as text if some values are words."""
     if any(isinstance(value, str) for value in values):
         values = [value if isinstance(value, str) else f"{value:.10g}" for value in values]
     return np.array(values)
 
 
 def _stacks(points: Sequence[Summary], axes: Sequence[Sequence[Any]]) -> dict[str, np.ndarray]:
-    """Every scalar over the axes, NaN where no point is."""
+    """Return every scalar over the axes, NaN where there is no point."""
     places = [{value: index for index, value in enumerate(axis)} for axis in axes]
     shape = tuple(map(len, axes))
     stacks = {name: np.full(shape, math.nan) for point in points for name in point.scalars}
@@ -150,60 +135,52 @@ def _stacks(points: Sequence[Summary], axes: Sequence[Sequence[Any]]) -> dict[st
     return stacks
 
 
-def _over_seeds(stacks: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """What a reduced dataset holds, by name."""
+def _over_seeds(stacks: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Return the variables of a reduced dataset by name."""
     reduced = {"n_seeds": np.isfinite(stacks["E_trans"]).sum(-1)}
     for name, values in stacks.items():
         how = POINT[name].over_seeds if name in POINT else "mean"
-        if how == "sum":
-            reduced[name] = np.nansum(values, -1)
-        elif how == "mean":
-            reduced[name] = _mean(values)
+        if how:
+            reduced[name] = np.nansum(values, -1) if how == "sum" else _mean(values)
         if name in SCATTERED:
             reduced[f"{name}_stderr"] = _standard_error(values)
     return reduced | _errors(stacks, reduced) if "R" in stacks else reduced
 
 
-def _errors(stacks: dict[str, np.ndarray], reduced: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """R of each seed, and all that is known of how sure R is."""
+def _errors(
+    stacks: Mapping[str, np.ndarray], reduced: Mapping[str, np.ndarray]
+) -> dict[str, np.ndarray]:
+    """Return R of each seed, its errors of both kinds, and the pooled one with its interval."""
     there = np.isfinite(stacks["R"])
     count = there.sum(-1)
     square = np.where(there, stacks["R_stderr"] ** 2, 0.0).sum(-1)
-    within = np.sqrt(square) / np.maximum(count, 1)
-    return {
-        "R_seed": stacks["R"],
-        "R_stderr_within": np.where(count > 0, within, math.nan),
-        "R_stderr_over_seeds": reduced["R_stderr"],
-    } | _pooled_errors(stacks, there)
-
-
-def _pooled_errors(stacks: dict[str, np.ndarray], there: np.ndarray) -> dict[str, np.ndarray]:
-    """R's error, its degrees of freedom and its interval at every place; NaN where no point is."""
+    within = np.where(count > 0, np.sqrt(square) / np.maximum(count, 1), math.nan)
     names = ("R_stderr", "R_dof", "R_ci95")
-    found = {name: np.full(there.shape[:-1], math.nan) for name in names}
-    for place in zip(*np.nonzero(there.any(-1)), strict=True):
+    found = {name: np.full(count.shape, math.nan) for name in names}
+    for place in zip(*np.nonzero(count), strict=True):
         runs = (stacks[name][place][there[place]] for name in ("R", "R_stderr", "R_dof"))
         error = pooled(*runs)
         for name, value in zip(names, (*error, error.half_width(0.95)), strict=True):
             found[name][place] = value
-    return found
+    kinds = {"R_stderr_within": within, "R_stderr_over_seeds": reduced["R_stderr"]}
+    return found | kinds | {"R_seed": stacks["R"]}
 
 
 def _mean(values: np.ndarray) -> np.ndarray:
-    """Mean over the last axis of what is there, NaN where nothing is."""
+    """Return the mean over the last axis of finite values, NaN if there are none."""
     count = np.isfinite(values).sum(-1)
     return np.where(count > 0, np.nansum(values, -1) / np.maximum(count, 1), math.nan)
 
 
 def _standard_error(values: np.ndarray) -> np.ndarray:
-    """Standard error of the mean over the last axis (ddof = 1), NaN below two values."""
+    """Return the standard error of the mean over the last axis (ddof = 1), NaN below two values."""
     count = np.isfinite(values).sum(-1)
     square = np.nansum((values - _mean(values)[..., None]) ** 2, -1)
     return np.where(count > 1, np.sqrt(square / np.maximum(count * (count - 1), 1)), math.nan)
 
 
 def _common_attributes(points: Sequence[Summary]) -> dict[str, Any]:
-    """Attributes that all points share; versions that differ are listed, not hidden."""
+    """Return the attributes that all points share; of versions that differ, all."""
     shared = dict(points[0].attributes)
     swept = third_axis(shared)
     for name in (name for name in SAME if name != swept):

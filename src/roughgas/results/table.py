@@ -1,4 +1,4 @@
-"""From reduced datasets to one table: a row for each point of the grid."""
+"""From reduced datasets to one table, with a row for each point."""
 
 import csv
 import math
@@ -17,34 +17,18 @@ if TYPE_CHECKING:
 
 ABOUT = ("experiment", "scale", "particles", "dimension", "inertia", "parameter", "value")
 COLUMNS = (
-    "n_seeds",
-    "R",
-    "R_stderr",
-    "R_dof",
-    "R_ci95",
-    "R_ci95_trusted",
-    "R_stderr_over_seeds",
-    "R_stderr_within",
-    "R_ratio_of_means",
-    "R_unsubtracted",
-    "R_unsubtracted_stderr",
-    "E_trans",
-    "E_trans_stderr",
-    "E_rot",
-    "input_spin_share",
-    "equilibrated",
-    "measured_from",
-    "measured_for",
-    "collisions",
-    "contact_time_fraction",
+    *("n_seeds", "R", "R_stderr", "R_dof", "R_ci95", "R_ci95_trusted"),
+    *("R_stderr_over_seeds", "R_stderr_within", "R_ratio_of_means"),
+    *("R_unsubtracted", "R_unsubtracted_stderr", "E_trans", "E_trans_stderr", "E_rot"),
+    *("input_spin_share", "equilibrated", "measured_from", "measured_for"),
+    *("collisions", "contact_time_fraction"),
 )
 THEORY = ("theory", "R_theory", "residual")
 HEAD = (*ABOUT, *GRID, *COLUMNS, *THEORY)
 
 
 def write_table(reduced_paths: Iterable[str | Path], csv_path: str | Path) -> None:
-    """Write one tidy CSV: a row for each experiment, value of its third axis, r and beta that holds
-    data."""
+    """Write one tidy CSV: a row for each point of each experiment."""
     with whole_file(csv_path) as draft, open(draft, "w", newline="", encoding="utf-8") as file:
         table = csv.writer(file, lineterminator="\n")
         table.writerow(HEAD)
@@ -54,15 +38,17 @@ def write_table(reduced_paths: Iterable[str | Path], csv_path: str | Path) -> No
 
 
 def rows(dataset: "xarray.Dataset", head: Sequence[str] = HEAD) -> Iterator[dict[str, Any]]:
-    """The rows of a reduced dataset, ascending in the third axis, r and beta: by the names in
-    `head` what there is of each, be it of HEAD, a variable over the grid or an attribute, else "".
-    NaN is a number that is not known."""
+    """Yield the rows of a reduced dataset, ascending in the third axis, r and beta.
+
+    Each has the names in `head`, which may be those of HEAD, of variables over the grid, or of
+    attributes; the value is "" where the dataset has no such thing, NaN for an unknown number.
+    """
     for variant in _variants(dataset):
         yield from _rows_of_variant(variant, head)
 
 
 def _variants(dataset: "xarray.Dataset") -> Iterator["xarray.Dataset"]:
-    """A dataset over (r, beta) for each value of the third axis, which its attributes then tell."""
+    """Yield a dataset over (r, beta) for each value of the third axis, now an attribute."""
     name = third_axis(dataset.attrs)
     if name is None:
         yield dataset
@@ -83,7 +69,7 @@ def _rows_of_variant(dataset: "xarray.Dataset", head: Sequence[str]) -> Iterator
 
 
 def _cell(value: Any) -> str:
-    """Numbers to ten digits, what is not a number as an empty cell."""
+    """Return a number with ten digits; an empty cell for NaN."""
     if isinstance(value, str):
         return value
     return "" if math.isnan(value) else format(value, ".10g")
