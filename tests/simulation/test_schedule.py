@@ -1,45 +1,34 @@
 """Kinds of schedule, and the scenes that they suit."""
 
 import pytest
-from brute_force import settings
+from brute_force import KERNELS, settings
 
 from roughgas.base.errors import InputError
 from roughgas.simulation import cooling, schedule, steady
 
-HEAT = {"thermostat": {"power": 1.0, "spin_share": 0.5, "interval": 0.5}}
-
-
-def scheduled(kernel, kind, **effects):
-    return settings(kernel, 20, **effects) | {"schedule": {"kind": kind}}
+STEADY, COOLING = {"kind": "steady", "measure": 30}, {"kind": "cooling", "plateau": 8}
 
 
 def test_each_kind_is_a_module():
-    assert schedule.of(scheduled("gas", "cooling")) is cooling
-    assert schedule.of(scheduled("bed", "steady")) is steady
+    assert schedule.of({"schedule": COOLING}) is cooling and not cooling.DRIVEN
+    assert schedule.of({"schedule": STEADY}) is steady and steady.DRIVEN
+    assert schedule.measured(STEADY) == 30 and schedule.measured(COOLING | {"replicas": 3}) == 24
 
 
-@pytest.mark.parametrize(
-    ("kernel", "kind", "effects", "message"),
-    [
-        ("gas", "cooling", HEAT, "cooling: must be steady where there is a drive: thermostat"),
-        (
-            "sheared",
-            "cooling",
-            HEAT,
-            "cooling: must be steady where there is a drive: shear, thermostat",
-        ),
-        ("friction", "steady", {}, "steady: must be cooling where no effect drives the gas"),
-    ],
-)
-def test_a_drive_needs_a_steady_schedule(kernel, kind, effects, message):
+@pytest.mark.parametrize("kernel", ["gas", "sheared", "bed", "heated", "shaken"])
+def test_a_drive_and_nothing_else_needs_a_steady_schedule(kernel):
+    experiment = settings(kernel, 20)
+    driven = sorted({"floor", "shaken_walls", "shear", "thermostat"} & set(experiment["effects"]))
+    right, wrong = (STEADY, COOLING) if driven else (COOLING, STEADY)
+    schedule.check(experiment | {"schedule": right})
     with pytest.raises(InputError) as caught:
-        schedule.check(scheduled(kernel, kind, **effects))
-    assert str(caught.value) == f"schedule.kind = {message}"
+        schedule.check(experiment | {"schedule": wrong})
+    legal = f"steady where there is a drive: {driven[0]}" if driven else "cooling where no effect"
+    assert str(caught.value).startswith(f"schedule.kind = {wrong['kind']}: must be {legal}")
 
 
-@pytest.mark.parametrize(
-    ("kernel", "kind"),
-    [("gas", "cooling"), ("smooth", "cooling"), ("heated", "steady"), ("bed", "steady")],
-)
-def test_what_goes_together(kernel, kind):
-    schedule.check(scheduled(kernel, kind))
+def test_all_drives_are_named():
+    experiment = settings("sheared", 20)
+    experiment["effects"] |= KERNELS["heated"]["effects"]
+    with pytest.raises(InputError, match="where there is a drive: shear, thermostat"):
+        schedule.check(experiment | {"schedule": COOLING})
