@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from roughgas.statistics.averages import period_means
 from roughgas.statistics.estimate import Estimate
 from roughgas.statistics.fits import PowerLaw, limit_at_zero, signed_power_law
 from roughgas.studies.accuracy.variables import dataset, flat, stacked
@@ -66,7 +67,8 @@ def statistical_error(series, truth) -> tuple[np.ndarray, Estimate]:
     """
     most = max(SHORTEST, len(series) // FEWEST_PARTS)
     lengths = SHORTEST * 2 ** np.arange(int(math.log2(most / SHORTEST)) + 1)
-    errors = np.array([math.sqrt(_mean_square(series, length, truth)) for length in lengths])
+    offsets = [period_means(series, length) - truth for length in lengths]
+    errors = np.array([math.sqrt(np.mean(one**2)) for one in offsets])
     return lengths, Estimate(errors, errors / np.sqrt(2.0 * (len(series) // lengths)))
 
 
@@ -84,12 +86,6 @@ def slowdown(target: float, t, seconds, deviation: PowerLaw, events: float) -> f
     cost = np.exp(known) * np.maximum(1.0, t.min() / fine)
     left = 1.0 - (deviation(fine) / target) ** 2
     return float((cost[left > 0.0] / left[left > 0.0]).min(initial=math.inf) / events)
-
-
-def _mean_square(series, length, truth):
-    number = len(series) // length
-    means = series[: number * length].reshape(number, length).mean(axis=1)
-    return np.mean((means - truth) ** 2)
 
 
 def _reference(runs):

@@ -49,6 +49,11 @@ class FreeCooling(NamedTuple):
         """R of Eq. (K)."""
         return float(theory.cooling_ratio(*self.constants))
 
+    def with_cumulants(self, a20: float, a11: float) -> float:
+        """Return R of Eq. (K), corrected for velocities that are not Maxwellian."""
+        r, beta, *kind = self.constants
+        return float(corrected_ratio(r, beta, a20, a11, *kind))
+
     @property
     def transient(self) -> float:
         """Collisions per particle from theory's theta until R has settled."""
@@ -68,21 +73,10 @@ class FreeCooling(NamedTuple):
         return dsmc.new_gas(particles, self.theta, rng, *kind), dsmc.material(*self.constants)
 
 
-def closed_form(cooling: FreeCooling, calls: int) -> tuple[float, float]:
-    """Return R of Eq. (K), and the seconds of one of `calls` calls."""
-    constants, begin = cooling.constants, time.process_time()
-    for _ in range(calls):
-        R = theory.cooling_ratio(*constants)
-    return float(R), (time.process_time() - begin) / calls
-
-
-def rate_equations(cooling: FreeCooling, duration: float, calls: int) -> tuple[float, float]:
-    """Return R after `duration` collisions per particle from equipartition on, by the rate
-    equations, and the seconds of one of `calls` calls."""
-    constants, begin = cooling.constants, time.process_time()
-    for _ in range(calls):
-        T_tr, T_rot = integrate(1.0, duration, 0.1, *constants)
-    return T_rot / (T_tr + T_rot), (time.process_time() - begin) / calls
+def rate_equations(duration: float, *constants) -> float:
+    """Return R after `duration` collisions per particle from equipartition on."""
+    T_tr, T_rot = integrate(1.0, duration, 0.1, *constants)
+    return T_rot / (T_tr + T_rot)
 
 
 def integrate(theta, duration, step, r, beta, dimension=2, inertia=None) -> tuple[float, float]:
@@ -163,12 +157,6 @@ def homogeneous(
         "length": length,
         "seconds": seconds,
     }
-
-
-def with_cumulants(cooling: FreeCooling, a20: float, a11: float) -> float:
-    """Return R of Eq. (K), corrected for velocities that are not Maxwellian."""
-    r, beta, *kind = cooling.constants
-    return float(corrected_ratio(r, beta, a20, a11, *kind))
 
 
 def _gaussian_length(cooling, particles, precision):

@@ -1,5 +1,7 @@
 """Values of R of a freely cooling gas by every method, and CPU seconds without compiling."""
 
+import functools
+import time
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -8,13 +10,12 @@ import xarray as xr
 
 from roughgas.studies.accuracy.runs.free_cooling import (
     FreeCooling,
-    closed_form,
     event_driven,
     few_particles,
     homogeneous,
     rate_equations,
-    with_cumulants,
 )
+from roughgas.theory import cooling_ratio
 
 # Each kind of job draws from streams of its own
 REFERENCE, EVENT_DRIVEN, DSMC, MAP, DENSITY = range(5)
@@ -53,9 +54,7 @@ def _event_driven(cooling, settings, progress, _):
 
 
 def _dsmc(cooling, settings, progress, _):
-    def one(length, seed):
-        return few_particles(cooling, length, seed)
-
+    one = functools.partial(few_particles, cooling)
     found, lengths = _levels("dsmc", DSMC, one, settings, progress)
     rng = np.random.default_rng(stream(settings, MAP, DSMC))
     number, precision = settings["map"]["particles"], settings["density"]["precision"]
@@ -77,18 +76,23 @@ def _levels(name, kind, one, settings, progress):
 
 
 def _theory(cooling, settings, progress, _):
-    def calls(seconds):
-        return max(1, round(SECONDS / max(seconds, 1e-7)))
-
-    closed_R, closed_seconds = closed_form(cooling, calls(closed_form(cooling, 10)[1]))
-    durations, rates = settings["rate_equations"], []
-    for k, duration in enumerate(durations):
-        _, once = rate_equations(cooling, duration, 1)
-        rates.append(rate_equations(cooling, duration, calls(once)))
-        progress(k + 1, len(durations))
+    constants = cooling.constants
+    closed_R, closed_seconds = _timed(lambda: float(cooling_ratio(*constants)))
+    lengths, rates = settings["rate_equations"], []
+    for k, length in enumerate(lengths):
+        rates.append(_timed(functools.partial(rate_equations, length, *constants)))
+        progress(k + 1, len(lengths))
     R, seconds = (("rate_equations_length", list(x)) for x in zip(*rates, strict=True))
     found = {"closed_form_R": closed_R, "closed_form_seconds": closed_seconds}
-    return found | {"R": R, "seconds": seconds}, {"rate_equations_length": durations}
+    return found | {"R": R, "seconds": seconds}, {"rate_equations_length": lengths}
+
+
+def _timed(function):
+    """Return what a function returns, and the CPU seconds of a call, its mean over SECONDS."""
+    calls, begin = 0, time.process_time()
+    while (seconds := time.process_time() - begin) < SECONDS:
+        found, calls = function(), calls + 1
+    return found, seconds / calls
 
 
 def _map(cooling, settings, progress, place):
@@ -100,7 +104,7 @@ def _map(cooling, settings, progress, place):
         rng = np.random.default_rng(stream(settings, MAP, row, k))
         there = cooling._replace(r=float(r), beta=float(beta))
         found = homogeneous(there, chosen["particles"], chosen["precision"], rng)
-        explained = with_cumulants(there, found["a20"], found["a11"])
+        explained = there.with_cumulants(found["a20"], found["a11"])
         rows.append(found | {"theory": there.ratio, "explained": explained})
         progress(k + 1, len(chosen["beta"]))
     columns = {name: ("beta", [found[name] for found in rows]) for name in rows[0]}

@@ -2,7 +2,7 @@
 
 import math
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -64,29 +64,6 @@ class Chain:
         return self.kind.sample(self.gas, every, round(length / every))
 
 
-class Setup(NamedTuple):
-    """What the tasks of a scene have in common."""
-
-    settings: Mapping[str, Any]
-    experiment: Mapping[str, Any]
-    own: Mapping[str, Any]  # lengths of the scene's runs
-
-    @property
-    def sizes(self) -> list[int]:
-        """Length of each level, in terms of the shortest; or the number of seeds."""
-        return [2**level for level in range(self.settings["levels"])]
-
-    def chain(self, stream: np.random.SeedSequence) -> Chain:
-        """Return a chain with random numbers of its own."""
-        r, beta = float(self.settings["r"]), float(self.settings["beta"])
-        rng = np.random.default_rng(stream)
-        return Chain(self.experiment, r, beta, self.own["equilibrate"], rng)
-
-    def stretches(self, size: int) -> int:
-        """Return how many groups of this size there are for each that there must be."""
-        return max(1, self.sizes[-1] // size // GENEROSITY)
-
-
 def run(task: str, settings, experiments, progress: Callable[[int, int], None]) -> xr.Dataset:
     """Return estimates of R and their costs.
 
@@ -94,12 +71,23 @@ def run(task: str, settings, experiments, progress: Callable[[int, int], None]) 
     groups.
     """
     scene, part = task.split("-")
-    setup = Setup(settings, experiments[scene], settings["scenes"][scene])
-    setup.chain(np.random.SeedSequence(0)).measure(setup.own["shortest"])  # compiles
+    own, material = settings["scenes"][scene], (float(settings["r"]), float(settings["beta"]))
     where = (SCENES.index(scene), PARTS.index(part))
     streams = np.random.SeedSequence(settings["seed"], spawn_key=where)
+
+    def chain(stream):
+        rng = np.random.default_rng(stream)
+        return Chain(experiments[scene], *material, own["equilibrate"], rng)
+
+    def chains(count):
+        for done, stream in enumerate(streams.spawn(count)):
+            progress(done, count)
+            yield chain(stream)
+        progress(count, count)
+
+    chain(np.random.SeedSequence(0)).measure(own["shortest"])  # compiles
     measured = {"reference": _reference, "length": _lengths, "seeds": _seeds}[part]
-    return xr.Dataset(measured(setup, streams, progress))
+    return xr.Dataset(measured(settings, own["shortest"], chains))
 
 
 def time_from_blocks(series: np.ndarray, length: int) -> float:
@@ -108,19 +96,16 @@ def time_from_blocks(series: np.ndarray, length: int) -> float:
     Unlike an estimate with a window it misses no slow tail; known to (2 length/samples)^(1/2)
     only; too small by half of itself over `length`, relatively. NaN for fewer than two blocks.
     """
-    blocks = len(series) // length
-    if blocks < 2:
+    if len(series) < 2 * length:
         return math.nan
-    means = series[: blocks * length].reshape(blocks, length).mean(axis=1)
-    return float(length * means.var(ddof=1) / series.var())
+    return float(length * period_means(series, length).var(ddof=1) / series.var())
 
 
-def _reference(setup, streams, progress) -> dict[str, tuple]:
+def _reference(settings, shortest, chains) -> dict[str, tuple]:
     """Chains that are together `reference` times as long as the longest level."""
-    count, shortest = setup.settings["chains"], setup.own["shortest"]
-    total = setup.settings["reference"] * setup.sizes[-1] * shortest
-    length = math.ceil(total / count / shortest) * shortest
-    rows = [_of_reference(chain, length) for chain in _chains(setup, streams, count, progress)]
+    total = settings["reference"] * 2 ** (settings["levels"] - 1)
+    length = math.ceil(total / settings["chains"]) * shortest
+    rows = [_of_reference(chain, length) for chain in chains(settings["chains"])]
     return {name: ("chain", [row[name] for row in rows]) for name in rows[0]}
 
 
@@ -139,33 +124,40 @@ def _of_reference(chain, length) -> dict[str, float]:
     }
 
 
-def _lengths(setup, streams, progress) -> dict[str, tuple]:
-    """Estimates from one run each, of each length."""
-    found, equilibration = [[] for _ in setup.sizes], []
-    for chain in _chains(setup, streams, setup.settings["groups"], progress):
-        equilibration.append(chain.equilibration)
-        for level, size in zip(found, setup.sizes, strict=True):
-            for _ in range(setup.stretches(size)):
-                segment = chain.measure(size * setup.own["shortest"])
-                level.append((segment.R.mean(), segment.seconds))
-    return _levels([np.transpose(level) for level in found], equilibration)
+def _lengths(settings, shortest, chains) -> dict[str, tuple]:
+    """Estimates from one run each: level k takes 2^k times the shortest length."""
+    sizes, stretches = _sizes(settings)
+    lengths = np.repeat(sizes, stretches) * shortest
+    measured, equilibration = _measured(chains(settings["groups"]), lengths)
+    levels = np.split(measured, np.cumsum(stretches)[:-1], axis=2)
+    return _levels([level.reshape(2, -1) for level in levels], equilibration)
 
 
-def _seeds(setup, streams, progress) -> dict[str, tuple]:
-    """Estimates from runs of the shortest length, each of another chain."""
-    sizes, groups = setup.sizes, setup.settings["groups"]
-    counts = [math.ceil(groups * setup.stretches(size) * size / sizes[-1]) for size in sizes]
-    measured, equilibration = np.empty((2, sizes[-1], sum(counts))), []
-    for k, chain in enumerate(_chains(setup, streams, sizes[-1], progress)):
+def _seeds(settings, shortest, chains) -> dict[str, tuple]:
+    """Estimates from 2^k runs of the shortest length, each of another chain, at level k."""
+    sizes, stretches = _sizes(settings)
+    most = sizes[-1]
+    counts = -(-settings["groups"] * stretches * sizes // most)
+    measured, equilibration = _measured(chains(most), [shortest] * counts.sum())
+    levels = np.split(measured.swapaxes(1, 2), np.cumsum(counts)[:-1], axis=1)
+    groups = [level.reshape(2, -1, size) for level, size in zip(levels, sizes, strict=True)]
+    return _levels([(R.mean(axis=1), seconds.sum(axis=1)) for R, seconds in groups], equilibration)
+
+
+def _sizes(settings) -> tuple[np.ndarray, np.ndarray]:
+    """Return the size of each level, and how many groups it gets for each that it must have."""
+    sizes = 2 ** np.arange(settings["levels"])
+    return sizes, np.maximum(1, sizes[::-1] // GENEROSITY)
+
+
+def _measured(chains, lengths) -> tuple[np.ndarray, list[float]]:
+    """Return mean R and CPU seconds, shape (2, chains, lengths), of stretches of each chain."""
+    rows, equilibration = [], []
+    for chain in chains:
         equilibration.append(chain.equilibration)
-        for stretch in range(sum(counts)):
-            segment = chain.measure(setup.own["shortest"])
-            measured[:, k, stretch] = segment.R.mean(), segment.seconds
-    found = []
-    for part, size in zip(np.split(measured, np.cumsum(counts)[:-1], axis=2), sizes, strict=True):
-        R, seconds = part.swapaxes(1, 2).reshape(2, -1, size)
-        found.append((R.mean(axis=1), seconds.sum(axis=1)))
-    return _levels(found, equilibration)
+        segments = [chain.measure(length) for length in lengths]
+        rows.append([(one.R.mean(), one.seconds) for one in segments])
+    return np.moveaxis(np.array(rows), 2, 0), equilibration
 
 
 def _levels(found, equilibration) -> dict[str, tuple]:
@@ -175,10 +167,3 @@ def _levels(found, equilibration) -> dict[str, tuple]:
         filled[:, level, : len(values[0])] = values
     R, seconds = ((("level", "group"), values) for values in filled)
     return {"R": R, "seconds": seconds, "equilibration": ("chain", equilibration)}
-
-
-def _chains(setup, streams, count, progress) -> Iterator[Chain]:
-    for done, stream in enumerate(streams.spawn(count)):
-        progress(done, count)
-        yield setup.chain(stream)
-    progress(count, count)
