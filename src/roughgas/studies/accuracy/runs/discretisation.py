@@ -1,8 +1,8 @@
 """Soft spheres and events in the freely cooling gas, one function a kind of job.
 
-Each takes the study's settings, those of the experiment, and progress, and returns numbers by name.
-All jobs have random numbers of their own. CPU seconds are those of the simulation proper,
-everything compiled before, at equilibrium.
+Each takes the study's settings, those of the experiment, progress, and the stream of random numbers
+that belongs to the task, (kind, *places); it returns numbers by name. CPU seconds are those of the
+simulation proper, everything compiled before, at equilibrium.
 """
 
 import math
@@ -15,10 +15,11 @@ import xarray as xr
 from roughgas.kernel.layout import new_state
 from roughgas.kernel.state import EXPONENT, STARTED
 from roughgas.scene import build, initial_state
-from roughgas.simulation.energies import ratio
+from roughgas.simulation.energies import Energies, ratio
 from roughgas.simulation.gas import Gas
-from roughgas.statistics.errors import blocking_stderr
+from roughgas.statistics.errors import blocking_stderr, stderr_over_seeds
 from roughgas.studies.soft_spheres import new_gas, springs
+from roughgas.studies.soft_spheres.gas import CONTACTS
 from roughgas.studies.soft_spheres.stepping import COLUMNS, step
 from roughgas.theory import collision_frequency, stationary_theta
 
@@ -37,57 +38,44 @@ STREAMS = {"reference": 1, "event": 2, "single": 3, "model": 4, "soft": 5, "elas
 def run(task: str, settings, experiments, progress: Callable[[int, int], None]) -> xr.Dataset:
     """Return R of one run, and what else its kind of job measures. Raises InputError."""
     kind, *places = task.split("-")
-    job = {"reference": _reference, "event": _event, "single": _single}
-    job |= {"model": _model, "soft": _soft}
-    found = job[kind](settings, experiments["cooling"], progress, *map(int, places))
+    job = {"soft": _soft, "model": _model, "single": _single}.get(kind, _events)
+    found = job(settings, experiments["cooling"], progress, (kind, *map(int, places)))
     return xr.Dataset({name: (("sample",) if np.ndim(x) else (), x) for name, x in found.items()})
 
 
-def _reference(settings, cooling, progress, place):
-    return _summary(*_events(settings, cooling, progress, ("reference", place)))
-
-
-def _event(settings, cooling, progress):
-    """A run of its own, of which each sample is kept, for the statistical error of such runs."""
-    R, collisions, seconds = _events(settings, cooling, progress, ("event",))
-    return _summary(R, collisions, seconds) | {"R_series": R}
-
-
-def _single(settings, cooling, progress):
-    """Trajectories and spins in single precision, and how an elastic gas's energy then drifts."""
-    found = _summary(*_events(settings, cooling, progress, ("single",), np.float32))
-    for name, precision in (("single", np.float32), ("double", np.float64)):
-        found |= _drift(name, settings, cooling, precision)
-    return found
-
-
-def _soft(settings, cooling, progress, steps, place):
-    """Soft spheres, `steps` to a contact of t_c nu = settings["contact_times"][place]."""
-    gas, spheres, plan = _soft_gas(settings, cooling, steps, place)
-    (dt, per_leg), number = plan, len(gas.position)
+def _soft(settings, cooling, progress, stream):
+    """Soft spheres that make `steps` steps in a contact of t_c nu = contact_times[place]."""
+    _, steps, place = stream
+    scene, *where = _start(settings, cooling, stream)
     nu = _frequency(settings)
+    duration = settings["contact_times"][place] / nu
+    q = scene.effects.spin.inertia
+    forces = springs(settings["r"], settings["beta"], q, duration)
+    gas, spheres = new_gas(*where, scene.box, forces, SKIN)
+    dt, number = duration / steps, len(gas.position)
+    per_leg = max(1, round(SOFT_LEG / (nu * dt)))
     settling, legs = (
         math.ceil(length / (nu * dt * per_leg))
         for length in (SETTLING, settings["soft_collisions"])
     )
     step(gas, spheres, dt, per_leg, 1.0, np.empty((settling, len(COLUMNS))))
     rows = np.empty((legs, len(COLUMNS)))
-    begun, seconds = gas.counts[1], time.process_time()
+    begun, seconds = gas.counts[CONTACTS], time.process_time()
     for done, part in _parts(rows, progress):
         if step(gas, spheres, dt, per_leg, 1.0, part) < len(part):
             raise RuntimeError(f"soft spheres are too crowded after {done} of {legs} legs")
     seconds = time.process_time() - seconds
-    translational = rows[:, 0] / (2 * number)
-    rotational = spheres.springs.inertia * rows[:, 1] / number
-    collisions = 2.0 * (rows[-1, 2] - begun) / number
-    found = _summary(rotational / (rotational + translational), collisions, seconds)
-    return found | {"frequency": collisions / (legs * per_leg * dt) / nu, "steps": legs * per_leg}
+    vv, ww, contacts = rows.T
+    R = ratio(Energies(vv / (2 * number), q * ww / number))
+    collisions = 2.0 * (contacts[-1] - begun) / number
+    frequency = collisions / (legs * per_leg * dt) / nu
+    return _summary(R, collisions, seconds) | {"frequency": frequency, "steps": legs * per_leg}
 
 
-def _model(settings, cooling, progress, place):
+def _model(settings, cooling, progress, stream):
     """The kernel with the contact-time model, t_c nu being held as for soft spheres."""
-    duration = settings["model_contact_times"][place] / _frequency(settings)
-    gas = _gas(settings, cooling, ("model", place), {"contact_time": {"duration": duration}})
+    duration = settings["model_contact_times"][stream[1]] / _frequency(settings)
+    gas = _gas(settings, cooling, stream, effects={"contact_time": {"duration": duration}})
     per_leg, recorder = gas.count(LEG), gas.recorder
     gas.cool(per_leg)
     settling, legs = (round(length / LEG) for length in (SETTLING, settings["model_collisions"]))
@@ -104,9 +92,46 @@ def _model(settings, cooling, progress, place):
     return _summary(R, collisions, recorder.seconds) | {"touched": touched}
 
 
-def _random(settings, kind, *places):
-    key = (STREAMS[kind], *places)
-    return np.random.default_rng(np.random.SeedSequence(settings["seed"], spawn_key=key))
+def _single(settings, cooling, progress, stream):
+    """Trajectories and spins in single precision, and how an elastic gas's energy then drifts."""
+    found = _events(settings, cooling, progress, stream, np.float32)
+    for name, precision in (("single", np.float32), ("double", np.float64)):
+        drifting = _drift(settings | ELASTIC, cooling, precision)
+        found |= {f"{key}_{name}": value for key, value in drifting.items()}
+    return found
+
+
+def _events(settings, cooling, progress, stream, precision=np.float64):
+    """The plain event-driven gas; the kind `event` keeps each sample, for its statistical error."""
+    kind, gas = stream[0], _gas(settings, cooling, stream, precision)
+    every = gas.count(SAMPLED_EVERY)
+    gas.cool(REFRESHED_EVERY * every)
+    length = settings["reference_collisions" if kind == "reference" else "event_collisions"]
+    gas.in_collisions(every, round(SETTLING / SAMPLED_EVERY))
+    R, seconds = np.empty(round(length / SAMPLED_EVERY)), time.process_time()
+    for _, part in _parts(R, progress):
+        part[:] = ratio(gas.energies(gas.in_collisions(every, len(part))))
+    found = _summary(R, len(R) * SAMPLED_EVERY, time.process_time() - seconds)
+    return found | ({"R_series": R} if kind == "event" else {})
+
+
+def _drift(settings, cooling, precision):
+    """Relative change of an elastic gas's energy per collision, its speed and frequency."""
+    gas = _gas(settings, cooling, ("elastic",), precision)
+    every = max(1, round(settings["event_collisions"] * gas.particles / 40 / ELASTIC_SAMPLES))
+    gas.in_collisions(every, 1)
+    seconds = time.process_time()
+    rows = gas.in_collisions(every, ELASTIC_SAMPLES)
+    seconds = time.process_time() - seconds
+    found = gas.energies(rows)
+    changes = np.diff(np.log(2.0 * found.translational + found.rotational)) / every
+    elapsed = rows["time"][-1] - rows["time"][0]
+    return {
+        "drift": changes.mean(),
+        "drift_stderr": stderr_over_seeds(changes),
+        "speed": every * len(rows["time"]) / seconds,
+        "frequency": 2.0 * every * len(changes) / gas.particles / elapsed,
+    }
 
 
 def _frequency(settings):
@@ -114,33 +139,27 @@ def _frequency(settings):
     return float(collision_frequency(1.0, settings["packing"]))
 
 
+def _gas(settings, cooling, stream, precision=np.float64, effects=None):
+    scene, *where = _start(settings, cooling, stream, effects)
+    return Gas(scene, new_state(scene, *where, precision))
+
+
 def _start(settings, cooling, stream, effects=None):
     """Scene, positions, velocities and spins, the latter at the temperature of theory.
 
     The experiment's particles at the packing that the settings ask for, with spin and `effects`.
     """
-    side = math.sqrt(cooling["particles"] * math.pi / settings["packing"])
-    spin = {"spin": cooling["effects"]["spin"]}
-    gas = {
-        "particles": cooling["particles"],
-        "box": [side, side],
-        "effects": spin | (effects or {}),
-    }
-    scene, rng = build(gas, settings["r"], settings["beta"]), _random(settings, *stream)
+    r, beta, number = settings["r"], settings["beta"], cooling["particles"]
+    side = math.sqrt(number * math.pi / settings["packing"])
+    effects = {"spin": cooling["effects"]["spin"]} | (effects or {})
+    gas = {"particles": number, "box": [side, side], "effects": effects}
+    key = (STREAMS[stream[0]], *stream[1:])
+    rng = np.random.default_rng(np.random.SeedSequence(settings["seed"], spawn_key=key))
+    scene = build(gas, r, beta)
     q = scene.effects.spin.inertia
-    theta = stationary_theta(settings["r"], settings["beta"], len(scene.box), q)
+    theta = stationary_theta(r, beta, len(scene.box), q)
     position, velocity = np.split(initial_state(scene, gas, rng).trajectory[:, :-1], 2, axis=1)
-    return scene, position, velocity, math.sqrt(theta / q) * rng.standard_normal((len(position), 1))
-
-
-def _soft_gas(settings, cooling, steps, place):
-    """Gas, spheres, and (step in T, steps between two rescalings)."""
-    scene, *where = _start(settings, cooling, ("soft", steps, place))
-    nu = _frequency(settings)
-    duration = settings["contact_times"][place] / nu
-    forces = springs(settings["r"], settings["beta"], scene.effects.spin.inertia, duration)
-    dt = duration / steps
-    return *new_gas(*where, scene.box, forces, SKIN), (dt, max(1, round(SOFT_LEG / (nu * dt))))
+    return scene, position, velocity, math.sqrt(theta / q) * rng.standard_normal((number, 1))
 
 
 def _heat(state):
@@ -154,24 +173,6 @@ def _heat(state):
     state.counts[STARTED] = 0
 
 
-def _gas(settings, cooling, stream, effects=None, precision=np.float64):
-    scene, *where = _start(settings, cooling, stream, effects)
-    return Gas(scene, new_state(scene, *where, precision))
-
-
-def _events(settings, cooling, progress, stream, precision=np.float64):
-    """R at each sample, collisions per particle, CPU seconds, of the plain event-driven gas."""
-    gas = _gas(settings, cooling, stream, precision=precision)
-    every = gas.count(SAMPLED_EVERY)
-    gas.cool(REFRESHED_EVERY * every)
-    length = settings["reference_collisions" if stream[0] == "reference" else "event_collisions"]
-    gas.in_collisions(every, round(SETTLING / SAMPLED_EVERY))
-    R, seconds = np.empty(round(length / SAMPLED_EVERY)), time.process_time()
-    for _, part in _parts(R, progress):
-        part[:] = ratio(gas.energies(gas.in_collisions(every, len(part))))
-    return R, len(R) * SAMPLED_EVERY, time.process_time() - seconds
-
-
 def _parts(rows, progress):
     """(number of the first row, part of the rows), each a whole number of refreshed samples."""
     length = max(1, -(-len(rows) // (PARTS * REFRESHED_EVERY))) * REFRESHED_EVERY
@@ -180,29 +181,6 @@ def _parts(rows, progress):
         yield first, rows[first : first + length]
 
 
-def _drift(name, settings, cooling, precision):
-    """Relative change of an elastic gas's energy per collision, its speed and frequency."""
-    gas = _gas(settings | ELASTIC, cooling, ("elastic",), precision=precision)
-    every = max(1, round(settings["event_collisions"] * gas.particles / 40 / ELASTIC_SAMPLES))
-    gas.in_collisions(every, 1)
-    seconds = time.process_time()
-    rows = gas.in_collisions(every, ELASTIC_SAMPLES)
-    seconds = time.process_time() - seconds
-    found = gas.energies(rows)
-    changes = np.diff(np.log(2.0 * found.translational + found.rotational)) / every
-    elapsed = rows["time"][-1] - rows["time"][0]
-    return {
-        f"drift_{name}": changes.mean(),
-        f"drift_stderr_{name}": changes.std(ddof=1) / math.sqrt(len(changes)),
-        f"speed_{name}": every * len(rows["time"]) / seconds,
-        f"frequency_{name}": 2.0 * every * len(changes) / gas.particles / elapsed,
-    }
-
-
 def _summary(R, collisions, seconds):
-    return {
-        "R": R.mean(),
-        "R_stderr": blocking_stderr(R),
-        "collisions": float(collisions),
-        "cpu_seconds": seconds,
-    }
+    found = {"R": R.mean(), "R_stderr": blocking_stderr(R)}
+    return found | {"collisions": float(collisions), "cpu_seconds": seconds}
