@@ -5,8 +5,7 @@ Pairs are drawn at random, each with a random normal n, and collide with the pro
 equal probability. Each draw takes the mean time between two draws. G. A. Bird, Molecular Gas
 Dynamics and the Direct Simulation of Gas Flows (Oxford, 1994), section 11.1.
 
-All compiled code of the solver is in this file and in kernel/: numba's cache notices edits of both
-(see kernel/cache.py).
+All compiled code of the solver is in this file and in kernel/, whose edits numba's cache notices.
 """
 
 import math
@@ -21,16 +20,16 @@ from roughgas.kernel.vectors import add_scaled, dot, read, scale, subtract, writ
 TIME, WAITED, LOG_UNIT, MAJORANT = range(4)
 # Entries of Gas.counts
 COLLISIONS, DRAWS = range(2)
-COLUMNS = ("time", "collisions", "log_unit", "vv", "ww", "vvvv", "wwww", "vvww", "vwvw")
+COLUMNS = ("time", "collisions", "log_unit", "vv", "ww", "vvvv", "wwww", "vvww")
 
 
 @entry(cache=True)
 def record(gas, material, rng, collisions, rows):
-    """Let the gas collide so many times before each of the `rows`, shape (samples, COLUMNS).
+    """Let the gas make `collisions` before each of the `rows`, shape (samples, COLUMNS).
 
-    After each sample, and in between after so many collisions as there are particles, the total
-    momentum is removed and T_tr scaled to 1: the majorant would else become too large for a gas
-    that has cooled.
+    After each sample, and in between after as many collisions as there are particles, the total
+    momentum is removed and T_tr scaled to 1: otherwise the majorant would become too large for a
+    gas that has cooled.
     """
     number = len(gas.velocity)
     for k in range(len(rows)):
@@ -45,7 +44,7 @@ def record(gas, material, rng, collisions, rows):
 
 @compiled
 def collide_until(gas, material, rng, target):
-    """Draw pairs until there have been so many collisions."""
+    """Draw pairs until there have been `target` collisions."""
     while gas.counts[COLLISIONS] < target:
         draw(gas, material, rng)
     pass_time(gas, material)
@@ -90,7 +89,7 @@ def collide(gas, material, i, j, n, v):
 
 @compiled
 def random_direction(axes, rng):
-    """A unit vector, all directions being equally probable."""
+    """Return a unit vector, all directions being equally probable."""
     while True:
         x = _in_cube(axes, rng)
         square = dot(x, x)
@@ -108,44 +107,27 @@ def pass_time(gas, material):
     """Turn the draws made into time: sums of 1/majorant, over the number of pairs and so on."""
     clock, number = gas.clock, len(gas.velocity)
     pairs = 0.5 * (number - 1)  # over the volume, with the density in `crowding`
-    draws = pairs * material.crowding * cross_section(gas.axes)
+    # half the surface of the sphere of contact, of two radii: a pair meets on half of it
+    cross_section = 2.0 * math.pi if len(gas.axes) == 2 else 8.0 * math.pi
+    draws = pairs * material.crowding * cross_section
     clock[TIME] += clock[WAITED] * math.exp(-clock[LOG_UNIT]) / draws
     clock[WAITED] = 0.0
 
 
-@unrolled
-def cross_section(axes):
-    """Half the surface of the sphere of contact, of two radii: a pair meets on half of it."""
-    if len(axes) == 2:
-        return 2.0 * math.pi
-    else:
-        return 8.0 * math.pi
-
-
 @compiled
 def take_sample(gas, row):
-    """Sums over the particles; nothing is moved."""
+    """Sum over the particles; nothing is moved."""
     for k in range(len(row)):
         row[k] = 0.0
     row[0], row[1], row[2] = gas.clock[TIME], gas.counts[COLLISIONS], gas.clock[LOG_UNIT]
     for i in range(len(gas.velocity)):
         v, w = read(gas.velocity, i, 0, gas.axes), spin_of(gas.spin, gas.axes, i)
-        vv, ww, vw = dot(v, v), dot(w, w), _along(v, w)
+        vv, ww = dot(v, v), dot(w, w)
         row[3] += vv
         row[4] += ww
         row[5] += vv * vv
         row[6] += ww * ww
         row[7] += vv * ww
-        row[8] += vw * vw
-
-
-@unrolled
-def _along(v, w):
-    """v.w, which in the plane is 0."""
-    if len(v) == len(w):
-        return dot(v, w)
-    else:
-        return 0.0
 
 
 @compiled

@@ -18,7 +18,7 @@ from roughgas.theory.arguments import check, check_restitution, check_roughness
 FIRST_MAJORANT = 5.0  # standard deviations of the relative normal velocity; it rises where exceeded
 
 
-class Material(NamedTuple):
+class Colliding(NamedTuple):
     """What the particles are, and how close to each other."""
 
     restitution: float
@@ -27,7 +27,7 @@ class Material(NamedTuple):
     crowding: float  # number density times Enskog's factor chi, in a^-D
 
 
-class Gas(NamedTuple):
+class HomogeneousGas(NamedTuple):
     """Everything that a simulation changes; velocities in units of exp(clock[LOG_UNIT]) a/T."""
 
     velocity: np.ndarray  # (N, D)
@@ -41,7 +41,7 @@ class Samples(NamedTuple):
     """A gas over time, arrays (samples,). The cumulants vanish where velocities are Maxwellian.
 
     a20 = D <v^4>/[(D + 2) <v^2>^2] - 1, a02 the same of the spins and their n = 2 D - 3 components,
-    a11 = <v^2 w^2>/(<v^2> <w^2>) - 1, alignment = 3 <(v.w)^2>/<v^2 w^2> - 1 (spheres; 0 for disks).
+    a11 = <v^2 w^2>/(<v^2> <w^2>) - 1.
     """
 
     time: np.ndarray  # T
@@ -51,7 +51,6 @@ class Samples(NamedTuple):
     a20: np.ndarray
     a02: np.ndarray
     a11: np.ndarray
-    alignment: np.ndarray
 
     @property
     def R(self) -> np.ndarray:
@@ -59,19 +58,19 @@ class Samples(NamedTuple):
         return self.theta / (1.0 + self.theta)
 
 
-def material(r, beta, dimension=2, inertia=None, crowding=1.0) -> Material:
-    """Particles of restitution r and roughness beta; `inertia` q is that of uniform ones if None.
+def material(r, beta, dimension=2, inertia=None, crowding=1.0) -> Colliding:
+    """Return particles of restitution r, roughness beta and `inertia` q, by default uniform ones.
 
     `crowding`, number density times chi, sets the unit of time only. Raises InputError.
     """
     spin = Spin(float(moment_of_inertia(dimension) if inertia is None else inertia))
     crowding = float(check("crowding", crowding))
     r, beta = float(check_restitution(r)), float(check_roughness(beta))
-    return Material(r, beta, Effects(spin=spin), crowding)
+    return Colliding(r, beta, Effects(spin=spin), crowding)
 
 
-def new_gas(particles, theta, rng: np.random.Generator, dimension=2, inertia=None) -> Gas:
-    """`particles` of Maxwellian velocities without total momentum, T_tr = 1 and T_rot = theta.
+def new_gas(particles, theta, rng: np.random.Generator, dimension=2, inertia=None) -> HomogeneousGas:
+    """Return particles of Maxwellian velocities without total momentum, T_tr = 1, T_rot = theta.
 
     Both temperatures are exact. Raises InputError for fewer than two particles or theta < 0.
     """
@@ -84,38 +83,30 @@ def new_gas(particles, theta, rng: np.random.Generator, dimension=2, inertia=Non
     spin = rng.standard_normal((particles, 2 * dimension - 3))
     spin *= math.sqrt(check("theta", theta) / (q * np.mean(spin**2)))
     clock = np.array([0.0, 0.0, 0.0, FIRST_MAJORANT * math.sqrt(2.0)])
-    return Gas(velocity, spin, clock, np.zeros(2, np.int64), (0.0,) * dimension)
+    return HomogeneousGas(velocity, spin, clock, np.zeros(2, np.int64), (0.0,) * dimension)
 
 
-def run(gas: Gas, material: Material, rng: np.random.Generator, every: float, samples: int):
-    """The `Samples` of a gas, one every so many collisions per particle; the gas is changed.
+def run(gas: HomogeneousGas, material: Colliding, rng: np.random.Generator, every: float, samples: int):
+    """Return the `Samples` of a gas, one every `every` collisions per particle; change the gas.
 
     The same generator in the same state gives the same bits.
     """
-    number, dimension = gas.velocity.shape
+    (number, dimension), spins = gas.velocity.shape, gas.spin.shape[1]
     rows = np.empty((samples, len(COLUMNS)))
     record(gas, material, rng, max(1, round(every * number / 2)), rows)
-    sums = dict(zip(COLUMNS, rows.T, strict=True))
-    return _samples(sums, number, dimension, material.effects.spin.inertia)
-
-
-def _samples(sums, number, dimension, inertia):
-    spins = 2 * dimension - 3
-    T_tr, T_rot = sums["vv"] / (number * dimension), inertia * sums["ww"] / (number * spins)
+    time, collisions, log_unit, vv, ww, vvvv, wwww, vvww = rows.T
+    T_tr, T_rot = vv / (number * dimension), material.effects.spin.inertia * ww / (number * spins)
     return Samples(
-        time=sums["time"],
-        collisions_per_particle=2.0 * sums["collisions"] / number,
-        log_T_tr=np.log(T_tr) + 2.0 * sums["log_unit"],
+        time=time,
+        collisions_per_particle=2.0 * collisions / number,
+        log_T_tr=np.log(T_tr) + 2.0 * log_unit,
         theta=T_rot / T_tr,
-        a20=_quotient(number * dimension * sums["vvvv"], (dimension + 2) * sums["vv"] ** 2) - 1.0,
-        a02=_quotient(number * spins * sums["wwww"], (spins + 2) * sums["ww"] ** 2) - 1.0,
-        a11=_quotient(number * sums["vvww"], sums["vv"] * sums["ww"]) - 1.0,
-        alignment=_quotient(3.0 * sums["vwvw"], sums["vvww"]) - 1.0
-        if dimension == 3
-        else np.zeros(len(T_tr)),
+        a20=_quotient(number * dimension * vvvv, (dimension + 2) * vv**2) - 1.0,
+        a02=_quotient(number * spins * wwww, (spins + 2) * ww**2) - 1.0,
+        a11=_quotient(number * vvww, vv * ww) - 1.0,
     )
 
 
 def _quotient(a, b):
-    """a/b; 1 where nothing spins."""
+    """Return a/b; 1 where nothing spins."""
     return np.divide(a, b, out=np.ones(len(a)), where=b > 0.0)
