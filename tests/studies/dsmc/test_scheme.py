@@ -3,14 +3,12 @@ Maxwellian gas, conservation laws, equilibrium."""
 
 import numpy as np
 import pytest
-from compiled import from_python
 
 from roughgas import theory
 from roughgas.base.errors import InputError
 from roughgas.studies import dsmc
 from roughgas.studies.dsmc import collisions
 
-collide = from_python(collisions.collide)
 PACKING = 0.2
 MATERIALS = [(0.0, -0.4), (0.5, 1.0), (0.8, 0.0), (1.0, -1.0), (1.0, 1.0)]
 
@@ -44,7 +42,7 @@ def test_a_collision_has_the_restitutions_of_the_material(dimension, r, beta):
         v = gas.velocity[0] - gas.velocity[1]
         n *= -np.sign(n @ v) / np.linalg.norm(n)
         before = contact_velocity(gas, n)
-        collide(gas, material, 0, 1, tuple(n), tuple(v))
+        collisions.collide(gas, material, 0, 1, tuple(n), tuple(v))
         after = contact_velocity(gas, n)
         assert after @ n == pytest.approx(-r * (before @ n), abs=1e-13)
         tangential = before - (before @ n) * n
@@ -86,9 +84,9 @@ def test_dissipation_keeps_the_momentum(dimension):
     gas, rng = gas_and_generator(500, 0.3, dimension, 3)
     gas.velocity[:] += 1.0
     before = gas.velocity.sum(axis=0)
-    draw = from_python(collisions.draw)
+    material = dsmc.material(0.5, 0.2, dimension)
     for _ in range(5000):
-        draw(gas, dsmc.material(0.5, 0.2, dimension), rng)
+        collisions.draw(gas, material, rng)
     assert gas.counts[collisions.COLLISIONS] > 300
     assert gas.velocity.sum(axis=0) == pytest.approx(before, rel=1e-12)
 

@@ -12,8 +12,7 @@ from roughgas.base.errors import InputError
 from roughgas.effects import Effects
 from roughgas.effects.spin import Spin
 from roughgas.studies.dsmc.collisions import COLUMNS, record
-from roughgas.theory import moment_of_inertia
-from roughgas.theory.arguments import check, check_restitution, check_roughness
+from roughgas.theory import arguments, moment_of_inertia
 
 FIRST_MAJORANT = 5.0  # standard deviations of the relative normal velocity; it rises where exceeded
 
@@ -63,13 +62,14 @@ def material(r, beta, dimension=2, inertia=None, crowding=1.0) -> Colliding:
 
     `crowding`, number density times chi, sets the unit of time only. Raises InputError.
     """
-    spin = Spin(float(moment_of_inertia(dimension) if inertia is None else inertia))
-    crowding = float(check("crowding", crowding))
-    r, beta = float(check_restitution(r)), float(check_roughness(beta))
-    return Colliding(r, beta, Effects(spin=spin), crowding)
+    r, beta, _, q = map(float, arguments.material(r, beta, dimension, inertia))
+    crowding = float(arguments.check("crowding", crowding))
+    return Colliding(r, beta, Effects(spin=Spin(q)), crowding)
 
 
-def new_gas(particles, theta, rng: np.random.Generator, dimension=2, inertia=None) -> HomogeneousGas:
+def new_gas(
+    particles, theta, rng: np.random.Generator, dimension=2, inertia=None
+) -> HomogeneousGas:
     """Return particles of Maxwellian velocities without total momentum, T_tr = 1, T_rot = theta.
 
     Both temperatures are exact. Raises InputError for fewer than two particles or theta < 0.
@@ -81,12 +81,14 @@ def new_gas(particles, theta, rng: np.random.Generator, dimension=2, inertia=Non
     velocity -= velocity.mean(axis=0)
     velocity /= math.sqrt(np.mean(velocity**2))
     spin = rng.standard_normal((particles, 2 * dimension - 3))
-    spin *= math.sqrt(check("theta", theta) / (q * np.mean(spin**2)))
+    spin *= math.sqrt(arguments.check("theta", theta) / (q * np.mean(spin**2)))
     clock = np.array([0.0, 0.0, 0.0, FIRST_MAJORANT * math.sqrt(2.0)])
     return HomogeneousGas(velocity, spin, clock, np.zeros(2, np.int64), (0.0,) * dimension)
 
 
-def run(gas: HomogeneousGas, material: Colliding, rng: np.random.Generator, every: float, samples: int):
+def run(
+    gas: HomogeneousGas, material: Colliding, rng: np.random.Generator, every: float, samples: int
+):
     """Return the `Samples` of a gas, one every `every` collisions per particle; change the gas.
 
     The same generator in the same state gives the same bits.
