@@ -68,7 +68,7 @@ def test_bad_input_is_refused_in_one_line(configuration, tmp_path, capsys, name,
 )
 def test_all_variants_are_compiled_at_once(configuration, monkeypatch, name, inertia):
     told = []
-    monkeypatch.setattr("roughgas.simulation.point.compile_kernels", told.extend)
+    monkeypatch.setattr("roughgas.cli.run.compile_kernels", told.extend)
     assert main(["compile", name, configuration, "--r=0.9"]) == 0
     assert [one["effects"]["spin"]["inertia"] for one in told] == inertia
     assert all(one["sweep"] == {"r": [0.9]} for one in told)

@@ -50,11 +50,9 @@ def _mend_streams() -> None:
     """Let everything be printed: what a stream cannot encode becomes a question mark, and what goes
     to a closed stream is lost."""
     for name in ("stdout", "stderr"):
-        stream = getattr(sys, name)
-        if stream is None:
+        if getattr(sys, name) is None:
             setattr(sys, name, open(os.devnull, "w"))
-        else:
-            stream.reconfigure(errors="replace")
+        getattr(sys, name).reconfigure(errors="replace")
 
 
 def _stop(*_: object) -> NoReturn:

@@ -3,14 +3,16 @@
 import sys
 from argparse import Namespace
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from roughgas import config
 from roughgas.cli.options import number, whole_number
 from roughgas.cli.run import point_of
-
-if TYPE_CHECKING:
-    from roughgas.scene import Scene
-    from roughgas.show.movies.snapshots import Take
+from roughgas.scene import Scene
+from roughgas.show.encoding import check_kind
+from roughgas.show.movies.drawing import Subject, write
+from roughgas.show.movies.snapshots import Take, snapshots, usual_take
+from roughgas.simulation.progress import watched
 
 FRAMES = 2, 10_000
 RATES = 1.0, 50.0
@@ -19,20 +21,11 @@ LONGEST = 1e9  # in T, or collisions per particle
 
 def movie(options: Namespace) -> None:
     """Simulate a point, and write its movie."""
-    from roughgas import config
-    from roughgas.show.encoding import check_kind
-
-    seed = config.seed(options.seed)
+    name, seed = options.experiment, config.seed(options.seed)
     scene, settings = point_of(options, options.beta)
     fps = number("--fps", options.fps, *RATES)
     for output in options.output:
         check_kind(output)
-
-    from roughgas.show.movies.drawing import Subject, write
-    from roughgas.show.movies.snapshots import snapshots
-    from roughgas.simulation.progress import watched
-
-    name = options.experiment
     take = _take(options, settings, scene)
     simulated = snapshots(settings, float(options.r), float(options.beta), seed, take)
     shots = list(watched(f"{name}: simulated", take.frames, "frames", simulated))
@@ -43,10 +36,8 @@ def movie(options: Namespace) -> None:
         print(f"{output}: {len(shots)} frames", file=sys.stderr)
 
 
-def _take(options: Namespace, settings: dict[str, Any], scene: "Scene") -> "Take":
+def _take(options: Namespace, settings: dict[str, Any], scene: Scene) -> Take:
     """Return what is filmed: by default, what suits the experiment."""
-    from roughgas.show.movies.snapshots import usual_take
-
     asked: dict[str, Any] = {}
     for name, least in (("start", 0.0), ("length", 1e-9)):
         if (text := getattr(options, name)) is not None:

@@ -6,30 +6,30 @@ from argparse import Namespace
 from pathlib import Path
 from typing import Any
 
+from roughgas import config
 from roughgas.base.errors import InputError
+from roughgas.base.files import write_text
+from roughgas.base.layout import as_json
 from roughgas.cli.options import whole_number
 from roughgas.cli.run import point_of, say_done, write_seed
+from roughgas.planning import reach as reaching
+from roughgas.planning.pilot import read_pilot, write_pilot
+from roughgas.planning.plan import explore, plan_point
+from roughgas.planning.table import as_markdown, as_numbers, row
+from roughgas.scene import build
+from roughgas.simulation.progress import Bar, Progress
 
 PILOT = "{experiment}/r{r}/beta{beta}/pilot.json"
 
 
 def pilot(options: Namespace) -> None:
     """Run the pilot of a point."""
-    from roughgas.planning.pilot import write_pilot
-    from roughgas.planning.plan import explore
-
     scene, settings = point_of(options, options.beta)
     write_pilot(options.output, explore(scene, settings))
 
 
 def reach(options: Namespace) -> None:
     """Run seeds of a point until its standard error is the target of its experiment."""
-    from roughgas.planning.pilot import read_pilot
-    from roughgas.planning.plan import explore, plan_point
-    from roughgas.planning.reach import completed
-    from roughgas.planning.reach import reach as run
-    from roughgas.simulation.progress import Progress
-
     scene, settings = point_of(options, options.beta)
     if "target_stderr" not in settings:
         raise InputError("target_stderr", "(nothing)", f"be set for {options.experiment}")
@@ -41,9 +41,9 @@ def reach(options: Namespace) -> None:
         say_done(output, point)
 
     expected = plan_point(scene, settings, known)
-    run_settings = completed(settings, expected)
+    run_settings = reaching.completed(settings, expected)
     with Progress(options.experiment, scene, run_settings, expected.seeds) as progress:
-        planned, error, seeds = run(scene, settings, known, keep, progress)
+        planned, error, seeds = reaching.reach(scene, settings, known, keep, progress)
     met = "met" if error.stderr <= settings["target_stderr"] else "NOT met"
     print(
         f"{options.output}: {seeds} seeds ({planned.seeds} planned), standard error "
@@ -54,11 +54,6 @@ def reach(options: Namespace) -> None:
 
 def plan(options: Namespace) -> None:
     """Print what experiments will cost."""
-    from roughgas import config
-    from roughgas.base.files import write_text
-    from roughgas.base.layout import as_json
-    from roughgas.planning.table import as_markdown, as_numbers, row
-
     cores = whole_number("--cores", options.cores, 1)
     loaded = config.load(options.config)
     found = {}
@@ -79,11 +74,6 @@ def plan(options: Namespace) -> None:
 
 def _pilots(name: str, settings: dict[str, Any], folder: Path):
     """Return the pilots of a sweep by (r, beta), and the CPU seconds spent on missing ones."""
-    from roughgas.planning.pilot import read_pilot, write_pilot
-    from roughgas.planning.plan import explore
-    from roughgas.scene import build
-    from roughgas.simulation.progress import Bar
-
     axes, found, begin = settings["sweep"], {}, time.process_time()
     with Bar(f"pilots of {name}", len(axes["r"]) * len(axes["beta"]), "points") as bar:
         for r in axes["r"]:

@@ -3,16 +3,15 @@
 import json
 from argparse import Namespace
 
+from roughgas import config
 from roughgas.base.errors import InputError
+from roughgas.simulation.progress import Bar
+from roughgas.studies import accuracy
+from roughgas.studies.accuracy.files import write_task
 
 
 def study(options: Namespace) -> None:
     """Run a task."""
-    from roughgas import config
-    from roughgas.simulation.progress import Bar
-    from roughgas.studies import accuracy
-    from roughgas.studies.accuracy.files import write_task
-
     module, text = accuracy.study(options.study), options.settings
     if text is None:
         loaded = config.load(options.config)
