@@ -159,7 +159,7 @@ def waves(path):
     data = evidence.load(path)
     sawtooth = data.sel(wave="sawtooth")
     return {
-        f"wave_{wave}": evidence.difference(data.sel(wave=wave), sawtooth).mean()
+        f"wave_{wave}": evidence.difference(data.sel(wave=wave), sawtooth).largest()[0]
         for wave in ("triangle", "sine", "reversed_sawtooth")
     }
 

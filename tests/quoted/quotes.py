@@ -36,7 +36,7 @@ QUOTES = {
         "Random kicks of any s are within {heated_off:.3f} of the rate equations; a rough floor "
         "and rough shaken walls, s from their energy books, within {rough_floor_off:.3f} and "
         "{shaken_walls_off:.3f}.",
-        "by {wave_triangle:+()} for a triangle, {wave_sine:+()} for a sine, "
+        "by at most {wave_triangle:+()} for a triangle, {wave_sine:+()} for a sine, "
         "{wave_reversed_sawtooth:+()} for a sawtooth that rises fast and falls slowly.",
         "a cooling gas follows Eq. (K) within {cooling_inertia_off:.3f}. A bed follows Eq. (lun) "
         "within {vibrated_inertia_off:.3f} for q of 0.05 to 0.3; it is {vibrated_rings_above:()} "
