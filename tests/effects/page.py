@@ -9,6 +9,7 @@ import math
 import re
 from pathlib import Path
 
+from roughgas.base.layout import markdown
 from roughgas.effects import KINDS
 from roughgas.effects.settings import OfParticles, Word
 
@@ -16,7 +17,7 @@ ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "effects.md"
 AFTER_EXPERIMENTS = "\nshowcase:\n"  # in config.yaml
 BEGIN, END = "<!-- made by tests/effects/page.py -->\n", "<!-- until here -->\n"
-HEAD = "| effect | what it does | parameters | part in the kernel |\n" + 4 * "| --- " + "|\n"
+HEAD = ("effect", "what it does", "parameters", "part in the kernel")
 
 
 def section(heading):
@@ -50,7 +51,7 @@ def config_with(experiment, folder):
 
 def table():
     """What effects there are, as a table."""
-    return HEAD + "".join(f"| {' | '.join(_row(name, kind))} |\n" for name, kind in KINDS.items())
+    return markdown(HEAD, (_row(name, kind) for name, kind in KINDS.items()))
 
 
 def written():

@@ -14,6 +14,7 @@ from pathlib import Path
 from hard_cases import pictures
 from hard_cases.catalogue import Margin, Remedy
 from roughgas.base.files import write_text
+from roughgas.base.layout import markdown
 from roughgas.show.style import save
 
 HEAD = """# Hard cases
@@ -24,7 +25,6 @@ Where a simulation could go wrong, and how far this one stays from that. Written
 {cases} cases, {margins} margins, all within their limits. Of {remedies} cases it was shown that
 they fail once a remedy is taken out of the source.
 """
-COLUMNS = "| measured | value | limit | tried |\n| --- | ---: | ---: | ---: |\n"
 
 
 def main() -> None:
@@ -60,13 +60,18 @@ def table(margins: list[Margin], remedies: list[Remedy], full: bool) -> str:
 
 
 def _case(case, danger, rows, taken):
-    lines = "".join(
-        f"| {row.what} | {row.measured:.3g} | {row.sense} {row.limit:g} | {number(row.tried)} "
-        f"{row.unit} |\n"
+    cells = [
+        (
+            row.what,
+            f"{row.measured:.3g}",
+            f"{row.sense} {row.limit:g}",
+            f"{number(row.tried)} {row.unit}",
+        )
         for row in rows
-    )
+    ]
+    lines = markdown(("measured", "value", "limit", "tried"), cells, "<>>>")
     remedies = "".join(f"\nFails without: {remedy}.\n" for remedy in taken)
-    return f"\n**{case}.** What could go wrong: {danger}.\n\n{COLUMNS}{lines}{remedies}"
+    return f"\n**{case}.** What could go wrong: {danger}.\n\n{lines}{remedies}"
 
 
 def number(tried: int) -> str:
