@@ -1,16 +1,19 @@
 """`roughgas bench`: how fast this machine simulates."""
 
 from argparse import Namespace
+from statistics import median
 from typing import Any
 
 from roughgas import config
 from roughgas.base.layout import as_json, columns
 from roughgas.base.machine import description
 from roughgas.cli.options import whole_number
+from roughgas.scene import build
 from roughgas.simulation.progress import Bar
-from roughgas.simulation.speed import speed_of
+from roughgas.simulation.speed import rates_of
 
 HEAD = ["experiment", "r", "beta", "particles", "collisions / s", "slowest", "fastest"]
+PICKS = {"collisions_per_second": median, "slowest": min, "fastest": max}
 
 
 def bench(options: Namespace) -> None:
@@ -18,18 +21,19 @@ def bench(options: Namespace) -> None:
     r, beta = config.restitution(options.r), config.roughness(options.beta)
     runs = whole_number("--runs", options.runs, 1)
     found = _experiments(options)
-    records, rows = [], [HEAD]
+    speeds, rows = [], [HEAD]
     with Bar("bench", len(found) * (runs + 1), "runs") as bar:
         for name, settings in found.items():
-            one = speed_of(name, settings, r, beta, runs, bar.advance)
-            rates = one.median, min(one.rates), max(one.rates)
-            named = zip(("collisions_per_second", "slowest", "fastest"), rates, strict=True)
-            records.append(one._asdict() | dict(named))
-            shown = [f"{float(f'{rate:.3g}'):,.0f}" for rate in rates]
-            rows.append([name, f"{r:g}", f"{beta:g}", str(one.particles), *shown])
+            scene, number = build(settings, r, beta), settings["particles"]
+            rates = rates_of(scene, settings, runs, bar.advance)
+            about = {"experiment": name, "r": r, "beta": beta, "particles": number}
+            picked = {key: pick(rates) for key, pick in PICKS.items()}
+            speeds.append(about | {"dimension": len(scene.box), "rates": rates} | picked)
+            shown = [f"{float(f'{rate:.3g}'):,.0f}" for rate in picked.values()]
+            rows.append([name, f"{r:g}", f"{beta:g}", str(number), *shown])
     machine = description()
     if options.json:
-        print(as_json({"machine": machine, "speeds": records}))
+        print(as_json({"machine": machine, "speeds": speeds}))
     else:
         print(f"{columns(rows, numbers=True)}\n\n{columns(machine.items())}")
 
