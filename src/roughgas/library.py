@@ -56,47 +56,47 @@ def simulate(
     """Simulate one point of an experiment, and measure it.
 
     The keyword arguments `particles`, `box`, `effects` and `schedule` are the keys of an experiment
-    in config.yaml. Given besides a name they are merged over what it stands for, key by key;
-    without a name they are the scene, and all of them must be given. The same arguments give the
-    same numbers to the last bit (all but `kernel_seconds`), and the same as `roughgas run` writes.
+    in config.yaml. Beside a name they are merged over its settings, key by key; without a name they
+    are the scene, and all of them must be given. The same arguments give the same numbers to the
+    last bit (all but `kernel_seconds`), which are also those that `roughgas run` writes.
 
     Parameters
     ----------
     experiment
-        Name of an experiment (see `experiments`), such as ``"vibrated"``, ``"sheared"`` or
-        ``"cooling"``, or of a variant, such as ``"vibrated_friction/mu0.3"``.
+        Name of an experiment (see `experiments`), such as ``"vibrated"`` or ``"cooling"``, or of a
+        variant, such as ``"vibrated_friction/mu0.3"``.
     r
         Normal restitution of the particles, in [0, 1]; 1 is elastic.
     beta
         Tangential restitution (roughness), in [-1, 1]; -1 is smooth, 1 perfectly rough.
     seed
-        Of the random generator, from 0 to 2^63 - 1.
+        Seed of the random generator, from 0 to 2^63 - 1.
     particles
         Number N of particles.
     box
         Lengths of the box in a, two for disks and three for spheres; the last one is vertical, and
-        ``"open"`` above where there is gravity.
+        ``"open"`` if there is gravity.
     effects
-        What acts, such as ``{"friction": {"mu": 0.3}}``; None takes an effect away, as in
+        The effects that act, such as ``{"friction": {"mu": 0.3}}``; None removes one, as in
         ``{"contact_time": None}``. docs/effects.md lists them all.
     schedule
         How long to simulate, such as ``{"measure": 200}``; see `Schedule`.
     scale
-        The scale that the experiment is taken at: ``"paper"``, ``"small"`` (a quarter of the
-        particles, and short), ``"coarse"`` or ``"fine"`` (as long as a pilot says).
+        Scale of the experiment: ``"paper"``, ``"small"`` (a quarter of the particles, and short),
+        ``"coarse"`` or ``"fine"`` (as long as a pilot says).
     config
-        A configuration to take the experiment from, in place of the one that roughgas comes with.
+        Path of a configuration to use instead of the one that comes with roughgas.
     progress
         Whether to show a progress bar, in a notebook or on a terminal.
 
     Returns
     -------
     xarray.Dataset
-        In memory. ``R`` is the share of rotation in the energy, ``R_stderr`` its standard error;
-        ``R_series`` (sample), ``E_trans_series`` and ``E_rot_series`` are what it is the mean of,
-        with the coordinate ``time`` (T) or, cooling, ``collisions_per_particle``; ``R_replica``
-        (replica) has the cooling runs one by one. Every variable has its ``units`` and its
-        ``long_name``; the attributes say how to make it again.
+        In memory. ``R`` is the share of rotation in the energy, ``R_stderr`` its standard error.
+        ``R_series`` (sample) is what R is the mean of; ``E_trans_series`` and ``E_rot_series`` are
+        the energies. Their coordinate is ``time`` (T) or, if the gas cools,
+        ``collisions_per_particle``. ``R_replica`` (replica) has the cooling runs one by one. Every
+        variable has ``units`` and a ``long_name``; the attributes say how to make it again.
 
     Raises
     ------
@@ -104,13 +104,13 @@ def simulate(
         For values that are illegal or contradict each other; its text is one line naming key,
         value and what is legal. It is a ValueError.
     roughgas.base.errors.CollapseError
-        Where contacts accumulate without end, as in a bed of r = 0.6 without ``contact_time``.
+        If contacts accumulate without end, as in a bed of r = 0.6 without ``contact_time``.
     OSError
-        Where `config` cannot be read.
+        If `config` cannot be read.
 
     Examples
     --------
-    An experiment that is known by name, and what theory says of it:
+    A known experiment, and what theory says of it:
 
     >>> from roughgas import simulate, theory
     >>> gas = simulate("cooling", r=0.9, beta=0.5, scale="small", progress=False)
@@ -119,7 +119,7 @@ def simulate(
     >>> print(f"{theory.cooling_ratio(0.9, 0.5):.2f}")
     0.44
 
-    One that is changed, here a small bed with friction:
+    A changed one, here a small bed with friction:
 
     >>> bed = simulate(
     ...     "vibrated", r=0.9, beta=0, seed=3, particles=40, box=(12.5, "open"),
@@ -144,7 +144,7 @@ def simulate(
     from roughgas.config import restitution, roughness
     from roughgas.config import seed as legal_seed
 
-    point = restitution(r), roughness(beta), legal_seed(seed)
+    legal_r, legal_beta, number = restitution(r), roughness(beta), legal_seed(seed)
     changes = {"particles": particles, "box": box, "effects": effects, "schedule": schedule}
     given = {key: _plain(value) for key, value in changes.items() if value is not None}
     settings = _settings(experiment, given, scale, SHIPPED if config is None else config)
@@ -157,28 +157,28 @@ def simulate(
     from roughgas.simulation.progress import Progress
 
     name = experiment or UNNAMED
-    scene = build(settings, *point[:2])
+    scene = build(settings, legal_r, legal_beta)
     settings = complete(scene, settings)
     about = provenance(name, settings, (str(r), str(beta), str(seed)), scale, "point.nc")
     with Progress(name, scene, settings, quiet=not progress) as bar:
-        found = run_point(scene, settings, point[2], bar)
+        found = run_point(scene, settings, number, bar)
     return as_dataset(found._replace(attributes=about | found.attributes))
 
 
 def experiments(config: str | Path | None = None) -> dict[str, str]:
-    """The experiments that `simulate` knows by name, and what each is.
+    """Return the experiments that `simulate` knows by name, and what each is.
 
     Parameters
     ----------
     config
-        The configuration that they are in, in place of the one that roughgas comes with.
+        Path of a configuration to use instead of the one that comes with roughgas.
 
     Raises
     ------
     roughgas.base.errors.InputError
-        Where the configuration is illegal.
+        If the configuration is illegal.
     OSError
-        Where it cannot be read.
+        If it cannot be read.
 
     Examples
     --------
@@ -195,21 +195,21 @@ def experiments(config: str | Path | None = None) -> dict[str, str]:
 def _settings(
     name: str | None, changes: Mapping[str, Any], scale: str, path: str | Path
 ) -> dict[str, Any]:
-    """The settings of a point, as checked as those of the pipeline."""
+    """Return the settings of a point, checked as those of the pipeline are."""
     from roughgas import config
     from roughgas.config.schema import check_schema
-    from roughgas.simulation.schedule import check
+    from roughgas.simulation import schedule
 
     known = {} if name is None else config.load_experiment(path, name, scale)
     settings = config.merged(config.point_settings(known), changes)
     for part in ("experiment", "point"):
         check_schema(settings, name or UNNAMED, part)
-    check(settings)
+    schedule.check(settings)
     return settings
 
 
 def _plain(value: Any) -> Any:
-    """A value as JSON would have it: numbers of numpy as Python's, tuples and arrays as lists."""
+    """Return a value as JSON would have it: no numpy, no tuples."""
     if isinstance(value, Mapping):
         return {str(key): _plain(inner) for key, inner in value.items()}
     if hasattr(value, "tolist"):

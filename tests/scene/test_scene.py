@@ -162,15 +162,14 @@ MISMATCHES = {
         SPIN | FLOOR,
         0.0,
         {},
-        "effects.floor = without gravity: must come with gravity, without which nothing comes back "
-        "to it",
+        "effects.floor = without gravity: must come with gravity, or nothing would come back to it",
     ),
     "gravity without a floor": (
         (50, "open"),
         SPIN | GRAVITY,
         0.0,
         {},
-        "effects.gravity = without floor: must come with a floor, without which all falls for ever",
+        "effects.gravity = without floor: must come with a floor, or particles would fall forever",
     ),
     "friction without spin": (
         (50, 50),

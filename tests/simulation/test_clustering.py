@@ -150,11 +150,6 @@ def test_a_checkpoint_of_other_sources_is_not_used(tmp_path, monkeypatch):
     assert watcher.told[0][0] == 0 and "other sources" in watcher.why[0]
 
 
-def test_all_that_shapes_a_film_is_a_source():
-    for name in clustering.SHAPING:
-        assert (clustering.PACKAGE / name).exists()
-
-
 # ---------------------------------------------------------------- the command
 
 

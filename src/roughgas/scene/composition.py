@@ -18,7 +18,7 @@ DIAMETER = 2.0
 # little above that contacts are foreseen for moments only
 NARROWEST = 4.01
 NARROWEST_CHANNEL = 2.01  # between side walls, in a
-FAR_APART = 8.0  # nothing comes round at walls: those nearer than this shorten no outlook
+FAR_APART = 8.0  # of side walls, in a: nothing comes round there, however near they are
 
 
 class Scene(NamedTuple):
@@ -29,58 +29,51 @@ class Scene(NamedTuple):
     roughness: float
     effects: Effects
     extent: float  # least distance after which something comes round: a period or a width, in a
-    middle: float  # height that the mean flow vanishes at, in a
+    middle: float  # height at which the mean flow vanishes, in a
 
 
 def build(experiment: Mapping[str, Any], r: float, beta: float) -> Scene:
-    """The scene of an experiment's settings with particles of restitution r and roughness beta.
+    """Return the scene of an experiment, with particles of restitution r and roughness beta.
 
     Raises InputError for values that are illegal or contradict each other.
     """
     RESTITUTION.check("restitution r", r)
     ROUGHNESS.check("roughness beta", beta)
     lengths = tuple(None if side == "open" else float(side) for side in experiment["box"])
-    chosen = experiment["effects"]
-    effects = _effects(chosen, Surroundings(lengths, float(r), float(beta), chosen))
+    effects = _effects(experiment["effects"], lengths, float(r), float(beta))
     if effects.spin is None and beta != -1.0:
         raise InputError("roughness beta", beta, "be -1 where particles do not spin")
     closed = is_closed(effects)
-    _check_composition(lengths, effects, closed)
+    _check_box(lengths, effects, closed)
     _check_company(experiment.get("particles"), effects)
+    # walls that are near shorten no outlook
+    across = max(lengths[0], FAR_APART) if closed else lengths[0]
     return Scene(
         box=(None, *lengths[1:]) if closed else lengths,
         restitution=float(r),
         roughness=float(beta),
         effects=effects,
-        extent=_extent(lengths, closed),
+        extent=min(length for length in (across, *lengths[1:]) if length is not None),
         middle=0.0 if lengths[1] is None else lengths[1] / 2.0,
     )
 
 
 def is_closed(effects: Effects) -> bool:
-    """Whether walls close the first axis of the box."""
+    """Return whether walls close the first axis of the box."""
     return bool(hooks.present(effects, "closes"))
 
 
-def _effects(settings, around):
+def _effects(settings, lengths, r, beta):
+    around = Surroundings(lengths, r, beta, settings)
     for name in settings:
         if name not in KINDS:
             raise InputError("effect", name, f"be one of {', '.join(KINDS)}")
-    return Effects(
-        **{
-            name: make(kind, name, settings[name], around)
-            for name, kind in KINDS.items()
-            if name in settings
-        }
-    )
+    there = {name: kind for name, kind in KINDS.items() if name in settings}
+    return Effects(**{n: make(kind, n, settings[n], around) for n, kind in there.items()})
 
 
-def _extent(lengths, closed):
-    across = max(lengths[0], FAR_APART) if closed else lengths[0]
-    return min(length for length in (across, *lengths[1:]) if length is not None)
-
-
-def _check_composition(lengths, effects, closed):
+def _check_box(lengths, effects, closed):
+    """Refuse sides that are too short, and a top or walls that do not suit the effects."""
     open_axes = [k for k, length in enumerate(lengths) if length is None]
     if open_axes not in ([], [len(lengths) - 1]):
         raise InputError("box", list(lengths), "be open along its last axis only")
@@ -89,19 +82,20 @@ def _check_composition(lengths, effects, closed):
         if length is not None and not least <= length < math.inf:
             raise InputError(f"box[{k}]", length, f"be a number of at least {least:g}")
     if effects.gravity is None and effects.floor is not None:
-        legal = "come with gravity, without which nothing comes back to it"
+        legal = "come with gravity, or nothing would come back to it"
         raise InputError("effects.floor", "without gravity", legal)
     if effects.gravity is not None and effects.floor is None:
-        legal = "come with a floor, without which all falls for ever"
+        legal = "come with a floor, or particles would fall forever"
         raise InputError("effects.gravity", "without floor", legal)
     if (effects.gravity is None) == bool(open_axes):
-        raise InputError("box", list(lengths), "be open above exactly where there is gravity")
+        legal = "be open at the top if and only if there is gravity"
+        raise InputError("box", list(lengths), legal)
     if closed and effects.shear is not None:
         raise InputError("effects", "walls and shear", "not close the axis that is sheared along")
 
 
 def _check_company(particles, effects):
-    """Refuse a single particle that would rest in its box, or that nothing could be kicked with."""
+    """Refuse a single particle that would rest in its box, or have no partner for kicks."""
     if particles == 1 and effects.gravity is None:
         raise InputError("particles", 1, "be at least 2 where there is no floor to meet")
     if particles == 1 and effects.thermostat is not None:

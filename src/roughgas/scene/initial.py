@@ -12,7 +12,7 @@ from roughgas.kernel.state import State
 from roughgas.scene.composition import DIAMETER, Scene, build
 
 TEMPERATURE = 1.0  # m a^2/T^2
-VACANCIES = 1.3  # lattice sites a particle, where there is room
+VACANCIES = 1.3  # lattice sites per particle, if there is room
 LOOSE_PACKING = 0.2  # volume fraction of a gas with an open top
 LEAST = DIAMETER * (1.0 + 1e-9)  # distance of two sites, in a
 # Where the sites are in a cell of the closer lattice: in space a cube with centred faces
@@ -38,12 +38,12 @@ def initial_state(
     rng: np.random.Generator,
     precision: type = np.float64,
 ) -> State:
-    """A random state of `experiment["particles"]` particles.
+    """Return a random state of `experiment["particles"]` particles.
 
-    They sit on random sites of a square (cubic) lattice, or of a centred one where only that holds
-    them, with Maxwellian velocities at temperature 1 m a^2/T^2 relative to the mean flow and none
-    of them spinning. `precision` is that in which trajectories and spins are kept. Raises
-    InputError where they do not fit.
+    They sit on random sites of a square (cubic) lattice, or of a centred one if only that holds
+    them, with Maxwellian velocities at temperature 1 m a^2/T^2 relative to the mean flow. None of
+    them spins. `precision` is that in which trajectories and spins are kept. Raises InputError if
+    they do not fit.
     """
     number = experiment["particles"]
     sites = lattice(scene, experiment)
@@ -59,7 +59,7 @@ def initial_state(
 
 
 def lattice(scene: Scene, experiment: Mapping[str, Any]) -> np.ndarray:
-    """Sites (M, D) of a lattice that fills the box, M >= the number of particles, in a."""
+    """Return sites (M, D) of a lattice that fills the box, M >= the number of particles, in a."""
     number, dimension = experiment["particles"], len(scene.box)
     lengths, bottom = _room(scene, experiment)
     spacing = max(LEAST, (math.prod(lengths) / (VACANCIES * number)) ** (1.0 / dimension))
@@ -68,8 +68,7 @@ def lattice(scene: Scene, experiment: Mapping[str, Any]) -> np.ndarray:
         counts = [math.floor(length / LEAST) for length in lengths]
     sites = _sites(lengths, counts, [(0.5,) * dimension])
     if len(sites) < number and None not in scene.box:  # too dense for one site to a cell
-        counts = _closest(lengths)
-        sites = max(sites, _sites(lengths, counts, CENTRED[dimension]), key=len)
+        sites = max(sites, _sites(lengths, _closest(lengths), CENTRED[dimension]), key=len)
     if len(sites) < number:
         raise InputError("particles", number, f"be at most {len(sites)} in this box")
     sites[:, -1] += bottom
@@ -77,7 +76,7 @@ def lattice(scene: Scene, experiment: Mapping[str, Any]) -> np.ndarray:
 
 
 def _sites(lengths, counts, within):
-    """Sites of a lattice of so many cells along each axis, at the given places within each cell."""
+    """Return the sites of a lattice of `counts` cells, at the places `within` each cell."""
     parts = []
     for place in within:
         axes = [
@@ -89,7 +88,7 @@ def _sites(lengths, counts, within):
 
 
 def _closest(lengths):
-    """Numbers of cells along each axis of the centred lattice that has the most sites.
+    """Return the cells along each axis of the centred lattice that has the most sites.
 
     No cell is narrower than LEAST, nor a face of it, from corner to corner, than twice that.
     """
@@ -105,7 +104,7 @@ def _closest(lengths):
 
 
 def _room(scene, experiment):
-    """Lengths of the region to fill, and where it begins along the last axis."""
+    """Return the lengths of the region to fill, and where it begins along the last axis."""
     number = experiment["particles"]
     lengths = [None if side == "open" else float(side) for side in experiment["box"]]
     if lengths[-1] is not None:

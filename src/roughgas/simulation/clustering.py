@@ -5,31 +5,22 @@ the next is in the State and in the film so far. A checkpoint holds these, so a 
 from one gives the same bits as a run that never wrote any.
 """
 
-import hashlib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from roughgas.base.sources import code_of
 from roughgas.base.version import __version__
 from roughgas.config import as_text
 from roughgas.data import checkpoint
-from roughgas.kernel.cache import PACKAGE, source_hash
+from roughgas.kernel.cache import source_hash
 from roughgas.scene import DIAMETER, build
 from roughgas.simulation.energies import restored
 from roughgas.simulation.gas import Gas
 from roughgas.simulation.progress import FilmProgress
 
-SHAPING = (
-    "scene/composition.py",
-    "scene/initial.py",
-    "simulation/clustering.py",
-    "simulation/energies.py",
-    "simulation/gas.py",
-    "simulation/recorder.py",
-)
-"""Sources that shape a film besides those that are compiled."""
 COSTS = ("seconds", "collisions", "touched")  # what a Recorder sums up
 
 Film = dict[str, list[np.ndarray]]
@@ -70,10 +61,7 @@ def run(
 
 def belongs_to(settings: Mapping[str, Any]) -> str:
     """Return a text shared by all runs that can go on from each other's checkpoints."""
-    digest = hashlib.sha256()
-    for name in SHAPING:
-        digest.update((PACKAGE / name).read_bytes())
-    about = {"kernel": source_hash(), "sources": digest.hexdigest()}
+    about = {"kernel": source_hash(), "sources": code_of("simulation.clustering")}
     return as_text({"settings": settings, "numpy": np.__version__} | about)
 
 
