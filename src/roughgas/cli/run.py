@@ -69,7 +69,7 @@ def point_of(options: Namespace, beta: str) -> tuple[Scene, dict[str, Any]]:
 def _settings(options: Namespace) -> dict[str, Any]:
     if options.settings is not None:
         return config.from_text(options.settings, "--settings", options.checked)
-    return config.experiment(config.load(options.config), options.experiment, options.scale)
+    return config.load_experiment(options.config, options.experiment, options.scale)
 
 
 def _own_name(options: Namespace, r: str, beta: str, seed: str) -> str:
