@@ -136,7 +136,7 @@ STEPS = {
         examples=("roughgas combine results/small/accuracy/*/*.nc -o accuracy.nc",),
     ),
     "tables": command(
-        "studies.accuracy.files:write_tables",
+        "studies.accuracy.tables:write_tables",
         "write what studies have found as tables in Markdown",
         value("input COMBINED", "combined dataset"),
         output("Markdown file"),

@@ -10,7 +10,9 @@ from roughgas import config
 from roughgas.base.errors import InputError
 from roughgas.cli import main
 from roughgas.studies import accuracy
-from roughgas.studies.accuracy.files import combine, read_studies, write_tables
+from roughgas.studies.accuracy.files import combine
+from roughgas.studies.accuracy.tables import write_tables
+from roughgas.studies.accuracy.variables import read_studies
 
 
 @pytest.fixture(scope="module")

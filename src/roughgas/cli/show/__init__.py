@@ -42,7 +42,7 @@ def _read(path: str | Path) -> tuple[Kind, Any]:
     from roughgas.cli.show import gas, sets
     from roughgas.data.netcdf import read_netcdf
     from roughgas.planning.pilot import read_pilot
-    from roughgas.studies.accuracy.files import read_studies
+    from roughgas.studies.accuracy.variables import read_studies
 
     if Path(path).suffix == ".json":
         return Kind("pilot of a point", sets.pilot_text, sets.pilot_record), read_pilot(path)

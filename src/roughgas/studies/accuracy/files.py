@@ -5,14 +5,12 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-import netCDF4
 import xarray as xr
 
 from roughgas.base.errors import InputError
-from roughgas.base.files import write_text
 from roughgas.data.netcdf import Content, content_of, read_netcdf, write_netcdf
-from roughgas.studies.accuracy import coverage, discretisation, models, statistical, tables
-from roughgas.studies.accuracy.tasks import STUDIES, TASKS
+from roughgas.studies.accuracy import coverage, discretisation, models, statistical
+from roughgas.studies.accuracy.tasks import TASKS
 
 COMBINE = {
     "statistical": statistical.combine,
@@ -38,19 +36,6 @@ def combine(paths: Iterable[str | Path], output: str | Path) -> None:
         found.setdefault(data.attrs["study"], {})[data.attrs["task"]] = data
     groups = {name: content_of(_combined(name, parts)) for name, parts in found.items()}
     write_netcdf(output, Content({}, {"title": "Studies of accuracy"}), groups)
-
-
-def read_studies(path: str | Path) -> dict[str, xr.Dataset]:
-    """Return the groups of all studies in the file at `path`, by name."""
-    with netCDF4.Dataset(path) as file:
-        names = [name for name in STUDIES if name in file.groups]
-    return {name: read_netcdf(path, name) for name in names}
-
-
-def write_tables(path: str | Path, output: str | Path) -> None:
-    """Write the tables of all studies in a combined file as Markdown."""
-    found = read_studies(path).items()
-    write_text(output, "\n".join(tables.TABLES[name](data) for name, data in found))
 
 
 def _combined(name: str, parts: Mapping[str, xr.Dataset]) -> xr.Dataset:

@@ -1,19 +1,28 @@
 """What the studies have found, as tables in Markdown: a function a study."""
 
 import math
+from pathlib import Path
 
 import numpy as np
 import xarray as xr
 
+from roughgas.base.files import write_text
 from roughgas.base.layout import markdown
 from roughgas.statistics.estimate import Estimate
 from roughgas.studies.accuracy.tasks import SCENES
+from roughgas.studies.accuracy.variables import read_studies
 
 SHARES = {
     "of_maxwellian": "Maxwellian, uncorrelated velocities",
     "of_number": "infinitely many particles",
     "of_dilution": "no density, no correlations of positions",
 }
+
+
+def write_tables(path: str | Path, output: str | Path) -> None:
+    """Write the tables of all studies in a combined file as Markdown."""
+    found = read_studies(path).items()
+    write_text(output, "\n".join(TABLES[name](data) for name, data in found))
 
 
 def statistical(data: xr.Dataset) -> str:

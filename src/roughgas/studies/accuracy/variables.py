@@ -7,12 +7,15 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+import netCDF4
 import numpy as np
 import xarray as xr
 import yaml
 
+from roughgas.data.netcdf import read_netcdf
 from roughgas.data.variables import Variable, described, register
 from roughgas.statistics.estimate import Estimate
+from roughgas.studies.accuracy.tasks import STUDIES
 
 WORD, COUNT = "word", "count"
 
@@ -20,6 +23,13 @@ WORD, COUNT = "word", "count"
 def dataset(study: str, found: Mapping[str, Any], **attributes: Any) -> xr.Dataset:
     """Return values and coordinates by name, each described; of Estimates, value and error."""
     return xr.Dataset(described(study, flat(found)), attrs=attributes)
+
+
+def read_studies(path: str | Path) -> dict[str, xr.Dataset]:
+    """Return the groups of all studies in the combined file at `path`, by name."""
+    with netCDF4.Dataset(path) as file:
+        names = [name for name in STUDIES if name in file.groups]
+    return {name: read_netcdf(path, name) for name in names}
 
 
 def flat(found: Mapping[str, Any]) -> dict[str, Any]:

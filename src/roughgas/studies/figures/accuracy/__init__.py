@@ -5,7 +5,7 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
-from roughgas.studies.accuracy.files import read_studies
+from roughgas.studies.accuracy.variables import read_studies
 from roughgas.studies.figures.accuracy import discretisation, models, statistical
 
 SIZE = (10.2, 8.6)  # inches
