@@ -58,6 +58,7 @@ def test_errors_that_are_too_small_and_a_bias_are_found():
     assert np.all(found["coverage"].value[:, 1] < 0.90)
 
 
+@pytest.mark.slow
 def test_the_errors_of_the_coverage_are_those_seen_over_many_studies():
     """60 studies: each of four scatters is known to 9 %; at 4 sigma by chance once in 4000."""
     studies = [calibrated(honest(np.random.default_rng((3, k)), 100), k) for k in range(60)]

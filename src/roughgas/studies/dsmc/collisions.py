@@ -16,9 +16,9 @@ from roughgas.kernel.spins import spin_of, spin_sum, turn_spin
 from roughgas.kernel.unroll import unrolled
 from roughgas.kernel.vectors import add_scaled, dot, read, scale, subtract, write
 
-# Entries of Gas.clock
+# Entries of HomogeneousGas.clock
 TIME, WAITED, LOG_UNIT, MAJORANT = range(4)
-# Entries of Gas.counts
+# Entries of HomogeneousGas.counts
 COLLISIONS, DRAWS = range(2)
 COLUMNS = ("time", "collisions", "log_unit", "vv", "ww", "vvvv", "wwww", "vvww")
 

@@ -3,9 +3,9 @@
 A step is a flight of half its length, the action of the springs, and another half flight. A pair
 overlaps during a part of the step, tau, found on the straight line on which it flies; the springs
 act for just so long, at the middle of that part. So a contact begins and ends within a step to
-second order. Were the springs on or off for whole steps, the velocity that a contact changes by
-would be off by its share of a step, since neither dashpot nor tangential spring start or end at
-zero force. Within tau the damping and the springs are integrated exactly, whatever tau is.
+second order. If the springs were on or off for whole steps, a contact's change of velocity would be
+off by its share of a step, since neither dashpot nor tangential spring starts or ends at zero
+force. Within tau the damping and the springs are integrated exactly, whatever tau is.
 """
 
 import math
@@ -56,7 +56,7 @@ def act(gas, spheres, p, x, half):
 
 @jit
 def overlapping(x, u, half):
-    """When, within +-half, a pair at separation x overlaps that flies on at relative velocity u."""
+    """Return when, within +-half, a pair at separation x and relative velocity u overlaps."""
     b, uu = dot(x, u), dot(u, u)
     square = b * b - uu * (dot(x, x) - DIAMETER * DIAMETER)
     if square <= 0.0:
@@ -67,7 +67,7 @@ def overlapping(x, u, half):
 
 @jit
 def respond(springs, x, u, spins, stretch, time):
-    """Change of the first particle's velocity and of both spins a w, and the stretch at the end.
+    """Return the change of the first velocity and of both spins a w, and the stretch at the end.
 
     x and u are separation and relative velocity in the middle of `time`, during which the springs
     act. Both arms reach to the middle between the centres, and the forces on the two are opposite:
@@ -88,7 +88,7 @@ def respond(springs, x, u, spins, stretch, time):
 
 @jit
 def _parting(springs, overlap, speed, time):
-    """Change of the normal velocity, halfway through a flight of `time`.
+    """Return the change of the normal velocity, halfway through a flight of `time`.
 
     The linear map flight-change-flight is given the eigenvalues exp(-gamma t +- i w t) of the
     damped oscillator itself, so that neither its frequency nor its damping depends on the step.
@@ -101,7 +101,7 @@ def _parting(springs, overlap, speed, time):
 
 @jit
 def _turned(springs, slip, stretch, time):
-    """Tangential velocity and stretch after `time`: the exact motion on an undamped spring."""
+    """Return tangential velocity and stretch after `time` on an undamped spring, exactly."""
     angle = springs.turning * time
     cosine, sine = math.cos(angle), math.sin(angle)
     per_turning = time if angle == 0.0 else sine / springs.turning
@@ -113,7 +113,7 @@ def _turned(springs, slip, stretch, time):
 
 @jit
 def _along(stretch, n):
-    """The stretch turned into the plane normal to n, as long as it was."""
+    """Return the stretch turned into the plane normal to n, as long as it was."""
     flat = add_scaled(stretch, n, -dot(stretch, n))
     square = dot(flat, flat)
     if square == 0.0:

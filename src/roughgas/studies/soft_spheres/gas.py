@@ -10,16 +10,16 @@ from roughgas.base.errors import InputError
 from roughgas.studies.soft_spheres.springs import Springs
 
 DIAMETER = 2.0
-# Entries of Gas.reach
+# Entries of SoftGas.reach
 TRAVELLED, FASTEST = range(2)
-# Entries of Gas.counts
+# Entries of SoftGas.counts
 PAIRS, CONTACTS, BUILDS = range(3)
-CROWD = 2.0  # room for so many times the neighbours that fit without overlap
+CROWD = 2.0  # room for neighbours, over how many fit without overlap
 NOBODY = -1
 
 
-class Spheres(NamedTuple):
-    """What is simulated: the box (a), its cells, the neighbourhood and the forces."""
+class SoftScene(NamedTuple):
+    """What stays as it is: the box (a), its cells, the neighbourhood and the forces."""
 
     box: tuple[float, ...]
     cells: tuple[int, ...]  # along each axis; none narrower than the neighbourhood
@@ -27,7 +27,7 @@ class Spheres(NamedTuple):
     springs: Springs
 
 
-class Gas(NamedTuple):
+class SoftGas(NamedTuple):
     """Arrays of N particles in D dimensions, and the list of pairs that may touch soon."""
 
     position: np.ndarray  # (N, D) in a, outside the box by what was travelled since the last list
@@ -47,8 +47,8 @@ class Gas(NamedTuple):
     counts: np.ndarray  # (3,) pairs listed, contacts begun, lists made
 
 
-def new_gas(position, velocity, spin, box, springs, skin=2.0) -> tuple[Gas, Spheres]:
-    """A gas from positions (N, D) in a, velocities (N, D) and spins (N, 2 D - 3) in a/T.
+def new_gas(position, velocity, spin, box, springs, skin=2.0) -> tuple[SoftGas, SoftScene]:
+    """Return a gas from positions (N, D) in a, velocities (N, D) and spins (N, 2 D - 3) in a/T.
 
     Raises InputError where the box is so narrow that a particle would have two images of another
     in its neighbourhood, DIAMETER + skin.
@@ -60,7 +60,7 @@ def new_gas(position, velocity, spin, box, springs, skin=2.0) -> tuple[Gas, Sphe
             raise InputError(f"box[{axis}]", length, f"be at least {2.0 * near:g} for soft spheres")
     cells = tuple(math.floor(length / near) for length in box)
     room = number * math.ceil(CROWD * (near + 1.0) ** dimension / 2.0)
-    gas = Gas(
+    gas = SoftGas(
         position=np.array(position, float),
         velocity=np.array(velocity, float),
         spin=np.array(spin, float),
@@ -77,11 +77,11 @@ def new_gas(position, velocity, spin, box, springs, skin=2.0) -> tuple[Gas, Sphe
         reach=np.array([math.inf, 0.0]),
         counts=np.zeros(3, np.int64),
     )
-    return gas, Spheres(tuple(map(float, box)), cells, float(skin), springs)
+    return gas, SoftScene(tuple(map(float, box)), cells, float(skin), springs)
 
 
 def _cells_beside(counts):
-    """Numbers of each cell and of those around it, each once, the last axis running fastest."""
+    """Return the numbers of each cell and those around it, the last axis running fastest."""
     numbers = np.arange(math.prod(counts), dtype=np.int32).reshape(counts)
     steps = itertools.product(*[range(-1, 2) if count > 2 else range(count) for count in counts])
     axes = tuple(range(len(counts)))

@@ -13,9 +13,9 @@ from roughgas.studies.soft_spheres.gas import BUILDS, DIAMETER, FASTEST, NOBODY,
 
 @jit
 def keep_list(gas, spheres, half):
-    """Make the list anew where a pair could be missing that overlaps within +-half of now.
+    """Make the list anew if a pair that overlaps within +-half of now could be missing.
 
-    Returns False where there is no room for it.
+    Returns False if there is no room for it.
     """
     if gas.reach[TRAVELLED] + gas.reach[FASTEST] * half <= 0.5 * spheres.skin:
         return True
@@ -54,7 +54,7 @@ def _list_pairs(gas, spheres):
 
 @jit
 def _set_aside(gas):
-    """Copy the contacts under way, which are few; how many there are."""
+    """Copy the contacts under way, which are few, and return their number."""
     kept = 0
     for p in range(gas.counts[PAIRS]):
         if gas.touching[p]:
@@ -76,7 +76,7 @@ def _take_up(gas, spheres, begin, old):
 
 @jit
 def _sort_into_cells(gas, spheres):
-    """Particles go back into the box, and onto the list of their cell."""
+    """Put particles back into the box, and onto the list of their cell."""
     for cell in range(len(gas.first)):
         gas.first[cell] = NOBODY
     for i in range(len(gas.following)):
@@ -93,7 +93,7 @@ def _sort_into_cells(gas, spheres):
 
 @jit
 def _list_of(gas, spheres, i):
-    """Add the neighbours of particle i with greater numbers; False where the list is full."""
+    """Add the neighbours of particle i with greater numbers; return False if the list is full."""
     near = (DIAMETER + spheres.skin) ** 2
     home = gas.home[i]
     for place in range(gas.beside.shape[1]):
@@ -115,7 +115,7 @@ def _list_of(gas, spheres, i):
 
 @jit
 def _separation(gas, spheres, i, j, p):
-    """Square of the distance of the nearest images; what leads to these goes to gas.image[p]."""
+    """Return the square of the distance of the nearest images; note in gas.image[p] which."""
     square = 0.0
     for k in range(len(spheres.box)):
         x = gas.position[i, k] - gas.position[j, k]

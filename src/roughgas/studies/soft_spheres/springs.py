@@ -3,11 +3,11 @@
 import math
 from typing import NamedTuple
 
-from roughgas.base.errors import InputError
 from roughgas.base.legal import ROUGHNESS, Interval
 
 SOFT_RESTITUTION = Interval("(0, 1]")
 """Restitution of soft spheres: at r = 0 a contact would never end."""
+POSITIVE = Interval("(0, inf)")
 
 
 class Springs(NamedTuple):
@@ -24,28 +24,21 @@ class Springs(NamedTuple):
 
 
 def springs(r: float, beta: float, inertia: float, duration: float) -> Springs:
-    """The forces by which two spheres part after `duration` (T) with restitution r, roughness beta.
+    """Return the forces of a contact of `duration` (T) with restitution r and roughness beta.
 
     Normal: the overlap is zero again after t_c = pi/sqrt(w0^2 - gamma^2), at exp(-gamma t_c) = r
     times the speed of approach (Luding, Granular Matter 10, 235 (2008), Eqs. 5 and 6). The force is
     attractive towards the end, and is left so. Tangential: an undamped spring turns g_t into
-    cos(w_t t_c) g_t = -beta g_t, for every beta in [-1, 1]; what energy is left in it when the
-    contact ends is lost. A dashpot would do for beta < 0 only, where g_t does not change its sign.
-
-    Raises InputError for r outside (0, 1]: at r = 0 the contact would never end.
+    cos(w_t t_c) g_t = -beta g_t, for every beta in [-1, 1]; the energy left in it when the contact
+    ends is lost. A dashpot gives beta < 0 only, where g_t does not change its sign. Raises
+    InputError for illegal values.
     """
     SOFT_RESTITUTION.check("restitution r of a soft sphere", r)
     ROUGHNESS.check("roughness beta", beta)
-    _check("inertia", inertia, 0.0 < inertia < math.inf, "be positive")
-    _check("duration of a contact", duration, 0.0 < duration < math.inf, "be positive")
+    POSITIVE.check("duration of a contact", duration)
     return Springs(
         frequency=math.pi / duration,
         damping=-math.log(r) / duration,
         turning=math.acos(-beta) / duration,
-        inertia=float(inertia),
+        inertia=POSITIVE.check("inertia", inertia),
     )
-
-
-def _check(key, value, legal, text):
-    if not legal:  # NaN is not
-        raise InputError(key, value, text)

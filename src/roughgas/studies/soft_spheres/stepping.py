@@ -17,8 +17,8 @@ def step(gas, spheres, dt, steps, temperature, rows):
     """Make `steps` steps of dt (T) for each of the rows, and fill these (see COLUMNS).
 
     After each row momentum is removed and all velocities are scaled so that m <v^2>/D is
-    `temperature` (m a^2/T^2); with 0 the gas is left as it is. Returns the number of rows
-    filled: fewer where the particles were so crowded that the list of neighbours is full.
+    `temperature` (m a^2/T^2); 0 leaves the gas as it is. Returns the number of rows filled: fewer
+    if the particles were so crowded that the list of neighbours was full.
     """
     for k in range(len(rows)):
         if not _advance(gas, spheres, dt, steps):
