@@ -15,6 +15,7 @@ COOLING = {
     "schedule": {"kind": "cooling", "thermalise": 10, "sample_every": 1},
     "target_stderr": 0.01,
 }
+EXPERIMENTS = {"sheared": SHEARED, "cooling": COOLING}
 
 
 @pytest.fixture

@@ -4,6 +4,7 @@ import json
 
 import numpy as np
 import pytest
+from tests.planning.conftest import SHEARED
 
 from roughgas.cli import main
 from roughgas.config.reading import read_yaml
@@ -15,12 +16,13 @@ from roughgas.results.reduce import reduce_points
 SWEEP = {"r": ["0.9"], "beta": ["0", "0.5"]}
 
 
-@pytest.fixture
-def reached(sheared, tmp_path):
+@pytest.fixture(scope="module")
+def reached(tmp_path_factory):
     """A reduced dataset of two points that were run to a target, and the folder they are in."""
+    tmp_path = tmp_path_factory.mktemp("reached")
     for beta in SWEEP["beta"]:
         pilot = tmp_path / f"pilot{beta}.json"
-        about = ["sheared", "--r=0.9", f"--beta={beta}", "--settings", json.dumps(sheared)]
+        about = ["sheared", "--r=0.9", f"--beta={beta}", "--settings", json.dumps(SHEARED)]
         assert main(["pilot", *about, "-o", str(pilot)]) == 0
         command = ["reach", *about, "--pilot", str(pilot), "-o", str(tmp_path / f"seeds{beta}")]
         assert main(command) == 0
@@ -68,7 +70,7 @@ def test_costs_are_what_the_datasets_say(reached):
     assert "| sheared | 2 | 0.01 | 2 |" in text and "| sheared | 7000 T |" in text
 
 
-def test_a_plan_is_printed_before_anything_is_run(sheared, cooling, tmp_path, capsys):
+def test_a_plan_is_printed_before_anything_is_run(sheared, tmp_path, capsys):
     fixed = {"kind": "steady", "sample_every": 1, "equilibrate": 100, "measure": 900}
     plain = {key: value for key, value in sheared.items() if key != "target_stderr"}
     experiments = {

@@ -4,11 +4,11 @@ import math
 
 import numpy as np
 import pytest
-from tests.planning.test_plan import planned
+from tests.planning.conftest import EXPERIMENTS
 
 from roughgas.base.errors import InputError
 from roughgas.planning.pilot import Pilot, read_pilot, write_pilot
-from roughgas.planning.plan import explore
+from roughgas.planning.plan import explore, plan_point
 from roughgas.planning.reach import completed
 from roughgas.planning.steady import CHAINS, MEASURED, settling
 from roughgas.scene import build
@@ -21,16 +21,19 @@ def explored(experiment, beta):
     return explore(build(experiment, 0.9, beta), experiment)
 
 
-def numbers(pilot):
-    return {name: value for name, value in pilot._asdict().items() if name not in TIMES}
+@pytest.fixture(scope="module")
+def pilots():
+    """A pilot of each experiment at beta = 0."""
+    return {name: explored(one, 0.0) for name, one in EXPERIMENTS.items()}
 
 
-def test_the_same_pilot_twice(sheared):
-    assert numbers(explored(sheared, 0.0)) == numbers(explored(sheared, 0.0))
+def test_the_same_pilot_twice(sheared, pilots):
+    one, same = pilots["sheared"]._asdict(), explored(sheared, 0.0)._asdict()
+    assert {k: one[k] for k in one if k not in TIMES} == {k: same[k] for k in one if k not in TIMES}
 
 
-def test_a_driven_pilot_has_seen_enough(sheared):
-    pilot = explored(sheared, 0.0)
+def test_a_driven_pilot_has_seen_enough(pilots):
+    pilot = pilots["sheared"]
     assert pilot.settled and pilot.seconds > 0
     measured = pilot.length - CHAINS * pilot.transient
     assert measured >= MEASURED * pilot.autocorrelation_time
@@ -38,27 +41,19 @@ def test_a_driven_pilot_has_seen_enough(sheared):
     assert 10 < pilot.transient < pilot.length / CHAINS / 4
 
 
-@pytest.mark.parametrize("name", ["sheared", "cooling"])
-def test_the_expected_error_is_the_scatter_of_independent_runs(name, request):
+@pytest.mark.parametrize("name", EXPERIMENTS)
+def test_the_expected_error_and_collisions_are_those_of_independent_runs(name, pilots):
     """24 runs: their variance is known to 29 % (1 sigma), that of the pilot to about 23 %. Within
     a factor 3, more than 3 sigma on either side: fails by chance less than once in 300."""
-    experiment = request.getfixturevalue(name)
-    plan = planned(experiment, 0.0, explored(experiment, 0.0))
-    scene = build(experiment, 0.9, 0.0)
+    experiment, scene = EXPERIMENTS[name], build(EXPERIMENTS[name], 0.9, 0.0)
+    plan = plan_point(scene, experiment, pilots[name])
     settings = completed(experiment, plan)
-    found = [run_point(scene, settings, seed).variables["R"] for seed in range(24)]
+    found = [run_point(scene, settings, seed).variables for seed in range(24)]
     expected = plan.stderr**2 * plan.seeds
-    assert expected / 3 < np.var(found, ddof=1) < 3 * expected
-
-
-def test_expected_collisions_are_those_that_happen(sheared):
-    plan = planned(sheared, 0.0, explored(sheared, 0.0))
-    scene = build(sheared, 0.9, 0.0)
-    settings = completed(sheared, plan)
-    made = sum(
-        run_point(scene, settings, seed).variables["collisions"] for seed in range(plan.seeds)
-    )
-    assert plan.collisions == pytest.approx(made, rel=0.1)
+    assert expected / 3 < np.var([one["R"] for one in found], ddof=1) < 3 * expected
+    made = np.mean([one["collisions"] for one in found]) * plan.seeds
+    if name == "sheared":  # the cooling gas's are those of its schedule
+        assert plan.collisions == pytest.approx(made, rel=0.1)
 
 
 def chains(transient, noise, seed=1, count=10, periods=512):
@@ -85,7 +80,7 @@ def test_a_gas_that_nothing_makes_spin(sheared):
     """R is 0 for ever: no scatter, no memory, and the least that is ever run."""
     pilot = explored(sheared, -1.0)
     assert pilot.variance == 0 and math.isnan(pilot.autocorrelation_time)
-    plan = planned(sheared, -1.0, pilot)
+    plan = plan_point(build(sheared, 0.9, -1.0), sheared, pilot)
     assert plan.stderr == 0 and plan.seeds == 1
 
 
