@@ -4,6 +4,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import netCDF4
 import numpy as np
 import pytest
 from files import ABOUT
@@ -180,9 +181,19 @@ def test_what_a_killed_run_left_behind_is_removed(tmp_path):
     assert read_point(tmp_path / "a.nc").R.item() == 0.25
 
 
-def test_writing_a_point_does_not_import_xarray():
+def test_writing_does_not_import_xarray(tmp_path):
     code = (
-        "import sys, roughgas.data.point; print('xarray' in sys.modules, 'netCDF4' in sys.modules)"
+        "import sys; from roughgas.data.point import Content, write_netcdf\n"
+        "assert 'netCDF4' not in sys.modules\n"
+        f"write_netcdf({str(tmp_path / 'a.nc')!r}, Content({{}}, {{}}))\n"
+        "assert 'xarray' not in sys.modules"
     )
-    run = subprocess.run([sys.executable, "-c", code], **CAPTURED)
-    assert run.stdout.split() == ["False", "False"]
+    subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_arrays_are_compressed_and_scalars_are_not(tmp_path):
+    write_point(tmp_path / "a.nc", point())
+    with netCDF4.Dataset(tmp_path / "a.nc") as file:
+        assert file["R_series"].filters()["zlib"] and file["R_series"].filters()["shuffle"]
+        assert file["R_series"].filters()["complevel"] == 1
+        assert not file["R"].filters()["zlib"]
