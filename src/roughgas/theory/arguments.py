@@ -36,7 +36,7 @@ class Material(NamedTuple):
 
 
 def moment_of_inertia(dimension: int) -> float:
-    """Dimensionless moment of inertia q = I/(m a^2) of a uniform disk (1/2) or sphere (2/5)."""
+    """Return the moment of inertia q = I/(m a^2) of a uniform disk (1/2) or sphere (2/5)."""
     return {2: 1 / 2, 3: 2 / 5}[check_dimension(dimension)]
 
 

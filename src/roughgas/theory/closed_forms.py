@@ -19,16 +19,16 @@ from roughgas.theory.shares import positive_root, quotient, shares
 
 
 def lun_ratio(beta: Numbers, inertia: Numbers) -> np.ndarray:
-    """R of a gas whose drive adds translational energy only: Eq. (lun), for any D and r."""
+    """Return R of a gas whose drive adds translational energy only: Eq. (lun), any D and r."""
     beta, q = check_roughness(beta), check_inertia(inertia)
     gain = q * (1 + beta)
     return gain / (gain + (1 - beta) + 2 * q)
 
 
 def goldshtein_ratio(r: Numbers, beta: Numbers, inertia: Numbers = 2 / 5) -> np.ndarray:
-    """R of a freely cooling gas of spheres: Eq. (Goldshtein), without its cancellation for a_G > 0.
+    """Return R of a freely cooling gas of spheres: Eq. (Goldshtein).
 
-    Limits as in `cooling_ratio`.
+    Written without its cancellation for a_G > 0. Limits as in `cooling_ratio`.
     """
     a, b = a_G(r, beta, inertia), b_G(beta, inertia)
     root = np.sqrt(a**2 + b**2)
@@ -41,7 +41,7 @@ def goldshtein_ratio(r: Numbers, beta: Numbers, inertia: Numbers = 2 / 5) -> np.
 def cooling_ratio(
     r: Numbers, beta: Numbers, dimension: int = 2, inertia: Choice = None
 ) -> np.ndarray:
-    """R = 1/(1 + K) of a freely cooling gas, K from Eq. (K).
+    """Return R = 1/(1 + K) of a freely cooling gas, K from Eq. (K).
 
     Accurate to 1e-14 of R up to the ends of the ranges of r and beta, apart from what the
     rounding of r and beta themselves leaves open: near beta = -1 and r = 1, where R is a steep
@@ -53,7 +53,7 @@ def cooling_ratio(
 
 
 def cooling_K(r: Numbers, beta: Numbers, dimension: int = 2, inertia: Choice = None) -> np.ndarray:
-    """K = E_tr/E_rot of a freely cooling gas: the positive root of Eq. (K).
+    """Return K = E_tr/E_rot of a freely cooling gas: the positive root of Eq. (K).
 
     Limits as in `cooling_ratio`: K = 0 at beta = -1 and r < 1, K infinite at beta = -1 and r = 1.
     """
@@ -61,25 +61,25 @@ def cooling_K(r: Numbers, beta: Numbers, dimension: int = 2, inertia: Choice = N
 
 
 def a_G(r: Numbers, beta: Numbers, inertia: Numbers) -> np.ndarray:
-    """a_G = (1 - beta^2)(1 - q)/(1 + q) - 1 + r^2, below Eq. (Goldshtein)."""
+    """Return a_G = (1 - beta^2)(1 - q)/(1 + q) - 1 + r^2, below Eq. (Goldshtein)."""
     r, beta, q = check_restitution(r), check_roughness(beta), check_inertia(inertia)
     return (1 - beta) * (1 + beta) * (1 - q) / (1 + q) - (1 - r) * (1 + r)
 
 
 def b_G(beta: Numbers, inertia: Numbers) -> np.ndarray:
-    """b_G = 2 q (1 + beta)^2/(1 + q)^2, below Eq. (Goldshtein)."""
+    """Return b_G = 2 q (1 + beta)^2/(1 + q)^2, below Eq. (Goldshtein)."""
     beta, q = check_roughness(beta), check_inertia(inertia)
     return 2 * q * ((1 + beta) / (1 + q)) ** 2
 
 
 def c_G(beta: Numbers, inertia: Numbers) -> np.ndarray:
-    """c_G = (1 + beta)(2 q + q^2 - beta q^2)/(1 + q)^2, below Eq. (K)."""
+    """Return c_G = (1 + beta)(2 q + q^2 - beta q^2)/(1 + q)^2, below Eq. (K)."""
     beta, q = check_roughness(beta), check_inertia(inertia)
     return (1 + beta) * (2 * q + q**2 * (1 - beta)) / (1 + q) ** 2
 
 
 def _cooling_shares(r, beta, dimension, inertia) -> tuple[np.ndarray, np.ndarray]:
-    """1 - R and R: shares of the energy per degree of freedom, with alpha = 2/(D - 1)."""
+    """Return 1 - R and R, shares of the energy per degree of freedom; alpha = 2/(D - 1)."""
     r, beta, dimension, q = material(r, beta, dimension, inertia)
     alpha = 2 / (dimension - 1)
     b = b_G(beta, q)

@@ -1,4 +1,4 @@
-"""Energy that one collision moves between translation and rotation, and the averages it needs.
+"""Energies that a collision moves between translation and rotation, and averages for them.
 
 v_n and v_t are the normal and tangential parts of v1 - v2 and v_r = -a (omega1 + omega2) x n is the
 tangential velocity due to rotation, n pointing from particle 2 to particle 1. Squared velocities
@@ -26,7 +26,7 @@ def translational_energy_change(
     beta: Numbers,
     inertia: Numbers,
 ) -> np.ndarray:
-    """Change of the pair's total translational kinetic energy, N D Delta E_tr: Eq. (deltaEt).
+    """Return the change of the pair's translational energy, N D Delta E_tr: Eq. (deltaEt).
 
     The first four arguments are v_n^2, v_t^2, v_t.v_r and v_r^2 before the collision, of one
     collision or averaged over collisions; all broadcast. Raises InputError for illegal r, beta, q.
@@ -47,9 +47,9 @@ def rotational_energy_change(
     beta: Numbers,
     inertia: Numbers,
 ) -> np.ndarray:
-    """Change of the pair's total rotational kinetic energy, N (2D-3) Delta E_rot: Eq. (deltaEr).
+    """Return the change of the pair's rotational energy, N (2D-3) Delta E_rot: Eq. (deltaEr).
 
-    Arguments as in `translational_energy_change`; v_n plays no part.
+    Arguments as in `translational_energy_change`; v_n does not matter.
     """
     beta, q = check_roughness(beta), check_inertia(inertia)
     return _prefactor(beta, q) * (
@@ -60,7 +60,7 @@ def rotational_energy_change(
 
 
 def mean_normal_squared(E_tr: Numbers) -> np.ndarray:
-    """<v_n^2> = 8 E_tr/m over the collisions of a Maxwellian gas, in 2D and 3D.
+    """Return <v_n^2> = 8 E_tr/m over the collisions of a Maxwellian gas, in 2D and 3D.
 
     E_tr is the translational energy per degree of freedom, >= 0. Below Eq. (Energybalance), as are
     the two averages that follow; <v_t.v_r> = 0, translation and spin being uncorrelated.
@@ -69,12 +69,12 @@ def mean_normal_squared(E_tr: Numbers) -> np.ndarray:
 
 
 def mean_tangential_squared(E_tr: Numbers, dimension: int = 2) -> np.ndarray:
-    """<v_t^2> = 4 (D-1) E_tr/m over the collisions of a Maxwellian gas."""
+    """Return <v_t^2> = 4 (D-1) E_tr/m over the collisions of a Maxwellian gas."""
     return 4 * (check_dimension(dimension) - 1) * check("energy E_tr", E_tr)
 
 
 def mean_spin_squared(E_rot: Numbers, dimension: int, inertia: Numbers) -> np.ndarray:
-    """<v_r^2> = 4 (D-1) E_rot/(q m), for any distribution of isotropic, uncorrelated spins.
+    """Return <v_r^2> = 4 (D-1) E_rot/(q m), for any isotropic, uncorrelated spins.
 
     E_rot is the rotational energy per degree of freedom, >= 0.
     """
@@ -83,5 +83,5 @@ def mean_spin_squared(E_rot: Numbers, dimension: int, inertia: Numbers) -> np.nd
 
 
 def _prefactor(beta, q) -> np.ndarray:
-    """S = m q (1 + beta)/[4 (1 + q)^2], below Eq. (deltaEt)."""
+    """Return S = m q (1 + beta)/[4 (1 + q)^2], below Eq. (deltaEt)."""
     return q * (1 + beta) / (4 * (1 + q) ** 2)

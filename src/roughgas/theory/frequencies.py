@@ -15,13 +15,13 @@ CLOSE_PACKING = {2: np.pi / np.sqrt(12), 3: np.pi / np.sqrt(18)}
 
 
 def number_density(packing: Numbers, dimension: int = 2) -> np.ndarray:
-    """Particles per area (2D) or volume (3D), in units of a^-D."""
+    """Return particles per area (2D) or volume (3D), in units of a^-D."""
     packing, dimension = _packing(packing, dimension)
     return packing / {2: np.pi, 3: 4 * np.pi / 3}[dimension]
 
 
 def contact_value(packing: Numbers, dimension: int = 2) -> np.ndarray:
-    """chi, the pair distribution at contact: Henderson (2D), Carnahan & Starling (3D).
+    """Return chi, the pair distribution at contact: Henderson (2D), Carnahan & Starling (3D).
 
     chi = (1 - 7 phi/16)/(1 - phi)^2 and (1 - phi/2)/(1 - phi)^3; good below the fluid's freezing.
     """
@@ -32,7 +32,7 @@ def contact_value(packing: Numbers, dimension: int = 2) -> np.ndarray:
 
 
 def collision_frequency(T_tr: Numbers, packing: Numbers, dimension: int = 2) -> np.ndarray:
-    """nu, collisions per particle per time (1/T): each collision counts for both its particles.
+    """Return nu, collisions per particle per time (1/T); a collision counts for both particles.
 
     nu = 4 a n chi sqrt(pi T_tr/m) in 2D and 16 sqrt(pi) a^2 n chi sqrt(T_tr/m) in 3D, for a
     Maxwellian gas of number density n. T_tr = m <v^2>/D >= 0.
@@ -44,7 +44,7 @@ def collision_frequency(T_tr: Numbers, packing: Numbers, dimension: int = 2) -> 
 
 
 def mean_free_path(packing: Numbers, dimension: int = 2) -> np.ndarray:
-    """Mean path between collisions, <|v|>/nu, in radii a; infinite at packing 0.
+    """Return the mean path between collisions, <|v|>/nu, in radii a; infinite at packing 0.
 
     With <|v|> = sqrt(pi T_tr/2) in 2D and sqrt(8 T_tr/pi) in 3D.
     """

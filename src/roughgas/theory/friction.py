@@ -48,7 +48,7 @@ def sliding_fraction(
     dimension: int = 2,
     inertia: Choice = None,
 ) -> np.ndarray:
-    """Share of the contacts that slide; 0 for beta = -1, where nothing holds them.
+    """Return the share of contacts that slide; 0 for beta = -1, where there is no friction.
 
     All arguments but D broadcast; raises InputError.
     """
@@ -68,7 +68,7 @@ def friction_changes(
     inertia: Choice = None,
     frequency: Numbers = 1.0,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """dT_tr/dt and dT_rot/dt due to collisions, `temperature_changes` at infinite mu.
+    """Return dT_tr/dt and dT_rot/dt due to collisions: `temperature_changes` at infinite mu.
 
     With the frequency 1 left as it is, they are per collision per particle. All arguments but D
     broadcast; raises InputError for negative temperatures or frequencies too.
@@ -91,7 +91,7 @@ def friction_ratio(
     inertia: Choice = None,
     spin_share: Choice = None,
 ) -> np.ndarray:
-    """Stationary R that a gas started without spin reaches, to 1e-13.
+    """Return the stationary R that a gas started without spin reaches, to 1e-13.
 
     Without a drive (spin_share None), or driven with a share of its power into spin. At infinite mu
     it is `stationary_ratio`; at mu = 0, as at beta = -1, spin is decoupled, and R the limit given
@@ -127,10 +127,10 @@ def friction_ratio(
 
 
 def critical_friction(r: Numbers) -> np.ndarray:
-    """mu_c = sqrt((1-r)/(1+r)), up to which a cooling gas whose spins dominate keeps them: R = 1.
+    """Return mu_c = sqrt((1-r)/(1+r)), up to which a cooling gas with dominant spins keeps R = 1.
 
-    What sliding contacts then add to translation makes up for what inelastic ones take, in 2D and
-    3D, whatever beta and q. Raises InputError.
+    There, sliding contacts add as much to translation as inelastic ones take, in 2D and 3D, for any
+    beta and q. Raises InputError.
     """
     r = check_restitution(r)
     return np.sqrt((1 - r) / (1 + r))[()]
@@ -139,7 +139,7 @@ def critical_friction(r: Numbers) -> np.ndarray:
 def friction_relaxation_rate(
     r: Numbers, beta: Numbers, mu: Numbers, dimension: int = 2, inertia: Choice = None
 ) -> np.ndarray:
-    """Rate at which R of a cooling gas goes to `friction_ratio`, per collision per particle.
+    """Return the rate at which R of a cooling gas goes to `friction_ratio`, per collision.
 
     From the linear stability of ln theta, by a central difference; where R = 1 the rate at which
     theta grows in the end. `relaxation_rate` at infinite mu; 0 where spin is decoupled. All
@@ -158,7 +158,7 @@ def friction_relaxation_rate(
 
 
 def _fastest_fall(growth, shape) -> np.ndarray:
-    """R where theta falls fastest in a cooling gas, 1 if it falls nowhere: beyond the stationary R.
+    """Return R where theta falls fastest in a cooling gas, beyond the stationary R; 1 for nowhere.
 
     d ln theta/dn has no other minimum, being convex as a function of `sticking` (2D) or its square
     (3D, q <= 1), or growing with it (3D, q > 1); so it changes sign once between no spin and there.
@@ -174,7 +174,7 @@ def _fastest_fall(growth, shape) -> np.ndarray:
 
 
 def _growth(R, gas: Material, mu, share) -> np.ndarray:
-    """What has the sign of d theta/dt: d ln theta/dn without a drive.
+    """Return a number with the sign of d theta/dt: d ln theta/dn without a drive.
 
     With one, the power that spin still lacks to lose energy as `share`, where T_tr + T_rot = 1.
     """
@@ -193,7 +193,7 @@ def _growth(R, gas: Material, mu, share) -> np.ndarray:
 
 
 def _rates(T_tr, T_rot, gas: Material, mu) -> Rates:
-    """Coefficients of the rate equations, which now depend on theta: see `Rates`.
+    """Return the coefficients of the rate equations, which now depend on theta: see `Rates`.
 
     They are those without friction, times the second moment, plus a loss of both energies where
     contacts slide, the first moment exceeding the second.
@@ -214,7 +214,7 @@ def _rates(T_tr, T_rot, gas: Material, mu) -> Rates:
 
 
 def _moments(threshold, dimension) -> tuple[np.ndarray, np.ndarray]:
-    """<eta g_t^2>/(eta_0 <g_t^2>) and <eta^2 g_t^2>/(eta_0^2 <g_t^2>), both in [0, 1].
+    """Return <eta g_t^2>/(eta_0 <g_t^2>) and <eta^2 g_t^2>/(eta_0^2 <g_t^2>), both in [0, 1].
 
     With x = g_n/sqrt(<g_n^2>/2) and y = |g_t|/sqrt(<g_t^2>/(D-1)), of density x y^(D-2)
     exp(-(x^2+y^2)/2), eta depends on c = y/sqrt(x^2+y^2) alone, whose density is (D-1) c^(D-2), and
@@ -229,7 +229,7 @@ def _moments(threshold, dimension) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _threshold(T_tr, T_rot, gas: Material, mu) -> np.ndarray:
-    """x/y below which contacts slide (`_moments`): eta_0 over mu (1+r)/2 times the scale of x/y."""
+    """Return x/y (`_moments`) below which contacts slide: eta_0/[mu (1+r)/2], scaled."""
     normal = np.sqrt(shares(T_tr, T_rot / gas.inertia, neither=0)[0])
     return quotient(quotient(_eta(gas), mu * (1 + gas.r) / 2), normal)
 
@@ -246,5 +246,5 @@ def _temperatures(T_tr, T_rot) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _check_friction(mu) -> np.ndarray:
-    """Friction coefficient mu, >= 0 or infinite."""
+    """Check the friction coefficient mu, >= 0 or infinite."""
     return check("friction mu", mu, FRICTION)

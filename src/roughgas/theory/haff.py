@@ -16,7 +16,7 @@ def haff_temperature(
     dimension: int = 2,
     inertia: Choice = None,
 ) -> np.ndarray:
-    """T_tr = T0/(1 + t/t_h)^2 at `time` >= 0, from T_tr = T0 and the stationary R on.
+    """Return T_tr = T0/(1 + t/t_h)^2 at `time` >= 0, from T_tr = T0 and the stationary R on.
 
     `frequency`: collisions per particle per time at T0, e.g. `collision_frequency(T0, packing)`.
     T_rot decays by the same factor. All arguments but D broadcast. Raises InputError.
@@ -28,7 +28,7 @@ def haff_temperature(
 def haff_time(
     r: Numbers, beta: Numbers, frequency: Numbers, dimension: int = 2, inertia: Choice = None
 ) -> np.ndarray:
-    """t_h = 2/(frequency * decay_rate), nu being proportional to sqrt(T_tr); inf if nothing decays.
+    """Return t_h = 2/(frequency * decay_rate), nu being ~ sqrt(T_tr); inf if nothing decays.
 
     `frequency` (> 0, 1/T) is that at the initial temperature.
     """
@@ -37,10 +37,10 @@ def haff_time(
 
 
 def decay_rate(r: Numbers, beta: Numbers, dimension: int = 2, inertia: Choice = None) -> np.ndarray:
-    """-d ln T_tr/dn at the stationary R of a cooling gas, n in collisions per particle.
+    """Return -d ln T_tr/dn at the stationary R of a cooling gas, n in collisions per particle.
 
-    At beta = -1 it is that of the smooth gas, (1 - r^2)/D, whose spin does nothing; in the limit
-    beta -> -1 it would be 0, since spin, which hardly decays, then feeds translation.
+    At beta = -1 it is that of the smooth gas, (1 - r^2)/D, whose spin has no effect. The limit
+    beta -> -1 would be 0, since spin, which hardly decays there, feeds translation.
     """
     r, beta, dimension, q = material(r, beta, dimension, inertia)
     smooth = (1 - r) * (1 + r) / dimension
@@ -48,9 +48,9 @@ def decay_rate(r: Numbers, beta: Numbers, dimension: int = 2, inertia: Choice = 
 
 
 def slow_decay(r: Numbers, beta: Numbers, dimension: int = 2, inertia: Choice = None) -> np.ndarray:
-    """Decay rate of the slower of the two modes of a cooling gas, per collision per particle.
+    """Return the decay rate of the slower mode of a cooling gas, per collision per particle.
 
-    The product of both is a sum of positive terms, so that nothing cancels. Raises InputError.
+    The product of both rates is a sum of positive terms, so nothing cancels. Raises InputError.
     """
     r, beta, dimension, q = material(r, beta, dimension, inertia)
     rates = collision_rates(r, beta, dimension, q)

@@ -40,7 +40,7 @@ class Rates(NamedTuple):
 
 
 def collision_rates(r: Numbers, beta: Numbers, dimension: int = 2, inertia: Choice = None) -> Rates:
-    """Coefficients of the rate equations; r, beta and q broadcast. Raises InputError."""
+    """Return the coefficients of the rate equations; r, beta and q broadcast. Raises InputError."""
     r, beta, dimension, q = material(r, beta, dimension, inertia)
     eta = q * (1 + beta) / (2 * (1 + q))
     # 1 - eta and 1 - eta/q from sums of positive terms, exact towards beta = 1 and small q.
@@ -64,7 +64,7 @@ def temperature_changes(
     inertia: Choice = None,
     frequency: Numbers = 1.0,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """dT_tr/dt and dT_rot/dt due to collisions, `frequency` being nu, e.g. `collision_frequency`.
+    """Return dT_tr/dt and dT_rot/dt due to collisions; `frequency` is nu (`collision_frequency`).
 
     With the frequency 1 left as it is, they are per collision per particle. All arguments but D
     broadcast; raises InputError for negative temperatures or frequencies too.
@@ -82,7 +82,7 @@ def temperature_changes(
 def drive_changes(
     power: Numbers, spin_share: Numbers, dimension: int = 2
 ) -> tuple[np.ndarray, np.ndarray]:
-    """dT_tr/dt and dT_rot/dt due to a drive of `power` per particle (m a^2/T^3)."""
+    """Return dT_tr/dt and dT_rot/dt due to a drive of `power` per particle (m a^2/T^3)."""
     power, share = check("power", power), check("spin share of the drive", spin_share, SHARE)
     dimension = check_dimension(dimension)
     return 2 * (1 - share) * power / dimension, 2 * share * power / (2 * dimension - 3)
@@ -91,13 +91,14 @@ def drive_changes(
 def stationary_ratio(
     r: Numbers, beta: Numbers, dimension: int = 2, inertia: Choice = None, spin_share: Choice = None
 ) -> np.ndarray:
-    """Stationary R = T_rot/(T_rot + T_tr): Eq. (K) without a drive, Eq. (lun) at spin_share 0.
+    """Return the stationary R = T_rot/(T_rot + T_tr).
 
-    At spin_share 1 it is theta = A/B, the loss over the gain of T_tr. In general translation and
-    spin lose energy to collisions as (1 - s) : s, whatever the power and however it varies. A drive
-    may take out of one motion some of what it puts into the other, and s then lie below 0 or above
-    1; where it takes more than collisions bring there, R is 0 or 1. Limits at beta = -1 are those
-    of beta -> -1 (without a drive, see `cooling_ratio`). Raises InputError.
+    That is Eq. (K) without a drive, and Eq. (lun) at spin_share 0. At spin_share 1, theta is the
+    loss over the gain of T_tr. In general, translation and spin lose energy to collisions in the
+    ratio (1 - s) : s, for any power, even one that varies. If a drive takes out of one motion some
+    of what it puts into the other, s lies below 0 or above 1; if it takes out more than collisions
+    supply, R is 0 or 1. Limits at beta = -1 are those of beta -> -1 (without a drive, see
+    `cooling_ratio`). Raises InputError.
     """
     return stationary_shares(r, beta, dimension, inertia, spin_share)[1][()]
 
@@ -105,7 +106,7 @@ def stationary_ratio(
 def stationary_theta(
     r: Numbers, beta: Numbers, dimension: int = 2, inertia: Choice = None, spin_share: Choice = None
 ) -> np.ndarray:
-    """Stationary theta = T_rot/T_tr; infinite where R = 1. See `stationary_ratio`."""
+    """Return the stationary theta = T_rot/T_tr; infinite where R = 1. See `stationary_ratio`."""
     translational, rotational = stationary_shares(r, beta, dimension, inertia, spin_share)
     return quotient(rotational, translational)
 
@@ -113,7 +114,7 @@ def stationary_theta(
 def stationary_shares(
     r: Numbers, beta: Numbers, dimension: int = 2, inertia: Choice = None, spin_share: Choice = None
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Stationary T_tr and T_rot as shares of their sum: 1 - R and R."""
+    """Return the stationary T_tr and T_rot as shares of their sum: 1 - R and R."""
     r, beta, dimension, q = material(r, beta, dimension, inertia)
     rates = collision_rates(r, beta, dimension, q)
     if spin_share is None:

@@ -29,7 +29,7 @@ class Relaxation(NamedTuple):
 def relaxation_rate(
     r: Numbers, beta: Numbers, dimension: int = 2, inertia: Choice = None, spin_share: Choice = None
 ) -> np.ndarray:
-    """Gamma: rate at which a small deviation of theta dies out, per collision per particle.
+    """Return Gamma, the rate at which theta relaxes, per collision per particle.
 
     From the linear stability of theta, and positive, except at beta = -1 (spin decoupled) where
     r = 1 or the drive is translational: theta then stays as it is and Gamma = 0. Raises InputError.
@@ -53,7 +53,7 @@ def relax(
     inertia: Choice = None,
     spin_share: Choice = None,
 ) -> Relaxation:
-    """Temperatures after `collisions` (>= 0) per particle, from theta0 = T_rot/T_tr (>= 0) on.
+    """Return the temperatures after `collisions` (>= 0) per particle, from theta0 (>= 0) on.
 
     Exact solution of the rate equations: a mixture of the initial and the stationary state, of
     positive terms only. All arguments but D broadcast. Raises InputError.
@@ -78,10 +78,10 @@ def collisions_to_relax(
     spin_share: Choice = None,
     theta0: Numbers = 0.0,
 ) -> np.ndarray:
-    """Collisions per particle after which R is within `tolerance` (a fraction) of its stationary R.
+    """Return collisions per particle until R is within a fraction `tolerance` of its limit.
 
-    From theta0 = T_rot/T_tr on, by default a gas without spin. Infinite where R never gets there,
-    as in a cooling gas without spin at beta = -1. All arguments but D broadcast. Raises InputError.
+    The limit is the stationary R; at first T_rot/T_tr = theta0. Infinite if R never gets there, as
+    in a cooling gas without spin at beta = -1. All arguments but D broadcast. Raises InputError.
     """
     tolerance, theta0 = check("tolerance", tolerance, Interval("(0, 1)")), check("theta0", theta0)
     translational, rotational = stationary_shares(r, beta, dimension, inertia, spin_share)
@@ -95,7 +95,7 @@ def collisions_to_relax(
 
 
 def _stationary_weight(theta0, translational, rotational, dimension, spin_share):
-    """Weight c of the stationary state in (1, theta0) = c (tr, rot) + c' (fast mode).
+    """Return the weight c of the stationary state in (1, theta0) = c (tr, rot) + c' (fast mode).
 
     The fast mode is (-rot, alpha tr) in a cooling gas, the product of the two theta that stay as
     they are being -alpha = -D/(2D-3); with a drive it is (-1, alpha), which carries no energy.

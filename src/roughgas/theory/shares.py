@@ -6,7 +6,7 @@ from roughgas.theory.arguments import Numbers
 
 
 def shares(first: Numbers, second: Numbers, neither: Numbers) -> tuple[np.ndarray, np.ndarray]:
-    """`first` and `second` (both >= 0, broadcast) divided by their sum.
+    """Return `first` and `second` (both >= 0, broadcast) divided by their sum.
 
     Where both vanish, `neither` is the share of the second.
     """
@@ -22,7 +22,7 @@ def shares(first: Numbers, second: Numbers, neither: Numbers) -> tuple[np.ndarra
 def positive_root(
     square: Numbers, linear: Numbers, constant: Numbers
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Positive root x = n/d of `square` x^2 - `linear` x - `constant` = 0, as the pair (n, d).
+    """Return the root x = n/d > 0 of `square` x^2 - `linear` x - `constant` = 0 as the pair (n, d).
 
     `square` and `constant` are >= 0 and `linear` has any sign. Of the two forms of the root the one
     that adds numbers of equal sign is taken, so that nothing cancels. (0, 0) where all vanish.
@@ -34,7 +34,7 @@ def positive_root(
 
 
 def quotient(numerator: Numbers, denominator: Numbers) -> np.ndarray:
-    """`numerator`/`denominator` of numbers >= 0: infinite over a vanishing one, zero for 0/0."""
+    """Return `numerator`/`denominator` of numbers >= 0: inf over a vanishing one, 0 for 0/0."""
     numerator, denominator = np.broadcast_arrays(numerator, denominator)
     zero = np.zeros(numerator.shape)
     with np.errstate(divide="ignore", over="ignore"):
