@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from tests.quoted import QUOTES, ROOT, Quantity, names, pages, pattern, summary
+from tests.quoted import QUOTES, ROOT, Quantity, pages, pattern, quoted, summary
 from tests.quoted.measured import measured
 from tests.synthetic import reduced
 
@@ -14,8 +14,7 @@ def test_pages_quote_the_numbers_of_the_datasets(path):
 
 
 def test_every_number_of_the_summary_is_quoted():
-    quoted = {name for quotes in QUOTES.values() for quote in quotes for name in names(quote)}
-    assert quoted >= set(summary())
+    assert quoted() >= set(summary())
 
 
 def test_numbers_as_pages_write_them():
@@ -43,6 +42,4 @@ def test_numbers_are_measured_on_datasets(tmp_path):
     assert f"{found['vibrated_most_above']:.3f} {found['vibrated_most_at_r']}" == "0.050 0.8"
     assert f"{found['vibrated_most_at_beta']} {found['wave_sine']:+.3f}" == "0.1 −0.010"
     assert f"{found['cooling_at_r08']:.2f} {found['cooling_off_percent']:.0f}" == "0.98 0"
-    assert set(found) < {
-        name for quotes in QUOTES.values() for quote in quotes for name in names(quote)
-    }
+    assert set(found) < quoted()

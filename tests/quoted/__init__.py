@@ -48,6 +48,11 @@ def names(quote):
     return [name for name, _ in PLACE.findall(quote)]
 
 
+def quoted():
+    """Return the names of all numbers that pages quote."""
+    return {name for quotes in QUOTES.values() for quote in quotes for name in names(quote)}
+
+
 def pattern(quote):
     """Return the pattern of a quote in a page, whatever its numbers and its line breaks are."""
     parts = [re.sub(r"\\?\s+", r"\\s+", re.escape(text)) for text in PLACE.split(quote)[::3]]

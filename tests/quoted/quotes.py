@@ -24,8 +24,8 @@ QUOTES = {
         "and {claims_fail} fail.",
         "judges {open_questions_statements} statements in `results/paper/open_questions.md`",
         "within {cooling_spheres_off:.3f} at all of {cooling_spheres_points:.0f} points, sheared "
-        "ones Eq. (lun) within {sheared_spheres_off:.3f}. A bed lies above it by up to "
-        "{vibrated_spheres_most_above:()}, more than",
+        "ones Eq. (lun) within {sheared_spheres_off:.3f}.",
+        "A bed lies above it by up to {vibrated_spheres_most_above:()}, more than",
         "over contacts that stick and slide, within {vibrated_friction_off:.3f}, from R = "
         "{vibrated_friction_least:.2f} at μ = {vibrated_friction_least_mu:g} to the rough gas",
         "A cooling gas does within {cooling_friction_off:.3f} for μ ≥ "
