@@ -75,7 +75,7 @@ def write_costs(paths: Iterable[str | Path], fixed: str, output: str | Path) -> 
         costs.append(cost(data))
         targets.append(float(data.target_stderr.max()))
         rows.append(_row(name, targets[-1], costs[-1]))
-        if schedule["kind"] == "steady":
+        if "measure" in schedule:  # a length in T
             length = schedule["equilibrate"] + schedule["measure"]
             against.append([name, f"{length:g} T", *(f"{x:.1f}" for x in saved(data, schedule))])
     rows.append(_row("in all", max(targets), Cost(*map(sum, zip(*costs, strict=True)))))

@@ -17,6 +17,7 @@ from roughgas.show import style
 from roughgas.show.encoding import write_movie
 from roughgas.show.movies.particles import Boundaries, Disks, Spheres, View
 from roughgas.show.movies.snapshots import Snapshot
+from roughgas.simulation import schedule
 
 WIDTH = 4.8  # inches
 DPI = {".gif": 100, ".mp4": 200}
@@ -186,4 +187,4 @@ def _graph(axes: Axes, subject: Subject, shots: Sequence[Snapshot]) -> Callable[
 
 
 def _cools(subject):
-    return subject.settings["schedule"]["kind"] == "cooling"
+    return not schedule.of(subject.settings).DRIVEN
