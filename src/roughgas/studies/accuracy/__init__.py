@@ -19,12 +19,10 @@ __all__ = ["PANELS", "STUDIES", "Study", "study"]
 
 
 class Study(NamedTuple):
-    """What is done for a study: its tasks, in any order and at the same time."""
+    """The names of a study's tasks, the longest first, and how to run one: see `_run`."""
 
     tasks: Callable[[Mapping[str, Any]], list[str]]
-    """Names of the tasks by the study's settings, the longest first."""
     run: Callable[..., "xarray.Dataset"]
-    """What a task finds: `run(task, settings, experiments, progress)`, see `_run`."""
 
 
 def study(name: str) -> Study:
@@ -34,13 +32,7 @@ def study(name: str) -> Study:
     return Study(TASKS[name], partial(_run, name))
 
 
-def _run(
-    name: str,
-    task: str,
-    settings: Mapping[str, Any],
-    experiments: Mapping[str, Mapping[str, Any]],
-    progress: Callable[[int, int], None] = lambda done, total: None,
-) -> "xarray.Dataset":
+def _run(name, task, settings, experiments, progress=lambda done, total: None):
     """Return what a task finds: values of R, and CPU seconds without those of compiling.
 
     `progress(done, total)` is called now and then. Raises InputError for illegal settings,

@@ -78,8 +78,8 @@ def models(data: xr.Dataset) -> str:
     closed = f"{_estimate(data, 'closed_form_error', 100):±} %"
     until = (0.01 / float(data.event_driven_prefactor)) ** (1 / float(data.event_driven_slope))
     rows = [
-        ["closed form, Eq. (K)", closed, f"{float(data.closed_form_seconds):.1e} s"],
-        ["rate equations", closed, f"{float(data.rate_equations_seconds[-1]):.1e} s"],
+        ["closed form, Eq. (K)", closed, f"{data.closed_form_seconds:.1e} s"],
+        ["rate equations", closed, f"{data.rate_equations_seconds[-1]:.1e} s"],
         ["DSMC", f"{_estimate(data, 'dsmc_floor', 100):±} %", f"{_reached(data):.2g} s"],
         ["event-driven", "none", f"{until:.2g} s for 1 %"],
     ]
@@ -165,23 +165,19 @@ def _reached(data: xr.Dataset) -> float:
 
 def _prices(one: xr.Dataset) -> list[str]:
     unit = "T" if one.length_unit.item() == "T" else "c.p.p."
-    cells = zip(
-        one.seconds_needed.values,
-        one.seconds_needed_stderr.values,
-        one.length_needed.values,
-        strict=True,
-    )
-    shown = (f"{s:.2g} ± {e:.1g} s ({length:.3g} {unit})" for s, e, length in cells)
-    return [one.scene.item(), f"{float(one.equilibration_seconds):.2g} s", *shown]
+    shown = [
+        f"{cell.seconds_needed:.2g} ± {cell.seconds_needed_stderr:.1g} s"
+        f" ({cell.length_needed:.3g} {unit})"
+        for cell in along(one, "relative_error")
+    ]
+    return [one.scene.item(), f"{one.equilibration_seconds:.2g} s", *shown]
 
 
 def _precision(data: xr.Dataset) -> str:
-    speed = float(data.elastic_speed_single / data.elastic_speed_double)
-    drift, stderr, double = (
-        float(data[f"elastic_drift_{end}"]) for end in ("single", "stderr_single", "double")
-    )
+    speed = data.elastic_speed_single / data.elastic_speed_double
     return (
         f"Trajectories kept in single precision: deviation of R {_percent(data, 'single')} %, an"
-        f" elastic gas's energy drifts by {drift:.1e} ± {stderr:.0e} of itself a collision"
-        f" ({double:.0e} in double precision), {speed:.2f} times as fast.\n"
+        f" elastic gas's energy drifts by {data.elastic_drift_single:.1e} ±"
+        f" {data.elastic_drift_stderr_single:.0e} of itself a collision"
+        f" ({data.elastic_drift_double:.0e} in double precision), {speed:.2f} times as fast.\n"
     )

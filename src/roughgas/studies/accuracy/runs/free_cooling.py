@@ -89,31 +89,27 @@ def integrate(theta, duration, step, r, beta, dimension=2, inertia=None) -> tupl
     rates = theory.collision_rates(r, beta, dimension, inertia)
     loss, gain, spin_gain, spin_loss = map(float, rates)
 
-    def slope(T_tr, T_rot, _):
-        frequency = T_tr**0.5
+    def slope(state):
+        frequency = state[0] ** 0.5
         return (
-            frequency * (gain * T_rot - loss * T_tr),
-            frequency * (spin_gain * T_tr - spin_loss * T_rot),
+            frequency * (gain * state[1] - loss * state[0]),
+            frequency * (spin_gain * state[0] - spin_loss * state[1]),
             frequency,
         )
 
-    state = (1.0, float(theta), 0.0)
+    state = [1.0, float(theta), 0.0]
     while state[2] < duration * (1.0 - 1e-12):
         h = min(step, duration - state[2]) / state[0] ** 0.5
-        state = _runge_kutta(slope, state, h)
+        slopes = [slope(state)]
+        for part in (0.5, 0.5, 1.0):
+            slopes.append(slope(_moved(state, slopes[-1], h * part)))
+        mean = [(a + 2 * b + 2 * c + d) / 6 for a, b, c, d in zip(*slopes, strict=True)]
+        state = _moved(state, mean, h)
     return state[0], state[1]
 
 
-def _runge_kutta(slope, state, h):
-    def moved(k, h):
-        return [x + h * dx for x, dx in zip(state, k, strict=True)]
-
-    k1 = slope(*state)
-    k2 = slope(*moved(k1, h / 2))
-    k3 = slope(*moved(k2, h / 2))
-    k4 = slope(*moved(k3, h))
-    mean = [(a + 2 * b + 2 * c + d) / 6 for a, b, c, d in zip(k1, k2, k3, k4, strict=True)]
-    return tuple(moved(mean, h))
+def _moved(state, slope, h):
+    return [x + h * dx for x, dx in zip(state, slope, strict=True)]
 
 
 def few_particles(cooling: FreeCooling, length: float, seed) -> tuple[float, float]:
