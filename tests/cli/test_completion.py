@@ -8,9 +8,11 @@ from pathlib import Path
 
 import pytest
 
+from roughgas.cli import main
+
 ROOT = Path(__file__).parents[2]
 ASK = """
-eval "$(roughgas completion bash)"
+eval "$2"
 COMP_LINE=$1 COMP_POINT=${#1} COMP_TYPE=9
 read -ra COMP_WORDS <<< "$1"
 _python_argcomplete roughgas
@@ -18,22 +20,24 @@ printf '%s\\n' "${COMPREPLY[@]}"
 """
 
 
-def shell(name, script, *arguments):
+def lines_for(shell, capsys):
+    """What `roughgas completion` prints for a shell."""
+    assert main(["completion", shell]) == 0
+    return capsys.readouterr().out
+
+
+def completed(line, script):
+    """What bash would go on with after `line`, in the folder of the configuration."""
     place = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
     done = subprocess.run(
-        [name, "-c", script, name, *arguments],
+        ["bash", "-c", ASK, "bash", line, script],
         cwd=ROOT,
         env=os.environ | {"PATH": place},
         capture_output=True,
         text=True,
         check=True,
     )
-    return done.stdout
-
-
-def completed(line):
-    """What bash would go on with after `line`, in the folder of the configuration."""
-    return {word.strip() for word in shell("bash", ASK, line).splitlines()} - {""}
+    return {word.strip() for word in done.stdout.splitlines()} - {""}
 
 
 @pytest.mark.parametrize(
@@ -52,14 +56,14 @@ def completed(line):
         ("roughgas completion ", {"-h", "--help", "bash", "zsh", "fish"}),
     ],
 )
-def test_what_is_offered(line, offered):
-    assert completed(line) == offered
+def test_what_is_offered(line, offered, capsys):
+    assert completed(line, lines_for("bash", capsys)) == offered
 
 
 @pytest.mark.parametrize(("name", "word"), [("zsh", "compdef"), ("fish", "complete --command")])
-def test_the_other_shells_take_their_lines(name, word, tmp_path):
-    script = shell("bash", f"roughgas completion {name}")
-    assert f"{word}" in script and "roughgas" in script
+def test_the_other_shells_take_their_lines(name, word, tmp_path, capsys):
+    script = lines_for(name, capsys)
+    assert word in script and "roughgas" in script
     (tmp_path / "script").write_text(script)
     if shutil.which(name):
         subprocess.run([name, "-n", tmp_path / "script"], check=True)
