@@ -4,11 +4,13 @@ import subprocess
 from collections.abc import Callable, Iterable
 from pathlib import Path
 
+from matplotlib import rc_context
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from roughgas.base.errors import InputError
 from roughgas.base.files import whole_file
+from roughgas.show import style
 
 # x264's constant rate factor: lower is better and larger
 MP4 = "-vcodec libx264 -pix_fmt yuv420p -crf 28 -preset slow -f mp4"
@@ -26,22 +28,22 @@ def check_kind(path: str | Path) -> None:
 
 def write_movie(
     path: str | Path,
-    figure: Figure,
-    show: Callable[[int], None],
+    picture: Callable[[], tuple[Figure, Callable[[int], None]]],
     frames: Iterable[int],
     per_second: float,
 ) -> None:
-    """Write the movie of `figure`, which `show` brings to each of `frames`, to `path`.
+    """Write a movie to `path` in the style of all figures, whole or not at all.
 
-    The file is written whole or not at all. The figure's width and height must be even numbers of
-    pixels; its layout stays as it is at the start. Raises InputError for another kind of file,
-    OSError.
+    `picture` returns a figure, and a function that brings it to each of `frames`. Its width and
+    height must be even numbers of pixels; its layout stays as it is at the start. Raises InputError
+    for another kind of file, OSError.
     """
     check_kind(path)
-    canvas = FigureCanvasAgg(figure)
-    canvas.draw()
-    figure.set_layout_engine("none")
-    with whole_file(path) as draft:
+    with rc_context(style.PARAMETERS), whole_file(path) as draft:
+        figure, show = picture()
+        canvas = FigureCanvasAgg(figure)
+        canvas.draw()
+        figure.set_layout_engine("none")
         encoder = _encoder(path, draft, canvas.get_width_height(), per_second)
         try:
             for frame in frames:

@@ -1,12 +1,10 @@
 """The showcase: a picture of a cooling gas that forms clusters, and the movie of it."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
-from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.collections import EllipseCollection
 from matplotlib.figure import Figure
@@ -34,12 +32,8 @@ LETTERS, TITLE = "abc", 9
 PER_PARTICLE = "collisions per particle"
 
 
-class Square(NamedTuple):
-    """Where single disks are shown, in a."""
-
-    left: float
-    bottom: float
-    side: float
+Square = tuple[float, float, float]
+"""Where single disks are shown: left, bottom and side, in a."""
 
 
 def draw(path: str | Path, outputs: Iterable[str | Path]) -> None:
@@ -52,11 +46,12 @@ def draw(path: str | Path, outputs: Iterable[str | Path]) -> None:
         if output.suffix not in KINDS:
             raise InputError("file", output, f"end in {', '.join(KINDS)}")
     film = read_film(path)
-    movies = [output for output in outputs if output.suffix == ".mp4"]
-    with rc_context(style.PARAMETERS):
-        style.save(picture(film), [output for output in outputs if output not in movies])
-        for output in movies:
-            _write_movie(film, output)
+    style.draw(lambda: picture(film), [one for one in outputs if one.suffix != ".mp4"])
+    frames = list(range(film.sizes["frame"]))
+    frames += frames[-1:] * round(LAST_FRAME * FRAMES_PER_SECOND)
+    for output in outputs:
+        if output.suffix == ".mp4":
+            write_movie(output, lambda: moving_picture(film), frames, FRAMES_PER_SECOND)
 
 
 def picture(film: xr.Dataset) -> Figure:
@@ -71,7 +66,7 @@ def picture(film: xr.Dataset) -> Figure:
         axes.label_outer()
     above.colorbar(image, ax=maps, label=PACKING_LABEL, pad=0.01)
     square = closeup(film)
-    _outline(maps[-1], square)
+    maps[-1].add_patch(_outline(square))
     above.suptitle(_caption(film), fontsize=TITLE)
     zoom, cooling, others = below.subfigures(1, 3, width_ratios=(1.15, 1, 1))
     disks = _draw_disks(axes := zoom.subplots(), film, frames[-1], square)
@@ -112,7 +107,7 @@ def closeup(film: xr.Dataset) -> Square:
     dense[:, abs(x - box[0] / 2) > room] = 0.0
     j, i = np.unravel_index(dense.argmax(), dense.shape)
     middle = (x[i], y[j]) if dense[j, i] > 0.0 else box / 2
-    return Square(float(middle[0] - side / 2), float(middle[1] - side / 2), float(side))
+    return float(middle[0] - side / 2), float(middle[1] - side / 2), float(side)
 
 
 def _draw_map(axes: Axes, film: xr.Dataset, frame: int) -> AxesImage:
@@ -123,9 +118,9 @@ def _draw_map(axes: Axes, film: xr.Dataset, frame: int) -> AxesImage:
     return axes.imshow(shown, origin="lower", extent=(0, width, 0, height), **PACKING)
 
 
-def _outline(axes: Axes, square: Square) -> None:
-    left, bottom, side = square
-    axes.add_patch(Rectangle((left, bottom), side, side, fill=False, edgecolor="white"))
+def _outline(square: Square) -> Rectangle:
+    *corner, side = square
+    return Rectangle(corner, side, side, fill=False, edgecolor="white")
 
 
 def _draw_disks(axes: Axes, film: xr.Dataset, frame: int, square: Square) -> EllipseCollection:
@@ -139,10 +134,8 @@ def _draw_disks(axes: Axes, film: xr.Dataset, frame: int, square: Square) -> Ell
 
 
 def _move(disks: EllipseCollection, film: xr.Dataset, frame: int, square: Square) -> None:
-    x, y, spin = disks_of(film, frame)
-    reach = square.side / 2 + 1
-    seen = abs(x - square.left - square.side / 2) < reach
-    seen &= abs(y - square.bottom - square.side / 2) < reach
+    (x, y, spin), (left, bottom, side) = disks_of(film, frame), square
+    seen = (abs(x - left - side / 2) < side / 2 + 1) & (abs(y - bottom - side / 2) < side / 2 + 1)
     circles.move(disks, x[seen], y[seen])
     disks.set_array(spin[seen])
 
@@ -198,13 +191,14 @@ def _caption(film: xr.Dataset) -> str:
     )
 
 
-def _write_movie(film: xr.Dataset, output: Path) -> None:
+def moving_picture(film: xr.Dataset) -> tuple[Figure, Callable[[int], None]]:
+    """Return a figure of the gas, and a function that brings it to a frame."""
     figure = Figure(figsize=(8.4, 4.1), dpi=160, layout="constrained")
     squares, graphs = figure.subfigures(1, 2, width_ratios=(2.5, 1))
     whole, zoom = squares.subplots(1, 2)
     square = closeup(film)
     image, disks = _draw_map(whole, film, 0), _draw_disks(zoom, film, 0, square)
-    _outline(whole, square)
+    whole.add_patch(_outline(square))
     for mappable, axes, label in ((image, whole, PACKING_LABEL), (disks, zoom, SPIN_LABEL)):
         squares.colorbar(mappable, ax=axes, label=label, location="bottom", shrink=0.8)
     zoom.set_title("the square", fontsize=TITLE)
@@ -226,6 +220,4 @@ def _write_movie(film: xr.Dataset, output: Path) -> None:
             mark.set_xdata([_at(film)[frame]] * 2)
 
     show(0)
-    frames = list(range(film.sizes["frame"]))
-    frames += frames[-1:] * round(LAST_FRAME * FRAMES_PER_SECOND)
-    write_movie(output, figure, show, frames, FRAMES_PER_SECOND)
+    return figure, show

@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
@@ -48,18 +47,19 @@ def write(
     `watch` gets the numbers of the frames, and yields each as it is to be drawn. Raises InputError
     for another kind of file, OSError.
     """
-    with rc_context(style.PARAMETERS):
-        figure, show = picture(subject, shots)
-        figure.set_dpi(DPI[Path(path).suffix])
-        write_movie(path, figure, show, watch(range(len(shots))), per_second)
+    dpi = DPI.get(Path(path).suffix)
+    frames = watch(range(len(shots)))
+    write_movie(path, lambda: picture(subject, shots, dpi), frames, per_second)
 
 
-def picture(subject: Subject, shots: Sequence[Snapshot]) -> tuple[Figure, Callable[[int], None]]:
+def picture(
+    subject: Subject, shots: Sequence[Snapshot], dpi: float | None = None
+) -> tuple[Figure, Callable[[int], None]]:
     """Return the figure at its first frame, and a function that brings it to another one."""
     view = view_of(subject, shots)
     room = min(3.9, 3.4 * (view.top - view.bottom) / (view.right - view.left))
     inches = math.ceil(10 * (room + FRAME_SPACE + GRAPH)) / 10  # even numbers of pixels
-    figure = Figure(figsize=(WIDTH, inches), layout="constrained")
+    figure = Figure(figsize=(WIDTH, inches), dpi=dpi, layout="constrained")
     above, below = figure.subplots(2, 1, height_ratios=(room + FRAME_SPACE, GRAPH))
     figure.suptitle(_title(subject, view), fontsize=9, linespacing=1.4)
     _set_up(above, subject.scene, view)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from roughgas.base.errors import InputError
+from roughgas.data.netcdf import read_netcdf
 from roughgas.data.reduced import EQUILIBRATED, read_reduced, third_axis
 from roughgas.show.page.series import exact, rounded, time_series
 from roughgas.theory.prediction import equation_of, predicted_ratio
@@ -97,7 +98,7 @@ def _point(data: "xarray.Dataset", run: Run) -> dict[str, Any]:
         "contact_time": exact(data.get("contact_time_fraction", 0.0)),
         "target": str(seeds if seeds.name == "seeds" else run.path),  # as Snakemake knows it
         "command": run.about["command"],
-        "over_time": time_series(run.path),
+        "over_time": time_series(read_netcdf(run.path)),
     }
 
 

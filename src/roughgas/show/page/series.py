@@ -1,12 +1,14 @@
 """The time series of a point, thinned to what a screen can show, and numbers as JSON has them."""
 
 import math
-from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from roughgas.data.variables import CLOCKS
+
+if TYPE_CHECKING:
+    import xarray
 
 LONGEST = 200
 """The most values that are shown of a time series."""
@@ -14,23 +16,15 @@ SHOWN = ("R", "E_trans", "E_rot")
 DIGITS = 5
 
 
-def time_series(path: Path) -> dict[str, Any]:
-    """Return R and both energies over time, from the dataset of a seed, as means over blocks.
+def time_series(seed: "xarray.Dataset") -> dict[str, Any]:
+    """Return R and both energies of a seed over time, as means over blocks.
 
     `clock` is "time", in T, or "collisions_per_particle"; `block` is the number of samples in a
     mean; `measured` is the window in which R is measured, its ends None where they are unknown.
     """
-    import netCDF4
-
-    with netCDF4.Dataset(path) as file:
-        file.set_auto_mask(False)
-        found = file.variables
-        clock = next(name for name in CLOCKS[::-1] if name in found)
-        columns = {"at": found[clock][...]} | {name: found[f"{name}_series"][...] for name in SHOWN}
-        window = [
-            exact(found[name][...]) if name in found else None
-            for name in ("measured_from", "plateau_end")
-        ]
+    clock = next(name for name in CLOCKS[::-1] if name in seed)
+    columns = {"at": seed[clock].values} | {name: seed[f"{name}_series"].values for name in SHOWN}
+    window = [exact(seed.get(name, math.nan)) for name in ("measured_from", "plateau_end")]
     block = math.ceil(columns["at"].size / LONGEST)
     thinned = {name: rounded(block_means(values, block)) for name, values in columns.items()}
     return {"clock": clock, "block": block, "measured": window} | thinned
