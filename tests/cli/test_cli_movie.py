@@ -43,10 +43,10 @@ def test_the_same_seed_gives_the_same_bytes(tmp_path):
     [
         ({"frames": "1"}, "--frames = 1: must be a whole number in [2, 10000]"),
         ({"frames": "many"}, "--frames = many: must be a whole number"),
-        ({"fps": "0"}, "--fps = 0: must be a number in [1, 50]"),
-        ({"length": "0"}, "--length = 0: must be a number in [1e-09, 1e+09]"),
-        ({"start": "-1"}, "--start = -1: must be a number in [0, 1e+09]"),
-        ({"start": "nan"}, "--start = nan: must be a number"),
+        ({"fps": "0"}, "--fps = 0.0: must lie in [1, 50]"),
+        ({"length": "0"}, "--length = 0.0: must lie in (0, 1e9]"),
+        ({"start": "-1"}, "--start = -1.0: must lie in [0, 1e9]"),
+        ({"start": "nan"}, "--start = nan: must lie in [0, 1e9]"),
         ({"seed": "x"}, "seed = x: must be a whole number"),
         ({"r": "2"}, "restitution r = 2: must lie in [0, 1]"),
         (

@@ -6,6 +6,7 @@ from functools import partial
 from typing import Any
 
 from roughgas import config
+from roughgas.base.legal import Interval
 from roughgas.cli.options import number, whole_number
 from roughgas.cli.run import point_of
 from roughgas.scene import Scene
@@ -15,15 +16,16 @@ from roughgas.show.movies.snapshots import Take, snapshots, usual_take
 from roughgas.simulation.progress import watched
 
 FRAMES = 2, 10_000
-RATES = 1.0, 50.0
-LONGEST = 1e9  # in T, or collisions per particle
+RATES = Interval("[1, 50]")
+TIMES = {"start": Interval("[0, 1e9]"), "length": Interval("(0, 1e9]")}
+"""In T, or in collisions per particle."""
 
 
 def movie(options: Namespace) -> None:
     """Simulate a point, and write its movie."""
     name, seed = options.experiment, config.seed(options.seed)
     scene, settings = point_of(options, options.beta)
-    fps = number("--fps", options.fps, *RATES)
+    fps = number("--fps", options.fps, RATES)
     for output in options.output:
         check_kind(output)
     take = _take(options, settings, scene)
@@ -39,9 +41,9 @@ def movie(options: Namespace) -> None:
 def _take(options: Namespace, settings: dict[str, Any], scene: Scene) -> Take:
     """Return what is filmed: by default, what suits the experiment."""
     asked: dict[str, Any] = {}
-    for name, least in (("start", 0.0), ("length", 1e-9)):
+    for name, legal in TIMES.items():
         if (text := getattr(options, name)) is not None:
-            asked[name] = number(f"--{name}", text, least, LONGEST)
+            asked[name] = number(f"--{name}", text, legal)
     if options.frames is not None:
         asked["frames"] = whole_number("--frames", options.frames, *FRAMES)
     return usual_take(settings, scene)._replace(**asked)

@@ -3,6 +3,7 @@
 import math
 
 from roughgas.base.errors import InputError
+from roughgas.base.legal import Interval
 from roughgas.cli import completion
 from roughgas.cli.parser import Option, flag, value
 
@@ -47,13 +48,10 @@ def whole_number(key: str, text: str, low: int, high: float = math.inf, of: str 
     raise InputError(key, text, f"be a whole number {of}{legal}")
 
 
-def number(key: str, text: str, low: float = -math.inf, high: float = math.inf) -> float:
-    """Return the number that the option `key` was given. Raises InputError outside [low, high]."""
+def number(key: str, text: str, legal: Interval | None = None) -> float:
+    """Return the number that the option `key` was given. Raises InputError if it is not legal."""
     try:
         found = float(text)
     except ValueError:
-        found = math.nan
-    if not low <= found <= high:  # NaN fails, too
-        within = f" in [{low:g}, {high:g}]" if high < math.inf else ""
-        raise InputError(key, text, f"be a number{within}")
-    return found
+        raise InputError(key, text, "be a number") from None
+    return legal.check(key, found) if legal else found
