@@ -14,6 +14,7 @@ try:
 except ModuleNotFoundError as error:
     sys.exit(f"roughgas: error: no module {error.name}: `make setup`, then .venv/bin/snakemake")
 
+PACKAGE = os.path.relpath(sources.PACKAGE)  # so that a folder may be moved with its results
 KERNEL = "results/{scale}/{experiment}/r{r}/compiled.txt"
 POINT = "results/{scale}/{experiment}/r{r}/beta{beta}/seed{seed}.nc"
 PILOT = "results/{scale}/{experiment}/r{r}/beta{beta}/pilot.json"

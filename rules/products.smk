@@ -128,7 +128,7 @@ rule run_times:
 
 rule page:
     input:
-        multiext(str(PAGES / "page"), ".css", ".html", ".js"),
+        multiext(f"{PACKAGE}/show/page/page", ".css", ".html", ".js"),
         points_of_product,
         data=data_of_product,
     output:

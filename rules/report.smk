@@ -1,6 +1,5 @@
 # What `snakemake --report` shows, and under which headings: the catalogue of figures says so. Captions
 # are in captions/; those of figures add the parameters of this run.
-PAGES = sources.PACKAGE / "show/page"
 
 
 def titled(title):
@@ -74,7 +73,7 @@ def documents(*names):
 
 rule document:
     input:
-        multiext(str(PAGES / "document"), ".css", ".html"),
+        multiext(f"{PACKAGE}/show/page/document", ".css", ".html"),
         shown=source_of_document,
     output:
         report(
@@ -98,7 +97,7 @@ rule document:
 
 rule effective_config:
     input:
-        sorted(map(str, Path(sources.PACKAGE, "config").glob("*.yaml"))),
+        sorted(map(str, Path(PACKAGE, "config").glob("*.yaml"))),
         file="config.yaml",
     output:
         report(

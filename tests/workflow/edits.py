@@ -2,9 +2,9 @@
 
     python edits.py TARGET... < EDITS.json
 
-Runs in the folder of a project that is finished at the scale `tiny`. EDITS is a list of [file,
-line]: the line is added to the file, a dry run made, and the file restored. Prints, for each edit,
-a list of what would run: figures and studies by their names, everything else by its rule.
+Runs in the folder of a project that is finished at the scale `tiny`. EDITS is a list of {file:
+line}: the lines are added to the files, a dry run made, and the files restored. Prints, for each
+edit, a list of what would run: figures and studies by their names, everything else by its rule.
 """
 
 import json
@@ -52,17 +52,18 @@ def planned(output):
     return sorted({*rules, *named} - targets)
 
 
-def after(file, line):
+def after(edit):
     """Return what would run again after an edit."""
-    path = Path(file)
-    before = path.read_bytes()
-    path.write_bytes(before + line.encode())
+    before = {Path(file): Path(file).read_bytes() for file in edit}
+    for path, line in zip(before, edit.values(), strict=True):
+        path.write_bytes(before[path] + line.encode())
     try:
         return planned(dry_run())
     finally:
-        path.write_bytes(before)
+        for path, content in before.items():
+            path.write_bytes(content)
 
 
 if __name__ == "__main__":
     for edit in json.load(sys.stdin):
-        print(json.dumps(after(*edit)), flush=True)
+        print(json.dumps(after(edit)), flush=True)

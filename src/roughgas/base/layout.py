@@ -2,7 +2,7 @@
 
 import json
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 
@@ -56,3 +56,8 @@ def _plain(answer: Any) -> Any:
     if isinstance(answer, float) and not math.isfinite(answer):
         return None
     return answer
+
+
+def as_text(settings: Mapping[str, Any]) -> str:
+    """Return settings as JSON on one line, the same for equal settings."""
+    return json.dumps(settings, sort_keys=True, separators=(",", ":"))

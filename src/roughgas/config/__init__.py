@@ -14,6 +14,8 @@ from pathlib import Path
 from typing import Any
 
 from roughgas.base.errors import InputError, not_one_of, shown
+from roughgas.base.layout import as_text as as_text
+from roughgas.config.labels import SWEPT as SWEPT
 from roughgas.config.labels import level
 from roughgas.config.labels import restitution as restitution
 from roughgas.config.labels import roughness as roughness
@@ -24,8 +26,6 @@ from roughgas.config.labels import seed as seed
 
 SOURCE = "config.yaml"
 SHOWCASE, ACCURACY = "showcase", "accuracy"
-SWEPT = "swept"
-"""Key in the settings of a variant: what its experiment sweeps, such as spin.inertia."""
 SEEDS_PER_JOB = 4
 NOT_OF_A_POINT = ("description", "sweep")
 """Settings of an experiment that do not concern any single point of it."""
@@ -181,11 +181,6 @@ def blocks(axes: Mapping[str, Any], config: Mapping[str, Any]) -> list[tuple[lis
 
 def _chunks(labels: list[str], size: int) -> list[list[str]]:
     return [labels[first : first + size] for first in range(0, len(labels), size)]
-
-
-def as_text(settings: Mapping[str, Any]) -> str:
-    """Return settings as JSON on one line, the same for equal settings."""
-    return json.dumps(settings, sort_keys=True, separators=(",", ":"))
 
 
 def from_text(

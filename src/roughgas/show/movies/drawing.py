@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from roughgas.config import SWEPT
+from roughgas.config.labels import SWEPT
 from roughgas.scene import Scene
 from roughgas.show import style
 from roughgas.show.encoding import write_movie
