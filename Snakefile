@@ -147,7 +147,6 @@ rule everything:
 
 onstart:
     be_alone()
-    lift_rate_limit()
 
 
 onerror:

@@ -129,14 +129,3 @@ def be_alone():
             fcntl.flock(alive, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
             sys.exit("roughgas: error: another Snakemake is at work in this folder")
-
-
-def lift_rate_limit():
-    """Let a run on this machine start jobs as fast as it can, not a hundred a second.
-
-    A patch (checked with Snakemake 9.27, tests/workflow/test_patches.py): to keep any limit, it
-    looks at all jobs that are ready again some time after each time that it has done so. These
-    rounds add up, and the option `max-jobs-per-timespan` only sets that time.
-    """
-    if workflow.local_exec:
-        workflow.scheduler.job_rate_limiter = None
