@@ -95,7 +95,7 @@ class Project:
         change(config)
         path.write_text(json.dumps(config))  # which is YAML, too, and has no aliases
 
-    def append(self, path, text="\n# edited\n"):
+    def append(self, path, text="\nADDED = 1\n"):
         """Edit a source file."""
         with open(self.folder / path, "a") as file:
             file.write(text)
