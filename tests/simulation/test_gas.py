@@ -9,8 +9,7 @@ from brute_force import begin, run, settings
 from roughgas.kernel.state import EXPONENT
 from roughgas.scene import build, initial_state
 from roughgas.simulation.energies import restored
-from roughgas.simulation.gas import Gas, elastic
-from roughgas.simulation.recorder import Recorder
+from roughgas.simulation.gas import Gas, Recorder, elastic
 
 GAS = settings("gas", 20, [25, 25])
 

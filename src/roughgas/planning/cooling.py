@@ -9,7 +9,7 @@ from roughgas.planning.lengths import BIAS, FEWEST_SEEDS, relaxation, to_measure
 from roughgas.planning.pilot import SEED, Pilot
 from roughgas.scene import Scene
 from roughgas.simulation import cooling
-from roughgas.simulation.recorder import Recorder
+from roughgas.simulation.gas import Recorder
 from roughgas.theory import cooling_ratio
 
 TRIED = {"replicas": 40, "relaxation_times": 16}

@@ -11,7 +11,7 @@ from roughgas.planning.pilot import SEED, Pilot
 from roughgas.scene import Scene
 from roughgas.simulation import steady
 from roughgas.simulation.energies import Energies, ratio
-from roughgas.simulation.recorder import Recorder
+from roughgas.simulation.gas import Recorder
 from roughgas.statistics.averages import period_means
 from roughgas.statistics.errors import (
     autocorrelation_time,

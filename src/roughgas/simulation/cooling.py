@@ -10,8 +10,7 @@ from roughgas.effects import inertia
 from roughgas.scene import Scene
 from roughgas.simulation.books import Books, exchange
 from roughgas.simulation.energies import Columns, Energies, ratio, ratio_of_means, restored
-from roughgas.simulation.gas import Gas
-from roughgas.simulation.recorder import Recorder
+from roughgas.simulation.gas import Gas, Recorder
 from roughgas.statistics.errors import autocorrelation_time
 from roughgas.statistics.intervals import Error
 from roughgas.statistics.plateau import find_plateau

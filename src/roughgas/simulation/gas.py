@@ -6,20 +6,72 @@ after the same collisions.
 """
 
 import math
-from collections.abc import Mapping
+import time
+from collections.abc import Callable, Mapping
 from typing import Any, Protocol, Self
 
 import numpy as np
 
+from roughgas.base.errors import CollapseError
 from roughgas.effects import inertia
-from roughgas.kernel.record import Sampling
-from roughgas.kernel.state import COLLISIONS, EXPONENT, State
+from roughgas.kernel.clock import INSTANT
+from roughgas.kernel.record import Sampling, columns, record
+from roughgas.kernel.state import (
+    BASE,
+    COLLISIONS,
+    EXPONENT,
+    LAST_FIRST,
+    LAST_SECOND,
+    NOW,
+    ORIGIN,
+    SPAN,
+    TOUCHED,
+    State,
+)
 from roughgas.scene import Scene, initial_state
 from roughgas.simulation.books import Books, books
 from roughgas.simulation.energies import Columns, Energies, energies
-from roughgas.simulation.recorder import Recorder, now
 
 UNLIMITED = 2**62
+REPORTS = 50
+NAMED = 8  # of the particles in a collapse
+
+
+class Recorder:
+    """Sums up what gases have cost together.
+
+    CPU seconds in the kernel, collisions, and contacts that the contact-time model touched.
+    `tell(time, collisions)` is called some fifty times a run.
+    """
+
+    def __init__(self, tell: Callable[[float, int], None] | None = None):
+        self.seconds = 0.0
+        self.collisions = 0
+        self.touched = 0
+        self._tell = tell
+
+    def run(self, state: State, scene: Scene, sampling: Sampling, samples: int) -> Columns:
+        """Advance `state`; return columns (name -> array of length `samples`).
+
+        Raises CollapseError if contacts accumulate without end.
+        """
+        names = columns(len(scene.box), scene.effects.spin is not None)
+        rows = np.empty((samples, len(names)))
+        record(state, scene, sampling, rows[:0])  # compiles, or fetches the kernel from its cache
+        begin, before = time.process_time(), state.counts.copy()
+        length = max(1, -(-samples // REPORTS))
+        if sampling.refresh > 0:  # which the kernel counts from the start of each call
+            length = -(-length // sampling.refresh) * sampling.refresh
+        for first in range(0, samples, length):
+            part = rows[first : first + length]
+            if record(state, scene, sampling, part) < len(part):
+                raise _collapse(state, scene)
+            if self._tell:
+                self._tell(float(part[-1, 0]), int(part[-1, 1]))
+        self.seconds += time.process_time() - begin
+        self.collisions += state.counts[COLLISIONS] - before[COLLISIONS]
+        self.touched += state.counts[TOUCHED] - before[TOUCHED]
+        return dict(zip(names, rows.T, strict=True))
 
 
 class Watcher(Protocol):
@@ -66,7 +118,7 @@ class Gas:
     @property
     def time(self) -> float:
         """T since the start."""
-        return now(self.state)
+        return _now(self.state)
 
     @property
     def collisions(self) -> int:
@@ -147,3 +199,31 @@ def elastic(scene: Scene) -> Scene:
         walls = walls._replace(restitution=1.0, roughness=-1.0)
     effects = scene.effects._replace(walls=walls)
     return scene._replace(restitution=1.0, roughness=-1.0, effects=effects)
+
+
+def _now(state: State) -> float:
+    clock, unit = state.clock, 2.0 ** -int(state.counts[EXPONENT])
+    return float(clock[ORIGIN] + (clock[BASE] + clock[NOW]) * unit)
+
+
+def _collapse(state: State, scene: Scene) -> CollapseError:
+    names = [str(label) for label in _collapsing(state)]
+    others = f" and {len(names) - NAMED} more" if len(names) > NAMED else ""
+    effects, remedy = scene.effects, "raise r, or the duration of contact_time"
+    if effects.contact_time is None:
+        remedy = "add the contact_time effect to the experiment, or raise r"
+    elif effects.floor is not None or effects.walls is not None:
+        remedy = "raise r, or make floor or walls smoother, between which a particle may be held"
+    where = f"at t = {_now(state):.6g} T of particles {', '.join(names[:NAMED])}{others}"
+    return CollapseError(f"inelastic collapse {where}: {remedy}")
+
+
+def _collapsing(state):
+    """Return the numbers of particles whose last contact is simultaneous with the present instant.
+
+    A refresh brings all particles to the present: just after it, those of the last contact.
+    """
+    last = state.clock[NOW] - INSTANT * state.clock[SPAN]
+    found = state.label[state.trajectory[:, -1] >= last]
+    refreshed = len(found) == len(state.label)
+    return np.sort(state.counts[[LAST_FIRST, LAST_SECOND]] if refreshed else found)

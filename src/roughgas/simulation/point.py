@@ -10,8 +10,7 @@ from roughgas.data.point import Point
 from roughgas.kernel.cache import source_hash
 from roughgas.scene import Scene, build
 from roughgas.simulation import schedule
-from roughgas.simulation.gas import Gas
-from roughgas.simulation.recorder import Recorder
+from roughgas.simulation.gas import Gas, Recorder
 
 
 def run_point(

@@ -9,8 +9,7 @@ from roughgas.kernel import hooks
 from roughgas.scene import Scene
 from roughgas.simulation import cooling, steady
 from roughgas.simulation.energies import Columns
-from roughgas.simulation.gas import Gas
-from roughgas.simulation.recorder import Recorder
+from roughgas.simulation.gas import Gas, Recorder
 
 
 class Kind(Protocol):

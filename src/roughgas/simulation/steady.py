@@ -9,8 +9,7 @@ from roughgas.effects import inertia
 from roughgas.scene import Scene
 from roughgas.simulation.books import exchange
 from roughgas.simulation.energies import Columns, energies, ratio, ratio_of_means
-from roughgas.simulation.gas import Gas
-from roughgas.simulation.recorder import Recorder
+from roughgas.simulation.gas import Gas, Recorder
 from roughgas.statistics.averages import period_means
 from roughgas.statistics.equilibration import detect_start, is_equilibrated
 from roughgas.statistics.errors import autocorrelation_time, blocking
