@@ -20,7 +20,12 @@ COMMANDS = {
         "simulate a point, and write its dataset",
         *KERNEL,
         value("--beta", ROUGHNESS, required=True, action="append"),
-        value("--seed", "seeds: 0, 1, ... (default: 1)", nargs="+", default=["1"]),
+        value(
+            "--seed",
+            "seeds of the random generator: 0, 1, ... (default: 1)",
+            nargs="+",
+            default=["1"],
+        ),
         output("datasets, one a seed", required=False, nargs="+"),
         flag("--json", "print a line of JSON as each seed is done"),
         examples=(
@@ -69,13 +74,15 @@ COMMANDS = {
         "print what theory says of R, at a point or along a curve",
         value("--r VALUE", RESTITUTION, required=True, nargs="+"),
         value("--beta VALUE", ROUGHNESS, required=True, nargs="+"),
-        value("--dimension", "default: both", choices=("2", "3")),
+        value("--dimension", "of disks or of spheres (default: both)", choices=("2", "3")),
         value(
             "--inertia Q", "moment of inertia in m a^2 (default: 0.5 for disks, 0.4 for spheres)"
         ),
         value("--spin-share S", "share of the drive's power that goes into rotation", default="0"),
         value("--mu", "Coulomb friction (default: none, contacts never slide)"),
-        one_of(flag("--json", "for scripts"), flag("--csv", "for spreadsheets")),
+        one_of(
+            flag("--json", "print JSON, for scripts"), flag("--csv", "print CSV, for spreadsheets")
+        ),
         examples=(
             "roughgas theory --r 0.9 --beta 0.5",
             "roughgas theory --r 0.9 --beta -1:1:0.1 --dimension 2",
@@ -91,7 +98,7 @@ COMMANDS = {
         "cli.planning:plan",
         "predict what experiments will cost, and how accurate they will be",
         *experiments("default: all"),
-        value("--cores", "for the wall time (default: all of them)", default=CORES),
+        value("--cores", "number of cores, for the wall time", default=CORES),
         value("--pilots FOLDER", "folder of pilots (default: results/SCALE)"),
         flag("--json", "print the table as JSON; times in s"),
         output("a file for the table as well", required=False),
@@ -110,7 +117,7 @@ COMMANDS = {
         value("--r", "normal restitution, in [0, 1]", default="0.9"),
         value("--beta", "roughness, in [-1, 1]", default="0"),
         value("--runs", "number of runs, 0.3 s each", default="5"),
-        flag("--json", "for scripts"),
+        flag("--json", "print JSON, for scripts"),
         examples=(
             "roughgas bench",
             "roughgas bench cooling vibrated --r 0.8 --beta 0.5 --runs 9",
@@ -153,11 +160,12 @@ COMMANDS = {
     "doctor": command(
         "doctor:doctor",
         "say what is wrong with the installation",
-        flag("--json", "for programs, or to send it on"),
+        flag("--json", "print JSON, for scripts or for asking for help"),
         flag("--clean", "remove compiled kernels of other versions, and do nothing else"),
         examples=("roughgas doctor",),
-        about="Check Python, libraries, compiled kernels, folders and the configuration, and say "
-        "what is wrong and what to do about it. The exit status is 1 if there is a problem.",
+        about="Check libraries and their versions, compiled kernels, figures, movies and folders, "
+        "and say what is wrong and what to do about it. The exit status is 1 if there is a "
+        "problem.",
     ),
     "completion": command(
         "cli.completion:completion",
