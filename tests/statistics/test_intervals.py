@@ -7,7 +7,13 @@ import numpy as np
 import pytest
 
 from roughgas.statistics.errors import blocking
-from roughgas.statistics.intervals import degrees_of_freedom, excess_sigmas, half_width, pooled
+from roughgas.statistics.intervals import (
+    degrees_of_freedom,
+    excess_sigmas,
+    half_width,
+    pooled,
+    sum_error,
+)
 
 
 def exact_t(level, dof):
@@ -82,3 +88,11 @@ def test_intervals_of_one_series_hold_the_truth(ar1, samples, tau, level):
     widths = [half_width(one.stderr, degrees_of_freedom(one.blocks), level) for one in found]
     holds = np.abs(series.mean(axis=1)) <= widths
     assert abs(holds.mean() - level) < 4 * math.sqrt(level * (1 - level) / 800) + 0.02
+
+
+def test_error_of_a_sum():
+    """Equal errors add up with their degrees of freedom; one that dominates counts alone."""
+    error = sum_error([[1.0, 3.0, 0.0, 1.0], [1.0, 1e-9, 0.0, 1.0]], [[5, 3, 9, 0], [5, 7, 9, 8]])
+    np.testing.assert_allclose(error.stderr, [math.sqrt(2), 3.0, 0.0, math.sqrt(2)])
+    np.testing.assert_allclose(error.dof, [10, 3, np.inf, 0])
+    assert sum_error([1.0, 2.0], [math.inf, math.inf]).dof == math.inf
