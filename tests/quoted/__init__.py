@@ -70,12 +70,11 @@ def rewritten(page, quote, numbers):
 
 
 def pages():
-    """Return all pages with numbers, their measured quotes written anew, by path."""
+    """Return all pages with numbers, their quotes written anew, by path."""
     numbers, found = summary(), {}
     for name, quotes in QUOTES.items():
         text = (ROOT / name).read_text(encoding="utf-8")
         for quote in quotes:
-            if numbers.keys() >= set(names(quote)):
-                text = rewritten(text, quote, numbers)
+            text = rewritten(text, quote, numbers)
         found[ROOT / name] = text
     return found
