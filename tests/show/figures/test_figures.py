@@ -4,7 +4,8 @@ from matplotlib.image import imread
 from synthetic import BETA, reduced
 
 from roughgas.base.errors import InputError
-from roughgas.show.catalogue import FIGURES
+from roughgas.base.sources import closure
+from roughgas.show.catalogue import FIGURES, figures_of
 from roughgas.show.figures import fig1a, fig1b, fig2a, fig2b, fig4, fig5, fig6, fig8, panel
 from roughgas.show.gallery import DRAWN, draw
 from roughgas.show.style import LOOKS
@@ -94,6 +95,14 @@ def test_the_same_data_in_any_order_give_the_same_bytes(tmp_path):
     assert content[0] == content[1]
     assert content[0][0].startswith(b"%PDF") and b"CreationDate" not in content[0][0]
     assert sorted((tmp_path / "out").iterdir()) == outputs
+
+
+def test_each_figure_of_the_catalogue_is_drawn_by_code_of_its_own():
+    assert list(DRAWN) == figures_of("paper", "beyond")
+    for name in DRAWN:
+        code = closure(f"show.figures.{name}")
+        assert code & {f"show.figures.{one}" for one in DRAWN} == {f"show.figures.{name}"}
+        assert not any(one.startswith(("kernel", "simulation", "show.cat")) for one in code)
 
 
 def test_points_are_the_data_and_residuals_are_data_minus_theory():

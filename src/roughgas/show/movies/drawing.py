@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from roughgas.config.labels import SWEPT
+from roughgas.data.reduced import third_axis
 from roughgas.scene import Scene
 from roughgas.show import style
 from roughgas.show.encoding import write_movie
@@ -154,7 +154,7 @@ def _name(subject: Subject) -> str:
     name = base.replace("_", " ")
     if not variant:
         return name
-    parameter = subject.settings[SWEPT].partition(".")[2]
+    parameter = third_axis(subject.settings)
     return f"{name}, {parameter.replace('_', ' ')} = {variant.removeprefix(parameter)}"
 
 
