@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 import xarray as xr
 from tests.data import schema_page as page
-from tests.files import point, write_all
+from tests.files import frames, point, write_all
 
 from roughgas.base.errors import InputError
-from roughgas.data.cf import COMMON_ATTRIBUTES
-from roughgas.data.film import read_film
+from roughgas.data.cf import COMMON_ATTRIBUTES, unit_attributes, unit_of
+from roughgas.data.film import read_film, write_film
 from roughgas.data.netcdf import read_netcdf
 from roughgas.data.point import read_point, write_point
 from roughgas.data.reduced import read_reduced
@@ -88,6 +88,28 @@ def test_a_file_holds_no_date(tmp_path):
     time.sleep(1.1)  # a second is as fine as HDF5 would note
     write_point(tmp_path / "b.nc", point())
     assert (tmp_path / "a.nc").read_bytes() == (tmp_path / "b.nc").read_bytes()
+
+
+def test_a_film_says_how_disks_belong_to_frames_and_lacks_nothing(files, tmp_path):
+    with netCDF4.Dataset(files["film"]) as file:
+        assert file["disks"].sample_dimension == "disk"
+        assert file["count"].filters()["complevel"] == 4
+    incomplete = {name: values for name, values in frames().items() if name != "disk_x"}
+    with pytest.raises(ValueError, match="missing variables of a film: disk_x"):
+        write_film(tmp_path / "film.nc", incomplete, {})
+
+
+@pytest.mark.parametrize(
+    ("unit", "attributes"),
+    [
+        ("", {}),
+        ("s", {"units": "s"}),
+        ("T", {"units": "1", "reduced_units": "T"}),
+        ("s/T", {"units": "s", "reduced_units": "s/T"}),
+    ],
+)
+def test_units_are_told_so_that_udunits_reads_them(unit, attributes):
+    assert unit_attributes(unit) == attributes and unit_of(attributes) == unit
 
 
 def test_numbers_that_miss_are_masked_for_those_who_read_masks(files):

@@ -45,6 +45,7 @@ def test_the_parameter_is_a_dimension(inertia):
     assert data.R.dims == ("inertia", "r", "beta")
     assert data.R_seed.dims == ("inertia", "r", "beta", "seed")
     np.testing.assert_array_equal(data.inertia, [0.02, 0.5, 1.0])
+    assert data.inertia.units == "1" and data.inertia.long_name.endswith(": spin.inertia")
     np.testing.assert_array_equal(data.n_seeds[:, 0], [[2, 2], [2, 0], [2, 2]])
     place = data.sel(inertia=1.0, r=0.9, beta=0.5)
     assert place.R.item() == pytest.approx(0.115)

@@ -139,11 +139,11 @@ def critical_friction(r: Numbers) -> np.ndarray:
 def friction_relaxation_rate(
     r: Numbers, beta: Numbers, mu: Numbers, dimension: int = 2, inertia: Choice = None
 ) -> np.ndarray:
-    """Return the rate at which R of a cooling gas goes to `friction_ratio`, per collision.
+    """Return the rate at which R of a cooling gas relaxes, per collision per particle.
 
-    From the linear stability of ln theta, by a central difference; where R = 1 the rate at which
-    theta grows in the end. `relaxation_rate` at infinite mu; 0 where spin is decoupled. All
-    arguments but D broadcast; raises InputError.
+    R goes to `friction_ratio`. From the linear stability of ln theta, by a central difference;
+    where R = 1, the rate at which theta grows in the end. `relaxation_rate` at infinite mu; 0 where
+    spin is decoupled. All arguments but D broadcast; raises InputError.
     """
     gas, mu = material(r, beta, dimension, inertia), _check_friction(mu)
     R = friction_ratio(r, beta, mu, dimension, inertia)
