@@ -25,8 +25,9 @@ def start(command, cwd, **changes):
     )
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-@pytest.mark.parametrize("after", [0.0, 1.5])
+@pytest.mark.parametrize(
+    ("number", "after"), [(signal.SIGINT, 0.0), (signal.SIGTERM, 1.5)], ids=["Ctrl-C", "SIGTERM"]
+)
 def test_a_simulation_stops_in_one_line(tmp_path, number, after):
     command = [sys.executable, "-m", "roughgas", *point("new/point.nc", LONG)]
     running = start(command, tmp_path)
