@@ -1,29 +1,19 @@
-"""Markdown tables that can be read as they stand."""
+"""Tables of measurements, in Markdown that can be read as it stands."""
 
 from collections.abc import Iterable, Sequence
 
+from roughgas.base.layout import markdown
+
 
 def table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """A Markdown table that can be read as it stands: numbers to the right, words to the left."""
+    """Return a Markdown table, with numbers to the right and words to the left."""
     rows = [list(row) for row in rows]
-    widths = [max(len(row[k]) for row in [heads, *rows]) for k in range(len(heads))]
-    left = [
-        not all(row[k][:1].isdigit() or row[k] == "nan" for row in rows) for k in range(len(heads))
-    ]
-    rule = [
-        "-" * (width - 1) + ("-" if words else ":")
-        for width, words in zip(widths, left, strict=True)
-    ]
-    lines = []
-    for row in [heads, rule, *rows]:
-        columns = zip(row, widths, left, strict=True)
-        cells = [
-            cell.ljust(width) if words else cell.rjust(width) for cell, width, words in columns
-        ]
-        lines.append(f"| {' | '.join(cells)} |")
-    return "\n".join(lines)
+    columns = zip(*rows, strict=True)
+    numbers = [all(cell[:1].isdigit() or cell == "nan" for cell in column) for column in columns]
+    align = "".join(">" if number else "<" for number in numbers)
+    return markdown(heads, rows, align, padded=True).rstrip()
 
 
 def short(rate: float) -> str:
-    """A rate in three digits, such as 1.52e6."""
+    """Return a rate in three digits, such as 1.52e6."""
     return f"{rate:.2e}".replace("e+0", "e")
