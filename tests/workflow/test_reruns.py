@@ -13,7 +13,6 @@ AFTER_POINTS = {"claims": 1, "table": 1, "run_times": 1, "document": 2, "figures
 CONFIGURED = {"effective_config": 1, "document": 1, "figures": 1}
 AFTER_BOTH = AFTER_POINTS | CONFIGURED | {"document": 3}
 
-
 FIGURES = {"fig1a", "fig1b", "fig2a", "fig2b", "fig3", "fig4", "fig5", "fig6", "fig7", "fig8"}
 REDUCED = FIGURES | {"reduce", "table", "claims", "run_times", "page", "document"}
 AIMED = {"point", "reach"}  # of the experiment with a target
@@ -25,13 +24,14 @@ FILM = {"clustering", "film", "document"}
 ACCURACY = {"accuracy", "combined_studies", "study_table", "document"}
 COVERAGE = {"coverage", "combined_studies", "study_table", "document"}
 STUDIES = ACCURACY | COVERAGE | {"statistical", "models", "discretisation"}
+SIMULATED = COMPILED | FAMILIES | FILM | STUDIES | {"movie"}
 EDITED = {  # file of the package: what an edit of its code runs again
-    "statistics/plateau.py": COMPILED | FAMILIES | STUDIES | {"movie"},
+    "statistics/plateau.py": SIMULATED,
     "data/film.py": FILM,
-    "theory/prediction.py": REDUCED | {"movie"},
-    "kernel/pairs.py": COMPILED | FAMILIES | FILM | STUDIES | {"movie"},
-    "effects/walls.py": COMPILED | FAMILIES | FILM | STUDIES | {"movie", "effective_config"},
-    "scene/composition.py": COMPILED | FAMILIES | FILM | STUDIES | {"movie"},
+    "theory/prediction.py": REDUCED,
+    "kernel/pairs.py": SIMULATED,
+    "effects/walls.py": SIMULATED | {"effective_config"},
+    "scene/composition.py": SIMULATED,
     "config/checking.py": {"effective_config", "document"},
     "simulation/clustering.py": FILM,
     "results/table.py": {"table"},
