@@ -78,7 +78,7 @@ def read_netcdf(path: str | Path, group: str | None = None) -> "xarray.Dataset":
 
 @contextmanager
 def whole_netcdf(path: str | Path) -> Iterator[Path]:
-    """`whole_file` for the netCDF library, which has other names for a full disk."""
+    """Yield a path as `whole_file` does, for a library with other names for a full disk."""
     try:
         with whole_file(path) as draft:
             yield draft
