@@ -26,7 +26,7 @@ COVERAGE = {"coverage", "combined_studies", "study_table", "document"}
 STUDIES = ACCURACY | COVERAGE | {"statistical", "models", "discretisation"}
 SIMULATED = COMPILED | FAMILIES | FILM | STUDIES | {"movie"}
 EDITED = {  # file of the package: what an edit of its code runs again
-    "statistics/plateau.py": SIMULATED,
+    "statistics/plateau.py": SIMULATED - {"discretisation"},
     "data/film.py": FILM,
     "theory/prediction.py": REDUCED,
     "kernel/pairs.py": SIMULATED,
