@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from roughgas import theory
-from roughgas.studies.accuracy.runs.cumulants import corrected_ratio
+from roughgas.studies.accuracy.runs.free_cooling import corrected_ratio
 
 R_BETA = [(0.9, 0.5), (0.6, -0.2), (0.8, 0.0)]
 
@@ -36,7 +36,7 @@ def balance(r, beta, e, d, dimension):
 @pytest.mark.parametrize("r, beta", R_BETA)
 def test_without_cumulants_it_is_the_closed_form(r, beta, dimension):
     expected = theory.cooling_ratio(r, beta, dimension)
-    assert corrected_ratio(r, beta, 0.0, 0.0, dimension) == pytest.approx(expected, rel=1e-13)
+    assert corrected_ratio(0.0, 0.0, r, beta, dimension) == pytest.approx(expected, rel=1e-13)
     assert balance(r, beta, 0.0, 0.0, dimension) == pytest.approx(expected, rel=1e-13)
 
 
@@ -47,6 +47,6 @@ def test_it_is_the_first_order(r, beta, e, d, dimension):
     """What is left out is of second order: a hundredth of the first for these cumulants."""
     closed = theory.cooling_ratio(r, beta, dimension)
     exact = balance(r, beta, e, d, dimension) - closed
-    first = corrected_ratio(r, beta, e**2, e * d, dimension) - closed
+    first = corrected_ratio(e**2, e * d, r, beta, dimension) - closed
     assert abs(exact) > 1e-5
     assert first == pytest.approx(exact, rel=0.03)

@@ -12,7 +12,7 @@ from tests.data.schema_page import check_study
 from roughgas.statistics.fits import PowerLaw
 from roughgas.studies.accuracy import discretisation, study
 from roughgas.studies.accuracy.discretisation import slowdown, statistical_error
-from roughgas.studies.figures.accuracy.discretisation import draw
+from roughgas.studies.figures.accuracy import draw_discretisation as draw
 
 SETTINGS = {
     "seed": 3,

@@ -13,7 +13,7 @@ from roughgas.studies.accuracy import statistical, study
 from roughgas.studies.accuracy.runs.statistical import Chain, time_from_blocks
 from roughgas.studies.accuracy.statistical import noise, observed
 from roughgas.studies.accuracy.tasks import SCENES, WAYS
-from roughgas.studies.figures.accuracy.statistical import draw
+from roughgas.studies.figures.accuracy import draw_statistical as draw
 
 tasks, run = study("statistical")
 SETTINGS = {
@@ -126,8 +126,8 @@ def test_the_same_settings_give_the_same_numbers(parts):
 def test_segments_continue_one_another(scene):
     """Two of them are one of their joint length: in a cooling gas up to a new unit of velocity."""
     chains = [Chain(EXPERIMENTS[scene], 0.9, 0.0, 8, np.random.default_rng(7)) for _ in range(2)]
-    halves = np.concatenate([chains[0].measure(8).R for _ in range(2)])
-    np.testing.assert_array_equal(chains[1].measure(16).R, halves)
+    halves = np.concatenate([chains[0].measure(8) for _ in range(2)])
+    np.testing.assert_array_equal(chains[1].measure(16), halves)
 
 
 def test_the_panel_shows_every_level_and_both_slopes_of_a_scene(parts):

@@ -54,7 +54,7 @@ def test_a_dilute_event_driven_gas_is_homogeneous(r, beta):
     packing of 0.01 R is some thousandths higher still, since neighbours come to move alike.
     """
     cooling = FreeCooling(EXPERIMENT, r, beta).at_packing(1e-4)
-    R, _ = event_driven(cooling, 8000, 400, np.random.SeedSequence(3))
+    R = event_driven(cooling, 400, 8000, np.random.SeedSequence(3))
     error = R.std(ddof=1) / np.sqrt(len(R))
     simulated, simulated_error = settled(r, beta, 2, 160, 50_000, 4)
     assert error < 4e-3 * R.mean()

@@ -104,6 +104,7 @@ def test_perfectly_rough_elastic_particles_reach_equipartition(dimension):
         (samples.a20, 0.0),
         (samples.a02, 0.0),
         (samples.a11, 0.0),
+        (samples.alignment, 0.0),
     ):
         # a finite number has cumulants of order 1/N
         error = series.std(ddof=1) / np.sqrt(len(series))

@@ -7,13 +7,10 @@ and tables.py shows it in Markdown. Settings are in config.yaml, under `accuracy
 
 from collections.abc import Callable, Mapping
 from functools import partial
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 from roughgas.base.errors import not_one_of
 from roughgas.studies.accuracy.tasks import PANELS, STUDIES, TASKS
-
-if TYPE_CHECKING:
-    import xarray
 
 __all__ = ["PANELS", "STUDIES", "Study", "study"]
 
@@ -22,7 +19,7 @@ class Study(NamedTuple):
     """The names of a study's tasks, the longest first, and how to run one: see `_run`."""
 
     tasks: Callable[[Mapping[str, Any]], list[str]]
-    run: Callable[..., "xarray.Dataset"]
+    run: Callable[..., Any]
 
 
 def study(name: str) -> Study:
@@ -33,17 +30,12 @@ def study(name: str) -> Study:
 
 
 def _run(name, task, settings, experiments, progress=lambda done, total: None):
-    """Return what a task finds: values of R, and CPU seconds without those of compiling.
+    """Return the xarray.Dataset of a task: values of R, and CPU seconds without compiling.
 
     `progress(done, total)` is called now and then. Raises InputError for illegal settings,
     CollapseError as a simulation does.
     """
     from roughgas.studies.accuracy.runs import coverage, discretisation, models, statistical
 
-    registered = {
-        "statistical": statistical.run,
-        "models": models.run,
-        "discretisation": discretisation.run,
-        "coverage": coverage.run,
-    }
-    return registered[name](task, settings, experiments, progress)
+    runs = dict(zip(STUDIES, (statistical, models, discretisation, coverage), strict=True))
+    return runs[name].run(task, settings, experiments, progress)

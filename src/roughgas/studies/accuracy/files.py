@@ -10,14 +10,9 @@ import xarray as xr
 from roughgas.base.errors import InputError
 from roughgas.data.netcdf import Content, content_of, read_netcdf, write_netcdf
 from roughgas.studies.accuracy import coverage, discretisation, models, statistical
-from roughgas.studies.accuracy.tasks import TASKS
+from roughgas.studies.accuracy.tasks import STUDIES, TASKS
 
-COMBINE = {
-    "statistical": statistical.combine,
-    "models": models.combine,
-    "discretisation": discretisation.combine,
-    "coverage": coverage.combine,
-}
+COMBINED_BY = dict(zip(STUDIES, (statistical, models, discretisation, coverage), strict=True))
 
 
 def write_task(path: str | Path, data: xr.Dataset, about: Mapping[str, Any]) -> None:
@@ -47,5 +42,5 @@ def _combined(name: str, parts: Mapping[str, xr.Dataset]) -> xr.Dataset:
     if missing:
         raise InputError(f"tasks of {name}", f"without {sorted(missing)[0]}", "be complete")
     scales = {data.attrs["scale"] for data in parts.values()}
-    data = COMBINE[name](parts, settings)
+    data = COMBINED_BY[name].combine(parts, settings)
     return data.assign_attrs(title=name, scale=", ".join(sorted(scales)))

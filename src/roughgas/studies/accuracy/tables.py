@@ -9,7 +9,7 @@ import xarray as xr
 from roughgas.base.files import write_text
 from roughgas.base.layout import markdown
 from roughgas.statistics.estimate import Estimate
-from roughgas.studies.accuracy.tasks import SCENES
+from roughgas.studies.accuracy.tasks import SCENES, STUDIES
 from roughgas.studies.accuracy.variables import read_studies
 
 SHARES = {
@@ -109,12 +109,7 @@ def coverage(data: xr.Dataset) -> str:
     return f"## Coverage of the stated intervals\n\n{markdown(head, rows)}"
 
 
-TABLES = {
-    "statistical": statistical,
-    "models": models,
-    "discretisation": discretisation,
-    "coverage": coverage,
-}
+TABLES = dict(zip(STUDIES, (statistical, models, discretisation, coverage), strict=True))
 
 
 def in_order(data: xr.Dataset) -> xr.Dataset:

@@ -16,10 +16,6 @@ def corner_name(corner: Mapping[str, Any]) -> str:
     return f"{corner['experiment']}_r{corner['r']}_beta{corner['beta']}"
 
 
-def _statistical(_):
-    return [f"{scene}-{part}" for part in PARTS for scene in SCENES]
-
-
 def _models(settings):
     return [
         *(f"reference-{k}" for k in range(settings["reference"]["jobs"])),
@@ -43,14 +39,10 @@ def _discretisation(settings):
     ]
 
 
-def _coverage(settings):
-    return [corner_name(corner) for corner in settings["corners"]]
-
-
 TASKS = {
-    "statistical": _statistical,
+    "statistical": lambda _: [f"{scene}-{part}" for part in PARTS for scene in SCENES],
     "models": _models,
     "discretisation": _discretisation,
-    "coverage": _coverage,
+    "coverage": lambda settings: [corner_name(one) for one in settings["corners"]],
 }
 """For each study, what names its tasks by its settings, the longest first."""

@@ -20,7 +20,7 @@ from roughgas.kernel.vectors import add_scaled, dot, read, scale, subtract, writ
 TIME, WAITED, LOG_UNIT, MAJORANT = range(4)
 # Entries of HomogeneousGas.counts
 COLLISIONS, DRAWS = range(2)
-COLUMNS = ("time", "collisions", "log_unit", "vv", "ww", "vvvv", "wwww", "vvww")
+COLUMNS = ("time", "collisions", "log_unit", "vv", "ww", "vvvv", "wwww", "vvww", "vwvw")
 
 
 @entry(cache=True)
@@ -117,36 +117,37 @@ def pass_time(gas, material):
 @compiled
 def take_sample(gas, row):
     """Sum over the particles; nothing is moved."""
-    for k in range(len(row)):
-        row[k] = 0.0
+    row[:] = 0.0
     row[0], row[1], row[2] = gas.clock[TIME], gas.counts[COLLISIONS], gas.clock[LOG_UNIT]
     for i in range(len(gas.velocity)):
         v, w = read(gas.velocity, i, 0, gas.axes), spin_of(gas.spin, gas.axes, i)
-        vv, ww = dot(v, v), dot(w, w)
+        vv, ww, vw = dot(v, v), dot(w, w), _along(v, w)
         row[3] += vv
         row[4] += ww
         row[5] += vv * vv
         row[6] += ww * ww
         row[7] += vv * ww
+        row[8] += vw * vw
+
+
+@unrolled
+def _along(v, w):
+    """Return v.w, which in the plane is 0."""
+    if len(w) == 1:
+        return 0.0
+    else:
+        return dot(v, w)
 
 
 @compiled
 def rescale(gas):
     """Remove the total momentum, which roundings leave, and undo the cooling: T_tr = 1."""
-    number, dimension = gas.velocity.shape
     square = 0.0
-    for k in range(dimension):
-        mean = 0.0
-        for i in range(number):
-            mean += gas.velocity[i, k]
-        mean /= number
-        for i in range(number):
-            gas.velocity[i, k] -= mean
-            square += gas.velocity[i, k] ** 2
-    factor = math.sqrt(number * dimension / square)
-    for i in range(number):
-        for k in range(dimension):
-            gas.velocity[i, k] *= factor
-        for k in range(gas.spin.shape[1]):
-            gas.spin[i, k] *= factor
+    for component in gas.velocity.T:
+        component -= component.mean()
+        for speed in component:
+            square += speed**2
+    factor = math.sqrt(gas.velocity.size / square)
+    for scaled in (gas.velocity, gas.spin):
+        scaled *= factor
     gas.clock[LOG_UNIT] -= math.log(factor)

@@ -40,7 +40,7 @@ class Samples(NamedTuple):
     """A gas over time, arrays (samples,). The cumulants vanish where velocities are Maxwellian.
 
     a20 = D <v^4>/[(D + 2) <v^2>^2] - 1, a02 the same of the spins and their n = 2 D - 3 components,
-    a11 = <v^2 w^2>/(<v^2> <w^2>) - 1.
+    a11 = <v^2 w^2>/(<v^2> <w^2>) - 1, alignment = 3 <(v.w)^2>/<v^2 w^2> - 1 (spheres; 0 for disks).
     """
 
     time: np.ndarray  # T
@@ -50,6 +50,7 @@ class Samples(NamedTuple):
     a20: np.ndarray
     a02: np.ndarray
     a11: np.ndarray
+    alignment: np.ndarray
 
     @property
     def R(self) -> np.ndarray:
@@ -96,7 +97,7 @@ def run(
     (number, dimension), spins = gas.velocity.shape, gas.spin.shape[1]
     rows = np.empty((samples, len(COLUMNS)))
     record(gas, material, rng, max(1, round(every * number / 2)), rows)
-    time, collisions, log_unit, vv, ww, vvvv, wwww, vvww = rows.T
+    time, collisions, log_unit, vv, ww, vvvv, wwww, vvww, vwvw = rows.T
     T_tr, T_rot = vv / (number * dimension), material.effects.spin.inertia * ww / (number * spins)
     return Samples(
         time=time,
@@ -106,6 +107,7 @@ def run(
         a20=_quotient(number * dimension * vvvv, (dimension + 2) * vv**2) - 1.0,
         a02=_quotient(number * spins * wwww, (spins + 2) * ww**2) - 1.0,
         a11=_quotient(number * vvww, vv * ww) - 1.0,
+        alignment=_quotient(3.0 * vwvw, vvww) - 1.0 if dimension == 3 else np.zeros(samples),
     )
 
 

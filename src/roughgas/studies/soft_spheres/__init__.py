@@ -6,7 +6,6 @@ time t_c and gives the restitution r and the roughness beta; as t_c goes to 0 it
 of the event-driven kernel. Units: particle radius a = mass m = time unit T = 1.
 """
 
-from roughgas.studies.soft_spheres.gas import SoftGas, SoftScene, new_gas
-from roughgas.studies.soft_spheres.springs import Springs, springs
+from roughgas.studies.soft_spheres.gas import SoftGas, SoftScene, Springs, new_gas, springs
 
 __all__ = ["SoftGas", "SoftScene", "Springs", "new_gas", "springs"]

@@ -35,7 +35,7 @@ def act(gas, spheres, p, x, half):
     begin, end = overlapping(x, u, half)
     if end <= begin:
         if gas.touching[p]:
-            _part(gas, box, p)
+            part(gas, box, p)
         return
     if not gas.touching[p]:
         gas.touching[p] = True
@@ -130,6 +130,7 @@ def _change(gas, box, i, velocity, push, when):
 
 
 @jit
-def _part(gas, box, p):
+def part(gas, box, p):
+    """Note that pair p does not touch, and that its spring is relaxed."""
     gas.touching[p] = False
     write(gas.stretch, p, 0, scale(box, 0.0))

@@ -8,6 +8,7 @@ import math
 from roughgas.kernel.images import periods
 from roughgas.kernel.jit import compiled, jit
 from roughgas.kernel.vectors import read, write
+from roughgas.studies.soft_spheres.contacts import part
 from roughgas.studies.soft_spheres.gas import BUILDS, DIAMETER, FASTEST, NOBODY, PAIRS, TRAVELLED
 
 
@@ -26,17 +27,23 @@ def keep_list(gas, spheres, half):
 def survey(gas):
     """Note how fast the fastest particle is."""
     fastest = 0.0
-    for i in range(gas.velocity.shape[0]):
-        square = 0.0
-        for k in range(gas.velocity.shape[1]):
-            square += gas.velocity[i, k] ** 2
-        fastest = max(fastest, square)
+    for velocity in gas.velocity:
+        fastest = max(fastest, squares(velocity))
     gas.reach[FASTEST] = math.sqrt(fastest)
+
+
+@jit
+def squares(array):
+    """Return the sum of the squares of all elements, in their order."""
+    total = 0.0
+    for x in array.flat:
+        total += x**2
+    return total
 
 
 @compiled
 def _list_pairs(gas, spheres):
-    kept = _set_aside(gas)
+    kept = _set_aside(gas, spheres)
     _sort_into_cells(gas, spheres)
     survey(gas)
     gas.reach[TRAVELLED] = 0.0
@@ -53,15 +60,13 @@ def _list_pairs(gas, spheres):
 
 
 @jit
-def _set_aside(gas):
+def _set_aside(gas, spheres):
     """Copy the contacts under way, which are few, and return their number."""
     kept = 0
     for p in range(gas.counts[PAIRS]):
         if gas.touching[p]:
-            for k in range(2):
-                gas.old_pair[kept, k] = gas.pair[p, k]
-            for k in range(gas.stretch.shape[1]):
-                gas.old_stretch[kept, k] = gas.stretch[p, k]
+            write(gas.old_pair, kept, 0, (gas.pair[p, 0], gas.pair[p, 1]))
+            write(gas.old_stretch, kept, 0, read(gas.stretch, p, 0, spheres.box))
             kept += 1
     return kept
 
@@ -77,8 +82,7 @@ def _take_up(gas, spheres, begin, old):
 @jit
 def _sort_into_cells(gas, spheres):
     """Put particles back into the box, and onto the list of their cell."""
-    for cell in range(len(gas.first)):
-        gas.first[cell] = NOBODY
+    gas.first[:] = NOBODY
     for i in range(len(gas.following)):
         cell = 0
         for k in range(len(spheres.box)):
@@ -103,11 +107,8 @@ def _list_of(gas, spheres, i):
             if j > i and _separation(gas, spheres, i, j, p) <= near:
                 if p + 1 >= len(gas.touching):
                     return False
-                gas.pair[p, 0] = i
-                gas.pair[p, 1] = j
-                gas.touching[p] = False
-                for k in range(len(spheres.box)):
-                    gas.stretch[p, k] = 0.0
+                write(gas.pair, p, 0, (i, j))
+                part(gas, spheres.box, p)
                 gas.counts[PAIRS] += 1
             j = gas.following[j]
     return True

@@ -6,7 +6,7 @@ from roughgas.kernel.jit import compiled, entry, jit
 from roughgas.kernel.vectors import dot, read, subtract
 from roughgas.studies.soft_spheres.contacts import act
 from roughgas.studies.soft_spheres.gas import CONTACTS, DIAMETER, FASTEST, PAIRS, TRAVELLED
-from roughgas.studies.soft_spheres.neighbours import keep_list, survey
+from roughgas.studies.soft_spheres.neighbours import keep_list, squares, survey
 
 COLUMNS = ("vv", "ww", "contacts")
 """What `step` fills in: sums of v^2 and (a w)^2 over the particles, and contacts begun so far."""
@@ -23,7 +23,8 @@ def step(gas, spheres, dt, steps, temperature, rows):
     for k in range(len(rows)):
         if not _advance(gas, spheres, dt, steps):
             return k
-        _sample(gas, rows[k])
+        rows[k, 0], rows[k, 1] = squares(gas.velocity), squares(gas.spin)
+        rows[k, 2] = gas.counts[CONTACTS]
         if temperature > 0.0:
             _rescale(gas, temperature)
     return len(rows)
@@ -65,43 +66,11 @@ def _act_all(gas, spheres, half):
 
 
 @compiled
-def _sample(gas, row):
-    row[0] = _squares(gas.velocity)
-    row[1] = _squares(gas.spin)
-    row[2] = gas.counts[CONTACTS]
-
-
-@compiled
-def _squares(array):
-    total = 0.0
-    for i in range(array.shape[0]):
-        for k in range(array.shape[1]):
-            total += array[i, k] ** 2
-    return total
-
-
-@compiled
 def _rescale(gas, temperature):
     """Contacts under way are scaled with the rest, but for their overlap."""
-    number, dimension = gas.velocity.shape
-    for k in range(dimension):
-        mean = 0.0
-        for i in range(number):
-            mean += gas.velocity[i, k]
-        mean /= number
-        for i in range(number):
-            gas.velocity[i, k] -= mean
-    factor = math.sqrt(number * dimension * temperature / _squares(gas.velocity))
-    _scale(gas.velocity, factor)
-    _scale(gas.spin, factor)
-    for p in range(gas.counts[PAIRS]):
-        for k in range(dimension):
-            gas.stretch[p, k] *= factor
+    for component in gas.velocity.T:
+        component -= component.mean()
+    factor = math.sqrt(gas.velocity.size * temperature / squares(gas.velocity))
+    for scaled in (gas.velocity, gas.spin, gas.stretch[: gas.counts[PAIRS]]):
+        scaled *= factor
     survey(gas)
-
-
-@jit
-def _scale(array, factor):
-    for i in range(array.shape[0]):
-        for k in range(array.shape[1]):
-            array[i, k] *= factor

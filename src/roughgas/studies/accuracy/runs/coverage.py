@@ -1,6 +1,5 @@
 """Points of the study of coverage, each repeated many times and measured a few times for longer."""
 
-import time
 import zlib
 from collections.abc import Callable
 
@@ -10,6 +9,7 @@ import xarray as xr
 from roughgas.scene import build
 from roughgas.simulation import schedule
 from roughgas.simulation.point import run_point
+from roughgas.studies.accuracy.runs import stream, timed
 from roughgas.studies.accuracy.tasks import corner_name
 
 MEASURED = ("R", "R_stderr", "R_dof", "equilibrated", "autocorrelation_time", "measured_from")
@@ -25,14 +25,14 @@ def run(task: str, settings, experiments, progress: Callable[[int, int], None]) 
     short, length = experiment["schedule"] | corner["schedule"], schedule.of(experiment).LENGTH
     long = experiment["schedule"] | {length: reference["length"] * short[length]}
     work = [short] * settings["repetitions"] + [long] * reference["seeds"]
-    stream = np.random.SeedSequence(settings["seed"], spawn_key=(zlib.crc32(task.encode()),))
-    seeds = (stream.generate_state(len(work), "u8") >> 1).tolist()
+    drawn = stream(settings, zlib.crc32(task.encode())).generate_state(len(work), "u8") >> 1
     _point(experiment, short, corner, 0)  # compiles
-    begin, rows = time.process_time(), []
-    for one, seed in zip(work, seeds, strict=True):
-        rows.append(_point(experiment, one, corner, seed))
+    rows, seconds = [], 0.0
+    for one, seed in zip(work, drawn.tolist(), strict=True):
+        row, passed = timed(_point, experiment, one, corner, seed)
+        rows.append(row)
+        seconds += passed
         progress(len(rows), len(work))
-    seconds = time.process_time() - begin
     parts = np.split(np.array(rows, float), [settings["repetitions"]])
     found = {"cpu_seconds": seconds, "window": short[length] * short.get("replicas", 1)}
     for prefix, dim, part in zip(("", "truth_"), ("run", "long_run"), parts, strict=True):

@@ -1,7 +1,7 @@
 """Soft spheres and events in the freely cooling gas, one function a kind of job.
 
-Each takes the study's settings, those of the experiment, progress, and the stream of random numbers
-that belongs to the task, (kind, *places); it returns numbers by name. CPU seconds are those of the
+Each takes the study's settings, those of the experiment, progress, and the task, (kind, *places),
+to which random numbers of its own belong; it returns numbers by name. CPU seconds are those of the
 simulation proper, everything compiled before, at equilibrium.
 """
 
@@ -18,6 +18,7 @@ from roughgas.scene import build, initial_state
 from roughgas.simulation.energies import Energies, ratio
 from roughgas.simulation.gas import Gas
 from roughgas.statistics.errors import blocking_stderr, stderr_over_seeds
+from roughgas.studies.accuracy.runs import stream, timed
 from roughgas.studies.soft_spheres import new_gas, springs
 from roughgas.studies.soft_spheres.gas import CONTACTS
 from roughgas.studies.soft_spheres.stepping import COLUMNS, step
@@ -43,10 +44,10 @@ def run(task: str, settings, experiments, progress: Callable[[int, int], None]) 
     return xr.Dataset({name: (("sample",) if np.ndim(x) else (), x) for name, x in found.items()})
 
 
-def _soft(settings, cooling, progress, stream):
+def _soft(settings, cooling, progress, job):
     """Soft spheres that make `steps` steps in a contact of t_c nu = contact_times[place]."""
-    _, steps, place = stream
-    scene, *where = _start(settings, cooling, stream)
+    _, steps, place = job
+    scene, *where = _start(settings, cooling, job)
     nu = _frequency(settings)
     duration = settings["contact_times"][place] / nu
     q = scene.effects.spin.inertia
@@ -72,10 +73,10 @@ def _soft(settings, cooling, progress, stream):
     return _summary(R, collisions, seconds) | {"frequency": frequency, "steps": legs * per_leg}
 
 
-def _model(settings, cooling, progress, stream):
+def _model(settings, cooling, progress, job):
     """The kernel with the contact-time model, t_c nu being held as for soft spheres."""
-    duration = settings["model_contact_times"][stream[1]] / _frequency(settings)
-    gas = _gas(settings, cooling, stream, effects={"contact_time": {"duration": duration}})
+    duration = settings["model_contact_times"][job[1]] / _frequency(settings)
+    gas = _gas(settings, cooling, job, effects={"contact_time": {"duration": duration}})
     per_leg, recorder = gas.count(LEG), gas.recorder
     gas.cool(per_leg)
     settling, legs = (round(length / LEG) for length in (SETTLING, settings["model_collisions"]))
@@ -92,18 +93,18 @@ def _model(settings, cooling, progress, stream):
     return _summary(R, collisions, recorder.seconds) | {"touched": touched}
 
 
-def _single(settings, cooling, progress, stream):
+def _single(settings, cooling, progress, job):
     """Trajectories and spins in single precision, and how an elastic gas's energy then drifts."""
-    found = _events(settings, cooling, progress, stream, np.float32)
+    found = _events(settings, cooling, progress, job, np.float32)
     for name, precision in (("single", np.float32), ("double", np.float64)):
         drifting = _drift(settings | ELASTIC, cooling, precision)
         found |= {f"{key}_{name}": value for key, value in drifting.items()}
     return found
 
 
-def _events(settings, cooling, progress, stream, precision=np.float64):
+def _events(settings, cooling, progress, job, precision=np.float64):
     """The plain event-driven gas; the kind `event` keeps each sample, for its statistical error."""
-    kind, gas = stream[0], _gas(settings, cooling, stream, precision)
+    kind, gas = job[0], _gas(settings, cooling, job, precision)
     every = gas.count(SAMPLED_EVERY)
     gas.cool(REFRESHED_EVERY * every)
     length = settings["reference_collisions" if kind == "reference" else "event_collisions"]
@@ -120,9 +121,7 @@ def _drift(settings, cooling, precision):
     gas = _gas(settings, cooling, ("elastic",), precision)
     every = max(1, round(settings["event_collisions"] * gas.particles / 40 / ELASTIC_SAMPLES))
     gas.in_collisions(every, 1)
-    seconds = time.process_time()
-    rows = gas.in_collisions(every, ELASTIC_SAMPLES)
-    seconds = time.process_time() - seconds
+    rows, seconds = timed(gas.in_collisions, every, ELASTIC_SAMPLES)
     found = gas.energies(rows)
     changes = np.diff(np.log(2.0 * found.translational + found.rotational)) / every
     elapsed = rows["time"][-1] - rows["time"][0]
@@ -139,22 +138,22 @@ def _frequency(settings):
     return float(collision_frequency(1.0, settings["packing"]))
 
 
-def _gas(settings, cooling, stream, precision=np.float64, effects=None):
-    scene, *where = _start(settings, cooling, stream, effects)
+def _gas(settings, cooling, job, precision=np.float64, effects=None):
+    scene, *where = _start(settings, cooling, job, effects)
     return Gas(scene, new_state(scene, *where, precision))
 
 
-def _start(settings, cooling, stream, effects=None):
+def _start(settings, cooling, job, effects=None):
     """Scene, positions, velocities and spins, the latter at the temperature of theory.
 
     The experiment's particles at the packing that the settings ask for, with spin and `effects`.
     """
-    r, beta, number = settings["r"], settings["beta"], cooling["particles"]
+    (kind, *places), number = job, cooling["particles"]
+    r, beta = settings["r"], settings["beta"]
     side = math.sqrt(number * math.pi / settings["packing"])
     effects = {"spin": cooling["effects"]["spin"]} | (effects or {})
     gas = {"particles": number, "box": [side, side], "effects": effects}
-    key = (STREAMS[stream[0]], *stream[1:])
-    rng = np.random.default_rng(np.random.SeedSequence(settings["seed"], spawn_key=key))
+    rng = np.random.default_rng(stream(settings, STREAMS[kind], *places))
     scene = build(gas, r, beta)
     q = scene.effects.spin.inertia
     theta = stationary_theta(r, beta, len(scene.box), q)

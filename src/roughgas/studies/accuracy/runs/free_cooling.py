@@ -1,4 +1,4 @@
-"""Four ways to R of a freely cooling gas: each gives R, and the CPU seconds that it took.
+"""Four ways to R of a freely cooling gas.
 
 R is the mean over samples of R(t), one sample a collision per particle, once the gas has settled.
 Simulations start at theory's stationary T_rot/T_tr, so that only what theory misses has to settle.
@@ -6,7 +6,6 @@ The rate equations start at equipartition, since there would be nothing to find 
 """
 
 import math
-import time
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
@@ -19,7 +18,8 @@ from roughgas.simulation.energies import ratio
 from roughgas.simulation.gas import Gas
 from roughgas.statistics.errors import blocking_stderr
 from roughgas.studies import dsmc
-from roughgas.studies.accuracy.runs.cumulants import corrected_ratio
+from roughgas.studies.accuracy.runs import timed
+from roughgas.theory.shares import positive_root, shares
 
 E_FOLDS = 10.0  # of theory's relaxation before R is measured
 SHORTEST_TRANSIENT = 10.0  # collisions per particle, in which velocities forget to be Maxwellian
@@ -45,16 +45,6 @@ class FreeCooling(NamedTuple):
         return float(theory.stationary_theta(*self.constants))
 
     @property
-    def ratio(self) -> float:
-        """R of Eq. (K)."""
-        return float(theory.cooling_ratio(*self.constants))
-
-    def with_cumulants(self, a20: float, a11: float) -> float:
-        """Return R of Eq. (K), corrected for velocities that are not Maxwellian."""
-        r, beta, *kind = self.constants
-        return float(corrected_ratio(r, beta, a20, a11, *kind))
-
-    @property
     def transient(self) -> float:
         """Collisions per particle from theory's theta until R has settled."""
         return max(SHORTEST_TRANSIENT, E_FOLDS / float(theory.relaxation_rate(*self.constants)))
@@ -67,10 +57,25 @@ class FreeCooling(NamedTuple):
         box = [factor * side for side in box]
         return self._replace(experiment=dict(self.experiment) | {"box": box})
 
-    def without_positions(self, particles: int, rng: np.random.Generator):
-        """Return a gas of `particles` and its material for direct simulation Monte Carlo."""
-        _, _, *kind = self.constants
-        return dsmc.new_gas(particles, self.theta, rng, *kind), dsmc.material(*self.constants)
+
+def corrected_ratio(a20, a11, r, beta, dimension=2, inertia=None) -> np.ndarray:
+    """Return R of Eq. (K) for a gas with the cumulants a20 and a11 (see dsmc.Samples); broadcasts.
+
+    Fast particles collide more often than others. Averages over collisions therefore exceed those
+    over particles: of v_n^2 and v_t^2 by the factor 1 + a20/4 beyond what a Maxwellian gas has, of
+    the squared spin by 1 + a11/4 where fast particles spin faster. With these factors the rate
+    equations are balanced again, as for Eq. (K), which is the case a20 = a11 = 0. First order in
+    the cumulants, in any number of dimensions, but that spheres whose spin is not isotropic about
+    their velocity have a further term, which is left out. Raises InputError.
+    """
+    rates = theory.collision_rates(r, beta, dimension, inertia)
+    translation, rotation = 1 + np.asarray(a20) / 4, 1 + np.asarray(a11) / 4
+    numerator, denominator = positive_root(
+        rotation * rates.translational_gain,
+        translation * rates.translational_loss - rotation * rates.rotational_loss,
+        translation * rates.rotational_gain,
+    )
+    return shares(denominator, numerator, neither=0)[1][()]
 
 
 def rate_equations(duration: float, *constants) -> float:
@@ -112,20 +117,14 @@ def _moved(state, slope, h):
     return [x + h * dx for x, dx in zip(state, slope, strict=True)]
 
 
-def few_particles(cooling: FreeCooling, length: float, seed) -> tuple[float, float]:
-    """Return R and seconds of one run by direct simulation Monte Carlo.
-
-    It has as many particles as the experiment.
-    """
-    begin, rng = time.process_time(), np.random.default_rng(seed)
-    gas, material = cooling.without_positions(cooling.experiment["particles"], rng)
-    dsmc.run(gas, material, rng, 1, round(cooling.transient))
-    R = dsmc.run(gas, material, rng, 1, round(length)).R.mean()
-    return float(R), time.process_time() - begin
+def few_particles(cooling: FreeCooling, length: float, seed: np.random.SeedSequence) -> float:
+    """Return R by direct simulation Monte Carlo of as many particles as the experiment has."""
+    number = cooling.experiment["particles"]
+    return float(_without_positions(cooling, number, 1, round(length), seed).R.mean())
 
 
 def homogeneous(
-    cooling: FreeCooling, particles: int, precision: float, rng: np.random.Generator
+    cooling: FreeCooling, particles: int, precision: float, seed: np.random.SeedSequence
 ) -> dict[str, float]:
     """Return means over a long run of a large gas by direct simulation Monte Carlo, by name.
 
@@ -135,18 +134,17 @@ def homogeneous(
     R^2 (disks), which live 1/Gamma, half as much again since they are larger, and at least five
     transients.
     """
-    gas, material = cooling.without_positions(particles, rng)
-    length = max(5.0 * cooling.transient, 1.5 * _gaussian_length(cooling, particles, precision))
+    dimension, R = len(cooling.experiment["box"]), cooling.theta / (1.0 + cooling.theta)
+    variance = (1.0 - R) ** 2 * (2.0 / dimension + 2.0 / (2 * dimension - 3)) / particles
+    e_folds = 2.0 * variance / precision**2
+    length = max(5.0 * cooling.transient, 1.5 * (e_folds * cooling.transient / E_FOLDS))
     every = max(1.0, length / MOST_SAMPLES)
-    begin = time.process_time()
-    dsmc.run(gas, material, rng, 1, round(cooling.transient))
-    samples = dsmc.run(gas, material, rng, every, round(length / every))
-    seconds = time.process_time() - begin
-    R, half = samples.R, len(samples.R) // 2
-    early, late = R[:half], R[half:]
+    run = cooling, particles, every, round(length / every), seed
+    samples, seconds = timed(_without_positions, *run)
+    early, late = np.split(samples.R, [len(samples.R) // 2])
     return {
-        "R": R.mean(),
-        "R_stderr": blocking_stderr(R),
+        "R": samples.R.mean(),
+        "R_stderr": blocking_stderr(samples.R),
         "drift": late.mean() - early.mean(),
         "drift_stderr": np.hypot(blocking_stderr(early), blocking_stderr(late)),
         **{name: getattr(samples, name).mean() for name in ("a20", "a02", "a11")},
@@ -155,25 +153,25 @@ def homogeneous(
     }
 
 
-def _gaussian_length(cooling, particles, precision):
-    dimension, R = len(cooling.experiment["box"]), cooling.theta / (1.0 + cooling.theta)
-    variance = (1.0 - R) ** 2 * (2.0 / dimension + 2.0 / (2 * dimension - 3)) / particles
-    e_folds = 2.0 * variance / precision**2
-    return e_folds * cooling.transient / E_FOLDS
+def _without_positions(cooling, particles, every, samples, seed):
+    """Return dsmc.Samples of a gas that has settled."""
+    rng, (_, _, *kind) = np.random.default_rng(seed), cooling.constants
+    gas = dsmc.new_gas(particles, cooling.theta, rng, *kind)
+    material = dsmc.material(*cooling.constants)
+    dsmc.run(gas, material, rng, 1, round(cooling.transient))
+    return dsmc.run(gas, material, rng, every, samples)
 
 
 def event_driven(
-    cooling: FreeCooling, length: float, segment: float, seed: np.random.SeedSequence
-) -> tuple[np.ndarray, float]:
-    """Return R of each replica, shape (replicas,), and the CPU seconds of all.
+    cooling: FreeCooling, segment: float, length: float, seed: np.random.SeedSequence
+) -> np.ndarray:
+    """Return R of each replica, shape (replicas,).
 
     Equal replicas of at most about `segment` collisions per particle are `length` long together,
     the smooth elastic gas before and the transient not counted.
     """
     replicas = max(1, round(length / segment))
-    begin = time.process_time()
-    R = [_replica(cooling, length / replicas, child) for child in seed.spawn(replicas)]
-    return np.array(R), time.process_time() - begin
+    return np.array([_replica(cooling, length / replicas, one) for one in seed.spawn(replicas)])
 
 
 def _replica(cooling, length, seed):

@@ -1,15 +1,16 @@
 """Values of R of a freely cooling gas by every method, and CPU seconds without compiling."""
 
-import functools
 import time
-from collections.abc import Callable, Mapping
-from typing import Any
+from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 import xarray as xr
 
+from roughgas.studies.accuracy.runs import stream, timed
 from roughgas.studies.accuracy.runs.free_cooling import (
     FreeCooling,
+    corrected_ratio,
     event_driven,
     few_particles,
     homogeneous,
@@ -32,33 +33,24 @@ def run(task: str, settings, experiments, progress: Callable[[int, int], None]) 
     return xr.Dataset(*jobs[kind](cooling, settings, progress, place))
 
 
-def stream(settings: Mapping[str, Any], *key: int) -> np.random.SeedSequence:
-    """Return the seed of the stream that belongs to a kind of job, and to what else it counts."""
-    return np.random.SeedSequence(settings["seed"], spawn_key=key)
-
-
 def _reference(cooling, settings, _, place):
     chosen = settings["reference"]
     event_driven(cooling, WARM, WARM, stream(settings, REFERENCE))
     length, seed = chosen["length"] / chosen["jobs"], stream(settings, REFERENCE, 1 + int(place))
-    R, seconds = event_driven(cooling, length, settings["segment"], seed)
+    R, seconds = timed(event_driven, cooling, settings["segment"], length, seed)
     return ({"R": ("replica", R), "seconds": seconds},)
 
 
 def _event_driven(cooling, settings, progress, _):
-    def one(length, seed):
-        R, seconds = event_driven(cooling, length, settings["segment"], seed)
-        return R.mean(), seconds
-
+    one = partial(event_driven, cooling, settings["segment"])
     return _levels("event_driven", EVENT_DRIVEN, one, settings, progress)
 
 
 def _dsmc(cooling, settings, progress, _):
-    one = functools.partial(few_particles, cooling)
+    one = partial(few_particles, cooling)
     found, lengths = _levels("dsmc", DSMC, one, settings, progress)
-    rng = np.random.default_rng(stream(settings, MAP, DSMC))
     number, precision = settings["map"]["particles"], settings["density"]["precision"]
-    many = homogeneous(cooling, number, precision, rng)
+    many = homogeneous(cooling, number, precision, stream(settings, MAP, DSMC))
     return found | {f"homogeneous_{name}": x for name, x in many.items()}, lengths
 
 
@@ -69,25 +61,26 @@ def _levels(name, kind, one, settings, progress):
     values = np.empty((2, len(lengths), groups))
     for k, length in enumerate(lengths):
         for group in range(groups):
-            values[:, k, group] = one(length, stream(settings, kind, 1 + k, group))
+            R, seconds = timed(one, length, stream(settings, kind, 1 + k, group))
+            values[:, k, group] = np.mean(R), seconds
             progress(k * groups + group + 1, len(lengths) * groups)
     dims = (f"{name}_length", "group")
     return {"R": (dims, values[0]), "seconds": (dims, values[1])}, {dims[0]: lengths}
 
 
 def _theory(cooling, settings, progress, _):
-    constants = cooling.constants
-    closed_R, closed_seconds = _timed(lambda: float(cooling_ratio(*constants)))
-    lengths, rates = settings["rate_equations"], []
+    constants, lengths = cooling.constants, settings["rate_equations"]
+    closed_R, closed_seconds = _averaged(lambda: float(cooling_ratio(*constants)))
+    rates = []
     for k, length in enumerate(lengths):
-        rates.append(_timed(functools.partial(rate_equations, length, *constants)))
+        rates.append(_averaged(partial(rate_equations, length, *constants)))
         progress(k + 1, len(lengths))
     R, seconds = (("rate_equations_length", list(x)) for x in zip(*rates, strict=True))
     found = {"closed_form_R": closed_R, "closed_form_seconds": closed_seconds}
     return found | {"R": R, "seconds": seconds}, {"rate_equations_length": lengths}
 
 
-def _timed(function):
+def _averaged(function):
     """Return what a function returns, and the CPU seconds of a call, its mean over SECONDS."""
     calls, begin = 0, time.process_time()
     while (seconds := time.process_time() - begin) < SECONDS:
@@ -99,15 +92,15 @@ def _map(cooling, settings, progress, place):
     """The homogeneous gas at one r and every beta."""
     chosen, r, rows = settings["map"], place.removeprefix("r"), []
     row = [str(one) for one in chosen["r"]].index(r)
-    homogeneous(cooling._replace(r=float(r), beta=1.0), 10, 1.0, np.random.default_rng(0))
+    homogeneous(cooling._replace(r=float(r), beta=1.0), 10, 1.0, 0)
     for k, beta in enumerate(chosen["beta"]):
-        rng = np.random.default_rng(stream(settings, MAP, row, k))
         there = cooling._replace(r=float(r), beta=float(beta))
-        found = homogeneous(there, chosen["particles"], chosen["precision"], rng)
-        explained = there.with_cumulants(found["a20"], found["a11"])
-        rows.append(found | {"theory": there.ratio, "explained": explained})
+        seed = stream(settings, MAP, row, k)
+        found = homogeneous(there, chosen["particles"], chosen["precision"], seed)
+        explained = corrected_ratio(found["a20"], found["a11"], *there.constants)
+        rows.append(found | {"theory": cooling_ratio(*there.constants), "explained": explained})
         progress(k + 1, len(chosen["beta"]))
-    columns = {name: ("beta", [found[name] for found in rows]) for name in rows[0]}
+    columns = {name: ("beta", [float(found[name]) for found in rows]) for name in rows[0]}
     return columns, {"beta": [float(one) for one in chosen["beta"]], "r": float(r)}
 
 
@@ -118,21 +111,17 @@ def _density(cooling, settings, _, place):
     row = [[str(x) for x in one] for one in chosen["points"]].index([r, beta])
     cooling = cooling._replace(r=float(r), beta=float(beta))
     event_driven(cooling, WARM, WARM, stream(settings, DENSITY))
-    R, seconds = [], []
+    runs = []
     for k, packing in enumerate(chosen["packings"]):
-        seed = stream(settings, DENSITY, row, k)
-        there = cooling.at_packing(packing)
-        found = event_driven(there, chosen["length"], settings["segment"], seed)
-        R.append(found[0])
-        seconds.append(found[1])
-    numbers = cooling.experiment["particles"], settings["map"]["particles"]
-    seeds = stream(settings, DENSITY, row, len(R)).spawn(2)
-    few, many = (
-        homogeneous(cooling, number, chosen["precision"], np.random.default_rng(seed))
-        for number, seed in zip(numbers, seeds, strict=True)
-    )
-    found = {"R": (("packing", "replica"), np.array(R)), "seconds": ("packing", seconds)}
-    for name, one in (("R_few", few), ("R_many", many)):
-        found |= {name: one["R"], f"{name}_stderr": one["R_stderr"]}
-    found |= {"theory": cooling.ratio, "dsmc_seconds": few["seconds"] + many["seconds"]}
+        there, seed = cooling.at_packing(packing), stream(settings, DENSITY, row, k)
+        runs.append(timed(event_driven, there, settings["segment"], chosen["length"], seed))
+    R, seconds = zip(*runs, strict=True)
+    found = {"R": (("packing", "replica"), np.array(R)), "seconds": ("packing", list(seconds))}
+    numbers = {"few": cooling.experiment["particles"], "many": settings["map"]["particles"]}
+    seeds, dsmc_seconds = stream(settings, DENSITY, row, len(R)).spawn(2), 0.0
+    for (name, number), seed in zip(numbers.items(), seeds, strict=True):
+        one = homogeneous(cooling, number, chosen["precision"], seed)
+        found |= {f"R_{name}": one["R"], f"R_{name}_stderr": one["R_stderr"]}
+        dsmc_seconds += one["seconds"]
+    found |= {"theory": float(cooling_ratio(*cooling.constants)), "dsmc_seconds": dsmc_seconds}
     return found, {"packing": list(chosen["packings"]), "r": float(r), "beta": float(beta)}

@@ -1,9 +1,9 @@
 """Estimates of R from disjoint stretches of chains, each of them equilibrated once."""
 
 import math
-import time
 from collections.abc import Callable, Mapping
-from typing import Any, NamedTuple
+from functools import partial
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -14,6 +14,7 @@ from roughgas.simulation.energies import ratio
 from roughgas.simulation.steady import samples_per_period
 from roughgas.statistics.averages import period_means
 from roughgas.statistics.errors import autocorrelation_time
+from roughgas.studies.accuracy.runs import stream, timed
 from roughgas.studies.accuracy.tasks import PARTS, SCENES
 
 BLOCK = 50  # autocorrelation times: beyond ten of them no tail is left
@@ -21,20 +22,11 @@ GENEROSITY = 4
 """A level gets more groups than it must have until it costs a fourth of the longest one."""
 
 
-class Segment(NamedTuple):
-    """A stretch of a chain: R of each period (or sample), the CPU seconds and the collisions."""
-
-    R: np.ndarray
-    seconds: float
-    collisions: int
-
-
 class Chain:
     """One gas of an experiment, advanced piece by piece.
 
-    Lengths are in T, in a cooling gas in collisions per particle. `equilibration` is the CPU
-    seconds until the first measurement: from a lattice, through `equilibrate`, and before that, in
-    a cooling gas, through the experiment's thermalisation. `rng` draws the initial state.
+    Lengths are in T, in a cooling gas in collisions per particle. It starts from a lattice, a
+    cooling gas with the experiment's thermalisation; `rng` draws the initial state.
     """
 
     def __init__(
@@ -45,19 +37,14 @@ class Chain:
         equilibrate: float,
         rng: np.random.Generator,
     ):
-        begin = time.process_time()
         self.kind, self.schedule = schedule.of(experiment), experiment["schedule"]
         self.gas = self.kind.start(build(experiment, r, beta), experiment, rng)
         self._sample(equilibrate)
-        self.equilibration = time.process_time() - begin
 
-    def measure(self, length: float) -> Segment:
-        """Return the next `length` of the chain."""
-        begin, before = time.process_time(), self.gas.recorder.collisions
+    def measure(self, length: float) -> np.ndarray:
+        """Return R of each period (or sample) in the next `length` of the chain."""
         R = ratio(self.gas.energies(self._sample(length)))
-        seconds = time.process_time() - begin
-        R = period_means(R, samples_per_period(self.schedule))
-        return Segment(R, seconds, self.gas.recorder.collisions - before)
+        return period_means(R, samples_per_period(self.schedule))
 
     def _sample(self, length: float):
         every = self.schedule["sample_every"]
@@ -68,24 +55,20 @@ def run(task: str, settings, experiments, progress: Callable[[int, int], None]) 
     """Return estimates of R and their costs.
 
     A reference has dimension (chain,), levels have (level, group), NaN where a level has fewer
-    groups.
+    groups. `equilibration` is the CPU seconds until the first measurement of each chain.
     """
     scene, part = task.split("-")
     own, material = settings["scenes"][scene], (float(settings["r"]), float(settings["beta"]))
-    where = (SCENES.index(scene), PARTS.index(part))
-    streams = np.random.SeedSequence(settings["seed"], spawn_key=where)
-
-    def chain(stream):
-        rng = np.random.default_rng(stream)
-        return Chain(experiments[scene], *material, own["equilibrate"], rng)
+    streams = stream(settings, SCENES.index(scene), PARTS.index(part))
+    start = partial(Chain, experiments[scene], *material, own["equilibrate"])
 
     def chains(count):
-        for done, stream in enumerate(streams.spawn(count)):
+        for done, seed in enumerate(streams.spawn(count)):
             progress(done, count)
-            yield chain(stream)
+            yield timed(start, np.random.default_rng(seed))
         progress(count, count)
 
-    chain(np.random.SeedSequence(0)).measure(own["shortest"])  # compiles
+    start(np.random.default_rng(0)).measure(own["shortest"])  # compiles
     measured = {"reference": _reference, "length": _lengths, "seeds": _seeds}[part]
     return xr.Dataset(measured(settings, own["shortest"], chains))
 
@@ -105,22 +88,23 @@ def _reference(settings, shortest, chains) -> dict[str, tuple]:
     """Chains that are together `reference` times as long as the longest level."""
     total = settings["reference"] * 2 ** (settings["levels"] - 1)
     length = math.ceil(total / settings["chains"]) * shortest
-    rows = [_of_reference(chain, length) for chain in chains(settings["chains"])]
+    rows = [_of_reference(*made, length) for made in chains(settings["chains"])]
     return {name: ("chain", [row[name] for row in rows]) for name in rows[0]}
 
 
-def _of_reference(chain, length) -> dict[str, float]:
-    R, seconds, contacts = chain.measure(length)
+def _of_reference(chain, equilibration, length) -> dict[str, float]:
+    before = chain.gas.recorder.collisions
+    R, seconds = timed(chain.measure, length)
     unit, windowed = length / len(R), autocorrelation_time(R)
     return {
-        "equilibration": chain.equilibration,
+        "equilibration": equilibration,
         "R": R.mean(),
         "variance": R.var(),
         "autocorrelation_time": time_from_blocks(R, math.ceil(BLOCK * windowed)) * unit,
         "windowed_time": windowed * unit,
         "time": length,
         "seconds": seconds,
-        "contacts": contacts,
+        "contacts": chain.gas.recorder.collisions - before,
     }
 
 
@@ -153,10 +137,10 @@ def _sizes(settings) -> tuple[np.ndarray, np.ndarray]:
 def _measured(chains, lengths) -> tuple[np.ndarray, list[float]]:
     """Return mean R and CPU seconds, shape (2, chains, lengths), of stretches of each chain."""
     rows, equilibration = [], []
-    for chain in chains:
-        equilibration.append(chain.equilibration)
-        segments = [chain.measure(length) for length in lengths]
-        rows.append([(one.R.mean(), one.seconds) for one in segments])
+    for chain, seconds in chains:
+        equilibration.append(seconds)
+        measured = (timed(chain.measure, length) for length in lengths)
+        rows.append([(R.mean(), seconds) for R, seconds in measured])
     return np.moveaxis(np.array(rows), 2, 0), equilibration
 
 

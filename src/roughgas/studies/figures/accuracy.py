@@ -1,0 +1,222 @@
+"""The work-precision figure: error of R against CPU seconds, a panel for each study, and the map of
+what the Maxwellian theory misses."""
+
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, MultipleLocator
+
+from roughgas.show.style import FAINT, GREY, LOOKS, THEORY, Look
+from roughgas.statistics.fits import power_law
+from roughgas.studies.accuracy.variables import read_studies
+
+SIZE = (10.2, 8.6)  # inches
+WAYS = {"length": "-", "seeds": "--"}
+METHODS = {
+    "closed_form": ("closed form, Eq. (K)", Look(THEORY, "*", "none")),
+    "rate_equations": ("rate equations, run longer and longer", LOOKS[2]),
+    "dsmc": ("DSMC", LOOKS[1]),
+    "event_driven": ("event-driven", LOOKS[0]),
+}
+LEAST = 1 / 3  # of the reference's own error, down to which the axis goes
+SIDESTEP = 0.01  # in beta, between series at the same beta
+ROOM = 0.4  # for the legend beneath, of the range of the data
+PACKING_MARKERS = ("X", "P", "d")
+BOTH = np.sqrt(2.0)  # statistical error and deviation being equal
+RESOLVED = 2.0  # standard errors: deviations below are not told from zero
+BARS = {"elinewidth": 0.8, "capsize": 1.5}
+THIN = {"ls": "none", "elinewidth": 0.9}
+
+
+def draw(path: str | Path) -> Figure:
+    """Return the figure, from the combined dataset of the studies at `path`."""
+    studies = read_studies(path)
+    figure = Figure(figsize=SIZE, layout="constrained")
+    for axes, (name, panel, title) in zip(figure.subplots(2, 2).flat, PANELS, strict=True):
+        panel(axes, studies[name])
+        r, beta = (float(studies[name].attrs[key]) for key in ("r", "beta"))
+        material = rf"$r = {r:g}$, $\beta = {beta:g}$"
+        axes.set_title(title.format(material), loc="left", fontsize=9)
+    return figure
+
+
+def draw_statistical(axes: Axes, data: xr.Dataset) -> None:
+    """Draw relative errors, their fits and the marks of what accuracy, from group `statistical`."""
+    _logarithmic(axes, "CPU seconds of measurement", "relative error of $R$ (rms)")
+    for look, name in zip(LOOKS, data.scene.values, strict=False):
+        scene = data.sel(scene=name)
+        label = f"{name}\n" + "\n".join(_slope(scene.sel(way=way)) for way in WAYS)
+        for way, line in WAYS.items():
+            own, R = scene.sel(way=way), float(scene.R)
+            x, error, groups = own.seconds.values, own.error.values / R, own.groups.values
+            about = {"color": look.colour, "marker": look.marker, "ls": "none", "zorder": 3}
+            about |= {"label": label} if way == "length" else {"mfc": "white"}
+            axes.errorbar(x, error, own.error_stderr / R, mew=0.9, **about, **BARS)
+            ends = np.array([x.min(), x.max()])
+            law = power_law(x, error, groups, bias=-0.5 / groups)
+            axes.plot(ends, law(ends), color=look.colour, ls=line, lw=0.9)
+    axes.set_ylim(bottom=min(data.relative_error.values) / 4)  # leaves room for the legend
+    grey = {"color": GREY, "fontsize": 7.5, "ha": "right"}
+    beside = {"xytext": (-3, 1), "textcoords": "offset points", "va": "bottom"}
+    for accuracy in data.relative_error.values:
+        axes.axhline(accuracy, color=FAINT, lw=0.6, ls=":", zorder=0)
+        place = {"xy": (1.0, accuracy), "xycoords": ("axes fraction", "data")}
+        axes.annotate(f"{100 * accuracy:g} %", **place, **beside, **grey)
+    axes.legend(loc="lower left", title="slopes of error against time", alignment="left")
+    text = "filled: longer runs, open: more runs"
+    axes.text(0.97, 0.95, text, transform=axes.transAxes, **grey)
+
+
+def draw_models(axes: Axes, data: xr.Dataset) -> None:
+    """Draw the relative error of R against CPU seconds, log-log, by each method at one (r, beta).
+
+    There is no line through symbols, since no run was made between two lengths.
+    """
+    _logarithmic(axes, "CPU time of one run / s", r"relative error of $R$")
+    for method, (label, look) in METHODS.items():
+        points = data[f"{method}_seconds"].values, *_with_error(data, f"{method}_error")
+        size = {"markersize": 10} if look.marker == "*" else {}
+        colours = {"color": look.colour, "marker": look.marker}
+        axes.errorbar(*points, label=label, zorder=3, **colours, **size, **THIN)
+    seconds = data.event_driven_seconds.values
+    fit = data.event_driven_prefactor.values * seconds**data.event_driven_slope.values
+    axes.plot(seconds, fit, color=LOOKS[0].colour, linewidth=0.8, zorder=1)
+    _floors(axes, data)
+    title = f"cooling gas, $r = {data.attrs['r']:g}$, $\\beta = {data.attrs['beta']:g}$"
+    axes.legend(loc="lower left", title=title)
+
+
+def draw_map(axes: Axes, data: xr.Dataset) -> None:
+    """Draw R of the homogeneous gas over Eq. (K), minus 1, against beta, a series for each r.
+
+    Lines are what its cumulants a20 and a11 explain.
+    """
+    order = np.argsort(-data.map_r.values)
+    for place, (row, look) in enumerate(zip(order, LOOKS, strict=False)):
+        one = data.isel(map_r=row)
+        x, (y, bar) = one.map_beta.values, _with_error(one, "map_gap")
+        label = f"$r = {float(one.map_r):g}$"
+        about = {"color": look.colour, "marker": look.marker, "label": label}
+        x_beside = x + SIDESTEP * (place - 1.5)
+        axes.errorbar(x_beside, 100 * y, 100 * bar, markersize=3.6, **about, **THIN)
+        axes.plot(
+            x,
+            100 * one.map_gap_explained.values,
+            color=look.colour,
+            linestyle=look.line,
+            linewidth=0.8,
+        )
+        _event_driven(axes, data, float(one.map_r), look.colour)
+    for k, packing in enumerate(data.packing.values):
+        axes.plot([], [], PACKING_MARKERS[k], color=GREY, label=f"event-driven, {packing:g} filled")
+    axes.plot([], [], color=GREY, linewidth=0.8, label="first order in $a_{20}$ and $a_{11}$")
+    axes.axhline(0, color=THEORY, linewidth=0.8, zorder=0)
+    axes.set(xlim=(-1.04, 1.04), xlabel=r"tangential restitution $\beta$")
+    axes.set_ylabel(r"$R/R_{\mathrm{Eq.\,(K)}} - 1$   (%)")
+    axes.xaxis.set_major_locator(MultipleLocator(0.5))
+    axes.xaxis.set_minor_locator(MultipleLocator(0.1))
+    low, high = axes.get_ylim()
+    axes.set_ylim(low - ROOM * (high - low), high)
+    axes.legend(loc="lower center", ncols=2, title="homogeneous gas (DSMC), and what explains it")
+
+
+def draw_discretisation(axes: Axes, data: xr.Dataset) -> None:
+    """Draw error of R against CPU seconds, of soft spheres and events."""
+    _logarithmic(axes, "CPU seconds", r"relative error of $R$, r.m.s.")
+    _events(axes, data)
+    for look, steps in zip(LOOKS, data.steps.values, strict=False):
+        label = f"soft spheres, {steps} steps a contact"
+        _method(axes, data.sel(steps=steps), "soft", look, label)
+    _name_contact_times(axes, data)
+    _method(axes, data, "model", Look(THEORY, "x", ":"), "events, contact-time model")
+    axes.yaxis.set_major_formatter(FuncFormatter(lambda y, _: f"{100.0 * y:g} %"))
+    axes.legend(loc="lower left")
+
+
+PANELS = (
+    ("statistical", draw_statistical, "(a) noise: three scenes, {}"),
+    ("models", draw_models, "(b) models of a cooling gas, {}"),
+    ("discretisation", draw_discretisation, "(c) springs and time steps: cooling gas, {}"),
+    ("models", draw_map, "(d) what the Maxwellian theory of a cooling gas misses"),
+)
+
+
+def _logarithmic(axes, x, y):
+    axes.set(xscale="log", yscale="log", xlabel=x, ylabel=y)
+
+
+def _with_error(data, name):
+    return data[name].values, data[f"{name}_stderr"].values
+
+
+def _slope(own):
+    return f"  {own.way.values!s}: ${float(own.slope):.3f} \\pm {float(own.slope_stderr):.3f}$"
+
+
+def _floors(axes, data):
+    """Draw what each model tends to, whatever is spent on it, and where the reference ends."""
+    across = {"transform": axes.get_yaxis_transform(), "fontsize": 7}
+    for name, text, colour, x, side in (
+        ("closed_form_error", "Maxwellian velocities", THEORY, 0.985, "right"),
+        ("dsmc_floor", "no density, no correlations", LOOKS[1].colour, 0.015, "left"),
+    ):
+        level = float(data[name])
+        axes.axhline(level, color=colour, linewidth=0.7, linestyle=(0, (4, 2)), zorder=0)
+        axes.text(x, 1.06 * level, text, color=colour, va="bottom", ha=side, **across)
+    own = float(data.R_reference_stderr / data.R_reference)
+    axes.axhspan(own * LEAST, own, color=FAINT, alpha=0.25, linewidth=0, zorder=0)
+    axes.set_ylim(bottom=own * LEAST)
+    below = {"va": "top", "ha": "right", "color": GREY} | across
+    axes.text(0.985, 0.9 * own, "error of the reference", **below)
+
+
+def _event_driven(axes, data, r, colour):
+    """Draw the points at this r, each packing fraction with a symbol of its own."""
+    points = data.isel(density_point=np.flatnonzero(data.density_r.values == r))
+    large = {"markersize": 7, "markeredgecolor": THEORY, "markeredgewidth": 0.6, "zorder": 4}
+    for k in range(points.sizes["packing"] if points.sizes["density_point"] else 0):
+        x = points.density_beta.values + 2.5 * SIDESTEP * (k - 0.5)
+        y, bar = _with_error(points.isel(packing=k), "density_gap")
+        marker = PACKING_MARKERS[k]
+        axes.errorbar(x, 100 * y, 100 * bar, color=colour, marker=marker, **large, **THIN)
+
+
+def _events(axes, data):
+    """The event-driven gas has a statistical error alone; the law goes on beyond the data."""
+    seconds = data.statistical_seconds.values
+    error = _with_error(data, "statistical_error")
+    axes.errorbar(seconds, *error, fmt="o", color=THEORY, ms=3, **BARS)
+    last = float(data.event_cpu_seconds), float(data.event_R_stderr / data.reference_R)
+    scale = last[1] * np.sqrt(last[0])
+    reach = np.array([seconds[len(seconds) // 2], 10.0 * last[0]])
+    axes.plot(reach, scale / np.sqrt(reach), color=THEORY, label="events: statistical error")
+
+
+def _method(axes, data, kind, look, label):
+    """sqrt(2) |deviation| against the CPU seconds after which the statistical error is as large."""
+    deviation, stderr = _with_error(data, f"{kind}_deviation")
+    seen = np.abs(deviation) > RESOLVED * stderr
+    size, bar = BOTH * np.abs(deviation[seen]), BOTH * stderr[seen]
+    seconds = data[f"{kind}_matched_seconds"].values[seen]
+    # both coordinates stem from one measured deviation: its error moves a point along a slanted bar
+    (x0, y0), (x1, y1) = ((seconds / (1.0 + s * bar / size) ** 2, size + s * bar) for s in (-1, 1))
+    axes.plot([x0, x1], [y0, y1], color=look.colour, linewidth=0.8)
+    about = {"color": look.colour, "marker": look.marker, "linestyle": look.line}
+    axes.plot(seconds, size, label=label, **about)
+
+
+def _name_contact_times(axes, data):
+    """t_c nu beside the outermost of the points that share it."""
+    small = {"fontsize": 6.5, "color": GREY}
+    seen = np.abs(data.soft_deviation) > RESOLVED * data.soft_deviation_stderr
+    seconds = data.soft_matched_seconds.where(seen, 0.0)
+    for share in data.contact_time.values[seen.any("steps").values]:
+        steps = seconds.sel(contact_time=share).idxmax("steps")
+        point = data.sel(contact_time=share, steps=steps)
+        place = point.soft_matched_seconds.item(), BOTH * abs(point.soft_deviation.item())
+        axes.annotate(f"{share:g}", place, (4, 3), textcoords="offset points", **small)
+    about = {"transform": axes.transAxes, "ha": "right", "va": "top"}
+    axes.text(0.98, 0.97, r"numbers: $t_c\nu$ of soft spheres", **about, **small)
