@@ -1,8 +1,10 @@
 """Theory of gases of rough, inelastic disks and spheres: closed forms and rate equations.
 
 Everything is a function of plain numbers or numpy arrays that broadcast against each other, in
-double precision; plain numbers give a numpy float back. Arguments are checked: an illegal one
-raises `roughgas.base.errors.InputError`.
+double precision; plain numbers give a numpy float back. Arguments are checked: an illegal one, or
+NaN, raises `roughgas.base.errors.InputError`. The same everywhere are `r` in [0, 1] and `beta` in
+[-1, 1], the normal and tangential restitution; `dimension` D, an int, 2 or 3; and `inertia`
+q = I/(m a^2) > 0, by default that of uniform disks or spheres.
 
 Units: particle radius a, mass m and time unit T are 1. A granular temperature is T = 2 E, twice the
 kinetic energy per degree of freedom: T_tr = m <v^2>/D and T_rot = m q a^2 <omega^2>/(2D-3), in
@@ -40,7 +42,6 @@ from roughgas.theory.friction import (
     friction_relaxation_rate,
     sliding_fraction,
 )
-from roughgas.theory.haff import decay_rate, haff_temperature, haff_time
 from roughgas.theory.rate_equations import (
     Rates,
     collision_rates,
@@ -49,6 +50,14 @@ from roughgas.theory.rate_equations import (
     stationary_theta,
     temperature_changes,
 )
-from roughgas.theory.relaxation import Relaxation, collisions_to_relax, relax, relaxation_rate
+from roughgas.theory.relaxation import (
+    Relaxation,
+    collisions_to_relax,
+    decay_rate,
+    haff_temperature,
+    haff_time,
+    relax,
+    relaxation_rate,
+)
 
 __all__ = [name for name, public in globals().items() if callable(public)]

@@ -11,11 +11,6 @@ import numpy as np
 from roughgas.base.errors import InputError
 from roughgas.base.legal import RESTITUTION, ROUGHNESS, Interval
 
-Numbers = float | np.ndarray
-"""What functions of theory take: a plain number, or an array."""
-Choice = Numbers | None
-"""The same, or None for what the function says."""
-
 POSITIVE, NOT_NEGATIVE = Interval("(0, inf)"), Interval("[0, inf)")
 SHARE = Interval("[0, 1]")
 """Share s of a drive's power that goes into spin."""
@@ -24,6 +19,15 @@ NET_SHARE = Interval("[-1, 2]")
 FRICTION = Interval("[0, inf]")
 """Friction coefficient mu; infinite where contacts never slide."""
 IN_WORDS = {POSITIVE: "be a positive number", NOT_NEGATIVE: "be a number >= 0"}
+LEGAL = {
+    "restitution r": RESTITUTION,
+    "roughness beta": ROUGHNESS,
+    "inertia q": POSITIVE,
+    "friction mu": FRICTION,
+    "spin share of the drive": SHARE,
+    "net spin share of the drive": NET_SHARE,
+}
+"""What is legal by the name in messages; NOT_NEGATIVE for any other."""
 
 
 class Material(NamedTuple):
@@ -40,26 +44,12 @@ def moment_of_inertia(dimension: int) -> float:
     return {2: 1 / 2, 3: 2 / 5}[check_dimension(dimension)]
 
 
-def material(r: Numbers, beta: Numbers, dimension: int = 2, inertia: Choice = None) -> Material:
+def material(r, beta, dimension=2, inertia=None) -> Material:
     """Check r, beta, D and q at once; q defaults to that of uniform disks or spheres."""
     dimension = check_dimension(dimension)
     inertia = moment_of_inertia(dimension) if inertia is None else inertia
-    return Material(check_restitution(r), check_roughness(beta), dimension, check_inertia(inertia))
-
-
-def check_restitution(r: Numbers) -> np.ndarray:
-    """Check the normal restitution r, in [0, 1]."""
-    return check("restitution r", r, RESTITUTION)
-
-
-def check_roughness(beta: Numbers) -> np.ndarray:
-    """Check the tangential restitution beta, in [-1, 1]: smooth at -1, perfectly rough at 1."""
-    return check("roughness beta", beta, ROUGHNESS)
-
-
-def check_inertia(q: Numbers) -> np.ndarray:
-    """Check the dimensionless moment of inertia q, positive and finite."""
-    return check("inertia q", q, POSITIVE)
+    r, beta = check("restitution r", r), check("roughness beta", beta)
+    return Material(r, beta, dimension, check("inertia q", inertia))
 
 
 def check_dimension(dimension: int) -> int:
@@ -69,8 +59,9 @@ def check_dimension(dimension: int) -> int:
     return int(dimension)
 
 
-def check(key: str, value: Numbers, interval: Interval = NOT_NEGATIVE) -> np.ndarray:
-    """Check numbers that `key` names; by default they must be finite, and zero or positive."""
+def check(key: str, value: float | np.ndarray, interval: Interval | None = None) -> np.ndarray:
+    """Check numbers that `key` names: whether they lie in `interval`, by default in LEGAL's."""
+    interval = interval or LEGAL.get(key, NOT_NEGATIVE)
     array, legal = np.asarray(value), IN_WORDS.get(interval, interval.legal)
     if array.dtype.kind not in "iuf":
         raise InputError(key, value, legal)

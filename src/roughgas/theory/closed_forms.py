@@ -1,31 +1,22 @@
 """Closed forms for R = E_rot/(E_rot + E_tr), the share of rotational energy per degree of freedom.
 
-Source: McNamara & Luding (1998). r and beta are the normal and tangential restitution, q the
-`inertia` I/(m a^2) and D the `dimension`. r, beta and q broadcast against each other; all raise
-InputError for r outside [0, 1], beta outside [-1, 1], q <= 0, D other than 2 or 3, and NaN.
+Source: McNamara & Luding (1998).
 """
 
 import numpy as np
 
-from roughgas.theory.arguments import (
-    Choice,
-    Numbers,
-    check_inertia,
-    check_restitution,
-    check_roughness,
-    material,
-)
+from roughgas.theory.arguments import check, material
 from roughgas.theory.shares import positive_root, quotient, shares
 
 
-def lun_ratio(beta: Numbers, inertia: Numbers) -> np.ndarray:
+def lun_ratio(beta, inertia) -> np.ndarray:
     """Return R of a gas whose drive adds translational energy only: Eq. (lun), any D and r."""
-    beta, q = check_roughness(beta), check_inertia(inertia)
+    beta, q = check("roughness beta", beta), check("inertia q", inertia)
     gain = q * (1 + beta)
     return gain / (gain + (1 - beta) + 2 * q)
 
 
-def goldshtein_ratio(r: Numbers, beta: Numbers, inertia: Numbers = 2 / 5) -> np.ndarray:
+def goldshtein_ratio(r, beta, inertia=2 / 5) -> np.ndarray:
     """Return R of a freely cooling gas of spheres: Eq. (Goldshtein).
 
     Written without its cancellation for a_G > 0. Limits as in `cooling_ratio`.
@@ -38,9 +29,7 @@ def goldshtein_ratio(r: Numbers, beta: Numbers, inertia: Numbers = 2 / 5) -> np.
     return np.where((a > 0) | (root == 0), rough, smooth)[()]
 
 
-def cooling_ratio(
-    r: Numbers, beta: Numbers, dimension: int = 2, inertia: Choice = None
-) -> np.ndarray:
+def cooling_ratio(r, beta, dimension=2, inertia=None) -> np.ndarray:
     """Return R = 1/(1 + K) of a freely cooling gas, K from Eq. (K).
 
     Accurate to 1e-14 of R up to the ends of the ranges of r and beta, apart from what the
@@ -52,7 +41,7 @@ def cooling_ratio(
     return _cooling_shares(r, beta, dimension, inertia)[1][()]
 
 
-def cooling_K(r: Numbers, beta: Numbers, dimension: int = 2, inertia: Choice = None) -> np.ndarray:
+def cooling_K(r, beta, dimension=2, inertia=None) -> np.ndarray:
     """Return K = E_tr/E_rot of a freely cooling gas: the positive root of Eq. (K).
 
     Limits as in `cooling_ratio`: K = 0 at beta = -1 and r < 1, K infinite at beta = -1 and r = 1.
@@ -60,21 +49,25 @@ def cooling_K(r: Numbers, beta: Numbers, dimension: int = 2, inertia: Choice = N
     return quotient(*_cooling_shares(r, beta, dimension, inertia))
 
 
-def a_G(r: Numbers, beta: Numbers, inertia: Numbers) -> np.ndarray:
+def a_G(r, beta, inertia) -> np.ndarray:
     """Return a_G = (1 - beta^2)(1 - q)/(1 + q) - 1 + r^2, below Eq. (Goldshtein)."""
-    r, beta, q = check_restitution(r), check_roughness(beta), check_inertia(inertia)
+    r, beta, q = (
+        check("restitution r", r),
+        check("roughness beta", beta),
+        check("inertia q", inertia),
+    )
     return (1 - beta) * (1 + beta) * (1 - q) / (1 + q) - (1 - r) * (1 + r)
 
 
-def b_G(beta: Numbers, inertia: Numbers) -> np.ndarray:
+def b_G(beta, inertia) -> np.ndarray:
     """Return b_G = 2 q (1 + beta)^2/(1 + q)^2, below Eq. (Goldshtein)."""
-    beta, q = check_roughness(beta), check_inertia(inertia)
+    beta, q = check("roughness beta", beta), check("inertia q", inertia)
     return 2 * q * ((1 + beta) / (1 + q)) ** 2
 
 
-def c_G(beta: Numbers, inertia: Numbers) -> np.ndarray:
+def c_G(beta, inertia) -> np.ndarray:
     """Return c_G = (1 + beta)(2 q + q^2 - beta q^2)/(1 + q)^2, below Eq. (K)."""
-    beta, q = check_roughness(beta), check_inertia(inertia)
+    beta, q = check("roughness beta", beta), check("inertia q", inertia)
     return (1 + beta) * (2 * q + q**2 * (1 - beta)) / (1 + q) ** 2
 
 

@@ -1,26 +1,25 @@
 """How often particles collide in a gas in equilibrium (Enskog), in 2D and 3D; radius a = 1.
 
-`packing` phi is the fraction of the area or volume that particles fill, from 0 to close packing;
-D is the `dimension`. T_tr and packing broadcast. All raise InputError for illegal arguments.
+`packing` phi is the fraction of the area or volume that particles fill, from 0 to close packing.
 """
 
 import numpy as np
 
 from roughgas.base.legal import Interval
-from roughgas.theory.arguments import Numbers, check, check_dimension
+from roughgas.theory.arguments import check, check_dimension
 from roughgas.theory.shares import quotient
 
 CLOSE_PACKING = {2: np.pi / np.sqrt(12), 3: np.pi / np.sqrt(18)}
 """Packing fraction of the densest arrangement of disks and of spheres."""
 
 
-def number_density(packing: Numbers, dimension: int = 2) -> np.ndarray:
+def number_density(packing, dimension=2) -> np.ndarray:
     """Return particles per area (2D) or volume (3D), in units of a^-D."""
     packing, dimension = _packing(packing, dimension)
     return packing / {2: np.pi, 3: 4 * np.pi / 3}[dimension]
 
 
-def contact_value(packing: Numbers, dimension: int = 2) -> np.ndarray:
+def contact_value(packing, dimension=2) -> np.ndarray:
     """Return chi, the pair distribution at contact: Henderson (2D), Carnahan & Starling (3D).
 
     chi = (1 - 7 phi/16)/(1 - phi)^2 and (1 - phi/2)/(1 - phi)^3; good below the fluid's freezing.
@@ -31,7 +30,7 @@ def contact_value(packing: Numbers, dimension: int = 2) -> np.ndarray:
     return (1 - packing / 2) / (1 - packing) ** 3
 
 
-def collision_frequency(T_tr: Numbers, packing: Numbers, dimension: int = 2) -> np.ndarray:
+def collision_frequency(T_tr, packing, dimension=2) -> np.ndarray:
     """Return nu, collisions per particle per time (1/T); a collision counts for both particles.
 
     nu = 4 a n chi sqrt(pi T_tr/m) in 2D and 16 sqrt(pi) a^2 n chi sqrt(T_tr/m) in 3D, for a
@@ -43,7 +42,7 @@ def collision_frequency(T_tr: Numbers, packing: Numbers, dimension: int = 2) -> 
     return per_speed * crowding * np.sqrt(T_tr)
 
 
-def mean_free_path(packing: Numbers, dimension: int = 2) -> np.ndarray:
+def mean_free_path(packing, dimension=2) -> np.ndarray:
     """Return the mean path between collisions, <|v|>/nu, in radii a; infinite at packing 0.
 
     With <|v|> = sqrt(pi T_tr/2) in 2D and sqrt(8 T_tr/pi) in 3D.

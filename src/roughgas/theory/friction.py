@@ -19,16 +19,7 @@ its spin while translation dies out, O. Herbst, M. Huthmann & A. Zippelius found
 
 import numpy as np
 
-from roughgas.theory.arguments import (
-    FRICTION,
-    SHARE,
-    Choice,
-    Material,
-    Numbers,
-    check,
-    check_restitution,
-    material,
-)
+from roughgas.theory.arguments import Material, check, material
 from roughgas.theory.rate_equations import Rates, collision_rates, stationary_ratio
 from roughgas.theory.shares import quotient, shares
 
@@ -39,63 +30,32 @@ STEP = 1e-4  # of ln theta, for a slope
 NEARLY = 1e-9  # what R lacks to 1 where spin outlives translation, as good as nothing
 
 
-def sliding_fraction(
-    T_tr: Numbers,
-    T_rot: Numbers,
-    r: Numbers,
-    beta: Numbers,
-    mu: Numbers,
-    dimension: int = 2,
-    inertia: Choice = None,
-) -> np.ndarray:
-    """Return the share of contacts that slide; 0 for beta = -1, where there is no friction.
-
-    All arguments but D broadcast; raises InputError.
-    """
-    T_tr, T_rot = _temperatures(T_tr, T_rot)
-    gas, mu = material(r, beta, dimension, inertia), _check_friction(mu)
+def sliding_fraction(T_tr, T_rot, r, beta, mu, dimension=2, inertia=None) -> np.ndarray:
+    """Return the share of contacts that slide; 0 for beta = -1, where there is no friction."""
+    T_tr, T_rot = check("temperature T_tr", T_tr), check("temperature T_rot", T_rot)
+    gas, mu = material(r, beta, dimension, inertia), check("friction mu", mu)
     sticking = 1 / np.hypot(1, _threshold(T_tr, T_rot, gas, mu))
     return (1 - sticking ** (gas.dimension - 1))[()]
 
 
 def friction_changes(
-    T_tr: Numbers,
-    T_rot: Numbers,
-    r: Numbers,
-    beta: Numbers,
-    mu: Numbers,
-    dimension: int = 2,
-    inertia: Choice = None,
-    frequency: Numbers = 1.0,
+    T_tr, T_rot, r, beta, mu, dimension=2, inertia=None, frequency=1.0
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return dT_tr/dt and dT_rot/dt due to collisions: `temperature_changes` at infinite mu.
 
-    With the frequency 1 left as it is, they are per collision per particle. All arguments but D
-    broadcast; raises InputError for negative temperatures or frequencies too.
+    With the frequency 1 left as it is, they are per collision per particle.
     """
-    T_tr, T_rot = _temperatures(T_tr, T_rot)
-    gas, mu = material(r, beta, dimension, inertia), _check_friction(mu)
-    nu = check("frequency", frequency)
-    rates = _rates(T_tr, T_rot, gas, mu)
-    return (
-        nu * (rates.translational_gain * T_rot - rates.translational_loss * T_tr),
-        nu * (rates.rotational_gain * T_tr - rates.rotational_loss * T_rot),
-    )
+    T_tr, T_rot = check("temperature T_tr", T_tr), check("temperature T_rot", T_rot)
+    gas, mu = material(r, beta, dimension, inertia), check("friction mu", mu)
+    return _rates(T_tr, T_rot, gas, mu).changes(T_tr, T_rot, check("frequency", frequency))
 
 
-def friction_ratio(
-    r: Numbers,
-    beta: Numbers,
-    mu: Numbers,
-    dimension: int = 2,
-    inertia: Choice = None,
-    spin_share: Choice = None,
-) -> np.ndarray:
+def friction_ratio(r, beta, mu, dimension=2, inertia=None, spin_share=None) -> np.ndarray:
     """Return the stationary R that a gas started without spin reaches, to 1e-13.
 
     Without a drive (spin_share None), or driven with a share of its power into spin. At infinite mu
     it is `stationary_ratio`; at mu = 0, as at beta = -1, spin is decoupled, and R the limit given
-    there. All arguments but D broadcast; raises InputError.
+    there.
 
     R = 1 where theta grows without bound: translational energy dies out faster than spin.
 
@@ -108,8 +68,8 @@ def friction_ratio(
       (2/pi) (1+r) mu for spheres, to leading order in mu, and for disks at any mu
       2 q e/[1-e + sqrt((1-e)^2 + (q e/kappa)^2)], e = (1+beta)/(2+2q), kappa = mu (1+r)/2.
     """
-    gas, mu = material(r, beta, dimension, inertia), _check_friction(mu)
-    share = None if spin_share is None else check("spin share of the drive", spin_share, SHARE)
+    gas, mu = material(r, beta, dimension, inertia), check("friction mu", mu)
+    share = None if spin_share is None else check("spin share of the drive", spin_share)
     decoupled = stationary_ratio(gas.r, -1, dimension, gas.inertia, share)
     shape = np.broadcast_shapes(gas.beta.shape, mu.shape, np.shape(decoupled))
 
@@ -126,35 +86,32 @@ def friction_ratio(
     return np.where((mu == 0) | (gas.beta == -1), decoupled, high)[()]
 
 
-def critical_friction(r: Numbers) -> np.ndarray:
+def critical_friction(r) -> np.ndarray:
     """Return mu_c = sqrt((1-r)/(1+r)), up to which a cooling gas with dominant spins keeps R = 1.
 
     There, sliding contacts add as much to translation as inelastic ones take, in 2D and 3D, for any
-    beta and q. Raises InputError.
+    beta and q.
     """
-    r = check_restitution(r)
+    r = check("restitution r", r)
     return np.sqrt((1 - r) / (1 + r))[()]
 
 
-def friction_relaxation_rate(
-    r: Numbers, beta: Numbers, mu: Numbers, dimension: int = 2, inertia: Choice = None
-) -> np.ndarray:
+def friction_relaxation_rate(r, beta, mu, dimension=2, inertia=None) -> np.ndarray:
     """Return the rate at which R of a cooling gas relaxes, per collision per particle.
 
     R goes to `friction_ratio`. From the linear stability of ln theta, by a central difference;
     where R = 1, the rate at which theta grows in the end. `relaxation_rate` at infinite mu; 0 where
-    spin is decoupled. All arguments but D broadcast; raises InputError.
+    spin is decoupled.
     """
-    gas, mu = material(r, beta, dimension, inertia), _check_friction(mu)
+    gas, mu = material(r, beta, dimension, inertia), check("friction mu", mu)
     R = friction_ratio(r, beta, mu, dimension, inertia)
     lasting = np.where(R < 1 - NEARLY, R, 0.5)
     theta = lasting / (1 - lasting)
     below, above = theta * np.exp(-STEP), theta * np.exp(STEP)
     fall = _growth(below / (1 + below), gas, mu, None) - _growth(above / (1 + above), gas, mu, None)
     final = _growth(np.asarray(1 - NEARLY), gas, mu, None)
-    decoupled = (mu == 0) | (gas.beta == -1)
     rate = np.where(R < 1 - NEARLY, fall / (2 * STEP), final)
-    return np.where(decoupled, 0.0, rate)[()]
+    return np.where((mu == 0) | (gas.beta == -1), 0.0, rate)[()]
 
 
 def _fastest_fall(growth, shape) -> np.ndarray:
@@ -186,10 +143,9 @@ def _growth(R, gas: Material, mu, share) -> np.ndarray:
             - quotient(rates.translational_gain * T_rot, T_tr)
             + (rates.translational_loss - rates.rotational_loss)
         )
-    translational = rates.translational_loss * T_tr - rates.translational_gain * T_rot
-    rotational = rates.rotational_gain * T_tr - rates.rotational_loss * T_rot
+    translational, rotational = rates.changes(T_tr, T_rot)
     D = gas.dimension
-    return share * D * translational + (1 - share) * (2 * D - 3) * rotational
+    return (1 - share) * (2 * D - 3) * rotational - share * D * translational
 
 
 def _rates(T_tr, T_rot, gas: Material, mu) -> Rates:
@@ -236,15 +192,3 @@ def _threshold(T_tr, T_rot, gas: Material, mu) -> np.ndarray:
 
 def _eta(gas: Material) -> np.ndarray:
     return gas.inertia * (1 + gas.beta) / (2 * (1 + gas.inertia))
-
-
-def _temperatures(T_tr, T_rot) -> tuple[np.ndarray, np.ndarray]:
-    return (
-        check("temperature T_tr", T_tr),
-        check("temperature T_rot", T_rot),
-    )
-
-
-def _check_friction(mu) -> np.ndarray:
-    """Check the friction coefficient mu, >= 0 or infinite."""
-    return check("friction mu", mu, FRICTION)

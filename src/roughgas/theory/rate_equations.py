@@ -14,15 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roughgas.theory.arguments import (
-    NET_SHARE,
-    SHARE,
-    Choice,
-    Numbers,
-    check,
-    check_dimension,
-    material,
-)
+from roughgas.theory.arguments import check, check_dimension, material
 from roughgas.theory.shares import positive_root, quotient, shares
 
 
@@ -38,9 +30,16 @@ class Rates(NamedTuple):
     rotational_gain: np.ndarray
     rotational_loss: np.ndarray
 
+    def changes(self, T_tr, T_rot, frequency=1.0) -> tuple[np.ndarray, np.ndarray]:
+        """Return dT_tr/dt and dT_rot/dt at `frequency` collisions per particle per time."""
+        return (
+            frequency * (self.translational_gain * T_rot - self.translational_loss * T_tr),
+            frequency * (self.rotational_gain * T_tr - self.rotational_loss * T_rot),
+        )
 
-def collision_rates(r: Numbers, beta: Numbers, dimension: int = 2, inertia: Choice = None) -> Rates:
-    """Return the coefficients of the rate equations; r, beta and q broadcast. Raises InputError."""
+
+def collision_rates(r, beta, dimension=2, inertia=None) -> Rates:
+    """Return the coefficients of the rate equations."""
     r, beta, dimension, q = material(r, beta, dimension, inertia)
     eta = q * (1 + beta) / (2 * (1 + q))
     # 1 - eta and 1 - eta/q from sums of positive terms, exact towards beta = 1 and small q.
@@ -56,41 +55,25 @@ def collision_rates(r: Numbers, beta: Numbers, dimension: int = 2, inertia: Choi
 
 
 def temperature_changes(
-    T_tr: Numbers,
-    T_rot: Numbers,
-    r: Numbers,
-    beta: Numbers,
-    dimension: int = 2,
-    inertia: Choice = None,
-    frequency: Numbers = 1.0,
+    T_tr, T_rot, r, beta, dimension=2, inertia=None, frequency=1.0
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return dT_tr/dt and dT_rot/dt due to collisions; `frequency` is nu (`collision_frequency`).
 
-    With the frequency 1 left as it is, they are per collision per particle. All arguments but D
-    broadcast; raises InputError for negative temperatures or frequencies too.
+    With the frequency 1 left as it is, they are per collision per particle.
     """
-    T_tr = check("temperature T_tr", T_tr)
-    T_rot = check("temperature T_rot", T_rot)
+    T_tr, T_rot = check("temperature T_tr", T_tr), check("temperature T_rot", T_rot)
     nu = check("frequency", frequency)
-    rates = collision_rates(r, beta, dimension, inertia)
-    return (
-        nu * (rates.translational_gain * T_rot - rates.translational_loss * T_tr),
-        nu * (rates.rotational_gain * T_tr - rates.rotational_loss * T_rot),
-    )
+    return collision_rates(r, beta, dimension, inertia).changes(T_tr, T_rot, nu)
 
 
-def drive_changes(
-    power: Numbers, spin_share: Numbers, dimension: int = 2
-) -> tuple[np.ndarray, np.ndarray]:
+def drive_changes(power, spin_share, dimension=2) -> tuple[np.ndarray, np.ndarray]:
     """Return dT_tr/dt and dT_rot/dt due to a drive of `power` per particle (m a^2/T^3)."""
-    power, share = check("power", power), check("spin share of the drive", spin_share, SHARE)
+    power, share = check("power", power), check("spin share of the drive", spin_share)
     dimension = check_dimension(dimension)
     return 2 * (1 - share) * power / dimension, 2 * share * power / (2 * dimension - 3)
 
 
-def stationary_ratio(
-    r: Numbers, beta: Numbers, dimension: int = 2, inertia: Choice = None, spin_share: Choice = None
-) -> np.ndarray:
+def stationary_ratio(r, beta, dimension=2, inertia=None, spin_share=None) -> np.ndarray:
     """Return the stationary R = T_rot/(T_rot + T_tr).
 
     That is Eq. (K) without a drive, and Eq. (lun) at spin_share 0. At spin_share 1, theta is the
@@ -98,21 +81,19 @@ def stationary_ratio(
     ratio (1 - s) : s, for any power, even one that varies. If a drive takes out of one motion some
     of what it puts into the other, s lies below 0 or above 1; if it takes out more than collisions
     supply, R is 0 or 1. Limits at beta = -1 are those of beta -> -1 (without a drive, see
-    `cooling_ratio`). Raises InputError.
+    `cooling_ratio`).
     """
     return stationary_shares(r, beta, dimension, inertia, spin_share)[1][()]
 
 
-def stationary_theta(
-    r: Numbers, beta: Numbers, dimension: int = 2, inertia: Choice = None, spin_share: Choice = None
-) -> np.ndarray:
+def stationary_theta(r, beta, dimension=2, inertia=None, spin_share=None) -> np.ndarray:
     """Return the stationary theta = T_rot/T_tr; infinite where R = 1. See `stationary_ratio`."""
     translational, rotational = stationary_shares(r, beta, dimension, inertia, spin_share)
     return quotient(rotational, translational)
 
 
 def stationary_shares(
-    r: Numbers, beta: Numbers, dimension: int = 2, inertia: Choice = None, spin_share: Choice = None
+    r, beta, dimension=2, inertia=None, spin_share=None
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the stationary T_tr and T_rot as shares of their sum: 1 - R and R."""
     r, beta, dimension, q = material(r, beta, dimension, inertia)
@@ -123,7 +104,7 @@ def stationary_shares(
             rates.translational_gain, difference, rates.rotational_gain
         )
         return shares(translational, rotational, neither=0)
-    s, spins = check("net spin share of the drive", spin_share, NET_SHARE), 2 * dimension - 3
+    s, spins = check("net spin share of the drive", spin_share), 2 * dimension - 3
     rotational = s * dimension * rates.translational_loss + (1 - s) * spins * rates.rotational_gain
     translational = (
         s * dimension * rates.translational_gain + (1 - s) * spins * rates.rotational_loss

@@ -2,10 +2,8 @@
 
 import numpy as np
 
-from roughgas.theory.arguments import Numbers
 
-
-def shares(first: Numbers, second: Numbers, neither: Numbers) -> tuple[np.ndarray, np.ndarray]:
+def shares(first, second, neither) -> tuple[np.ndarray, np.ndarray]:
     """Return `first` and `second` (both >= 0, broadcast) divided by their sum.
 
     Where both vanish, `neither` is the share of the second.
@@ -19,9 +17,7 @@ def shares(first: Numbers, second: Numbers, neither: Numbers) -> tuple[np.ndarra
     )
 
 
-def positive_root(
-    square: Numbers, linear: Numbers, constant: Numbers
-) -> tuple[np.ndarray, np.ndarray]:
+def positive_root(square, linear, constant) -> tuple[np.ndarray, np.ndarray]:
     """Return the root x = n/d > 0 of `square` x^2 - `linear` x - `constant` = 0 as the pair (n, d).
 
     `square` and `constant` are >= 0 and `linear` has any sign. Of the two forms of the root the one
@@ -33,7 +29,7 @@ def positive_root(
     return numerator, denominator
 
 
-def quotient(numerator: Numbers, denominator: Numbers) -> np.ndarray:
+def quotient(numerator, denominator) -> np.ndarray:
     """Return `numerator`/`denominator` of numbers >= 0: inf over a vanishing one, 0 for 0/0."""
     numerator, denominator = np.broadcast_arrays(numerator, denominator)
     zero = np.zeros(numerator.shape)

@@ -12,7 +12,7 @@ from roughgas.base.errors import InputError
 from roughgas.cli.options import number
 from roughgas.cli.theory import output
 from roughgas.cli.theory.quantities import Gas, quantities
-from roughgas.theory.arguments import FRICTION, SHARE, check_inertia, moment_of_inertia
+from roughgas.theory.arguments import FRICTION, SHARE, check, moment_of_inertia
 
 RANGE = re.compile(r"([^:]+):([^:]+):([^:]+)")
 MOST = 100_000  # values in a range
@@ -42,7 +42,7 @@ def _gases(options: Namespace) -> list[Gas]:
     if options.mu is not None:
         mu = FRICTION.check("friction mu", number("--mu", options.mu))
     if options.inertia is not None:
-        q = float(check_inertia(number("--inertia", options.inertia)))
+        q = float(check("inertia q", number("--inertia", options.inertia)))
     dimensions = [int(options.dimension)] if options.dimension else [2, 3]
     return [Gas(r, beta, D, q or moment_of_inertia(D), share, mu) for D in dimensions]
 
