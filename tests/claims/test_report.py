@@ -18,7 +18,7 @@ def paths(tmp_path):
 
 
 def test_one_row_for_each_statement_in_both_reports(paths, tmp_path):
-    findings = judge(paths, tmp_path / "claims.json", tmp_path / "claims.md")
+    findings = judge(paths, tmp_path / "claims.json", tmp_path / "claims.md", PAPER)
     content = json.loads((tmp_path / "claims.json").read_text())
     assert [claim["id"] for claim in content["claims"]] == [one.name for one in PAPER.statements]
     assert content["scale"] == "small" and content["data"]["cooling"]["theory"] == "K"
@@ -34,7 +34,7 @@ def test_one_row_for_each_statement_in_both_reports(paths, tmp_path):
 
 
 def test_missing_experiments_are_named(paths, tmp_path):
-    judge(paths, tmp_path / "claims.json", tmp_path / "claims.md")
+    judge(paths, tmp_path / "claims.json", tmp_path / "claims.md", PAPER)
     content = json.loads((tmp_path / "claims.json").read_text())
     claims = {claim["id"]: claim for claim in content["claims"]}
     assert claims["sheared_follows_lun"]["verdict"] == NOT_TESTED
@@ -46,7 +46,7 @@ def test_missing_experiments_are_named(paths, tmp_path):
 def test_the_same_data_give_the_same_bytes(paths, tmp_path):
     reports = []
     for order in (paths, paths[::-1]):
-        judge(order, tmp_path / "claims.json", tmp_path / "claims.md")
+        judge(order, tmp_path / "claims.json", tmp_path / "claims.md", PAPER)
         names = ("claims.json", "claims.md")
         reports.append([(tmp_path / name).read_bytes() for name in names])
     assert reports[0] == reports[1]
@@ -55,9 +55,9 @@ def test_the_same_data_give_the_same_bytes(paths, tmp_path):
 def test_datasets_of_several_scales_are_refused(paths, tmp_path):
     reduced("sheared").assign_attrs(scale="paper").to_netcdf(tmp_path / "sheared.nc")
     with pytest.raises(InputError, match="paper and small"):
-        judge([*paths, tmp_path / "sheared.nc"], tmp_path / "c.json", tmp_path / "c.md")
+        judge([*paths, tmp_path / "sheared.nc"], tmp_path / "c.json", tmp_path / "c.md", PAPER)
     with pytest.raises(InputError, match="none"):
-        judge([], tmp_path / "c.json", tmp_path / "c.md")
+        judge([], tmp_path / "c.json", tmp_path / "c.md", PAPER)
     assert not (tmp_path / "c.md").exists()
 
 
@@ -75,7 +75,7 @@ def test_the_papers_own_experiments_leave_nothing_untested(tmp_path):
     for data in (reduced(), reduced("cooling"), sheared, *walls):
         paths.append(tmp_path / f"{data.attrs['experiment']}.nc")
         data.to_netcdf(paths[-1])
-    findings = judge(paths, tmp_path / "claims.json", tmp_path / "claims.md")
+    findings = judge(paths, tmp_path / "claims.json", tmp_path / "claims.md", PAPER)
     assert len(findings) == 17
     assert NOT_TESTED not in {finding.verdict for finding in findings}
 

@@ -3,7 +3,7 @@ import math
 import numpy as np
 import pytest
 
-from roughgas.claims.sample import Sample
+from roughgas.claims.evidence import Sample
 
 BETA = np.array([-0.5, 0.0, 0.5])
 

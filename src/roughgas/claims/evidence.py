@@ -1,12 +1,13 @@
 """The data that statements are judged on: reduced datasets beside theory, as samples of numbers."""
 
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 
-from roughgas.claims.sample import Sample
 from roughgas.data.reduced import EQUILIBRATED, GRID, read_reduced
+from roughgas.statistics.estimate import SIGNIFICANT, Estimate
 from roughgas.statistics.intervals import sum_error
 from roughgas.theory.arguments import NET_SHARE
 from roughgas.theory.prediction import predicted_ratio
@@ -14,6 +15,79 @@ from roughgas.theory.prediction import predicted_ratio
 
 class NotTestedError(Exception):
     """The data at hand cannot decide a statement; the message says why."""
+
+
+class Sample(NamedTuple):
+    """Independent numbers at points of a sweep, all columns 1-D and of one length.
+
+    `places` has the coordinates of the points by name: r, beta, and any third parameter.
+    """
+
+    places: dict[str, np.ndarray]
+    value: np.ndarray
+    stderr: np.ndarray
+    dof: np.ndarray
+
+    @property
+    def size(self) -> int:
+        """Number of points."""
+        return len(self.value)
+
+    def at(self, index: int) -> Estimate:
+        """Return the estimate at one point."""
+        return Estimate(*(float(column[index]) for column in self[1:]))
+
+    def where(self, mask: np.ndarray) -> "Sample":
+        """Return the part of the sample where `mask` holds."""
+        places = {name: column[mask] for name, column in self.places.items()}
+        return Sample(places, *(column[mask] for column in self[1:]))
+
+    def joined(self, other: "Sample") -> "Sample":
+        """Return both samples as one."""
+        pairs = ((name, (column, other.places[name])) for name, column in self.places.items())
+        places = {name: np.concatenate(pair) for name, pair in pairs}
+        return Sample(places, *map(np.concatenate, zip(self[1:], other[1:], strict=True)))
+
+    def over(self, divisor: np.ndarray) -> "Sample":
+        """Return the values in units of `divisor`, which is positive and exact."""
+        return self._replace(value=self.value / divisor, stderr=self.stderr / divisor)
+
+    def real(self) -> np.ndarray:
+        """Return where the values differ from 0 significantly."""
+        sigma = np.array([self.at(index).sigma for index in range(self.size)])
+        return np.abs(sigma) >= SIGNIFICANT
+
+    def off(self, tolerance: float) -> np.ndarray:
+        """Return where the values differ from 0 significantly and by more than `tolerance`."""
+        return self.real() & (np.abs(self.value) > tolerance)
+
+    def vague(self, tolerance: float) -> np.ndarray:
+        """Return where values larger than `tolerance` have errors too large to tell from 0."""
+        return ~self.real() & (np.abs(self.value) > tolerance)
+
+    def mean(self) -> Estimate:
+        """Return the mean value, its error from the errors of the values."""
+        stderr, dof = sum_error(self.stderr, self.dof)
+        return Estimate(float(self.value.mean()), float(stderr) / self.size, float(dof))
+
+    def rms(self) -> float:
+        """Return the root mean square of the values."""
+        return float(np.sqrt(np.mean(self.value**2)))
+
+    def largest(self) -> tuple[Estimate, str]:
+        """Return the value that is largest in size, and its place."""
+        index = int(np.argmax(np.abs(self.value)))
+        return self.at(index), self.place(index)
+
+    def place(self, index: int) -> str:
+        """Return such as "r = 0.9, beta = 0, mu = 0.1"."""
+        columns = self.places.items()
+        return ", ".join(f"{name} = {written(column[index])}" for name, column in columns)
+
+
+def written(value: float | str) -> str:
+    """Return a coordinate, a number or a word, as text."""
+    return value if isinstance(value, str) else f"{value:g}"
 
 
 def load(path: str | Path) -> xr.Dataset:
@@ -28,7 +102,10 @@ def beside_theory(data: xr.Dataset) -> xr.Dataset:
     attribute `set_aside` counts them. Values of r that were simulated with the contact-time model
     are left out, since the paper has none.
     """
-    data = _without_contact_time(data).copy()
+    data = data.copy()
+    if "contact_time" in data:
+        modelled = np.isfinite(data.contact_time)
+        data = data.sel(r=data.r[~modelled.any([name for name in modelled.dims if name != "r"])])
     found, steady = np.isfinite(data.R), data.equilibrated > EQUILIBRATED
     data["theory"] = data.R.copy(data=theory_of(data))
     data["R"] = data.R.where(steady)
@@ -42,14 +119,6 @@ def theory_of(data: xr.Dataset, **others: np.ndarray) -> np.ndarray:
     axes = [data[name].values for name in data.R.dims]
     places = dict(zip(data.R.dims, np.meshgrid(*axes, indexing="ij"), strict=True))
     return predicted_ratio(data.attrs | places | others, places["r"], places["beta"])
-
-
-def _without_contact_time(data: xr.Dataset) -> xr.Dataset:
-    if "contact_time" not in data:
-        return data
-    modelled = np.isfinite(data.contact_time)
-    modelled = modelled.any([name for name in modelled.dims if name != "r"])
-    return data.sel(r=data.r[~modelled])
 
 
 def sample(values: xr.DataArray, stderr: xr.DataArray, dof: xr.DataArray) -> Sample:

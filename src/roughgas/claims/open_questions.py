@@ -7,6 +7,7 @@ import xarray as xr
 from roughgas import theory
 from roughgas.claims.evidence import (
     NotTestedError,
+    Sample,
     deviation,
     deviation_at_shares,
     difference,
@@ -14,7 +15,6 @@ from roughgas.claims.evidence import (
     over_seeds,
     spin_shares,
 )
-from roughgas.claims.sample import Sample
 from roughgas.claims.verdicts import (
     AGREE,
     FAILS,

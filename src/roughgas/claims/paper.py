@@ -8,6 +8,7 @@ import xarray as xr
 
 from roughgas.claims.evidence import (
     NotTestedError,
+    Sample,
     deviation,
     deviation_in_proportion,
     difference,
@@ -15,7 +16,6 @@ from roughgas.claims.evidence import (
     of_ratio,
     over_seeds,
 )
-from roughgas.claims.sample import Sample
 from roughgas.claims.verdicts import (
     AGREE,
     FAILS,
@@ -47,7 +47,11 @@ NEAR = 0.08
 def theory_underestimates(bed: xr.Dataset) -> Finding:
     """The mean of R - Eq. (lun) at intermediate beta is positive at the lowest r, and larger there
     than at the highest r."""
-    means = _mean_deviations(bed)
+    middle = bed.sel(beta=np.abs(bed.beta) <= INTERMEDIATE)
+    there = [float(r) for r in bed.r.values if np.isfinite(middle.deviation.sel(r=r)).any()]
+    if not there:
+        raise NotTestedError(f"no point with |beta| <= {INTERMEDIATE:g} in a steady state")
+    means = [(r, deviation(middle.sel(r=[r])).mean()) for r in there]
     (low, strong), (high, weak) = means[0], means[-1]
     numbers = tuple((f"mean R - Eq. (lun) at r = {r:g}", mean) for r, mean in means)
     reason = f"At |beta| <= {INTERMEDIATE:g}, R - Eq. (lun) is {text(strong)} at r = {low:g}"
@@ -61,15 +65,6 @@ def theory_underestimates(bed: xr.Dataset) -> Finding:
     if verdict == HOLDS and not (low < high and growth.real and growth.value > 0):
         verdict = QUALIFIED
     return Finding(verdict, reason, numbers)
-
-
-def _mean_deviations(bed: xr.Dataset) -> list[tuple[float, Estimate]]:
-    """Return mean R - Eq. (lun) over intermediate beta, for each r that has data."""
-    middle = bed.sel(beta=np.abs(bed.beta) <= INTERMEDIATE)
-    there = [r for r in bed.r.values if np.isfinite(middle.deviation.sel(r=r)).any()]
-    if not there:
-        raise NotTestedError(f"no point with |beta| <= {INTERMEDIATE:g} in a steady state")
-    return [(float(r), deviation(middle.sel(r=[r])).mean()) for r in there]
 
 
 def beyond_half(*gases: xr.Dataset) -> Sample:
@@ -236,10 +231,9 @@ def depends_on_restitution(cooling: xr.Dataset) -> Finding:
 
 def forcing_decides(cooling: xr.Dataset, bed: xr.Dataset) -> Finding:
     """R cooling - R vibrated is far from zero and is what Eq. (K) - Eq. (lun) says."""
-    names = ("R", "theory")
     change, expected = (
         difference(*(gas.assign(R=gas[name].where(np.isfinite(gas.R))) for gas in (cooling, bed)))
-        for name in names
+        for name in ("R", "theory")
     )
     rest = change._replace(value=change.value - expected.value)
     found = agreement(rest, "the difference of the two theories")
@@ -258,7 +252,8 @@ def restitution_matters_when_cooling(cooling: xr.Dataset, bed: xr.Dataset) -> Fi
     r = np.intersect1d(cooling.r, bed.r)
     effects = [effect_of_restitution(gas.sel(r=r)) for gas in (cooling, bed)]
     (largest, _), (forced, _) = (effect.largest() for effect in effects)
-    free, driven = map(_rms_beyond_noise, effects)
+    beyond_noise = (np.mean(effect.value**2 - effect.stderr**2) for effect in effects)
+    free, driven = (float(np.sqrt(max(square, 0.0))) for square in beyond_noise)
     ratio = free / max(driven, 1e-12)
     matters = largest.real and abs(largest.value) > AGREE
     times = f"{ratio:.1f} times as large" if ratio < 100 else "more than 100 times as large"
@@ -268,8 +263,3 @@ def restitution_matters_when_cooling(cooling: xr.Dataset, bed: xr.Dataset) -> Fi
     )
     numbers = (("largest effect of r, cooling", largest), ("largest effect, vibrated", forced))
     return Finding(graded(matters and ratio >= 3, matters and ratio > 1.5), reason, numbers)
-
-
-def _rms_beyond_noise(effect: Sample) -> float:
-    """Return the root mean square of the values, without the part that their errors explain."""
-    return float(np.sqrt(max(np.mean(effect.value**2 - effect.stderr**2), 0.0)))

@@ -1,12 +1,17 @@
 """The verdicts as JSON, for programs, and as Markdown, for people; same data, same bytes."""
 
 from collections import Counter
+from collections.abc import Iterable
+from pathlib import Path
 from typing import Any
 
 import xarray as xr
 
 from roughgas.base import layout
-from roughgas.claims.statements import Statement, Subject
+from roughgas.base.errors import InputError
+from roughgas.base.files import write_text
+from roughgas.claims.evidence import load
+from roughgas.claims.statements import Statement, Subject, examine
 from roughgas.claims.verdicts import (
     AGREE,
     FAILS,
@@ -43,12 +48,32 @@ the scatter over seeds with the errors within the runs; `coverage.md` shows how 
 intervals hold the truth. Sigma is that of a Gaussian with the same probability as Student's t."""
 
 
-def as_json(subject: Subject, findings: list[Finding], datasets: dict[str, xr.Dataset]) -> str:
+def judge(
+    reduced: Iterable[str | Path], json_path: str | Path, md_path: str | Path, subject: Subject
+) -> list[Finding]:
+    """Judge every statement of a subject on the reduced datasets; write JSON and Markdown.
+
+    Statements whose experiments are not among the datasets are "not tested".
+    Raises InputError where the datasets are of several scales.
+    """
+    datasets = {data.attrs["experiment"]: data for data in map(load, reduced)}
+    scales = sorted({data.attrs["scale"] for data in datasets.values()})
+    if len(scales) != 1:
+        raise InputError("scale of the datasets", " and ".join(scales) or "none", "be one")
+    findings = [examine(statement, datasets) for statement in subject.statements]
+    write_text(json_path, as_json(subject, findings, datasets, *scales))
+    write_text(md_path, as_markdown(subject, findings, *scales))
+    return findings
+
+
+def as_json(
+    subject: Subject, findings: list[Finding], datasets: dict[str, xr.Dataset], scale: str
+) -> str:
     """Return all findings as JSON, with the tolerances used and the data they rest on."""
     content = {
         "schema_version": SCHEMA_VERSION,
         "title": subject.title,
-        "scale": _scale(datasets),
+        "scale": scale,
         "tolerances": TOLERANCES,
         "data": {name: _data(data) for name, data in sorted(datasets.items())},
         "claims": list(map(_claim, subject.statements, findings)),
@@ -65,32 +90,31 @@ def _data(data: xr.Dataset) -> dict[str, Any]:
 
 def _claim(statement: Statement, finding: Finding) -> dict[str, Any]:
     numbers = [{"label": label} | value.record() for label, value in finding.numbers]
-    deciding = numbers[0] if numbers else dict.fromkeys(("value", "error", "sigma"))
+    deciding = numbers[0] if numbers else {}
     return {
         "id": statement.name,
         "quote": statement.quote,
         "experiments": list(statement.experiments),
         "verdict": finding.verdict,
         "reason": finding.reason,
-        "deviation": deciding["value"],
-        "error": deciding["error"],
-        "sigma": deciding["sigma"],
+        "deviation": deciding.get("value"),
+        "error": deciding.get("error"),
+        "sigma": deciding.get("sigma"),
         "numbers": numbers,
     }
 
 
-def as_markdown(subject: Subject, findings: list[Finding], datasets: dict[str, xr.Dataset]) -> str:
+def as_markdown(subject: Subject, findings: list[Finding], scale: str) -> str:
     """Return a table of all verdicts, then the reasons and numbers of each, as Markdown."""
     count = Counter(finding.verdict for finding in findings)
-    verdicts = (HOLDS, QUALIFIED, FAILS, NOT_TESTED)
-    summary = ", ".join(f"{verdict} {count[verdict]}" for verdict in verdicts)
-    rows = list(zip(range(1, len(findings) + 1), subject.statements, findings, strict=True))
+    summary = ", ".join(f"{one} {count[one]}" for one in (HOLDS, QUALIFIED, FAILS, NOT_TESTED))
+    rows = [(i, *row) for i, row in enumerate(zip(subject.statements, findings, strict=True), 1)]
     head = ("#", subject.quotes, "Deciding number", "Verdict")
     parts = [
         f"# {subject.title}",
         f"{subject.about}\n",
         HOW_TO_READ.format(**TOLERANCES),
-        f"Scale: {_scale(datasets)}. Of {len(rows)} statements: {summary}.",
+        f"Scale: {scale}. Of {len(rows)} statements: {summary}.",
         layout.markdown(head, [_cells(*row) for row in rows]).rstrip(),
         *([subject.after] if subject.after else []),
         "## Reasons and numbers",
@@ -110,7 +134,3 @@ def _details(number: int, statement: Statement, finding: Finding) -> str:
         f"### {number}. {statement.name}: {finding.verdict}\n\n> {statement.quote}\n\n"
         f"{finding.reason}\n\n- data: {', '.join(statement.experiments)}{numbers}"
     )
-
-
-def _scale(datasets: dict[str, xr.Dataset]) -> str:
-    return next(iter(datasets.values())).attrs["scale"]

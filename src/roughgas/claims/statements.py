@@ -19,6 +19,8 @@ from roughgas.claims.verdicts import (
     points,
 )
 
+FUNCTIONS = vars(evidence) | vars(open_questions) | vars(paper)
+"""The samples and judges that the tables name."""
 REFERENCE = """\
 S. McNamara and S. Luding, *Energy nonequipartition in systems of inelastic, rough spheres*,
 Phys. Rev. E 58, 2247 (1998)"""
@@ -65,14 +67,9 @@ def _statement(
     def agrees(*datasets: xr.Dataset) -> Finding:
         if in_proportion:
             return agreement_in_proportion(*datasets, agrees_with)
-        return agreement(_function(sample)(*datasets), agrees_with)
+        return agreement(FUNCTIONS[sample](*datasets), agrees_with)
 
-    return Statement(name, quote, tuple(experiments), _function(judge) if judge else agrees)
-
-
-def _function(name: str) -> Callable:
-    home = next(module for module in (paper, open_questions, evidence) if hasattr(module, name))
-    return getattr(home, name)
+    return Statement(name, quote, tuple(experiments), FUNCTIONS[judge] if judge else agrees)
 
 
 def examine(statement: Statement, datasets: dict[str, xr.Dataset]) -> Finding:

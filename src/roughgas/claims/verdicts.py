@@ -5,8 +5,13 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from roughgas.claims.evidence import NotTestedError, deviation, deviation_in_proportion
-from roughgas.claims.sample import Sample, written
+from roughgas.claims.evidence import (
+    NotTestedError,
+    Sample,
+    deviation,
+    deviation_in_proportion,
+    written,
+)
 from roughgas.data.reduced import GRID
 from roughgas.statistics.estimate import SIGNIFICANT, Estimate
 
@@ -66,10 +71,10 @@ def agreement(sample: Sample, other: str) -> Finding:
 
 def _along(sample: Sample) -> list[tuple[str, Estimate]]:
     """Return the largest value at each step of the third parameter, if there is one."""
-    columns = ((name, column) for name, column in sample.places.items() if name not in GRID)
     return [
         (f"largest at {name} = {written(value)}", sample.where(column == value).largest()[0])
-        for name, column in columns
+        for name, column in sample.places.items()
+        if name not in GRID
         for value in np.unique(column)
     ]
 
