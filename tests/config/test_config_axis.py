@@ -101,12 +101,7 @@ def test_settings_of_a_variant_survive_the_way_through_text(whole):
     assert config.from_text(config.as_text(settings), "--settings") == settings
 
 
-def test_what_variants_share_does_not_depend_on_their_values(whole):
-    more = copy.deepcopy(whole)
-    more["experiments"]["spun"]["sweep"]["spin.inertia"].append("0.7")
-    one, other = (config.experiment(each, "spun", "paper") for each in (whole, more))
-    one, other = (config.pilot_settings(config.common(each)) for each in (one, other))
-    assert one == other and one["effects"]["spin"] == {}
+def test_kernels_depend_on_the_values_of_all_variants(whole):
     assert config.kernel_settings(config.experiment(whole, "spun", "paper"))["sweep"] == {
         "spin.inertia": ["1", "0.50", "1e-3"]
     }

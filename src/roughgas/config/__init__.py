@@ -14,12 +14,8 @@ from pathlib import Path
 from typing import Any
 
 from roughgas.base.errors import InputError, not_one_of, shown
-from roughgas.base.layout import as_text as as_text
-from roughgas.config.labels import SWEPT as SWEPT
-from roughgas.config.labels import level
-from roughgas.config.labels import restitution as restitution
-from roughgas.config.labels import roughness as roughness
-from roughgas.config.labels import seed as seed
+from roughgas.base.layout import as_text  # noqa: F401
+from roughgas.config.labels import SWEPT, level, restitution, roughness, seed  # noqa: F401
 
 # checking and YAML are imported where they are used: a job whose settings have been checked needs
 # neither
@@ -203,14 +199,9 @@ def from_text(
     return settings
 
 
-def axes_besides(settings: Mapping[str, Any]) -> list[str]:
-    """Return the keys of all axes in a sweep besides r and beta: legal is one at most."""
-    return [key for key in settings.get("sweep", {}) if "." in key]
-
-
 def third_axis(settings: Mapping[str, Any]) -> str | None:
     """Return the key of the third axis in the sweep of an experiment, or None."""
-    return next(iter(axes_besides(settings)), None)
+    return next((key for key in settings.get("sweep", {}) if "." in key), None)
 
 
 def variants(name: str, settings: Mapping[str, Any]) -> list[str]:
@@ -235,19 +226,13 @@ def variant(name: str, settings: Mapping[str, Any]) -> dict[str, Any]:
     key = third_axis(settings)
     if key is None:
         raise InputError("experiment", shown(name), f"be {base} alone, which has no third axis")
-    _, parameter = key.split(".")
+    effect, parameter = key.split(".")
     if not folder.startswith(parameter):
         legal = f"name a value of {parameter}, such as {variants(base, settings)[0]}"
         raise InputError("experiment", shown(name), legal)
     value = level(folder.removeprefix(parameter), f"{base}: {key}")
-    swept = {one: labels for one, labels in settings["sweep"].items() if one != key}
-    return _changed(settings, key, {parameter: value}) | {"sweep": swept, SWEPT: key}
-
-
-def common(settings: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the settings of an experiment without the parameter that it sweeps."""
-    key = third_axis(settings)
-    return dict(settings) if key is None else _changed(settings, key, {})
+    changes = {"effects": {effect: {parameter: value}}, "sweep": {key: None}, SWEPT: key}
+    return merged(settings, changes)
 
 
 def check_one_variant(name: str, settings: Mapping[str, Any]) -> None:
@@ -255,13 +240,6 @@ def check_one_variant(name: str, settings: Mapping[str, Any]) -> None:
     if third_axis(settings) is not None:
         legal = f"be followed by a variant, such as {variants(name, settings)[0]}"
         raise InputError("experiment", shown(name), legal)
-
-
-def _changed(settings: Mapping[str, Any], key: str, value: Mapping[str, Any]) -> dict[str, Any]:
-    """Return settings with `value` in place of the parameter `key`."""
-    effect, parameter = key.split(".")
-    rest = {one: kept for one, kept in settings["effects"][effect].items() if one != parameter}
-    return dict(settings) | {"effects": settings["effects"] | {effect: rest | value}}
 
 
 def one_of(key: str, value: Any, known: Iterable[str]) -> None:

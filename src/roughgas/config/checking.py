@@ -78,7 +78,7 @@ def check_one(config: Mapping[str, Any], name: str, scale: str, source: str) -> 
 def _check_axis(settings: Mapping[str, Any], where: str) -> None:
     """Refuse two third axes, one of an effect that the experiment does not list, and a value given
     twice. Whether a value is legal is left to the check of its variant."""
-    keys = settings_of.axes_besides(settings)
+    keys = [key for key in settings["sweep"] if "." in key]
     for key in keys[1:]:
         raise InputError(f"{where}.sweep: key", shown(key), f"not stand beside {keys[0]}")
     for key in keys:
