@@ -9,6 +9,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import snakemakes
+
 from roughgas.config.reading import read_yaml
 from roughgas.results.crate import PROJECT
 
@@ -103,7 +105,7 @@ class Project:
     def start(self, *arguments):
         """Snakemake, running."""
         return subprocess.Popen(
-            self._command(arguments),
+            [sys.executable, "-m", "snakemake", *arguments],
             cwd=self.folder,
             env=self.environment(),
             stdout=subprocess.DEVNULL,
@@ -113,15 +115,7 @@ class Project:
 
     def snakemake(self, *arguments):
         """Exit status and all output of a run of Snakemake."""
-        done = subprocess.run(
-            self._command(arguments),
-            cwd=self.folder,
-            env=self.environment(),
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            text=True,
-        )
-        return done.returncode, done.stdout
+        return snakemakes.run(self.folder, self.environment(), arguments)
 
     def environment(self):
         """That of this process, but that Python finds the copy of the package."""
@@ -133,17 +127,11 @@ class Project:
         return output
 
     def planned(self, *targets):
-        """Number of jobs of each rule that a run would start; those that make several points are
-        counted together, as `seeds`."""
+        """Number of jobs of each rule that a run would start (see `jobs_by_rule`)."""
         output = self.succeed("-n", "--config", "scale=tiny", "--", *targets)
         if "Nothing to be done" in output:
             return {}
-        table = output.rsplit("Job stats:", 1)[1].split("total")[0]
-        found = {}
-        for rule, count in re.findall(r"^(\w+) +(\d+)$", table, re.M):
-            name = re.sub(r"\w+_block_\d+", "seeds", rule)
-            found[name] = found.get(name, 0) + int(count)
-        return found
+        return jobs_by_rule(output)
 
     def files(self):
         """All files except Snakemake's own."""
@@ -153,5 +141,13 @@ class Project:
             if path.is_file() and ".snakemake" not in path.parts and path.suffix != ".pyc"
         }
 
-    def _command(self, arguments):
-        return [sys.executable, "-m", "snakemake", *arguments]
+
+def jobs_by_rule(output):
+    """Number of jobs of each rule that a dry run lists; those that make several points are counted
+    together, as `seeds`."""
+    table = output.rsplit("Job stats:", 1)[1].split("total")[0]
+    found = {}
+    for rule, count in re.findall(r"^(\w+) +(\d+)$", table, re.M):
+        name = re.sub(r"\w+_block_\d+", "seeds", rule)
+        found[name] = found.get(name, 0) + int(count)
+    return found

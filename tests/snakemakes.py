@@ -1,0 +1,64 @@
+"""Snakemake in forks of one process that has imported it: a third of the time of a fresh start.
+
+As a program, it reads lines of JSON from standard input, each with a folder, an environment, the
+arguments of Snakemake and a file for all output, and answers each with an exit status.
+"""
+
+import functools
+import gc
+import importlib
+import json
+import os
+import subprocess
+import sys
+import tempfile
+
+# what every run of Snakemake imports late
+LATE = ("jsonschema", "numpy.random", "snakemake.report.html_reporter", "snakemake.storage")
+
+
+def run(folder, environment, arguments):
+    """Return the exit status and all output of a run of Snakemake."""
+    server = _server()
+    with tempfile.NamedTemporaryFile("r") as output:
+        job = [str(folder), dict(environment), [*map(str, arguments)], output.name]
+        print(json.dumps(job), file=server.stdin, flush=True)
+        return int(server.stdout.readline()), output.read()
+
+
+@functools.cache
+def _server():
+    """Start the program below; it ends with its standard input, that is, with this process."""
+    command = [sys.executable, __file__]
+    return subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+
+
+def _become_snakemake(folder, environment, arguments, output):
+    """Leave nothing of the server's but what it has imported, and run Snakemake."""
+    os.setsid()
+    os.chdir(folder)
+    os.environ.clear()
+    os.environ.update(environment)
+    paths = environment.get("PYTHONPATH", "").split(os.pathsep)
+    sys.path[:] = [folder, *filter(None, paths), *ELSEWHERE]
+    sys.argv[1:] = arguments
+    for source, own in ((os.open(os.devnull, os.O_RDONLY), (0,)), (os.open(output, 1), (1, 2))):
+        for stream in own:
+            os.dup2(source, stream)
+    main(arguments)
+
+
+if __name__ == "__main__":
+    from snakemake.cli import main
+
+    for name in LATE:
+        importlib.import_module(name)
+    own = os.environ.get("PYTHONPATH", "").split(os.pathsep)
+    ELSEWHERE = [path for path in sys.path[1:] if path not in own]
+    gc.freeze()  # or each fork would take long to free what it shares
+    for line in sys.stdin:
+        child = os.fork()
+        if not child:
+            _become_snakemake(*json.loads(line))
+            sys.exit()
+        print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), flush=True)
