@@ -119,7 +119,7 @@ rule run_times:
     wildcard_constraints:
         product="run_times|run_times_extensions",
     params:
-        code=code_of("results.times"),
+        code=code_of("results.costs"),
     message:
         "write {output}"
     shell:

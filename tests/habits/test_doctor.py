@@ -7,8 +7,7 @@ import pytest
 from tests.habits.conftest import ROOT, python, roughgas
 
 from roughgas import doctor
-from roughgas.doctor import checks
-from roughgas.doctor.checks import CHECKS, OK, PROBLEM, WARNING
+from roughgas.doctor import CHECKS, OK, PROBLEM, WARNING
 
 ONE = """
 import json, sys
@@ -43,7 +42,7 @@ def test_an_installation_as_it_should_be():
 
 
 def test_a_problem_is_told_in_words_and_by_the_exit_status(monkeypatch, capsys):
-    monkeypatch.setattr(doctor, "CHECKS", {"versions": checks.package, "movies": checks.movie})
+    monkeypatch.setattr(doctor, "CHECKS", {"versions": doctor.package, "movies": doctor.movie})
     monkeypatch.setenv("IMAGEIO_FFMPEG_EXE", "/bin/false")
     with pytest.raises(SystemExit) as stop:
         doctor.doctor(as_json=False, clean=False)
@@ -77,8 +76,8 @@ def test_a_file_that_shadows_a_library(tmp_path):
 
 def test_a_library_that_is_missing_or_broken(monkeypatch):
     monkeypatch.setitem(sys.modules, "emcee", None)
-    monkeypatch.setattr(checks, "MODULES", "emcee")
-    monkeypatch.setattr(checks.util, "find_spec", lambda _: None)
+    monkeypatch.setattr(doctor, "MODULES", "emcee")
+    monkeypatch.setattr(doctor.util, "find_spec", lambda _: None)
     found = check("packages", monkeypatch)
     assert found.verdict == PROBLEM and "emcee" in found.said and "make setup" in found.remedy
 
@@ -87,7 +86,7 @@ def test_other_versions_than_the_pinned_ones(tmp_path, monkeypatch):
     lock = (ROOT / "requirements.lock").read_text()
     (tmp_path / "requirements.lock").write_text(lock.replace("pyyaml==", "pyyaml==99.", 1))
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(checks, "PACKAGE", tmp_path / "nowhere" / "src" / "roughgas")
+    monkeypatch.setattr(doctor, "PACKAGE", tmp_path / "nowhere" / "src" / "roughgas")
     found = check("versions", monkeypatch)
     assert found.verdict == WARNING and found.said.startswith("pyyaml ") and "99." in found.said
 
@@ -101,7 +100,7 @@ def test_other_versions_than_the_pinned_ones(tmp_path, monkeypatch):
 )
 def test_a_kernel_that_is_wrong_or_crashes(monkeypatch, broken, said):
     for name, value in broken.items():
-        monkeypatch.setattr(checks, name, value)
+        monkeypatch.setattr(doctor, name, value)
     found = check("kernel", monkeypatch)
     assert found.verdict == PROBLEM and said in found.said and "kernel cache" in found.remedy
 

@@ -41,7 +41,7 @@ EDITED = {  # file of the package: what an edit of its code runs again
     "studies/dsmc/gas.py": ACCURACY | {"models"},
     "cli/run.py": POINTS | FAMILIES,
 }
-UNUSED = ("cli/steps.py", "doctor/__init__.py", "library.py", "show/catalogue.py")
+UNUSED = ("cli/steps.py", "doctor.py", "library.py", "show/catalogue.py")
 
 
 def test_nothing_is_run_twice(made):

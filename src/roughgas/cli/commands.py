@@ -70,7 +70,7 @@ COMMANDS = {
         "standard error of 0.0030.",
     ),
     "theory": command(
-        "cli.theory:theory",
+        "cli.theory:print_theory",
         "print what theory says of R, at a point or along a curve",
         value("--r VALUE", RESTITUTION, required=True, nargs="+"),
         value("--beta VALUE", ROUGHNESS, required=True, nargs="+"),

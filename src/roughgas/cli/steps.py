@@ -86,7 +86,7 @@ STEPS = {
         examples=("roughgas html results/small/claims.md -o claims.html",),
     ),
     "times": command(
-        "results.times:write_times",
+        "results.costs:write_times",
         "write how long experiments took, in CPU seconds",
         REDUCED,
         output("Markdown file"),

@@ -1,4 +1,4 @@
-"""What was planned beside what happened, from reduced datasets of experiments with a target."""
+"""What experiments took: run times, and for those with a target what was planned beside it."""
 
 import json
 from collections.abc import Iterable, Mapping
@@ -12,6 +12,14 @@ from roughgas.base.files import write_text
 from roughgas.base.layout import markdown
 from roughgas.data.reduced import read_reduced
 
+RUN_TIMES = """\
+# Run times
+
+What the simulations of each experiment took, all points and seeds together: CPU seconds in the
+kernel, without starting processes and compiling.
+
+"""
+TIMES = "experiment | particles | points | seeds | collisions | CPU seconds | collisions a second"
 TEXT = """\
 # What was planned, and what happened
 
@@ -28,9 +36,23 @@ time fixed runs take: *at equal error*, and *to bring every point to the target*
 {}"""
 COLUMNS = "experiment | points | target | met by | planned | made | s planned | spent | ratio"
 AGAINST = ("experiment", "fixed run", "at equal error", "to the target")
-
-
 SPENT = {"seeds": "n_seeds", "seconds": "kernel_seconds", "collisions": "collisions"}
+
+
+def write_times(reduced: Iterable[str | Path], output: str | Path) -> None:
+    """Write a Markdown table with a row for each reduced dataset, and one for their sum."""
+    rows, spent = [], []
+    for data in map(read_reduced, reduced):
+        seeds, collisions, seconds = data.n_seeds, data.collisions.sum(), data.kernel_seconds.sum()
+        spent.append((int((seeds > 0).sum()), int(seeds.sum()), int(collisions), float(seconds)))
+        rows.append([data.attrs["experiment"], data.attrs["particles"], *_sums(*spent[-1])])
+    rows.append(["together", "", *_sums(*map(sum, zip(*spent, strict=True)))])
+    write_text(output, RUN_TIMES + markdown(TIMES.split(" | "), rows))
+
+
+def _sums(points: int, seeds: int, collisions: int, seconds: float) -> list[str]:
+    counts = [f"{count:,}" for count in (points, seeds, collisions)]
+    return [*counts, f"{seconds:,.1f}", f"{collisions / seconds:,.0f}" if seconds > 0 else ""]
 
 
 class Cost(NamedTuple):

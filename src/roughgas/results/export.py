@@ -7,18 +7,17 @@ Numbers are written so that the same bits are read back; missing ones are empty 
 import csv
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+import netCDF4
 import numpy as np
+from xarray import Dataset
 
 from roughgas.base.errors import InputError
 from roughgas.base.files import whole_file
 from roughgas.data.cf import unit_of
 from roughgas.data.netcdf import read_netcdf
 from roughgas.results import table
-
-if TYPE_CHECKING:
-    import xarray
 
 MAIN = ("sample",), ("frame",)
 """The dimensions of the main table of a point, or of a film; it gets the plain name."""
@@ -35,20 +34,17 @@ def export(path: str | Path, output: str | Path) -> list[Path]:
 
     Raises InputError if the pipeline has not written the file, or a newer version has.
     """
-    import netCDF4
-
     with netCDF4.Dataset(path) as file:
         groups = list(file.groups)
         if "schema_version" not in file.ncattrs():
             raise InputError("dataset", path, "be a file that the pipeline wrote")
-    written = []
-    for group in groups or [None]:
-        base = Path(output) if group is None else _beside(output, group)
-        written += _export(read_netcdf(path, group), base)
-    return written
+    if not groups:
+        return _export(read_netcdf(path), Path(output))
+    written = (_export(read_netcdf(path, one), _beside(Path(output), one)) for one in groups)
+    return [file for files in written for file in files]
 
 
-def _export(dataset: "xarray.Dataset", output: Path) -> list[Path]:
+def _export(dataset: Dataset, output: Path) -> list[Path]:
     """Write one dataset; return the paths of its files, the one that describes it last."""
     files, found_in = [], {}
     for dims, names in _columns(dataset).items():
@@ -67,7 +63,7 @@ def _export(dataset: "xarray.Dataset", output: Path) -> list[Path]:
     return [*files, about]
 
 
-def _columns(dataset: "xarray.Dataset") -> dict[tuple[str, ...], list[str]]:
+def _columns(dataset: Dataset) -> dict[tuple[str, ...], list[str]]:
     """Return names of variables by their dimensions, coordinates first; no scalars, no axes."""
     found: dict[tuple[str, ...], list[str]] = {}
     for name in (*dataset.coords, *dataset.data_vars):
@@ -76,9 +72,7 @@ def _columns(dataset: "xarray.Dataset") -> dict[tuple[str, ...], list[str]]:
     return found
 
 
-def _write_columns(
-    file: Path, dataset: "xarray.Dataset", dims: Sequence[str], names: Sequence[str]
-) -> None:
+def _write_columns(file: Path, dataset: Dataset, dims: Sequence[str], names: Sequence[str]) -> None:
     """Write variables of the same dimensions: their places along these, then their values.
 
     The disks of a film come with the number of their frame.
@@ -92,9 +86,7 @@ def _write_columns(
         columns.to_csv(draft, index=False, lineterminator="\n")
 
 
-def _descriptions(
-    dataset: "xarray.Dataset", found_in: Mapping[str, str]
-) -> Iterator[tuple[Any, ...]]:
+def _descriptions(dataset: Dataset, found_in: Mapping[str, str]) -> Iterator[tuple[Any, ...]]:
     """Yield a row for each variable, with the value of a scalar, and for each attribute.
 
     Names of attributes begin with a colon, as in ncdump.
@@ -115,7 +107,6 @@ def _write(file: Path, head: Sequence[str], rows: Iterable[Iterable[Any]]) -> No
             lines.writerow("" if isinstance(x, float) and np.isnan(x) else x for x in row)
 
 
-def _beside(output: str | Path, part: str) -> Path:
+def _beside(output: Path, part: str) -> Path:
     """Return `bed.PART.csv` for `bed.csv`."""
-    output = Path(output)
     return output.with_name(f"{output.stem}.{part}{output.suffix}")

@@ -9,8 +9,9 @@ badly known; each of the two is kept beside it.
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
+import netCDF4
 import numpy as np
 
 from roughgas.base.errors import InputError
@@ -20,9 +21,6 @@ from roughgas.data.reduced import GRID, third_axis
 from roughgas.data.variables import CLOCKS, POINT, Array, described
 from roughgas.statistics.intervals import pooled
 from roughgas.theory.prediction import equation_of
-
-if TYPE_CHECKING:
-    import netCDF4
 
 SAME = ("experiment", "scale", "dimension", "inertia", "spin_share", "mu", "particles", "swept")
 OF_A_POINT = ("r", "beta", "seed", "r_label", "beta_label", "variant", "swept_value", "command")
@@ -60,8 +58,6 @@ def reduce_points(paths: Iterable[str | Path], output: str | Path) -> None:
 
 
 def _summary(path: Path) -> Summary:
-    import netCDF4
-
     with netCDF4.Dataset(path) as file:
         file.set_auto_mask(False)
         attributes = {name: file.getncattr(name) for name in file.ncattrs()}
@@ -74,7 +70,7 @@ def _summary(path: Path) -> Summary:
     return Summary(scalars, attributes)
 
 
-def _window(file: "netCDF4.Dataset", scalars: Mapping[str, float]) -> tuple[float, float]:
+def _window(file: netCDF4.Dataset, scalars: Mapping[str, float]) -> tuple[float, float]:
     """Return the length of the measured window, and the drift of R between its halves."""
     clock = next((name for name in CLOCKS if name in file.variables), None)
     begin = scalars.get("measured_from", math.nan)
@@ -93,7 +89,7 @@ def _combined(points: Sequence[Summary]) -> Content:
     """Return the reduced dataset of points of one experiment."""
     attributes = _common_attributes(points)
     columns = zip(*(point.place for point in points), strict=True)
-    axes = [sorted(set(column), key=_ascending) for column in columns]
+    axes = [sorted(set(column), key=_words_last) for column in columns]
     swept = third_axis(attributes)
     grid = GRID if swept is None else (swept, *GRID)
     stacks = _stacks(points, axes)
@@ -107,8 +103,7 @@ def _combined(points: Sequence[Summary]) -> Content:
     return Content(third | described("reduced", values, "plateau_end" in stacks, grid), attributes)
 
 
-def _ascending(value: Any) -> tuple[bool, Any]:
-    """Return a key that sorts numbers, and words after them."""
+def _words_last(value: Any) -> tuple[bool, Any]:
     return isinstance(value, str), value
 
 
@@ -121,15 +116,13 @@ def _coordinate(values: Sequence[Any]) -> np.ndarray:
 
 def _stacks(points: Sequence[Summary], axes: Sequence[Sequence[Any]]) -> dict[str, np.ndarray]:
     """Return every scalar over the axes, NaN where there is no point."""
-    places = [{value: index for index, value in enumerate(axis)} for axis in axes]
-    shape = tuple(map(len, axes))
+    shape, seen = tuple(map(len, axes)), set()
     stacks = {name: np.full(shape, math.nan) for point in points for name in point.scalars}
-    seen = set()
     for point in points:
         if point.place in seen:
             raise InputError("point (..., r, beta, seed)", point.place, "be given once")
         seen.add(point.place)
-        index = tuple(where[value] for where, value in zip(places, point.place, strict=True))
+        index = tuple(axis.index(value) for axis, value in zip(axes, point.place, strict=True))
         for name, value in point.scalars.items():
             stacks[name][index] = value
     return stacks
@@ -158,8 +151,7 @@ def _errors(
     names = ("R_stderr", "R_dof", "R_ci95")
     found = {name: np.full(count.shape, math.nan) for name in names}
     for place in zip(*np.nonzero(count), strict=True):
-        runs = (stacks[name][place][there[place]] for name in ("R", "R_stderr", "R_dof"))
-        error = pooled(*runs)
+        error = pooled(*(stacks[name][place][there[place]] for name in ("R", "R_stderr", "R_dof")))
         for name, value in zip(names, (*error, error.half_width(0.95)), strict=True):
             found[name][place] = value
     kinds = {"R_stderr_within": within, "R_stderr_over_seeds": reduced["R_stderr"]}

@@ -4,16 +4,14 @@ import csv
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from xarray import Dataset
 
 from roughgas.base.files import whole_file
 from roughgas.data.reduced import GRID, read_reduced, third_axis
 from roughgas.theory.prediction import predicted_ratio
-
-if TYPE_CHECKING:
-    import xarray
 
 ABOUT = ("experiment", "scale", "particles", "dimension", "inertia", "parameter", "value")
 COLUMNS = (
@@ -37,28 +35,24 @@ def write_table(reduced_paths: Iterable[str | Path], csv_path: str | Path) -> No
                 table.writerow(map(_cell, row.values()))
 
 
-def rows(dataset: "xarray.Dataset", head: Sequence[str] = HEAD) -> Iterator[dict[str, Any]]:
+def rows(dataset: Dataset, head: Sequence[str] = HEAD) -> Iterator[dict[str, Any]]:
     """Yield the rows of a reduced dataset, ascending in the third axis, r and beta.
 
     Each has the names in `head`, which may be those of HEAD, of variables over the grid, or of
     attributes; the value is "" where the dataset has no such thing, NaN for an unknown number.
     """
-    for variant in _variants(dataset):
-        yield from _rows_of_variant(variant, head)
-
-
-def _variants(dataset: "xarray.Dataset") -> Iterator["xarray.Dataset"]:
-    """Yield a dataset over (r, beta) for each value of the third axis, now an attribute."""
     name = third_axis(dataset.attrs)
     if name is None:
-        yield dataset
+        yield from _rows_of_variant(dataset, head)
         return
     for index, value in enumerate(dataset[name].values):
         about = {name: value, "parameter": name, "value": value}
-        yield dataset.isel({name: index}, drop=True).assign_attrs(about)
+        yield from _rows_of_variant(
+            dataset.isel({name: index}, drop=True).assign_attrs(about), head
+        )
 
 
-def _rows_of_variant(dataset: "xarray.Dataset", head: Sequence[str]) -> Iterator[dict[str, Any]]:
+def _rows_of_variant(dataset: Dataset, head: Sequence[str]) -> Iterator[dict[str, Any]]:
     flat = dataset.drop_dims("seed").stack(point=GRID)
     prediction = predicted_ratio(dataset.attrs, flat.r.values, flat.beta.values)
     for index in np.flatnonzero(flat["n_seeds"].values):

@@ -9,7 +9,7 @@ import pytest
 from roughgas import config
 from roughgas.cli import main
 from roughgas.data.reduced import read_reduced
-from roughgas.results.times import write_times
+from roughgas.results.costs import write_times
 
 CONFIG = Path(__file__).parents[3] / "config.yaml"
 

@@ -1,8 +1,10 @@
-"""Checks of an installation: functions that return a Diagnosis; an exception is a problem, too.
+"""What is wrong with an installation: `roughgas doctor`.
 
+A check is a function that returns a Diagnosis; an exception that it raises is a problem, too.
 Nothing is imported at the top that may be what is broken.
 """
 
+import json
 import os
 import platform
 import shutil
@@ -10,6 +12,7 @@ import subprocess
 import sys
 import sysconfig
 import tempfile
+from collections.abc import Iterator
 from importlib import import_module, metadata, util
 from pathlib import Path
 from typing import NamedTuple
@@ -19,9 +22,8 @@ from roughgas.base.version import __version__
 
 OK, WARNING, PROBLEM = "ok", "warning", "problem"
 ANEW = "install anew: `rm -r .venv` and `make setup` in the project's folder"
-PACKAGE = Path(__file__).resolve().parent.parent
+PACKAGE = Path(__file__).resolve().parent
 MODULES = "numpy numba netCDF4 xarray matplotlib yaml jsonschema emcee plotly rocrate tqdm"
-GIB = 2**30
 CACHE = "set ROUGHGAS_CACHE_DIR to a folder that can be written and has room"
 SETTINGS = {
     "particles": 36,
@@ -31,7 +33,7 @@ SETTINGS = {
     | {"relaxation_times": 1, "plateau": 20},
 }
 KNOWN = "0x1.e218927b3f716p-2"
-TRIAL = "from roughgas.doctor.checks import trial; print(trial())"
+TRIAL = "from roughgas.doctor import trial; print(trial())"
 LONGEST = 600  # seconds to compile, on a machine that is slow and busy
 
 
@@ -41,6 +43,45 @@ class Diagnosis(NamedTuple):
     verdict: str
     said: str
     remedy: str = ""
+
+
+def doctor(as_json: bool, clean: bool) -> None:
+    """Print what is wrong with the installation; exit with status 1 if there is a problem.
+
+    `clean`: only remove the compiled kernels of other versions.
+    """
+    if clean:
+        print(remove_stale_kernels())
+        return
+    found = {}
+    for name, diagnosis in examine():
+        found[name] = diagnosis
+        if not as_json:
+            remedy = f"\n{'':25} -> {diagnosis.remedy}" if diagnosis.remedy else ""
+            print(f"{diagnosis.verdict:8} {name:16} {diagnosis.said}{remedy}", flush=True)
+    verdicts = [diagnosis.verdict for diagnosis in found.values()]
+    counts = {verdict: verdicts.count(verdict) for verdict in (PROBLEM, WARNING)}
+    if as_json:
+        print(json.dumps({name: one._asdict() for name, one in found.items()}, indent=2))
+    else:
+        parts = [f"{n} {verdict}{'s' if n > 1 else ''}" for verdict, n in counts.items() if n]
+        print(f"\n{', '.join(parts) or 'Nothing is wrong.'}")
+    if counts[PROBLEM]:
+        raise SystemExit(1)
+
+
+def examine() -> Iterator[tuple[str, Diagnosis]]:
+    """Yield the name and the diagnosis of each check in turn; this takes some seconds."""
+    remedy = ANEW
+    for name, check in CHECKS.items():
+        try:
+            found = check()
+        except Exception as error:  # whatever a broken library raises
+            said = " ".join(str(error).split())
+            found = Diagnosis(PROBLEM, f"{type(error).__name__}: {said}", remedy)
+        yield name, found
+        if found.verdict == PROBLEM and remedy == ANEW:
+            remedy = f"most likely because of {name}, above"
 
 
 def packages() -> Diagnosis:
@@ -68,13 +109,11 @@ def versions() -> Diagnosis:
         return Diagnosis(OK, "there is no requirements.lock here to compare with")
     there = {canonicalize_name(one.name): one.version for one in metadata.distributions()}
     lines = [line for line in lock.read_text(encoding="utf-8").splitlines() if line[:1].isalnum()]
-    pinned = [Requirement(line.rstrip(" \\")) for line in lines]
-    others = [
-        f"{one.name} {there.get(one.name, 'missing')} ({one.specifier} is pinned)"
-        for one in pinned
-        if (one.marker is None or one.marker.evaluate())
-        and there.get(one.name, "") not in one.specifier
-    ]
+    others = []
+    for one in (Requirement(line.rstrip(" \\")) for line in lines):
+        version = there.get(one.name, "missing")
+        if (one.marker is None or one.marker.evaluate()) and version not in one.specifier:
+            others.append(f"{one.name} {version} ({one.specifier} is pinned)")
     if others:
         return Diagnosis(WARNING, ", ".join(others), f"for the pinned versions, {ANEW}")
     return Diagnosis(OK, f"as pinned in {lock}")
@@ -176,7 +215,7 @@ def snakemake() -> Diagnosis:
 
 def _room(folder: Path, enough: float, remedy: str) -> Diagnosis:
     """Check that a folder can be written, and that its disk has `enough` GiB left."""
-    free = shutil.disk_usage(folder).free / GIB
+    free = shutil.disk_usage(folder).free / 2**30
     try:
         with tempfile.TemporaryFile(dir=folder) as file:
             file.write(b"room?" * 1000)
