@@ -3,10 +3,9 @@
 import xarray as xr
 from matplotlib.figure import Figure
 
-from roughgas.show.figures.panel import Part, ratio_figure, series_for_each
+from roughgas.show.figures.panel import ANY_R, part_for_each_r, ratio_figure
 
 
 def draw(bed: xr.Dataset) -> Figure:
     """Draw the figure from the reduced dataset of the vibrated bed."""
-    drawn = series_for_each(bed, "r", "r")
-    return ratio_figure(Part("Vibrated bed", [bed], drawn, theory="theory, Eq. (lun), any $r$"))
+    return ratio_figure(part_for_each_r("Vibrated bed", bed, theory=ANY_R))

@@ -4,10 +4,9 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from roughgas.base.errors import InputError
-from roughgas.show.figures.panel import Part, ratio_figure, series
+from roughgas.show.figures.panel import RESTITUTION, Part, ratio_figure, series
 from roughgas.show.style import LOOKS
 
-RESTITUTION = 0.9
 LABELS = (
     "periodic, no walls",
     r"rough elastic walls, $r = \beta = 1$",
@@ -32,6 +31,6 @@ def draw(*beds: xr.Dataset) -> Figure:
         theory="theory, Eq. (lun)",
         loc="lower right",
         # rough walls shift R ten times as much as the others: the scale is that of the others
-        scale=[drawn[0], *drawn[2:]],
+        scale=lambda drawn: [drawn[0], *drawn[2:]],
     )
     return ratio_figure(part)

@@ -1,10 +1,12 @@
 """Fig. 2a of McNamara & Luding (1998): the sheared gas for several r, against Eq. (lun)."""
 
+from collections.abc import Sequence
+
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from roughgas.show.figures.panel import Part, Series, ratio_figure, series_for_each
+from roughgas.show.figures.panel import ANY_R, Series, part_for_each_r, ratio_figure
 from roughgas.show.style import GREY
 
 FAINT = {"alpha": 0.5, "markersize": 2.6, "markeredgewidth": 0, "zorder": 0}
@@ -12,18 +14,11 @@ FAINT = {"alpha": 0.5, "markersize": 2.6, "markeredgewidth": 0, "zorder": 0}
 
 def draw(sheared: xr.Dataset) -> Figure:
     """Draw the figure from the reduced dataset of the sheared gas."""
-    drawn = series_for_each(sheared, "r", "r")
-    part = Part(
-        "Sheared gas",
-        [sheared],
-        drawn,
-        theory="theory, Eq. (lun), any $r$",
-        extra=lambda main: _draw_unsubtracted(main, drawn),
-    )
-    return ratio_figure(part)
+    how = {"theory": ANY_R, "extra": _draw_unsubtracted}
+    return ratio_figure(part_for_each_r("Sheared gas", sheared, **how))
 
 
-def _draw_unsubtracted(main: Axes, drawn: list[Series]) -> None:
+def _draw_unsubtracted(main: Axes, drawn: Sequence[Series]) -> None:
     """Draw R with mean flow and mean spin left in, small and faint, since it is not the result."""
     if "R_unsubtracted" not in drawn[0].data:
         return

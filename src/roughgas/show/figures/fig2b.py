@@ -3,11 +3,10 @@
 import xarray as xr
 from matplotlib.figure import Figure
 
-from roughgas.show.figures.panel import Part, ratio_figure, series_for_each
+from roughgas.show.figures.panel import part_for_each_r, ratio_figure
 
 
 def draw(cooling: xr.Dataset) -> Figure:
     """Draw the figure from the reduced dataset of the cooling gas."""
-    drawn = series_for_each(cooling, "r", "r")
-    theories = "lines: theory, Eq. (K)"
-    return ratio_figure(Part("Cooling gas", [cooling], drawn, theories=theories, loc="upper right"))
+    how = {"theories": "lines: theory, Eq. (K)", "loc": "upper right"}
+    return ratio_figure(part_for_each_r("Cooling gas", cooling, **how))

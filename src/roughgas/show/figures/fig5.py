@@ -8,16 +8,13 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from roughgas.show.figures import panel
-from roughgas.show.figures.axis import SPIN_SHARE
 from roughgas.show.style import GREY, LOOKS
-
-RESTITUTION = 0.9
 
 
 def draw(heated: xr.Dataset, floor: xr.Dataset, walls: xr.Dataset) -> Figure:
     """Draw the figure from the reduced datasets of the three drives: colours and lines stand for
     beta, symbols for the drive."""
-    figure, (one,) = panel.ratio_panels([SPIN_SHARE], width=5.6)
+    figure, (one,) = panel.ratio_panels([panel.SPIN_SHARE], width=5.6)
     drawn = []
     for data, label, marker in (
         (heated, "stochastic drive", "o"),
@@ -25,7 +22,7 @@ def draw(heated: xr.Dataset, floor: xr.Dataset, walls: xr.Dataset) -> Figure:
         (walls, "rough shaken walls", "D"),
     ):
         looks = [look._replace(marker=marker) for look in LOOKS]
-        part = panel.series_for_each(data, "beta", r"\beta", looks, r=RESTITUTION)
+        part = panel.series_for_each(data, "beta", looks=looks)
         part = part if data is heated else [_over_measured_share(series) for series in part]
         panel.draw_series(one, part)
         one.main.plot([], [], marker, color=GREY, label=label)
@@ -36,7 +33,7 @@ def draw(heated: xr.Dataset, floor: xr.Dataset, walls: xr.Dataset) -> Figure:
     panel.frame_residuals(one.residual, drawn, drawn)
     lines = [series._replace(look=series.look._replace(marker="")) for series in of_heated]
     panel.add_legend(one.main, lines, title="lines: rate equations", loc="upper left")
-    panel.add_title(one.main, [heated], rf"Driven disks, $r = {RESTITUTION:g}$")
+    panel.add_title(one.main, [heated], rf"Driven disks, $r = {panel.RESTITUTION:g}$")
     return figure
 
 

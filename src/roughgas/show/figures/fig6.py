@@ -7,10 +7,9 @@ are those from the sawtooth, not from theory.
 import xarray as xr
 from matplotlib.figure import Figure
 
-from roughgas.show.figures.panel import Part, ratio_figure, series
+from roughgas.show.figures.panel import RESTITUTION, Part, ratio_figure, series
 from roughgas.show.style import LOOKS
 
-RESTITUTION = 0.9
 LABELS = {
     "sawtooth": "sawtooth (the paper's)",
     "reversed_sawtooth": "reversed sawtooth",

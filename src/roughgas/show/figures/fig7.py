@@ -3,26 +3,14 @@
 import xarray as xr
 from matplotlib.figure import Figure
 
-from roughgas.show.figures.axis import INERTIA
-from roughgas.show.figures.panel import TWO_WIDE, Part, ratio_figure, series_for_each
-
-RESTITUTION = 0.9
+from roughgas.show.figures.panel import INERTIA, TWO_WIDE, part_for_each_beta, ratio_figure
 
 
 def draw(bed: xr.Dataset, cooling: xr.Dataset) -> Figure:
     """Draw the figure from the reduced datasets of disks with several moments of inertia."""
-    parts = [
-        Part(
-            rf"{name}, $r = {RESTITUTION:g}$",
-            [data],
-            series_for_each(data, "beta", r"\beta", r=RESTITUTION),
-            theories=f"lines: theory, {equation}",
-            loc="best",
-            axis=INERTIA,
-        )
-        for name, data, equation in (
-            ("Vibrated bed", bed, "Eq. (lun)"),
-            ("Cooling gas", cooling, "Eq. (K)"),
-        )
-    ]
-    return ratio_figure(*parts, width=TWO_WIDE)
+    how = {"loc": "best", "axis": INERTIA}
+    return ratio_figure(
+        part_for_each_beta("Vibrated bed", bed, theories="lines: theory, Eq. (lun)", **how),
+        part_for_each_beta("Cooling gas", cooling, theories="lines: theory, Eq. (K)", **how),
+        width=TWO_WIDE,
+    )

@@ -4,9 +4,6 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from roughgas.show.figures import panel
-from roughgas.show.figures.axis import ROUGHNESS
-
-RESTITUTION = 0.9
 
 
 def draw(floor: xr.Dataset, walls: xr.Dataset) -> Figure:
@@ -14,17 +11,16 @@ def draw(floor: xr.Dataset, walls: xr.Dataset) -> Figure:
 
     Lines above: the rate equations, with the share of rotation that is shown beneath.
     """
-    figure, panels = panel.ratio_panels([ROUGHNESS] * 2, width=panel.TWO_WIDE)
-    for data, name, one in zip(
-        (floor, walls), ("Rough floor", "Rough side walls"), panels, strict=True
-    ):
-        drawn = panel.series_for_each(data, "beta", r"\beta", r=RESTITUTION)
+    figure, panels = panel.ratio_panels([panel.ROUGHNESS] * 2, width=panel.TWO_WIDE)
+    parts = (floor, "Rough floor"), (walls, "Rough side walls")
+    for one, (data, name) in zip(panels, parts, strict=True):
+        drawn = panel.series_for_each(data, "beta")
         for series in drawn:
             _draw_shares(one, series)
-        panel.draw_points(one.main, drawn)
+        panel.draw_series(one, drawn, residuals=False)
         one.main.set_ylim(0.0, 0.78)  # room for the legend
         panel.add_legend(one.main, drawn, title="lines: rate equations", loc="upper left")
-        panel.add_title(one.main, [data], rf"{name}, $r = {RESTITUTION:g}$")
+        panel.add_title(one.main, [data], rf"{name}, $r = {panel.RESTITUTION:g}$")
     panels[0].residual.set_ylabel("share of rotation in\nthe energy put in")
     return figure
 

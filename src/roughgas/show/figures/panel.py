@@ -8,10 +8,9 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import MaxNLocator
+from matplotlib.ticker import MaxNLocator, MultipleLocator
 
 from roughgas.data.reduced import EQUILIBRATED
-from roughgas.show.figures.axis import BETA, Axis
 from roughgas.show.style import FAINT, GREY, HEIGHT, LOOKS, THEORY, WIDTH, Look
 from roughgas.theory.prediction import predicted_ratio
 
@@ -19,8 +18,55 @@ ENERGY_RATIO = r"$R = E^\circ\!/(E^\circ + \bar{E})$"
 TWO_WIDE = 7.6  # inches, for two panels
 SIZE = 5.2
 """Marker size of the first series; each further one is smaller, so that none hides another."""
+SIDESTEP = 0.0066
+"""Distance between the residuals of two series, as a share of the axis: none hides another."""
+RESTITUTION = 0.9
+"""The r of figures that show only one."""
+ANY_R = "theory, Eq. (lun), any $r$"
 DOTS = (0, (1, 2))
 RING = {"marker": "o", "markersize": 8, "markeredgewidth": 0.6, "fillstyle": "none"}
+
+
+class Axis(NamedTuple):
+    """A coordinate of reduced datasets, drawn horizontally."""
+
+    name: str
+    label: str
+    limits: tuple[float, float]
+    drawn: tuple[float, float]  # where theory is drawn from and to
+    logarithmic: bool = False
+
+    @property
+    def grid(self) -> np.ndarray:
+        """Close values at which theory is drawn, (801,)."""
+        spaced = np.geomspace if self.logarithmic else np.linspace
+        return spaced(*self.drawn, 801)
+
+    def prepare(self, axes: Axes) -> None:
+        """Label the axis of a plot, and set its scale and its limits."""
+        axes.set_xlabel(self.label)
+        if self.logarithmic:
+            axes.set_xscale("log")
+        axes.set_xlim(*self.limits)
+        if not self.logarithmic:
+            step = 0.5 if self.limits[1] - self.limits[0] > 2 else 0.2
+            axes.xaxis.set_major_locator(MultipleLocator(step))
+            axes.xaxis.set_minor_locator(MultipleLocator(step / 5))
+
+    def aside(self, at: np.ndarray, steps: float) -> np.ndarray:
+        """Return places that are `steps` steps beside those given."""
+        low, high = self.limits
+        if self.logarithmic:
+            return at * (high / low) ** (SIDESTEP * steps)
+        return at + SIDESTEP * (high - low) * steps
+
+
+BETA = Axis("beta", r"tangential restitution $\beta$", (-1.06, 1.06), (-1, 1))
+FRICTION = Axis("mu", r"coefficient of friction $\mu$", (0.007, 14), (0.007, 14), True)
+INERTIA = Axis("inertia", r"moment of inertia $q = I/(ma^2)$", (0.008, 1.25), (0.008, 1), True)
+SHARE_LABEL = "share $s$ of the drive's power\nthat goes into rotation"
+SPIN_SHARE = Axis("spin_share", SHARE_LABEL, (-0.15, 1.03), (-0.12, 1))
+ROUGHNESS = Axis("roughness", r"roughness of the boundary", (-1.06, 1.06), (-1, 1))
 
 
 class Series(NamedTuple):
@@ -67,8 +113,10 @@ class Part(NamedTuple):
     theories: str = ""  # of each series: a line in its look; the title of the legend
     loc: str = "upper left"  # of the legend
     axis: Axis = BETA
-    scale: Sequence[Series] | None = None  # whose residuals are to fit; None: those of all
-    extra: Callable[[Axes], None] = lambda main: None  # draws what only this figure has
+    # of the series drawn: those whose residuals are to fit
+    scale: Callable[[Sequence[Series]], Sequence[Series]] = lambda drawn: drawn
+    # draws what only this figure has
+    extra: Callable[[Axes, Sequence[Series]], None] = lambda main, drawn: None
 
 
 def series(data: xr.Dataset, label: str, look: Look, **place: Any) -> Series:
@@ -86,15 +134,27 @@ def series(data: xr.Dataset, label: str, look: Look, **place: Any) -> Series:
 
 
 def series_for_each(
-    data: xr.Dataset, name: str, symbol: str, looks: Sequence[Look] = LOOKS, **place: Any
+    data: xr.Dataset, name: str, symbol: str = r"\beta", looks: Sequence[Look] = LOOKS
 ) -> list[Series]:
-    """Return one series for each value of the coordinate `name`: from nearly elastic r downwards,
-    of others the smallest first."""
+    """Return one series for each r, from nearly elastic downwards; or for each other value of the
+    coordinate `name` at RESTITUTION, the smallest first."""
+    place = {} if name == "r" else {"r": RESTITUTION}
     values = sorted(data[name].values, reverse=name == "r")
     return [
         series(data, f"${symbol} = {value:g}$", looks[i % len(looks)], **{name: value}, **place)
         for i, value in enumerate(values)
     ]
+
+
+def part_for_each_r(title: str, data: xr.Dataset, **how: Any) -> Part:
+    """Return a part with one series for each r."""
+    return Part(title, [data], series_for_each(data, "r", "r"), **how)
+
+
+def part_for_each_beta(title: str, data: xr.Dataset, symbol: str = r"\beta", **how: Any) -> Part:
+    """Return a part with one series for each beta, all at RESTITUTION."""
+    drawn = series_for_each(data, "beta", symbol)
+    return Part(rf"{title}, $r = {RESTITUTION:g}$", [data], drawn, **how)
 
 
 def ratio_figure(*parts: Part, width: float = WIDTH) -> Figure:
@@ -103,11 +163,10 @@ def ratio_figure(*parts: Part, width: float = WIDTH) -> Figure:
     for part, panel in zip(parts, panels, strict=True):
         draw_series(panel, part.drawn)
         draw_theory(panel, part.drawn[:1] if part.theory else part.drawn, black=bool(part.theory))
-        part.extra(panel.main)
+        part.extra(panel.main, part.drawn)
         add_legend(panel.main, part.drawn, part.theory, title=part.theories or None, loc=part.loc)
         add_title(panel.main, part.data, part.title)
-    scales = [part.drawn if part.scale is None else part.scale for part in parts]
-    scale = [one for of_part in scales for one in of_part]
+    scale = [one for part in parts for one in part.scale(part.drawn)]
     for part, panel in zip(parts, panels, strict=True):
         frame_residuals(panel.residual, part.drawn, scale)
     return figure
@@ -139,18 +198,14 @@ def draw_theory(panel: Panel, drawn: Sequence[Series], black: bool = False) -> N
         panel.main.plot(panel.axis.grid, predicted, linestyle=line, color=colour, zorder=1)
 
 
-def draw_series(panel: Panel, drawn: Sequence[Series]) -> None:
+def draw_series(panel: Panel, drawn: Sequence[Series], residuals: bool = True) -> None:
     """Draw points with error bars above; beneath them, residuals, set apart sideways."""
-    draw_points(panel.main, drawn)
     for index, one in enumerate(drawn):
-        steps = index - (len(drawn) - 1) / 2
-        _draw_points(panel.residual, one, panel.axis.aside(one.at, steps), one.residual, size=4)
-
-
-def draw_points(main: Axes, drawn: Sequence[Series]) -> None:
-    """Draw points with error bars."""
-    for index, one in enumerate(drawn):
-        _draw_points(main, one, one.at, one.data.R.values, size=max(SIZE - 0.6 * index, 3.0))
+        size = max(SIZE - 0.6 * index, 3.0)
+        _draw_points(panel.main, one, one.at, one.data.R.values, size)
+        if residuals:
+            aside = panel.axis.aside(one.at, index - (len(drawn) - 1) / 2)
+            _draw_points(panel.residual, one, aside, one.residual, size=4)
 
 
 def frame_residuals(residual: Axes, drawn: Sequence[Series], scale: Sequence[Series]) -> None:
