@@ -11,8 +11,7 @@ from roughgas.cli import main
 from roughgas.data.point import read_point
 from roughgas.data.reduced import read_reduced
 from roughgas.show.page.explore import write_page
-from roughgas.show.page.gather import GRID, NUMBERS, experiment
-from roughgas.show.page.series import LONGEST, block_means
+from roughgas.show.page.gather import GRID, LONGEST, NUMBERS, block_means, experiment
 from roughgas.theory.prediction import predicted_ratio
 from show.page.conftest import SAMPLES
 

@@ -7,8 +7,7 @@ from string import Template
 
 from roughgas.base.errors import InputError
 from roughgas.base.files import write_text
-from roughgas.show.page.gather import GRID, experiment
-from roughgas.show.page.series import rounded
+from roughgas.show.page.gather import GRID, experiment, rounded
 from roughgas.show.style import LOOKS
 
 # Plotly's names of the figures' markers and lines
