@@ -63,7 +63,7 @@ def usual_take(experiment: Mapping[str, Any], scene: Scene) -> Take:
         return COOLING
     wait = experiment["schedule"].get("equilibrate", UNKNOWN_TRANSIENT)
     shear, drive = scene.effects.shear, scene.effects.floor or scene.effects.shaken_walls
-    length = TIME if drive is None else PERIODS * drive.period
+    length = PERIODS * drive.period if drive else TIME
     if shear is not None:
         length = shear.length / shear.velocity
     return Take(min(wait, PATIENCE / experiment["particles"]), length, FRAMES)
@@ -95,9 +95,12 @@ def snapshots(
         while gas.collisions < round(gas.particles / 2 * take.start):
             gas.step(math.inf, stride)
         yield _snapshot(gas)
-    instants = (_cooling_instants if kind is cooling else _driven_instants)(gas, experiment, take)
-    for instant in instants:
-        while gas.step(instant, stride):
+    interval = take.length / take.frames
+    for frame in range(1 if kind is cooling else 0, take.frames):
+        until = take.start + (frame + 0.5) * interval
+        if kind is cooling:
+            until = gas.time + interval / _collision_frequency(gas, experiment["box"])
+        while gas.step(until, stride):
             pass
         yield _snapshot(gas)
 
@@ -131,10 +134,10 @@ def in_order(state: State, values: np.ndarray) -> np.ndarray:
     return ordered
 
 
-def positions(state: State, scene: Scene, slide: float) -> np.ndarray:
+def positions(state: State, scene: Scene, slide: float | None) -> np.ndarray:
     """Return where particles are now (N, D), in a, folded into the box.
 
-    `slide` is the displacement of the image above.
+    `slide` is the displacement of the image above a sheared gas.
     """
     dimension, gravity = len(scene.box), scene.effects.gravity
     elapsed = state.clock[NOW] - state.trajectory[:, -1]
@@ -142,7 +145,7 @@ def positions(state: State, scene: Scene, slide: float) -> np.ndarray:
     position = state.trajectory[:, :dimension] + velocity * elapsed[:, None]
     if gravity is not None:
         position[:, -1] -= 0.5 * gravity.acceleration * elapsed**2
-    if scene.effects.shear is not None:
+    if slide is not None:
         position[:, 0] -= slide * np.floor(position[:, 1] / scene.box[1])
     for axis, length in enumerate(scene.box):
         if length is not None:
@@ -150,34 +153,27 @@ def positions(state: State, scene: Scene, slide: float) -> np.ndarray:
     return position
 
 
-def _driven_instants(gas, experiment, take):
-    for frame in range(take.frames):
-        yield take.start + (frame + 0.5) * (take.length / take.frames)
-
-
-def _cooling_instants(gas, experiment, take):
-    """Yield the instant of each frame after the first, from the energy of the one before."""
-    dimension, number = len(gas.scene.box), gas.particles
-    packing = number * VOLUME[dimension] / math.prod(experiment["box"])
-    for _ in range(1, take.frames):
-        frequency = collision_frequency(2.0 * _energies(gas).translational, packing, dimension)
-        yield gas.time + take.length / take.frames / float(frequency)
+def _collision_frequency(gas, box):
+    packing = gas.particles * VOLUME[len(box)] / math.prod(box)
+    return float(collision_frequency(2.0 * _energies(gas).translational, packing, len(box)))
 
 
 def _snapshot(gas: Gas) -> Snapshot:
     """Return what there is to be seen at the present instant."""
     state, effects, present, time = gas.state, gas.scene.effects, _energies(gas), gas.time
     slide = displacement(effects.shear, time)
-    unit, spins = 2.0 ** int(state.counts[EXPONENT]), state.spin is not None
+    spin = state.spin
+    if spin is not None:
+        spin = in_order(state, spin * 2.0 ** int(state.counts[EXPONENT]))
     return Snapshot(
         time=time,
         collisions=2.0 * gas.collisions / gas.particles,
-        position=in_order(state, positions(state, gas.scene, slide or 0.0)),
-        spin=in_order(state, state.spin) * unit if spins else None,
+        position=in_order(state, positions(state, gas.scene, slide)),
+        spin=spin,
         angle=gas.watcher.angle.copy() if gas.watcher else None,
-        E_trans=float(present.translational),
-        E_rot=float(present.rotational) if spins else None,
-        R=float(ratio(present)) if spins else None,
+        E_trans=present.translational,
+        E_rot=present.rotational,
+        R=None if spin is None else float(ratio(present)),
         floor=displacement(effects.floor, time),
         slide=slide,
         walls=displacement(effects.shaken_walls, time),
@@ -187,7 +183,7 @@ def _snapshot(gas: Gas) -> Snapshot:
 def _energies(gas: Gas) -> Energies:
     """Return the energies of the last sample, in m a^2/T^2."""
     present = restored(gas.energies(gas.sample), gas.sample["exponent"])
-    return present.map(lambda part: part[0])
+    return present.map(lambda part: float(part[0]))
 
 
 def _now(state):

@@ -2,7 +2,6 @@
 place, and other files only as downloads."""
 
 import base64
-from functools import partial
 from html import escape
 from pathlib import Path
 from string import Template
@@ -32,20 +31,12 @@ def _markdown(content):
     return MarkdownIt("commonmark", {"html": False}).enable("table").render(content.decode("utf-8"))
 
 
-def _text(content):
-    return f"<pre>{escape(content.decode('utf-8'))}</pre>"
-
-
-def _embedded(content, html):
-    return html.format(base64.b64encode(content).decode("ascii"))
-
-
 MOVIE = '<video controls loop muted autoplay src="data:video/mp4;base64,{}"></video>'
 PICTURE = '<img alt="" src="data:image/gif;base64,{}">'
 KINDS = {
     ".md": _markdown,
-    ".yaml": _text,
-    ".mp4": partial(_embedded, html=MOVIE),
-    ".gif": partial(_embedded, html=PICTURE),
+    ".yaml": lambda content: f"<pre>{escape(content.decode('utf-8'))}</pre>",
+    ".mp4": lambda content: MOVIE.format(base64.b64encode(content).decode("ascii")),
+    ".gif": lambda content: PICTURE.format(base64.b64encode(content).decode("ascii")),
 }
 """How the content (bytes) of a file becomes HTML, by its suffix."""
