@@ -63,8 +63,8 @@ def picture(
     above, below = figure.subplots(2, 1, height_ratios=(room + FRAME_SPACE, GRAPH))
     figure.suptitle(_title(subject, view), fontsize=9, linespacing=1.4)
     _set_up(above, subject.scene, view)
-    kind = Disks if len(subject.scene.box) == 2 else Spheres
-    particles = kind(above, view, spin_scales(subject, shots))
+    particles = (Disks if len(subject.scene.box) == 2 else Spheres)(above, view)
+    scales = spin_scales(subject, shots)
     boundaries = Boundaries(above, view, subject.scene.effects)
     if shots[0].spin is not None:
         bar = figure.colorbar(particles.coloured, ax=above, shrink=0.9, pad=0.02)
@@ -73,7 +73,7 @@ def picture(
     present = _graph(below, subject, shots)
 
     def show(frame: int) -> None:
-        particles.show(frame, shots[frame])
+        particles.show(shots[frame], None if scales is None else scales[frame])
         boundaries.show(shots[frame])
         present(frame)
 
@@ -127,9 +127,8 @@ def spin_scales(subject: Subject, shots: Sequence[Snapshot]) -> np.ndarray | Non
 
 
 def _set_up(axes: Axes, scene: Scene, view: View) -> None:
-    vertical = "xyz"[view.vertical]
     axes.set(xlim=(view.left, view.right), ylim=(view.bottom, view.top), aspect="equal")
-    axes.set(xlabel=r"$x/a$", ylabel=rf"${vertical}/a$")
+    axes.set(xlabel=r"$x/a$", ylabel=f"${'xyz'[view.vertical]}/a$")
     axes.minorticks_off()
     axes.tick_params(top=False, right=False, direction="out")
     if scene.effects.shear is not None:
@@ -145,17 +144,12 @@ def _title(subject: Subject, view: View) -> str:
     about += [rf"$N = {subject.settings['particles']}$", f"seed {subject.seed}"]
     if view.cropped:
         about.append(rf"seen up to ${'xyz'[view.vertical]} = {view.top:g}\,a$")
-    return f"{_name(subject)}\n{', '.join(about)}"
-
-
-def _name(subject: Subject) -> str:
-    """Return the experiment's name, with the parameter of a variant: `waves, wave = sine`."""
-    base, _, variant = subject.name.partition("/")
-    name = base.replace("_", " ")
-    if not variant:
-        return name
-    parameter = third_axis(subject.settings)
-    return f"{name}, {parameter.replace('_', ' ')} = {variant.removeprefix(parameter)}"
+    name, _, variant = subject.name.partition("/")
+    name = name.replace("_", " ")
+    if variant:  # `waves, wave = sine`
+        parameter = third_axis(subject.settings)
+        name += f", {parameter.replace('_', ' ')} = {variant.removeprefix(parameter)}"
+    return f"{name}\n{', '.join(about)}"
 
 
 def _graph(axes: Axes, subject: Subject, shots: Sequence[Snapshot]) -> Callable[[int], None]:

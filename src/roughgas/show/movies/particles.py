@@ -36,19 +36,11 @@ class View(NamedTuple):
     cropped: bool  # whether there is more of it above
 
 
-class Copies(NamedTuple):
-    """Particles and those of their images that are seen."""
-
-    of: np.ndarray  # (M,) numbers of particles
-    x: np.ndarray
-    y: np.ndarray
-    opacity: np.ndarray
-
-
-def copies(view: View, shot: Snapshot) -> Copies:
+def copies(view: View, shot: Snapshot) -> tuple[np.ndarray, ...]:
     """Return the particles, and those of their periodic images, that reach into the view.
 
-    Under shear, the images above and below have slid, and are faint.
+    Under shear, the images above and below have slid, and are faint. Returns numbers of particles,
+    x, y and opacities, all (M,).
     """
     parts = []
     width, tall = view.periods
@@ -61,8 +53,8 @@ def copies(view: View, shot: Snapshot) -> Copies:
             seen = (x > view.left - 1.0) & (x < view.right + 1.0)
             seen &= (y > view.bottom - 1.0) & (y < view.top + 1.0)
             (of,) = np.nonzero(seen)
-            parts.append(Copies(of, x[of], y[of], np.full(len(of), opacity)))
-    return Copies(*map(np.concatenate, zip(*parts, strict=True)))
+            parts.append((of, x[of], y[of], np.full(len(of), opacity)))
+    return tuple(map(np.concatenate, zip(*parts, strict=True)))
 
 
 class Disks:
@@ -70,24 +62,25 @@ class Disks:
 
     quantity, coloured = "spin", ScalarMappable(Normalize(-2.0, 2.0), "PuOr")
 
-    def __init__(self, axes: Axes, view: View, scales: np.ndarray | None) -> None:
-        self._view, self._scales = view, scales
+    def __init__(self, axes: Axes, view: View) -> None:
+        self._view = view
         self._disks = add_circles(axes, edgecolor=EDGE, linewidth=0.4)
         self._marks = LineCollection([], color=EDGE, linewidth=0.9, capstyle="round")
         axes.add_collection(self._marks)
 
-    def show(self, frame: int, shot: Snapshot) -> None:
-        """Bring them to a snapshot, the one of this frame."""
-        seen = copies(self._view, shot)
-        colours = _colours(self, shot, lambda spin: spin[:, 0] / self._scales[frame])[seen.of]
-        move(self._disks, seen.x, seen.y)
-        self._disks.set(facecolor=_with(colours, seen.opacity), edgecolor=_with(EDGE, seen.opacity))
-        if shot.spin is not None:
-            tip = np.stack([np.cos(shot.angle[seen.of]), np.sin(shot.angle[seen.of])], axis=-1)
-            middle = np.stack([seen.x, seen.y], axis=-1)
+    def show(self, shot: Snapshot, scale: float | None) -> None:
+        """Bring them to a snapshot whose thermal spin is `scale`."""
+        of, x, y, opacity = copies(self._view, shot)
+        spin = None if shot.spin is None else shot.spin[of, 0] / scale
+        colours = _colours(self.coloured, spin, len(of))
+        move(self._disks, x, y)
+        self._disks.set(facecolor=_with(colours, opacity), edgecolor=_with(EDGE, opacity))
+        if spin is not None:
+            tip = np.stack([np.cos(shot.angle[of]), np.sin(shot.angle[of])], axis=-1)
+            middle = np.stack([x, y], axis=-1)
             self._marks.set_segments(np.stack([middle, middle + 0.9 * tip], axis=1))
             dark = colours[:, :3] @ LUMINANCE < DARK
-            self._marks.set_color(_with(np.where(dark[:, None], 1.0, EDGE), seen.opacity))
+            self._marks.set_color(_with(np.where(dark[:, None], 1.0, EDGE), opacity))
 
 
 class Spheres:
@@ -95,22 +88,21 @@ class Spheres:
 
     quantity, coloured = "|spin|", ScalarMappable(Normalize(0.0, 2.0), "viridis")
 
-    def __init__(self, axes: Axes, view: View, scales: np.ndarray | None) -> None:
-        self._view, self._scales = view, scales
+    def __init__(self, axes: Axes, view: View) -> None:
+        self._view = view
         self._disks = add_circles(axes, linewidth=0.3)
 
-    def show(self, frame: int, shot: Snapshot) -> None:
-        """Bring them to a snapshot, the one of this frame."""
+    def show(self, shot: Snapshot, scale: float | None) -> None:
+        """Bring them to a snapshot whose thermal spin is `scale`."""
         axis = 3 - self._view.vertical  # neither across nor up
         depth = shot.position[:, axis] * (-1.0 if axis == 2 else 1.0)  # z points to the viewer
         seen = copies(self._view, shot)
-        order = np.argsort(-depth[seen.of], kind="stable")
+        order = np.argsort(-depth[seen[0]], kind="stable")
         of, x, y, opacity = (np.repeat(part[order], len(SHADES)) for part in seen)
         radius, shift, white = np.tile(np.array(SHADES), (len(order), 1)).T
         near = (depth[of] - depth.min()) / max(np.ptp(depth), 1e-9)
-        colours = _colours(
-            self, shot, lambda spin: np.linalg.norm(spin, axis=1) / self._scales[frame]
-        )[of]
+        spin = None if shot.spin is None else np.linalg.norm(shot.spin[of], axis=1) / scale
+        colours = _colours(self.coloured, spin, len(of))
         for share in (FAR * near, white):
             colours[:, :3] += (1.0 - colours[:, :3]) * share[:, None]
         rim = np.where(white == 0.0, opacity, 0.0)
@@ -149,11 +141,9 @@ class Boundaries:
             self._scratches.set_segments(left + right)
 
 
-def _colours(particles, shot, amount):
-    """Return the colour of each particle (N, 4); `amount` makes of spins what is coloured."""
-    if shot.spin is None:
-        return np.tile(PLAIN, (len(shot.position), 1))
-    return particles.coloured.to_rgba(amount(shot.spin))
+def _colours(coloured, spin, number):
+    """Return the colours (number, 4) of particles, from their scaled spins if they have any."""
+    return np.tile(PLAIN, (number, 1)) if spin is None else coloured.to_rgba(spin)
 
 
 def _with(colours, opacity):
