@@ -1,17 +1,13 @@
 """Figures of experiments, drawn by name from reduced data beside theory."""
 
 from collections.abc import Iterable
+from importlib import import_module
 from pathlib import Path
 
 from roughgas.base.errors import InputError, not_one_of
 from roughgas.data.reduced import read_reduced
 from roughgas.show import style
-from roughgas.show.catalogue import FIGURES
-from roughgas.show.figures import fig1a, fig1b, fig2a, fig2b, fig3, fig4, fig5, fig6, fig7, fig8
-
-MODULES = (fig1a, fig1b, fig2a, fig2b, fig3, fig4, fig5, fig6, fig7, fig8)
-DRAWN = {module.__name__.rpartition(".")[2]: module.draw for module in MODULES}
-"""The function that draws each figure from the datasets of what the catalogue says it shows."""
+from roughgas.show.catalogue import FIGURES, figures_of
 
 
 def draw(name: str, inputs: Iterable[str | Path], outputs: Iterable[str | Path]) -> None:
@@ -20,10 +16,11 @@ def draw(name: str, inputs: Iterable[str | Path], outputs: Iterable[str | Path])
     Each output is a .pdf or a .png. Raises InputError for an unknown figure, another kind of file,
     and experiments other than those that the figure shows.
     """
-    if name not in DRAWN:
-        raise not_one_of("figure", name, DRAWN)
+    if name not in (known := figures_of("paper", "beyond")):
+        raise not_one_of("figure", name, known)
     needed = FIGURES[name].shows
     datasets = {data.attrs["experiment"]: data for data in map(read_reduced, inputs)}
     if set(datasets) != set(needed):
         raise InputError(f"data of {name}", ", ".join(datasets), f"be {', '.join(needed)}")
-    style.draw(lambda: DRAWN[name](*(datasets[one] for one in needed)), outputs)
+    figure = import_module(f"roughgas.show.figures.{name}")
+    style.draw(lambda: figure.draw(*(datasets[one] for one in needed)), outputs)

@@ -32,10 +32,6 @@ LETTERS, TITLE = "abc", 9
 PER_PARTICLE = "collisions per particle"
 
 
-Square = tuple[float, float, float]
-"""Where single disks are shown: left, bottom and side, in a."""
-
-
 def draw(path: str | Path, outputs: Iterable[str | Path]) -> None:
     """Draw the film at `path` into each of `outputs`: .pdf or .png a picture, .mp4 a movie.
 
@@ -65,8 +61,7 @@ def picture(film: xr.Dataset) -> Figure:
         axes.set_title(f"{letter}   {_passed(film, frame)}", loc="left", fontsize=TITLE)
         axes.label_outer()
     above.colorbar(image, ax=maps, label=PACKING_LABEL, pad=0.01)
-    square = closeup(film)
-    maps[-1].add_patch(_outline(square))
+    square = _outline(maps[-1], film)
     above.suptitle(_caption(film), fontsize=TITLE)
     zoom, cooling, others = below.subfigures(1, 3, width_ratios=(1.15, 1, 1))
     disks = _draw_disks(axes := zoom.subplots(), film, frames[-1], square)
@@ -93,8 +88,8 @@ def packing(film: xr.Dataset, frame: int) -> np.ndarray:
     return np.fft.irfft2(np.fft.rfft2(count * (np.pi / (dx * dy))) * kernel, s=count.shape)
 
 
-def closeup(film: xr.Dataset) -> Square:
-    """Return the square in which single disks are shown.
+def closeup(film: xr.Dataset) -> tuple[float, float, float]:
+    """Return the square in which single disks are shown: left, bottom and side, in a.
 
     It lies where the gas is densest in the end, within the window in which disks are known.
     """
@@ -118,26 +113,33 @@ def _draw_map(axes: Axes, film: xr.Dataset, frame: int) -> AxesImage:
     return axes.imshow(shown, origin="lower", extent=(0, width, 0, height), **PACKING)
 
 
-def _outline(square: Square) -> Rectangle:
-    *corner, side = square
-    return Rectangle(corner, side, side, fill=False, edgecolor="white")
+def _outline(axes: Axes, film: xr.Dataset) -> tuple[float, float, float]:
+    """Outline the square on a map, and return it."""
+    *corner, side = square = closeup(film)
+    axes.add_patch(Rectangle(corner, side, side, fill=False, edgecolor="white"))
+    return square
 
 
-def _draw_disks(axes: Axes, film: xr.Dataset, frame: int, square: Square) -> EllipseCollection:
+def _draw_disks(axes: Axes, film: xr.Dataset, frame: int, square: tuple) -> EllipseCollection:
     left, bottom, side = square
     axes.set(xlim=(left, left + side), ylim=(bottom, bottom + side), aspect="equal")
     axes.set(xlabel=r"$x/a$", ylabel=r"$y/a$", facecolor=VOID)
     axes.minorticks_off()
     disks = circles.add_circles(axes, edgecolor=VOID, linewidth=0.2, rasterized=True, **SPIN)
-    _move(disks, film, frame, square)
+    _move(disks, film, frame)
     return disks
 
 
-def _move(disks: EllipseCollection, film: xr.Dataset, frame: int, square: Square) -> None:
-    (x, y, spin), (left, bottom, side) = disks_of(film, frame), square
-    seen = (abs(x - left - side / 2) < side / 2 + 1) & (abs(y - bottom - side / 2) < side / 2 + 1)
+def _move(disks: EllipseCollection, film: xr.Dataset, frame: int) -> None:
+    x, y, spin = disks_of(film, frame)
+    (left, right), (bottom, top) = disks.axes.get_xlim(), disks.axes.get_ylim()
+    seen = (x > left - 1) & (x < right + 1) & (y > bottom - 1) & (y < top + 1)
     circles.move(disks, x[seen], y[seen])
     disks.set_array(spin[seen])
+
+
+def _at(film: xr.Dataset) -> np.ndarray:
+    return film.collisions_per_particle.values
 
 
 def _homogeneous(film: xr.Dataset) -> tuple[np.ndarray, theory.Relaxation]:
@@ -175,10 +177,6 @@ def _unevenness(axes: Axes, film: xr.Dataset) -> None:
     axes.set_title("g   unevenness of the packing", loc="left", fontsize=TITLE)
 
 
-def _at(film: xr.Dataset) -> np.ndarray:
-    return film.collisions_per_particle.values
-
-
 def _passed(film: xr.Dataset, frame: int) -> str:
     return f"{_at(film)[frame]:.0f} {PER_PARTICLE}"
 
@@ -196,9 +194,8 @@ def moving_picture(film: xr.Dataset) -> tuple[Figure, Callable[[int], None]]:
     figure = Figure(figsize=(8.4, 4.1), dpi=160, layout="constrained")
     squares, graphs = figure.subfigures(1, 2, width_ratios=(2.5, 1))
     whole, zoom = squares.subplots(1, 2)
-    square = closeup(film)
-    image, disks = _draw_map(whole, film, 0), _draw_disks(zoom, film, 0, square)
-    whole.add_patch(_outline(square))
+    image = _draw_map(whole, film, 0)
+    disks = _draw_disks(zoom, film, 0, _outline(whole, film))
     for mappable, axes, label in ((image, whole, PACKING_LABEL), (disks, zoom, SPIN_LABEL)):
         squares.colorbar(mappable, ax=axes, label=label, location="bottom", shrink=0.8)
     zoom.set_title("the square", fontsize=TITLE)
@@ -214,7 +211,7 @@ def moving_picture(film: xr.Dataset) -> tuple[Figure, Callable[[int], None]]:
 
     def show(frame: int) -> None:
         image.set_data(packing(film, frame))
-        _move(disks, film, frame, square)
+        _move(disks, film, frame)
         whole.set_title(_passed(film, frame), fontsize=TITLE)
         for mark in marks:
             mark.set_xdata([_at(film)[frame]] * 2)
