@@ -66,8 +66,15 @@ def calibrate(
 
 
 def one_run(runs: Runs, truth: float, levels: Sequence[float]) -> list[Estimate]:
-    """Return how often the intervals of single runs hold `truth`, at each of `levels`."""
-    return [_binomial(_held(runs, truth, level)) for level in levels]
+    """Return how often the intervals of single runs hold `truth`, at each of `levels`.
+
+    The error is that of Laplace's estimate, (k + 1)/(n + 2), and does not vanish at 0 or 1.
+    """
+    shares = []
+    for held in (_held(runs, truth, level) for level in levels):
+        likely = (held.sum() + 1) / (len(held) + 2)
+        shares.append(Estimate(float(held.mean()), math.sqrt(likely * (1 - likely) / len(held))))
+    return shares
 
 
 def several(
@@ -92,13 +99,6 @@ def _held(runs: Runs, truth: float, level: float) -> np.ndarray:
     """Return whether the interval of each run holds the truth; without an interval it does not."""
     widths = [half_width(*known, level) for known in zip(runs.stderr, runs.dof, strict=True)]
     return np.abs(runs.R - truth) <= np.array(widths)
-
-
-def _binomial(held: np.ndarray) -> Estimate:
-    """The error is that of Laplace's estimate, (k + 1)/(n + 2), and does not vanish at 0 or 1."""
-    number = len(held)
-    likely = (held.sum() + 1) / (number + 2)
-    return Estimate(float(held.mean()), math.sqrt(likely * (1 - likely) / number))
 
 
 def _hoeffding(held: np.ndarray, groups: np.ndarray, runs: int) -> Estimate:

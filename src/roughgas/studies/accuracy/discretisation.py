@@ -29,30 +29,40 @@ FINE = 1e-4, 400  # least t_c nu that the cheapest is sought from, and how many 
 FEWEST_PARTS, SHORTEST = 20, 16  # of a series: parts, and samples in each
 MEASURED = ("R", "R_stderr", "collisions", "cpu_seconds")
 SPECIAL = ("frequency", "steps", "touched")  # measured by jobs of one kind
+FITTED = ("R", "R_stderr", "deviation", "deviation_stderr", "cpu_seconds", "collisions")
 ELASTIC = ("drift", "drift_stderr", "speed", "frequency")
 
 
 def combine(parts: Mapping[str, xr.Dataset], settings: Mapping[str, Any]) -> xr.Dataset:
     """Return deviations of R from the reference, orders and costs, from all tasks."""
     steps, t = settings["steps"], np.array(settings["contact_times"], float)
-    reference = _reference([parts[f"reference-{k}"] for k in range(settings["reference_runs"])])
+    runs = [parts[f"reference-{k}"] for k in range(settings["reference_runs"])]
+    reference = {name: np.array([float(one[name]) for one in runs]) for name in MEASURED}
+    stderr = math.sqrt((reference.pop("R_stderr") ** 2).sum()) / len(runs)
+    R = Estimate(reference.pop("R").mean(), stderr)
+    sums = {name: values.sum() for name, values in reference.items()}
     jobs = {
         "soft": [[f"soft-{n}-{k}" for k in range(len(t))] for n in steps],
         "model": [f"model-{k}" for k in range(len(settings["model_contact_times"]))],
         "event": "event",
         "single": "single",
     }
-    found = {f"reference_{name}": value for name, value in reference.items()}
+    found = {"reference_R": R} | {f"reference_{name}": x for name, x in sums.items()}
     for kind, names in jobs.items():
         found |= {
             f"{kind}_{name}": values
-            for name, values in _compared(parts, np.array(names), reference["R"]).items()
+            for name, values in _compared(parts, np.array(names), R).items()
         }
     for name in (f"{one}_{precision}" for precision in ("single", "double") for one in ELASTIC):
         found[f"elastic_{name}"] = float(parts["single"][name])
-    found |= _statistical(parts["event"], reference["R"].value)
-    events = reference["cpu_seconds"] / reference["collisions"]
-    found |= stacked([_fits(t, row, reference["R"], events) for row in _rows(found, len(steps))])
+    series = parts["event"].R_series.values
+    lengths, (errors, stderr, _) = statistical_error(series, R.value)
+    found["statistical_seconds"] = lengths * float(parts["event"].cpu_seconds) / len(series)
+    found["statistical_error"] = Estimate(errors / R.value, stderr / R.value)
+    events = sums["cpu_seconds"] / sums["collisions"]
+    values = flat(found)
+    rows = [{name: values[f"soft_{name}"][k] for name in FITTED} for k in range(len(steps))]
+    found |= stacked([_fits(t, row, R, events) for row in rows])
     axes = {"steps": steps, "contact_time": t, "target": list(TARGETS)}
     axes["model_contact_time"] = settings["model_contact_times"]
     about = {key: settings[key] for key in ("r", "beta", "packing", "seed")}
@@ -88,14 +98,6 @@ def slowdown(target: float, t, seconds, deviation: PowerLaw, events: float) -> f
     return float((cost[left > 0.0] / left[left > 0.0]).min(initial=math.inf) / events)
 
 
-def _reference(runs):
-    """Return all reference runs as one."""
-    found = {name: np.array([float(one[name]) for one in runs]) for name in MEASURED}
-    stderr = math.sqrt((found["R_stderr"] ** 2).sum()) / len(runs)
-    sums = {name: found[name].sum() for name in ("collisions", "cpu_seconds")}
-    return {"R": Estimate(found["R"].mean(), stderr)} | sums
-
-
 def _compared(parts, names, reference):
     """Return what the jobs `names` measured, in the shape of these, and how it compares."""
     found = {
@@ -110,34 +112,15 @@ def _compared(parts, names, reference):
     return found | {"deviation": Estimate(deviation, stderr)}
 
 
-def _statistical(event, truth):
-    series = event.R_series.values
-    lengths, errors = statistical_error(series, truth)
-    seconds = lengths * float(event.cpu_seconds) / len(series)
-    return {"statistical_seconds": seconds, "statistical_error": _relative(errors, truth)}
-
-
-def _relative(estimate, unit):
-    return Estimate(estimate.value / unit, estimate.stderr / unit)
-
-
-def _rows(found, number):
-    """Return the soft spheres with each number of steps in a contact."""
-    soft = flat({name: values for name, values in found.items() if name.startswith("soft_")})
-    return [{name: values[k] for name, values in soft.items()} for k in range(number)]
-
-
 def _fits(t, row, reference, events):
     """Return order, limit and slowdowns; these are NaN for steps so coarse that R does not tend to
     the reference as t_c goes to 0. At least the two smallest t_c nu are fitted."""
     early = t <= max(EARLY, np.sort(t)[1])
-    R, stderr, deviation, its_error = (
-        row[f"soft_{name}"][early] for name in ("R", "R_stderr", "deviation", "deviation_stderr")
-    )
+    R, stderr, deviation, its_error = (row[name][early] for name in FITTED[:4])
     at_zero = Estimate(*limit_at_zero(t[early], R, stderr))
     law = signed_power_law(t[early], deviation, its_error)
     sigma = (at_zero.value - reference.value) / math.hypot(at_zero.stderr, reference.stderr)
-    cost = row["soft_cpu_seconds"] / row["soft_collisions"]
+    cost = row["cpu_seconds"] / row["collisions"]
     slower = [slowdown(target, t, cost, law, events) for target in TARGETS]
     return {
         "order": Estimate(law.exponent, law.stderr),

@@ -13,7 +13,7 @@ import xarray as xr
 
 from roughgas.statistics.estimate import Estimate
 from roughgas.statistics.fits import power_law
-from roughgas.studies.accuracy.variables import dataset, stacked
+from roughgas.studies.accuracy.variables import dataset, estimate, mean, stacked
 
 METHODS = ("rate_equations", "dsmc", "event_driven")
 
@@ -21,17 +21,24 @@ METHODS = ("rate_equations", "dsmc", "event_driven")
 def combine(parts: Mapping[str, xr.Dataset], settings: Mapping[str, Any]) -> xr.Dataset:
     """Return errors and costs of all methods, and the map of what theory misses, from all tasks."""
     density = settings["density"]
+    densities = [parts[f"density-r{r}-beta{beta}"] for r, beta in density["points"]]
     references = [parts[f"reference-{k}"] for k in range(settings["reference"]["jobs"])]
-    reference = _mean(np.concatenate([part.R.values for part in references]))
+    reference = mean(np.concatenate([part.R.values for part in references]))
+    closed = float(parts["theory"].closed_form_R)
+    closed_stderr = closed / reference.value**2 * reference.stderr
     found = {
         "R_reference": reference,
         "reference_seconds": sum(float(part.seconds) for part in references),
         "reference_replicas": sum(part.sizes["replica"] for part in references),
-        **_closed_form(parts["theory"], reference),
+        "closed_form_R": closed,
+        "closed_form_error": Estimate(abs(closed / reference.value - 1), closed_stderr),
+        "closed_form_seconds": float(parts["theory"].closed_form_seconds),
         **_methods(parts, settings, reference),
         **_shares(parts, reference),
         **_map([parts[f"map-r{r}"] for r in settings["map"]["r"]]),
-        **_densities([parts[f"density-r{r}-beta{beta}"] for r, beta in density["points"]]),
+        **stacked([_density(part) for part in densities]),
+        "density_replicas": densities[0].sizes["replica"],
+        "density_seconds": sum(float(part.seconds.sum() + part.dsmc_seconds) for part in densities),
         "map_r": np.array(settings["map"]["r"], float),
         "packing": np.array(density["packings"], float),
     }
@@ -59,20 +66,6 @@ def error_bar(errors: np.ndarray, reference_stderr: float) -> np.ndarray:
     offset = np.maximum(square - scatter, 0.0)
     variance = (scatter**2 / 2 + offset * scatter) / groups + offset * reference_stderr**2
     return np.sqrt(variance / square)
-
-
-def _mean(values: np.ndarray) -> Estimate:
-    return Estimate(values.mean(), values.std(ddof=1) / np.sqrt(len(values)))
-
-
-def _closed_form(part, reference):
-    R = float(part.closed_form_R)
-    stderr = R / reference.value**2 * reference.stderr
-    return {
-        "closed_form_R": R,
-        "closed_form_error": Estimate(abs(R / reference.value - 1), stderr),
-        "closed_form_seconds": float(part.closed_form_seconds),
-    }
 
 
 def _methods(parts, settings, reference):
@@ -103,10 +96,13 @@ def _methods(parts, settings, reference):
 
 def _shares(parts, reference):
     """Return what each approximation adds to the error of the closed form: factors whose product
-    is that error, minus 1."""
+    is that error, minus 1. Runs of DSMC are weighted by their lengths."""
     part = parts["dsmc"]
-    many = Estimate(float(part.homogeneous_R), float(part.homogeneous_R_stderr))
-    few = _pooled(part.R.values, part.dsmc_length.values)
+    many, R = estimate(part, "homogeneous_R"), part.R.values
+    weights = np.broadcast_to(part.dsmc_length.values[:, np.newaxis], R.shape).astype(float)
+    weights /= weights.sum()
+    variances = R.var(axis=1, ddof=1)[:, np.newaxis]
+    few = Estimate(np.sum(weights * R), np.sqrt(np.sum(weights**2 * variances)))
     closed, dilution = Estimate(float(parts["theory"].closed_form_R), 0.0), over(few, reference)
     factors = {"maxwellian": over(closed, many), "number": over(many, few), "dilution": dilution}
     return {
@@ -114,14 +110,6 @@ def _shares(parts, reference):
         "dsmc_many_R": many,
         **{f"of_{name}": one._replace(value=one.value - 1) for name, one in factors.items()},
     }
-
-
-def _pooled(R, lengths):
-    """Return the mean of all runs, weighted by their lengths."""
-    weights = np.broadcast_to(lengths[:, np.newaxis], R.shape).astype(float)
-    weights /= weights.sum()
-    variances = R.var(axis=1, ddof=1)[:, np.newaxis]
-    return Estimate(np.sum(weights * R), np.sqrt(np.sum(weights**2 * variances)))
 
 
 def _map(rows: Sequence[xr.Dataset]):
@@ -132,25 +120,13 @@ def _map(rows: Sequence[xr.Dataset]):
     return {f"map_{name}": values for name, values in found.items()}
 
 
-def _densities(parts: Sequence[xr.Dataset]):
-    return stacked([_density(part) for part in parts]) | {
-        "density_replicas": parts[0].sizes["replica"],
-        "density_seconds": sum(float(part.seconds.sum() + part.dsmc_seconds) for part in parts),
-    }
-
-
 def _density(part: xr.Dataset):
     """Return R of an event-driven gas at each packing, and that over Eq. (K), its number of
     particles corrected for by DSMC."""
-    many, few = (
-        Estimate(float(part[name]), float(part[f"{name}_stderr"])) for name in ("R_many", "R_few")
-    )
-    theory = float(part.theory)
-    R = [_mean(values) for values in part.R.values]
-    gaps = [over(one, over(few, many)) for one in R]
-    return stacked(
-        [
-            {"density_R": one, "density_gap": Estimate(gap.value / theory - 1, gap.stderr / theory)}
-            for one, gap in zip(R, gaps, strict=True)
-        ]
-    )
+    many, few, theory = estimate(part, "R_many"), estimate(part, "R_few"), float(part.theory)
+    rows = []
+    for R in map(mean, part.R.values):
+        gap = over(R, over(few, many))
+        gap = Estimate(gap.value / theory - 1, gap.stderr / theory)
+        rows.append({"density_R": R, "density_gap": gap})
+    return stacked(rows)

@@ -17,7 +17,7 @@ import xarray as xr
 from roughgas.statistics.estimate import Estimate
 from roughgas.statistics.fits import power_law
 from roughgas.studies.accuracy.tasks import PARTS, SCENES, WAYS
-from roughgas.studies.accuracy.variables import dataset, stacked
+from roughgas.studies.accuracy.variables import dataset, mean, stacked
 
 RELATIVE_ERRORS = (0.01, 0.003, 0.001)
 LENGTH_UNITS = {"vibrated": "T", "sheared": "T", "cooling": "collisions per particle"}
@@ -62,9 +62,9 @@ def noise(error: np.ndarray, groups: np.ndarray, length: np.ndarray) -> Estimate
 
 
 def _scene(scene, parts, settings) -> dict[str, Any]:
-    """Return every variable of one scene."""
+    """Return every variable of one scene; costs are those on one core, with one seed."""
     reference, *ways = (parts[f"{scene}-{part}"] for part in PARTS)
-    R = _over_chains(reference.R)
+    R = mean(reference.R.values)
     levels = stacked([observed(part.R.values, part.seconds.values, R.value) for part in ways])
     sizes = 2.0 ** np.arange(settings["levels"])
     alone = np.ones_like(sizes)
@@ -72,35 +72,24 @@ def _scene(scene, parts, settings) -> dict[str, Any]:
     equilibration = np.concatenate([part.equilibration.values for part in (reference, *ways)])
     seconds = float(reference.seconds.sum())
     measured = seconds + sum(float(part.seconds.sum()) for part in ways)
-    own = levels | {
+    per_length, error = seconds / float(reference.time.sum()), levels["error"]
+    spread = noise(error[0], levels["groups"][0], lengths[0])
+    needed = spread.value / (np.array(RELATIVE_ERRORS) * R.value) ** 2
+    measuring = per_length * needed
+    return levels | {
         "R": R,
         "variance": float(reference.variance.mean()),
-        "autocorrelation_time": _over_chains(reference.autocorrelation_time),
+        "autocorrelation_time": mean(reference.autocorrelation_time.values),
         "windowed_time": float(reference.windowed_time.mean()),
-        "noise": noise(levels["error"][0], levels["groups"][0], lengths[0]),
+        "noise": spread,
         "equilibration_seconds": equilibration.mean(),
-        "seconds_per_length": seconds / float(reference.time.sum()),
+        "seconds_per_length": per_length,
         "collisions_per_second": float(reference.contacts.sum()) / seconds,
         "cpu_seconds": measured + equilibration.sum(),
         "length": lengths,
         "seeds": np.array([alone, sizes]).astype(int),
-    }
-    return own | _costs(own)
-
-
-def _over_chains(values: xr.DataArray) -> Estimate:
-    return Estimate(
-        float(values.mean()), float(values.std(ddof=1)) / math.sqrt(values.sizes["chain"])
-    )
-
-
-def _costs(own) -> dict[str, Any]:
-    """Return what the relative errors cost on one core, with one seed."""
-    noise = own["noise"]
-    length = noise.value / (np.array(RELATIVE_ERRORS) * own["R"].value) ** 2
-    seconds = own["seconds_per_length"] * length
-    total = own["equilibration_seconds"] + seconds
-    return {
-        "length_needed": length,
-        "seconds_needed": Estimate(total, seconds * noise.stderr / noise.value),
+        "length_needed": needed,
+        "seconds_needed": Estimate(
+            equilibration.mean() + measuring, measuring * spread.stderr / spread.value
+        ),
     }

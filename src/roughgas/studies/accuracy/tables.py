@@ -8,9 +8,8 @@ import xarray as xr
 
 from roughgas.base.files import write_text
 from roughgas.base.layout import markdown
-from roughgas.statistics.estimate import Estimate
 from roughgas.studies.accuracy.tasks import SCENES, STUDIES
-from roughgas.studies.accuracy.variables import read_studies
+from roughgas.studies.accuracy.variables import estimate, read_studies
 
 SHARES = {
     "of_maxwellian": "Maxwellian, uncorrelated velocities",
@@ -29,20 +28,23 @@ def statistical(data: xr.Dataset) -> str:
     """Return what an accuracy of R costs in each scene, and how errors fall with time."""
     head = ["scene", "R", "slope, longer runs", "slope, more seeds", "autocorrelation time"]
     costs = ["scene", "equilibration", *(f"{x:.1%}" for x in data.relative_error.values)]
-    scenes = along(data, "scene")
-    rows = [
-        [
-            one.scene.item(),
-            f"{_estimate(one, 'R'):.5f}",
-            *(f"{_estimate(way, 'slope'):.3f}" for way in along(one, "way")),
-            f"{_estimate(one, 'autocorrelation_time'):.2f} {one.length_unit.item()}",
+    rows, prices = [], []
+    for one in along(data, "scene"):
+        scene, unit = one.scene.item(), one.length_unit.item()
+        slopes = [_shown(way, "slope", ".3f") for way in along(one, "way")]
+        time = f"{_shown(one, 'autocorrelation_time', '.2f')} {unit}"
+        rows.append([scene, _shown(one, "R", ".5f"), *slopes, time])
+        unit = "T" if unit == "T" else "c.p.p."
+        cells = [
+            f"{cell.seconds_needed:.2g} ± {cell.seconds_needed_stderr:.1g} s"
+            f" ({cell.length_needed:.3g} {unit})"
+            for cell in along(one, "relative_error")
         ]
-        for one in scenes
-    ]
+        prices.append([scene, f"{one.equilibration_seconds:.2g} s", *cells])
     return (
         f"## Statistical error ({_about(data)})\n\n{markdown(head, rows)}\n"
         "CPU seconds of one core for a relative error of R, equilibration included, and how long"
-        f" the run is:\n\n{markdown(costs, map(_prices, scenes))}"
+        f" the run is:\n\n{markdown(costs, prices)}"
     )
 
 
@@ -50,48 +52,59 @@ def discretisation(data: xr.Dataset) -> str:
     """Return deviations of soft spheres and of the contact-time model, and what they cost."""
     soft = along(data, "steps")
     head = ["t_c ν", *(f"soft spheres, {n} steps" for n in data.steps.values)]
-    rows = [
-        [f"{t:g}", *(_percent(one.sel(contact_time=t), "soft") for one in soft)]
-        for t in data.contact_time.values
-    ]
-    rows.append(["order in t_c", *(f"{_estimate(one, 'order'):.2f}" for one in soft)])
-    rows.append(["R at t_c → 0", *(f"{_estimate(one, 'limit_R'):.4f}" for one in soft)])
+    rows = []
+    for k, t in enumerate(data.contact_time.values):
+        at = (one.isel(contact_time=k) for one in soft)
+        rows.append([f"{t:g}", *(_shown(one, "soft_deviation", "+.2f", 100) for one in at)])
+    rows.append(["order in t_c", *(_shown(one, "order", ".2f") for one in soft)])
+    rows.append(["R at t_c → 0", *(_shown(one, "limit_R", ".4f") for one in soft)])
     for target in data.target.values:
         slower = data.slowdown.sel(target=target).values
         cells = ("–" if np.isnan(x) else f"{x:.0f} times" for x in slower)
         rows.append([f"slower than events at {target:.1%}", *cells])
     model_head = ["t_c ν", "deviation of R in %", "contacts changed"]
     model = [
-        [f"{one.model_contact_time:g}", _percent(one, "model"), f"{one.model_touched:.2%}"]
+        [
+            f"{one.model_contact_time:g}",
+            _shown(one, "model_deviation", "+.2f", 100),
+            f"{one.model_touched:.2%}",
+        ]
         for one in along(data, "model_contact_time")
     ]
+    speed = data.elastic_speed_single / data.elastic_speed_double
     return (
         f"## Discretisation error ({_about(data)}, packing {data.attrs['packing']})\n\n"
-        f"Deviation of R in % from events, R = {_estimate(data, 'reference_R'):.5f}:\n\n"
+        f"Deviation of R in % from events, R = {_shown(data, 'reference_R', '.5f')}:\n\n"
         f"{markdown(head, rows)}\nThe contact-time model:\n\n{markdown(model_head, model)}\n"
-        f"{_precision(data)}"
+        "Trajectories kept in single precision: deviation of R"
+        f" {_shown(data, 'single_deviation', '+.2f', 100)} %, an"
+        f" elastic gas's energy drifts by {data.elastic_drift_single:.1e} ±"
+        f" {data.elastic_drift_stderr_single:.0e} of itself a collision"
+        f" ({data.elastic_drift_double:.0e} in double precision), {speed:.2f} times as fast.\n"
     )
 
 
 def models(data: xr.Dataset) -> str:
     """Return what each model of a cooling gas tends to, and what the Maxwellian theory misses."""
-    closed = f"{_estimate(data, 'closed_form_error', 100):±} %"
+    closed, floor = (f"{_shown(data, x, '±', 100)} %" for x in ("closed_form_error", "dsmc_floor"))
     until = (0.01 / float(data.event_driven_prefactor)) ** (1 / float(data.event_driven_slope))
+    # the shortest run of DSMC whose noise is down to its floor, within a third
+    near = data.dsmc_seconds.values[data.dsmc_error.values < 4 / 3 * float(data.dsmc_floor)]
     rows = [
         ["closed form, Eq. (K)", closed, f"{data.closed_form_seconds:.1e} s"],
         ["rate equations", closed, f"{data.rate_equations_seconds[-1]:.1e} s"],
-        ["DSMC", f"{_estimate(data, 'dsmc_floor', 100):±} %", f"{_reached(data):.2g} s"],
+        ["DSMC", floor, f"{near[0] if len(near) else math.nan:.2g} s"],
         ["event-driven", "none", f"{until:.2g} s for 1 %"],
     ]
-    parts = [[what, f"{_estimate(data, name, 100):±} %"] for name, what in SHARES.items()]
+    parts = [[what, f"{_shown(data, name, '±', 100)} %"] for name, what in SHARES.items()]
     head = ["β", *(f"r = {r:g}" for r in data.map_r.values)]
     gaps = [
-        [f"{row.map_beta:g}", *(f"{_estimate(x, 'map_gap', 100):±}" for x in along(row, "map_r"))]
+        [f"{row.map_beta:g}", *(_shown(one, "map_gap", "±", 100) for one in along(row, "map_r"))]
         for row in along(data, "map_beta")
     ]
     return (
         f"## Model error (r = {data.attrs['r']:g}, β = {data.attrs['beta']:g})\n\n"
-        f"Against events, R = {_estimate(data, 'R_reference'):.5f}:\n\n"
+        f"Against events, R = {_shown(data, 'R_reference', '.5f')}:\n\n"
         f"{markdown(['model', 'tends to an error of R of', 'CPU time'], rows)}\n"
         f"What the error of the closed form is made of:\n\n"
         f"{markdown(['assumption', 'changes R by'], parts)}\n"
@@ -102,10 +115,15 @@ def models(data: xr.Dataset) -> str:
 
 def coverage(data: xr.Dataset) -> str:
     """Return how often intervals hold the truth, a corner a row, with standard errors."""
-    data = in_order(data)
     head = ["corner", "runs", "68 %, one run", "95 %, one run", "68 %, pooled", "95 %, pooled"]
     head += ["bias / scatter", "stated / true error", "window / τ"]
-    rows = map(_corner, along(data, "corner"))
+    rows = []
+    for one in along(in_order(data), "corner"):
+        shares = [share for way in along(one, "way") for share in along(way, "level")]
+        cells = [_shown(share, "coverage", "±", 100) for share in shares]
+        cells += [_shown(one, name, "±") for name in ("bias", "stated_over_true")]
+        window = f"{float(one.window / one.autocorrelation_time):.0f}"
+        rows.append([label(one), f"{int(one.repetitions)}", *cells, window])
     return f"## Coverage of the stated intervals\n\n{markdown(head, rows)}"
 
 
@@ -135,44 +153,6 @@ def _about(data):
     return f"r = {data.attrs['r']}, β = {data.attrs['beta']}"
 
 
-def _estimate(one: xr.Dataset, name: str, factor: float = 1.0) -> Estimate:
-    return Estimate(float(one[name]), float(one[f"{name}_stderr"])).scaled(factor)
-
-
-def _percent(one: xr.Dataset, kind: str) -> str:
-    return f"{_estimate(one, f'{kind}_deviation', 100):+.2f}"
-
-
-def _corner(one: xr.Dataset) -> list[str]:
-    shares = [share for way in along(one, "way") for share in along(way, "level")]
-    cells = [f"{_estimate(share, 'coverage', 100):±}" for share in shares]
-    cells += [f"{_estimate(one, name):±}" for name in ("bias", "stated_over_true")]
-    window = float(one.window / one.autocorrelation_time)
-    return [label(one), f"{int(one.repetitions)}", *cells, f"{window:.0f}"]
-
-
-def _reached(data: xr.Dataset) -> float:
-    """Return CPU seconds of the shortest DSMC run whose noise is down to its floor, within a third;
-    NaN without one."""
-    near = data.dsmc_error.values < 4 / 3 * float(data.dsmc_floor)
-    return float(data.dsmc_seconds.values[near][0]) if near.any() else math.nan
-
-
-def _prices(one: xr.Dataset) -> list[str]:
-    unit = "T" if one.length_unit.item() == "T" else "c.p.p."
-    shown = [
-        f"{cell.seconds_needed:.2g} ± {cell.seconds_needed_stderr:.1g} s"
-        f" ({cell.length_needed:.3g} {unit})"
-        for cell in along(one, "relative_error")
-    ]
-    return [one.scene.item(), f"{one.equilibration_seconds:.2g} s", *shown]
-
-
-def _precision(data: xr.Dataset) -> str:
-    speed = data.elastic_speed_single / data.elastic_speed_double
-    return (
-        f"Trajectories kept in single precision: deviation of R {_percent(data, 'single')} %, an"
-        f" elastic gas's energy drifts by {data.elastic_drift_single:.1e} ±"
-        f" {data.elastic_drift_stderr_single:.0e} of itself a collision"
-        f" ({data.elastic_drift_double:.0e} in double precision), {speed:.2f} times as fast.\n"
-    )
+def _shown(data, name, how, factor=1.0):
+    """Return a value with its error in a format of Estimate."""
+    return f"{estimate(data, name).scaled(factor):{how}}"

@@ -3,6 +3,7 @@
 Needs neither kernel nor simulation: only numbers that jobs have found.
 """
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -30,6 +31,16 @@ def read_studies(path: str | Path) -> dict[str, xr.Dataset]:
     with netCDF4.Dataset(path) as file:
         names = [name for name in STUDIES if name in file.groups]
     return {name: read_netcdf(path, name) for name in names}
+
+
+def estimate(data: xr.Dataset, name: str) -> Estimate:
+    """Return the scalars `name` and `name`_stderr."""
+    return Estimate(float(data[name]), float(data[f"{name}_stderr"]))
+
+
+def mean(values: np.ndarray) -> Estimate:
+    """Return the mean of independent values, shape (n,)."""
+    return Estimate(float(values.mean()), float(values.std(ddof=1)) / math.sqrt(len(values)))
 
 
 def flat(found: Mapping[str, Any]) -> dict[str, Any]:

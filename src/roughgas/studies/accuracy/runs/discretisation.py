@@ -6,7 +6,6 @@ simulation proper, everything compiled before, at equilibrium.
 """
 
 import math
-import time
 from collections.abc import Callable
 
 import numpy as np
@@ -55,22 +54,24 @@ def _soft(settings, cooling, progress, job):
     gas, spheres = new_gas(*where, scene.box, forces, SKIN)
     dt, number = duration / steps, len(gas.position)
     per_leg = max(1, round(SOFT_LEG / (nu * dt)))
+
+    def advance(legs):
+        rows = np.empty((legs, len(COLUMNS)))
+        if step(gas, spheres, dt, per_leg, 1.0, rows) < legs:
+            raise RuntimeError("soft spheres are too crowded")
+        vv, ww, _ = rows.T
+        return ratio(Energies(vv / (2 * number), q * ww / number))
+
     settling, legs = (
         math.ceil(length / (nu * dt * per_leg))
         for length in (SETTLING, settings["soft_collisions"])
     )
-    step(gas, spheres, dt, per_leg, 1.0, np.empty((settling, len(COLUMNS))))
-    rows = np.empty((legs, len(COLUMNS)))
-    begun, seconds = gas.counts[CONTACTS], time.process_time()
-    for done, part in _parts(rows, progress):
-        if step(gas, spheres, dt, per_leg, 1.0, part) < len(part):
-            raise RuntimeError(f"soft spheres are too crowded after {done} of {legs} legs")
-    seconds = time.process_time() - seconds
-    vv, ww, contacts = rows.T
-    R = ratio(Energies(vv / (2 * number), q * ww / number))
-    collisions = 2.0 * (contacts[-1] - begun) / number
+    advance(settling)
+    begun = gas.counts[CONTACTS]
+    _, found = _measured(advance, legs, progress)
+    collisions = 2.0 * (gas.counts[CONTACTS] - begun) / number
     frequency = collisions / (legs * per_leg * dt) / nu
-    return _summary(R, collisions, seconds) | {"frequency": frequency, "steps": legs * per_leg}
+    return found | {"collisions": collisions, "frequency": frequency, "steps": legs * per_leg}
 
 
 def _model(settings, cooling, progress, job):
@@ -79,18 +80,21 @@ def _model(settings, cooling, progress, job):
     gas = _gas(settings, cooling, job, effects={"contact_time": {"duration": duration}})
     per_leg, recorder = gas.count(LEG), gas.recorder
     gas.cool(per_leg)
-    settling, legs = (round(length / LEG) for length in (SETTLING, settings["model_collisions"]))
-    for _ in range(settling):
-        gas.in_collisions(per_leg, 1)
-        _heat(gas.state)
-    recorder.touched, recorder.seconds, R = 0, 0.0, np.empty(legs)
-    for _, part in _parts(R, progress):
-        for k in range(len(part)):
-            part[k] = ratio(gas.energies(gas.in_collisions(per_leg, 1)))[0]
+
+    def advance(legs):
+        R = np.empty(legs)
+        for k in range(legs):
+            R[k] = ratio(gas.energies(gas.in_collisions(per_leg, 1)))[0]
             _heat(gas.state)
-    collisions = 2.0 * legs * per_leg / gas.particles
-    touched = recorder.touched / (legs * per_leg)
-    return _summary(R, collisions, recorder.seconds) | {"touched": touched}
+        return R
+
+    settling, legs = (round(length / LEG) for length in (SETTLING, settings["model_collisions"]))
+    advance(settling)
+    recorder.touched, recorder.seconds = 0, 0.0
+    _, found = _measured(advance, legs, progress)
+    collisions, touched = legs * per_leg, recorder.touched / (legs * per_leg)
+    found |= {"collisions": 2.0 * collisions / gas.particles, "touched": touched}
+    return found | {"cpu_seconds": recorder.seconds}
 
 
 def _single(settings, cooling, progress, job):
@@ -108,11 +112,13 @@ def _events(settings, cooling, progress, job, precision=np.float64):
     every = gas.count(SAMPLED_EVERY)
     gas.cool(REFRESHED_EVERY * every)
     length = settings["reference_collisions" if kind == "reference" else "event_collisions"]
-    gas.in_collisions(every, round(SETTLING / SAMPLED_EVERY))
-    R, seconds = np.empty(round(length / SAMPLED_EVERY)), time.process_time()
-    for _, part in _parts(R, progress):
-        part[:] = ratio(gas.energies(gas.in_collisions(every, len(part))))
-    found = _summary(R, len(R) * SAMPLED_EVERY, time.process_time() - seconds)
+
+    def advance(samples):
+        return ratio(gas.energies(gas.in_collisions(every, samples)))
+
+    advance(round(SETTLING / SAMPLED_EVERY))
+    R, found = _measured(advance, round(length / SAMPLED_EVERY), progress)
+    found["collisions"] = len(R) * SAMPLED_EVERY
     return found | ({"R_series": R} if kind == "event" else {})
 
 
@@ -172,14 +178,17 @@ def _heat(state):
     state.counts[STARTED] = 0
 
 
-def _parts(rows, progress):
-    """(number of the first row, part of the rows), each a whole number of refreshed samples."""
-    length = max(1, -(-len(rows) // (PARTS * REFRESHED_EVERY))) * REFRESHED_EVERY
-    for first in range(0, len(rows), length):
-        progress(first, len(rows))
-        yield first, rows[first : first + length]
+def _measured(advance, samples, progress):
+    """Return R of all samples, its mean and error, and CPU seconds.
 
-
-def _summary(R, collisions, seconds):
-    found = {"R": R.mean(), "R_stderr": blocking_stderr(R)}
-    return found | {"collisions": float(collisions), "cpu_seconds": seconds}
+    `advance` returns R of the next samples; it is called for a whole number of refreshed ones.
+    """
+    length = max(1, -(-samples // (PARTS * REFRESHED_EVERY))) * REFRESHED_EVERY
+    parts, total = [], 0.0
+    for first in range(0, samples, length):
+        progress(first, samples)
+        part, seconds = timed(advance, min(length, samples - first))
+        parts.append(part)
+        total += seconds
+    R = np.concatenate(parts)
+    return R, {"R": R.mean(), "R_stderr": blocking_stderr(R), "cpu_seconds": total}

@@ -29,14 +29,7 @@ class Chain:
     cooling gas with the experiment's thermalisation; `rng` draws the initial state.
     """
 
-    def __init__(
-        self,
-        experiment: Mapping[str, Any],
-        r: float,
-        beta: float,
-        equilibrate: float,
-        rng: np.random.Generator,
-    ):
+    def __init__(self, experiment: Mapping[str, Any], r, beta, equilibrate, rng) -> None:
         self.kind, self.schedule = schedule.of(experiment), experiment["schedule"]
         self.gas = self.kind.start(build(experiment, r, beta), experiment, rng)
         self._sample(equilibrate)
@@ -69,7 +62,7 @@ def run(task: str, settings, experiments, progress: Callable[[int, int], None]) 
         progress(count, count)
 
     start(np.random.default_rng(0)).measure(own["shortest"])  # compiles
-    measured = {"reference": _reference, "length": _lengths, "seeds": _seeds}[part]
+    measured = _reference if part == "reference" else partial(_estimates, way=part)
     return xr.Dataset(measured(settings, own["shortest"], chains))
 
 
@@ -88,66 +81,48 @@ def _reference(settings, shortest, chains) -> dict[str, tuple]:
     """Chains that are together `reference` times as long as the longest level."""
     total = settings["reference"] * 2 ** (settings["levels"] - 1)
     length = math.ceil(total / settings["chains"]) * shortest
-    rows = [_of_reference(*made, length) for made in chains(settings["chains"])]
+    rows = []
+    for chain, equilibration in chains(settings["chains"]):
+        before = chain.gas.recorder.collisions
+        R, seconds = timed(chain.measure, length)
+        unit, windowed = length / len(R), autocorrelation_time(R)
+        row = {
+            "equilibration": equilibration,
+            "R": R.mean(),
+            "variance": R.var(),
+            "autocorrelation_time": time_from_blocks(R, math.ceil(BLOCK * windowed)) * unit,
+            "windowed_time": windowed * unit,
+            "time": length,
+            "seconds": seconds,
+            "contacts": chain.gas.recorder.collisions - before,
+        }
+        rows.append(row)
     return {name: ("chain", [row[name] for row in rows]) for name in rows[0]}
 
 
-def _of_reference(chain, equilibration, length) -> dict[str, float]:
-    before = chain.gas.recorder.collisions
-    R, seconds = timed(chain.measure, length)
-    unit, windowed = length / len(R), autocorrelation_time(R)
-    return {
-        "equilibration": equilibration,
-        "R": R.mean(),
-        "variance": R.var(),
-        "autocorrelation_time": time_from_blocks(R, math.ceil(BLOCK * windowed)) * unit,
-        "windowed_time": windowed * unit,
-        "time": length,
-        "seconds": seconds,
-        "contacts": chain.gas.recorder.collisions - before,
-    }
+def _estimates(settings, shortest, chains, way) -> dict[str, tuple]:
+    """R and CPU seconds of the groups of all levels, NaN where a level has no more groups.
 
-
-def _lengths(settings, shortest, chains) -> dict[str, tuple]:
-    """Estimates from one run each: level k takes 2^k times the shortest length."""
-    sizes, stretches = _sizes(settings)
-    lengths = np.repeat(sizes, stretches) * shortest
-    measured, equilibration = _measured(chains(settings["groups"]), lengths)
-    levels = np.split(measured, np.cumsum(stretches)[:-1], axis=2)
-    return _levels([level.reshape(2, -1) for level in levels], equilibration)
-
-
-def _seeds(settings, shortest, chains) -> dict[str, tuple]:
-    """Estimates from 2^k runs of the shortest length, each of another chain, at level k."""
-    sizes, stretches = _sizes(settings)
-    most = sizes[-1]
-    counts = -(-settings["groups"] * stretches * sizes // most)
-    measured, equilibration = _measured(chains(most), [shortest] * counts.sum())
-    levels = np.split(measured.swapaxes(1, 2), np.cumsum(counts)[:-1], axis=1)
-    groups = [level.reshape(2, -1, size) for level, size in zip(levels, sizes, strict=True)]
-    return _levels([(R.mean(axis=1), seconds.sum(axis=1)) for R, seconds in groups], equilibration)
-
-
-def _sizes(settings) -> tuple[np.ndarray, np.ndarray]:
-    """Return the size of each level, and how many groups it gets for each that it must have."""
+    At level k, a group is a run of 2^k times the shortest length, or 2^k runs of this length, each
+    of another chain.
+    """
     sizes = 2 ** np.arange(settings["levels"])
-    return sizes, np.maximum(1, sizes[::-1] // GENEROSITY)
-
-
-def _measured(chains, lengths) -> tuple[np.ndarray, list[float]]:
-    """Return mean R and CPU seconds, shape (2, chains, lengths), of stretches of each chain."""
+    stretches = np.maximum(1, sizes[::-1] // GENEROSITY)  # for each group that a level must have
+    if way == "length":
+        number, runs, lengths = settings["groups"], np.ones_like(sizes), sizes * shortest
+    else:
+        number, runs, lengths = sizes[-1], sizes, np.full_like(sizes, shortest, np.float64)
+        stretches = -(-settings["groups"] * stretches * sizes // number)
     rows, equilibration = [], []
-    for chain, seconds in chains:
+    for chain, seconds in chains(number):
         equilibration.append(seconds)
-        measured = (timed(chain.measure, length) for length in lengths)
-        rows.append([(R.mean(), seconds) for R, seconds in measured])
-    return np.moveaxis(np.array(rows), 2, 0), equilibration
-
-
-def _levels(found, equilibration) -> dict[str, tuple]:
-    """Return R and CPU seconds of the groups of all levels, NaN where a level has no more."""
-    filled = np.full((2, len(found), max(len(R) for R, _ in found)), np.nan)
-    for level, values in enumerate(found):
-        filled[:, level, : len(values[0])] = values
+        parts = (timed(chain.measure, length) for length in np.repeat(lengths, stretches))
+        rows.append([(R.mean(), seconds) for R, seconds in parts])
+    measured = np.moveaxis(np.array(rows), 2, 0)  # (2, chains, stretches)
+    filled = np.full((2, len(sizes), np.max(number * stretches // runs)), np.nan)
+    for level, part in enumerate(np.split(measured, np.cumsum(stretches)[:-1], axis=2)):
+        part = part if way == "length" else part.swapaxes(1, 2)
+        R, seconds = part.reshape(2, -1, runs[level])
+        filled[:, level, : len(R)] = R.mean(axis=1), seconds.sum(axis=1)
     R, seconds = ((("level", "group"), values) for values in filled)
     return {"R": R, "seconds": seconds, "equilibration": ("chain", equilibration)}
