@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from roughgas.data.reduced import EQUILIBRATED, GRID, read_reduced
-from roughgas.statistics.estimate import SIGNIFICANT, Estimate
+from roughgas.statistics.estimate import Estimate
 from roughgas.statistics.intervals import sum_error
 from roughgas.theory.arguments import NET_SHARE
 from roughgas.theory.prediction import predicted_ratio
@@ -48,14 +48,9 @@ class Sample(NamedTuple):
         places = {name: np.concatenate(pair) for name, pair in pairs}
         return Sample(places, *map(np.concatenate, zip(self[1:], other[1:], strict=True)))
 
-    def over(self, divisor: np.ndarray) -> "Sample":
-        """Return the values in units of `divisor`, which is positive and exact."""
-        return self._replace(value=self.value / divisor, stderr=self.stderr / divisor)
-
     def real(self) -> np.ndarray:
         """Return where the values differ from 0 significantly."""
-        sigma = np.array([self.at(index).sigma for index in range(self.size)])
-        return np.abs(sigma) >= SIGNIFICANT
+        return np.array([self.at(index).real for index in range(self.size)])
 
     def off(self, tolerance: float) -> np.ndarray:
         """Return where the values differ from 0 significantly and by more than `tolerance`."""
@@ -150,8 +145,8 @@ def deviation(data: xr.Dataset) -> Sample:
 
 def deviation_in_proportion(data: xr.Dataset) -> Sample:
     """Return R/theory - 1 at every point."""
-    gap = deviation(data)
-    return gap.over(of_ratio(data, data.theory.where(np.isfinite(data.R))).value)
+    gap, theory = deviation(data), of_ratio(data, data.theory.where(np.isfinite(data.R))).value
+    return gap._replace(value=gap.value / theory, stderr=gap.stderr / theory)
 
 
 def deviation_at_shares(data: xr.Dataset) -> Sample:

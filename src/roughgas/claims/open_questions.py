@@ -134,7 +134,7 @@ def follows_rates_when_strong(cooling: xr.Dataset) -> Finding:
 
 def follows_rates(gas: xr.Dataset) -> Finding:
     """R - the rate equations with friction is as good as zero."""
-    held = _with_friction(gas)
+    held = gas.sel(mu=gas.mu > 0.0)  # at mu = 0 spin is decoupled: R keeps its initial value
     found = agreement_in_proportion(held, "the rate equations")
     measured, expected = _rough_from(held.R), _rough_from(held.theory)
     at = "; ".join(
@@ -164,7 +164,7 @@ def keeps_spin_when_weak(cooling: xr.Dataset) -> Finding:
     Between there and the critical mu theory has two stable states, and the one at R = 1 is reached
     through the other. How far R is from that other state is reported, and does not decide.
     """
-    held = _with_friction(cooling)
+    held = cooling.sel(mu=cooling.mu > 0.0)
     alone = held.theory > SPIN_ALONE
     if not alone.any():
         raise NotTestedError("no mu > 0 of the sweep has R = 1 in theory")
@@ -179,9 +179,3 @@ def keeps_spin_when_weak(cooling: xr.Dataset) -> Finding:
         reason += f"{above.size} points, by up to {text(largest)} at {place}."
         numbers = (*numbers, ("largest R - the second stable state", largest))
     return Finding(found.verdict, reason, numbers)
-
-
-def _with_friction(gas: xr.Dataset) -> xr.Dataset:
-    """Return the part with mu > 0: without friction spin is decoupled, and R keeps its initial
-    value."""
-    return gas.sel(mu=gas.mu > 0.0)

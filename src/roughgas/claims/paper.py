@@ -61,10 +61,8 @@ def theory_underestimates(bed: xr.Dataset) -> Finding:
     else:
         reason += f" and {text(weak)} at r = {high:g}; the difference is {text(growth)}."
         numbers += (("growth from the highest r to the lowest", growth),)
-    verdict = tendency(strong)
-    if verdict == HOLDS and not (low < high and growth.real and growth.value > 0):
-        verdict = QUALIFIED
-    return Finding(verdict, reason, numbers)
+    grows = low < high and growth.real and growth.value > 0
+    return Finding(worse(tendency(strong), HOLDS if grows else QUALIFIED), reason, numbers)
 
 
 def beyond_half(*gases: xr.Dataset) -> Sample:
@@ -105,8 +103,7 @@ def rough_walls_push_to_half(bed: xr.Dataset, rough: xr.Dataset) -> Finding:
         f"The mean shift of R by the walls is {text(mean)} where R < 1/2 without them; "
         f"R falls at {down} of {moved.size} points."
     )
-    verdict = tendency(mean)
-    verdict = QUALIFIED if verdict == HOLDS and down else verdict
+    verdict = worse(tendency(mean), QUALIFIED if down else HOLDS)
     return Finding(verdict, reason, (("mean shift", mean),))
 
 

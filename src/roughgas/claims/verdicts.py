@@ -55,10 +55,8 @@ def agreement(sample: Sample, other: str) -> Finding:
     off, far, vague = sample.off(AGREE), sample.off(LIMIT), sample.vague(AGREE)
     if vague.mean() > 0.5:
         raise NotTestedError(f"the errors are too large at {vague.sum()} of {sample.size} points")
-    verdict = QUALIFIED if off.any() or vague.mean() > FEW else HOLDS
-    verdict = FAILS if far.mean() > FEW else verdict
-    largest, place = sample.largest()
-    mean = sample.mean()
+    verdict = graded(not off.any() and vague.mean() <= FEW, far.mean() <= FEW)
+    (largest, place), mean = sample.largest(), sample.mean()
     reason = (
         f"{int((np.abs(sample.value) <= AGREE).sum())} of {sample.size} points within {AGREE:g} of "
         f"{other}; the largest difference is {text(largest)} at {place}, the mean {text(mean)}."
@@ -84,8 +82,7 @@ def agreement_in_proportion(gas: xr.Dataset, theory: str) -> Finding:
     points: where R spans decades, a small R must follow theory, too."""
     found, relative = agreement(deviation(gas), theory), deviation_in_proportion(gas)
     off, far, vague = relative.off(NEAR), relative.off(FAR), relative.vague(NEAR)
-    verdict = QUALIFIED if off.mean() > FEW or vague.mean() > FEW else HOLDS
-    verdict = FAILS if far.mean() > FEW else verdict
+    verdict = graded(off.mean() <= FEW and vague.mean() <= FEW, far.mean() <= FEW)
     near = int((np.abs(relative.value) <= NEAR).sum())
     reason = f"In proportion, {near} of {relative.size} points are within {NEAR:.0%}"
     numbers = ()

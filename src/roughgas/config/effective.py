@@ -15,13 +15,15 @@ HEAD = """\
 """
 
 
-def effective(config: Mapping[str, Any], scale: str) -> dict[str, Any]:
-    """Return a configuration whose only scale is `scale`, which changes nothing.
+def write_effective(config: Mapping[str, Any], scale: str, output: str | Path) -> None:
+    """Write a configuration whose only scale is `scale`, which changes nothing, as YAML.
 
     Raises InputError for an unknown scale.
     """
+    import yaml
+
     names = config["experiments"]
-    return {
+    effective = {
         "scale": scale,
         "seeds_per_job": config.get("seeds_per_job", settings.SEEDS_PER_JOB),
         "experiments": {name: settings.experiment(config, name, scale) for name in names},
@@ -29,12 +31,6 @@ def effective(config: Mapping[str, Any], scale: str) -> dict[str, Any]:
         settings.ACCURACY: settings.studies(config, scale),
         "scales": {scale: {}},
     }
-
-
-def write_effective(config: Mapping[str, Any], scale: str, output: str | Path) -> None:
-    """Write the configuration of `scale` as YAML that can be loaded again."""
-    import yaml
-
-    plain = json.loads(json.dumps(effective(config, scale)))  # without anchors
+    plain = json.loads(json.dumps(effective))  # without anchors
     text = yaml.safe_dump(plain, sort_keys=False, width=100, default_flow_style=None)
     write_text(output, HEAD.format(scale=scale) + text)

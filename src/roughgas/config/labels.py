@@ -17,25 +17,27 @@ LEGAL_LEVEL = "be a number, or a word of lower-case letters, digits and _"
 
 
 def restitution(label: Any, key: str = "restitution r") -> float:
-    """The normal restitution that `label` (text or a number) stands for, in [0, 1]."""
+    """Return the normal restitution that `label` (text or a number) stands for, in [0, 1]."""
     return _number_in(RESTITUTION, key, label)
 
 
 def roughness(label: Any, key: str = "roughness beta") -> float:
-    """The roughness that `label` (text or a number) stands for, in [-1, 1]."""
+    """Return the roughness that `label` (text or a number) stands for, in [-1, 1]."""
     return _number_in(ROUGHNESS, key, label)
 
 
 def seed(label: Any, key: str = "seed") -> int:
-    """The seed that `label` (text or a number) stands for, from 0 to 2^63 - 1."""
+    """Return the seed that `label` (text or a number) stands for, from 0 to 2^63 - 1."""
     if not WHOLE_NUMBER.fullmatch(str(label)) or int(label) > LARGEST_SEED:
         raise InputError(key, label, "be a whole number in [0, 2^63 - 1]")
     return int(label)
 
 
 def level(label: Any, key: str = "swept parameter") -> float | str:
-    """The value of an effect's parameter that `label` stands for: a number if it reads as one, else
-    a word such as `sine`. Whether the effect takes it is another matter."""
+    """Return the value of an effect's parameter that `label` stands for: a number, or a word.
+
+    Whether the effect takes it is another matter.
+    """
     if NUMBER.fullmatch(str(label)):
         return float(label) + 0.0
     if WORD.fullmatch(str(label)):

@@ -135,15 +135,10 @@ def _mser_start(series: np.ndarray) -> int:
     batches = len(series) // MSER_BATCH
     if batches < 2:
         return 0
-    means = _batch_means(series, batches)[::-1]
+    # an incomplete batch at the front is left out
+    means = series[-MSER_BATCH * batches :].reshape(batches, MSER_BATCH).mean(axis=1)[::-1]
     kept = np.arange(1, batches + 1)
     scatter = np.cumsum((means - means[0]) ** 2) - np.cumsum(means - means[0]) ** 2 / kept
     statistic = (scatter / kept**2)[batches - batches // 2 - 1 :]
     cut = int(np.argmin(statistic[::-1]))
     return cut * MSER_BATCH + len(series) % MSER_BATCH * (cut > 0)
-
-
-def _batch_means(series: np.ndarray, batches: int) -> np.ndarray:
-    """Return means of equal consecutive batches, shape (batches,), without a remainder in front."""
-    length = len(series) // batches
-    return series[len(series) - batches * length :].reshape(batches, length).mean(axis=1)

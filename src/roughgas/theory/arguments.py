@@ -38,6 +38,11 @@ class Material(NamedTuple):
     dimension: int
     inertia: np.ndarray
 
+    @property
+    def eta(self) -> np.ndarray:
+        """q (1 + beta)/[2 (1 + q)]."""
+        return self.inertia * (1 + self.beta) / (2 * (1 + self.inertia))
+
 
 def moment_of_inertia(dimension: int) -> float:
     """Return the moment of inertia q = I/(m a^2) of a uniform disk (1/2) or sphere (2/5)."""

@@ -157,7 +157,7 @@ def _rates(T_tr, T_rot, gas: Material, mu) -> Rates:
     r, _, dimension, q = gas
     sticking = collision_rates(*gas)
     first, second = _moments(_threshold(T_tr, T_rot, gas, mu), dimension)
-    slid = 2 * (dimension - 1) * _eta(gas) * (first - second)
+    slid = 2 * (dimension - 1) * gas.eta * (first - second)
     inelastic = (1 - r) * (1 + r) / dimension
     return Rates(
         translational_loss=second * sticking.translational_loss
@@ -187,8 +187,4 @@ def _moments(threshold, dimension) -> tuple[np.ndarray, np.ndarray]:
 def _threshold(T_tr, T_rot, gas: Material, mu) -> np.ndarray:
     """Return x/y (`_moments`) below which contacts slide: eta_0/[mu (1+r)/2], scaled."""
     normal = np.sqrt(shares(T_tr, T_rot / gas.inertia, neither=0)[0])
-    return quotient(quotient(_eta(gas), mu * (1 + gas.r) / 2), normal)
-
-
-def _eta(gas: Material) -> np.ndarray:
-    return gas.inertia * (1 + gas.beta) / (2 * (1 + gas.inertia))
+    return quotient(quotient(gas.eta, mu * (1 + gas.r) / 2), normal)

@@ -40,8 +40,8 @@ class Rates(NamedTuple):
 
 def collision_rates(r, beta, dimension=2, inertia=None) -> Rates:
     """Return the coefficients of the rate equations."""
-    r, beta, dimension, q = material(r, beta, dimension, inertia)
-    eta = q * (1 + beta) / (2 * (1 + q))
+    gas = material(r, beta, dimension, inertia)
+    (r, beta, dimension, q), eta = gas, gas.eta
     # 1 - eta and 1 - eta/q from sums of positive terms, exact towards beta = 1 and small q.
     kept = (2 + q * (1 - beta)) / (2 * (1 + q))
     kept_spin = (2 * q + 1 - beta) / (2 * (1 + q))
