@@ -223,6 +223,7 @@ MISTAKES = [
         "schedule.kind = 'heating': must be one of steady, cooling",
     ),
     ("experiments.cooling.schedule", KeyError, "schedule = (nothing): must be given"),
+    ("experiments.cooling.sweep", KeyError, "sweep = (nothing): must be given"),
     ("experiments.cooling", None, "cooling = None: must be a mapping of keys to values"),
     ("experiments.vibrated_smooth_walls.extends", "foo", f"must be one of {EXPERIMENTS}"),
     ("experiments.cooling.extends", "cooling", "that does not itself build on this one"),

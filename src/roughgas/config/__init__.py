@@ -20,7 +20,6 @@ from roughgas.config.labels import SWEPT, level, restitution, roughness, seed  #
 # checking and YAML are imported where they are used: a job whose settings have been checked needs
 # neither
 
-SOURCE = "config.yaml"
 SHOWCASE, ACCURACY = "showcase", "accuracy"
 SEEDS_PER_JOB = 4
 NOT_OF_A_POINT = ("description", "sweep")

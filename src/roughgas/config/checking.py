@@ -32,7 +32,7 @@ def read(
     return settings_of.merged(config, overrides), f"{source} with the command line's changes"
 
 
-def check(config: Mapping[str, Any], source: str = settings_of.SOURCE) -> None:
+def check(config: Mapping[str, Any], source: str = "config.yaml") -> None:
     """Check a configuration: its form, and every experiment, variant and study at every scale."""
     check_file(config, source)
     for scale in config["scales"]:
@@ -78,7 +78,7 @@ def check_one(config: Mapping[str, Any], name: str, scale: str, source: str) -> 
 def _check_axis(settings: Mapping[str, Any], where: str) -> None:
     """Refuse two third axes, one of an effect that the experiment does not list, and a value given
     twice. Whether a value is legal is left to the check of its variant."""
-    keys = [key for key in settings["sweep"] if "." in key]
+    keys = [key for key in settings.get("sweep", {}) if "." in key]
     for key in keys[1:]:
         raise InputError(f"{where}.sweep: key", shown(key), f"not stand beside {keys[0]}")
     for key in keys:
