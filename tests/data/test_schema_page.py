@@ -13,9 +13,8 @@ from tests.data import schema_page as page
 from tests.files import frames, point, write_all
 
 from roughgas.base.errors import InputError
-from roughgas.data.cf import COMMON_ATTRIBUTES, unit_attributes, unit_of
 from roughgas.data.film import read_film, write_film
-from roughgas.data.netcdf import read_netcdf
+from roughgas.data.netcdf import COMMON_ATTRIBUTES, read_netcdf, unit_attributes, unit_of
 from roughgas.data.point import read_point, write_point
 from roughgas.data.reduced import read_reduced
 from roughgas.results.reduce import reduce_points

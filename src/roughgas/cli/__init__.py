@@ -82,10 +82,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         options = _options(sys.argv[1:] if arguments is None else arguments)
         options.command(options)
-    except InputError as error:
-        return _fail(BAD_INPUT, str(error))
-    except CollapseError as error:
-        return _fail(FAILED, str(error))
+    except (InputError, CollapseError) as error:
+        return _fail(BAD_INPUT if isinstance(error, InputError) else FAILED, str(error))
     except BrokenPipeError:  # of `| head`, which has seen enough
         return NOBODY_READS
     except OSError as error:

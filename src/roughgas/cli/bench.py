@@ -26,8 +26,8 @@ def bench(options: Namespace) -> None:
         for name, settings in found.items():
             scene, number = build(settings, r, beta), settings["particles"]
             rates = rates_of(scene, settings, runs, bar.advance)
-            about = {"experiment": name, "r": r, "beta": beta, "particles": number}
             picked = {key: pick(rates) for key, pick in PICKS.items()}
+            about = {"experiment": name, "r": r, "beta": beta, "particles": number}
             speeds.append(about | {"dimension": len(scene.box), "rates": rates} | picked)
             shown = [f"{float(f'{rate:.3g}'):,.0f}" for rate in picked.values()]
             rows.append([name, f"{r:g}", f"{beta:g}", str(number), *shown])
@@ -44,7 +44,6 @@ def _experiments(options: Namespace) -> dict[str, dict[str, Any]]:
     basic = [name for name, one in loaded["experiments"].items() if "extends" not in one]
     found = {}
     for name in options.experiments or basic:
-        every = config.every_variant(name, config.experiment(loaded, name, options.scale))
-        first = next(iter(every))
-        found[first] = every[first]
+        settings = config.experiment(loaded, name, options.scale)
+        found |= list(config.every_variant(name, settings).items())[:1]
     return found

@@ -2,20 +2,12 @@
 
 import os
 
-from roughgas.cli import completion
-from roughgas.cli.options import (
-    CONFIG,
-    KERNEL,
-    POINT,
-    RESTITUTION,
-    ROUGHNESS,
-    experiments,
-)
-from roughgas.cli.parser import command, flag, one_of, output, value
+from roughgas.cli.options import CONFIG, KERNEL, POINT, RESTITUTION, ROUGHNESS, experiments
+from roughgas.cli.parser import Command, flag, one_of, output, value
 
 CORES = str(os.cpu_count())
 COMMANDS = {
-    "run": command(
+    "run": Command(
         "cli.run:run",
         "simulate a point, and write its dataset",
         *KERNEL,
@@ -38,7 +30,7 @@ COMMANDS = {
         "made from the point's, and its summary is printed, as by `roughgas show`. --beta may be "
         "given several times: each seed is then run at each beta.",
     ),
-    "movie": command(
+    "movie": Command(
         "cli.movie:movie",
         "show a point as it moves",
         *POINT,
@@ -53,7 +45,7 @@ COMMANDS = {
         "its boundaries, and R(t). The trajectory is that of `roughgas run` with the same seed. "
         "Times are in T; for a cooling gas, in collisions per particle.",
     ),
-    "show": command(
+    "show": Command(
         "cli.show:show",
         "summarise any dataset that the pipeline wrote",
         value("files FILE", "datasets", nargs="+"),
@@ -69,7 +61,7 @@ COMMANDS = {
         "a study of accuracy or one task of it, or a pilot.json. 0.3565(30) is 0.3565 with a "
         "standard error of 0.0030.",
     ),
-    "theory": command(
+    "theory": Command(
         "cli.theory:print_theory",
         "print what theory says of R, at a point or along a curve",
         value("--r VALUE", RESTITUTION, required=True, nargs="+"),
@@ -94,7 +86,7 @@ COMMANDS = {
         "it is reached, and how fast energy decays, with the equation behind each number. r and "
         "beta take several values, or a range START:STOP:STEP with both ends.",
     ),
-    "plan": command(
+    "plan": Command(
         "cli.planning:plan",
         "predict what experiments will cost, and how accurate they will be",
         *experiments("default: all"),
@@ -110,7 +102,7 @@ COMMANDS = {
         about="Print a table of points, seeds, errors and times, from pilot runs. Missing pilots "
         "are run first; nothing else is.",
     ),
-    "bench": command(
+    "bench": Command(
         "cli.bench:bench",
         "measure how fast this machine simulates",
         *experiments("default: those that extend no other"),
@@ -127,7 +119,7 @@ COMMANDS = {
         "this machine: the median of several runs, the slowest and the fastest. Missing kernels "
         "are compiled first, which takes 12 s for each kind of scene and is not counted.",
     ),
-    "export": command(
+    "export": Command(
         "cli.products:export",
         "write a dataset as CSV tables",
         value("input DATASET", "dataset that the pipeline wrote"),
@@ -137,7 +129,7 @@ COMMANDS = {
         "a reduced dataset or the frames of a film to the file named; beside it other tables, "
         "and FILE.about.csv with scalars, units and meanings.",
     ),
-    "crate": command(
+    "crate": Command(
         "cli.products:crate",
         "pack a finished run as an RO-Crate, or check one",
         value("files FILE", "results and figures; with --verify, points", nargs="*"),
@@ -157,7 +149,7 @@ COMMANDS = {
         about="Pack what a run in this folder has made, with its configuration, code and "
         "environment, as an RO-Crate with checksums; the same files give the same bytes.",
     ),
-    "doctor": command(
+    "doctor": Command(
         "doctor:doctor",
         "say what is wrong with the installation",
         flag("--json", "print JSON, for scripts or for asking for help"),
@@ -167,10 +159,10 @@ COMMANDS = {
         "and say what is wrong and what to do about it. The exit status is 1 if there is a "
         "problem.",
     ),
-    "completion": command(
-        "cli.completion:completion",
+    "completion": Command(
+        "cli.options:print_completion",
         "complete commands, options and experiments in your shell",
-        value("shell", "bash, zsh or fish", choices=completion.SHELLS),
+        value("shell", "bash, zsh or fish", choices=("bash", "zsh", "fish")),
         examples=(
             'eval "$(roughgas completion bash)"      # in ~/.bashrc',
             'eval "$(roughgas completion zsh)"       # in ~/.zshrc, after compinit',

@@ -1,17 +1,40 @@
-"""Options that several commands share, and the numbers that they stand for."""
+"""Options that several commands share, what a shell completes them to, and their numbers."""
 
 import math
+from argparse import Namespace
+from typing import Any
 
 from roughgas.base.errors import InputError
 from roughgas.base.legal import Interval
-from roughgas.cli import completion
 from roughgas.cli.parser import Option, flag, value
 
+
+def _experiments(prefix: str, parsed_args: Namespace, **_: Any) -> list[str]:
+    """Return the names of experiments; after a `/`, those of an experiment's variants."""
+    config = _configuration(parsed_args)
+    base, slash, _ = prefix.partition("/")
+    if not slash:
+        return list(config["experiments"])
+    from roughgas.config import experiment, variants
+
+    scale = parsed_args.scale if parsed_args.scale in config["scales"] else config["scale"]
+    return variants(base, experiment(config, base, scale))
+
+
+def _scales(parsed_args: Namespace, **_: Any) -> list[str]:
+    """Return the names of scales."""
+    return list(_configuration(parsed_args)["scales"])
+
+
+def _configuration(options: Namespace) -> Any:
+    """Return the configuration unchecked; errors make argcomplete offer nothing."""
+    from roughgas.config.reading import read_yaml
+
+    return read_yaml(options.config)
+
+
 SCALE = value(
-    "--scale",
-    "a scale of the configuration: small, ...",
-    default="paper",
-    completer=completion.scales,
+    "--scale", "a scale of the configuration: small, ...", default="paper", completer=_scales
 )
 CONFIG = value("--config FILE", "the configuration", default="config.yaml")
 SETTINGS = (
@@ -24,7 +47,7 @@ SETTINGS = (
 EXPERIMENT = value(
     "experiment EXPERIMENT",
     "its name in the configuration, or that of a variant: EXPERIMENT/VARIANT",
-    completer=completion.experiments,
+    completer=_experiments,
 )
 RESTITUTION = "normal restitution, in [0, 1]: 1 is elastic"
 ROUGHNESS = "roughness, in [-1, 1]: -1 is smooth, 1 perfectly rough"
@@ -36,7 +59,7 @@ REDUCED = value("inputs REDUCED", "reduced datasets", nargs="+")
 
 def experiments(help: str) -> tuple[Option, ...]:
     """Declare the arguments that choose experiments of a configuration."""
-    names = value("experiments EXPERIMENT", help, nargs="*", completer=completion.experiments)
+    names = value("experiments EXPERIMENT", help, nargs="*", completer=_experiments)
     return names, SCALE, CONFIG
 
 
@@ -55,3 +78,10 @@ def number(key: str, text: str, legal: Interval | None = None) -> float:
     except ValueError:
         raise InputError(key, text, "be a number") from None
     return legal.check(key, found) if legal else found
+
+
+def print_completion(options: Namespace) -> None:
+    """Print a shell's lines."""
+    import argcomplete
+
+    print(argcomplete.shellcode(["roughgas"], shell=options.shell))

@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Mapping
 from importlib import import_module
 from textwrap import fill
-from typing import Any, NamedTuple, NoReturn
+from typing import Any, NoReturn
 
 BAD_INPUT = 2
 WIDTH = 78
@@ -14,18 +14,18 @@ Option = Callable[[Any], None]
 """Adds an argument, or several, to a parser or to a group of one."""
 
 
-class Command(NamedTuple):
-    """A subcommand.
+class Command:
+    """A subcommand; without `about`, its summary describes it.
 
     `calls` names a function, "room.module:function". One of `cli` is given all options (an
     argparse.Namespace); one of another room is given their values, in the order of `options`.
     """
 
-    calls: str
-    summary: str
-    options: tuple[Option, ...]
-    examples: tuple[str, ...]
-    description: str
+    def __init__(
+        self, calls: str, summary: str, *options: Option, examples: tuple[str, ...], about: str = ""
+    ) -> None:
+        self.calls, self.summary, self.options, self.examples = calls, summary, options, examples
+        self.description = about or f"{summary[0].upper()}{summary[1:]}."
 
     def __call__(self, options: argparse.Namespace) -> None:
         """Import and call the function."""
@@ -35,14 +35,6 @@ class Command(NamedTuple):
             function(options)
         else:
             function(*(value for key, value in vars(options).items() if key != "command"))
-
-
-def command(
-    calls: str, summary: str, *options: Option, examples: tuple[str, ...], about: str = ""
-) -> Command:
-    """Declare a command; without `about`, its summary describes it."""
-    about = about or f"{summary[0].upper()}{summary[1:]}."
-    return Command(calls, summary, options, examples, about)
 
 
 def value(name: str, help: str, *, completer: Any = None, **settings: Any) -> Option:

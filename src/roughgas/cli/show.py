@@ -12,8 +12,7 @@ from xarray import Dataset
 
 from roughgas.base.errors import InputError
 from roughgas.base.layout import as_json, columns
-from roughgas.data.cf import unit_of
-from roughgas.data.netcdf import read_netcdf
+from roughgas.data.netcdf import read_netcdf, unit_of
 from roughgas.data.reduced import EQUILIBRATED, third_axis
 from roughgas.results.table import rows as rows_of
 from roughgas.statistics.estimate import Estimate, decimals_of
@@ -45,8 +44,8 @@ def show(options: Namespace) -> None:
         if options.json:
             kind, data = _read(path)
             attributes = {"attributes": data.attrs} if hasattr(data, "attrs") else {}
-            record = KINDS[kind][1](data)
-            print(as_json({"file": path, "kind": kind} | attributes | record, indent=None))
+            about = {"file": path, "kind": kind} | attributes
+            print(as_json(about | KINDS[kind][1](data), indent=None))
         else:
             print("\n" * (number > 0) + summary(path))
 
@@ -150,7 +149,7 @@ def _settings(about: Mapping[str, Any], text: str) -> list[list[str]]:
         ["gas", f"{experiment['particles']} {SHAPES[len(experiment['box'])]}, box {box} a"],
         *(["" if k else "effects", one] for k, one in enumerate(effects)),
     ]
-    schedule = experiment.get("schedule")
+    schedule = experiment.get("schedule")  # a film has none
     return [*rows, ["schedule", _listed(schedule)]] if schedule else rows
 
 
@@ -183,9 +182,9 @@ def _ratio(point: Dataset) -> list[list[str]]:
 
 def _steady(point: Dataset) -> str:
     found = "yes" if point.equilibrated else "NOT found: energies or R still drift"
-    begin, units = float(point.measured_from), unit_of(point.measured_from.attrs)
     end = f" to {float(point.plateau_end):g}" if "plateau_end" in point else " on"
-    return f"{found}; measured from {begin:g}{end}, in {units}"
+    units = unit_of(point.measured_from.attrs)
+    return f"{found}; measured from {float(point.measured_from):g}{end}, in {units}"
 
 
 def _books(point: Dataset) -> str:
@@ -283,9 +282,8 @@ def _pilot_text(pilot: Any) -> str:
     for name, value in pilot._asdict().items():
         shown = ("no", "yes")[value] if isinstance(value, bool) else f"{value:.5g}"
         rows.append([name, shown, MEANING[name]])
-    error = (pilot.variance / 1000.0) ** 0.5
-    note = f"A run that measures for a length of 1000 finds R to about {error:.2g}."
-    return f"{columns(rows)}\n\n{note}"
+    error = f"{(pilot.variance / 1000.0) ** 0.5:.2g}"
+    return f"{columns(rows)}\n\nA run that measures for a length of 1000 finds R to about {error}."
 
 
 KINDS = {

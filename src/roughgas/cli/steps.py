@@ -1,23 +1,23 @@
 """The commands that the workflow gives: what each takes, says and calls."""
 
 from roughgas.cli.options import CONFIG, KERNEL, POINT, REDUCED, SCALE, SETTINGS
-from roughgas.cli.parser import command, flag, output, value
+from roughgas.cli.parser import Command, flag, output, value
 
 STEPS = {
-    "compile": command(
+    "compile": Command(
         "cli.run:compile_kernel",
         "compile the kernel of a point ahead of it",
         *KERNEL,
         examples=("roughgas compile cooling --r 0.9",),
     ),
-    "pilot": command(
+    "pilot": Command(
         "cli.planning:pilot",
         "measure what a point costs and how much it scatters, in a short run",
         *POINT,
         output("JSON file"),
         examples=("roughgas pilot sheared --r 0.9 --beta 0 -o pilot.json",),
     ),
-    "reach": command(
+    "reach": Command(
         "cli.planning:reach",
         "run as many seeds of a point as its target_stderr needs",
         *POINT,
@@ -25,7 +25,7 @@ STEPS = {
         output("folder for the datasets", "FOLDER"),
         examples=("roughgas reach sheared --scale fine --r 0.9 --beta 0 -o seeds",),
     ),
-    "costs": command(
+    "costs": Command(
         "results.costs:write_costs",
         "compare what was planned with what happened",
         REDUCED,
@@ -33,7 +33,7 @@ STEPS = {
         output("Markdown file"),
         examples=("roughgas costs results/fine/sheared.nc --fixed '{}' -o costs.md",),
     ),
-    "reduce": command(
+    "reduce": Command(
         "cli.products:reduce",
         "combine the points of an experiment",
         value(
@@ -44,14 +44,14 @@ STEPS = {
         output("reduced dataset"),
         examples=("roughgas reduce results/paper/sheared/r*/beta*/seed*.nc -o sheared.nc",),
     ),
-    "table": command(
+    "table": Command(
         "results.table:write_table",
         "write reduced datasets as one CSV table",
         REDUCED,
         output("CSV file"),
         examples=("roughgas table results/paper/sheared.nc results/paper/cooling.nc -o R.csv",),
     ),
-    "figure": command(
+    "figure": Command(
         "cli.products:figure",
         "draw a figure from reduced datasets",
         value("name NAME", "name of the figure, such as fig1a"),
@@ -59,7 +59,7 @@ STEPS = {
         output(".pdf or .png files", nargs="+"),
         examples=("roughgas figure fig2b results/paper/cooling.nc -o fig2b.pdf fig2b.png",),
     ),
-    "claims": command(
+    "claims": Command(
         "cli.products:claims",
         "judge the claims of the paper on reduced datasets",
         REDUCED,
@@ -68,7 +68,7 @@ STEPS = {
         value("--markdown FILE", "verdicts for people", required=True),
         examples=("roughgas claims results/paper/*.nc --json claims.json --markdown claims.md",),
     ),
-    "page": command(
+    "page": Command(
         "show.page.explore:write_page",
         "write an interactive page of experiments and their points",
         REDUCED,
@@ -78,21 +78,21 @@ STEPS = {
             "roughgas page results/small/vibrated.nc --points results/small -o explore.html",
         ),
     ),
-    "html": command(
+    "html": Command(
         "show.page.document:write_document",
         "write a Markdown, YAML, MP4 or GIF file as one page of HTML",
         value("input FILE", "file to show"),
         output("HTML file"),
         examples=("roughgas html results/small/claims.md -o claims.html",),
     ),
-    "times": command(
+    "times": Command(
         "results.costs:write_times",
         "write how long experiments took, in CPU seconds",
         REDUCED,
         output("Markdown file"),
         examples=("roughgas times results/small/vibrated.nc -o run_times.md",),
     ),
-    "config": command(
+    "config": Command(
         "cli.products:effective_config",
         "write the complete configuration of a scale",
         SCALE,
@@ -101,7 +101,7 @@ STEPS = {
         output("YAML file"),
         examples=("roughgas config --scale small -o config_small.yaml",),
     ),
-    "clustering": command(
+    "clustering": Command(
         "cli.showcase:clustering",
         "film a large cooling gas until it forms clusters",
         *SETTINGS,
@@ -112,14 +112,14 @@ STEPS = {
         "killed, the same command goes on from its last checkpoint, FILE.checkpoint.npz; the "
         "result is the same to the last bit.",
     ),
-    "film": command(
+    "film": Command(
         "show.figures.clustering:draw",
         "draw the film of `roughgas clustering` as a picture or as a movie",
         value("input FILM", "dataset"),
         output(".pdf, .png, .mp4 files", nargs="+"),
         examples=("roughgas film clustering.nc -o clustering.png clustering.mp4",),
     ),
-    "study": command(
+    "study": Command(
         "cli.studies:study",
         "run one of the independent tasks of a study of accuracy",
         value("study STUDY", "statistical, models, ..."),
@@ -128,14 +128,14 @@ STEPS = {
         output("dataset"),
         examples=("roughgas study statistical cooling-reference --scale small -o reference.nc",),
     ),
-    "combine": command(
+    "combine": Command(
         "studies.accuracy.files:combine",
         "combine the tasks of studies into one dataset",
         value("inputs TASK", "datasets", nargs="+"),
         output("dataset"),
         examples=("roughgas combine results/small/accuracy/*/*.nc -o accuracy.nc",),
     ),
-    "tables": command(
+    "tables": Command(
         "studies.accuracy.tables:write_tables",
         "write what studies have found as tables in Markdown",
         value("input COMBINED", "combined dataset"),

@@ -1,22 +1,40 @@
-"""The one writer and the one reader of netCDF files.
+"""The one writer and the one reader of netCDF files, which follow the CF conventions.
 
 Files are written with netCDF4 alone: importing xarray would double the start-up of a point's job.
+
+UDUNITS, whose units CF asks for, reads T as tesla and a as a year. A quantity in a gas's own units
+has no dimension there: its `units` are 1, and `reduced_units` says what it is a multiple of.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from roughgas.base.errors import InputError
 from roughgas.base.files import whole_file
-from roughgas.data.cf import COMMON_ATTRIBUTES, ancillary, check_schema, unit_attributes
+from roughgas.base.version import __version__
 from roughgas.data.variables import CLOCKS, Array
 
 if TYPE_CHECKING:
     import netCDF4
     import xarray
+
+SCHEMA_VERSION = 2
+COMMON_ATTRIBUTES = {
+    "Conventions": "CF-1.11",
+    "schema_version": SCHEMA_VERSION,
+    "source": f"roughgas {__version__}, event-driven simulation of rough, inelastic particles",
+    "history": f"written by roughgas {__version__}; undated: the same run gives the same bytes",
+    "references": "S. McNamara and S. Luding, Phys. Rev. E 58, 2247 (1998), "
+    "doi:10.1103/PhysRevE.58.2247",
+    "comment": "Particle radius a = particle mass m = time unit T = 1; reduced_units of a variable "
+    "are in terms of these, of collisions per particle, or of an energy at the start.",
+}
+UDUNITS = ("1", "s", "1/s")
+QUALITIES = ("stderr", "dof", "ci95", "ci95_trusted")
+"""Variables <name>_stderr, ... say how sure <name> is: they are its ancillary variables."""
 
 
 class Content(NamedTuple):
@@ -49,8 +67,14 @@ def write_netcdf(
     """
     import netCDF4
 
-    with whole_netcdf(path) as draft, netCDF4.Dataset(draft, "w") as file:
-        _fill_file(file, content, groups or {}, complevel)
+    try:
+        with whole_file(path) as draft, netCDF4.Dataset(draft, "w") as file:
+            _fill(file, content, COMMON_ATTRIBUTES, complevel)
+            for name, one in (groups or {}).items():
+                _fill(file.createGroup(name), one, {}, complevel)
+    except (RuntimeError, PermissionError) as error:  # as netCDF4 says that a disk is full
+        reason = f"{error}; is the disk full or the folder read-only?"
+        raise OSError(f"cannot write {path}: {reason}") from error
 
 
 def in_memory(content: Content) -> "xarray.Dataset":
@@ -59,7 +83,7 @@ def in_memory(content: Content) -> "xarray.Dataset":
     import xarray
 
     file = netCDF4.Dataset("memory.nc", "w", memory=1)  # never gets to a disk
-    _fill_file(file, content, {}, 0)
+    _fill(file, content, COMMON_ATTRIBUTES, 0)
     file = netCDF4.Dataset("memory.nc", memory=file.close())
     return xarray.load_dataset(xarray.backends.NetCDF4DataStore(file))  # which closes it
 
@@ -76,28 +100,19 @@ def read_netcdf(path: str | Path, group: str | None = None) -> "xarray.Dataset":
     return found if group is None else xarray.load_dataset(path, group=group, engine="netcdf4")
 
 
-@contextmanager
-def whole_netcdf(path: str | Path) -> Iterator[Path]:
-    """Yield a path as `whole_file` does, for a library with other names for a full disk."""
-    try:
-        with whole_file(path) as draft:
-            yield draft
-    except (RuntimeError, PermissionError) as error:
-        reason = f"{error}; is the disk full or the folder read-only?"
-        raise OSError(f"cannot write {path}: {reason}") from error
+def check_schema(attributes: Mapping[str, Any], path: str | Path) -> None:
+    """Raise InputError if the file at `path`, which has these global attributes, is of a newer
+    schema than this program knows. Files of older ones are read."""
+    version = attributes.get("schema_version", SCHEMA_VERSION)
+    if version > SCHEMA_VERSION:
+        legal = f"be at most {SCHEMA_VERSION}: a newer roughgas has written the file"
+        raise InputError(f"schema_version of {path}", version, legal)
 
 
-def _fill_file(
-    file: "netCDF4.Dataset", content: Content, groups: Mapping[str, Content], complevel: int
+def _fill(
+    group: "netCDF4.Dataset", content: Content, common: Mapping[str, Any], complevel: int
 ) -> None:
-    attributes = COMMON_ATTRIBUTES | dict(content.attributes)
-    _fill(file, content._replace(attributes=attributes), complevel)
-    for name, one in groups.items():
-        _fill(file.createGroup(name), one, complevel)
-
-
-def _fill(group: "netCDF4.Dataset", content: Content, complevel: int) -> None:
-    group.setncatts(content.attributes)
+    group.setncatts({**common, **content.attributes})
     for variable in content.variables.values():
         for dim, length in zip(variable.dims, variable.values.shape, strict=True):
             if dim not in group.dimensions:
@@ -130,4 +145,23 @@ def _attributes(name: str, content: Content, is_coordinate: bool) -> dict[str, A
     units = {"units": unit} if "reduced_units" in attributes else unit_attributes(unit)
     clocks = [c for c in content.clocks if c in variables and set(variables[c].dims) <= set(dims)]
     along = {"coordinates": " ".join(clocks)} if clocks and not is_coordinate else {}
-    return attributes | units | ancillary(name, variables) | along
+    sure = [f"{name}_{quality}" for quality in QUALITIES if f"{name}_{quality}" in variables]
+    ancillary = {"ancillary_variables": " ".join(sure)} if sure else {}
+    return attributes | units | ancillary | along
+
+
+def unit_attributes(unit: str) -> dict[str, str]:
+    """Return the attributes that tell a unit, such as "T", "1" or "s/T"; none for "", of words.
+
+    CPU time in terms of a gas's own units is in seconds.
+    """
+    if not unit:
+        return {}
+    if unit in UDUNITS:
+        return {"units": unit}
+    return {"units": "s" if unit.startswith("s/") else "1", "reduced_units": unit}
+
+
+def unit_of(attributes: Mapping[str, str]) -> str:
+    """Return the unit that `unit_attributes` tell; "" for words."""
+    return attributes.get("reduced_units", attributes.get("units", ""))

@@ -27,7 +27,7 @@ from roughgas.base.errors import InputError
 from roughgas.base.files import whole_file
 from roughgas.base.version import __version__
 from roughgas.config.reading import read_yaml
-from roughgas.data.cf import SCHEMA_VERSION
+from roughgas.data.netcdf import SCHEMA_VERSION
 from roughgas.data.point import WALL_CLOCK
 
 if TYPE_CHECKING:

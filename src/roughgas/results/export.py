@@ -15,8 +15,7 @@ from xarray import Dataset
 
 from roughgas.base.errors import InputError
 from roughgas.base.files import whole_file
-from roughgas.data.cf import unit_of
-from roughgas.data.netcdf import read_netcdf
+from roughgas.data.netcdf import read_netcdf, unit_of
 from roughgas.results import table
 
 MAIN = ("sample",), ("frame",)

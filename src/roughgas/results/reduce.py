@@ -15,8 +15,7 @@ import netCDF4
 import numpy as np
 
 from roughgas.base.errors import InputError
-from roughgas.data.cf import COMMON_ATTRIBUTES, check_schema
-from roughgas.data.netcdf import Content, write_netcdf
+from roughgas.data.netcdf import COMMON_ATTRIBUTES, Content, check_schema, write_netcdf
 from roughgas.data.reduced import GRID, third_axis
 from roughgas.data.variables import CLOCKS, POINT, Array, described
 from roughgas.statistics.intervals import pooled
