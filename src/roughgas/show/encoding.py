@@ -2,6 +2,7 @@
 
 import subprocess
 from collections.abc import Callable, Iterable
+from contextlib import suppress
 from pathlib import Path
 
 from matplotlib import rc_context
@@ -46,13 +47,15 @@ def write_movie(
         figure.set_layout_engine("none")
         encoder = _encoder(path, draft, canvas.get_width_height(), per_second)
         try:
-            for frame in frames:
-                show(frame)
-                canvas.draw()
-                encoder.stdin.write(canvas.buffer_rgba())
-            _finish(encoder, path)
-        except BrokenPipeError:
-            _finish(encoder, path)
+            with suppress(BrokenPipeError):  # the encoder ended; it says why
+                for frame in frames:
+                    show(frame)
+                    canvas.draw()
+                    encoder.stdin.write(canvas.buffer_rgba())
+            _, said = encoder.communicate()
+            if encoder.returncode:
+                why, *_ = said.decode(errors="replace").splitlines() or ["the encoder was stopped"]
+                raise OSError(None, f"not encoded: {why}", str(path))
         finally:
             encoder.kill()
             encoder.wait()
@@ -68,11 +71,3 @@ def _encoder(path, draft, size, per_second):
     return subprocess.Popen(
         command, stdin=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True
     )
-
-
-def _finish(encoder, path):
-    """Wait for the encoder to end. Raises OSError, with its first message, if it failed."""
-    _, said = encoder.communicate()
-    if encoder.returncode:
-        why, *_ = said.decode(errors="replace").splitlines() or ["the encoder was stopped"]
-        raise OSError(None, f"not encoded: {why}", str(path))

@@ -73,7 +73,7 @@ def picture(
     present = _graph(below, subject, shots)
 
     def show(frame: int) -> None:
-        particles.show(shots[frame], None if scales is None else scales[frame])
+        particles.show(shots[frame], scales[frame])
         boundaries.show(shots[frame])
         present(frame)
 
@@ -108,22 +108,22 @@ def view_of(subject: Subject, shots: Sequence[Snapshot]) -> View:
     )
 
 
-def spin_scales(subject: Subject, shots: Sequence[Snapshot]) -> np.ndarray | None:
-    """Return the thermal spin of each frame, in a/T; None without spin.
+def spin_scales(subject: Subject, shots: Sequence[Snapshot]) -> np.ndarray:
+    """Return the thermal spin of each frame, in a/T; NaN without spin.
 
     It is the r.m.s. that spins would have if the energy of the frame were shared equally; in a
     driven gas, that of all frames.
     """
     effects = subject.scene.effects
     if effects.spin is None:
-        return None
-    dimension = len(subject.scene.box)
+        return np.full(len(shots), np.nan)
     parts = np.array([[shot.E_trans, shot.E_rot] for shot in shots])
-    weights = dimension, 2 * dimension - 3
-    energy = np.average(parts, axis=1, weights=weights)
+    dimension = len(subject.scene.box)
+    rotations = 2 * dimension - 3
+    energy = np.average(parts, axis=1, weights=(dimension, rotations))
     if not _cools(subject):
         energy = np.full(len(shots), energy.mean())
-    return np.sqrt(2.0 * weights[1] * energy / effects.spin.inertia)
+    return np.sqrt(2.0 * rotations * energy / effects.spin.inertia)
 
 
 def _set_up(axes: Axes, scene: Scene, view: View) -> None:

@@ -68,7 +68,7 @@ class Disks:
         self._marks = LineCollection([], color=EDGE, linewidth=0.9, capstyle="round")
         axes.add_collection(self._marks)
 
-    def show(self, shot: Snapshot, scale: float | None) -> None:
+    def show(self, shot: Snapshot, scale: float) -> None:
         """Bring them to a snapshot whose thermal spin is `scale`."""
         of, x, y, opacity = copies(self._view, shot)
         spin = None if shot.spin is None else shot.spin[of, 0] / scale
@@ -92,7 +92,7 @@ class Spheres:
         self._view = view
         self._disks = add_circles(axes, linewidth=0.3)
 
-    def show(self, shot: Snapshot, scale: float | None) -> None:
+    def show(self, shot: Snapshot, scale: float) -> None:
         """Bring them to a snapshot whose thermal spin is `scale`."""
         axis = 3 - self._view.vertical  # neither across nor up
         depth = shot.position[:, axis] * (-1.0 if axis == 2 else 1.0)  # z points to the viewer
