@@ -94,7 +94,7 @@ def test_an_interruption_leaves_nothing(tmp_path, capsys, monkeypatch):
     def stop(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(movie, "_finish", stop)
+    monkeypatch.setattr(movie.subprocess.Popen, "communicate", stop)
     assert make(tmp_path / "gas.mp4") == 130
     assert capsys.readouterr().err.startswith("roughgas: stopped: ")
     assert list(tmp_path.iterdir()) == []

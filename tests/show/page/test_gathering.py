@@ -10,8 +10,7 @@ from roughgas.base.errors import InputError
 from roughgas.cli import main
 from roughgas.data.point import read_point
 from roughgas.data.reduced import read_reduced
-from roughgas.show.page.explore import write_page
-from roughgas.show.page.gather import GRID, LONGEST, NUMBERS, block_means, experiment
+from roughgas.show.page.explore import GRID, LONGEST, NUMBERS, block_means, experiment, write_page
 from roughgas.theory.prediction import predicted_ratio
 from show.page.conftest import SAMPLES
 

@@ -1,18 +1,43 @@
-"""The interactive page: one HTML file that holds its data and its program, and loads nothing."""
+"""The interactive page: one HTML file that holds its data and its program, and loads nothing.
+
+Numbers of points are those of the reduced dataset, to the last bit; curves and time series, which
+are only looked at, are rounded.
+"""
 
 import json
+import math
 from collections.abc import Iterable
 from pathlib import Path
 from string import Template
+from typing import Any
+
+import numpy as np
 
 from roughgas.base.errors import InputError
 from roughgas.base.files import write_text
-from roughgas.show.page.gather import GRID, experiment, rounded
+from roughgas.data.netcdf import read_netcdf
+from roughgas.data.reduced import EQUILIBRATED, read_reduced, third_axis
+from roughgas.data.variables import CLOCKS
 from roughgas.show.style import LOOKS
+from roughgas.theory.prediction import equation_of, predicted_ratio
 
 # Plotly's names of the figures' markers and lines
 SYMBOLS = {"o": "circle", "s": "square", "^": "triangle-up", "D": "diamond", "v": "triangle-down"}
 DASHES = {"-": "solid", "--": "dash", "-.": "dashdot", ":": "dot"}
+NUMBERS = {
+    "R": "R",
+    "stderr": "R_stderr",
+    "ci95": "R_ci95",
+    "seeds": "n_seeds",
+    "collisions": "collisions",
+    "seconds": "kernel_seconds",
+}
+"""What is shown of a point: its name in the page, and in the reduced dataset."""
+GRID = np.linspace(-1.0, 1.0, 161)
+"""Roughness at which theory is drawn as a curve."""
+LONGEST = 200
+"""The most values that are shown of a time series."""
+DIGITS = 5
 
 
 def write_page(reduced: Iterable[str | Path], points: str | Path, output: str | Path) -> None:
@@ -44,3 +69,124 @@ def write_page(reduced: Iterable[str | Path], points: str | Path, output: str | 
 
 def _text(name):
     return Path(__file__).with_name(name).read_text("utf-8")
+
+
+def experiment(reduced_path: str | Path, points: Path) -> dict[str, Any]:
+    """Return an experiment with its points and their theory.
+
+    They are read from its reduced dataset, and from seed 1 of each point, anywhere below
+    `points`/EXPERIMENT. Raises InputError where nothing spins, so that there is no R, and where a
+    point is not there.
+    """
+    data = read_reduced(reduced_path)
+    name, swept = data.attrs["experiment"], third_axis(data.attrs)
+    if "R" not in data:
+        raise InputError("experiment", name, "be one whose particles spin, to have an R")
+    runs, variants = _first_seeds(points / name), [(None, data)]
+    if swept is not None:
+        values = data[swept].values.tolist()
+        variants = [(one, data.sel({swept: one}).assign_attrs({swept: one})) for one in values]
+    return {
+        "name": name,
+        "scale": data.attrs["scale"],
+        "particles": int(data.attrs["particles"]),
+        "dimension": int(data.attrs["dimension"]),
+        "swept": data.attrs.get("swept"),
+        "theory": equation_of(data.attrs).name,
+        "variants": [_variant(one, value, runs) for value, one in variants],
+    }
+
+
+def _variant(data, value, runs):
+    """Return one value on the third axis: a series for each r, the most elastic first."""
+    rows = [data.sel(r=r) for r in sorted(data.r.values.tolist(), reverse=True)]
+    series = [_series(row, value, runs) for row in rows if row.n_seeds.any()]
+    return {"name": series[0].pop("variant"), "series": series}
+
+
+def _series(data, value, runs):
+    """Return all points at one r, over beta, with the curve that theory has for them."""
+    r, places = data.r.item(), [data.sel(beta=beta) for beta in data.beta[data.n_seeds > 0]]
+    found = [_run(runs, value, r, place.beta.item()) for place in places]
+    _, about = found[0]
+    return {
+        "r": about["r_label"],
+        "variant": about.get("variant"),
+        "curve": rounded(predicted_ratio(data.attrs, r, GRID)),
+        "points": [_point(place, *run) for place, run in zip(places, found, strict=True)],
+    }
+
+
+def _point(data, path, about):
+    return {name: exact(data[column]) for name, column in NUMBERS.items()} | {
+        "beta": about["beta_label"],
+        "theory": exact(predicted_ratio(data.attrs, data.r.item(), data.beta.item())),
+        "steady": bool(data.equilibrated > EQUILIBRATED),
+        "contact_time": exact(data.get("contact_time_fraction", 0.0)),
+        # as Snakemake knows it
+        "target": str(path.parent if path.parent.name == "seeds" else path),
+        "command": about["command"],
+        "over_time": time_series(read_netcdf(path)),
+    }
+
+
+def _first_seeds(folder):
+    """Return where seed 1 of each point in a folder is, and the attributes of its dataset, by the
+    point's place: its value on the third axis (None without one), r, and beta."""
+    import netCDF4
+
+    found = {}
+    for path in sorted(folder.rglob("seed1.nc")):
+        with netCDF4.Dataset(path) as file:
+            about = {name: file.getncattr(name) for name in file.ncattrs()}
+        place = _place(about.get("swept_value"), about["r"], about["beta"])
+        found.setdefault(place, (path, about))
+    return found
+
+
+def _run(runs, *place):
+    if _place(*place) not in runs:
+        where = ", ".join(str(part) for part in place if part is not None)
+        raise InputError("point (..., r, beta)", where, "have its seed 1 in the folder of points")
+    return runs[_place(*place)]
+
+
+def _place(value, r, beta):
+    """Return the place of a point; a number is one even if words beside it made it a word."""
+    try:
+        return float(value), float(r), float(beta)
+    except (TypeError, ValueError):
+        return value, float(r), float(beta)
+
+
+def time_series(seed: Any) -> dict[str, Any]:
+    """Return R and both energies of a seed (a Dataset) over time, as means over blocks.
+
+    `clock` is "time", in T, or "collisions_per_particle"; `block` is the number of samples in a
+    mean; `measured` is the window in which R is measured, its ends None where they are unknown.
+    """
+    clock = next(name for name in CLOCKS[::-1] if name in seed)
+    columns = {"at": seed[clock].values} | {
+        name: seed[f"{name}_series"].values for name in ("R", "E_trans", "E_rot")
+    }
+    window = [exact(seed.get(name, math.nan)) for name in ("measured_from", "plateau_end")]
+    block = math.ceil(columns["at"].size / LONGEST)
+    thinned = {name: rounded(block_means(values, block)) for name, values in columns.items()}
+    return {"clock": clock, "block": block, "measured": window} | thinned
+
+
+def block_means(values: np.ndarray, block: int) -> np.ndarray:
+    """Return the means over blocks of `block` values; the last block may be shorter."""
+    begins = np.arange(0, values.size, block)
+    return np.add.reduceat(values, begins) / np.diff(np.append(begins, values.size))
+
+
+def exact(value: Any) -> float | int | None:
+    """Return a number as it is, to the last bit; None if it is not finite."""
+    number = np.asarray(value).item()
+    return number if math.isfinite(number) else None
+
+
+def rounded(values: Any) -> list[float | None]:
+    """Return numbers to DIGITS digits, for what is only looked at; None if one is not finite."""
+    return [float(f"{x:.{DIGITS}g}") if math.isfinite(x) else None for x in np.asarray(values)]
