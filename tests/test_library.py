@@ -31,12 +31,13 @@ OWN = {
     "effects": {"spin": {"inertia": 0.5}, "shear": {"velocity": 1}},
     "schedule": STEADY,
 }
+FEW = {"particles": 20, "box": (30, 30)}
 CHANGED = {"particles": 20, "box": (12.5, "open"), "schedule": SHORT}
 POINTS = {
     "as it is": ("cooling", {"scale": "small"}),
     "changed": ("vibrated", CHANGED | {"seed": 3, "effects": {"contact_time": None}}),
-    "with an effect more": ("vibrated", CHANGED | {"effects": {"friction": {"mu": 0.3}}}),
-    "a variant": ("vibrated_friction/mu0.3", CHANGED),
+    "with an effect more": ("cooling", FEW | {"effects": {"friction": {"mu": 0.3}}}),
+    "a variant": ("cooling_friction/mu0.3", FEW),
     "of numpy's numbers": ("cooling", {"box": np.array([30, 30]), "particles": np.int64(20)}),
     "of one's own": (None, OWN),
 }

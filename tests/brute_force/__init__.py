@@ -1,7 +1,7 @@
 """A second, slow simulation of the same physics, and the means to run it beside the kernel."""
 
 from brute_force.beside import Beside, compare, largest_overlap, snapshot
-from brute_force.scenes import KERNELS, begin, run, scene_of, settings
+from brute_force.scenes import KERNELS, begin, kernels, run, scene_of, settings
 from brute_force.simulation import BruteForce
 from brute_force.world import Event, Snapshot, World
 
@@ -14,6 +14,7 @@ __all__ = [
     "World",
     "begin",
     "compare",
+    "kernels",
     "largest_overlap",
     "run",
     "scene_of",

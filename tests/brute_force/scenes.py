@@ -6,6 +6,7 @@ What a scene does without can be had by its numbers: a contact time of 1e-300 ne
 import functools
 
 import numpy as np
+import pytest
 
 from brute_force.world import World
 from roughgas.kernel.record import Sampling, columns, record
@@ -69,6 +70,16 @@ KERNELS = {
         "effects": {"spin": {"inertia": 0.4}} | _HEAT | _FRICTION,
     },
 }
+
+
+RARE = ("rubbed bed", "heated, smooth", "heated spheres")
+"""Kernels that only tests marked as slow compile: in others, each effect of theirs acts as well."""
+
+
+def kernels(*names):
+    """Names of kernels, by default of all, as parameters of a test; rare ones are slow."""
+    names = names or KERNELS
+    return [pytest.param(n, marks=[pytest.mark.slow] * (n in RARE)) for n in names]
 
 
 def settings(kernel, particles=None, box=None, **effects):

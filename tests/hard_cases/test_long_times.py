@@ -12,7 +12,6 @@ LATE = (
 )
 SCENES = {
     "gas": settings("gas"),
-    "gas in cells": settings("gas", 1000, [120, 120]),
     "sheared gas": settings("sheared"),
     "sheared gas in cells": settings("sheared", 1000, [100, 100]),
     "bed": settings("bed"),

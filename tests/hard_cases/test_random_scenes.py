@@ -26,7 +26,7 @@ from roughgas.simulation.books import books, imbalance
 
 ROUNDING = 2.0**-53
 BOUNDARIES = {"floor", "walls", "shaken_walls"}
-QUICK = ("gas", "sheared", "walled", "rubbed bed", "heated, smooth", "heated spheres")
+QUICK = ("friction", "sheared", "walled", "shaken", "heated", "spheres")
 FEW = [
     (set(KERNELS[name]["effects"]), len(KERNELS[name]["box"]), "sawtooth")  # the floor's, if any
     for name in QUICK

@@ -82,6 +82,7 @@ def test_a_steady_heated_gas():
     assert put_in == pytest.approx(1.0, rel=0.1)  # three standard errors of the kicks
 
 
+@pytest.mark.slow  # a kernel of its own
 def test_a_heated_gas_without_spin_has_a_temperature_only():
     """Stationary where collisions take what the thermostat puts in: nu (1 - r^2) T_tr/2 = power.
 

@@ -1,5 +1,6 @@
 """Movies as Snakemake makes them: what is asked for, what an edit concerns, and one made."""
 
+import pytest
 from PIL import Image
 
 NAMES = ("vibrated", "sheared", "cooling", "rough_walls", "shaken_walls", "vibrated_spheres")
@@ -27,6 +28,7 @@ def test_an_unknown_movie_is_refused_in_one_line(project):
     assert "roughgas: error: movie = flow: must be one of vibrated, sheared, cooling" in output
 
 
+@pytest.mark.slow
 def test_one_is_made(project, tmp_path):
     copy = project.copy_to(tmp_path / "copy")
     copy.succeed("-j1", *TINY, "figures/tiny/movies/cooling.gif")

@@ -110,6 +110,7 @@ def test_a_description_concerns_no_point(finished):
     assert finished.planned() == CONFIGURED
 
 
+@pytest.mark.slow  # compiles a kernel
 def test_an_edit_is_not_forgotten_when_a_run_is_interrupted(finished):
     """What stands between the sources and the points is made again, the points are not yet."""
     finished.append("src/roughgas/statistics/plateau.py")

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from brute_force import scene_of, settings, snapshot
+from brute_force import kernels, scene_of, settings, snapshot
 from brute_force.beside import brute_force_from
 from schedules import COOLING, STEADY
 
@@ -28,7 +28,7 @@ def start_of(scene, experiment):
     return initial_state(scene, experiment, np.random.default_rng(SEED))
 
 
-@pytest.mark.parametrize("name", DRIVEN)
+@pytest.mark.parametrize("name", kernels(*DRIVEN))
 def test_energies_of_a_driven_gas_are_those_of_its_point(name):
     experiment = DRIVEN[name] | {"schedule": STEADY}
     beta = BETA if "spin" in experiment["effects"] else -1.0
