@@ -57,8 +57,8 @@ def noise(error: np.ndarray, groups: np.ndarray, length: np.ndarray) -> Estimate
     It is the variance of R times its integrated autocorrelation time, less the share tau/(2 length)
     that a short run of exponentially correlated samples misses.
     """
-    mean = float(np.average(error**2 * length, weights=groups))
-    return Estimate(mean, mean * math.sqrt(2 / groups.sum()))
+    average = float(np.average(error**2 * length, weights=groups))
+    return Estimate(average, average * math.sqrt(2 / groups.sum()))
 
 
 def _scene(scene, parts, settings) -> dict[str, Any]:

@@ -50,12 +50,13 @@ def _list_pairs(gas, spheres):
     gas.counts[BUILDS] += 1
     gas.counts[PAIRS] = 0
     for i in range(len(gas.following)):
-        begin = gas.counts[PAIRS]
         if not _list_of(gas, spheres, i):
             return False
+    for p in range(gas.counts[PAIRS]):
         for k in range(kept):
-            if gas.old_pair[k, 0] == i:
-                _take_up(gas, spheres, begin, k)
+            if gas.pair[p, 0] == gas.old_pair[k, 0] and gas.pair[p, 1] == gas.old_pair[k, 1]:
+                gas.touching[p] = True
+                write(gas.stretch, p, 0, read(gas.old_stretch, k, 0, spheres.box))
     return True
 
 
@@ -69,14 +70,6 @@ def _set_aside(gas, spheres):
             write(gas.old_stretch, kept, 0, read(gas.stretch, p, 0, spheres.box))
             kept += 1
     return kept
-
-
-@jit
-def _take_up(gas, spheres, begin, old):
-    for p in range(begin, gas.counts[PAIRS]):
-        if gas.pair[p, 1] == gas.old_pair[old, 1]:
-            gas.touching[p] = True
-            write(gas.stretch, p, 0, read(gas.old_stretch, old, 0, spheres.box))
 
 
 @jit
