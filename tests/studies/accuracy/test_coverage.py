@@ -10,7 +10,7 @@ from tests.data.schema_page import check_study
 
 from roughgas.statistics.estimate import Estimate
 from roughgas.studies.accuracy import coverage, study
-from roughgas.studies.accuracy.coverage import REGROUPINGS, Runs, calibrate, one_run, several
+from roughgas.studies.accuracy.coverage import REGROUPINGS, calibrate, one_run, several
 from roughgas.studies.accuracy.tables import coverage as table
 from roughgas.studies.figures.coverage import draw_figure
 
@@ -35,7 +35,7 @@ SETTINGS = {
 def honest(rng, runs, excess=1.0, bias=0.0):
     """Runs of unit scatter whose errors, known with DOF degrees of freedom, are `excess` as big."""
     stderr = excess * np.sqrt(rng.chisquare(DOF, runs) / DOF)
-    return Runs(rng.standard_normal(runs) + bias, stderr, np.full(runs, float(DOF)))
+    return Estimate(rng.standard_normal(runs) + bias, stderr, np.full(runs, float(DOF)))
 
 
 def calibrated(runs, seed=0):
@@ -75,7 +75,7 @@ def test_groups_formed_again_and_again_tell_more_than_one_division():
 
 
 def test_runs_that_state_no_error_hold_no_truth():
-    nothing = Runs(np.zeros(3), np.full(3, math.nan), np.zeros(3))
+    nothing = Estimate(np.zeros(3), np.full(3, math.nan), np.zeros(3))
     (share,) = one_run(nothing, 0.0, [0.95])
     assert share.value == 0.0
     assert share.stderr > 0.0

@@ -8,7 +8,7 @@ repetitions: that of one run, and that of several seeds pooled.
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -24,14 +24,6 @@ UNIT = "T; in a cooling gas a collision per particle"
 REGROUPINGS = 100
 
 
-class Runs(NamedTuple):
-    """What independent runs state: R, its error and degrees of freedom, arrays of shape (runs,)."""
-
-    R: np.ndarray
-    stderr: np.ndarray
-    dof: np.ndarray
-
-
 def combine(parts: Mapping[str, xr.Dataset], settings: Mapping[str, Any]) -> xr.Dataset:
     """Return coverage, bias and the size of the stated errors at every corner, from all tasks."""
     corners = settings["corners"]
@@ -43,20 +35,22 @@ def combine(parts: Mapping[str, xr.Dataset], settings: Mapping[str, Any]) -> xr.
 
 
 def calibrate(
-    runs: Runs, truth: Estimate, levels: Sequence[float], seeds: int, rng: np.random.Generator
+    runs: Estimate, truth: Estimate, levels: Sequence[float], seeds: int, rng: np.random.Generator
 ) -> dict[str, Any]:
     """Return coverage over (way, level): of intervals of one run, and of `seeds` pooled; bias and
     errors. That of the bias allows for that of the truth. `rng` puts the runs into groups.
+
+    `runs` is what independent runs state, arrays of shape (runs,).
     """
-    number, scatter = len(runs.R), float(runs.R.std(ddof=1))
+    number, scatter = len(runs.value), float(runs.value.std(ddof=1))
     ways = one_run(runs, truth.value, levels), several(runs, truth.value, levels, seeds, rng)
     shares = np.array([[share[:2] for share in way] for way in ways])
     square = runs.stderr**2
     stated = math.sqrt(square.mean()) / scatter
-    off = (runs.R - runs.R.mean()) ** 2
+    off = (runs.value - runs.value.mean()) ** 2
     # Of a root of a quotient of two means: half of the relative errors of both
     uncertain = math.hypot(off.std() / off.mean(), square.std() / square.mean()) / 2
-    bias = (float(runs.R.mean()) - truth.value) / scatter
+    bias = (float(runs.value.mean()) - truth.value) / scatter
     return {
         "coverage": Estimate(shares[..., 0], shares[..., 1]),
         "bias": Estimate(bias, math.hypot(1 / math.sqrt(number), truth.stderr / scatter)),
@@ -65,7 +59,7 @@ def calibrate(
     }
 
 
-def one_run(runs: Runs, truth: float, levels: Sequence[float]) -> list[Estimate]:
+def one_run(runs: Estimate, truth: float, levels: Sequence[float]) -> list[Estimate]:
     """Return how often the intervals of single runs hold `truth`, at each of `levels`.
 
     The error is that of Laplace's estimate, (k + 1)/(n + 2), and does not vanish at 0 or 1.
@@ -78,7 +72,7 @@ def one_run(runs: Runs, truth: float, levels: Sequence[float]) -> list[Estimate]
 
 
 def several(
-    runs: Runs, truth: float, levels: Sequence[float], seeds: int, rng: np.random.Generator
+    runs: Estimate, truth: float, levels: Sequence[float], seeds: int, rng: np.random.Generator
 ) -> list[Estimate]:
     """Return how often the intervals of `seeds` runs pooled hold `truth`, at each of `levels`.
 
@@ -87,18 +81,18 @@ def several(
     order its variance is that of Hoeffding, Ann. Math. Stat. 19, 293 (1948): seeds^2/runs times the
     variance, over runs, of how often the groups with this run hold the truth.
     """
-    number = len(runs.R) // seeds * seeds
-    groups = [rng.permutation(len(runs.R))[:number] for _ in range(REGROUPINGS)]
+    number = len(runs.value) // seeds * seeds
+    groups = [rng.permutation(len(runs.value))[:number] for _ in range(REGROUPINGS)]
     groups = np.concatenate(groups).reshape(-1, seeds)
     errors = [pooled(*(part[group] for part in runs)) for group in groups]
-    pools = Runs(runs.R[groups].mean(axis=1), *np.array(errors).T)
-    return [_hoeffding(_held(pools, truth, level), groups, len(runs.R)) for level in levels]
+    pools = Estimate(runs.value[groups].mean(axis=1), *np.array(errors).T)
+    return [_hoeffding(_held(pools, truth, level), groups, len(runs.value)) for level in levels]
 
 
-def _held(runs: Runs, truth: float, level: float) -> np.ndarray:
+def _held(runs: Estimate, truth: float, level: float) -> np.ndarray:
     """Return whether the interval of each run holds the truth; without an interval it does not."""
     widths = [half_width(*known, level) for known in zip(runs.stderr, runs.dof, strict=True)]
-    return np.abs(runs.R - truth) <= np.array(widths)
+    return np.abs(runs.value - truth) <= np.array(widths)
 
 
 def _hoeffding(held: np.ndarray, groups: np.ndarray, runs: int) -> Estimate:
@@ -114,15 +108,15 @@ def _hoeffding(held: np.ndarray, groups: np.ndarray, runs: int) -> Estimate:
 def _corner(part: xr.Dataset, settings: Mapping[str, Any]) -> dict[str, Any]:
     """Return every variable of one corner."""
     runs, long = (
-        Runs(*(part[prefix + name].values for name in ("R", "R_stderr", "R_dof")))
+        Estimate(*(part[prefix + name].values for name in ("R", "R_stderr", "R_dof")))
         for prefix in ("", "truth_")
     )
-    truth = Estimate(float(long.R.mean()), pooled(*long).stderr)
+    truth = Estimate(float(long.value.mean()), pooled(*long).stderr)
     rng = np.random.default_rng(np.random.SeedSequence(settings["seed"], spawn_key=(0,)))
     return calibrate(runs, truth, LEVELS, settings["pooled"], rng) | {
         "truth": truth,
         "dof": float(np.median(runs.dof)),
-        "repetitions": len(runs.R),
+        "repetitions": len(runs.value),
         "equilibrated": float(part.equilibrated.mean()),
         "autocorrelation_time": float(part.truth_autocorrelation_time.mean()),
         "window": float(part.window),

@@ -44,10 +44,16 @@ def record(gas, material, rng, collisions, rows):
 
 @compiled
 def collide_until(gas, material, rng, target):
-    """Draw pairs until there have been `target` collisions."""
+    """Draw pairs until there have been `target` collisions, and let the time of the draws pass."""
     while gas.counts[COLLISIONS] < target:
         draw(gas, material, rng)
-    pass_time(gas, material)
+    clock, number = gas.clock, len(gas.velocity)
+    pairs = 0.5 * (number - 1)  # over the volume, with the density in `crowding`
+    # half the surface of the sphere of contact, of two radii: a pair meets on half of it
+    cross_section = 2.0 * math.pi if len(gas.axes) == 2 else 8.0 * math.pi
+    draws = pairs * material.crowding * cross_section
+    clock[TIME] += clock[WAITED] * math.exp(-clock[LOG_UNIT]) / draws
+    clock[WAITED] = 0.0
 
 
 @compiled
@@ -100,18 +106,6 @@ def random_direction(axes, rng):
 @unrolled
 def _in_cube(axes, rng):
     return tuple(2.0 * rng.random() - 1.0 for k in range(len(axes)))
-
-
-@compiled
-def pass_time(gas, material):
-    """Turn the draws made into time: sums of 1/majorant, over the number of pairs and so on."""
-    clock, number = gas.clock, len(gas.velocity)
-    pairs = 0.5 * (number - 1)  # over the volume, with the density in `crowding`
-    # half the surface of the sphere of contact, of two radii: a pair meets on half of it
-    cross_section = 2.0 * math.pi if len(gas.axes) == 2 else 8.0 * math.pi
-    draws = pairs * material.crowding * cross_section
-    clock[TIME] += clock[WAITED] * math.exp(-clock[LOG_UNIT]) / draws
-    clock[WAITED] = 0.0
 
 
 @compiled
