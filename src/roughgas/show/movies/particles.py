@@ -7,15 +7,15 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.collections import LineCollection
-from matplotlib.colors import Normalize, to_rgba
+from matplotlib.colors import Normalize, to_rgba_array
 from matplotlib.patches import Rectangle
 
 from roughgas.effects import Effects
 from roughgas.show.circles import add_circles, move
 from roughgas.show.movies.snapshots import Snapshot
 
-PLAIN = np.array(to_rgba("#9ecae1"))  # of particles that do not spin
-EDGE = np.array(to_rgba("#333333"))
+PLAIN = to_rgba_array("#9ecae1")  # of particles that do not spin
+EDGE = to_rgba_array("#333333")
 LUMINANCE, DARK = np.array([0.299, 0.587, 0.114]), 0.4  # below which a mark is white
 IMAGE = 0.35  # opacity of the sliding images
 WALL, SCRATCH = "#777777", "#dddddd"
@@ -71,16 +71,18 @@ class Disks:
     def show(self, shot: Snapshot, scale: float) -> None:
         """Bring them to a snapshot whose thermal spin is `scale`."""
         of, x, y, opacity = copies(self._view, shot)
-        spin = None if shot.spin is None else shot.spin[of, 0] / scale
-        colours = _colours(self.coloured, spin, len(of))
+        colours = np.tile(PLAIN, (len(of), 1))
+        if shot.spin is not None:
+            colours = self.coloured.to_rgba(shot.spin[of, 0] / scale)
         move(self._disks, x, y)
-        self._disks.set(facecolor=_with(colours, opacity), edgecolor=_with(EDGE, opacity))
-        if spin is not None:
+        self._disks.set_facecolor(to_rgba_array(colours, opacity))
+        self._disks.set_edgecolor(to_rgba_array(EDGE, opacity))
+        if shot.spin is not None:
             tip = np.stack([np.cos(shot.angle[of]), np.sin(shot.angle[of])], axis=-1)
             middle = np.stack([x, y], axis=-1)
             self._marks.set_segments(np.stack([middle, middle + 0.9 * tip], axis=1))
             dark = colours[:, :3] @ LUMINANCE < DARK
-            self._marks.set_color(_with(np.where(dark[:, None], 1.0, EDGE), opacity))
+            self._marks.set_color(to_rgba_array(np.where(dark[:, None], 1.0, EDGE), opacity))
 
 
 class Spheres:
@@ -101,13 +103,15 @@ class Spheres:
         of, x, y, opacity = (np.repeat(part[order], len(SHADES)) for part in seen)
         radius, shift, white = np.tile(np.array(SHADES), (len(order), 1)).T
         near = (depth[of] - depth.min()) / max(np.ptp(depth), 1e-9)
-        spin = None if shot.spin is None else np.linalg.norm(shot.spin[of], axis=1) / scale
-        colours = _colours(self.coloured, spin, len(of))
+        colours = np.tile(PLAIN, (len(of), 1))
+        if shot.spin is not None:
+            colours = self.coloured.to_rgba(np.linalg.norm(shot.spin[of], axis=1) / scale)
         for share in (FAR * near, white):
             colours[:, :3] += (1.0 - colours[:, :3]) * share[:, None]
         rim = np.where(white == 0.0, opacity, 0.0)
         move(self._disks, x - shift, y + shift, 2.0 * radius)
-        self._disks.set(facecolor=_with(colours, opacity), edgecolor=_with(EDGE, rim))
+        self._disks.set_facecolor(to_rgba_array(colours, opacity))
+        self._disks.set_edgecolor(to_rgba_array(EDGE, rim))
 
 
 class Boundaries:
@@ -139,15 +143,3 @@ class Boundaries:
             inner = view.right + view.left
             right = [((inner, one + spacing / 3), (view.right, one)) for one in y]
             self._scratches.set_segments(left + right)
-
-
-def _colours(coloured, spin, number):
-    """Return the colours (number, 4) of particles, from their scaled spins if they have any."""
-    return np.tile(PLAIN, (number, 1)) if spin is None else coloured.to_rgba(spin)
-
-
-def _with(colours, opacity):
-    """Return colours (M, 4), or one for all, with opacities (M,)."""
-    chosen = np.array(np.broadcast_to(colours, (len(opacity), 4)))
-    chosen[:, 3] = opacity
-    return chosen
