@@ -130,8 +130,8 @@ POINT = {
 }
 
 
-def _derived(long_name: str, units: str = "1", more: str = "", dtype: str = "f8") -> Variable:
-    return Variable(long_name, units, (GRID, more) if more else (GRID,), dtype, over_seeds="")
+def _derived(long_name: str, units: str = "1", dtype: str = "f8") -> Variable:
+    return Variable(long_name, units, (GRID,), dtype, over_seeds="")
 
 
 REDUCED = {
@@ -141,7 +141,7 @@ REDUCED = {
     for name, about in POINT.items()
     if about.over_seeds and not about.dims
 } | {
-    "R_seed": _derived("R of each seed", more="seed"),
+    "R_seed": Variable("R of each seed", dims=(GRID, "seed"), over_seeds=""),
     "R_stderr": _derived("standard error of R: scatter over seeds and error within them, pooled"),
     "R_dof": _derived("degrees of freedom that R_stderr is known with"),
     "R_ci95": _derived("half width of the 95 % interval of R, by Student's t"),

@@ -4,13 +4,13 @@ says what the columns mean.
 Numbers are written so that the same bits are read back; missing ones are empty cells.
 """
 
-import csv
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import netCDF4
 import numpy as np
+from pandas import DataFrame
 from xarray import Dataset
 
 from roughgas.base.errors import InputError
@@ -51,14 +51,14 @@ def _export(dataset: Dataset, output: Path) -> list[Path]:
         file = output if is_grid or dims in MAIN else _beside(output, "-".join(dims))
         if is_grid:
             head = (*table.HEAD, *(name for name in names if name not in table.HEAD))
-            _write(file, head, (row.values() for row in table.rows(dataset, head)))
+            _write(file, DataFrame(table.rows(dataset, head), columns=head))
         else:
-            _write_columns(file, dataset, dims, names)
+            _write(file, _frame(dataset, dims, names))
         files.append(file)
         axes = () if is_grid else dims  # there the third axis is a column `value`
         found_in = dict.fromkeys(axes, file.name) | found_in | dict.fromkeys(names, file.name)
     about = _beside(output, "about")
-    _write(about, ABOUT, _descriptions(dataset, found_in))
+    _write(about, DataFrame(_descriptions(dataset, found_in), columns=ABOUT, dtype=object))
     return [*files, about]
 
 
@@ -71,8 +71,8 @@ def _columns(dataset: Dataset) -> dict[tuple[str, ...], list[str]]:
     return found
 
 
-def _write_columns(file: Path, dataset: Dataset, dims: Sequence[str], names: Sequence[str]) -> None:
-    """Write variables of the same dimensions: their places along these, then their values.
+def _frame(dataset: Dataset, dims: Sequence[str], names: Sequence[str]) -> DataFrame:
+    """Return variables of the same dimensions: their places along these, then their values.
 
     The disks of a film come with the number of their frame.
     """
@@ -81,8 +81,7 @@ def _write_columns(file: Path, dataset: Dataset, dims: Sequence[str], names: Seq
     if dims == ("disk",):
         counts = dataset["disks"].values
         columns.insert(0, "frame", np.repeat(np.arange(len(counts)), counts))
-    with whole_file(file) as draft:
-        columns.to_csv(draft, index=False, lineterminator="\n")
+    return columns
 
 
 def _descriptions(dataset: Dataset, found_in: Mapping[str, str]) -> Iterator[tuple[Any, ...]]:
@@ -98,12 +97,9 @@ def _descriptions(dataset: Dataset, found_in: Mapping[str, str]) -> Iterator[tup
         yield f":{name}", "", value, "", "attribute"
 
 
-def _write(file: Path, head: Sequence[str], rows: Iterable[Iterable[Any]]) -> None:
-    with whole_file(file) as draft, open(draft, "w", newline="", encoding="utf-8") as text:
-        lines = csv.writer(text, lineterminator="\n")
-        lines.writerow(head)
-        for row in rows:  # NaN is an empty cell
-            lines.writerow("" if isinstance(x, float) and np.isnan(x) else x for x in row)
+def _write(file: Path, frame: DataFrame) -> None:
+    with whole_file(file) as draft:  # NaN is an empty cell
+        frame.to_csv(draft, index=False, lineterminator="\n")
 
 
 def _beside(output: Path, part: str) -> Path:

@@ -29,17 +29,11 @@ SCATTERED = ("R", "R_unsubtracted", "R_drift", "E_trans", "input_spin_share")
 
 
 class Summary(NamedTuple):
-    """The scalars and attributes of one point's file."""
+    """The scalars and attributes of one point's file, and where it is in the reduced dataset."""
 
     scalars: dict[str, float]
     attributes: dict[str, Any]
-
-    @property
-    def place(self) -> tuple[Any, ...]:
-        """Its (r, beta, seed), preceded by the value of what is swept besides."""
-        about = self.attributes
-        swept = (about["swept_value"],) if "swept" in about else ()
-        return (*swept, float(about["r"]), float(about["beta"]), int(about["seed"]))
+    place: tuple[Any, ...]  # (r, beta, seed), preceded by the value of what is swept besides
 
 
 def reduce_points(paths: Iterable[str | Path], output: str | Path) -> None:
@@ -66,7 +60,9 @@ def _summary(path: Path) -> Summary:
         found = [name for name, about in POINT.items() if not about.dims]
         scalars = {name: file[name][...].item() for name in found if name in file.variables}
         scalars["measured_for"], scalars["R_drift"] = _window(file, scalars)
-    return Summary(scalars, attributes)
+    swept = (attributes["swept_value"],) if "swept" in attributes else ()
+    r, beta, seed = (attributes[name] for name in (*GRID, "seed"))
+    return Summary(scalars, attributes, (*swept, float(r), float(beta), int(seed)))
 
 
 def _window(file: netCDF4.Dataset, scalars: Mapping[str, float]) -> tuple[float, float]:
