@@ -78,7 +78,7 @@ def random_fall(rng, make):
 def test_time_to_floor_against_forty_digits(make):
     rng = np.random.default_rng(3)
     with mpmath.workdps(DIGITS):
-        for _ in range(300):
+        for _ in range(100):
             floor, *_, phase = fall = random_fall(rng, make)
             time, truth = time_to(*fall), exact(*fall)
             first = truth.first()
