@@ -145,9 +145,9 @@ def remove_stale_kernels() -> str:
 
     folder = kernel_folder()
     stale = [other for other in folder.parent.glob("kernels-*") if other != folder]
-    files = [file for one in stale for file in one.rglob("*") if file.is_file()]
-    size = sum(file.stat().st_size for file in files) / 2**20
+    size = 0
     for one in stale:
+        size += sum(file.stat().st_size for file in one.rglob("*") if file.is_file()) / 2**20
         shutil.rmtree(one)
     return f"{len(stale)} folders of kernels of other versions, {size:.0f} MiB: removed"
 

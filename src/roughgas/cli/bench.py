@@ -2,7 +2,6 @@
 
 from argparse import Namespace
 from statistics import median
-from typing import Any
 
 from roughgas import config
 from roughgas.base.layout import as_json, columns
@@ -20,7 +19,11 @@ def bench(options: Namespace) -> None:
     """Measure and print the speeds of experiments."""
     r, beta = config.restitution(options.r), config.roughness(options.beta)
     runs = whole_number("--runs", options.runs, 1)
-    found = _experiments(options)
+    loaded, found = config.load(options.config), {}
+    basic = [name for name, one in loaded["experiments"].items() if "extends" not in one]
+    for name in options.experiments or basic:
+        settings = config.experiment(loaded, name, options.scale)
+        found |= list(config.every_variant(name, settings).items())[:1]  # of a third axis, one
     speeds, rows = [], [HEAD]
     with Bar("bench", len(found) * (runs + 1), "runs") as bar:
         for name, settings in found.items():
@@ -36,14 +39,3 @@ def bench(options: Namespace) -> None:
         print(as_json({"machine": machine, "speeds": speeds}))
     else:
         print(f"{columns(rows, numbers=True)}\n\n{columns(machine.items())}")
-
-
-def _experiments(options: Namespace) -> dict[str, dict[str, Any]]:
-    """Return settings by name: for an experiment with a third axis, its first variant's."""
-    loaded = config.load(options.config)
-    basic = [name for name, one in loaded["experiments"].items() if "extends" not in one]
-    found = {}
-    for name in options.experiments or basic:
-        settings = config.experiment(loaded, name, options.scale)
-        found |= list(config.every_variant(name, settings).items())[:1]
-    return found

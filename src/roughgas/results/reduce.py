@@ -84,7 +84,7 @@ def _combined(points: Sequence[Summary]) -> Content:
     """Return the reduced dataset of points of one experiment."""
     attributes = _common_attributes(points)
     columns = zip(*(point.place for point in points), strict=True)
-    axes = [sorted(set(column), key=_words_last) for column in columns]
+    axes = [sorted(set(column), key=lambda x: (isinstance(x, str), x)) for column in columns]
     swept = third_axis(attributes)
     grid = GRID if swept is None else (swept, *GRID)
     stacks = _stacks(points, axes)
@@ -96,10 +96,6 @@ def _combined(points: Sequence[Summary]) -> Content:
         third[swept] = Array((swept,), coordinates.pop(swept), about)
     values = _over_seeds(stacks) | coordinates
     return Content(third | described("reduced", values, "plateau_end" in stacks, grid), attributes)
-
-
-def _words_last(value: Any) -> tuple[bool, Any]:
-    return isinstance(value, str), value
 
 
 def _coordinate(values: Sequence[Any]) -> np.ndarray:

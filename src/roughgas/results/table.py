@@ -41,25 +41,22 @@ def rows(dataset: Dataset, head: Sequence[str] = HEAD) -> Iterator[dict[str, Any
     Each has the names in `head`, which may be those of HEAD, of variables over the grid, or of
     attributes; the value is "" where the dataset has no such thing, NaN for an unknown number.
     """
-    name = third_axis(dataset.attrs)
-    if name is None:
-        yield from _rows_of_variant(dataset, head)
-        return
-    for index, value in enumerate(dataset[name].values):
-        about = {name: value, "parameter": name, "value": value}
-        yield from _rows_of_variant(
-            dataset.isel({name: index}, drop=True).assign_attrs(about), head
-        )
-
-
-def _rows_of_variant(dataset: Dataset, head: Sequence[str]) -> Iterator[dict[str, Any]]:
-    flat = dataset.drop_dims("seed").stack(point=GRID)
-    prediction = predicted_ratio(dataset.attrs, flat.r.values, flat.beta.values)
-    for index in np.flatnonzero(flat["n_seeds"].values):
-        row = {name: flat[name].values[index] for name in head if name in flat}
-        residual = row.get("R", math.nan) - prediction[index]
-        row |= {"R_theory": prediction[index], "residual": residual}
-        yield {name: row.get(name, dataset.attrs.get(name, "")) for name in head}
+    name, variants = third_axis(dataset.attrs), [dataset]
+    if name is not None:
+        variants = [
+            dataset.isel({name: index}, drop=True).assign_attrs(
+                {name: value, "parameter": name, "value": value}
+            )
+            for index, value in enumerate(dataset[name].values)
+        ]
+    for one in variants:
+        flat = one.drop_dims("seed").stack(point=GRID)
+        prediction = predicted_ratio(one.attrs, flat.r.values, flat.beta.values)
+        for index in np.flatnonzero(flat["n_seeds"].values):
+            row = {name: flat[name].values[index] for name in head if name in flat}
+            residual = row.get("R", math.nan) - prediction[index]
+            row |= {"R_theory": prediction[index], "residual": residual}
+            yield {name: row.get(name, one.attrs.get(name, "")) for name in head}
 
 
 def _cell(value: Any) -> str:
