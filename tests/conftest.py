@@ -1,8 +1,12 @@
 """What all tests share; its being here also lets them import `synthetic`."""
 
+import os
 import signal
 
 from hypothesis import settings
+
+# sums by several threads have other last bits; the command `roughgas` has one thread, too
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 # a shell's job in the background ignores Ctrl-C, and so would every process that tests start
 signal.signal(signal.SIGINT, signal.default_int_handler)

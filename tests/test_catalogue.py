@@ -52,5 +52,5 @@ def test_room_is_a_factor():
 def test_a_remedy_must_be_in_the_source_once(tmp_path):
     without = Without(tmp_path, "Family")
     with pytest.raises(AssertionError, match="0 times"):
-        without("something", test_room_is_a_factor, "scene.py", "no such text", "")
+        without("something", test_room_is_a_factor, "scene/composition.py", "no such text", "")
     assert without.rows == []

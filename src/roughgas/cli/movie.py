@@ -11,7 +11,7 @@ from roughgas.cli.options import number, whole_number
 from roughgas.cli.run import point_of
 from roughgas.scene import Scene
 from roughgas.show.encoding import check_kind
-from roughgas.show.movies.drawing import Subject, write
+from roughgas.show.movies.drawing import MovieSubject, write
 from roughgas.show.movies.snapshots import Take, snapshots, usual_take
 from roughgas.simulation.progress import watched
 
@@ -31,7 +31,7 @@ def movie(options: Namespace) -> None:
     take = _take(options, settings, scene)
     simulated = snapshots(settings, float(options.r), float(options.beta), seed, take)
     shots = list(watched(f"{name}: simulated", take.frames, "frames", simulated))
-    subject = Subject(name, settings, scene, seed)
+    subject = MovieSubject(name, settings, scene, seed)
     for output in options.output:
         shown = partial(watched, f"{output}: drawn", len(shots), "frames")
         write(output, subject, shots, fps, shown)

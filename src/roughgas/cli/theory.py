@@ -32,7 +32,7 @@ class Quantity(NamedTuple):
     source: str
 
 
-class Gas(NamedTuple):
+class GasParameters(NamedTuple):
     """Points (r, beta), arrays of equal shape, and what they share; no friction: `mu` is None."""
 
     r: Any
@@ -43,7 +43,7 @@ class Gas(NamedTuple):
     mu: float | None
 
 
-Tables = Sequence[tuple[Gas, Mapping[str, Quantity]]]
+Tables = Sequence[tuple[GasParameters, Mapping[str, Quantity]]]
 """All quantities of each gas; the gases have the same points."""
 
 
@@ -58,7 +58,7 @@ def print_theory(options: Namespace) -> None:
         print(f"{_point(tables) if len(tables[0][0].r) == 1 else _curve(tables)}\n{NOTES}")
 
 
-def _gases(options: Namespace) -> list[Gas]:
+def _gases(options: Namespace) -> list[GasParameters]:
     """Return the gas, or those of both dimensions, at all (r, beta) of the axes.
 
     Raises InputError for illegal values.
@@ -73,7 +73,7 @@ def _gases(options: Namespace) -> list[Gas]:
     if options.inertia is not None:
         q = float(check("inertia q", number("--inertia", options.inertia)))
     dimensions = [int(options.dimension)] if options.dimension else [2, 3]
-    return [Gas(r, beta, D, q or moment_of_inertia(D), share, mu) for D in dimensions]
+    return [GasParameters(r, beta, D, q or moment_of_inertia(D), share, mu) for D in dimensions]
 
 
 def _values(key: str, texts: Sequence[str], legal: Callable[[str], float]) -> list[float]:
@@ -97,7 +97,7 @@ def _range(key: str, text: str, ends: re.Match[str]) -> list[str]:
     return [str(start + k * step) for k in range(count)]
 
 
-def quantities(gas: Gas) -> dict[str, Quantity]:
+def quantities(gas: GasParameters) -> dict[str, Quantity]:
     """Return all that theory says of a gas, by name."""
     about = {"dimension": gas.dimension, "inertia": gas.inertia, "spin_share": gas.spin_share}
     if gas.mu is not None:
@@ -111,7 +111,7 @@ def quantities(gas: Gas) -> dict[str, Quantity]:
     return found | (_relaxation(gas) if gas.mu is None else _friction(gas))
 
 
-def _relaxation(gas: Gas) -> dict[str, Quantity]:
+def _relaxation(gas: GasParameters) -> dict[str, Quantity]:
     """Return how fast R settles and energy decays."""
     point, source = (gas.r, gas.beta), "rate equations"
     spins = {"dimension": gas.dimension, "inertia": gas.inertia}
@@ -126,7 +126,7 @@ def _relaxation(gas: Gas) -> dict[str, Quantity]:
     return found | {"decay": Quantity(decay, "rate at which energy decays, cooling", "Haff's law")}
 
 
-def _friction(gas: Gas) -> dict[str, Quantity]:
+def _friction(gas: GasParameters) -> dict[str, Quantity]:
     """Return how fast R settles and how often contacts slide, if they can."""
     spins, source = (gas.mu, gas.dimension, gas.inertia), "rate equations with Coulomb friction"
     rate = theory.friction_relaxation_rate(gas.r, gas.beta, *spins)

@@ -57,7 +57,7 @@ class Plateau(NamedTuple):
     found: bool
 
 
-class Blocks(NamedTuple):
+class BlockSums(NamedTuple):
     """Sums of R over all samples before each edge, shape (replicas, edges), and the edges."""
 
     sums: np.ndarray
@@ -93,7 +93,7 @@ def _window(R: np.ndarray, s: np.ndarray, first: int) -> tuple[int, int] | None:
     even = np.geomspace(s[first], s[-1], BLOCKS + 1)[:-1] * (1 - ROUNDING)
     edges = np.append(np.unique(np.searchsorted(s, even)), len(s))
     sums = np.concatenate([np.zeros((len(R), 1)), np.cumsum(R, axis=1)], axis=1)
-    blocks = Blocks(sums[:, edges], edges)
+    blocks = BlockSums(sums[:, edges], edges)
     stops = np.array([_last_stationary_stop(blocks, start) for start in range(len(edges) - 1)])
     growth = np.where(stops > 0, s[edges[stops] - 1] / s[edges[:-1]], 0.0)
     growth[1:][growth[1:] < SHORTEST_GROWTH] = 0.0
@@ -105,14 +105,14 @@ def _window(R: np.ndarray, s: np.ndarray, first: int) -> tuple[int, int] | None:
     return None
 
 
-def _last_stationary_stop(blocks: Blocks, start: int) -> int:
+def _last_stationary_stop(blocks: BlockSums, start: int) -> int:
     """Return the edge at which the longest stationary window from `start` ends; 0 for none."""
     stops = np.arange(start + SHORTEST_PLATEAU, len(blocks.edges))
     stationary = np.maximum(*_edge_sigmas(blocks, start, stops)) < ALARM_SIGMAS
     return int(stops[stationary].max(initial=0))
 
 
-def _trimmed(blocks: Blocks, start: int, stop: int) -> tuple[int, int]:
+def _trimmed(blocks: BlockSums, start: int, stop: int) -> tuple[int, int]:
     """Return the window without the blocks at its ends that depart from it by TRIM_SIGMAS."""
     while stop - start > SHORTEST_PLATEAU:
         at_start, at_stop = _edge_sigmas(blocks, start, stop)
@@ -130,7 +130,7 @@ def _with_margin(edges: np.ndarray, start: int, stop: int) -> tuple[int, int]:
 
 
 def _edge_sigmas(
-    blocks: Blocks, start: int, stops: np.ndarray | int
+    blocks: BlockSums, start: int, stops: np.ndarray | int
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the most sigma by which the first, and the last, 1, 2, 4, ... blocks are off."""
     stops = np.asarray(stops)[..., np.newaxis]
@@ -140,7 +140,7 @@ def _edge_sigmas(
     return off_early.max(axis=-1), off_late.max(axis=-1)
 
 
-def _contrasts(blocks: Blocks, start: int, split: np.ndarray, stop: np.ndarray) -> np.ndarray:
+def _contrasts(blocks: BlockSums, start: int, split: np.ndarray, stop: np.ndarray) -> np.ndarray:
     """Return means over blocks [split, stop) less those over [start, split): (replicas, ...)."""
     sums, edges = blocks
     sums = sums - sums[:, [start]]

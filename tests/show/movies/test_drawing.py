@@ -10,7 +10,7 @@ from schedules import COOLING, STEADY
 from roughgas.scene import build
 from roughgas.show import encoding as movie
 from roughgas.show.movies import particles
-from roughgas.show.movies.drawing import Subject, picture, spin_scales, view_of, write
+from roughgas.show.movies.drawing import MovieSubject, picture, spin_scales, view_of, write
 from roughgas.show.movies.snapshots import Snapshot
 
 SIDE = 12.0
@@ -32,7 +32,7 @@ STILL = Snapshot(
 
 def subject(kernel, box, beta=0.5, schedule=STEADY, **others):
     experiment = settings(kernel, 3, box) | {"schedule": schedule} | others
-    return Subject(kernel, experiment, build(experiment, 0.9, beta), 7)
+    return MovieSubject(kernel, experiment, build(experiment, 0.9, beta), 7)
 
 
 def shots(number=3, **changes):

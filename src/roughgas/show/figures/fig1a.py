@@ -3,9 +3,9 @@
 import xarray as xr
 from matplotlib.figure import Figure
 
-from roughgas.show.figures.panel import ANY_R, part_for_each_r, ratio_figure
+from roughgas.show.figures.panel import ANY_R, content_for_each_r, ratio_figure
 
 
 def draw(bed: xr.Dataset) -> Figure:
     """Draw the figure from the reduced dataset of the vibrated bed."""
-    return ratio_figure(part_for_each_r("Vibrated bed", bed, theory=ANY_R))
+    return ratio_figure(content_for_each_r("Vibrated bed", bed, theory=ANY_R))

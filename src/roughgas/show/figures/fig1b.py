@@ -4,7 +4,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from roughgas.base.errors import InputError
-from roughgas.show.figures.panel import RESTITUTION, Part, ratio_figure, series
+from roughgas.show.figures.panel import RESTITUTION, PanelContent, ratio_figure, series
 from roughgas.show.style import LOOKS
 
 LABELS = (
@@ -24,7 +24,7 @@ def draw(*beds: xr.Dataset) -> Figure:
             name = data.attrs["experiment"]
             raise InputError(f"r of {name}", data.r.values, f"include {RESTITUTION:g}")
         drawn.append(series(data, label, look, r=RESTITUTION))
-    part = Part(
+    part = PanelContent(
         f"Vibrated bed, $r = {RESTITUTION:g}$",
         beds,
         drawn,

@@ -3,10 +3,10 @@
 import xarray as xr
 from matplotlib.figure import Figure
 
-from roughgas.show.figures.panel import part_for_each_r, ratio_figure
+from roughgas.show.figures.panel import content_for_each_r, ratio_figure
 
 
 def draw(cooling: xr.Dataset) -> Figure:
     """Draw the figure from the reduced dataset of the cooling gas."""
     how = {"theories": "lines: theory, Eq. (K)", "loc": "upper right"}
-    return ratio_figure(part_for_each_r("Cooling gas", cooling, **how))
+    return ratio_figure(content_for_each_r("Cooling gas", cooling, **how))

@@ -23,8 +23,8 @@ def draw(bed: xr.Dataset, cooling: xr.Dataset) -> Figure:
     bed, cooling = (data.sel(mu=data.mu > 0.0) for data in (bed, cooling))
     free = {"loc": "upper right", "scale": _beyond, "extra": _shade_where_two_are_stable}
     return panel.ratio_figure(
-        panel.part_for_each_beta("Vibrated bed", bed, **COMMON),
-        panel.part_for_each_beta("Cooling gas", cooling, **COMMON, **free),
+        panel.content_for_each_beta("Vibrated bed", bed, **COMMON),
+        panel.content_for_each_beta("Cooling gas", cooling, **COMMON, **free),
         width=panel.TWO_WIDE,
     )
 

@@ -7,7 +7,7 @@ are those from the sawtooth, not from theory.
 import xarray as xr
 from matplotlib.figure import Figure
 
-from roughgas.show.figures.panel import RESTITUTION, Part, ratio_figure, series
+from roughgas.show.figures.panel import RESTITUTION, PanelContent, ratio_figure, series
 from roughgas.show.style import LOOKS
 
 LABELS = {
@@ -26,6 +26,6 @@ def draw(waves: xr.Dataset) -> Figure:
     ]
     beside = [one._replace(theory=drawn[0].data.R.values) for one in drawn]
     title = f"Vibrated bed, $r = {RESTITUTION:g}$"
-    figure = ratio_figure(Part(title, [waves], beside, theory="theory, Eq. (lun)"))
+    figure = ratio_figure(PanelContent(title, [waves], beside, theory="theory, Eq. (lun)"))
     figure.axes[1].set_ylabel(r"$R - R_\mathrm{sawtooth}$")
     return figure

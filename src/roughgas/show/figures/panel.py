@@ -103,7 +103,7 @@ class Panel(NamedTuple):
     axis: Axis
 
 
-class Part(NamedTuple):
+class PanelContent(NamedTuple):
     """What a figure shows in one of its panels."""
 
     title: str
@@ -146,18 +146,20 @@ def series_for_each(
     ]
 
 
-def part_for_each_r(title: str, data: xr.Dataset, **how: Any) -> Part:
+def content_for_each_r(title: str, data: xr.Dataset, **how: Any) -> PanelContent:
     """Return a part with one series for each r."""
-    return Part(title, [data], series_for_each(data, "r", "r"), **how)
+    return PanelContent(title, [data], series_for_each(data, "r", "r"), **how)
 
 
-def part_for_each_beta(title: str, data: xr.Dataset, symbol: str = r"\beta", **how: Any) -> Part:
+def content_for_each_beta(
+    title: str, data: xr.Dataset, symbol: str = r"\beta", **how: Any
+) -> PanelContent:
     """Return a part with one series for each beta, all at RESTITUTION."""
     drawn = series_for_each(data, "beta", symbol)
-    return Part(rf"{title}, $r = {RESTITUTION:g}$", [data], drawn, **how)
+    return PanelContent(rf"{title}, $r = {RESTITUTION:g}$", [data], drawn, **how)
 
 
-def ratio_figure(*parts: Part, width: float = WIDTH) -> Figure:
+def ratio_figure(*parts: PanelContent, width: float = WIDTH) -> Figure:
     """Draw the parts side by side: points above theory, minus theory beneath, legends, titles."""
     figure, panels = ratio_panels([part.axis for part in parts], width)
     for part, panel in zip(parts, panels, strict=True):

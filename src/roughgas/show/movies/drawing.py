@@ -26,7 +26,7 @@ FRAME_SPACE, GRAPH = 0.85, 1.25  # inches: title and label, and the graph beneat
 PER_PARTICLE = "collisions per particle"
 
 
-class Subject(NamedTuple):
+class MovieSubject(NamedTuple):
     """What a movie is of."""
 
     name: str  # of the experiment
@@ -37,7 +37,7 @@ class Subject(NamedTuple):
 
 def write(
     path: str | Path,
-    subject: Subject,
+    subject: MovieSubject,
     shots: Sequence[Snapshot],
     per_second: float,
     watch: Callable[[Iterable[int]], Iterable[int]] = iter,
@@ -53,7 +53,7 @@ def write(
 
 
 def picture(
-    subject: Subject, shots: Sequence[Snapshot], dpi: float | None = None
+    subject: MovieSubject, shots: Sequence[Snapshot], dpi: float | None = None
 ) -> tuple[Figure, Callable[[int], None]]:
     """Return the figure at its first frame, and a function that brings it to another one."""
     view = view_of(subject, shots)
@@ -81,7 +81,7 @@ def picture(
     return figure, show
 
 
-def view_of(subject: Subject, shots: Sequence[Snapshot]) -> View:
+def view_of(subject: MovieSubject, shots: Sequence[Snapshot]) -> View:
     """Return what is seen of the box: all of it, but no more than TALLEST widths high.
 
     In space it is seen from the side: the vertical axis is that of gravity, or of the gradient of
@@ -108,7 +108,7 @@ def view_of(subject: Subject, shots: Sequence[Snapshot]) -> View:
     )
 
 
-def spin_scales(subject: Subject, shots: Sequence[Snapshot]) -> np.ndarray:
+def spin_scales(subject: MovieSubject, shots: Sequence[Snapshot]) -> np.ndarray:
     """Return the thermal spin of each frame, in a/T; NaN without spin.
 
     It is the r.m.s. that spins would have if the energy of the frame were shared equally; in a
@@ -136,7 +136,7 @@ def _set_up(axes: Axes, scene: Scene, view: View) -> None:
             axes.axhline(edge, color=style.GREY, linewidth=0.6, linestyle="--")
 
 
-def _title(subject: Subject, view: View) -> str:
+def _title(subject: MovieSubject, view: View) -> str:
     scene = subject.scene
     about = [rf"$r = {scene.restitution:g}$"]
     if scene.effects.spin is not None:
@@ -152,7 +152,7 @@ def _title(subject: Subject, view: View) -> str:
     return f"{name}\n{', '.join(about)}"
 
 
-def _graph(axes: Axes, subject: Subject, shots: Sequence[Snapshot]) -> Callable[[int], None]:
+def _graph(axes: Axes, subject: MovieSubject, shots: Sequence[Snapshot]) -> Callable[[int], None]:
     """Draw R over time, or the energy if nothing spins; return what shows it up to a frame."""
     cooling = _cools(subject)
     at = np.array([shot.collisions if cooling else shot.time for shot in shots])

@@ -1,0 +1,54 @@
+"""The bits of results that must not change: `python -m tests.bits results` compares what is there.
+
+bits.json has a hash of one small point of every experiment, and of ten points at the paper's scale.
+A change that is meant to change numbers replaces the file, and says why in the changelog:
+`python -m tests.bits results --replace`.
+"""
+
+import argparse
+import hashlib
+import json
+from pathlib import Path
+
+import netCDF4
+import numpy as np
+
+KNOWN = Path(__file__).with_name("bits.json")
+CLOCKS = ("kernel_seconds", "planned_seconds")
+
+
+def digest(path):
+    """A hash of all variables of a dataset but those that tell CPU time."""
+    found = hashlib.sha256()
+    with netCDF4.Dataset(path) as file:
+        file.set_auto_mask(False)
+        for name in sorted(set(file.variables) - set(CLOCKS)):
+            values = np.asarray(file[name][...])
+            words = "|".join(map(str, values.ravel())) if values.dtype.kind == "O" else ""
+            found.update(f"{name}{values.dtype}{values.shape}{words}".encode())
+            found.update(b"" if words else values.tobytes())
+    return found.hexdigest()[:16]
+
+
+def known():
+    """The hashes by path below results/."""
+    return json.loads(KNOWN.read_text())
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--replace", action="store_true")
+    options = parser.parse_args()
+    here = {name: options.folder / name for name in known()}
+    found = {name: digest(path) for name, path in here.items() if path.exists()}
+    if options.replace:
+        KNOWN.write_text(json.dumps(known() | found, indent=1) + "\n")
+    others = [name for name in found if found[name] != known()[name]]
+    print(f"{len(found) - len(others)} of {len(found)} the same, {len(here) - len(found)} missing")
+    print("\n".join(others), end="\n" if others else "")
+    return bool(others)
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
