@@ -20,10 +20,6 @@ def test_the_showcase_needs_no_point(project):
     assert project.planned("showcase") == {"clustering": 1} | DRAWN
 
 
-def test_everything_has_the_showcase_in_it(project):
-    assert project.planned("everything")["film"] == 1
-
-
 def test_an_edit_of_its_settings(finished):
     finished.configure(lambda config: config["scales"]["tiny"]["showcase"].update(beta="0.5"))
     assert finished.planned("showcase") == {"clustering": 1} | DRAWN

@@ -127,15 +127,16 @@ def test_a_seed_of_the_sweep_comes_with_those_of_its_job(project):
     assert project.planned(target) == {"compile_kernel": 1, "seeds": 1}
 
 
-def test_everything_has_the_experiments_that_were_added(tmp_path):
+def test_everything_has_films_and_the_experiments_that_were_added(tmp_path):
     project = Project(tmp_path)
     project.configure(
         lambda config: config["experiments"].update(
             wide={"extends": "cooling", "box": [200, 50], "sweep": {"seeds": 1}}
         )
     )
-    assert project.planned("everything")["seeds"] == JOBS + len(BEYOND)
-    assert project.planned("everything")["point"] == 1
+    planned = project.planned("everything")
+    found = {rule: planned[rule] for rule in ("seeds", "point", "film", "movie")}
+    assert found == {"seeds": JOBS + len(BEYOND), "point": 1, "film": 1, "movie": 6}
     assert "point" not in project.planned("figures")
 
 
