@@ -1,0 +1,85 @@
+"""Which tests notice a fault: `python -m tests.mutants [ROOM ...]` makes one after the other.
+
+mutants.json has the faults: a text in the source, what it is changed to, and the room that it is
+in. Each is made in a copy of the project, and the tests of that room run there until one fails. A
+line is printed for each, and the exit status is 1 if a fault passes that is not known to.
+"""
+
+import argparse
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+COPIED = ("config.yaml", "docs", "pyproject.toml", "README.md", "requirements.lock", "rules", "src")
+COPIED += ("CHANGELOG.md", "CITATION.cff", "LICENSE", "Makefile", "Snakefile", "profiles", "tests")
+EXTRAS = "not (slow or remedy or browser or slurm)"
+ELSEWHERE = {  # tests of a room that are not in its own folder
+    "base": ["data", "cli/test_process.py", "habits/test_surroundings.py"],
+    "doctor": ["habits/test_doctor.py"],
+    "library": ["test_library.py"],
+    "results": ["planning"],
+    "scene": ["simulation/test_schedule.py"],
+}
+
+
+def tests_of(room):
+    """The files and folders of tests that are run for a fault in a room."""
+    own = [room] if (ROOT / "tests" / room).is_dir() else []
+    return [f"tests/{name}" for name in own + ELSEWHERE.get(room, [])]
+
+
+def place(source, old):
+    """The only file that holds a text, which it holds once."""
+    found = [path for path in source.rglob("*.py") if old in path.read_text()]
+    if len(found) != 1 or found[0].read_text().count(old) != 1:
+        raise SystemExit(f"must stand once in the source: {old!r}")
+    return found[0]
+
+
+def killer(copy, mutant):
+    """The first test that fails with a fault, or None."""
+    path = place(copy / "src", mutant["old"])
+    text = path.read_text()
+    path.write_text(text.replace(mutant["old"], mutant["new"]))
+    environment = os.environ | {"PYTHONPATH": f"{copy}/src:{copy}"}
+    command = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", "-m", EXTRAS]
+    done = subprocess.run(
+        [*command, *tests_of(mutant["room"])],
+        cwd=copy,
+        env=environment,
+        capture_output=True,
+        text=True,
+    )
+    path.write_text(text)
+    named = re.search(r"^(?:FAILED|ERROR) (\S+)", done.stdout, re.MULTILINE)
+    return named and named[1]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("rooms", nargs="*", help="default: all")
+    rooms = parser.parse_args().rooms
+    mutants = json.loads((ROOT / "tests/mutants.json").read_text())
+    missed = 0
+    with tempfile.TemporaryDirectory() as folder:
+        copy = Path(folder)
+        for name in COPIED:
+            copied = shutil.copytree if (ROOT / name).is_dir() else shutil.copy2
+            copied(ROOT / name, copy / name)
+        for mutant in mutants:
+            if rooms and mutant["room"] not in rooms:
+                continue
+            found = killer(copy, mutant)
+            missed += found is None and not mutant.get("survives", False)
+            print(f"{mutant['room']:11}{found or 'survives'}: {mutant['old']!r}", flush=True)
+    return missed > 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
