@@ -12,6 +12,7 @@ LATE = (
 )
 SCENES = {
     "gas": settings("gas"),
+    "gas in cells": settings("gas", 1000, [120, 120]),
     "sheared gas": settings("sheared"),
     "sheared gas in cells": settings("sheared", 1000, [100, 100]),
     "bed": settings("bed"),
@@ -31,12 +32,13 @@ SEGMENTS, SEGMENT = 20, 40  # comparisons with the brute force, and collisions i
 def test_an_offset_of_the_clock_changes_no_bit(margins):
     collisions = margins.size(quick=2000, full=500_000)
     changed, coarsest = 0, 0.0
-    for experiment in SCENES.values():
+    scenes = {name: one for name, one in SCENES.items() if margins.full or name != "gas in cells"}
+    for experiment in scenes.values():
         early, late = (_after(experiment, collisions, start) for start in (0.0, float(LATE)))
         late.clock[BASE] -= LATE
         changed += _differing_bytes(early, late)
         coarsest = max(coarsest, np.spacing(np.abs(late.trajectory[:, -1]).max()))
-    tried = {"tried": len(SCENES) * collisions, "unit": "collisions"}
+    tried = {"tried": len(scenes) * collisions, "unit": "collisions"}
     margins.at_most("bytes of the state that differ after a start at 1e9 T", changed, 0, **tried)
     # spans are tens or hundreds of T; absolute times would be 1e-7 T apart
     margins.at_most("spacing of the particles' times at 1e9 T, in T", coarsest, 1e-11, **tried)
