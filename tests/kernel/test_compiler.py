@@ -1,5 +1,6 @@
 """What kernel/compiler.py takes of numba's private parts does what it is there for."""
 
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -62,8 +63,31 @@ def test_the_cache_has_the_parts_that_are_replaced(tmp_path, monkeypatch):
     monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path))
     cache = numba.njit(cache=True)(double)._cache
     assert all(hasattr(cache, name) for name in ("_load_overload", "load_overload", "flush"))
-    assert all(hasattr(cache, name) for name in ("save_overload", "cache_path"))
+    assert all(hasattr(cache, name) for name in ("save_overload", "cache_path", "_cache_path"))
+    assert hasattr(cache._impl, "filename_base")
     assert all(hasattr(cache._cache_file, name) for name in ("_dump", "_load_data", "_data_path"))
+
+
+COPY = """from roughgas.kernel.jit import entry
+@entry(cache=True)
+def double(x):
+    return 2.0 * x
+print(double(1.0), sum(double.dispatcher.stats.cache_hits.values()))
+"""
+
+
+def test_copies_of_a_source_share_what_is_compiled(tmp_path):
+    """Numba alone would compile each copy, for its path and for its time."""
+    environment = {"PYTHONPATH": str(PACKAGE.parent), "ROUGHGAS_CACHE_DIR": str(tmp_path / "cache")}
+    said = []
+    for folder in ("one", "two"):
+        (tmp_path / folder).mkdir()
+        copy = tmp_path / folder / "copied.py"
+        copy.write_text(COPY)
+        run = [sys.executable, str(copy)]
+        os.utime(copy, (len(said), len(said)))
+        said.append(subprocess.run(run, env=environment, capture_output=True, text=True).stdout)
+    assert [one.split() for one in said] == [["2.0", "0"], ["2.0", "1"]]
 
 
 def test_reading_settings_takes_no_compiler(tmp_path):

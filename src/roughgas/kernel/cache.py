@@ -53,12 +53,17 @@ def kernel_folder():
 def folder_of(file):
     """Return the folder for the compiled functions of `file`, as `kernel_folder` does.
 
-    Other rooms call the kernel's functions, and have folders of their own in the kernel's.
+    Other rooms, and files outside the package, call the kernel's functions: they have folders in
+    the kernel's, named by a hash of their own sources.
     """
-    room = Path(file).resolve().parent
-    if PACKAGE not in room.parents or room.name in ROOMS:
-        return kernel_folder()
-    return kernel_folder() / f"{room.name}-{source_hash(room)}"
+    file = Path(file).resolve()
+    if PACKAGE not in file.parents:
+        own = hashlib.sha256(file.read_bytes()).hexdigest()[:16]
+    elif file.parent.name in ROOMS:
+        return kernel_folder() / file.stem
+    else:
+        own = source_hash(file.parent)
+    return kernel_folder() / f"{file.stem}-{own}"
 
 
 def cache_root():

@@ -7,8 +7,9 @@ tests/kernel/test_compiler.py:
 - `no_cpython_wrapper`, `no_cfunc_wrapper`, `forceinline`: documented for `overload` only. Unpacking
   a state for a call from Python takes more code, and time to compile it, than most functions do;
 - `_numba_type_`: how a value tells its type;
-- `_cache` and its methods, `rtsys`: to load a kernel without setting up the compiler, to seal files
-  with a checksum, to have one writer at a time.
+- `_cache` and its parts, `IndexDataCacheFile`, `rtsys`: to load a kernel without setting up the
+  compiler, to share it among copies of the project, to seal files with a checksum, to have one
+  writer at a time.
 """
 
 import fcntl
@@ -21,6 +22,7 @@ from pathlib import Path
 import numba
 from llvmlite import ir
 from numba import types
+from numba.core.caching import IndexDataCacheFile
 from numba.core.runtime import rtsys
 from numba.extending import intrinsic, overload
 
@@ -42,9 +44,11 @@ def dispatcher(function, cache=False, inner=False, inline=False):
     if inline:
         options = options | {"forceinline": True}
     if cache:
-        numba.config.CACHE_DIR = str(folder_of(function.__code__.co_filename))
+        folder = str(folder_of(function.__code__.co_filename))
+        numba.config.CACHE_DIR = folder
     made = numba.njit(error_model="numpy", _nrt=False, cache=cache, **options)(function)
     if cache:
+        _share_among_copies(made._cache, folder)
         _load_without_compiler(made._cache)
         _let_one_write_at_a_time(made._cache)
     return made
@@ -55,6 +59,16 @@ def register(overloads):
     while overloads:
         function, chooser = overloads.pop(0)
         overload(function, strict=False, jit_options={"no_cfunc_wrapper": True})(chooser)
+
+
+def _share_among_copies(cache, folder):
+    """Keep compiled code in `folder`, wherever the source is, and whenever it was written.
+
+    Numba takes the path and the time of the source for its content, of which our folders have the
+    hash: every copy of the project would compile anew.
+    """
+    cache._cache_path = folder
+    cache._cache_file = IndexDataCacheFile(folder, cache._impl.filename_base, source_stamp=None)
 
 
 def _load_without_compiler(cache):
