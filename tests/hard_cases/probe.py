@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from roughgas.effects import Effects
+from roughgas.effects.settings import register
 from roughgas.kernel import hooks
 from roughgas.kernel.flight import arrive
 from roughgas.kernel.images import image_numbers, shifted, slid
@@ -47,6 +48,9 @@ def restitution(probe, index, r, state, i, j, time, speed):
     return r
 
 
+register(Probe, {}, restitution=restitution)
+
+
 def gaps_at_contacts(experiment, r, beta, collisions, seed=1):
     """(smallest, largest) gap over so many collisions, each in a."""
     plain = build(experiment, r, beta)
@@ -55,4 +59,5 @@ def gaps_at_contacts(experiment, r, beta, collisions, seed=1):
     state = initial_state(scene, experiment, np.random.default_rng(seed))
     row = np.empty((1, len(columns(len(scene.box), scene.effects.spin is not None))))
     assert _record(state, scene, Sampling(np.inf, collisions, 0), row) == 1
+    assert probe.gaps.any()  # else it has not looked
     return probe.gaps
