@@ -117,8 +117,17 @@ def test_a_study_that_compiles_code_has_a_folder_for_its_own_sources(tmp_path, m
         folders.append(cache.folder_of(study / "collisions.py"))
     assert len(set(folders)) == 3
     assert {folder.parent for folder in folders} == {cache.kernel_folder()}
-    for file in (copy / "kernel" / "record.py", tmp_path / "program.py"):
-        assert cache.folder_of(file) == cache.kernel_folder()
+    assert cache.folder_of(copy / "kernel" / "record.py") == cache.kernel_folder() / "record"
+
+
+def test_a_program_that_compiles_code_has_a_folder_for_its_own_source(tmp_path, monkeypatch):
+    monkeypatch.setenv("ROUGHGAS_CACHE_DIR", str(tmp_path / "kept"))
+    program, folders = tmp_path / "program.py", set()
+    for text in ("one", "another"):
+        program.write_text(text)
+        folders.add(cache.folder_of(program))
+    assert len(folders) == 2
+    assert {folder.parent for folder in folders} == {cache.kernel_folder()}
 
 
 def test_every_compiled_function_lies_in_a_hashed_room():
