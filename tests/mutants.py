@@ -2,7 +2,8 @@
 
 mutants.json has the faults: a text in the source, what it is changed to, and the room that it is
 in. Each is made in a copy of the project, and the tests of that room run there until one fails. A
-line is printed for each, and the exit status is 1 if a fault passes that is not known to.
+line is printed for each, and the exit status is 1 if a fault passes that is not known to. `before`
+and `after` in the file are what failed, where it was tried, before and after the rooms were moved.
 """
 
 import argparse
