@@ -41,7 +41,7 @@ extras: .venv/with-browser .venv-slurm/ready ## run what takes minutes more, a b
 	$(BIN)/python -m pytest -n $(JOBS) --dist loadfile -m "$(EXTRA_TESTS)"
 
 docs: .venv/with-docs ## run the tutorial, and build the documentation: docs/_build/html/index.html
-	$(BIN)/python -m sphinx --fail-on-warning --keep-going -q docs docs/_build/html
+	$(BIN)/python -m sphinx --fresh-env --fail-on-warning --keep-going -q docs docs/_build/html
 
 bench: setup ## measure the speed: docs/benchmarks.md
 	$(BIN)/python -m benchmarks

@@ -34,7 +34,7 @@ COMMON_ATTRIBUTES = {
 }
 UDUNITS = ("1", "s", "1/s")
 QUALITIES = ("stderr", "dof", "ci95", "ci95_trusted")
-"""Variables <name>_stderr, ... say how sure <name> is: they are its ancillary variables."""
+"""Suffixes of the ancillary variables of <name>, which say how sure it is (<name>_stderr, ...)."""
 
 
 class Content(NamedTuple):

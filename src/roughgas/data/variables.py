@@ -18,9 +18,9 @@ ENERGY = "m a^2 T^-2"
 START = "initial E_trans"
 COOLING_UNITS = {TIME: "collisions per particle", ENERGY: START}
 CLOCKS = ("time", "collisions_per_particle")
-"""What series run along: coordinates, though their dimension has another name."""
+"""Coordinates that series run along, though their dimension has another name."""
 GRID = "grid"
-"""Stands for the dimensions of a reduced dataset: r, beta, and what is swept besides."""
+"""Stands for the dimensions of a reduced dataset, which are r, beta and whatever else is swept."""
 
 SPIN, COOLING, DRIVEN = "where particles spin", "cooling gas", "driven gas"
 SHEARED, TARGET = "sheared gas", "with a `target_stderr`"
