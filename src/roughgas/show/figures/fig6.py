@@ -7,7 +7,7 @@ are those from the sawtooth, not from theory.
 import xarray as xr
 from matplotlib.figure import Figure
 
-from roughgas.show.figures.panel import RESTITUTION, PanelContent, ratio_figure, series
+from roughgas.show.figures.panel import TWO_WIDE, WIDTH, PanelContent, ratio_figure, series
 from roughgas.show.style import LOOKS
 
 LABELS = {
@@ -19,13 +19,20 @@ LABELS = {
 
 
 def draw(waves: xr.Dataset) -> Figure:
-    """Draw the figure from the reduced dataset of a bed shaken in several ways."""
+    """Draw the figure from the reduced dataset of a bed shaken in several ways: a panel for each
+    r, from nearly elastic downwards."""
+    restitutions = sorted(waves.r.values, reverse=True)
+    parts = [_content(waves, r) for r in restitutions]
+    figure = ratio_figure(*parts, width=TWO_WIDE if len(parts) > 1 else WIDTH)
+    figure.axes[len(parts)].set_ylabel(r"$R - R_\mathrm{sawtooth}$")
+    return figure
+
+
+def _content(waves: xr.Dataset, r: float) -> PanelContent:
+    """Return one panel; its residuals are those from the sawtooth at the same r."""
     drawn = [
-        series(waves, label, look, r=RESTITUTION, wave=wave)
+        series(waves, label, look, r=r, wave=wave)
         for (wave, label), look in zip(LABELS.items(), LOOKS, strict=False)
     ]
     beside = [one._replace(theory=drawn[0].data.R.values) for one in drawn]
-    title = f"Vibrated bed, $r = {RESTITUTION:g}$"
-    figure = ratio_figure(PanelContent(title, [waves], beside, theory="theory, Eq. (lun)"))
-    figure.axes[1].set_ylabel(r"$R - R_\mathrm{sawtooth}$")
-    return figure
+    return PanelContent(f"Vibrated bed, $r = {r:g}$", [waves], beside, theory="theory, Eq. (lun)")
