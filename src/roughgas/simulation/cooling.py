@@ -19,7 +19,9 @@ from roughgas.theory import friction_relaxation_rate, relaxation_rate
 # see roughgas.simulation.schedule.Kind
 DRIVEN, UNIT, LENGTH = False, "collisions per particle", "plateau"
 SAMPLES_PER_REFRESH = 4
-TRANSIENT = 10.0, 1000.0  # collisions per particle: theory's estimate is kept between these
+# Collisions per particle that theory's estimate of the transient is kept between. At r <= 0.9 none
+# is longer; nearly elastic disks or spheres can need a hundred times as many, close to beta = -1.
+TRANSIENT = 10.0, 2500.0
 
 
 class Cooled(NamedTuple):
