@@ -19,6 +19,8 @@ independent, so no autocorrelation along s, the collisions per particle, is need
    (the last third must differ from the first by less than a quarter of R, at 2 sigma) and those
    that R exceeds elsewhere, by 5 % and 3.5 sigma in a tenth of what is before or after: a pause on
    the way up, or a later plateau where flow dominates.
+5. Where replicas rest at two different R (`bimodal`), their mean is no state of the gas: the window
+   is reported, but does not count as a plateau.
 
 On synthetic ensembles (relaxation in 4 to 60 collisions per particle, 10 to 60 replicas, series of
 50 to 800 samples, with and without a departure) the bias is below 0.7 of the standard error, and
@@ -31,6 +33,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from roughgas.statistics.bimodal import is_bimodal
 from roughgas.statistics.errors import gaussian_sigmas, student_t
 
 BLOCKS = 60
@@ -72,8 +75,8 @@ def find_plateau(
     It begins at `minimum_start` at the earliest: pass a few relaxation times of theory. `mean` is
     over replicas, of their means in the window, `per_replica` of shape (replicas,), and `stderr`
     comes from their spread. `found` is False if there is no plateau; the last third of the samples
-    is reported then, even if it begins before `minimum_start`. Raises ValueError for fewer than two
-    replicas.
+    is reported then, even if it begins before `minimum_start`. It is False, too, for a plateau of a
+    mixture of replicas. Raises ValueError for fewer than two replicas.
     """
     s, R = np.asarray(collisions_per_particle, dtype=float), np.asarray(R, dtype=float)
     if R.ndim != 2 or len(R) < 2 or R.shape[1] != len(s):
@@ -82,7 +85,7 @@ def find_plateau(
     start, stop = window or (len(s) - max(1, len(s) // 3), len(s))
     per_replica = R[:, start:stop].mean(axis=1)
     mean, stderr = (float(value) for value in _mean_and_stderr(per_replica))
-    found = window is not None
+    found = window is not None and not is_bimodal(per_replica)
     return Plateau(float(s[start]), float(s[stop - 1]), mean, stderr, per_replica, found)
 
 
