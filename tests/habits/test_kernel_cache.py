@@ -59,6 +59,7 @@ def test_damaged_kernels_are_compiled_again(program):
     folder = program.parent / "kernels"
     keep = {"ROUGHGAS_CACHE_DIR": str(folder)}
     assert run(program, **keep) == ("compiled", "")
+    assert not [path for path in folder.rglob("*") if path.is_dir() and not any(path.iterdir())]
     whole = program.parent / "whole"
     shutil.copytree(folder, whole)
     for name, (pattern, damage) in DAMAGES.items():

@@ -7,7 +7,7 @@ tests/kernel/test_compiler.py:
 - `no_cpython_wrapper`, `no_cfunc_wrapper`, `forceinline`: documented for `overload` only. Unpacking
   a state for a call from Python takes more code, and time to compile it, than most functions do;
 - `_numba_type_`: how a value tells its type;
-- `_cache` and its parts, `IndexDataCacheFile`, `rtsys`: to load a kernel without setting up the
+- `_cache`, the classes of numba.core.caching, `rtsys`: to load a kernel without setting up the
   compiler, to share it among copies of the project, to seal files with a checksum, to have one
   writer at a time.
 """
@@ -22,7 +22,12 @@ from pathlib import Path
 import numba
 from llvmlite import ir
 from numba import types
-from numba.core.caching import IndexDataCacheFile
+from numba.core.caching import (
+    CompileResultCacheImpl,
+    FunctionCache,
+    IndexDataCacheFile,
+    _CacheLocator,
+)
 from numba.core.runtime import rtsys
 from numba.extending import intrinsic, overload
 
@@ -43,14 +48,9 @@ def dispatcher(function, cache=False, inner=False, inline=False):
     options = INNER if inner else {}
     if inline:
         options = options | {"forceinline": True}
+    made = numba.njit(error_model="numpy", _nrt=False, **options)(function)
     if cache:
-        folder = str(folder_of(function.__code__.co_filename))
-        numba.config.CACHE_DIR = folder
-    made = numba.njit(error_model="numpy", _nrt=False, cache=cache, **options)(function)
-    if cache:
-        _share_among_copies(made._cache, folder)
-        _load_without_compiler(made._cache)
-        _let_one_write_at_a_time(made._cache)
+        made._cache = Kept(function)
     return made
 
 
@@ -61,80 +61,93 @@ def register(overloads):
         overload(function, strict=False, jit_options={"no_cfunc_wrapper": True})(chooser)
 
 
-def _share_among_copies(cache, folder):
-    """Keep compiled code in `folder`, wherever the source is, and whenever it was written.
+class Folder(_CacheLocator):
+    """Where the compiled code of a function is kept, wherever its source is.
 
-    Numba takes the path and the time of the source for its content, of which our folders have the
-    hash: every copy of the project would compile anew.
+    Numba takes the path and the content of the source for its content, of which our folders have
+    the hash: every copy of the project would compile anew.
     """
-    cache._cache_path = folder
-    cache._cache_file = IndexDataCacheFile(folder, cache._impl.filename_base, source_stamp=None)
+
+    def __init__(self, function):
+        self._py_file = function.__code__.co_filename  # which numba names in warnings
+        self.line, self.path = function.__code__.co_firstlineno, str(folder_of(self._py_file))
+
+    @classmethod
+    def from_function(cls, function, file):
+        return cls(function)
+
+    def get_cache_path(self):
+        return self.path
+
+    def get_source_stamp(self):
+        return None
+
+    def get_disambiguator(self):
+        return str(self.line)
 
 
-def _load_without_compiler(cache):
-    """Have compiled code loaded from the disk without setting up the compiler before.
-
-    Numba first imports and registers all that it can compile, which takes three times as long as
-    loading. Where nothing is found in the cache, or nothing whole, compiling begins with that
-    anyway.
-    """
-    _seal_files(cache._cache_file)
-
-    def load(signature, target):
-        rtsys.initialize(target)  # which the loaded code takes its arguments apart with
-        try:
-            return cache._load_overload(signature, target)
-        except Exception:  # a damaged pickle may raise whatever it likes
-            with suppress(OSError):
-                cache.flush()
-            return None
-
-    cache.load_overload = load
+class InFolder(CompileResultCacheImpl):
+    _locator_classes = (Folder,)
 
 
-def _seal_files(files):
-    """Have numba's files end with a checksum, and those without a right one taken for missing.
+class Sealed(IndexDataCacheFile):
+    """Numba's files with a checksum at their end; those without a right one count as missing.
 
     Machine code with a hole in it, as a power cut leaves it, would crash every process to come.
     """
-    dump = files._dump
 
-    def dump_sealed(content):
-        text = dump(content)  # a pickle, which does not mind what comes after it
+    def _dump(self, content):
+        text = super()._dump(content)  # a pickle, which does not mind what comes after it
         return text + hashlib.sha256(text).digest()
 
-    def load_sealed(name):
-        content = Path(files._data_path(name)).read_bytes()
+    def _load_data(self, name):
+        content = Path(self._data_path(name)).read_bytes()
         text, seal = content[:-32], content[-32:]
         if hashlib.sha256(text).digest() != seal:
             raise OSError("damaged")
         return pickle.loads(text)
 
-    files._dump, files._load_data = dump_sealed, load_sealed
 
+class Kept(FunctionCache):
+    """The compiled code of a function on the disk."""
 
-def _let_one_write_at_a_time(cache):
-    """Keep processes that compile at the same time from spoiling numba's index for each other.
+    _impl_class = InFolder
 
-    Numba reads its index, picks a free file number and writes both: two writers could pick the same
-    number, and one of them would later load the other's code. Where nothing can be written (a full
-    disk) the process goes on with what it has compiled, and says so.
-    """
-    save = cache.save_overload
+    def __init__(self, function):
+        super().__init__(function)
+        self._cache_file = Sealed(self.cache_path, self._impl.filename_base, source_stamp=None)
 
-    def save_alone(signature, compiled):
-        folder = Path(cache.cache_path)
+    def load_overload(self, signature, target):
+        """Load compiled code without setting up the compiler before.
+
+        Numba first imports and registers all that it can compile, which takes three times as long
+        as loading. Where nothing is found, or nothing whole, compiling begins with that anyway.
+        """
+        rtsys.initialize(target)  # which the loaded code takes its arguments apart with
+        try:
+            return self._load_overload(signature, target)
+        except Exception:  # a damaged pickle may raise whatever it likes
+            with suppress(OSError):
+                self.flush()
+            return None
+
+    def save_overload(self, signature, compiled):
+        """Save compiled code while no other process does.
+
+        Numba reads its index, picks a free file number and writes both: two writers could pick the
+        same number, and one of them would later load the other's code. Where nothing can be written
+        (a full disk) the process goes on with what it has compiled, and says so.
+        """
+        folder = Path(self.cache_path)
         try:
             folder.mkdir(parents=True, exist_ok=True)
             with (folder / "lock").open("w") as lock:
                 with suppress(OSError):  # some network disks have no locks
                     fcntl.flock(lock, fcntl.LOCK_EX)
-                save(signature, compiled)
+                super().save_overload(signature, compiled)
         except OSError as error:
             said = f"roughgas: warning: {folder}: {error.strerror}: the kernel is not kept"
             print(said, file=sys.stderr)
-
-    cache.save_overload = save_alone
 
 
 @intrinsic
