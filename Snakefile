@@ -31,11 +31,12 @@ wildcard_constraints:
     beta="[^/]+",
     seed="[^/]+",
     folder="([^/]+/)?",
-    figure=r"(?!clustering\.|hard_cases|accuracy\.|coverage\.)[^/]+",  # these have their own rules
+    # these have their own rules
+    figure=rf"(?!clustering\.|hard_cases|(?:{STUDY_FIGURE})\.)[^/]+",
     movie="[^/]+",
     study="[^/]+",
     task="[^/]+",
-    study_figure="accuracy|coverage",
+    study_figure=STUDY_FIGURE,
     family="[^/]+",
 
 
@@ -45,7 +46,7 @@ include: "rules/simulate.smk"
 include: "rules/planning.smk"
 include: "rules/reduce.smk"
 include: "rules/products.smk"
-include: "rules/accuracy.smk"
+include: "rules/studies.smk"
 include: "rules/showcase.smk"
 include: "rules/movies.smk"
 include: "rules/hard_cases.smk"

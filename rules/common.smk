@@ -11,6 +11,7 @@ try:
     from roughgas.base import sources
     from roughgas.base.errors import InputError, not_one_of
     from roughgas.show import catalogue
+    from roughgas.studies.figures import FIGURES
 except ModuleNotFoundError as error:
     sys.exit(f"roughgas: error: no module {error.name}: `make setup`, then .venv/bin/snakemake")
 
@@ -22,7 +23,8 @@ SEEDS = "results/{scale}/{experiment}/r{r}/beta{beta}/seeds"  # as many as a tar
 REDUCED = "results/{scale}/{experiment}.nc"
 # An experiment as a whole, or one of its variants: as wildcards, not what has rules of its own, nor
 # the folders of points.
-EXPERIMENT = r"(?!(?:accuracy|coverage)\.|(?:accuracy|showcase|hard_cases)/)[^/]+"
+STUDY_FIGURE = "|".join(FIGURES)
+EXPERIMENT = rf"(?!(?:{STUDY_FIGURE})\.|(?:studies|showcase|hard_cases)/)[^/]+"
 VARIANT = r"(?:/(?!(?:r|beta|seed)[-+.\d])[^/]+)?"
 # rules call the `roughgas` beside this snakemake, wherever it was started from
 os.environ["PATH"] = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"

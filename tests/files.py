@@ -3,14 +3,14 @@
 import numpy as np
 import xarray as xr
 
+from roughgas import studies
 from roughgas.config import as_text
 from roughgas.data.film import write_film
 from roughgas.data.point import Point, write_point
 from roughgas.data.variables import FILM
 from roughgas.results.reduce import reduce_points
-from roughgas.studies import accuracy
-from roughgas.studies.accuracy.files import combine, write_task
-from roughgas.studies.accuracy.runs.coverage import MEASURED
+from roughgas.studies.files import combine, write_task
+from roughgas.studies.runs.coverage import MEASURED
 
 ABOUT = {
     "experiment": "vibrated",
@@ -85,7 +85,7 @@ def write_studies(path, folder):
     """A study of coverage whose repetitions are random numbers."""
     corners = [{"experiment": "gas", "r": "0.9", "beta": "0"}]
     settings = {"seed": 1, "repetitions": 8, "pooled": 2, "corners": corners}
-    study = accuracy.study("coverage")
+    study = studies.study("coverage")
     rng = np.random.default_rng(3)
     parts = [
         {prefix + name: (dim, rng.random(count)) for name in MEASURED}

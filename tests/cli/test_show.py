@@ -14,8 +14,8 @@ from roughgas.config.reading import read_yaml
 from roughgas.data.point import read_point
 from roughgas.data.reduced import read_reduced
 from roughgas.statistics.estimate import Estimate
-from roughgas.studies.accuracy.files import write_task
-from roughgas.studies.accuracy.tables import TABLES
+from roughgas.studies.files import write_task
+from roughgas.studies.tables import TABLES
 
 
 def shown(capsys, *arguments):

@@ -172,7 +172,7 @@ MISTAKES = [
         {"plateau": 10},
         "scales.fine.cooling.schedule.plateau = 10: must not stand beside target_stderr",
     ),
-    ("experiments.accuracy", {}, "key of experiments = accuracy: must be another name"),
+    ("experiments.studies", {}, "key of experiments = studies: must be another name"),
     ("experiments.cooling.particles", 0, "particles = 0: must be a whole number >= 1"),
     ("experiments.cooling.particles", "many", "particles = 'many': must be a whole number >= 1"),
     ("experiments.cooling.particles", 1.5, "particles = 1.5: must be a whole number >= 1"),
@@ -231,7 +231,7 @@ MISTAKES = [
     (
         "scales.small.foo",
         {},
-        "key of scales.small = 'foo': must be one of accuracy, cooling, cooling_fric",
+        "key of scales.small = 'foo': must be one of cooling, cooling_friction, cooling_i",
     ),
     ("scales.small.showcase.frames", 0, "scales.small.showcase.frames = 0: must be a whole number"),
     ("showcase.beta", "2", "showcase.beta = '2': must lie in [-1, 1]"),
@@ -249,7 +249,7 @@ MISTAKES = [
     (
         "n_particles",
         5,
-        "config.yaml: key = 'n_particles': must be one of accuracy, betas_per_job, experiments",
+        "config.yaml: key = 'n_particles': must be one of betas_per_job, experiments",
     ),
 ]
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from roughgas.base.layout import markdown
 from roughgas.data.variables import COOLING, FILM, GRID, POINT, REDUCED, REGISTRY, SPIN
-from roughgas.studies.accuracy import STUDIES, variables
+from roughgas.studies import STUDIES, variables
 
 assert variables, "which registers those of the studies"
 

@@ -18,7 +18,7 @@ from roughgas.data.netcdf import COMMON_ATTRIBUTES, read_netcdf, unit_attributes
 from roughgas.data.point import read_point, write_point
 from roughgas.data.reduced import read_reduced
 from roughgas.results.reduce import reduce_points
-from roughgas.studies.accuracy.files import combine
+from roughgas.studies.files import combine
 
 KINDS = ("point", "reduced", "film", "studies")
 GROUP = {"studies": "coverage"}

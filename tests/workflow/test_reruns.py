@@ -37,7 +37,7 @@ EDITED = {  # file of the package: what an edit of its code runs again
     "show/figures/fig1a.py": {"fig1a"},
     "show/page/page.js": {"page"},
     "show/movies/drawing.py": {"movie"},
-    "studies/accuracy/tables.py": {"study_table", "document", "coverage"},
+    "studies/tables.py": {"study_table", "document", "coverage"},
     "studies/dsmc/gas.py": ACCURACY | {"models"},
     "cli/run.py": POINTS | FAMILIES,
 }
@@ -47,7 +47,7 @@ ALIKE = {  # files after whose edits much the same runs again as after others'
     "simulation/clustering.py",
     "theory/prediction.py",
     "show/page/page.js",
-    "studies/accuracy/tables.py",
+    "studies/tables.py",
 }
 UNUSED = ("cli/steps.py", "doctor.py", "library.py", "show/catalogue.py")
 
@@ -77,7 +77,7 @@ def rerun(made, edit):
             path.write_bytes(content)
     if "Nothing to be done" in output:
         return set()
-    named = re.findall(r"Job \d+: (?:draw tiny/|accuracy, )(\w+)", output)
+    named = re.findall(r"Job \d+: (?:draw tiny/|study )(\w+)", output)
     targets = {"figure", "study_figure", "study", *FINISHED}
     return {*jobs_by_rule(output), *named} - targets
 

@@ -4,7 +4,7 @@ import pytest
 from project import BEYOND, JOBS, POINTS, Project
 
 import roughgas.config
-from roughgas.studies import accuracy
+from roughgas import studies
 
 LEGAL = [
     "results/paper/cooling/r0.87/beta-0.33/seed7.nc",
@@ -151,8 +151,8 @@ def test_the_hard_cases_are_those_of_the_catalogue(project):
 def test_a_study_is_a_job_for_each_of_its_tasks(project):
     config = roughgas.config.load(project.folder / "config.yaml")
     tasks = {
-        name: len(accuracy.study(name).tasks(roughgas.config.study(config, name, "tiny")["study"]))
-        for name in accuracy.STUDIES
+        name: len(studies.study(name).tasks(roughgas.config.study(config, name, "tiny")["study"]))
+        for name in studies.STUDIES
     }
     drawn = {"study_figure": 1, "study_table": 1, "document": 1}
     expected = {"study": tasks.pop("coverage"), "combined_studies": 1, "coverage": 1}
@@ -178,7 +178,7 @@ def test_an_illegal_target_is_refused_in_one_line(project, target, message):
         ("seeds_per_job=0", "seeds_per_job = 0: must be a whole number >= 1"),
         (
             "n_particles=5",
-            "key = 'n_particles': must be one of accuracy, betas_per_job, experiments, scale,",
+            "key = 'n_particles': must be one of betas_per_job, experiments, scale,",
         ),
     ],
 )

@@ -109,7 +109,7 @@ def test_an_illegal_target_is_refused_in_one_line(project, target, message):
     "target",
     [
         "results/tiny/sheared/r0.9/r0.9/beta0/seed1.nc",
-        "results/tiny/accuracy/inertia1/r0.9/beta0/seed1.nc",
+        "results/tiny/studies/inertia1/r0.9/beta0/seed1.nc",
         "results/tiny/showcase/inertia1/r0.9/beta0/seed1.nc",
         "results/tiny/hard_cases/inertia1/r0.9/beta0/seed1.nc",
         f"{SPUN}/inertia1.nc",

@@ -58,7 +58,7 @@ COMMANDS = {
         ),
         about="Print what a dataset holds: what was simulated, R with its error, theory, "
         "energies, cost, and how to make it again. It may be a point, a reduced dataset, a film, "
-        "a study of accuracy or one task of it, or a pilot.json. 0.3565(30) is 0.3565 with a "
+        "a dataset of studies or a task of one, or a pilot.json. 0.3565(30) is 0.3565 with a "
         "standard error of 0.0030.",
     ),
     "theory": Command(

@@ -59,20 +59,20 @@ def summary(path: str | Path) -> str:
 def _read(path: str | Path) -> tuple[str, Any]:
     """Return the kind of a file, one of KINDS, and what is in it."""
     from roughgas.planning.pilot import read_pilot
-    from roughgas.studies.accuracy.variables import read_studies
+    from roughgas.studies.variables import read_studies
 
     if Path(path).suffix == ".json":
         return "pilot of a point", read_pilot(path)
     try:
         if studies := read_studies(path):
-            return "studies of accuracy", studies
+            return "studies", studies
         data = read_netcdf(path)
     except FileNotFoundError:
         raise
     except OSError as error:
         raise InputError("file", path, LEGAL) from error
     if {"study", "task"} <= set(data.attrs):
-        return "task of a study of accuracy", data
+        return "task of a study", data
     if "disk_spin" in data:
         return "film of a cooling gas", data
     if "n_seeds" in data and "E_trans" in data:
@@ -270,7 +270,7 @@ def _studies_record(studies: Mapping[str, Dataset]) -> dict[str, Any]:
 
 
 def _studies_text(studies: Mapping[str, Dataset]) -> str:
-    from roughgas.studies.accuracy.tables import TABLES
+    from roughgas.studies.tables import TABLES
 
     scales = {data.attrs["scale"] for data in studies.values()}
     parts = [TABLES[name](data).strip() for name, data in studies.items()]
@@ -293,8 +293,8 @@ KINDS = {
         lambda film: {"frames": film.sizes["frame"], "variables": _scalars(film)},
     ),
     "reduced dataset": (_reduced_text, _reduced_record),
-    "task of a study of accuracy": (_task_text, _task_record),
-    "studies of accuracy": (_studies_text, _studies_record),
+    "task of a study": (_task_text, _task_record),
+    "studies": (_studies_text, _studies_record),
     "pilot of a point": (_pilot_text, lambda pilot: {"variables": pilot._asdict()}),
 }
 """The kinds of files: what a person reads of each, and what a script reads."""

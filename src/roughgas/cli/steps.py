@@ -121,7 +121,7 @@ STEPS = {
     ),
     "study": Command(
         "cli.studies:study",
-        "run one of the independent tasks of a study of accuracy",
+        "run one of the independent tasks of a study",
         value("study STUDY", "statistical, models, ..."),
         value("task TASK", "name of the task"),
         *SETTINGS,
@@ -129,14 +129,14 @@ STEPS = {
         examples=("roughgas study statistical cooling-reference --scale small -o reference.nc",),
     ),
     "combine": Command(
-        "studies.accuracy.files:combine",
+        "studies.files:combine",
         "combine the tasks of studies into one dataset",
         value("inputs TASK", "datasets", nargs="+"),
         output("dataset"),
-        examples=("roughgas combine results/small/accuracy/*/*.nc -o accuracy.nc",),
+        examples=("roughgas combine results/small/studies/*/*.nc -o accuracy.nc",),
     ),
     "tables": Command(
-        "studies.accuracy.tables:write_tables",
+        "studies.tables:write_tables",
         "write what studies have found as tables in Markdown",
         value("input COMBINED", "combined dataset"),
         output("Markdown file"),

@@ -1,18 +1,17 @@
-"""`roughgas study` runs a task of a study of accuracy."""
+"""`roughgas study` runs a task of a study."""
 
 import json
 from argparse import Namespace
 
-from roughgas import config
+from roughgas import config, studies
 from roughgas.base.errors import InputError
 from roughgas.simulation.progress import Bar
-from roughgas.studies import accuracy
-from roughgas.studies.accuracy.files import write_task
+from roughgas.studies.files import write_task
 
 
 def study(options: Namespace) -> None:
     """Run a task."""
-    module, text = accuracy.study(options.study), options.settings
+    module, text = studies.study(options.study), options.settings
     if text is None:
         loaded = config.load(options.config)
         text = config.as_text(config.study(loaded, options.study, options.scale))

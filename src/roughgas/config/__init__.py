@@ -20,7 +20,7 @@ from roughgas.config.labels import SWEPT, level, restitution, roughness, seed  #
 # checking and YAML are imported where they are used: a job whose settings have been checked needs
 # neither
 
-SHOWCASE, ACCURACY = "showcase", "accuracy"
+SHOWCASE, STUDIES = "showcase", "studies"
 SEEDS_PER_JOB = 4
 NOT_OF_A_POINT = ("description", "sweep")
 """Settings of an experiment that do not concern any single point of it."""
@@ -98,12 +98,12 @@ def showcase(config: Mapping[str, Any], scale: str) -> dict[str, Any]:
 
 
 def studies(config: Mapping[str, Any], scale: str) -> dict[str, Any]:
-    """Return the settings of the studies of accuracy at `scale`, by name."""
-    return _at_scale(config, ACCURACY, scale)
+    """Return the settings of the studies at `scale`, by name."""
+    return _at_scale(config, STUDIES, scale)
 
 
 def study(config: Mapping[str, Any], name: str, scale: str) -> dict[str, Any]:
-    """Return the settings of a study of accuracy at `scale`, as `study`, and those of the
+    """Return the settings of a study at `scale`, as `study`, and those of the
     experiments that it may run, as `experiments`."""
     settings = studies(config, scale)
     one_of("study", name, settings)

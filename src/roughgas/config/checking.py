@@ -14,7 +14,7 @@ from roughgas.config.labels import level, restitution, roughness
 from roughgas.config.reading import read_yaml
 from roughgas.config.schema import check_schema
 
-RESERVED = (settings_of.SHOWCASE, settings_of.ACCURACY)
+RESERVED = (settings_of.SHOWCASE, settings_of.STUDIES)
 """Names that no experiment may have, since scales change these parts under them."""
 
 
@@ -38,7 +38,7 @@ def check(config: Mapping[str, Any], source: str = "config.yaml") -> None:
     for scale in config["scales"]:
         for part, whole, of in (
             (settings_of.SHOWCASE, "filmed", settings_of.showcase),
-            (settings_of.ACCURACY, "studied", settings_of.studies),
+            (settings_of.STUDIES, "studied", settings_of.studies),
         ):
             check_schema(of(config, scale), f"{source}: {part} at scale {scale}", whole)
         for name in config["experiments"]:

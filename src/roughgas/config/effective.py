@@ -28,7 +28,7 @@ def write_effective(config: Mapping[str, Any], scale: str, output: str | Path) -
         "seeds_per_job": config.get("seeds_per_job", settings.SEEDS_PER_JOB),
         "experiments": {name: settings.experiment(config, name, scale) for name in names},
         settings.SHOWCASE: settings.showcase(config, scale),
-        settings.ACCURACY: settings.studies(config, scale),
+        settings.STUDIES: settings.studies(config, scale),
         "scales": {scale: {}},
     }
     plain = json.loads(json.dumps(effective))  # without anchors

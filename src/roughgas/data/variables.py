@@ -1,7 +1,7 @@
 """The registry of all variables: what each is, over which dimensions, and in which units.
 
 Writers, the tables of docs/data.md, and `roughgas show` read it. Points, films, and reduced
-datasets are registered here, and a study of accuracy by the module that makes it.
+datasets are registered here, and those of studies by the module that makes them.
 
 Units: particle radius a = particle mass m = time unit T = 1. A freely cooling gas has no lasting
 time scale: there, times are counted in collisions per particle, energies in the initial E_trans.
@@ -188,7 +188,7 @@ FILM = {
 }
 
 REGISTRY: dict[str, Mapping[str, Variable]] = {"point": POINT, "reduced": REDUCED, "film": FILM}
-"""All variables by name, for each kind of dataset; each study of accuracy is a kind, too."""
+"""All variables by name, for each kind of dataset; each study is a kind, too."""
 
 
 def register(kind: str, variables: Mapping[str, Variable]) -> Mapping[str, Variable]:

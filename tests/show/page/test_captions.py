@@ -8,9 +8,8 @@ import pytest
 from docutils.core import publish_parts
 from jinja2 import Environment
 
-from roughgas import config
+from roughgas import config, studies
 from roughgas.show.catalogue import DOCUMENTS, FIGURES, figures_of
-from roughgas.studies import accuracy
 
 ROOT = Path(__file__).parents[3]
 CAPTIONS = ROOT / "rules" / "captions"
@@ -54,9 +53,9 @@ def test_a_figure_says_what_it_shows_and_how_it_was_made(figure, scale, loaded, 
 @pytest.mark.parametrize("figure", figures_of("accuracy"))
 def test_a_study_says_how_it_was_made(figure, loaded, monkeypatch):
     monkeypatch.chdir(ROOT)
-    studies = {name: config.study(loaded, name, "paper")["study"] for name in accuracy.STUDIES}
+    settings = {name: config.study(loaded, name, "paper")["study"] for name in studies.STUDIES}
     wildcards = SimpleNamespace(study_figure=figure, folder="")
-    text = rendered("study", wildcards=wildcards, params=SimpleNamespace(studies=studies))
+    text = rendered("study", wildcards=wildcards, params=SimpleNamespace(studies=settings))
     assert "What to notice." in text and "repetitions 600" in text
 
 

@@ -66,7 +66,7 @@ def test_the_complete_configuration_says_the_same_and_can_be_run(scale, tmp_path
     for name in given["experiments"]:
         assert config.experiment(found, name, scale) == config.experiment(given, name, scale)
     assert config.showcase(found, scale) == config.showcase(given, scale)
-    for study in found["accuracy"]:
+    for study in found["studies"]:
         assert config.study(found, study, scale) == config.study(given, study, scale)
 
 

@@ -6,7 +6,7 @@ import pytest
 from roughgas import theory
 from roughgas.statistics.errors import blocking_stderr
 from roughgas.studies import dsmc
-from roughgas.studies.accuracy.runs.free_cooling import FreeCooling, event_driven
+from roughgas.studies.runs.free_cooling import FreeCooling, event_driven
 
 from .nanbu import ratios
 

@@ -1,6 +1,7 @@
 """The figures of the studies, each drawn from one combined dataset."""
 
 from collections.abc import Iterable
+from importlib import import_module
 from pathlib import Path
 
 FIGURES = ("accuracy", "coverage")
@@ -12,7 +13,6 @@ def draw(name: str, data: str | Path, outputs: Iterable[str | Path]) -> None:
     Raises InputError for other files than .pdf and .png.
     """
     from roughgas.show import style
-    from roughgas.studies.figures import accuracy, coverage
 
-    drawn = {"accuracy": accuracy.draw, "coverage": coverage.draw}[name]
-    style.draw(lambda: drawn(data), outputs)
+    module = import_module(f"roughgas.studies.figures.{name}")
+    style.draw(lambda: module.draw(data), outputs)

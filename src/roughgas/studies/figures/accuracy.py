@@ -11,7 +11,7 @@ from matplotlib.ticker import FuncFormatter, MultipleLocator
 
 from roughgas.show.style import FAINT, GREY, LOOKS, THEORY, Look
 from roughgas.statistics.fits import power_law
-from roughgas.studies.accuracy.variables import read_studies
+from roughgas.studies.variables import read_studies
 
 SIZE = (10.2, 8.6)  # inches
 WAYS = {"length": "-", "seeds": "--"}

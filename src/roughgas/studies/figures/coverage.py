@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from roughgas.data.netcdf import read_netcdf
 from roughgas.show.style import FAINT, GREY, LOOKS
-from roughgas.studies.accuracy.tables import along, in_order, label
+from roughgas.studies.tables import along, in_order, label
 
 LEGAL = (0.92, 0.98)
 """What share of the 95 % intervals has to hold the truth."""

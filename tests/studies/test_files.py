@@ -4,22 +4,21 @@ import json
 
 import pytest
 import xarray as xr
-from tests.studies.accuracy.test_coverage import EXPERIMENTS, SETTINGS
+from tests.studies.test_coverage import EXPERIMENTS, SETTINGS
 
-from roughgas import config
+from roughgas import config, studies
 from roughgas.base.errors import InputError
 from roughgas.cli import main
-from roughgas.studies import accuracy
-from roughgas.studies.accuracy.files import combine
-from roughgas.studies.accuracy.tables import write_tables
-from roughgas.studies.accuracy.variables import read_studies
+from roughgas.studies.files import combine
+from roughgas.studies.tables import write_tables
+from roughgas.studies.variables import read_studies
 
 
 @pytest.fixture(scope="module")
 def tasks(tmp_path_factory):
     """The files of a study's tasks, made by the command."""
     folder, text = tmp_path_factory.mktemp("tasks"), settings()
-    names = accuracy.study("coverage").tasks(SETTINGS)
+    names = studies.study("coverage").tasks(SETTINGS)
     for name in names:
         command = ["study", "coverage", name, "--settings", text, "-o", str(folder / f"{name}.nc")]
         assert main(command) == 0

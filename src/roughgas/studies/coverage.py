@@ -15,8 +15,8 @@ import xarray as xr
 
 from roughgas.statistics.estimate import Estimate
 from roughgas.statistics.intervals import half_width, pooled
-from roughgas.studies.accuracy.tasks import corner_name
-from roughgas.studies.accuracy.variables import dataset, stacked
+from roughgas.studies.tasks import corner_name
+from roughgas.studies.variables import dataset, stacked
 
 LEVELS = (0.68, 0.95)
 WAYS = ("one run", "pooled seeds")

@@ -17,7 +17,7 @@ from roughgas.scene import build, initial_state
 from roughgas.simulation.energies import Energies, ratio
 from roughgas.simulation.gas import Gas
 from roughgas.statistics.errors import blocking_stderr, stderr_over_seeds
-from roughgas.studies.accuracy.runs import stream, timed
+from roughgas.studies.runs import stream, timed
 from roughgas.studies.soft_spheres import new_gas, springs
 from roughgas.studies.soft_spheres.gas import CONTACTS
 from roughgas.studies.soft_spheres.stepping import COLUMNS, step

@@ -16,7 +16,7 @@ import yaml
 from roughgas.data.netcdf import read_netcdf
 from roughgas.data.variables import Variable, described, register
 from roughgas.statistics.estimate import Estimate
-from roughgas.studies.accuracy.tasks import STUDIES
+from roughgas.studies.tasks import STUDIES
 
 WORD, COUNT = "word", "count"
 

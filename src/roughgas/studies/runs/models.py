@@ -7,8 +7,8 @@ from functools import partial
 import numpy as np
 import xarray as xr
 
-from roughgas.studies.accuracy.runs import stream, timed
-from roughgas.studies.accuracy.runs.free_cooling import (
+from roughgas.studies.runs import stream, timed
+from roughgas.studies.runs.free_cooling import (
     FreeCooling,
     corrected_ratio,
     event_driven,
@@ -25,7 +25,7 @@ WARM = 2.0  # collisions per particle that are simulated beforehand, to have the
 
 
 def run(task: str, settings, experiments, progress: Callable[[int, int], None]) -> xr.Dataset:
-    """Return what one task finds, as roughgas.studies.accuracy.models combines it."""
+    """Return what one task finds, as roughgas.studies.models combines it."""
     kind, _, place = task.partition("-")
     cooling = FreeCooling(experiments["cooling"], float(settings["r"]), float(settings["beta"]))
     jobs = {"map": _map, "density": _density, "reference": _reference, "theory": _theory}

@@ -10,8 +10,8 @@ from matplotlib.figure import Figure
 from tests.data.schema_page import check_study
 
 from roughgas.statistics.fits import PowerLaw
-from roughgas.studies.accuracy import discretisation, study
-from roughgas.studies.accuracy.discretisation import slowdown, statistical_error
+from roughgas.studies import discretisation, study
+from roughgas.studies.discretisation import slowdown, statistical_error
 from roughgas.studies.figures.accuracy import draw_discretisation as draw
 
 SETTINGS = {
@@ -60,7 +60,7 @@ def test_names_of_the_jobs():
 
 def test_naming_them_needs_neither_compiler_nor_xarray():
     program = (
-        "import sys; from roughgas.studies import accuracy; accuracy.study('models'); "
+        "import sys; from roughgas import studies; studies.study('models'); "
         "sys.exit(any(name in sys.modules for name in ('numba', 'xarray', 'numpy')))"
     )
     assert subprocess.run([sys.executable, "-c", program]).returncode == 0

@@ -18,7 +18,7 @@ from roughgas.simulation.energies import ratio
 from roughgas.simulation.gas import Gas
 from roughgas.statistics.errors import blocking_stderr
 from roughgas.studies import dsmc
-from roughgas.studies.accuracy.runs import timed
+from roughgas.studies.runs import timed
 from roughgas.theory.shares import positive_root, shares
 
 E_FOLDS = 10.0  # of theory's relaxation before R is measured

@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Iterable, Mapping
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -9,10 +10,7 @@ import xarray as xr
 
 from roughgas.base.errors import InputError
 from roughgas.data.netcdf import Content, content_of, read_netcdf, write_netcdf
-from roughgas.studies.accuracy import coverage, discretisation, models, statistical
-from roughgas.studies.accuracy.tasks import STUDIES, TASKS
-
-COMBINED_BY = dict(zip(STUDIES, (statistical, models, discretisation, coverage), strict=True))
+from roughgas.studies.tasks import TASKS
 
 
 def write_task(path: str | Path, data: xr.Dataset, about: Mapping[str, Any]) -> None:
@@ -30,7 +28,7 @@ def combine(paths: Iterable[str | Path], output: str | Path) -> None:
         data = read_netcdf(path)
         found.setdefault(data.attrs["study"], {})[data.attrs["task"]] = data
     groups = {name: content_of(_combined(name, parts)) for name, parts in found.items()}
-    write_netcdf(output, Content({}, {"title": "Studies of accuracy"}), groups)
+    write_netcdf(output, Content({}, {"title": "Studies"}), groups)
 
 
 def _combined(name: str, parts: Mapping[str, xr.Dataset]) -> xr.Dataset:
@@ -42,5 +40,5 @@ def _combined(name: str, parts: Mapping[str, xr.Dataset]) -> xr.Dataset:
     if missing:
         raise InputError(f"tasks of {name}", f"without {sorted(missing)[0]}", "be complete")
     scales = {data.attrs["scale"] for data in parts.values()}
-    data = COMBINED_BY[name].combine(parts, settings)
+    data = import_module(f"roughgas.studies.{name}").combine(parts, settings)
     return data.assign_attrs(title=name, scale=", ".join(sorted(scales)))

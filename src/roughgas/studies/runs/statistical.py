@@ -14,8 +14,8 @@ from roughgas.simulation.energies import ratio
 from roughgas.simulation.steady import samples_per_period
 from roughgas.statistics.averages import period_means
 from roughgas.statistics.errors import autocorrelation_time
-from roughgas.studies.accuracy.runs import stream, timed
-from roughgas.studies.accuracy.tasks import PARTS, SCENES
+from roughgas.studies.runs import stream, timed
+from roughgas.studies.tasks import PARTS, SCENES
 
 BLOCK = 50  # autocorrelation times: beyond ten of them no tail is left
 GENEROSITY = 4

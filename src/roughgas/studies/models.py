@@ -13,7 +13,7 @@ import xarray as xr
 
 from roughgas.statistics.estimate import Estimate
 from roughgas.statistics.fits import power_law
-from roughgas.studies.accuracy.variables import dataset, estimate, mean, stacked
+from roughgas.studies.variables import dataset, estimate, mean, stacked
 
 METHODS = ("rate_equations", "dsmc", "event_driven")
 

@@ -16,8 +16,8 @@ import xarray as xr
 
 from roughgas.statistics.estimate import Estimate
 from roughgas.statistics.fits import power_law
-from roughgas.studies.accuracy.tasks import PARTS, SCENES, WAYS
-from roughgas.studies.accuracy.variables import dataset, mean, stacked
+from roughgas.studies.tasks import PARTS, SCENES, WAYS
+from roughgas.studies.variables import dataset, mean, stacked
 
 RELATIVE_ERRORS = (0.01, 0.003, 0.001)
 LENGTH_UNITS = {"vibrated": "T", "sheared": "T", "cooling": "collisions per particle"}

@@ -9,10 +9,10 @@ from schedules import COOLING, STEADY
 from tests.data.schema_page import check_study
 
 from roughgas.statistics.estimate import Estimate
-from roughgas.studies.accuracy import coverage, study
-from roughgas.studies.accuracy.coverage import REGROUPINGS, calibrate, one_run, several
-from roughgas.studies.accuracy.tables import coverage as table
+from roughgas.studies import coverage, study
+from roughgas.studies.coverage import REGROUPINGS, calibrate, one_run, several
 from roughgas.studies.figures.coverage import draw_figure
+from roughgas.studies.tables import coverage as table
 
 tasks, run = study("coverage")
 DOF = 8

@@ -1,8 +1,8 @@
-# What accuracy costs in time, and whether error bars are true: the studies in studies/accuracy, each
-# of them a few independent tasks.
-from roughgas.studies import accuracy as studies
+# Studies, such as of what accuracy costs and of whether error bars are true: each is a few independent
+# tasks, a dataset that combines them, a figure, and a table.
+from roughgas import studies
 
-TASK = "results/{scale}/accuracy/{study}/{task}.nc"
+TASK = "results/{scale}/studies/{study}/{task}.nc"
 
 
 def settings_of_study(wildcards):
@@ -23,7 +23,7 @@ def tasks_of_figure(wildcards):
 
 def tasks_of_study(name, scale):
     """The names of a study's tasks, the longest first."""
-    with one_line(f"results/{scale}/accuracy/{name}"):
+    with one_line(f"results/{scale}/studies/{name}"):
         settings = roughgas.config.study(config, name, scale)["study"]
         return studies.study(name).tasks(settings)
 
@@ -34,8 +34,14 @@ def urgency_of_task(wildcards):
 
 
 def code_of_study(wildcards):
-    writing = ("cli.studies", "studies.accuracy.files")
-    return sources.code_of(f"studies.accuracy.runs.{wildcards.study}", alone=writing)
+    writing = ("cli.studies", "studies.files")
+    return sources.code_of(f"studies.runs.{wildcards.study}", alone=writing)
+
+
+def code_of_combining(wildcards):
+    return sources.code_of(
+        "studies.files", *(f"studies.{name}" for name in entry_of(wildcards).shows)
+    )
 
 
 def code_of_study_figure(wildcards):
@@ -50,15 +56,15 @@ rule study:
     output:
         TASK,
     log:
-        "logs/{scale}/accuracy/{study}/{task}.log",
+        "logs/{scale}/studies/{study}/{task}.log",
     benchmark:
-        "logs/{scale}/accuracy/{study}/{task}.tsv"
+        "logs/{scale}/studies/{study}/{task}.tsv"
     priority: urgency_of_task
     params:
         code=code_of_study,
         settings=settings_of_study,
     message:
-        "accuracy, {wildcards.study}: {wildcards.task}"
+        "study {wildcards.study}: {wildcards.task}"
     shell:
         "roughgas study {wildcards.study} {wildcards.task} --scale {wildcards.scale}"
         " --settings {params.settings:q} --output {output} > {log} 2>&1"
@@ -72,7 +78,7 @@ rule combined_studies:
     log:
         "logs/{scale}/{study_figure}.log",
     params:
-        code=code_of("studies.accuracy.files"),
+        code=code_of_combining,
     message:
         "combine the studies of {wildcards.study_figure}"
     shell:
@@ -109,7 +115,7 @@ rule study_table:
     log:
         "logs/{scale}/{study_figure}_table.log",
     params:
-        code=code_of("studies.accuracy.tables"),
+        code=code_of("studies.tables"),
     message:
         "write {output}"
     shell:

@@ -10,16 +10,16 @@ from tests.data.schema_page import check_study
 
 from roughgas import theory
 from roughgas.statistics.estimate import Estimate
-from roughgas.studies.accuracy import models, study
-from roughgas.studies.accuracy.models import METHODS, error_bar, over
-from roughgas.studies.accuracy.runs.free_cooling import (
+from roughgas.studies import models, study
+from roughgas.studies.figures import accuracy as plotting
+from roughgas.studies.models import METHODS, error_bar, over
+from roughgas.studies.runs.free_cooling import (
     FreeCooling,
     event_driven,
     few_particles,
     integrate,
 )
-from roughgas.studies.accuracy.runs.models import DSMC, MAP, stream
-from roughgas.studies.figures import accuracy as plotting
+from roughgas.studies.runs.models import DSMC, MAP, stream
 
 tasks, run = study("models")
 EXPERIMENT = {

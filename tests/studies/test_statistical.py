@@ -9,11 +9,11 @@ from matplotlib.figure import Figure
 from schedules import COOLING, STEADY
 from tests.data.schema_page import check_study
 
-from roughgas.studies.accuracy import statistical, study
-from roughgas.studies.accuracy.runs.statistical import Chain, time_from_blocks
-from roughgas.studies.accuracy.statistical import noise, observed
-from roughgas.studies.accuracy.tasks import SCENES, WAYS
+from roughgas.studies import statistical, study
 from roughgas.studies.figures.accuracy import draw_statistical as draw
+from roughgas.studies.runs.statistical import Chain, time_from_blocks
+from roughgas.studies.statistical import noise, observed
+from roughgas.studies.tasks import SCENES, WAYS
 
 tasks, run = study("statistical")
 SETTINGS = {

@@ -20,7 +20,7 @@ import xarray as xr
 from roughgas.statistics.averages import period_means
 from roughgas.statistics.estimate import Estimate
 from roughgas.statistics.fits import PowerLaw, limit_at_zero, signed_power_law
-from roughgas.studies.accuracy.variables import dataset, flat, stacked
+from roughgas.studies.variables import dataset, flat, stacked
 
 TARGETS = 0.03, 0.01, 0.003  # relative errors of R
 EARLY = 0.05  # t_c nu up to which orders and limits are fitted: above, R is no power of it

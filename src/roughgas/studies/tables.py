@@ -8,8 +8,8 @@ import xarray as xr
 
 from roughgas.base.files import write_text
 from roughgas.base.layout import markdown
-from roughgas.studies.accuracy.tasks import SCENES, STUDIES
-from roughgas.studies.accuracy.variables import estimate, read_studies
+from roughgas.studies.tasks import SCENES, STUDIES
+from roughgas.studies.variables import estimate, read_studies
 
 SHARES = {
     "of_maxwellian": "Maxwellian, uncorrelated velocities",
