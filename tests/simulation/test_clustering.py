@@ -88,6 +88,13 @@ def test_every_particle_is_on_the_map(undisturbed):
     assert undisturbed["y"] == pytest.approx(2.5 + 5 * np.arange(10))
 
 
+def test_a_particle_that_rounding_folds_onto_the_far_edge_is_on_the_map():
+    x = np.mod([-1e-20, 3.0], 40.0)
+    assert x[0] == 40.0
+    count = clustering._count(x, np.mod([7.0, -1e-20], 50.0), (40.0, 50.0), 5)
+    assert count.sum() == count[1, 7] + count[9, 0] == 2
+
+
 def test_disks_are_in_the_window_and_do_not_overlap(undisturbed):
     ends = np.cumsum(undisturbed["disks"])
     assert ends[-1] == len(undisturbed["disk_x"]) == len(undisturbed["disk_spin"])

@@ -6,12 +6,13 @@ from brute_force import begin, settings
 
 from roughgas import theory
 from roughgas.simulation import cooling, steady
+from roughgas.simulation.energies import Energies
 from roughgas.simulation.gas import Recorder
 
 BED = settings("bed", 40, [12.5, "open"]) | {
     "schedule": {
         "kind": "steady",
-        "equilibrate": 100,
+        "equilibrate": 100.25,
         "measure": 300,
         "sample_every": 0.25,
         "period": 1,
@@ -34,12 +35,21 @@ def test_a_steady_bed():
     scene, _ = begin(BED, 0.9, 0.0)
     measured = steady.run(scene, BED, 1, Recorder())
     assert measured["equilibrated"]
-    assert measured["measured_from"] >= 100.0
+    assert measured["measured_from"] >= 100.25
     assert measured["measured_from"] == round(measured["measured_from"])  # whole periods
     assert measured["time"][0] == pytest.approx(measured["measured_from"] + 0.25)
     assert len(measured["R_series"]) == len(measured["time"]) == len(measured["E_rot_series"])
     expected = theory.lun_ratio(0.0, 0.5)
     assert abs(measured["R"] - expected) < 0.06 + 4.0 * measured["R_stderr"]
+
+
+def test_a_start_that_would_leave_less_than_half_is_not_taken():
+    """A small step just after the middle of the run, which has no time before the measurement."""
+    series = 1.0 + 0.001 * np.random.default_rng(1).standard_normal(104)
+    series[:54] += 0.005
+    energies = Energies(series, None)
+    assert steady._start(energies, 0, 104, 1) == (0, False)
+    assert steady._start(energies, 40, 64, 1) == (54, True)
 
 
 def test_a_cooling_gas():
