@@ -72,6 +72,19 @@ def test_means_and_errors_over_seeds(paths, tmp_path):
     np.testing.assert_array_equal(full.R_seed, [0.2, 0.22, 0.27])
 
 
+@pytest.mark.parametrize("runaways, equilibrated", [(0, 1.0), (1, 0.0)])
+def test_a_mixture_of_replicas_over_all_seeds_is_no_steady_state(tmp_path, runaways, equilibrated):
+    """Two replicas a seed are too few to tell by themselves; at the other place none runs away."""
+    points = []
+    for seed, beta in ((seed, beta) for seed in range(1, 7) for beta in (-0.5, 0.5)):
+        replicas = 0.27 + 0.001 * np.array([seed, -seed])
+        if seed == 3 and beta > 0:
+            replicas[:runaways] = 1.0
+        points.append(write(tmp_path, 0.9, beta, seed, 0.27, True, R_replica=replicas))
+    reduce_points(points, tmp_path / "cooling.nc")
+    assert list(read_reduced(tmp_path / "cooling.nc").equilibrated[0]) == [1.0, equilibrated]
+
+
 def test_missing_seeds_and_places(paths, tmp_path):
     reduce_points(paths, tmp_path / "sheared.nc")
     data = read_reduced(tmp_path / "sheared.nc")

@@ -146,7 +146,9 @@ REDUCED = {
     "R_dof": _derived("degrees of freedom that R_stderr is known with"),
     "R_ci95": _derived("half width of the 95 % interval of R, by Student's t"),
     "R_ci95_trusted": _derived("share of seeds whose R_ci95 holds the truth as often as it says"),
-    "equilibrated": _derived("share of seeds that were found in a steady state"),
+    "equilibrated": _derived(
+        "share of seeds that were found in a steady state; 0 for a mixture of two"
+    ),
     "R_stderr_over_seeds": _derived("standard error of R from the scatter over seeds alone"),
     "R_stderr_within": _derived("standard error of R from within the files, combined over seeds"),
     "R_unsubtracted_stderr": _derived("standard error of R_unsubtracted: scatter over seeds"),

@@ -7,6 +7,7 @@ badly known; each of the two is kept beside it.
 """
 
 import math
+from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -18,6 +19,7 @@ from roughgas.base.errors import InputError
 from roughgas.data.netcdf import COMMON_ATTRIBUTES, Content, check_schema, write_netcdf
 from roughgas.data.reduced import GRID, third_axis
 from roughgas.data.variables import CLOCKS, POINT, Array, described
+from roughgas.statistics.bimodal import is_bimodal
 from roughgas.statistics.intervals import pooled
 from roughgas.theory.prediction import equation_of
 
@@ -34,6 +36,7 @@ class Summary(NamedTuple):
     scalars: dict[str, float]
     attributes: dict[str, Any]
     place: tuple[Any, ...]  # (r, beta, seed), preceded by the value of what is swept besides
+    replicas: np.ndarray  # R of each, of a cooling gas: else empty
 
 
 def reduce_points(paths: Iterable[str | Path], output: str | Path) -> None:
@@ -60,9 +63,10 @@ def _summary(path: Path) -> Summary:
         found = [name for name, about in POINT.items() if not about.dims]
         scalars = {name: file[name][...].item() for name in found if name in file.variables}
         scalars["measured_for"], scalars["R_drift"] = _window(file, scalars)
+        replicas = file["R_replica"][...] if "R_replica" in file.variables else np.empty(0)
     swept = (attributes["swept_value"],) if "swept" in attributes else ()
     r, beta, seed = (attributes[name] for name in (*GRID, "seed"))
-    return Summary(scalars, attributes, (*swept, float(r), float(beta), int(seed)))
+    return Summary(scalars, attributes, (*swept, float(r), float(beta), int(seed)), replicas)
 
 
 def _window(file: netCDF4.Dataset, scalars: Mapping[str, float]) -> tuple[float, float]:
@@ -95,7 +99,22 @@ def _combined(points: Sequence[Summary]) -> Content:
         about = {"long_name": f"parameter of an effect: {attributes['swept']}"}
         third[swept] = Array((swept,), coordinates.pop(swept), about)
     values = _over_seeds(stacks) | coordinates
+    values["equilibrated"] = np.where(_mixed(points, axes[:-1]), 0.0, values["equilibrated"])
     return Content(third | described("reduced", values, "plateau_end" in stacks, grid), attributes)
+
+
+def _mixed(points: Sequence[Summary], axes: Sequence[Sequence[Any]]) -> np.ndarray:
+    """Return where replicas of all seeds rest at two different R: their mean is no steady state.
+
+    Each seed may have too few of one kind to tell, or none.
+    """
+    mixed, ensembles = np.zeros(tuple(map(len, axes)), bool), defaultdict(list)
+    for point in points:
+        ensembles[point.place[:-1]].append(point.replicas)
+    for place, found in ensembles.items():
+        index = tuple(axis.index(value) for axis, value in zip(axes, place, strict=True))
+        mixed[index] = is_bimodal(np.concatenate(found))
+    return mixed
 
 
 def _coordinate(values: Sequence[Any]) -> np.ndarray:

@@ -111,6 +111,56 @@ def test_perfectly_rough_elastic_particles_reach_equipartition(dimension):
         assert series.mean() == pytest.approx(expected, abs=4 * error + 3 / number)
 
 
+@pytest.mark.parametrize("mu", [0.0, 0.1, 0.4])
+def test_a_sliding_collision_has_the_impulse_of_friction(mu):
+    """|J_t| = mu |J_n| where the contact slides, and the roughness of the material where not."""
+    material, slid = dsmc.material(0.8, 0.5, mu=mu), 0
+    for seed in range(40):
+        gas, rng = gas_and_generator(2, 0.3, 2, seed)
+        n = rng.standard_normal(2)
+        v = gas.velocity[0] - gas.velocity[1]
+        n *= -np.sign(n @ v) / np.linalg.norm(n)
+        g, velocity = contact_velocity(gas, n), gas.velocity[0].copy()
+        collisions.collide(gas, material, 0, 1, tuple(n), tuple(v))
+        after, impulse = contact_velocity(gas, n), gas.velocity[0] - velocity
+        across = np.array([-n[1], n[0]])
+        assert after @ n == pytest.approx(-0.8 * (g @ n), abs=1e-13)
+        limit = mu * abs(impulse @ n)
+        if abs(impulse @ across) < limit * (1 - 1e-12):
+            assert after @ across == pytest.approx(-0.5 * (g @ across), abs=1e-13)
+        else:
+            slid += 1
+            assert abs(impulse @ across) == pytest.approx(limit, abs=1e-13)
+            assert (impulse @ across) * (g @ across) < 1e-13
+    assert slid == 40 if mu == 0.0 else 0 < slid < 40
+
+
+def test_unlimited_friction_changes_nothing():
+    runs = []
+    for mu in (None, 1e9):
+        gas, rng = gas_and_generator(100, 0.5, 2, 8)
+        runs.append(dsmc.run(gas, dsmc.material(0.7, 0.1, mu=mu), rng, 1, 10).R)
+    assert np.array_equal(*runs)
+
+
+@pytest.mark.parametrize("mu, theta", [(0.05, 0.3), (0.15, 0.3), (0.3, 5.0)])
+def test_a_gas_with_friction_starts_off_at_the_rates_of_theory(mu, theta):
+    """Within 4 standard errors of 40 gases, to the second order in the collisions that passed."""
+    passed, gases, r, beta = 0.01, 40, 0.9, 0.0
+    changes = np.empty((gases, 2))
+    for seed in range(gases):
+        gas, rng = gas_and_generator(50_000, theta, 2, seed)
+        one = dsmc.run(gas, dsmc.material(r, beta, mu=mu), rng, passed, 1)
+        T_tr = np.exp(one.log_T_tr[0])
+        changes[seed] = T_tr - 1.0, one.theta[0] * T_tr - theta
+    rates = np.array(theory.friction_changes(1.0, theta, r, beta, mu))
+    later = theory.friction_changes(1.0 + rates[0] * passed, theta + rates[1] * passed, r, beta, mu)
+    expected = passed * (rates + later) / 2
+    errors = changes.std(axis=0, ddof=1) / np.sqrt(gases)
+    assert np.all(np.abs(changes.mean(axis=0) - expected) < 4 * errors)
+    assert np.all(errors < 0.05 * np.abs(expected))
+
+
 @pytest.mark.parametrize("dimension", [2, 3])
 @pytest.mark.parametrize(
     "r, beta, theta", [(0.6, 0.3, 0.2), (0.9, 1.0, 3.0), (0.8, -0.7, 1.0), (0.0, 0.0, 0.5)]

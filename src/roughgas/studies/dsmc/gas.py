@@ -10,6 +10,7 @@ import numpy as np
 
 from roughgas.base.errors import InputError
 from roughgas.effects import Effects
+from roughgas.effects.friction import Friction
 from roughgas.effects.spin import Spin
 from roughgas.studies.dsmc.collisions import COLUMNS, record
 from roughgas.theory import arguments, moment_of_inertia
@@ -22,7 +23,7 @@ class Colliding(NamedTuple):
 
     restitution: float
     roughness: float
-    effects: Effects  # only those that a contact's velocities decide on: spin
+    effects: Effects  # only those that a contact's velocities decide on: spin and friction
     crowding: float  # number density times Enskog's factor chi, in a^-D
 
 
@@ -58,14 +59,16 @@ class Samples(NamedTuple):
         return self.theta / (1.0 + self.theta)
 
 
-def material(r, beta, dimension=2, inertia=None, crowding=1.0) -> Colliding:
+def material(r, beta, dimension=2, inertia=None, crowding=1.0, mu=None) -> Colliding:
     """Return particles of restitution r, roughness beta and `inertia` q, by default uniform ones.
 
-    `crowding`, number density times chi, sets the unit of time only. Raises InputError.
+    Contacts slide where they would exceed the coefficient of friction `mu`; None: they always
+    stick. `crowding`, number density times chi, sets the unit of time only. Raises InputError.
     """
     r, beta, _, q = map(float, arguments.material(r, beta, dimension, inertia))
     crowding = float(arguments.check("crowding", crowding))
-    return Colliding(r, beta, Effects(spin=Spin(q)), crowding)
+    friction = None if mu is None else Friction(float(arguments.check("friction mu", mu)), q)
+    return Colliding(r, beta, Effects(spin=Spin(q), friction=friction), crowding)
 
 
 def new_gas(
