@@ -88,7 +88,7 @@ CASES = {
         {0.2: HOLDS, 0.003: QUALIFIED, 0.0: FAILS, -0.2: FAILS},
     ),
     "sheared_follows_lun": (
-        lambda size: [sheared(shift=constant(size))],
+        lambda size: [sheared(shift=lambda r, beta: 2 * size * lun(r, beta))],
         {0: HOLDS, 0.04: QUALIFIED, 0.1: FAILS},
     ),
     "shear_fails_unsubtracted": (
@@ -127,6 +127,15 @@ CASES = {
 )
 def test_a_verdict_depends_on_the_size_of_an_effect(judged, name, size, expected):
     assert judged(name, *CASES[name][0](size)).verdict == expected
+
+
+@pytest.mark.parametrize("gas", ["vibrated", "sheared"])
+def test_a_small_ratio_must_follow_theory_in_proportion(judged, gas):
+    """At beta <= -0.6 R is 0.07 at most: 0.02 would let it be a quarter too large."""
+    data = reduced(gas, lambda r, beta: 0.25 * lun(r, beta) * (beta <= -0.6), error=1e-4)
+    found = judged(f"{gas}_follows_lun", data)
+    assert found.verdict == QUALIFIED and "63 of 63 points within 0.02" in found.reason
+    assert "In proportion, 48 of 63 points are within 10%" in found.reason
 
 
 @pytest.mark.parametrize(
@@ -173,7 +182,7 @@ def test_large_errors_neither_hold_nor_refute(judged):
 
 def test_the_degrees_of_freedom_of_each_point_count(judged):
     """Five standard errors are significant only if they are known well."""
-    shifted = {"shift": constant(0.03), "error": 0.006}
+    shifted = {"shift": constant(0.03), "beta": ROUGH, "error": 0.006}
     assert judged("vibrated_follows_lun", reduced(**shifted)).verdict == QUALIFIED
     vague = judged("vibrated_follows_lun", reduced(R_dof=3.0, **shifted))
     assert vague.verdict == NOT_TESTED

@@ -33,7 +33,8 @@ SMOOTH = -1.0
 """Roughness of a boundary that puts no rotation in: the bed that the others are compared with."""
 NO_ROTATION = 0.003
 """Share of rotation up to which a drive puts in translation alone. It changes R by less than AGREE
-even at beta = -0.95, r = 0.9, where the response is strong: R - Eq. (lun) is 6 times the share."""
+even at beta = -0.95, r = 0.9, where the response is strong: R - Eq. (lun) is 6 times the share.
+Fixed before its data."""
 REFERENCE = "sawtooth"
 SPIN_ALONE = 1 - 1e-6
 """R of theory from which spin outlives translation: it is 1 but for rounding."""
@@ -133,7 +134,7 @@ def follows_rates_when_strong(cooling: xr.Dataset) -> Finding:
 
 
 def follows_rates(gas: xr.Dataset) -> Finding:
-    """R - the rate equations with friction is as good as zero."""
+    """R - the rate equations with friction is as good as zero, in proportion, too."""
     held = gas.sel(mu=gas.mu > 0.0)  # at mu = 0 spin is decoupled: R keeps its initial value
     found = agreement_in_proportion(held, "the rate equations")
     measured, expected = _rough_from(held.R), _rough_from(held.theory)

@@ -35,13 +35,15 @@ from roughgas.statistics.estimate import SIGNIFICANT, Estimate
 from roughgas.theory.prediction import predicted_ratio
 
 INTERMEDIATE = 0.5
-"""|beta| up to which tangential dissipation, which is proportional to 1 - beta^2, is strong."""
+"""Size of beta up to which tangential dissipation, which is proportional to 1 - beta^2, is strong,
+three quarters of its most. Fixed before any data."""
 TIMES_OF_PAPER = (5000.0, 2000.0)
 """How long the paper averages, in T: sheared and vibrated."""
 CONSIDERABLY = math.log(1.5)
-"""Logarithm of the ratio of two errors from which one is considerably larger."""
+"""Logarithm of the ratio of two errors from which one is considerably larger. A convention. Fixed
+before any data."""
 NEAR = 0.08
-"""Fraction of R by which points are counted as near Eq. (K)."""
+"""Fraction of R by which points are counted as near Eq. (K); it decides nothing."""
 
 
 def theory_underestimates(bed: xr.Dataset) -> Finding:

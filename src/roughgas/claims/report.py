@@ -15,9 +15,11 @@ from roughgas.claims.statements import Statement, Subject, examine
 from roughgas.claims.verdicts import (
     AGREE,
     FAILS,
+    FAR,
     FEW,
     HOLDS,
     LIMIT,
+    NEAR,
     NOT_TESTED,
     QUALIFIED,
     TENDENCY,
@@ -32,16 +34,20 @@ TOLERANCES = {
     "limit": LIMIT,
     "tendency": TENDENCY,
     "few": FEW,
+    "near": NEAR,
+    "far": FAR,
     "significant_sigma": SIGNIFICANT,
 }
 HOW_TO_READ = """\
 How to read it. A number is "value ± standard error (sigma)". Significance and size count
 separately: with small errors a theory that is 2 % off is 20 sigma off and still useful. R agrees
-where it is within {agree:g} (about a symbol's size in the paper's figures), and disagrees beyond
-{limit:g} where the difference is significant, {significant_sigma:g} sigma or more. In between,
-agreement is qualified, and so it is where errors are too large to tell at more than a few points
-({few:.0%} of them). A direction (above, below) needs {tendency:g} in R. Points that are not in a
-steady state are set aside, and counted.
+where it is within {agree:g}, and disagrees beyond {limit:g} where the difference is significant,
+{significant_sigma:g} sigma or more. In between, agreement is qualified, and so it is where errors
+are too large to tell at more than a few points ({few:.0%} of them). Where R spans decades it must
+follow theory in proportion, too: agreement is qualified where more than a few points are off by
+{near:.0%} of it, and fails where by {far:.0%}. A direction (above, below) needs {tendency:g} in R.
+Points that are not in a steady state are set aside, and counted. docs/claims.md gives the reason
+for each of these numbers, and says what was fixed before the data were seen.
 
 Errors are those of the reduced datasets (`R_stderr`, with `R_dof` degrees of freedom), which pool
 the scatter over seeds with the errors within the runs; `coverage.md` shows how often their
@@ -94,6 +100,8 @@ def _claim(statement: Statement, finding: Finding) -> dict[str, Any]:
     return {
         "id": statement.name,
         "quote": statement.quote,
+        "criterion": statement.criterion,
+        "fixed": statement.fixed,
         "experiments": list(statement.experiments),
         "verdict": finding.verdict,
         "reason": finding.reason,
@@ -132,5 +140,6 @@ def _details(number: int, statement: Statement, finding: Finding) -> str:
     numbers = "".join(f"\n- {label}: {text(value)}" for label, value in finding.numbers)
     return (
         f"### {number}. {statement.name}: {finding.verdict}\n\n> {statement.quote}\n\n"
-        f"{finding.reason}\n\n- data: {', '.join(statement.experiments)}{numbers}"
+        f"{finding.reason}\n\n- criterion: {statement.criterion} Fixed {statement.fixed}.\n"
+        f"- data: {', '.join(statement.experiments)}{numbers}"
     )

@@ -1,5 +1,6 @@
 """Tables of statements, read from YAML: quotations, the data that they are on, and their judges."""
 
+import inspect
 from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
@@ -10,8 +11,6 @@ import yaml
 from roughgas.claims import evidence, open_questions, paper
 from roughgas.claims.evidence import NotTestedError
 from roughgas.claims.verdicts import (
-    FAR,
-    NEAR,
     NOT_TESTED,
     Finding,
     agreement,
@@ -33,6 +32,8 @@ class Statement(NamedTuple):
     quote: str
     experiments: tuple[str, ...]
     judge: Callable[..., Finding]
+    criterion: str  # what is judged, in a sentence
+    fixed: str  # whether the criterion was, before its data were seen
 
 
 class Subject(NamedTuple):
@@ -48,7 +49,7 @@ class Subject(NamedTuple):
 def read_subject(name: str) -> Subject:
     """Return the table of statements in the file `name`.yaml of this room."""
     table = yaml.safe_load(Path(__file__).with_name(f"{name}.yaml").read_text(encoding="utf-8"))
-    table["about"] = table["about"].format(reference=REFERENCE, near=NEAR, far=FAR)
+    table["about"] = table["about"].format(reference=REFERENCE)
     table["statements"] = tuple(
         _statement(name, **row) for name, row in table["statements"].items()
     )
@@ -59,6 +60,7 @@ def _statement(
     name: str,
     quote: str,
     experiments: list[str],
+    fixed: str,
     judge: str = "",
     agrees_with: str = "",
     sample: str = "deviation",
@@ -69,7 +71,18 @@ def _statement(
             return agreement_in_proportion(*datasets, agrees_with)
         return agreement(FUNCTIONS[sample](*datasets), agrees_with)
 
-    return Statement(name, quote, tuple(experiments), FUNCTIONS[judge] if judge else agrees)
+    criterion = _said_of(FUNCTIONS[judge or sample])
+    if not judge:
+        value = criterion.removeprefix("Return ").rstrip(".")
+        criterion = f"{value}, is as good as zero: agreement with {agrees_with}"
+        criterion += ", in proportion, too." if in_proportion else "."
+    decide = FUNCTIONS[judge] if judge else agrees
+    return Statement(name, quote, tuple(experiments), decide, criterion, fixed)
+
+
+def _said_of(function: Callable) -> str:
+    """Return the first paragraph of a docstring, as one line."""
+    return " ".join(inspect.getdoc(function).split("\n\n")[0].split())
 
 
 def examine(statement: Statement, datasets: dict[str, xr.Dataset]) -> Finding:

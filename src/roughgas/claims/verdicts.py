@@ -21,17 +21,25 @@ FAILS = "fails"
 NOT_TESTED = "not tested"
 
 AGREE = 0.02
-"""Difference in R up to which two values agree: about a symbol's size in the paper's figures."""
+"""Difference in R up to which two values agree. What the paper is to tell apart, Eq. (lun) and
+Eq. (K) at r = 0.9 and beta = 0, is 0.12: this is a sixth of it. Where R < 0.02 it asks nothing, so
+what spans such R is judged in proportion, too. Fixed before any data; the reason is of later."""
 LIMIT = 0.06
-"""Difference in R beyond which they disagree; between the two, agreement is qualified."""
+"""Difference in R beyond which they disagree; between the two, agreement is qualified. Half of that
+0.12: beyond it the other theory may be nearer. Fixed before any data; the reason is of later."""
 TENDENCY = 0.005
-"""Difference in R from which a statement about a direction (above, below) has content."""
+"""Difference in R from which a statement about a direction (above, below) has content. A
+convention: a quarter of AGREE. Fixed before any data."""
 FEW = 0.1
-"""Share of the points of a sweep that may be exceptions."""
+"""Share of the points of a sweep that may be exceptions. A convention: two of the 21 values of beta
+at one r. Fixed before any data."""
 NEAR = 0.1
-"""Fraction of R up to which a value agrees with theory in proportion."""
+"""Fraction of R up to which a value agrees with theory in proportion. AGREE over the R of a driven
+gas in mid-range, Eq. (lun) at beta = 0. Fixed before the data of friction and inertia; for beds and
+sheared gases (Figs. 1a, 2a, 3) after their data."""
 FAR = 0.5
-"""Fraction beyond which it disagrees; between the two, agreement is qualified."""
+"""Fraction beyond which it disagrees; between the two, agreement is qualified. A convention: theory
+is then wrong by a factor of 1.5 to 2. Fixed as NEAR was."""
 
 
 class Finding(NamedTuple):

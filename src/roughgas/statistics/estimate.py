@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 DIGITS = 2  # of an error
 SIGNIFICANT = 3.0
-"""Sigma from which a difference counts as real."""
+"""Sigma from which a difference counts as real. A convention. Fixed before any data."""
 
 
 class Estimate(NamedTuple):
