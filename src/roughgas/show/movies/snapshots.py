@@ -16,6 +16,7 @@ from roughgas.scene import Scene, build
 from roughgas.simulation import cooling, schedule
 from roughgas.simulation.energies import Energies, ratio, restored
 from roughgas.simulation.gas import Gas
+from roughgas.simulation.instant import in_order, whereabouts
 from roughgas.theory.frequencies import collision_frequency
 
 STRIDES = 200  # steps are of one collision in the gas for each so many particles
@@ -127,32 +128,6 @@ class Turning:
         self.angle += self._spin * (contact - self._begun) + spin * (now - contact)
 
 
-def in_order(state: State, values: np.ndarray) -> np.ndarray:
-    """Return a copy of `values` (N, ...), one of each particle, in the order of the start."""
-    ordered = np.empty_like(values)
-    ordered[state.label] = values
-    return ordered
-
-
-def positions(state: State, scene: Scene, slide: float | None) -> np.ndarray:
-    """Return where particles are now (N, D), in a, folded into the box.
-
-    `slide` is the displacement of the image above a sheared gas.
-    """
-    dimension, gravity = len(scene.box), scene.effects.gravity
-    elapsed = state.clock[NOW] - state.trajectory[:, -1]
-    velocity = state.trajectory[:, dimension:-1]
-    position = state.trajectory[:, :dimension] + velocity * elapsed[:, None]
-    if gravity is not None:
-        position[:, -1] -= 0.5 * gravity.acceleration * elapsed**2
-    if slide is not None:
-        position[:, 0] -= slide * np.floor(position[:, 1] / scene.box[1])
-    for axis, length in enumerate(scene.box):
-        if length is not None:
-            position[:, axis] %= length
-    return position
-
-
 def _collision_frequency(gas, box):
     packing = gas.particles * VOLUME[len(box)] / math.prod(box)
     return float(collision_frequency(2.0 * _energies(gas).translational, packing, len(box)))
@@ -161,21 +136,20 @@ def _collision_frequency(gas, box):
 def _snapshot(gas: Gas) -> Snapshot:
     """Return what there is to be seen at the present instant."""
     state, effects, present, time = gas.state, gas.scene.effects, _energies(gas), gas.time
-    slide = displacement(effects.shear, time)
     spin = state.spin
     if spin is not None:
         spin = in_order(state, spin * 2.0 ** int(state.counts[EXPONENT]))
     return Snapshot(
         time=time,
         collisions=2.0 * gas.collisions / gas.particles,
-        position=in_order(state, positions(state, gas.scene, slide)),
+        position=in_order(state, whereabouts(state, gas.scene, time)[0]),
         spin=spin,
         angle=gas.watcher.angle.copy() if gas.watcher else None,
         E_trans=present.translational,
         E_rot=present.rotational,
         R=None if spin is None else float(ratio(present)),
         floor=displacement(effects.floor, time),
-        slide=slide,
+        slide=displacement(effects.shear, time),
         walls=displacement(effects.shaken_walls, time),
     )
 
