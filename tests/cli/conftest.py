@@ -5,23 +5,12 @@ import shutil
 from pathlib import Path
 
 import pytest
+from schedules import COOLING, TINY
 
 from roughgas.cli import main
 
 ROOT = Path(__file__).parents[2]
-GAS = {
-    "particles": 20,
-    "box": [20, 20],
-    "effects": {"spin": {"inertia": 0.5}},
-    "schedule": {
-        "kind": "cooling",
-        "replicas": 4,
-        "thermalise": 2,
-        "relaxation_times": 2,
-        "plateau": 20,
-        "sample_every": 1,
-    },
-}
+GAS = TINY | {"particles": 20, "schedule": COOLING | {"replicas": 4, "thermalise": 2}}
 
 
 @pytest.fixture(scope="package")

@@ -3,6 +3,7 @@
 import json
 
 import pytest
+from schedules import TINY
 
 from roughgas import cli
 from roughgas.cli import main
@@ -10,9 +11,6 @@ from roughgas.config.reading import read_yaml
 from roughgas.data.point import read_point
 from roughgas.simulation.point import kernels
 
-SCHEDULE = {"replicas": 2, "thermalise": 1, "relaxation_times": 1, "plateau": 5}
-GAS = {"particles": 5, "box": [20, 20], "effects": {"spin": {"inertia": 0.5}}}
-GAS["schedule"] = SCHEDULE | {"kind": "cooling", "sample_every": 1}
 SWEEP = {"r": ["0.9"], "beta": ["0"], "seeds": 1, "spin.inertia": ["1", "0.1"]}
 PLACE = ("--r=0.9", "--beta=0")
 
@@ -22,7 +20,7 @@ def configuration(tmp_path):
     """A file with an experiment that has a third axis, and one that has none."""
     whole = read_yaml("config.yaml")
     plain = {key: value for key, value in SWEEP.items() if key != "spin.inertia"}
-    gases = {"spun": GAS | {"sweep": SWEEP}, "plain": GAS | {"sweep": plain}}
+    gases = {"spun": TINY | {"sweep": SWEEP}, "plain": TINY | {"sweep": plain}}
     whole |= {"experiments": gases, "scales": {"paper": {}}}
     (tmp_path / "config.yaml").write_text(json.dumps(whole))
     return f"--config={tmp_path / 'config.yaml'}"
@@ -39,7 +37,7 @@ def test_a_variant_is_run_by_its_name(configuration, tmp_path):
     assert not {"variant", "swept", "swept_value"} & set(read_point(other).attrs)
 
 
-SETTINGS = json.dumps(GAS | {"swept": "spin.inertia"})
+SETTINGS = json.dumps(TINY | {"swept": "spin.inertia"})
 
 
 @pytest.mark.parametrize(
@@ -50,8 +48,8 @@ SETTINGS = json.dumps(GAS | {"swept": "spin.inertia"})
         ("spun/inertia2", None, "spun/inertia2.effects.spin.inertia = 2.0: must be a number in"),
         ("spun", SETTINGS, "experiment = spun: must be the variant that its settings are of"),
         ("spun/inertia1", SETTINGS, "experiment = spun/inertia1: must be the variant that"),
-        ("spun/inertia0.5", json.dumps(GAS), "experiment = spun/inertia0.5: must be the variant"),
-        ("spun", json.dumps(GAS | {"sweep": SWEEP}), "experiment = 'spun': must be followed by"),
+        ("spun/inertia0.5", json.dumps(TINY), "experiment = spun/inertia0.5: must be the variant"),
+        ("spun", json.dumps(TINY | {"sweep": SWEEP}), "experiment = 'spun': must be followed by"),
     ],
 )
 def test_bad_input_is_refused_in_one_line(configuration, tmp_path, capsys, name, settings, message):

@@ -6,30 +6,18 @@ import resource
 import shlex
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
+from schedules import TINY
 
+from cli.conftest import ROOT
 from roughgas.base.errors import CollapseError
 from roughgas.base.version import __version__
 from roughgas.cli import main
 from roughgas.data.point import WALL_CLOCK, read_point
 from roughgas.simulation.point import run_point
 
-CONFIG = str(Path(__file__).parents[2] / "config.yaml")
-SETTINGS = {
-    "particles": 5,
-    "box": [20, 20],
-    "effects": {"spin": {"inertia": 0.5}},
-    "schedule": {
-        "kind": "cooling",
-        "replicas": 2,
-        "thermalise": 1,
-        "relaxation_times": 1,
-        "plateau": 5,
-        "sample_every": 1,
-    },
-}
+CONFIG = str(ROOT / "config.yaml")
 
 
 def run(output, experiment="cooling", r="0.9", beta="0", seed="1", **others):
@@ -51,11 +39,11 @@ def run(output, experiment="cooling", r="0.9", beta="0", seed="1", **others):
         ({"config": "no.yaml"}, "no.yaml: No such file or directory"),
         ({"settings": "{"}, "--settings = '{': must be JSON"),
         (
-            {"settings": json.dumps(SETTINGS | {"particles": 0})},
+            {"settings": json.dumps(TINY | {"particles": 0})},
             "--settings.particles = 0: must be a whole number >= 1",
         ),
-        ({"settings": json.dumps(SETTINGS | {"particles": 10_000})}, "particles = 10000: must"),
-        ({"settings": json.dumps(SETTINGS | {"box": [3, 3]})}, "box[0] = 3"),
+        ({"settings": json.dumps(TINY | {"particles": 10_000})}, "particles = 10000: must"),
+        ({"settings": json.dumps(TINY | {"box": [3, 3]})}, "box[0] = 3"),
     ],
 )
 def test_bad_input_is_refused_in_one_line_and_leaves_no_file(tmp_path, capsys, choice, message):
@@ -133,7 +121,7 @@ def test_an_interrupt_ends_in_one_line(tmp_path, capsys, monkeypatch):
 @pytest.fixture(scope="module")
 def point(tmp_path_factory):
     path = tmp_path_factory.mktemp("point") / "a" / "b" / "point.nc"
-    assert run(path, beta="-0.50", settings=json.dumps(SETTINGS)) == 0
+    assert run(path, beta="-0.50", settings=json.dumps(TINY)) == 0
     return path
 
 
@@ -142,7 +130,7 @@ def test_a_point_says_how_to_run_it_again(point, tmp_path):
     assert dataset.attrs["experiment"] == "cooling"
     assert dataset.attrs["scale"] == "paper"
     assert dataset.attrs["beta"] == -0.5 and dataset.attrs["beta_label"] == "-0.50"
-    assert json.loads(dataset.attrs["experiment_json"]) == SETTINGS
+    assert json.loads(dataset.attrs["experiment_json"]) == TINY
     program, *arguments = shlex.split(dataset.attrs["command"])
     assert program == "roughgas"
     arguments[-1] = str(tmp_path / "again.nc")
@@ -155,7 +143,7 @@ def test_a_point_says_how_to_run_it_again(point, tmp_path):
 
 def run_seeds(folder, seeds, files):
     arguments = ["run", "cooling", "--r=0.9", "--beta=0", "--seed", *seeds]
-    arguments += ["--settings", json.dumps(SETTINGS), "--output"]
+    arguments += ["--settings", json.dumps(TINY), "--output"]
     return main([*arguments, *(str(folder / name) for name in files)])
 
 
@@ -174,7 +162,7 @@ def test_several_seeds_are_the_same_as_each_alone(tmp_path, capsys):
 def test_several_betas_each_with_each_seed(tmp_path):
     names = [f"{beta}_{seed}.nc" for beta in ("-1e-1", "0.5") for seed in "12"]
     arguments = ["run", "cooling", "--r=0.9", "--beta=-1e-1", "--beta=0.5", "--seed", "1", "2"]
-    arguments += ["--settings", json.dumps(SETTINGS), "--output"]
+    arguments += ["--settings", json.dumps(TINY), "--output"]
     assert main([*arguments, *(str(tmp_path / name) for name in names)]) == 0
     for name in names:
         command = shlex.split(read_point(tmp_path / name).attrs["command"])
@@ -220,7 +208,7 @@ def test_a_run_imports_no_more_than_it_needs(point, tmp_path):
         "assert main(sys.argv[1:]) == 0\nprint(*sys.modules)\n"
     )
     arguments = ["run", "cooling", "--r=0.9", "--beta=0", "--seed=1", "--checked"]
-    arguments += [f"--settings={json.dumps(SETTINGS)}", f"--output={tmp_path / 'point.nc'}"]
+    arguments += [f"--settings={json.dumps(TINY)}", f"--output={tmp_path / 'point.nc'}"]
     done = subprocess.run(
         [sys.executable, "-c", script, *arguments], capture_output=True, text=True, check=True
     )
@@ -236,7 +224,7 @@ def test_a_full_disk_is_named_and_leaves_no_file(point, tmp_path):
 
     arguments = ["run", "cooling", "--r=0.9", "--beta=0", "--seed=1", "--output=point.nc"]
     done = subprocess.run(
-        [sys.executable, "-m", "roughgas", *arguments, "--settings", json.dumps(SETTINGS)],
+        [sys.executable, "-m", "roughgas", *arguments, "--settings", json.dumps(TINY)],
         cwd=tmp_path,
         preexec_fn=nothing_fits,
         capture_output=True,

@@ -10,26 +10,12 @@ import time
 from pathlib import Path
 
 import pytest
+from schedules import BRIEF, TINY
 
 from roughgas.kernel.cache import kernel_folder
 
 ROOT = Path(__file__).parent.parent.parent
-CONFIG = str(ROOT / "config.yaml")
-SCHEDULE = {
-    "kind": "cooling",
-    "replicas": 2,
-    "thermalise": 1,
-    "relaxation_times": 1,
-    "plateau": 5,
-    "sample_every": 1,
-}
-SETTINGS = {
-    "particles": 5,
-    "box": [20, 20],
-    "effects": {"spin": {"inertia": 0.5}},
-    "schedule": SCHEDULE,
-}
-LONG = SETTINGS | {"schedule": SCHEDULE | {"plateau": 5_000_000}}
+LONG = TINY | {"schedule": BRIEF | {"plateau": 5_000_000}}
 TMPFS = "mount -t tmpfs -o {options} none {folder} && exec {command}"
 
 
@@ -59,7 +45,7 @@ def roughgas(*arguments, **others):
     return python("-m", "roughgas", *arguments, **others)
 
 
-def point(output, settings=SETTINGS, seed=1):
+def point(output, settings=TINY, seed=1):
     """The arguments that simulate a tiny point."""
     arguments = ["run", "cooling", "--r=0.9", "--beta=0", f"--seed={seed}"]
     return [*arguments, "--settings", json.dumps(settings), "--output", str(output)]

@@ -7,8 +7,9 @@ import time
 
 import pytest
 from project import Project
+from schedules import TINY
 
-from habits.conftest import LONG, SETTINGS, catches, environment, interrupt, point, wait_until
+from habits.conftest import LONG, catches, environment, interrupt, point, wait_until
 
 LAST = "Stopped: the same command goes on from here."
 
@@ -45,7 +46,7 @@ def project(tmp_path_factory):
     project = Project(tmp_path_factory.mktemp("project"))
     sweep = {"r": ["0.9"], "beta": ["0"], "seeds": 2}
     long = LONG | {"sweep": sweep}
-    dense = SETTINGS | {"particles": 60, "box": [18, 18], "sweep": sweep | {"r": ["0.01"]}}
+    dense = TINY | {"particles": 60, "box": [18, 18], "sweep": sweep | {"r": ["0.01"]}}
     dense["effects"] = dense["effects"] | {"contact_time": None}
     scales = {"long": {"cooling": long}, "dense": {"cooling": dense}}
     project.configure(lambda config: config["scales"].update(scales))
