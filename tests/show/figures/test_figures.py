@@ -51,6 +51,7 @@ DATA = {
     "fig5": lambda: (
         over("heated", "thermostat.spin_share", (0.0, 0.5, 1.0)),
         boundaries("floor_materials"),
+        boundaries("wall_materials"),
         boundaries("shaken_walls"),
     ),
     "fig6": lambda: (over("waves", "floor.wave", WAVES, r=(0.8, 0.9)),),
@@ -222,10 +223,10 @@ def test_friction_of_zero_is_left_out_of_a_logarithmic_axis():
 
 
 def test_boundary_drives_stand_at_their_measured_shares():
-    heated, floor, walls = DATA["fig5"]()
-    main, residual = fig5.draw(heated, floor, walls).axes
+    heated, *beds, walls = DATA["fig5"]()
+    main, residual = fig5.draw(heated, *beds, walls).axes
     points = [column for column in bars(main) if len(column)]
-    assert len(points) == 3 * heated.beta.size
+    assert len(points) == 4 * heated.beta.size
     np.testing.assert_allclose(points[-1][:, 0], walls.input_spin_share.sel(r=0.9, beta=1.0))
     beneath = [column for column in bars(residual) if len(column)]
     share, ratio = (walls[name].sel(r=0.9, beta=1.0) for name in ("input_spin_share", "R"))
@@ -244,8 +245,20 @@ def test_wave_forms_are_compared_with_the_sawtooth():
         np.testing.assert_allclose(second[:, 1], one - other)
 
 
-def test_the_share_of_rotation_is_shown_beneath_R():
+def test_the_share_of_rotation_is_shown_beneath_the_shift_that_it_causes():
     floor, walls = DATA["fig8"]()
-    axes = fig8.draw(floor, walls).axes
-    beneath = [column for column in bars(axes[2]) if len(column)]
-    np.testing.assert_allclose(beneath[0][:, 1], floor.input_spin_share.sel(r=0.9, beta=-0.5))
+    left, _, beneath, _ = fig8.draw(floor, walls).axes
+    shares = [column for column in bars(beneath) if len(column)]
+    np.testing.assert_allclose(shares[0][:, 1], floor.input_spin_share.sel(r=0.9, beta=-0.5))
+    shifts = [column for column in bars(left) if len(column)]
+    along = floor.R.sel(r=0.9, beta=-0.5)
+    np.testing.assert_allclose(shifts[0][:, 1], along - along.sel(roughness=-1.0))
+    line = left.get_lines()[0].get_ydata()
+    np.testing.assert_allclose(line[1], 0.0, atol=1e-12)  # a share of 0 shifts nothing
+    assert line[0] < 0.0 < line[2]
+
+
+def test_shifts_need_a_smooth_boundary():
+    floor, walls = DATA["fig8"]()
+    with pytest.raises(InputError, match="roughness of floor_materials"):
+        fig8.draw(floor.sel(roughness=[0.0, 1.0]), walls)

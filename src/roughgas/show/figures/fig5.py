@@ -1,7 +1,7 @@
 """Fig. 5: drives that put energy into rotation, too. R against their share of it.
 
-A stochastic drive has the share that is chosen. A floor and shaken side walls that are rough have
-the one that their energy books say.
+A stochastic drive has the share that is chosen. A rough floor, the floor of a bed between rough
+side walls, and shaken side walls have the one that their energy books say.
 """
 
 import xarray as xr
@@ -10,17 +10,21 @@ from matplotlib.figure import Figure
 from roughgas.show.figures import panel
 from roughgas.show.style import GREY, LOOKS
 
+DRIVES = (("random kicks", "o"), ("rough floor", "^"), ("rough side walls", "v"))
+DRIVES += (("rough shaken walls", "D"),)
+"""Labels and markers, in the order of the datasets."""
 
-def draw(heated: xr.Dataset, floor: xr.Dataset, walls: xr.Dataset) -> Figure:
-    """Draw the figure from the reduced datasets of the three drives: colours and lines stand for
-    beta, symbols for the drive."""
+
+def draw(heated: xr.Dataset, *boundaries: xr.Dataset) -> Figure:
+    """Draw the figure from the reduced datasets of the drives: colours and lines stand for beta,
+    symbols for the drive.
+
+    `boundaries` are the bed on rough floors, the bed between rough walls, and the gas between
+    shaken walls.
+    """
     figure, (one,) = panel.ratio_panels([panel.SPIN_SHARE], width=5.6)
     drawn = []
-    for data, label, marker in (
-        (heated, "stochastic drive", "o"),
-        (floor, "rough floor", "^"),
-        (walls, "rough shaken walls", "D"),
-    ):
+    for data, (label, marker) in zip((heated, *boundaries), DRIVES, strict=True):
         looks = [look._replace(marker=marker) for look in LOOKS]
         part = panel.series_for_each(data, "beta", looks=looks)
         part = part if data is heated else [_over_measured_share(series) for series in part]

@@ -1,33 +1,61 @@
-"""Fig. 8: what the boundaries are made of. R, and how much rotation they put in."""
+"""Fig. 8: what the boundaries are made of. How far they shift R, and how much rotation they put in.
 
+Shifts are from the same bed with a smooth boundary, beside those that the rate equations expect of
+the measured share of rotation: what sets a bed apart from theory anyway is not shown (Fig. 1a is).
+"""
+
+import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from roughgas.base.errors import InputError
 from roughgas.show.figures import panel
+from roughgas.show.style import HEIGHT, THEORY
+
+SMOOTH = -1.0
 
 
 def draw(floor: xr.Dataset, walls: xr.Dataset) -> Figure:
     """Draw the figure from the reduced datasets of the bed on rough floors and between rough walls.
 
-    Lines above: the rate equations, with the share of rotation that is shown beneath.
+    Raises InputError where a sweep has no smooth boundary.
     """
-    figure, panels = panel.ratio_panels([panel.ROUGHNESS] * 2, width=panel.TWO_WIDE)
+    figure = Figure(figsize=(panel.TWO_WIDE, HEIGHT), layout="constrained")
+    above, beneath = figure.subplots(2, 2, sharex="col", sharey="row")
     parts = (floor, "Rough floor"), (walls, "Rough side walls")
-    for one, (data, name) in zip(panels, parts, strict=True):
-        drawn = panel.series_for_each(data, "beta")
-        for series in drawn:
-            _draw_shares(one, series)
-        panel.draw_series(one, drawn, residuals=False)
-        one.main.set_ylim(0.0, 0.78)  # room for the legend
-        panel.add_legend(one.main, drawn, title="lines: rate equations", loc="upper left")
-        panel.add_title(one.main, [data], rf"{name}, $r = {panel.RESTITUTION:g}$")
-    panels[0].residual.set_ylabel("share of rotation in\nthe energy put in")
+    for upper, lower, (data, name) in zip(above, beneath, parts, strict=True):
+        if SMOOTH not in data.roughness:
+            given = data.roughness.values
+            raise InputError(f"roughness of {data.attrs['experiment']}", given, "include -1")
+        for one in panel.series_for_each(data, "beta"):
+            _draw_shift(upper, one)
+            _draw_share(lower, one)
+        for axes in (upper, lower):
+            axes.axhline(0, color=THEORY, linewidth=0.8, zorder=0)
+        panel.ROUGHNESS.prepare(lower)
+        upper.legend(title="lines: rate equations", loc="upper left")
+        panel.add_title(upper, [data], rf"{name}, $r = {panel.RESTITUTION:g}$")
+    above[0].set_ylabel("$R$ minus $R$ with\na smooth boundary")
+    beneath[0].set_ylabel("share of rotation in\nthe energy put in")
+    figure.align_ylabels()
     return figure
 
 
-def _draw_shares(panel: panel.Panel, one: panel.Series) -> None:
-    """Draw the share of rotation in the energy put in, and R of the rate equations for it."""
-    share, error = one.data.input_spin_share.values, one.data.input_spin_share_stderr.values
-    look = {"color": one.look.colour, "linestyle": one.look.line}
-    panel.residual.errorbar(one.at, share, error, marker=one.look.marker, markersize=4, **look)
-    panel.main.plot(one.at, one.predict(spin_share=share), zorder=1, **look)
+def _draw_shift(axes: Axes, one: panel.Series) -> None:
+    """Draw the shift of R from the smooth boundary, measured and expected."""
+    smooth = one.data.sel(roughness=SMOOTH)
+    shift, rough = one.data.R - smooth.R, one.at > SMOOTH
+    error = np.hypot(one.data.R_stderr, smooth.R_stderr).where(rough, 0)
+    expected = one.predict(spin_share=one.data.input_spin_share.values) - one.predict(spin_share=0)
+    colour, marker, line = one.look
+    axes.plot(one.at, expected, color=colour, linestyle=line, zorder=1)
+    axes.errorbar(one.at, shift, error, color=colour, fmt=marker, capsize=1.5)
+    axes.plot([], [], color=colour, marker=marker, linestyle=line, label=one.label)
+
+
+def _draw_share(axes: Axes, one: panel.Series) -> None:
+    """Draw the share of rotation in the energy that all sources put in."""
+    share, error = one.data.input_spin_share, one.data.input_spin_share_stderr
+    colour, marker, _ = one.look
+    axes.errorbar(one.at, share, error, color=colour, fmt=marker, capsize=1.5)
