@@ -30,7 +30,8 @@ def room(row: Margin) -> float:
 
 
 def overview(margins: list[Margin]) -> Figure:
-    """A line a case: a symbol for each of its margins, over how much room that leaves."""
+    """One line for each case, with a symbol for each number that it measures, over the factor by
+    which that could be worse."""
     families = [list(rows) for _, rows in itertools.groupby(margins, key=lambda row: row.family)]
     cases = [list(dict.fromkeys(row.case for row in rows)) for rows in families]
     lines = sum(map(len, cases)) + len(families)
@@ -69,7 +70,8 @@ def _frame(axes, labels):
     axes.grid(axis="x", color=FAINT, linewidth=0.3)
     axes.axvline(1.0, color=THEORY)
     axes.set_xlabel("factor by which a measured number could be worse", fontsize=9)
-    note = "a symbol a margin; the line reaches to the least of a case; arrows: more, or exact"
+    note = "each symbol is one measured number; a line ends at the one nearest to its limit;\n"
+    note += "arrows: off the scale, or without any error"
     axes.set_title(note, fontsize=7, color=GREY, loc="right", pad=3)
 
 

@@ -1,6 +1,6 @@
 """Closed forms for R = E_rot/(E_rot + E_tr), the share of rotational energy per degree of freedom.
 
-Source: McNamara & Luding (1998).
+Source: McNamara & Luding (1998). docs/references.md says who has published them in other forms.
 """
 
 import numpy as np

@@ -9,10 +9,11 @@ one collision changes the energies of its pair by the normal part -m (1-r^2) g_n
 
 In a Maxwellian gas v_t and v_r are on average T_tr : T_rot/q of g_t, whatever eta, so that only
 the averages of eta g_t^2 and eta^2 g_t^2 are needed, and these are elementary (`_moments`). Source
-of the rule: O. R. Walton, in Particulate Two-Phase Flow, ed. M. C. Roco (1993). The averages and
-what follows from them were derived for this package; that a cooling gas with weak friction may keep
-its spin while translation dies out, O. Herbst, M. Huthmann & A. Zippelius found (Granular Matter 2,
-211, 2000).
+of the rule: O. R. Walton, in Particulate Two-Phase Flow, ed. M. C. Roco (1993). Rate equations with
+these averages are those of O. Herbst, M. Huthmann & A. Zippelius (Granular Matter 2, 211, 2000),
+who found that a cooling gas of spheres with weak friction may keep its spin while translation dies
+out, and of Herbst et al. (Phys. Fluids 17, 107102, 2005) for driven disks. The closed forms here
+were worked out without having these papers at hand, and have not been compared with theirs.
 
 `beta` is beta_0 and `mu` >= 0 may be infinite: McNamara & Luding's gas, `rate_equations`.
 """

@@ -6,8 +6,13 @@ Maxwellian gas with eta = q (1 + beta)/[2 (1 + q)], nu collisions per particle p
     dT_tr/dt  = (nu/D) {-[(1-r^2) + 2(D-1) eta (1-eta)] T_tr + 2(D-1) (eta^2/q) T_rot} + drive
     dT_rot/dt = (2(D-1) nu/(2D-3)) {(eta^2/q) T_tr - (eta/q) (1-eta/q) T_rot} + drive
 
+They are those of M. Huthmann & A. Zippelius, Phys. Rev. E 56, R6275 (1997) for spheres, and of
+S. Luding et al., Phys. Rev. E 58, 3416 (1998) for disks, too.
+
 A drive is described by `spin_share`, the share s in [0, 1] of its power that goes into spin: 0 is
-translational, 1 rotational driving, and None no drive: free cooling.
+translational, 1 rotational driving (R. Cafiero, S. Luding & H. J. Herrmann, Europhys. Lett. 60,
+854, 2002), and None no drive: free cooling. A. Megias & A. Santos, Front. Phys. 10, 971671 (2022)
+drive disks so with any share.
 """
 
 from typing import NamedTuple

@@ -42,6 +42,8 @@ class Samples(NamedTuple):
 
     a20 = D <v^4>/[(D + 2) <v^2>^2] - 1, a02 the same of the spins and their n = 2 D - 3 components,
     a11 = <v^2 w^2>/(<v^2> <w^2>) - 1, alignment = 3 <(v.w)^2>/<v^2 w^2> - 1 (spheres; 0 for disks).
+    Of rough spheres A. Santos, G. M. Kremer & M. dos Santos (Phys. Fluids 23, 030604, 2011) give
+    such cumulants, and N. V. Brilliantov et al. (Phys. Rev. Lett. 98, 128001, 2007) the alignment.
     """
 
     time: np.ndarray  # T
