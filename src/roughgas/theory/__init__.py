@@ -59,5 +59,14 @@ from roughgas.theory.relaxation import (
     relax,
     relaxation_rate,
 )
+from roughgas.theory.runaway import (
+    cooling_rate,
+    maxwellian_share,
+    runaway_growth,
+    runaway_rate,
+    runaway_spin,
+    runaway_time,
+    spinner_temperature,
+)
 
 __all__ = [name for name, public in globals().items() if callable(public)]

@@ -1,0 +1,48 @@
+"""A slow, independent simulation of single spinners in a gas that cools: many of them side by side,
+each meeting particles drawn from Maxwellians. In units of sqrt(T_tr/m) of the gas, in which the
+gas stays as it is and the spinners gain."""
+
+import numpy as np
+
+
+def spin_in_the_end(spinners, start, gas, rate, tau, duration, seed, step=0.03):
+    """Return |a w| of each spinner after `duration` collisions per particle of the gas, in units of
+    the start, and the mean square of a component of their velocity on the way.
+
+    `gas` is (r, beta, mu, theta, dimension), `rate` that at which its T_tr falls.
+    """
+    r, beta, mu, theta, dimension = gas
+    rng, q = np.random.default_rng(seed), {2: 1 / 2, 3: 2 / 5}[dimension]
+    moving, turning = ([0, 1], [2]) if dimension == 2 else ([0, 1, 2], [0, 1, 2])
+
+    def drawn(axes, width, number=spinners):
+        vectors = np.zeros((number, 3))
+        vectors[:, axes] = width * rng.standard_normal((number, len(axes)))
+        return vectors
+
+    v, w = drawn(moving, np.sqrt(tau)), np.zeros((spinners, 3))
+    w[:, 2] = start
+    # a pair of the gas has |g.n| = 2/sqrt(pi) on average, for any normal
+    share, gain, squares = step * np.sqrt(np.pi) / 2, np.exp(rate * step / 2), []
+    for _ in range(round(duration / step)):
+        other, n = drawn(moving, 1.0), drawn(moving, 1.0)
+        n /= np.linalg.norm(n, axis=1, keepdims=True)
+        speed = np.sum((v - other) * n, axis=1)
+        hit = np.flatnonzero(np.abs(speed) * share > rng.random(spinners))
+        n = n[hit] * -np.sign(speed[hit, None])
+        spin = drawn(turning, np.sqrt(theta / q), len(hit))
+        impulse = _impulse(v[hit] - other[hit], w[hit] + spin, n, r, beta, mu, q)
+        v[hit] += impulse
+        w[hit] -= np.cross(n, impulse) / q
+        v, w = gain * v, gain * w
+        squares.append(np.sum(v**2) / spinners / dimension)
+    return np.linalg.norm(w, axis=1) * np.exp(-rate * duration / 2), np.mean(squares)
+
+
+def _impulse(v, spins, n, r, beta, mu, q):
+    """What sticks, or slides where the tangential impulse would exceed mu times the normal one."""
+    g = v - np.cross(spins, n)
+    normal = np.sum(g * n, axis=1, keepdims=True) * n
+    push, drag = -(1 + r) / 2 * normal, -(1 + beta) / (2 + 2 / q) * (g - normal)
+    most, needed = (mu * np.linalg.norm(push, axis=1), np.linalg.norm(drag, axis=1))
+    return push + np.minimum(1.0, most / np.maximum(needed, 1e-300))[:, None] * drag
