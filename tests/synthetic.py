@@ -33,6 +33,7 @@ def reduced(
         "dimension": 3 if spheres else 2,
         "inertia": 0.4 if spheres else 0.5,
         "particles": 160,
+        "packing": 0.05,
         "theory": "K" if experiment.startswith("cooling") else "lun",
     }
     axes = {"r": list(r), "beta": list(beta)}

@@ -151,6 +151,13 @@ def test_numbers_are_what_datasets_hold(judged, name, datasets, index, value):
     assert number.value == pytest.approx(value, abs=0.005) and number.real
 
 
+def test_reasons_say_how_large_a_cooling_gas_is(judged):
+    size = "R of the cooling gas is that at N = 160, packing 0.05."
+    assert size in judged("cooling_follows_k", cooling()).reason
+    assert size in judged("forcing_decides", cooling(), reduced()).reason
+    assert "N =" not in judged("vibrated_follows_lun", reduced()).reason
+
+
 def test_one_stray_point_qualifies_but_does_not_refute(judged):
     stray = reduced(shift=lambda r, beta: 0.1 * ((r == 0.9) & (beta == 0.3)))
     finding = judged("vibrated_follows_lun", stray)

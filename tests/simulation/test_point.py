@@ -31,6 +31,8 @@ def test_the_same_point_twice_and_another_seed(name):
     assert one.variables["kernel_seconds"] > 0.0
     assert one.attributes["seed"] == 3 and one.attributes["particles"] == 20
     assert one.attributes["inertia"] == 0.5 and one.attributes["dimension"] == 2
+    filled = {"sheared": 20 * np.pi / 18**2, "gas": 20 * np.pi / 25**2}  # the bed is open above
+    assert one.attributes.get("packing") == (filled.get(name) and pytest.approx(filled[name]))
 
 
 @pytest.mark.parametrize("name", POINTS)

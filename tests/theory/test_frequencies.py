@@ -46,3 +46,9 @@ def test_frequency_grows_with_packing_and_root_of_temperature(dimension):
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_no_collisions_in_empty_space(dimension):
     assert np.isinf(theory.mean_free_path(0, dimension))
+
+
+def test_a_box_is_as_full_as_its_particles_are_dense():
+    for box in ([10.0, 30.0], [8.0, 9.0, 10.0]):
+        phi = theory.packing_fraction(12, box)
+        assert theory.number_density(phi, len(box)) == pytest.approx(12 / np.prod(box))

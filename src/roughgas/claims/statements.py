@@ -85,6 +85,15 @@ def _said_of(function: Callable) -> str:
     return " ".join(inspect.getdoc(function).split("\n\n")[0].split())
 
 
+def _size(data: xr.Dataset) -> str:
+    """Return a sentence on the size of a cooling gas, on which its R depends; "" of others."""
+    about = data.attrs
+    if about["theory"] != "K" or "packing" not in about:
+        return ""
+    size = f"N = {about['particles']}, packing {about['packing']:.2g}"
+    return f"R of the cooling gas is that at {size}."
+
+
 def examine(statement: Statement, datasets: dict[str, xr.Dataset]) -> Finding:
     """Judge `statement` on `datasets` (by experiment), or say why it cannot be judged."""
     missing = [name for name in statement.experiments if name not in datasets]
@@ -96,5 +105,7 @@ def examine(statement: Statement, datasets: dict[str, xr.Dataset]) -> Finding:
     except NotTestedError as lack:
         reason = str(lack)
         return Finding(NOT_TESTED, f"{reason[0].upper()}{reason[1:]}.")
+    for sentence in filter(None, map(_size, used)):
+        finding = finding.noting(sentence)
     aside = sum(data.attrs["set_aside"] for data in used)
     return finding.noting(f"{points(aside)} not in a steady state set aside.") if aside else finding

@@ -20,6 +20,7 @@ from roughgas.scene import DIAMETER, build
 from roughgas.simulation.energies import restored
 from roughgas.simulation.gas import Gas
 from roughgas.simulation.progress import FilmProgress
+from roughgas.theory import packing_fraction
 
 COSTS = ("seconds", "collisions", "touched")  # what a Recorder sums up
 
@@ -150,7 +151,7 @@ def _attributes(settings) -> dict[str, Any]:
         "inertia": settings["effects"]["spin"]["inertia"],
         "box": [float(length) for length in settings["box"]],
         "window": float(settings["window"]),
-        "packing": np.pi * settings["particles"] / (settings["box"][0] * settings["box"][1]),
+        "packing": packing_fraction(settings["particles"], settings["box"]),
         "settings_json": as_text(settings),
         "roughgas_version": __version__,
         "numpy_version": np.__version__,

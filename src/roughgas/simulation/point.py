@@ -11,6 +11,7 @@ from roughgas.kernel.cache import source_hash
 from roughgas.scene import Scene, build
 from roughgas.simulation import schedule
 from roughgas.simulation.gas import Gas, Recorder
+from roughgas.theory import packing_fraction
 
 
 def run_point(
@@ -27,7 +28,7 @@ def run_point(
     the simulation goes on. Raises InputError if the particles do not fit, CollapseError if contacts
     accumulate without end.
     """
-    recorder = Recorder(tell)
+    recorder, number = Recorder(tell), experiment["particles"]
     found = schedule.of(experiment).run(scene, experiment, seed, recorder)
     found |= {"collisions": recorder.collisions, "kernel_seconds": recorder.seconds}
     if scene.effects.contact_time is not None:
@@ -39,8 +40,9 @@ def run_point(
             "r": scene.restitution,
             "beta": scene.roughness,
             "seed": int(seed),
-            "particles": experiment["particles"],
+            "particles": number,
             "dimension": len(scene.box),
+            **({} if None in scene.box else {"packing": packing_fraction(number, scene.box)}),
             **_known_to_theory(scene, experiment),
             "roughgas_version": __version__,
             "numpy_version": np.__version__,

@@ -34,6 +34,7 @@ from roughgas.theory.frequencies import (
     contact_value,
     mean_free_path,
     number_density,
+    packing_fraction,
 )
 from roughgas.theory.friction import (
     critical_friction,

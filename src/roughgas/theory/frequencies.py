@@ -3,6 +3,9 @@
 `packing` phi is the fraction of the area or volume that particles fill, from 0 to close packing.
 """
 
+import math
+from collections.abc import Sequence
+
 import numpy as np
 
 from roughgas.base.legal import Interval
@@ -13,10 +16,19 @@ CLOSE_PACKING = {2: np.pi / np.sqrt(12), 3: np.pi / np.sqrt(18)}
 """Packing fraction of the densest arrangement of disks and of spheres."""
 
 
+VOLUME = {2: np.pi, 3: 4 * np.pi / 3}
+"""Area of a disk and volume of a sphere, in a^D."""
+
+
+def packing_fraction(particles: int, box: Sequence[float]) -> float:
+    """Return phi of so many particles in a box with sides of these lengths (a)."""
+    return particles * VOLUME[check_dimension(len(box))] / math.prod(box)
+
+
 def number_density(packing, dimension=2) -> np.ndarray:
     """Return particles per area (2D) or volume (3D), in units of a^-D."""
     packing, dimension = _packing(packing, dimension)
-    return packing / {2: np.pi, 3: 4 * np.pi / 3}[dimension]
+    return packing / VOLUME[dimension]
 
 
 def contact_value(packing, dimension=2) -> np.ndarray:

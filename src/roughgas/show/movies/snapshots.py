@@ -17,14 +17,13 @@ from roughgas.simulation import cooling, schedule
 from roughgas.simulation.energies import Energies, ratio, restored
 from roughgas.simulation.gas import Gas
 from roughgas.simulation.instant import in_order, whereabouts
-from roughgas.theory.frequencies import collision_frequency
+from roughgas.theory.frequencies import collision_frequency, packing_fraction
 
 STRIDES = 200  # steps are of one collision in the gas for each so many particles
 PATIENCE = 1_000_000  # particles times T that a movie waits for its gas to be stationary, at most
 UNKNOWN_TRANSIENT = 1000.0  # T, where the schedule does not say how long to wait
 PERIODS, FRAMES = 5, 125  # of a drive, and of a movie of a driven gas
 TIME = 25.0  # T shown of a gas whose drive has no period
-VOLUME = {2: math.pi, 3: 4.0 * math.pi / 3.0}  # of a particle, a^D
 
 
 class Take(NamedTuple):
@@ -129,7 +128,7 @@ class Turning:
 
 
 def _collision_frequency(gas, box):
-    packing = gas.particles * VOLUME[len(box)] / math.prod(box)
+    packing = packing_fraction(gas.particles, box)
     return float(collision_frequency(2.0 * _energies(gas).translational, packing, len(box)))
 
 
