@@ -62,6 +62,7 @@ BED = {
 ROWS = (  # the barest gas comes first
     Row("barest gas: smooth disks", {}),
     Row("+ spin", SPIN),
+    Row("+ spin, contact averages", SPIN | {"contact_averages": {}}),
     Row("+ contact time", {"contact_time": {"duration": 1e-4}}),
     Row("+ side walls", {"walls": SMOOTH}),
     Row("+ shear", {"shear": {"velocity": 2}}, r=0.9),

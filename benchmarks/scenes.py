@@ -74,7 +74,7 @@ def steady(case: Case, number: int):
 
 def advance(scene, state, time=np.inf, collisions=UNLIMITED):
     """Run for so long, or for so many collisions, whichever comes first."""
-    row = np.empty((1, len(columns(len(scene.box), scene.effects.spin is not None))))
+    row = np.empty((1, len(columns(scene))))
     record(state, scene, Sampling(float(time), collisions, 0), row)
 
 

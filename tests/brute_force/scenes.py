@@ -16,6 +16,7 @@ from roughgas.scene.initial import initial_state
 NEVER = 1e-300  # a contact time
 UNLIMITED = 2**60
 
+_SUMS = {"contact_averages": {}}
 _DISKS = {"spin": {"inertia": 0.5}}
 _BED = _DISKS | {
     "gravity": {"acceleration": 1.0},
@@ -29,9 +30,9 @@ KERNELS = {
     "sheared": {
         "particles": 160,
         "box": [50, 50],
-        "effects": _DISKS | {"shear": {"velocity": 2.0}},
+        "effects": _DISKS | _SUMS | {"shear": {"velocity": 2.0}},
     },
-    "bed": {"particles": 160, "box": [50, "open"], "effects": _BED},
+    "bed": {"particles": 160, "box": [50, "open"], "effects": _BED | _SUMS},
     "walled": {
         "particles": 160,
         "box": [50, "open"],
@@ -44,7 +45,7 @@ KERNELS = {
     "spheres": {
         "particles": 64,
         "box": [12, 12, 12],
-        "effects": {"spin": {"inertia": 0.4}, "contact_time": {"duration": NEVER}},
+        "effects": {"spin": {"inertia": 0.4}, "contact_time": {"duration": NEVER}} | _SUMS,
     },
     "friction": {"particles": 160, "box": [100, 100], "effects": _DISKS | _FRICTION},
     "rubbed bed": {
@@ -56,9 +57,10 @@ KERNELS = {
         "particles": 160,
         "box": [50, 50],
         "effects": _DISKS
+        | _SUMS
         | {"shaken_walls": {"amplitude": 1, "period": 2, "restitution": 1, "roughness": 0.5}},
     },
-    "heated": {"particles": 160, "box": [100, 100], "effects": _DISKS | _HEAT},
+    "heated": {"particles": 160, "box": [100, 100], "effects": _DISKS | _HEAT | _SUMS},
     "heated, smooth": {
         "particles": 160,
         "box": [100, 100],
@@ -67,7 +69,7 @@ KERNELS = {
     "heated spheres": {
         "particles": 64,
         "box": [12, 12, 12],
-        "effects": {"spin": {"inertia": 0.4}} | _HEAT | _FRICTION,
+        "effects": {"spin": {"inertia": 0.4}} | _HEAT | _FRICTION | _SUMS,
     },
 }
 
@@ -128,12 +130,12 @@ def begin(experiment, r, beta, seed=0):
 
 def run(state, scene, samples, interval=np.inf, collisions=UNLIMITED, refresh=0):
     """Advance the kernel; columns by name. Fails where the gas collapses."""
-    names = _columns(len(scene.box), scene.effects.spin is not None)
+    names = _columns(scene)
     rows = np.empty((samples, len(names)))
     assert record(state, scene, Sampling(float(interval), collisions, refresh), rows) == samples
     return dict(zip(names, rows.T, strict=True))
 
 
 @functools.cache
-def _columns(dimension, spinning):
-    return columns(dimension, spinning)
+def _columns(scene):
+    return columns(scene)

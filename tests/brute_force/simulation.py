@@ -45,6 +45,7 @@ class BruteForce:
         self.pairs = np.array(list(itertools.combinations(range(self.number), 2))).reshape(-1, 2)
         drawn = drive and world.thermostat
         self.kicks = Kicks(drawn, world.q, self.dimension, drive) if drawn else None
+        self.seen = np.zeros(3)  # v_t^2, v_r^2 and v_t.v_r, over the contacts of pairs so far
         self._fold()
 
     def run(self, collisions):
@@ -238,6 +239,7 @@ class BruteForce:
         if world.q is not None:
             q, beta = world.q, world.beta
             v_t, v_r = v - v_n, -np.cross(self.w[i] + self.w[j], n)
+            self.seen += v_t @ v_t, v_r @ v_r, v_t @ v_r
             along = cut_by_friction(
                 world.mu, push, q * (1.0 + beta) / (2.0 * q + 2.0) * (v_t + v_r)
             )

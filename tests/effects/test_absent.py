@@ -25,6 +25,7 @@ PROGRAM = Path(__file__).parent.parent / "machine_code.py"
 SMALL = {2: (16, [20, 20]), 3: (16, [12, 12, 12])}
 MOMENTS = {"contact_time", "thermostat"}  # what keeps a time for each particle
 EVENTS = {"floor", "walls", "shaken_walls", "thermostat"}  # what has events of its own
+SUMS = {"contact_averages"}  # what keeps running sums
 PHASES = {"floor", "shaken_walls", "shear"}
 
 
@@ -139,8 +140,9 @@ def test_a_state_holds_what_its_effects_need(kernel):
     needed |= {"agenda.boundary_time", "agenda.boundary_code"} if there & EVENTS else set()
     needed |= {"phase"} if there & PHASES else set()
     needed |= {"random"} if "thermostat" in there else set()
+    needed |= {f"sums.{name}" for name in there & SUMS}
     assert set(found) == EVERYWHERE | needed
-    assert found["ledger"].shape == (2, len(there) + 1, 2)
+    assert found["ledger"].shape == (2, len(there - SUMS) + 1, 2)
     for name in needed & {"moments.contact_time", "moments.thermostat", "agenda.boundary_time"}:
         assert found[name].shape == (16,)
     if "spin" in there:
@@ -162,8 +164,9 @@ def test_what_an_effect_needs_is_what_it_adds(kernel):
     )
     added = 16 * 8 * (2 * dimension - 3) * ("spin" in there)
     added += 16 * 8 * len(there & MOMENTS) + 16 * (8 + 4) * bool(there & EVENTS)
+    added += 3 * 3 * 8 * len(there & SUMS)
     added += 8 * ("thermostat" in there) + 8 * len(there) * bool(there & PHASES)
-    assert size - least == added + 2 * 2 * 8 * len(there)
+    assert size - least == added + 2 * 2 * 8 * len(there - SUMS)
 
 
 @pytest.mark.parametrize("kernel", ["smooth", "gas", "sheared", "friction", "heated"])
@@ -188,9 +191,14 @@ def test_columns_without_spin():
     rows = run(state, scene, 5, collisions=10)
     assert rows["collisions"][-1] == 50
     assert not {"ww", "w"} & set(rows)
-    assert not {"ww", "w"} & set(columns(2, False))
-    assert columns(2, True)[-2:] == ["ww", "w"]
-    assert columns(3, True)[-4:] == ["ww", "w_x", "w_y", "w_z"]
+    summed = ["v_t^2", "v_r^2", "v_t.v_r"]
+    ends = {
+        "gas": ["yv_x", "ww", "w"],
+        "bed": ["ww", "w", *summed],
+        "spheres": ["ww", "w_x", "w_y", "w_z", *summed],
+    }
+    for name, end in ends.items():
+        assert columns(begin(small(name), 0.9, -1.0)[0])[-len(end) :] == end
 
 
 def test_smooth_disks_move_as_rough_ones_at_beta_minus_1():
@@ -210,6 +218,9 @@ OF_SPIN = {
     *("R_series", "R_series_stderr", "E_rot", "E_rot_series", "autocorrelation_time"),
 }
 OF_SHEAR = {"R_unsubtracted", "E_trans_unsubtracted", "E_rot_unsubtracted"}
+OF_CONTACTS = {f"R_collisional{end}" for end in ("", "_stderr", "_dof", "_ci95")} | {
+    f"contact_correlation{end}" for end in ("", "_stderr", "_dof", "_ci95")
+}
 OF_CONTACT_TIME = {"contact_time", "contact_time_fraction"}
 WORK = ("floor", "walls", "shaken_walls", "shear", "thermostat")  # what does work has an account
 
@@ -225,6 +236,7 @@ def test_a_point_holds_nothing_of_absent_effects(kernel, tmp_path):
     assert found <= set(POINT)
     assert bool(found & OF_SPIN) == ("spin" in there)
     assert bool(found & OF_CONTACT_TIME) == ("contact_time" in there)
+    assert bool(found & OF_CONTACTS) == ("contact_averages" in there and bool(driven))
     wanted = OF_SHEAR & found
     assert bool(wanted) == ("shear" in there)
     assert ("inertia" in point.attributes) == ("spin" in there)

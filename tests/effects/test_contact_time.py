@@ -80,6 +80,6 @@ def test_t_c_is_a_time_however_slow_the_gas_has_become():
         position[3], velocity[3] = [30.0, 2.0, 2.0], -velocity[0]
         state = new_state(scene, position, slow * velocity, spin)
         run(state, scene, 1, interval=2.0**-10, refresh=1)
-        rows = np.empty((2, len(columns(3, True))))
+        rows = np.empty((2, len(columns(scene))))
         record(state, scene, Sampling(np.inf, 1, 0), rows)
         assert state.counts[TOUCHED] == touched, duration

@@ -30,5 +30,6 @@ def test_the_experiment_at_the_top_is_legal(tmp_path):
     file = page.config_with(page.block(text, "yaml"), tmp_path)
     settings = config.experiment(config.load(file), "tilted_bed", "paper")
     there = {name for name, own in settings["effects"].items() if own is not None}
-    assert there == {"spin", "gravity", "floor", "walls", "friction"} <= set(KINDS)
+    chosen = {"spin", "gravity", "floor", "walls", "friction"}
+    assert there == chosen | {"contact_averages"} <= set(KINDS)
     assert len(config.every_variant("tilted_bed", settings)) == 3

@@ -30,8 +30,14 @@ def test_a_name_that_is_only_in_the_file_is_no_hook(monkeypatch):
 
 def test_every_effect_has_hooks_and_parameters():
     for name, kind in KINDS.items():
-        assert isinstance(kind.hooks, Hooks) and kind.parameters, name
+        assert isinstance(kind.hooks, Hooks) and kind.parameters is not None, name
         assert name == "spin" or any(kind.hooks), name
+
+
+def test_what_only_looks_comes_last():
+    """Accounts in the ledger are numbered without it."""
+    looks = [kind.hooks.contact_seen is not None for kind in KINDS.values()]
+    assert looks == sorted(looks) and any(looks)
 
 
 def test_what_is_absent_is_nowhere():

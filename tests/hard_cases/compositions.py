@@ -33,8 +33,14 @@ PARAMETERS = {
     },
     "friction": {"mu": st.sampled_from([0.0, 0.05, 0.3, 1.0, 20.0])},
     "contact_time": {"duration": st.sampled_from([1e-5, 1e-3, 1e-1])},
+    "contact_averages": {},
 }
-NEEDS = [("gravity", "floor"), ("floor", "gravity"), ("friction", "spin")]
+NEEDS = [
+    ("gravity", "floor"),
+    ("floor", "gravity"),
+    ("friction", "spin"),
+    ("contact_averages", "spin"),
+]
 EXCLUDES = [("walls", "shear"), ("shaken_walls", "shear"), ("walls", "shaken_walls")]
 # A bed in space that is sheared between its sides heats up without end: flights grow long while
 # images slide past by thousands, and a scene may take minutes

@@ -57,7 +57,7 @@ def gaps_at_contacts(experiment, r, beta, collisions, seed=1):
     probe = Probe(plain, np.zeros(2))
     scene = plain._replace(effects=Probed(*plain.effects, probe))
     state = initial_state(scene, experiment, np.random.default_rng(seed))
-    row = np.empty((1, len(columns(len(scene.box), scene.effects.spin is not None))))
+    row = np.empty((1, len(columns(scene))))
     assert _record(state, scene, Sampling(np.inf, collisions, 0), row) == 1
     assert probe.gaps.any()  # else it has not looked
     return probe.gaps

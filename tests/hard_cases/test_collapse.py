@@ -45,7 +45,7 @@ def test_a_bed_that_collapses_is_stopped(margins):
 def collapse(seed):
     """How a bed ends that runs for 60 T, or until it collapses."""
     scene, state = begin(BED, 0.6, 0.0, seed)
-    row = np.empty((1, len(columns(2, True))))
+    row = np.empty((1, len(columns(scene))))
     time, collapsed = 0.0, False
     while time < 60.0 and not collapsed:
         before = state.counts[COLLISIONS]
@@ -95,7 +95,7 @@ def test_a_dense_bed_is_not_taken_for_a_collapse(margins):
     missing = 0
     for r in (0.8, 0.7):
         scene, state = begin(BED, r, 0.0, 1)
-        rows = np.empty((samples, len(columns(2, True))))
+        rows = np.empty((samples, len(columns(scene))))
         missing += samples - record(state, scene, Sampling(0.25, UNLIMITED, 0), rows)
     tried = {"tried": samples // 2, "unit": "T"}
     margins.at_most("quarters of T that are missing", missing, 0, **tried)
@@ -195,7 +195,7 @@ def squeezed(angle, spin, **model):
     position = 30.0 + np.array([[-across, -along], [0.0, 0.0], [across, -along]])
     velocity = np.array([[0.1, 0.0], [0.0, -0.2], [-0.1, 0.0]])
     state = new_state(scene, position, velocity, np.array([[spin], [0.0], [-spin]]))
-    row = np.empty((1, len(columns(2, True))))
+    row = np.empty((1, len(columns(scene))))
     collapsed = record(state, scene, Sampling(50.0, UNLIMITED, 0), row) == 0
     return collapsed, int(state.counts[COLLISIONS])
 

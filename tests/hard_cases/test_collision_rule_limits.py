@@ -198,7 +198,7 @@ def test_parting(margins, dimension):
     )
     scene, _ = begin(experiment, 0.0, -1.0)
     rng, most, pairs_tried = np.random.default_rng(dimension), 0, margins.size(1000, 20_000)
-    row = np.empty((1, len(columns(dimension, True))))
+    row = np.empty((1, len(columns(scene))))
     for _ in range(pairs_tried):
         r = rng.choice([0.0, 1.0, 1.0]) * 10.0 ** rng.uniform(-16, 0)
         scene = scene._replace(restitution=r, roughness=rng.choice([-1.0, rng.uniform(-1, 1)]))

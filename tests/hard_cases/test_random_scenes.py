@@ -47,7 +47,7 @@ class Worst:
         scene, state = begin(experiment, r, beta, self.tried)
         _, world = scene_of(experiment, r, beta)
         self.broken += (state.spin is None) != ("spin" not in experiment["effects"])
-        row = np.empty((1, len(columns(len(scene.box), scene.effects.spin is not None))))
+        row = np.empty((1, len(columns(scene))))
         before, first, last = books(state, scene), snapshot(state, scene), -1.0
         for _ in range(4):
             if record(state, scene, Sampling(20.0, 150, 0), row) == 0:

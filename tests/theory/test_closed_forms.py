@@ -1,6 +1,7 @@
 """The closed forms against each other, against the equations at high precision, and in limits."""
 
 import itertools
+import math
 import subprocess
 import sys
 
@@ -140,3 +141,27 @@ def test_import_needs_numpy_only():
     code = "import sys, roughgas.theory; print({'scipy', 'numba', 'xarray'} & {*sys.modules})"
     out = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert out.stdout.strip() == "set()"
+
+
+@settings(derandomize=True, deadline=None)
+@given(beta=roughness, q=inertia, c=st.floats(-1.0, 1.0))
+def test_a_correlation_at_contacts_leaves_rotation_as_it_is(beta, q, c):
+    """Put into Eq. (deltaEr), the ratio gives no change; without correlation it is Eq. (lun)."""
+    R = theory.correlated_ratio(beta, q, c)
+    assert 0.0 <= R <= 1.0
+    assert theory.correlated_ratio(beta, q, 0.0) == pytest.approx(
+        theory.lun_ratio(beta, q), rel=1e-13
+    )
+    square = R / (1.0 - R) / q if R < 1.0 else math.inf  # <v_r^2>/<v_t^2>
+    if 1e-200 < square < 1e200:
+        change = theory.rotational_energy_change(1.0, c * math.sqrt(square), square, beta, q)
+        size = theory.rotational_energy_change(1.0, 0.0, 0.0, beta, q)
+        assert abs(change) <= 1e-9 * (size + abs(c) * math.sqrt(square) + square)
+
+
+def test_a_correlation_above_zero_lowers_R_where_contacts_are_not_too_rough():
+    """2 k < 1, or beta < q: what sticks to its partner already needs no friction to do so."""
+    c = np.linspace(-0.5, 0.5, 11)
+    assert np.all(np.diff(theory.correlated_ratio(0.0, 0.5, c)) < 0.0)
+    assert np.all(np.diff(theory.correlated_ratio(1.0, 0.5, c)) > 0.0)
+    assert theory.correlated_ratio(0.4, 0.4, c) == pytest.approx(theory.lun_ratio(0.4, 0.4))

@@ -35,6 +35,7 @@ TAKES_DIMENSION = [
 ]
 TAKES_INERTIA = [
     lambda q: theory.lun_ratio(0, q),
+    lambda q: theory.correlated_ratio(0, q, 0),
     lambda q: theory.goldshtein_ratio(0.9, 0, q),
     lambda q: theory.cooling_ratio(0.9, 0, 2, q),
     lambda q: theory.stationary_theta(0.9, 0, 2, q),
@@ -44,6 +45,10 @@ OTHERS = [
     (lambda: theory.relax(-1, 0.9, 0, 1), "theta0 = -1.0: must be a number >= 0"),
     (lambda: theory.relax(1, 0.9, 0, [1, -2]), "collisions = -2.0: must be a number >= 0"),
     (lambda: theory.collisions_to_relax(0.9, 0, 1), "tolerance = 1.0: must lie in (0, 1)"),
+    (
+        lambda: theory.correlated_ratio(0, 0.5, 1.1),
+        "correlation at contacts = 1.1: must lie in [-1, 1]",
+    ),
     (lambda: theory.haff_time(0.9, 0, np.inf), "frequency = inf: must be a number >= 0"),
     (lambda: theory.collision_frequency(1, 0.8, 3), "packing = 0.8: must lie in [0, 0.7405]"),
     (

@@ -25,6 +25,7 @@ GRID = "grid"
 SPIN, COOLING, DRIVEN = "where particles spin", "cooling gas", "driven gas"
 SHEARED, TARGET = "sheared gas", "with a `target_stderr`"
 CONTACT = "where the contact-time model acts"
+AT_CONTACTS = "driven gas with `contact_averages`"
 
 
 class Variable(NamedTuple):
@@ -61,6 +62,19 @@ def _of_spin(long_name: str, units: str = "1", *more: str, over_seeds: str = "me
     return Variable(long_name, units, when=(*more, SPIN), over_seeds=over_seeds)
 
 
+def _at_contacts(name: str, long_name: str) -> dict[str, Variable]:
+    """Return an average over the collisions of pairs, with its error."""
+    of_error = {
+        "stderr": f"standard error of {name} within this file",
+        "dof": f"degrees of freedom that {name}_stderr is known with",
+        "ci95": f"half width of the 95 % interval of {name}, by Student's t",
+    }
+    return {name: Variable(long_name, when=(AT_CONTACTS,))} | {
+        f"{name}_{key}": Variable(about, when=(AT_CONTACTS,), over_seeds="")
+        for key, about in of_error.items()
+    }
+
+
 def _of_target(long_name: str, units: str = "1") -> Variable:
     return Variable(long_name, units, when=(TARGET,))
 
@@ -77,6 +91,10 @@ POINT = {
         flags="untrusted trusted",
     ),
     "R_ratio_of_means": _of_spin("share of rotation in the energy, from the mean energies"),
+    **_at_contacts("R_collisional", "share of rotation in the energy, averaged over collisions"),
+    **_at_contacts(
+        "contact_correlation", "<v_t.v_r>/sqrt(<v_t^2> <v_r^2>), averaged over collisions"
+    ),
     "E_trans": Variable("translational energy per degree of freedom", ENERGY),
     "E_trans_stderr": Variable("standard error of E_trans within this file", ENERGY, over_seeds=""),
     "E_rot": _of_spin("rotational energy per degree of freedom", ENERGY),
@@ -134,6 +152,15 @@ def _derived(long_name: str, units: str = "1", dtype: str = "f8") -> Variable:
     return Variable(long_name, units, (GRID,), dtype, over_seeds="")
 
 
+def _pooled(name: str) -> dict[str, Variable]:
+    pooled = f"standard error of {name}: scatter over seeds and error within them, pooled"
+    return {
+        f"{name}_stderr": _derived(pooled),
+        f"{name}_dof": _derived(f"degrees of freedom that {name}_stderr is known with"),
+        f"{name}_ci95": _derived(f"half width of the 95 % interval of {name}, by Student's t"),
+    }
+
+
 REDUCED = {
     name: about._replace(
         dims=(GRID,), dtype=about.dtype if about.over_seeds == "sum" else "f8", flags=""
@@ -142,10 +169,11 @@ REDUCED = {
     if about.over_seeds and not about.dims
 } | {
     "R_seed": Variable("R of each seed", dims=(GRID, "seed"), over_seeds=""),
-    "R_stderr": _derived("standard error of R: scatter over seeds and error within them, pooled"),
-    "R_dof": _derived("degrees of freedom that R_stderr is known with"),
-    "R_ci95": _derived("half width of the 95 % interval of R, by Student's t"),
+    **_pooled("R"),
     "R_ci95_trusted": _derived("share of seeds whose R_ci95 holds the truth as often as it says"),
+    **_pooled("R_collisional"),
+    **_pooled("contact_correlation"),
+    "R_ratio_of_means_stderr": _derived("standard error of R_ratio_of_means: scatter over seeds"),
     "equilibrated": _derived(
         "share of seeds that were found in a steady state; 0 for a mixture of two"
     ),

@@ -1,10 +1,12 @@
 """What a scene can be made of: one file an effect, each named once, here.
 
-The order is that in which effects act where several have a say (see kernel/hooks.py).
+The order is that in which effects act where several have a say (see kernel/hooks.py). What only
+looks comes last.
 """
 
 from typing import Any, NamedTuple
 
+from roughgas.effects.contact_averages import ContactAverages
 from roughgas.effects.contact_time import ContactTime
 from roughgas.effects.floor import Floor
 from roughgas.effects.friction import Friction
@@ -28,6 +30,7 @@ class Effects(NamedTuple):
     thermostat: Thermostat | None = None
     friction: Friction | None = None
     contact_time: ContactTime | None = None
+    contact_averages: ContactAverages | None = None
 
 
 def inertia(effects: Effects) -> float | None:

@@ -49,7 +49,8 @@ def collide(state, scene, i, j, time):
     w_j = spin_of(state.spin, box, j)
     effects = scene.effects
     material = _material(effects, scene.restitution, scene.roughness, state, i, j, time, dot(v, n))
-    push, turn = response(effects.spin, effects, material, n, v, spin_sum(w_i, w_j), 0.5)
+    w = spin_sum(w_i, w_j)
+    push, turn = response(effects.spin, effects, material, n, v, w, 0.5)
     least = STICKING * state.clock[TYPICAL_SPEED]
     push = _parted(push, n, v, 0.5, least)
     state.counts[SPENT] += -dot(v, n) < least
@@ -63,6 +64,7 @@ def collide(state, scene, i, j, time):
     book_spin(w_i, turn, effects.spin, account)
     book_spin(w_j, turn, effects.spin, account)
     hooks.transfer(effects, None, state, dot(push, subtract(v, between)))
+    hooks.contact_seen(effects, None, state, i, j, n, v, w, push)
     _note_contact(state, effects, i, time)
     _note_contact(state, effects, j, time)
     state.counts[COLLISIONS] += 1

@@ -9,7 +9,7 @@ Where several effects have a say, each gets the value as those listed before it 
 left it.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
 from roughgas.kernel.jit import compiled, is_none, jit, overload
@@ -42,6 +42,14 @@ class Hooks(NamedTuple):
     the surfaces, a vector; without the state, it can depend on ratios of velocities only"""
     contact_made: Callable | None = None
     """(effect, index, none, state, i, time): note that particle i has had a contact"""
+    contact_seen: Callable | None = None
+    """(effect, index, none, state, i, j, n, v, w, push): look at the contact of a pair, and change
+    nothing but State.sums; n is the unit vector from j to i, v the relative velocity before the
+    contact, w the sum of the spins (None without spin), push the momentum that passes from i to j
+    """
+    sums: Mapping[str, int] | None = None
+    """Columns of samples in which the effect keeps running sums -> the power of velocity that each
+    has as its unit; State.sums has them under the effect's name"""
     predict: Callable | None = None
     """(effect, index, state, scene, i) -> (time, what) of particle i's next event that is not a
     contact of a pair; 0 <= what < CODES"""
@@ -86,6 +94,14 @@ def present(effects, name):
     classes = [getattr(kind, "instance_class", type(kind)) for kind in kinds]
     there = [(k, getattr(c.hooks, name)) for k, c in enumerate(classes) if hasattr(c, "hooks")]
     return [Part(place, rank, own) for rank, (place, own) in enumerate(there) if own]
+
+
+def accounts(effects):
+    """Return how many effects have an account in the ledger: what only looks has none.
+
+    It is listed last in Effects, so that the numbers of the others' accounts are their ranks.
+    """
+    return sum(effect is not None for effect in effects) - len(present(effects, "contact_seen"))
 
 
 def displacement(effect, time):
@@ -181,6 +197,7 @@ sliding = _hook("sliding", _thread)
 restitution = _hook("restitution", _thread)
 roughness = _hook("roughness", _thread)
 contact_made = _hook("contact_made", _thread)
+contact_seen = _hook("contact_seen", _thread)
 next_boundary = _hook("predict", _earliest)
 resolve_boundary = _hook("resolve", _addressed)
 transfer = _hook("transfer", _thread)

@@ -170,13 +170,21 @@ def _state(scene, arrays, **parts):
         **{name: arrays[name] for name in ("changes", "label")},
         moments=type(effects)(**moments),
         phase=np.zeros(there) if hooks.present(effects, "phase") else None,
-        ledger=np.zeros((2, there + 1, 2)),
+        ledger=np.zeros((2, hooks.accounts(effects) + 1, 2)),
+        sums=_sums(effects),
         random=np.zeros(1, np.uint64) if hooks.present(effects, "random") else None,
         clock=np.zeros(8),
         counts=np.zeros(12, np.int64),
         agenda=Agenda(**{name: arrays.get(name) for name in Agenda._fields}),
         **parts,
     )
+
+
+def _sums(effects):
+    parts = hooks.present(effects, "sums")
+    powers = {effects._fields[part.place]: list(part.own.values()) for part in parts}
+    kept = {name: np.array([[0.0], [0.0], [1.0]]) * own for name, own in powers.items()}
+    return type(effects)(**kept) if kept else None
 
 
 def _shortlist(number, dimension):

@@ -4,7 +4,7 @@ import math
 from typing import NamedTuple
 
 from roughgas.kernel.flight import arrive, come_in, put
-from roughgas.kernel.hooks import either, unless_absent
+from roughgas.kernel.hooks import either, present, unless_absent
 from roughgas.kernel.jit import compiled, entry, jit
 from roughgas.kernel.loop import advance, start
 from roughgas.kernel.spins import spin_of
@@ -34,16 +34,25 @@ class Sampling(NamedTuple):
     refresh: int
 
 
-def columns(dimension, spinning):
-    """Return the names of the columns that `record` fills, in order; sums over all particles."""
+def columns(scene):
+    """Return the names of the columns that `record` fills, in order.
+
+    These are sums over all particles, and last what effects have summed since the start.
+    """
+    dimension, effects = len(scene.box), scene.effects
     axes = "xyz"[:dimension]
-    spins = [] if not spinning else ["ww"] + (["w"] if dimension == 2 else ["w_x", "w_y", "w_z"])
+    spins = (
+        []
+        if effects.spin is None
+        else ["ww"] + (["w"] if dimension == 2 else ["w_x", "w_y", "w_z"])
+    )
     return (
         ["time", "collisions", "exponent"]
         + [f"vv_{k}" for k in axes]
         + [f"p_{k}" for k in axes]
         + ["y", "yy", "yv_x"]
         + spins
+        + [name for part in present(effects, "sums") for name in part.own]
     )
 
 
@@ -90,6 +99,7 @@ def take_sample(state, scene, row):
         row[4 + 2 * dimension] += height * height
         row[5 + 2 * dimension] += height * velocity[0]
         _add_spin(spin_of(state.spin, box, i), row, 6 + 2 * dimension)
+    _enter_sums(state.sums, state.counts[EXPONENT], row, len(row))
 
 
 @unless_absent
@@ -97,6 +107,28 @@ def _add_spin(spin, row, first):
     for k in range(len(spin)):
         row[first] += spin[k] * spin[k]
         row[first + 1 + k] += spin[k]
+
+
+@unrolled
+def _enter_sums(sums, exponent, row, end):
+    if sums is not None:
+        for k in range(len(sums) - 1, -1, -1):
+            if sums[k] is not None:
+                end = _enter(sums[k], exponent, row, end)
+
+
+@jit
+def _enter(sums, exponent, row, end):
+    first = end - sums.shape[1]
+    for k in range(sums.shape[1]):
+        row[first + k] = _running_sum(sums, k, exponent)
+    return first
+
+
+@jit
+def _running_sum(sums, k, exponent):
+    """Return a sum in units of a and T; what is smaller than the smallest number becomes zero."""
+    return sums[1, k] + math.ldexp(sums[0, k], int(sums[2, k]) * exponent)
 
 
 @compiled
@@ -151,10 +183,26 @@ def rescale(state, scene, power):
         for k in range(2):
             state.ledger[1, account, k] += state.ledger[0, account, k] / (unit * unit)
             state.ledger[0, account, k] = 0.0
+    _keep_sums(state.sums, state.counts[EXPONENT])
     state.counts[EXPONENT] += power
     clock[BASE] = 0.0
     clock[NOW] = 0.0
     clock[INSTANT_END] = 0.0
+
+
+@unrolled
+def _keep_sums(sums, exponent):
+    if sums is not None:
+        for k in range(len(sums)):
+            if sums[k] is not None:
+                _keep(sums[k], exponent)
+
+
+@jit
+def _keep(sums, exponent):
+    for k in range(sums.shape[1]):
+        sums[1, k] = _running_sum(sums, k, exponent)
+        sums[0, k] = 0.0
 
 
 @unless_absent

@@ -26,8 +26,10 @@ from roughgas.theory.prediction import equation_of
 SAME = ("experiment", "scale", "dimension", "inertia", "spin_share", "mu", "particles", "swept")
 OF_A_POINT = ("r", "beta", "seed", "r_label", "beta_label", "variant", "swept_value", "command")
 PROVENANCE = ("roughgas_version", "numpy_version", "numba_version", "kernel_source_hash")
-SCATTERED = ("R", "R_unsubtracted", "R_drift", "E_trans", "input_spin_share")
-"""Means over seeds that carry a standard error, `<name>_stderr`."""
+SCATTERED = ("R_ratio_of_means", "R_unsubtracted", "R_drift", "E_trans", "input_spin_share")
+"""Means over seeds that carry a standard error, `<name>_stderr`, from their scatter."""
+POOLED = ("R", "R_collisional", "contact_correlation")
+"""Those whose standard error pools the scatter with the errors of the seeds themselves."""
 
 
 class Summary(NamedTuple):
@@ -147,25 +149,32 @@ def _over_seeds(stacks: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
             reduced[name] = np.nansum(values, -1) if how == "sum" else _mean(values)
         if name in SCATTERED:
             reduced[f"{name}_stderr"] = _standard_error(values)
-    return reduced | _errors(stacks, reduced) if "R" in stacks else reduced
+    for name in POOLED:
+        reduced |= _errors(name, stacks) if name in stacks else {}
+    return reduced | _kinds_of_error(stacks) if "R" in stacks else reduced
 
 
-def _errors(
-    stacks: Mapping[str, np.ndarray], reduced: Mapping[str, np.ndarray]
-) -> dict[str, np.ndarray]:
-    """Return R of each seed, its errors of both kinds, and the pooled one with its interval."""
+def _errors(name: str, stacks: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Return the pooled error of a mean over seeds, with its interval."""
+    there = np.isfinite(stacks[name])
+    given = [stacks[one] for one in (name, f"{name}_stderr", f"{name}_dof")]
+    names = [f"{name}_{end}" for end in ("stderr", "dof", "ci95")]
+    found = {one: np.full(there.shape[:-1], math.nan) for one in names}
+    for place in zip(*np.nonzero(there.any(-1)), strict=True):
+        error = pooled(*(values[place][there[place]] for values in given))
+        for one, value in zip(names, (*error, error.half_width(0.95)), strict=True):
+            found[one][place] = value
+    return found
+
+
+def _kinds_of_error(stacks: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Return R of each seed, and its errors from within the seeds and from their scatter."""
     there = np.isfinite(stacks["R"])
     count = there.sum(-1)
     square = np.where(there, stacks["R_stderr"] ** 2, 0.0).sum(-1)
     within = np.where(count > 0, np.sqrt(square) / np.maximum(count, 1), math.nan)
-    names = ("R_stderr", "R_dof", "R_ci95")
-    found = {name: np.full(count.shape, math.nan) for name in names}
-    for place in zip(*np.nonzero(count), strict=True):
-        error = pooled(*(stacks[name][place][there[place]] for name in ("R", "R_stderr", "R_dof")))
-        for name, value in zip(names, (*error, error.half_width(0.95)), strict=True):
-            found[name][place] = value
-    kinds = {"R_stderr_within": within, "R_stderr_over_seeds": reduced["R_stderr"]}
-    return found | kinds | {"R_seed": stacks["R"]}
+    over_seeds = _standard_error(stacks["R"])
+    return {"R_stderr_within": within, "R_stderr_over_seeds": over_seeds, "R_seed": stacks["R"]}
 
 
 def _mean(values: np.ndarray) -> np.ndarray:

@@ -78,5 +78,6 @@ def _accounts(scene):
     effects = scene.effects
     working = [part for hook in ("resolve", "transfer") for part in hooks.present(effects, hook)]
     ranks = {effects._fields[part.place]: part.rank for part in working}
-    last = sum(effect is not None for effect in effects)
-    return dict(sorted(ranks.items(), key=lambda item: item[1])) | {CONTACTS: last}
+    return dict(sorted(ranks.items(), key=lambda item: item[1])) | {
+        CONTACTS: hooks.accounts(effects)
+    }

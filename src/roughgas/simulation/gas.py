@@ -55,7 +55,7 @@ class Recorder:
 
         Raises CollapseError if contacts accumulate without end.
         """
-        names = columns(len(scene.box), scene.effects.spin is not None)
+        names = columns(scene)
         rows = np.empty((samples, len(names)))
         record(state, scene, sampling, rows[:0])  # compiles, or fetches the kernel from its cache
         begin, before = time.process_time(), state.counts.copy()

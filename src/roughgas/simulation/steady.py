@@ -8,6 +8,7 @@ import numpy as np
 from roughgas.effects import inertia
 from roughgas.scene import Scene
 from roughgas.simulation.books import exchange
+from roughgas.simulation.contacts import contact_averages
 from roughgas.simulation.energies import Columns, energies, ratio, ratio_of_means
 from roughgas.simulation.gas import Gas, Recorder
 from roughgas.statistics.averages import period_means
@@ -16,6 +17,7 @@ from roughgas.statistics.errors import autocorrelation_time, blocking
 from roughgas.statistics.intervals import Error, degrees_of_freedom, is_trusted
 
 DRIVEN, UNIT, LENGTH = True, "T", "measure"  # see roughgas.simulation.schedule.Kind
+KEPT = 4  # values in a period that the stored series have
 LEAST_LEFT = 0.5  # share of the planned measurement below which a late start is not worth having
 
 
@@ -64,12 +66,12 @@ def run(
         "E_trans": window.translational.mean(),
         "E_trans_stderr": blocking(translational)[0],
         **(_shared(window, per_period, every) if window.rotational is not None else {}),
+        **contact_averages(rows, first, per_period, inertia(scene.effects)),
         **_unsubtracted(gas, rows, first),
         **exchange(before, gas.books(), scene, gas.particles),
         "equilibrated": found,
         "measured_from": first * every,
-        "time": rows["time"][first:],
-        "E_trans_series": window.translational,
+        **_series(rows["time"][first:], window, max(1, per_period // KEPT)),
     }
 
 
@@ -98,9 +100,15 @@ def _shared(window, per_period, every):
         "R_ratio_of_means": ratio_of_means(window),
         "E_rot": window.rotational.mean(),
         "autocorrelation_time": memory * per_period * every,
-        "R_series": R,
-        "E_rot_series": window.rotational,
     }
+
+
+def _series(time, window, together):
+    """Return what is stored over time: means of so many samples each."""
+    found = {"time": time, "E_trans_series": window.translational}
+    if window.rotational is not None:
+        found |= {"R_series": ratio(window), "E_rot_series": window.rotational}
+    return {name: period_means(values, together) for name, values in found.items()}
 
 
 def _unsubtracted(gas, rows, first):

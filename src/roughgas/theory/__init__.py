@@ -19,6 +19,7 @@ from roughgas.theory.closed_forms import (
     c_G,
     cooling_K,
     cooling_ratio,
+    correlated_ratio,
     goldshtein_ratio,
     lun_ratio,
 )

@@ -16,6 +16,7 @@ SHARE = Interval("[0, 1]")
 """Share s of a drive's power that goes into spin."""
 NET_SHARE = Interval("[-1, 2]")
 """The same for a drive that may take energy out of one motion."""
+CORRELATION = Interval("[-1, 1]")
 FRICTION = Interval("[0, inf]")
 """Friction coefficient mu; infinite where contacts never slide."""
 IN_WORDS = {POSITIVE: "be a positive number", NOT_NEGATIVE: "be a number >= 0"}
@@ -24,6 +25,7 @@ LEGAL = {
     "roughness beta": ROUGHNESS,
     "inertia q": POSITIVE,
     "friction mu": FRICTION,
+    "correlation at contacts": CORRELATION,
     "spin share of the drive": SHARE,
     "net spin share of the drive": NET_SHARE,
 }

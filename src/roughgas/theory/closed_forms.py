@@ -16,6 +16,22 @@ def lun_ratio(beta, inertia) -> np.ndarray:
     return gain / (gain + (1 - beta) + 2 * q)
 
 
+def correlated_ratio(beta, inertia, correlation) -> np.ndarray:
+    """Return R averaged over collisions where collisions leave the rotational energy as it is.
+
+    That is a steady state whose drive adds translational energy only. `correlation` is <v_t.v_r>/
+    sqrt(<v_t^2> <v_r^2>) over collisions, in [-1, 1]; where it vanishes this is Eq. (lun). No
+    velocity distribution is assumed: with Eq. (deltaEr), k = (1 + beta)/(2 + 2 q) and
+    x^2 = <v_r^2>/<v_t^2>, what collisions leave alone is k - (1 - k) x^2 - (1 - 2 k) x correlation
+    = 0, and R = q x^2/(1 + q x^2).
+    """
+    beta, q = check("roughness beta", beta), check("inertia q", inertia)
+    c = check("correlation at contacts", correlation)
+    k = (1 + beta) / (2 + 2 * q)
+    x, one = positive_root(1 - k, (2 * k - 1) * c, k)
+    return shares(one**2, q * x**2, neither=0)[1][()]
+
+
 def goldshtein_ratio(r, beta, inertia=2 / 5) -> np.ndarray:
     """Return R of a freely cooling gas of spheres: Eq. (Goldshtein).
 

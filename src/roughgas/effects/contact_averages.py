@@ -1,0 +1,41 @@
+"""Averages over collisions, which the theory is about: this effect only looks.
+
+McNamara & Luding (1998) average over the collisions of pairs: v_t is the tangential part of the
+relative velocity of the centres, v_r = -a (w1 + w2) x n that of the surfaces due to both spins
+(Eq. collrule). Where nothing but contacts changes the rotational energy of a steady state, their
+squares and their product are tied together (theory.contact_share).
+"""
+
+from typing import NamedTuple
+
+from roughgas.base.errors import InputError
+from roughgas.effects.settings import register
+from roughgas.kernel.jit import jit
+from roughgas.kernel.vectors import add_scaled, dot, spin_cross
+
+SUMS = {"v_t^2": 2, "v_r^2": 2, "v_t.v_r": 2}
+
+
+class ContactAverages(NamedTuple):
+    """Squares and product of translation and rotation are summed over all contacts of pairs."""
+
+    @classmethod
+    def from_settings(cls, settings, around):
+        """Return the effect; raise InputError where nothing spins."""
+        if "spin" not in around.effects:
+            legal = "come with spin, which it looks at"
+            raise InputError("effects.contact_averages", "without spin", legal)
+        return cls()
+
+
+@jit
+def contact_seen(averages, index, none, state, i, j, n, v, w, push):
+    sums = state.sums.contact_averages
+    v_t = add_scaled(v, n, -dot(v, n))
+    minus_v_r = spin_cross(w, n)
+    sums[0, 0] += dot(v_t, v_t)
+    sums[0, 1] += dot(minus_v_r, minus_v_r)
+    sums[0, 2] -= dot(v_t, minus_v_r)
+
+
+register(ContactAverages, {}, contact_seen=contact_seen, sums=SUMS)
