@@ -6,7 +6,7 @@ ORDERS = range(2, 13, 2)  # steps of the midpoint rule, to be extrapolated to in
 
 
 def integrate(slope, start, times, pieces=20):
-    """Solutions, shape (len(start), len(times)), of y' = slope(y) from y = `start` at time 0.
+    """Solutions, shape (*shape of start, len(times)), of y' = slope(y) from y = `start` at time 0.
 
     Gragg's midpoint rule, extrapolated by Aitken and Neville (Hairer, Norsett and Wanner, Solving
     Ordinary Differential Equations I, II.9); `pieces` equal ones from each time to the next.
@@ -17,7 +17,7 @@ def integrate(slope, start, times, pieces=20):
             y = _extrapolated(slope, y, (time - now) / pieces)
         states.append(y)
         now = time
-    return np.transpose(states)
+    return np.stack(states, axis=-1)
 
 
 def _extrapolated(slope, y, length):

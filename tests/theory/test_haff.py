@@ -8,23 +8,25 @@ from roughgas import theory
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
-@pytest.mark.parametrize(("r", "beta"), [(0.9, -0.5), (0.8, 0.3), (0.99, 1.0)])
-def test_haff_temperature_solves_the_rate_equations_in_time(dimension, r, beta):
-    T0, packing = 1.7, 0.05
-    start = (T0, T0 * theory.stationary_theta(r, beta, dimension))
+def test_haff_temperature_solves_the_rate_equations_in_time(dimension):
+    r, beta, T0, packing = np.array([0.9, 0.8, 0.99]), np.array([-0.5, 0.3, 1.0]), 1.7, 0.05
+    start = (np.full(3, T0), T0 * theory.stationary_theta(r, beta, dimension))
     nu = theory.collision_frequency(T0, packing, dimension)
-    times = np.linspace(0, 5, 6) * theory.haff_time(r, beta, nu, dimension)
+    units = theory.haff_time(r, beta, nu, dimension)
+    times = np.arange(6.0)
 
     def slope(temperatures):
         T_tr, T_rot = temperatures
         now = theory.collision_frequency(T_tr, packing, dimension)
         changes = theory.temperature_changes(T_tr, T_rot, r, beta, dimension, frequency=now)
-        return np.array(changes)
+        return units * np.array(changes)
 
-    T_tr, _ = integrate(slope, start, times, pieces=100)
-    haff = theory.haff_temperature(times, T0, r, beta, nu, dimension)
+    T_tr, _ = integrate(slope, start, times, pieces=50)
+    haff = theory.haff_temperature(
+        units[:, None] * times, T0, r[:, None], beta[:, None], nu, dimension
+    )
     assert haff == pytest.approx(T_tr, rel=1e-7)
-    assert haff[1] == pytest.approx(T0 / 4, rel=1e-12)
+    assert haff[:, 1] == pytest.approx(T0 / 4, rel=1e-12)
 
 
 @pytest.mark.parametrize("dimension", [2, 3])

@@ -21,21 +21,22 @@ def temperatures(theta0, r, beta, collisions, dimension, s):
         if s is None:
             return change
         power = -(dimension * change[0] + (2 * dimension - 3) * change[1]) / 2
-        return change + theory.drive_changes(max(power, 0), s, dimension)
+        return change + theory.drive_changes(np.maximum(power, 0), s, dimension)
 
-    return integrate(slope, (1, theta0), collisions)
+    return integrate(slope, (np.ones_like(theta0), theta0), collisions)
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
 @pytest.mark.parametrize("s", DRIVES)
 def test_relax_solves_the_rate_equations(dimension, s):
     collisions = np.array([0, 0.5, 2, 8, 20])
-    for (r, beta), theta0 in zip(PLACES, [0, 0.3, 5, 0, 1], strict=True):
-        T_tr, T_rot = temperatures(theta0, r, beta, collisions, dimension, s)
-        gas = theory.relax(theta0, r, beta, collisions, dimension, spin_share=s)
-        assert gas.T_tr == pytest.approx(T_tr, rel=1e-8)
-        assert gas.T_rot == pytest.approx(T_rot, rel=1e-8, abs=1e-14)
-        assert gas.theta == pytest.approx(T_rot / T_tr, rel=1e-8, abs=1e-14)
+    theta0, (r, beta) = np.array([0, 0.3, 5, 0, 1]), np.transpose(PLACES)
+    T_tr, T_rot = temperatures(theta0, r, beta, collisions, dimension, s)
+    places = (part[:, None] for part in (theta0, r, beta))
+    gas = theory.relax(*places, collisions, dimension, spin_share=s)
+    assert gas.T_tr == pytest.approx(T_tr, rel=1e-8)
+    assert gas.T_rot == pytest.approx(T_rot, rel=1e-8, abs=1e-14)
+    assert gas.theta == pytest.approx(T_rot / T_tr, rel=1e-8, abs=1e-14)
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
