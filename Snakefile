@@ -76,9 +76,10 @@ rule figures:
 
 rule extensions:
     input:
-        drawn(catalogue.figures_of("beyond")),
+        drawn(catalogue.figures_of("beyond", "questions")),
         multiext(f"results/{SCALE}/", "extensions.csv", "open_questions.json", "open_questions.md"),
-        documents("open_questions", "run_times_extensions"),
+        [f"results/{SCALE}/{name}.md" for name in catalogue.figures_of("questions")],
+        documents("open_questions", "run_times_extensions", *catalogue.figures_of("questions")),
 
 
 rule explore:

@@ -93,7 +93,7 @@ rule study_figure:
         report(
             "figures/{folder}{study_figure}.png",
             caption="captions/study.rst",
-            category=catalogue.HEADINGS["accuracy"],
+            category=heading_of,
             labels=labels_of,
         ),
     log:

@@ -52,7 +52,7 @@ def frame(report, selector):
 def test_it_opens_on_what_it_is_about(report):
     assert "scale tiny" in report.wait(lambda: report.find("#app .prose"))[0].text
     headings = [one.text for one in report.find("nav li a") if one.text]
-    assert headings == ["Workflow", "Statistics", "About", "1 The paper", "6 This run"]
+    assert headings == ["Workflow", "Statistics", "About", "1 The paper", "7 This run"]
 
 
 def test_every_figure_is_shown_with_the_parameters_of_this_run(report):
@@ -79,11 +79,11 @@ def test_the_tables_are_read_in_place(report):
     follow(report, "1 The paper")
     buttons(report, "Table: the paper's claims")[0].click()
     assert frame(report, "h1") == ["The verdict on the paper"]
-    follow(report, "6 This run")
+    follow(report, "7 This run")
     buttons(report, "Run times: the paper")[0].click()
     report.wait(lambda: frame(report, "h1") == ["Run times"])
     assert "cooling" in frame(report, "td")
-    follow(report, "6 This run")
+    follow(report, "7 This run")
     buttons(report, "Configuration")[0].click()
     (text,) = report.wait(lambda: frame(report, "pre"))
     assert "scale: tiny" in text and "particles: 10" in text

@@ -10,11 +10,34 @@ from roughgas.base.files import write_text
 from roughgas.base.layout import markdown
 from roughgas.studies.tasks import SCENES, STUDIES
 from roughgas.studies.variables import estimate, read_studies
+from roughgas.theory import moment_of_inertia
 
 SHARES = {
     "of_maxwellian": "Maxwellian, uncorrelated velocities",
     "of_number": "infinitely many particles",
     "of_dilution": "no density, no correlations of positions",
+}
+
+BED = {
+    "R": "mean of R(t)",
+    "R_quarters": "at the paper's four phases",
+    "R_ratio_of_means": "ratio of means",
+    "R_weighted": "slices and phases, by their contacts",
+    "R_level": "pairs at one height, by relative speed",
+    "R_meeting": "those near that approach",
+    "R_collisional": "at contacts",
+    "R_lun": "Eq. (lun)",
+    "speed_factor": "{g³}/{g}, over Maxwellian",
+}
+SHEARED = {
+    "theta": "θ",
+    "factor": "theory.shear's factor",
+    "rate": "g",
+    "stress": "p",
+    "difference": "d",
+    "spin_over_vorticity": "spin over half the vorticity",
+    "flow_deviation": "flow beyond linear, over thermal",
+    "R_collisional": "R at contacts, flow included",
 }
 
 
@@ -127,7 +150,34 @@ def coverage(data: xr.Dataset) -> str:
     return f"## Coverage of the stated intervals\n\n{markdown(head, rows)}"
 
 
-TABLES = dict(zip(STUDIES, (statistical, models, discretisation, coverage), strict=True))
+def profiles(data: xr.Dataset) -> str:
+    """Return R of beds by each average, and what makes R of sheared gases what it is."""
+    points = along(data, "point")
+    beds = [one for one in points if np.isnan(one.theta)]
+    head = ["bed", *(text for text in BED.values())]
+    rows = [[point_label(one), *(_written(one, name) for name in BED)] for one in beds]
+    sheared = ["sheared gas", *(text for text in SHEARED.values())]
+    gases = [
+        [point_label(one), *(_written(one, name) for name in SHEARED)]
+        for one in points
+        if np.isfinite(one.theta)
+    ]
+    return (
+        f"## Averages of R in a bed\n\n{markdown(head, rows)}\n"
+        f"## Sheared gases\n\n{markdown(sheared, gases)}"
+    )
+
+
+def point_label(point: xr.Dataset) -> str:
+    """Return what a point of the study of profiles is called."""
+    what = "spheres" if int(point.dimension) == 3 else "disks"
+    usual = moment_of_inertia(int(point.dimension))
+    q = "" if float(point.inertia) == usual else f", q = {float(point.inertia):g}"
+    beta = str(point.beta.values).replace("-", "−")
+    return f"{what}, r = {point.r.values}, β = {beta}{q}"
+
+
+TABLES = dict(zip(STUDIES, (statistical, models, discretisation, coverage, profiles), strict=True))
 
 
 def in_order(data: xr.Dataset) -> xr.Dataset:
@@ -147,6 +197,13 @@ def label(corner: xr.Dataset) -> str:
     """Return what a corner is called."""
     beta = str(np.asarray(corner.beta)).replace("-", "−")
     return f"{corner.experiment.values}, r = {corner.r.values}, β = {beta}"
+
+
+def _written(data, name):
+    """Return a value with its error if it has one."""
+    if f"{name}_stderr" not in data:
+        return f"{float(data[name]):.4f}"
+    return _shown(data, name, "")
 
 
 def _about(data):

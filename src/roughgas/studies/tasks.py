@@ -5,7 +5,7 @@ from typing import Any
 
 PANELS = ("statistical", "models", "discretisation")
 """The studies that the work-precision figure shows, one a panel."""
-STUDIES = (*PANELS, "coverage")
+STUDIES = (*PANELS, "coverage", "profiles")
 SCENES = ("vibrated", "sheared", "cooling")
 WAYS = ("length", "seeds")
 PARTS = ("reference", *WAYS)
@@ -14,6 +14,11 @@ PARTS = ("reference", *WAYS)
 def corner_name(corner: Mapping[str, Any]) -> str:
     """Return the name of the task for a corner of the study of coverage."""
     return f"{corner['experiment']}_r{corner['r']}_beta{corner['beta']}"
+
+
+def profile_name(point: Mapping[str, Any]) -> str:
+    """Return the name of a point of the study of profiles; its runs add `-0`, `-1` ..."""
+    return corner_name(point) + (f"_{point['name']}" if "name" in point else "")
 
 
 def _models(settings):
@@ -44,5 +49,8 @@ TASKS = {
     "models": _models,
     "discretisation": _discretisation,
     "coverage": lambda settings: [corner_name(one) for one in settings["corners"]],
+    "profiles": lambda settings: [
+        f"{profile_name(one)}-{k}" for one in settings["points"] for k in range(settings["runs"])
+    ],
 }
 """For each study, what names its tasks by its settings, the longest first."""

@@ -50,7 +50,7 @@ def test_a_figure_says_what_it_shows_and_how_it_was_made(figure, scale, loaded, 
     assert "sawtooth, reversed_sawtooth, triangle, sine" in text
 
 
-@pytest.mark.parametrize("figure", figures_of("accuracy"))
+@pytest.mark.parametrize("figure", figures_of("accuracy", "questions"))
 def test_a_study_says_how_it_was_made(figure, loaded, monkeypatch):
     monkeypatch.chdir(ROOT)
     settings = {name: config.study(loaded, name, "paper")["study"] for name in studies.STUDIES}

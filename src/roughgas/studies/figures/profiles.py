@@ -1,0 +1,161 @@
+"""Profiles across vibrated beds, and the averages of R that they tell apart; sheared gases."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from roughgas.data.netcdf import read_netcdf
+from roughgas.show.style import FAINT, GREY, LOOKS, THEORY
+from roughgas.studies.profiles import QUARTERS
+from roughgas.studies.tables import along, point_label
+from roughgas.theory.closed_forms import lun_ratio
+
+SIZE = (10.4, 7.0)  # inches
+LEAST = 5e-4
+"""Share of the particles below which a slice is not drawn."""
+AVERAGES = {
+    "R": "mean of $R(t)$",
+    "R_ratio_of_means": "ratio of mean energies",
+    "R_weighted": "slices and phases,\nby their contacts",
+    "R_level": "pairs at one height,\nby relative speed",
+    "R_meeting": "those near,\napproaching",
+    "R_collisional": "at contacts",
+}
+BARS = {"capsize": 1.5, "elinewidth": 0.8}
+
+
+def draw(path: str | Path) -> Figure:
+    """Return the figure, from the combined dataset of the study at `path`."""
+    return draw_figure(read_netcdf(path, "profiles"))
+
+
+def draw_figure(data: xr.Dataset) -> Figure:
+    """Return profiles of beds, averages of R, and sheared gases, from group `profiles`."""
+    beds = [one for one in along(data, "point") if np.isnan(one.theta)]
+    sheared = [one for one in along(data, "point") if np.isfinite(one.theta)]
+    figure = Figure(figsize=SIZE, layout="constrained")
+    panels = figure.subplots(2, 3)
+    draw_density(panels[0, 0], beds)
+    draw_temperatures(panels[0, 1], beds)
+    draw_ratios(panels[0, 2], beds)
+    draw_phases(panels[1, 0], beds)
+    draw_averages(panels[1, 1], beds)
+    draw_sheared(panels[1, 2], sheared)
+    for letter, axes in zip("abcdef", panels.flat, strict=True):
+        axes.set_title(f"({letter})", loc="left", fontsize=9)
+    handles, labels = panels[0, 0].get_legend_handles_labels()
+    figure.legend(
+        handles, labels, loc="outside upper center", ncols=len(beds), title="vibrated beds"
+    )
+    return figure
+
+
+def draw_density(axes: Axes, beds: Sequence[xr.Dataset]) -> None:
+    """Draw number density over height."""
+    for one, look in zip(beds, LOOKS, strict=False):
+        height, (density,) = _drawn(one, "density")
+        axes.plot(height, density, color=look.colour, ls=look.line, label=point_label(one))
+    axes.set(yscale="log", xlabel="height / $a$", ylabel="number density / $a^{-D}$", xlim=0)
+
+
+def draw_temperatures(axes: Axes, beds: Sequence[xr.Dataset]) -> None:
+    """Draw both temperatures over height: of translation thick, of rotation thin."""
+    for one, look in zip(beds, LOOKS, strict=False):
+        height, (rot, across, vertical) = _drawn(one, "T_rot", "T_across", "T_along")
+        D = int(one.dimension)
+        axes.plot(height, ((D - 1) * across + vertical) / D, color=look.colour, lw=1.8)
+        axes.plot(height, rot, color=look.colour, lw=0.9, ls="--")
+    for text, how in (
+        ("translation, without the\nmean velocity of the slice", {"lw": 1.8}),
+        ("rotation", {"lw": 0.9, "ls": "--"}),
+    ):
+        axes.plot([], [], color=GREY, label=text, **how)
+    axes.set(yscale="log", xlabel="height / $a$", ylabel="temperature / $m a^2 T^{-2}$", xlim=0)
+    axes.legend()
+
+
+def draw_ratios(axes: Axes, beds: Sequence[xr.Dataset]) -> None:
+    """Draw R of the temperatures of slices, lines, and R at the contacts there, symbols."""
+    for one, look in zip(beds, LOOKS, strict=False):
+        height, (of_slice, at_contacts) = _drawn(one, "R_slice", "R_slice_collisional")
+        axes.plot(height, of_slice, color=look.colour, lw=1.4)
+        every = slice(None, None, 2)
+        style = {"color": look.colour, "ms": 2.8}
+        axes.plot(height[every], at_contacts[every], look.marker, **style)
+    axes.plot([], [], color=GREY, lw=1.4, label="of the temperatures")
+    axes.plot([], [], "o", color=GREY, ms=2.8, label="at contacts")
+    _draw_lun(axes, beds)
+    axes.set(xlabel="height / $a$", ylabel="$R$ of a slice", xlim=0, ylim=(0, 1))
+    axes.legend(loc="upper right")
+
+
+def draw_phases(axes: Axes, beds: Sequence[xr.Dataset]) -> None:
+    """Draw R of a whole bed over the phase of its floor, and R at contacts near that phase."""
+    for one, look in zip(beds, LOOKS, strict=False):
+        phase = np.append(one.phase.values, 1.0)
+        for name, width, line in (("R_phase", 1.4, "-"), ("R_collisional_phase", 0.9, ":")):
+            values = one[name].values
+            axes.plot(phase, np.append(values, values[0]), line, lw=width, color=look.colour)
+        quarters = slice(None, -1, one.sizes["phase"] // QUARTERS)
+        values = one.R_phase.values[:: one.sizes["phase"] // QUARTERS]
+        axes.plot(phase[quarters], values, look.marker, color=look.colour)
+    axes.plot([], [], color=GREY, lw=1.4, label="of the whole bed")
+    axes.plot([], [], "o", color=GREY, label="at the paper's four phases")
+    axes.plot([], [], color=GREY, lw=0.9, ls=":", label="at contacts")
+    _draw_lun(axes, beds)
+    axes.set(xlabel="time since the floor fell back / period", ylabel="$R$", xlim=(0, 1))
+    axes.set_ylim(0, 0.85)
+    axes.legend(loc="upper right", ncols=2)
+
+
+def draw_averages(axes: Axes, beds: Sequence[xr.Dataset]) -> None:
+    """Draw R of each bed by each average, minus that of Eq. (lun)."""
+    places = np.arange(len(AVERAGES))[::-1]
+    for k, (one, look) in enumerate(zip(beds, LOOKS, strict=False)):
+        R = np.array([float(one[name]) for name in AVERAGES]) - float(one.R_lun)
+        bars = [float(one[f"{name}_stderr"]) for name in AVERAGES]
+        y = places + 0.11 * ((len(beds) - 1) / 2 - k)
+        axes.errorbar(R, y, xerr=bars, fmt=look.marker, color=look.colour, ms=4, **BARS)
+    axes.axvline(0, color=THEORY, lw=0.8)
+    axes.set_yticks(places, AVERAGES.values(), fontsize=7.5)
+    axes.tick_params(axis="y", which="both", left=False, right=False)
+    axes.set_xlabel(r"$R - R_\mathrm{Eq.\,(lun)}$")
+
+
+def draw_sheared(axes: Axes, gases: Sequence[xr.Dataset]) -> None:
+    """Draw theta of sheared gases over that of Eq. (lun) against theory.shear's factor."""
+    top = 1.0
+    for one, look in zip(gases, LOOKS, strict=False):
+        lun = float(lun_ratio(float(str(one.beta.values)), float(one.inertia)))
+        scale = (1 - lun) / lun
+        value, bar = float(one.theta) * scale, float(one.theta_stderr) * scale
+        label = point_label(one)
+        about = {"xerr": float(one.factor_stderr), "yerr": bar, "fmt": look.marker}
+        axes.errorbar(float(one.factor), value, color=look.colour, label=label, **about, **BARS)
+        top = max(top, value + bar, float(one.factor))
+    ends = (1.0, 1.0 + 1.1 * (top - 1.0))
+    axes.plot(ends, ends, color=THEORY, lw=0.8, zorder=0, label="if it were exact")
+    axes.set_xlabel("its stress, shear rate and mean spin at contacts\n" + FORMULA)
+    axes.set_ylabel(r"$\theta/\theta_\mathrm{Eq.\,(lun)}$ of the simulation")
+    axes.legend(loc="upper left", title="sheared disks")
+
+
+FORMULA = r"$1 + (p^2 + d^2)/4 + \sqrt{\pi}\,gp/4 + g^2/4$"
+
+
+def _drawn(one, *names):
+    """Return heights and values in the slices that hold enough; not in the last, of all above."""
+    share = one.density.values / np.nansum(one.density.values)
+    there = share > LEAST
+    there[-1] = False
+    return one.height.values[there], [one[name].values[there] for name in names]
+
+
+def _draw_lun(axes, beds):
+    for R in sorted({round(float(one.R_lun), 4) for one in beds}):
+        axes.axhline(R, color=FAINT, lw=0.8, ls="--", zorder=0)
+    axes.plot([], [], color=FAINT, lw=0.8, ls="--", label="Eq. (lun)")

@@ -1,0 +1,189 @@
+"""Profiles: counted as brute force counts, in limits that are known, and from end to end."""
+
+import numpy as np
+import pytest
+import xarray as xr
+from brute_force import scene_of, settings, snapshot
+from brute_force.beside import brute_force_from
+from schedules import STEADY
+from tests.data.schema_page import check_study
+
+from roughgas.scene.initial import initial_state
+from roughgas.simulation.gas import Gas
+from roughgas.studies import profiles, study
+from roughgas.studies.figures.profiles import draw_figure
+from roughgas.studies.runs.profiles import CONTACTS, LEVEL, NEAR, SUMS, Profile
+from roughgas.studies.tables import profiles as table
+
+tasks, run = study("profiles")
+EXPERIMENTS = {
+    "bed": settings("bed", 16, [10, "open"]) | {"schedule": STEADY},
+    "gas": settings("sheared", 16, [12, 12]) | {"schedule": STEADY},
+}
+BED = {"experiment": "bed", "r": "0.9", "beta": "0.3", "slice": 1.5, "period": 1}
+GAS = {"experiment": "gas", "r": "0.8", "beta": "1", "slice": 3, "period": 10}
+LENGTHS = {"equilibrate": 20, "measure": 30}
+SETTINGS = {
+    "seed": 1,
+    "runs": 2,
+    "phases": 8,
+    "slices": 10,
+    "points": [BED | LENGTHS, GAS | LENGTHS],
+}
+
+
+def gas_of(experiment, r=0.9, beta=0.3):
+    scene, world = scene_of(experiment, r, beta)
+    return Gas(scene, initial_state(scene, experiment, np.random.default_rng(7))), world
+
+
+def counted_plainly(world, brute, phases, periods, width, slices):
+    """SUMS and contacts in slices at phases, (names, phases, slices), event by event."""
+    sums, contacts = np.zeros((len(SUMS), phases, slices)), np.zeros((4, phases, slices))
+    rate = world.shear / world.box[1] if world.shear else 0.0
+    for number in range(1, phases * periods + 1):
+        event = True
+        while event is not None:
+            before = brute.seen.copy()
+            event = brute.step(number / phases)
+            if event is not None and event.kind == "pair":
+                middle = (brute.x[event.i, 1] + brute.x[event.j, 1]) / 2.0
+                if world.shear and abs(brute.x[event.i, 1] - brute.x[event.j, 1]) > 3.0:
+                    middle = (middle + world.box[1] / 2.0) % world.box[1]
+                place = round(event.time * phases) % phases, min(int(middle / width), slices - 1)
+                contacts[(slice(None), *place)] += np.array([1.0, *(brute.seen - before)])
+        for y, (vx, vy), w in zip(brute.x[:, 1], brute.v, brute.w[:, 2], strict=True):
+            u = vx - rate * (y - world.box[1] / 2.0) if rate else vx
+            row = [1.0, u, vy, u * u, vy * vy, u * vy, w, w * w]
+            sums[:, number % phases, min(int(y / width), slices - 1)] += row
+    return sums, contacts
+
+
+@pytest.mark.parametrize("name", EXPERIMENTS)
+def test_sums_are_those_that_brute_force_counts(name):
+    gas, world = gas_of(EXPERIMENTS[name])
+    brute = brute_force_from(world, snapshot(gas.state, gas.scene))
+    phases, periods, width, slices = 4, 2, 1.5, 12
+    profile = Profile(gas, {"slice": width, "period": 1}, phases, slices)
+    for number in range(phases * periods):
+        profile.go_on(number)
+    sums, contacts = counted_plainly(world, brute, phases, periods, width, slices)
+    assert contacts[0].sum() >= 10
+    assert np.array_equal(profile.sums[0], sums[0])
+    assert np.array_equal(profile.contacts[0], contacts[0])
+    assert profile.sums == pytest.approx(sums, abs=1e-6)  # of chaos; numbers are of order 10
+    assert profile.contacts == pytest.approx(contacts, abs=1e-6)
+
+
+def test_pairs_are_all_that_are_level_and_those_that_meet():
+    gas, world = gas_of(EXPERIMENTS["bed"])
+    profile = Profile(gas, BED, 1, 4)
+    profile.go_on(0)
+    brute = brute_force_from(world, snapshot(gas.state, gas.scene))
+    found = np.zeros((6, 2))
+    for i, j in brute.pairs:
+        x, v = brute.x[i] - brute.x[j], brute.v[i] - brute.v[j]
+        x[0] -= world.box[0] * round(x[0] / world.box[0])
+        if abs(x[1]) < LEVEL:
+            g, s2 = np.sqrt(v @ v), (brute.w[i, 2] + brute.w[j, 2]) ** 2
+            row = np.array([1.0, g, g**2, g**3, s2, g * s2])
+            found[:, 0] += row
+            found[:, 1] += row * (np.sqrt(x @ x) < NEAR and x @ v < 0)
+    assert 0 < found[0, 1] < found[0, 0]
+    assert profile.pairs == pytest.approx(found, rel=1e-9)
+
+
+def test_maxwellian_pairs_need_no_correction():
+    """400 disks, some 3000 pairs at one height: at 4 sigma of the scatter over 30 gases."""
+    experiment = settings("bed", 400, [100, "open"])
+    factors, ratios = [], []
+    for seed in range(30):
+        gas, _ = gas_of(experiment)
+        rng = np.random.default_rng(seed)
+        gas.state.trajectory[:, 2:4] = rng.standard_normal((400, 2))
+        gas.state.spin[:] = rng.standard_normal((400, 1))  # T_rot = T/2 at q = 1/2: R = 1/3
+        profile = Profile(gas, BED, 1, 4)
+        moving = gas.state.trajectory
+        sums = profile._pairs(moving[:, :2], moving[:, 2:4])
+        names = ("pairs", "g", "g^2", "g^3", "s^2", "g s^2")
+        data = {name: ("company", row) for name, row in zip(names, sums, strict=True)}
+        about = {"inertia": 0.5, "dimension": 2}
+        found = profiles._by_pairs(xr.Dataset(data | about, {"company": ["level", "meeting"]}))
+        factors.append(float(found["speed_factor"]))
+        ratios.append(float(found["R_level"]))
+    for values, expected in ((factors, 1.0), (ratios, 1 / 3)):
+        stderr = np.std(values, ddof=1) / np.sqrt(len(values))
+        assert abs(np.mean(values) - expected) < 4 * stderr
+        assert stderr < 0.01
+
+
+def test_an_elastic_gas_at_rest_is_barometric():
+    """On a floor at rest, n(y) is that of an ideal gas of N disks with a fixed energy E and no
+    momentum along x, (1 - g y/E)^(2 N - 5/2); its temperature is the same at all heights.
+
+    The bottom is filled to 0.6 %, which changes the density by about a per cent. 4 sigma, from the
+    scatter over 8 runs, in some 8 slices.
+    """
+    number, width, g = 20, 1500.0, 0.1
+    floor = {"amplitude": 0.0, "period": 1.0}
+    experiment = settings("bed", number, [width, "open"], floor=floor, gravity={"acceleration": g})
+    experiment |= {"schedule": STEADY}
+    point = BED | {"r": "1", "beta": "-1", "slice": 2.0, "period": 8, "equilibrate": 2000}
+    point |= {"measure": 3200}
+    own = SETTINGS | {"runs": 8, "phases": 2, "slices": 40, "points": [point]}
+    parts = {task: run(task, own, {"bed": experiment}) for task in tasks(own)}
+    data = profiles.combine(parts, own).isel(point=0)
+    kinetic = 2 * number * float(data.E_trans_phase.mean())
+    energy = kinetic * (2 * number - 0.5) / (number - 0.5)
+    edges = g * (2.0 * np.arange(41) - 1.0).clip(0.0) / energy  # the floor is met at height 1
+    above = (1 - edges.clip(max=1.0)) ** (2 * number - 1.5)
+    expected = number * -np.diff(above) / (width * 2.0)
+    filled = expected * width * 2.0 > 0.5
+    off = np.abs(data.density - expected)[filled]
+    assert filled.sum() > 5
+    assert np.all(off < 4 * data.density_stderr[filled] + 0.02 * expected[filled])
+    temperature = kinetic / number
+    for name in ("T_across", "T_along"):
+        apart = np.abs(data[name] - temperature)[filled]
+        assert np.all(apart < 4 * data[f"{name}_stderr"][filled])
+
+
+@pytest.fixture(scope="module")
+def parts():
+    return {task: run(task, SETTINGS, EXPERIMENTS) for task in tasks(SETTINGS)}
+
+
+def test_slices_have_the_energy_of_the_gas_and_every_collision(parts):
+    for part in parts.values():
+        assert profiles.imbalance(part) < 1e-12
+        assert np.all(part.particles.sum("slice") == 16 * part.samples)
+        assert set(CONTACTS) <= set(part) and part.contacts.sum() == part.collisions > 10
+
+
+def test_every_point_has_its_profiles(parts):
+    data = profiles.combine(parts, SETTINGS)
+    check_study("profiles", data)
+    assert list(data.point.values) == ["bed_r0.9_beta0.3", "gas_r0.8_beta1"]
+    assert list(np.isfinite(data.theta.values)) == [False, True]
+    bed = data.isel(point=0)
+    counted = (bed.density * 1.5 * 10).sum()
+    assert float(counted) == pytest.approx(16)
+    mean = bed.density_at_phase.mean("phase")
+    assert mean.values == pytest.approx(bed.density.values)
+    assert np.all(bed.R_phase > 0) and float(bed.R) == pytest.approx(float(bed.R_phase.mean()))
+    assert float(bed.R_quarters) == pytest.approx(float(bed.R_phase[::2].mean()))
+
+
+def test_the_same_settings_give_the_same_runs(parts):
+    for task, part in parts.items():
+        again = run(task, SETTINGS, EXPERIMENTS).drop_vars("cpu_seconds")
+        assert again.equals(part.drop_vars("cpu_seconds"))
+
+
+def test_figure_and_table_show_every_point(parts):
+    data = profiles.combine(parts, SETTINGS)
+    figure = draw_figure(data)
+    averages, sheared = figure.axes[4], figure.axes[5]
+    assert len(averages.containers) == len(sheared.containers) == 1
+    assert "disks, r = 0.9, β = 0.3" in table(data)
+    assert "disks, r = 0.8, β = 1 |" in table(data)
