@@ -50,16 +50,16 @@ def test_a_script_reads_a_line_for_each_seed_as_it_is_done(tmp_path, monkeypatch
 
 def test_a_plan_for_a_script(product, monkeypatch, capsys, tmp_path):
     monkeypatch.chdir(product)
-    command = ["plan", "sheared", "--scale=small", f"--pilots={tmp_path}", "--cores=2"]
+    command = ["plan", "cooling_inertia", "--scale=small", f"--pilots={tmp_path}", "--cores=2"]
     assert main([*command, "--json"]) == 0
     rows = json.loads(capsys.readouterr().out)
     assert main(command) == 0
-    table = [line.split("|") for line in capsys.readouterr().out.splitlines()[2:4]]
+    table = [line.split("|") for line in capsys.readouterr().out.splitlines()[2:6]]
     for row, line in zip(rows, table, strict=True):
         name, _, points, seeds = (cell.strip() for cell in line[1:5])
         assert [row["experiment"], row["points"], row["seeds"]] == [name, int(points), int(seeds)]
         assert row["target"] is None and f"{row['collisions']:.2e}" == line[7].strip()
-    assert rows[0]["points"] == 16 and rows[0]["wall_seconds"] <= rows[0]["cpu_seconds"]
+    assert rows[0]["points"] == 2 and rows[0]["wall_seconds"] <= rows[0]["cpu_seconds"]
 
 
 @pytest.fixture

@@ -67,6 +67,7 @@ def test_a_gas_that_cools_by_many_powers_of_two():
     assert np.all(state.sums.contact_averages[:2, 0] == [0.0, A])
 
 
+@pytest.mark.slow  # two kernels more; tests/test_bits.py has bits from before there was the effect
 @pytest.mark.parametrize("kernel", ["bed", "heated"])
 def test_looking_changes_no_bit(kernel):
     seen, plain = settings(kernel, 40), settings(kernel, 40)
