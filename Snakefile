@@ -8,6 +8,7 @@
 #   snakemake -j1 showcase                      a large cooling gas forms clusters: a movie
 #   snakemake -j2 accuracy                      what the next digit costs, in CPU seconds
 #   snakemake -j2 coverage                      whether error bars hold the truth as often as they say
+#   snakemake -j2 finite_size                   how much of R in a cooling gas is due to number and box
 #   snakemake -j2 hard_cases                    where simulations go wrong, and how far from it we are
 #   snakemake -j2 crate                         the run as one file: an RO-Crate with checksums
 #   snakemake -j1 results/paper/cooling/r0.87/beta-0.33/seed7.nc     any one point
@@ -127,6 +128,13 @@ rule coverage:
         documents("coverage"),
 
 
+rule finite_size:
+    input:
+        drawn(["finite_size"]),
+        f"results/{SCALE}/finite_size.md",
+        documents("finite_size"),
+
+
 rule hard_cases:
     input:
         f"results/{'' if SCALE == 'paper' else SCALE + '/'}hard_cases.md",
@@ -143,6 +151,7 @@ rule everything:
         rules.hard_cases.input,
         rules.accuracy.input,
         rules.coverage.input,
+        rules.finite_size.input,
         rules.explore.input,
         rules.explore_extensions.input,
 

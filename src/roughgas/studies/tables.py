@@ -177,7 +177,44 @@ def point_label(point: xr.Dataset) -> str:
     return f"{what}, r = {point.r.values}, β = {beta}{q}"
 
 
-TABLES = dict(zip(STUDIES, (statistical, models, discretisation, coverage, profiles), strict=True))
+def finite_size(data: xr.Dataset) -> str:
+    """Return R of a cooling gas by number of particles, and what a box adds at each packing."""
+    numbers = [f"N = {n}" for n in data.particles.values]
+    rows, tails = [], []
+    for one in along(data, "point"):
+        gases = along(one, "particles")
+        gap = estimate(gases[-1], "dsmc_R").scaled(100 / float(one.theory))
+        missing = f"{gap._replace(value=gap.value - 100):+±} %"
+        cells = [_shown(gas, "dsmc_R", ".4f") for gas in gases]
+        rows.append([label(one), f"{float(one.theory):.4f}", *cells, missing])
+        tails.append([label(one), *(_shown(gas, "dsmc_a02", "±") for gas in gases)])
+    head = ["point", "Eq. (K)", *numbers, "the last over Eq. (K)"]
+    return (
+        f"## Number and box of a cooling gas\n\nR of the homogeneous gas (DSMC):\n\n"
+        f"{markdown(head, rows)}\nThe fourth cumulant a02 of its spins:\n\n"
+        f"{markdown(['point', *numbers], tails)}"
+        + "".join(_in_boxes(place, numbers) for place in along(data, "packing"))
+    )
+
+
+def _in_boxes(data, numbers):
+    """Return what events find at one packing, over DSMC of as many particles."""
+    rows = [
+        [label(one), *(_shown(gas, "over_dsmc", "+±", 100) for gas in along(one, "particles"))]
+        for one in along(data, "point")
+    ]
+    waves = [
+        [label(one), *(_shown(gas, "flow", "±", 100) for gas in along(one, "particles"))]
+        for one in along(data, "point")
+    ]
+    return (
+        f"\nR by events at packing {float(data.packing):g} over that by DSMC, minus 1, in %:\n\n"
+        f"{markdown(['point', *numbers], rows)}\nThere, the share of E_trans in the longest shear"
+        f" waves, in % (uncorrelated disks: 2/N):\n\n{markdown(['point', *numbers], waves)}"
+    )
+
+
+TABLES = {name: globals()[name] for name in STUDIES}
 
 
 def in_order(data: xr.Dataset) -> xr.Dataset:

@@ -5,7 +5,7 @@ from typing import Any
 
 PANELS = ("statistical", "models", "discretisation")
 """The studies that the work-precision figure shows, one a panel."""
-STUDIES = (*PANELS, "coverage", "profiles")
+STUDIES = (*PANELS, "coverage", "profiles", "finite_size")
 SCENES = ("vibrated", "sheared", "cooling")
 WAYS = ("length", "seeds")
 PARTS = ("reference", *WAYS)
@@ -19,6 +19,17 @@ def corner_name(corner: Mapping[str, Any]) -> str:
 def profile_name(point: Mapping[str, Any]) -> str:
     """Return the name of a point of the study of profiles; its runs add `-0`, `-1` ..."""
     return corner_name(point) + (f"_{point['name']}" if "name" in point else "")
+
+
+def point_names(settings: Mapping[str, Any]) -> dict[str, tuple[str, str, str]]:
+    """Return experiment, r and beta of the points of the study of finite size, by their names."""
+    places = [(name, *one) for name, points in settings["points"].items() for one in points]
+    return {f"{name}_r{r}_beta{beta}": (name, r, beta) for name, r, beta in places}
+
+
+def _finite_size(settings):
+    names = point_names(settings)
+    return [f"{name}-n{n}" for n in sorted(settings["particles"], reverse=True) for name in names]
 
 
 def _models(settings):
@@ -52,5 +63,6 @@ TASKS = {
     "profiles": lambda settings: [
         f"{profile_name(one)}-{k}" for one in settings["points"] for k in range(settings["runs"])
     ],
+    "finite_size": _finite_size,
 }
 """For each study, what names its tasks by its settings, the longest first."""

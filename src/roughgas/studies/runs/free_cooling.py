@@ -47,7 +47,19 @@ class FreeCooling(NamedTuple):
     @property
     def transient(self) -> float:
         """Collisions per particle from theory's theta until R has settled."""
-        return max(SHORTEST_TRANSIENT, E_FOLDS / float(theory.relaxation_rate(*self.constants)))
+        return max(SHORTEST_TRANSIENT, E_FOLDS / self.rate)
+
+    @property
+    def rate(self) -> float:
+        """Rate at which R relaxes, per collision per particle, by the rate equations."""
+        return float(theory.relaxation_rate(*self.constants))
+
+    def relative_variance(self, particles: int) -> float:
+        """Variance of R over R^2: that of Gaussian fluctuations, (1 - R)^2 3/N (disks), and half as
+        much again since they are larger."""
+        dimension, R = len(self.experiment["box"]), self.theta / (1.0 + self.theta)
+        components = 2.0 / dimension + 2.0 / (2 * dimension - 3)
+        return 1.5 * (1.0 - R) ** 2 * components / particles
 
     def at_packing(self, packing: float) -> "FreeCooling":
         """Return the gas in a box of the same shape that its particles fill to `packing`."""
@@ -129,15 +141,12 @@ def homogeneous(
     """Return means over a long run of a large gas by direct simulation Monte Carlo, by name.
 
     R, its drift from the first to the second half of the run, and the standard errors of both; the
-    cumulants of dsmc.Samples; length in collisions per particle, and CPU seconds. The length is
-    what a relative error `precision` of R needs: that of Gaussian fluctuations, (1 - R)^2 3/N of
-    R^2 (disks), which live 1/Gamma, half as much again since they are larger, and at least five
-    transients.
+    cumulants of dsmc.Samples, and the standard error of a02; length in collisions per particle, and
+    CPU seconds. The length is what a relative error `precision` of R needs, whose fluctuations live
+    1/Gamma, and at least five transients.
     """
-    dimension, R = len(cooling.experiment["box"]), cooling.theta / (1.0 + cooling.theta)
-    variance = (1.0 - R) ** 2 * (2.0 / dimension + 2.0 / (2 * dimension - 3)) / particles
-    e_folds = 2.0 * variance / precision**2
-    length = max(5.0 * cooling.transient, 1.5 * (e_folds * cooling.transient / E_FOLDS))
+    e_folds = 2.0 * cooling.relative_variance(particles) / precision**2
+    length = max(5.0 * cooling.transient, e_folds * cooling.transient / E_FOLDS)
     every = max(1.0, length / MOST_SAMPLES)
     run = cooling, particles, every, round(length / every), seed
     samples, seconds = timed(_without_positions, *run)
@@ -148,6 +157,7 @@ def homogeneous(
         "drift": late.mean() - early.mean(),
         "drift_stderr": np.hypot(blocking_stderr(early), blocking_stderr(late)),
         **{name: getattr(samples, name).mean() for name in ("a20", "a02", "a11")},
+        "a02_stderr": blocking_stderr(samples.a02),
         "length": length,
         "seconds": seconds,
     }
@@ -174,7 +184,8 @@ def event_driven(
     return np.array([_replica(cooling, length / replicas, one) for one in seed.spawn(replicas)])
 
 
-def _replica(cooling, length, seed):
+def thermalised(cooling: FreeCooling, seed: np.random.SeedSequence) -> Gas:
+    """Return a gas at theory's T_rot/T_tr, as dissipation is switched on."""
     scene = build(cooling.experiment, cooling.r, cooling.beta)
     rng = np.random.default_rng(seed)
     gas = Gas.start(scene, cooling.experiment, rng)
@@ -182,6 +193,10 @@ def _replica(cooling, length, seed):
     spin[:] = rng.standard_normal(spin.shape) * (cooling.theta / scene.effects.spin.inertia) ** 0.5
     gas.thermalise(cooling.experiment["schedule"]["thermalise"])
     gas.cool(SAMPLES_PER_REFRESH * gas.count(1.0))
-    skipped = round(cooling.transient)
+    return gas
+
+
+def _replica(cooling, length, seed):
+    gas, skipped = thermalised(cooling, seed), round(cooling.transient)
     rows = gas.in_collisions(gas.count(1.0), skipped + max(1, round(length)))
     return float(ratio(gas.energies(rows))[skipped:].mean())

@@ -1,0 +1,154 @@
+"""The figure of how much of R in a cooling gas is due to the number of particles and to the box."""
+
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from roughgas.data.netcdf import read_netcdf
+from roughgas.show.style import GREY, LOOKS, THEORY, Look
+from roughgas.studies.tables import along
+
+SIZE = (10.2, 8.2)  # inches
+THIN = {"ls": "none", "elinewidth": 0.8}
+SIDESTEP = 0.014  # in beta, between kinds of gas at the same beta
+LINEAR = 4.0  # per cent up to which the axis of deviations is linear
+TYPICAL = {"r": 0.9, "beta": 0.0}  # the point whose R(t) is drawn, if it is there
+
+
+def draw(path: str | Path) -> Figure:
+    """Return the figure, from the combined dataset of the study at `path`."""
+    return draw_figure(read_netcdf(path, "finite_size"))
+
+
+def draw_figure(data: xr.Dataset) -> Figure:
+    """Return the figure, from the study's dataset."""
+    figure = Figure(figsize=SIZE, layout="constrained")
+    for axes, (panel, title) in zip(figure.subplots(2, 2).flat, PANELS, strict=True):
+        panel(axes, data)
+        axes.set_title(title, loc="left", fontsize=9)
+    return figure
+
+
+def draw_number(axes: Axes, data: xr.Dataset) -> None:
+    """Draw R of the homogeneous gas over Eq. (K), minus 1, of the fewest and the most particles."""
+    ends = data.particles.values[[0, -1]]
+    for one, look, shift in _points(data):
+        x = float(one.beta) + shift
+        few, many = (_percent(one.sel(particles=n), "dsmc_R") for n in ends)
+        axes.plot([x, x], [few[0], many[0]], color=look.colour, lw=0.8)
+        for (y, bar), fill in ((few, "white"), (many, look.colour)):
+            about = {"color": look.colour, "marker": look.marker, "mfc": fill}
+            axes.errorbar(x, y, bar, **about, **THIN)
+    for n, fill in zip(ends, ("white", GREY), strict=True):
+        axes.plot([], [], "o", color=GREY, mfc=fill, label=f"$N = {n}$")
+    _name_kinds(axes, data)
+    axes.axhline(0.0, color=THEORY, lw=0.8, zorder=0)
+    axes.set(xlabel=r"tangential restitution $\beta$", ylabel=r"$R/R_{\mathrm{Eq.\,(K)}} - 1$  (%)")
+    low, high = axes.get_ylim()
+    axes.set_ylim(low - 0.3 * (high - low), high)
+    axes.legend(loc="lower right", ncols=2)
+
+
+def draw_box(axes: Axes, data: xr.Dataset) -> None:
+    """Draw R by events over R by DSMC of as many particles, minus 1, over the size of the box."""
+    fills = ("white", None)
+    for one, look, _ in _points(data):
+        for place, fill in zip(along(one, "packing"), fills, strict=False):
+            about = {"color": look.colour, "marker": look.marker, "mfc": fill or look.colour}
+            y, bar = 100 * place.over_dsmc, 100 * place.over_dsmc_stderr
+            axes.errorbar(place.box, y, bar, **about, **THIN)
+    for place, fill in zip(data.packing.values, fills, strict=False):
+        axes.plot([], [], "o", color=GREY, mfc=fill or GREY, label=f"packing {place:g}")
+    axes.axhline(0.0, color=THEORY, lw=0.8, zorder=0)
+    axes.set_xscale("log")
+    axes.set_yscale("symlog", linthresh=LINEAR, linscale=1.5)
+    ticks = [-50, -20, -10, -4, -2, 0, 2, 4]
+    axes.set_yticks(ticks, [f"{tick}".replace("-", "−") for tick in ticks])
+    axes.minorticks_off()
+    axes.set_ylim(top=8)
+    axes.set(xlabel="side of the box / mean free path")
+    axes.set_ylabel(r"$R_{\mathrm{events}}/R_{\mathrm{DSMC}} - 1$  (%), as many particles")
+    axes.legend(loc="lower left")
+
+
+def draw_time(axes: Axes, data: xr.Dataset) -> None:
+    """Draw R over time at one point, each number of particles and packing, beside DSMC."""
+    known = np.flatnonzero((data.r == TYPICAL["r"]) & (data.beta == TYPICAL["beta"]))
+    one = data.isel(point=int(known[0]) if known.size else 0)
+    for gas, look in zip(along(one, "particles"), LOOKS, strict=False):
+        for place, fill in zip(along(gas, "packing"), ("white", look.colour), strict=False):
+            middle = (place.part - float(place.part[0]) / 2) * place.length
+            about = {"color": look.colour, "marker": look.marker, "mfc": fill, "ms": 3.5}
+            label = f"$N = {int(gas.particles)}$" if fill != "white" else None
+            axes.errorbar(
+                middle, place.R_series, place.R_series_stderr, lw=0.8, label=label, **about
+            )
+    axes.axhline(float(one.dsmc_R[-1]), color=THEORY, lw=0.8, ls="--", zorder=0, label="DSMC")
+    axes.set(xlabel="collisions per particle", ylabel="$R$")
+    kind = "spheres" if "spheres" in str(one.experiment.values) else "disks"
+    title = rf"{kind}, $r = {float(one.r):g}$, $\beta = {float(one.beta):g}$"
+    axes.legend(loc="lower left", title=title)
+
+
+def draw_tails(axes: Axes, data: xr.Dataset) -> None:
+    """Draw the fourth cumulant of the spins over the number of particles."""
+    for one, look, _ in _points(data):
+        about = {"color": look.colour, "marker": look.marker}
+        axes.errorbar(
+            data.particles, one.dsmc_a02, one.dsmc_a02_stderr, lw=0.8, elinewidth=0.8, **about
+        )
+        dilute = one.isel(packing=int(np.argmin(data.packing.values)))
+        x = data.particles * 1.08
+        axes.errorbar(x, dilute.a02, dilute.a02_stderr, **about | {"mfc": "white"}, **THIN)
+        end = data.particles.values[-1] * 1.25, float(one.dsmc_a02[-1])
+        axes.annotate(f"{float(one.beta):g}", end, va="center", fontsize=7, color=look.colour)
+    for fill, label in (
+        (GREY, "DSMC"),
+        ("white", f"events, packing {data.packing.values.min():g}"),
+    ):
+        axes.plot([], [], "o", color=GREY, mfc=fill, label=label)
+    axes.set(xscale="log", yscale="log", xlabel="number of particles $N$")
+    axes.set_xlim(right=data.particles.values[-1] * 2.2)
+    axes.set_ylabel(r"fourth cumulant of spins, $a_{02}$")
+    axes.legend(loc="upper left", title=r"numbers: $\beta$")
+
+
+PANELS = (
+    (draw_number, "(a) the homogeneous gas (DSMC): number of particles"),
+    (draw_box, "(b) what the box adds"),
+    (draw_time, "(c) over time: open symbols denser, filled ones dilute"),
+    (draw_tails, "(d) how far the tails of the spins are filled"),
+)
+
+
+def _kinds(data):
+    """Return the look of each (experiment, r), disks first."""
+    kinds = sorted(set(zip(data.experiment.values, -data.r.values, strict=True)))
+    return {(name, -r): look for (name, r), look in zip(kinds, LOOKS, strict=False)}
+
+
+def _points(data) -> list[tuple[xr.Dataset, Look, float]]:
+    """Return each point, its look, and its sidestep in beta."""
+    kinds = _kinds(data)
+    order = list(kinds)
+    points = []
+    for one in along(data, "point"):
+        kind = str(one.experiment.values), float(one.r)
+        shift = SIDESTEP * (order.index(kind) - (len(order) - 1) / 2)
+        points.append((one, kinds[kind], shift))
+    return points
+
+
+def _name_kinds(axes, data):
+    for (name, r), look in _kinds(data).items():
+        kind = "spheres" if "spheres" in name else "disks"
+        axes.plot([], [], look.marker, color=look.colour, label=f"{kind}, $r = {r:g}$")
+
+
+def _percent(one, name):
+    """Return R over that of Eq. (K), minus 1, and its error, in per cent."""
+    theory = float(one.theory)
+    return 100 * (float(one[name]) / theory - 1), 100 * float(one[f"{name}_stderr"]) / theory
