@@ -222,6 +222,25 @@ def test_friction_of_zero_is_left_out_of_a_logarithmic_axis():
     assert all(np.all(column[:, 0] > 0.0) for column in bars(main) if len(column))
 
 
+def test_each_average_of_R_that_there_is_has_a_row_of_residuals():
+    data = reduced("vibrated", lambda r, beta: 0.03 + 0 * r * beta)
+    data = data.assign(R_collisional=data.R - 0.03, R_collisional_stderr=2 * data.R_stderr)
+    main, *rows = fig1a.draw(data).axes
+    assert [row.get_title(loc="left") for row in rows] == [
+        "mean of $R(t)$",
+        "averaged over collisions",
+    ]
+    for row, shift in zip(rows, (0.0, 0.03), strict=True):
+        points = [column for column in bars(row) if len(column)]
+        expected = data.R.sel(r=0.99) - predicted_ratio(data.attrs, 0.99, np.array(BETA)) - shift
+        np.testing.assert_allclose(points[0][:, 1], expected)
+    assert rows[0].get_ylim() == rows[1].get_ylim()
+    # which stands beneath the line at 1/2
+    main.figure.draw_without_rendering()
+    _, top = main.transData.inverted().transform(main.get_legend().get_window_extent())[1]
+    assert top < 0.5
+
+
 def test_boundary_drives_stand_at_their_measured_shares():
     heated, *beds, walls = DATA["fig5"]()
     main, residual = fig5.draw(heated, *beds, walls).axes

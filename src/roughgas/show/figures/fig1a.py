@@ -3,9 +3,10 @@
 import xarray as xr
 from matplotlib.figure import Figure
 
-from roughgas.show.figures.panel import ANY_R, content_for_each_r, ratio_figure
+from roughgas.show.figures.panel import ANY_R, WIDE, content_for_each_r, ratio_figure
 
 
 def draw(bed: xr.Dataset) -> Figure:
     """Draw the figure from the reduced dataset of the vibrated bed."""
-    return ratio_figure(content_for_each_r("Vibrated bed", bed, theory=ANY_R))
+    content = content_for_each_r("Vibrated bed", bed, theory=ANY_R, loc="half")
+    return ratio_figure(content, width=WIDE, averaged=True)

@@ -6,7 +6,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from roughgas.show.figures.panel import ANY_R, Series, content_for_each_r, ratio_figure
+from roughgas.show.figures.panel import ANY_R, WIDE, Series, content_for_each_r, ratio_figure
 from roughgas.show.style import GREY
 
 FAINT = {"alpha": 0.5, "markersize": 2.6, "markeredgewidth": 0, "zorder": 0}
@@ -14,8 +14,9 @@ FAINT = {"alpha": 0.5, "markersize": 2.6, "markeredgewidth": 0, "zorder": 0}
 
 def draw(sheared: xr.Dataset) -> Figure:
     """Draw the figure from the reduced dataset of the sheared gas."""
-    how = {"theory": ANY_R, "extra": _draw_unsubtracted}
-    return ratio_figure(content_for_each_r("Sheared gas", sheared, **how))
+    how = {"theory": ANY_R, "extra": _draw_unsubtracted, "loc": "half"}
+    content = content_for_each_r("Sheared gas", sheared, **how)
+    return ratio_figure(content, width=WIDE, averaged=True)
 
 
 def _draw_unsubtracted(main: Axes, drawn: Sequence[Series]) -> None:

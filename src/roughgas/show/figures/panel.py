@@ -10,18 +10,24 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator, MultipleLocator
 
-from roughgas.data.reduced import EQUILIBRATED
-from roughgas.show.style import FAINT, GREY, HEIGHT, LOOKS, THEORY, WIDTH, Look
-from roughgas.theory.prediction import predicted_ratio
+from roughgas.show.figures.series import RESTITUTION, Series, series, series_for_each
+from roughgas.show.style import FAINT, GREY, HEIGHT, THEORY, WIDTH
 
+__all__ = ["RESTITUTION", "Series", "series", "series_for_each"]
 ENERGY_RATIO = r"$R = E^\circ\!/(E^\circ + \bar{E})$"
-TWO_WIDE = 7.6  # inches, for two panels
-SIZE = 5.2
-"""Marker size of the first series; each further one is smaller, so that none hides another."""
-SIDESTEP = 0.0066
-"""Distance between the residuals of two series, as a share of the axis: none hides another."""
-RESTITUTION = 0.9
-"""The r of figures that show only one."""
+WIDE, TWO_WIDE = 5.6, 7.6  # inches, for one panel of many points, and for two
+SIZE = 4.6
+"""Marker size of the first series; each further one is smaller."""
+SIDESTEP = 0.0095
+"""Distance between the points of two series, as a share of the axis: none hides another."""
+ROW = 1.05
+"""Height of each row of residuals beyond the first, in inches."""
+AVERAGES = {
+    "R": "mean of $R(t)$",
+    "R_ratio_of_means": "ratio of the mean energies",
+    "R_collisional": "averaged over collisions",
+}
+"""The ways in which R is averaged, by the names of variables; the first is the paper's."""
 ANY_R = "theory, Eq. (lun), any $r$"
 DOTS = (0, (1, 2))
 RING = {"marker": "o", "markersize": 8, "markeredgewidth": 0.6, "fillstyle": "none"}
@@ -69,38 +75,17 @@ SPIN_SHARE = Axis("spin_share", SHARE_LABEL, (-0.15, 1.03), (-0.12, 1))
 ROUGHNESS = Axis("roughness", r"roughness of the boundary", (-1.06, 1.06), (-1, 1))
 
 
-class Series(NamedTuple):
-    """Measured R along an axis, beside theory, and how it is drawn."""
-
-    label: str
-    look: Look
-    data: xr.Dataset  # (n,) along the axis
-    at: np.ndarray  # (n,) where it is drawn
-    theory: np.ndarray  # (n,) predicted R
-    predict: Callable[..., np.ndarray]  # R of theory at other values of the axis, given by name
-
-    @property
-    def residual(self) -> np.ndarray:
-        """Measured minus predicted R, (n,)."""
-        return self.data.R.values - self.theory
-
-    @property
-    def steady(self) -> np.ndarray:
-        """Whether a steady state was found, (n,)."""
-        return self.data.equilibrated.values > EQUILIBRATED
-
-    @property
-    def touched(self) -> np.ndarray:
-        """Whether the contact-time model acted, (n,)."""
-        return self.data.get("contact_time_fraction", 0 * self.data.R).values > 0
-
-
 class Panel(NamedTuple):
-    """R above, residuals beneath, both over one axis."""
+    """R above, residuals beneath, of one average of R or more, all over one axis."""
 
     main: Axes
-    residual: Axes
+    residuals: Sequence[Axes]
     axis: Axis
+
+    @property
+    def residual(self) -> Axes:
+        """The first row of residuals, those of R."""
+        return self.residuals[0]
 
 
 class PanelContent(NamedTuple):
@@ -111,39 +96,12 @@ class PanelContent(NamedTuple):
     drawn: Sequence[Series]
     theory: str = ""  # of all series: a black line, so called in the legend
     theories: str = ""  # of each series: a line in its look; the title of the legend
-    loc: str = "upper left"  # of the legend
+    loc: str = "upper left"  # of the legend; in a driven gas, "half" is beneath the line at 1/2
     axis: Axis = BETA
     # of the series drawn: those whose residuals are to fit
     scale: Callable[[Sequence[Series]], Sequence[Series]] = lambda drawn: drawn
     # draws what only this figure has
     extra: Callable[[Axes, Sequence[Series]], None] = lambda main, drawn: None
-
-
-def series(data: xr.Dataset, label: str, look: Look, **place: Any) -> Series:
-    """Return the points that hold data along the one axis that `place` leaves, beside theory."""
-    row = data.sel(place)
-    (axis,) = row.R.dims
-    row = row.isel({axis: np.isfinite(row.R.values)})
-
-    def predict(**others):
-        settings = data.attrs | place | others
-        return predicted_ratio(settings, settings["r"], settings["beta"])
-
-    at = row[axis].values
-    return Series(label, look, row, at, predict(**{axis: at}), predict)
-
-
-def series_for_each(
-    data: xr.Dataset, name: str, symbol: str = r"\beta", looks: Sequence[Look] = LOOKS
-) -> list[Series]:
-    """Return one series for each r, from nearly elastic downwards; or for each other value of the
-    coordinate `name` at RESTITUTION, the smallest first."""
-    place = {} if name == "r" else {"r": RESTITUTION}
-    values = sorted(data[name].values, reverse=name == "r")
-    return [
-        series(data, f"${symbol} = {value:g}$", looks[i % len(looks)], **{name: value}, **place)
-        for i, value in enumerate(values)
-    ]
 
 
 def content_for_each_r(title: str, data: xr.Dataset, **how: Any) -> PanelContent:
@@ -159,35 +117,50 @@ def content_for_each_beta(
     return PanelContent(rf"{title}, $r = {RESTITUTION:g}$", [data], drawn, **how)
 
 
-def ratio_figure(*parts: PanelContent, width: float = WIDTH) -> Figure:
-    """Draw the parts side by side: points above theory, minus theory beneath, legends, titles."""
-    figure, panels = ratio_panels([part.axis for part in parts], width)
+def ratio_figure(*parts: PanelContent, width: float = WIDTH, averaged: bool = False) -> Figure:
+    """Draw the parts side by side: points above theory, minus theory beneath, legends, titles.
+
+    Where R is `averaged` in several ways, there is a row of residuals for each that the data hold.
+    """
+    known = {name for part in parts for one in part.drawn for name in one.data.data_vars}
+    averages = [name for name in AVERAGES if name in known] if averaged else ["R"]
+    figure, panels = ratio_panels([part.axis for part in parts], width, averages)
     for part, panel in zip(parts, panels, strict=True):
-        draw_series(panel, part.drawn)
+        draw_series(panel, part.drawn, averages, apart=True)
         draw_theory(panel, part.drawn[:1] if part.theory else part.drawn, black=bool(part.theory))
         part.extra(panel.main, part.drawn)
         add_legend(panel.main, part.drawn, part.theory, title=part.theories or None, loc=part.loc)
         add_title(panel.main, part.data, part.title)
     scale = [one for part in parts for one in part.scale(part.drawn)]
     for part, panel in zip(parts, panels, strict=True):
-        frame_residuals(panel.residual, part.drawn, scale)
+        for average, residual in zip(averages, panel.residuals, strict=True):
+            frame_residuals(residual, part.drawn, scale, average, averages)
+            if averaged:
+                residual.set_title(AVERAGES[average], fontsize=7.5, loc="left", pad=2)
     return figure
 
 
-def ratio_panels(axes: Sequence[Axis], width: float = WIDTH) -> tuple[Figure, list[Panel]]:
+def ratio_panels(
+    axes: Sequence[Axis], width: float = WIDTH, averages: Sequence[str] = ("R",)
+) -> tuple[Figure, list[Panel]]:
     """Return an empty figure, and its panels side by side; R has the same scale in all."""
-    figure = Figure(figsize=(width, HEIGHT), layout="constrained")
-    above, beneath = figure.subplots(
-        2, len(axes), sharex="col", sharey="row", height_ratios=(2.3, 1), squeeze=False
+    rows = len(averages)
+    figure = Figure(figsize=(width, HEIGHT + ROW * (rows - 1)), layout="constrained")
+    heights = (2.3, *(1 if rows == 1 else 0.75 for _ in averages))
+    above, *beneath = figure.subplots(
+        1 + rows, len(axes), sharex="col", sharey="row", height_ratios=heights, squeeze=False
     )
     above[0].set_ylabel(ENERGY_RATIO)
-    beneath[0].set_ylabel(r"$R - R_\mathrm{theory}$")
-    panels = [Panel(*parts) for parts in zip(above, beneath, axes, strict=True)]
-    for main, residual, axis in panels:
+    for row in beneath:
+        row[0].set_ylabel(r"$R - R_\mathrm{theory}$")
+    columns = zip(above, zip(*beneath, strict=True), axes, strict=True)
+    panels = [Panel(*parts) for parts in columns]
+    for main, residuals, axis in panels:
         main.axhline(0.5, color=FAINT, linewidth=0.8, linestyle=DOTS, zorder=0)
-        residual.axhline(0, color=THEORY, linewidth=0.8)
-        residual.yaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
-        axis.prepare(residual)
+        for residual in residuals:
+            residual.axhline(0, color=THEORY, linewidth=0.8)
+            residual.yaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
+        axis.prepare(residuals[-1])
     figure.align_ylabels()
     return figure, panels
 
@@ -200,28 +173,45 @@ def draw_theory(panel: Panel, drawn: Sequence[Series], black: bool = False) -> N
         panel.main.plot(panel.axis.grid, predicted, linestyle=line, color=colour, zorder=1)
 
 
-def draw_series(panel: Panel, drawn: Sequence[Series], residuals: bool = True) -> None:
-    """Draw points with error bars above; beneath them, residuals, set apart sideways."""
+def draw_series(
+    panel: Panel,
+    drawn: Sequence[Series],
+    averages: Sequence[str] = ("R",),
+    apart: bool = False,
+) -> None:
+    """Draw points with error bars above, series set `apart` sideways; beneath, residuals, which
+    always are."""
     for index, one in enumerate(drawn):
-        size = max(SIZE - 0.6 * index, 3.0)
-        _draw_points(panel.main, one, one.at, one.data.R.values, size)
-        if residuals:
-            aside = panel.axis.aside(one.at, index - (len(drawn) - 1) / 2)
-            _draw_points(panel.residual, one, aside, one.residual, size=4)
+        aside = panel.axis.aside(one.at, index - (len(drawn) - 1) / 2)
+        at, size = aside if apart else one.at, SIZE - 0.3 * index
+        _draw_points(panel.main, one, at, one.data.R.values, size)
+        for average, residual in zip(averages, panel.residuals, strict=True):
+            if average in one.data:
+                _draw_points(residual, one, aside, one.residual_of(average), 4, average)
 
 
-def frame_residuals(residual: Axes, drawn: Sequence[Series], scale: Sequence[Series]) -> None:
-    """Scale residuals to the steady points of `scale`; draw arrows for those beyond."""
+def frame_residuals(
+    residual: Axes,
+    drawn: Sequence[Series],
+    scale: Sequence[Series],
+    average: str = "R",
+    averages: Sequence[str] = ("R",),
+) -> None:
+    """Scale residuals to the steady points of `scale`, all averages of R having the same scale;
+    draw arrows for those beyond."""
     low, high = -0.005, 0.005
-    for one in scale:
-        bar = np.nan_to_num(one.data.R_stderr.values)[one.steady]
-        low = np.min(one.residual[one.steady] - bar, initial=low)
-        high = np.max(one.residual[one.steady] + bar, initial=high)
+    for one, name in ((one, name) for one in scale for name in averages if name in one.data):
+        bar = np.nan_to_num(one.error_of(name))[one.steady]
+        low = np.nanmin(one.residual_of(name)[one.steady] - bar, initial=low)
+        high = np.nanmax(one.residual_of(name)[one.steady] + bar, initial=high)
     room = 0.12 * (high - low)
     residual.set_ylim(low - room, high + room)
-    beyond = [_draw_arrows(residual, one) for one in drawn]
-    note = "series set apart sideways" + ("; arrows: beyond this scale" if any(beyond) else "")
-    residual.set_title(note, fontsize=6.5, color=GREY, loc="right", pad=2)
+    beyond = [_draw_arrows(residual, one, average) for one in drawn if average in one.data]
+    notes = ["series set apart sideways"] * (average == averages[0])
+    notes += ["arrows: beyond this scale"] * any(beyond)
+    residual.set_title("; ".join(notes), fontsize=6.5, color=GREY, loc="right", pad=2)
+    if not beyond:
+        residual.text(0.5, 0.6, "only in a steady state", color=GREY, transform=residual.transAxes)
 
 
 def add_legend(main: Axes, drawn: Sequence[Series], theory: str = "", **how: Any) -> None:
@@ -238,6 +228,9 @@ def add_legend(main: Axes, drawn: Sequence[Series], theory: str = "", **how: Any
     if any(one.touched.any() for one in drawn):
         handles.append(_key(GREY, "ringed: contact-time model acted", **RING))
     handles += main.get_legend_handles_labels()[0]
+    if how.get("loc") == "half":
+        low, high = main.get_ylim()
+        how |= {"loc": "upper left", "bbox_to_anchor": (0.0, (0.5 - low) / (high - low))}
     main.legend(handles=handles, **how)
 
 
@@ -256,19 +249,22 @@ def _key(colour: str, label: str, marker: str, linestyle: Any = "none", **how: A
     return Line2D([], [], color=colour, label=label, marker=marker, linestyle=linestyle, **how)
 
 
-def _draw_points(axes: Axes, one: Series, at: np.ndarray, values: np.ndarray, size: float) -> None:
+def _draw_points(
+    axes: Axes, one: Series, at: np.ndarray, values: np.ndarray, size: float, average: str = "R"
+) -> None:
     """Draw symbols: filled in a steady state, else open; ringed where contact times acted."""
     common = {"color": one.look.colour, "fmt": one.look.marker, "elinewidth": 0.8, "capsize": 1.5}
     for part, fill in ((one.steady, "full"), (~one.steady, "none")):
-        bars = one.data.R_stderr.values[part]
+        bars = one.error_of(average)[part]
         axes.errorbar(at[part], values[part], bars, fillstyle=fill, markersize=size, **common)
     axes.plot(at[one.touched], values[one.touched], color=GREY, linestyle="none", **RING)
 
 
-def _draw_arrows(residual: Axes, one: Series) -> bool:
+def _draw_arrows(residual: Axes, one: Series, average: str) -> bool:
     """Draw an arrow at the rim for each residual beyond the scale; return whether there are any."""
     low, high = residual.get_ylim()
-    above, below = one.residual > high, one.residual < low
+    away = one.residual_of(average)
+    above, below = away > high, away < low
     for beyond, height, marker in ((above, 0.95, "^"), (below, 0.05, "v")):
         heights = np.full(beyond.sum(), low + height * (high - low))
         style = {"color": one.look.colour, "fillstyle": "none", "ms": 3, "mew": 0.7}
