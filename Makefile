@@ -35,7 +35,7 @@ plan: setup ## say what all experiments at SCALE will cost, from pilot runs
 	@cat results/$(SCALE)/plan.md
 
 test: setup ## run the tests, but for those of `make extras`
-	$(BIN)/python -m pytest -n $(JOBS) --dist worksteal -m "not ($(EXTRA_TESTS))"
+	$(BIN)/python -m pytest -n $(JOBS) --dist loadfile --no-loadscope-reorder -m "not ($(EXTRA_TESTS))"
 
 extras: .venv/with-browser .venv-slurm/ready ## run what takes minutes more, a browser, or Slurm
 	$(BIN)/python -m pytest -n $(JOBS) --dist loadfile -m "$(EXTRA_TESTS)"

@@ -15,10 +15,10 @@ signal.signal(signal.SIGINT, signal.default_int_handler)
 settings.register_profile("shared machine", deadline=None)
 settings.load_profile("shared machine")
 
+SHORT = {"base", "claims", "config", "data", "planning", "results", "scene", "statistics", "theory"}
+"""Folders in which no file takes more than some seconds."""
+
 
 def pytest_collection_modifyitems(items):
-    """Begin with the tests of workflows: those that follow share less, and workers may part them.
-
-    Each worker that has one of these makes projects for itself, which takes many seconds.
-    """
-    items.sort(key=lambda item: "workflow" not in item.path.parts)
+    """Leave these to the end, where a long file would keep one worker busy and the other idle."""
+    items.sort(key=lambda item: not SHORT.isdisjoint(item.path.parts))

@@ -75,6 +75,9 @@ def test_a_particle_on_the_floor_that_leaves_it_does_not_meet_it_at_once():
             assert time_to_floor(floor, 1.0, surface + gap, 8.0, phase) > 0.1
             if gap <= 0.0 and phase != 1.0:
                 assert time_to_floor(floor, 1.0, surface + gap, 4.0, phase) == 0.0
+            if phase < 0.5:  # back after a hop, before the stroke ends
+                hop = time_to_floor(floor, 1.0, surface + gap, 5.2, phase)
+                assert hop == pytest.approx(0.4, rel=1e-10)
 
 
 def one_particle(height, velocity, **floor):
