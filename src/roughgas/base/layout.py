@@ -1,9 +1,13 @@
-"""Tables for a terminal, tables in Markdown, and strict JSON."""
+"""Tables for a terminal, tables in Markdown, and strict JSON, written and read."""
 
 import json
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
+from typing import Any, NoReturn
+
+from roughgas.base.errors import InputError, shown
+
+DIGITS = 19  # of a whole number: what 64 bits can hold
 
 
 def columns(rows: Iterable[Sequence[str]], numbers: bool = False) -> str:
@@ -36,6 +40,31 @@ def as_json(answer: Any, indent: int | None = 2) -> str:
     Numbers that are not finite become null.
     """
     return json.dumps(_plain(answer), indent=indent, ensure_ascii=False, allow_nan=False)
+
+
+def from_json(text: str, source: str) -> dict[str, Any]:
+    """Return the JSON object that `text` is; `source` says in messages where it comes from.
+
+    Raises InputError for anything else, for NaN and infinity, and for numbers beyond those of the
+    kernel's 64 bits.
+    """
+    try:
+        found = json.loads(text, parse_constant=_refuse, parse_int=_whole)
+    except (ValueError, RecursionError) as error:
+        raise InputError(source, shown(text), "be JSON, with numbers of up to 64 bits") from error
+    if not isinstance(found, dict):
+        raise InputError(source, shown(found), 'be a JSON object, {"key": value, ...}')
+    return found
+
+
+def _refuse(constant: str) -> NoReturn:
+    raise ValueError(f"{constant} is not JSON")
+
+
+def _whole(digits: str) -> int:
+    if len(digits) > DIGITS:
+        _refuse(digits)
+    return int(digits)
 
 
 def _padded(rows: Sequence[Sequence[str]], align: str) -> list[list[str]]:

@@ -1,11 +1,11 @@
 """What is made from results: `roughgas reduce`, `figure`, `claims`, `config`, `export`, `crate`."""
 
-import json
 import sys
 from argparse import Namespace
 from pathlib import Path
 
 from roughgas.base.errors import InputError
+from roughgas.base.layout import from_json
 
 
 def reduce(options: Namespace) -> None:
@@ -71,6 +71,6 @@ def crate(options: Namespace) -> None:
     if not options.files:
         raise InputError("number of files to pack", 0, "be at least 1")
     text = options.configuration
-    settings = config.load(options.config) if text is None else json.loads(text)
+    settings = config.load(options.config) if text is None else from_json(text, "--configuration")
     write_crate(options.files, options.output, settings, options.points)
     print(f"{options.output}: {len(options.files)} results, and what they rest on", file=sys.stderr)

@@ -1,6 +1,5 @@
 """`roughgas study` runs a task of a study."""
 
-import json
 from argparse import Namespace
 
 from roughgas import config, studies
@@ -15,7 +14,7 @@ def study(options: Namespace) -> None:
     if text is None:
         loaded = config.load(options.config)
         text = config.as_text(config.study(loaded, options.study, options.scale))
-    settings = json.loads(text)
+    settings = config.study_from_text(text, options.study, "--settings")
     tasks = module.tasks(settings["study"])
     if options.task not in tasks:
         raise InputError("task", options.task, f"be one of {', '.join(tasks)}")

@@ -8,13 +8,12 @@ effects have that value.
 All functions raise InputError, with a text of one line, for unknown names and illegal values.
 """
 
-import json
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
 from roughgas.base.errors import InputError, not_one_of, shown
-from roughgas.base.layout import as_text  # noqa: F401
+from roughgas.base.layout import as_text, from_json  # noqa: F401
 from roughgas.config.labels import SWEPT, level, restitution, roughness, seed  # noqa: F401
 
 # checking and YAML are imported where they are used: a job whose settings have been checked needs
@@ -186,15 +185,26 @@ def from_text(
 
     Otherwise they must fulfil `parts`, definitions of the schema.
     """
-    try:
-        settings = json.loads(text)
-    except ValueError as error:
-        raise InputError(source, shown(text), "be JSON") from error
+    settings = from_json(text, source)
     if not checked:
         from roughgas.config.schema import check_schema
 
         for part in parts:
             check_schema(settings, source, part)
+    return settings
+
+
+def study_from_text(text: str, name: str, source: str) -> dict[str, Any]:
+    """Return the settings of a study and of the experiments that it may run, from their JSON."""
+    from roughgas.config.schema import check_schema
+
+    settings = from_json(text, source)
+    check_schema(settings, source, "study_task")
+    for part in (name, f"studied/properties/{name}"):
+        check_schema(settings["study"], f"{source}: study", part)
+    for one, experiment in settings["experiments"].items():
+        for part in ("experiment", "point"):
+            check_schema(experiment, f"{source}: experiments.{one}", part)
     return settings
 
 

@@ -1,60 +1,126 @@
-"""Reads YAML as a person means it: 1e-5 is a number, and a key that is given twice is a mistake."""
+"""Reads YAML 1.2 with ruamel.yaml, and refuses what can only be a mistake or an attack.
 
-import re
+A key that is given twice, keys that are no text, explicit tags, and files that are large, deeply
+nested, or would be once their aliases are written out.
+"""
+
+from collections.abc import Iterator
+from io import StringIO
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
-import yaml
+from ruamel.yaml import YAML
+from ruamel.yaml.constructor import DuplicateKeyError, SafeConstructor
+from ruamel.yaml.error import MarkedYAMLError, YAMLError
+from ruamel.yaml.events import (
+    AliasEvent,
+    CollectionEndEvent,
+    CollectionStartEvent,
+    Event,
+    NodeEvent,
+)
 
-from roughgas.base.errors import InputError
+from roughgas.base.errors import InputError, shown
 
-# YAML 1.1 reads 1e-5 as text, since it has no decimal point
-SCIENTIFIC = re.compile(r"[-+]?[0-9]+(\.[0-9]*)?[eE][-+]?[0-9]+")
-
-
-class Loader(yaml.SafeLoader):
-    """PyYAML's safe loader, with the two differences named above."""
-
-    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
-        """Return a mapping; raise InputError where a key is given twice."""
-        seen = set()
-        for key in (key for key, _ in node.value if isinstance(key, yaml.ScalarNode)):
-            if key.value in seen:
-                raise InputError(_place(key.start_mark), repr(key.value), "be given once")
-            seen.add(key.value)
-        return super().construct_mapping(node, deep)
+LARGEST = 1_000_000  # bytes
+DEEPEST = 40
+MOST = 100_000  # values, with aliases written out
 
 
-Loader.add_implicit_resolver("tag:yaml.org,2002:float", SCIENTIFIC, list("-+0123456789"))
+class Constructor(SafeConstructor):
+    """The library's safe constructor, whose errors say where they are. Dates are text."""
+
+    def construct_object(self, node: Any, deep: bool = False) -> Any:
+        """Return what a node stands for; raise InputError where it stands for nothing."""
+        try:
+            return super().construct_object(node, deep)
+        except ValueError as error:
+            if isinstance(error, InputError):
+                raise
+            _refuse(node.start_mark, shown(node.value), "be a number that can be read")
+
+    def construct_mapping(self, node: Any, deep: bool = False) -> Any:
+        """Return a mapping; raise InputError for a key that is no text."""
+        found = super().construct_mapping(node, deep)
+        for key in found:
+            if not isinstance(key, str):
+                _refuse(node.start_mark, f"key {shown(key)}", "be text: write it in quotes")
+        return found
+
+
+Constructor.add_constructor("tag:yaml.org,2002:timestamp", SafeConstructor.construct_yaml_str)
 
 
 def read_yaml(path: str | Path) -> Any:
     """Return what the YAML file at `path` holds.
 
-    Raises InputError where it is not YAML, OSError where it cannot be read.
+    Raises InputError where it is not YAML or not allowed (see above), OSError where it cannot be
+    read.
     """
     name = Path(path).name
     try:
-        text = Path(path).read_text(encoding="utf-8")
-        loader = Loader(text)
+        content = Path(path).read_bytes()
+        if len(content) > LARGEST:
+            raise InputError(name, f"{len(content)} bytes", f"be of {LARGEST} at most")
+        text = content.decode("utf-8")
     except FileNotFoundError as error:
         hint = f"{error.strerror}; go to the project's folder, where config.yaml is"
         raise FileNotFoundError(error.errno, hint, str(path)) from error
-    except (UnicodeDecodeError, yaml.reader.ReaderError) as error:
+    except UnicodeDecodeError as error:
         raise InputError(name, "(not text)", "be YAML in UTF-8") from error
-    loader.name = name
     try:
-        return loader.get_single_data()
-    except yaml.MarkedYAMLError as error:
+        _check(_reader().parse(_named(text, name)))
+        return _reader().load(_named(text, name))
+    except DuplicateKeyError as error:
+        _refuse(error.problem_mark, repr(error.problem.split('"')[1]), "be given once")
+    except MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         line = "".join(text.splitlines()[mark.line : mark.line + 1])
-        legal = f"be YAML: {error.problem}"
-        if r"'\t'" in error.problem:
-            legal = "be indented with spaces, not with a tab"
-        raise InputError(_place(mark), repr(line), legal) from error
-    finally:
-        loader.dispose()
+        tab = r"'\t'" in error.problem
+        legal = "be indented with spaces, not with a tab" if tab else f"be YAML: {error.problem}"
+        _refuse(mark, shown(line), legal)
+    except YAMLError as error:
+        raise InputError(name, "(not text)", "be YAML in UTF-8") from error
 
 
-def _place(mark: yaml.Mark) -> str:
-    return f"{mark.name}: line {mark.line + 1}"
+def _reader() -> YAML:
+    yaml = YAML(typ="safe", pure=True)
+    yaml.Constructor = Constructor
+    return yaml
+
+
+def _named(text: str, name: str) -> StringIO:
+    """Return the text as a file whose name is that of its marks."""
+    stream = StringIO(text)
+    stream.name = name
+    return stream
+
+
+def _check(events: Iterator[Event]) -> None:
+    """Refuse tags, versions, and values nested too deeply or too many with aliases written out."""
+    sizes: dict[str, int] = {}
+    opened: list[tuple[str | None, int]] = []  # anchors of the collections, and values before them
+    values = 0
+    for event in events:
+        mark = event.start_mark
+        if getattr(event, "tag", None) is not None:
+            _refuse(mark, event.tag, "have no tag")
+        if getattr(event, "version", None):
+            _refuse(mark, "%YAML", "not be there: this is YAML 1.2")
+        if isinstance(event, CollectionEndEvent):
+            anchor, before = opened.pop()
+            sizes[anchor] = values - before
+        elif isinstance(event, NodeEvent):
+            if isinstance(event, AliasEvent) and event.anchor in (anchor for anchor, _ in opened):
+                _refuse(mark, f"*{event.anchor}", "be no part of itself")
+            values += sizes.get(event.anchor, 1) if isinstance(event, AliasEvent) else 1
+        if isinstance(event, CollectionStartEvent):
+            opened.append((event.anchor, values))
+        if len(opened) > DEEPEST:
+            _refuse(mark, "brackets", f"be nested {DEEPEST} deep at most")
+        if values > MOST:
+            _refuse(mark, f"{values} values", f"be {MOST} at most")
+
+
+def _refuse(mark: Any, value: str, legal: str) -> NoReturn:
+    raise InputError(f"{mark.name}: line {mark.line + 1}", value, legal)

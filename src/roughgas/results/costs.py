@@ -1,6 +1,5 @@
 """What experiments took: run times, and for those with a target what was planned beside it."""
 
-import json
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import NamedTuple
@@ -8,8 +7,9 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
+from roughgas.base.errors import InputError, shown
 from roughgas.base.files import write_text
-from roughgas.base.layout import markdown
+from roughgas.base.layout import from_json, markdown
 from roughgas.data.reduced import read_reduced
 
 RUN_TIMES = """\
@@ -91,9 +91,11 @@ def saved(data: xr.Dataset, schedule: Mapping[str, float]) -> tuple[float, float
 
 def write_costs(paths: Iterable[str | Path], fixed: str, output: str | Path) -> None:
     """Write the comparison as Markdown; `fixed` has schedules by experiment, as JSON."""
-    schedules, costs, targets, rows, against = json.loads(fixed), [], [], [], []
+    schedules, costs, targets, rows, against = from_json(fixed, "--fixed"), [], [], [], []
     for data in map(read_reduced, paths):
-        name, schedule = data.attrs["experiment"], schedules[data.attrs["experiment"]]
+        name = data.attrs["experiment"]
+        if not isinstance(schedule := schedules.get(name), dict):
+            raise InputError(f"--fixed: {name}", shown(schedule), "be a schedule")
         costs.append(cost(data))
         targets.append(float(data.target_stderr.max()))
         rows.append(_row(name, targets[-1], costs[-1]))
