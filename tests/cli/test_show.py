@@ -122,7 +122,7 @@ def test_several_files(product, capsys):
 @pytest.mark.parametrize(
     ("name", "content", "status", "message"),
     [
-        ("README.md", "words", 2, "must be a dataset of roughgas: a point, a reduced one"),
+        ("README.md", "words", 2, "must be a dataset of roughgas: it is of another program"),
         ("x.json", "{}", 2, "pilot = "),
         ("x.nc", "", 2, "must be a dataset of roughgas"),
         ("", None, 2, "must be a dataset of roughgas"),

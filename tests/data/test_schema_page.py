@@ -125,7 +125,7 @@ def test_numbers_that_miss_are_masked_for_those_who_read_masks(files):
         ("point", lambda path: reduce_points([path], path.with_name("reduced.nc"))),
         ("reduced", read_reduced),
         ("film", read_film),
-        ("studies", lambda path: read_netcdf(path, "coverage")),
+        ("studies", lambda path: read_netcdf(path, group="coverage")),
         ("task", lambda path: combine([path], path.with_name("studies.nc"))),
     ],
 )

@@ -108,7 +108,7 @@ def test_what_is_no_dataset_of_the_pipeline_is_refused(files, tmp_path, capsys):
     with netCDF4.Dataset(newer, "a") as file:
         file.schema_version = 3
     for name, status, words in (
-        ("other.nc", 2, "must be a file that the pipeline wrote"),
+        ("other.nc", 2, "must be a dataset of roughgas"),
         ("newer.nc", 2, "= 3: must be at most 2: a newer roughgas"),
         ("text.nc", 1, "text.nc"),
         ("none.nc", 1, "none.nc"),

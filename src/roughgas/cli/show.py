@@ -10,15 +10,29 @@ from typing import Any
 import numpy as np
 from xarray import Dataset
 
-from roughgas.base.errors import InputError
-from roughgas.base.layout import as_json, columns
+from roughgas.base.layout import as_json, columns, from_json
 from roughgas.data.netcdf import read_netcdf, unit_of
+from roughgas.data.opening import (
+    FILM,
+    POINT,
+    STUDIES,
+    TASK,
+    attributes_of,
+    kind_of,
+    opened,
+    require,
+)
 from roughgas.data.reduced import EQUILIBRATED, third_axis
 from roughgas.results.table import rows as rows_of
 from roughgas.statistics.estimate import Estimate, decimals_of
 from roughgas.theory.prediction import equation_of, predicted_ratio
 
-LEGAL = "be a dataset of roughgas: a point, a reduced one, a film, a study or a pilot.json"
+QUOTED = {
+    POINT: ("experiment_json", "command"),
+    FILM: ("settings_json", "packing", "r", "beta", "seed", "command"),
+    TASK: ("settings_json",),
+}
+"""Attributes of each kind that a summary quotes."""
 SHAPES = {2: "disks", 3: "spheres"}
 BLOCKS, WIDTH = "▁▂▃▄▅▆▇█", 48
 FRAMES = 8  # of a film, that are shown
@@ -63,23 +77,11 @@ def _read(path: str | Path) -> tuple[str, Any]:
 
     if Path(path).suffix == ".json":
         return "pilot of a point", read_pilot(path)
-    try:
-        if studies := read_studies(path):
-            return "studies", studies
-        data = read_netcdf(path)
-    except FileNotFoundError:
-        raise
-    except OSError as error:
-        raise InputError("file", path, LEGAL) from error
-    if {"study", "task"} <= set(data.attrs):
-        return "task of a study", data
-    if "disk_spin" in data:
-        return "film of a cooling gas", data
-    if "n_seeds" in data and "E_trans" in data:
-        return "reduced dataset", data
-    if {"experiment", "seed"} <= set(data.attrs) and "E_trans" in data:
-        return "point", data
-    raise InputError("file", path, LEGAL)
+    with opened(path) as file:
+        kind = kind_of(file)
+        require(attributes_of(file), QUOTED.get(kind, ()), path)
+    data = read_studies(path) if kind == STUDIES else read_netcdf(path)
+    return kind.removeprefix("a "), data
 
 
 def _scalars(data: Dataset) -> dict[str, Any]:
@@ -141,7 +143,8 @@ def _film_text(film: Dataset) -> str:
 
 def _settings(about: Mapping[str, Any], text: str) -> list[list[str]]:
     """Return rows with what was simulated, and for how long, from attributes and settings."""
-    experiment = json.loads(text)
+    experiment = from_json(text, "settings of the dataset")
+    require(experiment, ("particles", "box", "effects"), "its settings")
     box = " x ".join(f"{side:g}" if side != "open" else "open" for side in experiment["box"])
     effects = [f"{name} ({_listed(one)})" for name, one in experiment["effects"].items()]
     rows = [
@@ -294,7 +297,7 @@ KINDS = {
     ),
     "reduced dataset": (_reduced_text, _reduced_record),
     "task of a study": (_task_text, _task_record),
-    "studies": (_studies_text, _studies_record),
+    "dataset of studies": (_studies_text, _studies_record),
     "pilot of a point": (_pilot_text, lambda pilot: {"variables": pilot._asdict()}),
 }
 """The kinds of files: what a person reads of each, and what a script reads."""

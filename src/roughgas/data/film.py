@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from roughgas.base.errors import InputError
+from roughgas.data import opening
 from roughgas.data.netcdf import Content, read_netcdf, write_netcdf
 from roughgas.data.variables import FILM, described, refuse
 
@@ -37,12 +37,9 @@ def write_film(
 def read_film(path: str | Path) -> "xarray.Dataset":
     """Return the dataset at `path` in memory; the file is closed.
 
-    Raises InputError if it is of a newer schema, or no film.
+    Raises InputError if it is something else or damaged, OSError if there is none.
     """
-    found = read_netcdf(path)
-    if "frame" not in found.dims:
-        raise InputError("film", path, "be a dataset of `roughgas clustering`")
-    return found
+    return read_netcdf(path, opening.FILM)
 
 
 def disks_of(film: "xarray.Dataset", frame: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

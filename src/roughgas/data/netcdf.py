@@ -12,16 +12,15 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from roughgas.base.errors import InputError
 from roughgas.base.files import whole_file
 from roughgas.base.version import __version__
+from roughgas.data.opening import CHECKSUM, SCHEMA_VERSION, checksum, opened
 from roughgas.data.variables import CLOCKS, Array
 
 if TYPE_CHECKING:
     import netCDF4
     import xarray
 
-SCHEMA_VERSION = 2
 COMMON_ATTRIBUTES = {
     "Conventions": "CF-1.11",
     "schema_version": SCHEMA_VERSION,
@@ -72,6 +71,7 @@ def write_netcdf(
             _fill(file, content, COMMON_ATTRIBUTES, complevel)
             for name, one in (groups or {}).items():
                 _fill(file.createGroup(name), one, {}, complevel)
+            file.setncattr(CHECKSUM, checksum(file))
     except (RuntimeError, PermissionError) as error:  # as netCDF4 says that a disk is full
         reason = f"{error}; is the disk full or the folder read-only?"
         raise OSError(f"cannot write {path}: {reason}") from error
@@ -88,25 +88,17 @@ def in_memory(content: Content) -> "xarray.Dataset":
     return xarray.load_dataset(xarray.backends.NetCDF4DataStore(file))  # which closes it
 
 
-def read_netcdf(path: str | Path, group: str | None = None) -> "xarray.Dataset":
+def read_netcdf(path: str | Path, *kinds: str, group: str | None = None) -> "xarray.Dataset":
     """Return the dataset at `path`, or a group of it, in memory; the file is closed.
 
-    Raises InputError if the file is of a newer schema.
+    Raises InputError and OSError as `opened` does, which checks that the file is of one of `kinds`.
     """
     import xarray
 
-    found = xarray.load_dataset(path, engine="netcdf4")
-    check_schema(found.attrs, path)
-    return found if group is None else xarray.load_dataset(path, group=group, engine="netcdf4")
-
-
-def check_schema(attributes: Mapping[str, Any], path: str | Path) -> None:
-    """Raise InputError if the file at `path`, which has these global attributes, is of a newer
-    schema than this program knows. Files of older ones are read."""
-    version = attributes.get("schema_version", SCHEMA_VERSION)
-    if version > SCHEMA_VERSION:
-        legal = f"be at most {SCHEMA_VERSION}: a newer roughgas has written the file"
-        raise InputError(f"schema_version of {path}", version, legal)
+    with opened(path, *kinds):
+        found = xarray.load_dataset(path, group=group, engine="netcdf4")
+    found.attrs.pop(CHECKSUM, None)
+    return found
 
 
 def _fill(

@@ -3,6 +3,7 @@
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from roughgas.data import opening
 from roughgas.data.netcdf import Content, in_memory, read_netcdf, write_netcdf
 from roughgas.data.variables import CLOCKS, described, refuse
 
@@ -11,21 +12,17 @@ if TYPE_CHECKING:
 
 __all__ = ["Point", "as_dataset", "read_point", "write_point"]
 
-REQUIRED = ("E_trans", "collisions", "kernel_seconds", "equilibrated")
 REQUIRED_OF_SPIN = ("R", "R_stderr", "R_dof", "R_ci95", "R_ratio_of_means", "E_rot")
-"""What a point holds besides where particles spin, and so has the attribute `inertia`."""
-REQUIRED_ATTRIBUTES = ("experiment", "scale", "r", "beta", "seed", "dimension", "particles")
+"""What a point holds besides opening.KINDS where particles spin, and so has `inertia`."""
 WALL_CLOCK = ("kernel_seconds", "planned_seconds")
 """The only variables that differ when the same point is run again."""
 COMPLEVEL = 1
-
-read_point = read_netcdf
 
 
 class Point(NamedTuple):
     """One (experiment, r, beta, seed): registered variables by name, and global attributes.
 
-    Attributes are strings, ints or floats. REQUIRED and REQUIRED_ATTRIBUTES must be there, and
+    Attributes are strings, ints or floats. What roughgas.data.opening.KINDS says must be there, and
     REQUIRED_OF_SPIN where particles spin.
     """
 
@@ -42,6 +39,14 @@ def write_point(path: str | Path, point: Point) -> None:
     write_netcdf(path, _content(point), complevel=COMPLEVEL)
 
 
+def read_point(path: str | Path) -> "xarray.Dataset":
+    """Return the dataset of a point in memory; the file is closed.
+
+    Raises InputError if the file is something else or damaged, OSError if there is none.
+    """
+    return read_netcdf(path, opening.POINT)
+
+
 def as_dataset(point: Point) -> "xarray.Dataset":
     """Return what `read_point` gives of the file that `write_point` makes, without that file.
 
@@ -51,8 +56,9 @@ def as_dataset(point: Point) -> "xarray.Dataset":
 
 
 def _content(point: Point) -> Content:
-    required = REQUIRED + (REQUIRED_OF_SPIN if "inertia" in point.attributes else ())
-    refuse("missing variables of a point", set(required) - set(point.variables))
-    refuse("missing attributes of a point", set(REQUIRED_ATTRIBUTES) - set(point.attributes))
+    least = opening.KINDS[opening.POINT]
+    required = least.variables | set(REQUIRED_OF_SPIN if "inertia" in point.attributes else ())
+    refuse("missing variables of a point", required - set(point.variables))
+    refuse("missing attributes of a point", least.attributes - set(point.attributes))
     cooling = CLOCKS[1] in point.variables
     return Content(described("point", point.variables, cooling), point.attributes)

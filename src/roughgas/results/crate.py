@@ -27,7 +27,7 @@ from roughgas.base.errors import InputError
 from roughgas.base.files import whole_file
 from roughgas.base.version import __version__
 from roughgas.config.reading import read_yaml
-from roughgas.data.netcdf import SCHEMA_VERSION
+from roughgas.data.opening import POINT, SCHEMA_VERSION, opened
 from roughgas.data.point import WALL_CLOCK
 
 if TYPE_CHECKING:
@@ -179,13 +179,11 @@ def commit() -> str | None:
 
 def _list_of(points: Iterable[str]) -> str:
     """Return a row for each point: its file, the digest of its numbers, its command."""
-    import netCDF4
-
     text = io.StringIO()
     table = csv.writer(text, lineterminator="\n")
     table.writerow(COLUMNS)
     for point in points:
-        with netCDF4.Dataset(point) as file:
+        with opened(point, POINT) as file:
             table.writerow([point, digest(point), file.getncattr("command")])
     return text.getvalue()
 

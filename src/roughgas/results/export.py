@@ -8,14 +8,13 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-import netCDF4
 import numpy as np
 from pandas import DataFrame
 from xarray import Dataset
 
-from roughgas.base.errors import InputError
 from roughgas.base.files import whole_file
 from roughgas.data.netcdf import read_netcdf, unit_of
+from roughgas.data.opening import opened
 from roughgas.results import table
 
 MAIN = ("sample",), ("frame",)
@@ -33,13 +32,11 @@ def export(path: str | Path, output: str | Path) -> list[Path]:
 
     Raises InputError if the pipeline has not written the file, or a newer version has.
     """
-    with netCDF4.Dataset(path) as file:
+    with opened(path) as file:
         groups = list(file.groups)
-        if "schema_version" not in file.ncattrs():
-            raise InputError("dataset", path, "be a file that the pipeline wrote")
     if not groups:
         return _export(read_netcdf(path), Path(output))
-    written = (_export(read_netcdf(path, one), _beside(Path(output), one)) for one in groups)
+    written = (_export(read_netcdf(path, group=one), _beside(Path(output), one)) for one in groups)
     return [file for files in written for file in files]
 
 

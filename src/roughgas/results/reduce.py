@@ -16,7 +16,9 @@ import netCDF4
 import numpy as np
 
 from roughgas.base.errors import InputError
-from roughgas.data.netcdf import COMMON_ATTRIBUTES, Content, check_schema, write_netcdf
+from roughgas.data.netcdf import COMMON_ATTRIBUTES, Content, write_netcdf
+from roughgas.data.opening import POINT as OF_POINT
+from roughgas.data.opening import DamagedError, attributes_of, opened
 from roughgas.data.reduced import GRID, third_axis
 from roughgas.data.variables import CLOCKS, POINT, Array, described
 from roughgas.statistics.bimodal import is_bimodal
@@ -46,22 +48,30 @@ def reduce_points(paths: Iterable[str | Path], output: str | Path) -> None:
 
     A path is that of a dataset, or of a folder with a dataset for each seed. Seeds that are missing
     at an (r, beta) are NaN in R_seed, and do not count in n_seeds and the means.
-    Raises InputError if there are no paths, several experiments, or the same point twice.
+    Raises InputError if there are no paths, several experiments, the same point twice, or a file
+    is damaged, which is then put aside.
     """
     folders = (path.glob("seed*.nc") if path.is_dir() else [path] for path in map(Path, paths))
-    points = [_summary(file) for files in folders for file in sorted(files)]
+    points = [_checked(file) for files in folders for file in sorted(files)]
     if not points:
         raise InputError("number of points to reduce", 0, "be at least 1")
     write_netcdf(output, _combined(points))
 
 
+def _checked(path: Path) -> Summary:
+    """Return a point; put a damaged file aside, so that the workflow makes it anew."""
+    try:
+        return _summary(path)
+    except DamagedError as error:
+        path.replace(f"{path}.damaged")
+        legal = f"{error.legal}, and now called {path.name}.damaged: run the same command again"
+        raise DamagedError("point", path, legal) from error
+
+
 def _summary(path: Path) -> Summary:
-    with netCDF4.Dataset(path) as file:
+    with opened(path, OF_POINT) as file:
         file.set_auto_mask(False)
-        attributes = {name: file.getncattr(name) for name in file.ncattrs()}
-        check_schema(attributes, path)
-        if "seed" not in attributes:
-            raise InputError("file to reduce", path, "be the dataset of a point")
+        attributes = attributes_of(file)
         found = [name for name, about in POINT.items() if not about.dims]
         scalars = {name: file[name][...].item() for name in found if name in file.variables}
         scalars["measured_for"], scalars["R_drift"] = _window(file, scalars)

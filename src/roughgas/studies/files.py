@@ -10,6 +10,7 @@ import xarray as xr
 
 from roughgas.base.errors import InputError
 from roughgas.data.netcdf import Content, content_of, read_netcdf, write_netcdf
+from roughgas.data.opening import TASK
 from roughgas.studies.tasks import TASKS
 
 
@@ -25,7 +26,7 @@ def combine(paths: Iterable[str | Path], output: str | Path) -> None:
     """
     found: dict[str, dict[str, xr.Dataset]] = {}
     for path in paths:
-        data = read_netcdf(path)
+        data = read_netcdf(path, TASK)
         found.setdefault(data.attrs["study"], {})[data.attrs["task"]] = data
     groups = {name: content_of(_combined(name, parts)) for name, parts in found.items()}
     write_netcdf(output, Content({}, {"title": "Studies"}), groups)

@@ -8,12 +8,13 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-import netCDF4
 import numpy as np
 import xarray as xr
 import yaml
 
+from roughgas.data import opening
 from roughgas.data.netcdf import read_netcdf
+from roughgas.data.opening import opened
 from roughgas.data.variables import Variable, described, register
 from roughgas.statistics.estimate import Estimate
 from roughgas.studies.tasks import STUDIES
@@ -28,9 +29,9 @@ def dataset(study: str, found: Mapping[str, Any], **attributes: Any) -> xr.Datas
 
 def read_studies(path: str | Path) -> dict[str, xr.Dataset]:
     """Return the groups of all studies in the combined file at `path`, by name."""
-    with netCDF4.Dataset(path) as file:
+    with opened(path, opening.STUDIES) as file:
         names = [name for name in STUDIES if name in file.groups]
-    return {name: read_netcdf(path, name) for name in names}
+    return {name: read_netcdf(path, group=name) for name in names}
 
 
 def estimate(data: xr.Dataset, name: str) -> Estimate:

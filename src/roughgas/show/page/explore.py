@@ -15,7 +15,8 @@ import numpy as np
 
 from roughgas.base.errors import InputError
 from roughgas.base.files import write_text
-from roughgas.data.netcdf import read_netcdf
+from roughgas.data.opening import POINT, attributes_of, opened, require
+from roughgas.data.point import read_point
 from roughgas.data.reduced import EQUILIBRATED, read_reduced, third_axis
 from roughgas.data.variables import CLOCKS
 from roughgas.show.style import LOOKS
@@ -126,19 +127,18 @@ def _point(data, path, about):
         # as Snakemake knows it
         "target": str(path.parent if path.parent.name == "seeds" else path),
         "command": about["command"],
-        "over_time": time_series(read_netcdf(path)),
+        "over_time": time_series(read_point(path)),
     }
 
 
 def _first_seeds(folder):
     """Return where seed 1 of each point in a folder is, and the attributes of its dataset, by the
     point's place: its value on the third axis (None without one), r, and beta."""
-    import netCDF4
-
     found = {}
     for path in sorted(folder.rglob("seed1.nc")):
-        with netCDF4.Dataset(path) as file:
-            about = {name: file.getncattr(name) for name in file.ncattrs()}
+        with opened(path, POINT) as file:
+            about = attributes_of(file)
+        require(about, ("r_label", "beta_label", "command"), path)
         place = _place(about.get("swept_value"), about["r"], about["beta"])
         found.setdefault(place, (path, about))
     return found

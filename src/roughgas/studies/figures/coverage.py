@@ -8,6 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from roughgas.data.netcdf import read_netcdf
+from roughgas.data.opening import STUDIES
 from roughgas.show.style import FAINT, GREY, LOOKS
 from roughgas.studies.tables import along, in_order, label
 
@@ -22,7 +23,7 @@ SHIFT = 0.17  # of the two ways off their corner's row
 
 def draw(path: str | Path) -> Figure:
     """Return the figure, from the combined dataset of the study at `path`."""
-    return draw_figure(read_netcdf(path, "coverage"))
+    return draw_figure(read_netcdf(path, STUDIES, group="coverage"))
 
 
 def draw_figure(data: xr.Dataset) -> Figure:
