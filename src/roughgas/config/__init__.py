@@ -203,8 +203,7 @@ def study_from_text(text: str, name: str, source: str) -> dict[str, Any]:
     for part in (name, f"studied/properties/{name}"):
         check_schema(settings["study"], f"{source}: study", part)
     for one, experiment in settings["experiments"].items():
-        for part in ("experiment", "point"):
-            check_schema(experiment, f"{source}: experiments.{one}", part)
+        check_schema(experiment, f"{source}: experiments.{one}", "experiment")
     return settings
 
 

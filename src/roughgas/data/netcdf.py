@@ -14,7 +14,7 @@ import numpy as np
 
 from roughgas.base.files import whole_file
 from roughgas.base.version import __version__
-from roughgas.data.opening import CHECKSUM, SCHEMA_VERSION, checksum, opened
+from roughgas.data.opening import SCHEMA_VERSION, opened, seal
 from roughgas.data.variables import CLOCKS, Array
 
 if TYPE_CHECKING:
@@ -67,11 +67,12 @@ def write_netcdf(
     import netCDF4
 
     try:
-        with whole_file(path) as draft, netCDF4.Dataset(draft, "w") as file:
-            _fill(file, content, COMMON_ATTRIBUTES, complevel)
-            for name, one in (groups or {}).items():
-                _fill(file.createGroup(name), one, {}, complevel)
-            file.setncattr(CHECKSUM, checksum(file))
+        with whole_file(path) as draft:
+            with netCDF4.Dataset(draft, "w") as file:
+                _fill(file, content, COMMON_ATTRIBUTES, complevel)
+                for name, one in (groups or {}).items():
+                    _fill(file.createGroup(name), one, {}, complevel)
+            seal(draft)
     except (RuntimeError, PermissionError) as error:  # as netCDF4 says that a disk is full
         reason = f"{error}; is the disk full or the folder read-only?"
         raise OSError(f"cannot write {path}: {reason}") from error
@@ -96,9 +97,7 @@ def read_netcdf(path: str | Path, *kinds: str, group: str | None = None) -> "xar
     import xarray
 
     with opened(path, *kinds):
-        found = xarray.load_dataset(path, group=group, engine="netcdf4")
-    found.attrs.pop(CHECKSUM, None)
-    return found
+        return xarray.load_dataset(path, group=group, engine="netcdf4")
 
 
 def _fill(

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     import netCDF4
 
 SCHEMA_VERSION = 2
-CHECKSUM = "checksum"
+SEAL = b"\nroughgas sha256 "
 LARGEST = 4e9  # bytes that a file may say it holds
 NUMBER, WHOLE, WORD, JSON = "a number", "a whole number", "text", "a JSON object"
 ATTRIBUTES = {
@@ -30,7 +30,7 @@ ATTRIBUTES = {
     **dict.fromkeys(("seed", "dimension", "particles"), WHOLE),
     **dict.fromkeys(("r", "beta", "inertia", "spin_share", "mu", "packing"), NUMBER),
     **dict.fromkeys(("experiment", "scale", "r_label", "beta_label", "command", "swept"), WORD),
-    **dict.fromkeys(("variant", "theory", "study", "task", CHECKSUM), WORD),
+    **dict.fromkeys(("variant", "theory", "study", "task"), WORD),
     **dict.fromkeys(("experiment_json", "settings_json"), JSON),
 }
 """What the attributes that are read must be, where they are there."""
@@ -76,19 +76,20 @@ def opened(path: str | Path, *kinds: str) -> Iterator["netCDF4.Dataset"]:
 
     if not Path(path).exists():
         raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), str(path))
+    if Path(path).is_file() and not is_whole(path):
+        raise DamagedError("file", _name(path), "be what was written to it: it is damaged")
     try:
         file = netCDF4.Dataset(path)
     except (OSError, RuntimeError, UnicodeError) as error:
         legal = "be a dataset of roughgas: it is of another program, or cut off, or damaged"
-        raise DamagedError("file", shown(str(path)), legal) from error
+        raise DamagedError("file", _name(path), legal) from error
     with file:
         _check_attributes(file, path)
         _check_size(file, path)
-        _check_whole(file, path)
         if (found := kind_of(file)) not in (kinds or (*KINDS, STUDIES)):
             wanted = " or ".join(kinds) or "a dataset of roughgas"
             other = f", not {found}" if found else ""
-            raise InputError("file", shown(str(path)), f"be {wanted}{other}")
+            raise InputError("file", _name(path), f"be {wanted}{other}")
         yield file
 
 
@@ -102,15 +103,25 @@ def kind_of(file: "netCDF4.Dataset") -> str | None:
 
 
 def attributes_of(file: "netCDF4.Dataset") -> dict[str, Any]:
-    """Return the global attributes of an open file, but for its checksum."""
-    return {name: file.getncattr(name) for name in file.ncattrs() if name != CHECKSUM}
+    """Return the global attributes of an open file."""
+    return {name: file.getncattr(name) for name in file.ncattrs()}
 
 
-def checksum(file: "netCDF4.Dataset") -> str:
-    """Return a checksum of all variables and attributes of an open file, its groups included."""
-    found = hashlib.sha256()
-    _add(found, file)
-    return f"sha256:{found.hexdigest()}"
+def seal(path: str | Path) -> None:
+    """Append the checksum of a finished file to it.
+
+    HDF5 ignores what follows its end. What another program writes anew has no seal, and is read.
+    """
+    with Path(path).open("r+b") as file:
+        digest = hashlib.file_digest(file, "sha256").hexdigest()
+        file.write(SEAL + digest.encode())
+
+
+def is_whole(path: str | Path) -> bool:
+    """Return whether a file is what was sealed; True if it has no seal."""
+    content = Path(path).read_bytes()
+    rest, mark, stated = content.rpartition(SEAL)
+    return not mark or stated == hashlib.sha256(rest).hexdigest().encode()
 
 
 def require(attributes: Mapping[str, Any], names: Iterable[str], path: str | Path) -> None:
@@ -120,24 +131,10 @@ def require(attributes: Mapping[str, Any], names: Iterable[str], path: str | Pat
             raise InputError(f"attribute {name} of {path}", "(nothing)", "be given")
 
 
-def _add(found: Any, group: Any) -> None:
-    found.update(_text(attributes_of(group)))
-    for name in sorted(group.variables):
-        variable = group[name]
-        variable.set_auto_maskandscale(False)
-        values = variable[...]
-        words = values.dtype == object
-        found.update(f"{name} {variable.dimensions} {values.shape} {values.dtype}".encode())
-        found.update(_text({k: variable.getncattr(k) for k in variable.ncattrs()}))
-        found.update("\0".join(map(str, values.flat)).encode() if words else values.tobytes())
-    for name in sorted(group.groups):
-        found.update(name.encode())
-        _add(found, group[name])
-
-
-def _text(attributes: Mapping[str, Any]) -> bytes:
-    plain = {name: np.asarray(value).tolist() for name, value in attributes.items()}
-    return repr(sorted(plain.items())).encode()
+def _name(path: str | Path) -> str:
+    """Return a path as it is; as Python writes it where it would not stay on one line."""
+    name = str(path)
+    return name if name.isprintable() else repr(name)
 
 
 def _check_attributes(file: "netCDF4.Dataset", path: str | Path) -> None:
@@ -165,14 +162,3 @@ def _check_size(file: "netCDF4.Dataset", path: str | Path) -> None:
     size = sum(8.0 * math.prod(one.shape) for group in groups for one in group.variables.values())
     if size > LARGEST:
         raise InputError(f"size of {path}", f"{size:.3g} bytes", f"be at most {LARGEST:.0g}")
-
-
-def _check_whole(file: "netCDF4.Dataset", path: str | Path) -> None:
-    stated = getattr(file, CHECKSUM, None)
-    try:
-        whole = stated is None or stated == checksum(file)
-    except (RuntimeError, OSError, UnicodeError):
-        whole = False
-    if not whole:
-        legal = "be what was once written to it: it is damaged"
-        raise DamagedError("file", shown(str(path)), legal)

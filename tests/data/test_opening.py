@@ -1,0 +1,103 @@
+"""What a file is: its kind, its size, and whether it is what was once written to it."""
+
+import shutil
+
+import netCDF4
+import pytest
+import xarray as xr
+from tests.files import write_all
+
+from roughgas.base.errors import InputError
+from roughgas.cli import main
+from roughgas.data.film import read_film
+from roughgas.data.netcdf import read_netcdf
+from roughgas.data.opening import DamagedError, opened
+from roughgas.data.point import read_point
+from roughgas.data.reduced import read_reduced
+from roughgas.studies.variables import read_studies
+
+READERS = {
+    "point": read_point,
+    "reduced": read_reduced,
+    "film": read_film,
+    "studies": read_studies,
+}
+
+
+@pytest.fixture(scope="module")
+def files(tmp_path_factory):
+    return write_all(tmp_path_factory.mktemp("files"))
+
+
+@pytest.mark.parametrize("wanted", READERS)
+@pytest.mark.parametrize("kind", READERS)
+def test_a_reader_takes_its_own_kind_alone(files, kind, wanted):
+    if kind == wanted:
+        READERS[wanted](files[kind])
+    else:
+        with pytest.raises(InputError, match=r"must be a .*, not a "):
+            READERS[wanted](files[kind])
+
+
+@pytest.mark.parametrize("kind", READERS)
+def test_every_flipped_byte_and_every_cut_is_noticed(files, kind, tmp_path):
+    content = files[kind].read_bytes()
+    path = tmp_path / "spoiled.nc"
+    for at in range(0, len(content) - 100, max(1, len(content) // 50)):
+        path.write_bytes(content[:at] + bytes([content[at] ^ 0x10]) + content[at + 1 :])
+        with pytest.raises(DamagedError), opened(path):
+            pass
+        path.write_bytes(content[:at])
+        with pytest.raises(DamagedError), opened(path):
+            pass
+
+
+def test_what_another_program_writes_anew_is_read(files, tmp_path):
+    xr.load_dataset(files["point"]).to_netcdf(tmp_path / "again.nc")
+    assert read_point(tmp_path / "again.nc").R == read_point(files["point"]).R
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "legal"),
+    [
+        ("schema_version", [1, 2], "a whole number"),
+        ("schema_version", "two", "a whole number"),
+        ("r", "0.9", "a number"),
+        ("beta", [0.1, 0.2], "a number"),
+        ("seed", 1.5, "a whole number"),
+        ("experiment", 3, "text"),
+        ("experiment_json", "{", "JSON"),
+        ("experiment_json", "[1]", "a JSON object"),
+    ],
+)
+def test_an_attribute_of_the_wrong_type_is_named(files, tmp_path, name, value, legal):
+    path = shutil.copy(files["point"], tmp_path / "other.nc")
+    with netCDF4.Dataset(path, "a") as file:
+        file.setncattr(name, value)
+    with pytest.raises(InputError, match=rf"^{name} of .*must be {legal}"):
+        read_point(path)
+
+
+def test_a_file_that_claims_to_be_huge_is_refused_before_it_is_read(tmp_path):
+    with netCDF4.Dataset(tmp_path / "huge.nc", "w") as file:
+        file.createDimension("x", 10**12)
+        file.createVariable("x", "f8", ("x",), chunksizes=(1000,))
+    assert (tmp_path / "huge.nc").stat().st_size < 100_000
+    with pytest.raises(InputError, match=r"size of .*huge\.nc = 8e\+12 bytes: must be at most"):
+        read_netcdf(tmp_path / "huge.nc")
+
+
+def test_a_damaged_point_is_put_aside_and_named(files, tmp_path, capsys):
+    path = tmp_path / "seed1.nc"
+    path.write_bytes(files["point"].read_bytes()[:-200])
+    command = ["reduce", str(path), "-o", str(tmp_path / "all.nc")]
+    assert main(command) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert f"{path}" in line and "seed1.nc.damaged: run the same command again" in line
+    assert sorted(one.name for one in tmp_path.iterdir()) == ["seed1.nc.damaged"]
+
+
+def test_a_dataset_without_what_a_summary_quotes_is_refused(files, capsys):
+    assert main(["show", str(files["film"])]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "attribute settings_json of" in line and line.endswith("must be given")
