@@ -194,7 +194,7 @@ MISTAKES = [
     (
         "experiments.cooling.effects.gravty",
         {"acceleration": 1},
-        "effects: key = 'gravty': must be one of contact_time, floor, friction, gravity, ",
+        "effects: key = 'gravty': must be one of contact_averages, contact_time, floor, ",
     ),
     (
         "experiments.vibrated.effects.floor.height",

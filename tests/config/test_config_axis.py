@@ -120,7 +120,7 @@ MISTAKES = [
     (
         {"spn.inertia": ["1"]},
         f"{SWEPT}: key = 'spn.inertia': must begin with an effect of this experiment: "
-        "contact_time, shear, spin",
+        "contact_averages, contact_time, shear, spin",
     ),
     ({"floor.roughness": ["1"]}, "key = 'floor.roughness': must begin with an effect of this exp"),
     (

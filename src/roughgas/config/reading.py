@@ -20,7 +20,7 @@ from ruamel.yaml.events import (
     NodeEvent,
 )
 
-from roughgas.base.errors import InputError, shown
+from roughgas.base.errors import LONGEST, InputError, shown
 
 LARGEST = 1_000_000  # bytes
 DEEPEST = 40
@@ -78,7 +78,7 @@ def read_yaml(path: str | Path) -> Any:
         line = "".join(text.splitlines()[mark.line : mark.line + 1])
         tab = r"'\t'" in error.problem
         legal = "be indented with spaces, not with a tab" if tab else f"be YAML: {error.problem}"
-        _refuse(mark, shown(line), legal)
+        _refuse(mark, repr(line[:LONGEST]), legal)
     except YAMLError as error:
         raise InputError(name, "(not text)", "be YAML in UTF-8") from error
 
