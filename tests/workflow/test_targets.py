@@ -5,8 +5,7 @@ from project import BEYOND, JOBS, POINTS, Project
 
 import roughgas.config
 from roughgas import studies
-from roughgas.show.catalogue import FIGURES
-from roughgas.studies.figures import FIGURES as STUDY_FIGURES
+from roughgas.show import catalogue
 
 LEGAL = [
     "results/paper/cooling/r0.87/beta-0.33/seed7.nc",
@@ -108,8 +107,16 @@ def test_a_plan_takes_pilots_and_no_points(project):
     assert planned == {"compile_kernel": every, "pilot": every, "plan_of_scale": 1, "plan": 1}
 
 
+def tasks_of(project, name):
+    """The number of tasks of a study."""
+    config = roughgas.config.load(project.folder / "config.yaml")
+    return len(studies.study(name).tasks(roughgas.config.study(config, name, "tiny")["study"]))
+
+
 def test_what_lies_beyond_the_paper_is_a_target_of_its_own(project):
     planned = project.planned("extensions")
+    questions = catalogue.figures_of("questions")
+    shown = catalogue.shown_in("questions")
     assert planned == {
         "compile_kernel": len(BEYOND),
         "seeds": len(BEYOND),
@@ -118,7 +125,11 @@ def test_what_lies_beyond_the_paper_is_a_target_of_its_own(project):
         "table": 1,
         "claims": 1,
         "run_times": 1,
-        "document": 2,
+        "study": sum(tasks_of(project, name) for name in shown),
+        "combined_studies": len(questions),
+        "study_figure": len(questions),
+        "study_table": len(questions),
+        "document": 2 + len(questions),
         "extensions": 1,
     }
     assert project.planned("figures")["seeds"] == JOBS
@@ -150,15 +161,11 @@ def test_the_hard_cases_are_those_of_the_catalogue(project):
     assert len(families) > 10
 
 
-def test_a_study_is_a_job_for_each_of_its_tasks(project):
-    config = roughgas.config.load(project.folder / "config.yaml")
-    drawn = {"combined_studies": 1, "study_figure": 1, "study_table": 1, "document": 1}
-    for figure in STUDY_FIGURES:
-        tasks = sum(
-            len(studies.study(name).tasks(roughgas.config.study(config, name, "tiny")["study"]))
-            for name in FIGURES[figure].shows
-        )
-        assert project.planned(figure) == {"study": tasks, figure: 1} | drawn
+@pytest.mark.parametrize("figure", catalogue.figures_of("accuracy"))
+def test_a_study_is_a_job_for_each_of_its_tasks(project, figure):
+    tasks = sum(tasks_of(project, name) for name in catalogue.FIGURES[figure].shows)
+    drawn = {"study_figure": 1, "study_table": 1, "document": 1, figure: 1}
+    assert project.planned(figure) == {"study": tasks, "combined_studies": 1} | drawn
 
 
 def test_any_legal_point_can_be_asked_for(project):

@@ -14,7 +14,6 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from roughgas.config import merged
 from roughgas.effects import inertia
 from roughgas.kernel.state import LAST_FIRST, LAST_SECOND
 from roughgas.scene import Scene, build
@@ -168,8 +167,8 @@ def _one_period(profile, done):
 
 
 def _equilibrated(point, experiment, settings, seed):
-    effects = point.get("effects", {}) | {"contact_averages": {}}
-    experiment = merged(experiment, {"effects": effects})
+    effects = experiment["effects"] | point.get("effects", {}) | {"contact_averages": {}}
+    experiment = experiment | {"effects": effects}
     scene = build(experiment, float(point["r"]), float(point["beta"]))
     gas = schedule.of(experiment).start(scene, experiment, np.random.default_rng(seed))
     gas.in_time(1.0, round(point["equilibrate"]))
