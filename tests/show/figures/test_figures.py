@@ -146,7 +146,8 @@ def test_captions_say_what_how_large_and_which_error_bars():
     data = reduced("vibrated")
     main, _ = fig1a.draw(data).axes
     title = main.get_title(loc="left")
-    assert "N = 160" in title and "small scale" in title
+    assert "N = 160" in title and "(scale: small)" in title
+    assert "scale" not in fig1a.draw(data.assign_attrs(scale="paper")).axes[0].get_title(loc="left")
     assert "standard error from 4 seeds" in title
     data["n_seeds"][0, 0] = 2
     assert "from 2 to 4 seeds" in fig1a.draw(data).axes[0].get_title(loc="left")
@@ -192,7 +193,7 @@ def test_unsubtracted_ratio_is_shown_small_where_there_is_one():
     main, _ = fig2a.draw(sheared()).axes
     small = [line for line in main.lines if line.get_alpha() == 0.5 and len(line.get_xdata())]
     assert len(small) == 3
-    assert any("not removed" in word for word in words(main))
+    assert any("left in" in text.get_text() for text in main.texts)
     main, _ = fig2a.draw(reduced("sheared")).axes
     assert not any("not removed" in word for word in words(main))
 

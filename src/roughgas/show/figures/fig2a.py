@@ -26,4 +26,4 @@ def _draw_unsubtracted(main: Axes, drawn: Sequence[Series]) -> None:
     for one in drawn:
         ratio = one.data.R_unsubtracted.values
         main.plot(one.at, ratio, one.look.marker, color=one.look.colour, **FAINT)
-    main.plot([], [], "o", color=GREY, label="small: mean flow and spin not removed", **FAINT)
+    main.text(0.08, 0.14, "small: mean flow and\nmean spin left in", fontsize=7, color=GREY)

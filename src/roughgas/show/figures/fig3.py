@@ -14,8 +14,8 @@ def draw(cooling: xr.Dataset, sheared: xr.Dataset, bed: xr.Dataset) -> Figure:
     free = {"theories": "lines: theory, Eq. (Goldshtein)", "loc": "upper right"}
     return ratio_figure(
         content_for_each_r("Cooling spheres", cooling, **free),
-        content_for_each_r("Sheared spheres", sheared, theory=ANY_R, loc="half"),
-        content_for_each_r("Vibrated spheres", bed, theory=ANY_R, loc="half"),
+        content_for_each_r("Sheared spheres", sheared, theory=ANY_R),
+        content_for_each_r("Vibrated spheres", bed, theory=ANY_R),
         width=10.4,
         averaged=True,
     )

@@ -22,19 +22,20 @@ def draw(heated: xr.Dataset, *boundaries: xr.Dataset) -> Figure:
     `boundaries` are the bed on rough floors, the bed between rough walls, and the gas between
     shaken walls.
     """
-    figure, (one,) = panel.ratio_panels([panel.SPIN_SHARE], width=5.6)
+    averages = [name for name in ("R", "R_collisional") if name in heated]
+    figure, (one,) = panel.ratio_panels([panel.SPIN_SHARE], panel.WIDE, averages)
     drawn = []
     for data, (label, marker) in zip((heated, *boundaries), DRIVES, strict=True):
         looks = [look._replace(marker=marker) for look in LOOKS]
         part = panel.series_for_each(data, "beta", looks=looks)
         part = part if data is heated else [_over_measured_share(series) for series in part]
-        panel.draw_series(one, part)
+        panel.draw_series(one, part, averages)
         one.main.plot([], [], marker, color=GREY, label=label)
         drawn += part
     of_heated = drawn[: heated.beta.size]
     panel.draw_theory(one, of_heated)
     one.main.set_ylim(0.03, 1.12)  # room for the legend
-    panel.frame_residuals(one.residual, drawn, drawn)
+    panel.frame_rows(one, drawn, drawn, averages)
     lines = [series._replace(look=series.look._replace(marker="")) for series in of_heated]
     panel.add_legend(one.main, lines, title="lines: rate equations", loc="upper left")
     panel.add_title(one.main, [heated], rf"Driven disks, $r = {panel.RESTITUTION:g}$")

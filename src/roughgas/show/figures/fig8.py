@@ -44,18 +44,17 @@ def draw(floor: xr.Dataset, walls: xr.Dataset) -> Figure:
 
 def _draw_shift(axes: Axes, one: panel.Series) -> None:
     """Draw the shift of R from the smooth boundary, measured and expected."""
-    smooth = one.data.sel(roughness=SMOOTH)
-    shift, rough = one.data.R - smooth.R, one.at > SMOOTH
+    smooth, rough = one.data.sel(roughness=SMOOTH), one.at > SMOOTH
     error = np.hypot(one.data.R_stderr, smooth.R_stderr).where(rough, 0)
+    shifted = one._replace(data=one.data.assign(R_stderr=error))
     expected = one.predict(spin_share=one.data.input_spin_share.values) - one.predict(spin_share=0)
     colour, marker, line = one.look
     axes.plot(one.at, expected, color=colour, linestyle=line, zorder=1)
-    axes.errorbar(one.at, shift, error, color=colour, fmt=marker, capsize=1.5)
+    panel.draw_points(axes, shifted, one.at, (one.data.R - smooth.R).values)
     axes.plot([], [], color=colour, marker=marker, linestyle=line, label=one.label)
 
 
 def _draw_share(axes: Axes, one: panel.Series) -> None:
     """Draw the share of rotation in the energy that all sources put in."""
-    share, error = one.data.input_spin_share, one.data.input_spin_share_stderr
-    colour, marker, _ = one.look
-    axes.errorbar(one.at, share, error, color=colour, fmt=marker, capsize=1.5)
+    shared = one._replace(data=one.data.assign(R_stderr=one.data.input_spin_share_stderr))
+    panel.draw_points(axes, shared, one.at, one.data.input_spin_share.values)

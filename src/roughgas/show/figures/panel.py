@@ -133,10 +133,7 @@ def ratio_figure(*parts: PanelContent, width: float = WIDTH, averaged: bool = Fa
         add_title(panel.main, part.data, part.title)
     scale = [one for part in parts for one in part.scale(part.drawn)]
     for part, panel in zip(parts, panels, strict=True):
-        for average, residual in zip(averages, panel.residuals, strict=True):
-            frame_residuals(residual, part.drawn, scale, average, averages)
-            if averaged:
-                residual.set_title(AVERAGES[average], fontsize=7.5, loc="left", pad=2)
+        frame_rows(panel, part.drawn, scale, averages)
     return figure
 
 
@@ -184,10 +181,20 @@ def draw_series(
     for index, one in enumerate(drawn):
         aside = panel.axis.aside(one.at, index - (len(drawn) - 1) / 2)
         at, size = aside if apart else one.at, SIZE - 0.3 * index
-        _draw_points(panel.main, one, at, one.data.R.values, size)
+        draw_points(panel.main, one, at, one.data.R.values, size)
         for average, residual in zip(averages, panel.residuals, strict=True):
             if average in one.data:
-                _draw_points(residual, one, aside, one.residual_of(average), 4, average)
+                draw_points(residual, one, aside, one.residual_of(average), average=average)
+
+
+def frame_rows(
+    panel: Panel, drawn: Sequence[Series], scale: Sequence[Series], averages: Sequence[str]
+) -> None:
+    """Frame the residuals of each average of R, and say which one it is if there are several."""
+    for average, residual in zip(averages, panel.residuals, strict=True):
+        frame_residuals(residual, drawn, scale, average, averages)
+        if len(averages) > 1:
+            residual.set_title(AVERAGES[average], fontsize=7.5, loc="left", pad=2)
 
 
 def frame_residuals(
@@ -207,7 +214,7 @@ def frame_residuals(
     room = 0.12 * (high - low)
     residual.set_ylim(low - room, high + room)
     beyond = [_draw_arrows(residual, one, average) for one in drawn if average in one.data]
-    notes = ["series set apart sideways"] * (average == averages[0])
+    notes = ["points shifted sideways for legibility"] * (average == averages[0])
     notes += ["arrows: beyond this scale"] * any(beyond)
     residual.set_title("; ".join(notes), fontsize=6.5, color=GREY, loc="right", pad=2)
     if not beyond:
@@ -241,16 +248,13 @@ def add_title(main: Axes, datasets: Sequence[xr.Dataset], what: str) -> None:
     seeds = f"{high} seeds" if low == high else f"{low} to {high} seeds"
     bars = f"standard error from {seeds}" if high > 1 else "standard error within the run"
     about = datasets[0].attrs
-    text = f"{what}, $N = {about['particles']}$ ({about['scale']} scale)\nError bars: {bars}"
+    scale = "" if about["scale"] == "paper" else f" (scale: {about['scale']})"
+    text = f"{what}, $N = {about['particles']}${scale}\nError bars: {bars}"
     main.set_title(text, fontsize=8, loc="left")
 
 
-def _key(colour: str, label: str, marker: str, linestyle: Any = "none", **how: Any) -> Line2D:
-    return Line2D([], [], color=colour, label=label, marker=marker, linestyle=linestyle, **how)
-
-
-def _draw_points(
-    axes: Axes, one: Series, at: np.ndarray, values: np.ndarray, size: float, average: str = "R"
+def draw_points(
+    axes: Axes, one: Series, at: np.ndarray, values: np.ndarray, size: float = 4, average: str = "R"
 ) -> None:
     """Draw symbols: filled in a steady state, else open; ringed where contact times acted."""
     common = {"color": one.look.colour, "fmt": one.look.marker, "elinewidth": 0.8, "capsize": 1.5}
@@ -258,6 +262,10 @@ def _draw_points(
         bars = one.error_of(average)[part]
         axes.errorbar(at[part], values[part], bars, fillstyle=fill, markersize=size, **common)
     axes.plot(at[one.touched], values[one.touched], color=GREY, linestyle="none", **RING)
+
+
+def _key(colour: str, label: str, marker: str, linestyle: Any = "none", **how: Any) -> Line2D:
+    return Line2D([], [], color=colour, label=label, marker=marker, linestyle=linestyle, **how)
 
 
 def _draw_arrows(residual: Axes, one: Series, average: str) -> bool:
