@@ -32,8 +32,8 @@ def combine(parts: Mapping[str, xr.Dataset], settings: Mapping[str, Any]) -> xr.
     found["theory"] = found["theory"][:, 0]
     experiments, r, beta = zip(*names.values(), strict=True)
     ends = np.arange(1, found["R_series"].shape[-1] + 1) / found["R_series"].shape[-1]
-    found |= {"experiment": list(experiments), "r": np.array(r, float), "part": ends}
-    found |= {"beta": np.array(beta, float), "point": list(names), "particles": numbers}
+    found |= {"experiment": list(experiments), "r": list(r), "beta": list(beta)}
+    found |= {"point": list(names), "particles": numbers, "part": ends}
     found |= {"packing": np.array(packings, float)}
     about = {"seed": settings["seed"], "precision": settings["precision"]}
     return dataset("finite_size", found, **about).set_coords(["experiment", "r", "beta"])

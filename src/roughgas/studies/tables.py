@@ -210,7 +210,7 @@ def _in_boxes(data, numbers):
     return (
         f"\nR by events at packing {float(data.packing):g} over that by DSMC, minus 1, in %:\n\n"
         f"{markdown(['point', *numbers], rows)}\nThere, the share of E_trans in the longest shear"
-        f" waves, in % (uncorrelated disks: 2/N):\n\n{markdown(['point', *numbers], waves)}"
+        f" waves, in % (uncorrelated: 2/N, spheres 4/N):\n\n{markdown(['point', *numbers], waves)}"
     )
 
 

@@ -15,7 +15,8 @@ SIZE = (10.2, 8.2)  # inches
 THIN = {"ls": "none", "elinewidth": 0.8}
 SIDESTEP = 0.014  # in beta, between kinds of gas at the same beta
 LINEAR = 4.0  # per cent up to which the axis of deviations is linear
-TYPICAL = {"r": 0.9, "beta": 0.0}  # the point whose R(t) is drawn, if it is there
+TYPICAL = "cooling_r0.9_beta0"  # the point whose R(t) is drawn, if it is there
+APART = 1.19  # least ratio of the heights of two words at the end of series
 
 
 def draw(path: str | Path) -> Figure:
@@ -36,7 +37,7 @@ def draw_number(axes: Axes, data: xr.Dataset) -> None:
     """Draw R of the homogeneous gas over Eq. (K), minus 1, of the fewest and the most particles."""
     ends = data.particles.values[[0, -1]]
     for one, look, shift in _points(data):
-        x = float(one.beta) + shift
+        x = float(one.beta.item()) + shift
         few, many = (_percent(one.sel(particles=n), "dsmc_R") for n in ends)
         axes.plot([x, x], [few[0], many[0]], color=look.colour, lw=0.8)
         for (y, bar), fill in ((few, "white"), (many, look.colour)):
@@ -55,20 +56,20 @@ def draw_number(axes: Axes, data: xr.Dataset) -> None:
 def draw_box(axes: Axes, data: xr.Dataset) -> None:
     """Draw R by events over R by DSMC of as many particles, minus 1, over the size of the box."""
     fills = ("white", None)
-    for one, look, _ in _points(data):
+    for one, look, shift in _points(data):
         for place, fill in zip(along(one, "packing"), fills, strict=False):
             about = {"color": look.colour, "marker": look.marker, "mfc": fill or look.colour}
             y, bar = 100 * place.over_dsmc, 100 * place.over_dsmc_stderr
-            axes.errorbar(place.box, y, bar, **about, **THIN)
+            axes.errorbar(place.box * (1 + 2 * shift), y, bar, **about, **THIN)
     for place, fill in zip(data.packing.values, fills, strict=False):
         axes.plot([], [], "o", color=GREY, mfc=fill or GREY, label=f"packing {place:g}")
     axes.axhline(0.0, color=THEORY, lw=0.8, zorder=0)
     axes.set_xscale("log")
     axes.set_yscale("symlog", linthresh=LINEAR, linscale=1.5)
-    ticks = [-50, -20, -10, -4, -2, 0, 2, 4]
+    ticks = [-80, -50, -20, -10, -4, -2, 0, 2, 4, 8]
     axes.set_yticks(ticks, [f"{tick}".replace("-", "−") for tick in ticks])
     axes.minorticks_off()
-    axes.set_ylim(top=8)
+    axes.set_ylim(-95, 10)
     axes.set(xlabel="side of the box / mean free path")
     axes.set_ylabel(r"$R_{\mathrm{events}}/R_{\mathrm{DSMC}} - 1$  (%), as many particles")
     axes.legend(loc="lower left")
@@ -76,8 +77,8 @@ def draw_box(axes: Axes, data: xr.Dataset) -> None:
 
 def draw_time(axes: Axes, data: xr.Dataset) -> None:
     """Draw R over time at one point, each number of particles and packing, beside DSMC."""
-    known = np.flatnonzero((data.r == TYPICAL["r"]) & (data.beta == TYPICAL["beta"]))
-    one = data.isel(point=int(known[0]) if known.size else 0)
+    names = list(data.point.values)
+    one = data.isel(point=names.index(TYPICAL) if TYPICAL in names else 0)
     for gas, look in zip(along(one, "particles"), LOOKS, strict=False):
         for place, fill in zip(along(gas, "packing"), ("white", look.colour), strict=False):
             middle = (place.part - float(place.part[0]) / 2) * place.length
@@ -88,32 +89,43 @@ def draw_time(axes: Axes, data: xr.Dataset) -> None:
             )
     axes.axhline(float(one.dsmc_R[-1]), color=THEORY, lw=0.8, ls="--", zorder=0, label="DSMC")
     axes.set(xlabel="collisions per particle", ylabel="$R$")
-    kind = "spheres" if "spheres" in str(one.experiment.values) else "disks"
-    title = rf"{kind}, $r = {float(one.r):g}$, $\beta = {float(one.beta):g}$"
+    title = rf"{_kind(one)}, $r = {one.r.item()}$, $\beta = {one.beta.item()}$"
     axes.legend(loc="lower left", title=title)
 
 
 def draw_tails(axes: Axes, data: xr.Dataset) -> None:
     """Draw the fourth cumulant of the spins over the number of particles."""
+    number, dilute = data.particles.values, int(np.argmin(data.packing.values))
     for one, look, _ in _points(data):
         about = {"color": look.colour, "marker": look.marker}
-        axes.errorbar(
-            data.particles, one.dsmc_a02, one.dsmc_a02_stderr, lw=0.8, elinewidth=0.8, **about
-        )
-        dilute = one.isel(packing=int(np.argmin(data.packing.values)))
-        x = data.particles * 1.08
-        axes.errorbar(x, dilute.a02, dilute.a02_stderr, **about | {"mfc": "white"}, **THIN)
-        end = data.particles.values[-1] * 1.25, float(one.dsmc_a02[-1])
-        axes.annotate(f"{float(one.beta):g}", end, va="center", fontsize=7, color=look.colour)
-    for fill, label in (
-        (GREY, "DSMC"),
-        ("white", f"events, packing {data.packing.values.min():g}"),
-    ):
+        bars = {"lw": 0.8, "elinewidth": 0.8}
+        axes.errorbar(number, one.dsmc_a02, one.dsmc_a02_stderr, **about, **bars)
+        events = one.isel(packing=dilute)
+        bar = events.a02_stderr
+        axes.errorbar(1.1 * number, events.a02, bar, **about | {"mfc": "white"}, **THIN)
+    _name_ends(axes, data)
+    packing = f"{data.packing.values[dilute]:g}"
+    for fill, label in ((GREY, "DSMC"), ("white", f"events, packing {packing}")):
         axes.plot([], [], "o", color=GREY, mfc=fill, label=label)
     axes.set(xscale="log", yscale="log", xlabel="number of particles $N$")
-    axes.set_xlim(right=data.particles.values[-1] * 2.2)
+    axes.set_xticks(number, map(str, number))
+    ticks = [0.01, 0.03, 0.1, 0.3, 1, 3, 10]
+    axes.set_yticks(ticks, map(str, ticks))
+    axes.minorticks_off()
+    axes.set_xlim(number[0] / 1.2, number[-1] * 2.2)
+    axes.set_ylim(data.dsmc_a02.values.min() / 1.5, data.dsmc_a02.values.max() * 2.5)
     axes.set_ylabel(r"fourth cumulant of spins, $a_{02}$")
-    axes.legend(loc="upper left", title=r"numbers: $\beta$")
+    axes.legend(loc="upper left", ncols=2)
+
+
+def _name_ends(axes, data):
+    """Write beta at the end of each series, from below, none upon another."""
+    x, below = data.particles.values[-1] * 1.3, 0.0
+    points = sorted(_points(data), key=lambda point: float(point[0].dsmc_a02[-1]))
+    for one, look, _ in points:
+        below = max(APART * below, float(one.dsmc_a02[-1]))
+        text = rf"$\beta = {one.beta.item()}$"
+        axes.text(x, below, text, va="center", fontsize=7, color=look.colour)
 
 
 PANELS = (
@@ -126,8 +138,14 @@ PANELS = (
 
 def _kinds(data):
     """Return the look of each (experiment, r), disks first."""
-    kinds = sorted(set(zip(data.experiment.values, -data.r.values, strict=True)))
-    return {(name, -r): look for (name, r), look in zip(kinds, LOOKS, strict=False)}
+    found = set(zip(data.experiment.values, data.r.values, strict=True))
+    kinds = sorted(found, key=lambda kind: (kind[0], -float(kind[1])))
+    return dict(zip(kinds, LOOKS, strict=False))
+
+
+def _kind(one):
+    """Return what the particles of a point are."""
+    return "spheres" if "spheres" in str(one.experiment.item()) else "disks"
 
 
 def _points(data) -> list[tuple[xr.Dataset, Look, float]]:
@@ -136,7 +154,7 @@ def _points(data) -> list[tuple[xr.Dataset, Look, float]]:
     order = list(kinds)
     points = []
     for one in along(data, "point"):
-        kind = str(one.experiment.values), float(one.r)
+        kind = one.experiment.item(), one.r.item()
         shift = SIDESTEP * (order.index(kind) - (len(order) - 1) / 2)
         points.append((one, kinds[kind], shift))
     return points
@@ -145,7 +163,7 @@ def _points(data) -> list[tuple[xr.Dataset, Look, float]]:
 def _name_kinds(axes, data):
     for (name, r), look in _kinds(data).items():
         kind = "spheres" if "spheres" in name else "disks"
-        axes.plot([], [], look.marker, color=look.colour, label=f"{kind}, $r = {r:g}$")
+        axes.plot([], [], look.marker, color=look.colour, label=f"{kind}, $r = {r}$")
 
 
 def _percent(one, name):
