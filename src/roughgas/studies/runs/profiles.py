@@ -2,8 +2,8 @@
 
 Slices are equally wide along the last axis, that of gravity or of the velocity's gradient, and
 begin at 0; the last one holds all that is beyond. Samples are taken at the beginning of each phase.
-The gas goes on from contact to contact, and each contact is counted in the slice halfway between
-its partners and at the nearest phase.
+A bed goes on from contact to contact, and each contact is counted in the slice halfway between its
+partners and at the nearest phase.
 """
 
 import math
@@ -97,26 +97,34 @@ class Profile:
         return np.stack([values.sum(axis=1), values[:, meeting].sum(axis=1)], axis=1)
 
     def _advance(self, until: float) -> None:
+        """Go on, and count contacts: in a bed each where it happens, elsewhere the same in all
+        slices."""
+        if self.gas.scene.box[-1] is None:
+            return self._go_on_by_contacts(until)
+        before, collisions = self._contact_sums(), self.gas.collisions
+        self.gas.in_time(until - self.gas.time, 1)
+        made = 1.0 * (self.gas.collisions - collisions), *(self._contact_sums() - before)
+        self.contacts[:, self._phase()] += np.array(made)[:, None] / self.contacts.shape[-1]
+
+    def _go_on_by_contacts(self, until):
         before = self._contact_sums()
         while self.gas.step(until, 1):
-            now, phases = self._contact_sums(), (self.gas.time - self.begun) / self.period
-            phase = round(phases * self.phases) % self.phases
-            self.contacts[:, phase, self._slice_of_contact()] += 1.0, *(now - before)
+            now = self._contact_sums()
+            self.contacts[:, self._phase(), self._slice_of_contact()] += 1.0, *(now - before)
             before = now
+
+    def _phase(self):
+        """Return the number of the nearest phase."""
+        return round((self.gas.time - self.begun) / self.period * self.phases) % self.phases
 
     def _contact_sums(self):
         return np.array([self.gas.sample[name][0] for name in CONTACTS])
 
     def _slice_of_contact(self):
         """Return the slice of the contact that is just over; its partners are still there."""
-        state, scene = self.gas.state, self.gas.scene
-        last = len(scene.box) - 1
-        numbers = state.counts[[LAST_FIRST, LAST_SECOND]]
-        heights = state.trajectory[np.isin(state.label, numbers), last]
-        if scene.box[last] is not None:  # the pair may touch across the edge of the box
-            heights[1] -= scene.box[last] * round((heights[1] - heights[0]) / scene.box[last])
-            return self._slices(heights.mean() % scene.box[last])
-        return self._slices(heights.mean())
+        state, numbers = self.gas.state, self.gas.state.counts[[LAST_FIRST, LAST_SECOND]]
+        partners = np.isin(state.label, numbers)
+        return self._slices(state.trajectory[partners, len(self.gas.scene.box) - 1].mean())
 
     def _slices(self, heights):
         return np.minimum(heights / self.width, self.sums.shape[-1] - 1).astype(int)
