@@ -5,6 +5,7 @@ from collections.abc import Callable
 import numpy as np
 import xarray as xr
 
+from roughgas import theory
 from roughgas.data.reduced import third_axis
 from roughgas.theory.prediction import predicted_ratio
 
@@ -69,3 +70,26 @@ def reduced(
     variables = {name: (tuple(axes), np.full(exact.shape, value)) for name, value in values.items()}
     variables["R_seed"] = ((*axes, "seed"), ratio)
     return xr.Dataset(variables, axes | {"seed": np.arange(1, seeds + 1)}, attributes)
+
+
+def averaged(
+    data: xr.Dataset,
+    left: float = 0.0,
+    correlation: Callable[[np.ndarray], np.ndarray] = lambda beta: 0 * beta,
+) -> xr.Dataset:
+    """Data with R averaged in other ways: over collisions it is larger, by the share `left`, than
+    Eq. (lun) at the correlation that contacts have; the ratio of means is half-way from R."""
+    beta, _ = np.meshgrid(data.beta, data.r)
+    c = correlation(beta)
+    found = theory.correlated_ratio(beta, data.attrs["inertia"], c) * (1.0 + left)
+    values = {
+        "R_ratio_of_means": (data.R.values + found) / 2,
+        "R_ratio_of_means_stderr": 0.001,
+        "R_collisional": found + 3e-4 * np.random.default_rng(1).standard_normal(beta.shape),
+        "R_collisional_stderr": 3e-4,
+        "R_collisional_dof": 100.0,
+        "contact_correlation": c,
+        "contact_correlation_stderr": 0.002,
+        "contact_correlation_dof": 100.0,
+    }
+    return data.assign({n: (("r", "beta"), np.full(beta.shape, v)) for n, v in values.items()})

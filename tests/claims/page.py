@@ -11,14 +11,14 @@ from itertools import pairwise
 from pathlib import Path
 
 from roughgas.base.layout import markdown
-from roughgas.claims import OPEN_QUESTIONS, PAPER, open_questions, paper, verdicts
+from roughgas.claims import OPEN_QUESTIONS, PAPER, averages, open_questions, paper, verdicts
 from roughgas.statistics import estimate
 
 PAGE = Path(__file__).parents[2] / "docs" / "claims.md"
 BEGIN, END = "<!-- {}: made by tests/claims/page.py -->\n", "<!-- until here -->\n"
 SAID = {"AGREE": verdicts, "LIMIT": verdicts, "TENDENCY": verdicts, "FEW": verdicts}
 SAID |= {"NEAR": verdicts, "FAR": verdicts, "SIGNIFICANT": estimate, "INTERMEDIATE": paper}
-SAID |= {"CONSIDERABLY": paper, "NO_ROTATION": open_questions}
+SAID |= {"CONSIDERABLY": paper, "NO_ROTATION": open_questions, "MOST": averages}
 """What decides verdicts, and where it stands."""
 
 

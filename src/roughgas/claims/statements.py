@@ -8,7 +8,7 @@ from typing import NamedTuple
 import xarray as xr
 import yaml
 
-from roughgas.claims import evidence, open_questions, paper
+from roughgas.claims import averages, evidence, open_questions, paper
 from roughgas.claims.evidence import NotTestedError
 from roughgas.claims.verdicts import (
     NOT_TESTED,
@@ -18,7 +18,7 @@ from roughgas.claims.verdicts import (
     points,
 )
 
-FUNCTIONS = vars(evidence) | vars(open_questions) | vars(paper)
+FUNCTIONS = vars(evidence) | vars(averages) | vars(open_questions) | vars(paper)
 """The samples and judges that the tables name."""
 REFERENCE = """\
 S. McNamara and S. Luding, *Energy nonequipartition in systems of inelastic, rough spheres*,
