@@ -214,6 +214,46 @@ def _in_boxes(data, numbers):
     )
 
 
+def runaway(data: xr.Dataset) -> str:
+    """Return times of escape and the largest shares over mu and N, and the rates behind them."""
+    kinds = {"dsmc": "homogeneous gases (DSMC)", "events": "event-driven gases"}
+    parts = [_escapes(data, kind, about) for kind, about in kinds.items()]
+    rows = []
+    for one in along(data, "mu"):
+        bound = f"< {one.rate_bound:.1e}" if np.isfinite(one.rate_bound) else "–"
+        rate = _shown(one, "rate", "±") if np.isfinite(one.rate) else bound
+        theory = f"{one.predicted_rate:.1e}" if np.isfinite(one.predicted_rate) else "–"
+        share = f"{one.maxwellian_share:.0e}"
+        rows.append([f"{one.mu:g}", f"{one.threshold:.3g}", rate, theory, share])
+    head = ["μ", "threshold a w / √(T_tr/m)", "crossings", "large deviations", "Maxwellian share"]
+    return (
+        f"## Runaway spins ({_about(data)}, packing {data.attrs['packing']:g})\n\n"
+        + "".join(parts)
+        + f"Crossings of the threshold per particle and collision of a particle:\n\n"
+        f"{markdown(head, rows)}"
+    )
+
+
+def _escapes(data, kind, about):
+    """Return times of escape by one method, with escapes/runs and the largest share."""
+    numbers = data[f"{kind}_particles"].values
+    rows = []
+    for one in along(data, "mu"):
+        row = [f"{one.mu:g}"]
+        for place in along(one, f"{kind}_particles"):
+            time, bound = _shown(place, f"{kind}_time", "±"), float(place[f"{kind}_bound"])
+            shown = f"> {bound:.0f}" if np.isfinite(bound) else time
+            count = f"{int(place[f'{kind}_escapes'])}/{int(place[f'{kind}_runs'])}"
+            share = float(place[f"{kind}_largest_share"])
+            row.append(f"{shown} ({count}{'' if np.isnan(share) else f'; {share:.2f}'})")
+        rows.append(row)
+    head = ["μ", *(f"N = {n}" for n in numbers)]
+    return (
+        f"Collisions per particle until R > 0.9 in {about} (runs that escaped of all; largest"
+        f" share of a particle in the energy of spins then):\n\n{markdown(head, rows)}\n"
+    )
+
+
 TABLES = {name: globals()[name] for name in STUDIES}
 
 

@@ -5,8 +5,10 @@ from typing import Any
 
 PANELS = ("statistical", "models", "discretisation")
 """The studies that the work-precision figure shows, one a panel."""
-STUDIES = (*PANELS, "coverage", "profiles", "finite_size")
+STUDIES = (*PANELS, "coverage", "profiles", "finite_size", "runaway")
 SCENES = ("vibrated", "sheared", "cooling")
+SIMULATED = ("dsmc", "events")
+"""How the study of runaway spins simulates a gas."""
 WAYS = ("length", "seeds")
 PARTS = ("reference", *WAYS)
 
@@ -25,6 +27,28 @@ def point_names(settings: Mapping[str, Any]) -> dict[str, tuple[str, str, str]]:
     """Return experiment, r and beta of the points of the study of finite size, by their names."""
     places = [(name, *one) for name, points in settings["points"].items() for one in points]
     return {f"{name}_r{r}_beta{beta}": (name, r, beta) for name, r, beta in places}
+
+
+def runaway_name(kind: str, particles: int, mu: float) -> str:
+    """Return the name of a task of the study of runaway spins."""
+    return f"{kind}-n{particles}-mu{mu:g}"
+
+
+def runaway_gases(settings: Mapping[str, Any]) -> dict[str, tuple[str, float, Mapping[str, Any]]]:
+    """Return (kind, mu, particles and lengths) of each gas of that study, by name, the longest
+    first."""
+    gases = [
+        (kind, mu, one) for kind in SIMULATED for one in settings[kind] for mu in settings["mu"]
+    ]
+    gases += [("example", mu, settings["example"]) for mu in settings["example"]["mu"]]
+    gases.sort(key=_collisions, reverse=True)
+    return {runaway_name(kind, one["particles"], mu): (kind, mu, one) for kind, mu, one in gases}
+
+
+def _collisions(gas):
+    """Return how many a gas makes at most, one by events counting as much as it takes longer."""
+    kind, _, one = gas
+    return (20 if kind == "events" else 1) * one["particles"] * one["limit"] * one.get("runs", 1)
 
 
 def _finite_size(settings):
@@ -64,5 +88,6 @@ TASKS = {
         f"{profile_name(one)}-{k}" for one in settings["points"] for k in range(settings["runs"])
     ],
     "finite_size": _finite_size,
+    "runaway": lambda settings: list(runaway_gases(settings)),
 }
 """For each study, what names its tasks by its settings, the longest first."""

@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from importlib import import_module
 from pathlib import Path
 
-FIGURES = ("accuracy", "coverage", "profiles", "finite_size")
+FIGURES = ("accuracy", "coverage", "profiles", "finite_size", "runaway")
 
 
 def draw(name: str, data: str | Path, outputs: Iterable[str | Path]) -> None:

@@ -1,0 +1,118 @@
+"""The figure of single particles that run away from a cooling gas with friction."""
+
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from roughgas.data.netcdf import read_netcdf
+from roughgas.show.style import FAINT, GREY, LOOKS, THEORY, Look
+from roughgas.studies.tables import along
+
+SIZE = (10.2, 8.0)  # inches
+BLACK = Look("#222222", "P", "-")
+SKY = Look("#56B4E9", "X", (0, (4, 1)))
+BY_FRICTION = (*LOOKS, SKY, BLACK)
+THIN = {"ls": "none", "elinewidth": 0.8, "capsize": 1.5}
+SIDESTEP = 1.06  # of event-driven gases, in N
+
+
+def draw(path: str | Path) -> Figure:
+    """Return the figure, from the combined dataset of the study at `path`."""
+    return draw_figure(read_netcdf(path, "runaway"))
+
+
+def draw_figure(data: xr.Dataset) -> Figure:
+    """Return the figure, from the study's dataset."""
+    figure = Figure(figsize=SIZE, layout="constrained")
+    for axes, (panel, title) in zip(figure.subplots(2, 2).flat, PANELS, strict=True):
+        panel(axes, data)
+        axes.set_title(title, loc="left", fontsize=9)
+    return figure
+
+
+def draw_example(axes: Axes, data: xr.Dataset) -> None:
+    """Draw R and the largest share over time."""
+    looks = _looks(data)
+    for one in along(data, "example_mu"):
+        mu = float(one.example_mu)
+        look = looks.get(mu, LOOKS[0])
+        there = np.isfinite(one.example_R.values)
+        passed = one.passed.values[there]
+        label = rf"$\mu = {mu:g}$"
+        axes.plot(passed, one.example_R.values[there], color=look.colour, label=label)
+        axes.plot(passed, one.example_largest_share.values[there], ":", color=look.colour)
+    for line, label in (("-", "$R$"), (":", "largest share of a particle")):
+        axes.plot([], [], line, color=GREY, label=label)
+    axes.set(xlabel="collisions per particle", ylabel="$R$, share of the energy of spins")
+    axes.set_ylim(-0.02, 1.04)
+    title = f"DSMC, $N = {int(data.example_particles)}$"
+    axes.legend(loc="center right", title=title)
+
+
+def draw_times(axes: Axes, data: xr.Dataset) -> None:
+    """Draw the time of escape over the number of particles, at each mu."""
+    for (mu, look), one in zip(_looks(data).items(), along(data, "mu"), strict=True):
+        for kind, shift, fill in (("dsmc", 1.0, look.colour), ("events", SIDESTEP, "white")):
+            x = shift * one[f"{kind}_particles"].values
+            time, error = (one[f"{kind}_time{end}"].values for end in ("", "_stderr"))
+            about = {"color": look.colour, "mfc": fill}
+            label = rf"$\mu = {mu:g}$" if kind == "dsmc" else None
+            axes.errorbar(x, time, error, marker=look.marker, label=label, **about, **THIN)
+            bound = one[f"{kind}_bound"].values
+            axes.plot(x, bound, ls="none", marker=r"$\uparrow$", ms=8, color=look.colour)
+            if kind == "dsmc":
+                axes.plot(x, time, color=look.colour, lw=0.7, ls=look.line)
+    for fill, label in ((GREY, "DSMC"), ("white", "events")):
+        axes.plot([], [], "o", color=GREY, mfc=fill, label=label)
+    axes.set(xscale="log", yscale="log", xlabel="number of particles $N$")
+    axes.set_ylabel("collisions per particle until $R > 0.9$")
+    axes.legend(loc="upper right", ncols=2)
+
+
+def draw_rates(axes: Axes, data: xr.Dataset) -> None:
+    """Draw the rate of crossings over mu, beside theory."""
+    about = {"color": LOOKS[0].colour, "marker": LOOKS[0].marker, "label": "DSMC"}
+    axes.errorbar(data.mu, data.rate, data.rate_stderr, **about, **THIN)
+    axes.plot(
+        data.mu, data.rate_bound, ls="none", marker=r"$\downarrow$", ms=8, color=about["color"]
+    )
+    shown = np.isfinite(data.rate.values) | np.isfinite(data.rate_bound.values)
+    axes.plot(
+        data.mu, data.predicted_rate, color=THEORY, label="large deviations, but for a factor"
+    )
+    axes.plot(data.mu, data.maxwellian_share, "--", color=FAINT, label="share of a Maxwellian")
+    measured = np.append(data.rate.values[shown], data.rate_bound.values[shown])
+    if np.isfinite(measured).any():
+        axes.set_ylim(np.nanmin(measured) / 100, 3.0)
+    axes.set(xscale="log", yscale="log", xlabel=r"coefficient of friction $\mu$")
+    axes.set_ylabel("crossings per particle and collision")
+    axes.legend(loc="upper right")
+
+
+def draw_shares(axes: Axes, data: xr.Dataset) -> None:
+    """Draw the largest share just after an escape over the number of particles."""
+    for (_, look), one in zip(_looks(data).items(), along(data, "mu"), strict=True):
+        for kind, fill in (("dsmc", look.colour), ("events", "white")):
+            x, share = (one[f"{kind}_{name}"].values for name in ("particles", "largest_share"))
+            line = look.line if kind == "dsmc" else "none"
+            about = {"color": look.colour, "mfc": fill, "marker": look.marker, "lw": 0.7}
+            axes.plot(x, share, ls=line, **about)
+    axes.set(xscale="log", xlabel="number of particles $N$")
+    axes.set_ylabel("largest share in the energy of spins")
+    axes.set_ylim(-0.02, 1.04)
+
+
+PANELS = (
+    (draw_example, "(a) one particle outgrows the gas"),
+    (draw_times, "(b) the more particles, the sooner"),
+    (draw_rates, "(c) how often a particle gets beyond the threshold"),
+    (draw_shares, r"(d) who holds the spin at $R = 0.9$ (symbols as in b)"),
+)
+
+
+def _looks(data: xr.Dataset) -> dict[float, Look]:
+    """Return the look of each mu."""
+    return dict(zip(map(float, data.mu.values), BY_FRICTION, strict=False))
