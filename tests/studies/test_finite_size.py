@@ -123,6 +123,13 @@ def test_it_is_documented_tabulated_and_drawn(data):
     assert isinstance(figure, Figure) and len(figure.axes) == 4
 
 
+def test_a_run_that_collapses_is_unknown_from_there_on():
+    plain = EXPERIMENTS["cooling"] | {"effects": {"spin": {"inertia": 0.5}}}
+    gas = runs.at_density(FreeCooling(plain, 0.05, 0.0), 40, 0.4)
+    seen = runs.follow(gas, 4, 8, np.random.SeedSequence(1))
+    assert np.isfinite(seen[0]).all() and np.isnan(seen[-1]).all()
+
+
 def homogeneous(r, beta, dimension, particles, length, seed):
     """R and a02 by direct simulation Monte Carlo, each with its standard error."""
     rng = np.random.default_rng(seed)

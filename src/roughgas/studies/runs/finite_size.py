@@ -7,6 +7,7 @@ import numpy as np
 import xarray as xr
 
 from roughgas import theory
+from roughgas.base.errors import CollapseError
 from roughgas.simulation.energies import ratio
 from roughgas.simulation.gas import Gas
 from roughgas.simulation.instant import whereabouts
@@ -68,15 +69,21 @@ def _runs(cooling, number, precision):
     return max(FEWEST, math.ceil(variance / precision**2 / independent))
 
 
-def follow(cooling: FreeCooling, length: int, parts: int, seed: np.random.SeedSequence):
-    """Return, for each part of a run, (mean of R, and R, a02 and flow as it ends): see SEEN.
+def follow(
+    cooling: FreeCooling, length: int, parts: int, seed: np.random.SeedSequence
+) -> np.ndarray:
+    """Return (mean of R, and R, a02 and flow as it ends) of each part of a run: (parts, SEEN).
 
-    A part is `length` collisions per particle, a multiple of REFRESHED.
+    A part is `length` collisions per particle, a multiple of REFRESHED. NaN from where on the gas
+    collapses, as a cluster may that has no contact-time model.
     """
-    gas, rows = thermalised(cooling, seed), []
-    for _ in range(parts):
-        R = ratio(gas.energies(gas.in_collisions(gas.count(1.0), length)))
-        rows.append((R.mean(), R[-1], *look(gas)))
+    gas, rows = thermalised(cooling, seed), np.full((parts, len(SEEN)), math.nan)
+    for row in rows:
+        try:
+            R = ratio(gas.energies(gas.in_collisions(gas.count(1.0), length)))
+        except CollapseError:
+            break
+        row[:] = R.mean(), R[-1], *look(gas)
     return rows
 
 
