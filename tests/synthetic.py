@@ -59,6 +59,7 @@ def reduced(
         "R_stderr_over_seeds": spread,
         "R_dof": 30.0 * seeds,
         "R_stderr_within": error,
+        "E_trans": 1.0,
         "n_seeds": seeds,
         "equilibrated": 1.0,
         "measured_for": 2000.0,

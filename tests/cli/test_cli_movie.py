@@ -4,6 +4,7 @@ import json
 from pathlib import Path
 
 import pytest
+from brute_force import settings as scene_settings
 from PIL import Image
 from schedules import COOLING, STEADY
 
@@ -74,16 +75,8 @@ def test_another_kind_of_file_is_refused_before_anything_is_simulated(tmp_path, 
 
 
 def test_a_collapse_is_told_in_one_line(tmp_path, capsys):
-    bed = {
-        "particles": 12,
-        "box": [6, "open"],
-        "effects": {
-            "spin": {"inertia": 0.5},
-            "gravity": {"acceleration": 1},
-            "floor": {"amplitude": 0, "period": 1, "restitution": 0.1, "roughness": -1},
-        },
-        "schedule": STEADY,
-    }
+    floor = {"amplitude": 0, "restitution": 0.1}
+    bed = scene_settings("bed", 12, [6, "open"], floor=floor) | {"schedule": STEADY}
     assert make(tmp_path / "bed.gif", settings=bed, r="0.1", beta="0", start="100") == 1
     said = capsys.readouterr().err
     assert said.startswith("roughgas: error: inelastic collapse at t =") and said.count("\n") == 1

@@ -113,7 +113,8 @@ def draw_tails(axes: Axes, data: xr.Dataset) -> None:
     axes.set_yticks(ticks, map(str, ticks))
     axes.minorticks_off()
     axes.set_xlim(number[0] / 1.2, number[-1] * 2.2)
-    axes.set_ylim(data.dsmc_a02.values.min() / 1.5, data.dsmc_a02.values.max() * 2.5)
+    low, high = data.dsmc_a02.values.min(), data.dsmc_a02.values.max()
+    axes.set_ylim(max(low, ticks[0]) / 1.5, 2.5 * max(high, ticks[1]))
     axes.set_ylabel(r"fourth cumulant of spins, $a_{02}$")
     axes.legend(loc="upper left", ncols=2)
 
