@@ -40,6 +40,6 @@ def test_numbers_are_measured_on_datasets(tmp_path):
         data.to_netcdf(tmp_path / f"{data.attrs['experiment']}.nc")
     found = {name: Quantity(**about) for name, about in measured(tmp_path).items()}
     assert f"{found['vibrated_most_above']:.3f} {found['vibrated_most_at_r']}" == "0.050 0.8"
-    assert f"{found['vibrated_most_at_beta']} {found['wave_sine']:+.3f}" == "0.1 −0.010"
+    assert f"{found['vibrated_most_at_beta']} {found['wave_sine_at_r09']:+.3f}" == "0.1 −0.010"
     assert f"{found['cooling_at_r08']:.2f} {found['cooling_off_percent']:.0f}" == "0.98 0"
     assert set(found) < quoted()

@@ -6,11 +6,12 @@ import numpy as np
 
 from roughgas import theory
 from roughgas.claims import evidence
+from roughgas.claims.averages import averaged
 from roughgas.data.reduced import EQUILIBRATED, read_reduced
 from roughgas.statistics.estimate import Estimate
 
 WORDS = "none one two three four five six seven eight nine ten eleven twelve thirteen fourteen "
-WORDS = (WORDS + "fifteen sixteen seventeen eighteen").split()
+WORDS = (WORDS + "fifteen sixteen seventeen eighteen nineteen twenty").split()
 
 
 def measured(folder):
@@ -23,7 +24,11 @@ def measured(folder):
     for name in ("claims", "open_questions"):
         if (folder / f"{name}.json").exists():
             found |= verdicts(folder / f"{name}.json", name)
-    return {name: about(value) for name, value in found.items()}
+    return {name: about(value) for name, value in found.items() if known(value)}
+
+
+def known(number):
+    return isinstance(number, str | Estimate) or np.isfinite(float(number))
 
 
 def about(number):
@@ -43,7 +48,6 @@ def theoretical():
     ratio = theory.friction_ratio(0.9, 0.0, mu, 2, 0.5, None)
     last = np.flatnonzero(ratio > 1 - 1e-6)[-1]
     return {
-        "theory_critical_friction": theory.critical_friction(0.9),
         "theory_friction_of_spin_alone": mu[last],
         "theory_ratio_beyond_spin_alone": ratio[last + 1],
     }
@@ -56,6 +60,20 @@ def beyond(path, below=0.7):
     gap = data.R - evidence.theory_of(data)
     steady = data.equilibrated > EQUILIBRATED
     return gap.where(steady), (gap / evidence.theory_of(data)).where(steady)
+
+
+def over_collisions(path):
+    """Return a dataset beside theory, its R averaged over collisions; NaN if it has none."""
+    data = evidence.load(path)
+    if "R_collisional" in data:
+        return averaged(data, "R_collisional")
+    return data.assign(R=np.nan * data.R)
+
+
+def off_over_collisions(*paths):
+    """Return how far R averaged over collisions is off theory at most; NaN if nothing is known."""
+    gaps = (data.R - data.theory for data in map(over_collisions, paths))
+    return max(float(np.abs(gap).max()) for gap in gaps)
 
 
 def size(sample):
@@ -75,6 +93,7 @@ def vibrated(path):
     }
     most = {"vibrated_most_above": gap.at(top), "vibrated_most_at_r": places["r"]}
     most |= {"vibrated_most_at_beta": places["beta"].replace("-", "−")}
+    most |= {"vibrated_collisional_off": off_over_collisions(path)}
     return most | means | {"vibrated_most_above_at_r06": beyond(path)[0].max()}
 
 
@@ -82,6 +101,7 @@ def sheared(path):
     gap = evidence.deviation(evidence.load(path))
     return {
         "sheared_most_above": gap.at(int(np.argmax(gap.value))),
+        "sheared_collisional_off": off_over_collisions(path),
         "sheared_most_above_at_r06": beyond(path)[0].max(),
     }
 
@@ -117,7 +137,10 @@ def spheres(cooled, sheared):
 
 def bed_of_spheres(path):
     gap = evidence.deviation(evidence.load(path))
-    return {"vibrated_spheres_most_above": gap.at(int(np.argmax(gap.value)))}
+    return {
+        "vibrated_spheres_most_above": gap.at(int(np.argmax(gap.value))),
+        "vibrated_spheres_collisional_off": off_over_collisions(path),
+    }
 
 
 def friction(bed, cooled):
@@ -133,13 +156,16 @@ def friction(bed, cooled):
     }
 
 
-def drives(heated, floor, shaken):
-    floor, shaken = (evidence.deviation_at_shares(evidence.load(p)) for p in (floor, shaken))
-    return {
-        "heated_off": size(evidence.deviation(evidence.load(heated))),
-        "rough_floor_off": size(floor),
-        "shaken_walls_off": size(shaken),
-    }
+def drives(heated, *boundaries):
+    names = ("rough_floor_off", "rough_side_walls_off", "shaken_walls_off")
+    at_shares = [evidence.deviation_at_shares(evidence.load(path)) for path in boundaries]
+    found = {"heated_off": size(evidence.deviation(evidence.load(heated)))}
+    found |= {name: size(gap) for name, gap in zip(names, at_shares, strict=True)}
+    collisional = [over_collisions(path) for path in boundaries]
+    if all(np.isfinite(data.R).any() for data in collisional):
+        off = [size(evidence.deviation_at_shares(data)) for data in collisional]
+        found["drives_collisional_off"] = max(off_over_collisions(heated), *off)
+    return found
 
 
 def materials(floor, walls):
@@ -160,12 +186,17 @@ def materials(floor, walls):
 
 
 def waves(path):
-    data = evidence.load(path)
-    sawtooth = data.sel(wave="sawtooth")
-    return {
-        f"wave_{wave}": evidence.difference(data.sel(wave=wave), sawtooth).largest()[0]
-        for wave in ("triangle", "sine", "reversed_sawtooth")
-    }
+    data, collisional = evidence.load(path), over_collisions(path)
+    found, forms = {}, ("triangle", "sine", "reversed_sawtooth")
+    for r in data.r.values:
+        at = data.sel(r=[r])
+        shifts = {
+            wave: evidence.difference(at.sel(wave=wave), at.sel(wave="sawtooth")) for wave in forms
+        }
+        where = f"_at_r{r:g}".replace(".", "")
+        found |= {f"wave_{wave}{where}": shift.largest()[0] for wave, shift in shifts.items()}
+    between = collisional.R - collisional.R.sel(wave="sawtooth")
+    return found | {"waves_collisional_off": np.abs(between).max()}
 
 
 def inertia(bed, cooled):
@@ -199,7 +230,7 @@ MEASURES = {
     ("cooling_spheres", "sheared_spheres"): spheres,
     ("vibrated_spheres",): bed_of_spheres,
     ("vibrated_friction", "cooling_friction"): friction,
-    ("heated", "floor_materials", "shaken_walls"): drives,
+    ("heated", "floor_materials", "wall_materials", "shaken_walls"): drives,
     ("floor_materials", "wall_materials"): materials,
     ("waves",): waves,
     ("vibrated_inertia", "cooling_inertia"): inertia,

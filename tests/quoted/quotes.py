@@ -5,6 +5,8 @@ A format is Python's for numbers; one that ends in () has the error in brackets,
 
 QUOTES = {
     "README.md": [
+        "at r ≥ 0.8 within {vibrated_collisional_off:.3f} in the bed, "
+        "{sheared_collisional_off:.3f} in the sheared gas.",
         "in the vibrated bed by at most {vibrated_most_above:.3f} (r = {vibrated_most_at_r}, β = "
         "{vibrated_most_at_beta}), for |β| ≤ 0.5 on average by {vibrated_mean_at_r099:.3f}, "
         "{vibrated_mean_at_r09:.3f} and {vibrated_mean_at_r08:.3f} at r = 0.99, 0.9 and 0.8; in "
@@ -12,9 +14,9 @@ QUOTES = {
         "R is off by up to {rough_walls_off:.1f}, and above 1/2 for smooth particles",
         "Walls of the particles' own material change R by {particle_walls_shift:.3f} at most, "
         "smooth ones by {smooth_walls_shift:.3f}.",
-        "within {cooling_off_percent:.1f} % at every point with r ≥ 0.8, and depends on r "
-        "strongly: at β = −0.8, R is {cooling_at_r099:.2f} at r = 0.99 and {cooling_at_r08:.2f} "
-        "at r = 0.8.",
+        "within {cooling_off_percent:.1f} % at every point with r ≥ 0.8 (N = 160, packing 0.05), "
+        "and depends on r strongly: at β = −0.8, R is {cooling_at_r099:.2f} at r = 0.99 and "
+        "{cooling_at_r08:.2f} at r = 0.8.",
         "R is up to {vibrated_most_above_at_r06:.3f} above Eq. (lun) in the bed, "
         "{sheared_most_above_at_r06:.3f} in the sheared gas, and up to "
         "{cooling_below_percent_at_r06:.0f} % below Eq. (K).",
@@ -25,19 +27,20 @@ QUOTES = {
         "judges {open_questions_statements} statements in `results/paper/open_questions.md`",
         "within {cooling_spheres_off:.3f} at all of {cooling_spheres_points:.0f} points, sheared "
         "ones Eq. (lun) within {sheared_spheres_off:.3f}.",
-        "A bed lies above it by up to {vibrated_spheres_most_above:()}, more than",
+        "A bed lies above it by up to {vibrated_spheres_most_above:()}, averaged over collisions "
+        "by {vibrated_spheres_collisional_off:.3f}.",
         "over contacts that stick and slide, within {vibrated_friction_off:.3f}, from R = "
         "{vibrated_friction_least:.2f} at μ = {vibrated_friction_least_mu:g} to the rough gas",
-        "A cooling gas does within {cooling_friction_off:.3f} for μ ≥ "
-        "{cooling_friction_strong_mu:g}.",
-        "always below μ = {theory_friction_of_spin_alone:.2f} (r = 0.9). Between "
-        "{theory_friction_of_spin_alone:.2f} and {theory_critical_friction:.2f} both ends are "
-        "stable in theory",
-        "Random kicks of any s are within {heated_off:.3f} of the rate equations; a rough floor "
-        "and rough shaken walls, s from their energy books, within {rough_floor_off:.3f} and "
-        "{shaken_walls_off:.3f}.",
-        "by at most {wave_triangle:+()} for a triangle, {wave_sine:+()} for a sine, "
-        "{wave_reversed_sawtooth:+()} for a sawtooth that rises fast and falls slowly.",
+        "A cooling gas of N = 160 does within {cooling_friction_off:.3f} for μ ≥ "
+        "{cooling_friction_strong_mu:g},",
+        "is within {drives_collisional_off:.3f} of the rate equations for random kicks",
+        "Averaged over time within {heated_off:.3f}, {rough_floor_off:.3f}, "
+        "{rough_side_walls_off:.3f} and {shaken_walls_off:.3f}, beds above",
+        "At r = 0.9 by at most {wave_triangle_at_r09:+()} for a triangle, {wave_sine_at_r09:+()} "
+        "for a sine, {wave_reversed_sawtooth_at_r09:+()} for a sawtooth that rises fast and falls "
+        "slowly; at r = 0.8 by {wave_triangle_at_r08:+()}, {wave_sine_at_r08:+()}, "
+        "{wave_reversed_sawtooth_at_r08:+()}. Averaged over collisions, by "
+        "{waves_collisional_off:.3f}.",
         "a cooling gas follows Eq. (K) within {cooling_inertia_off:.3f}. A bed follows Eq. (lun) "
         "within {vibrated_inertia_off:.3f} for q of 0.05 to 0.3; it is {vibrated_rings_above:()} "
         "above for rings, and at q ≤ 0.02 perfectly rough disks have R = "
