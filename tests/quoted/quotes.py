@@ -24,7 +24,8 @@ QUOTES = {
         "`results/paper/claims.md`: {claims_hold} hold, {claims_qualified} hold with a "
         "qualification (how closely Eqs. (lun) and (K) are followed, and how little r matters), "
         "and {claims_fail} fail.",
-        "judges {open_questions_statements} statements in `results/paper/open_questions.md`",
+        "judges {open_questions_statements} statements in `results/paper/open_questions.md`, of "
+        "which {open_questions_fail} fail, both on weak friction",
         "within {cooling_spheres_off:.3f} at all of {cooling_spheres_points:.0f} points, sheared "
         "ones Eq. (lun) within {sheared_spheres_off:.3f}.",
         "A bed lies above it by up to {vibrated_spheres_most_above:()}, averaged over collisions "
