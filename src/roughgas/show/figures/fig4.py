@@ -2,16 +2,12 @@
 
 from collections.abc import Sequence
 
-import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from roughgas import theory
 from roughgas.show.figures import panel
 
-LAST = theory.critical_friction(panel.RESTITUTION)
-"""Up to this coefficient, R = 1 is stable in a cooling gas."""
 COMMON = {"symbol": r"\beta_0", "theories": "lines: rate equations", "axis": panel.FRICTION}
 
 
@@ -21,7 +17,7 @@ def draw(bed: xr.Dataset, cooling: xr.Dataset) -> Figure:
     mu = 0, where R = 0, has no place on a logarithmic axis; it is in the data.
     """
     bed, cooling = (data.sel(mu=data.mu > 0.0) for data in (bed, cooling))
-    free = {"loc": "upper right", "scale": _beyond, "extra": _shade_where_two_are_stable}
+    free = {"loc": "upper right", "scale": _staying, "extra": _tell_of_runaways}
     return panel.ratio_figure(
         panel.content_for_each_beta("Vibrated bed", bed, **COMMON),
         panel.content_for_each_beta("Cooling gas", cooling, **COMMON, **free),
@@ -29,19 +25,17 @@ def draw(bed: xr.Dataset, cooling: xr.Dataset) -> Figure:
     )
 
 
-def _beyond(drawn: Sequence[panel.Series]) -> list[panel.Series]:
-    """Return the parts of series where R = 1 is not stable, too."""
+def _staying(drawn: Sequence[panel.Series]) -> list[panel.Series]:
+    """Return the parts of series where R is nearer to theory than to 1, which spin has not left."""
     parts = []
     for one in drawn:
-        beyond = one.at > LAST
-        data = one.data.isel(mu=beyond)
-        parts.append(one._replace(data=data, at=one.at[beyond], theory=one.theory[beyond]))
+        stays = abs(one.residual) <= 1 - one.data.R.values
+        data = one.data.isel(mu=stays)
+        parts.append(one._replace(data=data, at=one.at[stays], theory=one.theory[stays]))
     return parts
 
 
-def _shade_where_two_are_stable(main: Axes, drawn: Sequence[panel.Series]) -> None:
-    """Shade from where theory has a stationary R < 1 up to where R = 1 ceases to be stable."""
-    along = panel.FRICTION.grid
-    first = along[np.argmax(drawn[0].predict(beta=0.0, mu=along) < 1.0)]
-    label = r"two stable states, $R = 1$ the other"
-    main.axvspan(first, LAST, color="0.9", linewidth=0, zorder=0, label=label)
+def _tell_of_runaways(main: Axes, drawn: Sequence[panel.Series]) -> None:
+    """Say in the legend what points above the lines are."""
+    if any((abs(one.residual) > 1 - one.data.R.values).any() for one in drawn):
+        main.plot([], [], " ", label="above the lines: single spins ran away")
