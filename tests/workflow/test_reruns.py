@@ -20,7 +20,9 @@ FAMILIES = {"family", "catalogue", "document"}
 FILM = {"clustering", "film", "document"}
 ACCURACY = {"accuracy", "combined_studies", "study_table", "document"}
 COVERAGE = {"coverage", "combined_studies", "study_table", "document"}
-STUDIES = ACCURACY | COVERAGE | {"profiles", "statistical", "models", "discretisation"}
+STUDIES = (
+    ACCURACY | COVERAGE | {"profiles", "runaway"} | {"statistical", "models", "discretisation"}
+)
 SIMULATED = COMPILED | FAMILIES | FILM | STUDIES | {"movie"}
 EDITED = {  # file of the package: what an edit of its code runs again
     "statistics/plateau.py": SIMULATED - {"discretisation"},
@@ -37,8 +39,8 @@ EDITED = {  # file of the package: what an edit of its code runs again
     "show/figures/fig1a.py": {"fig1a"},
     "show/page/page.js": {"page"},
     "show/movies/drawing.py": {"movie"},
-    "studies/tables.py": {"study_table", "document", "coverage", "profiles"},
-    "studies/dsmc/gas.py": ACCURACY | {"models"},
+    "studies/tables.py": {"study_table", "document", "coverage", "profiles", "runaway"},
+    "studies/dsmc/gas.py": ACCURACY | {"models", "runaway"},
     "cli/run.py": POINTS | FAMILIES,
 }
 ALIKE = {  # files after whose edits much the same runs again as after others'

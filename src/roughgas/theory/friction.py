@@ -15,6 +15,9 @@ who found that a cooling gas of spheres with weak friction may keep its spin whi
 out, and of Herbst et al. (Phys. Fluids 17, 107102, 2005) for driven disks. The closed forms here
 were worked out without having these papers at hand, and have not been compared with theirs.
 
+All this is the homogeneous gas, its velocities Maxwellian. Single particles leave its stationary
+R < 1 when it cools: `runaway` says when.
+
 `beta` is beta_0 and `mu` >= 0 may be infinite: McNamara & Luding's gas, `rate_equations`.
 """
 
@@ -58,7 +61,8 @@ def friction_ratio(r, beta, mu, dimension=2, inertia=None, spin_share=None) -> n
     it is `stationary_ratio`; at mu = 0, as at beta = -1, spin is decoupled, and R the limit given
     there.
 
-    R = 1 where theta grows without bound: translational energy dies out faster than spin.
+    R = 1 where theta grows without bound: translational energy dies out faster than spin. Where a
+    cooling gas has R < 1, single particles leave it all the same (`roughgas.theory.runaway`).
 
     - Without a drive a gas that spins fast enough goes there for mu < mu_c = sqrt((1-r)/(1+r)), in
       2D and 3D; one started without spin for mu below some mu_s <= mu_c, where R jumps to 1. For
@@ -88,10 +92,11 @@ def friction_ratio(r, beta, mu, dimension=2, inertia=None, spin_share=None) -> n
 
 
 def critical_friction(r) -> np.ndarray:
-    """Return mu_c = sqrt((1-r)/(1+r)), up to which a cooling gas with dominant spins keeps R = 1.
+    """Return mu_c = sqrt((1-r)/(1+r)), up to which a cooling gas of dominant spins keeps R = 1.
 
     There, sliding contacts add as much to translation as inelastic ones take, in 2D and 3D, for any
-    beta and q.
+    beta and q, if all particles spin fast. It is no bound for single ones that do:
+    `roughgas.theory.runaway`.
     """
     r = check("restitution r", r)
     return np.sqrt((1 - r) / (1 + r))[()]
