@@ -38,8 +38,8 @@ QUOTES = {
         "Averaged over time within {heated_off:.3f}, {rough_floor_off:.3f}, "
         "{rough_side_walls_off:.3f} and {shaken_walls_off:.3f}, beds above",
         "At r = 0.9 by at most {wave_triangle_at_r09:+()} for a triangle, {wave_sine_at_r09:+()} "
-        "for a sine, {wave_reversed_sawtooth_at_r09:+()} for a sawtooth that rises fast and falls "
-        "slowly; at r = 0.8 by {wave_triangle_at_r08:+()}, {wave_sine_at_r08:+()}, "
+        "for a sine, {wave_reversed_sawtooth_at_r09:+()} for a reversed sawtooth; at r = 0.8 by "
+        "{wave_triangle_at_r08:+()}, {wave_sine_at_r08:+()}, "
         "{wave_reversed_sawtooth_at_r08:+()}. Averaged over collisions, by "
         "{waves_collisional_off:.3f}.",
         "a cooling gas follows Eq. (K) within {cooling_inertia_off:.3f}. A bed follows Eq. (lun) "
