@@ -52,6 +52,23 @@ def test_a_start_that_would_leave_less_than_half_is_not_taken():
     assert steady._start(energies, 40, 64, 1) == (54, True)
 
 
+def test_a_bed_in_twenty_phases_of_its_floor_and_in_four():
+    """R depends on where it is sampled, R over collisions does not; the series have one length."""
+    measured = []
+    for every in (0.05, 0.25):
+        bed = BED | {"schedule": BED["schedule"] | {"equilibrate": 100, "sample_every": every}}
+        measured.append(steady.run(begin(bed, 0.8, 0.0)[0], bed, 2, Recorder()))
+    twenty, four = measured
+    for found in measured:
+        assert len(found["R_series"]) == len(found["time"]) == 4 * (400 - found["measured_from"])
+        assert found["R"] == pytest.approx(found["R_series"].mean(), rel=1e-12)
+    assert twenty["R_collisional"] == pytest.approx(four["R_collisional"], rel=1e-6)
+    assert twenty["contact_correlation"] == pytest.approx(four["contact_correlation"], rel=1e-6)
+    assert twenty["R"] > four["R"] + 0.002  # by 0.0050(1) in the bed of the paper
+    expected = theory.lun_ratio(0.0, 0.5)
+    assert abs(twenty["R_collisional"] - expected) < 0.01 < twenty["R"] - expected
+
+
 def test_a_cooling_gas():
     """R near Eq. (K), within 8 % and four standard errors of 8 replicas of 40 disks."""
     scene, _ = begin(COOLING, 0.9, 0.0)
