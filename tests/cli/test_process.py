@@ -40,7 +40,7 @@ def run(output, experiment="cooling", r="0.9", beta="0", seed="1", **others):
         ({"settings": "{"}, "--settings = '{': must be JSON"),
         (
             {"settings": json.dumps(TINY | {"particles": 0})},
-            "--settings.particles = 0: must be a whole number >= 1",
+            "--settings.particles = 0: must be a whole number in [1, 100000000]",
         ),
         ({"settings": json.dumps(TINY | {"particles": 10_000})}, "particles = 10000: must"),
         ({"settings": json.dumps(TINY | {"box": [3, 3]})}, "box[0] = 3"),

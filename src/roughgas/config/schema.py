@@ -123,6 +123,7 @@ SAID = {
         f"be one of {', '.join(schema['enum'])}" if schema["enum"] else "not be given here"
     ),
     "format": lambda schema: FORMATS[schema["format"]][1],
+    "minLength": lambda _: "be text, and not empty",
     "pattern": lambda _: "be made of lower-case letters, digits and _, a letter first",
     "type": _legal_type,
 }

@@ -5,7 +5,7 @@ from typing import NamedTuple
 from roughgas.effects.settings import Number, register
 from roughgas.kernel.jit import jit
 
-SETTINGS = {"acceleration": Number("g, in a/T^2.")}
+SETTINGS = {"acceleration": Number("g, in a/T^2.", "[1e-06, 1e+06]")}
 
 
 class Gravity(NamedTuple):

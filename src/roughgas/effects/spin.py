@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 from roughgas.effects.settings import Number, register
 
-SETTINGS = {"inertia": Number("q = I/(m a^2), 1/2 for disks and 2/5 for spheres.", "(0, 1]")}
+SETTINGS = {"inertia": Number("q = I/(m a^2), 1/2 for disks and 2/5 for spheres.", "[1e-06, 1]")}
 
 
 class Spin(NamedTuple):

@@ -14,6 +14,7 @@ from roughgas.scene.composition import DIAMETER, Scene, build
 TEMPERATURE = 1.0  # m a^2/T^2
 VACANCIES = 1.3  # lattice sites per particle, if there is room
 LOOSE_PACKING = 0.2  # volume fraction of a gas with an open top
+MOST_SITES = 200_000_000
 LEAST = DIAMETER * (1.0 + 1e-9)  # distance of two sites, in a
 # Where the sites are in a cell of the closer lattice: in space a cube with centred faces
 CENTRED = {
@@ -66,6 +67,9 @@ def lattice(scene: Scene, experiment: Mapping[str, Any]) -> np.ndarray:
     counts = [max(1, math.floor(length / spacing)) for length in lengths]
     if math.prod(counts) < number:  # too dense for vacancies: as many sites as there is room for
         counts = [math.floor(length / LEAST) for length in lengths]
+    if math.prod(counts) > MOST_SITES:
+        legal = f"have room for {MOST_SITES:.0e} particles at most, a lattice being laid over it"
+        raise InputError("box", experiment["box"], legal)
     sites = _sites(lengths, counts, [(0.5,) * dimension])
     if len(sites) < number and None not in scene.box:  # too dense for one site to a cell
         sites = max(sites, _sites(lengths, _closest(lengths), CENTRED[dimension]), key=len)
