@@ -1,0 +1,107 @@
+"""Strategies that spoil what is right: values of a configuration, and the text of one."""
+
+import copy
+import math
+
+from hypothesis import strategies as st
+
+VALUES = st.sampled_from(
+    # fmt: off
+    [
+        None,
+        True,
+        False,
+        0,
+        -1,
+        1,
+        2,
+        0.5,
+        -0.5,
+        1e-300,
+        5e-324,
+        1e300,
+        math.inf,
+        math.nan,
+        10**18,
+        2**63,
+        10**30,
+        "",
+        " ",
+        "x",
+        "0.9",
+        "open",
+        "particles",
+        "1:30:00",
+        "2001-02-30",
+        "../x",
+        "a\nb",
+        "<script>",
+        [],
+        {},
+        [None],
+        [1],
+        ["0.9"],
+        [True],
+        [[[]]],
+        {"a": 1},
+    ]
+    # fmt: on
+)
+PIECES = st.sampled_from(
+    ["!!bool ", "!!int ", "!!python/none ", "&a ", "*a", "[", "]", "{", "}", "? ", ": ", "- ", "# "]
+    + ["\t", "\n", "\0", "\x85", "\u2028", "é", "0x_", "0b_", "1:30:00", "2001-02-30", "9" * 5000]
+    + [
+        "[" * 500,
+        "%YAML 1.1\n---\n",
+        "---\n",
+        "...\n",
+        "'",
+        '"',
+        "|\n",
+        "<<: ",
+        "null",
+        "~",
+        ".nan",
+    ]
+)
+
+
+def places(tree, path=()):
+    """Yield the path of every value below the root."""
+    entries = tree.items() if isinstance(tree, dict) else enumerate(tree)
+    for key, value in entries:
+        yield (*path, key)
+        if isinstance(value, dict | list):
+            yield from places(value, (*path, key))
+
+
+@st.composite
+def spoiled_trees(draw, tree):
+    """A copy of a tree of dictionaries and lists, with one to three values changed, taken away or
+    added."""
+    tree = copy.deepcopy(tree)
+    for _ in range(draw(st.integers(1, 3))):
+        *parents, last = draw(st.sampled_from(list(places(tree))))
+        inner = tree
+        for key in parents:
+            inner = inner[key]
+        what = draw(st.sampled_from(["change", "change", "take away", "add"]))
+        if what == "take away":
+            del inner[last]
+        elif what == "change":
+            inner[last] = draw(VALUES)
+        elif isinstance(inner, dict):
+            inner[draw(st.sampled_from(["x", "spin", "friction", "r", "", "a b"]))] = draw(VALUES)
+        else:
+            inner.append(draw(VALUES))
+    return tree
+
+
+@st.composite
+def spoiled_texts(draw, text):
+    """A text with one to three pieces put in, or stretches taken out."""
+    for _ in range(draw(st.integers(1, 3))):
+        at = draw(st.integers(0, len(text)))
+        end = at + draw(st.sampled_from([0, 0, 0, 1, 5, 40]))
+        text = text[:at] + draw(PIECES) + text[end:]
+    return text

@@ -1,0 +1,105 @@
+"""Whatever a person may write into config.yaml is taken, or refused in one line."""
+
+import json
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from tests.fuzz.spoiling import spoiled_texts, spoiled_trees
+
+from roughgas import config
+from roughgas.base.errors import InputError
+from roughgas.config.reading import read_yaml
+from roughgas.simulation import schedule
+
+WHOLE = read_yaml(Path(__file__).parents[2] / "config.yaml")
+KEPT = {"vibrated", "vibrated_rough_walls", "cooling", "heated", "showcase", "studies"}
+BRIEF = WHOLE | {
+    "experiments": {name: one for name, one in WHOLE["experiments"].items() if name in KEPT},
+    "scales": {
+        "paper": {},
+        "small": {k: v for k, v in WHOLE["scales"]["small"].items() if k in KEPT},
+    },
+}
+TEXT = """\
+scale: paper
+experiments:
+  gas: &gas
+    description: "A gas"
+    particles: 20
+    box: [20, 20.0]
+    effects: {spin: {inertia: 0.5}}
+    sweep: {r: ["0.9", '1'], beta: ["-1"], seeds: 2}
+    schedule: {kind: cooling, replicas: 3, thermalise: 20, relaxation_times: 16, plateau: 10,
+      sample_every: 1}
+  other: *gas
+scales: {paper: {}}
+"""
+QUICK, LONG = (
+    settings(
+        max_examples=number,
+        deadline=None,
+        derandomize=True,
+        database=None,
+        suppress_health_check=list(HealthCheck),
+    )
+    for number in (150, 5000)
+)
+
+
+def outcome(path):
+    """Whether a configuration is taken, all of it: "taken", or "refused" in one line."""
+    try:
+        found = config.load(path)
+        for scale in found["scales"]:
+            for name in found["experiments"]:
+                chosen = config.experiment(found, name, scale)
+                for variant in config.every_variant(name, chosen).values():
+                    schedule.check(variant)
+    except InputError as error:
+        assert "\n" not in str(error)
+        return "refused"
+    return "taken"
+
+
+def values_are_spoiled(tmp_path_factory, tree):
+    path = tmp_path_factory.getbasetemp() / "config.yaml"
+    path.write_text(json.dumps(tree))
+    outcome(path)
+
+
+def text_is_spoiled(tmp_path_factory, text):
+    path = tmp_path_factory.getbasetemp() / "config.yaml"
+    path.write_text(text, encoding="utf-8")
+    try:
+        found = read_yaml(path)
+    except InputError as error:
+        assert "\n" not in str(error)
+    else:
+        json.dumps(found)  # nothing but dictionaries, lists, text and numbers
+
+
+@QUICK
+@given(tree=spoiled_trees(BRIEF))
+def test_spoiled_values(tmp_path_factory, tree):
+    values_are_spoiled(tmp_path_factory, tree)
+
+
+@QUICK
+@given(text=spoiled_texts(TEXT))
+def test_spoiled_text(tmp_path_factory, text):
+    text_is_spoiled(tmp_path_factory, text)
+
+
+@pytest.mark.slow
+@LONG
+@given(tree=spoiled_trees(BRIEF))
+def test_many_spoiled_values(tmp_path_factory, tree):
+    values_are_spoiled(tmp_path_factory, tree)
+
+
+@pytest.mark.slow
+@LONG
+@given(text=spoiled_texts(TEXT))
+def test_many_spoiled_texts(tmp_path_factory, text):
+    text_is_spoiled(tmp_path_factory, text)
