@@ -5,65 +5,26 @@ import math
 
 from hypothesis import strategies as st
 
-VALUES = st.sampled_from(
-    # fmt: off
-    [
-        None,
-        True,
-        False,
-        0,
-        -1,
-        1,
-        2,
-        0.5,
-        -0.5,
-        1e-300,
-        5e-324,
-        1e300,
-        math.inf,
-        math.nan,
-        10**18,
-        2**63,
-        10**30,
-        "",
-        " ",
-        "x",
-        "0.9",
-        "open",
-        "particles",
-        "1:30:00",
-        "2001-02-30",
-        "../x",
-        "a\nb",
-        "<script>",
-        [],
-        {},
-        [None],
-        [1],
-        ["0.9"],
-        [True],
-        [[[]]],
-        {"a": 1},
-    ]
-    # fmt: on
-)
-PIECES = st.sampled_from(
-    ["!!bool ", "!!int ", "!!python/none ", "&a ", "*a", "[", "]", "{", "}", "? ", ": ", "- ", "# "]
-    + ["\t", "\n", "\0", "\x85", "\u2028", "é", "0x_", "0b_", "1:30:00", "2001-02-30", "9" * 5000]
-    + [
-        "[" * 500,
-        "%YAML 1.1\n---\n",
-        "---\n",
-        "...\n",
-        "'",
-        '"',
-        "|\n",
-        "<<: ",
-        "null",
-        "~",
-        ".nan",
-    ]
-)
+NUMBERS = [0, -1, 1, 2, 0.5, -0.5, 1e-300, 5e-324, 1e300, math.inf, math.nan, 10**18, 2**63, 10**30]
+WORDS = [
+    "",
+    " ",
+    "x",
+    "0.9",
+    "open",
+    "particles",
+    "1:30:00",
+    "2001-02-30",
+    "../x",
+    "a\nb",
+    "<script>",
+]
+OTHERS = [None, True, False, [], {}, [None], [1], ["0.9"], [True], [[[]]], {"a": 1}]
+VALUES = st.sampled_from([*NUMBERS, *WORDS, *OTHERS])
+SIGNS = "[ ] { } ' \" ~ \t \n \0 \x85 \u2028 é |\n".split(" ")
+SCALARS = ["0x_", "0b_", "1:30:00", "2001-02-30", "9" * 5000, "null", ".nan", "<<: "]
+STRUCTURE = ["!!bool ", "!!int ", "&a ", "*a", "? ", ": ", "- ", "# ", "[" * 500, "---\n", "...\n"]
+PIECES = st.sampled_from([*SIGNS, *SCALARS, *STRUCTURE, "%YAML 1.1\n---\n"])
 
 
 def places(tree, path=()):
