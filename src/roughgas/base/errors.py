@@ -28,6 +28,11 @@ def shown(value: object) -> str:
     return text if len(text) <= LONGEST else text[: LONGEST - 3] + "..."
 
 
+def on_one_line(text: str) -> str:
+    """Return a text with newlines, and all else that cannot be printed, as Python writes them."""
+    return "".join(sign if sign.isprintable() else repr(sign)[1:-1] for sign in text)
+
+
 def not_one_of(key: str, value: object, known: Iterable[str]) -> InputError:
     """Return the error of a value that is not among the `known` ones, with a suggestion."""
     import difflib

@@ -13,7 +13,7 @@ import sys
 from collections.abc import Sequence
 from typing import NoReturn
 
-from roughgas.base.errors import CollapseError, InputError
+from roughgas.base.errors import CollapseError, InputError, on_one_line
 from roughgas.base.files import check_place
 from roughgas.base.version import __version__
 from roughgas.cli.commands import COMMANDS
@@ -114,7 +114,7 @@ def _options(arguments: Sequence[str]) -> argparse.Namespace:
 
 
 def _fail(status: int, message: str) -> int:
-    print(f"roughgas: error: {message}", file=sys.stderr)
+    print(f"roughgas: error: {on_one_line(message)}", file=sys.stderr)
     return status
 
 

@@ -8,6 +8,8 @@ from importlib import import_module
 from textwrap import fill
 from typing import Any, NoReturn
 
+from roughgas.base.errors import on_one_line
+
 BAD_INPUT = 2
 WIDTH = 78
 Option = Callable[[Any], None]
@@ -89,7 +91,8 @@ class Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         """Exit with the message."""
-        self.exit(BAD_INPUT, f"roughgas: error: {message} (see `{self.prog} --help`)\n")
+        said = on_one_line(f"roughgas: error: {message} (see `{self.prog} --help`)")
+        self.exit(BAD_INPUT, f"{said}\n")
 
 
 def add_commands(parser: Parser, commands: Mapping[str, Command]) -> None:

@@ -1,5 +1,6 @@
 """What is made from results: `roughgas reduce`, `figure`, `claims`, `config`, `export`, `crate`."""
 
+import os
 import sys
 from argparse import Namespace
 from pathlib import Path
@@ -22,6 +23,8 @@ def figure(options: Namespace) -> None:
     from roughgas.studies import figures as of_studies
 
     if options.name in of_studies.FIGURES:
+        if len(options.inputs) > 1:
+            raise InputError("number of datasets", len(options.inputs), "be 1, with all studies")
         of_studies.draw(options.name, *options.inputs, options.output)
     else:
         gallery.draw(options.name, options.inputs, options.output)
@@ -48,7 +51,7 @@ def export(options: Namespace) -> None:
     """Write tables, and print their names."""
     from roughgas.results.export import export as export_dataset
 
-    output = Path(options.output or Path(options.input).with_suffix(".csv"))
+    output = Path(options.output or f"{os.path.splitext(options.input)[0]}.csv")
     if output.suffix != ".csv":
         raise InputError("--output", output, "end in .csv")
     for file in export_dataset(options.input, output):

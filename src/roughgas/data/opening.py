@@ -77,19 +77,19 @@ def opened(path: str | Path, *kinds: str) -> Iterator["netCDF4.Dataset"]:
     if not Path(path).exists():
         raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), str(path))
     if Path(path).is_file() and not is_whole(path):
-        raise DamagedError("file", _name(path), "be what was written to it: it is damaged")
+        raise DamagedError("file", path, "be what was written to it: it is damaged")
     try:
         file = netCDF4.Dataset(path)
     except (OSError, RuntimeError, UnicodeError) as error:
         legal = "be a dataset of roughgas: it is of another program, or cut off, or damaged"
-        raise DamagedError("file", _name(path), legal) from error
+        raise DamagedError("file", path, legal) from error
     with file:
         _check_attributes(file, path)
         _check_size(file, path)
         if (found := kind_of(file)) not in (kinds or (*KINDS, STUDIES)):
             wanted = " or ".join(kinds) or "a dataset of roughgas"
             other = f", not {found}" if found else ""
-            raise InputError("file", _name(path), f"be {wanted}{other}")
+            raise InputError("file", path, f"be {wanted}{other}")
         yield file
 
 
@@ -131,12 +131,6 @@ def require(attributes: Mapping[str, Any], names: Iterable[str], path: str | Pat
             raise InputError(f"attribute {name} of {path}", "(nothing)", "be given")
 
 
-def _name(path: str | Path) -> str:
-    """Return a path as it is; as Python writes it where it would not stay on one line."""
-    name = str(path)
-    return name if name.isprintable() else repr(name)
-
-
 def _check_attributes(file: "netCDF4.Dataset", path: str | Path) -> None:
     for name, value in attributes_of(file).items():
         wanted = ATTRIBUTES.get(name)
@@ -144,6 +138,9 @@ def _check_attributes(file: "netCDF4.Dataset", path: str | Path) -> None:
             raise InputError(f"{name} of {path}", shown(value), f"be {wanted}")
         if wanted == JSON:
             from_json(value, f"{name} of {path}")
+    swept = getattr(file, "swept", "effect.parameter")
+    if swept.count(".") != 1:
+        raise InputError(f"swept of {path}", shown(swept), "be EFFECT.PARAMETER")
     version = getattr(file, "schema_version", SCHEMA_VERSION)
     if version > SCHEMA_VERSION:
         legal = f"be at most {SCHEMA_VERSION}: a newer roughgas has written the file"

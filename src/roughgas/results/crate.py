@@ -115,7 +115,7 @@ def verify(path: str | Path, points: Iterable[str | Path] = ()) -> list[str]:
     try:
         crate = ROCrate(path)  # which unpacks it for a while
         expected = {file.source: file["sha256"] for file in crate.get_by_type("File")}
-    except (ValueError, KeyError, OSError, zipfile.BadZipFile, zlib.error) as error:
+    except (ValueError, TypeError, LookupError, OSError, zipfile.BadZipFile, zlib.error) as error:
         raise InputError("crate", path, "be an RO-Crate that roughgas wrote, whole") from error
     for file, checksum in expected.items():
         name = file.relative_to(crate.source)
@@ -123,7 +123,7 @@ def verify(path: str | Path, points: Iterable[str | Path] = ()) -> list[str]:
             wrong.append(f"{name}: is missing")
         elif _sha256(file.read_bytes()) != checksum:
             wrong.append(f"{name}: has changed")
-    known = {row["digest"] for row in points_in(crate.source)}
+    known = {row.get("digest") for row in points_in(crate.source)}
     return wrong + [f"{one}: no point of the crate" for one in points if digest(one) not in known]
 
 

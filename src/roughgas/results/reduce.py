@@ -18,7 +18,7 @@ import numpy as np
 from roughgas.base.errors import InputError
 from roughgas.data.netcdf import COMMON_ATTRIBUTES, Content, write_netcdf
 from roughgas.data.opening import POINT as OF_POINT
-from roughgas.data.opening import DamagedError, attributes_of, opened
+from roughgas.data.opening import DamagedError, attributes_of, opened, require
 from roughgas.data.reduced import GRID, third_axis
 from roughgas.data.variables import CLOCKS, POINT, Array, described
 from roughgas.statistics.bimodal import is_bimodal
@@ -72,6 +72,7 @@ def _summary(path: Path) -> Summary:
     with opened(path, OF_POINT) as file:
         file.set_auto_mask(False)
         attributes = attributes_of(file)
+        require(attributes, ("swept_value",) if "swept" in attributes else (), path)
         found = [name for name, about in POINT.items() if not about.dims]
         scalars = {name: file[name][...].item() for name in found if name in file.variables}
         scalars["measured_for"], scalars["R_drift"] = _window(file, scalars)

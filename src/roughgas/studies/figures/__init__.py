@@ -4,15 +4,21 @@ from collections.abc import Iterable
 from importlib import import_module
 from pathlib import Path
 
+from roughgas.base.errors import InputError
+
 FIGURES = ("accuracy", "coverage", "profiles", "finite_size", "runaway")
 
 
 def draw(name: str, data: str | Path, outputs: Iterable[str | Path]) -> None:
     """Draw the figure `name` of FIGURES from the combined dataset at `data` into `outputs`.
 
-    Raises InputError for other files than .pdf and .png.
+    Raises InputError for other files than .pdf and .png, and where the dataset lacks a study that
+    the figure shows.
     """
-    from roughgas.show import style
+    from roughgas.show import catalogue, style
+    from roughgas.studies.variables import read_studies
 
+    for study in set(catalogue.FIGURES[name].shows) - set(read_studies(data)):
+        raise InputError(f"studies in {data}", f"without {study}", "have all that the figure shows")
     module = import_module(f"roughgas.studies.figures.{name}")
     style.draw(lambda: module.draw(data), outputs)

@@ -1,0 +1,177 @@
+"""Whatever a person may type, about files of ours, spoiled ones and foreign ones, gives a result or
+one line, and leaves nothing half-written."""
+
+import contextlib
+import io
+import os
+import random
+import shutil
+
+import netCDF4
+import pytest
+import xarray as xr
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from tests.files import write_all
+
+from roughgas.cli import main
+
+WORDS = [
+    "",
+    "-",
+    "--",
+    "x",
+    "é",
+    "fig1a",
+    "accuracy",
+    "-1",
+    "0.9",
+    "1e-300",
+    "nan",
+    "10" * 30,
+    "a\nb",
+]
+JSON = ["{", "[]", "3", "null", "NaN", "{}", '{"a": 1}', '{"experiments": null}', '{"scale": "x"}']
+MEANT = [
+    "show",
+    "show --json",
+    "export -o out.csv",
+    "reduce -o out.nc",
+    "table -o out.csv",
+    "claims --json out.json --markdown out.md",
+    "claims --open-questions --json out.json --markdown out.md",
+    "page --points . -o out.html",
+    "html -o out.html",
+    "times -o out.md",
+    "costs --fixed {} -o out.md",
+    "tables -o out.md",
+    "combine -o out.nc",
+    "film -o out.png",
+    "crate -o out.zip",
+    "crate --verify crate",
+]
+"""Command lines without their files, which come after the command."""
+OPTIONS = ["--json", "-o", "--output", "--points", "--verify", "--fixed", "--markdown", "--help"]
+OPTIONS += ["--open-questions", "--configuration", "--x"]
+OUTPUTS = ["out.csv", "out.nc", "out.md", "out.html", "out.png", "out.zip", "no/out.json", "out"]
+ATTRIBUTES = ["schema_version", "experiment", "r", "beta", "seed", "r_label", "command", "theory"]
+ATTRIBUTES += ["experiment_json", "settings_json", "swept", "study", "task", "dimension", "inertia"]
+QUICK, LONG = (
+    settings(
+        max_examples=number,
+        deadline=None,
+        derandomize=True,
+        database=None,
+        suppress_health_check=list(HealthCheck),
+    )
+    for number in (150, 5000)
+)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """A folder with a file of each kind, spoiled copies of each, and foreign ones."""
+    folder = tmp_path_factory.mktemp("files")
+    rng = random.Random(1)
+    for kind, path in write_all(folder).items():
+        content = path.read_bytes()
+        for number in range(3):
+            at = rng.randrange(len(content))
+            flipped = (
+                content[:at] + bytes([content[at] ^ 1 << rng.randrange(8)]) + content[at + 1 :]
+            )
+            (folder / f"{kind}_flipped{number}.nc").write_bytes(flipped)
+            (folder / f"{kind}_cut{number}.nc").write_bytes(content[:at])
+        for name in ATTRIBUTES:
+            _with(
+                path, folder / f"{kind}_{name}.nc", name, rng.choice([3, "x", [1, 2], "{}", -0.5])
+            )
+    xr.Dataset({"R": 1.0}).to_netcdf(folder / "foreign.nc")
+    (folder / "empty.nc").write_bytes(b"")
+    (folder / "text.nc").write_text("text")
+    (folder / "list.json").write_text("[]")
+    (folder / "page.md").write_text("# Words")
+    (folder / "crate").mkdir()
+    (folder / "crate/ro-crate-metadata.json").write_text("[]")
+    return folder
+
+
+def _with(path, copy, name, value):
+    shutil.copy(path, copy)
+    with netCDF4.Dataset(copy, "a") as file:
+        file.setncattr(name, value)
+
+
+def outcome(arguments):
+    """The exit status of a command line, and what it has said."""
+    said, errors = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(said), contextlib.redirect_stderr(errors):
+        try:
+            status = main(arguments)
+        except SystemExit as end:
+            status = end.code
+    return status, errors.getvalue()
+
+
+def check(folder, monkeypatch, arguments):
+    """Run a command line in a copy of the folder, since some put damaged files aside."""
+    copy = folder.with_name("copy")
+    shutil.copytree(folder, copy)
+    monkeypatch.chdir(copy)
+    try:
+        status, errors = outcome(arguments)
+        assert status in (0, 1, 2)
+        if status:
+            assert errors.count("\n") == 1 and errors.startswith("roughgas: error: "), errors
+        assert not list(copy.rglob("*.tmp"))
+    finally:
+        monkeypatch.chdir(folder)
+        shutil.rmtree(copy)
+
+
+@st.composite
+def command_lines(draw, names):
+    """A command with files, as it is meant to be given or with words and options anywhere."""
+    files = st.sampled_from([*names, "none.nc", "."])
+    if draw(st.booleans()):
+        command, *rest = draw(st.sampled_from(MEANT)).split()
+        return [command, *draw(st.lists(files, min_size=1, max_size=3)), *rest]
+    line = [draw(st.sampled_from(MEANT)).split()[0]]
+    line += draw(st.lists(st.one_of(files, st.sampled_from(WORDS)), max_size=3))
+    for option in draw(st.lists(st.sampled_from(OPTIONS), max_size=3)):
+        line.append(option)
+        line += draw(st.lists(st.sampled_from([*OUTPUTS, *JSON, *WORDS]), max_size=1))
+    return line
+
+
+def _fuzz(folder, monkeypatch, data):
+    names = sorted(os.listdir(folder))
+    check(folder, monkeypatch, data.draw(command_lines(names)))
+
+
+@QUICK
+@given(data=st.data())
+def test_command_lines(folder, monkeypatch, data):
+    _fuzz(folder, monkeypatch, data)
+
+
+@pytest.mark.slow
+@LONG
+@given(data=st.data())
+def test_many_command_lines(folder, monkeypatch, data):
+    _fuzz(folder, monkeypatch, data)
+
+
+@pytest.mark.parametrize("text", JSON)
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["run", "cooling", "--r=0.9", "--beta=0", "-o", "out.nc", "--settings"],
+        ["config", "-o", "out", "--changes"],
+        ["study", "statistical", "cooling-reference", "-o", "out.nc", "--settings"],
+        ["costs", "reduced.nc", "-o", "out.md", "--fixed"],
+        ["crate", "page.md", "-o", "out.zip", "--configuration"],
+    ],
+)
+def test_options_that_take_json(folder, monkeypatch, arguments, text):
+    check(folder, monkeypatch, [*arguments, text])
