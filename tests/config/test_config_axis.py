@@ -133,11 +133,11 @@ MISTAKES = [
     ({"spin.inertia": ["1", "1.0"]}, "sweep.spin.inertia = '1.0': must be given once"),
     (
         {"spin.inertia": ["0.5", "2"]},
-        "experiments.spun/inertia2.effects.spin.inertia = 2.0: must be a number in [1e-06, 1]",
+        "experiments.spun/inertia2.effects.spin.inertia = 2.0: must be a number in [1e-06, ",
     ),
     (
         {"spin.inertia": ["sine"]},
-        "experiments.spun/inertiasine.effects.spin.inertia = 'sine': must be a number in [1e-06, 1]",
+        "experiments.spun/inertiasine.effects.spin.inertia = 'sine': must be a number in [1e-06, ",
     ),
     (
         {"spin.inertia": ["0.5/1"]},
@@ -181,7 +181,7 @@ def test_swept_is_not_for_people():
         ("spun/", "= 'spun/': must name a value of inertia, such as spun/inertia1"),
         ("spun/inertia", "spun: spin.inertia = : must be a number, or a word"),
         ("spun/inertia1/r0.9", "spun: spin.inertia = 1/r0.9: must be a number, or a word"),
-        ("spun/inertia2", "spun/inertia2.effects.spin.inertia = 2.0: must be a number in [1e-06, 1]"),
+        ("spun/inertia2", "spun/inertia2.effects.spin.inertia = 2.0: must be a number in [1e-06, "),
         ("spin/inertia1", "experiment = 'spin': must be one of"),
     ],
 )
