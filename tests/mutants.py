@@ -22,6 +22,7 @@ COPIED += ("CHANGELOG.md", "CITATION.cff", "LICENSE", "Makefile", "Snakefile", "
 EXTRAS = "not (slow or remedy or browser or slurm)"
 ELSEWHERE = {  # tests of a room that are not in its own folder
     "base": ["data", "cli/test_process.py", "habits/test_surroundings.py"],
+    "cli": ["habits/test_surroundings.py"],
     "doctor": ["habits/test_doctor.py"],
     "library": ["test_library.py"],
     "results": ["planning"],
