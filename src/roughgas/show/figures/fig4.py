@@ -38,4 +38,4 @@ def _staying(drawn: Sequence[panel.Series]) -> list[panel.Series]:
 def _tell_of_runaways(main: Axes, drawn: Sequence[panel.Series]) -> None:
     """Say in the legend what points above the lines are."""
     if any((abs(one.residual) > 1 - one.data.R.values).any() for one in drawn):
-        main.plot([], [], " ", label="above the lines: single spins ran away")
+        main.plot([], [], " ", label="above lines: runaway spins")
