@@ -120,18 +120,17 @@ def _by_pairs(run):
 def _shear(run) -> dict[str, float]:
     """Return what a sheared gas is like, over all slices: see theory.shear.
 
-    `flow_deviation` is the root mean square velocity of slices, beyond the linear mean flow, over
-    that of a particle.
+    `theta` is that of E_rot and E_trans, without the mean spin of each instant; `flow_deviation`
+    the root mean square velocity of slices, beyond the linear mean flow, over that of a particle.
     """
     all_over = run.sum(GRID)
-    number, q, rate = float(all_over.particles), float(run.inertia), float(run.shear_rate)
+    number, rate = float(all_over.particles), float(run.shear_rate)
     T_x, T_y = float(all_over.uu) / number, float(all_over.vv) / number
     T, spin = (T_x + T_y) / 2, float(all_over.w) / number
-    T_rot = q * (float(all_over.ww) / number - spin**2)
     stress, difference = -float(all_over.uv) / number / T, (T_x - T_y) / (2 * T)
     flow = (run.u.sum("phase") / run.particles.sum("phase")).values
     return {
-        "theta": T_rot / T,
+        "theta": float(run.E_rot.sum() / run.E_trans.sum()),
         "factor": float(shear_factor(rate / math.sqrt(T), stress, difference)),
         "rate": rate / math.sqrt(T),
         "stress": stress,
