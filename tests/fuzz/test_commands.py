@@ -64,7 +64,7 @@ QUICK, LONG = (
         database=None,
         suppress_health_check=list(HealthCheck),
     )
-    for number in (150, 5000)
+    for number in (150, 2000)
 )
 
 
