@@ -3,6 +3,7 @@
 import json
 
 import numpy as np
+import xarray as xr
 
 from roughgas import theory
 from roughgas.claims import evidence
@@ -156,6 +157,15 @@ def friction(bed, cooled):
     }
 
 
+def runaway(path):
+    """Escape times of homogeneous gases, to two digits, as few runs give them."""
+    at = xr.load_dataset(path).sel(mu=0.2, method="nearest")
+    times = {n: float(at.dsmc_time.sel(dsmc_particles=n)) for n in (100, 10000)}
+    found = {f"runaway_time_{n}": float(f"{time:.2g}") for n, time in times.items()}
+    share = float(at.dsmc_largest_share.sel(dsmc_particles=100))
+    return found | {"runaway_share_percent": 100 * share}
+
+
 def drives(heated, *boundaries):
     names = ("rough_floor_off", "rough_side_walls_off", "shaken_walls_off")
     at_shares = [evidence.deviation_at_shares(evidence.load(path)) for path in boundaries]
@@ -233,6 +243,7 @@ MEASURES = {
     ("heated", "floor_materials", "wall_materials", "shaken_walls"): drives,
     ("floor_materials", "wall_materials"): materials,
     ("waves",): waves,
+    ("runaway",): runaway,
     ("vibrated_inertia", "cooling_inertia"): inertia,
 }
 """What measures the numbers of which experiments."""

@@ -33,7 +33,10 @@ QUOTES = {
         "over contacts that stick and slide, within {vibrated_friction_off:.3f}, from R = "
         "{vibrated_friction_least:.2f} at μ = {vibrated_friction_least_mu:g} to the rough gas",
         "A cooling gas of N = 160 does within {cooling_friction_off:.3f} for μ ≥ "
-        "{cooling_friction_strong_mu:g},",
+        "{cooling_friction_strong_mu:g} where it settles.",
+        "and soon hold {runaway_share_percent:.0f} % of it; R → 1, at μ = 0.2 after some "
+        "{runaway_time_100:.0f} collisions per particle for N = 100, after "
+        "{runaway_time_10000:.0f} for 10 000.",
         "is within {drives_collisional_off:.3f} of the rate equations for random kicks",
         "Averaged over time within {heated_off:.3f}, {rough_floor_off:.3f}, "
         "{rough_side_walls_off:.3f} and {shaken_walls_off:.3f}, beds above",
