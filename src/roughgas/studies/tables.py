@@ -221,7 +221,7 @@ def runaway(data: xr.Dataset) -> str:
     rows = []
     for one in along(data, "mu"):
         bound = f"< {one.rate_bound:.1e}" if np.isfinite(one.rate_bound) else "–"
-        rate = _shown(one, "rate", "±") if np.isfinite(one.rate) else bound
+        rate = f"{one.rate:.1e} ± {one.rate_stderr:.0e}" if np.isfinite(one.rate) else bound
         theory = f"{one.predicted_rate:.1e}" if np.isfinite(one.predicted_rate) else "–"
         share = f"{one.maxwellian_share:.0e}"
         rows.append([f"{one.mu:g}", f"{one.threshold:.3g}", rate, theory, share])

@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import NullLocator
 
 from roughgas.data.netcdf import read_netcdf
 from roughgas.show.style import FAINT, GREY, LOOKS, THEORY, Look
@@ -16,7 +17,7 @@ BLACK = Look("#222222", "P", "-")
 SKY = Look("#56B4E9", "X", (0, (4, 1)))
 BY_FRICTION = (*LOOKS, SKY, BLACK)
 THIN = {"ls": "none", "elinewidth": 0.8, "capsize": 1.5}
-SIDESTEP = 1.06  # of event-driven gases, in N
+SIDESTEP, BESIDE = 1.04, 1.15  # factors of N between values of mu, and of event-driven gases
 
 
 def draw(path: str | Path) -> Figure:
@@ -48,14 +49,20 @@ def draw_example(axes: Axes, data: xr.Dataset) -> None:
         axes.plot([], [], line, color=GREY, label=label)
     axes.set(xlabel="collisions per particle", ylabel="$R$, share of the energy of spins")
     axes.set_ylim(-0.02, 1.04)
+    axes.set_xlim(right=1.55 * axes.dataLim.xmax)  # room for the legend
     title = f"DSMC, $N = {int(data.example_particles)}$"
     axes.legend(loc="center right", title=title)
 
 
 def draw_times(axes: Axes, data: xr.Dataset) -> None:
     """Draw the time of escape over the number of particles, at each mu."""
-    for (mu, look), one in zip(_looks(data).items(), along(data, "mu"), strict=True):
-        for kind, shift, fill in (("dsmc", 1.0, look.colour), ("events", SIDESTEP, "white")):
+    looks = _looks(data)
+    for (mu, look), one in zip(looks.items(), along(data, "mu"), strict=True):
+        aside = SIDESTEP ** (list(looks).index(mu) - (len(looks) - 1) / 2)
+        for kind, shift, fill in (
+            ("dsmc", aside, look.colour),
+            ("events", BESIDE * aside, "white"),
+        ):
             x = shift * one[f"{kind}_particles"].values
             time, error = (one[f"{kind}_time{end}"].values for end in ("", "_stderr"))
             about = {"color": look.colour, "mfc": fill}
@@ -69,7 +76,8 @@ def draw_times(axes: Axes, data: xr.Dataset) -> None:
         axes.plot([], [], "o", color=GREY, mfc=fill, label=label)
     axes.set(xscale="log", yscale="log", xlabel="number of particles $N$")
     axes.set_ylabel("collisions per particle until $R > 0.9$")
-    axes.legend(loc="upper right", ncols=2)
+    axes.set_ylim(top=5 * axes.get_ylim()[1])  # room for the legend
+    axes.legend(loc="upper right", ncols=3)
 
 
 def draw_rates(axes: Axes, data: xr.Dataset) -> None:
@@ -88,6 +96,8 @@ def draw_rates(axes: Axes, data: xr.Dataset) -> None:
     if np.isfinite(measured).any():
         axes.set_ylim(np.nanmin(measured) / 100, 3.0)
     axes.set(xscale="log", yscale="log", xlabel=r"coefficient of friction $\mu$")
+    axes.set_xticks(data.mu.values, [f"{mu:g}" for mu in data.mu.values])
+    axes.xaxis.set_minor_locator(NullLocator())
     axes.set_ylabel("crossings per particle and collision")
     axes.legend(loc="upper right")
 
