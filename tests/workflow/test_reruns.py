@@ -20,9 +20,8 @@ FAMILIES = {"family", "catalogue", "document"}
 FILM = {"clustering", "film", "document"}
 ACCURACY = {"accuracy", "combined_studies", "study_table", "document"}
 COVERAGE = {"coverage", "combined_studies", "study_table", "document"}
-STUDIES = (
-    ACCURACY | COVERAGE | {"profiles", "runaway"} | {"statistical", "models", "discretisation"}
-)
+OF_THEIR_OWN = {"profiles", "finite_size", "runaway"}
+STUDIES = ACCURACY | COVERAGE | OF_THEIR_OWN | {"statistical", "models", "discretisation"}
 SIMULATED = COMPILED | FAMILIES | FILM | STUDIES | {"movie"}
 EDITED = {  # file of the package: what an edit of its code runs again
     "statistics/plateau.py": SIMULATED - {"discretisation"},
@@ -39,8 +38,8 @@ EDITED = {  # file of the package: what an edit of its code runs again
     "show/figures/fig1a.py": {"fig1a"},
     "show/page/page.js": {"page"},
     "show/movies/drawing.py": {"movie"},
-    "studies/tables.py": {"study_table", "document", "coverage", "profiles", "runaway"},
-    "studies/dsmc/gas.py": ACCURACY | {"models", "runaway"},
+    "studies/tables.py": {"study_table", "document", "coverage"} | OF_THEIR_OWN,
+    "studies/dsmc/gas.py": ACCURACY | {"models", "finite_size", "runaway"},
     "cli/run.py": POINTS | FAMILIES,
 }
 ALIKE = {  # files after whose edits much the same runs again as after others'
