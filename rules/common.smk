@@ -21,6 +21,7 @@ POINT = "results/{scale}/{experiment}/r{r}/beta{beta}/seed{seed}.nc"
 PILOT = "results/{scale}/{experiment}/r{r}/beta{beta}/pilot.json"
 SEEDS = "results/{scale}/{experiment}/r{r}/beta{beta}/seeds"  # as many as a target needs
 REDUCED = "results/{scale}/{experiment}.nc"
+FIRST = 10**12  # priority: more urgent than any point
 # An experiment as a whole, or one of its variants: as wildcards, not what has rules of its own, nor
 # the folders of points.
 STUDY_FIGURE = "|".join(FIGURES)

@@ -16,6 +16,8 @@ rule reduce:
         "logs/{scale}/{experiment}/reduced.tsv"
     wildcard_constraints:
         experiment=EXPERIMENT,
+    # at once: while it waits, Snakemake asks the size of all these points before each job it starts
+    priority: FIRST
     params:
         code=code_of("results.reduce"),
     message:
