@@ -14,9 +14,11 @@ from roughgas.studies.profiles import QUARTERS
 from roughgas.studies.tables import along, point_label
 from roughgas.theory.closed_forms import lun_ratio
 
-SIZE = (10.4, 7.0)  # inches
+SIZE = (11.2, 7.2)  # inches
 LEAST = 5e-4
 """Share of the particles below which a slice is not drawn."""
+FEW = 1e-2
+"""The same for what is measured at contacts."""
 AVERAGES = {
     "R": "mean of $R(t)$",
     "R_ratio_of_means": "ratio of mean energies",
@@ -57,15 +59,14 @@ def draw_figure(data: xr.Dataset) -> Figure:
 def draw_density(axes: Axes, beds: Sequence[xr.Dataset]) -> None:
     """Draw number density over height."""
     for one, look in zip(beds, LOOKS, strict=False):
-        height, (density,) = _drawn(one, "density")
-        axes.plot(height, density, color=look.colour, ls=look.line, label=point_label(one))
+        axes.plot(*_drawn(one, "density"), color=look.colour, ls=look.line, label=point_label(one))
     axes.set(yscale="log", xlabel="height / $a$", ylabel="number density / $a^{-D}$", xlim=0)
 
 
 def draw_temperatures(axes: Axes, beds: Sequence[xr.Dataset]) -> None:
     """Draw both temperatures over height: of translation thick, of rotation thin."""
     for one, look in zip(beds, LOOKS, strict=False):
-        height, (rot, across, vertical) = _drawn(one, "T_rot", "T_across", "T_along")
+        height, rot, across, vertical = _drawn(one, "T_rot", "T_across", "T_along")
         D = int(one.dimension)
         axes.plot(height, ((D - 1) * across + vertical) / D, color=look.colour, lw=1.8)
         axes.plot(height, rot, color=look.colour, lw=0.9, ls="--")
@@ -81,15 +82,15 @@ def draw_temperatures(axes: Axes, beds: Sequence[xr.Dataset]) -> None:
 def draw_ratios(axes: Axes, beds: Sequence[xr.Dataset]) -> None:
     """Draw R of the temperatures of slices, lines, and R at the contacts there, symbols."""
     for one, look in zip(beds, LOOKS, strict=False):
-        height, (of_slice, at_contacts) = _drawn(one, "R_slice", "R_slice_collisional")
-        axes.plot(height, of_slice, color=look.colour, lw=1.4)
+        axes.plot(*_drawn(one, "R_slice"), color=look.colour, lw=1.4)
+        height, at_contacts = _drawn(one, "R_slice_collisional", least=FEW)
         every = slice(None, None, 2)
         style = {"color": look.colour, "ms": 2.8}
         axes.plot(height[every], at_contacts[every], look.marker, **style)
     axes.plot([], [], color=GREY, lw=1.4, label="of the temperatures")
     axes.plot([], [], "o", color=GREY, ms=2.8, label="at contacts")
     _draw_lun(axes, beds)
-    axes.set(xlabel="height / $a$", ylabel="$R$ of a slice", xlim=0, ylim=(0, 1))
+    axes.set(xlabel="height / $a$", ylabel="$R$ of a slice", xlim=0, ylim=(0, 0.95))
     axes.legend(loc="upper right")
 
 
@@ -108,8 +109,8 @@ def draw_phases(axes: Axes, beds: Sequence[xr.Dataset]) -> None:
     axes.plot([], [], color=GREY, lw=0.9, ls=":", label="at contacts")
     _draw_lun(axes, beds)
     axes.set(xlabel="time since the floor fell back / period", ylabel="$R$", xlim=(0, 1))
-    axes.set_ylim(0, 0.85)
-    axes.legend(loc="upper right", ncols=2)
+    axes.set_ylim(0, 0.95)
+    axes.legend(loc="upper left")
 
 
 def draw_averages(axes: Axes, beds: Sequence[xr.Dataset]) -> None:
@@ -138,8 +139,8 @@ def draw_sheared(axes: Axes, gases: Sequence[xr.Dataset]) -> None:
         axes.errorbar(float(one.factor), value, color=look.colour, label=label, **about, **BARS)
         top = max(top, value + bar, float(one.factor))
     ends = (1.0, 1.0 + 1.1 * (top - 1.0))
-    axes.plot(ends, ends, color=THEORY, lw=0.8, zorder=0, label="if it were exact")
-    axes.set_xlabel("its stress, shear rate and mean spin at contacts\n" + FORMULA)
+    axes.plot(ends, ends, color=THEORY, lw=0.8, zorder=0, label="if the formula were exact")
+    axes.set_xlabel(FORMULA)
     axes.set_ylabel(r"$\theta/\theta_\mathrm{Eq.\,(lun)}$ of the simulation")
     axes.legend(loc="upper left", title="sheared disks")
 
@@ -147,12 +148,11 @@ def draw_sheared(axes: Axes, gases: Sequence[xr.Dataset]) -> None:
 FORMULA = r"$1 + (p^2 + d^2)/4 + \sqrt{\pi}\,gp/4 + g^2/4$"
 
 
-def _drawn(one, *names):
+def _drawn(one, *names, least=LEAST):
     """Return heights and values in the slices that hold enough; not in the last, of all above."""
-    share = one.density.values / np.nansum(one.density.values)
-    there = share > LEAST
+    there = one.density.values / np.nansum(one.density.values) > least
     there[-1] = False
-    return one.height.values[there], [one[name].values[there] for name in names]
+    return [one[name].values[there] for name in ("height", *names)]
 
 
 def _draw_lun(axes, beds):
