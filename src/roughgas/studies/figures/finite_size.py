@@ -8,6 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from roughgas.data.netcdf import read_netcdf
+from roughgas.data.opening import STUDIES
 from roughgas.show.style import GREY, LOOKS, THEORY, Look
 from roughgas.studies.tables import along
 
@@ -21,7 +22,7 @@ APART = 1.19  # least ratio of the heights of two words at the end of series
 
 def draw(path: str | Path) -> Figure:
     """Return the figure, from the combined dataset of the study at `path`."""
-    return draw_figure(read_netcdf(path, "finite_size"))
+    return draw_figure(read_netcdf(path, STUDIES, group="finite_size"))
 
 
 def draw_figure(data: xr.Dataset) -> Figure:

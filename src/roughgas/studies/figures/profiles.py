@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from roughgas.data.netcdf import read_netcdf
+from roughgas.data.opening import STUDIES
 from roughgas.show.style import FAINT, GREY, LOOKS, THEORY
 from roughgas.studies.profiles import QUARTERS
 from roughgas.studies.tables import along, point_label
@@ -32,7 +33,7 @@ BARS = {"capsize": 1.5, "elinewidth": 0.8}
 
 def draw(path: str | Path) -> Figure:
     """Return the figure, from the combined dataset of the study at `path`."""
-    return draw_figure(read_netcdf(path, "profiles"))
+    return draw_figure(read_netcdf(path, STUDIES, group="profiles"))
 
 
 def draw_figure(data: xr.Dataset) -> Figure:

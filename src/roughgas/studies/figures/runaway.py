@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
 from roughgas.data.netcdf import read_netcdf
+from roughgas.data.opening import STUDIES
 from roughgas.show.style import FAINT, GREY, LOOKS, THEORY, Look
 from roughgas.studies.tables import along
 
@@ -22,7 +23,7 @@ SIDESTEP, BESIDE = 1.04, 1.15  # factors of N between values of mu, and of event
 
 def draw(path: str | Path) -> Figure:
     """Return the figure, from the combined dataset of the study at `path`."""
-    return draw_figure(read_netcdf(path, "runaway"))
+    return draw_figure(read_netcdf(path, STUDIES, group="runaway"))
 
 
 def draw_figure(data: xr.Dataset) -> Figure:
