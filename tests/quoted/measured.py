@@ -159,7 +159,7 @@ def friction(bed, cooled):
 
 def runaway(path):
     """Escape times of homogeneous gases, to two digits, as few runs give them."""
-    at = xr.load_dataset(path).sel(mu=0.2, method="nearest")
+    at = xr.load_dataset(path, group="runaway").sel(mu=0.2, method="nearest")
     times = {n: float(at.dsmc_time.sel(dsmc_particles=n)) for n in (100, 10000)}
     found = {f"runaway_time_{n}": float(f"{time:.2g}") for n, time in times.items()}
     share = float(at.dsmc_largest_share.sel(dsmc_particles=100))

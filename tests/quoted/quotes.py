@@ -25,7 +25,7 @@ QUOTES = {
         "qualification (how closely Eqs. (lun) and (K) are followed, and how little r matters), "
         "and {claims_fail} fail.",
         "judges {open_questions_statements} statements in `results/paper/open_questions.md`, of "
-        "which {open_questions_fail} fail, both on weak friction",
+        "which {open_questions_fail} fail: two on weak friction, and Eq. (lun) in a bed of",
         "within {cooling_spheres_off:.3f} at all of {cooling_spheres_points:.0f} points, sheared "
         "ones Eq. (lun) within {sheared_spheres_off:.3f}.",
         "A bed lies above it by up to {vibrated_spheres_most_above:()}, averaged over collisions "
