@@ -3,6 +3,7 @@
 import copy
 import math
 
+from hypothesis import HealthCheck, settings
 from hypothesis import strategies as st
 
 NUMBERS = [0, -1, 1, 2, 0.5, -0.5, 1e-300, 5e-324, 1e300, math.inf, math.nan, 10**18, 2**63, 10**30]
@@ -25,6 +26,18 @@ SIGNS = "[ ] { } ' \" ~ \t \n \0 \x85 \u2028 é |\n".split(" ")
 SCALARS = ["0x_", "0b_", "1:30:00", "2001-02-30", "9" * 5000, "null", ".nan", "<<: "]
 STRUCTURE = ["!!bool ", "!!int ", "&a ", "*a", "? ", ": ", "- ", "# ", "[" * 500, "---\n", "...\n"]
 PIECES = st.sampled_from([*SIGNS, *SCALARS, *STRUCTURE, "%YAML 1.1\n---\n"])
+
+QUICK, LONG = (
+    settings(
+        max_examples=number,
+        deadline=None,
+        derandomize=True,
+        database=None,
+        suppress_health_check=list(HealthCheck),
+    )
+    for number in (150, 2000)
+)
+"""How often `make test` tries, and the extras: always the same examples."""
 
 
 def places(tree, path=()):

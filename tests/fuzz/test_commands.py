@@ -10,9 +10,10 @@ import shutil
 import netCDF4
 import pytest
 import xarray as xr
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from tests.files import write_all
+from tests.fuzz.spoiling import LONG, QUICK
 
 from roughgas.cli import main
 
@@ -56,16 +57,6 @@ OPTIONS += ["--open-questions", "--configuration", "--x"]
 OUTPUTS = ["out.csv", "out.nc", "out.md", "out.html", "out.png", "out.zip", "no/out.json", "out"]
 ATTRIBUTES = ["schema_version", "experiment", "r", "beta", "seed", "r_label", "command", "theory"]
 ATTRIBUTES += ["experiment_json", "settings_json", "swept", "study", "task", "dimension", "inertia"]
-QUICK, LONG = (
-    settings(
-        max_examples=number,
-        deadline=None,
-        derandomize=True,
-        database=None,
-        suppress_health_check=list(HealthCheck),
-    )
-    for number in (150, 2000)
-)
 
 
 @pytest.fixture(scope="module")

@@ -4,8 +4,8 @@ import json
 from pathlib import Path
 
 import pytest
-from hypothesis import HealthCheck, given, settings
-from tests.fuzz.spoiling import spoiled_texts, spoiled_trees
+from hypothesis import given
+from tests.fuzz.spoiling import LONG, QUICK, spoiled_texts, spoiled_trees
 
 from roughgas import config
 from roughgas.base.errors import InputError
@@ -35,16 +35,6 @@ experiments:
   other: *gas
 scales: {paper: {}}
 """
-QUICK, LONG = (
-    settings(
-        max_examples=number,
-        deadline=None,
-        derandomize=True,
-        database=None,
-        suppress_health_check=list(HealthCheck),
-    )
-    for number in (150, 2000)
-)
 
 
 def outcome(path):

@@ -11,26 +11,17 @@ import numpy as np
 from xarray import Dataset
 
 from roughgas.base.layout import as_json, columns, from_json
+from roughgas.data import opening
 from roughgas.data.netcdf import read_netcdf, unit_of
-from roughgas.data.opening import (
-    FILM,
-    POINT,
-    STUDIES,
-    TASK,
-    attributes_of,
-    kind_of,
-    opened,
-    require,
-)
 from roughgas.data.reduced import EQUILIBRATED, third_axis
 from roughgas.results.table import rows as rows_of
 from roughgas.statistics.estimate import Estimate, decimals_of
 from roughgas.theory.prediction import equation_of, predicted_ratio
 
 QUOTED = {
-    POINT: ("experiment_json", "command"),
-    FILM: ("settings_json", "packing", "r", "beta", "seed", "command"),
-    TASK: ("settings_json",),
+    opening.POINT: ("experiment_json", "command"),
+    opening.FILM: ("settings_json", "packing", "r", "beta", "seed", "command"),
+    opening.TASK: ("settings_json",),
 }
 """Attributes of each kind that a summary quotes."""
 SHAPES = {2: "disks", 3: "spheres"}
@@ -77,10 +68,10 @@ def _read(path: str | Path) -> tuple[str, Any]:
 
     if Path(path).suffix == ".json":
         return "pilot of a point", read_pilot(path)
-    with opened(path) as file:
-        kind = kind_of(file)
-        require(attributes_of(file), QUOTED.get(kind, ()), path)
-    data = read_studies(path) if kind == STUDIES else read_netcdf(path)
+    with opening.opened(path) as file:
+        kind = opening.kind_of(file)
+        opening.require(opening.attributes_of(file), QUOTED.get(kind, ()), path)
+    data = read_studies(path) if kind == opening.STUDIES else read_netcdf(path)
     return kind.removeprefix("a "), data
 
 
@@ -144,7 +135,7 @@ def _film_text(film: Dataset) -> str:
 def _settings(about: Mapping[str, Any], text: str) -> list[list[str]]:
     """Return rows with what was simulated, and for how long, from attributes and settings."""
     experiment = from_json(text, "settings of the dataset")
-    require(experiment, ("particles", "box", "effects"), "its settings")
+    opening.require(experiment, ("particles", "box", "effects"), "its settings")
     box = " x ".join(f"{side:g}" if side != "open" else "open" for side in experiment["box"])
     effects = [f"{name} ({_listed(one)})" for name, one in experiment["effects"].items()]
     rows = [

@@ -14,7 +14,7 @@ import numpy as np
 
 from roughgas.base.files import whole_file
 from roughgas.base.version import __version__
-from roughgas.data.opening import SCHEMA_VERSION, opened, seal
+from roughgas.data.opening import SCHEMA_VERSION, STUDIES, opened, seal
 from roughgas.data.variables import CLOCKS, Array
 
 if TYPE_CHECKING:
@@ -98,6 +98,18 @@ def read_netcdf(path: str | Path, *kinds: str, group: str | None = None) -> "xar
 
     with opened(path, *kinds):
         return xarray.load_dataset(path, group=group, engine="netcdf4")
+
+
+def read_groups(path: str | Path) -> "dict[str, xarray.Dataset]":
+    """Return all groups of a dataset of studies in memory, by name: the file is checked once.
+
+    Raises InputError and OSError as `opened` does.
+    """
+    import xarray
+
+    with opened(path, STUDIES) as file:
+        names = list(file.groups)
+        return {n: xarray.load_dataset(path, group=n, engine="netcdf4") for n in names}
 
 
 def _fill(

@@ -107,10 +107,8 @@ class State(NamedTuple):
     phase: np.ndarray | None  # (effects,) the phase, at the clock's base, of each one that is there
     ledger: np.ndarray  # (2, accounts + 1, 2) energy that each effect that is there, and last the
     # contacts, put into translation and rotation: [0] in present units, [1] before a rescaling
-    sums: (
-        tuple | None
-    )  # an Effects with, for each effect that keeps running sums, (3, sums): [0] in
-    # present units, [1] before a rescaling, [2] the power of velocity in each; None without any
+    sums: tuple | None  # an Effects with, for each effect that keeps running sums, (3, sums): [0]
+    # in present units, [1] before a rescaling, [2] the power of velocity in each; None without any
     random: np.ndarray | None  # (1,) of the generator; None where no effect draws random numbers
     clock: np.ndarray
     counts: np.ndarray

@@ -12,9 +12,7 @@ import numpy as np
 import xarray as xr
 import yaml
 
-from roughgas.data import opening
-from roughgas.data.netcdf import read_netcdf
-from roughgas.data.opening import opened
+from roughgas.data.netcdf import read_groups
 from roughgas.data.variables import Variable, described, register
 from roughgas.statistics.estimate import Estimate
 from roughgas.studies.tasks import STUDIES
@@ -29,9 +27,8 @@ def dataset(study: str, found: Mapping[str, Any], **attributes: Any) -> xr.Datas
 
 def read_studies(path: str | Path) -> dict[str, xr.Dataset]:
     """Return the groups of all studies in the combined file at `path`, by name."""
-    with opened(path, opening.STUDIES) as file:
-        names = [name for name in STUDIES if name in file.groups]
-    return {name: read_netcdf(path, group=name) for name in names}
+    groups = read_groups(path)
+    return {name: groups[name] for name in STUDIES if name in groups}
 
 
 def estimate(data: xr.Dataset, name: str) -> Estimate:

@@ -18,7 +18,10 @@ def draw(name: str, data: str | Path, outputs: Iterable[str | Path]) -> None:
     from roughgas.show import catalogue, style
     from roughgas.studies.variables import read_studies
 
-    for study in set(catalogue.FIGURES[name].shows) - set(read_studies(data)):
-        raise InputError(f"studies in {data}", f"without {study}", "have all that the figure shows")
+    studies, shown = read_studies(data), catalogue.FIGURES[name].shows
+    for study in shown:
+        if study not in studies:
+            legal = "have all that the figure shows"
+            raise InputError(f"studies in {data}", f"without {study}", legal)
     module = import_module(f"roughgas.studies.figures.{name}")
-    style.draw(lambda: module.draw(data), outputs)
+    style.draw(lambda: module.draw_figure(*(studies[study] for study in shown)), outputs)

@@ -1,8 +1,6 @@
 """The work-precision figure: error of R against CPU seconds, a panel for each study, and the map of
 what the Maxwellian theory misses."""
 
-from pathlib import Path
-
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
@@ -11,7 +9,7 @@ from matplotlib.ticker import FuncFormatter, MultipleLocator
 
 from roughgas.show.style import FAINT, GREY, LOOKS, THEORY, Look
 from roughgas.statistics.fits import power_law
-from roughgas.studies.variables import read_studies
+from roughgas.studies.figures.panels import four_panels
 
 SIZE = (10.2, 8.6)  # inches
 WAYS = {"length": "-", "seeds": "--"}
@@ -31,16 +29,16 @@ BARS = {"elinewidth": 0.8, "capsize": 1.5}
 THIN = {"ls": "none", "elinewidth": 0.9}
 
 
-def draw(path: str | Path) -> Figure:
-    """Return the figure, from the combined dataset of the studies at `path`."""
-    studies = read_studies(path)
-    figure = Figure(figsize=SIZE, layout="constrained")
-    for axes, (name, panel, title) in zip(figure.subplots(2, 2).flat, PANELS, strict=True):
-        panel(axes, studies[name])
-        r, beta = (float(studies[name].attrs[key]) for key in ("r", "beta"))
-        material = rf"$r = {r:g}$, $\beta = {beta:g}$"
-        axes.set_title(title.format(material), loc="left", fontsize=9)
-    return figure
+def draw_figure(statistical: xr.Dataset, models: xr.Dataset, discretisation: xr.Dataset) -> Figure:
+    """Return the figure, from the datasets of the three studies."""
+    data = (statistical, models, discretisation, models)
+    titled = [(panel, _of(one, title)) for (panel, title), one in zip(PANELS, data, strict=True)]
+    return four_panels(titled, SIZE, *data)
+
+
+def _of(data, title):
+    r, beta = (float(data.attrs[key]) for key in ("r", "beta"))
+    return title.format(rf"$r = {r:g}$, $\beta = {beta:g}$")
 
 
 def draw_statistical(axes: Axes, data: xr.Dataset) -> None:
@@ -137,10 +135,10 @@ def draw_discretisation(axes: Axes, data: xr.Dataset) -> None:
 
 
 PANELS = (
-    ("statistical", draw_statistical, "(a) noise: three scenes, {}"),
-    ("models", draw_models, "(b) models of a cooling gas, {}"),
-    ("discretisation", draw_discretisation, "(c) springs and time steps: cooling gas, {}"),
-    ("models", draw_map, "(d) what the Maxwellian theory of a cooling gas misses"),
+    (draw_statistical, "(a) noise: three scenes, {}"),
+    (draw_models, "(b) models of a cooling gas, {}"),
+    (draw_discretisation, "(c) springs and time steps: cooling gas, {}"),
+    (draw_map, "(d) what the Maxwellian theory of a cooling gas misses"),
 )
 
 

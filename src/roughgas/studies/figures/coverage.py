@@ -1,14 +1,11 @@
 """The figure of how often stated intervals hold the truth."""
 
 from collections.abc import Sequence
-from pathlib import Path
 
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from roughgas.data.netcdf import read_netcdf
-from roughgas.data.opening import STUDIES
 from roughgas.show.style import FAINT, GREY, LOOKS
 from roughgas.studies.tables import along, in_order, label
 
@@ -19,11 +16,6 @@ WIDTH = 7.4  # inches
 COLOURS = {"vibrated": LOOKS[0], "sheared": LOOKS[1], "cooling": LOOKS[2]}
 BARS = {"ls": "none", "capsize": 1.5, "elinewidth": 0.8, "mew": 0.9}
 SHIFT = 0.17  # of the two ways off their corner's row
-
-
-def draw(path: str | Path) -> Figure:
-    """Return the figure, from the combined dataset of the study at `path`."""
-    return draw_figure(read_netcdf(path, STUDIES, group="coverage"))
 
 
 def draw_figure(data: xr.Dataset) -> Figure:

@@ -1,15 +1,12 @@
 """The figure of how much of R in a cooling gas is due to the number of particles and to the box."""
 
-from pathlib import Path
-
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from roughgas.data.netcdf import read_netcdf
-from roughgas.data.opening import STUDIES
 from roughgas.show.style import GREY, LOOKS, THEORY, Look
+from roughgas.studies.figures.panels import four_panels
 from roughgas.studies.tables import along
 
 SIZE = (10.2, 8.2)  # inches
@@ -20,18 +17,9 @@ TYPICAL = "cooling_r0.9_beta0"  # the point whose R(t) is drawn, if it is there
 APART = 1.19  # least ratio of the heights of two words at the end of series
 
 
-def draw(path: str | Path) -> Figure:
-    """Return the figure, from the combined dataset of the study at `path`."""
-    return draw_figure(read_netcdf(path, STUDIES, group="finite_size"))
-
-
 def draw_figure(data: xr.Dataset) -> Figure:
     """Return the figure, from the study's dataset."""
-    figure = Figure(figsize=SIZE, layout="constrained")
-    for axes, (panel, title) in zip(figure.subplots(2, 2).flat, PANELS, strict=True):
-        panel(axes, data)
-        axes.set_title(title, loc="left", fontsize=9)
-    return figure
+    return four_panels(PANELS, SIZE, *[data] * len(PANELS))
 
 
 def draw_number(axes: Axes, data: xr.Dataset) -> None:

@@ -1,15 +1,12 @@
 """Profiles across vibrated beds, and the averages of R that they tell apart; sheared gases."""
 
 from collections.abc import Sequence
-from pathlib import Path
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from roughgas.data.netcdf import read_netcdf
-from roughgas.data.opening import STUDIES
 from roughgas.show.style import FAINT, GREY, LOOKS, THEORY
 from roughgas.studies.profiles import QUARTERS
 from roughgas.studies.tables import along, point_label
@@ -29,11 +26,6 @@ AVERAGES = {
     "R_collisional": "at contacts",
 }
 BARS = {"capsize": 1.5, "elinewidth": 0.8}
-
-
-def draw(path: str | Path) -> Figure:
-    """Return the figure, from the combined dataset of the study at `path`."""
-    return draw_figure(read_netcdf(path, STUDIES, group="profiles"))
 
 
 def draw_figure(data: xr.Dataset) -> Figure:

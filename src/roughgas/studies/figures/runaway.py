@@ -1,16 +1,13 @@
 """The figure of single particles that run away from a cooling gas with friction."""
 
-from pathlib import Path
-
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
-from roughgas.data.netcdf import read_netcdf
-from roughgas.data.opening import STUDIES
 from roughgas.show.style import FAINT, GREY, LOOKS, THEORY, Look
+from roughgas.studies.figures.panels import four_panels
 from roughgas.studies.tables import along
 
 SIZE = (10.2, 8.0)  # inches
@@ -21,18 +18,9 @@ THIN = {"ls": "none", "elinewidth": 0.8, "capsize": 1.5}
 SIDESTEP, BESIDE = 1.04, 1.15  # factors of N between values of mu, and of event-driven gases
 
 
-def draw(path: str | Path) -> Figure:
-    """Return the figure, from the combined dataset of the study at `path`."""
-    return draw_figure(read_netcdf(path, STUDIES, group="runaway"))
-
-
 def draw_figure(data: xr.Dataset) -> Figure:
     """Return the figure, from the study's dataset."""
-    figure = Figure(figsize=SIZE, layout="constrained")
-    for axes, (panel, title) in zip(figure.subplots(2, 2).flat, PANELS, strict=True):
-        panel(axes, data)
-        axes.set_title(title, loc="left", fontsize=9)
-    return figure
+    return four_panels(PANELS, SIZE, *[data] * len(PANELS))
 
 
 def draw_example(axes: Axes, data: xr.Dataset) -> None:
