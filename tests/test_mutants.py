@@ -12,6 +12,9 @@ MUTANTS = json.loads((mutants.ROOT / "tests/mutants.json").read_text())
 def test_a_fault_has_its_place_and_its_tests(mutant):
     assert mutants.place(mutants.ROOT / "src", mutant["old"])
     assert all((mutants.ROOT / name).exists() for name in mutants.tests_of(mutant["room"]))
+    file, _, test = mutant["after"].partition("[")[0].partition("::")
+    assert (file == "survived") == mutant.get("survives", False)
+    assert file == "survived" or f"def {test}(" in (mutants.ROOT / file).read_text()
 
 
 def test_there_are_faults_in_every_room():

@@ -2,40 +2,25 @@
 
 import numpy as np
 import pytest
+from tests.claims.gases import (
+    FEW_BETA,
+    FRICTION,
+    INERTIA,
+    KICKS,
+    NONE,
+    ROUGHNESS,
+    SHARES,
+    WAVES,
+    boundaries,
+    constant,
+    swept,
+)
 from tests.synthetic import reduced
 
 from roughgas import theory
 from roughgas.claims.verdicts import FAILS, HOLDS, NOT_TESTED, QUALIFIED
 
-FEW_BETA = (-0.5, 0.0, 0.5)
 VERDICTS = [(0.0, HOLDS), (0.03, QUALIFIED), (0.1, FAILS)]
-WAVES = ("reversed_sawtooth", "sawtooth", "sine", "triangle")
-ROUGHNESS = (-1.0, -0.5, 0.0, 1.0)
-SHARES = np.array([0.0, 0.002, 0.1, 0.3])[:, None, None]
-INERTIA = ("spin.inertia", (0.4, 0.5, 1.0))
-KICKS = ("thermostat.spin_share", (0.0, 0.3, 1.0))
-MU = (0.0, 0.05, 0.07, 0.2, 0.5, 1.0, 10.0)
-FRICTION = ("friction.mu", MU)
-
-
-def constant(size):
-    return lambda r, beta, *third: size + 0 * r * beta
-
-
-NONE = constant(0.0)
-
-
-def swept(experiment, third, shift=NONE, **others):
-    """A sweep of a third parameter, on theory but for a shift."""
-    settings = {"r": (0.9,), "beta": FEW_BETA} | others
-    return reduced(experiment, shift, third=third, **settings)
-
-
-def boundaries(experiment, shift=NONE, shares=SHARES, **others):
-    """Boundaries of several roughnesses; R is that of the share of rotation that they put in."""
-    others = {"input_spin_share": shares, "input_spin_share_stderr": 0.0005} | others
-    key = f"{'floor' if experiment == 'floor_materials' else 'walls'}.roughness"
-    return swept(experiment, (key, ROUGHNESS), shift, **others)
 
 
 def only_with_friction(size):

@@ -2,62 +2,10 @@
 
 import numpy as np
 import pytest
+from tests.claims.gases import ROUGH, bump, constant, cooling, cooling_as, lun, sheared, walls
 from tests.synthetic import BETA, reduced
 
-from roughgas import theory
 from roughgas.claims.verdicts import FAILS, HOLDS, NOT_TESTED, QUALIFIED
-
-ROUGH = tuple(round(0.1 * step, 1) for step in range(-5, 11))
-
-
-def bump(size):
-    """A difference that grows with dissipation: `size` at r = 0.8, beta = 0."""
-    return lambda r, beta: size * (1 - r) / 0.2 * (1 - beta**2)
-
-
-def constant(size):
-    return lambda r, beta: size + 0 * r * beta
-
-
-def walls(rough=0.2, particle=0.0, smooth=0.0, beta=(-1.0, *BETA)):
-    """The bed without walls, and with walls that shift R by so much at beta < 1."""
-
-    def shift(size):
-        return lambda r, beta: size * (1 - beta) + 0 * r
-
-    return (
-        reduced("vibrated"),
-        reduced("vibrated_rough_walls", shift(rough), r=(0.9,), beta=beta),
-        reduced("vibrated_particle_walls", shift(particle), r=(0.9,)),
-        reduced("vibrated_smooth_walls", shift(smooth), r=(0.9,)),
-    )
-
-
-def sheared(direct=0.1, error=0.004, **others):
-    """A sheared gas on Eq. (lun), whose un-subtracted R lies `direct` too low."""
-    data = reduced("sheared", error=error, measured_for=5000.0, **others)
-    data["R_unsubtracted"] = data.R - direct
-    data["R_unsubtracted_stderr"] = data.R_stderr
-    return data
-
-
-def cooling(shift=0.0, **others):
-    """A cooling gas on Eq. (K) but for a constant."""
-    return reduced("cooling", constant(shift), beta=ROUGH, **others)
-
-
-def cooling_as(ratio):
-    """A cooling gas with R = ratio(r, beta), whatever Eq. (K) says."""
-
-    def shift(r, beta):
-        return ratio(r, beta) - theory.cooling_ratio(r, beta, 2, 0.5)
-
-    return reduced("cooling", shift, beta=ROUGH)
-
-
-def lun(r, beta):
-    return theory.lun_ratio(beta, 0.5) + 0 * r
-
 
 CASES = {
     "vibrated_follows_lun": (

@@ -1,28 +1,31 @@
 """The third axis of a sweep: variants of an experiment, and how mistakes are named."""
 
 import copy
-from pathlib import Path
 
 import pytest
 
 from roughgas import config
-from roughgas.base.errors import InputError
 from roughgas.config import checking, schema
 from roughgas.data.variables import POINT, REDUCED
 from roughgas.results.reduce import SAME
 
-CONFIG = Path(__file__).parents[2] / "config.yaml"
 INERTIA = {"extends": "sheared", "sweep": {"r": ["0.9"], "spin.inertia": ["1", "0.50", "1e-3"]}}
 
 
-def with_experiments(**experiments):
-    whole = copy.deepcopy(config.load(CONFIG))
-    whole["experiments"] |= experiments
+@pytest.fixture(scope="session")
+def with_experiments(paper):
+    """A function that returns the configuration with more experiments."""
+
+    def whole(**experiments):
+        more = copy.deepcopy(paper)
+        more["experiments"] |= experiments
+        return more
+
     return whole
 
 
 @pytest.fixture(scope="module")
-def whole():
+def whole(with_experiments):
     walls = {"extends": "vibrated_rough_walls", "sweep": {"walls.roughness": ["particles", 0.5]}}
     child = {"extends": "spun", "particles": 80}
     still = {"extends": "spun", "sweep": {"spin.inertia": None}}
@@ -30,13 +33,6 @@ def whole():
     found["scales"]["small"]["spun"] = {"sweep": {"spin.inertia": ["0.2"]}}
     checking.check(found)
     return found
-
-
-def refusal(function, *arguments):
-    with pytest.raises(InputError) as caught:
-        function(*arguments)
-    assert "\n" not in str(caught.value)
-    return str(caught.value)
 
 
 def test_a_value_is_a_variant(whole):
@@ -87,7 +83,7 @@ def test_a_target_holds_for_every_variant(whole):
     assert found["target_stderr"] == 0.002 and set(found["sweep"]) == {"r", "beta"}
 
 
-def test_the_effect_need_not_give_a_value_beside_the_sweep():
+def test_the_effect_need_not_give_a_value_beside_the_sweep(with_experiments):
     bare = {"extends": "vibrated", "effects": {"walls": {"restitution": 1}}}
     whole = with_experiments(bare=bare | {"sweep": {"walls.roughness": ["0"]}})
     checking.check(whole)
@@ -152,13 +148,13 @@ MISTAKES = [
 
 
 @pytest.mark.parametrize(("sweep", "message"), MISTAKES)
-def test_a_mistake_is_named_in_one_line(sweep, message):
+def test_a_mistake_is_named_in_one_line(sweep, message, refusal, with_experiments):
     whole = with_experiments(spun={"extends": "sheared", "sweep": sweep})
     said = refusal(checking.check, whole)
     assert said.startswith("config.yaml: ") and message in said
 
 
-def test_a_mistake_at_a_scale_is_named():
+def test_a_mistake_at_a_scale_is_named(refusal, with_experiments):
     whole = with_experiments(spun=INERTIA)
     whole["scales"]["small"]["spun"] = {"sweep": {"spin.inertia": ["3"]}}
     assert "experiments.spun/inertia3 at scale small.effects.spin.inertia = 3.0" in refusal(
@@ -166,7 +162,7 @@ def test_a_mistake_at_a_scale_is_named():
     )
 
 
-def test_swept_is_not_for_people():
+def test_swept_is_not_for_people(refusal, with_experiments):
     whole = with_experiments(spun=INERTIA | {"swept": "spin.inertia"})
     assert "experiments.spun.swept = 'spin.inertia': must not be given here" in refusal(
         checking.check, whole
@@ -185,11 +181,11 @@ def test_swept_is_not_for_people():
         ("spin/inertia1", "experiment = 'spin': must be one of"),
     ],
 )
-def test_what_is_no_variant(whole, name, message):
+def test_what_is_no_variant(whole, name, message, refusal):
     assert message in refusal(config.experiment, whole, name, "paper")
 
 
-def test_a_point_needs_its_variant(whole):
+def test_a_point_needs_its_variant(whole, refusal):
     written = config.experiment(whole, "spun", "paper")
     said = refusal(config.check_one_variant, "spun", written)
     assert said == "experiment = 'spun': must be followed by a variant, such as spun/inertia1"

@@ -1,4 +1,4 @@
-"""Movies as Snakemake makes them: what is asked for, what an edit concerns, and one made."""
+"""Movies as Snakemake makes them: what is asked for, and one made."""
 
 import pytest
 from PIL import Image
@@ -11,14 +11,6 @@ def test_movies_need_no_point(project):
     assert project.planned("movies") == {"movie": len(NAMES), "movies": 1}
     assert project.planned(*(f"figures/movies/{name}.gif" for name in NAMES)) == {"movie": 6}
     assert "movie" not in project.planned("figures")
-
-
-def test_an_edit_of_an_experiment_concerns_its_movie(finished):
-    def change(config):
-        config["scales"]["tiny"]["cooling"]["particles"] = 9
-
-    finished.configure(change)
-    assert finished.planned("movies")["movie"] == 1
 
 
 def test_an_unknown_movie_is_refused_in_one_line(project):

@@ -3,7 +3,7 @@
 import re
 
 import pytest
-from project import FINISHED, JOBS, jobs_by_rule
+from project import FINISHED, JOBS, Project, jobs_by_rule
 
 EACH = JOBS // 6
 AFTER_POINTS = {"claims": 1, "table": 1, "run_times": 1, "document": 2, "figures": 1}
@@ -51,6 +51,38 @@ ALIKE = {  # files after whose edits much the same runs again as after others'
     "studies/tables.py",
 }
 UNUSED = ("cli/steps.py", "doctor.py", "library.py", "show/catalogue.py")
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """A project that Snakemake takes to be finished: its products are there, though empty.
+
+    It takes long to make: all tests of such a project are in this file, which one worker runs.
+    """
+    made = Project(tmp_path_factory.mktemp("made"))
+
+    def aim(config):
+        config["experiments"]["aimed"] = {"extends": "sheared"}
+        config["scales"]["tiny"]["aimed"] = {"target_stderr": 0.03}
+
+    made.configure(aim)
+    targets = ("--config", "scale=tiny", "--", *FINISHED)
+    for line in made.succeed("--summary", *targets).splitlines():
+        if re.match(r"(results|figures)/\S+\t", line):
+            path = made.folder / line.split("\t")[0]
+            if path.name == "seeds":
+                path.mkdir(parents=True)
+            else:
+                path.parent.mkdir(parents=True, exist_ok=True)
+                path.touch()
+    made.succeed("-j1", "--touch", "--forceall", *targets)
+    return made
+
+
+@pytest.fixture
+def finished(made, tmp_path):
+    """A copy of `made` that a test may change."""
+    return made.copy_to(tmp_path / "copy")
 
 
 def test_nothing_is_run_twice(made):
@@ -145,3 +177,20 @@ def test_an_edit_of_a_family_of_hard_cases_concerns_it_alone(finished):
     finished.append("tests/hard_cases/test_ties.py")
     expected = {"family": 1, "catalogue": 1, "document": 1, "hard_cases": 1}
     assert finished.planned("hard_cases") == expected
+
+
+def test_an_edit_of_an_experiment_concerns_its_movie(finished):
+    def change(config):
+        config["scales"]["tiny"]["cooling"]["particles"] = 9
+
+    finished.configure(change)
+    assert finished.planned("movies")["movie"] == 1
+
+
+FILMED = {"clustering": 1, "film": 1, "document": 1, "showcase": 1}
+
+
+def test_an_edit_of_the_settings_of_the_showcase(finished):
+    finished.configure(lambda config: config["scales"]["tiny"]["showcase"].update(beta="0.5"))
+    assert finished.planned("showcase") == FILMED
+    assert set(finished.planned("figures")) == {"effective_config", "document", "figures"}

@@ -1,0 +1,209 @@
+"""config.yaml: how each mistake is named."""
+
+import copy
+import json
+from pathlib import Path
+
+import pytest
+
+from roughgas import config
+from roughgas.config import checking
+from roughgas.config.reading import read_yaml
+
+CONFIG = Path(__file__).parents[2] / "config.yaml"
+NAN, INF = float("nan"), float("inf")
+EXPERIMENTS = ", ".join(sorted(read_yaml(CONFIG)["experiments"]))
+
+
+def changed(whole, path, value):
+    """A copy of the configuration with another value at `path`, such as a.b.0"""
+    whole = copy.deepcopy(whole)
+    *parents, last = (int(key) if key.isdigit() else key for key in path.split("."))
+    inner = whole
+    for key in parents:
+        inner = inner[key]
+    if value is KeyError:
+        del inner[last]
+    else:
+        inner[last] = value
+    return whole
+
+
+MISTAKES = [
+    ("experiments.cooling.sweep.r", ["0.9", "1.5"], "sweep.r[1] = '1.5': must lie in [0, 1]"),
+    ("experiments.cooling.sweep.r", [NAN], "sweep.r[0] = nan: must lie in [0, 1]"),
+    ("experiments.cooling.sweep.r", ["nan"], "sweep.r[0] = 'nan': must lie in [0, 1]"),
+    ("experiments.cooling.sweep.beta", ["-1.1"], "sweep.beta[0] = '-1.1': must lie in [-1, 1]"),
+    ("experiments.cooling.sweep.beta", ["abc"], "sweep.beta[0] = 'abc': must lie in [-1, 1]"),
+    ("experiments.cooling.sweep.beta", ["0.1", "0.10"], "sweep.beta = '0.10': must be given once"),
+    ("experiments.cooling.sweep.r", [], "sweep.r = []: must be a list of at least 1"),
+    ("experiments.cooling.sweep.seeds", 0, "sweep.seeds = 0: must be a whole number >= 1"),
+    ("experiments.cooling.target_stderr", 0, "target_stderr = 0: must be a number in (0, 0.1]"),
+    (
+        "experiments.cooling.target_stderr",
+        0.01,
+        "experiments.cooling.sweep.seeds = 4: must not stand beside target_stderr",
+    ),
+    (
+        "scales.fine.cooling.schedule",
+        {"plateau": 10},
+        "scales.fine.cooling.schedule.plateau = 10: must not stand beside target_stderr",
+    ),
+    ("experiments.studies", {}, "key of experiments = studies: must be another name"),
+    ("experiments.cooling.particles", 0, "particles = 0: must be a whole number in [1, 1"),
+    (
+        "experiments.cooling.particles",
+        "many",
+        "particles = 'many': must be a whole number in [1, 1",
+    ),
+    ("experiments.cooling.particles", 1.5, "particles = 1.5: must be a whole number in [1, 1"),
+    ("experiments.cooling.particles", True, "particles = True: must be a whole number in [1, 1"),
+    ("experiments.cooling.particles", NAN, "particles = nan: must be a whole number in [1, 1"),
+    ("experiments.cooling.box.0", -1, "box[0] = -1: must be a number in (0, 10000"),
+    ("experiments.cooling.box.1", INF, "box[1] = inf: must be a number in (0, 10000"),
+    ("experiments.cooling.box", [50], "box = [50]: must be a list of 2 to 3 entries"),
+    (
+        "experiments.cooling.effects.spin.inertia",
+        0,
+        "effects.spin.inertia = 0: must be a number in [1e-06, ",
+    ),
+    (
+        "experiments.vibrated.effects.floor.roughness",
+        "rough",
+        "effects.floor.roughness = 'rough': must be a number in [-1, 1] or be particles",
+    ),
+    (
+        "experiments.cooling.effects.gravty",
+        {"acceleration": 1},
+        "effects: key = 'gravty': must be one of contact_averages, contact_time, floor, ",
+    ),
+    (
+        "experiments.vibrated.effects.floor.height",
+        1,
+        "effects.floor: key = 'height': must be one of amplitude, period, restitution, roughness",
+    ),
+    (
+        "experiments.vibrated.effects.floor.period",
+        KeyError,
+        "effects.floor.period = (nothing): must be given",
+    ),
+    (
+        "experiments.vibrated.schedule.measure",
+        -1,
+        "schedule.measure = -1: must be a number > 0",
+    ),
+    (
+        "experiments.cooling.schedule.measure",
+        1,
+        "schedule: key = 'measure': must be one of kind, replicas, thermalise, "
+        "relaxation_times, plateau, sample_every",
+    ),
+    (
+        "experiments.cooling.schedule.kind",
+        "heating",
+        "schedule.kind = 'heating': must be one of steady, cooling",
+    ),
+    ("experiments.cooling.schedule", KeyError, "schedule = (nothing): must be given"),
+    ("experiments.cooling.sweep", KeyError, "sweep = (nothing): must be given"),
+    ("experiments.cooling", None, "cooling = None: must be a mapping of keys to values"),
+    ("experiments.vibrated_smooth_walls.extends", "foo", f"must be one of {EXPERIMENTS}"),
+    ("experiments.cooling.extends", "cooling", "that does not itself build on this one"),
+    ("experiments.No Name", {}, "must be made of lower-case letters, digits and _, a letter first"),
+    (
+        "scales.small.foo",
+        {},
+        "key of scales.small = 'foo': must be one of cooling, cooling_friction, cooling_i",
+    ),
+    ("scales.small.showcase.frames", 0, "scales.small.showcase.frames = 0: must be a whole number"),
+    ("showcase.beta", "2", "showcase.beta = '2': must lie in [-1, 1]"),
+    ("showcase.box", [10, "open"], "showcase.box[1] = 'open': must be a number > 0"),
+    (
+        "showcase.effects.spin",
+        None,
+        "showcase at scale paper.effects.spin = None: must be a mapping",
+    ),
+    ("showcase.window", KeyError, "showcase at scale paper.window = (nothing): must be given"),
+    ("experiments.showcase", {}, "key of experiments = showcase: must be another name"),
+    ("scales.small.cooling.extends", "vibrated", "must not be given here"),
+    ("scales.small.cooling.particles", 0, "particles = 0: must be a whole number in [1, 1"),
+    ("scale", "large", "config.yaml: scale = 'large': must be one of coarse, fine, paper, small"),
+    (
+        "n_particles",
+        5,
+        "config.yaml: key = 'n_particles': must be one of betas_per_job, experiments",
+    ),
+]
+
+
+@pytest.mark.parametrize(("path", "value", "message"), MISTAKES)
+def test_a_mistake_is_named_in_one_line(paper, path, value, message, refusal):
+    said = refusal(checking.check, changed(paper, path, value))
+    assert said.startswith("config.yaml: ")
+    assert message in said
+    assert path.split(".")[0] in said
+
+
+def test_the_first_mistake_in_the_file_is_named(paper, refusal):
+    whole = changed(paper, "experiments.sheared.particles", 0)
+    whole = changed(whole, "experiments.vibrated.particles", "x")
+    assert "experiments.vibrated.particles = 'x'" in refusal(checking.check, whole)
+
+
+def test_a_long_value_is_shortened(paper, refusal):
+    whole = changed(paper, "experiments.cooling.particles", list(range(1000)))
+    assert len(refusal(checking.check, whole)) < 150
+
+
+def test_unknown_names(paper, refusal):
+    said = refusal(config.experiment, paper, "foo", "paper")
+    assert said == f"experiment = 'foo': must be one of {EXPERIMENTS}"
+    said = refusal(config.experiment, paper, "cooling", "foo")
+    assert said == "scale = 'foo': must be one of coarse, fine, paper, small"
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("scale: paper\nscale: small\n", "c.yaml: line 2 = 'scale': must be given once"),
+        ("a: 1\n  b: 2\n", "c.yaml: line 2 = '  b: 2': must be YAML"),
+        ("a: [1, 2\n", "c.yaml: line 2 = '': must be YAML"),
+        ("- a\n", "c.yaml = ['a']: must hold the keys scale, experiments, scales"),
+        ("", "c.yaml = None: must hold the keys scale, experiments, scales"),
+        ("a: \0\n", "c.yaml = (not text): must be YAML in UTF-8"),
+        ("a: !!python/object:os.system {}\n", "c.yaml: line 1"),
+    ],
+)
+def test_what_is_no_configuration(tmp_path, text, message, refusal):
+    path = tmp_path / "c.yaml"
+    path.write_text(text)
+    assert refusal(config.load, path).startswith(message)
+
+
+@pytest.mark.parametrize("text", ["{", "[]", json.dumps({"particles": 3}), '{"particles": NaN}'])
+def test_settings_that_are_none(text, refusal):
+    assert refusal(config.from_text, text, "--settings").startswith("--settings")
+
+
+@pytest.mark.parametrize(
+    ("read", "labels", "message"),
+    [
+        (
+            config.restitution,
+            ["1.5", "-0.1", "nan", "inf", "", "x", "0_1", " 0.5", "1e", "١"],
+            "restitution r = {}: must lie in [0, 1]",
+        ),
+        (
+            config.roughness,
+            ["-1.01", "2", "nan", "--1"],
+            "roughness beta = {}: must lie in [-1, 1]",
+        ),
+        (
+            config.seed,
+            ["-1", "x", "1.0", "", str(2**63)],
+            "seed = {}: must be a whole number in [0, 2^63 - 1]",
+        ),
+    ],
+)
+def test_illegal_labels(read, labels, message, refusal):
+    for label in labels:
+        assert refusal(read, label) == message.format(label)
