@@ -15,11 +15,12 @@ import tqdm.auto
 from schedules import STEADY
 
 import roughgas
-from roughgas import experiments, library, simulate
+from roughgas import experiments, library, simulate, trajectory
 from roughgas.base.errors import InputError
 from roughgas.cli import main
 from roughgas.config.reading import read_yaml
 from roughgas.data.point import WALL_CLOCK, read_point
+from roughgas.data.trajectory import write_trajectory
 from roughgas.theory import cooling_ratio
 
 ROOT = Path(__file__).parent.parent
@@ -48,6 +49,18 @@ def same(one, other):
     return one.drop_vars(WALL_CLOCK, errors="ignore").identical(
         other.drop_vars(WALL_CLOCK, errors="ignore")
     )
+
+
+def test_a_trajectory_is_that_which_its_command_writes(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    gas = trajectory("cooling", **POINT, **FEW, times=[0, 2.5], progress=False)
+    assert list(tmp_path.iterdir()) == []
+    assert main(shlex.split(gas.command)[1:]) == 0
+    write_trajectory("again.xyz", gas)
+    assert Path("bed.xyz").read_bytes() == Path("again.xyz").read_bytes()
+    assert gas.position.shape == (2, 20, 2) and gas.attrs["experiment"] == "cooling"
+    with pytest.raises(InputError, match=r"frames = 1: must be a whole number in \[2, 10000\]"):
+        trajectory("cooling", **POINT, frames=1)
 
 
 @pytest.mark.parametrize("name", POINTS)

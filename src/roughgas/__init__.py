@@ -2,11 +2,11 @@
 
 from roughgas.base.version import __version__
 
-__all__ = ["__version__", "experiments", "simulate"]
+__all__ = ["__version__", "experiments", "simulate", "trajectory"]
 TYPE_CHECKING = False  # but for type checkers; importing typing would take ten times as long
 
 if TYPE_CHECKING:
-    from roughgas.library import experiments, simulate
+    from roughgas.library import experiments, simulate, trajectory
 else:
 
     def __getattr__(name: str) -> object:

@@ -1,6 +1,7 @@
 """roughgas in a notebook or a script: a scene from keyword arguments, its dataset back.
 
-The names of this module are there as `roughgas.simulate` and `roughgas.experiments`.
+The names of this module are there as `roughgas.simulate`, `roughgas.trajectory` and
+`roughgas.experiments`.
 """
 
 from collections.abc import Mapping, Sequence
@@ -141,13 +142,9 @@ def simulate(
     >>> own.title
     'scene: r = 0.9, beta = 0.5'
     """
-    from roughgas.config import restitution, roughness
-    from roughgas.config import seed as legal_seed
-
-    legal_r, legal_beta, number = restitution(r), roughness(beta), legal_seed(seed)
     changes = {"particles": particles, "box": box, "effects": effects, "schedule": schedule}
-    given = {key: _plain(value) for key, value in changes.items() if value is not None}
-    settings = _settings(experiment, given, scale, SHIPPED if config is None else config)
+    legal_r, legal_beta, number = _numbers(r, beta, seed)
+    settings = _settings(experiment, changes, scale, config)
 
     from roughgas.config.provenance import provenance
     from roughgas.data.point import as_dataset
@@ -163,6 +160,83 @@ def simulate(
     with Progress(name, scene, settings, quiet=not progress) as bar:
         found = run_point(scene, settings, number, bar)
     return as_dataset(found._replace(attributes=about | found.attributes))
+
+
+def trajectory(
+    experiment: str | None = None,
+    *,
+    r: float,
+    beta: float,
+    seed: int = 1,
+    particles: int | None = None,
+    box: Sequence[Side] | None = None,
+    effects: Effects | None = None,
+    schedule: Schedule | None = None,
+    start: float | None = None,
+    length: float | None = None,
+    frames: int | None = None,
+    times: Sequence[float] | None = None,
+    scale: str = "paper",
+    config: str | Path | None = None,
+    progress: bool = True,
+) -> "xarray.Dataset":
+    """Simulate one point of an experiment, and return where its particles are at chosen times.
+
+    It is the trajectory of the gas that `simulate` measures with the same arguments; of a cooling
+    gas, that of the first replica. Times are in T, of a cooling gas in collisions per particle.
+
+    Parameters
+    ----------
+    experiment, r, beta, seed, particles, box, effects, schedule, scale, config, progress
+        As for `simulate`.
+    start
+        Where the frames begin; by default, when a driven gas should be steady.
+    length
+        How long they go on; by default five periods of a drive, or as suits the experiment.
+    frames
+        Number of frames, at equal distances; of a cooling gas in scaled time.
+    times
+        The times themselves in rising order, in place of these three.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``position``, ``velocity`` (frame, particle, axis), ``spin`` (frame, particle, spin_axis),
+        of disks ``angle`` (frame, particle), ``radius``, ``box``, ``time``, of a sheared gas
+        ``image_shift`` (frame), and the energies of each frame. The function
+        `roughgas.data.trajectory.write_trajectory` makes files of it for other programs.
+
+    Raises
+    ------
+    roughgas.base.errors.InputError
+        For times that do not rise; otherwise as `simulate`.
+
+    Examples
+    --------
+    >>> from roughgas import trajectory
+    >>> gas = trajectory("cooling", r=0.9, beta=0.5, scale="small", times=[0, 5], progress=False)
+    >>> dict(gas.position.sizes)
+    {'frame': 2, 'particle': 40, 'axis': 2}
+    """
+    changes = {"particles": particles, "box": box, "effects": effects, "schedule": schedule}
+    legal_r, legal_beta, number = _numbers(r, beta, seed)
+    settings = _settings(experiment, changes, scale, config)
+
+    from roughgas.config.provenance import provenance
+    from roughgas.data.trajectory import as_trajectory
+    from roughgas.scene import build
+    from roughgas.simulation.progress import watched
+    from roughgas.simulation.snapshots import chosen, snapshots
+    from roughgas.simulation.trajectory import variables
+
+    name = experiment or UNNAMED
+    scene = build(settings, legal_r, legal_beta)
+    take = chosen(settings, scene, start, length, frames, times)
+    labels = str(r), str(beta), str(seed)
+    about = provenance(name, settings, labels, scale, "bed.xyz", "trajectory", take.options())
+    shots = snapshots(settings, legal_r, legal_beta, number, take)
+    shots = list(watched(name, take.frames, "frames", shots, quiet=not progress))
+    return as_trajectory(variables(scene, settings, shots), about)
 
 
 def experiments(config: str | Path | None = None) -> dict[str, str]:
@@ -188,20 +262,27 @@ def experiments(config: str | Path | None = None) -> dict[str, str]:
     """
     from roughgas.config import load
 
-    known = load(SHIPPED if config is None else config)["experiments"]
+    known = load(config or SHIPPED)["experiments"]
     return {name: settings.get("description", "") for name, settings in known.items()}
 
 
+def _numbers(r: Any, beta: Any, seed: Any) -> tuple[float, float, int]:
+    from roughgas import config
+
+    return config.restitution(r), config.roughness(beta), config.seed(seed)
+
+
 def _settings(
-    name: str | None, changes: Mapping[str, Any], scale: str, path: str | Path
+    name: str | None, changes: Mapping[str, Any], scale: str, path: str | Path | None
 ) -> dict[str, Any]:
     """Return the settings of a point, checked as those of the pipeline are."""
     from roughgas import config
     from roughgas.config.schema import check_schema
     from roughgas.simulation import schedule
 
-    known = {} if name is None else config.load_experiment(path, name, scale)
-    settings = config.merged(config.point_settings(known), changes)
+    given = {key: _plain(value) for key, value in changes.items() if value is not None}
+    known = {} if name is None else config.load_experiment(path or SHIPPED, name, scale)
+    settings = config.merged(config.point_settings(known), given)
     for part in ("experiment", "point"):
         check_schema(settings, name or UNNAMED, part)
     schedule.check(settings)

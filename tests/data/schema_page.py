@@ -1,4 +1,4 @@
-"""The page docs/data.md: its tables of variables, which are made from the code.
+"""The pages docs/data.md and docs/trajectories.md: their tables of variables, made from the code.
 
     .venv/bin/python -m tests.data.schema_page
 
@@ -9,12 +9,21 @@ import re
 from pathlib import Path
 
 from roughgas.base.layout import markdown
-from roughgas.data.variables import COOLING, FILM, GRID, POINT, REDUCED, REGISTRY, SPIN
+from roughgas.data.variables import (
+    COOLING,
+    FILM,
+    GRID,
+    POINT,
+    REDUCED,
+    REGISTRY,
+    SPIN,
+    TRAJECTORY,
+)
 from roughgas.studies import STUDIES, variables
 
 assert variables, "which registers those of the studies"
 
-PAGE = Path(__file__).parents[2] / "docs" / "data.md"
+DOCS = Path(__file__).parents[2] / "docs"
 BEGIN, END = "<!-- {}: made by tests/data/schema_page.py -->\n", "<!-- until here -->\n"
 ALWAYS = "always"
 
@@ -22,12 +31,18 @@ ALWAYS = "always"
 def tables():
     """The tables that follow from the code, by kind of file."""
     studies = {name: _study(REGISTRY[name]) for name in STUDIES}
-    return {"point": _point(), "reduced": _reduced(), "film": _film()} | studies
+    others = {"film": _film(), "trajectory": _trajectory()}
+    return {"point": _point(), "reduced": _reduced()} | others | studies
+
+
+def page_of(kind):
+    """The page that a table is on."""
+    return DOCS / ("trajectories.md" if kind == "trajectory" else "data.md")
 
 
 def written(kind):
-    """A table that is on the page."""
-    return PAGE.read_text(encoding="utf-8").split(BEGIN.format(kind))[1].split(END)[0]
+    """A table that is on its page."""
+    return page_of(kind).read_text(encoding="utf-8").split(BEGIN.format(kind))[1].split(END)[0]
 
 
 def documented(kind):
@@ -63,6 +78,14 @@ def _film():
     return _table("variable | dimensions | type | units | meaning", rows)
 
 
+def _trajectory():
+    rows = [
+        (name, _dims(v.dims), v.units, ", ".join(v.when) or ALWAYS, v.long_name)
+        for name, v in TRAJECTORY.items()
+    ]
+    return _table("variable | dimensions | units | when | meaning", rows)
+
+
 def _study(known):
     rows = [(name, _dims(v.dims), v.units, v.long_name) for name, v in known.items()]
     return _table("variable | dimensions | units | meaning", rows)
@@ -91,9 +114,11 @@ def _table(head, rows):
 
 
 def _write(kind, table):
-    text = PAGE.read_text(encoding="utf-8")
+    text = page_of(kind).read_text(encoding="utf-8")
     begin = BEGIN.format(kind)
-    PAGE.write_text(text.replace(begin + written(kind) + END, begin + table + END), "utf-8")
+    page_of(kind).write_text(
+        text.replace(begin + written(kind) + END, begin + table + END), "utf-8"
+    )
 
 
 if __name__ == "__main__":

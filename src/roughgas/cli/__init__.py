@@ -13,6 +13,7 @@ import sys
 from collections.abc import Sequence
 from typing import NoReturn
 
+from roughgas.base import extras
 from roughgas.base.errors import CollapseError, InputError, on_one_line
 from roughgas.base.files import check_place
 from roughgas.base.version import __version__
@@ -92,7 +93,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except MemoryError as error:
         return _fail(FAILED, f"out of memory. {error}".strip())
     except ImportError as error:
-        return _fail(FAILED, f"{error}: `roughgas doctor` says what is wrong")
+        lacks = extras.remedy(error)
+        return _fail(FAILED, lacks or f"{error}: `roughgas doctor` says what is wrong")
     except KeyboardInterrupt as stop:
         print(f"roughgas: stopped: {stop if stop.args else GO_ON}", file=sys.stderr)
         return INTERRUPTED

@@ -2,7 +2,7 @@
 
 import os
 
-from roughgas.cli.options import CONFIG, KERNEL, POINT, RESTITUTION, ROUGHNESS, experiments
+from roughgas.cli.options import CONFIG, KERNEL, POINT, RESTITUTION, ROUGHNESS, TAKE, experiments
 from roughgas.cli.parser import Command, flag, one_of, output, value
 
 CORES = str(os.cpu_count())
@@ -35,15 +35,31 @@ COMMANDS = {
         "show a point as it moves",
         *POINT,
         value("--seed", "seed of the random generator", default="1"),
-        value("--start TIME", "time of the first frame (default: when steady)"),
-        value("--length TIME", "time shown (default: by experiment)"),
-        value("--frames NUMBER", "number of frames (default: 125 or 160)"),
+        *TAKE,
         value("--fps RATE", "frames a second", default="25"),
         output(".mp4 or .gif files", nargs="+"),
         examples=("roughgas movie vibrated --r 0.9 --beta 0.5 -o bed.mp4 bed.gif",),
         about="Simulate a point of an experiment, and draw its particles as they move and spin, "
         "its boundaries, and R(t). The trajectory is that of `roughgas run` with the same seed. "
         "Times are in T; for a cooling gas, in collisions per particle.",
+    ),
+    "trajectory": Command(
+        "cli.trajectory:trajectory",
+        "write where all particles of a point are, for OVITO, ASE, freud ...",
+        *POINT,
+        value("--seed", "seed of the random generator", default="1"),
+        *TAKE,
+        value("--times TIME", "the times themselves, rising, in place of these", nargs="+"),
+        output(".xyz, .nc or .gsd files", nargs="+"),
+        examples=(
+            "roughgas trajectory vibrated --r 0.9 --beta 0.5 -o bed.xyz",
+            "roughgas trajectory sheared --r 0.9 --beta 0 --times 100 200 300 -o sheared.nc",
+            "roughgas trajectory cooling --r 0.9 --beta -0.5 --length 50 --frames 11 -o gas.gsd",
+        ),
+        about="Simulate a point of an experiment, and write positions, velocities, spins and "
+        "angles of all particles, as `roughgas movie` would show them: as extended XYZ, as netCDF "
+        "by the conventions of AMBER, or as GSD (which needs roughgas[trajectories]). Times are "
+        "in T; for a cooling gas, in collisions per particle.",
     ),
     "show": Command(
         "cli.show:show",

@@ -54,6 +54,12 @@ ROUGHNESS = "roughness, in [-1, 1]: -1 is smooth, 1 perfectly rough"
 KERNEL = (EXPERIMENT, *SETTINGS, value("--r", RESTITUTION, required=True))
 POINT = (*KERNEL, value("--beta", ROUGHNESS, required=True))
 """What names a point, except for its seed."""
+TAKE = (
+    value("--start TIME", "time of the first frame (default: when steady)"),
+    value("--length TIME", "time shown (default: by experiment)"),
+    value("--frames NUMBER", "number of frames (default: 125 or 160)"),
+)
+"""Which part of a point is shown."""
 REDUCED = value("inputs REDUCED", "reduced datasets", nargs="+")
 
 

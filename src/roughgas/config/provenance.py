@@ -1,7 +1,7 @@
 """The attributes of a dataset that say where it comes from, enough to make it again by itself."""
 
 import shlex
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from roughgas import config
@@ -14,18 +14,21 @@ def provenance(
     point: tuple[str, str, str],
     scale: str,
     output: str,
+    verb: str = "run",
+    told: Sequence[str] = (),
 ) -> dict[str, Any]:
     """Return the attributes of a point's dataset that say how to make it again.
 
-    `point` has its labels (r, beta, seed); the command among the attributes writes to `output`.
+    `point` has its labels (r, beta, seed); the command among the attributes, `roughgas VERB`, is
+    told what else is in `told`, and writes to `output`.
     Raises InputError where the name of the experiment and the settings disagree.
     """
     text = config.as_text(config.point_settings(settings))
     r, beta, seed = point
-    command = ["roughgas", "run", experiment, "--scale", scale]
+    command = ["roughgas", verb, experiment, "--scale", scale]
     # joined by =, so that a negative number is not taken for an option
     command += [f"--r={r}", f"--beta={beta}", f"--seed={seed}"]
-    command += ["--settings", text, "--output", output]
+    command += [*told, "--settings", text, "--output", output]
     return {
         "title": f"{experiment}: r = {r}, beta = {beta}",
         **variant_attributes(experiment, settings),

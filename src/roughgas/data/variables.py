@@ -14,6 +14,7 @@ import numpy as np
 
 LENGTH = "a"
 TIME = "T"
+SPEED = "a/T"
 ENERGY = "m a^2 T^-2"
 START = "initial E_trans"
 COOLING_UNITS = {TIME: "collisions per particle", ENERGY: START}
@@ -217,7 +218,65 @@ FILM = {
     "kernel_seconds": Variable("time spent in the kernel", "s"),
 }
 
-REGISTRY: dict[str, Mapping[str, Variable]] = {"point": POINT, "reduced": REDUCED, "film": FILM}
+PLACES = ("frame", "particle", "axis")
+TRAJECTORY = {
+    "axis": Variable("axis of the box, the last one vertical", "", ("axis",), "str"),
+    "time": Variable("time since the start", TIME, ("frame",), of_settings=True),
+    "collisions_per_particle": Variable(
+        "collisions per particle since the start, of a cooling gas since it began to cool",
+        dims=("frame",),
+    ),
+    "position": Variable("position of a particle, folded into the box", LENGTH, PLACES),
+    "velocity": Variable("velocity of the image in the box", SPEED, PLACES),
+    "spin": Variable(
+        "spin as the velocity a w of the surface: of disks anticlockwise, of spheres a vector",
+        SPEED,
+        ("frame", "particle", "spin_axis"),
+        when=(SPIN,),
+    ),
+    "angle": Variable(
+        "angle by which a disk has turned since the first time",
+        "rad",
+        ("frame", "particle"),
+        when=("disks that spin",),
+    ),
+    "radius": Variable("radius of a particle", LENGTH, ("particle",)),
+    "box": Variable("length of the box, NaN where it is open above", LENGTH, ("axis",)),
+    "periodic": Variable(
+        "whether the box repeats along the axis", "1", ("axis",), "i1", flags="bounded periodic"
+    ),
+    "image_shift": Variable(
+        "displacement along the first axis of the image above along the second",
+        LENGTH,
+        ("frame",),
+        when=(SHEARED,),
+    ),
+    "floor_height": Variable("height of the floor", LENGTH, ("frame",), when=("floor",)),
+    "wall_displacement": Variable(
+        "displacement of shaken walls from their middle", LENGTH, ("frame",), when=("shaken walls",)
+    ),
+    "E_trans": Variable(
+        "translational energy per degree of freedom, of a sheared gas without the mean flow",
+        ENERGY,
+        ("frame",),
+        of_settings=True,
+    ),
+    "E_rot": Variable(
+        "rotational energy per degree of freedom, of a sheared gas without the mean spin",
+        ENERGY,
+        ("frame",),
+        when=(SPIN,),
+        of_settings=True,
+    ),
+    "R": Variable("share of rotation in the energy", "1", ("frame",), when=(SPIN,)),
+}
+
+REGISTRY: dict[str, Mapping[str, Variable]] = {
+    "point": POINT,
+    "reduced": REDUCED,
+    "film": FILM,
+    "trajectory": TRAJECTORY,
+}
 """All variables by name, for each kind of dataset; each study is a kind, too."""
 
 

@@ -158,9 +158,11 @@ class FilmProgress(Bar):
         return f", {minutes} min {seconds:02} s left" if minutes else f", {seconds} s left"
 
 
-def watched(name: str, total: int, unit: str, items: Iterable[Item]) -> Iterator[Item]:
+def watched(
+    name: str, total: int, unit: str, items: Iterable[Item], quiet: bool = False
+) -> Iterator[Item]:
     """Yield the same items, and show a bar of how many there have been."""
-    with Bar(name, total, unit) as bar:
+    with Bar(name, total, unit, quiet=quiet) as bar:
         for item in items:
             yield item
             bar.advance()

@@ -11,7 +11,7 @@ from roughgas.scene import build
 from roughgas.show import encoding as movie
 from roughgas.show.movies import particles
 from roughgas.show.movies.drawing import MovieSubject, picture, spin_scales, view_of, write
-from roughgas.show.movies.snapshots import Snapshot
+from roughgas.simulation.snapshots import Snapshot
 
 SIDE = 12.0
 SPIN, ANGLE = [[0.5], [-0.5], [0.0]], [0.0, np.pi / 2, 3.0]
@@ -19,6 +19,7 @@ STILL = Snapshot(
     time=10.0,
     collisions=0.0,
     position=np.array([[3.0, 4.0], [6.0, 5.0], [11.5, 11.7]]),
+    velocity=np.zeros((3, 2)),
     spin=np.array(SPIN),
     angle=np.array(ANGLE),
     E_trans=1.0,

@@ -15,8 +15,8 @@ from roughgas.scene import Scene
 from roughgas.show import style
 from roughgas.show.encoding import write_movie
 from roughgas.show.movies.particles import Boundaries, Disks, Spheres, View
-from roughgas.show.movies.snapshots import Snapshot
 from roughgas.simulation import schedule
+from roughgas.simulation.snapshots import Snapshot
 
 WIDTH = 4.8  # inches
 DPI = {".gif": 100, ".mp4": 200}

@@ -12,7 +12,7 @@ from matplotlib.patches import Rectangle
 
 from roughgas.effects import Effects
 from roughgas.show.circles import add_circles, move
-from roughgas.show.movies.snapshots import Snapshot
+from roughgas.simulation.snapshots import Snapshot
 
 PLAIN = to_rgba_array("#9ecae1")  # of particles that do not spin
 EDGE = to_rgba_array("#333333")

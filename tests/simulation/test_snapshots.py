@@ -11,8 +11,8 @@ from schedules import COOLING, STEADY
 from roughgas.kernel.hooks import displacement
 from roughgas.scene import build
 from roughgas.scene.initial import initial_state
-from roughgas.show.movies.snapshots import Take, snapshots, usual_take
 from roughgas.simulation.point import run_point
+from roughgas.simulation.snapshots import Take, snapshots, usual_take
 
 R, BETA, SEED = 0.9, 0.3, 7
 TINY = 1e-9
@@ -146,11 +146,11 @@ def test_what_is_shown_unless_told_otherwise():
         experiment = settings(name) | {"schedule": schedule} | others
         return usual_take(experiment, build(experiment, R, -1.0))
 
-    assert usual("bed") == (20, 5.0, 125)
-    assert usual("shaken") == (20, 10.0, 125)
-    assert usual("sheared") == (20, 25.0, 125)
-    assert usual("heated") == (20, 25.0, 125)
-    assert usual("gas", COOLING) == (0.0, 16.0, 160)
+    assert usual("bed") == Take(20, 5.0, 125)
+    assert usual("shaken") == Take(20, 10.0, 125)
+    assert usual("sheared") == Take(20, 25.0, 125)
+    assert usual("heated") == Take(20, 25.0, 125)
+    assert usual("gas", COOLING) == Take(0.0, 16.0, 160)
     without = {"kind": "steady", "sample_every": 1}
     assert usual("bed", without).start == 1000
     assert usual("bed", particles=10**6).start == 1

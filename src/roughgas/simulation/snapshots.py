@@ -5,11 +5,13 @@ replica. Units: particle radius a = mass m = time unit T = 1.
 """
 
 import math
-from collections.abc import Iterator, Mapping
-from typing import Any, NamedTuple
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 
+from roughgas.base.errors import InputError
+from roughgas.base.legal import Interval
 from roughgas.kernel.hooks import displacement
 from roughgas.kernel.state import BASE, EXPONENT, NOW, State
 from roughgas.scene import Scene, build
@@ -25,6 +27,9 @@ UNKNOWN_TRANSIENT = 1000.0  # T, where the schedule does not say how long to wai
 PERIODS, FRAMES = 5, 125  # of a drive, and of a movie of a driven gas
 TIME = 25.0  # T shown of a gas whose drive has no period
 
+NUMBERS = range(2, 10_001)  # of frames
+LEGAL = {"start": Interval("[0, 1e9]"), "length": Interval("(0, 1e9]")}
+
 
 class Take(NamedTuple):
     """What is filmed: in T, or in collisions per particle of a cooling gas."""
@@ -32,6 +37,18 @@ class Take(NamedTuple):
     start: float  # since the beginning, or since the gas began to cool
     length: float
     frames: int
+    times: tuple[float, ...] = ()  # instants in rising order, in place of equal intervals
+
+    @classmethod
+    def at(cls, times: Sequence[float]) -> Self:
+        """Return the take of these instants."""
+        return cls(times[0], times[-1] - times[0], len(times), tuple(times))
+
+    def options(self) -> list[str]:
+        """Return the options of a command that mean this take."""
+        if self.times:
+            return ["--times", *map(repr, self.times)]
+        return [f"--start={self.start}", f"--length={self.length}", f"--frames={self.frames}"]
 
 
 COOLING = Take(0.0, 16.0, 160)
@@ -43,6 +60,7 @@ class Snapshot(NamedTuple):
     time: float  # T
     collisions: float  # per particle, since the beginning, or since the gas began to cool
     position: np.ndarray  # (N, D) in a, folded into the box
+    velocity: np.ndarray  # (N, D) in a/T, of the images in the box
     spin: np.ndarray | None  # (N, 2 D - 3) surface velocities in a/T; None without spin
     angle: np.ndarray | None  # (N,) by which disks have turned; None in space
     E_trans: float  # m a^2/T^2 per degree of freedom; in a sheared gas without the mean flow
@@ -51,6 +69,30 @@ class Snapshot(NamedTuple):
     floor: float | None  # its height in a; None without one
     slide: float | None  # displacement of the image above a sheared gas, from 0 to L
     walls: float | None  # displacement of shaken walls
+
+
+def chosen(
+    experiment: Mapping[str, Any],
+    scene: Scene,
+    start: float | None = None,
+    length: float | None = None,
+    frames: int | None = None,
+    times: Sequence[float] | None = None,
+) -> Take:
+    """Return the take that is asked for; what is None is as usual. Raises InputError."""
+    given = {"start": start, "length": length, "frames": frames}
+    asked = {name: value for name, value in given.items() if value is not None}
+    for name, legal in LEGAL.items():
+        if name in asked:
+            asked[name] = legal.check(name, asked[name])
+    if frames is not None and not (frames == int(frames) and frames in NUMBERS):
+        raise InputError("frames", frames, f"be a whole number in [{NUMBERS[0]}, {NUMBERS[-1]}]")
+    if times is None:
+        return usual_take(experiment, scene)._replace(**asked)
+    times = [LEGAL["start"].check("times", float(time)) for time in times]
+    if asked or not times or times != sorted(set(times)):
+        raise InputError("times", times, "rise, and stand without start, length and frames")
+    return Take.at(times)
 
 
 def usual_take(experiment: Mapping[str, Any], scene: Scene) -> Take:
@@ -74,11 +116,11 @@ def snapshots(
 ) -> Iterator[Snapshot]:
     """Yield the snapshots of a take of the point, one after the other.
 
-    Those of a driven gas are equally spaced, each in the middle of its interval, away from the
-    instants at which a sawtooth falls back. Those of a cooling gas are equally spaced in scaled
-    time: their interval is a fixed share of the mean free time (Enskog's, at the present E_trans),
-    so that the take is about as long as asked for. Angles are exact unless a particle has two
-    contacts within one step, of one collision in the gas for each 200 particles.
+    Where the take names no times, those of a driven gas are equally spaced, each in the middle of
+    its interval, away from the instants at which a sawtooth falls back. Those of a cooling gas are
+    equally spaced in scaled time: their interval is a fixed share of the mean free time (Enskog's,
+    at the present E_trans), so that the take is about as long as asked for. Angles are exact unless
+    a particle has two contacts within one step, of one collision in the gas for each 200 particles.
 
     Raises InputError for illegal values, CollapseError where contacts accumulate without end.
     """
@@ -92,17 +134,35 @@ def snapshots(
         gas.watcher = Turning(gas.particles)
     gas.look()
     if kind is cooling:
-        while gas.collisions < round(gas.particles / 2 * take.start):
-            gas.step(math.inf, stride)
+        _make_collisions(gas, take.start, stride)
+    if take.times:
+        arrive = _make_collisions if kind is cooling else _let_pass
+        for time in take.times:
+            arrive(gas, time, stride)
+            yield _snapshot(gas)
+        return
+    if kind is cooling:
         yield _snapshot(gas)
     interval = take.length / take.frames
     for frame in range(1 if kind is cooling else 0, take.frames):
         until = take.start + (frame + 0.5) * interval
         if kind is cooling:
             until = gas.time + interval / _collision_frequency(gas, experiment["box"])
-        while gas.step(until, stride):
-            pass
+        _let_pass(gas, until, stride)
         yield _snapshot(gas)
+
+
+def _let_pass(gas: Gas, until: float, stride: int) -> None:
+    """Advance a gas to an instant (T), so many collisions at a time."""
+    while gas.time < until and gas.step(until, stride):
+        pass
+
+
+def _make_collisions(gas: Gas, per_particle: float, stride: int) -> None:
+    """Advance a gas to so many collisions per particle, rounded to whole ones in the gas."""
+    wanted = round(gas.particles / 2 * per_particle)
+    while gas.collisions < wanted:
+        gas.step(math.inf, min(stride, wanted - gas.collisions))
 
 
 class Turning:
@@ -135,13 +195,15 @@ def _collision_frequency(gas, box):
 def _snapshot(gas: Gas) -> Snapshot:
     """Return what there is to be seen at the present instant."""
     state, effects, present, time = gas.state, gas.scene.effects, _energies(gas), gas.time
-    spin = state.spin
+    unit, spin = 2.0 ** int(state.counts[EXPONENT]), state.spin
+    position, velocity = whereabouts(state, gas.scene, time)
     if spin is not None:
-        spin = in_order(state, spin * 2.0 ** int(state.counts[EXPONENT]))
+        spin = in_order(state, spin * unit)
     return Snapshot(
         time=time,
         collisions=2.0 * gas.collisions / gas.particles,
-        position=in_order(state, whereabouts(state, gas.scene, time)[0]),
+        position=in_order(state, position),
+        velocity=in_order(state, velocity * unit),
         spin=spin,
         angle=gas.watcher.angle.copy() if gas.watcher else None,
         E_trans=present.translational,

@@ -1,0 +1,45 @@
+"""`roughgas trajectory`: where the particles of a point are, as files for other programs."""
+
+import sys
+from argparse import Namespace
+from typing import Any
+
+from roughgas import config
+from roughgas.cli.options import number, whole_number
+from roughgas.cli.run import point_of
+from roughgas.config.provenance import provenance
+from roughgas.data.trajectory import as_trajectory, check_format, write_trajectory
+from roughgas.scene import Scene
+from roughgas.simulation.progress import watched
+from roughgas.simulation.snapshots import LEGAL, NUMBERS, Take, chosen, snapshots
+from roughgas.simulation.trajectory import variables
+
+
+def trajectory(options: Namespace) -> None:
+    """Simulate a point, and write its trajectory."""
+    name, seed = options.experiment, config.seed(options.seed)
+    scene, settings = point_of(options, options.beta)
+    for output in options.output:
+        check_format(output)
+    take = chosen_take(options, settings, scene)
+    simulated = snapshots(settings, float(options.r), float(options.beta), seed, take)
+    shots = list(watched(name, take.frames, "frames", simulated))
+    place, told = (options.r, options.beta, options.seed), take.options()
+    for output in options.output:
+        about = provenance(name, settings, place, options.scale, output, "trajectory", told)
+        found = as_trajectory(variables(scene, settings, shots), about)
+        write_trajectory(output, found)
+        print(f"{output}: {len(shots)} frames", file=sys.stderr)
+
+
+def chosen_take(options: Namespace, settings: dict[str, Any], scene: Scene) -> Take:
+    """Return what is shown: by default, what suits the experiment."""
+    asked: dict[str, Any] = {}
+    for name in ("start", "length"):
+        if (text := getattr(options, name)) is not None:
+            asked[name] = number(f"--{name}", text, LEGAL[name])
+    if options.frames is not None:
+        asked["frames"] = whole_number("--frames", options.frames, NUMBERS[0], NUMBERS[-1])
+    if (texts := getattr(options, "times", None)) is not None:
+        asked["times"] = [number("--times", text) for text in texts]
+    return chosen(settings, scene, **asked)

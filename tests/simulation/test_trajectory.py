@@ -1,0 +1,189 @@
+"""Trajectories: what the files hold is the trajectory of the point, and other programs read it."""
+
+import functools
+import itertools
+
+import netCDF4
+import numpy as np
+import pytest
+from brute_force import kernels, settings
+from schedules import COOLING, STEADY
+
+from roughgas.base.errors import InputError
+from roughgas.data.trajectory import (
+    FORMATS,
+    as_trajectory,
+    frames,
+    lengths_and_angles,
+    write_trajectory,
+)
+from roughgas.scene import build
+from roughgas.simulation import cooling
+from roughgas.simulation.energies import restored
+from roughgas.simulation.point import run_point
+from roughgas.simulation.snapshots import Take, snapshots
+from roughgas.simulation.trajectory import variables
+
+R, BETA, SEED = 0.9, 0.3, 7
+DRIVEN = {
+    "bed": settings("bed", 16, [10, "open"]),
+    "sheared": settings("sheared", 16, [12, 12]),
+    "shaken": settings("shaken", 16, [12, 12]),
+}
+NAMES = ["bed", "sheared", "shaken", "spheres"]
+
+
+def experiment_of(name):
+    if name == "spheres":
+        return settings("spheres", 20, [9, 9, 9]) | {"schedule": COOLING}
+    return DRIVEN[name] | {"schedule": STEADY}
+
+
+def taken(name, times):
+    experiment = experiment_of(name)
+    scene = build(experiment, R, BETA)
+    shots = list(snapshots(experiment, R, BETA, SEED, Take.at(times)))
+    return scene, as_trajectory(variables(scene, experiment, shots), {"title": name})
+
+
+@functools.cache
+def sample(name):
+    return taken(name, [1.0, 2.0, 4.0, 7.5])[1]
+
+
+@pytest.mark.parametrize("name", kernels(*DRIVEN))
+def test_energies_of_the_particles_are_those_of_the_point(name):
+    experiment = experiment_of(name)
+    point = run_point(build(experiment, R, BETA), experiment, SEED).variables
+    scene, found = taken(name, point["time"][:20])
+    velocity, spin = found.velocity.values, found.spin.values
+    if scene.effects.shear is not None:
+        height = found.position.values[..., 1] - scene.middle
+        velocity[..., 0] -= scene.effects.shear.velocity / (2 * scene.middle) * height
+        spin = spin - spin.mean(axis=1, keepdims=True)
+    E_trans = (velocity**2).sum(axis=(1, 2)) / (2 * 2 * 16)
+    E_rot = scene.effects.spin.inertia * (spin**2).sum(axis=(1, 2)) / (2 * 16)
+    # roundings of the instants, and nothing else: chaos would make any more of it
+    assert E_trans == pytest.approx(point["E_trans_series"][:20], rel=1e-9)
+    assert E_rot == pytest.approx(point["E_rot_series"][:20], rel=1e-9)
+    assert found.E_trans.values == pytest.approx(E_trans, rel=1e-12)
+
+
+def test_a_cooling_gas_is_seen_after_the_collisions_asked_for():
+    experiment = settings("gas", 20, [30, 30]) | {"schedule": COOLING}
+    gas = cooling.start(build(experiment, R, BETA), experiment, SEED)
+    rows = cooling.sample(gas, 1, 25)
+    known = restored(gas.energies(rows), rows["exponent"]).translational
+    shots = snapshots(experiment, R, BETA, SEED, Take.at([0.0, *range(1, 26)]))
+    assert [shot.E_trans for shot in shots][1:] == pytest.approx(known, rel=1e-12)
+
+
+def least_distance(cell, position, periodic):
+    """Of two particles or images of them, by brute force."""
+    images = itertools.product(*((-1, 0, 1) if one else (0,) for one in periodic))
+    apart = position[:, None] - position[None]
+    found = []
+    for image in images:
+        distance = np.linalg.norm(apart + np.array(image) @ cell, axis=-1)
+        found.append(np.where(np.eye(len(position)) * (not any(image)), np.inf, distance).min())
+    return min(found)
+
+
+@pytest.mark.parametrize("name", kernels(*NAMES))
+def test_no_two_particles_are_closer_than_a_diameter_in_the_cell_of_the_file(name):
+    found = sample(name)
+    periodic = [*found.periodic.values, 0][:3]
+    least = [least_distance(one.cell, one.position, periodic) for one in frames(found)]
+    assert 2.0 - 1e-9 < min(least) < 2.5
+    if name == "sheared":  # the image above has slid, or there would be overlaps
+        square = [np.diag(np.diag(one.cell)) for one in frames(found)]
+        shots = zip(square, frames(found), strict=True)
+        assert min(least_distance(cell, one.position, periodic) for cell, one in shots) < 2.0
+
+
+def numbers_of_xyz(path):
+    """Number of particles, comment, and columns of each frame of an extended XYZ file."""
+    lines = path.read_text().splitlines()
+    while lines:
+        number = int(lines[0])
+        rows = [[float(word) for word in line.split()[1:]] for line in lines[2 : number + 2]]
+        yield lines[1], np.array(rows)
+        del lines[: number + 2]
+
+
+@pytest.mark.parametrize("name", kernels(*NAMES))
+def test_text_has_every_digit(name, tmp_path):
+    found, path = sample(name), tmp_path / "new" / "bed.xyz"
+    write_trajectory(path, found)
+    for one, (comment, columns) in zip(frames(found), numbers_of_xyz(path), strict=True):
+        assert np.array_equal(columns[:, :3], one.position)
+        assert np.array_equal(columns[:, 3:6], one.velocity) and np.all(columns[:, 6] == 1.0)
+        assert np.array_equal(columns[:, 7:10], one.spin)
+        assert f"Time={one.time!r}" in comment
+        pbc = {"bed": "T F F", "shaken": "F T F", "sheared": "T T F", "spheres": "T T T"}[name]
+        assert f'pbc="{pbc}"' in comment
+    assert [file.name for file in path.parent.iterdir()] == ["bed.xyz"]
+
+
+@pytest.mark.parametrize("name", kernels(*NAMES))
+def test_netcdf_follows_the_conventions_of_amber(name, tmp_path):
+    found, path = sample(name), tmp_path / "bed.nc"
+    write_trajectory(path, found)
+    with netCDF4.Dataset(path) as file:
+        assert (file.Conventions, file.ConventionVersion) == ("AMBER", "1.0")
+        assert b"".join(file["spatial"][:]) == b"xyz" and file["time"][:].tolist() == [
+            one.time for one in frames(found)
+        ]
+        for number, one in enumerate(frames(found)):
+            assert np.array_equal(file["coordinates"][number], one.position)
+            assert np.array_equal(file["velocities"][number], one.velocity)
+            lengths, angles = lengths_and_angles(one.cell)
+            assert np.array_equal(file["cell_lengths"][number], lengths)
+            assert np.array_equal(file["cell_angles"][number], angles)
+
+
+@pytest.mark.parametrize("ending", [".xyz", ".nc"])
+@pytest.mark.parametrize("name", kernels(*NAMES))
+def test_ase_reads_what_was_written(name, ending, tmp_path):
+    pytest.importorskip("ase")
+    from ase.io import read
+    from ase.io.netcdftrajectory import NetCDFTrajectory
+
+    found, path = sample(name), tmp_path / f"bed{ending}"
+    write_trajectory(path, found)
+    shots = read(path, ":") if ending == ".xyz" else list(NetCDFTrajectory(path, "r"))
+    for one, atoms in zip(frames(found), shots, strict=True):
+        assert atoms.get_positions() == pytest.approx(one.position, abs=1e-12)
+        assert atoms.cell.array == pytest.approx(one.cell, abs=1e-9)
+        if ending == ".xyz":
+            assert np.array_equal(atoms.arrays["velo"], one.velocity)
+            assert np.array_equal(atoms.arrays["omega"], one.spin)
+            assert atoms.pbc.tolist() == [bool(flag) for flag in [*found.periodic.values, 0][:3]]
+        distances = atoms.get_all_distances(mic=ending == ".xyz")
+        assert distances[np.triu_indices(len(atoms), 1)].min() > 2.0 - 1e-9
+
+
+@pytest.mark.parametrize("name", kernels(*NAMES))
+def test_gsd_has_particles_inside_a_centred_cell(name, tmp_path):
+    hoomd = pytest.importorskip("gsd.hoomd")
+    found, path = sample(name), tmp_path / "bed.gsd"
+    write_trajectory(path, found)
+    periodic = [*found.periodic.values, 0][:3]
+    with hoomd.open(path) as file:
+        assert len(file) == 4
+        for one, shot in zip(frames(found), file, strict=True):
+            lx, ly, lz, xy, *_ = shot.configuration.box
+            cell = np.array([[lx, 0, 0], [xy * ly, ly, 0], [0, 0, lz or 1]])
+            assert shot.configuration.dimensions == found.sizes["axis"] == 3 - (lz == 0)
+            assert abs(xy * ly) <= lx / 2
+            within = shot.particles.position @ np.linalg.inv(cell)
+            assert np.all(np.abs(within) <= 0.5 + 1e-6)
+            assert least_distance(cell, shot.particles.position, periodic) > 2.0 - 1e-5
+            assert shot.particles.velocity == pytest.approx(one.velocity, rel=1e-5, abs=1e-6)
+            assert shot.log["time"].item() == one.time
+
+
+def test_another_ending_is_refused(tmp_path):
+    with pytest.raises(InputError, match=r"must end in \.xyz, \.nc, \.gsd"):
+        write_trajectory(tmp_path / "bed.pdb", sample("sheared"))
+    assert list(tmp_path.iterdir()) == [] and set(FORMATS) == {".xyz", ".nc", ".gsd"}
