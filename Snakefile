@@ -4,7 +4,6 @@
 #   snakemake -j2 figures --config scale=small  the same in a minute, with wide error bars
 #   snakemake -j2 extensions                    beyond the paper: spheres, friction, other drives ...
 #   snakemake -j1 explore                       a page in which to look at every point
-#   snakemake -j1 living                        a page in which a gas moves, with sliders
 #   snakemake -j2 movies                        the scenes as they move, one GIF each
 #   snakemake -j1 showcase                      a large cooling gas forms clusters: a movie
 #   snakemake -j2 accuracy                      what the next digit costs, in CPU seconds
@@ -27,19 +26,19 @@ SCALE = config["scale"]
 
 
 wildcard_constraints:
-    scale="[^/]+",
+    scale=NAME,
     experiment=EXPERIMENT + VARIANT,
-    r="[^/]+",
-    beta="[^/]+",
-    seed="[^/]+",
-    folder="([^/]+/)?",
+    r=NAME,
+    beta=NAME,
+    seed=NAME,
+    folder=f"({NAME}/)?",
     # these have their own rules
-    figure=rf"(?!clustering\.|hard_cases|(?:{STUDY_FIGURE})\.)[^/]+",
-    movie="[^/]+",
-    study="[^/]+",
-    task="[^/]+",
+    figure=rf"(?!clustering\.|hard_cases|(?:{STUDY_FIGURE})\.){NAME}",
+    movie=NAME,
+    study=NAME,
+    task=NAME,
     study_figure=STUDY_FIGURE,
-    family="[^/]+",
+    family=NAME,
 
 
 include: "rules/report.smk"
@@ -66,7 +65,6 @@ localrules:
     document,
     effective_config,
     run_times,
-    living_page,
 
 
 rule figures:
@@ -93,11 +91,6 @@ rule explore:
 rule explore_extensions:
     input:
         f"results/{SCALE}/explore_extensions.html",
-
-
-rule living:
-    input:
-        f"results/{SCALE}/living.html",
 
 
 rule plan:
@@ -161,7 +154,6 @@ rule everything:
         rules.finite_size.input,
         rules.explore.input,
         rules.explore_extensions.input,
-        rules.living.input,
 
 
 onstart:

@@ -10,6 +10,7 @@ try:
     import roughgas.config
     from roughgas.base import sources
     from roughgas.base.errors import InputError, not_one_of
+    from roughgas.base.layout import in_rst
     from roughgas.show import catalogue
     from roughgas.studies.figures import FIGURES
 except ModuleNotFoundError as error:
@@ -25,8 +26,9 @@ FIRST = 10**12  # priority: more urgent than any point
 # An experiment as a whole, or one of its variants: as wildcards, not what has rules of its own, nor
 # the folders of points.
 STUDY_FIGURE = "|".join(FIGURES)
-EXPERIMENT = rf"(?!(?:{STUDY_FIGURE})\.|(?:studies|showcase|hard_cases)/)[^/]+"
-VARIANT = r"(?:/(?!(?:r|beta|seed)[-+.\d])[^/]+)?"
+NAME = r"[\w+.-]+"  # nothing that means something to a shell: wildcards become parts of commands
+EXPERIMENT = rf"(?!(?:{STUDY_FIGURE})\.|(?:studies|showcase|hard_cases)/){NAME}"
+VARIANT = rf"(?:/(?!(?:r|beta|seed)[-+.\d]){NAME})?"
 # rules call the `roughgas` beside this snakemake, wherever it was started from
 os.environ["PATH"] = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
 

@@ -47,7 +47,11 @@ def caption_of_document(wildcards, output):
 def experiments_of_figure(wildcards, output):
     """The settings of the experiments that a figure shows, for its caption."""
     scale = scale_of(wildcards.folder)
-    return {name: settings(scale, name) for name in entry_of(wildcards).shows}
+    found = {name: settings(scale, name) for name in entry_of(wildcards).shows}
+    return {
+        name: one | {"description": in_rst(one.get("description", ""))}
+        for name, one in found.items()
+    }
 
 
 def studies_of_figure(wildcards, output):

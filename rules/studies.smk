@@ -9,6 +9,9 @@ def settings_of_study(wildcards):
     """The settings of a study and of the experiments, as JSON."""
     with one_line(TASK.format(**wildcards)):
         found = roughgas.config.study(config, wildcards.study, wildcards.scale)
+        known = studies.study(wildcards.study).tasks(found["study"])
+        if wildcards.task not in known:
+            raise not_one_of("task", wildcards.task, known)
     return roughgas.config.as_text(found)
 
 

@@ -88,7 +88,8 @@ def simulate(
     config
         Path of a configuration to use instead of the one that comes with roughgas.
     progress
-        Whether to show a progress bar, in a notebook or on a terminal.
+        Whether to show a progress bar, in a notebook or on a terminal; elsewhere a line now and
+        then, of what takes more than ten seconds.
 
     Returns
     -------
@@ -151,11 +152,12 @@ def simulate(
     from roughgas.planning.reach import complete
     from roughgas.scene import build
     from roughgas.simulation.point import run_point
-    from roughgas.simulation.progress import Progress
+    from roughgas.simulation.progress import Bar, Progress
 
     name = experiment or UNNAMED
     scene = build(settings, legal_r, legal_beta)
-    settings = complete(scene, settings)
+    with Bar(f"pilot of {name}", None, quiet=not progress or "target_stderr" not in settings):
+        settings = complete(scene, settings)
     about = provenance(name, settings, (str(r), str(beta), str(seed)), scale, "point.nc")
     with Progress(name, scene, settings, quiet=not progress) as bar:
         found = run_point(scene, settings, number, bar)

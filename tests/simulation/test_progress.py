@@ -1,6 +1,8 @@
-"""Progress: bars on a terminal, nothing elsewhere, and a film's lines in a log."""
+"""Progress: bars on a terminal, elsewhere a line now and then, and a film's lines in a log."""
 
 import io
+import re
+import time
 from pathlib import Path
 
 import pytest
@@ -74,7 +76,7 @@ def test_a_cooling_gas_is_followed_through_its_replicas():
     assert stream.shown[-1].startswith("cooling: 100%|")
 
 
-def test_progress_is_silent_elsewhere():
+def test_progress_is_silent_elsewhere_of_what_is_soon_over():
     stream = io.StringIO()
     with Progress("cooling", build(COOLING, 0.9, 0.0), COOLING, stream=stream) as progress:
         progress(1.0, 1)
@@ -104,3 +106,27 @@ def test_a_log_has_a_line_for_each_checkpoint_of_a_film(monkeypatch):
         "clustering: going on from c.npz",
         "clustering: frame 21 of 100, 6,000 collisions, 65 min 50 s left",
     ]
+
+
+def test_a_pipe_hears_now_and_then_of_what_takes_long(monkeypatch):
+    monkeypatch.setattr("roughgas.simulation.progress.PATIENCE", 0.02)
+    stream = io.StringIO()
+    with Bar("pilots", 4, "points", stream) as bar:
+        bar.reach(1, "r = 0.9")
+        time.sleep(0.2)
+    said = stream.getvalue().splitlines()
+    assert 2 <= len(said) <= 6  # at longer and longer intervals
+    assert re.fullmatch(r"pilots: 1 of 4 points \(r = 0\.9\), \d+ s so far", said[0])
+    time.sleep(0.2)
+    assert stream.getvalue().splitlines() == said
+    with Bar("task", None, stream=stream):
+        time.sleep(0.1)
+    assert stream.getvalue().splitlines()[-1].startswith("task: at work, ")
+
+
+def test_whoever_wants_silence_has_it(monkeypatch):
+    monkeypatch.setattr("roughgas.simulation.progress.PATIENCE", 0.01)
+    stream = io.StringIO()
+    with Bar("pilots", 4, "points", stream, quiet=True):
+        time.sleep(0.05)
+    assert stream.getvalue() == ""

@@ -8,6 +8,7 @@ import pytest
 
 import roughgas
 from roughgas.statistics.averages import period_means
+from roughgas.statistics.equilibration import is_equilibrated
 from roughgas.statistics.errors import (
     autocorrelation_time,
     blocking_stderr,
@@ -15,6 +16,8 @@ from roughgas.statistics.errors import (
     stderr_over_seeds,
     student_t,
 )
+from roughgas.statistics.intervals import is_trusted
+from roughgas.statistics.plateau import find_plateau
 
 # Samples and integrated autocorrelation time of AR(1) series, at least 20 such times long.
 CASES = [(100, 1), (100, 5), (500, 0.5), (500, 5), (500, 25), (2000, 1), (2000, 39), (2000, 100)]
@@ -75,11 +78,23 @@ def test_raw_samples_of_a_periodic_drive_mislead_and_period_means_do_not(ar1):
         assert np.sqrt(np.mean(estimates**2)) == pytest.approx(truth, rel=0.16)
 
 
-def test_constant_series_have_no_error_and_no_autocorrelation_time(recwarn):
+def test_a_constant_series_has_no_error_and_no_memory(recwarn):
     constant = np.full(100, 0.1)
     assert blocking_stderr(constant) == 0
-    assert math.isnan(autocorrelation_time(constant))
+    assert autocorrelation_time(constant) == 1.0
+    assert is_trusted(100, 1.0)
     assert not recwarn.list
+
+
+@pytest.mark.parametrize("wrong", [math.nan, math.inf])
+def test_a_series_with_a_number_that_is_none_is_never_trusted_nor_steady(wrong):
+    series = np.random.default_rng(1).standard_normal(200) + 10.0
+    series[150] = wrong
+    assert math.isnan(autocorrelation_time(series))
+    assert not is_trusted(len(series), autocorrelation_time(series))
+    with np.errstate(invalid="ignore"):
+        assert not is_equilibrated(series)
+        assert not find_plateau(np.arange(200.0), np.tile(series, (12, 1))).found
 
 
 @pytest.mark.parametrize("estimate", [blocking_stderr, stderr_over_seeds])

@@ -1,13 +1,19 @@
-"""Tables for a terminal, tables in Markdown, and strict JSON, written and read."""
+"""Tables for a terminal, in Markdown and as CSV, and strict JSON, written and read.
+
+Texts of people and of files stay texts: in none of these do they become markup or a formula.
+"""
 
 import json
 import math
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NoReturn
 
 from roughgas.base.errors import InputError, shown
 
 DIGITS = 19  # of a whole number: what 64 bits can hold
+FORMULAS = ("=", "+", "-", "@", "\t")
+"""How a text begins that a spreadsheet takes for a formula."""
 
 
 def columns(rows: Iterable[Sequence[str]], numbers: bool = False) -> str:
@@ -25,13 +31,26 @@ def markdown(
     `align` has a character for each column, < (the default) or >. A `padded` table can be read as
     it stands: cells of a column have one width.
     """
-    table = [[str(cell) for cell in row] for row in (head, *rows)]
+    table = [[_in_markdown(cell) for cell in row] for row in (head, *rows)]
     align = align or "<" * len(table[0])
     rule = ["---:" if side == ">" else "---" for side in align]
     if padded:
         table = _padded(table, align)
         rule = [f"{dashes[-1]:->{len(cell)}}" for cell, dashes in zip(table[0], rule, strict=True)]
     return "".join(f"| {' | '.join(row)} |\n" for row in (table[0], rule, *table[1:]))
+
+
+def in_csv(value: Any) -> Any:
+    """Return a value as a cell of a CSV table: a text that is a formula, behind an apostrophe."""
+    if not isinstance(value, str) or _is_number(value):
+        return value
+    text = value.replace("\r", " ")  # which ends a row even where it is not quoted
+    return f"'{text}" if text.startswith(FORMULAS) else text
+
+
+def in_rst(text: str) -> str:
+    """Return a text on one line that reStructuredText shows as it is."""
+    return re.sub(r"([^\w\s])", r"\\\1", " ".join(text.split()))
 
 
 def as_json(answer: Any, indent: int | None = 2) -> str:
@@ -65,6 +84,18 @@ def _whole(digits: str) -> int:
     if len(digits) > DIGITS:
         _refuse(digits)
     return int(digits)
+
+
+def _is_number(text: str) -> bool:
+    try:
+        return math.isfinite(float(text))
+    except ValueError:
+        return False
+
+
+def _in_markdown(cell: Any) -> str:
+    """Return a cell on one line; a bar would end it."""
+    return " ".join(str(cell).splitlines()).replace("|", "\\|")
 
 
 def _padded(rows: Sequence[Sequence[str]], align: str) -> list[list[str]]:

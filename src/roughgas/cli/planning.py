@@ -13,10 +13,10 @@ from roughgas.base.layout import as_json
 from roughgas.cli.options import whole_number
 from roughgas.cli.run import point_of, say_done, write_seed
 from roughgas.planning import reach as reaching
-from roughgas.planning.pilot import read_pilot, write_pilot
+from roughgas.planning.pilot import Pilot, read_pilot, write_pilot
 from roughgas.planning.plan import explore, plan_point
 from roughgas.planning.table import as_markdown, as_numbers, row
-from roughgas.scene import build
+from roughgas.scene import Scene, build
 from roughgas.simulation.progress import Bar, Progress
 
 PILOT = "{experiment}/r{r}/beta{beta}/pilot.json"
@@ -25,7 +25,7 @@ PILOT = "{experiment}/r{r}/beta{beta}/pilot.json"
 def pilot(options: Namespace) -> None:
     """Run the pilot of a point."""
     scene, settings = point_of(options, options.beta)
-    write_pilot(options.output, explore(scene, settings))
+    write_pilot(options.output, _explore(options, scene, settings))
 
 
 def reach(options: Namespace) -> None:
@@ -33,7 +33,7 @@ def reach(options: Namespace) -> None:
     scene, settings = point_of(options, options.beta)
     if "target_stderr" not in settings:
         raise InputError("target_stderr", "(nothing)", f"be set for {options.experiment}")
-    known = read_pilot(options.pilot) if options.pilot else explore(scene, settings)
+    known = read_pilot(options.pilot) if options.pilot else _explore(options, scene, settings)
 
     def keep(seed, point, chosen):
         output = str(Path(options.output, f"seed{seed}.nc"))
@@ -70,6 +70,11 @@ def plan(options: Namespace) -> None:
     print(text, end="")
     if options.output:
         write_text(options.output, text)
+
+
+def _explore(options: Namespace, scene: Scene, settings: dict[str, Any]) -> Pilot:
+    with Bar(f"pilot of {options.experiment}", None):
+        return explore(scene, settings)
 
 
 def _pilots(name: str, settings: dict[str, Any], folder: Path):

@@ -14,7 +14,7 @@ from roughgas.data.point import Point, write_point
 from roughgas.planning.reach import complete
 from roughgas.scene import Scene, build
 from roughgas.simulation.point import compile_kernels, run_point
-from roughgas.simulation.progress import Progress
+from roughgas.simulation.progress import Bar, Progress
 from roughgas.statistics.estimate import Estimate
 
 IDENTITY = ("experiment", "variant", "scale", "r", "beta", "seed")
@@ -31,7 +31,8 @@ def run(options: Namespace) -> None:
         raise InputError("--output", " ".join(outputs), f"name {len(places)}, one a seed")
     remaining = zip(places, outputs, strict=True)
     for scene, settings in points:
-        settings = complete(scene, config.point_settings(settings))
+        with Bar(f"pilot of {options.experiment}", None, quiet="target_stderr" not in settings):
+            settings = complete(scene, config.point_settings(settings))
         for seed in options.seed:
             with Progress(f"{options.experiment}, seed {seed}", scene, settings) as progress:
                 point = run_point(scene, settings, seeds[seed], progress)

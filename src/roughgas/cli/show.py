@@ -24,6 +24,7 @@ QUOTED = {
     opening.TASK: ("settings_json",),
 }
 """Attributes of each kind that a summary quotes."""
+BOOKS = {"source", "motion", "energy_input", "energy_gain", "energy_imbalance"}
 SHAPES = {2: "disks", 3: "spheres"}
 BLOCKS, WIDTH = "▁▂▃▄▅▆▇█", 48
 FRAMES = 8  # of a film, that are shown
@@ -113,7 +114,7 @@ def _point_text(point: Dataset) -> str:
             value = Estimate(float(point[name]), float(point.get(f"{name}_stderr", math.nan)))
             rows.append([name, f"{value} {unit_of(point[name].attrs)}, per degree of freedom"])
     rows += [["steady state", _steady(point)], _cost(point)]
-    books = [_books(point)] if "energy_input" in point else []
+    books = [_books(point)] if BOOKS <= set(point.variables) else []
     return "\n\n".join([columns(rows), *books, f"To make it again:\n{about['command']}"])
 
 

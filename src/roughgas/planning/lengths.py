@@ -30,11 +30,10 @@ def relaxation(scene: Scene, tolerated: float, final: float, spin_share: float |
 def to_measure(spent: float, seeds: float, target: float, memories: float, pilot: Pilot) -> float:
     """Return how long to measure: as long as was spent before, but no longer than `seeds` need.
 
-    In any case many times as long as R remembers (NaN if it is constant).
+    In any case many times as long as R remembers.
     """
     needed = pilot.variance / (seeds * (RESERVE * target) ** 2)
-    memory = pilot.autocorrelation_time
-    return max(min(spent, needed), 0.0 if math.isnan(memory) else memories * memory)
+    return max(min(spent, needed), memories * pilot.autocorrelation_time)
 
 
 def whole(length: float, unit: float) -> float:

@@ -25,6 +25,7 @@ from typing import TYPE_CHECKING, Any
 
 from roughgas.base.errors import InputError
 from roughgas.base.files import whole_file
+from roughgas.base.layout import in_csv
 from roughgas.base.version import __version__
 from roughgas.config.reading import read_yaml
 from roughgas.data.opening import POINT, SCHEMA_VERSION, opened
@@ -184,7 +185,7 @@ def _list_of(points: Iterable[str]) -> str:
     table.writerow(COLUMNS)
     for point in points:
         with opened(point, POINT) as file:
-            table.writerow([point, digest(point), file.getncattr("command")])
+            table.writerow(map(in_csv, [point, digest(point), file.getncattr("command")]))
     return text.getvalue()
 
 

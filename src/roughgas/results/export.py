@@ -13,6 +13,7 @@ from pandas import DataFrame
 from xarray import Dataset
 
 from roughgas.base.files import whole_file
+from roughgas.base.layout import in_csv
 from roughgas.data.netcdf import read_netcdf, unit_of
 from roughgas.data.opening import opened
 from roughgas.results import table
@@ -96,7 +97,7 @@ def _descriptions(dataset: Dataset, found_in: Mapping[str, str]) -> Iterator[tup
 
 def _write(file: Path, frame: DataFrame) -> None:
     with whole_file(file) as draft:  # NaN is an empty cell
-        frame.to_csv(draft, index=False, lineterminator="\n")
+        frame.map(in_csv).rename(columns=in_csv).to_csv(draft, index=False, lineterminator="\n")
 
 
 def _beside(output: Path, part: str) -> Path:

@@ -19,7 +19,7 @@ from roughgas.base.errors import InputError
 from roughgas.data.netcdf import COMMON_ATTRIBUTES, Content, write_netcdf
 from roughgas.data.opening import POINT as OF_POINT
 from roughgas.data.opening import DamagedError, attributes_of, opened, require
-from roughgas.data.reduced import GRID, third_axis
+from roughgas.data.reduced import GRID, SOUND, check_sound, third_axis
 from roughgas.data.variables import CLOCKS, POINT, Array, described
 from roughgas.statistics.bimodal import is_bimodal
 from roughgas.statistics.intervals import pooled
@@ -48,8 +48,8 @@ def reduce_points(paths: Iterable[str | Path], output: str | Path) -> None:
 
     A path is that of a dataset, or of a folder with a dataset for each seed. Seeds that are missing
     at an (r, beta) are NaN in R_seed, and do not count in n_seeds and the means.
-    Raises InputError if there are no paths, several experiments, the same point twice, or a file
-    is damaged, which is then put aside.
+    Raises InputError if there are no paths, several experiments, the same point twice, a point
+    whose numbers cannot be right, or a damaged file, which is then put aside.
     """
     folders = (path.glob("seed*.nc") if path.is_dir() else [path] for path in map(Path, paths))
     points = [_checked(file) for files in folders for file in sorted(files)]
@@ -75,6 +75,8 @@ def _summary(path: Path) -> Summary:
         require(attributes, ("swept_value",) if "swept" in attributes else (), path)
         found = [name for name, about in POINT.items() if not about.dims]
         scalars = {name: file[name][...].item() for name in found if name in file.variables}
+        for name in scalars.keys() & SOUND:
+            check_sound(path, name, scalars[name])
         scalars["measured_for"], scalars["R_drift"] = _window(file, scalars)
         replicas = file["R_replica"][...] if "R_replica" in file.variables else np.empty(0)
     swept = (attributes["swept_value"],) if "swept" in attributes else ()

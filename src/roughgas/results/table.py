@@ -10,6 +10,7 @@ import numpy as np
 from xarray import Dataset
 
 from roughgas.base.files import whole_file
+from roughgas.base.layout import in_csv
 from roughgas.data.reduced import GRID, read_reduced, third_axis
 from roughgas.theory.prediction import predicted_ratio
 
@@ -62,5 +63,5 @@ def rows(dataset: Dataset, head: Sequence[str] = HEAD) -> Iterator[dict[str, Any
 def _cell(value: Any) -> str:
     """Return a number with ten digits; an empty cell for NaN."""
     if isinstance(value, str):
-        return value
+        return in_csv(value)
     return "" if math.isnan(value) else format(value, ".10g")

@@ -15,6 +15,9 @@ from roughgas.scene import Scene
 
 MOTIONS = ("translation", "rotation")
 CONTACTS = "contacts"
+LEAST = (
+    1e-3  # of the energy: of what exchanges less, roundings of the energy are all that is missing
+)
 
 
 class Books(NamedTuple):
@@ -57,7 +60,7 @@ def exchange(before: Books, after: Books, scene: Scene, particles: int) -> dict[
         "motion": list(MOTIONS),
         "energy_input": booked[list(accounts.values())],
         "energy_gain": gain,
-        "energy_imbalance": imbalance(booked, gain),
+        "energy_imbalance": imbalance(booked, gain, before.energy.sum() / particles),
     }
     if scene.effects.spin is None or not hooks.present(scene.effects, "drives"):
         return found
@@ -66,9 +69,13 @@ def exchange(before: Books, after: Books, scene: Scene, particles: int) -> dict[
     return found | {"input_spin_share": put_in[1] / put_in.sum()}
 
 
-def imbalance(booked: np.ndarray, gain: np.ndarray) -> float:
-    """Return the largest energy of a motion that the books do not explain, over all exchanged."""
-    exchanged = np.abs(booked).sum()
+def imbalance(booked: np.ndarray, gain: np.ndarray, energy: float = 0.0) -> float:
+    """Return the largest energy of a motion that the books do not explain, over all exchanged.
+
+    Where hardly anything is exchanged, as by particles that are nearly elastic and smooth, it is
+    over a thousandth of the `energy` that was there, whose roundings are missing.
+    """
+    exchanged = max(np.abs(booked).sum(), LEAST * energy)
     missing = np.abs(gain - booked.sum(axis=0)).max()
     return float(missing / exchanged) if exchanged > 0.0 else float(missing)
 

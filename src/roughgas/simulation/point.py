@@ -13,6 +13,13 @@ from roughgas.simulation import schedule
 from roughgas.simulation.gas import Gas, Recorder
 from roughgas.theory import packing_fraction
 
+ENERGIES = ("E_trans", "E_rot", "R", "R_ratio_of_means")
+VOUCHED = {
+    "equilibrated": ENERGIES,
+    "R_ci95_trusted": (*ENERGIES, "R_stderr", "R_dof", "R_ci95", "autocorrelation_time"),
+}
+"""The numbers that each flag of a point vouches for."""
+
 
 def run_point(
     scene: Scene,
@@ -35,7 +42,7 @@ def run_point(
         found["contact_time"] = scene.effects.contact_time.duration
         found["contact_time_fraction"] = recorder.touched / max(1, recorder.collisions)
     return Point(
-        variables=found,
+        variables=found | _withdrawn(found),
         attributes={
             "r": scene.restitution,
             "beta": scene.roughness,
@@ -49,6 +56,13 @@ def run_point(
             "kernel_source_hash": source_hash(),
         },
     )
+
+
+def _withdrawn(found):
+    """Return the flags that must not stand, since a number that they vouch for is none."""
+    given = {flag: [found[one] for one in VOUCHED[flag] if one in found] for flag in VOUCHED}
+    wrong = (flag for flag, numbers in given.items() if not np.isfinite(numbers).all())
+    return {flag: False for flag in wrong if flag in found}
 
 
 def _known_to_theory(scene, experiment):

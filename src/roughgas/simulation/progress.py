@@ -1,12 +1,15 @@
 """How far long work is, and how much longer it will take.
 
-There is a bar on a terminal and in a notebook, and nothing elsewhere.
+There is a bar on a terminal and in a notebook; elsewhere, as in a pipe or a log, a line now and
+then of what takes longer than PATIENCE.
 """
 
 import sys
+import threading
 import time
 import warnings
 from collections.abc import Iterable, Iterator, Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self, TypeVar
 
@@ -15,12 +18,13 @@ if TYPE_CHECKING:
 
 BAR = "{desc}: {percentage:3.0f}%|{bar}| {n_fmt} of {total_fmt}{unit}, {remaining} left{postfix}"
 SECONDS_BETWEEN = 0.1  # looks of a bar
+PATIENCE, LONGEST_SILENCE = 10.0, 60.0  # seconds until the first line, and between lines at last
 NOTEBOOK = "ipykernel"  # a notebook has imported it
 Item = TypeVar("Item")
 
 
 class Bar:
-    """How much of a known amount of work is done; silent where nobody would see it."""
+    """How much of a known amount of work is done."""
 
     def __init__(
         self,
@@ -32,6 +36,8 @@ class Bar:
     ) -> None:
         """`unit` is that of `total`, which is None where it is not known yet."""
         self._bar, self._stream = None, sys.stderr if stream is None else stream
+        self._name, self._done, self._total, self._unit, self._note = name, 0.0, total, unit, ""
+        self._quiet, self._over = quiet, threading.Event()
         if not quiet and (NOTEBOOK in sys.modules or self._stream.isatty()):
             self._bar = _tqdm()(
                 desc=name,
@@ -46,26 +52,41 @@ class Bar:
             )
 
     def __enter__(self) -> Self:
+        if self._bar is None and not self._quiet:
+            threading.Thread(target=self._say_now_and_then, daemon=True).start()
         return self
 
     def __exit__(self, *_: object) -> None:
         """Clear the line."""
+        self._over.set()
         if self._bar is not None:
             self._bar.close()
 
     def reach(self, done: float, note: str = "", total: float | None = None) -> None:
         """Show how much is done; `total` where it has become known."""
+        self._done, self._note = done, note
+        self._total = self._total if total is None else total
         if self._bar is None:
             return
-        if total is not None:
-            self._bar.total = total
+        self._bar.total = self._total
         self._bar.set_postfix_str(note, refresh=False)
         self._bar.update(done - self._bar.n)
 
     def advance(self) -> None:
         """Show that one more is done."""
-        if self._bar is not None:
-            self.reach(self._bar.n + 1)
+        self.reach(self._done + 1)
+
+    def _say_now_and_then(self) -> None:
+        begun, wait = time.perf_counter(), PATIENCE
+        while not self._over.wait(wait):
+            with suppress(OSError, ValueError):  # nobody reads, or the stream is closed
+                self.say(f"{self._how_far()}, {time.perf_counter() - begun:.0f} s so far")
+            wait = min(1.5 * wait, LONGEST_SILENCE)
+
+    def _how_far(self) -> str:
+        of = "at work" if self._total is None else f"{self._done:g} of {self._total:g}"
+        note = f" ({self._note})" if self._note else ""
+        return f"{self._name}: {of} {self._unit}".rstrip() + note
 
     def say(self, text: str) -> None:
         """Write a line that stays."""
@@ -93,7 +114,7 @@ class Progress(Bar):
         """`experiment` must be complete: its schedule says how long it runs."""
         from roughgas.simulation import schedule
 
-        self._name, self._compiling = name, True
+        self._compiled = name
         self._particles, self._kind = experiment["particles"], schedule.of(experiment)
         self._before = self._now = 0.0  # lengths: of the simulations that are over, of this one
         total = round(seeds * self._kind.length(scene, experiment["schedule"]))
@@ -101,10 +122,10 @@ class Progress(Bar):
 
     def __call__(self, simulated: float, collisions: int) -> None:
         """Report simulated time (T) and collisions of the present simulation so far."""
-        if self._compiling and self._bar is not None:
-            self._bar.set_description_str(self._name, refresh=False)
+        if self._name != self._compiled and self._bar is not None:
+            self._bar.set_description_str(self._compiled, refresh=False)
             self._bar.unpause()  # how long compiling took says nothing of the simulation
-        self._compiling = False
+        self._name = self._compiled
         now = simulated if self._kind.DRIVEN else 2.0 * collisions / self._particles
         if now < self._now:  # another one has begun
             self._before += self._now
@@ -113,7 +134,7 @@ class Progress(Bar):
 
 
 class FilmProgress(Bar):
-    """How far a film is; where there is no terminal, as in a log, a line for each checkpoint."""
+    """How far a film is; where there is no terminal, as in a log, also at each checkpoint."""
 
     def __init__(self, checkpoint: Path, frames: int, stream: Any = None) -> None:
         super().__init__("clustering", frames, "frames", stream)

@@ -72,14 +72,16 @@ def autocorrelation_time(series: np.ndarray) -> float:
     functions are averaged. Sokal's window is 3 tau in this convention (his 6). The estimate comes
     out short because the mean is taken from the same series, which is corrected to first order as
     in Wolff (2004). Never below 1: anticorrelation gets no credit, because it mostly comes from
-    samples at fixed phases of a drive. NaN for a constant series. Reliable if the series is 20 tau
-    long.
+    samples at fixed phases of a drive. 1 for a constant series, of which each sample says all; NaN
+    where a value is. Reliable if the series is 20 tau long.
     """
     series = np.atleast_2d(np.asarray(series, dtype=float))
     samples = series.shape[1]
+    if not np.isfinite(series).all():
+        return math.nan
     varying = series[np.ptp(series, axis=1) > 0]
     if len(varying) == 0:
-        return math.nan
+        return 1.0
     time = _integrated_time()(varying.T, c=WINDOW, tol=0).item()
     return max(1.0, time * (1 + 2 * WINDOW * time / samples))
 

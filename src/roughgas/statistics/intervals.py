@@ -41,10 +41,9 @@ def half_width(stderr: float, dof: float, level: float) -> float:
 def is_trusted(samples: int, autocorrelation_time: float) -> bool:
     """Return whether a correlated series is long enough for its interval to be wide enough.
 
-    The interval is by blocking, `autocorrelation_time` in samples; it is NaN for a constant series,
-    whose mean is exact.
+    The interval is by blocking, `autocorrelation_time` in samples; where that is NaN, it is not.
     """
-    return not samples < SHORTEST * autocorrelation_time
+    return samples >= SHORTEST * autocorrelation_time
 
 
 def degrees_of_freedom(blocks: float) -> float:

@@ -8,6 +8,7 @@ from string import Template
 
 from roughgas.base.errors import InputError
 from roughgas.base.files import write_text
+from roughgas.show.page.policy import policy
 
 
 def write_document(source: str | Path, output: str | Path) -> None:
@@ -22,7 +23,7 @@ def write_document(source: str | Path, output: str | Path) -> None:
     page = Template(here.with_name("document.html").read_text("utf-8"))
     css = here.with_name("document.css").read_text("utf-8")
     body = KINDS[source.suffix](source.read_bytes())
-    write_text(output, page.substitute(title=title, css=css, body=body))
+    write_text(output, page.substitute(title=title, policy=policy(), css=css, body=body))
 
 
 def _markdown(content):

@@ -7,6 +7,7 @@ are only looked at, are rounded.
 import json
 import math
 from collections.abc import Iterable
+from html import escape
 from pathlib import Path
 from string import Template
 from typing import Any
@@ -19,6 +20,7 @@ from roughgas.data.opening import POINT, attributes_of, opened, require
 from roughgas.data.point import read_point
 from roughgas.data.reduced import EQUILIBRATED, read_reduced, third_axis
 from roughgas.data.variables import CLOCKS
+from roughgas.show.page.policy import policy
 from roughgas.show.style import LOOKS
 from roughgas.theory.prediction import equation_of, predicted_ratio
 
@@ -62,9 +64,11 @@ def write_page(reduced: Iterable[str | Path], points: str | Path, output: str | 
         for look in LOOKS
     ]
     data = {"scale": scales[0], "grid": rounded(GRID), "looks": looks, "experiments": experiments}
-    text = json.dumps(data, separators=(",", ":"), allow_nan=False).replace("</", r"<\/")
-    parts = {name: _text(f"page.{name}") for name in ("css", "js")}
-    parts |= {"scale": scales[0], "plotly": get_plotlyjs(), "data": text}
+    # within a script, `<` could end it, or begin a comment
+    text = json.dumps(data, separators=(",", ":"), allow_nan=False).replace("<", r"\u003c")
+    parts = {name: _text(f"page.{name}") for name in ("css", "js")} | {"plotly": get_plotlyjs()}
+    allowed = policy(parts["plotly"], parts["js"])
+    parts |= {"policy": allowed, "scale": escape(scales[0]), "data": text}
     write_text(output, Template(_text("page.html")).substitute(parts))
 
 
