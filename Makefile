@@ -24,10 +24,10 @@ figures: setup ## simulate, and draw the four figures of the paper
 	@echo "Every point, to click on, and one file to share:  make report"
 
 report: setup ## one HTML file with all that REPORTED has (default: figures), and an interactive page
-	$(BIN)/snakemake -j$(JOBS) --config scale=$(SCALE) -- $(REPORTED) explore
+	$(BIN)/snakemake -j$(JOBS) --config scale=$(SCALE) -- $(REPORTED) explore living
 	$(BIN)/snakemake --config scale=$(SCALE) --report results/$(SCALE)/report.html -- $(REPORTED)
 	@echo
-	@echo "Look at  results/$(SCALE)/report.html  and  results/$(SCALE)/explore.html:"
+	@echo "Look at  results/$(SCALE)/report.html  results/$(SCALE)/explore.html  results/$(SCALE)/living.html:"
 	@echo "each is one file, to be sent as it is. More in the first: make REPORTED='figures extensions' report"
 
 plan: setup ## say what all experiments at SCALE will cost, from pilot runs

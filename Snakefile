@@ -4,6 +4,7 @@
 #   snakemake -j2 figures --config scale=small  the same in a minute, with wide error bars
 #   snakemake -j2 extensions                    beyond the paper: spheres, friction, other drives ...
 #   snakemake -j1 explore                       a page in which to look at every point
+#   snakemake -j1 living                        a page in which a gas moves, with sliders
 #   snakemake -j2 movies                        the scenes as they move, one GIF each
 #   snakemake -j1 showcase                      a large cooling gas forms clusters: a movie
 #   snakemake -j2 accuracy                      what the next digit costs, in CPU seconds
@@ -65,6 +66,7 @@ localrules:
     document,
     effective_config,
     run_times,
+    living_page,
 
 
 rule figures:
@@ -91,6 +93,11 @@ rule explore:
 rule explore_extensions:
     input:
         f"results/{SCALE}/explore_extensions.html",
+
+
+rule living:
+    input:
+        f"results/{SCALE}/living.html",
 
 
 rule plan:
@@ -154,6 +161,7 @@ rule everything:
         rules.finite_size.input,
         rules.explore.input,
         rules.explore_extensions.input,
+        rules.living.input,
 
 
 onstart:

@@ -144,3 +144,21 @@ rule page:
     shell:
         "roughgas page {input.data} --points results/{wildcards.scale} --output {output}"
         " > {log} 2>&1"
+
+
+rule living_page:
+    # at any scale: its gas is as large as the page can show
+    input:
+        multiext(f"{PACKAGE}/show/living/page", ".css", ".html"),
+        expand(f"{PACKAGE}/show/living/{{part}}.js", part=["gas", "view"]),
+        config="config.yaml",
+    output:
+        "results/{scale}/living.html",
+    log:
+        "logs/{scale}/living.log",
+    params:
+        code=code_of("show.living.assemble"),
+    message:
+        "write {output}"
+    shell:
+        "roughgas living --config {input.config} --output {output} > {log} 2>&1"

@@ -78,6 +78,13 @@ STEPS = {
             "roughgas page results/small/vibrated.nc --points results/small -o explore.html",
         ),
     ),
+    "living": Command(
+        "show.living.assemble:write_living",
+        "write a page in which a gas of disks moves, to be changed with sliders",
+        CONFIG,
+        output("HTML file"),
+        examples=("roughgas living -o living.html",),
+    ),
     "html": Command(
         "show.page.document:write_document",
         "write a Markdown, YAML, MP4 or GIF file as one page of HTML",

@@ -1,0 +1,69 @@
+"""How the living page is put together from its parts and from scenes of the configuration."""
+
+import json
+from pathlib import Path
+from string import Template
+from typing import Any
+
+from roughgas import config
+from roughgas.base.errors import InputError
+from roughgas.base.files import write_text
+from roughgas.scene import check
+
+SCENES: dict[str, dict[str, Any]] = {
+    "cooling": {"box": [80, 80]},  # closer than the paper's, so that one sees the disks on a phone
+    "vibrated": {},
+    "sheared": {},
+}
+"""Experiments that the page has, and what it changes of them."""
+KNOWN = {"spin", "gravity", "floor", "shear", "contact_time", "contact_averages"}
+"""Effects that its program has, or that only look."""
+
+
+WAVE = "sawtooth"
+
+
+def write_living(config_path: str | Path, output: str | Path) -> None:
+    """Write the living page of the experiments in SCENES, as the configuration has them.
+
+    Raises InputError for a configuration without them, or with what the page cannot simulate.
+    """
+    found = scenes(config.load(config_path))
+    parts = {"css": _text("page.css"), "gas": _text("gas.js"), "view": _text("view.js")}
+    parts |= {"scenes": json.dumps(found), "particles": found["cooling"]["particles"]}
+    write_text(output, Template(_text("page.html")).substitute(parts))
+
+
+def scenes(configuration: Any) -> dict[str, dict[str, Any]]:
+    """Return what the page's program is given of each scene."""
+    return {name: scene_of(name, settings(configuration, name)) for name in SCENES}
+
+
+def settings(configuration: Any, name: str) -> dict[str, Any]:
+    """Return the settings of an experiment at the paper's scale, with the page's changes."""
+    return config.experiment(configuration, name, "paper") | SCENES[name]
+
+
+def scene_of(name: str, experiment: dict[str, Any]) -> dict[str, Any]:
+    """Return a scene in the units of all scenes: lengths in a, times in T."""
+    check(experiment)
+    effects, (width, height) = experiment["effects"], experiment["box"]
+    floor, model = effects.get("floor"), effects.get("contact_time", {})
+    for other in set(effects) - KNOWN:
+        raise InputError(f"effects of {name}", other, f"be among {', '.join(sorted(KNOWN))}")
+    if floor and (floor.get("wave", WAVE) != WAVE or "particles" in floor.values()):
+        raise InputError(f"floor of {name}", floor, "be a sawtooth of a material of its own")
+    return {
+        "particles": experiment["particles"],
+        "box": [width, None if height == "open" else height],
+        "inertia": effects["spin"]["inertia"],
+        "gravity": effects.get("gravity", {}).get("acceleration", 0),
+        "floor": floor,
+        "shear": effects.get("shear", {}).get("velocity", 0),
+        "contact_time": model.get("duration", 0),
+        "below_r": model.get("below_r", 1 if model else 0),
+    }
+
+
+def _text(name):
+    return Path(__file__).with_name(name).read_text("utf-8")
