@@ -80,7 +80,7 @@ def page(file, browser):
 
 
 def kernel_gas(name, r, beta):
-    """A gas of the kernel, its drive at the beginning of a period, and what the page needs of it."""
+    """A gas of the kernel, its drive at the start of a period, and what the page needs of it."""
     experiment = settings(CONFIGURATION, name)
     scene = build(experiment, r, beta)
     gas = schedule.of(experiment).start(scene, experiment, 1)
@@ -136,7 +136,8 @@ def test_nothing_is_lost_where_contacts_lose_nothing(page, beta):
         """const gas = new Gas(SCENES.cooling, 1, arguments[0], atStart(SCENES.cooling, 3));
         for (let i = 0; i < gas.number; i++) gas.w[i] = Math.sin(i);
         const all = () => {
-          const { translation, rotation } = gas.energies(), sum = one => one.reduce((a, b) => a + b);
+          const sum = one => one.reduce((a, b) => a + b);
+          const { translation, rotation } = gas.energies();
           return [2 * translation + rotation, sum(gas.vx), sum(gas.vy)];
         };
         const before = all();
