@@ -150,7 +150,7 @@ rule living_page:
     # at any scale: its gas is as large as the page can show
     input:
         multiext(f"{PACKAGE}/show/living/page", ".css", ".html"),
-        expand(f"{PACKAGE}/show/living/{{part}}.js", part=["gas", "view"]),
+        sorted(map(str, Path(PACKAGE, "show/living").glob("*.js"))),
         config="config.yaml",
     output:
         "results/{scale}/living.html",

@@ -21,6 +21,7 @@ KNOWN = {"spin", "gravity", "floor", "shear", "contact_time", "contact_averages"
 
 
 WAVE = "sawtooth"
+PROGRAM = ("gas.js", "start.js", "drawing.js", "questions.js", "view.js")
 
 
 def write_living(config_path: str | Path, output: str | Path) -> None:
@@ -29,7 +30,7 @@ def write_living(config_path: str | Path, output: str | Path) -> None:
     Raises InputError for a configuration without them, or with what the page cannot simulate.
     """
     found = scenes(config.load(config_path))
-    parts = {"css": _text("page.css"), "gas": _text("gas.js"), "view": _text("view.js")}
+    parts = {"css": _text("page.css"), "program": "".join(map(_text, PROGRAM))}
     parts |= {"scenes": json.dumps(found), "particles": found["cooling"]["particles"]}
     write_text(output, Template(_text("page.html")).substitute(parts))
 

@@ -1,0 +1,63 @@
+// Where a gas starts, and what theory says of where it goes.
+
+// Random numbers from 0 to 1 that a seed repeats (mulberry32).
+function generator(seed) {
+  return () => {
+    seed = (seed + 0x6D2B79F5) | 0;
+    let t = Math.imul(seed ^ (seed >>> 15), 1 | seed);
+    t = (t + Math.imul(t ^ (t >>> 7), 61 | t)) ^ t;
+    return ((t ^ (t >>> 14)) >>> 0) / 4294967296;
+  };
+}
+
+// Disks on random sites of a square lattice, with Maxwellian velocities of temperature 1 beside the
+// mean flow, and no spin.
+function atStart({ box: [width, height], floor, shear, particles }, seed) {
+  const random = generator(seed), tall = height || 5 * Math.PI * particles / width;
+  const spacing = Math.max(2.0001, Math.sqrt(width * tall / (1.3 * particles)));
+  const columns = Math.floor(width / spacing), rows = Math.floor(tall / spacing);
+  const sites = Array.from({ length: columns * rows }, (_, k) => k);
+  const normal = () => Math.sqrt(-2 * Math.log(1 - random())) * Math.cos(2 * Math.PI * random());
+  const found = { x: [], y: [], vx: [], vy: [], w: [] };
+  for (let i = 0; i < particles; i++) {
+    const other = i + Math.floor(random() * (sites.length - i));
+    [sites[i], sites[other]] = [sites[other], sites[i]];
+    found.x.push((sites[i] % columns + 0.5) * width / columns);
+    found.y.push((Math.floor(sites[i] / columns) + 0.5) * tall / rows + (floor ? floor.amplitude : 0));
+    found.vx.push(normal());
+    found.vy.push(normal());
+    found.w.push(0);
+  }
+  for (const velocities of [found.vx, found.vy]) {
+    const mean = velocities.reduce((sum, one) => sum + one, 0) / particles;
+    velocities.forEach((one, i) => { velocities[i] = one - mean; });
+  }
+  if (shear) found.vx.forEach((one, i) => { found.vx[i] = one + shear * (found.y[i] / height - 0.5); });
+  return found;
+}
+
+// A gas as its time begins to count; one that nothing drives is in equilibrium, smooth and elastic.
+function started(scene, r, beta, seed) {
+  const gas = new Gas(scene, r, beta, atStart(scene, seed));
+  if (scene.floor || scene.shear) return gas;
+  Object.assign(gas, { r: 1, beta: -1 }).run(Infinity, 10 * scene.particles);
+  return Object.assign(gas, { r, beta, collisions: 0 });
+}
+
+// ---------------------------------------------------------------- theory
+
+// Lun's formula: a gas whose drive puts energy into translation alone; any r.
+function lun(beta, q) {
+  const gain = q * (1 + beta);
+  return gain / (gain + 1 + 2 * q - beta);
+}
+
+// Theory of free cooling: R = 1/(1 + K), where K > 0 solves b K^2 - (2 a + c) K - b/2 = 0; the root is
+// written without cancellation. Where b vanishes spin is not touched, and lasts if anything is lost.
+function cooling(r, beta, q) {
+  const a = (1 - beta * beta) * (1 - q) / (1 + q) - 1 + r * r, b = 2 * q * ((1 + beta) / (1 + q)) ** 2;
+  const c = (1 + beta) * (2 * q + q * q * (1 - beta)) / (1 + q) ** 2;
+  const linear = 2 * a + c, size = Math.abs(linear) + Math.sqrt(linear * linear + 2 * b * b);
+  if (size === 0) return 0;
+  return linear > 0 ? 2 * b / (size + 2 * b) : size / (size + b);
+}
