@@ -2,6 +2,7 @@
 
 import os
 import signal
+from pathlib import Path
 
 from hypothesis import settings
 
@@ -21,4 +22,5 @@ SHORT = {"base", "claims", "config", "data", "planning", "results", "scene", "st
 
 def pytest_collection_modifyitems(items):
     """Leave these to the end, where a long file would keep one worker busy and the other idle."""
-    items.sort(key=lambda item: not SHORT.isdisjoint(item.path.parts))
+    root = Path(__file__).parent
+    items.sort(key=lambda item: item.path.relative_to(root).parts[0] in SHORT)

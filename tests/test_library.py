@@ -29,7 +29,7 @@ SHORT = {"equilibrate": 20, "measure": 40}
 OWN = {
     "particles": 20,
     "box": (25, 25),
-    "effects": {"spin": {"inertia": 0.5}, "shear": {"velocity": 1}},
+    "effects": {"spin": {"inertia": 0.5}, "shear": {"velocity": 1}, "contact_averages": {}},
     "schedule": STEADY,
 }
 FEW = {"particles": 20, "box": (30, 30)}

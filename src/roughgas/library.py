@@ -121,11 +121,11 @@ def simulate(
     >>> print(f"{theory.cooling_ratio(0.9, 0.5):.2f}")
     0.44
 
-    A changed one, here a small bed with friction:
+    A changed one, here a small bed on a floor that moves as a sine:
 
     >>> bed = simulate(
     ...     "vibrated", r=0.9, beta=0, seed=3, particles=40, box=(12.5, "open"),
-    ...     effects={"friction": {"mu": 0.3}},
+    ...     effects={"floor": {"wave": "sine"}},
     ...     schedule={"equilibrate": 50, "measure": 100}, progress=False,
     ... )
     >>> bed.R_series.dims, bed.R_series.size
@@ -135,7 +135,7 @@ def simulate(
 
     >>> own = simulate(
     ...     r=0.9, beta=0.5, particles=40, box=(25, 25), progress=False,
-    ...     effects={"spin": {"inertia": 0.5}, "shear": {"velocity": 1}},
+    ...     effects={"spin": {"inertia": 0.5}, "shear": {"velocity": 1}, "contact_averages": {}},
     ...     schedule={
     ...         "kind": "steady", "equilibrate": 50, "measure": 100, "sample_every": 1,
     ...     },

@@ -12,7 +12,7 @@ SCENES = {
     "gas": settings("gas", 40, [25, 25]),
     "sheared": settings("sheared", 40, [25, 25]),
     "bed": settings("bed", 40, [12.5, "open"]),
-    "gas in cells": settings("gas", 800, [80, 80]),
+    "sheared gas in cells": settings("sheared", 800, [80, 80]),
 }
 RECORD = {"time": np.linspace(0.0, 1.0, 3), "count": np.arange(4, dtype=np.uint16)}
 
@@ -69,7 +69,7 @@ def test_every_array_comes_back_and_shares_memory_as_before(tmp_path):
 @pytest.mark.parametrize("name", SCENES)
 def test_a_restored_run_goes_on_with_the_same_bits(tmp_path, name):
     scene, undisturbed = at_collision(name, 4)
-    assert (undisturbed.cells is not None) == (name == "gas in cells")
+    assert (undisturbed.cells is not None) == (name == "sheared gas in cells")
     save(tmp_path / "c.npz", "me", undisturbed, {})
     _, again = begin(SCENES[name], 0.9, 0.3, 5)  # another seed: all of it must be overwritten
     restore(tmp_path / "c.npz", "me", again)

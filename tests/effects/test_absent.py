@@ -73,6 +73,7 @@ def test_the_machine_code_is_the_same_where_absent_effects_could_not_be_compiled
     assert sum(length for name, (length, _) in found.items() if "text" in name) > 10_000
 
 
+@pytest.mark.slow
 def test_an_effect_that_is_there_could_not_be_compiled_so(tmp_path):
     """What the test above rests on."""
     result = poisoned(tmp_path, "friction", "friction")

@@ -207,9 +207,9 @@ def test_the_kernel_makes_the_same_collisions(wave, case):
 
 @pytest.mark.parametrize("wave", WAVES)
 def test_single_particles_against_the_brute_force(wave):
-    """A hundred flights from anywhere, up to their third meeting with the floor."""
+    """Forty flights from anywhere, up to their third meeting with the floor."""
     rng = np.random.default_rng(5)
-    for _ in range(100):
+    for _ in range(40):
         floor = {"wave": wave, "amplitude": 2.0, "period": float(rng.choice([0.5, 1.0, 3.0]))}
         start = 3.0 + 10.0 * rng.random(), (0.0, 4.0 * rng.standard_normal())
         scene, state = one_particle(*start, **floor)

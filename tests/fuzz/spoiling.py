@@ -35,7 +35,7 @@ QUICK, LONG = (
         database=None,
         suppress_health_check=list(HealthCheck),
     )
-    for number in (150, 2000)
+    for number in (50, 2000)
 )
 """How often `make test` tries, and the extras: always the same examples."""
 

@@ -91,7 +91,7 @@ def test_what_is_no_file_is_not_replaced(tmp_path):
 
 
 def test_memory_that_runs_out(tmp_path):
-    script = 'ulimit -v 4000000; exec "$@"'
+    script = 'ulimit -v 2000000; exec "$@"'
     many = {"particles": 10**8, "box": [10**5, 10**5]}
     command = [sys.executable, "-m", "roughgas", *point("point.nc", TINY | many)]
     done = subprocess.run(

@@ -4,7 +4,7 @@ SPIN = {"spin": {"inertia": 0.5}}
 SHEARED = {
     "particles": 16,
     "box": [16, 16],
-    "effects": SPIN | {"shear": {"velocity": 1}},
+    "effects": SPIN | {"shear": {"velocity": 1}, "contact_averages": {}},
     "schedule": {"kind": "steady", "sample_every": 1},
     "target_stderr": 0.01,
 }

@@ -13,7 +13,7 @@ from roughgas.simulation.progress import Bar, FilmProgress, Progress
 DRIVEN = {
     "particles": 10,
     "box": [50, 50],
-    "effects": {"spin": {"inertia": 0.5}, "shear": {"velocity": 1}},
+    "effects": {"spin": {"inertia": 0.5}, "shear": {"velocity": 1}, "contact_averages": {}},
     "schedule": {"kind": "steady", "equilibrate": 2000, "measure": 5000, "sample_every": 1},
 }
 COOLING = DRIVEN | {
