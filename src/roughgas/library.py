@@ -50,6 +50,9 @@ def simulate(
     box: Sequence[Side] | None = None,
     effects: Effects | None = None,
     schedule: Schedule | None = None,
+    spin_temperature: float | None = None,
+    initial: "xarray.Dataset | None" = None,
+    keep_state: bool | None = None,
     scale: str = "paper",
     config: str | Path | None = None,
     progress: bool = True,
@@ -82,9 +85,16 @@ def simulate(
         ``{"contact_time": None}``. docs/effects.md lists them all.
     schedule
         How long to simulate, such as ``{"measure": 200}``; see `Schedule`.
+    spin_temperature
+        Temperature of the spins at the start, in m a^2/T^2; that of the velocities is 1.
+    initial
+        Where to begin instead: a point that has kept its state, which is gone on from; or one frame
+        of a trajectory, or a dataset with its variables ``position``, ``velocity`` and ``spin``.
+    keep_state
+        Whether to keep the last state in the dataset, for `initial` of another run.
     scale
-        Scale of the experiment: ``"paper"``, ``"small"`` (a quarter of the particles, and short),
-        ``"coarse"`` or ``"fine"`` (as long as a pilot says).
+        ``"paper"``, ``"small"`` (a quarter of the particles, and short), ``"coarse"`` or ``"fine"``
+        (as long as a pilot says).
     config
         Path of a configuration to use instead of the one that comes with roughgas.
     progress
@@ -94,7 +104,7 @@ def simulate(
     Returns
     -------
     xarray.Dataset
-        In memory. ``R`` is the share of rotation in the energy, ``R_stderr`` its standard error.
+        ``R`` is the share of rotation in the energy, ``R_stderr`` its standard error.
         ``R_series`` (sample) is what R is the mean of; ``E_trans_series`` and ``E_rot_series`` are
         the energies. Their coordinate is ``time`` (T) or, if the gas cools,
         ``collisions_per_particle``. ``R_replica`` (replica) has the cooling runs one by one. Every
@@ -103,8 +113,7 @@ def simulate(
     Raises
     ------
     roughgas.base.errors.InputError
-        For values that are illegal or contradict each other; its text is one line naming key,
-        value and what is legal. It is a ValueError.
+        For values that are illegal or contradict each other; its text is one line.
     roughgas.base.errors.CollapseError
         If contacts accumulate without end, as in a bed of r = 0.6 without ``contact_time``.
     OSError
@@ -112,8 +121,6 @@ def simulate(
 
     Examples
     --------
-    A known experiment, and what theory says of it:
-
     >>> from roughgas import simulate, theory
     >>> gas = simulate("cooling", r=0.9, beta=0.5, scale="small", progress=False)
     >>> print(f"{gas.R:.2f} +- {gas.R_stderr:.2f}")
@@ -124,26 +131,24 @@ def simulate(
     A changed one, here a small bed on a floor that moves as a sine:
 
     >>> bed = simulate(
-    ...     "vibrated", r=0.9, beta=0, seed=3, particles=40, box=(12.5, "open"),
-    ...     effects={"floor": {"wave": "sine"}},
-    ...     schedule={"equilibrate": 50, "measure": 100}, progress=False,
+    ...     "vibrated", r=0.9, beta=0, particles=40, box=(12.5, "open"), progress=False,
+    ...     effects={"floor": {"wave": "sine"}}, schedule={"equilibrate": 50, "measure": 100},
     ... )
     >>> bed.R_series.dims, bed.R_series.size
     (('sample',), 400)
 
-    A scene of one's own:
+    To go on from where another run has stopped, to the last bit:
 
-    >>> own = simulate(
-    ...     r=0.9, beta=0.5, particles=40, box=(25, 25), progress=False,
-    ...     effects={"spin": {"inertia": 0.5}, "shear": {"velocity": 1}, "contact_averages": {}},
-    ...     schedule={
-    ...         "kind": "steady", "equilibrate": 50, "measure": 100, "sample_every": 1,
-    ...     },
+    >>> first = simulate("sheared", r=0.9, beta=0, scale="small", keep_state=True, progress=False)
+    >>> more = {"equilibrate": 0, "measure": 100}
+    >>> second = simulate(
+    ...     "sheared", r=0.9, beta=0, scale="small", initial=first, schedule=more, progress=False
     ... )
-    >>> own.title
-    'scene: r = 0.9, beta = 0.5'
+    >>> bool(second.measured_from == first.last_time)
+    True
     """
     changes = {"particles": particles, "box": box, "effects": effects, "schedule": schedule}
+    changes |= {"spin_temperature": spin_temperature, "keep_state": keep_state}
     legal_r, legal_beta, number = _numbers(r, beta, seed)
     settings = _settings(experiment, changes, scale, config)
 
@@ -151,6 +156,7 @@ def simulate(
     from roughgas.data.point import as_dataset
     from roughgas.planning.reach import complete
     from roughgas.scene import build
+    from roughgas.simulation.ends import initial_of
     from roughgas.simulation.point import run_point
     from roughgas.simulation.progress import Bar, Progress
 
@@ -158,9 +164,11 @@ def simulate(
     scene = build(settings, legal_r, legal_beta)
     with Bar(f"pilot of {name}", None, quiet=not progress or "target_stderr" not in settings):
         settings = complete(scene, settings)
-    about = provenance(name, settings, (str(r), str(beta), str(seed)), scale, "point.nc")
+    labels, told = (str(r), str(beta), str(seed)), [] if initial is None else ["--from", "start.nc"]
+    about = provenance(name, settings, labels, scale, "point.nc", told=told)
+    states = [] if initial is None else initial_of(initial)
     with Progress(name, scene, settings, quiet=not progress) as bar:
-        found = run_point(scene, settings, number, bar)
+        found = run_point(scene, settings, number, bar, states)
     return as_dataset(found._replace(attributes=about | found.attributes))
 
 
@@ -184,8 +192,8 @@ def trajectory(
 ) -> "xarray.Dataset":
     """Simulate one point of an experiment, and return where its particles are at chosen times.
 
-    It is the trajectory of the gas that `simulate` measures with the same arguments; of a cooling
-    gas, that of the first replica. Times are in T, of a cooling gas in collisions per particle.
+    It is that of the gas that `simulate` measures with the same arguments, or of its first replica.
+    Times are in T, of a cooling gas in collisions per particle.
 
     Parameters
     ----------
@@ -206,7 +214,7 @@ def trajectory(
         ``position``, ``velocity`` (frame, particle, axis), ``spin`` (frame, particle, spin_axis),
         of disks ``angle`` (frame, particle), ``radius``, ``box``, ``time``, of a sheared gas
         ``image_shift`` (frame), and the energies of each frame. The function
-        `roughgas.data.trajectory.write_trajectory` makes files of it for other programs.
+        `roughgas.data.particle_files.write_trajectory` makes files of it for other programs.
 
     Raises
     ------
@@ -217,8 +225,8 @@ def trajectory(
     --------
     >>> from roughgas import trajectory
     >>> gas = trajectory("cooling", r=0.9, beta=0.5, scale="small", times=[0, 5], progress=False)
-    >>> dict(gas.position.sizes)
-    {'frame': 2, 'particle': 40, 'axis': 2}
+    >>> gas.position.shape
+    (2, 40, 2)
     """
     changes = {"particles": particles, "box": box, "effects": effects, "schedule": schedule}
     legal_r, legal_beta, number = _numbers(r, beta, seed)
@@ -244,17 +252,7 @@ def trajectory(
 def experiments(config: str | Path | None = None) -> dict[str, str]:
     """Return the experiments that `simulate` knows by name, and what each is.
 
-    Parameters
-    ----------
-    config
-        Path of a configuration to use instead of the one that comes with roughgas.
-
-    Raises
-    ------
-    roughgas.base.errors.InputError
-        If the configuration is illegal.
-    OSError
-        If it cannot be read.
+    `config` and the errors are as for `simulate`.
 
     Examples
     --------

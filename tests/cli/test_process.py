@@ -191,10 +191,10 @@ def test_a_mistake_in_one_seed_stops_all_of_them(tmp_path, capsys, seeds, files,
 
 
 def test_what_is_done_stays_when_a_later_seed_fails(tmp_path, monkeypatch):
-    def second_collapses(scene, experiment, seed, progress):
+    def second_collapses(scene, experiment, seed, *others):
         if seed == 2:
             raise CollapseError("inelastic collapse")
-        return run_point(scene, experiment, seed, progress)
+        return run_point(scene, experiment, seed, *others)
 
     monkeypatch.setattr("roughgas.cli.run.run_point", second_collapses)
     assert run_seeds(tmp_path, "123", ["1.nc", "2.nc", "3.nc"]) == 1

@@ -1,6 +1,8 @@
 """`roughgas run`, `plan` and `bench`: what people see of them, and scripts read."""
 
 import json
+import shlex
+from pathlib import Path
 
 import pytest
 
@@ -25,6 +27,29 @@ def test_without_a_name_a_point_is_named_after_itself_and_shown(tmp_path, monkey
     assert main(again) == 0
     names = {path.name for path in tmp_path.iterdir()} - {path.name}
     assert names == {f"cooling_small_r0.9_beta-0.50_seed{seed}.nc" for seed in (3, 4)}
+
+
+def test_a_run_goes_on_from_the_file_of_another(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main(["run", "cooling", *PLACE, "--keep-state", "-o", "first.nc"]) == 0
+    assert main(["run", "cooling", *PLACE, "--from", "first.nc", "-o", "second.nc"]) == 0
+    first, second = read_point("first.nc"), read_point("second.nc")
+    assert second.initial_exact == 1 and "last_position" not in second
+    assert "--from first.nc" in second.command and '"keep_state":true' in first.experiment_json
+    again = shlex.split(second.command)[1:]
+    assert main([*again[:-1], "again.nc"]) == 0 and read_point("again.nc").R == second.R
+    capsys.readouterr()
+    for arguments, message in (
+        (["--from", "second.nc"], "initial = without position: must be in the dataset"),
+        (["--from", "first.nc", "--seed", "1", "2"], "--seed = 1 2: must be one with --from"),
+        (["--from", "none.nc"], "none.nc: No such file"),
+    ):
+        assert main(["run", "cooling", *PLACE, *arguments]) != 0
+        said = capsys.readouterr().err
+        assert said.startswith(f"roughgas: error: {message}") and said.count("\n") == 1
+    assert len(list(tmp_path.iterdir())) == 3
+    assert main(["export", "first.nc"]) == 0 and main(["show", "first.nc"]) == 0
+    assert "last_velocity" in Path("first.about.csv").read_text()
 
 
 def test_a_script_reads_a_line_for_each_seed_as_it_is_done(tmp_path, monkeypatch, capsys):

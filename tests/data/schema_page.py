@@ -9,6 +9,7 @@ import re
 from pathlib import Path
 
 from roughgas.base.layout import markdown
+from roughgas.data.trajectory import TRAJECTORY
 from roughgas.data.variables import (
     COOLING,
     FILM,
@@ -17,7 +18,6 @@ from roughgas.data.variables import (
     REDUCED,
     REGISTRY,
     SPIN,
-    TRAJECTORY,
 )
 from roughgas.studies import STUDIES, variables
 

@@ -18,12 +18,16 @@ COMMANDS = {
             nargs="+",
             default=["1"],
         ),
+        value("--from POINT", "go on from the last state of this dataset", dest="start_from"),
+        flag("--keep-state", "keep the last state in the dataset, for --from"),
         output("datasets, one a seed", required=False, nargs="+"),
         flag("--json", "print a line of JSON as each seed is done"),
         examples=(
             "roughgas run cooling --r 0.9 --beta -0.5",
             "roughgas run vibrated --r 0.87 --beta 0.5 --seed 1 2 3 --scale small --json",
             "roughgas run vibrated_inertia/inertia0.3 --r 0.9 --beta 1 -o hollow.nc",
+            "roughgas run sheared --r 0.9 --beta 0 --keep-state -o first.nc",
+            "roughgas run sheared --r 0.9 --beta 0 --from first.nc -o second.nc",
         ),
         about="Simulate a point of an experiment, for one seed or for several in turn, and write "
         "a dataset for each. Without -o the dataset goes into the present folder, under a name "

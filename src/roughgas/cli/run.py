@@ -10,9 +10,10 @@ from roughgas import config
 from roughgas.base.errors import InputError
 from roughgas.base.layout import as_json
 from roughgas.config.provenance import provenance, variant_attributes
-from roughgas.data.point import Point, write_point
+from roughgas.data.point import Point, read_point, write_point
 from roughgas.planning.reach import complete
 from roughgas.scene import Scene, build
+from roughgas.simulation.ends import Initial, initial_of
 from roughgas.simulation.point import compile_kernels, run_point
 from roughgas.simulation.progress import Bar, Progress
 from roughgas.statistics.estimate import Estimate
@@ -25,6 +26,7 @@ def run(options: Namespace) -> None:
     """Simulate the points that `options` name, and write each dataset as soon as it is there."""
     seeds = {label: config.seed(label) for label in options.seed}
     points = [point_of(options, beta) for beta in options.beta]
+    initial = _initial(options)
     places = [(options.r, beta, seed) for beta in options.beta for seed in options.seed]
     outputs = options.output or [_own_name(options, *place) for place in places]
     if len(outputs) != len(places):
@@ -33,9 +35,11 @@ def run(options: Namespace) -> None:
     for scene, settings in points:
         with Bar(f"pilot of {options.experiment}", None, quiet="target_stderr" not in settings):
             settings = complete(scene, config.point_settings(settings))
+        if options.keep_state:
+            settings["keep_state"] = True
         for seed in options.seed:
             with Progress(f"{options.experiment}, seed {seed}", scene, settings) as progress:
-                point = run_point(scene, settings, seeds[seed], progress)
+                point = run_point(scene, settings, seeds[seed], progress, initial)
             place, output = next(remaining)
             written = write_seed(options, place, settings, output, point)
             if options.json:
@@ -46,6 +50,16 @@ def run(options: Namespace) -> None:
                 print(summary(output), flush=True)
             else:
                 say_done(output, point)
+
+
+def _initial(options: Namespace) -> list[Initial]:
+    """Return the states in the file that the run goes on from; none where it starts anew."""
+    if options.start_from is None:
+        return []
+    if len(options.seed) > 1:
+        legal = "be one with --from, which has the random numbers of its own run"
+        raise InputError("--seed", " ".join(options.seed), legal)
+    return initial_of(read_point(options.start_from))
 
 
 def compile_kernel(options: Namespace) -> None:
@@ -87,7 +101,9 @@ def write_seed(
 
     `place` are the labels of r, beta and the seed.
     """
-    about = provenance(options.experiment, settings, place, options.scale, output)
+    start = getattr(options, "start_from", None)
+    told = [] if start is None else ["--from", start]
+    about = provenance(options.experiment, settings, place, options.scale, output, told=told)
     written = point._replace(attributes=about | point.attributes)
     write_point(output, written)
     return written

@@ -8,7 +8,8 @@ from roughgas import config
 from roughgas.cli.options import number, whole_number
 from roughgas.cli.run import point_of
 from roughgas.config.provenance import provenance
-from roughgas.data.trajectory import as_trajectory, check_format, write_trajectory
+from roughgas.data.particle_files import check_format, write_trajectory
+from roughgas.data.trajectory import as_trajectory
 from roughgas.scene import Scene
 from roughgas.simulation.progress import watched
 from roughgas.simulation.snapshots import LEGAL, NUMBERS, Take, chosen, snapshots

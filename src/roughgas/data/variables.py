@@ -26,6 +26,7 @@ GRID = "grid"
 SPIN, COOLING, DRIVEN = "where particles spin", "cooling gas", "driven gas"
 SHEARED, TARGET = "sheared gas", "with a `target_stderr`"
 CONTACT = "where the contact-time model acts"
+KEPT = "with `keep_state`"
 AT_CONTACTS = "driven gas with `contact_averages`"
 
 
@@ -78,6 +79,12 @@ def _at_contacts(name: str, long_name: str) -> dict[str, Variable]:
 
 def _of_target(long_name: str, units: str = "1") -> Variable:
     return Variable(long_name, units, when=(TARGET,))
+
+
+def _kept(long_name: str, units: str, dims: tuple[str, ...], *when: str) -> Variable:
+    dtype = "u1" if dims == ("byte",) else "f8"
+    dims = ("replica", *dims)
+    return Variable(long_name, units, dims, dtype, (KEPT, *when), of_settings=True)
 
 
 POINT = {
@@ -146,6 +153,11 @@ POINT = {
     "R_series_stderr": _series("standard error of R_series over replicas", "1", COOLING, SPIN),
     "E_trans_series": _series("translational energy per degree of freedom", ENERGY),
     "E_rot_series": _series("rotational energy per degree of freedom", ENERGY, SPIN),
+    "last_time": _kept("time since the start at which it ends", TIME, ()),
+    "last_position": _kept("position of a particle then", LENGTH, ("particle", "axis")),
+    "last_velocity": _kept("velocity then of the image in the box", SPEED, ("particle", "axis")),
+    "last_spin": _kept("spin a w of a particle then", SPEED, ("particle", "spin_axis"), SPIN),
+    "last_memory": _kept("the kernel's arrays then, as they lie in memory", "1", ("byte",)),
 }
 
 
@@ -218,64 +230,10 @@ FILM = {
     "kernel_seconds": Variable("time spent in the kernel", "s"),
 }
 
-PLACES = ("frame", "particle", "axis")
-TRAJECTORY = {
-    "axis": Variable("axis of the box, the last one vertical", "", ("axis",), "str"),
-    "time": Variable("time since the start", TIME, ("frame",), of_settings=True),
-    "collisions_per_particle": Variable(
-        "collisions per particle since the start, of a cooling gas since it began to cool",
-        dims=("frame",),
-    ),
-    "position": Variable("position of a particle, folded into the box", LENGTH, PLACES),
-    "velocity": Variable("velocity of the image in the box", SPEED, PLACES),
-    "spin": Variable(
-        "spin as the velocity a w of the surface: of disks anticlockwise, of spheres a vector",
-        SPEED,
-        ("frame", "particle", "spin_axis"),
-        when=(SPIN,),
-    ),
-    "angle": Variable(
-        "angle by which a disk has turned since the first time",
-        "rad",
-        ("frame", "particle"),
-        when=("disks that spin",),
-    ),
-    "radius": Variable("radius of a particle", LENGTH, ("particle",)),
-    "box": Variable("length of the box, NaN where it is open above", LENGTH, ("axis",)),
-    "periodic": Variable(
-        "whether the box repeats along the axis", "1", ("axis",), "i1", flags="bounded periodic"
-    ),
-    "image_shift": Variable(
-        "displacement along the first axis of the image above along the second",
-        LENGTH,
-        ("frame",),
-        when=(SHEARED,),
-    ),
-    "floor_height": Variable("height of the floor", LENGTH, ("frame",), when=("floor",)),
-    "wall_displacement": Variable(
-        "displacement of shaken walls from their middle", LENGTH, ("frame",), when=("shaken walls",)
-    ),
-    "E_trans": Variable(
-        "translational energy per degree of freedom, of a sheared gas without the mean flow",
-        ENERGY,
-        ("frame",),
-        of_settings=True,
-    ),
-    "E_rot": Variable(
-        "rotational energy per degree of freedom, of a sheared gas without the mean spin",
-        ENERGY,
-        ("frame",),
-        when=(SPIN,),
-        of_settings=True,
-    ),
-    "R": Variable("share of rotation in the energy", "1", ("frame",), when=(SPIN,)),
-}
-
 REGISTRY: dict[str, Mapping[str, Variable]] = {
     "point": POINT,
     "reduced": REDUCED,
     "film": FILM,
-    "trajectory": TRAJECTORY,
 }
 """All variables by name, for each kind of dataset; each study is a kind, too."""
 

@@ -20,6 +20,8 @@ from roughgas.results import table
 
 MAIN = ("sample",), ("frame",)
 """The dimensions of the main table of a point, or of a film; it gets the plain name."""
+UNREADABLE = ("last_memory",)
+"""Variables that mean nothing to anyone but the kernel."""
 ABOUT = ("name", "file", "value", "units", "meaning")
 
 
@@ -64,7 +66,7 @@ def _columns(dataset: Dataset) -> dict[tuple[str, ...], list[str]]:
     """Return names of variables by their dimensions, coordinates first; no scalars, no axes."""
     found: dict[tuple[str, ...], list[str]] = {}
     for name in (*dataset.coords, *dataset.data_vars):
-        if dataset[name].dims and name not in dataset.dims:
+        if dataset[name].dims and name not in (*dataset.dims, *UNREADABLE):
             found.setdefault(dataset[name].dims, []).append(name)
     return found
 

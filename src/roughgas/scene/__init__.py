@@ -1,6 +1,6 @@
 """What is simulated: box, material and effects, and the state that it starts from."""
 
 from roughgas.scene.composition import DIAMETER, Scene, build, is_closed
-from roughgas.scene.initial import check, initial_state
+from roughgas.scene.initial import check, check_places, initial_state
 
-__all__ = ["DIAMETER", "Scene", "build", "check", "initial_state", "is_closed"]
+__all__ = ["DIAMETER", "Scene", "build", "check", "check_places", "initial_state", "is_closed"]

@@ -1,4 +1,4 @@
-"""Where a simulation starts: no overlap, Maxwellian velocities, no spin, no total momentum."""
+"""Where a simulation starts: no overlap, Maxwellian velocities and spins, no total momentum."""
 
 import math
 from collections.abc import Mapping
@@ -7,11 +7,13 @@ from typing import Any
 import numpy as np
 
 from roughgas.base.errors import InputError
+from roughgas.kernel.hooks import displacement
 from roughgas.kernel.layout import new_state
 from roughgas.kernel.state import State
 from roughgas.scene.composition import DIAMETER, Scene, build
 
 TEMPERATURE = 1.0  # m a^2/T^2
+GRAZE = 1e-6  # a: overlaps as small as this are roundings, such as those of single precision
 VACANCIES = 1.3  # lattice sites per particle, if there is room
 LOOSE_PACKING = 0.2  # volume fraction of a gas with an open top
 MOST_SITES = 200_000_000
@@ -27,6 +29,9 @@ def check(experiment: Mapping[str, Any]) -> Scene:
     """Return the scene of some point. Raises InputError if no point could be simulated."""
     scene = build(experiment, 0.5, 0.0 if "spin" in experiment["effects"] else -1.0)
     lattice(scene, experiment)
+    if experiment.get("spin_temperature") and scene.effects.spin is None:
+        value = experiment["spin_temperature"]
+        raise InputError("spin_temperature", value, "not be given where particles do not spin")
     if "target_stderr" in experiment and scene.effects.spin is None:
         value = experiment["target_stderr"]
         raise InputError("target_stderr", value, "not be given where nothing spins: R is 0")
@@ -43,8 +48,8 @@ def initial_state(
 
     They sit on random sites of a square (cubic) lattice, or of a centred one if only that holds
     them, with Maxwellian velocities at temperature 1 m a^2/T^2 relative to the mean flow. None of
-    them spins. `precision` is that in which trajectories and spins are kept. Raises InputError if
-    they do not fit.
+    them spins, unless the experiment has a `spin_temperature`. `precision` is that in which
+    trajectories and spins are kept. Raises InputError if they do not fit.
     """
     number = experiment["particles"]
     sites = lattice(scene, experiment)
@@ -56,7 +61,69 @@ def initial_state(
         height = position[:, 1] - scene.middle
         velocity[:, 0] += shear.velocity / (2.0 * scene.middle) * height
     spin = np.zeros((number, 2 * position.shape[1] - 3))
+    temperature = experiment.get("spin_temperature", 0.0)
+    if temperature > 0.0:  # of q (a w)^2 for each component, as of v^2 above
+        spin = rng.standard_normal(spin.shape) * math.sqrt(temperature / scene.effects.spin.inertia)
     return new_state(scene, position, velocity, spin, precision, rng)
+
+
+def check_places(scene: Scene, position: np.ndarray, time: float) -> None:
+    """Raise InputError where particles at these positions (N, D) overlap, or are in a wall or in
+    the floor at `time` (T), by more than GRAZE."""
+    effects = scene.effects
+    closed = effects.walls or effects.shaken_walls
+    bounds = [(-math.inf, math.inf)] * position.shape[1]
+    if closed is not None:
+        bounds[0] = 1.0, closed.width - 1.0
+    if effects.floor is not None:
+        bounds[-1] = displacement(effects.floor, time) + 1.0, math.inf
+    for places, (low, high) in zip(position.T, bounds, strict=True):
+        outside = np.flatnonzero((places < low - GRAZE) | (places > high + GRAZE))
+        if len(outside):
+            key = f"initial position of particle {outside[0]}"
+            raise InputError(key, places[outside[0]], f"lie in [{low:g}, {high:g}]")
+    pair = _overlapping(scene, position, time)
+    if pair is not None:
+        legal = f"be {DIAMETER:g} or more, or the particles overlap"
+        raise InputError(f"distance of particles {pair[0]} and {pair[1]}", f"{pair[2]:.9g}", legal)
+
+
+def _overlapping(scene, position, time):
+    """Return the numbers of two particles that overlap, and their distance; or None.
+
+    Particles and their images near the box are sorted along the first axis, and each is compared
+    with those that follow it within a diameter.
+    """
+    inside = position.copy()
+    for axis, length in enumerate(scene.box):
+        if length is not None:
+            inside[:, axis] %= length
+    owner, places = np.arange(len(inside)), inside
+    # the second axis last, so that images along the first have slid as a whole
+    for axis in sorted(range(len(scene.box)), key=lambda axis: axis == 1):
+        length = scene.box[axis]
+        if length is None:
+            continue
+        shift = np.eye(len(scene.box))[axis] * length
+        if axis == 1 and scene.effects.shear is not None:
+            shift[0] = displacement(scene.effects.shear, time)
+        parts = [(owner, places)]
+        for side in (-1, 1):
+            image = places + side * shift
+            near = (image[:, axis] > -DIAMETER) & (image[:, axis] < length + DIAMETER)
+            parts.append((owner[near], image[near]))
+        owner, places = (np.concatenate(one) for one in zip(*parts, strict=True))
+    order = np.argsort(places[:, 0], kind="stable")
+    owner, places = owner[order], places[order]
+    for step in range(1, len(places)):
+        apart = places[step:] - places[:-step]
+        if not np.any(apart[:, 0] < DIAMETER):
+            return None
+        distance = np.sqrt((apart**2).sum(axis=1))
+        worst = int(np.argmin(distance))
+        if distance[worst] < DIAMETER - GRAZE:
+            return *sorted((owner[worst], owner[worst + step])), distance[worst]
+    return None
 
 
 def lattice(scene: Scene, experiment: Mapping[str, Any]) -> np.ndarray:

@@ -19,19 +19,23 @@ SUMS = ("v_t^2", "v_r^2", "v_t.v_r")
 """Columns that the effect contact_averages adds."""
 
 
-def contact_averages(rows: Columns, first: int, per_period: int, inertia: float) -> dict[str, Any]:
+def contact_averages(
+    rows: Columns, first: int, per_period: int, inertia: float, begun: Columns | None = None
+) -> dict[str, Any]:
     """Return variables of a point (see roughgas.data.point) from running sums over collisions.
 
     Collisions before the sample number `first` do not count, nor those of an incomplete last
     period. R_collisional = q B/(A + q B) and contact_correlation = C/sqrt(A B), where A, B and C
     are the means of v_t^2, v_r^2 and v_t.v_r over collisions, and q is `inertia`. Errors are those
     of the linearised ratios, by blocking over periods. All are NaN where nothing collides or spins,
-    and none is there where nothing was summed.
+    and none is there where nothing was summed. The sums were zero at the start, or as in the sample
+    `begun`.
     """
     if not set(SUMS) <= set(rows):
         return {}
     running = np.array([rows[name] for name in SUMS])
-    periods = period_means(np.diff(running, axis=1, prepend=0.0)[:, first:], per_period)
+    before = np.array([begun[name] for name in SUMS]) if begun else np.zeros((len(SUMS), 1))
+    periods = period_means(np.diff(running, axis=1, prepend=before)[:, first:], per_period)
     A, B, C = np.where(periods.any(axis=1), periods.mean(axis=1), math.nan).tolist()
     R, correlation = inertia * B / (A + inertia * B), C / math.sqrt(A * B)
     slopes = np.array([-1.0 / A, 1.0 / B, 0.0]) * R * (1.0 - R)

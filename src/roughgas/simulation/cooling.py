@@ -1,7 +1,7 @@
 """A freely cooling gas: many replicas of it, averaged where R has settled on its plateau."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -9,6 +9,7 @@ import numpy as np
 from roughgas.effects import inertia
 from roughgas.scene import Scene
 from roughgas.simulation.books import Books, exchange
+from roughgas.simulation.ends import Initial
 from roughgas.simulation.energies import Columns, Energies, ratio, ratio_of_means, restored
 from roughgas.simulation.gas import Gas, Recorder
 from roughgas.statistics.errors import autocorrelation_time
@@ -60,13 +61,13 @@ def rate_of(scene: Scene) -> float:
     return float(friction_relaxation_rate(r, beta, friction.mu, dimension, q))
 
 
-def start(scene: Scene, experiment: Mapping[str, Any], seed: Any, recorder=None) -> Gas:
+def start(scene: Scene, experiment: Mapping[str, Any], seed: Any, recorder=None, initial=()) -> Gas:
     """Return the first replica of a point, thermalised, as dissipation is switched on.
 
     A random generator as `seed` is used as it is.
     """
     stream = seed if isinstance(seed, np.random.Generator) else _streams(seed, 1)[0]
-    return _replica(scene, experiment, stream, recorder)
+    return _replica(scene, experiment, stream, recorder, *initial[:1])
 
 
 def sample(gas: Gas, every: float, samples: int) -> Columns:
@@ -75,12 +76,17 @@ def sample(gas: Gas, every: float, samples: int) -> Columns:
 
 
 def run(
-    scene: Scene, experiment: Mapping[str, Any], seed: int, recorder: Recorder
+    scene: Scene,
+    experiment: Mapping[str, Any],
+    seed: int,
+    recorder: Recorder,
+    initial: Sequence[Initial] = (),
 ) -> dict[str, Any]:
     """Return the variables of the point (see roughgas.data.point), from `replicas` simulations.
 
-    Each starts as a smooth elastic gas, thermalised for `thermalise` collisions per particle. Then
-    dissipation is switched on for the time that the rate equations say R needs to settle,
+    Each starts as a smooth elastic gas, thermalised for `thermalise` collisions per particle, or in
+    an `initial` state of its own, in which it begins to cool or goes on to. Then dissipation is
+    switched on for the time that the rate equations say R needs to settle,
     `relaxation_times` of its e-folds, and for `plateau` collisions per particle more.
     """
     schedule = experiment["schedule"]
@@ -88,7 +94,9 @@ def run(
     every = schedule["sample_every"]
     samples = math.ceil((transient + schedule["plateau"]) / every)
     streams = _streams(seed, schedule["replicas"])
-    gases = (_replica(scene, experiment, stream, recorder) for stream in streams)
+    begin = initial or [None] * len(streams)
+    pairs = zip(streams, begin, strict=True)
+    gases = (_replica(scene, experiment, stream, recorder, one) for stream, one in pairs)
     ensemble = _together([_cool(gas, every, samples) for gas in gases])
     passed = every * np.arange(1, samples + 1)
     exchanged = exchange(ensemble.before, ensemble.after, scene, experiment["particles"])
@@ -102,22 +110,26 @@ def _streams(seed, replicas):
     return np.random.SeedSequence(seed).spawn(replicas)
 
 
-def _replica(scene, experiment, stream, recorder):
+def _replica(scene, experiment, stream, recorder, initial=None):
     schedule = experiment["schedule"]
-    gas = Gas.start(scene, experiment, np.random.default_rng(stream), recorder)
-    gas.thermalise(schedule["thermalise"])
+    gas = Gas.start(scene, experiment, np.random.default_rng(stream), recorder, initial)
+    if initial is None:
+        gas.thermalise(schedule["thermalise"])
+    else:
+        gas.look()
     gas.cool(SAMPLES_PER_REFRESH * gas.count(schedule["sample_every"]))
     return gas
 
 
 def _cool(gas, every, samples):
     """Return what one replica does from when dissipation is switched on."""
-    unit = gas.energies(gas.sample).translational[0]
+    unit, exponent = gas.energies(gas.sample).translational[0], int(gas.sample["exponent"][0])
     before = gas.books()
     rows = sample(gas, every, samples)
     present = gas.energies(rows).map(lambda part: part / unit)
-    before, after = (Books(*(part / unit for part in b)) for b in (before, gas.books()))
-    return Cooled(present, rows["exponent"].astype(int), before, after)
+    energy = math.ldexp(unit, 2 * exponent)
+    before, after = (Books(*(part / energy for part in b)) for b in (before, gas.books()))
+    return Cooled(present, rows["exponent"].astype(int) - exponent, before, after)
 
 
 def _together(runs):

@@ -30,6 +30,7 @@ from roughgas.kernel.state import (
 )
 from roughgas.scene import Scene, initial_state
 from roughgas.simulation.books import Books, books
+from roughgas.simulation.ends import Initial, state_from
 from roughgas.simulation.energies import Columns, Energies, energies
 
 UNLIMITED = 2**62
@@ -44,11 +45,19 @@ class Recorder:
     `tell(time, collisions)` is called some fifty times a run.
     """
 
-    def __init__(self, tell: Callable[[float, int], None] | None = None):
+    def __init__(self, tell: Callable[[float, int], None] | None = None, keep: bool = False):
         self.seconds = 0.0
         self.collisions = 0
         self.touched = 0
-        self._tell = tell
+        self.gases: list[Gas] = []  # all that it has seen begin, if it is to `keep` them
+        self._tell, self._keep = tell, keep
+        self._begun = 0.0, 0  # time and collisions at which the present gas has begun
+
+    def begin(self, gas: "Gas") -> None:
+        """Note that a gas begins."""
+        self._begun = gas.time, int(gas.state.counts[COLLISIONS])
+        if self._keep:
+            self.gases.append(gas)
 
     def run(self, state: State, scene: Scene, sampling: Sampling, samples: int) -> Columns:
         """Advance `state`; return columns (name -> array of length `samples`).
@@ -67,7 +76,8 @@ class Recorder:
             if record(state, scene, sampling, part) < len(part):
                 raise _collapse(state, scene)
             if self._tell:
-                self._tell(float(part[-1, 0]), int(part[-1, 1]))
+                time_begun, collisions_begun = self._begun
+                self._tell(float(part[-1, 0] - time_begun), int(part[-1, 1]) - collisions_begun)
         self.seconds += time.process_time() - begin
         self.collisions += state.counts[COLLISIONS] - before[COLLISIONS]
         self.touched += state.counts[TOUCHED] - before[TOUCHED]
@@ -97,7 +107,9 @@ class Gas:
         self.recorder = Recorder() if recorder is None else recorder
         self.watcher: Watcher | None = None
         self.sample: Columns = {}
-        self.refresh_every = self._begun = 0
+        self.refresh_every = self.begun = 0
+        self._resumed = False  # with its memory, just now
+        self.extents = np.ptp(state.trajectory[:, : len(scene.box)], axis=0)
 
     @classmethod
     def start(
@@ -106,9 +118,22 @@ class Gas:
         experiment: Mapping[str, Any],
         rng: np.random.Generator,
         recorder: Recorder | None = None,
+        initial: Initial | None = None,
     ) -> Self:
-        """Return a gas of the experiment's particles on a lattice. Raises InputError."""
-        return cls(scene, initial_state(scene, experiment, rng), recorder)
+        """Return a gas of the experiment's particles, in the `initial` state or else on a lattice.
+
+        Raises InputError.
+        """
+        if initial is None:
+            gas = cls(scene, initial_state(scene, experiment, rng), recorder)
+        else:
+            state, begun, extents = state_from(initial, scene, rng)
+            gas = cls(scene, state, recorder)
+            gas.extents = extents
+            if begun is not None:
+                gas.begun, gas._resumed = begun, True
+        gas.recorder.begin(gas)
+        return gas
 
     @property
     def particles(self) -> int:
@@ -123,7 +148,7 @@ class Gas:
     @property
     def collisions(self) -> int:
         """Collisions since the start, or since `cool` was called."""
-        return int(self.state.counts[COLLISIONS]) - self._begun
+        return int(self.state.counts[COLLISIONS]) - self.begun
 
     def count(self, per_particle: float) -> int:
         """Return the collisions in the whole gas, each with two partners; at least one."""
@@ -135,8 +160,11 @@ class Gas:
         self._run(sampling, 1, elastic(self.scene))
 
     def cool(self, refresh_every: int) -> None:
-        """Count collisions anew, and refresh the gas after each `refresh_every` of them."""
-        self.refresh_every, self._begun = refresh_every, int(self.state.counts[COLLISIONS])
+        """Count collisions anew, unless a run goes on, and refresh the gas after each
+        `refresh_every` of them."""
+        self.refresh_every = refresh_every
+        if not self._resumed:
+            self.begun = int(self.state.counts[COLLISIONS])
 
     def in_time(self, interval: float, samples: int) -> Columns:
         """Return columns (name -> array of length `samples`), sampled every `interval` T."""
@@ -145,10 +173,20 @@ class Gas:
     def in_collisions(self, collisions: int, samples: int) -> Columns:
         """Return the same, sampled every so many collisions, a divisor of `refresh_every`.
 
-        Refreshing is counted from the start of the call. It changes the unit of velocity, to
-        2^exponent a/T: see roughgas.simulation.energies.restored.
+        Refreshing is counted from the start of the call; in the first call after a run went on,
+        from where it was counted before. It changes the unit of velocity, to 2^exponent a/T: see
+        roughgas.simulation.energies.restored.
         """
-        return self._run(Sampling(np.inf, collisions, self.refresh_every // collisions), samples)
+        refresh = self.refresh_every // collisions
+        late = self.collisions % self.refresh_every if self._resumed and refresh else 0
+        late, self._resumed = 0 if late % collisions else late, False
+        left = (self.refresh_every - late) // collisions
+        if not late or samples < left:
+            return self._run(Sampling(np.inf, collisions, 0 if late else refresh), samples)
+        parts = [self._run(Sampling(np.inf, collisions, left), left)]
+        if samples > left:
+            parts.append(self._run(Sampling(np.inf, collisions, refresh), samples - left))
+        return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 
     def look(self) -> None:
         """Take a sample of the present instant."""

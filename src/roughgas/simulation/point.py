@@ -1,6 +1,6 @@
 """One point of an experiment: from its settings to the dataset's variables."""
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -10,6 +10,7 @@ from roughgas.data.point import Point
 from roughgas.kernel.cache import source_hash
 from roughgas.scene import Scene, build
 from roughgas.simulation import schedule
+from roughgas.simulation.ends import Initial, check_initial, is_memory_of, last_states, owner
 from roughgas.simulation.gas import Gas, Recorder
 from roughgas.theory import packing_fraction
 
@@ -26,17 +27,24 @@ def run_point(
     experiment: Mapping[str, Any],
     seed: int,
     tell: Callable[[float, int], None] | None = None,
+    initial: Sequence[Initial] = (),
 ) -> Point:
     """Simulate one point and measure it.
 
     `experiment` holds settings as roughgas.config.experiment gives them, and `scene` is what
     roughgas.scene.build makes of them at r and beta. The same settings, r, beta and seed give the
     same numbers to the last bit, but for `kernel_seconds`. `tell(time, collisions)` is called as
-    the simulation goes on. Raises InputError if the particles do not fit, CollapseError if contacts
+    the simulation goes on. It begins in the `initial` states, one a replica, or else on a lattice.
+    Raises InputError if the particles do not fit or could not begin so, CollapseError if contacts
     accumulate without end.
     """
-    recorder, number = Recorder(tell), experiment["particles"]
-    found = schedule.of(experiment).run(scene, experiment, seed, recorder)
+    keep, number = experiment.get("keep_state", False), experiment["particles"]
+    recorder = Recorder(tell, keep)
+    if initial:
+        check_initial(initial, experiment, scene)
+    found = schedule.of(experiment).run(scene, experiment, seed, recorder, initial)
+    if keep:
+        found |= last_states(recorder.gases)
     found |= {"collisions": recorder.collisions, "kernel_seconds": recorder.seconds}
     if scene.effects.contact_time is not None:
         found["contact_time"] = scene.effects.contact_time.duration
@@ -51,6 +59,8 @@ def run_point(
             "dimension": len(scene.box),
             **({} if None in scene.box else {"packing": packing_fraction(number, scene.box)}),
             **_known_to_theory(scene, experiment),
+            **({"memory_of": owner(scene)} if keep else {}),
+            **_about_start(initial, scene),
             "roughgas_version": __version__,
             "numpy_version": np.__version__,
             "kernel_source_hash": source_hash(),
@@ -63,6 +73,15 @@ def _withdrawn(found):
     given = {flag: [found[one] for one in VOUCHED[flag] if one in found] for flag in VOUCHED}
     wrong = (flag for flag, numbers in given.items() if not np.isfinite(numbers).all())
     return {flag: False for flag in wrong if flag in found}
+
+
+def _about_start(initial, scene):
+    """Return which states a run began in, and whether it went on to the last bit."""
+    if not initial:
+        return {}
+    exact = all(is_memory_of(one, scene) for one in initial)
+    digests = ",".join(one.digest() for one in initial)
+    return {"initial_digest": digests, "initial_exact": int(exact)}
 
 
 def _known_to_theory(scene, experiment):

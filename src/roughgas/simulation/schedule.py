@@ -1,6 +1,6 @@
 """Kinds of schedule: all that depends on whether a gas is driven or cools, by one look-up."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, Protocol
 
 from roughgas import scene
@@ -8,6 +8,7 @@ from roughgas.base.errors import InputError
 from roughgas.kernel import hooks
 from roughgas.scene import Scene
 from roughgas.simulation import cooling, steady
+from roughgas.simulation.ends import Initial
 from roughgas.simulation.energies import Columns
 from roughgas.simulation.gas import Gas, Recorder
 
@@ -22,14 +23,21 @@ class Kind(Protocol):
     def length(self, scene: Scene, schedule: Mapping[str, Any]) -> float:
         """Return how much a point simulates, in UNIT."""
 
-    def start(self, scene: Scene, experiment: Mapping[str, Any], seed: Any, recorder=None) -> Gas:
+    def start(
+        self, scene: Scene, experiment: Mapping[str, Any], seed: Any, recorder=None, initial=()
+    ) -> Gas:
         """Return the gas of a point, the first of several, as its time begins to count."""
 
     def sample(self, gas: Gas, every: float, samples: int) -> Columns:
         """Advance a gas; return columns, sampled at intervals of `every` UNIT."""
 
     def run(
-        self, scene: Scene, experiment: Mapping[str, Any], seed: int, recorder: Recorder
+        self,
+        scene: Scene,
+        experiment: Mapping[str, Any],
+        seed: int,
+        recorder: Recorder,
+        initial: Sequence[Initial] = (),
     ) -> dict[str, Any]:
         """Return the variables of a point (see roughgas.data.point)."""
 

@@ -1,6 +1,6 @@
 """A gas under steady driving: wait until it is stationary, then average over time."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -9,6 +9,7 @@ from roughgas.effects import inertia
 from roughgas.scene import Scene
 from roughgas.simulation.books import exchange
 from roughgas.simulation.contacts import contact_averages
+from roughgas.simulation.ends import Initial
 from roughgas.simulation.energies import Columns, energies, ratio, ratio_of_means
 from roughgas.simulation.gas import Gas, Recorder
 from roughgas.statistics.averages import period_means
@@ -26,9 +27,10 @@ def length(scene: Scene, schedule: Mapping[str, Any]) -> float:
     return schedule["equilibrate"] + schedule["measure"]
 
 
-def start(scene: Scene, experiment: Mapping[str, Any], seed: Any, recorder=None) -> Gas:
+def start(scene: Scene, experiment: Mapping[str, Any], seed: Any, recorder=None, initial=()) -> Gas:
     """Return the gas of a point as it begins; `seed` may be a random generator."""
-    return Gas.start(scene, experiment, np.random.default_rng(seed), recorder)
+    rng = np.random.default_rng(seed)
+    return Gas.start(scene, experiment, rng, recorder, *initial)
 
 
 def sample(gas: Gas, every: float, samples: int) -> Columns:
@@ -43,7 +45,11 @@ def samples_per_period(schedule: Mapping[str, Any]) -> int:
 
 
 def run(
-    scene: Scene, experiment: Mapping[str, Any], seed: int, recorder: Recorder
+    scene: Scene,
+    experiment: Mapping[str, Any],
+    seed: int,
+    recorder: Recorder,
+    initial: Sequence[Initial] = (),
 ) -> dict[str, Any]:
     """Return the variables of the point (see roughgas.data.point), from one simulation.
 
@@ -55,8 +61,10 @@ def run(
     schedule = experiment["schedule"]
     every, per_period = schedule["sample_every"], samples_per_period(schedule)
     planned, length = (round(schedule[part] / every) for part in ("equilibrate", "measure"))
-    gas = start(scene, experiment, seed, recorder)
-    before = gas.books()
+    gas = start(scene, experiment, seed, recorder, initial)
+    if initial:
+        gas.look()  # at running sums that others have begun
+    begun, sums, before = gas.time, gas.sample, gas.books()
     rows = gas.in_time(every, planned + length)
     series = gas.energies(rows)
     first, found = _start(series, planned, length, per_period)
@@ -66,11 +74,11 @@ def run(
         "E_trans": window.translational.mean(),
         "E_trans_stderr": blocking(translational)[0],
         **(_shared(window, per_period, every) if window.rotational is not None else {}),
-        **contact_averages(rows, first, per_period, inertia(scene.effects)),
+        **contact_averages(rows, first, per_period, inertia(scene.effects), sums),
         **_unsubtracted(gas, rows, first),
         **exchange(before, gas.books(), scene, gas.particles),
         "equilibrated": found,
-        "measured_from": first * every,
+        "measured_from": begun + first * every,
         **_series(rows["time"][first:], window, max(1, per_period // KEPT)),
     }
 

@@ -1,0 +1,210 @@
+"""Where a run begins, if not on a lattice, and the state that it leaves for another one to go on.
+
+A state is what physics knows: positions, velocities and spins at an instant. From these a run goes
+on to rounding, in this version of the kernel or another, also with another r, beta or drive.
+
+Beside it lies the kernel's memory: all arrays of its State as bytes. Contacts were foreseen earlier
+with other roundings than if they were foreseen now, and what collisions do is chaotic; with its
+memory a run goes on as if it had not stopped, to the last bit. It belongs to one kernel and one
+scene, and is not used for others.
+"""
+
+import hashlib
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+
+import numpy as np
+
+from roughgas.base.errors import InputError, shown
+from roughgas.kernel.cache import source_hash
+from roughgas.kernel.layout import new_state
+from roughgas.kernel.state import BASE, EXPONENT, NOW, State
+from roughgas.scene import Scene, check_places
+from roughgas.simulation.instant import in_order, whereabouts
+
+if TYPE_CHECKING:
+    import xarray
+
+
+class Initial(NamedTuple):
+    """A state from which a run begins."""
+
+    position: np.ndarray  # (N, D) in a
+    velocity: np.ndarray  # (N, D) in a/T, of the images in the box
+    spin: np.ndarray | None = None  # (N, 2 D - 3) in a/T; None: no particle spins
+    time: float = 0.0  # T: the phase of what drives the gas
+    memory: bytes = b""  # of the kernel
+    owner: str = ""  # whose memory it is
+
+    def digest(self) -> str:
+        """Return a checksum of all that shapes what comes of it."""
+        parts = [np.ascontiguousarray(one) for one in self[:3] if one is not None]
+        content = b"".join(one.tobytes() for one in parts) + repr(float(self.time)).encode()
+        return hashlib.sha256(content + self.memory + self.owner.encode()).hexdigest()[:16]
+
+
+class Run(Protocol):
+    """A gas under way (roughgas.simulation.gas.Gas)."""
+
+    scene: Scene
+    state: State
+    extents: np.ndarray
+
+    @property
+    def begun(self) -> int: ...
+
+    @property
+    def time(self) -> float: ...
+
+
+def initial_of(dataset: "xarray.Dataset") -> list[Initial]:
+    """Return the states in a dataset, one a replica.
+
+    It may be a point that has kept its last state, a frame of a trajectory, or of one's own:
+    `position` and `velocity` (particle, axis), `spin` (particle, spin_axis), `time`. Raises
+    InputError where any of these lacks or is not a finite number.
+    """
+    prefix = "last_" if "last_position" in dataset else ""
+    found = {}
+    for name in ("position", "velocity", "spin"):
+        if prefix + name in dataset:
+            found[name] = _by_replica(dataset, prefix + name)
+        elif name != "spin":
+            legal = "be in the dataset: a point made with keep_state, or a frame of a trajectory"
+            raise InputError("initial", f"without {name}", legal)
+    times = np.atleast_1d(dataset[f"{prefix}time"].values) if f"{prefix}time" in dataset else [0.0]
+    if not np.isfinite(times).all() or np.min(times) < 0.0:
+        raise InputError("initial.time", shown(list(times)), "be a number >= 0")
+    memory = dataset["last_memory"].values if "last_memory" in dataset else None
+    return [
+        Initial(
+            **{name: values[number] for name, values in found.items()},
+            time=float(times[number if len(times) > 1 else 0]),
+            memory=b"" if memory is None else memory[number].tobytes(),
+            owner=dataset.attrs.get("memory_of", ""),
+        )
+        for number in range(len(found["position"]))
+    ]
+
+
+def _by_replica(dataset, name):
+    """Return an array (replicas, N, components)."""
+    values = np.asarray(dataset[name].values, float)
+    if "frame" in dataset[name].dims:
+        legal = "have no frames: choose one, as by initial.isel(frame=-1)"
+        raise InputError(f"initial.{name}", dataset[name].dims, legal)
+    values = values[None] if values.ndim == 2 else values
+    if values.ndim != 3 or not np.isfinite(values).all():
+        raise InputError(f"initial.{name}", f"of shape {values.shape}", "be finite vectors")
+    return values
+
+
+def check_initial(initial: Sequence[Initial], experiment: Mapping[str, Any], scene: Scene) -> None:
+    """Raise InputError where a run of this scene could not begin with these states."""
+    replicas = experiment["schedule"].get("replicas", 1)
+    if len(initial) != replicas:
+        raise InputError("number of initial states", len(initial), f"be {replicas}, one a replica")
+    number, dimension = experiment["particles"], len(scene.box)
+    components = 2 * dimension - 3
+    for one in initial:
+        wanted = {"position": dimension, "velocity": dimension, "spin": components}
+        for name, width in wanted.items():
+            values = getattr(one, name)
+            if values is not None and values.shape != (number, width):
+                legal = f"have the shape ({number}, {width}) in this scene"
+                raise InputError(f"initial.{name}", f"of shape {values.shape}", legal)
+        if one.spin is not None and scene.effects.spin is None and np.any(one.spin):
+            raise InputError("initial.spin", "not zero", "not be there where particles do not spin")
+        if not is_memory_of(one, scene):
+            check_places(scene, one.position, one.time)
+
+
+def owner(scene: Scene) -> str:
+    """Return a text that is the same for all runs that understand each other's memory."""
+    about = repr((source_hash(), np.__version__, scene))
+    return hashlib.sha256(about.encode()).hexdigest()[:16]
+
+
+def is_memory_of(initial: Initial, scene: Scene) -> bool:
+    """Return whether a run of the scene goes on from a state to the last bit."""
+    return bool(initial.memory) and initial.owner == owner(scene)
+
+
+def state_from(
+    initial: Initial, scene: Scene, rng: np.random.Generator
+) -> tuple[State, int | None, np.ndarray]:
+    """Return the state in which a run begins, and the extents (D,) that it is laid out for; between
+    them, where it goes on with its memory, the collisions when it began to cool."""
+    if is_memory_of(initial, scene):
+        return _remembered(initial, scene)
+    spin = initial.spin
+    if spin is None:
+        spin = np.zeros((len(initial.position), 2 * len(scene.box) - 3))
+    state = new_state(scene, initial.position, initial.velocity, spin, rng=rng)
+    base = math.floor(initial.time)  # whole, so that it stays exact as it moves on
+    now = initial.time - base
+    state.clock[BASE], state.clock[NOW] = base, now
+    state.trajectory[:, -1] = now
+    for times in state.moments:
+        if times is not None:
+            times += now
+    return state, None, np.ptp(initial.position, axis=0)
+
+
+def last_states(gases: Iterable[Run]) -> dict[str, Any]:
+    """Return variables of a point (see roughgas.data.point): the states that its runs end in."""
+    states = [_last(gas) for gas in gases]
+    found = {
+        "last_time": [one.time for one in states],
+        "last_position": [one.position for one in states],
+        "last_velocity": [one.velocity for one in states],
+        "last_memory": [np.frombuffer(one.memory, np.uint8) for one in states],
+    }
+    if states[0].spin is not None:
+        found["last_spin"] = [one.spin for one in states]
+    return {name: np.array(values) for name, values in found.items()}
+
+
+def _last(gas: Run) -> Initial:
+    state, scene = gas.state, gas.scene
+    unit = 2.0 ** int(state.counts[EXPONENT])
+    position, velocity = whereabouts(state, scene, gas.time)
+    return Initial(
+        position=in_order(state, position),
+        velocity=in_order(state, velocity * unit),
+        spin=None if state.spin is None else in_order(state, state.spin * unit),
+        time=gas.time,
+        memory=_memory(gas),
+        owner=owner(scene),
+    )
+
+
+def _memory(gas: Run) -> bytes:
+    header = np.array([gas.begun, *gas.extents], float)
+    return b"".join(array.tobytes() for array in [header, *_arrays(gas.state)])
+
+
+def _remembered(initial, scene):
+    number, dimension = initial.position.shape
+    memory = np.frombuffer(initial.memory, np.uint8)
+    place = 8 * (1 + dimension)
+    begun, *extents = memory[:place].view(float)
+    position = np.zeros((number, dimension))
+    position[0] = extents  # all that the layout asks of positions
+    spin = np.zeros((number, 2 * dimension - 3))
+    state = new_state(scene, position, np.zeros_like(position), spin)
+    for array in _arrays(state):
+        if place + array.nbytes <= len(memory):
+            part = memory[place : place + array.nbytes].copy()
+            array[...] = part.view(array.dtype).reshape(array.shape)
+        place += array.nbytes
+    if place != len(memory):
+        raise InputError("initial.last_memory", f"{len(memory)} bytes", f"be {place} bytes long")
+    return state, int(begun), np.array(extents)
+
+
+def _arrays(state: State) -> Iterator[np.ndarray]:
+    from roughgas.data.checkpoint import arrays_of
+
+    return (array for _, array in arrays_of(state))

@@ -1,0 +1,189 @@
+"""Where runs begin and what they leave: 2T at once are T, a stop, and T, bit for bit."""
+
+import numpy as np
+import pytest
+import xarray as xr
+from brute_force import KERNELS, kernels, settings
+from schedules import COOLING
+
+from roughgas.base.errors import InputError
+from roughgas.data.point import as_dataset
+from roughgas.kernel import layout
+from roughgas.scene import build
+from roughgas.simulation.ends import Initial, check_initial, initial_of
+from roughgas.simulation.point import run_point
+
+R, BETA, SEED = 0.9, 0.3, 3
+DRIVEN = ("sheared", "bed", "walled", "rubbed bed", "shaken", "heated")
+DRIVEN += ("heated, smooth", "heated spheres")
+BOXES = {"bed": [10, "open"], "walled": [10, "open"], "rubbed bed": [10, "open"]}
+PLACE = {"experiment": "x", "scale": "small", "r": R, "beta": BETA, "seed": SEED}
+
+
+def steady(measure, equilibrate=0):
+    lengths = {"equilibrate": equilibrate, "measure": measure}
+    return {"kind": "steady", "sample_every": 0.25, "period": 1} | lengths
+
+
+def cooling(plateau):
+    return COOLING | {"relaxation_times": 0, "plateau": plateau}
+
+
+def scene_of(name, number=16):
+    box = BOXES.get(name) or [12] * len(KERNELS[name]["box"])
+    return settings(name, number, box) | {"keep_state": True}
+
+
+def run(experiment, schedule, initial=None, r=R):
+    """A point as a dataset."""
+    beta = BETA if "spin" in experiment["effects"] else -1.0
+    experiment = experiment | {"schedule": schedule}
+    states = [] if initial is None else initial_of(initial)
+    point = run_point(build(experiment, r, beta), experiment, SEED, None, states)
+    return as_dataset(point._replace(attributes=PLACE | point.attributes))
+
+
+def assert_same_end(whole, other):
+    names = [name for name in whole.data_vars if name.startswith("last_")]
+    assert {"last_time", "last_position", "last_velocity", "last_memory"} <= set(names)
+    for name in names:
+        assert np.array_equal(whole[name].values, other[name].values), name
+
+
+@pytest.mark.parametrize("name", kernels(*DRIVEN))
+def test_a_driven_gas_goes_on_as_if_it_had_not_stopped(name):
+    experiment = scene_of(name)
+    whole = run(experiment, steady(40, 40))
+    half = run(experiment, steady(40))
+    rest = run(experiment, steady(40), half)
+    assert_same_end(whole, rest)
+    assert rest.initial_exact == 1 and whole.collisions == half.collisions + rest.collisions
+    if "R" in whole and whole.measured_from == rest.measured_from:
+        for found in ("R", "R_stderr", "R_collisional", "contact_correlation", "R_series"):
+            if found in whole:
+                assert np.array_equal(whole[found].values, rest[found].values), found
+    assert rest.time.values.min() >= 40.0
+
+
+@pytest.mark.parametrize("name", ["gas", "spheres"])
+@pytest.mark.parametrize("first", [14, 16, 17])
+def test_a_cooling_gas_goes_on_wherever_it_was_last_refreshed(name, first):
+    experiment = scene_of(name, 20)
+    whole, half = run(experiment, cooling(50)), run(experiment, cooling(first))
+    assert_same_end(whole, run(experiment, cooling(50 - first - 10), half))
+
+
+def test_it_can_stop_more_than_once():
+    experiment = scene_of("sheared")
+    whole, part = run(experiment, steady(60)), None
+    for _ in range(3):
+        part = run(experiment, steady(20), part)
+    assert_same_end(whole, part)
+
+
+@pytest.mark.parametrize("name", ["gas", "sheared", "walled", "spheres"])
+def test_many_particles_go_on_in_their_cells(name, monkeypatch):
+    """However few they are; the cells of a bed stay those of the gas that it was at the start."""
+    monkeypatch.setattr(layout, "FEW", 0)
+    monkeypatch.setattr(layout, "PER_CELL", 0.0)
+    box = {"walled": [20, "open"], "spheres": [17, 17, 17]}.get(name, [17, 19])
+    experiment = settings(name, 40, box) | {"keep_state": True}
+    length = cooling if name in ("gas", "spheres") else steady
+    half = run(experiment, length(20))
+    rest = run(experiment, length(20), half)
+    assert_same_end(run(experiment, length(50 if length is cooling else 40)), rest)
+
+
+@pytest.mark.parametrize("name", ["sheared", "bed", "shaken"])
+def test_from_what_physics_knows_it_goes_on_to_rounding(name):
+    """As another version of the kernel would, to which the memory means nothing."""
+    experiment = scene_of(name)
+    half = run(experiment, steady(40))
+    exact = run(experiment, steady(40), half)
+    other = run(experiment, steady(40), half.assign_attrs(memory_of="another kernel"))
+    assert other.initial_exact == 0 and not np.array_equal(exact.last_memory, other.last_memory)
+    near = slice(0, 8)  # two T: chaos makes the roundings visible later
+    assert other.time.values == pytest.approx(exact.time.values, rel=1e-12)
+    for series in ("E_trans_series", "E_rot_series"):
+        assert other[series][near].values == pytest.approx(exact[series][near].values, rel=1e-6)
+
+
+def test_the_state_is_where_the_particles_are():
+    point = run(scene_of("sheared"), steady(40)).isel(replica=0)
+    velocity, spin = point.last_velocity.values.copy(), point.last_spin.values
+    velocity[:, 0] -= 2.0 / 12.0 * (point.last_position.values[:, 1] - 6.0)
+    E_trans = (velocity**2).sum() / (2 * 2 * 16)
+    assert E_trans == pytest.approx(point.E_trans_series.values[-1], rel=1e-9)
+    E_rot = 0.5 * ((spin - spin.mean()) ** 2).sum() / (2 * 16)
+    assert E_rot == pytest.approx(point.E_rot_series.values[-1], rel=1e-9)
+    assert point.last_time == pytest.approx(40.0) and np.all(point.last_position.values < 12.0)
+
+
+def test_a_state_of_ones_own():
+    experiment = settings("gas", 2, [12, 12]) | {"schedule": cooling(5)}
+    vectors = {"position": [[2.0, 6.0], [9.0, 6.0]], "velocity": [[1.0, 0.0], [-1.0, 0.0]]}
+    (one,) = initial_of(xr.Dataset({k: (("particle", "axis"), v) for k, v in vectors.items()}))
+    assert one.time == 0.0 and one.spin is None
+    point = run_point(build(experiment, 1.0, 1.0), experiment, SEED, None, [one] * 3).variables
+    assert point["E_trans_series"] == pytest.approx(np.ones_like(point["E_trans_series"]))
+
+
+PAIR = Initial(np.array([[2.0, 6.0], [9.0, 6.0]]), np.zeros((2, 2)))
+
+
+@pytest.mark.parametrize(
+    ("kernel", "position", "message"),
+    [
+        ("gas", [[2, 2], [2, 3.9]], "distance of particles 0 and 1 = 1.9: must be 2 or more"),
+        ("gas", [[0.5, 0.5], [11.6, 11.4]], "distance of particles 0 and 1 = 1.42126704"),
+        ("gas", [[12.5, 6], [1.5, 6]], "distance of particles 0 and 1 = 1:"),
+        (
+            "gas",
+            [[1, 2], [3, 4], [5, 6]],
+            r"position = of shape (3, 2): must have the shape (2, 2)",
+        ),
+        ("sheared", [[2, 0.5], [8, 11.5]], "distance of particles"),
+        ("bed", [[2, 0.5], [9, 6]], "initial position of particle 0 = 0.5: must lie in [1, inf]"),
+        ("shaken", [[2, 4], [11.5, 6]], "particle 1 = 11.5: must lie in [1, 11]"),
+    ],
+)
+def test_what_could_not_be_is_refused(kernel, position, message):
+    box = [12, "open"] if kernel == "bed" else [12, 12]
+    experiment = settings(kernel, 2, box) | {"schedule": steady(1)}
+    time = 3.0  # after which the images of the sheared gas have slid by 6 a
+    one = PAIR._replace(position=np.array(position, float), time=time)
+    with pytest.raises(InputError) as error:
+        check_initial([one], experiment, build(experiment, R, BETA))
+    assert message in str(error.value)
+
+
+def test_what_touches_is_legal_and_so_is_what_is_next_to_the_wall():
+    experiment = settings("shaken", 2, [12, 12]) | {"schedule": steady(1)}
+    one = PAIR._replace(position=np.array([[1.0, 5.0], [3.0, 5.0]]))
+    check_initial([one], experiment, build(experiment, R, BETA))
+
+
+def test_datasets_that_hold_no_state_are_refused():
+    with pytest.raises(InputError, match="initial = without position: must be in the dataset"):
+        initial_of(run(scene_of("gas", 20) | {"keep_state": False}, cooling(5)))
+    frames = ("frame", "particle", "axis"), np.zeros((2, 3, 2))
+    places = {"position": frames, "velocity": frames}
+    with pytest.raises(InputError, match=r"choose one, as by initial.isel\(frame=-1\)"):
+        initial_of(xr.Dataset(places))
+    half = run(scene_of("gas", 20), cooling(5))
+    with pytest.raises(InputError, match="number of initial states = 2: must be 3"):
+        run(scene_of("gas", 20), cooling(5), half.isel(replica=[0, 1]))
+    cut = half.isel(byte=slice(0, 800))
+    with pytest.raises(InputError, match=r"initial\.last_memory = 800 bytes: must be"):
+        run(scene_of("gas", 20), cooling(5), cut)
+
+
+def test_spins_may_have_a_temperature_at_the_start():
+    experiment = settings("gas", 900, [80, 80]) | {"spin_temperature": 4.0}
+    gas = build(experiment, R, BETA)
+    from roughgas.scene import initial_state
+
+    state = initial_state(gas, experiment, np.random.default_rng(SEED))
+    cold = initial_state(gas, experiment | {"spin_temperature": 0.0}, np.random.default_rng(SEED))
+    assert np.array_equal(state.trajectory, cold.trajectory) and np.all(cold.spin == 0.0)
+    assert 0.5 * np.mean(state.spin**2) == pytest.approx(4.0, rel=0.2)  # 2/sqrt(900) = 0.07
