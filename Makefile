@@ -7,57 +7,86 @@ SCALE ?= paper
 REPORTED ?= figures
 SNAKEFILES := Snakefile rules
 BIN := .venv/bin
-PIP := $(BIN)/python -m pip --disable-pip-version-check install -qq
+READY = "Ready. Next:  source .venv/bin/activate   and then, for example:  roughgas --help"
+SNAKEMAKE = $(BIN)/snakemake -j$(JOBS) --config scale=$(SCALE) --
+RESULTS = results/$(SCALE)
+AT_SCALE = $(if $(filter-out paper,$(SCALE)), SCALE=$(SCALE))
+FIGURES = figures$(if $(filter-out paper,$(SCALE)),/$(SCALE))
+PIP := $(BIN)/python -m pip --disable-pip-version-check install
 LOCK := uv pip compile --quiet --generate-hashes --no-emit-index-url --no-header --universal \
     --python-version 3.11 pyproject.toml
 EXTRA_TESTS := slow or remedy or browser or slurm
+
+# pip in a few lines, in a terminal or in a pipe: how far it is, and of a failure all that it said
+define install
+{ $(PIP) --progress-bar off --require-hashes --requirement $(1) 2>&1 || echo "pip has failed"; } | \
+    awk -v total="$$(grep -c == $(1))" ' \
+        { said = said $$0 "\n" } \
+        /^Collecting/ && ++n % 25 == 0 { print "  " n " of " total " packages"; fflush() } \
+        /^Installing collected/ { print "  installing all of them"; fflush() } \
+        END { if (/^pip has failed/) { printf "%s", said; exit 1 } }'
+endef
 
 help: ## say what there is to make
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /  make \1\t/' | expand -t 18
 
 figures: setup ## simulate, and draw the four figures of the paper
-	$(BIN)/snakemake -j$(JOBS) figures
+	$(SNAKEMAKE) figures
 	@echo
-	@echo "Look at  figures/fig1a.png  figures/fig1b.png  figures/fig2a.png  figures/fig2b.png"
-	@echo "What the paper claims, and what we find:  results/paper/claims.md"
-	@echo "Every number in them:  results/paper/R.csv"
-	@echo "Every point, to click on, and one file to share:  make report"
+	@echo "Look at $(foreach figure,1a 1b 2a 2b, $(FIGURES)/fig$(figure).png)"
+	@echo "What the paper claims, and what we find:  $(RESULTS)/claims.md"
+	@echo "Every number in them:  $(RESULTS)/R.csv"
+	@echo "Every point, to click on, and one file to share:  make$(AT_SCALE) report"
 
 report: setup ## one HTML file with all that REPORTED has (default: figures), and an interactive page
-	$(BIN)/snakemake -j$(JOBS) --config scale=$(SCALE) -- $(REPORTED) explore living
-	$(BIN)/snakemake --config scale=$(SCALE) --report results/$(SCALE)/report.html -- $(REPORTED)
+	$(SNAKEMAKE) $(REPORTED) explore living
+	$(BIN)/snakemake --config scale=$(SCALE) --report $(RESULTS)/report.html -- $(REPORTED)
 	@echo
-	@echo "Look at  results/$(SCALE)/report.html  results/$(SCALE)/explore.html  results/$(SCALE)/living.html:"
-	@echo "each is one file, to be sent as it is. More in the first: make REPORTED='figures extensions' report"
+	@echo "Look at  $(RESULTS)/report.html  $(RESULTS)/explore.html  $(RESULTS)/living.html:"
+	@echo "each is one file, to be sent as it is. More in the first:"
+	@echo "    make$(AT_SCALE) REPORTED='figures extensions' report"
 
-plan: setup ## say what all experiments at SCALE will cost, from pilot runs
-	$(BIN)/snakemake -j$(JOBS) --quiet all --config scale=$(SCALE) -- plan
-	@cat results/$(SCALE)/plan.md
+plan: setup ## say what `make figures` at SCALE will cost, from pilot runs
+	$(SNAKEMAKE) plan
+	@cat $(RESULTS)/plan.md
+	@echo
+	@echo "The same table is in  $(RESULTS)/plan.md.  To run what it plans:  make$(AT_SCALE) figures"
 
 test: setup ## run the tests, but for those of `make extras`
 	$(BIN)/python -m pytest -n $(JOBS) --dist loadfile --no-loadscope-reorder -m "not ($(EXTRA_TESTS))"
+	@echo "All tests pass. Those that take minutes more, a browser, or Slurm:  make extras"
 
 extras: .venv/with-browser .venv-slurm/ready ## run what takes minutes more, a browser, or Slurm
 	$(BIN)/python -m pytest -n $(JOBS) --dist loadfile -m "$(EXTRA_TESTS)"
+	@echo "All of these pass, too."
 
 docs: .venv/with-docs ## run the tutorial, and build the documentation: docs/_build/html/index.html
 	$(BIN)/python -m sphinx --fresh-env --fail-on-warning --keep-going -q docs docs/_build/html
+	@echo "Look at  docs/_build/html/index.html"
+
+notebook: .venv/with-notebook ## open the tutorial in a browser, as a notebook
+	@echo "Opening docs/tutorial.ipynb; Ctrl-C here ends it."
+	$(BIN)/python -m jupyterlab docs/tutorial.ipynb
 
 bench: setup ## measure the speed: docs/benchmarks.md
 	$(BIN)/python -m benchmarks
+	@echo "Look at  docs/benchmarks.md"
 
 lint: setup ## check style and format
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/snakefmt --check $(SNAKEFILES)
 	$(BIN)/lint-imports
+	@echo "Style, format and imports are as they should be."
 
 format: setup ## bring the sources into format
 	$(BIN)/ruff check --fix
 	$(BIN)/ruff format
 	$(BIN)/snakefmt $(SNAKEFILES)
+	@echo "To see what has changed:  git diff"
 
 setup: .venv/ready ## install what is needed into .venv
+	@$(if $(filter setup,$(MAKECMDGOALS)),echo $(READY))
 
 .venv/ready: requirements.lock pyproject.toml
 	@for python in $(PYTHON) ""; do \
@@ -72,14 +101,14 @@ setup: .venv/ready ## install what is needed into .venv
 	fi; \
 	echo "Installing into .venv, once; this takes about a minute."; \
 	$$python -m venv --clear .venv
-	@$(PIP) --require-hashes --requirement requirements.lock
-	@$(PIP) --no-deps --no-build-isolation --editable .
+	@$(call install,requirements.lock)
+	@$(PIP) -qq --no-deps --no-build-isolation --editable .
 	@touch $@
 
 # what only some need: requirements/*.lock
 .venv/with-%: requirements/%.lock .venv/ready
 	@echo "Installing what \`$*\` needs into .venv, once."
-	@$(PIP) --require-hashes --requirement $<
+	@$(call install,$<)
 	@touch $@
 
 # apart, since with the plugin installed every snakemake looks for a Slurm first
@@ -94,11 +123,14 @@ lock: ## choose and pin the newest versions of all dependencies (needs uv)
 	$(LOCK) --upgrade --extra dev --output-file requirements.lock
 	$(LOCK) --upgrade --extra docs --constraint requirements.lock --output-file requirements/docs.lock
 	$(LOCK) --upgrade --extra browser --constraint requirements.lock --output-file requirements/browser.lock
+	$(LOCK) --upgrade --extra notebook --constraint requirements.lock --output-file requirements/notebook.lock
 	$(LOCK) --upgrade --extra slurm --constraint requirements.lock --output-file requirements/slurm.lock
+	@echo "To see what has changed:  git diff requirements.lock requirements"
 
 clean: ## remove all results; the environment and the committed figures stay
 	rm -rf results logs .snakemake figures/*.pdf docs/_build .pytest_cache .ruff_cache .import_linter_cache .hypothesis \
 	    $(filter-out figures/movies/,$(wildcard figures/*/))
+	@echo "All results are gone. To make them again:  make figures"
 
-.PHONY: help figures report plan test extras docs bench lint format setup lock clean
+.PHONY: help figures report plan test extras docs notebook bench lint format setup lock clean
 .DELETE_ON_ERROR:

@@ -12,14 +12,13 @@
 #   snakemake -j2 finite_size                   how much of R in a cooling gas is due to number and box
 #   snakemake -j2 hard_cases                    where simulations go wrong, and how far from it we are
 #   snakemake -j2 crate                         the run as one file: an RO-Crate with checksums
+#   snakemake -j2 figures/sheared.png           R of any experiment over what its sweep varies
 #   snakemake -j1 results/paper/cooling/r0.87/beta-0.33/seed7.nc     any one point
 
 
 include: "rules/common.smk"
 include: "rules/messages.smk"
 
-
-be_brief()
 
 CHANGES = {key: change for key, change in config.items() if key != "scale"}  # the command line's
 config = checked_config("config.yaml", config)
@@ -33,8 +32,9 @@ wildcard_constraints:
     beta=NAME,
     seed=NAME,
     folder=f"({NAME}/)?",
-    # these have their own rules
-    figure=rf"(?!clustering\.|hard_cases|(?:{STUDY_FIGURE})\.){NAME}",
+    figure="|".join(catalogue.figures_of("paper", "beyond")),
+    # those of the catalogue have their own rules
+    plotted=rf"(?!(?:{'|'.join(catalogue.FIGURES)})\.){NAME}",
     movie=NAME,
     study=NAME,
     task=NAME,

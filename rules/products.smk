@@ -11,12 +11,19 @@ PARTS = {  # product -> the part of the catalogue of figures whose experiments i
 }
 
 
+DRAWN_FROM_DATA = catalogue.figures_of("paper", "beyond")
+
+
 def data_of_figure(wildcards):
-    drawn_from_data = catalogue.figures_of("paper", "beyond")
-    with one_line():
-        if wildcards.figure not in drawn_from_data:
-            raise not_one_of("figure", wildcards.figure, drawn_from_data)
     return reduced(scale_of(wildcards.folder), entry_of(wildcards).shows)
+
+
+def data_of_plot(wildcards):
+    """The reduced dataset of the experiment by whose name a figure is asked for."""
+    with one_line():
+        if wildcards.plotted not in config["experiments"]:
+            raise not_one_of("figure", wildcards.plotted, [*DRAWN_FROM_DATA, *config["experiments"]])
+    return reduced(scale_of(wildcards.folder), [wildcards.plotted])
 
 
 def code_of_figure(wildcards):
@@ -65,6 +72,22 @@ rule figure:
         "draw {wildcards.folder}{wildcards.figure}"
     shell:
         "roughgas figure {wildcards.figure} {input.data} --output {output} > {log} 2>&1"
+
+
+rule plot:
+    # any experiment of config.yaml by its name, as `roughgas plot` draws it
+    input:
+        data=data_of_plot,
+    output:
+        multiext("figures/{folder}{plotted}", ".pdf", ".png"),
+    log:
+        "logs/figures/{folder}{plotted}.log",
+    params:
+        code=code_of("show.figures.sweep", "show.style"),
+    message:
+        "draw {wildcards.folder}{wildcards.plotted}"
+    shell:
+        "roughgas plot {input.data} --output {output} > {log} 2>&1"
 
 
 rule table:

@@ -96,5 +96,6 @@ for job, files, log_of_job, swept_values in jobs_of_points():
             " {params.points} --settings {params.settings:q} --checked --output {output}"
             " > {log} 2>&1"
 
+    POINTS[job] = len(files)
     if job != "point":
         workflow.ruleorder(job, "point")  # the statement `ruleorder:` takes no variables

@@ -6,6 +6,7 @@ import pytest
 
 from roughgas import config
 from roughgas.config import checking, schema
+from roughgas.config.provenance import variant_attributes
 from roughgas.data.variables import POINT, REDUCED
 from roughgas.results.reduce import SAME
 
@@ -91,6 +92,54 @@ def test_the_effect_need_not_give_a_value_beside_the_sweep(with_experiments):
     assert walls == {"restitution": 1, "roughness": 1}
 
 
+@pytest.mark.parametrize(
+    ("key", "label", "part", "value"),
+    [
+        ("particles", "40", "particles", 40),
+        ("box", "25", "box", [25, "open"]),
+        ("schedule.measure", "2.5", "schedule", {"measure": 2.5}),
+    ],
+)
+def test_any_number_of_the_settings_is_swept(key, label, part, value):
+    whole = with_experiments(sized={"extends": "vibrated", "sweep": {key: [label, "1e2"]}})
+    checking.check(whole)
+    name = f"sized/{config.parameter_of(key)}{label}"
+    settings = config.experiment(whole, name, "paper")
+    found = settings[part]
+    assert (value.items() <= found.items()) if isinstance(value, dict) else found == value
+    about = variant_attributes(name, settings)
+    assert about["swept"] == key and about["swept_value"] == float(label)
+    with pytest.raises(InputError, match="be the variant that its settings are of"):
+        variant_attributes(f"{name}1", settings)
+
+
+def test_sides_of_a_box_keep_their_proportion():
+    narrow = with_experiments(
+        sized={"extends": "shaken_walls", "sweep": {"shaken_walls.roughness": None, "box": ["10"]}}
+    )
+    assert config.experiment(narrow, "sized/box10", "paper")["box"] == [10, 100]
+
+
+@pytest.mark.parametrize(
+    ("place", "key", "value", "where"),
+    [
+        ((), "hollow", {"extends": "vibrated"}, "experiments:"),
+        (("experiments", "vibrated"), "measure", 10, "schedule:"),
+        (("experiments", "vibrated"), "seeds", 2, "sweep:"),
+        (("experiments", "vibrated"), "spin", {"inertia": 1}, "effects:"),
+        (("experiments", "vibrated", "effects"), "inertia", 1, "effects: spin:"),
+        (("experiments", "vibrated", "schedule"), "particles", 10, "experiments: NAME:"),
+    ],
+)
+def test_a_key_in_the_wrong_place_is_told_its_place(place, key, value, where):
+    whole = with_experiments()
+    part = whole
+    for name in place:
+        part = part[name]
+    part[key] = value
+    assert refusal(checking.check, whole).endswith(f"; did you mean it under `{where}`?")
+
+
 def test_settings_of_a_variant_survive_the_way_through_text(whole):
     settings = config.point_settings(config.experiment(whole, "spun/inertia1", "paper"))
     assert settings["swept"] == "spin.inertia" and "sweep" not in settings
@@ -108,7 +157,8 @@ def test_no_parameter_has_a_name_that_datasets_need():
     taken = set(POINT) | set(REDUCED) | set(SAME)
     effects = schema._validator("experiment").schema["$defs"]["effects"]["properties"]
     parameters = {name for about in effects.values() for name in about["properties"]}
-    assert parameters & taken == {"inertia", "mu", "spin_share"}
+    parameters |= {"particles", "box", *schema._schema()["$defs"]["schedule"]["properties"]}
+    assert parameters & taken == {"inertia", "mu", "spin_share", "particles"}
 
 
 SWEPT = "experiments.spun.sweep"
@@ -123,7 +173,18 @@ MISTAKES = [
         {"spin.mass": ["1"]},
         "experiments.spun/mass1.effects.spin: key = 'mass': must be one of inertia",
     ),
-    ({"inertia": ["1"]}, "sweep: key = 'inertia': must be one of beta, r, seeds, EFFECT.PARAMETER"),
+    (
+        {"inertia": ["1"]},
+        "sweep: key = 'inertia': must be one of beta, box, particles, r, seeds, EFFECT.PARAMETER, "
+        "schedule.KEY; did you mean it under `effects: spin:`?",
+    ),
+    (
+        {"particles": ["1.5"]},
+        "experiments.spun/particles1.5.particles = 1.5: must be a whole number",
+    ),
+    ({"box": ["wide"]}, "experiments.spun/boxwide.box = 'wide': must be a list of 2 to 3 entries"),
+    ({"schedule.lenght": ["1"]}, "key = 'schedule.lenght': must name a length of this schedule: "),
+    ({"schedule.measure": ["-1"]}, "experiments.spun/measure-1.schedule.measure = -1: must be a"),
     ({"spin.inertia": []}, "sweep.spin.inertia = []: must be a list of at least 1"),
     ({"spin.inertia": "1"}, "sweep.spin.inertia = '1': must be a list of at least 1"),
     ({"spin.inertia": ["1", "1.0"]}, "sweep.spin.inertia = '1.0': must be given once"),

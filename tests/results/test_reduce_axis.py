@@ -56,7 +56,7 @@ def test_the_parameter_is_a_dimension(inertia):
 def test_what_is_a_coordinate_is_no_attribute(inertia):
     data = read_reduced(inertia)
     assert data.attrs["swept"] == "spin.inertia"
-    assert data.inertia.attrs["long_name"] == "parameter of an effect: spin.inertia"
+    assert data.inertia.attrs["long_name"] == "swept setting: spin.inertia"
     assert not {"inertia", "variant", "swept_value"} & set(data.attrs)
     assert data.attrs["experiment"] == "sheared" and data.attrs["particles"] == 40
     assert data.attrs["title"] == "sheared: R over inertia, r and beta"

@@ -2,7 +2,16 @@
 
 import os
 
-from roughgas.cli.options import CONFIG, KERNEL, POINT, RESTITUTION, ROUGHNESS, TAKE, experiments
+from roughgas.cli.options import (
+    CONFIG,
+    KERNEL,
+    POINT,
+    RESTITUTION,
+    ROUGHNESS,
+    SCALE,
+    TAKE,
+    experiments,
+)
 from roughgas.cli.parser import Command, flag, one_of, output, value
 
 CORES = str(os.cpu_count())
@@ -80,6 +89,35 @@ COMMANDS = {
         "energies, cost, and how to make it again. It may be a point, a reduced dataset, a film, "
         "a dataset of studies or a task of one, or a pilot.json. 0.3565(30) is 0.3565 with a "
         "standard error of 0.0030.",
+    ),
+    "plot": Command(
+        "cli.products:plot",
+        "draw any reduced dataset, beside theory",
+        value("input REDUCED", "reduced dataset"),
+        value("--over AXIS", "horizontal axis: r, beta, or what is swept besides (the default)"),
+        value("--r VALUE", "values of r to show", nargs="+"),
+        value("--beta VALUE", "values of beta to show", nargs="+"),
+        output(".png, .pdf or .svg files", nargs="+"),
+        examples=(
+            "roughgas plot results/paper/sheared.nc -o my.png",
+            "roughgas plot results/paper/vibrated_inertia.nc --beta 0 1 -o my.png my.pdf",
+            "roughgas plot results/paper/waves.nc --over beta --r 0.9 -o waves.png",
+        ),
+        about="Draw R of a sweep with error bars and theory, and what lies between them. The "
+        "horizontal axis is what the sweep varies besides r and beta, or else beta. Of many "
+        "series some are shown, spread evenly: --r and --beta choose. Where nothing spins, the "
+        "energy is drawn.",
+    ),
+    "experiments": Command(
+        "cli.experiments:experiments",
+        "list the experiments of the configuration",
+        SCALE,
+        CONFIG,
+        flag("--json", "print JSON, for scripts"),
+        examples=("roughgas experiments", "roughgas experiments --scale small"),
+        about="Print the name of each experiment, what it is, and what its sweep consists of at a "
+        "scale. The names are those that `roughgas run`, `plan` and `bench` take, and those of "
+        "results/SCALE/NAME.nc and figures/NAME.png.",
     ),
     "theory": Command(
         "cli.theory:print_theory",

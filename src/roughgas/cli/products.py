@@ -1,4 +1,5 @@
-"""What is made from results: `roughgas reduce`, `figure`, `claims`, `config`, `export`, `crate`."""
+"""What is made from results: `roughgas reduce`, `figure`, `plot`, `claims`, `config`, `export` and
+`crate`."""
 
 import os
 import sys
@@ -7,6 +8,7 @@ from pathlib import Path
 
 from roughgas.base.errors import InputError
 from roughgas.base.layout import from_json
+from roughgas.cli.options import number
 
 
 def reduce(options: Namespace) -> None:
@@ -28,6 +30,16 @@ def figure(options: Namespace) -> None:
         of_studies.draw(options.name, *options.inputs, options.output)
     else:
         gallery.draw(options.name, options.inputs, options.output)
+
+
+def plot(options: Namespace) -> None:
+    """Draw any reduced dataset."""
+    from roughgas.show import gallery
+
+    names = ("r", "beta")
+    chosen = {n: [number(f"--{n}", one) for one in getattr(options, n) or ()] for n in names}
+    for line in gallery.plot(options.input, options.output, options.over, **chosen):
+        print(line, file=sys.stderr)
 
 
 def claims(options: Namespace) -> None:

@@ -13,8 +13,9 @@ from xarray import Dataset
 from roughgas.base.layout import as_json, columns, from_json
 from roughgas.data import opening
 from roughgas.data.netcdf import read_netcdf, unit_of
-from roughgas.data.reduced import EQUILIBRATED, third_axis
+from roughgas.data.reduced import EQUILIBRATED, particles_of, third_axis
 from roughgas.results.table import rows as rows_of
+from roughgas.results.table import why_wide
 from roughgas.statistics.estimate import Estimate, decimals_of
 from roughgas.theory.prediction import equation_of, predicted_ratio
 
@@ -210,14 +211,14 @@ def _reduced_text(data: Dataset) -> str:
     over = f"{swept}, r and beta" if swept else "r and beta"
     head = [
         ["experiment", f"{about['experiment']}, scale {about['scale']}"],
-        ["gas", f"{about['particles']} {SHAPES[int(about['dimension'])]}"],
+        ["gas", f"{particles_of(data)} {SHAPES[int(about['dimension'])]}"],
         ["points", f"{len(table) - 1} over {over}"],
         _cost(data.sum()),
     ]
     note = "Energies per degree of freedom; their error is the scatter over seeds."
     if "R" in data:
         note = "95 %: half width of the interval; ?: it may be too narrow, as the run is short."
-        note += f"\nTheory: {equation_of(about).name}."
+        note += f"{why_wide(data)}\nTheory: {equation_of(about).name}."
     return f"{columns(head)}\n\n{columns(table, numbers=True)}\n\n{note}"
 
 

@@ -56,7 +56,7 @@ STEPS = {
         "draw a figure from reduced datasets",
         value("name NAME", "name of the figure, such as fig1a"),
         REDUCED,
-        output(".pdf or .png files", nargs="+"),
+        output(".pdf, .png or .svg files", nargs="+"),
         examples=("roughgas figure fig2b results/paper/cooling.nc -o fig2b.pdf fig2b.png",),
     ),
     "claims": Command(

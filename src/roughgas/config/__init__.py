@@ -1,9 +1,10 @@
 """config.yaml: read, checked, and merged into the settings of one experiment at one scale.
 
-A sweep may have a third axis: one parameter of one effect, as EFFECT.PARAMETER with its labels,
-such as `spin.inertia: ["1", "0.1"]`. Each label makes a variant of the experiment, named
-EXPERIMENT/PARAMETERLABEL, such as vibrated_inertia/inertia0.1: an experiment like any other, whose
-effects have that value.
+A sweep may have a third axis, with its labels: one parameter of one effect, as EFFECT.PARAMETER,
+such as `spin.inertia: ["1", "0.1"]`; one length of the schedule, as schedule.KEY; the number of
+`particles`; or the width of the `box`, whose other sides keep their proportion to it. Each label
+makes a variant of the experiment, named EXPERIMENT/PARAMETERLABEL, such as
+vibrated_inertia/inertia0.1: an experiment like any other, whose settings have that value.
 
 All functions raise InputError, with a text of one line, for unknown names and illegal values.
 """
@@ -14,19 +15,26 @@ from typing import Any
 
 from roughgas.base.errors import InputError, not_one_of, shown
 from roughgas.base.layout import as_text, from_json  # noqa: F401
-from roughgas.config.labels import SWEPT, level, restitution, roughness, seed  # noqa: F401
+from roughgas.config.labels import (  # noqa: F401
+    SWEPT,
+    level,
+    parameter_of,
+    restitution,
+    roughness,
+    seed,
+)
 
 # checking and YAML are imported where they are used: a job whose settings have been checked needs
 # neither
 
 SHOWCASE, STUDIES = "showcase", "studies"
 SEEDS_PER_JOB = 4
+GRID = ("r", "beta", "seeds")
+"""The axes of every sweep; any other key of a sweep is its third axis."""
 NOT_OF_A_POINT = ("description", "sweep")
 """Settings of an experiment that do not concern any single point of it."""
-REPLACED = {
-    "sweep": ("seeds",),
-    "schedule": ("equilibrate", "measure", "replicas", "relaxation_times", "plateau"),
-}
+LENGTHS = ("equilibrate", "measure", "replicas", "relaxation_times", "plateau")
+REPLACED = {"sweep": ("seeds", *(f"schedule.{name}" for name in LENGTHS)), "schedule": LENGTHS}
 """Settings that an experiment with a `target_stderr` does without."""
 
 
@@ -209,7 +217,7 @@ def study_from_text(text: str, name: str, source: str) -> dict[str, Any]:
 
 def third_axis(settings: Mapping[str, Any]) -> str | None:
     """Return the key of the third axis in the sweep of an experiment, or None."""
-    return next((key for key in settings.get("sweep", {}) if "." in key), None)
+    return next((key for key in settings.get("sweep", {}) if key not in GRID), None)
 
 
 def variants(name: str, settings: Mapping[str, Any]) -> list[str]:
@@ -217,7 +225,7 @@ def variants(name: str, settings: Mapping[str, Any]) -> list[str]:
     key = third_axis(settings)
     if key is None:
         return [name]
-    _, parameter = key.split(".")
+    parameter = parameter_of(key)
     return [f"{name}/{parameter}{label}" for label in settings["sweep"][key]]
 
 
@@ -234,13 +242,41 @@ def variant(name: str, settings: Mapping[str, Any]) -> dict[str, Any]:
     key = third_axis(settings)
     if key is None:
         raise InputError("experiment", shown(name), f"be {base} alone, which has no third axis")
-    effect, parameter = key.split(".")
+    parameter = parameter_of(key)
     if not folder.startswith(parameter):
         legal = f"name a value of {parameter}, such as {variants(base, settings)[0]}"
         raise InputError("experiment", shown(name), legal)
     value = level(folder.removeprefix(parameter), f"{base}: {key}")
-    changes = {"effects": {effect: {parameter: value}}, "sweep": {key: None}, SWEPT: key}
-    return merged(settings, changes)
+    return merged(settings, swept_to(settings, key, value) | {"sweep": {key: None}, SWEPT: key})
+
+
+def swept_to(settings: Mapping[str, Any], key: str, value: float | str) -> dict[str, Any]:
+    """Return the change to an experiment's settings that gives its third axis `key` this value."""
+    part, _, parameter = key.rpartition(".")
+    if part and part != "schedule":
+        return {"effects": {part: {parameter: value}}}
+    if isinstance(value, float) and value.is_integer():
+        value = int(value)  # as config.yaml would have it
+    if part:
+        return {part: {parameter: value}}
+    return {key: _scaled(settings[key], value) if key == "box" else value}
+
+
+def swept_value(settings: Mapping[str, Any], key: str) -> Any:
+    """Return the value that the settings of a variant have on its third axis; None without it."""
+    part, _, parameter = key.rpartition(".")
+    if part:
+        chosen = settings if part == "schedule" else settings["effects"]
+        return chosen.get(part, {}).get(parameter)
+    return settings["box"][0] if key == "box" else settings.get(key)
+
+
+def _scaled(box: Iterable[float | str], width: Any) -> Any:
+    """Return a box of another width and of the same proportions; no width: what was given."""
+    if isinstance(width, str):
+        return width
+    sides = list(box)
+    return [width, *(x if x == "open" else x * width / sides[0] for x in sides[1:])]
 
 
 def check_one_variant(name: str, settings: Mapping[str, Any]) -> None:

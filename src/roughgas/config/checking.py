@@ -76,17 +76,23 @@ def check_one(config: Mapping[str, Any], name: str, scale: str, source: str) -> 
 
 
 def _check_axis(settings: Mapping[str, Any], where: str) -> None:
-    """Refuse two third axes, one of an effect that the experiment does not list, and a value given
-    twice. Whether a value is legal is left to the check of its variant."""
-    keys = [key for key in settings.get("sweep", {}) if "." in key]
+    """Refuse two third axes, one of an effect that the experiment does not list or of a length that
+    its schedule does not have, and a value given twice. Whether a value is legal is left to the
+    check of its variant."""
+    keys = [key for key in settings.get("sweep", {}) if key not in settings_of.GRID]
     for key in keys[1:]:
         raise InputError(f"{where}.sweep: key", shown(key), f"not stand beside {keys[0]}")
     for key in keys:
-        effect, _ = key.split(".")
-        listed = settings.get("effects", {})
-        if effect not in listed:
+        part, _, parameter = key.rpartition(".")
+        listed, timed = settings.get("effects", {}), settings.get("schedule", {})
+        if part == "schedule" and parameter not in timed:
+            legal = f"name a length of this schedule: {', '.join(sorted(timed))}"
+            raise InputError(f"{where}.sweep: key", shown(key), legal)
+        if part not in ("", "schedule", *listed):
             legal = f"begin with an effect of this experiment: {', '.join(sorted(listed))}"
             raise InputError(f"{where}.sweep: key", shown(key), legal)
+        if not part and key not in settings:
+            raise InputError(f"{where}.{key}", "(nothing)", "be given, as it is swept")
         _check_distinct(settings["sweep"][key], level, f"{where}.sweep.{key}")
 
 

@@ -12,7 +12,7 @@ WORD = re.compile(r"[a-z][a-z0-9_]*")
 WHOLE_NUMBER = re.compile(r"\d{1,19}", re.ASCII)
 LARGEST_SEED = 2**63 - 1
 SWEPT = "swept"
-"""Key, in the settings of a variant, of what its experiment sweeps, such as spin.inertia."""
+"""Key, in the settings of a variant, of what its experiment sweeps: spin.inertia, particles ..."""
 LEGAL_LEVEL = "be a number, or a word of lower-case letters, digits and _"
 
 
@@ -43,6 +43,11 @@ def level(label: Any, key: str = "swept parameter") -> float | str:
     if WORD.fullmatch(str(label)):
         return str(label)
     raise InputError(key, label, LEGAL_LEVEL)
+
+
+def parameter_of(key: str) -> str:
+    """Return the name of what a third axis sweeps: `inertia` for spin.inertia."""
+    return key.rpartition(".")[2]
 
 
 def _number_in(interval: Interval, key: str, label: Any) -> float:

@@ -49,8 +49,8 @@ def variant_attributes(name: str, settings: Mapping[str, Any]) -> dict[str, Any]
     key = settings.get(config.SWEPT)
     if key is None and not slash:
         return {"experiment": base}
-    effect, _, parameter = (key or "").partition(".")
-    value = settings["effects"].get(effect, {}).get(parameter)
+    parameter = config.parameter_of(key or "")
+    value = config.swept_value(settings, key or "")
     label = variant.removeprefix(parameter)
     if value is None or label == variant or config.level(label) != value:
         raise InputError("experiment", name, "be the variant that its settings are of")

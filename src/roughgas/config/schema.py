@@ -90,11 +90,32 @@ def _input_error(error: "ValidationError", source: str, separator: str) -> Input
         legal = re.compile("|".join([*map(re.escape, known), *patterns]))
         unknown = next(name for name in error.instance if not legal.fullmatch(name))
         titles = (about["title"] for about in patterns.values())
-        return not_one_of(f"{key}: key", shown(unknown), [*sorted(known), *titles])
+        refused = not_one_of(f"{key}: key", shown(unknown), [*sorted(known), *titles])
+        if place := _place_of(unknown, error.instance[unknown], known):
+            refused.legal += f"; did you mean it under `{place}`?"
+        return refused
     if error.validator == "required":
         missing = next(name for name in error.validator_value if name not in error.instance)
         return InputError(f"{key}.{missing}", "(nothing)", "be given")
     return InputError(key, shown(error.instance), _legal(error.schema))
+
+
+def _place_of(name: str, value: Any, known: Mapping[str, Any]) -> str:
+    """Return where in an experiment a key belongs that stands in the wrong place; "" if nowhere.
+
+    `known` are the keys that are legal where it stands.
+    """
+    parts = _schema()["$defs"]
+    experiment = parts["experiment"]
+    if "experiments" in known:
+        looks_like_one = isinstance(value, Mapping) and set(value) & set(experiment["properties"])
+        return "experiments:" if looks_like_one else ""
+    places = {"experiments: NAME:": experiment}
+    places |= {f"{part}:": parts[part] for part in ("sweep", "schedule", "effects")}
+    every = parts["effects"]["properties"].items()
+    places |= {f"effects: {effect}:": about for effect, about in every}
+    found = [place for place, about in places.items() if name in about["properties"]]
+    return found[0] if found else ""
 
 
 def _legal(schema: Mapping[str, Any]) -> str:

@@ -8,6 +8,7 @@ import errno
 import hashlib
 import math
 import os
+import re
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
@@ -45,6 +46,7 @@ class Kind(NamedTuple):
 
 POINT, REDUCED, FILM = "a point", "a reduced dataset", "a film of a cooling gas"
 TASK, STUDIES = "a task of a study", "a dataset of studies"
+SWEPT = re.compile(r"(\w+\.)?\w+")
 KINDS = {
     TASK: Kind(frozenset({"study", "task"}), frozenset()),
     FILM: Kind(frozenset(), frozenset({"disks", "disk_spin", "R"})),
@@ -97,7 +99,8 @@ def kind_of(file: "netCDF4.Dataset") -> str | None:
     """Return the kind of an open file; None if it is of none."""
     if file.groups:
         return STUDIES
-    attributes, variables = set(file.ncattrs()), set(file.variables)
+    # a number of particles that is swept is a dimension
+    attributes, variables = {*file.ncattrs(), *file.dimensions}, set(file.variables)
     fits = (k for k, one in KINDS.items() if attributes >= one[0] and variables >= one[1])
     return next(fits, None)
 
@@ -139,8 +142,8 @@ def _check_attributes(file: "netCDF4.Dataset", path: str | Path) -> None:
         if wanted == JSON:
             from_json(value, f"{name} of {path}")
     swept = getattr(file, "swept", "effect.parameter")
-    if swept.count(".") != 1:
-        raise InputError(f"swept of {path}", shown(swept), "be EFFECT.PARAMETER")
+    if not SWEPT.fullmatch(swept):
+        raise InputError(f"swept of {path}", shown(swept), "be EFFECT.PARAMETER, or a setting")
     version = getattr(file, "schema_version", SCHEMA_VERSION)
     if version > SCHEMA_VERSION:
         legal = f"be at most {SCHEMA_VERSION}: a newer roughgas has written the file"

@@ -46,4 +46,12 @@ def third_axis(attributes: Mapping[str, Any]) -> str | None:
 
     The parameter in `swept` names it: `inertia` for spin.inertia.
     """
-    return attributes["swept"].split(".")[1] if "swept" in attributes else None
+    return attributes["swept"].rpartition(".")[2] if "swept" in attributes else None
+
+
+def particles_of(data: "xarray.Dataset") -> str:
+    """Return the number of particles as text: a range where it is swept."""
+    if "particles" not in data.coords:
+        return str(data.attrs["particles"])
+    numbers = data.coords["particles"].values
+    return f"{numbers.min():g} to {numbers.max():g}"

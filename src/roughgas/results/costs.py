@@ -10,7 +10,7 @@ import xarray as xr
 from roughgas.base.errors import InputError, shown
 from roughgas.base.files import write_text
 from roughgas.base.layout import from_json, markdown
-from roughgas.data.reduced import read_reduced
+from roughgas.data.reduced import particles_of, read_reduced
 
 RUN_TIMES = """\
 # Run times
@@ -45,7 +45,7 @@ def write_times(reduced: Iterable[str | Path], output: str | Path) -> None:
     for data in map(read_reduced, reduced):
         seeds, collisions, seconds = data.n_seeds, data.collisions.sum(), data.kernel_seconds.sum()
         spent.append((int((seeds > 0).sum()), int(seeds.sum()), int(collisions), float(seconds)))
-        rows.append([data.attrs["experiment"], data.attrs["particles"], *_sums(*spent[-1])])
+        rows.append([data.attrs["experiment"], particles_of(data), *_sums(*spent[-1])])
     rows.append(["together", "", *_sums(*map(sum, zip(*spent, strict=True)))])
     write_text(output, RUN_TIMES + markdown(TIMES.split(" | "), rows))
 

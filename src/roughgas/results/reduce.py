@@ -111,7 +111,7 @@ def _combined(points: Sequence[Summary]) -> Content:
     coordinates = dict(zip((*grid, "seed"), map(_coordinate, axes), strict=True))
     third = {}
     if swept is not None:
-        about = {"long_name": f"parameter of an effect: {attributes['swept']}"}
+        about = {"long_name": f"swept setting: {attributes['swept']}"}
         third[swept] = Array((swept,), coordinates.pop(swept), about)
     values = _over_seeds(stacks) | coordinates
     values["equilibrated"] = np.where(_mixed(points, axes[:-1]), 0.0, values["equilibrated"])

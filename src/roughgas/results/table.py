@@ -12,6 +12,7 @@ from xarray import Dataset
 from roughgas.base.files import whole_file
 from roughgas.base.layout import in_csv
 from roughgas.data.reduced import GRID, read_reduced, third_axis
+from roughgas.statistics.intervals import half_width
 from roughgas.theory.prediction import predicted_ratio
 
 ABOUT = ("experiment", "scale", "particles", "dimension", "inertia", "parameter", "value")
@@ -23,6 +24,8 @@ COLUMNS = (
     *("collisions", "contact_time_fraction"),
 )
 THEORY = ("theory", "R_theory", "residual")
+FEW = 5.0
+"""Degrees of freedom of an error, below which its interval is noticeably wider."""
 HEAD = (*ABOUT, *GRID, *COLUMNS, *THEORY)
 
 
@@ -58,6 +61,23 @@ def rows(dataset: Dataset, head: Sequence[str] = HEAD) -> Iterator[dict[str, Any
             residual = row.get("R", math.nan) - prediction[index]
             row |= {"R_theory": prediction[index], "residual": residual}
             yield {name: row.get(name, one.attrs.get(name, "")) for name in head}
+
+
+def why_wide(dataset: Dataset) -> str:
+    """Return a sentence on intervals that are wide since few seeds say little of their errors;
+    nothing if there are none."""
+    freedom = np.atleast_1d(dataset["R_dof"] if "R_dof" in dataset else math.inf).ravel()
+    few = freedom[np.isfinite(freedom) & (freedom < FEW)]  # where there is no point, NaN
+    if not few.size:
+        return ""
+    points, seeds = int((dataset.n_seeds > 0).sum()), int(dataset.n_seeds.max())
+    fewest, many = max(1.0, float(few.min())), f"{seeds} seed{'s' * (seeds > 1)}"
+    wide = half_width(1.0, fewest, 0.95)
+    return (
+        f"\nWide intervals: {few.size} of {points}, since errors from {many} are uncertain: "
+        f"known with {fewest:.2g}\ndegrees of freedom, 95 % are {wide:.1f} standard errors to each "
+        "side, not 2.0. More seeds narrow them."
+    )
 
 
 def _cell(value: Any) -> str:

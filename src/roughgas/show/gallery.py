@@ -1,6 +1,6 @@
-"""Figures of experiments, drawn by name from reduced data beside theory."""
+"""Figures of experiments: by name, and of any reduced dataset, beside theory."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from importlib import import_module
 from pathlib import Path
 
@@ -13,8 +13,8 @@ from roughgas.show.catalogue import FIGURES, figures_of
 def draw(name: str, inputs: Iterable[str | Path], outputs: Iterable[str | Path]) -> None:
     """Draw the figure `name` from the reduced datasets at `inputs`, in any order, into `outputs`.
 
-    Each output is a .pdf or a .png. Raises InputError for an unknown figure, another kind of file,
-    and experiments other than those that the figure shows.
+    Each output is a .pdf, .png or .svg. Raises InputError for an unknown figure, another kind of
+    file, and experiments other than those that the figure shows.
     """
     if name not in (known := figures_of("paper", "beyond")):
         raise not_one_of("figure", name, known)
@@ -24,3 +24,22 @@ def draw(name: str, inputs: Iterable[str | Path], outputs: Iterable[str | Path])
         raise InputError(f"data of {name}", ", ".join(datasets), f"be {', '.join(needed)}")
     figure = import_module(f"roughgas.show.figures.{name}")
     style.draw(lambda: figure.draw(*(datasets[one] for one in needed)), outputs)
+
+
+def plot(
+    path: str | Path,
+    outputs: Iterable[str | Path],
+    over: str | None = None,
+    **chosen: Sequence[float],
+) -> list[str]:
+    """Draw the reduced dataset at `path` into `outputs`, each a .pdf, .png or .svg.
+
+    Returns a line for each coordinate of which not all values are shown. Raises InputError as
+    `sweep.draw` does, and for another kind of file.
+    """
+    from roughgas.show.figures import sweep
+
+    data = read_reduced(path)
+    layout = sweep.arranged(data, over, chosen)
+    style.draw(lambda: sweep.draw(data, over, **chosen), outputs)
+    return sweep.left_out(data, layout)

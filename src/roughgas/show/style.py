@@ -42,11 +42,13 @@ PARAMETERS = PLAIN | {
     "legend.edgecolor": "none",
     "legend.framealpha": 0.8,
     "pdf.fonttype": 42,
+    "svg.hashsalt": "roughgas",
     "savefig.dpi": 200,
 }
 METADATA = {
     ".pdf": {"CreationDate": None, "Creator": "roughgas"},
     ".png": {"Software": "roughgas"},
+    ".svg": {"Date": None, "Creator": "roughgas"},
 }
 
 
@@ -73,7 +75,7 @@ FAINT = "#888888"
 def draw(figure: Callable[[], Figure], outputs: Iterable[str | Path]) -> None:
     """Draw `figure()` in this style into each of `outputs`.
 
-    Raises InputError if one of them is neither a .pdf nor a .png.
+    Raises InputError if one of them is none of .pdf, .png and .svg.
     """
     outputs = [Path(output) for output in outputs]
     for output in outputs:
@@ -84,7 +86,7 @@ def draw(figure: Callable[[], Figure], outputs: Iterable[str | Path]) -> None:
 
 
 def save(figure: Figure, outputs: Iterable[str | Path]) -> None:
-    """Write `figure` to each of `outputs` (.pdf or .png), whole or not at all."""
+    """Write `figure` to each of `outputs` (.pdf, .png or .svg), whole or not at all."""
     for output in map(Path, outputs):
         with whole_file(output) as draft:
             kind = output.suffix

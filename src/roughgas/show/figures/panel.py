@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator, MultipleLocator
 
+from roughgas.data.reduced import particles_of
 from roughgas.show.figures.series import RESTITUTION, Series, series, series_for_each
 from roughgas.show.style import FAINT, GREY, HEIGHT, THEORY, WIDTH
 
@@ -48,14 +49,20 @@ class Axis(NamedTuple):
         spaced = np.geomspace if self.logarithmic else np.linspace
         return spaced(*self.drawn, 801)
 
+    def holds(self, values: np.ndarray) -> bool:
+        """Return whether all values lie between the limits of the axis."""
+        low, high = self.limits
+        return bool(((values >= low) & (values <= high)).all())
+
     def prepare(self, axes: Axes) -> None:
         """Label the axis of a plot, and set its scale and its limits."""
         axes.set_xlabel(self.label)
         if self.logarithmic:
             axes.set_xscale("log")
         axes.set_xlim(*self.limits)
-        if not self.logarithmic:
-            step = 0.5 if self.limits[1] - self.limits[0] > 2 else 0.2
+        span = self.limits[1] - self.limits[0]
+        if not self.logarithmic and span < 4.0:
+            step = 0.5 if span > 2.0 else 0.2
             axes.xaxis.set_major_locator(MultipleLocator(step))
             axes.xaxis.set_minor_locator(MultipleLocator(step / 5))
 
@@ -167,6 +174,7 @@ def draw_theory(panel: Panel, drawn: Sequence[Series], black: bool = False) -> N
     for one in drawn:
         colour, line = (THEORY, "-") if black else (one.look.colour, one.look.line)
         predicted = one.predict(**{panel.axis.name: panel.axis.grid})
+        predicted = np.broadcast_to(predicted, panel.axis.grid.shape)  # constant along some axes
         panel.main.plot(panel.axis.grid, predicted, linestyle=line, color=colour, zorder=1)
 
 
@@ -249,7 +257,8 @@ def add_title(main: Axes, datasets: Sequence[xr.Dataset], what: str) -> None:
     bars = f"standard error from {seeds}" if high > 1 else "standard error within the run"
     about = datasets[0].attrs
     scale = "" if about["scale"] == "paper" else f" (scale: {about['scale']})"
-    text = f"{what}, $N = {about['particles']}${scale}\nError bars: {bars}"
+    number = particles_of(datasets[0]).replace(" to ", "$ to $")
+    text = f"{what}, $N = {number}${scale}\nError bars: {bars}"
     main.set_title(text, fontsize=8, loc="left")
 
 

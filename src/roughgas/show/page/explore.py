@@ -18,7 +18,7 @@ from roughgas.base.errors import InputError
 from roughgas.base.files import write_text
 from roughgas.data.opening import POINT, attributes_of, opened, require
 from roughgas.data.point import read_point
-from roughgas.data.reduced import EQUILIBRATED, read_reduced, third_axis
+from roughgas.data.reduced import EQUILIBRATED, particles_of, read_reduced, third_axis
 from roughgas.data.variables import CLOCKS
 from roughgas.show.page.policy import policy
 from roughgas.show.style import LOOKS
@@ -94,7 +94,7 @@ def experiment(reduced_path: str | Path, points: Path) -> dict[str, Any]:
     return {
         "name": name,
         "scale": data.attrs["scale"],
-        "particles": int(data.attrs["particles"]),
+        "particles": particles_of(data),
         "dimension": int(data.attrs["dimension"]),
         "swept": data.attrs.get("swept"),
         "theory": equation_of(data.attrs).name,

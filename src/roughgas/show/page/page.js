@@ -104,7 +104,7 @@ function rows(point) {
 
 // The value on the third axis: mu0.1 is the folder of friction.mu = 0.1.
 function level(experiment, variant) {
-  const [, parameter] = experiment.swept?.split(".") ?? [];
+  const parameter = experiment.swept?.split(".").pop();
   return parameter ? variant.name.slice(parameter.length) : "";
 }
 

@@ -1,0 +1,38 @@
+"""`roughgas experiments` lists what there is to run."""
+
+from argparse import Namespace
+from math import prod
+from textwrap import fill
+
+from roughgas import config
+from roughgas.base.layout import as_json
+from roughgas.cli.parser import WIDTH
+
+
+def experiments(options: Namespace) -> None:
+    """Print each experiment with its sweep at a scale."""
+    loaded = config.load(options.config)
+    found = {}
+    for name, written in loaded["experiments"].items():
+        settings = config.experiment(loaded, name, options.scale)
+        sweep = {key: settings["sweep"][key] for key in _axes(settings)}
+        points = prod(map(len, sweep.values()))
+        about = {"description": written.get("description", ""), "extends": written.get("extends")}
+        found[name] = about | {"points": points, "sweep": sweep}
+    if options.json:
+        print(as_json(found))
+    else:
+        print("\n\n".join(_text(name, about) for name, about in found.items()))
+
+
+def _axes(settings):
+    """Return the axes of a sweep, the third one first."""
+    third = config.third_axis(settings)
+    return [*([third] if third else []), "r", "beta"]
+
+
+def _text(name, about):
+    counts = ", ".join(f"{len(labels)} {key}" for key, labels in about["sweep"].items())
+    extends = f"; extends {about['extends']}" if about["extends"] else ""
+    lines = [name, fill(about["description"], WIDTH, initial_indent="  ", subsequent_indent="  ")]
+    return "\n".join([*lines, f"  {about['points']} points: {counts}{extends}"])

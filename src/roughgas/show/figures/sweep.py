@@ -1,0 +1,178 @@
+"""Any reduced dataset as a figure: R over its third axis, or over beta, beside theory."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from roughgas.base.errors import InputError, not_one_of
+from roughgas.data.reduced import GRID, third_axis
+from roughgas.show.figures import panel
+from roughgas.show.figures.series import series
+from roughgas.show.style import HEIGHT, LOOKS
+from roughgas.theory.prediction import equation_of
+
+MOST_SERIES, MOST_PANELS = len(LOOKS), 3
+KNOWN = {axis.name: axis for axis in (panel.BETA, panel.FRICTION, panel.INERTIA, panel.ROUGHNESS)}
+LABELS = {
+    "r": "normal restitution $r$",
+    "particles": "number of particles $N$",
+    "box": "width of the box / $a$",
+    "spin_share": panel.SHARE_LABEL,
+}
+SYMBOLS = {"r": "r", "beta": r"\beta", "mu": r"\mu", "inertia": "q", "particles": "N"}
+WIDE_RANGE = 20.0  # between the ends of an axis that is logarithmic
+
+
+class Layout(NamedTuple):
+    """What is drawn along the axis, as series, and as panels; and the chosen values of the rest."""
+
+    over: str
+    series: str
+    panels: str | None
+    values: Mapping[str, Sequence[Any]]
+
+
+def draw(data: xr.Dataset, over: str | None = None, **chosen: Sequence[float]) -> Figure:
+    """Draw R of a reduced dataset, or E_trans where nothing spins.
+
+    `over` is the horizontal axis: the third axis of the sweep if there is one, else beta. `chosen`
+    are values of r or beta to show. Raises InputError for axes and values that the data lack.
+    """
+    layout = arranged(data, over, chosen)
+    shown, axis = _numbered(data, layout.over)
+    panels = layout.values[layout.panels] if layout.panels else [None]
+    places = [{layout.panels: value} if layout.panels else {} for value in panels]
+    width = panel.WIDE if len(panels) == 1 else 0.5 * panel.TWO_WIDE * len(panels)
+    if "R" not in data:
+        return _energies(shown, layout, axis, places, width)
+    parts = [_content(shown, layout, axis, place) for place in places]
+    figure = panel.ratio_figure(*parts, width=width, averaged=True)
+    _name_words(figure, data, layout.over)
+    return figure
+
+
+def arranged(data: xr.Dataset, over: str | None, chosen: Mapping[str, Sequence[float]]) -> Layout:
+    """Return how a dataset is drawn: at most MOST_SERIES series in each of MOST_PANELS panels.
+
+    Where there are more, those shown are spread evenly over all.
+    """
+    third = third_axis(data.attrs)
+    names = [name for name in (third, *GRID) if name]
+    over = over or third or "beta"
+    if over not in names:
+        raise not_one_of("axis", over, names)
+    rest = [name for name in ("beta", third, "r") if name and name != over]
+    values = {name: _picked(data, name, chosen.get(name)) for name in rest}
+    # the one with most values as series, the other as panels
+    rest.sort(key=lambda name: len(values[name]), reverse=True)
+    most = zip(rest, (MOST_SERIES, MOST_PANELS), strict=False)
+    few = {name: _spread(values[name], number) for name, number in most}
+    return Layout(over, rest[0], rest[1] if len(rest) > 1 else None, few)
+
+
+def left_out(data: xr.Dataset, layout: Layout) -> list[str]:
+    """Return a line for each coordinate of which not all values are drawn."""
+    lines = []
+    for name, shown in layout.values.items():
+        if len(shown) < data.sizes[name]:
+            some = ", ".join(_text(value) for value in shown)
+            lines.append(f"{len(shown)} of {data.sizes[name]} values of {name} are shown: {some}")
+    return lines
+
+
+def _picked(data: xr.Dataset, name: str, wanted: Sequence[float] | None) -> list[Any]:
+    """Return the values on an axis that are wanted, by default all."""
+    known = data[name].values.tolist()
+    for value in wanted or ():
+        if value not in known:
+            raise InputError(name, value, f"be one of {', '.join(map(_text, known))}")
+    return list(wanted or known)
+
+
+def _spread(values: Sequence[Any], number: int) -> list[Any]:
+    if len(values) <= number:
+        return list(values)
+    return [values[round(k)] for k in np.linspace(0, len(values) - 1, number)]
+
+
+def _numbered(data: xr.Dataset, over: str) -> tuple[xr.Dataset, panel.Axis]:
+    """Return the data with numbers along the axis, in place of words, and the axis."""
+    values = data[over].values
+    label = LABELS.get(over, over.replace("_", " "))
+    if values.dtype.kind not in "fiu":
+        ends = (-0.5, len(values) - 0.5)
+        return data.assign_coords({over: np.arange(len(values))}), panel.Axis(
+            over, label, ends, ends
+        )
+    if over in KNOWN and (over == "beta" or KNOWN[over].holds(values)):
+        return data, KNOWN[over]
+    low, high = float(values.min()), float(values.max())
+    if low > 0.0 and high / low > WIDE_RANGE:
+        ends = low * (low / high) ** 0.06, high * (high / low) ** 0.06
+        return data, panel.Axis(over, label, ends, ends, True)
+    room = 0.06 * (high - low) or 0.06 * abs(high) or 1.0
+    ends = low - room, high + room
+    return data, panel.Axis(over, label, ends, (low, high) if high > low else ends)
+
+
+def _name_words(figure: Figure, data: xr.Dataset, over: str) -> None:
+    """Write the words of an axis below it, in place of their numbers."""
+    words = data[over].values
+    if words.dtype.kind in "fiu":
+        return
+    for axes in figure.axes:
+        axes.set_xticks(range(len(words)), [word.replace("_", "\n") for word in words])
+        axes.xaxis.minorticks_off()
+
+
+def _content(
+    data: xr.Dataset, layout: Layout, axis: panel.Axis, place: Mapping[str, Any]
+) -> panel.PanelContent:
+    drawn = [
+        series(data, _label(layout.series, value), look, **{layout.series: value}, **place)
+        for value, look in zip(layout.values[layout.series], LOOKS, strict=False)
+    ]
+    how = {"theories": f"lines: {equation_of(data.attrs).name}", "loc": "best", "axis": axis}
+    return panel.PanelContent(_title(data, place), [data], drawn, **how)
+
+
+def _energies(data, layout, axis, places, width) -> Figure:
+    """Draw the energy of a gas whose particles do not spin."""
+    figure = Figure(figsize=(width, 0.7 * HEIGHT), layout="constrained")
+    every = figure.subplots(1, len(places), sharey=True, squeeze=False)[0]
+    for axes, place in zip(every, places, strict=True):
+        for value, look in zip(layout.values[layout.series], LOOKS, strict=False):
+            row = data.sel({layout.series: value, **place})
+            error = row.get("E_trans_stderr", np.nan * row.E_trans)
+            style = {"color": look.colour, "fmt": look.marker, "capsize": 1.5}
+            label = _label(layout.series, value)
+            axes.errorbar(row[layout.over], row.E_trans, error, label=label, **style)
+        axis.prepare(axes)
+        axes.legend()
+        panel.add_title(axes, [data], _title(data, place))
+    _label_energy(every[0])
+    return figure
+
+
+def _label_energy(axes: Axes) -> None:
+    axes.set_ylabel(r"$\bar{E}$, per degree of freedom")
+
+
+def _title(data: xr.Dataset, place: Mapping[str, Any]) -> str:
+    name = data.attrs["experiment"].replace("_", " ")
+    return ", ".join([f"{name[0].upper()}{name[1:]}", *(_label(*one) for one in place.items())])
+
+
+def _label(name: str, value: Any) -> str:
+    if isinstance(value, str):
+        return value.replace("_", " ")
+    symbol = SYMBOLS.get(name)
+    return rf"${symbol} = {value:g}$" if symbol else f"{name.replace('_', ' ')} {value:g}"
+
+
+def _text(value: Any) -> str:
+    return value if isinstance(value, str) else f"{value:g}"
