@@ -105,6 +105,11 @@ rule plan:
         f"results/{SCALE}/plan.md",
 
 
+rule plan_extensions:
+    input:
+        f"results/{SCALE}/plan_extensions.md",
+
+
 rule costs:
     input:
         f"results/{SCALE}/costs.md",

@@ -1,4 +1,6 @@
 # Accuracy on demand: a pilot of each point says how many seeds it needs, and what they will cost.
+from snakemake.logging import logger
+
 PLANNED = [
     name
     for name in config["experiments"]
@@ -6,9 +8,32 @@ PLANNED = [
 ]
 
 
+DEAR = 0.5  # share of a run that its pilots may cost without a warning
+
+
+def planned_experiments(wildcards):
+    """Those of `figures`, or of `extensions`."""
+    return catalogue.shown_in("beyond" if wildcards.plan == "plan_extensions" else "paper")
+
+
 def pilots(wildcards):
-    """The pilots of all experiments' points."""
-    return [file for name in config["experiments"] for file in swept(PILOT, wildcards.scale, name)]
+    """The pilots of the points that are planned; warns where they are hardly worth it."""
+    names = planned_experiments(wildcards)
+    warn_of_dear_pilots(wildcards.scale, tuple(names))
+    return [file for name in names for file in swept(PILOT, wildcards.scale, name)]
+
+
+@functools.cache
+def warn_of_dear_pilots(scale, names):
+    from roughgas.planning.plan import share_of_pilots
+
+    found = [roughgas.config.every_variant(name, settings(scale, name)) for name in names]
+    share = share_of_pilots([one for every in found for one in every.values()])
+    if share > DEAR:
+        logger.warning(
+            f"Pilots of the scale {scale} take about {share:.1f} times the CPU time of the run that "
+            f"they plan. It may be better to run it: snakemake -j2 figures --config scale={scale}"
+        )
 
 
 def settings_without_lengths(wildcards):
@@ -73,16 +98,20 @@ rule plan_of_scale:
         "config.yaml",
         pilots=pilots,
     output:
-        "results/{scale}/plan.md",
+        "results/{scale}/{plan}.md",
     log:
-        "logs/{scale}/plan.log",
+        "logs/{scale}/{plan}.log",
+    wildcard_constraints:
+        plan="plan|plan_extensions",
     params:
         code=code_of("planning.table"),
+        names=planned_experiments,
         cores=workflow.cores,
     message:
         "write {output}"
     shell:
-        "roughgas plan --scale {wildcards.scale} --cores {params.cores} --output {output}"
+        "roughgas plan {params.names} --scale {wildcards.scale} --cores {params.cores}"
+        " --output {output}"
         " > {log} 2>&1"
 
 

@@ -22,7 +22,9 @@ def data_of_plot(wildcards):
     """The reduced dataset of the experiment by whose name a figure is asked for."""
     with one_line():
         if wildcards.plotted not in config["experiments"]:
-            raise not_one_of("figure", wildcards.plotted, [*DRAWN_FROM_DATA, *config["experiments"]])
+            raise not_one_of(
+                "figure", wildcards.plotted, [*DRAWN_FROM_DATA, *config["experiments"]]
+            )
     return reduced(scale_of(wildcards.folder), [wildcards.plotted])
 
 

@@ -30,7 +30,7 @@ STEPS = {
 NOISE = (
     *("Assuming unrestricted", "Building DAG", "Using shell", "Provided ", "Rules claiming"),
     *("Select jobs", "Conda environments", "Singularity containers", "Group jobs", "Elapsed time"),
-    *("Updating jobs", "Job stats"),
+    *("Updating jobs", "Job stats", "Touching output file"),
 )
 END = "Complete log(s): "
 
@@ -82,10 +82,13 @@ class LogHandler(LogHandlerBase):
 
     def close(self) -> None:
         """Clear the bar."""
+        self._clear()
+        super().close()
+
+    def _clear(self) -> None:
         if self._bar is not None:
             self._bar.__exit__()
-            self._bar = None
-        super().close()
+        self._bar = None
 
     def _stream(self) -> Any:
         return sys.stdout if self.common_settings.stdout else sys.stderr
@@ -140,6 +143,7 @@ class LogHandler(LogHandlerBase):
         if self._bar is None:
             return
         unit, seconds = "points" if self._counts_points else "steps", time.monotonic() - self._begun
+        self._clear()
         took = f"{seconds:.0f} s" if seconds < 100 else f"{seconds / 60:.0f} min"
         self._say(f"{self._done} {unit} in {took}. Every step of the run: {log}")
 

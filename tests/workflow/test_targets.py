@@ -55,6 +55,12 @@ def test_the_default_are_the_figures_which_need_every_point_of_the_sweep_once(pr
     }
 
 
+def test_any_experiment_has_a_figure_by_its_name(project):
+    seeds = JOBS // 6  # of one experiment
+    planned = {"compile_kernel": 1, "seeds": seeds, "reduce": 1, "plot": 1}
+    assert project.planned("figures/tiny/sheared.png") == planned
+
+
 def test_a_page_is_made_of_points_and_their_reduction(project):
     planned = {"compile_kernel": 6, "seeds": JOBS, "reduce": 6, "page": 1, "explore": 1}
     assert project.planned("explore") == planned

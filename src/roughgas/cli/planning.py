@@ -60,7 +60,11 @@ def plan(options: Namespace) -> None:
     for name in options.experiments or loaded["experiments"]:
         found |= config.every_variant(name, config.experiment(loaded, name, options.scale))
     folder = Path(options.pilots or f"results/{options.scale}")
-    pilots = {name: _pilots(name, settings, folder) for name, settings in found.items()}
+    try:
+        pilots = {name: _pilots(name, settings, folder) for name, settings in found.items()}
+    except KeyboardInterrupt:
+        kept = f"pilots that are done are kept in {folder}: the same command goes on from there"
+        raise KeyboardInterrupt(kept) from None
     start_up = time.process_time()  # of this process: jobs import as much
     block = loaded.get("seeds_per_job", config.SEEDS_PER_JOB)
     rows = [row(name, settings, pilots[name][0], block) for name, settings in found.items()]

@@ -44,6 +44,12 @@ def explore(scene: Scene, experiment: Mapping[str, Any]) -> Pilot:
     )
 
 
+def effort(scene: Scene, experiment: Mapping[str, Any]) -> float:
+    """Return how long a pilot is at least, in collisions per particle."""
+    tried = experiment["schedule"] | TRIED | {"plateau": PLATEAU[0]}
+    return cooling.length(scene, tried)
+
+
 def choose(scene: Scene, given: Mapping[str, Any], pilot: Pilot, target: float) -> dict[str, Any]:
     """Return the complete schedule of a run that belongs to a target."""
     r, beta, inertia = scene.restitution, scene.roughness, scene.effects.spin.inertia

@@ -1,14 +1,15 @@
 """From a pilot and a wanted standard error: how long to run, how often, and what it will cost."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from itertools import product
 from statistics import NormalDist
 from typing import Any, NamedTuple
 
 from roughgas.planning import cooling, steady
 from roughgas.planning.lengths import FEWEST_SEEDS, RESERVE
 from roughgas.planning.pilot import Pilot
-from roughgas.scene import Scene
+from roughgas.scene import Scene, build
 from roughgas.simulation import cooling as of_cooling
 from roughgas.simulation import schedule
 from roughgas.simulation import steady as of_steady
@@ -63,6 +64,24 @@ def plan_point(scene: Scene, experiment: Mapping[str, Any], pilot: Pilot) -> Pla
         collisions=simulated * pilot.pace * experiment["particles"] / 2,
         seconds=simulated * pilot.seconds_per_length,
     )
+
+
+def share_of_pilots(experiments: Iterable[Mapping[str, Any]]) -> float:
+    """Return about how much work the pilots of sweeps are, as a share of the sweeps themselves.
+
+    0 where a target decides how long points are run: then only the pilots can tell.
+    """
+    pilots = runs = 0.0
+    for experiment in experiments:
+        axes, kind = experiment["sweep"], schedule.of(experiment)
+        if "target_stderr" in experiment:
+            return 0.0
+        for r, beta in product(axes["r"], axes["beta"]):
+            scene = build(experiment, float(r), float(beta))
+            length = axes["seeds"] * kind.length(scene, experiment["schedule"])
+            runs += experiment["particles"] * length
+            pilots += experiment["particles"] * PLANNERS[kind].effort(scene, experiment)
+    return pilots / runs
 
 
 def added(needed: float, dof: float) -> float:

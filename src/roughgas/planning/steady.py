@@ -25,6 +25,7 @@ from roughgas.theory import lun_ratio
 CHAINS = 10  # which show the transient
 SHORTEST = 64  # periods of a chain
 LONGEST = 4000.0  # collisions per particle of a chain
+USUAL = LONGEST / 8.0  # the same of a pilot on average, over a sweep like those of the paper
 MEASURED = 200.0  # autocorrelation times in all chains together
 TRANSIENT_SHARE = 0.25  # of a chain, at most
 GROWTH = 1.3  # of the windows in which the transient is looked for
@@ -51,6 +52,11 @@ def explore(scene: Scene, experiment: Mapping[str, Any]) -> Pilot:
         pilot = _judged(chains, per_period * every, pace, recorder.seconds)
         if _is_enough(pilot) or pace * length >= LONGEST:
             return pilot
+
+
+def effort(scene: Scene, experiment: Mapping[str, Any]) -> float:
+    """Return about how long a pilot is, in T, where particles meet about once a T."""
+    return CHAINS * USUAL
 
 
 def choose(scene: Scene, given: Mapping[str, Any], pilot: Pilot, target: float) -> dict[str, Any]:

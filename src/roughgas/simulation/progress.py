@@ -70,6 +70,8 @@ class Bar:
             return
         self._bar.total = self._total
         self._bar.set_postfix_str(note, refresh=False)
+        if done == self._bar.n and note:
+            self._bar.refresh()
         self._bar.update(done - self._bar.n)
 
     def advance(self) -> None:

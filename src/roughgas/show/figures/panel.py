@@ -103,7 +103,9 @@ class PanelContent(NamedTuple):
     drawn: Sequence[Series]
     theory: str = ""  # of all series: a black line, so called in the legend
     theories: str = ""  # of each series: a line in its look; the title of the legend
-    loc: str = "upper left"  # of the legend; in a driven gas, "half" is beneath the line at 1/2
+    loc: str = (
+        "upper left"  # of the legend; "half" is beneath the line at 1/2, "outside" beside the panel
+    )
     axis: Axis = BETA
     # of the series drawn: those whose residuals are to fit
     scale: Callable[[Sequence[Series]], Sequence[Series]] = lambda drawn: drawn
@@ -246,6 +248,8 @@ def add_legend(main: Axes, drawn: Sequence[Series], theory: str = "", **how: Any
     if how.get("loc") == "half":
         low, high = main.get_ylim()
         how |= {"loc": "upper left", "bbox_to_anchor": (0.0, (0.5 - low) / (high - low))}
+    elif how.get("loc") == "outside":
+        how |= {"loc": "upper left", "bbox_to_anchor": (1.01, 1.02), "borderaxespad": 0.0}
     main.legend(handles=handles, **how)
 
 

@@ -24,6 +24,7 @@ LABELS = {
     "spin_share": panel.SHARE_LABEL,
 }
 SYMBOLS = {"r": "r", "beta": r"\beta", "mu": r"\mu", "inertia": "q", "particles": "N"}
+LEGEND = 1.6  # inches beside the panels
 WIDE_RANGE = 20.0  # between the ends of an axis that is logarithmic
 
 
@@ -43,6 +44,7 @@ def draw(data: xr.Dataset, over: str | None = None, **chosen: Sequence[float]) -
     are values of r or beta to show. Raises InputError for axes and values that the data lack.
     """
     layout = arranged(data, over, chosen)
+    data = data.sel({layout.over: _picked(data, layout.over, chosen.get(layout.over))})
     shown, axis = _numbered(data, layout.over)
     panels = layout.values[layout.panels] if layout.panels else [None]
     places = [{layout.panels: value} if layout.panels else {} for value in panels]
@@ -50,7 +52,9 @@ def draw(data: xr.Dataset, over: str | None = None, **chosen: Sequence[float]) -
     if "R" not in data:
         return _energies(shown, layout, axis, places, width)
     parts = [_content(shown, layout, axis, place) for place in places]
-    figure = panel.ratio_figure(*parts, width=width, averaged=True)
+    figure = panel.ratio_figure(*parts, width=width + LEGEND, averaged=True)
+    for axes in figure.axes[: len(parts) - 1]:  # all panels have the same
+        axes.get_legend().remove()
     _name_words(figure, data, layout.over)
     return figure
 
@@ -136,7 +140,7 @@ def _content(
         series(data, _label(layout.series, value), look, **{layout.series: value}, **place)
         for value, look in zip(layout.values[layout.series], LOOKS, strict=False)
     ]
-    how = {"theories": f"lines: {equation_of(data.attrs).name}", "loc": "best", "axis": axis}
+    how = {"theories": f"lines: {equation_of(data.attrs).name}", "loc": "outside", "axis": axis}
     return panel.PanelContent(_title(data, place), [data], drawn, **how)
 
 
