@@ -79,7 +79,7 @@ def averaged(
     correlation: Callable[[np.ndarray], np.ndarray] = lambda beta: 0 * beta,
 ) -> xr.Dataset:
     """Data with R averaged in other ways: over collisions it is larger, by the share `left`, than
-    Eq. (lun) at the correlation that contacts have; the ratio of means is half-way from R."""
+    Lun's formula at the correlation that contacts have; the ratio of means is half-way from R."""
     beta, _ = np.meshgrid(data.beta, data.r)
     c = correlation(beta)
     found = theory.correlated_ratio(beta, data.attrs["inertia"], c) * (1.0 + left)

@@ -227,7 +227,7 @@ class BruteForce:
         return 1.0 if quick else r
 
     def _collide(self, i, j):
-        """Eq. (collrule) of the paper, term by term."""
+        """the collision rule of the paper, term by term."""
         world = self.world
         x, v = self.x[i] - self.x[j], self.v[i] - self.v[j]
         shift, drift = min(self.images(), key=lambda image: ((x + image[0]) ** 2).sum())
@@ -251,7 +251,7 @@ class BruteForce:
         self.v[j] += push[: self.dimension]
 
     def _bounce(self, i, axis, direction, speed, r, beta):
-        """As with a partner of infinite mass: both prefactors of Eq. (collrule) double.
+        """As with a partner of infinite mass: both prefactors of the collision rule double.
 
         The partner moves along the last axis.
         """

@@ -1,4 +1,4 @@
-"""Eq. (lun) for R averaged over collisions, on datasets of which the answer is known."""
+"""Lun's formula for R averaged over collisions, on datasets of which the answer is known."""
 
 import pytest
 from synthetic import averaged, reduced
@@ -7,7 +7,7 @@ from roughgas.claims.verdicts import FAILS, HOLDS, NOT_TESTED, QUALIFIED
 
 
 def bed(excess=0.04, experiment="vibrated", **contacts):
-    """A bed whose mean of R(t) is `excess` above Eq. (lun) at r = 0.8 and beta = 0."""
+    """A bed whose mean of R(t) is `excess` above Lun's formula at r = 0.8 and beta = 0."""
     data = reduced(experiment, lambda r, beta: excess * (1 - r) / 0.2 * (1 - beta**2))
     return averaged(data, **contacts)
 
@@ -28,8 +28,8 @@ def test_an_excess_that_is_all_of_averaging(judged):
     found = judged("excess_is_of_averaging", bed())
     numbers = dict(found.numbers)
     assert found.verdict == HOLDS
-    assert numbers["R - Eq. (lun) for the mean of R(t)"].value > 0.03
-    assert abs(numbers["R - Eq. (lun) averaged over collisions"].value) < 3e-4  # 3 sigma
+    assert numbers["R - Lun's formula for the mean of R(t)"].value > 0.03
+    assert abs(numbers["R - Lun's formula averaged over collisions"].value) < 3e-4  # 3 sigma
 
 
 def test_an_excess_that_is_half_of_correlation(judged):
@@ -37,7 +37,7 @@ def test_an_excess_that_is_half_of_correlation(judged):
     found = judged("excess_is_of_averaging", bed(correlation=lambda beta: -0.3 * (1 - beta**2)))
     numbers = dict(found.numbers)
     assert found.verdict == QUALIFIED
-    assert numbers["R - Eq. (lun) averaged over collisions"].value > 0.02
+    assert numbers["R - Lun's formula averaged over collisions"].value > 0.02
     assert abs(numbers["mean difference"].value) < 2e-4
 
 

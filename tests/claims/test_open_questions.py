@@ -86,7 +86,7 @@ def test_a_verdict_depends_on_the_size_of_a_deviation(judged, name, size, expect
 
 
 def test_spheres_are_not_judged_as_disks(judged):
-    """Disks that cool follow Eq. (K), not Eq. (Goldshtein)."""
+    """Disks that cool follow the theory of free cooling, not that of spheres."""
 
     def disks(r, beta):
         return theory.cooling_ratio(r, beta, 2, 0.4) - theory.cooling_ratio(r, beta, 3, 0.4)
@@ -120,7 +120,7 @@ def test_a_small_ratio_must_follow_theory_in_proportion(judged, factor, error, e
     assert found.verdict == expected and "6 of 6 points within 0.02" in found.reason
     if expected != HOLDS and factor != 1:
         label, largest = found.numbers[-1]
-        assert label == "largest significant difference over Eq. (lun)"
+        assert label == "largest significant difference over Lun's formula"
         assert largest.value == pytest.approx(factor - 1, abs=0.01)
 
 
@@ -155,7 +155,7 @@ def still_floor(size):
 
 
 def unmoved(r, beta, roughness):
-    """What takes R at a share back to Eq. (lun)."""
+    """What takes R at a share back to Lun's formula."""
     shares = dict(zip(ROUGHNESS, SHARES.ravel(), strict=True))
     share = np.vectorize(shares.get)(roughness)
     return theory.lun_ratio(beta, 0.5) - theory.stationary_ratio(r, beta, 2, 0.5, share)

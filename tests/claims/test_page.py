@@ -41,6 +41,6 @@ def test_criteria_are_those_of_judges_or_samples():
     judges = {one.name: one for one in STATEMENTS}
     said = " ".join(inspect.getdoc(paper.theory_underestimates).split())
     assert judges["theory_underestimates"].criterion == said
-    agrees = "R - theory at every point, is as good as zero: agreement with Eq. (lun)"
+    agrees = "R - theory at every point, is as good as zero: agreement with Lun's formula"
     agrees += ", in proportion, too."
     assert judges["vibrated_follows_lun"].criterion == agrees

@@ -38,7 +38,7 @@ def test_a_point(product, capsys):
     ends = [float(end) for end in interval.split(" to ")]
     assert ends == pytest.approx([low, high], abs=6e-4)
     assert bool(doubt) != bool(point.R_ci95_trusted)
-    assert rows["theory"].startswith(f"{expected:.4f}, Eq. (K): R is ")
+    assert rows["theory"].startswith(f"{expected:.4f}, theory of free cooling: R is ")
     assert rows["cost"].startswith(f"{int(point.collisions):,} collisions in ")
     assert len(rows["R(t)"].split()[0]) == min(48, point.sizes["sample"])
     assert text.rstrip().endswith(point.attrs["command"])

@@ -31,7 +31,7 @@ def test_a_point_in_both_dimensions(capsys):
     assert flat["settled_driven"] == theory.collisions_to_relax(0.9, -0.5, spin_share=0.0)
     row = next(line for line in text.splitlines() if line.startswith("R, cooling"))
     assert f"{flat['R_cooling']:.5g}" in row and f"{solid['R_cooling']:.5g}" in row
-    assert row.endswith("Eq. (K); Eq. (Goldshtein)")
+    assert row.endswith("  theory of free cooling")
 
 
 def test_a_curve_is_as_exact_as_its_range_is_written(capsys):
@@ -53,7 +53,7 @@ def test_table_csv_and_json_are_the_same_curve(capsys):
         for name, shown in zip(point, line, strict=True):
             assert float(row[name]) == pytest.approx(point[name], rel=1e-9)
             assert float(shown) == pytest.approx(point[name], rel=1e-4)
-    assert "R_driven: Eq. (lun); R_cooling: Eq. (Goldshtein)" in rows[-1]["sources"]
+    assert "R_driven: Lun's formula; R_cooling: theory of free cooling" in rows[-1]["sources"]
 
 
 def test_what_a_drive_and_friction_change(capsys):

@@ -134,7 +134,7 @@ def test_kicks_do_not_depend_on_how_particles_are_found():
 @pytest.mark.parametrize(("r", "beta"), [(0.95, 0.2), (0.99, -0.5)])
 def test_a_dilute_heated_gas_settles_where_the_rate_equations_say(share, r, beta):
     """R within 2 % of theory's and 4 standard errors of a run of 2000 T, some 900 collisions per
-    particle. At share 0 that is Eq. (lun)."""
+    particle. At share 0 that is Lun's formula."""
     scene, state = begin(heated(particles=160, box=(100, 100), spin_share=share), r, beta, 1)
     run(state, scene, 1, interval=200.0)
     R = ratio(energies(run(state, scene, 4000, interval=INTERVAL), 160, 0.5))

@@ -113,7 +113,7 @@ def test_one_file_and_one_line(changed):
 
 @pytest.mark.slow
 def test_the_experiment_of_the_page(changed):
-    """R is first Eq. (K)'s at the r that was set, and in the end that of r = 1.
+    """R is first the theory of free cooling's at the r that was set, and in the end that of r = 1.
 
     Velocities are correlated, which theory neglects: 4 % at most, as docs/physics.md has it.
     """

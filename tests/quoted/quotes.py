@@ -17,17 +17,18 @@ QUOTES = {
         "within {cooling_off_percent:.1f} % at every point with r ≥ 0.8 (N = 160, packing 0.05), "
         "and depends on r strongly: at β = −0.8, R is {cooling_at_r099:.2f} at r = 0.99 and "
         "{cooling_at_r08:.2f} at r = 0.8.",
-        "R is up to {vibrated_most_above_at_r06:.3f} above Eq. (lun) in the bed, "
+        "R is up to {vibrated_most_above_at_r06:.3f} above Lun's formula in the bed, "
         "{sheared_most_above_at_r06:.3f} in the sheared gas, and up to "
-        "{cooling_below_percent_at_r06:.0f} % below Eq. (K).",
+        "{cooling_below_percent_at_r06:.0f} % below the theory of free cooling.",
         "The pipeline judges {claims_statements} statements of the paper in "
         "`results/paper/claims.md`: {claims_hold} hold, {claims_qualified} hold with a "
-        "qualification (how closely Eqs. (lun) and (K) are followed, and how little r matters), "
+        "qualification (how closely Lun's formula and the theory of free cooling are followed, and "
+        "how little r matters), "
         "and {claims_fail} fail.",
         "judges {open_questions_statements} statements in `results/paper/open_questions.md`, of "
-        "which {open_questions_fail} fail: two on weak friction, and Eq. (lun) in a bed of",
+        "which {open_questions_fail} fail: two on weak friction, and Lun's formula in a bed of",
         "within {cooling_spheres_off:.3f} at all of {cooling_spheres_points:.0f} points, sheared "
-        "ones Eq. (lun) within {sheared_spheres_off:.3f}.",
+        "ones Lun's formula within {sheared_spheres_off:.3f}.",
         "A bed lies above it by up to {vibrated_spheres_most_above:()}, averaged over collisions "
         "by {vibrated_spheres_collisional_off:.3f}.",
         "over contacts that stick and slide, within {vibrated_friction_off:.3f}, from R = "
@@ -45,9 +46,9 @@ QUOTES = {
         "{wave_triangle_at_r08:+()}, {wave_sine_at_r08:+()}, "
         "{wave_reversed_sawtooth_at_r08:+()}. Averaged over collisions, by "
         "{waves_collisional_off:.3f}.",
-        "a cooling gas follows Eq. (K) within {cooling_inertia_off:.3f}. A bed follows Eq. (lun) "
-        "within {vibrated_inertia_off:.3f} for q of 0.05 to 0.3; it is {vibrated_rings_above:()} "
-        "above for rings, and at q ≤ 0.02 perfectly rough disks have R = "
+        "a cooling gas follows the theory of free cooling within {cooling_inertia_off:.3f}. A bed "
+        "follows Lun's formula within {vibrated_inertia_off:.3f} for q of 0.05 to 0.3; it is "
+        "{vibrated_rings_above:()} above for rings, and at q ≤ 0.02 perfectly rough disks have R = "
         "{vibrated_light_rough:.2f},",
         "at most {boundaries_most_share_percent:.0f} % of the energy: where it puts in less than "
         "0.3 %, R shifts by no more than {boundaries_shift_without_rotation:.3f}.",

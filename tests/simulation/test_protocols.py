@@ -31,7 +31,7 @@ COOLING = settings("gas", 40, [50, 50]) | {
 
 
 def test_a_steady_bed():
-    """R near Eq. (lun), within the paper's 0.06 and four standard errors."""
+    """R near Lun's formula, within the paper's 0.06 and four standard errors."""
     scene, _ = begin(BED, 0.9, 0.0)
     measured = steady.run(scene, BED, 1, Recorder())
     assert measured["equilibrated"]
@@ -70,7 +70,7 @@ def test_a_bed_in_twenty_phases_of_its_floor_and_in_four():
 
 
 def test_a_cooling_gas():
-    """R near Eq. (K), within 8 % and four standard errors of 8 replicas of 40 disks."""
+    """R near theory, within 8 % and four standard errors of 8 replicas of 40 disks."""
     scene, _ = begin(COOLING, 0.9, 0.0)
     measured = cooling.run(scene, COOLING, 1, Recorder())
     expected = theory.cooling_ratio(0.9, 0.0)

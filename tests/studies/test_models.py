@@ -136,7 +136,7 @@ def test_results_are_what_they_are_made_of(parts, data):
     reference = np.concatenate([parts[f"reference-{k}"].R for k in range(2)]).mean()
     assert float(data.R_reference) == pytest.approx(reference)
     assert float(data.closed_form_R) == pytest.approx(theory.cooling_ratio(0.8, 0.0))
-    # rate equations end at Eq. (K)
+    # rate equations end at the theory of free cooling
     assert data.rate_equations_R.values[-1] == pytest.approx(float(data.closed_form_R), rel=1e-4)
     first = parts["event_driven"].R.values[0] / reference - 1
     assert data.event_driven_error.values[0] == pytest.approx(np.sqrt(np.mean(first**2)))

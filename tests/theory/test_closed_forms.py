@@ -23,7 +23,7 @@ inertia = st.floats(0.01, 1)
 
 
 def exact_K(r, beta, dimension, q):
-    """K by the textbook root of Eq. (K), in mpmath."""
+    """K by the textbook root of the theory of free cooling, in mpmath."""
     with mpmath.workdps(DIGITS):
         r, beta, q = (mpmath.mpf(float(x)) for x in (r, beta, q))
         alpha = mpmath.mpf(2) / (dimension - 1)
@@ -98,7 +98,7 @@ def test_elastic_rough_particles_share_energy_equally(dimension):
 @pytest.mark.parametrize("dimension", [2, 3])
 @pytest.mark.parametrize("r", [0, 0.5, 0.9, 1 - 1e-6])
 def test_smooth_limit_is_approached_from_above(dimension, r):
-    """R - 1 = -K is b/(2 alpha (1 - r^2)) to first order, Eq. (K)."""
+    """R - 1 = -K is b/(2 alpha (1 - r^2)) to first order, the theory of free cooling."""
     assert theory.cooling_ratio(r, -1, dimension) == 1
     assert theory.cooling_K(r, -1, dimension) == 0
     beta = -1 + 1e-13
@@ -146,7 +146,7 @@ def test_import_needs_numpy_only():
 @settings(derandomize=True, deadline=None)
 @given(beta=roughness, q=inertia, c=st.floats(-1.0, 1.0))
 def test_a_correlation_at_contacts_leaves_rotation_as_it_is(beta, q, c):
-    """Put into Eq. (deltaEr), the ratio gives no change; without correlation it is Eq. (lun)."""
+    """Put into Eq. (deltaEr), the ratio gives no change; uncorrelated it is Lun's formula."""
     R = theory.correlated_ratio(beta, q, c)
     assert 0.0 <= R <= 1.0
     assert theory.correlated_ratio(beta, q, 0.0) == pytest.approx(

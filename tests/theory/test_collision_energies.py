@@ -1,4 +1,4 @@
-"""Energy changes, averages and rates against the collision rule itself, Eq. (collrule)."""
+"""Energy changes, averages and rates against the collision rule itself, the collision rule."""
 
 import numpy as np
 import pytest

@@ -11,15 +11,15 @@ FRICTION = "rate equations with Coulomb friction"
 @pytest.mark.parametrize(
     ("attributes", "variables", "equation"),
     [
-        (DISKS, ("R",), ("lun", "Eq. (lun)")),
-        (SPHERES, ("R",), ("lun", "Eq. (lun)")),
-        (DISKS, ("R", "plateau_end"), ("K", "Eq. (K)")),
-        (SPHERES | {"theory": "K"}, (), ("K", "Eq. (Goldshtein)")),
-        (DISKS | {"theory": "lun"}, ("plateau_end",), ("lun", "Eq. (lun)")),
+        (DISKS, ("R",), ("lun", "Lun's formula")),
+        (SPHERES, ("R",), ("lun", "Lun's formula")),
+        (DISKS, ("R", "plateau_end"), ("K", "theory of free cooling")),
+        (SPHERES | {"theory": "K"}, (), ("K", "theory of free cooling")),
+        (DISKS | {"theory": "lun"}, ("plateau_end",), ("lun", "Lun's formula")),
         (DISKS | {"theory": "K", "mu": 0.0}, (), ("K", FRICTION)),
         (DISKS | {"theory": "lun", "swept": "friction.mu"}, (), ("lun", FRICTION)),
-        (DISKS | {"theory": "K", "swept": "spin.inertia"}, (), ("K", "Eq. (K)")),
-        (DISKS | {"spin_share": 0.0}, (), ("lun", "Eq. (lun)")),
+        (DISKS | {"theory": "K", "swept": "spin.inertia"}, (), ("K", "theory of free cooling")),
+        (DISKS | {"spin_share": 0.0}, (), ("lun", "Lun's formula")),
         (DISKS | {"spin_share": 0.4}, (), ("lun", "rate equations, spin share 0.4")),
         (DISKS | {"swept": "thermostat.spin_share"}, (), ("lun", "rate equations")),
         (

@@ -118,7 +118,7 @@ def test_R_at_infinite_and_very_large_friction(dimension, spin_share):
 @settings(derandomize=True, deadline=None)
 @given(r=st.floats(0, 1), beta=st.floats(-0.999, 1), q=st.floats(0.05, 1), mu=st.floats(1e-3, 10))
 def test_driven_disks_in_closed_form(r, beta, q, mu):
-    """Eq. (lun) with friction, at mu = inf with a root of 1 - e: dT_rot/dt = 0 is a quadratic."""
+    """Lun's formula with friction, at mu = inf with a root of 1 - e: dT_rot = 0 is a quadratic."""
     e, kappa = (1 + beta) / (2 * (1 + q)), mu * (1 + r) / 2
     theta = 2 * q * e / (1 - e + np.hypot(1 - e, q * e / kappa))
     R = theory.friction_ratio(r, beta, mu, 2, q, spin_share=0)

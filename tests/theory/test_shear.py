@@ -1,4 +1,4 @@
-"""What shear makes of Eq. (lun), against integrals over directions and Monte Carlo collisions."""
+"""What shear makes of Lun's formula, against integrals and Monte Carlo collisions."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Judges of Eq. (lun) as it was derived: for R averaged over collisions."""
+"""Judges of Lun's formula as it was derived: for R averaged over collisions."""
 
 import numpy as np
 import xarray as xr
@@ -16,7 +16,7 @@ from roughgas.claims.verdicts import (
 )
 
 MOST = 0.5
-"""Share of the excess over Eq. (lun) that must go with the way of averaging to be most of it. A
+"""Share of the excess over Lun's formula that must go with the way of averaging to be most of it. A
 convention. Fixed when R of four points at beta = 0 was known."""
 WAYS = {
     "R": "for the mean of R(t)",
@@ -28,22 +28,23 @@ WAYS = {
 def follows_over_collisions(gas: xr.Dataset) -> Finding:
     """R averaged over collisions, minus theory, is as good as zero at every point, and in
     proportion, too."""
-    return agreement_in_proportion(averaged(gas, "R_collisional"), "Eq. (lun)")
+    return agreement_in_proportion(averaged(gas, "R_collisional"), "Lun's formula")
 
 
 def excess_is_of_averaging(bed: xr.Dataset) -> Finding:
-    """At intermediate beta and the lowest r the mean of R - Eq. (lun) is at most half as large
+    """At intermediate beta and the lowest r the mean of R - Lun's formula is at most half as large
     averaged over collisions as for the mean of R(t); and what is left is the correlation of
-    translation and rotation at contacts: R - Eq. (lun) at that correlation is as good as zero."""
+    translation and rotation at contacts: R - Lun's formula at that correlation is as good as
+    zero."""
     low = float(bed.r.min())
     strong = bed.sel(r=[low], beta=np.abs(bed.beta) <= INTERMEDIATE)
     means = {name: deviation(averaged(strong, name)).mean() for name in WAYS}
     whole, left = means["R"], means["R_collisional"]
     most = whole.real and left.value <= MOST * whole.value
-    beyond = agreement(beyond_correlation(bed), "Eq. (lun) at the correlation at contacts")
+    beyond = agreement(beyond_correlation(bed), "Lun's formula at the correlation at contacts")
     words = ", ".join(f"{text(means[name])} {way}" for name, way in WAYS.items())
-    reason = f"At |beta| <= {INTERMEDIATE:g} and r = {low:g}, R - Eq. (lun) is {words}. There, "
-    numbers = tuple((f"R - Eq. (lun) {way}", means[name]) for name, way in WAYS.items())
+    reason = f"At |beta| <= {INTERMEDIATE:g} and r = {low:g}, R - Lun's formula is {words}. There, "
+    numbers = tuple((f"R - Lun's formula {way}", means[name]) for name, way in WAYS.items())
     verdict = worse(graded(bool(most), left.value < whole.value), beyond.verdict)
     return Finding(verdict, reason + beyond.reason, numbers + beyond.numbers)
 
@@ -60,7 +61,7 @@ def averaged(gas: xr.Dataset, name: str) -> xr.Dataset:
 
 
 def beyond_correlation(gas: xr.Dataset) -> Sample:
-    """Return R averaged over collisions minus Eq. (lun) at the correlation measured at contacts.
+    """Return R averaged over collisions minus Lun's formula at the correlation at contacts.
 
     The errors are those of R: of the difference, whose two parts err together, they are bounds.
     """

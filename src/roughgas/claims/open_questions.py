@@ -35,7 +35,7 @@ SMOOTH = -1.0
 """Roughness of a boundary that puts no rotation in: the bed that the others are compared with."""
 NO_ROTATION = 0.003
 """Share of rotation up to which a drive puts in translation alone. It changes R by less than AGREE
-even at beta = -0.95, r = 0.9, where the response is strong: R - Eq. (lun) is 6 times the share.
+even at beta = -0.95, r = 0.9, where the response is strong: R - Lun's formula is 6 times the share.
 Fixed before its data."""
 REFERENCE = "sawtooth"
 SPIN_ALONE = 1 - 1e-6
@@ -95,12 +95,12 @@ def _elsewhere(still: xr.Dataset, smooth: xr.Dataset) -> Finding:
 
 
 def _roughest(bed: xr.Dataset) -> list[tuple[str, Estimate]]:
-    """Return R - Eq. (lun), and the share of rotation, at the largest roughness."""
+    """Return R - Lun's formula, and the share of rotation, at the largest roughness."""
     end = bed.sel(roughness=[bed.roughness.values.max()])
     shares = over_seeds(end, spin_shares(end), "input_spin_share")
     return [
         (f"{size} {name} at roughness = {end.roughness.item():g}", number)
-        for name, found in (("R - Eq. (lun)", deviation(end)), ("share of rotation", shares))
+        for name, found in (("R - Lun's formula", deviation(end)), ("share of rotation", shares))
         for size, number in (("largest", found.largest()[0]), ("mean", found.mean()))
     ]
 

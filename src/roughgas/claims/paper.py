@@ -43,20 +43,21 @@ CONSIDERABLY = math.log(1.5)
 """Logarithm of the ratio of two errors from which one is considerably larger. A convention. Fixed
 before any data."""
 NEAR = 0.08
-"""Fraction of R by which points are counted as near Eq. (K); it decides nothing."""
+"""Fraction of R by which points are counted as near the theory of free cooling;
+it decides nothing."""
 
 
 def theory_underestimates(bed: xr.Dataset) -> Finding:
-    """The mean of R - Eq. (lun) at intermediate beta is positive at the lowest r, and larger there
-    than at the highest r."""
+    """The mean of R - Lun's formula at intermediate beta is positive at the lowest r, and larger
+    there than at the highest r."""
     middle = bed.sel(beta=np.abs(bed.beta) <= INTERMEDIATE)
     there = [float(r) for r in bed.r.values if np.isfinite(middle.deviation.sel(r=r)).any()]
     if not there:
         raise NotTestedError(f"no point with |beta| <= {INTERMEDIATE:g} in a steady state")
     means = [(r, deviation(middle.sel(r=[r])).mean()) for r in there]
     (low, strong), (high, weak) = means[0], means[-1]
-    numbers = tuple((f"mean R - Eq. (lun) at r = {r:g}", mean) for r, mean in means)
-    reason = f"At |beta| <= {INTERMEDIATE:g}, R - Eq. (lun) is {text(strong)} at r = {low:g}"
+    numbers = tuple((f"mean R - Lun's formula at r = {r:g}", mean) for r, mean in means)
+    reason = f"At |beta| <= {INTERMEDIATE:g}, R - Lun's formula is {text(strong)} at r = {low:g}"
     growth = strong.minus(weak)
     if low == high:
         reason += "; no other r to compare with."
@@ -119,12 +120,12 @@ def above_half_at_smooth_particles(rough: xr.Dataset) -> Finding:
 
 
 def fails_unsubtracted(sheared: xr.Dataset) -> Finding:
-    """R - Eq. (lun), nothing removed, is not as good as zero, and worse than after removal."""
+    """R - Lun's formula, nothing removed, is not as good as zero, and worse than after removal."""
     if "R_unsubtracted" not in sheared:
         raise NotTestedError("the dataset holds no un-subtracted R")
     gap = (sheared.R_unsubtracted - sheared.theory).where(np.isfinite(sheared.R))
     direct, removed = over_seeds(sheared, gap, "R_unsubtracted"), deviation(sheared)
-    found = agreement(direct, "Eq. (lun)")
+    found = agreement(direct, "Lun's formula")
     verdict = {HOLDS: FAILS, QUALIFIED: QUALIFIED, FAILS: HOLDS}[found.verdict]
     if direct.rms() <= removed.rms():
         verdict = FAILS
@@ -187,14 +188,14 @@ def _ratio(log: Estimate) -> str:
 
 
 def follows_k(cooling: xr.Dataset) -> Finding:
-    """R - Eq. (K) at every point is as good as zero."""
-    found = agreement(deviation(cooling), "Eq. (K)")
+    """R - the theory of free cooling at every point is as good as zero."""
+    found = agreement(deviation(cooling), "the theory of free cooling")
     relative = deviation_in_proportion(cooling)
     near = int((np.abs(relative.value) <= NEAR).sum())
     largest, place = relative.largest()
     return found.noting(
-        f"Relative to Eq. (K), {near} of {relative.size} points are within {NEAR:.0%}; the "
-        f"largest difference is {100 * largest.value:+.1f} % at {place}."
+        f"Relative to the theory of free cooling, {near} of {relative.size} points are within "
+        f"{NEAR:.0%}; the largest difference is {100 * largest.value:+.1f} % at {place}."
     )
 
 
@@ -222,14 +223,15 @@ def depends_on_restitution(cooling: xr.Dataset) -> Finding:
     at_low, at_high = (predicted_ratio(cooling.attrs, r, beta) for r in (low, high))
     reason = (
         f"R at r = {low:g} differs from R at r = {high:g} by up to {text(largest)} at "
-        f"beta = {beta:g}, where Eq. (K) expects {at_low - at_high:+.4f}."
+        f"beta = {beta:g}, where the theory of free cooling expects {at_low - at_high:+.4f}."
     )
     numbers = (("largest difference", largest), ("mean difference", effect.mean()))
     return Finding(graded(size > LIMIT, size > AGREE), reason, numbers)
 
 
 def forcing_decides(cooling: xr.Dataset, bed: xr.Dataset) -> Finding:
-    """R cooling - R vibrated is far from zero and is what Eq. (K) - Eq. (lun) says."""
+    """R cooling - R vibrated is far from zero and is what the theory of free cooling minus
+    Lun's formula says."""
     change, expected = (
         difference(*(gas.assign(R=gas[name].where(np.isfinite(gas.R))) for gas in (cooling, bed)))
         for name in ("R", "theory")

@@ -21,9 +21,10 @@ FAILS = "fails"
 NOT_TESTED = "not tested"
 
 AGREE = 0.02
-"""Difference in R up to which two values agree. What the paper is to tell apart, Eq. (lun) and
-Eq. (K) at r = 0.9 and beta = 0, is 0.12: this is a sixth of it. Where R < 0.02 it asks nothing, so
-what spans such R is judged in proportion, too. Fixed before any data; the reason is of later."""
+"""Difference in R up to which two values agree. What the paper is to tell apart, Lun's formula and
+the theory of free cooling at r = 0.9 and beta = 0, is 0.12: this is a sixth of it. Where R < 0.02
+it asks nothing, so what spans such R is judged in proportion, too. Fixed before any data; the
+reason is of later."""
 LIMIT = 0.06
 """Difference in R beyond which they disagree; between the two, agreement is qualified. Half of that
 0.12: beyond it the other theory may be nearer. Fixed before any data; the reason is of later."""
@@ -35,8 +36,8 @@ FEW = 0.1
 at one r. Fixed before any data."""
 NEAR = 0.1
 """Fraction of R up to which a value agrees with theory in proportion. AGREE over the R of a driven
-gas in mid-range, Eq. (lun) at beta = 0. Fixed before the data of friction and inertia; for beds and
-sheared gases (Figs. 1a, 2a, 3) after their data."""
+gas in mid-range, Lun's formula at beta = 0. Fixed before the data of friction and inertia; for beds
+and sheared gases (Figs. 1a, 2a, 3) after their data."""
 FAR = 0.5
 """Fraction beyond which it disagrees; between the two, agreement is qualified. A convention: theory
 is then wrong by a factor of 1.5 to 2. Fixed as NEAR was."""

@@ -1,8 +1,8 @@
 """R and the correlation of translation and rotation, averaged over the collisions of pairs.
 
-McNamara & Luding (1998) derive Eq. (lun) from averages over collisions: <v_t^2> = 4 (D-1) E_tr/m
-and <v_r^2> = 4 (D-1) E_rot/(q m) in a Maxwellian gas. Read backwards, these say what E_tr and E_rot
-are where collisions happen.
+McNamara & Luding (1998) derive Lun's formula from averages over collisions: <v_t^2> = 4 (D-1)
+E_tr/m and <v_r^2> = 4 (D-1) E_rot/(q m) in a Maxwellian gas. Read backwards, these say what E_tr
+and E_rot are where collisions happen.
 """
 
 import math

@@ -121,7 +121,7 @@ def _map(rows: Sequence[xr.Dataset]):
 
 
 def _density(part: xr.Dataset):
-    """Return R of an event-driven gas at each packing, and that over Eq. (K), its number of
+    """Return R of an event-driven gas at each packing, and that over theory, its number of
     particles corrected for by DSMC."""
     many, few, theory = estimate(part, "R_many"), estimate(part, "R_few"), float(part.theory)
     rows = []

@@ -1,9 +1,9 @@
 """Profiles across a gas, and the averages of R that they tell apart.
 
 Over the slices of a vibrated bed, and the phases of its floor: density, temperatures, R, and how
-often particles meet. Eq. (lun) is about averages over collisions; temperatures of slices, weighted
-by the collisions there, should therefore be closer to it than the mean of R(t) is. Of a sheared
-gas: whether the flow is linear, and what theory.shear needs to know.
+often particles meet. Lun's formula is about averages over collisions; temperatures of slices,
+weighted by the collisions there, should therefore be closer to it than the mean of R(t) is. Of a
+sheared gas: whether the flow is linear, and what theory.shear needs to know.
 
 A temperature is m times the mean square velocity along an axis, or q times that of the spin. The
 mean velocity along the axis of the slices is taken from it, slice by slice and phase by phase; in a
@@ -107,7 +107,7 @@ def _found(run, point) -> dict[str, np.ndarray]:
 def _by_pairs(run):
     """Return R by averages over pairs, weighted by their relative speed g as contacts are.
 
-    {b^2 (2 b)^(D-2)} = D/6 (McNamara & Luding 1998, above Eq. (lun)). `speed_factor` is
+    {b^2 (2 b)^(D-2)} = D/6 (McNamara & Luding 1998, above Lun's formula). `speed_factor` is
     {g^3}/{g} over its Maxwellian value (D + 1)/D {g^2}, which would make it 1.
     """
     q, D, number = run.inertia, run.dimension, run.pairs.where(run.pairs > 0)

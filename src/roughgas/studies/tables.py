@@ -26,7 +26,7 @@ BED = {
     "R_level": "pairs at one height, by relative speed",
     "R_meeting": "those near that approach",
     "R_collisional": "at contacts",
-    "R_lun": "Eq. (lun)",
+    "R_lun": "Lun's formula",
     "speed_factor": "{g³}/{g}, over Maxwellian",
 }
 SHEARED = {
@@ -114,7 +114,7 @@ def models(data: xr.Dataset) -> str:
     # the shortest run of DSMC whose noise is down to its floor, within a third
     near = data.dsmc_seconds.values[data.dsmc_error.values < 4 / 3 * float(data.dsmc_floor)]
     rows = [
-        ["closed form, Eq. (K)", closed, f"{data.closed_form_seconds:.1e} s"],
+        ["closed form, the theory of free cooling", closed, f"{data.closed_form_seconds:.1e} s"],
         ["rate equations", closed, f"{data.rate_equations_seconds[-1]:.1e} s"],
         ["DSMC", floor, f"{near[0] if len(near) else math.nan:.2g} s"],
         ["event-driven", "none", f"{until:.2g} s for 1 %"],
@@ -131,7 +131,7 @@ def models(data: xr.Dataset) -> str:
         f"{markdown(['model', 'tends to an error of R of', 'CPU time'], rows)}\n"
         f"What the error of the closed form is made of:\n\n"
         f"{markdown(['assumption', 'changes R by'], parts)}\n"
-        f"R of the homogeneous gas (DSMC) over R of Eq. (K), minus 1, in %:\n\n"
+        f"R of the homogeneous gas (DSMC) over R of the theory of free cooling, minus 1, in %:\n\n"
         f"{markdown(head, gaps)}"
     )
 
@@ -188,7 +188,7 @@ def finite_size(data: xr.Dataset) -> str:
         cells = [_shown(gas, "dsmc_R", ".4f") for gas in gases]
         rows.append([label(one), f"{float(one.theory):.4f}", *cells, missing])
         tails.append([label(one), *(_shown(gas, "dsmc_a02", "±") for gas in gases)])
-    head = ["point", "Eq. (K)", *numbers, "the last over Eq. (K)"]
+    head = ["point", "theory of free cooling", *numbers, "the last over the theory of free cooling"]
     return (
         f"## Number and box of a cooling gas\n\nR of the homogeneous gas (DSMC):\n\n"
         f"{markdown(head, rows)}\nThe fourth cumulant a02 of its spins:\n\n"

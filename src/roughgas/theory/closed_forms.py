@@ -10,7 +10,7 @@ from roughgas.theory.shares import positive_root, quotient, shares
 
 
 def lun_ratio(beta, inertia) -> np.ndarray:
-    """Return R of a gas whose drive adds translational energy only: Eq. (lun), any D and r."""
+    """Return R of a gas whose drive adds translational energy only: Lun's formula, any D and r."""
     beta, q = check("roughness beta", beta), check("inertia q", inertia)
     gain = q * (1 + beta)
     return gain / (gain + (1 - beta) + 2 * q)
@@ -20,7 +20,7 @@ def correlated_ratio(beta, inertia, correlation) -> np.ndarray:
     """Return R averaged over collisions where collisions leave the rotational energy as it is.
 
     That is a steady state whose drive adds translational energy only. `correlation` is <v_t.v_r>/
-    sqrt(<v_t^2> <v_r^2>) over collisions, in [-1, 1]; where it vanishes this is Eq. (lun). No
+    sqrt(<v_t^2> <v_r^2>) over collisions, in [-1, 1]; where it vanishes this is Lun's formula. No
     velocity distribution is assumed: with Eq. (deltaEr), k = (1 + beta)/(2 + 2 q) and
     x^2 = <v_r^2>/<v_t^2>, what collisions leave alone is k - (1 - k) x^2 - (1 - 2 k) x correlation
     = 0, and R = q x^2/(1 + q x^2).
@@ -33,7 +33,7 @@ def correlated_ratio(beta, inertia, correlation) -> np.ndarray:
 
 
 def goldshtein_ratio(r, beta, inertia=2 / 5) -> np.ndarray:
-    """Return R of a freely cooling gas of spheres: Eq. (Goldshtein).
+    """Return R of a freely cooling gas of spheres, by the theory of free cooling.
 
     Written without its cancellation for a_G > 0. Limits as in `cooling_ratio`.
     """
@@ -46,7 +46,7 @@ def goldshtein_ratio(r, beta, inertia=2 / 5) -> np.ndarray:
 
 
 def cooling_ratio(r, beta, dimension=2, inertia=None) -> np.ndarray:
-    """Return R = 1/(1 + K) of a freely cooling gas, K from Eq. (K).
+    """Return R = 1/(1 + K) of a freely cooling gas, by the theory of free cooling.
 
     Accurate to 1e-14 of R up to the ends of the ranges of r and beta, apart from what the
     rounding of r and beta themselves leaves open: near beta = -1 and r = 1, where R is a steep
@@ -58,7 +58,7 @@ def cooling_ratio(r, beta, dimension=2, inertia=None) -> np.ndarray:
 
 
 def cooling_K(r, beta, dimension=2, inertia=None) -> np.ndarray:
-    """Return K = E_tr/E_rot of a freely cooling gas: the positive root of Eq. (K).
+    """Return K = E_tr/E_rot of a freely cooling gas: the positive root of its quadratic.
 
     Limits as in `cooling_ratio`: K = 0 at beta = -1 and r < 1, K infinite at beta = -1 and r = 1.
     """
@@ -66,7 +66,7 @@ def cooling_K(r, beta, dimension=2, inertia=None) -> np.ndarray:
 
 
 def a_G(r, beta, inertia) -> np.ndarray:
-    """Return a_G = (1 - beta^2)(1 - q)/(1 + q) - 1 + r^2, below Eq. (Goldshtein)."""
+    """Return a_G = (1 - beta^2)(1 - q)/(1 + q) - 1 + r^2, of the theory of free cooling."""
     r, beta, q = (
         check("restitution r", r),
         check("roughness beta", beta),
@@ -76,13 +76,13 @@ def a_G(r, beta, inertia) -> np.ndarray:
 
 
 def b_G(beta, inertia) -> np.ndarray:
-    """Return b_G = 2 q (1 + beta)^2/(1 + q)^2, below Eq. (Goldshtein)."""
+    """Return b_G = 2 q (1 + beta)^2/(1 + q)^2, of the theory of free cooling."""
     beta, q = check("roughness beta", beta), check("inertia q", inertia)
     return 2 * q * ((1 + beta) / (1 + q)) ** 2
 
 
 def c_G(beta, inertia) -> np.ndarray:
-    """Return c_G = (1 + beta)(2 q + q^2 - beta q^2)/(1 + q)^2, below Eq. (K)."""
+    """Return c_G = (1 + beta)(2 q + q^2 - beta q^2)/(1 + q)^2, of the theory of free cooling."""
     beta, q = check("roughness beta", beta), check("inertia q", inertia)
     return (1 + beta) * (2 * q + q**2 * (1 - beta)) / (1 + q) ** 2
 

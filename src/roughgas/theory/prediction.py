@@ -11,7 +11,7 @@ class Equation(NamedTuple):
     """What R of a gas is compared with."""
 
     kind: str  # "K" for a freely cooling gas, "lun" for a driven one: the attribute `theory`
-    name: str  # "Eq. (K)", "rate equations with Coulomb friction"...
+    name: str  # "theory of free cooling", "rate equations with Coulomb friction"...
 
 
 def equation_of(attributes: Mapping[str, Any], variables: Container[str] = ()) -> Equation:
@@ -25,20 +25,20 @@ def equation_of(attributes: Mapping[str, Any], variables: Container[str] = ()) -
     if "mu" in attributes or swept == "mu":
         return Equation(kind, "rate equations with Coulomb friction")
     if kind == "K":
-        return Equation(kind, "Eq. (K)" if attributes["dimension"] == 2 else "Eq. (Goldshtein)")
+        return Equation(kind, "theory of free cooling")
     if "spin_share" not in attributes and swept == "spin_share":
         return Equation(kind, "rate equations")
     share = attributes.get("spin_share", 0.0)
-    return Equation(kind, f"rate equations, spin share {share:g}" if share else "Eq. (lun)")
+    return Equation(kind, f"rate equations, spin share {share:g}" if share else "Lun's formula")
 
 
 def predicted_ratio(attributes: Mapping[str, Any], r: Any, beta: Any) -> np.ndarray:
     """Return R of theory, over the broadcast shape of its arguments; NaN where nothing spins.
 
-    That is Eq. (K) for a freely cooling gas, Eq. (lun) for one whose drive adds translation only,
-    and the result of the rate equations for other drives, and for friction. `attributes` are those
-    of a reduced dataset, with what is its third axis: `inertia`, `spin_share` (of the drive), or
-    `mu`; these broadcast with `r` and `beta`.
+    That is the theory of free cooling for a gas without a drive, Lun's formula for one whose drive
+    adds translation only, and the result of the rate equations for other drives, and for friction.
+    `attributes` are those of a reduced dataset, with what is its third axis: `inertia`,
+    `spin_share` (of the drive), or `mu`; these broadcast with `r` and `beta`.
     """
     from roughgas import theory
 

@@ -81,12 +81,12 @@ def drive_changes(power, spin_share, dimension=2) -> tuple[np.ndarray, np.ndarra
 def stationary_ratio(r, beta, dimension=2, inertia=None, spin_share=None) -> np.ndarray:
     """Return the stationary R = T_rot/(T_rot + T_tr).
 
-    That is Eq. (K) without a drive, and Eq. (lun) at spin_share 0. At spin_share 1, theta is the
-    loss over the gain of T_tr. In general, translation and spin lose energy to collisions in the
-    ratio (1 - s) : s, for any power, even one that varies. If a drive takes out of one motion some
-    of what it puts into the other, s lies below 0 or above 1; if it takes out more than collisions
-    supply, R is 0 or 1. Limits at beta = -1 are those of beta -> -1 (without a drive, see
-    `cooling_ratio`).
+    That is the theory of free cooling without a drive, Lun's formula at spin_share 0. At
+    spin_share 1, theta is the loss over the gain of T_tr. In general, translation and spin lose
+    energy to collisions in the ratio (1 - s) : s, for any power, even one that varies. If a drive
+    takes out of one motion some of what it puts into the other, s lies below 0 or above 1; if it
+    takes out more than collisions supply, R is 0 or 1. Limits at beta = -1 are those of beta -> -1
+    (without a drive, see `cooling_ratio`).
     """
     return stationary_shares(r, beta, dimension, inertia, spin_share)[1][()]
 

@@ -1,4 +1,4 @@
-"""Eq. (lun) in a gas that is sheared: what the mean flow and the stress change at contacts."""
+"""Lun's formula in a gas that is sheared: what the mean flow and the stress change at contacts."""
 
 import numpy as np
 
@@ -7,7 +7,7 @@ from roughgas.theory.closed_forms import lun_ratio
 
 
 def shear_factor(rate, stress, difference) -> np.ndarray:
-    """Return theta = T_rot/T_tr of sheared disks over that of Eq. (lun), whatever r, beta and q.
+    """Return theta = T_rot/T_tr of sheared disks over Lun's formula, whatever r, beta and q.
 
     Parameters: the shear rate g = Gamma a (m/T_tr)^(1/2); of the velocities without the mean flow,
     the stress p = -m <v_x v_y>/T_tr and the normal stress difference d = (T_x - T_y)/(2 T_tr). To
@@ -27,7 +27,7 @@ def shear_factor(rate, stress, difference) -> np.ndarray:
 
 
 def sheared_ratio(beta, inertia, rate, stress, difference) -> np.ndarray:
-    """Return R of sheared disks: that of Eq. (lun), with theta times `shear_factor`."""
+    """Return R of sheared disks: that of Lun's formula, with theta times `shear_factor`."""
     lun = lun_ratio(beta, inertia)
     gain = lun * shear_factor(rate, stress, difference)
     return gain / (gain + 1 - lun)

@@ -127,6 +127,6 @@ def test_disks_are_as_large_as_they_are(path):
 
 
 def test_another_kind_of_file_is_refused(path, tmp_path):
-    with pytest.raises(InputError, match=r"a\.gif: must end in \.pdf, \.png, \.mp4"):
+    with pytest.raises(InputError, match=r"a\.gif: must end in \.pdf, \.png, \.svg, \.mp4"):
         clustering.draw(path, [tmp_path / "a.png", tmp_path / "a.gif"])
     assert list(tmp_path.iterdir()) == []

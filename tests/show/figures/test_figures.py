@@ -180,7 +180,7 @@ def test_residuals_beyond_the_scale_become_arrows():
     assert "arrows: beyond this scale" in residual.get_title(loc="right")
     arrows = [line for line in residual.lines if line.get_markersize() == 3]
     assert max(len(line.get_xdata()) for line in arrows) == len(BETA) + 1
-    assert {"periodic, no walls", "theory, Eq. (lun)"} <= set(words(main))
+    assert {"periodic, no walls", "Lun's formula"} <= set(words(main))
 
 
 def test_fig1b_needs_its_restitution():
@@ -210,8 +210,8 @@ def test_what_cannot_be_drawn_is_refused_and_leaves_no_file(tmp_path):
     paths = inputs("fig1a", tmp_path)
     with pytest.raises(InputError, match=r"figure = fig9: must be one of fig1a"):
         draw("fig9", paths, [tmp_path / "a.pdf"])
-    with pytest.raises(InputError, match=r"must end in \.pdf or \.png"):
-        draw("fig1a", paths, [tmp_path / "a.svg"])
+    with pytest.raises(InputError, match=r"must end in \.pdf or \.png or \.svg"):
+        draw("fig1a", paths, [tmp_path / "a.eps"])
     with pytest.raises(InputError, match=r"data of fig2b = vibrated: must be cooling"):
         draw("fig2b", paths, [tmp_path / "a.pdf"])
     assert {path.name for path in tmp_path.iterdir()} == {"vibrated.nc"}

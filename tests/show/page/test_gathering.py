@@ -96,8 +96,8 @@ def test_the_page_holds_its_data_and_asks_for_nothing(points, tmp_path):
     found = data_in(page)
     assert found["experiments"] == [experiment(path, points) for path in reduced]
     assert [one["theory"] for one in found["experiments"]] == [
-        "Eq. (lun)",
-        "Eq. (K)",
+        "Lun's formula",
+        "theory of free cooling",
         "rate equations with Coulomb friction",
     ]
     text = page.read_text("utf-8")

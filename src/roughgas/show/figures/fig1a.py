@@ -1,4 +1,4 @@
-"""Fig. 1a of McNamara & Luding (1998): the vibrated bed for several r, against Eq. (lun)."""
+"""Fig. 1a of McNamara & Luding (1998): the vibrated bed for several r, against Lun's formula."""
 
 import xarray as xr
 from matplotlib.figure import Figure

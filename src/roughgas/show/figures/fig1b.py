@@ -28,7 +28,7 @@ def draw(*beds: xr.Dataset) -> Figure:
         f"Vibrated bed, $r = {RESTITUTION:g}$",
         beds,
         drawn,
-        theory="theory, Eq. (lun)",
+        theory="Lun's formula",
         loc="lower right",
         # rough walls shift R ten times as much as the others: the scale is that of the others
         scale=lambda drawn: [drawn[0], *drawn[2:]],

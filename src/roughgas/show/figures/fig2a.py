@@ -1,4 +1,4 @@
-"""Fig. 2a of McNamara & Luding (1998): the sheared gas for several r, against Eq. (lun)."""
+"""Fig. 2a of McNamara & Luding (1998): the sheared gas for several r, against Lun's formula."""
 
 from collections.abc import Sequence
 

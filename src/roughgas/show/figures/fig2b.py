@@ -1,4 +1,4 @@
-"""Fig. 2b of McNamara & Luding (1998): the freely cooling gas for several r, against Eq. (K)."""
+"""Fig. 2b of McNamara & Luding (1998): the freely cooling gas for several r, beside its theory."""
 
 import xarray as xr
 from matplotlib.figure import Figure
@@ -8,5 +8,5 @@ from roughgas.show.figures.panel import content_for_each_r, ratio_figure
 
 def draw(cooling: xr.Dataset) -> Figure:
     """Draw the figure from the reduced dataset of the cooling gas."""
-    how = {"theories": "lines: theory, Eq. (K)", "loc": "upper right"}
+    how = {"theories": "lines: theory of free cooling", "loc": "upper right"}
     return ratio_figure(content_for_each_r("Cooling gas", cooling, **how))

@@ -1,4 +1,4 @@
-"""Fig. 3: spheres in three dimensions, in all three scenes, against Eqs. (Goldshtein) and (lun).
+"""Fig. 3: spheres in three dimensions, in all three scenes, beside theory.
 
 McNamara & Luding (1998) leave this open: "simulations in D = 3 are still needed".
 """
@@ -11,7 +11,7 @@ from roughgas.show.figures.panel import ANY_R, content_for_each_r, ratio_figure
 
 def draw(cooling: xr.Dataset, sheared: xr.Dataset, bed: xr.Dataset) -> Figure:
     """Draw the figure from the reduced datasets of the three scenes in space."""
-    free = {"theories": "lines: theory, Eq. (Goldshtein)", "loc": "upper right"}
+    free = {"theories": "lines: theory of free cooling", "loc": "upper right"}
     return ratio_figure(
         content_for_each_r("Cooling spheres", cooling, **free),
         content_for_each_r("Sheared spheres", sheared, theory=ANY_R),

@@ -35,4 +35,4 @@ def _content(waves: xr.Dataset, r: float) -> PanelContent:
         for (wave, label), look in zip(LABELS.items(), LOOKS, strict=False)
     ]
     beside = [one._replace(theory=drawn[0].data.R.values) for one in drawn]
-    return PanelContent(f"Vibrated bed, $r = {r:g}$", [waves], beside, theory="theory, Eq. (lun)")
+    return PanelContent(f"Vibrated bed, $r = {r:g}$", [waves], beside, theory="Lun's formula")

@@ -5,12 +5,14 @@ from matplotlib.figure import Figure
 
 from roughgas.show.figures.panel import INERTIA, TWO_WIDE, content_for_each_beta, ratio_figure
 
+FREE = "lines: theory of free cooling"
+
 
 def draw(bed: xr.Dataset, cooling: xr.Dataset) -> Figure:
     """Draw the figure from the reduced datasets of disks with several moments of inertia."""
     how = {"loc": "best", "axis": INERTIA}
     return ratio_figure(
-        content_for_each_beta("Vibrated bed", bed, theories="lines: theory, Eq. (lun)", **how),
-        content_for_each_beta("Cooling gas", cooling, theories="lines: theory, Eq. (K)", **how),
+        content_for_each_beta("Vibrated bed", bed, theories="lines: Lun's formula", **how),
+        content_for_each_beta("Cooling gas", cooling, theories=FREE, **how),
         width=TWO_WIDE,
     )

@@ -29,7 +29,7 @@ AVERAGES = {
     "R_collisional": "averaged over collisions",
 }
 """The ways in which R is averaged, by the names of variables; the first is the paper's."""
-ANY_R = "theory, Eq. (lun), any $r$"
+ANY_R = "Lun's formula, any $r$"
 DOTS = (0, (1, 2))
 RING = {"marker": "o", "markersize": 8, "markeredgewidth": 0.6, "fillstyle": "none"}
 

@@ -14,7 +14,7 @@ from roughgas.studies.figures.panels import four_panels
 SIZE = (10.2, 8.6)  # inches
 WAYS = {"length": "-", "seeds": "--"}
 METHODS = {
-    "closed_form": ("closed form, Eq. (K)", Look(THEORY, "*", "none")),
+    "closed_form": ("closed form (Maxwellian theory)", Look(THEORY, "*", "none")),
     "rate_equations": ("rate equations, run longer and longer", LOOKS[2]),
     "dsmc": ("DSMC", LOOKS[1]),
     "event_driven": ("event-driven", LOOKS[0]),
@@ -88,7 +88,7 @@ def draw_models(axes: Axes, data: xr.Dataset) -> None:
 
 
 def draw_map(axes: Axes, data: xr.Dataset) -> None:
-    """Draw R of the homogeneous gas over Eq. (K), minus 1, against beta, a series for each r.
+    """Draw R of the homogeneous gas over theory, minus 1, against beta, a series for each r.
 
     Lines are what its cumulants a20 and a11 explain.
     """
@@ -113,7 +113,7 @@ def draw_map(axes: Axes, data: xr.Dataset) -> None:
     axes.plot([], [], color=GREY, linewidth=0.8, label="first order in $a_{20}$ and $a_{11}$")
     axes.axhline(0, color=THEORY, linewidth=0.8, zorder=0)
     axes.set(xlim=(-1.04, 1.04), xlabel=r"tangential restitution $\beta$")
-    axes.set_ylabel(r"$R/R_{\mathrm{Eq.\,(K)}} - 1$   (%)")
+    axes.set_ylabel(r"$R/R_\mathrm{theory} - 1$   (%)")
     axes.xaxis.set_major_locator(MultipleLocator(0.5))
     axes.xaxis.set_minor_locator(MultipleLocator(0.1))
     low, high = axes.get_ylim()

@@ -23,7 +23,7 @@ def draw_figure(data: xr.Dataset) -> Figure:
 
 
 def draw_number(axes: Axes, data: xr.Dataset) -> None:
-    """Draw R of the homogeneous gas over Eq. (K), minus 1, of the fewest and the most particles."""
+    """Draw R of the homogeneous gas over theory, minus 1, of the fewest and the most particles."""
     ends = data.particles.values[[0, -1]]
     for one, look, shift in _points(data):
         x = float(one.beta.item()) + shift
@@ -36,7 +36,7 @@ def draw_number(axes: Axes, data: xr.Dataset) -> None:
         axes.plot([], [], "o", color=GREY, mfc=fill, label=f"$N = {n}$")
     _name_kinds(axes, data)
     axes.axhline(0.0, color=THEORY, lw=0.8, zorder=0)
-    axes.set(xlabel=r"tangential restitution $\beta$", ylabel=r"$R/R_{\mathrm{Eq.\,(K)}} - 1$  (%)")
+    axes.set(xlabel=r"tangential restitution $\beta$", ylabel=r"$R/R_\mathrm{theory} - 1$  (%)")
     low, high = axes.get_ylim()
     axes.set_ylim(low - 0.3 * (high - low), high)
     axes.legend(loc="lower right", ncols=2)
@@ -157,6 +157,6 @@ def _name_kinds(axes, data):
 
 
 def _percent(one, name):
-    """Return R over that of Eq. (K), minus 1, and its error, in per cent."""
+    """Return R over that of the theory of free cooling, minus 1, and its error, in per cent."""
     theory = float(one.theory)
     return 100 * (float(one[name]) / theory - 1), 100 * float(one[f"{name}_stderr"]) / theory

@@ -107,7 +107,7 @@ def draw_phases(axes: Axes, beds: Sequence[xr.Dataset]) -> None:
 
 
 def draw_averages(axes: Axes, beds: Sequence[xr.Dataset]) -> None:
-    """Draw R of each bed by each average, minus that of Eq. (lun)."""
+    """Draw R of each bed by each average, minus that of Lun's formula."""
     places = np.arange(len(AVERAGES))[::-1]
     for k, (one, look) in enumerate(zip(beds, LOOKS, strict=False)):
         R = np.array([float(one[name]) for name in AVERAGES]) - float(one.R_lun)
@@ -117,11 +117,11 @@ def draw_averages(axes: Axes, beds: Sequence[xr.Dataset]) -> None:
     axes.axvline(0, color=THEORY, lw=0.8)
     axes.set_yticks(places, AVERAGES.values(), fontsize=7.5)
     axes.tick_params(axis="y", which="both", left=False, right=False)
-    axes.set_xlabel(r"$R - R_\mathrm{Eq.\,(lun)}$")
+    axes.set_xlabel(r"$R - R_\mathrm{Lun}$")
 
 
 def draw_sheared(axes: Axes, gases: Sequence[xr.Dataset]) -> None:
-    """Draw theta of sheared gases over that of Eq. (lun) against theory.shear's factor."""
+    """Draw theta of sheared gases over that of Lun's formula against theory.shear's factor."""
     top = 1.0
     for one, look in zip(gases, LOOKS, strict=False):
         lun = float(lun_ratio(float(str(one.beta.values)), float(one.inertia)))
@@ -134,7 +134,7 @@ def draw_sheared(axes: Axes, gases: Sequence[xr.Dataset]) -> None:
     ends = (1.0, 1.0 + 1.1 * (top - 1.0))
     axes.plot(ends, ends, color=THEORY, lw=0.8, zorder=0, label="if the formula were exact")
     axes.set_xlabel(FORMULA)
-    axes.set_ylabel(r"$\theta/\theta_\mathrm{Eq.\,(lun)}$ of the simulation")
+    axes.set_ylabel(r"$\theta/\theta_\mathrm{Lun}$ of the simulation")
     axes.legend(loc="upper left", title="sheared disks")
 
 
@@ -151,4 +151,4 @@ def _drawn(one, *names, least=LEAST):
 def _draw_lun(axes, beds):
     for R in sorted({round(float(one.R_lun), 4) for one in beds}):
         axes.axhline(R, color=FAINT, lw=0.8, ls="--", zorder=0)
-    axes.plot([], [], color=FAINT, lw=0.8, ls="--", label="Eq. (lun)")
+    axes.plot([], [], color=FAINT, lw=0.8, ls="--", label="Lun's formula")

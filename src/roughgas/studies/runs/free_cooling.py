@@ -41,7 +41,7 @@ class FreeCooling(NamedTuple):
 
     @property
     def theta(self) -> float:
-        """T_rot/T_tr of Eq. (K)."""
+        """T_rot/T_tr of theory."""
         return float(theory.stationary_theta(*self.constants))
 
     @property
@@ -71,12 +71,12 @@ class FreeCooling(NamedTuple):
 
 
 def corrected_ratio(a20, a11, r, beta, dimension=2, inertia=None) -> np.ndarray:
-    """Return R of Eq. (K) for a gas with the cumulants a20 and a11 (see dsmc.Samples); broadcasts.
+    """Return R of theory for a gas with the cumulants a20 and a11 (see dsmc.Samples); broadcasts.
 
     Fast particles collide more often than others. Averages over collisions therefore exceed those
     over particles: of v_n^2 and v_t^2 by the factor 1 + a20/4 beyond what a Maxwellian gas has, of
     the squared spin by 1 + a11/4 where fast particles spin faster. With these factors the rate
-    equations are balanced again, as for Eq. (K), which is the case a20 = a11 = 0. First order in
+    equations are balanced again, as in theory, which is the case a20 = a11 = 0. First order in
     the cumulants, in any number of dimensions, but that spheres whose spin is not isotropic about
     their velocity have a further term, which is left out. Raises InputError.
     """
