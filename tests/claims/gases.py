@@ -33,7 +33,7 @@ def walls(rough=0.2, particle=0.0, smooth=0.0, beta=(-1.0, *BETA)):
 
 
 def sheared(direct=0.1, error=0.004, **others):
-    """A sheared gas on Eq. (lun), whose un-subtracted R lies `direct` too low."""
+    """A sheared gas on Lun's formula, whose un-subtracted R lies `direct` too low."""
     data = reduced("sheared", error=error, measured_for=5000.0, **others)
     data["R_unsubtracted"] = data.R - direct
     data["R_unsubtracted_stderr"] = data.R_stderr
@@ -41,12 +41,12 @@ def sheared(direct=0.1, error=0.004, **others):
 
 
 def cooling(shift=0.0, **others):
-    """A cooling gas on Eq. (K) but for a constant."""
+    """A cooling gas on the theory of free cooling but for a constant."""
     return reduced("cooling", constant(shift), beta=ROUGH, **others)
 
 
 def cooling_as(ratio):
-    """A cooling gas with R = ratio(r, beta), whatever Eq. (K) says."""
+    """A cooling gas with R = ratio(r, beta), whatever the theory of free cooling says."""
 
     def shift(r, beta):
         return ratio(r, beta) - theory.cooling_ratio(r, beta, 2, 0.5)

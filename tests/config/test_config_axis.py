@@ -5,6 +5,7 @@ import copy
 import pytest
 
 from roughgas import config
+from roughgas.base.errors import InputError
 from roughgas.config import checking, schema
 from roughgas.config.provenance import variant_attributes
 from roughgas.data.variables import POINT, REDUCED
@@ -100,7 +101,7 @@ def test_the_effect_need_not_give_a_value_beside_the_sweep(with_experiments):
         ("schedule.measure", "2.5", "schedule", {"measure": 2.5}),
     ],
 )
-def test_any_number_of_the_settings_is_swept(key, label, part, value):
+def test_any_number_of_the_settings_is_swept(with_experiments, key, label, part, value):
     whole = with_experiments(sized={"extends": "vibrated", "sweep": {key: [label, "1e2"]}})
     checking.check(whole)
     name = f"sized/{config.parameter_of(key)}{label}"
@@ -113,7 +114,7 @@ def test_any_number_of_the_settings_is_swept(key, label, part, value):
         variant_attributes(f"{name}1", settings)
 
 
-def test_sides_of_a_box_keep_their_proportion():
+def test_sides_of_a_box_keep_their_proportion(with_experiments):
     narrow = with_experiments(
         sized={"extends": "shaken_walls", "sweep": {"shaken_walls.roughness": None, "box": ["10"]}}
     )
@@ -131,7 +132,9 @@ def test_sides_of_a_box_keep_their_proportion():
         (("experiments", "vibrated", "schedule"), "particles", 10, "experiments: NAME:"),
     ],
 )
-def test_a_key_in_the_wrong_place_is_told_its_place(place, key, value, where):
+def test_a_key_in_the_wrong_place_is_told_its_place(
+    with_experiments, refusal, place, key, value, where
+):
     whole = with_experiments()
     part = whole
     for name in place:

@@ -182,7 +182,7 @@ class Gas {
     this.change(i, -px, -py, turn);
   }
 
-  // Momentum exchanged and change of each spin, McNamara & Luding (1998), Eq. (collrule): n from the
+  // Momentum exchanged and change of each spin, McNamara & Luding (1998), the collision rule: n from the
   // partner to the disk, (u, v) the relative velocity, w the sum of the spins; share is 1/2 between
   // disks and 1 at a wall, from which the disk parts at `least`.
   response(r, beta, nx, ny, u, v, w, share, least) {
