@@ -45,6 +45,11 @@ def points_of_product(wildcards):
     return [point for some in every for point in some]
 
 
+def descriptions_of_product(wildcards):
+    names = experiments_of_product(wildcards)
+    return [settings(wildcards.scale, name).get("description") for name in names]
+
+
 def heading_of_product(wildcards):
     return catalogue.HEADINGS[PARTS[wildcards.product]]
 
@@ -153,7 +158,8 @@ rule run_times:
 
 rule page:
     input:
-        multiext(f"{PACKAGE}/show/page/page", ".css", ".html", ".js"),
+        multiext(f"{PACKAGE}/show/page/page", ".css", ".html"),
+        sorted(map(str, Path(PACKAGE, "show/page").glob("*.js"))),
         points_of_product,
         data=data_of_product,
     output:
@@ -164,11 +170,12 @@ rule page:
         product="explore|explore_extensions",
     params:
         code=code_of("show.page.explore"),
+        descriptions=descriptions_of_product,
     message:
         "write {output}"
     shell:
-        "roughgas page {input.data} --points results/{wildcards.scale} --output {output}"
-        " > {log} 2>&1"
+        "roughgas page {input.data} --points results/{wildcards.scale} --config config.yaml"
+        " --output {output} > {log} 2>&1"
 
 
 rule living_page:

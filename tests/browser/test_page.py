@@ -38,7 +38,11 @@ def fragment(page):
 
 
 def select(page, name, text):
-    Select(page.find(f"#{name}")[0]).select_by_visible_text(text)
+    chosen = Select(page.find(f"#{name}")[0])
+    if name == "experiment":
+        chosen.select_by_value(text)
+    else:
+        chosen.select_by_visible_text(text)
 
 
 def close(shown, value, error):
@@ -67,8 +71,9 @@ def shows(page, ran, experiment, r, beta):
     )
     assert found["seeds"] == "2"
     target = f"results/tiny/{experiment}/r{r}/beta{beta}/seed1.nc"
-    assert page.text("#target") == f"snakemake -j1 --force {target}"
-    assert page.text("#command") == read_point(ran.folder / target).attrs["command"]
+    assert page.text("#target") == f".venv/bin/snakemake -j1 --force {target}"
+    command = read_point(ran.folder / target).attrs["command"]
+    assert page.text("#command") == f".venv/bin/{command}"
     assert fragment(page) == f"#{experiment}/r{r}/beta{beta}"
     return True
 
@@ -86,7 +91,7 @@ def test_it_begins_with_a_point_and_shows_any_other(page, ran):
 
 
 def test_the_keyboard_is_enough(page, ran):
-    page.find("#experiment")[0].send_keys("sh", Keys.TAB)
+    page.find("#experiment")[0].send_keys("A gas u", Keys.TAB)
     page.driver.switch_to.active_element.send_keys(Keys.DOWN, Keys.TAB)
     page.driver.switch_to.active_element.send_keys(Keys.DOWN)
     assert shows(page, ran, "sheared", "0.8", "0")
@@ -94,7 +99,7 @@ def test_the_keyboard_is_enough(page, ran):
 
 def test_a_click_on_a_point_chooses_it(page, ran):
     page.script("location.hash = '#cooling/r0.9/beta-0.5'")
-    page.wait(lambda: page.text("#title").startswith("cooling"))
+    page.wait(lambda: page.text("#title").startswith("A gas that nothing drives"))
     where = """
         const plot = document.getElementById("ratios"), { xaxis, yaxis } = plot._fullLayout;
         const trace = plot.data.find(one => one.name === "r = 0.8" && one.mode === "markers");
@@ -145,14 +150,19 @@ def test_a_third_axis_is_chosen_too(browser, tmp_path):
     browser.open(tmp_path / "e.html")
     assert not browser.find("#variant")[0].is_displayed()
     select(browser, "experiment", "cooling_friction")
-    assert browser.text("#variant-name") == "friction.mu"
+    assert browser.text("#variant-name") == "friction: mu"
     select(browser, "variant", "1")
     assert fragment(browser) == "#cooling_friction/mu1/r0.9/beta-0.5"
-    assert browser.text("#title") == "cooling_friction, friction.mu = 1: 40 disks"
+    assert browser.text("#title").endswith("with Coulomb friction: 40 disks, friction: mu = 1")
     select(browser, "beta", "0.50")
     assert numbers(browser)["R"] == "0.3510(40)"
     assert browser.text("#target").endswith("/small/cooling_friction/mu1/r0.9/beta0.50/seed1.nc")
     assert "mean over a block of 3 samples" in browser.text("#thinned")
+    select(browser, "over", "friction: mu")
+    drawn = browser.script("""
+        const rows = document.getElementById("ratios").data.filter(one => one.mode === "markers");
+        return rows.filter(one => one.legendgroup === "0.50").map(one => [one.x, one.y]);""")
+    assert drawn[0] == [[0.1, 1], [0.351, 0.351]]
     assert browser.complaints() == [] and browser.requests() == []
 
 
@@ -163,6 +173,32 @@ def test_the_command_is_copied(page):
     (field,) = page.find("textarea")
     field.send_keys(Keys.CONTROL, "v")
     assert field.get_attribute("value") == page.text("#target")
+
+
+def test_the_scene_is_pictured(page):
+    assert page.find("#scene svg .bar") and page.find("#scene svg .disk")
+    select(page, "experiment", "cooling")
+    assert not page.find("#scene svg .bar")
+    assert "nothing drives" in page.find("#scene svg")[0].get_attribute("aria-label")
+
+
+def test_it_is_dark_where_that_is_asked_for_and_white_on_paper(page):
+    def paper():
+        return page.script("return document.getElementById('ratios')._fullLayout.paper_bgcolor")
+
+    features = [{"name": "prefers-color-scheme", "value": "dark"}]
+    page.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": features})
+    try:
+        page.wait(lambda: paper() == "#16181c")
+        page.script("dispatchEvent(new Event('beforeprint'))")
+        page.wait(lambda: paper() == "#ffffff")
+        page.script("dispatchEvent(new Event('afterprint'))")
+        page.wait(lambda: paper() == "#16181c")
+        page.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})
+        position = page.script("return getComputedStyle(document.querySelector('form')).position")
+        assert position == "static"
+    finally:
+        page.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "", "features": []})
 
 
 def test_it_fits_on_a_phone(page):

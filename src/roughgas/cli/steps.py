@@ -74,6 +74,7 @@ STEPS = {
         REDUCED,
         value("--points FOLDER", "folder of their points: results/SCALE", required=True),
         output("HTML file"),
+        value("--config FILE", "describes the experiments (default: that of roughgas)"),
         examples=(
             "roughgas page results/small/vibrated.nc --points results/small -o explore.html",
         ),

@@ -1,16 +1,20 @@
 """The numbers in the page are those of the datasets, its theory is that of the figures."""
 
+import base64
+import gzip
 import json
 import re
 
 import numpy as np
 import pytest
+from plotly.offline import get_plotlyjs
 
 from roughgas.base.errors import InputError
 from roughgas.cli import main
 from roughgas.data.point import read_point
 from roughgas.data.reduced import read_reduced
 from roughgas.show.page.explore import GRID, LONGEST, NUMBERS, block_means, experiment, write_page
+from roughgas.show.page.policy import policy
 from roughgas.theory.prediction import predicted_ratio
 from show.page.conftest import SAMPLES
 
@@ -94,6 +98,8 @@ def test_the_page_holds_its_data_and_asks_for_nothing(points, tmp_path):
     page = tmp_path / "out" / "explore.html"
     assert main(["page", *reduced, "--points", str(points), "--output", str(page)]) == 0
     found = data_in(page)
+    described = [one.pop("description") for one in found["experiments"]]
+    assert described[0].startswith("A gas under uniform shear") and described[0][-1] != "."
     assert found["experiments"] == [experiment(path, points) for path in reduced]
     assert [one["theory"] for one in found["experiments"]] == [
         "Lun's formula",
@@ -102,6 +108,25 @@ def test_the_page_holds_its_data_and_asks_for_nothing(points, tmp_path):
     ]
     text = page.read_text("utf-8")
     assert not re.search(r'<(script|link|img|iframe)[^>]*(src|href)="(?!data:)', text)
+
+
+def test_experiments_are_called_as_a_configuration_describes_them(points, tmp_path):
+    (tmp_path / "own.yaml").write_text("experiments: {sheared: {description: My <gas>.}}\n")
+    reduced = [points / f"{name}.nc" for name in ("sheared", "cooling_friction")]
+    write_page(reduced, points, tmp_path / "page.html", tmp_path / "own.yaml")
+    found = [one["description"] for one in data_in(tmp_path / "page.html")["experiments"]]
+    assert found == ["My <gas>", "cooling friction"]
+
+
+def test_plotly_is_packed_and_allowed_by_its_hash(points, tmp_path):
+    page = tmp_path / "page.html"
+    write_page([points / "sheared.nc"], points, page)
+    text = page.read_text("utf-8")
+    (packed,) = re.findall(r'<script id="plotly" type="application/gzip">(.*?)</script>', text)
+    plotly = gzip.decompress(base64.b64decode(packed)).decode()
+    (program,) = re.findall(r"<script>(.*?)</script>", text, re.S)
+    assert plotly == get_plotlyjs() and policy(plotly, program) in text
+    assert page.stat().st_size < 2_500_000
 
 
 def test_what_is_not_there_is_named_in_one_line(points, tmp_path, capsys):

@@ -9,6 +9,7 @@ from roughgas import config
 from roughgas.base.errors import InputError
 from roughgas.base.files import write_text
 from roughgas.scene import check
+from roughgas.show.page.policy import policy
 
 SCENES: dict[str, dict[str, Any]] = {
     "cooling": {"box": [80, 80]},  # closer than the paper's, so that one sees the disks on a phone
@@ -30,8 +31,9 @@ def write_living(config_path: str | Path, output: str | Path) -> None:
     Raises InputError for a configuration without them, or with what the page cannot simulate.
     """
     found = scenes(config.load(config_path))
-    parts = {"css": _text("page.css"), "program": "".join(map(_text, PROGRAM))}
-    parts |= {"scenes": json.dumps(found), "particles": found["cooling"]["particles"]}
+    program, particles = "".join(map(_text, PROGRAM)), found["cooling"]["particles"]
+    parts = {"css": _text("page.css"), "program": program, "policy": policy(program)}
+    parts |= {"scenes": json.dumps(found), "particles": particles}
     write_text(output, Template(_text("page.html")).substitute(parts))
 
 

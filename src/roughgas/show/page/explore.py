@@ -4,6 +4,8 @@ Numbers of points are those of the reduced dataset, to the last bit; curves and 
 are only looked at, are rounded.
 """
 
+import base64
+import gzip
 import json
 import math
 from collections.abc import Iterable
@@ -16,6 +18,9 @@ import numpy as np
 
 from roughgas.base.errors import InputError
 from roughgas.base.files import write_text
+from roughgas.base.layout import from_json
+from roughgas.base.sources import PACKAGE
+from roughgas.config.reading import read_yaml
 from roughgas.data.opening import POINT, attributes_of, opened, require
 from roughgas.data.point import read_point
 from roughgas.data.reduced import EQUILIBRATED, particles_of, read_reduced, third_axis
@@ -36,22 +41,33 @@ NUMBERS = {
     "seconds": "kernel_seconds",
 }
 """What is shown of a point: its name in the page, and in the reduced dataset."""
-GRID = np.linspace(-1.0, 1.0, 161)
-"""Roughness at which theory is drawn as a curve."""
+GRID = -np.cos(np.linspace(0.0, np.pi, 241))
+"""Roughness at which theory is drawn as a curve, closest where it is steepest: at the ends."""
+PROGRAM = ("choice.js", "picture.js", "drawing.js", "page.js")
 LONGEST = 200
 """The most values that are shown of a time series."""
 DIGITS = 5
 
 
-def write_page(reduced: Iterable[str | Path], points: str | Path, output: str | Path) -> None:
+def write_page(
+    reduced: Iterable[str | Path],
+    points: str | Path,
+    output: str | Path,
+    config: str | Path | None = None,
+) -> None:
     """Write the page of the experiments whose reduced datasets are at `reduced`, in this order.
 
-    The folder `points` has seed 1 of each of their points, as the pipeline leaves it.
-    Raises InputError where one is missing, where nothing spins, and for several scales at once.
+    The folder `points` has seed 1 of each of their points, as the pipeline leaves it; `config` (by
+    default the package's own) describes them. Raises InputError where a point is missing, where
+    nothing spins, and for several scales at once.
     """
     from plotly.offline import get_plotlyjs
 
+    known = read_yaml(config or PACKAGE / "config.yaml")["experiments"]
     experiments = [experiment(path, Path(points)) for path in reduced]
+    for one in experiments:
+        described = known.get(one["name"], {}).get("description", one["name"].replace("_", " "))
+        one["description"] = described.rstrip(".")
     scales = sorted({one["scale"] for one in experiments})
     if len(scales) != 1:
         raise InputError("scale of the datasets", " and ".join(scales) or "none", "be one")
@@ -66,14 +82,19 @@ def write_page(reduced: Iterable[str | Path], points: str | Path, output: str | 
     data = {"scale": scales[0], "grid": rounded(GRID), "looks": looks, "experiments": experiments}
     # within a script, `<` could end it, or begin a comment
     text = json.dumps(data, separators=(",", ":"), allow_nan=False).replace("<", r"\u003c")
-    parts = {name: _text(f"page.{name}") for name in ("css", "js")} | {"plotly": get_plotlyjs()}
-    allowed = policy(parts["plotly"], parts["js"])
-    parts |= {"policy": allowed, "scale": escape(scales[0]), "data": text}
+    program, plotly = "".join(map(_text, PROGRAM)), get_plotlyjs()
+    parts = {"css": _text("page.css"), "program": program, "plotly": _packed(plotly)}
+    parts |= {"policy": policy(plotly, program), "scale": escape(scales[0]), "data": text}
     write_text(output, Template(_text("page.html")).substitute(parts))
 
 
 def _text(name):
     return Path(__file__).with_name(name).read_text("utf-8")
+
+
+def _packed(program):
+    """Return a program in 40 % of its size, which any browser unpacks."""
+    return base64.b64encode(gzip.compress(program.encode(), mtime=0)).decode("ascii")
 
 
 def experiment(reduced_path: str | Path, points: Path) -> dict[str, Any]:
@@ -98,8 +119,15 @@ def experiment(reduced_path: str | Path, points: Path) -> dict[str, Any]:
         "dimension": int(data.attrs["dimension"]),
         "swept": data.attrs.get("swept"),
         "theory": equation_of(data.attrs).name,
+        "effects": _effects(runs),
         "variants": [_variant(one, value, runs) for value, one in variants],
     }
+
+
+def _effects(runs):
+    """Return the names of the effects that act on an experiment's gas, for its picture."""
+    _, about = next(iter(runs.values()), (None, {}))
+    return list(from_json(about.get("experiment_json", "{}"), "settings").get("effects", {}))
 
 
 def _variant(data, value, runs):

@@ -1,0 +1,130 @@
+"use strict";
+// A choice is {experiment, variant, series, point}; its path is that of its folder in the results.
+
+const DATA = JSON.parse(document.getElementById("data").textContent);
+const at = id => document.getElementById(id);
+const minus = text => text.replaceAll("-", "−");
+
+let chosen;
+
+// ---------------------------------------------------------------- what is chosen
+
+function pathOf({ experiment, variant, series, point }) {
+  const folder = variant.name === null ? experiment.name : `${experiment.name}/${variant.name}`;
+  return `${folder}/r${series.r}/beta${point.beta}`;
+}
+
+function* everyChoice() {
+  for (const experiment of DATA.experiments)
+    for (const variant of experiment.variants)
+      for (const series of variant.series)
+        for (const point of series.points) yield { experiment, variant, series, point };
+}
+
+const CHOICES = new Map([...everyChoice()].map(choice => [pathOf(choice), choice]));
+
+function nearest(list, label, value) {
+  const distance = one => Math.abs(Number(label(one)) - Number(value));
+  return list.reduce((best, one) => (distance(one) < distance(best) ? one : best));
+}
+
+// What comes closest to the present choice where some of it is chosen anew.
+function adapted(change) {
+  const next = { ...chosen, ...change };
+  const { experiment } = next;
+  const variant = experiment.variants.find(one => one.name === next.variant.name) ?? experiment.variants[0];
+  const series = nearest(variant.series, one => one.r, next.series.r);
+  return { experiment, variant, series, point: nearest(series.points, one => one.beta, next.point.beta) };
+}
+
+function choose(choice) {
+  chosen = choice;
+  at("status").hidden = true;
+  const hash = `#${pathOf(choice)}`;
+  if (decodeURIComponent(location.hash) !== hash) history.replaceState(null, "", hash);
+  showSelects();
+  showNumbers();
+  showCommands();
+  draw();
+}
+
+function chooseByHash() {
+  const path = decodeURIComponent(location.hash.slice(1));
+  const choice = CHOICES.get(path);
+  choose(choice ?? chosen ?? CHOICES.values().next().value);
+  if (path === "" || choice) return;
+  at("status").textContent = `There is no point ${path} in this page: another one is shown.`;
+  at("status").hidden = false;
+}
+
+// ---------------------------------------------------------------- words and numbers
+
+// Such as 0.3565(30): the error in units of the last digits, two of them.
+function withError(value, error, sign = "") {
+  if (value === null) return "not known";
+  if (!error) return `${sign}${value.toFixed(4)} (error not known)`;
+  let digits = Math.max(0, 1 - Math.floor(Math.log10(error)));
+  if (Math.round(error * 10 ** digits) >= 100) digits -= 1;
+  return minus(`${sign}${value.toFixed(digits)}(${Math.round(error * 10 ** digits)})`);
+}
+
+function interval({ R, ci95 }) {
+  if (ci95 === null) return "not known";
+  const digits = Math.max(0, 1 - Math.floor(Math.log10(ci95)));
+  return minus(`${(R - ci95).toFixed(digits)} to ${(R + ci95).toFixed(digits)}`);
+}
+
+function residual({ R, theory, stderr }) {
+  if (theory === null) return "no theory here";
+  return withError(R - theory, stderr, R >= theory ? "+" : "");
+}
+
+function rows(point) {
+  const { theory } = chosen.experiment;
+  const found = [
+    ["R", withError(point.R, point.stderr)],
+    ["standard error", point.stderr?.toPrecision(2) ?? "not known"],
+    ["95 % interval", interval(point)],
+    [`theory, ${theory}`, point.theory?.toFixed(4) ?? "none here"],
+    ["R − theory", residual(point)],
+    ["steady state", point.steady ? "found" : "not found"],
+    ["seeds", String(point.seeds)],
+    ["collisions", point.collisions.toLocaleString("en")],
+    ["CPU time", `${point.seconds.toPrecision(3)} s`],
+  ];
+  if (point.contact_time) found.push(["contacts changed by the contact-time model",
+    `${(100 * point.contact_time).toPrecision(2)} %`]);
+  return found;
+}
+
+// The name of the third axis, friction.mu, in words.
+const parameterOf = experiment => experiment.swept.replaceAll("_", " ").replace(".", ": ");
+
+// The value on the third axis: mu0.1 is the folder of friction.mu = 0.1.
+function level(experiment, variant) {
+  const parameter = experiment.swept?.split(".").pop();
+  return parameter ? variant.name.slice(parameter.length) : "";
+}
+
+function showNumbers() {
+  const { experiment, variant, series, point } = chosen;
+  const kind = experiment.dimension === 3 ? "spheres" : "disks";
+  const which = experiment.swept ? `, ${parameterOf(experiment)} = ${minus(level(experiment, variant))}` : "";
+  at("title").textContent = `${experiment.description}: ${experiment.particles} ${kind}${which}`;
+  at("scene").replaceChildren(pictureOf(experiment));
+  at("theory").textContent = experiment.theory;
+  at("point-title").textContent = minus(`r = ${series.r}, β = ${point.beta}`);
+  at("numbers").replaceChildren(...rows(point).map(([name, value]) => {
+    const row = document.createElement("tr"), head = document.createElement("th");
+    head.scope = "row";
+    head.textContent = name;
+    row.append(head);
+    row.insertCell().textContent = value;
+    return row;
+  }));
+}
+
+function showCommands() {
+  at("target").textContent = `.venv/bin/snakemake -j1 --force ${chosen.point.target}`;
+  at("command").textContent = `.venv/bin/${chosen.point.command}`;
+}
