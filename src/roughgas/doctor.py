@@ -128,6 +128,20 @@ def package() -> Diagnosis:
     return Diagnosis(OK, said)
 
 
+def configuration() -> Diagnosis:
+    """Check the configuration that commands use here, and say which it is."""
+    from roughgas import config
+
+    path = config.in_use()
+    try:
+        known = config.load(path)
+    except (ValueError, OSError) as error:
+        return Diagnosis(PROBLEM, str(error), f"mend {path}, or work in another folder")
+    whose = "the one that comes with roughgas" if path == config.SHIPPED else "of this folder"
+    said = f"{path.absolute()}, {whose}, with {len(known['experiments'])} experiments"
+    return Diagnosis(OK, said)
+
+
 def kernel_cache() -> Diagnosis:
     """Check that compiled kernels can be kept."""
     from roughgas.kernel.cache import cache_root, kernel_folder
@@ -234,6 +248,7 @@ CHECKS = {
     "packages": packages,
     "versions": versions,
     "roughgas": package,
+    "configuration": configuration,
     "kernel cache": kernel_cache,
     "kernel": kernel,
     "figures": figure,

@@ -11,8 +11,6 @@ from typing import TYPE_CHECKING, Any, Literal, TypedDict
 if TYPE_CHECKING:
     import xarray
 
-SHIPPED = Path(__file__).with_name("config.yaml")
-"""The experiments that come with the package: in a clone of the repository, its config.yaml."""
 UNNAMED = "scene"
 """What a dataset calls the experiment where it has no name."""
 
@@ -260,7 +258,7 @@ def experiments(config: str | Path | None = None) -> dict[str, str]:
     >>> experiments()["cooling"]
     'A gas that nothing drives, started from equilibrium as smooth elastic disks.'
     """
-    from roughgas.config import load
+    from roughgas.config import SHIPPED, load
 
     known = load(config or SHIPPED)["experiments"]
     return {name: settings.get("description", "") for name, settings in known.items()}
@@ -281,7 +279,7 @@ def _settings(
     from roughgas.simulation import schedule
 
     given = {key: _plain(value) for key, value in changes.items() if value is not None}
-    known = {} if name is None else config.load_experiment(path or SHIPPED, name, scale)
+    known = {} if name is None else config.load_experiment(path or config.SHIPPED, name, scale)
     settings = config.merged(config.point_settings(known), given)
     for part in ("experiment", "point"):
         check_schema(settings, name or UNNAMED, part)

@@ -41,6 +41,18 @@ def test_an_installation_as_it_should_be():
     assert sys.executable in found["packages"]["said"]
 
 
+def test_the_configuration_in_use_is_told(tmp_path, monkeypatch):
+    monkeypatch.chdir(ROOT)
+    found = check("configuration", monkeypatch)
+    assert found.verdict == OK and f"{ROOT / 'config.yaml'}, of this folder" in found.said
+    monkeypatch.chdir(tmp_path)
+    found = check("configuration", monkeypatch)
+    assert found.verdict == OK and "the one that comes with roughgas" in found.said
+    (tmp_path / "config.yaml").write_text("scale: paper\n")
+    found = check("configuration", monkeypatch)
+    assert found.verdict == PROBLEM and found.said.startswith("config.yaml")
+
+
 def test_a_problem_is_told_in_words_and_by_the_exit_status(monkeypatch, capsys):
     monkeypatch.setattr(doctor, "CHECKS", {"versions": doctor.package, "movies": doctor.movie})
     monkeypatch.setenv("IMAGEIO_FFMPEG_EXE", "/bin/false")

@@ -109,6 +109,10 @@ def _options(arguments: Sequence[str]) -> argparse.Namespace:
 
         autocomplete(parser)
     options = parser.parse_args(arguments)
+    if getattr(options, "config", "") is None:
+        from roughgas.config import in_use
+
+        options.config = in_use()
     outputs = getattr(options, "output", None) or []
     for place in [outputs] if isinstance(outputs, str) else outputs:
         check_place(place)

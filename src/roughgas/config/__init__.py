@@ -27,6 +27,8 @@ from roughgas.config.labels import (  # noqa: F401
 # checking and YAML are imported where they are used: a job whose settings have been checked needs
 # neither
 
+SHIPPED = Path(__file__).parents[1] / "config.yaml"
+"""The experiments that come with the package: in a clone of the repository, its config.yaml."""
 SHOWCASE, STUDIES = "showcase", "studies"
 SEEDS_PER_JOB = 4
 GRID = ("r", "beta", "seeds")
@@ -36,6 +38,13 @@ NOT_OF_A_POINT = ("description", "sweep")
 LENGTHS = ("equilibrate", "measure", "replicas", "relaxation_times", "plateau")
 REPLACED = {"sweep": ("seeds", *(f"schedule.{name}" for name in LENGTHS)), "schedule": LENGTHS}
 """Settings that an experiment with a `target_stderr` does without."""
+
+
+def in_use() -> Path:
+    """Return the configuration that commands use unless they are told otherwise: config.yaml in the
+    present folder, or where there is none the one that comes with the package."""
+    here = Path("config.yaml")
+    return here if here.exists() else SHIPPED
 
 
 def load(path: str | Path, overrides: Mapping[str, Any] | None = None) -> dict[str, Any]:

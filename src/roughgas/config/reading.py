@@ -64,7 +64,7 @@ def read_yaml(path: str | Path) -> Any:
             raise InputError(name, f"{len(content)} bytes", f"be of {LARGEST} at most")
         text = content.decode("utf-8")
     except FileNotFoundError as error:
-        hint = f"{error.strerror}; go to the project's folder, where config.yaml is"
+        hint = f"{error.strerror}; without --config there is the one that comes with roughgas"
         raise FileNotFoundError(error.errno, hint, str(path)) from error
     except UnicodeDecodeError as error:
         raise InputError(name, "(not text)", "be YAML in UTF-8") from error

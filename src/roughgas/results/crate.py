@@ -78,6 +78,9 @@ def write_crate(
     Raises InputError if a product is elsewhere, or the folder exists; OSError as files do.
     """
     output, products = Path(output), [str(product) for product in products]
+    if not Path(WORKFLOW).exists():
+        legal = "be one with the workflow, such as a clone of the repository: a crate packs it, too"
+        raise InputError("folder", Path.cwd(), legal)
     for product in products:
         if Path(product).is_absolute() or ".." in Path(product).parts:
             raise InputError("product", product, "be in this folder")
