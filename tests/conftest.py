@@ -4,6 +4,7 @@ import os
 import signal
 from pathlib import Path
 
+import pytest
 from hypothesis import settings
 
 # sums by several threads have other last bits; the command `roughgas` has one thread, too
@@ -18,9 +19,28 @@ settings.load_profile("shared machine")
 
 SHORT = {"base", "claims", "config", "data", "planning", "results", "scene", "statistics", "theory"}
 """Folders in which no file takes more than some seconds."""
+WHOLE = 20
+"""How many folders, or files beside them, a run of all tests has at least."""
+
+
+def folder_of(item):
+    """The folder of a test, or its file where that is in none."""
+    return item.path.relative_to(Path(__file__).parent).parts[0]
 
 
 def pytest_collection_modifyitems(items):
     """Leave these to the end, where a long file would keep one worker busy and the other idle."""
-    root = Path(__file__).parent
-    items.sort(key=lambda item: item.path.relative_to(root).parts[0] in SHORT)
+    items.sort(key=lambda item: folder_of(item) in SHORT)
+
+
+@pytest.fixture(scope="session", autouse=True)
+def kernels(request, tmp_path_factory):
+    """Kernels for a run of all tests by several workers, which share out compiling them."""
+    alone = "PYTEST_XDIST_WORKER" not in os.environ
+    if alone or len({folder_of(item) for item in request.session.items}) < WHOLE:
+        return
+    import warm
+
+    folder = tmp_path_factory.getbasetemp().parent / "kernels"
+    folder.mkdir(exist_ok=True)
+    warm.compile_kernels(folder)

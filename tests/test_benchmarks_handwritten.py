@@ -5,6 +5,8 @@ from benchmarks import handwritten
 from benchmarks.generality import agree, run_kernel, same_gas
 from brute_force.scenes import settings
 
+pytestmark = pytest.mark.slow  # of use to the benchmarks alone
+
 
 @pytest.mark.parametrize(("particles", "box"), [(160, [100, 100]), (40, [50, 30])])
 def test_same_bits_as_the_kernel(particles, box):

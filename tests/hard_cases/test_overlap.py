@@ -1,6 +1,7 @@
 """Overlap by rounding."""
 
 import numpy as np
+import pytest
 from brute_force import run, scene_of, settings
 
 from hard_cases.catalogue import hard_case
@@ -17,6 +18,7 @@ SCENES = {
 }
 
 
+@pytest.mark.slow  # a kernel that nothing else compiles; test_random_scenes.py sees overlaps, too
 @hard_case(
     "the gap at which pairs collide",
     "positions are rounded: a pair that should just touch overlaps a little, and once an overlap "

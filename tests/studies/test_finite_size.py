@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from brute_force import KERNELS
 from matplotlib.figure import Figure
 from tests.data.schema_page import check_study
 
@@ -18,10 +19,11 @@ from roughgas.studies.tables import TABLES
 from .dsmc.nanbu import ratios
 
 tasks, run = study("finite_size")
+CONFIG = config.load("config.yaml")
 EXPERIMENTS = {
-    name: config.experiment(config.load("config.yaml"), name, "paper")
-    for name in ("cooling", "cooling_spheres")
+    name: config.experiment(CONFIG, name, "paper") for name in ("cooling", "cooling_spheres")
 }
+EXPERIMENTS["cooling_spheres"]["effects"] = KERNELS["spheres"]["effects"]  # others compile that
 SETTINGS = {
     "seed": 1,
     "particles": [20, 40],

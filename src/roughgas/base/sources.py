@@ -12,6 +12,8 @@ from pathlib import Path
 from typing import Any
 
 PACKAGE = Path(__file__).resolve().parent.parent
+BLOCKS = ("body", "handlers", "orelse", "finalbody", "cases")
+"""What holds the statements within a statement, imports among them."""
 
 
 def code_of(*modules: str, alone: Iterable[str] = ()) -> str:
@@ -65,7 +67,8 @@ def _imports(node: ast.AST, in_functions: bool) -> Iterator[str]:
             if (package + alias.name).startswith("roughgas."):
                 yield name if _file(name).exists() else name.rpartition(".")[0]
     for_types = isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test)
-    for child in node.orelse if for_types else ast.iter_child_nodes(node):
+    blocks = ("orelse",) if for_types else BLOCKS
+    for child in (child for block in blocks for child in getattr(node, block, ())):
         if in_functions or not isinstance(child, ast.FunctionDef):
             yield from _imports(child, in_functions)
 

@@ -1,0 +1,41 @@
+"""The kernels that several tests run, each compiled by one worker before the first test begins.
+
+Workers would else compile the same ones at the same time, since neighbouring tests need the same.
+"""
+
+import numpy as np
+from brute_force.scenes import KERNELS, RARE, begin, run, settings
+
+from roughgas.scene.initial import initial_state
+
+SCENES = {  # those that take longest first
+    "walled, in cells": settings("walled", 800, [80, "open"]),
+    "spheres, in cells": settings("spheres", 800, [28, 28, 28]),
+    "sheared, in cells": settings("sheared", 800, [100, 100]),
+    **{name: settings(name) for name in KERNELS if name not in RARE},
+    "triangle": settings("bed", floor={"wave": "triangle"}),
+    "sine": settings("bed", floor={"wave": "sine"}),
+    "contact time": settings("gas")
+    | {"effects": KERNELS["gas"]["effects"] | {"contact_time": {"duration": 1e-4}}},
+}
+
+
+def compile_kernels(claimed):
+    """Compile what no other worker does; `claimed` is a folder that they share."""
+    for name, experiment in SCENES.items():
+        if claims(claimed / name):
+            scene, state = begin(experiment, 0.9, -1.0)
+            run(state, scene, 0)
+    if claims(claimed / "single precision"):
+        scene, _ = begin(SCENES["gas"], 0.9, 0.0)
+        rng = np.random.default_rng(1)
+        run(initial_state(scene, SCENES["gas"], rng, np.float32), scene, 0)
+
+
+def claims(path):
+    """Whether this worker is the first that asks for a path."""
+    try:
+        path.touch(exist_ok=False)
+    except FileExistsError:
+        return False
+    return True
