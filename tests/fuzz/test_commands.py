@@ -61,8 +61,12 @@ ATTRIBUTES += ["experiment_json", "settings_json", "swept", "study", "task", "di
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
+    return write_folder(tmp_path_factory.mktemp("files") / "files")
+
+
+def write_folder(folder):
     """A folder with a file of each kind, spoiled copies of each, and foreign ones."""
-    folder = tmp_path_factory.mktemp("files")
+    folder.mkdir()
     rng = random.Random(1)
     for kind, path in write_all(folder).items():
         content = path.read_bytes()
@@ -115,6 +119,7 @@ def check(folder, monkeypatch, arguments):
         if status:
             assert errors.count("\n") == 1 and errors.startswith("roughgas: error: "), errors
         assert not list(copy.rglob("*.tmp"))
+        return "refused" if status else "done"
     finally:
         monkeypatch.chdir(folder)
         shutil.rmtree(copy)

@@ -52,44 +52,48 @@ def outcome(path):
     return "taken"
 
 
-def values_are_spoiled(tmp_path_factory, tree):
-    path = tmp_path_factory.getbasetemp() / "config.yaml"
+def values_are_spoiled(path, tree):
     path.write_text(json.dumps(tree))
-    outcome(path)
+    return outcome(path)
 
 
-def text_is_spoiled(tmp_path_factory, text):
-    path = tmp_path_factory.getbasetemp() / "config.yaml"
+def text_is_spoiled(path, text):
     path.write_text(text, encoding="utf-8")
     try:
         found = read_yaml(path)
     except InputError as error:
         assert "\n" not in str(error)
-    else:
-        json.dumps(found)  # nothing but dictionaries, lists, text and numbers
+        return "refused"
+    json.dumps(found)  # nothing but dictionaries, lists, text and numbers
+    return "taken"
+
+
+@pytest.fixture(scope="module")
+def path(tmp_path_factory):
+    return tmp_path_factory.mktemp("spoiled") / "config.yaml"
 
 
 @QUICK
 @given(tree=spoiled_trees(BRIEF))
-def test_spoiled_values(tmp_path_factory, tree):
-    values_are_spoiled(tmp_path_factory, tree)
+def test_spoiled_values(path, tree):
+    values_are_spoiled(path, tree)
 
 
 @QUICK
 @given(text=spoiled_texts(TEXT))
-def test_spoiled_text(tmp_path_factory, text):
-    text_is_spoiled(tmp_path_factory, text)
+def test_spoiled_text(path, text):
+    text_is_spoiled(path, text)
 
 
 @pytest.mark.slow
 @LONG
 @given(tree=spoiled_trees(BRIEF))
-def test_many_spoiled_values(tmp_path_factory, tree):
-    values_are_spoiled(tmp_path_factory, tree)
+def test_many_spoiled_values(path, tree):
+    values_are_spoiled(path, tree)
 
 
 @pytest.mark.slow
 @LONG
 @given(text=spoiled_texts(TEXT))
-def test_many_spoiled_texts(tmp_path_factory, text):
-    text_is_spoiled(tmp_path_factory, text)
+def test_many_spoiled_texts(path, text):
+    text_is_spoiled(path, text)

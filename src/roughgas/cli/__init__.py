@@ -11,10 +11,11 @@ import os
 import signal
 import sys
 from collections.abc import Sequence
+from pathlib import Path
 from typing import NoReturn
 
 from roughgas.base import extras
-from roughgas.base.errors import CollapseError, InputError, on_one_line
+from roughgas.base.errors import CollapseError, InputError, on_one_line, shown
 from roughgas.base.files import check_place
 from roughgas.base.version import __version__
 from roughgas.cli.commands import COMMANDS
@@ -80,6 +81,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
     Raises SystemExit after --help, --version and what argparse refuses.
     """
+    options = argparse.Namespace()
     try:
         options = _options(sys.argv[1:] if arguments is None else arguments)
         options.command(options)
@@ -92,6 +94,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return _fail(FAILED, f"{where}{error.strerror or error}")
     except MemoryError as error:
         return _fail(FAILED, f"out of memory. {error}".strip())
+    except (LookupError, AttributeError, TypeError, ValueError, ArithmeticError) as error:
+        if (path := _foreign(options)) is None:
+            raise
+        wrong = f"hold what roughgas writes, as it wrote it: {type(error).__name__}: {error}"
+        return _fail(BAD_INPUT, str(InputError("file", path, wrong)))
     except ImportError as error:
         lacks = extras.remedy(error)
         return _fail(FAILED, lacks or f"{error}: `roughgas doctor` says what is wrong")
@@ -102,7 +109,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _options(arguments: Sequence[str]) -> argparse.Namespace:
-    """Parse the command line. Raises OSError if a file or folder to write could not be written."""
+    """Parse the command line.
+
+    Raises InputError where it is not UTF-8, OSError if a file or folder to write could not be
+    written.
+    """
+    for one in arguments:
+        if not one.isascii() and one != one.encode(errors="ignore").decode():
+            raise InputError("argument", shown(one), "be text in UTF-8")
     parser = parser_of(*arguments[:1])
     if "_ARGCOMPLETE" in os.environ:  # a shell asks how its line may go on
         from argcomplete import autocomplete
@@ -117,6 +131,22 @@ def _options(arguments: Sequence[str]) -> argparse.Namespace:
     for place in [outputs] if isinstance(outputs, str) else outputs:
         check_place(place)
     return options
+
+
+def _foreign(options: argparse.Namespace) -> Path | None:
+    """Return the first dataset among the inputs that another program has written or changed.
+
+    Whatever fails while it is read is due to what it holds; with one of ours, it would be a fault.
+    """
+    from roughgas.data.opening import is_foreign
+
+    given = (getattr(options, name, None) for name in ("inputs", "input", "files", "points"))
+    lists = ([one] if isinstance(one, str) else one for one in given)
+    for path in (Path(name) for one in lists if isinstance(one, list) for name in one):
+        for file in sorted(path.rglob("*.nc")) if path.is_dir() else [path]:
+            if file.is_file() and is_foreign(file):
+                return file
+    return None
 
 
 def _fail(status: int, message: str) -> int:

@@ -78,7 +78,9 @@ def opened(path: str | Path, *kinds: str) -> Iterator["netCDF4.Dataset"]:
 
     if not Path(path).exists():
         raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), str(path))
-    if Path(path).is_file() and not is_whole(path):
+    if not Path(path).is_file():  # a pipe would be waited for
+        raise InputError("file", path, "be a file")
+    if not is_whole(path):
         raise DamagedError("file", path, "be what was written to it: it is damaged")
     try:
         file = netCDF4.Dataset(path)
@@ -125,6 +127,14 @@ def is_whole(path: str | Path) -> bool:
     content = Path(path).read_bytes()
     rest, mark, stated = content.rpartition(SEAL)
     return not mark or stated == hashlib.sha256(rest).hexdigest().encode()
+
+
+def is_foreign(path: str | Path) -> bool:
+    """Return whether a file is netCDF or JSON, but not as roughgas has written it to the end."""
+    with Path(path).open("rb") as file:
+        begins = file.read(4).startswith((b"\x89HDF", b"CDF")) or Path(path).suffix == ".json"
+        file.seek(max(0, file.seek(0, os.SEEK_END) - len(SEAL) - 64))
+        return begins and not file.read().startswith(SEAL)
 
 
 def require(attributes: Mapping[str, Any], names: Iterable[str], path: str | Path) -> None:

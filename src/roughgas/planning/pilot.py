@@ -32,8 +32,8 @@ def write_pilot(path: str | Path, pilot: Pilot) -> None:
 
 def read_pilot(path: str | Path) -> Pilot:
     """Return the pilot at `path`. Raises InputError if it is none."""
-    text = Path(path).read_text()
+    content = Path(path).read_bytes()
     try:
-        return Pilot(**json.loads(text))
+        return Pilot(**json.loads(content))
     except (TypeError, ValueError) as error:
         raise InputError("pilot", str(path), "be a file of `roughgas pilot`") from error

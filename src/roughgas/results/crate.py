@@ -78,8 +78,10 @@ def write_crate(
     Raises InputError if a product is elsewhere, or the folder exists; OSError as files do.
     """
     output, products = Path(output), [str(product) for product in products]
-    if not Path(WORKFLOW).exists():
-        legal = "be one with the workflow, such as a clone of the repository: a crate packs it, too"
+    if missing := [name for name in PROJECT if not Path(name).is_file()]:
+        legal = (
+            f"be one with the workflow, such as a clone of the repository: {missing[0]} is missing"
+        )
         raise InputError("folder", Path.cwd(), legal)
     for product in products:
         if Path(product).is_absolute() or ".." in Path(product).parts:

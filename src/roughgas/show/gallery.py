@@ -14,7 +14,7 @@ def draw(name: str, inputs: Iterable[str | Path], outputs: Iterable[str | Path])
     """Draw the figure `name` from the reduced datasets at `inputs`, in any order, into `outputs`.
 
     Each output is a .pdf, .png or .svg. Raises InputError for an unknown figure, another kind of
-    file, and experiments other than those that the figure shows.
+    file, experiments other than those that the figure shows, and those that were swept otherwise.
     """
     if name not in (known := figures_of("paper", "beyond")):
         raise not_one_of("figure", name, known)
@@ -23,7 +23,11 @@ def draw(name: str, inputs: Iterable[str | Path], outputs: Iterable[str | Path])
     if set(datasets) != set(needed):
         raise InputError(f"data of {name}", ", ".join(datasets), f"be {', '.join(needed)}")
     figure = import_module(f"roughgas.show.figures.{name}")
-    style.draw(lambda: figure.draw(*(datasets[one] for one in needed)), outputs)
+    try:
+        style.draw(lambda: figure.draw(*(datasets[one] for one in needed)), outputs)
+    except KeyError as error:
+        swept = "; ".join(f"{one} over {', '.join(datasets[one].R.dims)}" for one in needed)
+        raise InputError(f"data of {name}", swept, f"have all that it shows: {error}") from error
 
 
 def plot(

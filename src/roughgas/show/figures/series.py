@@ -50,9 +50,14 @@ class Series(NamedTuple):
 
 
 def series(data: xr.Dataset, label: str, look: Look, **place: Any) -> Series:
-    """Return the points that hold data along the one axis that `place` leaves, beside theory."""
+    """Return the points that hold data along the one axis that `place` leaves, beside theory.
+
+    Raises KeyError where it leaves more, or is not in the data.
+    """
     row = data.sel(place)
-    (axis,) = row.R.dims
+    axis, *others = row.R.dims
+    if others:
+        raise KeyError(f"one axis besides {', '.join(place)}")
     row = row.isel({axis: np.isfinite(row.R.values)})
 
     def predict(**others):

@@ -14,7 +14,7 @@ from roughgas.show.page.policy import policy
 def write_document(source: str | Path, output: str | Path) -> None:
     """Write the file at `source` as one HTML page that loads nothing.
 
-    Raises InputError for a kind of file that KINDS does not have.
+    Raises InputError for a kind of file that KINDS does not have, and where a text is none.
     """
     source = Path(source)
     if source.suffix not in KINDS:
@@ -22,7 +22,10 @@ def write_document(source: str | Path, output: str | Path) -> None:
     here, title = Path(__file__), escape(source.name)
     page = Template(here.with_name("document.html").read_text("utf-8"))
     css = here.with_name("document.css").read_text("utf-8")
-    body = KINDS[source.suffix](source.read_bytes())
+    try:
+        body = KINDS[source.suffix](source.read_bytes())
+    except UnicodeDecodeError as error:
+        raise InputError("document", source, "be text in UTF-8") from error
     write_text(output, page.substitute(title=title, policy=policy(), css=css, body=body))
 
 

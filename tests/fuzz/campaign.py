@@ -1,0 +1,161 @@
+"""Long campaigns of random examples: `python -m tests.fuzz.campaign --configurations 10000`.
+
+Each of --configurations, --commands, --files and --scenes tries so many examples, other ones for
+each --seed, and goes on after a fault. It prints its seed, how many were taken and how many
+refused, and what else came out; the exit status is 1 if anything else did. Random legal scenes are
+simulated for some hundreds of collisions each.
+"""
+
+import argparse
+import os
+import resource
+import signal
+import sys
+import tempfile
+import time
+import traceback
+from collections import Counter, defaultdict
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, Phase, given, seed, settings
+from hypothesis import strategies as st
+
+HANGS = 60  # seconds
+MEMORY = 6 << 30  # bytes
+
+
+class Campaign:
+    """Counts what came out of the examples of one kind."""
+
+    def __init__(self, name, number, first):
+        self.name, self.number, self.first = name, number, first
+        self.outcomes, self.faults = Counter(), defaultdict(list)
+
+    def run(self, strategy, attempt):
+        """Draw examples, and give each to `attempt`, which returns what came of it or raises."""
+        begun = time.monotonic()
+
+        @seed(self.first)
+        @settings(
+            max_examples=self.number,
+            phases=[Phase.generate],
+            deadline=None,
+            database=None,
+            suppress_health_check=list(HealthCheck),
+        )
+        @given(strategy)
+        def see(example):
+            signal.alarm(HANGS)
+            try:
+                self.outcomes[attempt(example)] += 1
+            except BaseException as error:
+                self._note(error)
+            finally:
+                signal.alarm(0)
+
+        see()
+        took = time.monotonic() - begun
+        counts = ", ".join(f"{count} {what}" for what, count in sorted(self.outcomes.items()))
+        tried = self.outcomes.total() + sum(map(len, self.faults.values()))
+        print(f"{self.name}: {tried} tried with seed {self.first}: {counts}; {took:.0f} s")
+        for where, found in self.faults.items():
+            print(f"  {len(found)} times {where}, such as\n    {found[0]}")
+        print(f"  faults: {sum(map(len, self.faults.values()))}", flush=True)
+        return not self.faults
+
+    def _note(self, error):
+        if type(error).__module__.startswith("hypothesis") or isinstance(error, KeyboardInterrupt):
+            raise error
+        last = traceback.extract_tb(error.__traceback__)[-1]
+        text = " ".join(str(error).split())[:300]
+        where = f"{type(error).__name__} in {Path(last.filename).name}, line {last.lineno}"
+        self.faults[where].append(text)
+
+
+def _hangs(*_):
+    raise TimeoutError(f"not over after {HANGS} s")
+
+
+def configurations(campaign, folder):
+    """Configurations whose values or whose text are spoiled."""
+    from tests.fuzz import test_configurations as one
+    from tests.fuzz.spoiling import spoiled_texts, spoiled_trees
+
+    path = folder / "config.yaml"
+
+    def attempt(example):
+        kind, spoiled = example
+        return (one.values_are_spoiled if kind == "values" else one.text_is_spoiled)(path, spoiled)
+
+    trees = st.tuples(st.just("values"), spoiled_trees(one.BRIEF))
+    texts = st.tuples(st.just("text"), spoiled_texts(one.TEXT))
+    return campaign.run(st.one_of(trees, texts), attempt)
+
+
+def commands(campaign, folder):
+    """Command lines on files of ours, spoiled and foreign ones."""
+    from tests.fuzz import test_commands as one
+
+    files = one.write_folder(folder / "files")
+    lines = one.command_lines(sorted(os.listdir(files)))
+    with pytest.MonkeyPatch.context() as patch:
+        return campaign.run(lines, lambda line: one.check(files, patch, line))
+
+
+def files(campaign, folder):
+    """Files that are spoiled, or foreign."""
+    from tests.fuzz import test_files as one
+    from tests.fuzz.files import real_files
+
+    sources = real_files(folder / "real")
+    with pytest.MonkeyPatch.context() as patch:
+        return campaign.run(
+            st.data(), lambda data: one.check(sources, folder / "spoiled", patch, data)
+        )
+
+
+def scenes(campaign, folder):
+    """Random legal scenes."""
+    sys.path.insert(0, str(Path(__file__).parents[1]))
+    from hard_cases import test_random_scenes as one
+    from hard_cases.compositions import scenes as random_scenes
+
+    worst = one.Worst()
+
+    def attempt(scene):
+        if not one.fits(*scene):
+            return "too dense"
+        stopped = worst.stopped
+        worst.see(*scene)
+        assert worst.broken == 0 and worst.backwards == 0, scene
+        assert worst.imbalance < 10.0 and worst.overlap < 1e-11 and worst.outside < 1e-11, scene
+        return "stopped" if worst.stopped > stopped else "run"
+
+    sound = campaign.run(random_scenes(one.FEW), attempt)
+    print(f"  {worst.collisions} contacts; energy missing: {worst.imbalance:.2g} roundings each;")
+    print(f"  overlap {worst.overlap:.2g} a, depth in a wall or the floor {worst.outside:.2g} a")
+    return sound
+
+
+KINDS = {one.__name__: one for one in (configurations, commands, files, scenes)}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    for name, one in KINDS.items():
+        parser.add_argument(f"--{name}", type=int, default=0, help=one.__doc__)
+    parser.add_argument("--seed", type=int, default=1)
+    options = vars(parser.parse_args())
+    signal.signal(signal.SIGALRM, _hangs)
+    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+    first, sound = options.pop("seed"), True
+    for name, number in options.items():
+        with tempfile.TemporaryDirectory() as folder:
+            if number:
+                sound &= KINDS[name](Campaign(name, number, first), Path(folder))
+    return 0 if sound else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
