@@ -38,12 +38,12 @@ figures: setup ## simulate, and draw the four figures of the paper
 	@echo "Every number in them:  $(RESULTS)/R.csv"
 	@echo "Every point, to click on, and one file to share:  make$(AT_SCALE) report"
 
-report: setup ## one HTML file with all that REPORTED has (default: figures), and an interactive page
-	$(SNAKEMAKE) $(REPORTED) explore living
-	$(BIN)/snakemake --config scale=$(SCALE) --report $(RESULTS)/report.html -- $(REPORTED)
+report: setup ## pages for a browser: the report, every point to click on, a living gas, and how all was made
+	$(SNAKEMAKE) $(REPORTED) explore living $(RESULTS)/report.html
+	$(BIN)/snakemake --config scale=$(SCALE) --report $(RESULTS)/workflow.html -- $(REPORTED)
 	@echo
-	@echo "Look at  $(RESULTS)/report.html  $(RESULTS)/explore.html  $(RESULTS)/living.html:"
-	@echo "each is one file, to be sent as it is. More in the first:"
+	@echo "Look at  $(RESULTS)/report.html  $(RESULTS)/explore.html  $(RESULTS)/living.html,"
+	@echo "and for all products  $(RESULTS)/workflow.html:  each is one file, to be sent as it is. More in the last:"
 	@echo "    make$(AT_SCALE) REPORTED='figures extensions' report"
 
 plan: setup ## say what `make figures` at SCALE will cost, from pilot runs

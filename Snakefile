@@ -67,6 +67,7 @@ localrules:
     effective_config,
     run_times,
     living_page,
+    front,
 
 
 rule figures:

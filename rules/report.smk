@@ -99,6 +99,31 @@ rule document:
         "roughgas html {input.shown} --output {output} > {log} 2>&1"
 
 
+def pictures_of_paper(wildcards):
+    folder = "" if wildcards.scale == "paper" else f"{wildcards.scale}/"
+    return [f"figures/{folder}{name}.png" for name in catalogue.figures_of("paper")]
+
+
+rule front:
+    # stands in front of Snakemake's report, which opens on the graph of the workflow
+    input:
+        multiext(f"{PACKAGE}/show/page/front", ".css", ".html"),
+        captions=[f"rules/captions/{name}.rst" for name in catalogue.figures_of("paper")],
+        figures=pictures_of_paper,
+        claims="results/{scale}/claims.md",
+    output:
+        "results/{scale}/report.html",
+    log:
+        "logs/{scale}/report.log",
+    params:
+        code=code_of("show.page.front"),
+    message:
+        "write {output}"
+    shell:
+        "roughgas front {input.claims} --figures {input.figures} --captions {input.captions}"
+        " --output {output} > {log} 2>&1"
+
+
 rule effective_config:
     input:
         sorted(map(str, Path(PACKAGE, "config").glob("*.yaml"))),

@@ -17,7 +17,7 @@ FLAGS = """--headless=new --no-sandbox --disable-gpu --disable-quic --no-first-r
 LOCAL = ("file:", "data:", "blob:")
 SECONDS = 20
 SWEEP = {"r": ["0.9", "0.8"], "beta": ["-0.5", "0", "0.5"], "seeds": 2}
-TARGETS = ("figures", "explore")
+TARGETS = ("figures", "explore", "results/tiny/report.html")
 
 
 class Browser:

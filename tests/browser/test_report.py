@@ -92,3 +92,27 @@ def test_the_tables_are_read_in_place(report):
 def test_run_times_are_there(report):
     follow(report, "Statistics")
     assert report.wait(lambda: report.find("#runtimes canvas, #runtimes svg"))
+
+
+def test_its_front_page_shows_the_figures_beside_their_captions(ran, browser):
+    browser.open(ran.folder / "results/tiny/report.html")
+    browser.wait(lambda: browser.script("return document.images[3].complete"))
+    beside = """return [...document.querySelectorAll("figure")].map(one => {
+        const [picture, text] = [...one.children].map(part => part.getBoundingClientRect());
+        return [one.firstChild.naturalWidth > 0, one.firstChild.alt, text.left >= picture.right,
+          document.documentElement.scrollWidth <= innerWidth];
+      });"""
+    found = browser.script(beside)
+    assert len(found) == 4
+    for loaded, alt, aside, fits in found:
+        assert loaded and aside and fits and alt.startswith("Fig. ")
+    browser.driver.execute_cdp_cmd(
+        "Emulation.setDeviceMetricsOverride",
+        {"width": 360, "height": 740, "deviceScaleFactor": 2, "mobile": True},
+    )
+    try:
+        browser.wait(lambda: browser.script("return innerWidth") == 360)
+        assert [row[2:] for row in browser.script(beside)] == [[False, True]] * 4
+    finally:
+        browser.driver.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+    assert browser.complaints() == [] and browser.requests() == []

@@ -79,6 +79,18 @@ STEPS = {
             "roughgas page results/small/vibrated.nc --points results/small -o explore.html",
         ),
     ),
+    "front": Command(
+        "show.page.front:write_front",
+        "write the report's front page: figures beside their captions, and verdicts",
+        value("claims CLAIMS", "verdicts in Markdown"),
+        value("--figures PNG", "pictures of figures", nargs="+", required=True),
+        value("--captions RST", "their captions", nargs="+", required=True),
+        output("HTML file"),
+        examples=(
+            "roughgas front results/small/claims.md --figures figures/small/fig1a.png"
+            " --captions rules/captions/fig1a.rst -o report.html",
+        ),
+    ),
     "living": Command(
         "show.living.assemble:write_living",
         "write a page in which a gas of disks moves, to be changed with sliders",

@@ -29,7 +29,8 @@ def write_document(source: str | Path, output: str | Path) -> None:
     write_text(output, page.substitute(title=title, policy=policy(), css=css, body=body))
 
 
-def _markdown(content):
+def markdown_as_html(content: bytes) -> str:
+    """Return Markdown as HTML; what is HTML in it stays text."""
     from markdown_it import MarkdownIt
 
     return MarkdownIt("commonmark", {"html": False}).enable("table").render(content.decode("utf-8"))
@@ -38,7 +39,7 @@ def _markdown(content):
 MOVIE = '<video controls loop muted autoplay src="data:video/mp4;base64,{}"></video>'
 PICTURE = '<img alt="" src="data:image/gif;base64,{}">'
 KINDS = {
-    ".md": _markdown,
+    ".md": markdown_as_html,
     ".yaml": lambda content: f"<pre>{escape(content.decode('utf-8'))}</pre>",
     ".mp4": lambda content: MOVIE.format(base64.b64encode(content).decode("ascii")),
     ".gif": lambda content: PICTURE.format(base64.b64encode(content).decode("ascii")),
