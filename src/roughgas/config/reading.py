@@ -4,7 +4,8 @@ A key that is given twice, keys that are no text, explicit tags, and files that 
 nested, or would be once their aliases are written out.
 """
 
-from collections.abc import Iterator
+import functools
+from collections.abc import Iterable, Iterator
 from io import StringIO
 from pathlib import Path
 from typing import Any, NoReturn
@@ -19,6 +20,7 @@ from ruamel.yaml.events import (
     Event,
     NodeEvent,
 )
+from ruamel.yaml.parser import Parser
 
 from roughgas.base.errors import LONGEST, InputError, shown
 
@@ -69,8 +71,8 @@ def read_yaml(path: str | Path) -> Any:
     except UnicodeDecodeError as error:
         raise InputError(name, "(not text)", "be YAML in UTF-8") from error
     try:
-        _check(_reader().parse(_named(text, name)))
-        return _reader().load(_named(text, name))
+        events = list(_checked(_reader().parse(_named(text, name))))
+        return _reader(events).load(_named(text, name))
     except DuplicateKeyError as error:
         _refuse(error.problem_mark, repr(error.problem.split('"')[1]), "be given once")
     except MarkedYAMLError as error:
@@ -83,9 +85,24 @@ def read_yaml(path: str | Path) -> Any:
         raise InputError(name, "(not text)", "be YAML in UTF-8") from error
 
 
-def _reader() -> YAML:
+class Parsed(Parser):
+    """The library's parser of a text that has been parsed before, which takes long."""
+
+    def __init__(self, events: Iterable[Event], loader: YAML) -> None:
+        self._events = iter(events)
+        super().__init__(loader)
+
+    def reset_parser(self) -> None:
+        """Begin with the next event."""
+        self.current_event, self.state = None, lambda: next(self._events, None)
+
+
+def _reader(events: Iterable[Event] | None = None) -> YAML:
+    """Return a reader of any text, or of that which has been parsed to `events`."""
     yaml = YAML(typ="safe", pure=True)
     yaml.Constructor = Constructor
+    if events is not None:
+        yaml.Parser = functools.partial(Parsed, events)
     return yaml
 
 
@@ -96,8 +113,9 @@ def _named(text: str, name: str) -> StringIO:
     return stream
 
 
-def _check(events: Iterator[Event]) -> None:
-    """Refuse tags, versions, and values nested too deeply or too many with aliases written out."""
+def _checked(events: Iterable[Event]) -> Iterator[Event]:
+    """Generate the events, and refuse tags, versions, and values nested too deeply or too many
+    with aliases written out."""
     sizes: dict[str, int] = {}
     opened: list[tuple[str | None, int]] = []  # anchors of the collections, and values before them
     values = 0
@@ -120,6 +138,7 @@ def _check(events: Iterator[Event]) -> None:
             _refuse(mark, "brackets", f"be nested {DEEPEST} deep at most")
         if values > MOST:
             _refuse(mark, f"{values} values", f"be {MOST} at most")
+        yield event
 
 
 def _refuse(mark: Any, value: str, legal: str) -> NoReturn:
