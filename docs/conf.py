@@ -1,4 +1,4 @@
-"""How the site is built from these pages, README.md, the tutorial, and the docstrings: `make docs`.
+"""How the site is built from these pages, the tutorial, and the docstrings: `make docs`.
 
 It can be read without a network: nothing in it is loaded from elsewhere.
 """
@@ -8,13 +8,15 @@ import os.path
 import re
 from pathlib import Path
 
+from docutils.nodes import SkipNode
 from jupyter_client.manager import KernelManager
+from latex2mathml.converter import convert
 from sphinx.errors import SphinxError
 
 import roughgas
 
 DOCS = Path(__file__).resolve().parent
-README = DOCS.parent / "README.md"
+README = DOCS.parent / "README.md"  # of which the first page is the site's own version
 LINK = re.compile(r"\[([^\]]*)\]\(([^)#\s]+)(#[^)\s]*)?\)")
 LOADED = re.compile(
     r"""<(?:script|img|iframe|source)\b[^>]*\bsrc=["']?(?:https?:)?//"""
@@ -23,6 +25,7 @@ LOADED = re.compile(
 
 project = "roughgas"
 author = "The roughgas developers"
+copyright = author
 version = release = roughgas.__version__
 
 extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.autosummary", "sphinx.ext.napoleon"]
@@ -30,7 +33,7 @@ exclude_patterns = ["_build", "**.ipynb_checkpoints"]
 nitpicky = True
 nitpick_ignore_regex = [
     ("py:.*", r"(numpy|xarray|pathlib|collections)\..*"),  # whose pages are not here
-    ("py:class", r"roughgas\.(kernel|effects)\..*"),  # no library, but what is compiled
+    ("py:class", r"roughgas\.(kernel|effects|simulation)\..*"),  # no library, but what is compiled
 ]
 
 html_theme = "furo"
@@ -39,6 +42,8 @@ html_title = f"roughgas {version}"
 html_show_sourcelink = html_show_sphinx = html_copy_source = False
 
 myst_heading_anchors = 4
+myst_enable_extensions = ["dollarmath"]
+html_math_renderer = "mathml"
 nb_execution_mode = "force"
 nb_execution_raise_on_error = True
 nb_execution_timeout = 300  # s a cell: a kernel may have to be compiled
@@ -56,21 +61,33 @@ napoleon_google_docstring = False
 
 
 def setup(app):
-    app.connect("source-read", take_readme_in)
+    app.connect("source-read", mend_links)
+    app.add_html_math_renderer("mathml", (inline_formula, None), (formula, None))
     app.connect("env-get-outdated", lambda *_: ["tutorial"])  # it runs at each build
     app.connect("autodoc-process-docstring", as_prose)
     app.connect("autodoc-skip-member", skip_fields)
     app.connect("build-finished", refuse_what_is_loaded)
 
 
-def take_readme_in(app, docname, source):
-    """README.md opens the first page; links in all pages, which are right where the repository is
-    read, become right here."""
+def mend_links(app, docname, source):
+    """Links in pages, which are right where the repository is read, become right here."""
     folder = (DOCS / docname).parent
     source[0] = linked(source[0], folder, folder)
-    if docname == "index":
-        app.env.note_dependency(str(README))
-        source[0] = linked(README.read_text(), README.parent, folder) + source[0]
+
+
+def inline_formula(translator, node):
+    translator.body.append(mathml(node, "inline"))
+    raise SkipNode
+
+
+def formula(translator, node):
+    translator.body.append(f'<div class="formula">{mathml(node, "block")}</div>')
+    raise SkipNode
+
+
+def mathml(node, display):
+    """A formula as every present browser shows it by itself, without a script or a font."""
+    return convert(" ".join(node.astext().split()), display=display)
 
 
 def linked(text, base, folder):

@@ -1,4 +1,4 @@
-# One short movie a scene, for the README. To add one, add a line here: its name, its experiment or
+# One short movie a scene, for README and docs. To add one, add a line here: its name, its experiment or
 # variant, and what else `roughgas movie` is told (docs/movies.md).
 MOVIES = {
     "vibrated": ("vibrated", "--r=0.9 --beta=0.5 --length=4 --frames=80"),

@@ -12,7 +12,7 @@ WORD = re.compile(r"[a-z][a-z0-9_]*")
 WHOLE_NUMBER = re.compile(r"\d{1,19}", re.ASCII)
 LARGEST_SEED = 2**63 - 1
 SWEPT = "swept"
-"""Key, in the settings of a variant, of what its experiment sweeps: spin.inertia, particles ..."""
+"""Key, in the settings of a variant, of what its experiment sweeps, such as spin.inertia."""
 LEGAL_LEVEL = "be a number, or a word of lower-case letters, digits and _"
 
 

@@ -125,8 +125,8 @@ def _legal(schema: Mapping[str, Any]) -> str:
 
 def _legal_type(schema: Mapping[str, Any]) -> str:
     kind = schema["type"] if isinstance(schema["type"], str) else schema["type"][0]
-    if kind in ("string", "object"):
-        return {"string": "be text", "object": "be a mapping of keys to values"}[kind]
+    if kind in NOT_A_NUMBER:
+        return NOT_A_NUMBER[kind]
     if kind == "array":
         few, many = schema["minItems"], schema.get("maxItems")
         return f"be a list of {few} to {many} entries" if many else f"be a list of at least {few}"
@@ -137,6 +137,11 @@ def _legal_type(schema: Mapping[str, Any]) -> str:
     return f"be {noun} {'>=' if closed else '>'} {low}"
 
 
+NOT_A_NUMBER = {
+    "string": "be text",
+    "object": "be a mapping of keys to values",
+    "boolean": "be true or false",
+}
 SAID = {
     "anyOf": lambda schema: " or ".join(map(_legal, schema["anyOf"])),
     "const": lambda schema: f"be {schema['const']}",

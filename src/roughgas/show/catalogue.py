@@ -1,6 +1,6 @@
 """Every figure and document that the pipeline makes, as catalogue.yaml registers them.
 
-The rules, the report, and the checks of the README read this. It loads quickly, and no figure
+The rules, the report, and the checks of docs/results.md read this. It loads quickly, and no figure
 depends on it: a new title draws nothing anew.
 """
 

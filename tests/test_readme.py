@@ -1,0 +1,105 @@
+"""README.md is true: it is short, and what it says to type does what it says, in a fresh clone."""
+
+import os
+import re
+import shlex
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from roughgas.cli import parser_of
+from roughgas.config.reading import read_yaml
+
+ROOT = Path(__file__).parent.parent
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+LONGEST = 150  # lines
+CLONE = "git clone ADDRESS roughgas"
+MADE = (
+    *("cooling_r0.9_beta0.5_seed1.nc", "bed.mp4", "figures/hollow.png"),
+    *(f"results/small/{page}.html" for page in ("report", "explore", "living")),
+)
+
+
+def blocks(language):
+    """The text of each fenced block of a language."""
+    return re.findall(rf"^```{language}\n(.*?)^```", README, re.M | re.S)
+
+
+def commands():
+    """What is typed, without remarks, line by line."""
+    lines = [line for block in blocks("console") for line in block.splitlines()]
+    return [re.sub(r"\s{2,}# .*", "", line[2:]) for line in lines if line.startswith("$ ")]
+
+
+def answers():
+    """What is printed, line by line."""
+    lines = [line for block in blocks("console") for line in block.splitlines()]
+    return [line for line in lines if not line.startswith("$ ") and line != "..."]
+
+
+def test_it_is_short():
+    assert len(README.splitlines()) <= LONGEST
+
+
+def test_its_links_lead_to_files():
+    linked = re.findall(r"\]\(([^)#\s]+)", README)
+    assert len(linked) > 20 and not [path for path in linked if not (ROOT / path).exists()]
+
+
+def test_its_commands_are_commands():
+    told = [shlex.split(line) for line in commands()]
+    asked = [line[1:] for line in told if line[0] == "roughgas"]
+    assert len(asked) == 3
+    for arguments in asked:
+        parser_of(arguments[0]).parse_args(arguments)
+    targets = re.findall(r"^([a-z]+):", (ROOT / "Makefile").read_text(), re.M)
+    assert {line[-1] for line in told if line[0] == "make"} <= set(targets)
+
+
+def with_snippet(text):
+    """A configuration with README's snippet pasted where it says."""
+    (snippet,) = blocks("yaml")
+    return text.replace("\nexperiments:\n", f"\nexperiments:\n{snippet}\n", 1)
+
+
+def test_its_snippet_belongs_where_it_says(tmp_path):
+    path = tmp_path / "config.yaml"
+    path.write_text(with_snippet((ROOT / "config.yaml").read_text()))
+    assert "hollow" in read_yaml(path)["experiments"]
+
+
+@pytest.mark.slow
+def test_all_of_it_typed_in_a_fresh_clone(tmp_path):
+    """Every command, in its order, as one would type it; it prints what is said, and git sees no
+    file that was not there."""
+    (first, *rest), (snippet,) = commands(), blocks("yaml")
+    assert first.startswith(CLONE)
+    place = next(k for k, line in enumerate(rest) if line.startswith("snakemake"))
+    paste = "sed -i '/^experiments:$/r snippet.yaml' config.yaml && rm snippet.yaml"
+    script = [first.replace("ADDRESS", shlex.quote(str(ROOT)), 1), *rest[:place]]
+    script += [f"cat > snippet.yaml <<'END'\n{snippet}END", paste, *rest[place:]]
+    ran = subprocess.run(
+        ["bash", "-e", "-c", "\n".join(script)],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        env=environment(tmp_path),
+    )
+    said = ran.stdout + ran.stderr
+    assert ran.returncode == 0, said[-3000:]
+    lines = [line.rstrip() for line in said.splitlines()]
+    assert not [line for line in answers() if line.rstrip() not in lines]
+    clone = tmp_path / "roughgas"
+    assert all((clone / path).stat().st_size > 1000 for path in MADE)
+    status = subprocess.run(
+        ["git", "status", "--porcelain"], cwd=clone, capture_output=True, text=True, check=True
+    )
+    assert status.stdout.split() == ["M", "config.yaml"]
+
+
+def environment(folder):
+    """That of somebody who has never used the program: no caches, no paths of this process."""
+    own = ("PYTHONPATH", "VIRTUAL_ENV", "ROUGHGAS_CACHE_DIR")
+    kept = {key: value for key, value in os.environ.items() if key not in own}
+    return kept | {"XDG_CACHE_HOME": str(folder / "cache")}
