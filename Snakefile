@@ -20,8 +20,12 @@ include: "rules/common.smk"
 include: "rules/messages.smk"
 
 
+# of --sdm apptainer, which gives every rule the environment that Apptainer.def builds
+container: IMAGE
+
+
 CHANGES = {key: change for key, change in config.items() if key != "scale"}  # the command line's
-config = checked_config("config.yaml", config)
+config = checked_config(CONFIG, config)
 SCALE = config["scale"]
 
 

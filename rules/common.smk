@@ -16,6 +16,15 @@ try:
 except ModuleNotFoundError as error:
     sys.exit(f"roughgas: error: no module {error.name}: `make setup`, then .venv/bin/snakemake")
 
+# where the Snakefile is: this folder, or another one, or, of a module, a site from which Snakemake
+# fetches what it needs
+SOURCE = Path(os.path.relpath(Path(workflow.current_basedir.get_path_or_uri(True)).parent))
+# the configuration of this folder, or else the one beside the Snakefile
+CONFIG = next(
+    (str(p / "config.yaml") for p in (Path(), SOURCE) if (p / "config.yaml").exists()), None
+)
+CONFIG = CONFIG or workflow.source_path("../config.yaml")
+IMAGE = str((SOURCE / "roughgas.sif").absolute())
 PACKAGE = os.path.relpath(sources.PACKAGE)  # so that a folder may be moved with its results
 KERNEL = "results/{scale}/{experiment}/r{r}/compiled.txt"
 POINT = "results/{scale}/{experiment}/r{r}/beta{beta}/seed{seed}.nc"
@@ -100,7 +109,7 @@ def reduced(scale, experiments):
 
 def scale_of(folder):
     """The scale of what is drawn into a folder of figures/: `paper` where it is figures/ itself."""
-    return folder.rstrip("/") or "paper"
+    return Path(folder).name or "paper"
 
 
 def drawn(figures, kinds=(".pdf", ".png")):

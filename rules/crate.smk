@@ -6,9 +6,17 @@ def data_of_run(wildcards):
     return reduced(SCALE, catalogue.shown_in("paper"))
 
 
+def files_of_project(wildcards):
+    """What a crate packs besides results; ends the workflow where that is in another folder."""
+    with one_line():
+        if SOURCE != Path():
+            raise InputError("folder", os.getcwd(), f"be {SOURCE.resolve()}, which a crate packs")
+    return project_files()
+
+
 rule crate:
     input:
-        project_files(),
+        files_of_project,
         data=data_of_run,
         tables=multiext(f"results/{SCALE}/", "R.csv", "claims.json", "claims.md"),
         figures=drawn(catalogue.figures_of("paper")),

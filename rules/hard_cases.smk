@@ -1,11 +1,12 @@
 # Where a simulation could go wrong: the catalogue in tests/hard_cases, tried as often as it takes.
-HARD_CASES = Path("tests/hard_cases")
+TESTS = SOURCE / "tests"
+HARD_CASES = TESTS / "hard_cases"
 FAMILIES = sorted(path.stem.removeprefix("test_") for path in HARD_CASES.glob("test_*.py"))
 DRAWING = [HARD_CASES / "report.py", HARD_CASES / "pictures.py"]
 SHARED = [  # what a family may import
     str(path)
     for folder in ("", "brute_force", "exact", "hard_cases")
-    for path in sorted(Path("tests", folder).glob("*.py"))
+    for path in sorted(Path(TESTS, folder).glob("*.py"))
     if not path.name.startswith("test_") and path not in DRAWING
 ]
 LONGEST = ["long_times"]  # starts first
@@ -17,6 +18,11 @@ def size_of_cases(wildcards):
     return "" if wildcards.folder else "--full"
 
 
+def place_of_tests(wildcards, output):
+    """Made from the output and therefore not recorded: results do not depend on where they are."""
+    return TESTS
+
+
 def urgency_of_family(wildcards):
     return 10 if wildcards.family in LONGEST else 0
 
@@ -25,7 +31,7 @@ rule family:
     # other families start while this one compiles: the kernels of all are the same few
     input:
         SHARED,
-        cases="tests/hard_cases/test_{family}.py",
+        cases=f"{HARD_CASES}/test_{{family}}.py",
     output:
         "results/{folder}hard_cases/{family}.json",
     log:
@@ -55,8 +61,9 @@ rule catalogue:
     params:
         code=code_of("show.style"),
         size=size_of_cases,
+        tests=place_of_tests,
     message:
         "write {output.table}"
     shell:
-        "PYTHONPATH=tests python -m hard_cases.report {input.families} {params.size}"
+        "PYTHONPATH={params.tests} python -m hard_cases.report {input.families} {params.size}"
         " --table {output.table} --pictures {output.pictures} {output.shown} > {log} 2>&1"

@@ -95,7 +95,7 @@ rule reach:
 
 rule plan_of_scale:
     input:
-        "config.yaml",
+        config=CONFIG,
         pilots=pilots,
     output:
         "results/{scale}/{plan}.md",
@@ -111,7 +111,7 @@ rule plan_of_scale:
         "write {output}"
     shell:
         "roughgas plan {params.names} --scale {wildcards.scale} --cores {params.cores}"
-        " --output {output}"
+        " --config {input.config:q} --output {output}"
         " > {log} 2>&1"
 
 

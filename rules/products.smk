@@ -54,6 +54,11 @@ def heading_of_product(wildcards):
     return catalogue.HEADINGS[PARTS[wildcards.product]]
 
 
+def name_of_config(wildcards, output):
+    """Made from the output and therefore not recorded: results do not depend on where it is."""
+    return CONFIG
+
+
 def which_claims(wildcards):
     return "--open-questions" if wildcards.product == "open_questions" else ""
 
@@ -171,10 +176,11 @@ rule page:
     params:
         code=code_of("show.page.explore"),
         descriptions=descriptions_of_product,
+        config=name_of_config,
     message:
         "write {output}"
     shell:
-        "roughgas page {input.data} --points results/{wildcards.scale} --config config.yaml"
+        "roughgas page {input.data} --points results/{wildcards.scale} --config {params.config:q}"
         " --output {output} > {log} 2>&1"
 
 
@@ -183,7 +189,7 @@ rule living_page:
     input:
         multiext(f"{PACKAGE}/show/living/page", ".css", ".html"),
         sorted(map(str, Path(PACKAGE, "show/living").glob("*.js"))),
-        config="config.yaml",
+        config=CONFIG,
     output:
         "results/{scale}/living.html",
     log:

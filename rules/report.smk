@@ -127,7 +127,7 @@ rule front:
 rule effective_config:
     input:
         sorted(map(str, Path(PACKAGE, "config").glob("*.yaml"))),
-        file="config.yaml",
+        file=CONFIG,
     output:
         report(
             "results/{scale}/config.yaml",
