@@ -59,10 +59,8 @@ EVERY_EFFECT = ["sheared", "walled", "shaken", "heated spheres"]
 """Kernels in which each effect is there at least once; from the barest one all are absent."""
 
 
-@pytest.mark.parametrize(
-    "kernel",
-    ["smooth", *(pytest.param(kernel, marks=pytest.mark.slow) for kernel in EVERY_EFFECT)],
-)
+@pytest.mark.slow  # compiles without the cache; the quick tests below see what code there is
+@pytest.mark.parametrize("kernel", ["smooth", *EVERY_EFFECT])
 def test_the_machine_code_is_the_same_where_absent_effects_could_not_be_compiled(kernel, tmp_path):
     """Every byte of the instructions and the constants of a scene."""
     result = poisoned(tmp_path, kernel)

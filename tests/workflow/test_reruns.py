@@ -50,6 +50,14 @@ ALIKE = {  # files after whose edits much the same runs again as after others'
     "show/page/page.js",
     "studies/tables.py",
 }
+TOGETHER = {  # files of which hardly anything needs two: their edits are tried at once, as well
+    "data/film.py",
+    "config/checking.py",
+    "results/table.py",
+    "claims/paper.yaml",
+    "show/figures/fig1a.py",
+    "show/movies/drawing.py",
+}
 UNUSED = ("cli/steps.py", "doctor.py", "library.py", "show/catalogue.py")
 
 
@@ -116,10 +124,16 @@ def rerun(made, edit):
 
 
 @pytest.mark.parametrize(
-    "file", [pytest.param(file, marks=[pytest.mark.slow] * (file in ALIKE)) for file in EDITED]
+    "file",
+    [pytest.param(file, marks=[pytest.mark.slow] * (file in ALIKE | TOGETHER)) for file in EDITED],
 )
 def test_what_an_edit_in_each_room_runs_again(made, file):
     assert rerun(made, {file: "\nADDED = 1\n"}) == EDITED[file]
+
+
+def test_what_edits_in_several_rooms_run_again(made):
+    expected = set().union(*(EDITED[file] for file in TOGETHER))
+    assert rerun(made, dict.fromkeys(TOGETHER, "\nADDED = 1\n")) == expected
 
 
 def test_what_nothing_depends_on_runs_nothing_again(made):
