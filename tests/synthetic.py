@@ -54,7 +54,7 @@ def reduced(
     ratio = exact[..., None] + noise
     spread = ratio.std(-1, ddof=1) / np.sqrt(seeds) if seeds > 1 else np.full(exact.shape, error)
     values = {
-        "R": ratio.mean(-1),
+        "R": ratio.mean(-1).clip(0.0, 1.0),  # as a share of the energy is
         "R_stderr": error,
         "R_stderr_over_seeds": spread,
         "R_dof": 30.0 * seeds,

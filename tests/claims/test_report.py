@@ -74,7 +74,7 @@ def test_the_papers_own_experiments_leave_nothing_untested(tmp_path):
     paths = []
     for data in (averaged(reduced()), reduced("cooling"), sheared, *walls):
         paths.append(tmp_path / f"{data.attrs['experiment']}.nc")
-        data.assign(R=data.R.clip(0.0, 1.0)).to_netcdf(paths[-1])
+        data.to_netcdf(paths[-1])
     findings = judge(paths, tmp_path / "claims.json", tmp_path / "claims.md", PAPER)
     assert len(findings) == 19
     assert NOT_TESTED not in {finding.verdict for finding in findings}

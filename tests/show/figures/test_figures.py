@@ -66,7 +66,7 @@ def inputs(name, folder):
     paths = []
     for data in DATA[name]():
         paths.append(folder / f"{data.attrs['experiment']}.nc")
-        data.assign(R=data.R.clip(0.0, 1.0)).to_netcdf(paths[-1])
+        data.to_netcdf(paths[-1])
     return paths
 
 
