@@ -14,6 +14,7 @@ from tests.files import point
 from roughgas.cli import main
 from roughgas.data.point import write_point
 from roughgas.results.crate import digest, project_files
+from roughgas.results.origin import agent
 
 ROOT = Path(__file__).parents[2]
 PRODUCTS = ["results/tiny/cooling.nc", "results/tiny/R.csv", "figures/tiny/fig1a.png"]
@@ -126,3 +127,24 @@ def test_what_cannot_be_packed_or_checked_is_refused_in_one_line(
     (line,) = capsys.readouterr().err.splitlines()
     assert message in line
     assert sorted(Path().rglob("*")) == before
+
+
+@pytest.mark.parametrize(("name", "expected"), [("Ada Lovelace", ["Ada Lovelace"]), ("", [])])
+def test_the_agent_is_whoever_ran_it_or_left_out(project, monkeypatch, name, expected):
+    monkeypatch.setenv("ROUGHGAS_AGENT", name)
+    assert main(["crate", *PRODUCTS, "-o", "made/run"]) == 0
+    crate = ROCrate("made/run")
+    agents = crate.dereference("#run").get("agent", [])
+    found = agents if isinstance(agents, list) else [agents]
+    assert [one["name"] for one in found] == expected
+    assert crate.root_dataset["author"][0]["name"] == "The roughgas developers"
+
+
+def test_without_a_name_in_the_environment_git_is_asked(monkeypatch, tmp_path):
+    monkeypatch.delenv("ROUGHGAS_AGENT", raising=False)
+    monkeypatch.setenv("GIT_CONFIG_GLOBAL", str(tmp_path / "config"))
+    monkeypatch.setenv("GIT_CONFIG_SYSTEM", os.devnull)
+    monkeypatch.chdir(tmp_path)
+    assert agent() is None
+    (tmp_path / "config").write_text("[user]\n\tname = Emmy Noether\n")
+    assert agent() == "Emmy Noether"

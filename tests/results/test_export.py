@@ -1,6 +1,7 @@
 """Datasets as CSV: every number comes back with the same bits."""
 
 import csv
+import json
 
 import netCDF4
 import numpy as np
@@ -30,7 +31,13 @@ def numbers(texts, dtype=float):
 
 def exported(path, folder):
     assert main(["export", str(path), "-o", str(folder / "out.csv")]) == 0
-    return {file.name: columns(file) for file in folder.iterdir()}
+    tables = {file.name: columns(file) for file in folder.glob("*.csv")}
+    packages = [json.loads(file.read_text()) for file in folder.glob("*.datapackage.json")]
+    described = {one["path"]: one for package in packages for one in package["resources"]}
+    assert set(described) == set(tables)
+    for name, one in described.items():
+        assert [field["name"] for field in one["schema"]["fields"]] == list(tables[name])
+    return tables
 
 
 def agrees(dataset, tables, base="out"):
@@ -52,6 +59,22 @@ def agrees(dataset, tables, base="out"):
                 there = numbers(found, variable.dtype).astype(float)
                 np.testing.assert_array_equal(there, here, strict=True)
     assert seen == set(dataset.variables)
+
+
+def test_a_data_package_tells_types_and_units(files, tmp_path):
+    exported(files["point"], tmp_path)
+    package = json.loads((tmp_path / "out.datapackage.json").read_text())
+    assert package["profile"] == "tabular-data-package" and package["name"] == "out"
+    names = [one["name"] for one in package["resources"]]
+    assert names == ["out", "out.replica", "out.source-motion", "out.about"]
+    fields = {one["name"]: one for one in package["resources"][0]["schema"]["fields"]}
+    assert fields["sample"]["type"] == "integer"
+    assert fields["time"] == {
+        "name": "time",
+        "type": "number",
+        "title": "time since the start",
+        "unit": "T",
+    }
 
 
 def test_a_point(files, tmp_path):

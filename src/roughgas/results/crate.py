@@ -11,15 +11,11 @@ import io
 import json
 import mimetypes
 import os
-import platform
-import subprocess
-import sys
 import tempfile
 import zipfile
 import zlib
 from collections.abc import Iterable, Mapping, Sequence
 from datetime import UTC, datetime
-from importlib import metadata
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -28,8 +24,9 @@ from roughgas.base.files import whole_file
 from roughgas.base.layout import in_csv
 from roughgas.base.version import __version__
 from roughgas.config.reading import read_yaml
-from roughgas.data.opening import POINT, SCHEMA_VERSION, opened
+from roughgas.data.opening import POINT, opened
 from roughgas.data.point import WALL_CLOCK
+from roughgas.results.origin import agent, commit, environment
 
 if TYPE_CHECKING:
     from rocrate.rocrate import ROCrate
@@ -157,32 +154,6 @@ def digest(path: str | Path) -> str:
     return found.hexdigest()
 
 
-def environment() -> dict[str, Any]:
-    """Return Python, the machine, and the version of every package that is installed."""
-    packages = {one.metadata["Name"]: one.version for one in metadata.distributions()}
-    return {
-        "roughgas_schema_version": SCHEMA_VERSION,
-        "python": sys.version,
-        "platform": platform.platform(),
-        "machine": platform.machine(),
-        "packages": dict(sorted(packages.items(), key=lambda item: item[0].lower())),
-    }
-
-
-def commit() -> str | None:
-    """Return the commit of the checkout that this folder is, marked if there are changes.
-
-    None if it is no checkout, though it may be inside one.
-    """
-    command = ["git", "describe", "--always", "--dirty", "--abbrev=40", "--exclude=*"]
-    here = os.environ | {"GIT_CEILING_DIRECTORIES": str(Path.cwd().parent)}
-    try:
-        found = subprocess.run(command, capture_output=True, text=True, check=True, env=here)
-    except (OSError, subprocess.CalledProcessError):
-        return None
-    return found.stdout.strip()
-
-
 def _list_of(points: Iterable[str]) -> str:
     """Return a row for each point: its file, the digest of its numbers, its command."""
     text = io.StringIO()
@@ -284,6 +255,8 @@ def _person(author: Mapping[str, str]) -> tuple[str, str]:
 
 def _describe_run(crate: "ROCrate", products: Sequence[str], date: str) -> None:
     """Add the action that made the products from the configuration."""
+    who = agent()
+    whose = {} if who is None else {"agent": _add(crate, "#agent", "Person", who)}
     crate.root_dataset["mentions"] = crate.add_action(
         instrument=crate.mainEntity,
         identifier="#run",
@@ -292,7 +265,7 @@ def _describe_run(crate: "ROCrate", products: Sequence[str], date: str) -> None:
         properties={
             "name": "The run",
             "endTime": date,
-            "agent": [{"@id": author.id} for author in crate.root_dataset["author"]],
+            **whose,
             "description": "in the environment of environment.json; points as listed in points.csv",
         },
     )

@@ -1,19 +1,20 @@
 """Datasets as CSV files that any program reads: a table for each set of dimensions, and one that
-says what the columns mean.
+says what the columns mean; for programs a data package (Frictionless) says the same.
 
 Numbers are written so that the same bits are read back; missing ones are empty cells.
 """
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from pandas import DataFrame
+from pandas import DataFrame, read_csv
 from xarray import Dataset
 
-from roughgas.base.files import whole_file
-from roughgas.base.layout import in_csv
+from roughgas.base.files import whole_file, write_text
+from roughgas.base.layout import as_json, in_csv
 from roughgas.data.netcdf import read_netcdf, unit_of
 from roughgas.data.opening import opened
 from roughgas.results import table
@@ -22,6 +23,7 @@ MAIN = ("sample",), ("frame",)
 """The dimensions of the main table of a point, or of a film; it gets the plain name."""
 UNREADABLE = ("last_memory",)
 """Variables that mean nothing to anyone but the kernel."""
+NO_NAME = re.compile(r"[^a-z0-9._-]+")  # of what has a name in a data package
 ABOUT = ("name", "file", "value", "units", "meaning")
 
 
@@ -30,7 +32,8 @@ def export(path: str | Path, output: str | Path) -> list[Path]:
 
     `output` (`bed.csv`) gets the time series of a point, the frames of a film, or the grid of a
     reduced dataset; variables of other dimensions go to files such as `bed.replica.csv`; scalars,
-    attributes and the meaning of all columns to `bed.about.csv`. Each group of a file of studies
+    attributes and the meaning of all columns to `bed.about.csv`, and for programs to
+    `bed.datapackage.json`. Each group of a file of studies
     becomes such a set of files, `bed.GROUP.about.csv` and so on. Returns the paths.
 
     Raises InputError if the pipeline has not written the file, or a newer version has.
@@ -59,7 +62,39 @@ def _export(dataset: Dataset, output: Path) -> list[Path]:
         found_in = dict.fromkeys(axes, file.name) | found_in | dict.fromkeys(names, file.name)
     about = _beside(output, "about")
     _write(about, DataFrame(_descriptions(dataset, found_in), columns=ABOUT, dtype=object))
-    return [*files, about]
+    package = output.with_name(f"{output.stem}.datapackage.json")
+    write_text(package, f"{as_json(_package(dataset, [*files, about]))}\n")
+    return [*files, about, package]
+
+
+def _package(dataset: Dataset, files: Sequence[Path]) -> dict[str, Any]:
+    """Return what programs need to know of tables, as a data package: types, titles, units."""
+    tables = [_table_of(dataset, file) for file in files]
+    name = NO_NAME.sub("-", files[0].stem.lower())
+    about = {"name": name, "title": str(dataset.attrs.get("title", ""))}
+    return about | {"profile": "tabular-data-package", "resources": tables}
+
+
+def _table_of(dataset: Dataset, file: Path) -> dict[str, Any]:
+    frame = read_csv(file, dtype=object, keep_default_na=False, nrows=1)
+    fields = [_field(dataset, name) for name in frame.columns]
+    return {
+        "name": NO_NAME.sub("-", file.stem.lower()),
+        "path": file.name,
+        "profile": "tabular-data-resource",
+        "format": "csv",
+        "encoding": "utf-8",
+        "schema": {"fields": fields, "missingValues": [""]},
+    }
+
+
+def _field(dataset: Dataset, name: str) -> dict[str, Any]:
+    if name not in dataset.variables:
+        return {"name": name, "type": "integer" if name in dataset.dims else "any"}
+    variable = dataset[name]
+    kind = {"i": "integer", "u": "integer", "f": "number"}.get(variable.dtype.kind, "string")
+    told = {"title": variable.attrs.get("long_name", ""), "unit": unit_of(variable.attrs)}
+    return {"name": name, "type": kind} | {key: text for key, text in told.items() if text}
 
 
 def _columns(dataset: Dataset) -> dict[tuple[str, ...], list[str]]:
