@@ -111,7 +111,7 @@ def outcome(arguments):
 def check(folder, monkeypatch, arguments):
     """Run a command line in a copy of the folder, since some put damaged files aside."""
     copy = folder.with_name("copy")
-    shutil.copytree(folder, copy)
+    shutil.copytree(folder, copy, copy_function=os.link)  # inputs are never written to
     monkeypatch.chdir(copy)
     try:
         status, errors = outcome(arguments)

@@ -6,6 +6,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 from brute_force import begin, run, settings, snapshot
+from brute_force.scenes import UNLIMITED
 
 from hard_cases.catalogue import hard_case
 from roughgas.base.errors import CollapseError
@@ -13,7 +14,7 @@ from roughgas.kernel.layout import new_state
 from roughgas.kernel.record import Sampling, columns, record
 from roughgas.kernel.state import BASE, COLLISIONS, NOW, TOUCHED
 from roughgas.simulation.energies import ratio
-from roughgas.simulation.gas import UNLIMITED, Gas
+from roughgas.simulation.gas import Gas
 
 BED = settings("bed")  # 160 disks on 50 a, as in Fig. 1a
 THRESHOLD = 7.0 - 4.0 * math.sqrt(3.0)  # of r, for three particles on a line

@@ -1,11 +1,13 @@
 """A gas under way: units, refreshing, steps, and what it costs."""
 
 import math
+import re
 
 import numpy as np
 import pytest
 from brute_force import begin, run, settings
 
+from roughgas.base.errors import JammedError
 from roughgas.kernel.state import EXPONENT
 from roughgas.scene import build, initial_state
 from roughgas.simulation.energies import restored
@@ -118,3 +120,29 @@ def test_a_gas_that_never_collides_comes_to_an_end():
     alone = settings("gas", 1, [25, 25])
     rows = Gas(scene, initial_state(scene, alone, np.random.default_rng(0))).in_collisions(10, 5)
     assert np.all(rows["collisions"] == 0) and np.all(np.diff(rows["time"]) > 0.0)
+
+
+def test_a_gas_in_which_time_hardly_goes_on_is_given_up(monkeypatch):
+    """As in a box so dense that it jams: here the limit is low instead."""
+    gas = gas_of(0.9, 0.2, 1)
+    gas.in_time(2.0, 10)
+    monkeypatch.setattr("roughgas.simulation.gas.JAMMED", 0.5)
+    with pytest.raises(JammedError) as found:
+        gas.in_time(30.0, 100)
+    assert re.fullmatch(
+        r"more than 0\.5 collisions of each particle within 30 T, at t = .* T: the gas is jammed: "
+        "give it more room, raise r, or sample it more often",
+        str(found.value),
+    )
+
+
+@pytest.mark.parametrize("soon", [0.0, math.inf])
+def test_no_bit_depends_on_how_long_the_calls_of_the_kernel_are(monkeypatch, soon):
+    plain, refreshed = gas_of(0.5, 0.5, 2), gas_of(0.5, 0.5, 2, 40)
+    expected = plain.in_time(1.0, 300), refreshed.in_collisions(10, 300)
+    monkeypatch.setattr("roughgas.simulation.gas.SOON", soon)
+    plain, refreshed = gas_of(0.5, 0.5, 2), gas_of(0.5, 0.5, 2, 40)
+    found = plain.in_time(1.0, 300), refreshed.in_collisions(10, 300)
+    for one, other in zip(expected, found, strict=True):
+        for name, column in one.items():
+            assert np.array_equal(column, other[name]), name

@@ -45,3 +45,7 @@ def not_one_of(key: str, value: object, known: Iterable[str]) -> InputError:
 
 class CollapseError(RuntimeError):
     """Inelastic collapse: infinitely many contacts in a finite time. Its text is one line."""
+
+
+class JammedError(CollapseError):
+    """A gas so dense that time hardly goes on. Its text is one line."""

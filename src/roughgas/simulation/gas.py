@@ -12,7 +12,7 @@ from typing import Any, Protocol, Self
 
 import numpy as np
 
-from roughgas.base.errors import CollapseError
+from roughgas.base.errors import CollapseError, JammedError
 from roughgas.effects import inertia
 from roughgas.kernel.clock import INSTANT
 from roughgas.kernel.record import Sampling, columns, record
@@ -33,8 +33,9 @@ from roughgas.simulation.books import Books, books
 from roughgas.simulation.ends import Initial, state_from
 from roughgas.simulation.energies import Columns, Energies, energies
 
-UNLIMITED = 2**62
 REPORTS = 50
+SOON = 0.5  # seconds after which a call of the kernel should come back
+JAMMED = 50_000  # collisions of each particle within a sample, or within a T if that is longer
 NAMED = 8  # of the particles in a collapse
 
 
@@ -42,7 +43,7 @@ class Recorder:
     """Sums up what gases have cost together.
 
     CPU seconds in the kernel, collisions, and contacts that the contact-time model touched.
-    `tell(time, collisions)` is called some fifty times a run.
+    `tell(time, collisions)` is called at least some fifty times a run.
     """
 
     def __init__(self, tell: Callable[[float, int], None] | None = None, keep: bool = False):
@@ -59,22 +60,28 @@ class Recorder:
         if self._keep:
             self.gases.append(gas)
 
-    def run(self, state: State, scene: Scene, sampling: Sampling, samples: int) -> Columns:
+    def run(
+        self, state: State, scene: Scene, sampling: Sampling, samples: int, timed: bool = False
+    ) -> Columns:
         """Advance `state`; return columns (name -> array of length `samples`).
 
-        Raises CollapseError if contacts accumulate without end.
+        Raises CollapseError if contacts accumulate without end, JammedError where samples are due
+        at times and one of them takes `sampling.collisions`.
         """
         names = columns(scene)
         rows = np.empty((samples, len(names)))
         record(state, scene, sampling, rows[:0])  # compiles, or fetches the kernel from its cache
         begin, before = time.process_time(), state.counts.copy()
-        length = max(1, -(-samples // REPORTS))
-        if sampling.refresh > 0:  # which the kernel counts from the start of each call
-            length = -(-length // sampling.refresh) * sampling.refresh
-        for first in range(0, samples, length):
-            part = rows[first : first + length]
+        first, length = 0, max(1, sampling.refresh)
+        while first < samples:
+            part, called = rows[first : first + length], time.perf_counter()
+            made = int(state.counts[COLLISIONS])
             if record(state, scene, sampling, part) < len(part):
                 raise _collapse(state, scene)
+            if timed and np.diff(part[:, 1], prepend=made).max() >= sampling.collisions:
+                raise _jam(state, sampling.interval)
+            first += len(part)
+            length = _next_length(length, time.perf_counter() - called, samples, sampling.refresh)
             if self._tell:
                 time_begun, collisions_begun = self._begun
                 self._tell(float(part[-1, 0] - time_begun), int(part[-1, 1]) - collisions_begun)
@@ -168,7 +175,8 @@ class Gas:
 
     def in_time(self, interval: float, samples: int) -> Columns:
         """Return columns (name -> array of length `samples`), sampled every `interval` T."""
-        return self._run(Sampling(float(interval), UNLIMITED, 0), samples)
+        most = math.ceil(self.particles / 2 * JAMMED * max(1.0, interval))
+        return self._run(Sampling(float(interval), most, 0), samples, timed=True)
 
     def in_collisions(self, collisions: int, samples: int) -> Columns:
         """Return the same, sampled every so many collisions, a divisor of `refresh_every`.
@@ -224,8 +232,10 @@ class Gas:
         """Return the books of energy at the present instant."""
         return books(self.state, self.scene)
 
-    def _run(self, sampling: Sampling, samples: int, scene: Scene | None = None) -> Columns:
-        columns = self.recorder.run(self.state, scene or self.scene, sampling, samples)
+    def _run(
+        self, sampling: Sampling, samples: int, scene: Scene | None = None, timed: bool = False
+    ) -> Columns:
+        columns = self.recorder.run(self.state, scene or self.scene, sampling, samples, timed)
         self.sample = {name: column[-1:] for name, column in columns.items()}
         return columns
 
@@ -237,6 +247,25 @@ def elastic(scene: Scene) -> Scene:
         walls = walls._replace(restitution=1.0, roughness=-1.0)
     effects = scene.effects._replace(walls=walls)
     return scene._replace(restitution=1.0, roughness=-1.0, effects=effects)
+
+
+def _next_length(length: int, took: float, samples: int, refresh: int) -> int:
+    """Return how many samples the next call of the kernel makes: no bit depends on it.
+
+    So many that it comes back soon, and that there are some REPORTS calls; a whole number of times
+    `refresh`, which the kernel counts from the start of each call.
+    """
+    if took < SOON:
+        return min(2 * length, max(1, refresh) * -(-samples // (REPORTS * max(1, refresh))))
+    return max(1, length // 2) if refresh == 0 else max(refresh, length // 2 // refresh * refresh)
+
+
+def _jam(state: State, interval: float) -> JammedError:
+    limit = f"{JAMMED} collisions of each particle within {max(1.0, interval):g} T"
+    remedy = "give it more room, raise r, or sample it more often"
+    return JammedError(
+        f"more than {limit}, at t = {_now(state):.6g} T: the gas is jammed: {remedy}"
+    )
 
 
 def _now(state: State) -> float:
