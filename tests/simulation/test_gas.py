@@ -126,11 +126,11 @@ def test_a_gas_in_which_time_hardly_goes_on_is_given_up(monkeypatch):
     """As in a box so dense that it jams: here the limit is low instead."""
     gas = gas_of(0.9, 0.2, 1)
     gas.in_time(2.0, 10)
-    monkeypatch.setattr("roughgas.simulation.gas.JAMMED", 0.5)
+    monkeypatch.setattr("roughgas.simulation.gas.JAMMED", 0.02)
     with pytest.raises(JammedError) as found:
         gas.in_time(30.0, 100)
     assert re.fullmatch(
-        r"more than 0\.5 collisions of each particle within 30 T, at t = .* T: the gas is jammed: "
+        r"more than 0\.02 collisions of each particle within 30 T, at t = .* T: the gas is jammed: "
         "give it more room, raise r, or sample it more often",
         str(found.value),
     )
