@@ -81,7 +81,9 @@ def test_it_can_stop_more_than_once():
     assert_same_end(whole, part)
 
 
-@pytest.mark.parametrize("name", ["gas", "sheared", "walled", "spheres"])
+@pytest.mark.parametrize(
+    "name", [pytest.param("gas", marks=pytest.mark.slow), "sheared", "walled", "spheres"]
+)
 def test_many_particles_go_on_in_their_cells(name, monkeypatch):
     """However few they are; the cells of a bed stay those of the gas that it was at the start."""
     monkeypatch.setattr(layout, "FEW", 0)
