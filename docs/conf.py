@@ -37,7 +37,7 @@ nitpick_ignore_regex = [
 ]
 
 html_theme = "furo"
-html_extra_path = ["living.html"]
+html_extra_path = ["explore.html", "living.html"]
 html_title = f"roughgas {version}"
 html_show_sourcelink = html_show_sphinx = html_copy_source = False
 

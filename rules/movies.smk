@@ -2,6 +2,7 @@
 # variant, and what else `roughgas movie` is told (docs/movies.md).
 MOVIES = {
     "vibrated": ("vibrated", "--r=0.9 --beta=0.5 --length=4 --frames=80"),
+    "roughness": ("vibrated", "--r=0.9 --beta -1 0 1 --length=8 --frames=120"),
     "sheared": ("sheared", "--r=0.9 --beta=0.5 --frames=80"),
     "cooling": ("cooling", "--r=0.9 --beta=0.5 --length=10 --frames=100"),
     "rough_walls": ("vibrated_rough_walls", "--r=0.9 --beta=-1 --length=4 --frames=80"),

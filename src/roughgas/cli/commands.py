@@ -46,12 +46,16 @@ COMMANDS = {
     "movie": Command(
         "cli.movie:movie",
         "show a point as it moves",
-        *POINT,
+        *KERNEL,
+        value("--beta", f"{ROUGHNESS}; several are shown side by side", required=True, nargs="+"),
         value("--seed", "seed of the random generator", default="1"),
         *TAKE,
         value("--fps RATE", "frames a second", default="25"),
         output(".mp4 or .gif files", nargs="+"),
-        examples=("roughgas movie vibrated --r 0.9 --beta 0.5 -o bed.mp4 bed.gif",),
+        examples=(
+            "roughgas movie vibrated --r 0.9 --beta 0.5 -o bed.mp4 bed.gif",
+            "roughgas movie vibrated --r 0.9 --beta -1 0 1 --length 10 -o roughness.mp4",
+        ),
         about="Simulate a point of an experiment, and draw its particles as they move and spin, "
         "its boundaries, and R(t). The trajectory is that of `roughgas run` with the same seed. "
         "Times are in T; for a cooling gas, in collisions per particle.",

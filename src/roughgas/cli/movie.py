@@ -3,14 +3,16 @@
 import sys
 from argparse import Namespace
 from functools import partial
+from typing import Any
 
 from roughgas import config
 from roughgas.base.legal import Interval
 from roughgas.cli.options import number
 from roughgas.cli.run import point_of
 from roughgas.cli.trajectory import chosen_take
+from roughgas.scene import Scene
 from roughgas.show.encoding import check_kind
-from roughgas.show.movies.drawing import MovieSubject, write
+from roughgas.show.movies.drawing import MovieSubject, Panel, write
 from roughgas.simulation.progress import watched
 from roughgas.simulation.snapshots import snapshots
 
@@ -18,17 +20,22 @@ RATES = Interval("[1, 50]")
 
 
 def movie(options: Namespace) -> None:
-    """Simulate a point, and write its movie."""
-    name, seed = options.experiment, config.seed(options.seed)
-    scene, settings = point_of(options, options.beta)
+    """Simulate a point, or several that differ in beta, and write their movie."""
     fps = number("--fps", options.fps, RATES)
     for output in options.output:
         check_kind(output)
-    take = chosen_take(options, settings, scene)
-    simulated = snapshots(settings, float(options.r), float(options.beta), seed, take)
-    shots = list(watched(f"{name}: simulated", take.frames, "frames", simulated))
-    subject = MovieSubject(name, settings, scene, seed)
+    points = [(beta, *point_of(options, beta)) for beta in options.beta]
+    panels = [_panel(options, *one) for one in points]
     for output in options.output:
-        shown = partial(watched, f"{output}: drawn", len(shots), "frames")
-        write(output, subject, shots, fps, shown)
-        print(f"{output}: {len(shots)} frames", file=sys.stderr)
+        shown = partial(watched, f"{output}: drawn", len(panels[0][1]), "frames")
+        write(output, panels, fps, shown)
+        print(f"{output}: {len(panels[0][1])} frames", file=sys.stderr)
+
+
+def _panel(options: Namespace, beta: str, scene: Scene, settings: dict[str, Any]) -> Panel:
+    """Simulate a point; return it with what is to be seen of it."""
+    name, seed = options.experiment, config.seed(options.seed)
+    take = chosen_take(options, settings, scene)
+    simulated = snapshots(settings, float(options.r), float(beta), seed, take)
+    shots = list(watched(f"{name}: simulated", take.frames, "frames", simulated))
+    return MovieSubject(name, settings, scene, seed), shots

@@ -42,7 +42,7 @@ def shots(number=3, **changes):
 
 def drawn(about, frames, frame=0):
     """The axes of the particles, with their disks and the marks on them."""
-    figure, show = picture(about, frames)
+    figure, show = picture([(about, frames)])
     show(frame)
     above = figure.axes[0]
     disks, *lines = above.collections
@@ -105,7 +105,7 @@ def test_shaken_walls_stand_at_the_sides_and_their_scratches_move():
 def test_without_spin_there_are_neither_marks_nor_a_colour_bar_and_the_energy_is_shown():
     bare = {"spin": None, "angle": None, "E_rot": None, "R": None}
     about = subject("smooth", [SIDE, SIDE], -1.0, COOLING)
-    figure, _ = picture(about, shots(**bare))
+    figure, _ = picture([(about, shots(**bare))])
     above, below = figure.axes
     assert not any(line.get_segments() for line in above.collections[1:])
     assert below.get_ylabel().startswith(r"$\bar{E}$") and below.get_yscale() == "log"
@@ -134,20 +134,49 @@ def test_colours_are_relative_to_the_thermal_spin():
 
 
 def test_time_runs_beneath():
-    figure, show = picture(subject("gas", [SIDE, SIDE]), shots(R=0.3))
+    figure, show = picture([(subject("gas", [SIDE, SIDE]), shots(R=0.3))])
     below = figure.axes[1]
     for frame in range(3):
         show(frame)
         _, _, past, present = below.lines
         assert past.get_xdata() == pytest.approx([0.1 * k for k in range(frame + 1)])
         assert present.get_ydata() == pytest.approx([0.3])
-    assert below.get_xlabel() == r"$(t - 10\,T)\,/\,T$"
+    assert below.get_xlabel() == "time in $T$, after the first 10"
+
+
+def test_time_under_a_shaken_gas_counts_shakes():
+    about = subject("bed", [SIDE, "open"])
+    floor = about.scene.effects.floor._replace(period=0.1)
+    effects = about.scene.effects._replace(floor=floor)
+    about = about._replace(scene=about.scene._replace(effects=effects))
+    figure, show = picture([(about, shots(floor=0.0))])
+    show(2)
+    assert figure.axes[1].get_xlabel() == "shakes, after the first 100"
+    assert figure.axes[1].lines[2].get_xdata() == pytest.approx([0.0, 1.0, 2.0])
+
+
+def test_several_points_are_seen_side_by_side_at_one_scale():
+    high = shots(floor=0.0, R=0.9)
+    high = [shot._replace(position=shot.position + 3.0) for shot in high]
+    panels = [
+        (subject("bed", [SIDE, "open"], beta), one)
+        for beta, one in ((-1.0, shots(floor=0.0)), (1.0, high))
+    ]
+    figure, show = picture(panels)
+    show(1)
+    parts = figure.subfigs
+    titles = [part.get_suptitle() for part in parts]
+    assert r"\beta = -1$" in titles[0] and r"\beta = 1$" in titles[1]
+    above, below = zip(*(part.axes[:2] for part in parts), strict=True)
+    assert above[0].get_ylim() == above[1].get_ylim() == pytest.approx((-0.6, 15.7))
+    assert below[0].get_ylim() == below[1].get_ylim()
+    assert [axes.lines[3].get_ydata()[0] for axes in below] == [0.5, 0.9]
 
 
 def test_the_title_tells_what_is_seen():
     about = subject("gas", [SIDE, 3 * SIDE])
     about = about._replace(name="waves/wavesine", settings=about.settings | {"swept": "floor.wave"})
-    figure, _ = picture(about, shots())
+    figure, _ = picture([(about, shots())])
     first, second = figure.get_suptitle().split("\n")
     assert first == "waves, wave = sine"
     for part in ("r = 0.9", r"\beta = 0.5", "N = 3", "seed 7", "up to $y = 18"):
@@ -161,7 +190,7 @@ def test_a_gif_has_every_frame_and_goes_round(tmp_path):
         shot._replace(position=shot.position + k * np.array([0.3, 0.1]))
         for k, shot in enumerate(shots(5))
     ]
-    write(path, subject("gas", [SIDE, SIDE]), frames, 20.0)
+    write(path, [(subject("gas", [SIDE, SIDE]), frames)], 20.0)
     with Image.open(path) as image:
         assert image.n_frames == 5 and image.info["loop"] == 0 and image.info["duration"] == 50
         assert image.width == 480 and 400 < image.height <= 600
@@ -173,7 +202,7 @@ def test_a_gif_has_every_frame_and_goes_round(tmp_path):
 
 def test_an_mp4_has_every_frame(tmp_path):
     path = tmp_path / "gas.mp4"
-    write(path, subject("gas", [SIDE, SIDE]), shots(5), 25.0)
+    write(path, [(subject("gas", [SIDE, SIDE]), shots(5))], 25.0)
     reader = read_frames(str(path))
     about = next(reader)
     assert about["fps"] == 25.0 and about["size"][0] == 960 and about["codec"] == "h264"
@@ -184,6 +213,6 @@ def test_an_encoder_that_fails_leaves_nothing_and_says_why(tmp_path, monkeypatch
     monkeypatch.setitem(movie.ENCODERS, ".gif", "-vcodec nonsense -f gif")
     path = tmp_path / "gas.gif"
     with pytest.raises(OSError, match=r"not encoded: .*nonsense") as failure:
-        write(path, subject("gas", [SIDE, SIDE]), shots(), 20.0)
+        write(path, [(subject("gas", [SIDE, SIDE]), shots())], 20.0)
     assert "\n" not in str(failure.value) and failure.value.filename == str(path)
     assert list(tmp_path.iterdir()) == []

@@ -10,14 +10,24 @@ import pytest
 from plotly.offline import get_plotlyjs
 
 from roughgas.base.errors import InputError
+from roughgas.base.sources import PACKAGE
 from roughgas.cli import main
 from roughgas.data.point import read_point
 from roughgas.data.reduced import read_reduced
-from roughgas.show.page.explore import GRID, LONGEST, NUMBERS, block_means, experiment, write_page
+from roughgas.show.page.explore import (
+    GRID,
+    LONGEST,
+    NUMBERS,
+    PROGRAM,
+    block_means,
+    experiment,
+    write_page,
+)
 from roughgas.show.page.policy import policy
 from roughgas.theory.prediction import predicted_ratio
 from show.page.conftest import SAMPLES
 
+THEORIES = {"Lun's formula", "theory of free cooling"}
 EXPERIMENTS = ("sheared", "cooling", "cooling_friction")
 
 
@@ -145,3 +155,14 @@ def test_several_scales_do_not_mix(points, tmp_path):
     other.to_netcdf(tmp_path / "other.nc")
     with pytest.raises(InputError, match="scale of the datasets = paper and small: must be one"):
         write_page([points / "cooling.nc", tmp_path / "other.nc"], points, tmp_path / "page.html")
+
+
+def test_the_committed_page_is_the_present_one():
+    """Its data are of the scale `small`; its program is that of the sources."""
+    text = (PACKAGE.parents[1] / "docs/explore.html").read_text("utf-8")
+    again = "write it anew: snakemake -j2 explore --config scale=small; copy it from results/small"
+    parts = [PACKAGE / "show/page" / name for name in (*PROGRAM, "page.css")]
+    assert all(part.read_text("utf-8") in text for part in parts), again
+    data = data_in(PACKAGE.parents[1] / "docs/explore.html")
+    assert data["scale"] == "small" and len(data["experiments"]) == 6
+    assert {one["theory"] for one in data["experiments"]} == THEORIES, again

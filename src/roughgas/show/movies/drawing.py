@@ -20,10 +20,11 @@ from roughgas.simulation.snapshots import Snapshot
 
 WIDTH = 4.8  # inches
 DPI = {".gif": 100, ".mp4": 200}
+DPI_BESIDE = {".gif": 60, ".mp4": 120}  # where several are side by side
 TALLEST = 1.5  # of what is shown, in widths of the box
 SLIDING_IMAGES = 0.15  # of the images above and below that is shown, in heights of the box
 FRAME_SPACE, GRAPH = 0.85, 1.25  # inches: title and label, and the graph beneath
-PER_PARTICLE = "collisions per particle"
+PER_PARTICLE, SHAKES = "collisions per particle", "shakes"
 
 
 class MovieSubject(NamedTuple):
@@ -35,31 +36,51 @@ class MovieSubject(NamedTuple):
     seed: int
 
 
+Panel = tuple[MovieSubject, Sequence[Snapshot]]
+"""What is seen of one point."""
+
+
 def write(
     path: str | Path,
-    subject: MovieSubject,
-    shots: Sequence[Snapshot],
+    panels: Sequence[Panel],
     per_second: float,
     watch: Callable[[Iterable[int]], Iterable[int]] = iter,
 ) -> None:
-    """Write the movie of `shots` to `path` (.mp4 or .gif), whole or not at all.
+    """Write the movie of points, side by side, to `path` (.mp4 or .gif), whole or not at all.
 
-    `watch` gets the numbers of the frames, and yields each as it is to be drawn. Raises InputError
-    for another kind of file, OSError.
+    All have equally many shots. `watch` gets the numbers of the frames, and yields each as it is
+    to be drawn. Raises InputError for another kind of file, OSError.
     """
-    dpi = DPI.get(Path(path).suffix)
-    frames = watch(range(len(shots)))
-    write_movie(path, lambda: picture(subject, shots, dpi), frames, per_second)
+    dpi = (DPI if len(panels) == 1 else DPI_BESIDE).get(Path(path).suffix)
+    frames = watch(range(len(panels[0][1])))
+    write_movie(path, lambda: picture(panels, dpi), frames, per_second)
 
 
 def picture(
-    subject: MovieSubject, shots: Sequence[Snapshot], dpi: float | None = None
+    panels: Sequence[Panel], dpi: float | None = None
 ) -> tuple[Figure, Callable[[int], None]]:
     """Return the figure at its first frame, and a function that brings it to another one."""
-    view = view_of(subject, shots)
+    view = _common_view([view_of(*panel) for panel in panels])
     room = min(3.9, 3.4 * (view.top - view.bottom) / (view.right - view.left))
     inches = math.ceil(10 * (room + FRAME_SPACE + GRAPH)) / 10  # even numbers of pixels
-    figure = Figure(figsize=(WIDTH, inches), dpi=dpi, layout="constrained")
+    figure = Figure(figsize=(WIDTH * len(panels), inches), dpi=dpi, layout="constrained")
+    parts = [figure] if len(panels) == 1 else figure.subfigures(1, len(panels))
+    shows = [_panel(part, *one, view, room) for part, one in zip(parts, panels, strict=True)]
+    highest = max(part.axes[1].get_ylim()[1] for part in parts)
+    for part, (subject, _) in zip(parts, panels, strict=True):
+        if subject.scene.effects.spin is not None:
+            part.axes[1].set_ylim(top=highest)
+
+    def show(frame: int) -> None:
+        for one in shows:
+            one(frame)
+
+    show(0)
+    return figure, show
+
+
+def _panel(figure, subject, shots, view, room):
+    """Draw one point; return what brings it to a frame."""
     above, below = figure.subplots(2, 1, height_ratios=(room + FRAME_SPACE, GRAPH))
     figure.suptitle(_title(subject, view), fontsize=9, linespacing=1.4)
     _set_up(above, subject.scene, view)
@@ -77,8 +98,13 @@ def picture(
         boundaries.show(shots[frame])
         present(frame)
 
-    show(0)
-    return figure, show
+    return show
+
+
+def _common_view(views):
+    """Return what shows of equal boxes as much as the view that shows most."""
+    cropped = any(view.cropped for view in views)
+    return views[0]._replace(top=max(view.top for view in views), cropped=cropped)
 
 
 def view_of(subject: MovieSubject, shots: Sequence[Snapshot]) -> View:
@@ -163,11 +189,15 @@ def _graph(axes: Axes, subject: MovieSubject, shots: Sequence[Snapshot]) -> Call
         values = np.array([shot.R for shot in shots])
         axes.set(ylabel=r"$R$", ylim=(0.0, 1.05 * max(0.6, values.max())))
         axes.axhline(0.5, color=style.FAINT, linewidth=0.6, linestyle=":")
+    effects = subject.scene.effects
+    shaken = effects.floor or effects.shaken_walls
+    at = at / shaken.period if shaken else at
     begun = 0 if cooling else math.floor(at[0])
     at = at - begun
-    since = rf"$(t - {begun}\,T)\,/\,T$" if begun else "$t/T$"
+    unit = PER_PARTICLE if cooling else SHAKES if shaken else "time in $T$"
+    since = f", after the first {begun}" if begun else ""
     room = 0.0 if at[0] < at[-1] else 0.5
-    axes.set(xlabel=PER_PARTICLE if cooling else since, xlim=(at[0] - room, at[-1] + room))
+    axes.set(xlabel=f"{unit}{since}", xlim=(at[0] - room, at[-1] + room))
     axes.xaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 5, 10]))
     axes.plot(at, values, color="#cccccc", linewidth=0.9)
     (line,) = axes.plot([], [], color=style.LOOKS[0].colour)
