@@ -5,6 +5,7 @@
 #   snakemake -j2 extensions                    beyond the paper: spheres, friction, other drives ...
 #   snakemake -j1 explore                       a page in which to look at every point
 #   snakemake -j1 living                        a page in which a gas moves, with sliders
+#   snakemake -j1 pictures                      the four figures for talks: SVG, and PDF of 16 to 9
 #   snakemake -j2 movies                        the scenes as they move, one GIF each
 #   snakemake -j1 showcase                      a large cooling gas forms clusters: a movie
 #   snakemake -j2 accuracy                      what the next digit costs, in CPU seconds
@@ -65,6 +66,7 @@ report: "rules/captions/workflow.rst"
 # on a cluster, these take less than sending them there
 localrules:
     figure,
+    picture_for_talks,
     table,
     claims,
     document,
@@ -103,6 +105,15 @@ rule explore_extensions:
 rule living:
     input:
         f"results/{SCALE}/living.html",
+
+
+rule pictures:
+    input:
+        [
+            f"results/{SCALE}/pictures/{name}.{kind}"
+            for name in catalogue.figures_of("paper")
+            for kind in ("svg", "pdf")
+        ],
 
 
 rule plan:

@@ -28,6 +28,10 @@ def data_of_plot(wildcards):
     return reduced(scale_of(wildcards.folder), [wildcards.plotted])
 
 
+def data_of_talk(wildcards):
+    return reduced(wildcards.scale, entry_of(wildcards).shows)
+
+
 def code_of_figure(wildcards):
     return sources.code_of(f"show.figures.{wildcards.figure}", "show.style")
 
@@ -100,6 +104,22 @@ rule plot:
         "draw {wildcards.folder}{wildcards.plotted}"
     shell:
         "roughgas plot {input.data} --output {output} > {log} 2>&1"
+
+
+rule picture_for_talks:
+    input:
+        data=data_of_talk,
+    output:
+        "results/{scale}/pictures/{figure}.svg",
+        "results/{scale}/pictures/{figure}.pdf",
+    log:
+        "logs/{scale}/pictures/{figure}.log",
+    params:
+        code=code_of_figure,
+    message:
+        "draw {output}"
+    shell:
+        "roughgas figure {wildcards.figure} {input.data} --slide --output {output} > {log} 2>&1"
 
 
 rule table:

@@ -25,11 +25,13 @@ def figure(options: Namespace) -> None:
     from roughgas.studies import figures as of_studies
 
     if options.name in of_studies.FIGURES:
+        if options.slide:
+            raise InputError("--slide", options.name, "be given for figures of experiments")
         if len(options.inputs) > 1:
             raise InputError("number of datasets", len(options.inputs), "be 1, with all studies")
         of_studies.draw(options.name, *options.inputs, options.output)
     else:
-        gallery.draw(options.name, options.inputs, options.output)
+        gallery.draw(options.name, options.inputs, options.output, options.slide)
 
 
 def plot(options: Namespace) -> None:

@@ -57,7 +57,11 @@ STEPS = {
         value("name NAME", "name of the figure, such as fig1a"),
         REDUCED,
         output(".pdf, .png or .svg files", nargs="+"),
-        examples=("roughgas figure fig2b results/paper/cooling.nc -o fig2b.pdf fig2b.png",),
+        flag("--slide", "in the shape of a slide, 16 to 9"),
+        examples=(
+            "roughgas figure fig2b results/paper/cooling.nc -o fig2b.pdf fig2b.png",
+            "roughgas figure fig2b results/paper/cooling.nc --slide -o slide.pdf slide.svg",
+        ),
     ),
     "claims": Command(
         "cli.products:claims",

@@ -10,11 +10,17 @@ from roughgas.show import style
 from roughgas.show.catalogue import FIGURES, figures_of
 
 
-def draw(name: str, inputs: Iterable[str | Path], outputs: Iterable[str | Path]) -> None:
+def draw(
+    name: str,
+    inputs: Iterable[str | Path],
+    outputs: Iterable[str | Path],
+    slide: bool = False,
+) -> None:
     """Draw the figure `name` from the reduced datasets at `inputs`, in any order, into `outputs`.
 
-    Each output is a .pdf, .png or .svg. Raises InputError for an unknown figure, another kind of
-    file, experiments other than those that the figure shows, and those that were swept otherwise.
+    Each output is a .pdf, .png or .svg, of 16 to 9 for a `slide`. Raises InputError for an unknown
+    figure, another kind of file, experiments other than those that the figure shows, and those
+    that were swept otherwise.
     """
     if name not in (known := figures_of("paper", "beyond")):
         raise not_one_of("figure", name, known)
@@ -24,7 +30,7 @@ def draw(name: str, inputs: Iterable[str | Path], outputs: Iterable[str | Path])
         raise InputError(f"data of {name}", ", ".join(datasets), f"be {', '.join(needed)}")
     figure = import_module(f"roughgas.show.figures.{name}")
     try:
-        style.draw(lambda: figure.draw(*(datasets[one] for one in needed)), outputs)
+        style.draw(lambda: figure.draw(*(datasets[one] for one in needed)), outputs, slide)
     except KeyError as error:
         swept = "; ".join(f"{one} over {', '.join(datasets[one].R.dims)}" for one in needed)
         raise InputError(f"data of {name}", swept, f"have all that it shows: {error}") from error

@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 from roughgas.base.errors import InputError
 from roughgas.base.files import whole_file
 
+SLIDE = 10.0, 5.625  # inches: 16 to 9
 WIDTH, HEIGHT = 4.8, 5.0  # inches; prints at 85 % in one column of a journal
 # what a matplotlibrc of the user may change, except where figures are shown
 PLAIN = {
@@ -72,8 +73,8 @@ GREY = "#555555"
 FAINT = "#888888"
 
 
-def draw(figure: Callable[[], Figure], outputs: Iterable[str | Path]) -> None:
-    """Draw `figure()` in this style into each of `outputs`.
+def draw(figure: Callable[[], Figure], outputs: Iterable[str | Path], slide: bool = False) -> None:
+    """Draw `figure()` in this style into each of `outputs`, in the shape of a `slide` if asked for.
 
     Raises InputError if one of them is none of .pdf, .png and .svg.
     """
@@ -82,7 +83,10 @@ def draw(figure: Callable[[], Figure], outputs: Iterable[str | Path]) -> None:
         if output.suffix not in METADATA:
             raise InputError("figure file", output, f"end in {' or '.join(METADATA)}")
     with rc_context(PARAMETERS):
-        save(figure(), outputs)
+        drawn = figure()
+        if slide:
+            drawn.set_size_inches(SLIDE)
+        save(drawn, outputs)
 
 
 def save(figure: Figure, outputs: Iterable[str | Path]) -> None:

@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 from matplotlib.image import imread
 from synthetic import BETA, reduced
 
@@ -9,6 +10,7 @@ from roughgas.show.catalogue import FIGURES, figures_of
 from roughgas.show.figures import fig1a, fig1b, fig2a, fig2b, fig4, fig5, fig6, fig8, panel
 from roughgas.show.gallery import draw
 from roughgas.show.style import LOOKS
+from roughgas.show.style import draw as draw_in_style
 from roughgas.theory.prediction import predicted_ratio
 
 
@@ -282,3 +284,11 @@ def test_shifts_need_a_smooth_boundary():
     floor, walls = DATA["fig8"]()
     with pytest.raises(InputError, match="roughness of floor_materials"):
         fig8.draw(floor.sel(roughness=[0.0, 1.0]), walls)
+
+
+def test_a_slide_is_16_to_9(tmp_path):
+    outputs = [tmp_path / "slide.png", tmp_path / "slide.svg"]
+    draw_in_style(lambda: Figure((4.8, 5.0)), outputs, slide=True)
+    height, width, _ = imread(outputs[0]).shape
+    assert width * 9 == height * 16
+    assert "<svg" in outputs[1].read_text("utf-8")
