@@ -32,6 +32,7 @@ def test_numbers_are_measured_on_datasets(tmp_path):
     bed = reduced("vibrated", lambda r, beta: 0.05 * ((r == 0.8) & (beta == 0.1)), **places)
     waves = {
         "r": (0.9,),
+        "beta": (-0.5, 0.0, 0.5),
         "third": ("floor.wave", ("sawtooth", "reversed_sawtooth", "sine", "triangle")),
     }
     waved = reduced("waves", lambda r, beta, wave: -0.01 * (wave == "sine"), error=1e-5, **waves)

@@ -106,7 +106,7 @@ def cooling(series: Series) -> Figure:
     for r, look in zip(restitutions, LOOKS, strict=False):
         ratio.axhline(cooling_ratio(float(r), 0.0), color=look.colour, lw=0.5)
     ratio.set_title("thin: the theory of free cooling", fontsize=7, color=GREY, loc="right", pad=3)
-    energy.set_ylabel(r"$\log_{10} \bar{E}$")
+    energy.set_ylabel(r"$\log_{10} E_\mathrm{trans}$")
     ratio.set_ylabel("$R$, means over a hundredth of the run")
     ratio.set_ylim(0.0, 0.8)
     for axes in (energy, ratio):

@@ -8,6 +8,7 @@ from test_reduce import write
 
 from roughgas import theory
 from roughgas.base.errors import InputError
+from roughgas.cli import main
 from roughgas.data.reduced import read_reduced
 from roughgas.results.reduce import reduce_points
 from roughgas.results.table import write_table
@@ -16,7 +17,7 @@ from roughgas.theory.prediction import predicted_ratio
 
 def variant(folder, key, value, seed=1, ratio=0.2, beta=0.0, **attributes):
     """A point of a variant on disk."""
-    effect_parameter = key.split(".")[1]
+    effect_parameter = key.rpartition(".")[2]
     label = value if isinstance(value, str) else f"{value:g}"
     about = {"swept": key, "swept_value": value, "variant": f"{effect_parameter}{label}"}
     folder = folder / f"{effect_parameter}{label}"
@@ -51,6 +52,21 @@ def test_the_parameter_is_a_dimension(inertia):
     assert place.R.item() == pytest.approx(0.115)
     assert place.R_stderr_over_seeds.item() == pytest.approx(0.005)
     assert np.isnan(data.R.sel(inertia=0.5, r=0.9, beta=0.5))
+
+
+@pytest.mark.parametrize("key", ["particles", "box", "schedule.measure"])
+def test_a_number_of_the_settings_is_a_dimension_too(tmp_path, key, capsys):
+    parameter = key.rpartition(".")[2]
+    for value in (20, 40):
+        own = {"particles": value} if key == "particles" else {}
+        variant(tmp_path, key, value, beta=0.0, seed=1, ratio=0.2, **own)
+    reduce_points(sorted(tmp_path.rglob("seed*.nc")), tmp_path / "swept.nc")
+    data = read_reduced(tmp_path / "swept.nc")
+    assert data.R.dims == (parameter, "r", "beta") and data.attrs["swept"] == key
+    np.testing.assert_array_equal(data[parameter], [20, 40])
+    assert main(["show", str(tmp_path / "swept.nc")]) == 0
+    shown = capsys.readouterr().out
+    assert ("20 to 40 disks" in shown) == (key == "particles") and f"over {parameter}, r" in shown
 
 
 def test_what_is_a_coordinate_is_no_attribute(inertia):

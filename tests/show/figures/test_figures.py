@@ -163,7 +163,7 @@ def test_points_without_a_steady_state_are_open_and_explained():
     data["equilibrated"][0, :3] = 0.25
     main, _ = fig1a.draw(data).axes
     assert any("open: no steady state" in word for word in words(main))
-    empty = [box[0] for box in main.containers if box[0].get_fillstyle() == "none"]
+    empty = [box[0] for box in main.containers if box[0].get_markerfacecolor() == "white"]
     assert sum(len(line.get_xdata()) for line in empty) == 3
 
 

@@ -82,7 +82,7 @@ def test_where_nothing_spins_energy_is_drawn():
     data = data.drop_vars([name for name in data if name.startswith("R")])
     data["E_trans"] = data.E_trans + np.array([[1.0], [2.0]])
     (axes,) = sweep.draw(data, over="r").axes
-    assert axes.get_ylabel().startswith(r"$\bar{E}$")
+    assert axes.get_ylabel().startswith(r"$E_\mathrm{trans}$")
     assert list(axes.containers[0][0].get_ydata()) == [2.0, 3.0]
 
 

@@ -108,7 +108,7 @@ def test_without_spin_there_are_neither_marks_nor_a_colour_bar_and_the_energy_is
     figure, _ = picture([(about, shots(**bare))])
     above, below = figure.axes
     assert not any(line.get_segments() for line in above.collections[1:])
-    assert below.get_ylabel().startswith(r"$\bar{E}$") and below.get_yscale() == "log"
+    assert below.get_ylabel().startswith(r"$E_\mathrm{trans}$") and below.get_yscale() == "log"
     assert np.isnan(spin_scales(about, shots(**bare))).all()
 
 

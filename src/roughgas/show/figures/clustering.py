@@ -10,6 +10,7 @@ from matplotlib.collections import EllipseCollection
 from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 from matplotlib.patches import Rectangle
+from matplotlib.ticker import MaxNLocator
 
 from roughgas import theory
 from roughgas.base.errors import InputError
@@ -70,6 +71,7 @@ def picture(film: xr.Dataset) -> Figure:
     graphs = [cooling.subplots(), *others.subplots(2, 1, sharex=True)]
     for axes, draw_graph in zip(graphs, (_energies, _ratio, _unevenness), strict=True):
         draw_graph(axes, film)
+        axes.xaxis.set_major_locator(MaxNLocator(5, prune="upper"))  # the last number would be cut
         for at, letter in zip(_at(film)[frames], LETTERS, strict=True):
             axes.axvline(at, color=style.FAINT, linewidth=0.6, zorder=0)
             place = {"xytext": (-2, 3), "textcoords": "offset points", "ha": "right"}
@@ -150,13 +152,13 @@ def _homogeneous(film: xr.Dataset) -> tuple[np.ndarray, theory.Relaxation]:
 
 def _energies(axes: Axes, film: xr.Dataset) -> None:
     n, (smooth, haff) = _at(film), _homogeneous(film)
-    axes.plot(n, film.E_trans, color=TRANSLATION, label=r"translation, $\bar{E}$")
-    axes.plot(n[1:], film.E_rot[1:], color=ROTATION, linestyle="--", label=r"rotation, $E^\circ$")
+    axes.plot(n, film.E_trans, color=TRANSLATION, label="translation")
+    axes.plot(n[1:], film.E_rot[1:], color=ROTATION, linestyle="--", label="rotation")
     axes.plot(smooth, haff.T_tr, label="both, if homogeneous", **DOTTED)
     axes.plot(smooth[1:], haff.T_rot[1:], **DOTTED)
     low = film.E_rot.values[1:].min()
     axes.set(yscale="log", ylim=(low / 4, 3), xlim=(0, n[-1]))
-    axes.set(xlabel=PER_PARTICLE, ylabel=r"energies / initial $\bar{E}$")
+    axes.set(xlabel=PER_PARTICLE, ylabel=r"energies / initial $E_\mathrm{trans}$")
     axes.set_title("e   energies leave Haff's law", loc="left", fontsize=TITLE)
     axes.legend()
 

@@ -8,5 +8,6 @@ from roughgas.show.figures.panel import ANY_R, WIDE, content_for_each_r, ratio_f
 
 def draw(bed: xr.Dataset) -> Figure:
     """Draw the figure from the reduced dataset of the vibrated bed."""
-    content = content_for_each_r("Vibrated bed", bed, theory=ANY_R, loc="half")
+    message = "Averaged over collisions, R follows Lun's formula"
+    content = content_for_each_r("Vibrated bed", bed, theory=ANY_R, loc="half", message=message)
     return ratio_figure(content, width=WIDE, averaged=True)

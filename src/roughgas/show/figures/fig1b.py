@@ -30,6 +30,7 @@ def draw(*beds: xr.Dataset) -> Figure:
         drawn,
         theory="Lun's formula",
         loc="lower right",
+        message="Only rough elastic walls matter: they put in spin",
         # rough walls shift R ten times as much as the others: the scale is that of the others
         scale=lambda drawn: [drawn[0], *drawn[2:]],
     )

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 
+import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -9,12 +10,15 @@ from matplotlib.figure import Figure
 from roughgas.show.figures.panel import ANY_R, WIDE, Series, content_for_each_r, ratio_figure
 from roughgas.show.style import GREY
 
+MESSAGE = "R follows Lun's formula, once the mean flow is removed"
 FAINT = {"alpha": 0.5, "markersize": 2.6, "markeredgewidth": 0, "zorder": 0}
+POINTED_AT = 0.3
+"""The beta of a faint point, from which a line leads to what these are."""
 
 
 def draw(sheared: xr.Dataset) -> Figure:
     """Draw the figure from the reduced dataset of the sheared gas."""
-    how = {"theory": ANY_R, "extra": _draw_unsubtracted, "loc": "half"}
+    how = {"theory": ANY_R, "extra": _draw_unsubtracted, "loc": "half", "message": MESSAGE}
     content = content_for_each_r("Sheared gas", sheared, **how)
     return ratio_figure(content, width=WIDE, averaged=True)
 
@@ -26,4 +30,10 @@ def _draw_unsubtracted(main: Axes, drawn: Sequence[Series]) -> None:
     for one in drawn:
         ratio = one.data.R_unsubtracted.values
         main.plot(one.at, ratio, one.look.marker, color=one.look.colour, **FAINT)
-    main.text(0.08, 0.14, "small: mean flow and\nmean spin left in", fontsize=7, color=GREY)
+    first = drawn[0]
+    nearest = int(np.argmin(abs(first.at - POINTED_AT)))
+    at = first.at[nearest], first.data.R_unsubtracted.values[nearest]
+    arrow = {"arrowstyle": "-", "color": GREY, "linewidth": 0.6, "shrinkB": 3}
+    place = {"xytext": (6, 12), "textcoords": "offset points", "ha": "center", "va": "bottom"}
+    text = "faint: mean flow and\nmean spin left in"
+    main.annotate(text, at, fontsize=7, color=GREY, arrowprops=arrow, **place)

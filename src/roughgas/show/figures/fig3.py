@@ -8,14 +8,18 @@ from matplotlib.figure import Figure
 
 from roughgas.show.figures.panel import ANY_R, content_for_each_r, ratio_figure
 
+COOLING, SHEARED = "Free cooling: as theory says", "Shear: nearly any r alike"
+BED = "A bed: over collisions only"
+
 
 def draw(cooling: xr.Dataset, sheared: xr.Dataset, bed: xr.Dataset) -> Figure:
     """Draw the figure from the reduced datasets of the three scenes in space."""
     free = {"theories": "lines: theory of free cooling", "loc": "upper right"}
+    driven = {"theory": ANY_R}
     return ratio_figure(
-        content_for_each_r("Cooling spheres", cooling, **free),
-        content_for_each_r("Sheared spheres", sheared, theory=ANY_R),
-        content_for_each_r("Vibrated spheres", bed, theory=ANY_R),
-        width=10.4,
+        content_for_each_r("Cooling spheres", cooling, message=COOLING, **free),
+        content_for_each_r("Sheared spheres", sheared, message=SHEARED, **driven),
+        content_for_each_r("Vibrated spheres", bed, message=BED, **driven),
+        width=8.4,
         averaged=True,
     )

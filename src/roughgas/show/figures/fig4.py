@@ -8,6 +8,8 @@ from matplotlib.figure import Figure
 
 from roughgas.show.figures import panel
 
+BED = "A bed follows the rate equations"
+COOLING = "A cooling gas does, unless spins run away"
 COMMON = {"symbol": r"\beta_0", "theories": "lines: rate equations", "axis": panel.FRICTION}
 
 
@@ -19,8 +21,8 @@ def draw(bed: xr.Dataset, cooling: xr.Dataset) -> Figure:
     bed, cooling = (data.sel(mu=data.mu > 0.0) for data in (bed, cooling))
     free = {"loc": "upper right", "scale": _staying, "extra": _tell_of_runaways}
     return panel.ratio_figure(
-        panel.content_for_each_beta("Vibrated bed", bed, **COMMON),
-        panel.content_for_each_beta("Cooling gas", cooling, **COMMON, **free),
+        panel.content_for_each_beta("Vibrated bed", bed, message=BED, **COMMON),
+        panel.content_for_each_beta("Cooling gas", cooling, message=COOLING, **COMMON, **free),
         width=panel.TWO_WIDE,
     )
 

@@ -13,6 +13,7 @@ from roughgas.show.style import GREY, LOOKS
 DRIVES = (("random kicks", "o"), ("rough floor", "^"), ("rough side walls", "v"))
 DRIVES += (("rough shaken walls", "D"),)
 """Labels and markers, in the order of the datasets."""
+MESSAGE = "Averaged over collisions, one curve for all drives"
 
 
 def draw(heated: xr.Dataset, *boundaries: xr.Dataset) -> Figure:
@@ -38,7 +39,7 @@ def draw(heated: xr.Dataset, *boundaries: xr.Dataset) -> Figure:
     panel.frame_rows(one, drawn, drawn, averages)
     lines = [series._replace(look=series.look._replace(marker="")) for series in of_heated]
     panel.add_legend(one.main, lines, title="lines: rate equations", loc="upper left")
-    panel.add_title(one.main, [heated], rf"Driven disks, $r = {panel.RESTITUTION:g}$")
+    panel.add_title(one.main, [heated], rf"Driven disks, $r = {panel.RESTITUTION:g}$", MESSAGE)
     return figure
 
 

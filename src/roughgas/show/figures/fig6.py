@@ -17,6 +17,8 @@ LABELS = {
     "sine": "sine",
 }
 
+MESSAGE = "The wave form of the floor changes R little"
+
 
 def draw(waves: xr.Dataset) -> Figure:
     """Draw the figure from the reduced dataset of a bed shaken in several ways: a panel for each
@@ -35,4 +37,5 @@ def _content(waves: xr.Dataset, r: float) -> PanelContent:
         for (wave, label), look in zip(LABELS.items(), LOOKS, strict=False)
     ]
     beside = [one._replace(theory=drawn[0].data.R.values) for one in drawn]
-    return PanelContent(f"Vibrated bed, $r = {r:g}$", [waves], beside, theory="Lun's formula")
+    how = {"theory": "Lun's formula", "message": MESSAGE, "loc": "half"}
+    return PanelContent(f"Vibrated bed, $r = {r:g}$", [waves], beside, **how)

@@ -5,14 +5,21 @@ from matplotlib.figure import Figure
 
 from roughgas.show.figures.panel import INERTIA, TWO_WIDE, content_for_each_beta, ratio_figure
 
-FREE = "lines: theory of free cooling"
+BED = {
+    "message": "A bed departs from theory at both ends",
+    "theories": "lines: Lun's formula",
+}
+COOLING = {
+    "message": "A cooling gas follows theory at any q",
+    "theories": "lines: theory of free cooling",
+}
 
 
 def draw(bed: xr.Dataset, cooling: xr.Dataset) -> Figure:
     """Draw the figure from the reduced datasets of disks with several moments of inertia."""
     how = {"loc": "best", "axis": INERTIA}
     return ratio_figure(
-        content_for_each_beta("Vibrated bed", bed, theories="lines: Lun's formula", **how),
-        content_for_each_beta("Cooling gas", cooling, theories=FREE, **how),
+        content_for_each_beta("Vibrated bed", bed, **BED, **how),
+        content_for_each_beta("Cooling gas", cooling, **COOLING, **how),
         width=TWO_WIDE,
     )

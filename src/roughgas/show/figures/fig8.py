@@ -11,9 +11,14 @@ from matplotlib.figure import Figure
 
 from roughgas.base.errors import InputError
 from roughgas.show.figures import panel
-from roughgas.show.style import HEIGHT, THEORY
+from roughgas.show.style import THEORY
 
 SMOOTH = -1.0
+SIZE = (6.4, 4.6)  # inches
+MESSAGES = {
+    "Rough floor": "A floor matters by the spin it puts in",
+    "Rough side walls": "So do side walls",
+}
 
 
 def draw(floor: xr.Dataset, walls: xr.Dataset) -> Figure:
@@ -21,7 +26,7 @@ def draw(floor: xr.Dataset, walls: xr.Dataset) -> Figure:
 
     Raises InputError where a sweep has no smooth boundary.
     """
-    figure = Figure(figsize=(panel.TWO_WIDE, HEIGHT), layout="constrained")
+    figure = Figure(figsize=SIZE, layout="constrained")
     above, beneath = figure.subplots(2, 2, sharex="col", sharey="row")
     parts = (floor, "Rough floor"), (walls, "Rough side walls")
     for upper, lower, (data, name) in zip(above, beneath, parts, strict=True):
@@ -34,8 +39,8 @@ def draw(floor: xr.Dataset, walls: xr.Dataset) -> Figure:
         for axes in (upper, lower):
             axes.axhline(0, color=THEORY, linewidth=0.8, zorder=0)
         panel.ROUGHNESS.prepare(lower)
-        upper.legend(title="lines: rate equations", loc="upper left")
-        panel.add_title(upper, [data], rf"{name}, $r = {panel.RESTITUTION:g}$")
+        panel.add_title(upper, [data], rf"{name}, $r = {panel.RESTITUTION:g}$", MESSAGES[name])
+    above[0].legend(title="lines: rate equations", loc="upper left")
     above[0].set_ylabel("$R$ minus $R$ with\na smooth boundary")
     beneath[0].set_ylabel("share of rotation in\nthe energy put in")
     figure.align_ylabels()

@@ -15,11 +15,11 @@ from roughgas.show.figures.series import RESTITUTION, Series, series, series_for
 from roughgas.show.style import FAINT, GREY, HEIGHT, THEORY, WIDTH
 
 __all__ = ["RESTITUTION", "Series", "series", "series_for_each"]
-ENERGY_RATIO = r"$R = E^\circ\!/(E^\circ + \bar{E})$"
+ENERGY_RATIO = r"$R = E_\mathrm{rot}/(E_\mathrm{rot} + E_\mathrm{trans})$"
 WIDE, TWO_WIDE = 5.6, 7.6  # inches, for one panel of many points, and for two
-SIZE = 4.6
+SIZE = 4.2
 """Marker size of the first series; each further one is smaller."""
-SIDESTEP = 0.0095
+SIDESTEP = 0.012
 """Distance between the points of two series, as a share of the axis: none hides another."""
 ROW = 1.05
 """Height of each row of residuals beyond the first, in inches."""
@@ -31,7 +31,7 @@ AVERAGES = {
 """The ways in which R is averaged, by the names of variables; the first is the paper's."""
 ANY_R = "Lun's formula, any $r$"
 DOTS = (0, (1, 2))
-RING = {"marker": "o", "markersize": 8, "markeredgewidth": 0.6, "fillstyle": "none"}
+RING = {"marker": "o", "markersize": 7, "markeredgewidth": 0.5, "fillstyle": "none"}
 
 
 class Axis(NamedTuple):
@@ -98,15 +98,15 @@ class Panel(NamedTuple):
 class PanelContent(NamedTuple):
     """What a figure shows in one of its panels."""
 
-    title: str
+    title: str  # what is shown
     data: Sequence[xr.Dataset]  # whose size and seeds the title gives
     drawn: Sequence[Series]
     theory: str = ""  # of all series: a black line, so called in the legend
     theories: str = ""  # of each series: a line in its look; the title of the legend
-    loc: str = (
-        "upper left"  # of the legend; "half" is beneath the line at 1/2, "outside" beside the panel
-    )
+    # of the legend; "half" is beneath the line at 1/2, "outside" beside the panel
+    loc: str = "upper left"
     axis: Axis = BETA
+    message: str = ""  # what one learns from it, above the title
     # of the series drawn: those whose residuals are to fit
     scale: Callable[[Sequence[Series]], Sequence[Series]] = lambda drawn: drawn
     # draws what only this figure has
@@ -139,7 +139,7 @@ def ratio_figure(*parts: PanelContent, width: float = WIDTH, averaged: bool = Fa
         draw_theory(panel, part.drawn[:1] if part.theory else part.drawn, black=bool(part.theory))
         part.extra(panel.main, part.drawn)
         add_legend(panel.main, part.drawn, part.theory, title=part.theories or None, loc=part.loc)
-        add_title(panel.main, part.data, part.title)
+        add_title(panel.main, part.data, part.title, part.message)
     scale = [one for part in parts for one in part.scale(part.drawn)]
     for part, panel in zip(parts, panels, strict=True):
         frame_rows(panel, part.drawn, scale, averages)
@@ -228,7 +228,8 @@ def frame_residuals(
     notes += ["arrows: beyond this scale"] * any(beyond)
     residual.set_title("; ".join(notes), fontsize=6.5, color=GREY, loc="right", pad=2)
     if not beyond:
-        residual.text(0.5, 0.6, "only in a steady state", color=GREY, transform=residual.transAxes)
+        note = {"color": GREY, "fontsize": 7.5, "ha": "center", "transform": residual.transAxes}
+        residual.text(0.5, 0.6, "only in a steady state", **note)
 
 
 def add_legend(main: Axes, drawn: Sequence[Series], theory: str = "", **how: Any) -> None:
@@ -248,13 +249,14 @@ def add_legend(main: Axes, drawn: Sequence[Series], theory: str = "", **how: Any
     if how.get("loc") == "half":
         low, high = main.get_ylim()
         how |= {"loc": "upper left", "bbox_to_anchor": (0.0, (0.5 - low) / (high - low))}
+        how |= {"borderaxespad": 0.8}
     elif how.get("loc") == "outside":
         how |= {"loc": "upper left", "bbox_to_anchor": (1.01, 1.02), "borderaxespad": 0.0}
     main.legend(handles=handles, **how)
 
 
-def add_title(main: Axes, datasets: Sequence[xr.Dataset], what: str) -> None:
-    """Write two lines above: what is shown, how large it is, and what the error bars are."""
+def add_title(main: Axes, datasets: Sequence[xr.Dataset], what: str, message: str = "") -> None:
+    """Write above what one learns, what is shown, how large it is, and what error bars are."""
     counts = np.concatenate([data.n_seeds.values.ravel() for data in datasets])
     low, high = counts[counts > 0].min(), counts.max()
     seeds = f"{high} seeds" if low == high else f"{low} to {high} seeds"
@@ -264,17 +266,26 @@ def add_title(main: Axes, datasets: Sequence[xr.Dataset], what: str) -> None:
     number = particles_of(datasets[0]).replace(" to ", "$ to $")
     text = f"{what}, $N = {number}${scale}\nError bars: {bars}"
     main.set_title(text, fontsize=8, loc="left")
+    if message:
+        place = {"xy": (0, 1), "xycoords": "axes fraction", "textcoords": "offset points"}
+        main.annotate(message, xytext=(0, 27), fontsize=8.5, fontweight="bold", **place)
 
 
 def draw_points(
-    axes: Axes, one: Series, at: np.ndarray, values: np.ndarray, size: float = 4, average: str = "R"
+    axes: Axes,
+    one: Series,
+    at: np.ndarray,
+    values: np.ndarray,
+    size: float = 3.6,
+    average: str = "R",
 ) -> None:
     """Draw symbols: filled in a steady state, else open; ringed where contact times acted."""
     common = {"color": one.look.colour, "fmt": one.look.marker, "elinewidth": 0.8, "capsize": 1.5}
-    for part, fill in ((one.steady, "full"), (~one.steady, "none")):
+    open_ones = {"markerfacecolor": "white", "zorder": 4}  # which no other symbol hides
+    for part, look in ((one.steady, {}), (~one.steady, open_ones)):
         bars = one.error_of(average)[part]
-        axes.errorbar(at[part], values[part], bars, fillstyle=fill, markersize=size, **common)
-    axes.plot(at[one.touched], values[one.touched], color=GREY, linestyle="none", **RING)
+        axes.errorbar(at[part], values[part], bars, markersize=size, **common, **look)
+    axes.plot(at[one.touched], values[one.touched], color=GREY, linestyle="none", zorder=1, **RING)
 
 
 def _key(colour: str, label: str, marker: str, linestyle: Any = "none", **how: Any) -> Line2D:

@@ -163,7 +163,7 @@ def _energies(data, layout, axis, places, width) -> Figure:
 
 
 def _label_energy(axes: Axes) -> None:
-    axes.set_ylabel(r"$\bar{E}$, per degree of freedom")
+    axes.set_ylabel(r"$E_\mathrm{trans}$, per degree of freedom")
 
 
 def _title(data: xr.Dataset, place: Mapping[str, Any]) -> str:

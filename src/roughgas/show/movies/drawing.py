@@ -184,7 +184,9 @@ def _graph(axes: Axes, subject: MovieSubject, shots: Sequence[Snapshot]) -> Call
     at = np.array([shot.collisions if cooling else shot.time for shot in shots])
     if shots[0].R is None:
         values = np.array([shot.E_trans for shot in shots])
-        axes.set(ylabel=r"$\bar{E}$ / ($m a^2/T^2$)", yscale="log" if cooling else "linear")
+        axes.set(
+            ylabel=r"$E_\mathrm{trans}$ / ($m a^2/T^2$)", yscale="log" if cooling else "linear"
+        )
     else:
         values = np.array([shot.R for shot in shots])
         axes.set(ylabel=r"$R$", ylim=(0.0, 1.05 * max(0.6, values.max())))

@@ -166,7 +166,7 @@ def _floors(axes, data):
         axes.text(x, 1.06 * level, text, color=colour, va="bottom", ha=side, **across)
     own = float(data.R_reference_stderr / data.R_reference)
     axes.axhspan(own * LEAST, own, color=FAINT, alpha=0.25, linewidth=0, zorder=0)
-    axes.set_ylim(bottom=own * LEAST)
+    axes.set_ylim(bottom=own * LEAST * 0.02)  # room for the legend beneath what is shaded
     below = {"va": "top", "ha": "right", "color": GREY} | across
     axes.text(0.985, 0.9 * own, "error of the reference", **below)
 
