@@ -77,7 +77,7 @@ def opened(path: str | Path, *kinds: str) -> Iterator["netCDF4.Dataset"]:
     import netCDF4
 
     if not Path(path).exists():
-        raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), str(path))
+        raise FileNotFoundError(errno.ENOENT, _absence(Path(path)), str(path))
     if not Path(path).is_file():  # a pipe would be waited for
         raise InputError("file", path, "be a file")
     if not is_whole(path):
@@ -95,6 +95,13 @@ def opened(path: str | Path, *kinds: str) -> Iterator["netCDF4.Dataset"]:
             other = f", not {found}" if found else ""
             raise InputError("file", path, f"be {wanted}{other}")
         yield file
+
+
+def _absence(path: Path) -> str:
+    """Return why there is no file, and which command makes it if it is a result of the workflow."""
+    why = os.strerror(errno.ENOENT)
+    made = path.parts[:1] == ("results",) and path.suffix == ".nc"
+    return f"{why}; to make it: snakemake -j2 {path}" if made else why
 
 
 def kind_of(file: "netCDF4.Dataset") -> str | None:

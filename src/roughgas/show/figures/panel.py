@@ -49,11 +49,6 @@ class Axis(NamedTuple):
         spaced = np.geomspace if self.logarithmic else np.linspace
         return spaced(*self.drawn, 801)
 
-    def holds(self, values: np.ndarray) -> bool:
-        """Return whether all values lie between the limits of the axis."""
-        low, high = self.limits
-        return bool(((values >= low) & (values <= high)).all())
-
     def prepare(self, axes: Axes) -> None:
         """Label the axis of a plot, and set its scale and its limits."""
         axes.set_xlabel(self.label)

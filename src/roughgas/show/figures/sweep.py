@@ -24,6 +24,7 @@ LABELS = {
     "spin_share": panel.SHARE_LABEL,
 }
 SYMBOLS = {"r": "r", "beta": r"\beta", "mu": r"\mu", "inertia": "q", "particles": "N"}
+MARGIN = 0.08  # of an axis, beside the data
 LEGEND = 1.6  # inches beside the panels
 WIDE_RANGE = 20.0  # between the ends of an axis that is logarithmic
 
@@ -105,22 +106,22 @@ def _spread(values: Sequence[Any], number: int) -> list[Any]:
 
 def _numbered(data: xr.Dataset, over: str) -> tuple[xr.Dataset, panel.Axis]:
     """Return the data with numbers along the axis, in place of words, and the axis."""
-    values = data[over].values
-    label = LABELS.get(over, over.replace("_", " "))
+    values, known = data[over].values, KNOWN.get(over)
+    label = known.label if known else LABELS.get(over, over.replace("_", " "))
     if values.dtype.kind not in "fiu":
-        ends = (-0.5, len(values) - 0.5)
-        return data.assign_coords({over: np.arange(len(values))}), panel.Axis(
-            over, label, ends, ends
-        )
-    if over in KNOWN and (over == "beta" or KNOWN[over].holds(values)):
-        return data, KNOWN[over]
+        ends = -0.5, len(values) - 0.5
+        numbered = data.assign_coords({over: np.arange(len(values))})
+        return numbered, panel.Axis(over, label, ends, ends)
+    if over == "beta":
+        return data, known
     low, high = float(values.min()), float(values.max())
-    if low > 0.0 and high / low > WIDE_RANGE:
-        ends = low * (low / high) ** 0.06, high * (high / low) ** 0.06
-        return data, panel.Axis(over, label, ends, ends, True)
-    room = 0.06 * (high - low) or 0.06 * abs(high) or 1.0
-    ends = low - room, high + room
-    return data, panel.Axis(over, label, ends, (low, high) if high > low else ends)
+    wide = low > 0.0 and high / low > (1.0 if known and known.logarithmic else WIDE_RANGE)
+    if wide:
+        ends = low * (low / high) ** MARGIN, high * (high / low) ** MARGIN
+    else:
+        room = MARGIN * (high - low) or MARGIN * abs(high) or 1.0
+        ends = low - room, high + room
+    return data, panel.Axis(over, label, ends, (low, high) if high > low else ends, wide)
 
 
 def _name_words(figure: Figure, data: xr.Dataset, over: str) -> None:
