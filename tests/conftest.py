@@ -44,3 +44,11 @@ def kernels(request, tmp_path_factory):
     folder = tmp_path_factory.getbasetemp().parent / "kernels"
     folder.mkdir(exist_ok=True)
     warm.compile_kernels(folder)
+
+
+@pytest.fixture(scope="session")
+def files(tmp_path_factory):
+    """The paths of a dataset of each kind (see files.py), which no test changes."""
+    from tests.files import write_all
+
+    return write_all(tmp_path_factory.mktemp("files"))

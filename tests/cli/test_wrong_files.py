@@ -2,10 +2,10 @@
 
 import json
 import os
+import shutil
 
 import netCDF4
 import pytest
-from tests.files import write_all
 
 from roughgas.cli import main
 
@@ -32,8 +32,8 @@ NAMED = {
 
 
 @pytest.fixture
-def folder(tmp_path, monkeypatch):
-    write_all(tmp_path)
+def folder(files, tmp_path, monkeypatch):
+    shutil.copytree(files["point"].parent, tmp_path, dirs_exist_ok=True)
     monkeypatch.chdir(tmp_path)
     return tmp_path
 

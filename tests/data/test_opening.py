@@ -5,7 +5,6 @@ import shutil
 import netCDF4
 import pytest
 import xarray as xr
-from tests.files import write_all
 
 from roughgas.base.errors import InputError
 from roughgas.cli import main
@@ -22,11 +21,6 @@ READERS = {
     "film": read_film,
     "studies": read_studies,
 }
-
-
-@pytest.fixture(scope="module")
-def files(tmp_path_factory):
-    return write_all(tmp_path_factory.mktemp("files"))
 
 
 @pytest.mark.parametrize("wanted", READERS)

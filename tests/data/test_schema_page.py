@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from tests.data import schema_page as page
-from tests.files import frames, point, write_all
+from tests.files import frames, point
 
 from roughgas.base.errors import InputError
 from roughgas.data.film import read_film, write_film
@@ -25,11 +25,6 @@ GROUP = {"studies": "coverage"}
 GRID = ("wave", "r", "beta")
 AXES = {*GRID, "seed"}
 TYPES = {"str": "string", "f8": "double", "f4": "float", "i1": "byte", "i4": "int", "i8": "int64"}
-
-
-@pytest.fixture(scope="module")
-def files(tmp_path_factory):
-    return write_all(tmp_path_factory.mktemp("files"))
 
 
 def on_grid(dims):

@@ -5,17 +5,10 @@ import json
 
 import netCDF4
 import numpy as np
-import pytest
 import xarray as xr
-from tests.files import write_all
 
 from roughgas.cli import main
 from roughgas.theory.prediction import predicted_ratio
-
-
-@pytest.fixture(scope="module")
-def files(tmp_path_factory):
-    return write_all(tmp_path_factory.mktemp("files"))
 
 
 def columns(path):
