@@ -17,13 +17,14 @@ from importlib import import_module, metadata, util
 from pathlib import Path
 from typing import NamedTuple
 
+from roughgas.base import extras
 from roughgas.base.files import check_place
 from roughgas.base.version import __version__
 
 OK, WARNING, PROBLEM = "ok", "warning", "problem"
 ANEW = "install anew: `rm -r .venv` and `make setup` in the project's folder"
 PACKAGE = Path(__file__).resolve().parent
-MODULES = "numpy numba netCDF4 xarray matplotlib yaml jsonschema emcee plotly rocrate tqdm"
+MODULES = "numpy numba netCDF4 xarray pandas yaml ruamel.yaml jsonschema tqdm argcomplete"
 CACHE = "set ROUGHGAS_CACHE_DIR to a folder that can be written and has room"
 SETTINGS = {
     "particles": 36,
@@ -77,6 +78,9 @@ def examine() -> Iterator[tuple[str, Diagnosis]]:
         try:
             found = check()
         except Exception as error:  # whatever a broken library raises
+            if isinstance(error, ImportError) and (lacks := extras.remedy(error)):
+                yield name, Diagnosis(OK, f"left out: {lacks}")
+                continue
             said = " ".join(str(error).split())
             found = Diagnosis(PROBLEM, f"{type(error).__name__}: {said}", remedy)
         yield name, found
@@ -98,6 +102,17 @@ def packages() -> Diagnosis:
     return Diagnosis(OK, f"{python}; all libraries can be imported")
 
 
+def parts() -> Diagnosis:
+    """Check that what extras bring can be imported, and say which are not installed."""
+    lacking = extras.missing()
+    for name in sorted(set(extras.EXTRAS) - set(lacking)):
+        for package in extras.EXTRAS[name]:
+            import_module(package)
+    there = ", ".join(name for name in extras.EXTRAS if name not in lacking) or "none"
+    more = f"; not installed: {', '.join(lacking)}" if lacking else ""
+    return Diagnosis(OK, f"{there}{more}")
+
+
 def versions() -> Diagnosis:
     """Check that what is installed is what requirements.lock pins for this machine."""
     from packaging.requirements import Requirement
@@ -111,9 +126,10 @@ def versions() -> Diagnosis:
     lines = [line for line in lock.read_text(encoding="utf-8").splitlines() if line[:1].isalnum()]
     others = []
     for one in (Requirement(line.rstrip(" \\")) for line in lines):
-        version = there.get(one.name, "missing")
-        if (one.marker is None or one.marker.evaluate()) and version not in one.specifier:
-            others.append(f"{one.name} {version} ({one.specifier} is pinned)")
+        version = there.get(one.name)
+        meant = one.marker is None or one.marker.evaluate()
+        if meant and (version is None or version not in one.specifier):
+            others.append(f"{one.name} {version or 'missing'} ({one.specifier} is pinned)")
     if others:
         return Diagnosis(WARNING, ", ".join(others), f"for the pinned versions, {ANEW}")
     return Diagnosis(OK, f"as pinned in {lock}")
@@ -246,6 +262,7 @@ def _ran(command: list[str]) -> subprocess.CompletedProcess[str]:
 
 CHECKS = {
     "packages": packages,
+    "extras": parts,
     "versions": versions,
     "roughgas": package,
     "configuration": configuration,

@@ -81,17 +81,17 @@ def test_what_the_environment_breaks(monkeypatch, name, changes, verdict, said, 
 
 
 def test_a_file_that_shadows_a_library(tmp_path):
-    (tmp_path / "emcee.py").write_text("__version__ = '1'")
+    (tmp_path / "argcomplete.py").write_text("__version__ = '1'")
     found = check_alone("packages", tmp_path, PYTHONPATH=f"{tmp_path}:{ROOT / 'src'}")
-    assert found[0] == WARNING and f"{tmp_path / 'emcee.py'} away" in found[2]
+    assert found[0] == WARNING and f"{tmp_path / 'argcomplete.py'} away" in found[2]
 
 
 def test_a_library_that_is_missing_or_broken(monkeypatch):
-    monkeypatch.setitem(sys.modules, "emcee", None)
-    monkeypatch.setattr(doctor, "MODULES", "emcee")
+    monkeypatch.setitem(sys.modules, "tqdm", None)
+    monkeypatch.setattr(doctor, "MODULES", "tqdm")
     monkeypatch.setattr(doctor.util, "find_spec", lambda _: None)
     found = check("packages", monkeypatch)
-    assert found.verdict == PROBLEM and "emcee" in found.said and "make setup" in found.remedy
+    assert found.verdict == PROBLEM and "tqdm" in found.said and "make setup" in found.remedy
 
 
 def test_other_versions_than_the_pinned_ones(tmp_path, monkeypatch):
@@ -100,7 +100,7 @@ def test_other_versions_than_the_pinned_ones(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(doctor, "PACKAGE", tmp_path / "nowhere" / "src" / "roughgas")
     found = check("versions", monkeypatch)
-    assert found.verdict == WARNING and found.said.startswith("pyyaml ") and "99." in found.said
+    assert found.verdict == WARNING and "pyyaml " in found.said and "99." in found.said
 
 
 @pytest.mark.parametrize(

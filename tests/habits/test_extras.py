@@ -1,0 +1,83 @@
+"""Without an extra roughgas simulates all the same, and says in a line what to install."""
+
+import tomllib
+
+import pytest
+from tests.habits.conftest import ROOT, python
+
+from roughgas.base.extras import EXTRAS
+
+POINT = "cooling --scale small --r 0.9 --beta 0.5"
+WITHOUT_ANY = {
+    "run": f"run {POINT} -o point.nc",
+    "summary": f"run {POINT} --seed 2",
+    "trajectory": f"trajectory {POINT} --times 0 1 -o gas.xyz",
+    "show": "show point.nc",
+    "export": "export point.nc",
+    "reduce": "reduce point.nc -o cooling.nc",
+    "theory": "theory --r 0.9 --beta 0.5",
+    "completion": "completion bash",
+}
+WITH_ONE = {
+    "figures": f"movie {POINT} -o gas.gif",
+    "report": "html text.md -o text.html",
+    "crate": "crate --verify run.zip",
+    "trajectories": f"trajectory {POINT} -o gas.gsd",
+}
+BLOCKED = """
+import sys
+sys.modules.update(dict.fromkeys({packages!r}))
+from roughgas.cli import main
+sys.exit(main(sys.argv[1:]))
+"""
+
+EXAMINED = """
+import sys
+sys.modules.update(dict.fromkeys({packages!r}))
+from roughgas import doctor
+names = "packages", "extras", "figures", "movies", "Snakemake"
+doctor.CHECKS = dict((name, doctor.CHECKS[name]) for name in names)
+doctor.doctor(False, False)
+"""
+
+
+def told(line, folder):
+    """A finished process of `roughgas`, in an environment without the packages of any extra."""
+    packages = [package for brought in EXTRAS.values() for package in brought]
+    return python("-c", BLOCKED.format(packages=packages), *line.split(), cwd=folder)
+
+
+def test_what_simulates_needs_no_extra(tmp_path):
+    for name, line in WITHOUT_ANY.items():
+        done = told(line, tmp_path)
+        assert done.returncode == 0, (name, done.stderr)
+    assert (tmp_path / "gas.xyz").exists() and (tmp_path / "point.csv").exists()
+
+
+@pytest.mark.parametrize("extra", WITH_ONE)
+def test_an_extra_that_lacks_is_named_in_a_line(extra, tmp_path):
+    (tmp_path / "text.md").write_text("# A text\n")
+    done = told(WITH_ONE[extra], tmp_path)
+    package = EXTRAS[extra][0]
+    said = f"{package} is not installed: pip install 'roughgas[{extra}]'"
+    assert (done.returncode, done.stdout) == (1, "")
+    assert done.stderr == f"roughgas: error: {said}\n"
+    assert [path.name for path in tmp_path.iterdir()] == ["text.md"]
+
+
+def test_the_doctor_says_what_is_left_out(tmp_path):
+    packages = [package for brought in EXTRAS.values() for package in brought]
+    done = python("-c", EXAMINED.format(packages=packages), cwd=tmp_path)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "none; not installed: workflow, figures, movies, report, crate" in done.stdout
+    assert "left out: matplotlib is not installed: pip install 'roughgas[figures]'" in done.stdout
+
+
+def test_the_extras_are_those_of_the_package():
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    extras = project["optional-dependencies"]
+    assert extras["all"] == [f"roughgas[{','.join(EXTRAS)}]"] and set(EXTRAS) < set(extras)
+    lock = (ROOT / "requirements.lock").read_text()
+    for brought in EXTRAS.values():
+        for package in brought:  # `make` installs them all
+            assert f"\n{package.replace('_', '-')}" in lock or f"\n{package}" in lock, package
