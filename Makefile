@@ -42,9 +42,9 @@ report: setup ## pages for a browser: the report, every point to click on, a liv
 	$(SNAKEMAKE) $(REPORTED) explore living $(RESULTS)/report.html
 	$(BIN)/snakemake --config scale=$(SCALE) --report $(RESULTS)/workflow.html -- $(REPORTED)
 	@echo
-	@echo "Look at  $(RESULTS)/report.html  $(RESULTS)/explore.html  $(RESULTS)/living.html,"
-	@echo "and for all products  $(RESULTS)/workflow.html:  each is one file, to be sent as it is. More in the last:"
-	@echo "    make$(AT_SCALE) REPORTED='figures extensions' report"
+	@echo "Look at  $(RESULTS)/report.html  $(RESULTS)/explore.html  $(RESULTS)/living.html:"
+	@echo "each is one file, to be sent as it is. All products, and how each was made:  $(RESULTS)/workflow.html"
+	@echo "With more in it:  make$(AT_SCALE) REPORTED='figures extensions' report"
 
 plan: setup ## say what `make figures` at SCALE will cost, from pilot runs
 	$(SNAKEMAKE) plan

@@ -202,6 +202,17 @@ def test_it_moves_at_once_and_pauses(page):
     page.wait(lambda: now(page)[0] > stopped[0])
 
 
+def test_it_rests_while_its_tab_is_hidden(page):
+    hide = """const [value] = arguments;
+        Object.defineProperty(document, "hidden", { value, configurable: true });
+        document.dispatchEvent(new Event("visibilitychange"));
+        return new Promise(done => setTimeout(() => done(gas.time), 200));"""
+    hidden = page.script(hide, True)
+    page.script("return new Promise(done => setTimeout(done, 200))")
+    assert now(page)[0] == hidden
+    assert page.script(hide, False) > hidden
+
+
 def test_sliders_act_at_once_and_the_address_keeps_them(page):
     slide(page, "r", 0.8)
     slide(page, "beta", -0.5)
