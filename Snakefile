@@ -144,7 +144,7 @@ rule showcase:
 
 rule accuracy:
     input:
-        drawn(["accuracy"]),
+        drawn(["accuracy", "accuracy_limits"]),
         f"results/{SCALE}/accuracy.md",
         documents("accuracy"),
 

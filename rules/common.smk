@@ -12,7 +12,7 @@ try:
     from roughgas.base.errors import InputError, not_one_of
     from roughgas.base.layout import in_rst
     from roughgas.show import catalogue
-    from roughgas.studies.figures import FIGURES
+    from roughgas.studies.figures import DATASETS, FIGURES
 except ModuleNotFoundError as error:
     sys.exit(f"roughgas: error: no module {error.name}: `make setup`, then .venv/bin/snakemake")
 

@@ -52,7 +52,8 @@ def code_of_study_figure(wildcards):
 
 
 def study_of_figure(wildcards):
-    return f"results/{scale_of(wildcards.folder)}/{wildcards.study_figure}.nc"
+    dataset = DATASETS[wildcards.study_figure]
+    return f"results/{scale_of(wildcards.folder)}/{dataset}.nc"
 
 
 rule study:

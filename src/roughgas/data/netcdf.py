@@ -109,7 +109,7 @@ def read_groups(path: str | Path) -> "dict[str, xarray.Dataset]":
 
     with opened(path, STUDIES) as file:
         names = list(file.groups)
-        return {n: xarray.load_dataset(path, group=n, engine="netcdf4") for n in names}
+    return {n: xarray.load_dataset(path, group=n, engine="netcdf4") for n in names}
 
 
 def _fill(

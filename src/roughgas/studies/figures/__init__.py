@@ -6,7 +6,9 @@ from pathlib import Path
 
 from roughgas.base.errors import InputError
 
-FIGURES = ("accuracy", "coverage", "profiles", "finite_size", "runaway")
+FIGURES = ("accuracy", "accuracy_limits", "coverage", "profiles", "finite_size", "runaway")
+DATASETS = {name: "accuracy" if name == "accuracy_limits" else name for name in FIGURES}
+"""The combined dataset that each is drawn from."""
 
 
 def draw(name: str, data: str | Path, outputs: Iterable[str | Path]) -> None:

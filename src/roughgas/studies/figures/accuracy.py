@@ -1,5 +1,7 @@
-"""The work-precision figure: error of R against CPU seconds, a panel for each study, and the map of
-what the Maxwellian theory misses."""
+"""The work-precision figures: error of R against CPU seconds, of noise and of models; and in
+accuracy_limits.py of springs and time steps, with the map of what the Maxwellian theory misses."""
+
+from collections.abc import Sequence
 
 import numpy as np
 import xarray as xr
@@ -9,9 +11,9 @@ from matplotlib.ticker import FuncFormatter, MultipleLocator
 
 from roughgas.show.style import FAINT, GREY, LOOKS, THEORY, Look
 from roughgas.statistics.fits import power_law
-from roughgas.studies.figures.panels import four_panels
+from roughgas.studies.figures.panels import Panel, paired_panels
 
-SIZE = (10.2, 8.6)  # inches
+SIZE = (10.2, 4.6)  # inches, of two panels
 WAYS = {"length": "-", "seeds": "--"}
 METHODS = {
     "closed_form": ("closed form (Maxwellian theory)", Look(THEORY, "*", "none")),
@@ -30,10 +32,14 @@ THIN = {"ls": "none", "elinewidth": 0.9}
 
 
 def draw_figure(statistical: xr.Dataset, models: xr.Dataset, discretisation: xr.Dataset) -> Figure:
-    """Return the figure, from the datasets of the three studies."""
-    data = (statistical, models, discretisation, models)
-    titled = [(panel, _of(one, title)) for (panel, title), one in zip(PANELS, data, strict=True)]
-    return four_panels(titled, SIZE, *data)
+    """Return the figure of noise and of models, from the datasets of the three studies."""
+    return draw_panels(PANELS[:2], statistical, models)
+
+
+def draw_panels(panels: Sequence[Panel], *data: xr.Dataset) -> Figure:
+    """Return a figure of these panels, r and beta in their titles."""
+    titled = [(panel, _of(one, title)) for (panel, title), one in zip(panels, data, strict=True)]
+    return paired_panels(titled, SIZE, *data)
 
 
 def _of(data, title):

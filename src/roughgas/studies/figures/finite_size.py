@@ -6,7 +6,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from roughgas.show.style import GREY, LOOKS, THEORY, Look
-from roughgas.studies.figures.panels import four_panels
+from roughgas.studies.figures.panels import paired_panels
 from roughgas.studies.tables import along
 
 SIZE = (10.2, 8.2)  # inches
@@ -19,7 +19,7 @@ APART = 1.19  # least ratio of the heights of two words at the end of series
 
 def draw_figure(data: xr.Dataset) -> Figure:
     """Return the figure, from the study's dataset."""
-    return four_panels(PANELS, SIZE, *[data] * len(PANELS))
+    return paired_panels(PANELS, SIZE, *[data] * len(PANELS))
 
 
 def draw_number(axes: Axes, data: xr.Dataset) -> None:

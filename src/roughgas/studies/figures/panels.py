@@ -1,4 +1,4 @@
-"""What figures of studies share: four panels with a title each."""
+"""What figures of studies share: panels in two columns, with a title each."""
 
 from collections.abc import Callable, Sequence
 
@@ -9,10 +9,11 @@ from matplotlib.figure import Figure
 Panel = tuple[Callable[[Axes, xr.Dataset], None], str]
 
 
-def four_panels(panels: Sequence[Panel], size: tuple[float, float], *data: xr.Dataset) -> Figure:
-    """Return a figure with each of four panels drawn from its dataset, and its title above it."""
+def paired_panels(panels: Sequence[Panel], size: tuple[float, float], *data: xr.Dataset) -> Figure:
+    """Return a figure of two or four panels, each drawn from its dataset, its title above it."""
     figure = Figure(figsize=size, layout="constrained")
-    for axes, (panel, title), one in zip(figure.subplots(2, 2).flat, panels, data, strict=True):
+    every = figure.subplots(len(panels) // 2, 2).flat
+    for axes, (panel, title), one in zip(every, panels, data, strict=True):
         panel(axes, one)
         axes.set_title(title, loc="left", fontsize=9)
     return figure

@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
 from roughgas.show.style import FAINT, GREY, LOOKS, THEORY, Look
-from roughgas.studies.figures.panels import four_panels
+from roughgas.studies.figures.panels import paired_panels
 from roughgas.studies.tables import along
 
 SIZE = (10.2, 8.0)  # inches
@@ -20,7 +20,7 @@ SIDESTEP, BESIDE = 1.04, 1.15  # factors of N between values of mu, and of event
 
 def draw_figure(data: xr.Dataset) -> Figure:
     """Return the figure, from the study's dataset."""
-    return four_panels(PANELS, SIZE, *[data] * len(PANELS))
+    return paired_panels(PANELS, SIZE, *[data] * len(PANELS))
 
 
 def draw_example(axes: Axes, data: xr.Dataset) -> None:
