@@ -125,7 +125,7 @@ def test_several_files(product, capsys):
         ("README.md", "words", 2, "must be a dataset of roughgas: it is of another program"),
         ("x.json", "{}", 2, "pilot = "),
         ("x.nc", "", 2, "must be a dataset of roughgas"),
-        ("", None, 2, "must be a dataset of roughgas"),
+        ("", None, 2, "must be a file"),
         ("no.nc", None, 1, "No such file or directory"),
     ],
 )
