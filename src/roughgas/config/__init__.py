@@ -28,7 +28,7 @@ from roughgas.config.labels import (  # noqa: F401
 # neither
 
 SHIPPED = Path(__file__).parents[1] / "config.yaml"
-"""The experiments that come with the package: in a clone of the repository, its config.yaml."""
+"""The experiments that come with the package; in a clone of the repository, its config.yaml."""
 SHOWCASE, STUDIES = "showcase", "studies"
 SEEDS_PER_JOB = 4
 GRID = ("r", "beta", "seeds")
