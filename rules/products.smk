@@ -132,6 +132,7 @@ rule table:
             category=heading_of_product,
             labels=titled("Table: every number (CSV, to download)"),
         ),
+        "results/{scale}/{product}.datapackage.json",
     log:
         "logs/{scale}/{product}_csv.log",
     wildcard_constraints:
@@ -141,7 +142,7 @@ rule table:
     message:
         "write {output}"
     shell:
-        "roughgas table {input.data} --output {output} > {log} 2>&1"
+        "roughgas table {input.data} --output {output[0]} > {log} 2>&1"
 
 
 rule claims:

@@ -4,7 +4,6 @@ says what the columns mean; for programs a data package (Frictionless) says the 
 Numbers are written so that the same bits are read back; missing ones are empty cells.
 """
 
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -13,17 +12,17 @@ import numpy as np
 from pandas import DataFrame, read_csv
 from xarray import Dataset
 
-from roughgas.base.files import whole_file, write_text
-from roughgas.base.layout import as_json, in_csv
+from roughgas.base.files import whole_file
+from roughgas.base.layout import in_csv
 from roughgas.data.netcdf import read_netcdf, unit_of
 from roughgas.data.opening import opened
 from roughgas.results import table
+from roughgas.results.datapackage import Field, field, write_package
 
 MAIN = ("sample",), ("frame",)
 """The dimensions of the main table of a point, or of a film; it gets the plain name."""
 UNREADABLE = ("last_memory",)
 """Variables that mean nothing to anyone but the kernel."""
-NO_NAME = re.compile(r"[^a-z0-9._-]+")  # of what has a name in a data package
 ABOUT = ("name", "file", "value", "units", "meaning")
 
 
@@ -62,39 +61,22 @@ def _export(dataset: Dataset, output: Path) -> list[Path]:
         found_in = dict.fromkeys(axes, file.name) | found_in | dict.fromkeys(names, file.name)
     about = _beside(output, "about")
     _write(about, DataFrame(_descriptions(dataset, found_in), columns=ABOUT, dtype=object))
-    package = output.with_name(f"{output.stem}.datapackage.json")
-    write_text(package, f"{as_json(_package(dataset, [*files, about]))}\n")
+    tables = [(file, _fields(dataset, file)) for file in (*files, about)]
+    package = write_package(output, str(dataset.attrs.get("title", "")), tables)
     return [*files, about, package]
 
 
-def _package(dataset: Dataset, files: Sequence[Path]) -> dict[str, Any]:
-    """Return what programs need to know of tables, as a data package: types, titles, units."""
-    tables = [_table_of(dataset, file) for file in files]
-    name = NO_NAME.sub("-", files[0].stem.lower())
-    about = {"name": name, "title": str(dataset.attrs.get("title", ""))}
-    return about | {"profile": "tabular-data-package", "resources": tables}
+def _fields(dataset: Dataset, file: Path) -> list[Field]:
+    """Return the columns of a table that has been written."""
+    head = read_csv(file, dtype=object, keep_default_na=False, nrows=0).columns
+    return [_field(dataset, str(name)) for name in head]
 
 
-def _table_of(dataset: Dataset, file: Path) -> dict[str, Any]:
-    frame = read_csv(file, dtype=object, keep_default_na=False, nrows=1)
-    fields = [_field(dataset, name) for name in frame.columns]
-    return {
-        "name": NO_NAME.sub("-", file.stem.lower()),
-        "path": file.name,
-        "profile": "tabular-data-resource",
-        "format": "csv",
-        "encoding": "utf-8",
-        "schema": {"fields": fields, "missingValues": [""]},
-    }
-
-
-def _field(dataset: Dataset, name: str) -> dict[str, Any]:
+def _field(dataset: Dataset, name: str) -> Field:
     if name not in dataset.variables:
-        return {"name": name, "type": "integer" if name in dataset.dims else "any"}
-    variable = dataset[name]
-    kind = {"i": "integer", "u": "integer", "f": "number"}.get(variable.dtype.kind, "string")
-    told = {"title": variable.attrs.get("long_name", ""), "unit": unit_of(variable.attrs)}
-    return {"name": name, "type": kind} | {key: text for key, text in told.items() if text}
+        return field(name, "i" if name in dataset.dims else "")
+    one = dataset[name]
+    return field(name, one.dtype.kind, one.attrs.get("long_name", ""), unit_of(one.attrs))
 
 
 def _columns(dataset: Dataset) -> dict[tuple[str, ...], list[str]]:
