@@ -140,7 +140,8 @@ def _foreign(options: argparse.Namespace) -> Path | None:
     """
     from roughgas.data.opening import is_foreign
 
-    given = (getattr(options, name, None) for name in ("inputs", "input", "files", "points"))
+    names = ("inputs", "input", "files", "points", "start_from")
+    given = (getattr(options, name, None) for name in names)
     lists = ([one] if isinstance(one, str) else one for one in given)
     for path in (Path(name) for one in lists if isinstance(one, list) for name in one):
         for file in sorted(path.rglob("*.nc")) if path.is_dir() else [path]:

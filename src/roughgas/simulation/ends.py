@@ -27,6 +27,9 @@ if TYPE_CHECKING:
     import xarray
 
 
+SEAL = 32  # bytes at the end of a memory, a checksum
+
+
 class Initial(NamedTuple):
     """A state from which a run begins."""
 
@@ -127,8 +130,19 @@ def owner(scene: Scene) -> str:
 
 
 def is_memory_of(initial: Initial, scene: Scene) -> bool:
-    """Return whether a run of the scene goes on from a state to the last bit."""
-    return bool(initial.memory) and initial.owner == owner(scene)
+    """Return whether a run of the scene goes on from a state to the last bit.
+
+    Neither the memory nor the state beside it may have been changed since: the kernel takes what
+    it remembers for granted.
+    """
+    seal = _seal(initial.memory[:-SEAL], initial)
+    return initial.memory[-SEAL:] == seal and initial.owner == owner(scene)
+
+
+def _seal(memory: bytes, initial: Initial) -> bytes:
+    parts = [np.asarray(one, float) for one in initial[:3] if one is not None]
+    content = b"".join(np.ascontiguousarray(one).tobytes() for one in parts)
+    return hashlib.sha256(memory + content + repr(float(initial.time)).encode()).digest()
 
 
 def state_from(
@@ -170,14 +184,15 @@ def _last(gas: Run) -> Initial:
     state, scene = gas.state, gas.scene
     unit = 2.0 ** int(state.counts[EXPONENT])
     position, velocity = whereabouts(state, scene, gas.time)
-    return Initial(
+    found = Initial(
         position=in_order(state, position),
         velocity=in_order(state, velocity * unit),
         spin=None if state.spin is None else in_order(state, state.spin * unit),
         time=gas.time,
-        memory=_memory(gas),
         owner=owner(scene),
     )
+    memory = _memory(gas)
+    return found._replace(memory=memory + _seal(memory, found))
 
 
 def _memory(gas: Run) -> bytes:
@@ -187,7 +202,7 @@ def _memory(gas: Run) -> bytes:
 
 def _remembered(initial, scene):
     number, dimension = initial.position.shape
-    memory = np.frombuffer(initial.memory, np.uint8)
+    memory = np.frombuffer(initial.memory[:-SEAL], np.uint8)
     place = 8 * (1 + dimension)
     begun, *extents = memory[:place].view(float)
     position = np.zeros((number, dimension))
