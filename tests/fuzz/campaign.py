@@ -117,7 +117,6 @@ def files(campaign, folder):
 
 def scenes(campaign, folder):
     """Random legal scenes."""
-    sys.path.insert(0, str(Path(__file__).parents[1]))
     from hard_cases import test_random_scenes as one
     from hard_cases.compositions import scenes as random_scenes
 
@@ -142,6 +141,7 @@ KINDS = {one.__name__: one for one in (configurations, commands, files, scenes)}
 
 
 def main():
+    sys.path.insert(0, str(Path(__file__).parents[1]))  # as pytest has it
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     for name, one in KINDS.items():
         parser.add_argument(f"--{name}", type=int, default=0, help=one.__doc__)

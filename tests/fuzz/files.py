@@ -6,8 +6,11 @@ import shutil
 import netCDF4
 import numpy as np
 from hypothesis import strategies as st
+from schedules import BRIEF
 from tests.files import write_all
 
+from roughgas.cli import main
+from roughgas.config import as_text
 from roughgas.data.opening import SEAL
 
 VALUES = [3, -0.5, 1e300, float("nan"), "x", "", "{}", "[]", "null", "a.b", "é", "\n", [1, 2], []]
@@ -22,6 +25,8 @@ TEXTS = [
     "CDF\x01",
     "\x89HDF\r\n",
 ]
+SPIN = {"spin": {"inertia": 0.5}}
+SETTINGS = as_text({"particles": 5, "box": [20, 20], "effects": SPIN, "schedule": BRIEF})
 NUMBERS = [np.nan, np.inf, -np.inf, -1.0, 1.5, 1e300, 0.0]
 NAMES = ["file.nc", "file.json", "file", "-file.nc", "a b.nc", "é.nc", "$(x).nc", "=1.nc"]
 COMMANDS = [
@@ -45,13 +50,18 @@ COMMANDS = [
     "figure fig5 {} -o out.png",
     "figure coverage {} -o out.png",
     "crate --verify {}",
+    "run gas --settings SETTINGS --r=0.9 --beta=0 --from {} -o out.nc",
 ]
+"""Command lines, {} being the file, and SETTINGS those of a tiny gas."""
 
 
 def real_files(folder):
-    """A file of each kind, as written."""
+    """A file of each kind, as written, and a point with the state that it has ended in."""
     folder.mkdir(exist_ok=True)
-    return [*write_all(folder).values(), folder / "task.nc"]
+    state = folder / "state.nc"
+    place = ["--r=0.9", "--beta=0", "--keep-state", "-o", str(state)]
+    assert main(["run", "gas", "--settings", SETTINGS, *place]) == 0
+    return [*write_all(folder).values(), folder / "task.nc", state, state]
 
 
 @st.composite
@@ -157,5 +167,5 @@ def tries(draw, sources, folder):
     )
     became = draw(spoil(source, target))
     name = f"./{target.name}" if target.name.startswith("-") else target.name
-    line = [part.format(name) for part in draw(st.sampled_from(COMMANDS)).split(" ")]
-    return became, line
+    parts = draw(st.sampled_from(COMMANDS)).split(" ")
+    return became, [SETTINGS if part == "SETTINGS" else part.format(name) for part in parts]

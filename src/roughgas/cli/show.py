@@ -163,7 +163,7 @@ def _ratio(point: Dataset) -> list[list[str]]:
     digits = decimals_of(half) if 0.0 < half < 1.0 else 4
     trust = "" if point.R_ci95_trusted else " (the run is too short to trust it)"
     off = f"{abs(R - expected):.4f} {'below' if R < expected else 'above'}"
-    series = point.R_series.values
+    series = point.R_series.values[np.isfinite(point.R_series.values)]
     parts = np.array([part.mean() for part in np.array_split(series, min(WIDTH, len(series)))])
     low, high = parts.min(), parts.max()
     heights = (parts - low) / ((high - low) or 1.0) * (len(BLOCKS) - 1)
