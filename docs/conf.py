@@ -16,7 +16,7 @@ from sphinx.errors import SphinxError
 import roughgas
 
 DOCS = Path(__file__).resolve().parent
-README = DOCS.parent / "README.md"  # of which the first page is the site's own version
+INDEX, README = DOCS / "index.md", DOCS.parent / "README.md"
 LINK = re.compile(r"\[([^\]]*)\]\(([^)#\s]+)(#[^)\s]*)?\)")
 LOADED = re.compile(
     r"""<(?:script|img|iframe|source)\b[^>]*\bsrc=["']?(?:https?:)?//"""
@@ -93,7 +93,8 @@ def mathml(node, display):
 def linked(text, base, folder):
     """Links in `text` that are relative to `base`, made relative to `folder`.
 
-    Those to README.md become links to the first page, those to folders of sources mere text.
+    Those to README.md become links to the first page; those to folders, and to pages that are not
+    part of the site, mere text.
     """
 
     def here(link):
@@ -101,10 +102,9 @@ def linked(text, base, folder):
         target = Path(os.path.normpath(base / path))
         if not target.exists():  # an address, or nothing: Sphinx will say so
             return link[0]
-        if target.is_dir():
-            return label
-        path = os.path.relpath(DOCS / "index.md" if target == README else target, folder)
-        return f"[{label}]({path}{anchor})"
+        if target.is_dir() or (target.suffix == ".md" and not target.is_relative_to(DOCS)):
+            return label if target != README else f"[{label}]({os.path.relpath(INDEX, folder)})"
+        return f"[{label}]({os.path.relpath(target, folder)}{anchor})"
 
     return LINK.sub(here, text)
 
