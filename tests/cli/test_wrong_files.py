@@ -22,6 +22,7 @@ TAKEN = {
     "combine {} -o out.nc": "task",
     "film {} -o out.png": "film",
 }
+NO_FILE = "must be a dataset of roughgas: it is no file"
 NAMED = {
     "point": "a point",
     "reduced": "a reduced dataset",
@@ -97,7 +98,7 @@ def test_names_are_utf_8(folder, capsys):
 def test_pipes_and_devices_are_not_waited_for(folder, capsys):
     os.mkfifo("pipe")
     for path in ("pipe", "/dev/zero"):
-        assert said(capsys, ["show", path]) == f"file = {path}: must be a file"
+        assert said(capsys, ["show", path]) == f"file = {path}: {NO_FILE}"
 
 
 def test_what_another_program_has_changed_is_blamed_on_it(folder, capsys):

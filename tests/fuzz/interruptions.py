@@ -268,8 +268,9 @@ def main():
             done = 0
             while done < wanted:
                 done += WAYS[name](disturbed, rng, outcomes)
-        print("\n".join(f"{count} {what}" for what, count in sorted(outcomes.items())))
-        print(f"faults: {len(disturbed.faults)}", *disturbed.faults, sep="\n  ")
+                so_far = ", ".join(f"{count} {what}" for what, count in sorted(outcomes.items()))
+                print(f"{so_far}; faults: {len(disturbed.faults)}", flush=True)
+        print("\n".join(disturbed.faults))
         return 1 if disturbed.faults else 0
 
 

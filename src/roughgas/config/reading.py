@@ -118,6 +118,7 @@ def _checked(events: Iterable[Event]) -> Iterator[Event]:
     with aliases written out."""
     sizes: dict[str, int] = {}
     opened: list[tuple[str | None, int]] = []  # anchors of the collections, and values before them
+    anchors: set[str] = set()
     values = 0
     for event in events:
         mark = event.start_mark
@@ -129,6 +130,9 @@ def _checked(events: Iterable[Event]) -> Iterator[Event]:
             anchor, before = opened.pop()
             sizes[anchor] = values - before
         elif isinstance(event, NodeEvent):
+            if not isinstance(event, AliasEvent) and event.anchor in anchors:
+                _refuse(mark, f"&{event.anchor}", "be given once")
+            anchors |= {event.anchor} - {None}
             if isinstance(event, AliasEvent) and event.anchor in (anchor for anchor, _ in opened):
                 _refuse(mark, f"*{event.anchor}", "be no part of itself")
             values += sizes.get(event.anchor, 1) if isinstance(event, AliasEvent) else 1
