@@ -184,6 +184,7 @@ def trajectory(
     length: float | None = None,
     frames: int | None = None,
     times: Sequence[float] | None = None,
+    initial: "xarray.Dataset | None" = None,
     scale: str = "paper",
     config: str | Path | None = None,
     progress: bool = True,
@@ -195,16 +196,14 @@ def trajectory(
 
     Parameters
     ----------
-    experiment, r, beta, seed, particles, box, effects, schedule, scale, config, progress
+    experiment, r, beta, seed, particles, box, effects, schedule, initial, scale, config, progress
         As for `simulate`.
     start
-        Where the frames begin; by default, when a driven gas should be steady.
-    length
-        How long they go on; by default five periods of a drive, or as suits the experiment.
-    frames
-        Number of frames, at equal distances; of a cooling gas in scaled time.
+        Where the frames begin; by default at `initial`, or when a driven gas should be steady.
+    length, frames
+        How long they go on, and how many they are; by default as suits the experiment.
     times
-        The times themselves in rising order, in place of these three.
+        The times themselves, rising, in place of these three.
 
     Returns
     -------
@@ -233,16 +232,19 @@ def trajectory(
     from roughgas.config.provenance import provenance
     from roughgas.data.trajectory import as_trajectory
     from roughgas.scene import build
+    from roughgas.simulation.ends import initial_of
     from roughgas.simulation.progress import watched
     from roughgas.simulation.snapshots import chosen, snapshots
     from roughgas.simulation.trajectory import variables
 
     name = experiment or UNNAMED
     scene = build(settings, legal_r, legal_beta)
-    take = chosen(settings, scene, start, length, frames, times)
-    labels = str(r), str(beta), str(seed)
-    about = provenance(name, settings, labels, scale, "bed.xyz", "trajectory", take.options())
-    shots = snapshots(settings, legal_r, legal_beta, number, take)
+    states = [] if initial is None else initial_of(initial)
+    take = chosen(settings, scene, start, length, frames, times, states)
+    labels, told = (str(r), str(beta), str(seed)), ["--from", "start.nc"] if states else []
+    told += take.options()
+    about = provenance(name, settings, labels, scale, "bed.xyz", "trajectory", told)
+    shots = snapshots(settings, legal_r, legal_beta, number, take, states)
     shots = list(watched(name, take.frames, "frames", shots, quiet=not progress))
     return as_trajectory(variables(scene, settings, shots), about)
 

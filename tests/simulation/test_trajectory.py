@@ -11,12 +11,14 @@ from schedules import COOLING, STEADY
 
 from roughgas.base.errors import InputError
 from roughgas.data.particle_files import FORMATS, frames, lengths_and_angles, write_trajectory
+from roughgas.data.point import as_dataset
 from roughgas.data.trajectory import as_trajectory
 from roughgas.scene import build
 from roughgas.simulation import cooling
+from roughgas.simulation.ends import initial_of
 from roughgas.simulation.energies import restored
 from roughgas.simulation.point import run_point
-from roughgas.simulation.snapshots import Take, snapshots
+from roughgas.simulation.snapshots import Take, chosen, snapshots
 from roughgas.simulation.trajectory import variables
 
 R, BETA, SEED = 0.9, 0.3, 7
@@ -71,6 +73,37 @@ def test_a_cooling_gas_is_seen_after_the_collisions_asked_for():
     known = restored(gas.energies(rows), rows["exponent"]).translational
     shots = snapshots(experiment, R, BETA, SEED, Take.at([0.0, *range(1, 26)]))
     assert [shot.E_trans for shot in shots][1:] == pytest.approx(known, rel=1e-12)
+
+
+@pytest.mark.parametrize("name", ["sheared", "bed"])
+def test_it_goes_on_from_the_state_of_a_run(name):
+    experiment = DRIVEN[name] | {"schedule": STEADY}
+    scene = build(experiment, R, BETA)
+    point = run_point(scene, experiment | {"keep_state": True}, SEED)
+    about = {"experiment": "x", "scale": "small"} | point.attributes
+    states = initial_of(as_dataset(point._replace(attributes=about)))
+    at = [60.0, 61.0, 63.0]
+    whole = list(snapshots(experiment, R, BETA, SEED, Take.at(at)))
+    take = chosen(experiment, scene, times=at, initial=states)
+    for one, other in zip(whole, snapshots(experiment, R, BETA, 99, take, states), strict=True):
+        assert other.time == pytest.approx(one.time, rel=1e-12)
+        assert other.position == pytest.approx(one.position, abs=1e-9)
+        assert other.spin == pytest.approx(one.spin, abs=1e-9)
+    assert chosen(experiment, scene, initial=states).start == states[0].time
+    with pytest.raises(InputError, match=r"times = 59\.0: must be 60 or more, where the initial"):
+        chosen(experiment, scene, times=[59.0, 61.0], initial=states)
+
+
+def test_a_cooling_gas_counts_anew_from_the_state_of_a_run():
+    experiment = settings("gas", 20, [30, 30]) | {"schedule": COOLING, "keep_state": True}
+    point = run_point(build(experiment, R, BETA), experiment, SEED)
+    about = {"experiment": "x", "scale": "small"} | point.attributes
+    states = initial_of(as_dataset(point._replace(attributes=about)))
+    whole = list(snapshots(experiment, R, BETA, SEED, Take.at([30.0, 35.0])))
+    shots = list(snapshots(experiment, R, BETA, 99, Take.at([0.0, 5.0]), states))
+    assert [shot.collisions for shot in shots] == [0.0, 5.0]
+    for one, other in zip(whole, shots, strict=True):
+        assert np.array_equal(one.spin, other.spin) and one.E_trans == other.E_trans
 
 
 def least_distance(cell, position, periodic):
@@ -176,6 +209,17 @@ def test_gsd_has_particles_inside_a_centred_cell(name, tmp_path):
             assert least_distance(cell, shot.particles.position, periodic) > 2.0 - 1e-5
             assert shot.particles.velocity == pytest.approx(one.velocity, rel=1e-5, abs=1e-6)
             assert shot.log["time"].item() == one.time
+
+
+def test_freud_finds_no_pair_closer_than_a_diameter_in_a_sheared_gas(tmp_path):
+    freud, hoomd = pytest.importorskip("freud"), pytest.importorskip("gsd.hoomd")
+    write_trajectory(tmp_path / "sheared.gsd", sample("sheared"))
+    found = freud.density.RDF(bins=50, r_max=4.0)
+    with hoomd.open(tmp_path / "sheared.gsd") as file:
+        for shot in file:
+            found.compute((shot.configuration.box, shot.particles.position), reset=False)
+    below = found.bin_edges[1:] < 2.0
+    assert np.all(found.rdf[below] == 0.0) and found.rdf.max() > 1.0
 
 
 def test_another_ending_is_refused(tmp_path):

@@ -4,6 +4,7 @@ import os
 
 from roughgas.cli.options import (
     CONFIG,
+    FROM,
     KERNEL,
     POINT,
     RESTITUTION,
@@ -27,7 +28,7 @@ COMMANDS = {
             nargs="+",
             default=["1"],
         ),
-        value("--from POINT", "go on from the last state of this dataset", dest="start_from"),
+        FROM,
         flag("--keep-state", "keep the last state in the dataset, for --from"),
         output("datasets, one a seed", required=False, nargs="+"),
         flag("--json", "print a line of JSON as each seed is done"),
@@ -67,6 +68,7 @@ COMMANDS = {
         value("--seed", "seed of the random generator", default="1"),
         *TAKE,
         value("--times TIME", "the times themselves, rising, in place of these", nargs="+"),
+        FROM,
         output(".xyz, .nc or .gsd files", nargs="+"),
         examples=(
             "roughgas trajectory vibrated --r 0.9 --beta 0.5 -o bed.xyz",

@@ -26,7 +26,7 @@ def run(options: Namespace) -> None:
     """Simulate the points that `options` name, and write each dataset as soon as it is there."""
     seeds = {label: config.seed(label) for label in options.seed}
     points = [point_of(options, beta) for beta in options.beta]
-    initial = _initial(options)
+    initial = initial_in(options)
     places = [(options.r, beta, seed) for beta in options.beta for seed in options.seed]
     outputs = options.output or [_own_name(options, *place) for place in places]
     if len(outputs) != len(places):
@@ -52,11 +52,11 @@ def run(options: Namespace) -> None:
                 say_done(output, point)
 
 
-def _initial(options: Namespace) -> list[Initial]:
+def initial_in(options: Namespace) -> list[Initial]:
     """Return the states in the file that the run goes on from; none where it starts anew."""
     if options.start_from is None:
         return []
-    if len(options.seed) > 1:
+    if isinstance(options.seed, list) and len(options.seed) > 1:
         legal = "be one with --from, which has the random numbers of its own run"
         raise InputError("--seed", " ".join(options.seed), legal)
     return initial_of(read_point(options.start_from))

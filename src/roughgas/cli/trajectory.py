@@ -2,15 +2,17 @@
 
 import sys
 from argparse import Namespace
+from collections.abc import Sequence
 from typing import Any
 
 from roughgas import config
 from roughgas.cli.options import number, whole_number
-from roughgas.cli.run import point_of
+from roughgas.cli.run import initial_in, point_of
 from roughgas.config.provenance import provenance
 from roughgas.data.particle_files import check_format, write_trajectory
 from roughgas.data.trajectory import as_trajectory
 from roughgas.scene import Scene
+from roughgas.simulation.ends import Initial
 from roughgas.simulation.progress import watched
 from roughgas.simulation.snapshots import LEGAL, NUMBERS, Take, chosen, snapshots
 from roughgas.simulation.trajectory import variables
@@ -22,10 +24,13 @@ def trajectory(options: Namespace) -> None:
     scene, settings = point_of(options, options.beta)
     for output in options.output:
         check_format(output)
-    take = chosen_take(options, settings, scene)
-    simulated = snapshots(settings, float(options.r), float(options.beta), seed, take)
+    initial = initial_in(options)
+    take = chosen_take(options, settings, scene, initial)
+    simulated = snapshots(settings, float(options.r), float(options.beta), seed, take, initial)
     shots = list(watched(name, take.frames, "frames", simulated))
     place, told = (options.r, options.beta, options.seed), take.options()
+    if initial:
+        told += ["--from", options.start_from]
     for output in options.output:
         about = provenance(name, settings, place, options.scale, output, "trajectory", told)
         found = as_trajectory(variables(scene, settings, shots), about)
@@ -33,7 +38,9 @@ def trajectory(options: Namespace) -> None:
         print(f"{output}: {len(shots)} frames", file=sys.stderr)
 
 
-def chosen_take(options: Namespace, settings: dict[str, Any], scene: Scene) -> Take:
+def chosen_take(
+    options: Namespace, settings: dict[str, Any], scene: Scene, initial: Sequence[Initial] = ()
+) -> Take:
     """Return what is shown: by default, what suits the experiment."""
     asked: dict[str, Any] = {}
     for name in ("start", "length"):
@@ -43,4 +50,4 @@ def chosen_take(options: Namespace, settings: dict[str, Any], scene: Scene) -> T
         asked["frames"] = whole_number("--frames", options.frames, NUMBERS[0], NUMBERS[-1])
     if (texts := getattr(options, "times", None)) is not None:
         asked["times"] = [number("--times", text) for text in texts]
-    return chosen(settings, scene, **asked)
+    return chosen(settings, scene, **asked, initial=initial)

@@ -16,6 +16,7 @@ from roughgas.kernel.hooks import displacement
 from roughgas.kernel.state import BASE, EXPONENT, NOW, State
 from roughgas.scene import Scene, build
 from roughgas.simulation import cooling, schedule
+from roughgas.simulation.ends import Initial, check_initial
 from roughgas.simulation.energies import Energies, ratio, restored
 from roughgas.simulation.gas import Gas
 from roughgas.simulation.instant import in_order, whereabouts
@@ -78,8 +79,10 @@ def chosen(
     length: float | None = None,
     frames: int | None = None,
     times: Sequence[float] | None = None,
+    initial: Sequence[Initial] = (),
 ) -> Take:
-    """Return the take that is asked for; what is None is as usual. Raises InputError."""
+    """Return the take that is asked for; what is None is as usual, but that it begins where an
+    `initial` state is. Raises InputError."""
     given = {"start": start, "length": length, "frames": frames}
     asked = {name: value for name, value in given.items() if value is not None}
     for name, legal in LEGAL.items():
@@ -87,12 +90,23 @@ def chosen(
             asked[name] = legal.check(name, asked[name])
     if frames is not None and not (frames == int(frames) and frames in NUMBERS):
         raise InputError("frames", frames, f"be a whole number in [{NUMBERS[0]}, {NUMBERS[-1]}]")
+    begun = initial[0].time if initial and schedule.of(experiment).DRIVEN else 0.0
     if times is None:
-        return usual_take(experiment, scene)._replace(**asked)
+        usual = usual_take(experiment, scene)
+        take = (usual._replace(start=begun) if initial else usual)._replace(**asked)
+        _check_start("start", take.start, begun)
+        return take
     times = [LEGAL["start"].check("times", float(time)) for time in times]
+    if times:
+        _check_start("times", times[0], begun)
     if asked or not times or times != sorted(set(times)):
         raise InputError("times", times, "rise, and stand without start, length and frames")
     return Take.at(times)
+
+
+def _check_start(key: str, start: float, begun: float) -> None:
+    if start < begun:
+        raise InputError(key, start, f"be {begun:g} or more, where the initial state is")
 
 
 def usual_take(experiment: Mapping[str, Any], scene: Scene) -> Take:
@@ -112,9 +126,17 @@ def usual_take(experiment: Mapping[str, Any], scene: Scene) -> Take:
 
 
 def snapshots(
-    experiment: Mapping[str, Any], r: float, beta: float, seed: int, take: Take
+    experiment: Mapping[str, Any],
+    r: float,
+    beta: float,
+    seed: int,
+    take: Take,
+    initial: Sequence[Initial] = (),
 ) -> Iterator[Snapshot]:
     """Yield the snapshots of a take of the point, one after the other.
+
+    It begins in the first of the `initial` states, if there are any: times of a driven gas go on
+    from there, those of a cooling one begin anew.
 
     Where the take names no times, those of a driven gas are equally spaced, each in the middle of
     its interval, away from the instants at which a sawtooth falls back. Those of a cooling gas are
@@ -125,31 +147,36 @@ def snapshots(
     Raises InputError for illegal values, CollapseError where contacts accumulate without end.
     """
     scene, kind = build(experiment, r, beta), schedule.of(experiment)
-    gas = kind.start(scene, experiment, seed)
-    stride = max(1, gas.particles // STRIDES)
-    if kind is not cooling and take.start > 0.0:
-        samples = math.ceil(take.start / experiment["schedule"]["sample_every"])
-        gas.in_time(take.start / samples, samples)
+    if initial:
+        check_initial(initial, experiment, scene)
+    gas = kind.start(scene, experiment, seed, None, initial[:1])
+    stride, before = max(1, gas.particles // STRIDES), gas.collisions
+    if kind is not cooling and take.start > gas.time:
+        wait = take.start - gas.time
+        samples = math.ceil(wait / experiment["schedule"]["sample_every"])
+        gas.in_time(wait / samples, samples)
     if scene.effects.spin is not None and len(scene.box) == 2:
         gas.watcher = Turning(gas.particles)
     gas.look()
     if kind is cooling:
-        _make_collisions(gas, take.start, stride)
+        _make_collisions(gas, take.start, stride, before)
     if take.times:
-        arrive = _make_collisions if kind is cooling else _let_pass
         for time in take.times:
-            arrive(gas, time, stride)
-            yield _snapshot(gas)
+            if kind is cooling:
+                _make_collisions(gas, time, stride, before)
+            else:
+                _let_pass(gas, time, stride)
+            yield _snapshot(gas, before)
         return
     if kind is cooling:
-        yield _snapshot(gas)
+        yield _snapshot(gas, before)
     interval = take.length / take.frames
     for frame in range(1 if kind is cooling else 0, take.frames):
         until = take.start + (frame + 0.5) * interval
         if kind is cooling:
             until = gas.time + interval / _collision_frequency(gas, experiment["box"])
         _let_pass(gas, until, stride)
-        yield _snapshot(gas)
+        yield _snapshot(gas, before)
 
 
 def _let_pass(gas: Gas, until: float, stride: int) -> None:
@@ -158,9 +185,10 @@ def _let_pass(gas: Gas, until: float, stride: int) -> None:
         pass
 
 
-def _make_collisions(gas: Gas, per_particle: float, stride: int) -> None:
-    """Advance a gas to so many collisions per particle, rounded to whole ones in the gas."""
-    wanted = round(gas.particles / 2 * per_particle)
+def _make_collisions(gas: Gas, per_particle: float, stride: int, before: int) -> None:
+    """Advance a gas to so many collisions per particle, rounded to whole ones in the gas, more than
+    there were before."""
+    wanted = before + round(gas.particles / 2 * per_particle)
     while gas.collisions < wanted:
         gas.step(math.inf, min(stride, wanted - gas.collisions))
 
@@ -192,8 +220,8 @@ def _collision_frequency(gas, box):
     return float(collision_frequency(2.0 * _energies(gas).translational, packing, len(box)))
 
 
-def _snapshot(gas: Gas) -> Snapshot:
-    """Return what there is to be seen at the present instant."""
+def _snapshot(gas: Gas, before: int) -> Snapshot:
+    """Return what there is to be seen at the present instant; so many collisions do not count."""
     state, effects, present, time = gas.state, gas.scene.effects, _energies(gas), gas.time
     unit, spin = 2.0 ** int(state.counts[EXPONENT]), state.spin
     position, velocity = whereabouts(state, gas.scene, time)
@@ -201,7 +229,7 @@ def _snapshot(gas: Gas) -> Snapshot:
         spin = in_order(state, spin * unit)
     return Snapshot(
         time=time,
-        collisions=2.0 * gas.collisions / gas.particles,
+        collisions=2.0 * (gas.collisions - before) / gas.particles,
         position=in_order(state, position),
         velocity=in_order(state, velocity * unit),
         spin=spin,
