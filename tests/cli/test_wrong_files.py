@@ -22,7 +22,7 @@ TAKEN = {
     "combine {} -o out.nc": "task",
     "film {} -o out.png": "film",
 }
-NO_FILE = "must be a dataset of roughgas: it is no file"
+NO_FILE = "must be a file"
 NAMED = {
     "point": "a point",
     "reduced": "a reduced dataset",

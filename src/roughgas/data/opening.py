@@ -79,7 +79,7 @@ def opened(path: str | Path, *kinds: str) -> Iterator["netCDF4.Dataset"]:
     if not Path(path).exists():
         raise FileNotFoundError(errno.ENOENT, _absence(Path(path)), str(path))
     if not Path(path).is_file():  # a pipe would be waited for
-        raise InputError("file", path, "be a dataset of roughgas: it is no file")
+        raise InputError("file", path, "be a file")
     if not is_whole(path):
         raise DamagedError("file", path, "be what was written to it: it is damaged")
     try:
