@@ -228,6 +228,17 @@ def test_sliders_act_at_once_and_the_address_keeps_them(page):
     assert now(page)[2] == pytest.approx(0.71)
 
 
+def test_it_says_what_one_should_know_of_the_gas(page):
+    page.script("location.hash = '#sheared/r1/beta1'")
+    page.wait(lambda: page.text("#note") == "nothing is lost: it heats up without end")
+    slide(page, "r", 0.9)
+    page.wait(lambda: page.text("#note") == "")
+    page.script("location.hash = '#vibrated/r0.9/beta0'")
+    page.wait(lambda: now(page)[4] == "vibrated")
+    page.script("gas.vy.fill(100); gas.foreseeAll()")
+    page.wait(lambda: page.text("#note") == "many disks are above the picture")
+
+
 def test_disks_are_drawn_with_their_spins(page):
     page.script("document.getElementById('speed').value = '64'; speed = 64;")
     page.wait(lambda: page.script("return gas.energies().R") > 0.1)

@@ -37,7 +37,8 @@ function draw() {
   at("present").textContent = R.toFixed(3);
   at("mean").textContent = mean ? `${mean[0].toFixed(3)} ± ${Math.max(mean[1], 0.0005).toFixed(3)}` : "…";
   at("clock").textContent = clock().toFixed(free() ? 1 : 0);
-  at("energy").textContent = ((2 * translation + rotation) / unit / 4 ** gas.halvings).toPrecision(2);
+  const left = (2 * translation + rotation) / unit / 4 ** gas.halvings;
+  at("energy").textContent = left < 1 ? left.toPrecision(2) : left.toFixed(left < 10 ? 1 : 0);
 }
 
 function drawGas() {

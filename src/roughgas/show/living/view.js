@@ -77,9 +77,21 @@ function tick(time) {
   const shown = Math.sqrt(2 * (2 * translation + rotation) / (3 * gas.scene.inertia));
   thermal += (free() ? 1 : 0.03) * (shown - thermal);
   const inTime = advance(passed * speed * PACE / Math.max(pace, 1e-6));
-  say(inTime ? "" : "slower than asked for: many contacts");
+  say(remark(inTime));
   draw();
   if (playing && !document.hidden) frame = requestAnimationFrame(tick);
+}
+
+// What a person should know of the gas, if anything.
+function remark(inTime) {
+  if (!inTime) return "slower than asked for: many contacts";
+  if (!free() && gas.r === 1 && Math.abs(gas.beta) === 1) return "nothing is lost: it heats up without end";
+  const [seen, below] = view(), { gravity, floor } = gas.scene;
+  const above = gas.y.filter((y, i) => {
+    const passed = gas.now - gas.since[i];
+    return y + gas.vy[i] * passed - 0.5 * gravity * passed * passed > seen - below;
+  });
+  return floor && above.length > gas.number / 10 ? "many disks are above the picture" : "";
 }
 
 function say(text) { if (at("note").textContent !== text) at("note").textContent = text; }
