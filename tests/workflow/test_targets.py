@@ -109,9 +109,9 @@ def test_a_point_with_a_target_is_one_job_after_its_pilot(project):
 
 
 def test_a_plan_takes_pilots_and_no_points(project):
-    planned = project.planned("plan")
-    every = JOBS + len(BEYOND)
-    assert planned == {"compile_kernel": every, "pilot": every, "plan_of_scale": 1, "plan": 1}
+    for target, every in (("plan", JOBS), ("plan_extensions", len(BEYOND))):
+        planned = project.planned(target)
+        assert planned == {"compile_kernel": every, "pilot": every, "plan_of_scale": 1, target: 1}
 
 
 def tasks_of(project, name):
