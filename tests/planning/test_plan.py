@@ -1,14 +1,16 @@
 """Plans: the law of large numbers, and how long a gas needs."""
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from roughgas import config
 from roughgas.planning.cooling import REPLICAS
 from roughgas.planning.lengths import BIAS, CARE, RESERVE, relaxation
 from roughgas.planning.pilot import Pilot
-from roughgas.planning.plan import added, plan_point
+from roughgas.planning.plan import added, plan_point, share_of_pilots
 from roughgas.planning.steady import TWICE
 from roughgas.scene import build
 from roughgas.theory import cooling_ratio, lun_ratio, relax
@@ -114,3 +116,13 @@ def test_a_cooling_seed_is_several_replicas(cooling):
     assert plan.stderr == pytest.approx(
         math.sqrt(PILOT.variance / (plan.seeds * REPLICAS * plan.schedule["plateau"]))
     )
+
+
+def test_pilots_are_dear_where_runs_are_short():
+    """At the scale `small` they cost as much as the run, at that of the paper a part of it."""
+    whole = config.load(Path(__file__).parents[2] / "config.yaml")
+
+    def share(scale):
+        return share_of_pilots([config.experiment(whole, "vibrated", scale)])
+
+    assert share("paper") < 0.3 < 1.0 < share("small") < 3.0 and share("fine") == 0.0
