@@ -126,13 +126,13 @@ rule table:
     input:
         data=data_of_product,
     output:
-        report(
+        csv=report(
             "results/{scale}/{product}.csv",
             caption="captions/table.rst",
             category=heading_of_product,
             labels=titled("Table: every number (CSV, to download)"),
         ),
-        "results/{scale}/{product}.datapackage.json",
+        package="results/{scale}/{product}.datapackage.json",
     log:
         "logs/{scale}/{product}_csv.log",
     wildcard_constraints:
@@ -140,9 +140,9 @@ rule table:
     params:
         code=code_of("results.table"),
     message:
-        "write {output}"
+        "write {output.csv}"
     shell:
-        "roughgas table {input.data} --output {output[0]} > {log} 2>&1"
+        "roughgas table {input.data} --output {output.csv} > {log} 2>&1"
 
 
 rule claims:
