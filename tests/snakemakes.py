@@ -33,14 +33,18 @@ def _server():
     return subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
 
 
-def _become_snakemake(folder, environment, arguments, output):
+def become_snakemake(folder, environment, arguments, output):
     """Leave nothing of the server's but what it has imported, and run Snakemake."""
+    from snakemake.cli import main
+
+    own = os.environ.get("PYTHONPATH", "").split(os.pathsep)
+    elsewhere = [path for path in sys.path[1:] if path not in own]
     os.setsid()
     os.chdir(folder)
     os.environ.clear()
     os.environ.update(environment)
     paths = environment.get("PYTHONPATH", "").split(os.pathsep)
-    sys.path[:] = [folder, *filter(None, paths), *ELSEWHERE]
+    sys.path[:] = [folder, *filter(None, paths), *elsewhere]
     sys.argv[1:] = arguments
     for source, own in ((os.open(os.devnull, os.O_RDONLY), (0,)), (os.open(output, 1), (1, 2))):
         for stream in own:
@@ -48,19 +52,21 @@ def _become_snakemake(folder, environment, arguments, output):
     main(arguments)
 
 
-if __name__ == "__main__":
-    from snakemake.cli import main
+def prepare():
+    """Import what Snakemake does, so that forks of this process need not."""
+    for name in ("snakemake.cli", *LATE):
+        importlib.import_module(name)
     from snakemake.executors.touch import Executor
 
     Executor.SLEEPING_TIME = 0.0  # a tenth of a second for each job else, for times in full seconds
-    for name in LATE:
-        importlib.import_module(name)
-    own = os.environ.get("PYTHONPATH", "").split(os.pathsep)
-    ELSEWHERE = [path for path in sys.path[1:] if path not in own]
     gc.freeze()  # or each fork would take long to free what it shares
+
+
+if __name__ == "__main__":
+    prepare()
     for line in sys.stdin:
         child = os.fork()
         if not child:
-            _become_snakemake(*json.loads(line))
+            become_snakemake(*json.loads(line))
             sys.exit()
         print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), flush=True)

@@ -54,7 +54,10 @@ class Campaign:
             finally:
                 signal.alarm(0)
 
-        see()
+        try:
+            see()
+        except KeyboardInterrupt:
+            print(f"{self.name}: stopped")
         took = time.monotonic() - begun
         counts = ", ".join(f"{count} {what}" for what, count in sorted(self.outcomes.items()))
         tried = self.outcomes.total() + sum(map(len, self.faults.values()))
@@ -148,6 +151,8 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     options = vars(parser.parse_args())
     signal.signal(signal.SIGALRM, _hangs)
+    for number in (signal.SIGINT, signal.SIGTERM):  # what has been tried is reported
+        signal.signal(number, signal.default_int_handler)
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
     first, sound = options.pop("seed"), True
     for name, number in options.items():

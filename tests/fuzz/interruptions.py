@@ -28,6 +28,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
+import snakemakes
 from project import Project
 
 from roughgas.results.crate import digest
@@ -86,6 +87,25 @@ class Disturbed:
         return contents(project.folder), took, (before, _size_of(project.folder))
 
 
+class Forked:
+    """A run in a fork of this process."""
+
+    def __init__(self, project):
+        self.pid = os.fork()
+        if not self.pid:
+            try:
+                place = str(project.folder), project.environment()
+                snakemakes.become_snakemake(*place, [*COMMAND], os.devnull)
+            finally:
+                os._exit(0)  # what this process would clean up is not the child's
+
+    def is_over(self):
+        return os.waitpid(self.pid, os.WNOHANG)[0] != 0
+
+    def wait(self):
+        os.waitpid(self.pid, 0)
+
+
 def contents(folder):
     """What is in each file of results and figures, as a digest, by its path."""
     found = {}
@@ -121,9 +141,9 @@ def kill(disturbed, rng, outcomes):
     project, kills = disturbed.fresh(), 0
     while kills < FEW:
         whom = rng.choice(["Snakemake", "its children", "both"])
-        running = project.start(*COMMAND)
+        running = Forked(project)
         time.sleep(rng.uniform(0.1, 1.0) * disturbed.seconds)
-        if running.poll() is not None:
+        if running.is_over():
             break
         _kill(running, whom)
         outcomes[f"kills of {whom}"] += 1
@@ -136,14 +156,14 @@ def _kill(running, whom):
     if whom == "both":
         os.killpg(running.pid, signal.SIGKILL)
     elif whom == "Snakemake":
-        running.kill()
+        os.kill(running.pid, signal.SIGKILL)
     else:
         for child in _descendants(running.pid):
             try:
                 os.kill(child, signal.SIGKILL)
             except ProcessLookupError:
                 pass
-    running.wait(LONGEST)
+    running.wait()
 
 
 def _descendants(pid):
@@ -259,6 +279,7 @@ def main():
     if within := options.pop("within"):
         return _within(within)
     rng = random.Random(options.pop("seed"))
+    snakemakes.prepare()
     with tempfile.TemporaryDirectory() as folder:
         disturbed, outcomes = Disturbed(Path(folder)), Counter()
         print(
