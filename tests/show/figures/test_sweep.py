@@ -14,7 +14,7 @@ from roughgas.show.figures import sweep
 WAVES = ("reversed_sawtooth", "sawtooth", "sine", "triangle")
 BETA = (-0.5, 0.0, 0.5, 1.0)
 DATA = {
-    "r and beta": (reduced("sheared"), 1, r"tangential restitution $\beta$"),
+    "r and beta": (reduced("sheared"), 1, r"roughness $\beta$"),
     "particles": (
         reduced("more", r=(0.8, 0.9), beta=BETA, third=("particles", (40.0, 160.0, 2560.0))),
         2,

@@ -69,7 +69,7 @@ class Axis(NamedTuple):
         return at + SIDESTEP * (high - low) * steps
 
 
-BETA = Axis("beta", r"tangential restitution $\beta$", (-1.06, 1.06), (-1, 1))
+BETA = Axis("beta", r"roughness $\beta$", (-1.06, 1.06), (-1, 1))
 FRICTION = Axis("mu", r"coefficient of friction $\mu$", (0.007, 14), (0.007, 14), True)
 INERTIA = Axis("inertia", r"moment of inertia $q = I/(ma^2)$", (0.008, 1.25), (0.008, 1), True)
 SHARE_LABEL = "share $s$ of the drive's power\nthat goes into rotation"

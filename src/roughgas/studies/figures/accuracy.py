@@ -118,7 +118,7 @@ def draw_map(axes: Axes, data: xr.Dataset) -> None:
         axes.plot([], [], PACKING_MARKERS[k], color=GREY, label=f"event-driven, {packing:g} filled")
     axes.plot([], [], color=GREY, linewidth=0.8, label="first order in $a_{20}$ and $a_{11}$")
     axes.axhline(0, color=THEORY, linewidth=0.8, zorder=0)
-    axes.set(xlim=(-1.04, 1.04), xlabel=r"tangential restitution $\beta$")
+    axes.set(xlim=(-1.04, 1.04), xlabel=r"roughness $\beta$")
     axes.set_ylabel(r"$R/R_\mathrm{theory} - 1$   (%)")
     axes.xaxis.set_major_locator(MultipleLocator(0.5))
     axes.xaxis.set_minor_locator(MultipleLocator(0.1))

@@ -36,7 +36,7 @@ def draw_number(axes: Axes, data: xr.Dataset) -> None:
         axes.plot([], [], "o", color=GREY, mfc=fill, label=f"$N = {n}$")
     _name_kinds(axes, data)
     axes.axhline(0.0, color=THEORY, lw=0.8, zorder=0)
-    axes.set(xlabel=r"tangential restitution $\beta$", ylabel=r"$R/R_\mathrm{theory} - 1$  (%)")
+    axes.set(xlabel=r"roughness $\beta$", ylabel=r"$R/R_\mathrm{theory} - 1$  (%)")
     low, high = axes.get_ylim()
     axes.set_ylim(low - 0.3 * (high - low), high)
     axes.legend(loc="lower right", ncols=2)
