@@ -50,7 +50,7 @@ def completed(line, script):
         ("roughgas run vibrated_friction/mu0.0", {f"vibrated_friction/mu0.0{k}" for k in "13"}),
         ("roughgas plan sheared vibrated_i", {"vibrated_inertia"}),
         ("roughgas bench cooling --scale ", {"paper", "coarse", "fine", "small"}),
-        ("roughgas run cooling --config conf", {"config.yaml"}),
+        ("roughgas run cooling --config config.", {"config.yaml"}),
         ("roughgas show READ", {"README.md"}),
         ("roughgas run cooling --config no.yaml --scale ", set()),
         ("roughgas completion ", {"-h", "--help", "bash", "zsh", "fish"}),
