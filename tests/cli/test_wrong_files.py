@@ -107,3 +107,8 @@ def test_what_another_program_has_changed_is_blamed_on_it(folder, capsys):
         file.setncatts({"packing": 0.1, "r": 0.9, "beta": 0.0, "seed": 1, "command": ""})
     text = said(capsys, ["show", "film.nc"])
     assert text.startswith("file = film.nc: must hold what roughgas writes, as it wrote it: ")
+
+
+def test_a_film_without_its_window_is_not_drawn(folder, capsys):
+    text = said(capsys, ["film", "film.nc", "-o", "out.png"])
+    assert text == "attribute window of film.nc = (nothing): must be given"

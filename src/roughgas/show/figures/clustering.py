@@ -15,6 +15,7 @@ from matplotlib.ticker import MaxNLocator
 from roughgas import theory
 from roughgas.base.errors import InputError
 from roughgas.data.film import disks_of, read_film
+from roughgas.data.opening import require
 from roughgas.show import circles, style
 from roughgas.show.encoding import write_movie
 
@@ -36,13 +37,15 @@ PER_PARTICLE = "collisions per particle"
 def draw(path: str | Path, outputs: Iterable[str | Path]) -> None:
     """Draw the film at `path` into each of `outputs`: .pdf or .png a picture, .mp4 a movie.
 
-    Raises InputError for another kind of file, OSError if one cannot be read or written.
+    Raises InputError for another kind of file, or one without what is drawn, OSError where one cannot
+    be read or written.
     """
     outputs = [Path(output) for output in outputs]
     for output in outputs:
         if output.suffix not in KINDS:
             raise InputError("file", output, f"end in {', '.join(KINDS)}")
     film = read_film(path)
+    require(film.attrs, ("box", "window", "packing", "r", "beta"), path)
     style.draw(lambda: picture(film), [one for one in outputs if one.suffix != ".mp4"])
     frames = list(range(film.sizes["frame"]))
     frames += frames[-1:] * round(LAST_FRAME * FRAMES_PER_SECOND)
