@@ -37,8 +37,8 @@ PER_PARTICLE = "collisions per particle"
 def draw(path: str | Path, outputs: Iterable[str | Path]) -> None:
     """Draw the film at `path` into each of `outputs`: .pdf or .png a picture, .mp4 a movie.
 
-    Raises InputError for another kind of file, or one without what is drawn, OSError where one cannot
-    be read or written.
+    Raises InputError for another kind of file, or one without what is drawn, OSError where one
+    cannot be read or written.
     """
     outputs = [Path(output) for output in outputs]
     for output in outputs:
