@@ -102,5 +102,6 @@ def test_memory_that_runs_out(tmp_path):
         text=True,
     )
     assert done.returncode == 1
-    assert done.stderr.startswith("roughgas: error: out of memory. Unable to allocate")
-    assert done.stderr.count("\n") == 1 and list(tmp_path.iterdir()) == []
+    said = [line for line in done.stderr.splitlines() if " so far" not in line]  # where it is slow
+    assert len(said) == 1 and list(tmp_path.iterdir()) == []
+    assert said[0].startswith("roughgas: error: out of memory. Unable to allocate")
