@@ -92,8 +92,13 @@ def test_everything_has_them(project):
     assert planned["point"] == 2 and planned["reach"] == planned["pilot"] == 2
 
 
-def test_a_plan_has_a_pilot_for_each_variant(project):
-    assert project.planned("plan")["pilot"] == JOBS + len(BEYOND) + 2 + 3 + 2 + 2
+def test_a_plan_has_a_pilot_for_each_variant(project, tmp_path):
+    swept = project.copy_to(tmp_path / "swept")
+    sweep = {"spin.inertia": ["1", "0.5", "0.1"]}
+    swept.configure(
+        lambda config: config["scales"]["tiny"]["vibrated_inertia"]["sweep"].update(sweep)
+    )
+    assert swept.planned("plan_extensions")["pilot"] == len(BEYOND) + 2
 
 
 def test_any_legal_value_can_be_asked_for(project):
