@@ -15,7 +15,7 @@ import numpy as np
 from benchmarks.scenes import CASES, settings
 from roughgas.kernel.jit import entry
 from roughgas.kernel.shortlist import decide
-from roughgas.kernel.sweep import mark_candidates
+from roughgas.kernel.sweep import line_of, list_candidates, single
 from roughgas.scene import Scene, build
 from roughgas.scene.initial import initial_state
 
@@ -27,7 +27,8 @@ ARITHMETIC = re.compile(
 @entry
 def sweep(state, scene, i, number):
     """Which of all particles may be met soon: single precision (`ps`)."""
-    mark_candidates(state, scene, i, 0.5, 0.5)
+    start, velocity = line_of(state, scene, i)
+    return list_candidates(state, scene, single(start), single(velocity), 0.5, 0.5)
 
 
 @entry

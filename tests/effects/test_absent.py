@@ -123,8 +123,7 @@ EVERYWHERE = (
     {"trajectory", "changes", "label", "ledger", "clock", "counts"}
     | {f"agenda.{name}" for name in ("key", "kind", "filled", "complete_until")}
     | {f"agenda.slot_{name}" for name in ("time", "partner", "change")}
-    | {"queue.bits", "queue.least", "shortlist.found", "shortlist.paths", "shortlist.when"}
-    | {f"sweep.{name}" for name in ("lines", "marks", "words", "bits", "bit_words")}
+    | {"queue.keys", "queue.least", "shortlist.found", "shortlist.when", "sweep.lines"}
 )
 
 

@@ -5,6 +5,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import gc
+
 import numba
 import numpy as np
 import pytest
@@ -51,11 +53,29 @@ def test_numba_takes_compiled_functions_for_its_own():
     assert entry(lambda x: inner(x))(3.0) == 6.0
 
 
-def test_intrinsics():
-    bits = numba.njit(lambda x: compiler.bits_of(x))
-    assert bits(1.5) == np.float64(1.5).view(np.int64)
-    zeros = numba.njit(lambda x: compiler.trailing_zeros(x))
-    assert [zeros(np.uint64(x)) for x in (1, 8, 2**63)] == [0, 3, 63]
+@compiled
+def twice(x):
+    return 2.0 * x
+
+
+def test_only_what_is_called_from_python_is_finished():
+    """If numba, too, left the rest unfinished, compiler.Library would no longer be needed."""
+
+    @entry
+    def four_times(x):
+        return twice(twice(x))
+
+    assert four_times(1.5) == 6.0
+    engine = compiler.cpu_target.target_context.codegen()._engine
+    (inner,) = twice.dispatcher.overloads.values()
+    (outer,) = four_times.dispatcher.overloads.values()
+    assert not engine.is_symbol_defined(inner.fndesc.llvm_func_name)
+    assert engine.is_symbol_defined(outer.fndesc.llvm_cpython_wrapper_name)
+
+
+def test_memory_is_collected_again_after_compiling():
+    entry(lambda x: x + 1.0)(1.0)
+    assert gc.isenabled()
 
 
 @pytest.mark.parametrize("own", [compiler.Folder, compiler.Sealed, compiler.Kept])

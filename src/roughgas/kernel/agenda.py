@@ -4,6 +4,8 @@ import math
 
 from roughgas.kernel.hooks import either
 from roughgas.kernel.jit import jit
+from roughgas.kernel.lanes import bits, least, load, store, trailing_zeros
+from roughgas.kernel.layout import SLOTS_OF_FEW
 from roughgas.kernel.queue import enter_in_queue
 from roughgas.kernel.state import BOUNDARY, HORIZON, NOTHING
 
@@ -11,30 +13,25 @@ from roughgas.kernel.state import BOUNDARY, HORIZON, NOTHING
 @jit
 def clear_contacts(agenda, i, complete_until):
     """Forget particle i's contacts; those added next are complete until the given time."""
-    agenda.filled[i] = 0
+    for k in range(agenda.slot_time.shape[1]):
+        agenda.slot_time[i, k] = math.inf
     agenda.complete_until[i] = complete_until
 
 
 @jit
-def add_contact(agenda, i, time, partner, change, wanted):
-    """Add a contact to particle i's list if it is wanted; a full list drops its latest one.
-
-    Whether it is wanted is a number to add, not a branch to take: the processor could not foresee
-    which of the candidates it is.
-    """
-    filled = int(agenda.filled[i])
-    if filled == agenda.slot_time.shape[1]:
-        if wanted:
-            _replace_latest(agenda, i, time, partner, change)
-        return
-    agenda.slot_time[i, filled] = time
-    agenda.slot_partner[i, filled] = partner
-    agenda.slot_change[i, filled] = change
-    agenda.filled[i] = filled + wanted
+def set_contacts(agenda, i, first, times, partners, changes):
+    """Fill particle i's list from slot `first` on with lanes, one to a slot; inf is no contact."""
+    store(agenda.slot_time, i, first, times)
+    store(agenda.slot_partner, i, first, partners)
+    store(agenda.slot_change, i, first, changes)
 
 
 @jit
-def _replace_latest(agenda, i, time, partner, change):
+def add_contact(agenda, i, time, partner, change):
+    """Put a contact in the place of the latest on particle i's list; of the two the earlier stays.
+
+    A time of inf is no contact, and a slot that holds it is free.
+    """
     times = agenda.slot_time
     latest = 0
     for k in range(1, times.shape[1]):
@@ -50,29 +47,38 @@ def _replace_latest(agenda, i, time, partner, change):
 @jit
 def drop_contact(agenda, i, slot):
     """Take a contact off particle i's list."""
-    last = int(agenda.filled[i]) - 1
-    agenda.slot_time[i, slot] = agenda.slot_time[i, last]
-    agenda.slot_partner[i, slot] = agenda.slot_partner[i, last]
-    agenda.slot_change[i, slot] = agenda.slot_change[i, last]
-    agenda.filled[i] = last
+    agenda.slot_time[i, slot] = math.inf
 
 
 @jit
 def choose_next(state, i):
     """Make the earliest event of particle i its entry in the queue."""
     agenda = state.agenda
-    time = _foresight(state.cells, agenda, i)
-    kind = HORIZON
-    for k in range(int(agenda.filled[i])):
-        earlier = agenda.slot_time[i, k] <= time
-        time = agenda.slot_time[i, k] if earlier else time
-        kind = k if earlier else kind
+    time, kind = _with_contact(state.cells, agenda, i, _foresight(state.cells, agenda, i))
     time, kind = _with_boundary(agenda.boundary_time, i, time, kind)
     if time == math.inf:
         kind = NOTHING
     agenda.kind[i] = kind
     enter_in_queue(state.cells, state, i, time)
 
+
+def _of_two(cells, agenda, i, time):
+    kind = HORIZON
+    for k in range(agenda.slot_time.shape[1]):
+        earlier = agenda.slot_time[i, k] <= time
+        time = agenda.slot_time[i, k] if earlier else time
+        kind = k if earlier else kind
+    return time, kind
+
+
+def _of_eight(cells, agenda, i, time):
+    times = load(agenda.slot_time, i, 0, SLOTS_OF_FEW)
+    first = least(times)
+    slot = trailing_zeros(bits(times == first))
+    return (first, slot) if first <= time else (time, HORIZON)
+
+
+_with_contact = either(_of_two, _of_eight)
 
 _foresight = either(
     lambda cells, agenda, i: min(agenda.complete_until[i], cells.leave[i]),

@@ -5,7 +5,7 @@ the sieve (sweep.py) uses single precision, and its rounding shows in no result:
 a sum become one instruction where the machine has it.
 """
 
-from roughgas.kernel.jit import is_single, overload
+from roughgas.kernel.jit import is_lanes, is_single, overload
 
 
 def multiply_add(a, b, c):
@@ -16,7 +16,25 @@ def multiply_add(a, b, c):
 @overload(multiply_add)
 def _compiled_multiply_add(a, b, c):
     from roughgas.kernel.compiler import fused_multiply_add
+    from roughgas.kernel.registers import fused
 
-    if is_single(a) and is_single(b) and is_single(c):
+    kinds = (a, b, c)
+    if any(is_lanes(kind) for kind in kinds) and all(is_single(kind) for kind in kinds):
+        return lambda a, b, c: fused(a, b, c)
+    if all(is_single(kind) for kind in kinds):
         return lambda a, b, c: fused_multiply_add(a, b, c)
     return lambda a, b, c: a * b + c
+
+
+def choose(condition, one, other):
+    """Return `one` where the condition holds, else `other`; of both, lane by lane, if it is lanes."""
+    return one if condition else other
+
+
+@overload(choose)
+def _compiled_choose(condition, one, other):
+    from roughgas.kernel.registers import select
+
+    if is_lanes(condition):
+        return lambda condition, one, other: select(condition, one, other)
+    return lambda condition, one, other: one if condition else other

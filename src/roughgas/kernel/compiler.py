@@ -13,6 +13,8 @@ tests/kernel/test_compiler.py:
 """
 
 import fcntl
+import functools
+import gc
 import hashlib
 import pickle
 import sys
@@ -28,6 +30,8 @@ from numba.core.caching import (
     IndexDataCacheFile,
     _CacheLocator,
 )
+from numba.core.codegen import JITCodeLibrary
+from numba.core.registry import cpu_target
 from numba.core.runtime import rtsys
 from numba.extending import intrinsic, overload
 
@@ -51,7 +55,70 @@ def dispatcher(function, cache=False, inner=False, inline=False):
     made = numba.njit(error_model="numpy", _nrt=False, **options)(function)
     if cache:
         made._cache = Kept(function)
+    if not inner:
+        made.compile = _without_collection(made.compile)
     return made
+
+
+def _without_collection(compile_it):
+    """Have memory collected once, after compiling: nothing that is compiled can be thrown away."""
+
+    @functools.wraps(compile_it)
+    def compiling(*args):
+        enabled = gc.isenabled()
+        gc.disable()
+        try:
+            return compile_it(*args)
+        finally:
+            if enabled:
+                gc.enable()
+
+    return compiling
+
+
+class Library(JITCodeLibrary):
+    """The machine code of one function and of those that it calls.
+
+    Numba makes machine code of each function that a kernel is put together from, and optimises it
+    with all that it calls, though only the kernel's own is ever run. Here only what Python or C
+    calls is finished; the rest is handed on as it is.
+    """
+
+    def finalize(self):
+        if any(_is_entry(function.name) for function in self._final_module.functions):
+            super().finalize()
+            return
+        for library in dict.fromkeys(self._linking_libraries):
+            self._reload_init.update(library._reload_init)
+            self._final_module.link_in(library._get_module_for_linking(), preserve=True)
+        self._finalize_dynamic_globals()
+        self._finalized = True
+
+
+def _is_entry(name):
+    return name.startswith(("_ZN7cpython", "_ZN5cfunc"))
+
+
+def _set_environment(code, set_it, name, environment):
+    """Tell a function where its Python objects are; one without machine code has none."""
+    if code._engine.is_symbol_defined(name):
+        set_it(name, environment)
+
+
+def _finish_entries_only():
+    code = cpu_target.target_context.codegen()
+    code._library_class = Library
+    code.set_env = functools.partial(_set_environment, code, code.set_env)
+
+
+_finish_entries_only()
+
+
+def type_of(intrinsic):
+    """Return the type that numba gives to an intrinsic that compiled code names."""
+    context = cpu_target.typing_context
+    context.refresh()
+    return context.resolve_value_type(intrinsic)
 
 
 def register(overloads):
@@ -162,23 +229,3 @@ def fused_multiply_add(context, a, b, c):
         )
 
     return a(a, a, a), generate
-
-
-@intrinsic
-def bits_of(context, x):
-    """Return the bits of a double as an integer."""
-
-    def generate(context, builder, signature, arguments):
-        return builder.bitcast(arguments[0], context.get_value_type(signature.return_type))
-
-    return types.int64(types.float64), generate
-
-
-@intrinsic
-def trailing_zeros(context, word):
-    """Return the number of zeros below the lowest bit that is set."""
-
-    def generate(context, builder, signature, arguments):
-        return builder.cttz(arguments[0], ir.Constant(ir.IntType(1), 0))
-
-    return word(word), generate

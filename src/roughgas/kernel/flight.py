@@ -3,20 +3,20 @@
 from roughgas.kernel import hooks
 from roughgas.kernel.images import fold_into_box, slid
 from roughgas.kernel.jit import jit
-from roughgas.kernel.vectors import add_scaled, dot, read, subtract, write
+from roughgas.kernel.unroll import unrolled
+from roughgas.kernel.vectors import add_scaled, dot, read, subtract, subtract_last, write
 
 
-@jit
+@unrolled
 def fallen(position, velocity, elapsed, gravity):
     """Return position and velocity after `elapsed`, falling along the last axis under gravity."""
     moved = add_scaled(position, velocity, elapsed)
     if gravity is None:
         return moved, velocity
-    drop = 0.5 * gravity * elapsed * elapsed
-    return (
-        moved[:-1] + (moved[-1] - drop,),
-        velocity[:-1] + (velocity[-1] - gravity * elapsed,),
-    )
+    else:
+        drop = 0.5 * gravity * elapsed * elapsed
+        fall = gravity * elapsed
+        return subtract_last(moved, drop), subtract_last(velocity, fall)
 
 
 @jit

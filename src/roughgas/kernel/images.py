@@ -124,9 +124,10 @@ def _limit(lengths, half):
         return speed * speed
 
 
-@jit
+@unrolled
 def exceeds(squared, limit):
     """Return whether the square of a relative speed is above a speed limit; NaN is not."""
     if limit is None:
         return False
-    return squared > limit
+    else:
+        return squared > limit

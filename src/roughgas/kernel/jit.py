@@ -57,6 +57,19 @@ def jit(function):
     return Compiled(function, inner=True, inline=True)
 
 
+class Primitive:
+    """An operation that only compiled code knows, by its name in registers.py."""
+
+    def __init__(self, name):
+        self.name = name
+
+    @property
+    def _numba_type_(self):
+        from roughgas.kernel import compiler, registers
+
+        return compiler.type_of(getattr(registers, self.name))
+
+
 overloads = []
 """(function, chooser) of each overload that numba has not been told of yet."""
 
@@ -79,6 +92,11 @@ def is_none(kind):
     return str(kind) == "none"
 
 
+def is_lanes(kind):
+    """Return whether one of numba's types is that of lanes (lanes.py)."""
+    return hasattr(kind, "count") and hasattr(kind, "kind")
+
+
 def is_single(kind):
-    """Return whether one of numba's types is single precision."""
-    return str(kind) == "float32"
+    """Return whether one of numba's types, or that of each lane, is single precision."""
+    return str(kind.kind if is_lanes(kind) else kind) == "float32"

@@ -80,20 +80,14 @@ def cell_grid(scene, position):
 def _few(scene, number, dimension, precision):
     padded = _whole(number, LANES)
     key = np.full(padded, np.inf)
-    marks = np.zeros(padded, np.uint8)
-    bits = np.zeros(_whole(number, 64) // 8, np.uint8)
     fields = _fields(scene, dimension, precision, SLOTS_OF_FEW)
     arrays = {name: _array(number, *kind) for name, kind in fields.items()}
     return _state(
         scene,
         arrays | {"key": key},
-        queue=Blocks(bits=key.view(np.int64), least=key[::BLOCK].copy().view(np.int64)),
+        queue=Blocks(keys=key.reshape(-1, BLOCK), least=_least_of_blocks(padded // BLOCK)),
         sweep=Sweep(
             lines=np.full((2 * dimension, padded), np.nan, np.float32),
-            marks=marks,
-            words=marks.view(np.uint64),
-            bits=bits,
-            bit_words=bits.view(np.uint64),
         ),
         cells=None,
         shortlist=_shortlist(number, dimension),
@@ -107,7 +101,7 @@ def _many(scene, number, dimension, precision, counts, widths):
     here += [name for name in fields if name.startswith(MOMENT)]
     links = {name: (np.int32,) for name in ("home", "following", "previous", "later", "sooner")}
     fields |= links | {"leave": (float,)}
-    small = ("kind", "filled", "label")
+    small = ("kind", "label")
     ahead = [name for name in fields if name not in (*here, *small)]
     arrays = {name: _array(number, *fields[name]) for name in small}
     arrays |= _records(number, {name: fields[name] for name in here if name in fields})
@@ -146,7 +140,6 @@ def _fields(scene, dimension, precision, slots):
         "slot_time": (float, slots),
         "slot_partner": (np.int32, slots),
         "slot_change": (np.int32, slots),
-        "filled": (np.int8,),
         "complete_until": (float,),
     }
     if effects.spin is not None:
@@ -188,12 +181,14 @@ def _sums(effects):
 
 
 def _shortlist(number, dimension):
-    room = _whole(number, TOGETHER)
     return Shortlist(
-        found=np.zeros(room, np.int64),
-        paths=np.zeros((2 * dimension + 1, room)),
-        when=np.zeros(room),
+        found=np.zeros(number + LANES, np.int32),
+        when=np.zeros((1, TOGETHER)),
     )
+
+
+def _least_of_blocks(blocks):
+    return np.full((-(-blocks // BLOCK), BLOCK), np.inf)
 
 
 def _whole(number, unit):

@@ -9,6 +9,7 @@ from roughgas.kernel.clock import moves_on, rebase
 from roughgas.kernel.contact import collide
 from roughgas.kernel.hooks import either
 from roughgas.kernel.jit import compiled, jit
+from roughgas.kernel.lanes import index
 from roughgas.kernel.order import arrange
 from roughgas.kernel.queue import clear_calendar, earliest, enter_in_queue
 from roughgas.kernel.state import (
@@ -35,7 +36,7 @@ def advance(state, scene, until, collisions):
     """
     clock, counts, agenda = state.clock, state.counts, state.agenda
     while counts[COLLISIONS] < collisions:
-        i = earliest(state.cells, state)
+        i = index(earliest(state.cells, state))
         time = agenda.key[i]
         if time > until - clock[BASE] or time == math.inf:
             clock[NOW] = until - clock[BASE]
@@ -44,7 +45,7 @@ def advance(state, scene, until, collisions):
         affected = carry_out(state, scene, i, int(agenda.kind[i]), time)
         for k in range(2):
             if affected[k] >= 0:
-                foresee(state, scene, affected[k], time)
+                foresee(state, scene, index(affected[k]), time)
         if time >= clock[SPAN]:
             renew(state, scene)
         elif not moves_on(state, time):
@@ -60,7 +61,8 @@ def carry_out(state, scene, i, kind, time):
         return i, NOBODY
     if kind == BOUNDARY:
         return i, _resolve_boundary(agenda.boundary_code, state, scene, i, time)
-    partner = int(agenda.slot_partner[i, kind])
+    kind = index(kind)
+    partner = index(int(agenda.slot_partner[i, kind]))
     if agenda.slot_change[i, kind] != state.changes[partner]:  # its path is another by now
         state.counts[STALE] += 1
         drop_contact(agenda, i, kind)

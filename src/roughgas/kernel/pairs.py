@@ -7,6 +7,7 @@ hold), and goes on in free flight.
 
 import math
 
+from roughgas.kernel.arithmetic import choose
 from roughgas.kernel.flight import along
 from roughgas.kernel.images import exceeds, image_numbers, shifted, slid, speed_limit
 from roughgas.kernel.jit import compiled, jit
@@ -33,12 +34,12 @@ def time_to_contact(x, u):
     time = max(c, 0.0) / (math.sqrt(max(discriminant, 0.0)) - b)
     time = min(time, -b / uu)
     meets = (b < 0.0) & ((discriminant >= 0.0) | (c <= 0.0))
-    return time if meets else math.inf
+    return choose(meets, time, math.inf)
 
 
 @jit
 def meeting(path_i, path_j, box, gravity, slide, middle, limit):
-    """Return the time of the first contact of two paths; NaN if a second image might be met.
+    """Return the time of the first contact of two paths, and whether a second image might be met.
 
     The nearest image at `middle` is the only one that can be met as long as the pair moves less
     than half a box, less a diameter, from there: as long as it is not faster than the speed_limit.
@@ -51,7 +52,7 @@ def meeting(path_i, path_j, box, gravity, slide, middle, limit):
     numbers = image_numbers(add_scaled(x, u, middle - since), box, slid(slide, middle))
     x, u = shifted(x, u, numbers, box, slid(slide, since))
     time = since + time_to_contact(x, u)
-    return math.nan if exceeds(dot(u, u), limit) else time
+    return time, exceeds(dot(u, u), limit)
 
 
 @compiled
@@ -66,8 +67,8 @@ def meeting_of_any_image(path_i, path_j, box, gravity, slide, start, end):
         length = (end - start) / pieces
         middle = start + (k + 0.5) * length
         limit = speed_limit(box, 0.5 * length)
-        time = meeting(path_i, path_j, box, gravity, slide, middle, limit)
-        if math.isnan(time):
+        time, unsure = meeting(path_i, path_j, box, gravity, slide, middle, limit)
+        if unsure:
             pieces *= 2
             k *= 2
         elif time <= start + (k + 1) * length:

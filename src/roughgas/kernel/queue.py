@@ -2,11 +2,11 @@
 
 import math
 
-import numpy as np
-
+from roughgas.kernel.arithmetic import choose
 from roughgas.kernel.clock import FLIGHTS
 from roughgas.kernel.hooks import either
-from roughgas.kernel.jit import jit, overload
+from roughgas.kernel.jit import jit
+from roughgas.kernel.lanes import bits, least, load, order, store, trailing_zeros
 from roughgas.kernel.layout import BLOCK
 from roughgas.kernel.links import enter, strike_out
 from roughgas.kernel.state import LONGEST_HORIZON, NOBODY, NOW, TYPICAL_SPEED
@@ -16,30 +16,32 @@ EVENTS_A_DAY = 2.0  # this many make a day's list short and empty days rare
 
 
 def _enter_in_blocks(cells, state, i, time):
-    """Times are compared as integers: the bits of doubles >= 0 order like their values, and minima
-    of integers need no care for NaN, so they use the vector registers. Nothing is loaded just after
-    it was stored, for which the processor would wait."""
-    bits, block = state.queue.bits, i // BLOCK
-    new = float_bits(time)
-    least = new
-    for k in range(BLOCK):
-        place = BLOCK * block + k
-        least = min(least, new if place == i else bits[place])
-    bits[i] = new
-    state.queue.least[block] = least
+    queue, block = state.queue, i // BLOCK
+    keys = _with(queue.keys, block, i % BLOCK, time)
+    _with(queue.least, block // BLOCK, block % BLOCK, least(keys))
+
+
+@jit
+def _with(blocks, block, place, time):
+    """Put a time in its place in a block, and return the block.
+
+    It is stored as a whole, as it is read: a read of several stores at once has to wait for them.
+    """
+    times = choose(order(BLOCK) == place, time, load(blocks, block, 0, BLOCK))
+    store(blocks, block, 0, times)
+    return times
 
 
 def _earliest_in_blocks(cells, state):
-    queue, bits = state.queue, state.queue.bits
-    least, block = queue.least[0], 0
-    for k in range(1, queue.least.size):
-        earlier = queue.least[k] < least
-        least = queue.least[k] if earlier else least
-        block = k if earlier else block
-    place = bits.size
-    for k in range(BLOCK * block, BLOCK * (block + 1)):
-        place = min(place, k if bits[k] == least else bits.size)
-    return place
+    queue = state.queue
+    first, block = math.inf, 0
+    for k in range(len(queue.least)):
+        candidates = load(queue.least, k, 0, BLOCK)
+        if least(candidates) < first:
+            first = least(candidates)
+            block = BLOCK * k + trailing_zeros(bits(candidates == first))
+    keys = load(queue.keys, block, 0, BLOCK)
+    return BLOCK * block + trailing_zeros(bits(keys == first))
 
 
 def _enter_in_calendar(cells, state, i, time):
@@ -110,15 +112,3 @@ def clear_calendar(state, cells, scene):
 
 enter_in_queue = either(_enter_in_calendar, _enter_in_blocks)
 earliest = either(_earliest_in_calendar, _earliest_in_blocks)
-
-
-def float_bits(x):
-    """Return the bits of a double as an integer."""
-    return int(np.float64(x).view(np.int64))
-
-
-@overload(float_bits)
-def _compiled_float_bits(x):
-    from roughgas.kernel.compiler import bits_of
-
-    return lambda x: bits_of(x)

@@ -39,20 +39,19 @@ class Agenda(NamedTuple):
 
     key: np.ndarray  # (N,) time of the next event, inf where there is none
     kind: np.ndarray  # (N,) the slot of the contact that comes next, or HORIZON or BOUNDARY
-    slot_time: np.ndarray  # (N, slots) times of contacts, in no order
+    slot_time: np.ndarray  # (N, slots) times of contacts, in no order; inf in those that are free
     slot_partner: np.ndarray  # (N, slots)
     slot_change: np.ndarray  # (N, slots) the partner's `changes` when the contact was predicted
-    filled: np.ndarray  # (N,) slots in use
     complete_until: np.ndarray  # (N,) no contact before this time is missing from the slots
     boundary_time: np.ndarray | None  # (N,); None in a scene without boundaries
     boundary_code: np.ndarray | None  # (N,) which effect, and what of it
 
 
 class Blocks(NamedTuple):
-    """A queue of few: the keys as integers, which order like the times, and each block's least."""
+    """A queue of few: the keys in blocks, and the least of each block, in blocks again."""
 
-    bits: np.ndarray  # (N padded,) the memory of Agenda.key
-    least: np.ndarray  # (blocks,)
+    keys: np.ndarray  # (blocks, BLOCK) the memory of Agenda.key
+    least: np.ndarray  # (blocks padded / BLOCK, BLOCK)
 
 
 class Calendar(NamedTuple):
@@ -66,13 +65,9 @@ class Calendar(NamedTuple):
 
 
 class Sweep(NamedTuple):
-    """Single-precision trajectories r0 + v0 t, and the marks that the all-pairs sweep leaves."""
+    """Single-precision trajectories r0 + v0 t, which the all-pairs sweep tries."""
 
     lines: np.ndarray  # (2 D, N padded) r0 and v0 at the clock's base; NaN in the padding
-    marks: np.ndarray  # (N padded,) one byte a particle
-    words: np.ndarray  # the same memory, eight marks a word
-    bits: np.ndarray  # the marks packed, eight to a byte
-    bit_words: np.ndarray  # the same memory, 64 marks a word
 
 
 class Cells(NamedTuple):
@@ -92,8 +87,7 @@ class Shortlist(NamedTuple):
     """The candidates for a contact with one particle, and what becomes of them."""
 
     found: np.ndarray  # (room,) numbers of particles
-    paths: np.ndarray  # (2 D + 1, room) their positions, velocities, and times at which these hold
-    when: np.ndarray  # (room,) times of contact
+    when: np.ndarray  # (1, 8) times of contact, of those that are looked at one by one
 
 
 class State(NamedTuple):

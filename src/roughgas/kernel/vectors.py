@@ -20,6 +20,12 @@ def subtract(a, b):
 
 
 @unrolled
+def subtract_last(a, s):
+    """Return the vector a with the scalar s taken off its last component."""
+    return tuple(a[k] for k in range(len(a) - 1)) + (a[len(a) - 1] - s,)
+
+
+@unrolled
 def scale(a, s):
     """Return the vector a times the scalar s."""
     return tuple(a[k] * s for k in range(len(a)))
