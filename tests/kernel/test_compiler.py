@@ -1,11 +1,10 @@
 """What kernel/compiler.py takes of numba's private parts does what it is there for."""
 
+import gc
 import os
 import subprocess
 import sys
 from pathlib import Path
-
-import gc
 
 import numba
 import numpy as np

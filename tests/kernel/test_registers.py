@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+
 from roughgas.kernel import lanes
 from roughgas.kernel.arithmetic import choose, multiply_add
 from roughgas.kernel.jit import entry

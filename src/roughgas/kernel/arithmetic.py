@@ -1,4 +1,4 @@
-"""a b + c, and when the compiler may round it once instead of twice.
+"""a b + c, and when the compiler may round it once instead of twice; and a choice without a branch.
 
 Results are in double precision and rounded step by step, the same on every machine. Only
 the sieve (sweep.py) uses single precision, and its rounding shows in no result: there a product and
@@ -15,25 +15,21 @@ def multiply_add(a, b, c):
 
 @overload(multiply_add)
 def _compiled_multiply_add(a, b, c):
-    from roughgas.kernel.compiler import fused_multiply_add
-    from roughgas.kernel.registers import fused
+    from roughgas.kernel.operations import fused
 
-    kinds = (a, b, c)
-    if any(is_lanes(kind) for kind in kinds) and all(is_single(kind) for kind in kinds):
+    if is_single(a) and is_single(b) and is_single(c):
         return lambda a, b, c: fused(a, b, c)
-    if all(is_single(kind) for kind in kinds):
-        return lambda a, b, c: fused_multiply_add(a, b, c)
     return lambda a, b, c: a * b + c
 
 
 def choose(condition, one, other):
-    """Return `one` where the condition holds, else `other`; of both, lane by lane, if it is lanes."""
+    """Return `one` where the condition holds, else `other`; lane by lane, where it is lanes."""
     return one if condition else other
 
 
 @overload(choose)
 def _compiled_choose(condition, one, other):
-    from roughgas.kernel.registers import select
+    from roughgas.kernel.operations import select
 
     if is_lanes(condition):
         return lambda condition, one, other: select(condition, one, other)

@@ -7,6 +7,7 @@ tests/kernel/test_compiler.py:
 - `no_cpython_wrapper`, `no_cfunc_wrapper`, `forceinline`: documented for `overload` only. Unpacking
   a state for a call from Python takes more code, and time to compile it, than most functions do;
 - `_numba_type_`: how a value tells its type;
+- `Library`, `set_env`: machine code is made of a kernel, and not of each function in it besides;
 - `_cache`, the classes of numba.core.caching, `rtsys`: to load a kernel without setting up the
   compiler, to share it among copies of the project, to seal files with a checksum, to have one
   writer at a time.
@@ -22,8 +23,6 @@ from contextlib import suppress
 from pathlib import Path
 
 import numba
-from llvmlite import ir
-from numba import types
 from numba.core.caching import (
     CompileResultCacheImpl,
     FunctionCache,
@@ -33,7 +32,7 @@ from numba.core.caching import (
 from numba.core.codegen import JITCodeLibrary
 from numba.core.registry import cpu_target
 from numba.core.runtime import rtsys
-from numba.extending import intrinsic, overload
+from numba.extending import overload
 
 from roughgas.base.errors import InputError
 from roughgas.kernel.cache import folder_of
@@ -215,17 +214,3 @@ class Kept(FunctionCache):
         except OSError as error:
             said = f"roughgas: warning: {folder}: {error.strerror}: the kernel is not kept"
             print(said, file=sys.stderr)
-
-
-@intrinsic
-def fused_multiply_add(context, a, b, c):
-    """Return a b + c, in one instruction where the machine has it."""
-
-    def generate(context, builder, signature, arguments):
-        kind = context.get_value_type(signature.return_type)
-        function = ir.FunctionType(kind, [kind] * 3)
-        return builder.call(
-            builder.module.declare_intrinsic("llvm.fmuladd", (kind,), function), arguments
-        )
-
-    return a(a, a, a), generate

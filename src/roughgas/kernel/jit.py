@@ -58,16 +58,16 @@ def jit(function):
 
 
 class Primitive:
-    """An operation that only compiled code knows, by its name in registers.py."""
+    """An operation that only compiled code knows, by its name in operations.py."""
 
     def __init__(self, name):
         self.name = name
 
     @property
     def _numba_type_(self):
-        from roughgas.kernel import compiler, registers
+        from roughgas.kernel import compiler, operations
 
-        return compiler.type_of(getattr(registers, self.name))
+        return compiler.type_of(getattr(operations, self.name))
 
 
 overloads = []

@@ -45,9 +45,9 @@ def decide(state, scene, i, number, start, end, limit):
     while more:  # once mostly, and at least once, so that the processor can foresee it
         others = _paths_of(state.trajectory, state.shortlist.found, first, box)
         when, unsure = meeting(path, others, box, gravity, slide, start + half, fastest)
-        when = _of_any_image(fastest, state, scene, path, first, start, end, when, unsure)
-        wanted = (when <= limit) & (order(REGISTER) < number - first)
-        _note(state.cells, state, i, first, number, choose(wanted, when, math.inf))
+        listed = order(REGISTER) < number - first
+        when = _of_any_image(fastest, state, scene, path, first, start, end, when, unsure & listed)
+        _note(state.cells, state, i, first, choose((when <= limit) & listed, when, math.inf))
         first += lanes_of(state.shortlist.when)
         more = first < number
 
@@ -86,7 +86,7 @@ _of_any_image = either(
 
 
 @jit
-def _one_by_one(state, i, first, number, when):
+def _one_by_one(state, i, first, when):
     agenda, shortlist = state.agenda, state.shortlist
     store(shortlist.when, 0, 0, when)
     contacts = bits(when < math.inf)
@@ -97,9 +97,9 @@ def _one_by_one(state, i, first, number, when):
         contacts &= contacts - np.uint64(1)
 
 
-def _all_at_once(cells, state, i, first, number, when):
+def _all_at_once(cells, state, i, first, when):
     if first + lanes_of(state.shortlist.when) > SLOTS_OF_FEW:
-        _one_by_one(state, i, first, number, when)
+        _one_by_one(state, i, first, when)
         return
     found = state.shortlist.found
     changes = gather(state.changes, 0, found, first, REGISTER)
@@ -107,6 +107,6 @@ def _all_at_once(cells, state, i, first, number, when):
 
 
 _note = either(
-    lambda cells, state, i, first, number, when: _one_by_one(state, i, first, number, when),
+    lambda cells, state, i, first, when: _one_by_one(state, i, first, when),
     _all_at_once,
 )
