@@ -1,6 +1,7 @@
 """A cooling gas of up to 700 rough disks, as one would write it by hand for this scene alone.
 
-The algorithm is that of roughgas.kernel, and so are the results, to the last bit; but nothing here
+The algorithm is that of roughgas.kernel, though its vectors are what LLVM makes of loops (and its
+candidates are listed by a loop), and the results are the same to the last bit; but nothing here
 could do anything else. Two dimensions, both periodic, are written out; there are no effects, nor a
 place where one could act. What the kernel's generality costs is the difference in speed
 (benchmarks/generality.py). Compiled in the same way, with the same decorators.
@@ -24,7 +25,6 @@ from benchmarks.handwritten_contacts import (
     redraw_line,
 )
 from roughgas.kernel.jit import compiled, entry, jit
-from roughgas.kernel.queue import float_bits
 
 NOW, SPAN, SPEED, LONGEST, INSTANT_END = range(5)  # of Gas.clock
 MADE, SINCE_REBASE, AT_ONCE, SPENT, STARTED = range(5)  # of Gas.counts
@@ -233,7 +233,7 @@ def choose_next(gas, i):
 @jit
 def enter_in_queue(bits, least, i, time):
     """Store disk i's next time, and its block's least."""
-    new, block = float_bits(time), i // BLOCK
+    new, block = np.float64(time).view(np.int64), i // BLOCK
     lowest = new
     for k in range(BLOCK):
         place = BLOCK * block + k

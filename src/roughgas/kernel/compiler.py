@@ -35,6 +35,7 @@ from numba.core.runtime import rtsys
 from numba.extending import overload
 
 from roughgas.base.errors import InputError
+from roughgas.kernel import operations
 from roughgas.kernel.cache import folder_of
 
 INNER = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
@@ -113,11 +114,15 @@ def _finish_entries_only():
 _finish_entries_only()
 
 
-def type_of(intrinsic):
-    """Return the type that numba gives to an intrinsic that compiled code names."""
+def type_of(name):
+    """Return the type that numba gives to an operation on lanes.
+
+    These are known before anything is compiled: a function that learns of lanes while its types are
+    inferred has had other types of the same operators before.
+    """
     context = cpu_target.typing_context
     context.refresh()
-    return context.resolve_value_type(intrinsic)
+    return context.resolve_value_type(getattr(operations, name))
 
 
 def register(overloads):

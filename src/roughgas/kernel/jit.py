@@ -65,9 +65,9 @@ class Primitive:
 
     @property
     def _numba_type_(self):
-        from roughgas.kernel import compiler, operations
+        from roughgas.kernel import compiler
 
-        return compiler.type_of(getattr(operations, self.name))
+        return compiler.type_of(self.name)
 
 
 overloads = []
