@@ -57,6 +57,13 @@ def test_its_commands_are_commands():
     assert {line[-1] for line in told if line[0] == "make"} <= set(targets)
 
 
+def test_make_says_where_to_look_as_it_is_printed():
+    command = ["make", "-n", "SCALE=small", "report"]
+    ran = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
+    (line,) = (line for line in answers() if line.startswith("Look at"))
+    assert f'echo "{line}"\n' in ran.stdout
+
+
 def with_snippet(text):
     """A configuration with README's snippet pasted where it says."""
     (snippet,) = blocks("yaml")
