@@ -117,7 +117,8 @@ def _spoil_variable(draw, group):
     elif what == "values" and variable.dtype is not str and variable.size:
         values = np.array(variable[...], variable.dtype).ravel()
         wrong = draw(st.sampled_from(NUMBERS))
-        if variable.dtype.kind == "f" or (np.isfinite(wrong) and abs(wrong) < 100):
+        whole = variable.dtype.kind == "i" and np.isfinite(wrong) and abs(wrong) < 100
+        if variable.dtype.kind == "f" or whole:
             values[draw(st.integers(0, values.size - 1))] = wrong
             variable[...] = values.reshape(variable.shape)
     elif what == "attribute":

@@ -96,6 +96,8 @@ def write_costs(paths: Iterable[str | Path], fixed: str, output: str | Path) -> 
         name = data.attrs["experiment"]
         if not isinstance(schedule := schedules.get(name), dict):
             raise InputError(f"--fixed: {name}", shown(schedule), "be a schedule")
+        if "target_stderr" not in data:
+            raise InputError(f"target_stderr of {name}", "(nothing)", "be what it was run for")
         costs.append(cost(data))
         targets.append(float(data.target_stderr.max()))
         rows.append(_row(name, targets[-1], costs[-1]))
