@@ -121,7 +121,7 @@ def arrays(part, name=""):
 
 EVERYWHERE = (
     {"trajectory", "changes", "label", "ledger", "clock", "counts"}
-    | {f"agenda.{name}" for name in ("key", "kind", "filled", "complete_until")}
+    | {f"agenda.{name}" for name in ("key", "kind", "complete_until")}
     | {f"agenda.slot_{name}" for name in ("time", "partner", "change")}
     | {"queue.keys", "queue.least", "shortlist.found", "shortlist.when", "sweep.lines"}
 )
