@@ -6,6 +6,7 @@ form clusters. The driven ones have r = 0.9, beta = 0.
 """
 
 import copy
+import functools
 from pathlib import Path
 from typing import NamedTuple
 
@@ -46,7 +47,7 @@ CASES = (
 
 def settings(case: Case, number: int) -> dict:
     """The experiment's settings with so many particles; a box with an open top grows in width."""
-    chosen = copy.deepcopy(config.experiment(config.load(CONFIGURATION), case.experiment, "paper"))
+    chosen = copy.deepcopy(config.experiment(_configuration(), case.experiment, "paper"))
     growth = number / chosen["particles"]
     if "open" in chosen["box"]:
         factors = [case.size * growth, None]
@@ -57,6 +58,11 @@ def settings(case: Case, number: int) -> dict:
     if "shear" in chosen["effects"]:  # the same shear rate
         chosen["effects"]["shear"]["velocity"] *= factors[1]
     return chosen | {"particles": number, "box": box}
+
+
+@functools.cache
+def _configuration():
+    return config.load(CONFIGURATION)
 
 
 def steady(case: Case, number: int):

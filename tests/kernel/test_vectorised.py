@@ -3,13 +3,12 @@
 import pytest
 from benchmarks.vectorised import decisions, packed_instructions, scenes, sweep
 
-SCENES = {title: (scene, state) for title, scene, state in scenes()}
 
-
-@pytest.mark.parametrize("title", SCENES)
 @pytest.mark.parametrize(
     ("loop", "needed"), [(sweep, {"mulps", "subps"}), (decisions, {"mulpd", "divpd"})]
 )
-def test_instructions_are_packed(loop, needed, title):
-    found = packed_instructions(loop, *SCENES[title])
+def test_instructions_are_packed(loop, needed):
+    """Under shear, where an image has most to it."""
+    (scene, state) = next(rest for title, *rest in scenes() if title == "sheared")
+    found = packed_instructions(loop, scene, state)
     assert needed <= {name for name, _ in found}
