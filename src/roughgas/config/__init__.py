@@ -24,8 +24,7 @@ from roughgas.config.labels import (  # noqa: F401
     seed,
 )
 
-# checking and YAML are imported where they are used: a job whose settings have been checked needs
-# neither
+# checking and YAML are imported where they are used: a job of checked settings needs neither
 
 SHIPPED = Path(__file__).parents[1] / "config.yaml"
 """The experiments that come with the package; in a clone of the repository, its config.yaml."""
