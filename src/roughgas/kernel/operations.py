@@ -222,17 +222,18 @@ def append(context, places, number, lanes, first):
 
     There is no branch in it, which the processor could not foresee.
     """
-    whole = "+avx512f" in cpu_target.target_context.codegen().magic_tuple()[2] and lanes.count == 16
+    step = 16 if register_bytes() == 64 and lanes.count == 16 else 8
+    numbered = Lanes(types.int32, step)
 
     def generate(context, builder, signature, arguments):
         places, number, mask, first = arguments
-        step = lanes.count if whole else 8
         for k in range(0, lanes.count, step):
             part = ir.Constant(ir.VectorType(ir.IntType(32), step), list(range(k, k + step)))
             some = builder.shuffle_vector(mask, mask, part) if step < lanes.count else mask
             word = builder.zext(builder.bitcast(some, ir.IntType(step)), ir.IntType(64))
             base = builder.add(first, ir.Constant(first.type, k))
-            numbers = _packed(builder, some, word, builder.trunc(base, ir.IntType(32)), step)
+            bases = spread(context, builder, base, types.intp, numbered)
+            numbers = _packed(builder, some, word, bases)
             pointer = _pointer(context, builder, signature.args[0], places, [number])
             pointer = builder.bitcast(pointer, numbers.type.as_pointer())
             builder.store(numbers, pointer, align=4)
@@ -242,20 +243,18 @@ def append(context, places, number, lanes, first):
     return types.intp(places, types.intp, lanes, types.intp), generate
 
 
-def _packed(builder, mask, word, base, count):
-    """Return the numbers of the lanes that hold, in the first lanes, plus `base`."""
-    kind = ir.VectorType(ir.IntType(32), count)
-    spread = builder.insert_element(ir.Constant(kind, ir.Undefined), base, _lane(0))
-    spread = builder.shuffle_vector(spread, spread, ir.Constant(kind, [0] * count))
-    if count == 16:
-        numbers = builder.add(spread, ir.Constant(kind, list(range(count))))
+def _packed(builder, mask, word, bases):
+    """Return the numbers of the lanes that hold, in the first lanes, plus `bases`."""
+    kind = bases.type
+    if kind.count == 16:
+        numbers = builder.add(bases, ir.Constant(kind, list(range(kind.count))))
         function = ir.FunctionType(kind, [kind, kind, mask.type])
         name = "llvm.x86.avx512.mask.compress.v16i32"
         compress = cgutils.get_or_insert_function(builder.module, function, name)
         return builder.call(compress, [numbers, ir.Constant(kind, None), mask])
     table = builder.gep(_table(builder.module), [ir.Constant(ir.IntType(64), 0), word])
     small = builder.load(table, align=8)
-    return builder.add(spread, builder.zext(small, kind))
+    return builder.add(bases, builder.zext(small, kind))
 
 
 def _table(module):

@@ -42,9 +42,13 @@ class Initial(NamedTuple):
 
     def digest(self) -> str:
         """Return a checksum of all that shapes what comes of it."""
-        parts = [np.ascontiguousarray(one) for one in self[:3] if one is not None]
-        content = b"".join(one.tobytes() for one in parts) + repr(float(self.time)).encode()
-        return hashlib.sha256(content + self.memory + self.owner.encode()).hexdigest()[:16]
+        content = self.physics() + self.memory + self.owner.encode()
+        return hashlib.sha256(content).hexdigest()[:16]
+
+    def physics(self) -> bytes:
+        """Return all of it but the kernel's memory."""
+        parts = [np.asarray(one, float).tobytes() for one in self[:3] if one is not None]
+        return b"".join(parts) + repr(float(self.time)).encode()
 
 
 class Run(Protocol):
@@ -140,9 +144,7 @@ def is_memory_of(initial: Initial, scene: Scene) -> bool:
 
 
 def _seal(memory: bytes, initial: Initial) -> bytes:
-    parts = [np.asarray(one, float) for one in initial[:3] if one is not None]
-    content = b"".join(np.ascontiguousarray(one).tobytes() for one in parts)
-    return hashlib.sha256(memory + content + repr(float(initial.time)).encode()).digest()
+    return hashlib.sha256(memory + initial.physics()).digest()
 
 
 def state_from(
