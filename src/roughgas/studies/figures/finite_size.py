@@ -55,10 +55,10 @@ def draw_box(axes: Axes, data: xr.Dataset) -> None:
     axes.axhline(0.0, color=THEORY, lw=0.8, zorder=0)
     axes.set_xscale("log")
     axes.set_yscale("symlog", linthresh=LINEAR, linscale=1.5)
-    ticks = [-80, -50, -20, -10, -4, -2, 0, 2, 4, 8]
+    ticks = [-100, -50, -20, -10, -4, -2, 0, 2, 4, 8]
     axes.set_yticks(ticks, [f"{tick}".replace("-", "−") for tick in ticks])
     axes.minorticks_off()
-    axes.set_ylim(-95, 10)
+    axes.set_ylim(-130, 10)
     axes.set(xlabel="side of the box / mean free path")
     axes.set_ylabel(r"$R_{\mathrm{events}}/R_{\mathrm{DSMC}} - 1$  (%), as many particles")
     axes.legend(loc="lower left")
@@ -98,7 +98,7 @@ def draw_tails(axes: Axes, data: xr.Dataset) -> None:
         axes.plot([], [], "o", color=GREY, mfc=fill, label=label)
     axes.set(xscale="log", yscale="log", xlabel="number of particles $N$")
     axes.set_xticks(number, map(str, number))
-    ticks = [0.01, 0.03, 0.1, 0.3, 1, 3, 10]
+    ticks = [0.003, 0.01, 0.03, 0.1, 0.3, 1, 3, 10]
     axes.set_yticks(ticks, map(str, ticks))
     axes.minorticks_off()
     axes.set_xlim(number[0] / 1.2, number[-1] * 2.2)
