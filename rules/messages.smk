@@ -2,7 +2,10 @@
 # own log keeps all of it.
 import atexit
 
-from snakemake_logger_plugin_roughgas import POINTS
+try:
+    from snakemake_logger_plugin_roughgas import POINTS
+except ModuleNotFoundError:  # not in a wheel, which has one module
+    POINTS = {}
 
 POINTS |= {"point": 1, "reach": 1, "pilot": 1}  # blocks of points: simulate.smk
 

@@ -1,13 +1,13 @@
 # One short movie a scene, for README and docs. To add one, add a line here: its name, its experiment or
 # variant, and what else `roughgas movie` is told (docs/movies.md).
 MOVIES = {
-    "vibrated": ("vibrated", "--r=0.9 --beta=0.5 --length=4 --frames=80"),
-    "roughness": ("vibrated", "--r=0.9 --beta -1 0 1 --length=8 --frames=120"),
-    "sheared": ("sheared", "--r=0.9 --beta=0.5 --frames=80"),
-    "cooling": ("cooling", "--r=0.9 --beta=0.5 --length=10 --frames=100"),
-    "rough_walls": ("vibrated_rough_walls", "--r=0.9 --beta=-1 --length=4 --frames=80"),
-    "shaken_walls": ("shaken_walls/roughness1", "--r=0.9 --beta=0 --length=4 --frames=80"),
-    "vibrated_spheres": ("vibrated_spheres", "--r=0.9 --beta=0.5 --length=3 --frames=60"),
+    "vibrated": ("vibrated", "--r=0.9 --beta=0.5 --length=8 --frames=160"),
+    "roughness": ("vibrated", "--r=0.9 --beta -1 0 1 --length=12 --frames=180"),
+    "sheared": ("sheared", "--r=0.9 --beta=0.5 --frames=160"),
+    "cooling": ("cooling", "--r=0.9 --beta=0.5 --length=16 --frames=160"),
+    "rough_walls": ("vibrated_rough_walls", "--r=0.9 --beta=-1 --length=8 --frames=160"),
+    "shaken_walls": ("shaken_walls/roughness1", "--r=0.9 --beta=0 --length=8 --frames=160"),
+    "vibrated_spheres": ("vibrated_spheres", "--r=0.9 --beta=0.5 --length=6 --frames=120"),
 }
 
 

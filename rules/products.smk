@@ -58,6 +58,11 @@ def heading_of_product(wildcards):
     return catalogue.HEADINGS[PARTS[wildcards.product]]
 
 
+def studies_of_claims(wildcards):
+    names = catalogue.figures_of("questions") if wildcards.product == "open_questions" else []
+    return [f"results/{wildcards.scale}/{name}.nc" for name in names]
+
+
 def name_of_config(wildcards, output):
     """Made from the output and therefore not recorded: results do not depend on where it is."""
     return CONFIG
@@ -148,6 +153,7 @@ rule table:
 rule claims:
     input:
         data=data_of_product,
+        studies=studies_of_claims,
     output:
         json="results/{scale}/{product}.json",
         markdown="results/{scale}/{product}.md",
@@ -161,7 +167,7 @@ rule claims:
     message:
         "write {output}"
     shell:
-        "roughgas claims {params.which} {input.data} --json {output.json} --markdown {output.markdown}"
+        "roughgas claims {params.which} {input} --json {output.json} --markdown {output.markdown}"
         " > {log} 2>&1"
 
 

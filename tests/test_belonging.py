@@ -7,7 +7,6 @@ from pathlib import Path
 
 import pytest
 
-from roughgas import theory
 from roughgas.base.version import __version__
 from roughgas.config.reading import read_yaml
 
@@ -57,9 +56,3 @@ def test_the_readme_of_a_package_index_has_no_relative_image():
     made = subprocess.run(told, cwd=ROOT, capture_output=True, text=True, check=True).stdout
     images = re.findall(r"!\[[^\]]*\]\(([^)]*)\)", made)
     assert images and all(image.startswith("https://example.org/") for image in images)
-
-
-def test_numbers_of_other_origin_are_those_of_theory():
-    page = (ROOT / "docs" / "compared.md").read_text()
-    assert f"R = {theory.cooling_ratio(0.9, 0.5):.4f}, closed form" in page
-    assert f"R = {theory.lun_ratio(0.5, inertia=0.5):.4f} at β = 0.5" in page

@@ -97,6 +97,7 @@ def test_all_of_it_typed_in_a_fresh_clone(tmp_path):
     assert ran.returncode == 0, said[-3000:]
     lines = [line.rstrip() for line in said.splitlines()]
     assert not [line for line in answers() if line.rstrip() not in lines]
+    assert any(re.fullmatch(r"  50 of \d+ packages", line) for line in lines)
     clone = tmp_path / "roughgas"
     assert all((clone / path).stat().st_size > 1000 for path in MADE)
     status = subprocess.run(

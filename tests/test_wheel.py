@@ -51,11 +51,14 @@ def installed(tmp_path_factory):
     return folder / "venv" / "bin" / "roughgas"
 
 
-def roughgas(installed, line, folder):
+def ran(installed, told, folder):
     around = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
     around["ROUGHGAS_CACHE_DIR"] = str(installed.parents[2] / "kernels")
-    told = [installed, *shlex.split(line)]
     return subprocess.run(told, cwd=folder, env=around, capture_output=True, text=True)
+
+
+def roughgas(installed, line, folder):
+    return ran(installed, [installed, *shlex.split(line)], folder)
 
 
 @pytest.mark.slow
@@ -76,3 +79,15 @@ def test_every_command_works_in_an_empty_folder(installed, tmp_path):
     (tmp_path / "config.yaml").write_text("scale: paper\n")
     done = roughgas(installed, f"run {POINT}", tmp_path)
     assert done.returncode == 2 and done.stderr.startswith("roughgas: error: config.yaml")
+
+
+@pytest.mark.slow
+def test_with_a_clone_of_the_workflow_it_runs_as_config_readme_says(installed, tmp_path):
+    usage = (ROOT / "config" / "README.md").read_text()
+    assert "`--workflow-profile none`" in usage
+    python = [installed.parent / "python", "-m", "snakemake"]
+    told = [*python, "-j1", "-s", ROOT / "Snakefile", "--config", "scale=small", "--", "living"]
+    assert "roughgas" in ran(installed, told, tmp_path).stderr  # of the profile's logger
+    done = ran(installed, [*told[:-4], "--workflow-profile", "none", *told[-4:]], tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "results/small/living.html").exists()

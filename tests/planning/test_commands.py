@@ -10,6 +10,7 @@ from roughgas.cli import main
 from roughgas.config.reading import read_yaml
 from roughgas.data.point import read_point
 from roughgas.data.reduced import read_reduced
+from roughgas.planning.plan import explore
 from roughgas.results.costs import cost, saved
 from roughgas.results.reduce import reduce_points
 
@@ -96,6 +97,32 @@ def test_a_plan_is_printed_before_anything_is_run(sheared, tmp_path, capsys):
     numbers = [line for line in capsys.readouterr().out.splitlines() if "sheared" in line]
     assert numbers[0].split("|")[:8] == rows["sheared"][:8]
     assert np.isfinite(float(rows["fixed"][5]))
+
+
+def test_an_interrupted_plan_says_that_it_will_go_on(sheared, tmp_path, capsys, monkeypatch):
+    experiment = sheared | {"sweep": SWEEP}
+    config = read_yaml("config.yaml") | {
+        "experiments": {"sheared": experiment},
+        "scales": {"paper": {}},
+    }
+    (tmp_path / "config.yaml").write_text(json.dumps(config))
+    pilots, done = tmp_path / "pilots", []
+
+    def explored(scene, settings):
+        if done:
+            raise KeyboardInterrupt
+        done.append(explore(scene, settings))
+        return done[0]
+
+    monkeypatch.setattr("roughgas.cli.planning.explore", explored)
+    command = ["plan", "--config", str(tmp_path / "config.yaml"), "--pilots", str(pilots)]
+    assert main(command) == 130
+    said = capsys.readouterr()
+    expected = f"pilots that are done are kept in {pilots}: the same command goes on from there"
+    assert said.err == f"roughgas: stopped: {expected}\n" and said.out == ""
+    assert len(list(pilots.rglob("pilot.json"))) == 1
+    monkeypatch.setattr("roughgas.cli.planning.explore", lambda *_: done[0])
+    assert main(command) == 0 and len(list(pilots.rglob("pilot.json"))) == 2
 
 
 @pytest.mark.parametrize(

@@ -12,8 +12,8 @@ QUOTES = {
         "within {cooling_off_percent:.1f} % for r ≥ 0.8 (160 disks, packing 0.05), and depends "
         "strongly on r: at β = −0.8, R is {cooling_at_r099:.2f} at r = 0.99 and "
         "{cooling_at_r08:.2f} at r = 0.8.",
-        "Of {claims_statements} statements of the paper that can be tested {claims_hold} hold, "
-        "{claims_qualified} hold with a qualification, and {claims_fail} fail",
+        "Of the {claims_statements} statements in the paper that can be tested, {claims_hold} "
+        "hold, {claims_qualified} hold with a qualification, and {claims_fail} fail",
     ],
     "docs/results.md": [
         "at r ≥ 0.8 within {vibrated_collisional_off:.3f} in the bed, "

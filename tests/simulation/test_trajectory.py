@@ -222,6 +222,34 @@ def test_freud_finds_no_pair_closer_than_a_diameter_in_a_sheared_gas(tmp_path):
     assert np.all(found.rdf[below] == 0.0) and found.rdf.max() > 1.0
 
 
+@pytest.mark.parametrize("ending", FORMATS)
+@pytest.mark.parametrize("name", kernels(*NAMES))
+def test_ovito_reads_what_was_written(name, ending, tmp_path):
+    """Every frame, and finds no neighbour closer than a diameter in the cell as it takes it."""
+    pytest.importorskip("ovito")
+    pytest.importorskip("gsd.hoomd" if ending == ".gsd" else "ovito")
+    from ovito.data import CutoffNeighborFinder
+    from ovito.io import import_file
+
+    found, path = sample(name), tmp_path / f"bed{ending}"
+    write_trajectory(path, found)
+    pipeline = import_file(str(path))
+    assert pipeline.num_frames == 4
+    digits = 1e-5 if ending == ".gsd" else 1e-12
+    for number, one in enumerate(frames(found)):
+        shot = pipeline.compute(number)
+        seen, spin = shot.particles, "Angular Velocity" if ending == ".xyz" else "omega"
+        assert shot.attributes["Time" if ending == ".xyz" else "time"] == one.time
+        assert np.all(seen["Radius"][...] == 1.0)
+        assert seen["Velocity"][...] == pytest.approx(one.velocity, abs=digits * 1e2)
+        assert seen[spin][...] == pytest.approx(one.spin, abs=digits * 1e2)
+        if ending != ".gsd":
+            assert seen.positions[...] == pytest.approx(one.position, abs=1e-9)
+        finder = CutoffNeighborFinder(4.0, shot)
+        near = [other.distance for k in range(seen.count) for other in finder.find(k)]
+        assert near and min(near) > 2.0 - 1e-5
+
+
 def test_another_ending_is_refused(tmp_path):
     with pytest.raises(InputError, match=r"must end in \.xyz, \.nc, \.gsd"):
         write_trajectory(tmp_path / "bed.pdb", sample("sheared"))

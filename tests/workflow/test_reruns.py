@@ -39,7 +39,7 @@ EDITED = {  # file of the package: what an edit of its code runs again
     "show/page/page.js": {"page"},
     "show/movies/drawing.py": {"movie"},
     "studies/tables.py": {"study_table", "document", "coverage"} | OF_THEIR_OWN,
-    "studies/dsmc/gas.py": ACCURACY | {"models", "finite_size", "runaway"},
+    "studies/dsmc/gas.py": ACCURACY | {"models", "finite_size", "runaway", "claims"},
     "cli/run.py": POINTS | FAMILIES,
 }
 ALIKE = {  # files after whose edits much the same runs again as after others'

@@ -4,7 +4,13 @@ import numpy as np
 import xarray as xr
 
 from roughgas import theory
-from roughgas.claims.evidence import NotTestedError, Sample, deviation, sample
+from roughgas.claims.evidence import (
+    NotTestedError,
+    Sample,
+    deviation,
+    deviation_at_shares,
+    sample,
+)
 from roughgas.claims.paper import INTERMEDIATE
 from roughgas.claims.verdicts import (
     Finding,
@@ -12,6 +18,7 @@ from roughgas.claims.verdicts import (
     agreement_in_proportion,
     graded,
     text,
+    together,
     worse,
 )
 
@@ -47,6 +54,21 @@ def excess_is_of_averaging(bed: xr.Dataset) -> Finding:
     numbers = tuple((f"R - Lun's formula {way}", means[name]) for name, way in WAYS.items())
     verdict = worse(graded(bool(most), left.value < whole.value), beyond.verdict)
     return Finding(verdict, reason + beyond.reason, numbers + beyond.numbers)
+
+
+def one_curve_for_all_drives(*gases: xr.Dataset) -> Finding:
+    """R averaged over collisions - the rate equations, at the share that the energy books say, is
+    as good as zero, whatever drives the gas."""
+    return together(
+        (
+            gas.attrs["experiment"],
+            agreement(
+                deviation_at_shares(averaged(gas, "R_collisional")),
+                "the rate equations at the measured share",
+            ),
+        )
+        for gas in gases
+    )
 
 
 def averaged(gas: xr.Dataset, name: str) -> xr.Dataset:

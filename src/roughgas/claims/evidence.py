@@ -1,4 +1,5 @@
-"""The data that statements are judged on: reduced datasets beside theory, as samples of numbers."""
+"""The data that statements are judged on: reduced datasets beside theory, as samples of numbers;
+and studies."""
 
 from pathlib import Path
 from typing import NamedTuple
@@ -6,6 +7,8 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
+from roughgas.data.netcdf import read_groups
+from roughgas.data.opening import REDUCED, STUDIES, kind_of, opened
 from roughgas.data.reduced import EQUILIBRATED, GRID, read_reduced
 from roughgas.statistics.estimate import Estimate
 from roughgas.statistics.intervals import sum_error
@@ -83,6 +86,16 @@ class Sample(NamedTuple):
 def written(value: float | str) -> str:
     """Return a coordinate, a number or a word, as text."""
     return value if isinstance(value, str) else f"{value:g}"
+
+
+def load_all(path: str | Path) -> dict[str, xr.Dataset]:
+    """Return the reduced dataset at `path`, beside theory, or all studies in it, by their names."""
+    with opened(path, REDUCED, STUDIES) as file:
+        of_studies = kind_of(file) == STUDIES
+    if of_studies:
+        return read_groups(path)
+    data = load(path)
+    return {data.attrs["experiment"]: data}
 
 
 def load(path: str | Path) -> xr.Dataset:

@@ -26,6 +26,7 @@ from roughgas.claims.verdicts import (
     agreement_in_proportion,
     points,
     text,
+    together,
     worse,
 )
 from roughgas.statistics.estimate import Estimate
@@ -114,14 +115,10 @@ def wave_form_changes_nothing(waves: xr.Dataset) -> Finding:
     if not others or REFERENCE not in waves.wave:
         raise NotTestedError(f"the sweep does not hold the wave {REFERENCE} and another")
     sawtooth = waves.sel(wave=REFERENCE)
-    found = [
+    return together(
         (wave, agreement(difference(waves.sel(wave=wave), sawtooth), "R over the sawtooth"))
         for wave in others
-    ]
-    found.sort(key=lambda pair: -abs(pair[1].numbers[0][1].value))
-    numbers = [(f"{wave}: {label}", x) for wave, one in found for label, x in one.numbers]
-    reason = " ".join(f"{wave}: {one.reason}" for wave, one in found)
-    return Finding(worse(*(one.verdict for _, one in found)), reason, tuple(numbers))
+    )
 
 
 def follows_rates(gas: xr.Dataset) -> Finding:

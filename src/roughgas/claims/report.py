@@ -10,7 +10,7 @@ import xarray as xr
 from roughgas.base import layout
 from roughgas.base.errors import InputError
 from roughgas.base.files import write_text
-from roughgas.claims.evidence import load
+from roughgas.claims.evidence import load_all
 from roughgas.claims.statements import Statement, Subject, examine
 from roughgas.claims.verdicts import (
     AGREE,
@@ -57,12 +57,12 @@ intervals hold the truth. Sigma is that of a Gaussian with the same probability 
 def judge(
     reduced: Iterable[str | Path], json_path: str | Path, md_path: str | Path, subject: Subject
 ) -> list[Finding]:
-    """Judge every statement of a subject on the reduced datasets; write JSON and Markdown.
+    """Judge every statement of a subject on reduced datasets and studies; write JSON and Markdown.
 
-    Statements whose experiments are not among the datasets are "not tested".
+    Statements whose experiments or studies are not among the datasets are "not tested".
     Raises InputError where the datasets are of several scales.
     """
-    datasets = {data.attrs["experiment"]: data for data in map(load, reduced)}
+    datasets = {name: data for path in reduced for name, data in load_all(path).items()}
     scales = sorted({data.attrs["scale"] for data in datasets.values()})
     if len(scales) != 1:
         raise InputError("scale of the datasets", " and ".join(scales) or "none", "be one")
@@ -88,7 +88,9 @@ def as_json(
 
 
 def _data(data: xr.Dataset) -> dict[str, Any]:
-    """Return what a verdict rests on, of one experiment."""
+    """Return what a verdict rests on, of one experiment or study."""
+    if "experiment" not in data.attrs:
+        return {"study": data.attrs["title"]}
     counts = {name: int(data.attrs[name]) for name in ("particles", "points", "set_aside")}
     swept = {name: data.attrs[name] for name in ("swept",) if name in data.attrs}
     return counts | {"seeds": int(data.n_seeds.max()), "theory": data.attrs["theory"]} | swept

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import xarray as xr
 import yaml
 
-from roughgas.claims import averages, evidence, open_questions, paper
+from roughgas.claims import averages, evidence, of_studies, open_questions, paper
 from roughgas.claims.evidence import NotTestedError
 from roughgas.claims.verdicts import (
     NOT_TESTED,
@@ -18,7 +18,8 @@ from roughgas.claims.verdicts import (
     points,
 )
 
-FUNCTIONS = vars(evidence) | vars(averages) | vars(open_questions) | vars(paper)
+ROOM = (evidence, averages, of_studies, open_questions, paper)
+FUNCTIONS = {name: one for module in ROOM for name, one in vars(module).items()}
 """The samples and judges that the tables name."""
 REFERENCE = """\
 S. McNamara and S. Luding, *Energy nonequipartition in systems of inelastic, rough spheres*,
@@ -88,14 +89,14 @@ def _said_of(function: Callable) -> str:
 def _size(data: xr.Dataset) -> str:
     """Return a sentence on the size of a cooling gas, on which its R depends; "" of others."""
     about = data.attrs
-    if about["theory"] != "K" or "packing" not in about:
+    if about.get("theory") != "K" or "packing" not in about:
         return ""
     size = f"N = {about['particles']}, packing {about['packing']:.2g}"
     return f"R of the cooling gas is that at {size}."
 
 
 def examine(statement: Statement, datasets: dict[str, xr.Dataset]) -> Finding:
-    """Judge `statement` on `datasets` (by experiment), or say why it cannot be judged."""
+    """Judge `statement` on `datasets` (by experiment or study), or say why it cannot be judged."""
     missing = [name for name in statement.experiments if name not in datasets]
     try:
         if missing:
@@ -107,5 +108,5 @@ def examine(statement: Statement, datasets: dict[str, xr.Dataset]) -> Finding:
         return Finding(NOT_TESTED, f"{reason[0].upper()}{reason[1:]}.")
     for sentence in filter(None, map(_size, used)):
         finding = finding.noting(sentence)
-    aside = sum(data.attrs["set_aside"] for data in used)
+    aside = sum(data.attrs.get("set_aside", 0) for data in used)
     return finding.noting(f"{points(aside)} not in a steady state set aside.") if aside else finding

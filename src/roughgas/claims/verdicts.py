@@ -1,5 +1,6 @@
 """Verdicts, and the rules that findings share."""
 
+from collections.abc import Iterable
 from typing import NamedTuple
 
 import numpy as np
@@ -103,6 +104,15 @@ def agreement_in_proportion(gas: xr.Dataset, theory: str) -> Finding:
         reason += f"; at {points(vague.sum())} the errors are too large to tell"
     reason, numbers = f"{found.reason} {reason}.", found.numbers + numbers
     return Finding(worse(found.verdict, verdict), reason, numbers)
+
+
+def together(findings: Iterable[tuple[str, Finding]]) -> Finding:
+    """Return findings on several gases, by name, as one: the worst verdict, and the numbers and
+    reasons of all, the one with the largest deciding number first."""
+    found = sorted(findings, key=lambda pair: -abs(pair[1].numbers[0][1].value))
+    numbers = [(f"{name}: {label}", x) for name, one in found for label, x in one.numbers]
+    reason = " ".join(f"{name}: {one.reason}" for name, one in found)
+    return Finding(worse(*(one.verdict for _, one in found)), reason, tuple(numbers))
 
 
 def tendency(value: Estimate) -> str:

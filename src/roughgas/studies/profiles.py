@@ -42,7 +42,8 @@ def combine(parts: Mapping[str, xr.Dataset], settings: Mapping[str, Any]) -> xr.
         "slice": range(settings["slices"]),
     }
     about["phase"] = np.arange(settings["phases"]) / settings["phases"]
-    return dataset("profiles", stacked(rows) | about, seed=settings["seed"])
+    found = stacked(rows) | about
+    return dataset("profiles", found, seed=settings["seed"], runs=settings["runs"])
 
 
 def fields(run: xr.Dataset, width: float) -> xr.Dataset:
