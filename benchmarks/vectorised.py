@@ -28,7 +28,7 @@ ARITHMETIC = re.compile(
 def sweep(state, scene, i, number):
     """Which of all particles may be met soon: single precision (`ps`)."""
     start, velocity = line_of(state, scene, i)
-    return list_candidates(state, scene, single(start), single(velocity), 0.5, 0.5)
+    return list_candidates(state, scene, 0, single(start), single(velocity), 0.5, 0.5)
 
 
 @entry

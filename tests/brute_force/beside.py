@@ -4,6 +4,7 @@ from collections import Counter
 
 import numpy as np
 
+from brute_force.company import company_of
 from brute_force.kicks import Drive
 from brute_force.scenes import run
 from brute_force.simulation import BruteForce
@@ -29,7 +30,8 @@ def snapshot(state, scene):
         position[:, -1] -= 0.5 * g * elapsed**2
         velocity[:, -1] -= g * elapsed
     spin = None if state.spin is None else state.spin[order]
-    return Snapshot(state.clock[BASE] + now, position, velocity, spin, drive_of(state, order))
+    time, drive = state.clock[BASE] + now, drive_of(state, order)
+    return Snapshot(time, position, velocity, spin, drive, company_of(state, order))
 
 
 def drive_of(state, order):
@@ -42,17 +44,17 @@ def drive_of(state, order):
 
 def brute_force_from(world, shot, last_contact=None):
     """A brute-force simulation that starts where the kernel stands."""
-    *particles, drive = shot[1:]
-    return BruteForce(world, *particles, shot.time, last_contact, drive)
+    *particles, drive, company = shot[1:]
+    return BruteForce(world, *particles, shot.time, last_contact, drive, company)
 
 
 def largest_overlap(state, scene, world):
-    """By how much the closest pair of the kernel's particles is closer than a diameter."""
+    """By how much the closest pair of the kernel's particles is closer than in contact."""
     one = brute_force_from(world, snapshot(state, scene))
     i, j = one.pairs.T
     x = one.x[i] - one.x[j]
-    squares = [((x + shift) ** 2).sum(axis=1).min() for shift, _ in one.images()]
-    return float(2.0 - np.sqrt(min(squares)))
+    squares = np.min([((x + shift) ** 2).sum(axis=1) for shift, _ in one.images()], axis=0)
+    return float(np.max(one.radius[i] + one.radius[j] - np.sqrt(squares)))
 
 
 def compare(shot, brute):

@@ -37,7 +37,8 @@ class Drive(NamedTuple):
 class Kicks:
     """Kicks under way, of a thermostat (power, spin share, interval)."""
 
-    def __init__(self, thermostat, inertia, dimension, drive):
+    def __init__(self, thermostat, inertia, dimension, drive, company):
+        self.company = company
         power, share, self.interval = thermostat
         self.inertia, self.dimension, self.spins = inertia, dimension, 2 * dimension - 3
         self.due, self.order = list(drive.due), list(drive.order)
@@ -56,14 +57,18 @@ class Kicks:
         """Kick particle i and one that is drawn, in the arrays of velocities and of spins."""
         others = [k for k in self.order if k != i]
         j = others[math.floor(self.random.uniform() * len(others))]
+        m = self.company.mass
+        # so that p^2/2 (1/m_i + 1/m_j) is as much for any two
+        size = self.push * math.sqrt(2.0 / (1.0 / m[i] + 1.0 / m[j]))
         for axis in range(self.dimension):
-            kick = self._component(self.push)
-            v[i, axis] += kick
-            v[j, axis] -= kick
+            kick = self._component(size)
+            v[i, axis] += kick / m[i]
+            v[j, axis] -= kick / m[j]
         if self.inertia:
             for k in (i, j):
+                size = self.turn * math.sqrt(self.inertia / (m[k] * self.company.q[k]))
                 for axis in range(3 - self.spins, 3):
-                    w[k, axis] += self._component(self.turn)
+                    w[k, axis] += self._component(size)
         self.due[i] += self.interval
 
     def _component(self, size):

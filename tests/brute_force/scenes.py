@@ -8,6 +8,7 @@ import functools
 import numpy as np
 import pytest
 
+from brute_force.company import Contents
 from brute_force.world import World
 from roughgas.kernel.record import Sampling, columns, record
 from roughgas.scene import build
@@ -118,6 +119,9 @@ def scene_of(experiment, r, beta):
         shear=effects.get("shear", {}).get("velocity", 0.0),
         contact_time=effects.get("contact_time", {}).get("duration", 0.0),
         wave=(floor or {}).get("wave", "sawtooth"),
+        contents=Contents(experiment["species"], experiment.get("species_pairs", []))
+        if "species" in experiment
+        else None,
     )
     return build(experiment, r, beta), world
 

@@ -10,6 +10,7 @@ import math
 
 import numpy as np
 
+from brute_force.company import alike
 from brute_force.formulas import cut_by_friction, falling_time, in_space, meeting_times
 from brute_force.kicks import Kicks
 from brute_force.world import Event, Snapshot
@@ -28,7 +29,17 @@ INSTANTS = np.linspace(0.0, 1.0, 2001) ** 2  # at which a floor without a formul
 class BruteForce:
     """A simulation under way; `step` carries out one event, `run` so many pair collisions."""
 
-    def __init__(self, world, position, velocity, spin, time=0.0, last_contact=None, drive=None):
+    def __init__(
+        self,
+        world,
+        position,
+        velocity,
+        spin,
+        time=0.0,
+        last_contact=None,
+        drive=None,
+        company=None,
+    ):
         self.world = world
         self.x, self.v = np.array(position, float), np.array(velocity, float)
         self.number, self.dimension = self.x.shape
@@ -43,8 +54,10 @@ class BruteForce:
         self.stroke = int(whole) * len(self.strokes) + begun - 1
         self.last = np.full(self.number, -np.inf) if last_contact is None else last_contact.copy()
         self.pairs = np.array(list(itertools.combinations(range(self.number), 2))).reshape(-1, 2)
+        company = company or alike(self.number, world.q)
+        self.radius, self.mass, self.q, self.species = company
         drawn = drive and world.thermostat
-        self.kicks = Kicks(drawn, world.q, self.dimension, drive) if drawn else None
+        self.kicks = Kicks(drawn, world.q, self.dimension, drive, company) if drawn else None
         self.seen = np.zeros(3)  # v_t^2, v_r^2 and v_t.v_r, over the contacts of pairs so far
         self._fold()
 
@@ -128,7 +141,8 @@ class BruteForce:
         x, v = self.x[i] - self.x[j], self.v[i] - self.v[j]
         best = np.full(len(x), np.inf)
         for shift, drift in self.images():
-            best = np.minimum(best, meeting_times(x + shift, v + drift))
+            reach = self.radius[i] + self.radius[j]
+            best = np.minimum(best, meeting_times(x + shift, v + drift, reach))
         return best
 
     def images(self):
@@ -152,15 +166,15 @@ class BruteForce:
             if world.floor:
                 yield self._floor_wait(i, limit), "floor", i, -1
             if world.walls:
-                x, v = self.x[i, 0], self.v[i, 0]
+                x, v, radius = self.x[i, 0], self.v[i, 0], self.radius[i]
                 if v < 0.0:
-                    yield max(0.0, (1.0 - x) / v), "left", i, -1
+                    yield max(0.0, (radius - x) / v), "left", i, -1
                 if v > 0.0:
-                    yield max(0.0, (world.walls[0] - 1.0 - x) / v), "right", i, -1
+                    yield max(0.0, (world.walls[0] - radius - x) / v), "right", i, -1
 
     def _floor_wait(self, i, limit):
         """Time until particle i meets the floor, if that is before the limit."""
-        height, v, g = self.x[i, -1] - 1.0, self.v[i, -1], self.world.gravity
+        height, v, g = self.x[i, -1] - self.radius[i], self.v[i, -1], self.world.gravity
         level, speed = self.surface(0.0)
         if self.world.wave != "sine" or (height - level <= 1e-12 and v < speed):
             return falling_time(height - level, v - speed, g)
@@ -233,22 +247,30 @@ class BruteForce:
         shift, drift = min(self.images(), key=lambda image: ((x + image[0]) ** 2).sum())
         n, v = in_space(x + shift), in_space(v + drift)
         n /= math.sqrt(n @ n)
-        r = self._restitution(world.r, i, j)
+        r, beta, mu = self._material(i, j)
+        r = self._restitution(r, i, j)
         v_n = (v @ n) * n
-        push = 0.5 * (1.0 + r) * v_n
+        m, s = self.mass[[i, j]], (self.mass * self.q)[[i, j]]
+        push = (1.0 + r) * v_n / (1.0 / m).sum()
         if world.q is not None:
-            q, beta = world.q, world.beta
             v_t, v_r = v - v_n, -np.cross(self.w[i] + self.w[j], n)
             self.seen += v_t @ v_t, v_r @ v_r, v_t @ v_r
-            along = cut_by_friction(
-                world.mu, push, q * (1.0 + beta) / (2.0 * q + 2.0) * (v_t + v_r)
-            )
+            along = (1.0 + beta) * (v_t + v_r) / (1.0 / m + 1.0 / s).sum()
+            along = cut_by_friction(mu, push, along)
             push = push + along
-            turn = np.cross(n, along) / q
-            self.w[i] += turn
-            self.w[j] += turn
-        self.v[i] -= push[: self.dimension]
-        self.v[j] += push[: self.dimension]
+            self.w[i] += np.cross(n, along) / s[0]
+            self.w[j] += np.cross(n, along) / s[1]
+        self.v[i] -= push[: self.dimension] / m[0]
+        self.v[j] += push[: self.dimension] / m[1]
+
+    def _material(self, i, j):
+        """Restitution, roughness and mu of two particles."""
+        world = self.world
+        if world.contents is None:
+            return world.r, world.beta, world.mu
+        common = {"restitution": world.r, "roughness": world.beta, "mu": world.mu}
+        found = world.contents.between(self.species[i], self.species[j], common)
+        return found["restitution"], found["roughness"], found.get("mu")
 
     def _bounce(self, i, axis, direction, speed, r, beta):
         """As with a partner of infinite mass: both prefactors of the collision rule double.
@@ -262,10 +284,13 @@ class BruteForce:
         g -= np.cross(self.w[i], n)
         r = self._restitution(r, i)
         g_n = (g @ n) * n
-        push = (1.0 + r) * g_n
+        m = self.mass[i]
+        push = m * (1.0 + r) * g_n
         if world.q is not None:
-            q = world.q
-            along = cut_by_friction(world.mu, push, q * (1.0 + beta) / (1.0 + q) * (g - g_n))
+            q, mu = self.q[i], world.mu
+            if world.contents is not None:
+                mu = world.contents.species[self.species[i]].get("mu", mu)
+            along = cut_by_friction(mu, push, m * q * (1.0 + beta) / (1.0 + q) * (g - g_n))
             push = push + along
-            self.w[i] += np.cross(n, along) / q
-        self.v[i] -= push[: self.dimension]
+            self.w[i] += np.cross(n, along) / (m * q)
+        self.v[i] -= push[: self.dimension] / m

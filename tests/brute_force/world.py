@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from brute_force.company import Company, Contents
 from brute_force.kicks import Drive
 
 
@@ -23,6 +24,7 @@ class World(NamedTuple):
     shear: float = 0.0  # U: velocity, along the first axis, of the image above along the second
     contact_time: float = 0.0
     wave: str = "sawtooth"  # of the floor
+    contents: Contents | None = None  # None: one species
 
 
 class Snapshot(NamedTuple):
@@ -33,6 +35,7 @@ class Snapshot(NamedTuple):
     velocity: np.ndarray
     spin: np.ndarray | None  # (N, 2D - 3)
     drive: Drive | None = None
+    company: Company | None = None  # None: all particles are alike
 
 
 class Event(NamedTuple):

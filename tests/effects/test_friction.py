@@ -25,7 +25,7 @@ def exchange(mu, material, n, v, w, share):
     spin, friction = Spin(q), None if mu is None else Friction(mu, q)
     vectors = [tuple(map(float, vector)) for vector in (n, v, w)]
     effects = Effects(spin=spin, friction=friction)
-    push, turn = response(spin, effects, material, *vectors, share)
+    push, turn = response(spin, effects, material, *vectors, share, None)
     return np.array(push), np.array(turn)
 
 

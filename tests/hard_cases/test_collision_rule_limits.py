@@ -179,7 +179,7 @@ def test_inverse(margins, dimension):
 def applied(material, q, n, v, w):
     """Relative velocity and sum of the spins after a contact."""
     vectors = [tuple(map(float, vector)) for vector in (n, v, w)]
-    push, turn = response(Spin(q), Effects(spin=Spin(q)), material, *vectors, 0.5)
+    push, turn = response(Spin(q), Effects(spin=Spin(q)), material, *vectors, 0.5, None)
     return v - 2.0 * np.array(push), w + 2.0 * np.array(turn)
 
 

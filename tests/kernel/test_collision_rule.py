@@ -28,7 +28,7 @@ def exchange(material, n, v, w, share=PAIR):
     q = theory.moment_of_inertia(len(n))
     spin = Spin(q)
     vectors = [tuple(map(float, vector)) for vector in (n, v, w)]
-    push, turn = response(spin, Effects(spin=spin), material, *vectors, share)
+    push, turn = response(spin, Effects(spin=spin), material, *vectors, share, None)
     return np.array(push), np.array(turn)
 
 
@@ -115,5 +115,5 @@ def test_smooth_particles_do_not_turn_and_elastic_ones_lose_nothing(dimension):
 
 
 def test_a_scene_without_spin_knows_the_normal_part_only():
-    push, turn = response(None, Effects(), (0.5, 0.7), (1.0, 0.0), (-2.0, 3.0), None, PAIR)
+    push, turn = response(None, Effects(), (0.5, 0.7), (1.0, 0.0), (-2.0, 3.0), None, PAIR, None)
     assert push == (-1.5, 0.0) and turn is None

@@ -41,7 +41,7 @@ def test_time_to_contact_against_fifty_digits(dimension, gap):
     for impact in (0.0, 0.3, 0.9, 0.99, 0.999999):
         for speed in (1e-8, 1.0, 1e8):
             x, u = meeting(dimension, gap, impact, speed, rng)
-            time = time_to_contact(tuple(x), tuple(u))
+            time = time_to_contact(tuple(x), tuple(u), None)
             exact, half_chord = exact_time(x, u)
             # a rounding of |x| - 2a moves the contact by that, over the normal speed
             normal_speed = float(half_chord) * speed**2 / 2.0
@@ -52,15 +52,15 @@ def test_time_to_contact_against_fifty_digits(dimension, gap):
 def test_grazing_paths_are_decided_within_rounding():
     for excess, meets in ((-1e-13, True), (1e-13, False)):
         x = (-5.0, 2.0 * (1.0 + excess))
-        assert (time_to_contact(x, (1.0, 0.0)) < np.inf) == meets
+        assert (time_to_contact(x, (1.0, 0.0), None) < np.inf) == meets
 
 
 def test_touching_pairs_meet_now_if_they_approach_and_never_if_they_recede():
     for distance in (2.0, 2.0 - 1e-15, 2.0 - 1e-12, 1.9):
-        assert time_to_contact((distance, 0.0), (-1e-9, 3.0)) == 0.0
-        assert time_to_contact((distance, 0.0), (1e-9, 3.0)) == np.inf
-    assert time_to_contact((2.0, 0.0, 0.0), (0.0, 1.0, 0.0)) == np.inf
-    assert time_to_contact((3.0, 0.0), (0.0, 0.0)) == np.inf
+        assert time_to_contact((distance, 0.0), (-1e-9, 3.0), None) == 0.0
+        assert time_to_contact((distance, 0.0), (1e-9, 3.0), None) == np.inf
+    assert time_to_contact((2.0, 0.0, 0.0), (0.0, 1.0, 0.0), None) == np.inf
+    assert time_to_contact((3.0, 0.0), (0.0, 0.0), None) == np.inf
 
 
 # ---------------------------------------------------------------------- the search for partners

@@ -13,6 +13,7 @@ from roughgas.effects.friction import Friction
 from roughgas.effects.gravity import Gravity
 from roughgas.effects.shaken_walls import ShakenWalls
 from roughgas.effects.shear import Shear
+from roughgas.effects.species import Species
 from roughgas.effects.spin import Spin
 from roughgas.effects.thermostat import Thermostat
 from roughgas.effects.walls import Walls
@@ -22,6 +23,7 @@ class Effects(NamedTuple):
     """The effects of a scene; None is an effect that the scene does without."""
 
     spin: Spin | None = None
+    species: Species | None = None
     gravity: Gravity | None = None
     floor: Floor | None = None
     walls: Walls | None = None
@@ -39,7 +41,8 @@ def inertia(effects: Effects) -> float | None:
 
 
 KINDS = {name: kind.__args__[0] for name, kind in Effects.__annotations__.items()}
-"""The effects by the names that they have in settings."""
+del KINDS["species"]  # a key of its own in settings
+"""The effects by the names that they have in settings under `effects`."""
 
 
 def schema() -> dict[str, Any]:

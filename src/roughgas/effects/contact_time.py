@@ -33,7 +33,8 @@ class ContactTime(NamedTuple):
     @classmethod
     def from_settings(cls, settings, around):
         """Return the model, or None where the particles are too elastic to need it."""
-        return cls(settings["duration"]) if around.restitution < settings["below_r"] else None
+        least = min([around.restitution, *around.restitution_of_species])
+        return cls(settings["duration"]) if least < settings["below_r"] else None
 
 
 def moment(model, number, rng):

@@ -4,7 +4,7 @@ An effect's file registers its parameters and its hooks; what config.yaml may ho
 messages quote, is made from the parameters.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 from roughgas.base.errors import InputError
@@ -19,6 +19,8 @@ class Surroundings(NamedTuple):
     restitution: float  # of the particles
     roughness: float
     effects: Mapping[str, Any]  # the settings of all effects, by name
+    restitution_of_species: Sequence[float] = ()  # what some of them have in place of that above
+    roughness_of_species: Sequence[float] = ()
 
 
 class Number(NamedTuple):
@@ -74,6 +76,8 @@ class OfParticles(NamedTuple):
 
     def read(self, key: str, value: Any, around: Surroundings) -> float:
         """Return the number; raise InputError if it is illegal, or a roughness without spins."""
+        if value == "particles" and getattr(around, f"{self.own}_of_species"):
+            raise InputError(key, value, "be a number where a species has one of its own")
         found = getattr(around, self.own) if value == "particles" else None
         found = self.number.read(key, value, around) if found is None else found
         if self.own == "roughness" and "spin" not in around.effects and found != -1.0:

@@ -3,6 +3,7 @@
 import math
 
 from roughgas.kernel import hooks
+from roughgas.kernel.bodies import radius_of
 from roughgas.kernel.contact import collide_with_wall
 from roughgas.kernel.jit import jit
 from roughgas.kernel.vectors import along_last
@@ -23,7 +24,7 @@ def flight(floor, index, state, scene, i):
     all when its path begins, and that time."""
     dimension = len(scene.box)
     time = state.trajectory[i, 2 * dimension]
-    height = state.trajectory[i, dimension - 1] - 1.0
+    height = state.trajectory[i, dimension - 1] - radius_of(state.bodies, i)
     speed = state.trajectory[i, 2 * dimension - 1]
     gravity = hooks.acceleration(scene.effects, None)
     return (gravity, height, speed, state.phase[index] + time), time

@@ -8,6 +8,9 @@ since a gas that is looked at right after its kicks seems hotter than it is on a
 Each component of a kick is uniform in [-k, k]; what many small ones add up to is Gaussian (white
 noise). On average they put `power` into each particle per time, (1 - s) of it into translation and
 s into rotation. Units: a = m = T = 1.
+
+Where particles differ, it is the momenta of the two that are opposite: a kick has on average the
+same energy whichever they are, of which the lighter one gets the more, m_j/(m_i + m_j).
 """
 
 import math
@@ -15,12 +18,19 @@ from typing import NamedTuple
 
 from roughgas.base.errors import InputError
 from roughgas.effects.settings import Number, register
+from roughgas.kernel.bodies import (
+    change_of_velocity,
+    mass_in,
+    mass_of,
+    pair_of,
+    spin_mass_of,
+)
 from roughgas.kernel.flight import come_in, put
-from roughgas.kernel.hooks import unless_absent
+from roughgas.kernel.hooks import either, unless_absent
 from roughgas.kernel.jit import jit
 from roughgas.kernel.random import random_vector, uniform
 from roughgas.kernel.spins import book_spin, spin_of, turn_spin
-from roughgas.kernel.vectors import add_scaled, dot, subtract
+from roughgas.kernel.vectors import add_scaled, dot, scale, subtract
 
 SETTINGS = {
     "power": Number("Energy put in per particle and time, in m a^2/T^3."),
@@ -66,7 +76,8 @@ def resolve(thermostat, index, what, state, scene, i, time):
     others = len(state.changes) - 1
     j = int(uniform(state.random) * others)
     j += j >= i
-    kick = random_vector(state.random, scene.box, thermostat.push)
+    size = thermostat.push * math.sqrt(mass_in(pair_of(state.bodies, i, j)))
+    kick = random_vector(state.random, scene.box, size)
     _push(state, scene, index, i, kick, 1.0, time)
     _push(state, scene, index, j, kick, -1.0, time)
     _turn(state.spin, thermostat, index, state, scene, i)
@@ -78,9 +89,10 @@ def resolve(thermostat, index, what, state, scene, i, time):
 @jit
 def _push(state, scene, index, i, kick, sign, time):
     position, before = come_in(state, scene, i, time)
-    after = add_scaled(before, kick, sign)
+    after = add_scaled(before, change_of_velocity(state.bodies, i, kick), sign)
     put(state, scene, i, position, after, time)
-    state.ledger[0, index, 0] += 0.5 * dot(subtract(after, before), add_scaled(before, after, 1.0))
+    work = 0.5 * dot(subtract(after, before), add_scaled(before, after, 1.0))
+    state.ledger[0, index, 0] += mass_of(state.bodies, i) * work
     state.changes[i] += 1
 
 
@@ -88,8 +100,17 @@ def _push(state, scene, index, i, kick, sign, time):
 def _turn(spin, thermostat, index, state, scene, i):
     before = spin_of(spin, scene.box, i)
     turn = random_vector(state.random, before, thermostat.turn)
+    turn = _as_hot(state.bodies, scene.effects.spin, i, turn)
     turn_spin(spin, i, before, turn)
-    book_spin(before, turn, scene.effects.spin, state.ledger[0, index])
+    book_spin(before, turn, scene.effects.spin, state.bodies, i, state.ledger[0, index])
+
+
+_as_hot = either(  # every particle gets the same energy
+    lambda bodies, spin, i, turn: scale(
+        turn, math.sqrt(spin.inertia / spin_mass_of(bodies, spin, i))
+    ),
+    lambda bodies, spin, i, turn: turn,
+)
 
 
 register(

@@ -4,6 +4,7 @@ import math
 from typing import NamedTuple
 
 from roughgas.effects.settings import MATERIAL, register
+from roughgas.kernel.bodies import radius_of
 from roughgas.kernel.contact import collide_with_wall
 from roughgas.kernel.flight import whereabouts
 from roughgas.kernel.jit import jit
@@ -29,11 +30,11 @@ class Walls(NamedTuple):
 def predict(walls, index, state, scene, i):
     time = state.trajectory[i, 2 * len(scene.box)]
     position, velocity = whereabouts(state, scene, i, time)
-    speed = velocity[0]
+    speed, radius = velocity[0], radius_of(state.bodies, i)
     if speed < 0.0:
-        return time + max(0.0, (position[0] - 1.0) / -speed), LEFT
+        return time + max(0.0, (position[0] - radius) / -speed), LEFT
     if speed > 0.0:
-        return time + max(0.0, (walls.width - 1.0 - position[0]) / speed), RIGHT
+        return time + max(0.0, (walls.width - radius - position[0]) / speed), RIGHT
     return math.inf, LEFT
 
 

@@ -6,13 +6,26 @@ velocity g = v1 - v2 - a (w1 + w2) x n:
     v1,2' = v1,2 -+ (1 + r)/2 g_n n -+ q (1 + beta)/(2 + 2q) g_t
     a w1,2' = a w1,2 + (1 + beta)/(2 + 2q) n x g_t
 
-A wall is a partner of infinite mass: both prefactors double, and n points into the gas.
+A wall is a partner of infinite mass: both prefactors double, and n points into the gas. How
+particles that differ share the impulse and the turning is in bodies.py.
 """
 
 import math
 
 from roughgas.kernel import hooks
+from roughgas.kernel.bodies import (
+    bulk_in,
+    change_of_velocity,
+    inertia_in,
+    mass_in,
+    material_of,
+    pair_of,
+    pair_with_wall,
+    reach_of,
+    turn_of,
+)
 from roughgas.kernel.flight import come_in, put
+from roughgas.kernel.hooks import either
 from roughgas.kernel.images import image_numbers, shifted, slid
 from roughgas.kernel.jit import jit
 from roughgas.kernel.spins import book_spin, spin_of, spin_sum, turn_spin
@@ -27,11 +40,20 @@ from roughgas.kernel.state import (
     TYPICAL_SPEED,
 )
 from roughgas.kernel.unroll import unrolled
-from roughgas.kernel.vectors import add_scaled, cross_to_spin, dot, scale, spin_cross, subtract
+from roughgas.kernel.vectors import (
+    add_scaled,
+    cross_to_spin,
+    divide,
+    dot,
+    scale,
+    spin_cross,
+    subtract,
+)
 
 # Where r leaves only rounding of the normal velocity, a pair would go on colliding forever:
 # particles part at no less than this share of the typical speed
 STICKING = 1e-10
+SPLIT = 134217729.0  # 2^27 + 1: cuts the digits of a double in two
 
 
 @jit
@@ -44,25 +66,30 @@ def collide(state, scene, i, j, time):
     x = subtract(position_i, position_j)
     between = subtract(velocity_i, velocity_j)
     x, v = shifted(x, between, image_numbers(x, box, slide), box, slide)
-    n = direction(x)
+    bodies = state.bodies
+    n = _normal(reach_of(bodies, i, j), x)
     w_i = spin_of(state.spin, box, i)
     w_j = spin_of(state.spin, box, j)
     effects = scene.effects
-    material = _material(effects, scene.restitution, scene.roughness, state, i, j, time, dot(v, n))
+    r, beta = material_of(bodies, scene, i, j)
+    material = _material(effects, r, beta, state, i, j, time, dot(v, n))
     w = spin_sum(w_i, w_j)
-    push, turn = response(effects.spin, effects, material, n, v, w, 0.5)
+    pair = pair_of(bodies, i, j)
+    push, turn = response(effects.spin, effects, material, n, v, w, 0.5, pair)
     least = STICKING * state.clock[TYPICAL_SPEED]
-    push = _parted(push, n, v, 0.5, least)
+    push = _parted(push, n, v, 0.5 * mass_in(pair), least)
     state.counts[SPENT] += -dot(v, n) < least
-    put(state, scene, i, position_i, subtract(velocity_i, push), time)
-    put(state, scene, j, position_j, add_scaled(velocity_j, push, 1.0), time)
-    turn_spin(state.spin, i, w_i, turn)
-    turn_spin(state.spin, j, w_j, turn)
+    slowed, hastened = change_of_velocity(bodies, i, push), change_of_velocity(bodies, j, push)
+    put(state, scene, i, position_i, subtract(velocity_i, slowed), time)
+    put(state, scene, j, position_j, add_scaled(velocity_j, hastened, 1.0), time)
+    turn_i, turn_j = turn_of(turn, pair, 0), turn_of(turn, pair, 1)
+    turn_spin(state.spin, i, w_i, turn_i)
+    turn_spin(state.spin, j, w_j, turn_j)
     # in the frame of the pair, where nothing large cancels
     account = state.ledger[0, state.ledger.shape[1] - 1]
-    account[0] += dot(push, push) - dot(v, push)
-    book_spin(w_i, turn, effects.spin, account)
-    book_spin(w_j, turn, effects.spin, account)
+    account[0] += dot(push, push) / mass_in(pair) - dot(v, push)
+    book_spin(w_i, turn_i, effects.spin, bodies, i, account)
+    book_spin(w_j, turn_j, effects.spin, bodies, j, account)
     hooks.transfer(effects, None, state, dot(push, subtract(v, between)))
     hooks.contact_seen(effects, None, state, i, j, n, v, w, push)
     _note_contact(state, effects, i, time)
@@ -85,13 +112,15 @@ def collide_with_wall(state, scene, index, i, time, material, n, wall_velocity, 
     v = subtract(velocity, wall_velocity)
     effects = scene.effects
     material = _material(effects, material[0], material[1], state, i, NOBODY, time, dot(v, n))
-    push, turn = response(effects.spin, effects, material, n, v, w, 1.0)
-    push = _parted(push, n, v, 1.0, least_departure)
-    put(state, scene, i, position, subtract(velocity, push), time)
+    pair = pair_with_wall(state.bodies, i)
+    push, turn = response(effects.spin, effects, material, n, v, w, 1.0, pair)
+    push = _parted(push, n, v, mass_in(pair), least_departure)
+    slowed = change_of_velocity(state.bodies, i, push)
+    put(state, scene, i, position, subtract(velocity, slowed), time)
     turn_spin(state.spin, i, w, turn)
     account = state.ledger[0, index]
-    account[0] += 0.5 * dot(push, push) - dot(velocity, push)
-    book_spin(w, turn, effects.spin, account)
+    account[0] += 0.5 * dot(push, slowed) - dot(velocity, push)
+    book_spin(w, turn, effects.spin, state.bodies, i, account)
     _note_contact(state, effects, i, time)
     state.counts[BOUNDARY_HITS] += 1
     return NOBODY
@@ -112,17 +141,34 @@ def direction(x):
     return add_scaled(half, half, (4.0 - square) / (length * (2.0 + length)))
 
 
+def _along_reach(reach, x):
+    """As `direction`, for |x| = reach. The rounding of reach^2, which would be on the same side in
+    all contacts of two species, is added (T. J. Dekker, Numer. Math. 18, 224, 1971)."""
+    square = dot(x, x)
+    length = math.sqrt(square)
+    upper = SPLIT * reach - (SPLIT * reach - reach)
+    lower = reach - upper
+    whole = reach * reach
+    rest = ((upper * upper - whole) + 2.0 * upper * lower) + lower * lower
+    part = divide(x, reach)
+    return add_scaled(part, part, ((whole - square) + rest) / (length * (reach + length)))
+
+
+_normal = either(_along_reach, lambda reach, x: direction(x))
+
+
 @unrolled
-def response(spin, effects, material, n, v, w, share):
-    """Return the momentum exchanged and the change of each spin a w in one contact, per unit mass.
+def response(spin, effects, material, n, v, w, share, pair):
+    """Return the momentum exchanged and the change of each spin a w in one contact, of mass 1.
 
     material = (r, beta); n the normal, v the relative velocity, w the sum of the spins; share =
-    1/2 between equal particles and 1 at a wall. Without spin (None) only the normal part is there.
+    1/2 between particles and 1 at a wall; pair tells where particles differ, and the change is then
+    the mean of both spins' (bodies.py). Without spin (None) only the normal part is there.
     """
     if spin is None:
-        return _smooth(material, n, v, share)
+        return _smooth(material, n, v, share * mass_in(pair))
     else:
-        return _rough(spin, effects, material, n, v, w, share)
+        return _rough(spin, effects, material, n, v, w, share, pair)
 
 
 @jit
@@ -131,13 +177,14 @@ def _smooth(material, n, v, share):
 
 
 @jit
-def _rough(spin, effects, material, n, v, w, share):
+def _rough(spin, effects, material, n, v, w, share, pair):
     r, beta = material
     speed = dot(v, n)
     slip = subtract(add_scaled(v, n, -speed), spin_cross(w, n))
-    beta = hooks.roughness(effects, beta, r, speed, slip)
-    turn = share * (1.0 + beta) / (1.0 + spin.inertia)
-    push = add_scaled(scale(n, share * (1.0 + r) * speed), slip, spin.inertia * turn)
+    beta = hooks.roughness(effects, beta, r, speed, slip, pair)
+    turn = share * (1.0 + beta) / (1.0 + inertia_in(pair, spin))
+    along = bulk_in(pair, spin) * turn
+    push = add_scaled(scale(n, share * mass_in(pair) * (1.0 + r) * speed), slip, along)
     return push, scale(cross_to_spin(n, slip), turn)
 
 

@@ -1,6 +1,7 @@
 """Free flight between events, with or without gravity."""
 
 from roughgas.kernel import hooks
+from roughgas.kernel.bodies import mass_of
 from roughgas.kernel.images import fold_into_box, slid
 from roughgas.kernel.jit import jit
 from roughgas.kernel.unroll import unrolled
@@ -57,7 +58,7 @@ def come_in(state, scene, i, time):
     position, velocity = arrive(state, scene, i, time)
     gained = subtract(velocity, before)
     work = dot(gained, add_scaled(before, gained, 0.5))
-    hooks.transfer(scene.effects, None, state, work)
+    hooks.transfer(scene.effects, None, state, mass_of(state.bodies, i) * work)
     return position, velocity
 
 

@@ -37,9 +37,10 @@ class Hooks(NamedTuple):
     value so far and the normal relative velocity, negative where the partners approach; j < 0 for
     a boundary"""
     roughness: Callable | None = None
-    """(effect, index, beta, r, speed, slip) -> tangential restitution of a contact of particles
-    that spin, from the value so far, r and speed as above, and the tangential relative velocity of
-    the surfaces, a vector; without the state, it can depend on ratios of velocities only"""
+    """(effect, index, beta, r, speed, slip, pair) -> tangential restitution of a contact of
+    particles that spin, from the value so far, r and speed as above, the tangential relative
+    velocity of the surfaces, a vector, and what is special about the two (bodies.Pair; None where
+    all particles are alike); without the state, it can depend on ratios of velocities only"""
     contact_made: Callable | None = None
     """(effect, index, none, state, i, time): note that particle i has had a contact"""
     contact_seen: Callable | None = None

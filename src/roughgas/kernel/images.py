@@ -8,7 +8,7 @@ clock's base (hooks.sliding) or, after `slid`, at the time in question.
 import numpy as np
 
 from roughgas.kernel.arithmetic import multiply_add
-from roughgas.kernel.hooks import unless_absent
+from roughgas.kernel.hooks import either, unless_absent
 from roughgas.kernel.jit import is_single, jit, overload
 from roughgas.kernel.unroll import unrolled
 
@@ -99,12 +99,16 @@ def _halves(like):
 
 
 @jit
-def speed_limit(box, half):
+def speed_limit(box, half, reach):
     """Return the square of the relative speed below which no second image is met within +-`half`.
 
-    None where no axis is periodic. It has some room for rounding.
+    None where no axis is periodic. It has some room for rounding. `reach` is the distance of a pair
+    in contact, or of any; None stands for 2.
     """
-    return _limit(_lengths(box), half)
+    return _limit(_lengths(box), half, _roomy(reach))
+
+
+_roomy = either(lambda reach: 1.0005 * reach, lambda reach: 2.001)
 
 
 @unrolled
@@ -113,14 +117,14 @@ def _lengths(box):
 
 
 @unrolled
-def _limit(lengths, half):
+def _limit(lengths, half, reach):
     if len(lengths) == 0:
         return None
     else:
         shortest = lengths[0]
         for k in range(1, len(lengths)):
             shortest = min(shortest, lengths[k])
-        speed = (0.5 * shortest - 2.001) / half
+        speed = (0.5 * shortest - reach) / half
         return speed * speed
 
 

@@ -11,6 +11,7 @@ from roughgas.kernel.state import (
     SPAN,
     Agenda,
     Blocks,
+    Bodies,
     Calendar,
     Cells,
     Shortlist,
@@ -26,23 +27,26 @@ SLOTS_OF_FEW, SLOTS_OF_MANY = 8, 2  # upcoming contacts kept per particle
 LINE = 64  # bytes that the processor fetches at once
 ROOM = 512  # candidates that cells may yield at once
 NARROWEST = 2.002  # of a cell: a diameter and room for rounding, in a
+OF_BODIES = {"radius": (float,), "mass": (float,), "inertia": (float,), "species": (np.int32,)}
 MOMENT = "moment of "  # before the name of an effect: the array of its moments
 PER_CELL = 1.0  # particles to a cell, where cells are wider than that
 FEWEST = 8  # cells along an axis: fewer would be met twice
 
 
-def new_state(scene, position, velocity, spin, precision=np.float64, rng=None):
+def new_state(scene, position, velocity, spin, precision=np.float64, rng=None, bodies=None):
     """Return a state at time 0: positions (N, D) in a, velocities (N, D) and spins (N, D') in a/T.
 
     `precision` is that of trajectories and spins. Effects that draw random numbers start from the
     numpy generator `rng`, by default one of a fixed seed. A scene without spin leaves the spins
-    out. More than FEW particles are sorted into cells if the box has room for these.
+    out; one of several species needs to be told the Bodies. More than FEW particles are sorted into
+    cells if the box has room for these.
 
     Particles are kept in the order of their positions: where events coincide, their order in memory
     decides, and the result must not depend on how the particles were numbered.
     """
     number, dimension = position.shape
-    grid = cell_grid(scene, position)
+    narrowest = NARROWEST if bodies is None else NARROWEST * bodies.radius.max()
+    grid = cell_grid(scene, position, narrowest)
     if number <= FEW or min(grid[0]) < FEWEST:
         state = _few(scene, number, dimension, precision)
     else:
@@ -52,6 +56,8 @@ def new_state(scene, position, velocity, spin, precision=np.float64, rng=None):
     state.trajectory[:, dimension:-1] = velocity[order]
     if state.spin is not None:
         state.spin[:] = spin[order]
+    if bodies is not None:
+        _take_bodies(state, bodies, order)
     rng = np.random.default_rng(0) if rng is None else rng
     for place, _, moment in hooks.present(scene.effects, "moment"):
         state.moments[place][:] = moment(scene.effects[place], number, rng)
@@ -64,15 +70,26 @@ def new_state(scene, position, velocity, spin, precision=np.float64, rng=None):
     return state
 
 
-def cell_grid(scene, position):
+def _take_bodies(state, bodies, order):
+    for name in OF_BODIES:
+        getattr(state.bodies, name)[:] = getattr(bodies, name)[order]
+    state.bodies.largest[0] = bodies.radius.max()
+    state.bodies.pairs[:] = bodies.pairs
+    if state.sweep is not None:
+        rounded_up = np.nextafter(state.bodies.radius.astype(np.float32), np.float32(np.inf))
+        state.sweep.sizes[0, : len(order)] = rounded_up
+
+
+def cell_grid(scene, position, narrowest=NARROWEST):
     """Return (number, width) of cells along each axis, for PER_CELL particles to a cell or more.
 
-    None is narrower than NARROWEST. Along an open axis they fill the initial height of the gas.
+    None is narrower than `narrowest`, of the largest particles. Along an open axis they fill the
+    initial height of the gas.
     """
-    heights = np.ptp(position, axis=0) + NARROWEST
+    heights = np.ptp(position, axis=0) + narrowest
     lengths = [length or height for length, height in zip(scene.box, heights, strict=True)]
     volume = PER_CELL * math.prod(lengths) / len(position)
-    least = max(NARROWEST, volume ** (1.0 / len(lengths)))
+    least = max(narrowest, volume ** (1.0 / len(lengths)))
     counts = tuple(max(1, math.floor(length / least)) for length in lengths)
     return counts, tuple(float(length / n) for length, n in zip(lengths, counts, strict=True))
 
@@ -88,6 +105,7 @@ def _few(scene, number, dimension, precision):
         queue=Blocks(keys=key.reshape(-1, BLOCK), least=_least_of_blocks(padded // BLOCK)),
         sweep=Sweep(
             lines=np.full((2 * dimension, padded), np.nan, np.float32),
+            sizes=None if scene.effects.species is None else np.zeros((1, padded), np.float32),
         ),
         cells=None,
         shortlist=_shortlist(number, dimension),
@@ -97,13 +115,13 @@ def _few(scene, number, dimension, precision):
 def _many(scene, number, dimension, precision, counts, widths):
     """Give each particle one line of the cache for where it is, and one for what comes next."""
     fields = _fields(scene, dimension, precision, SLOTS_OF_MANY)
-    here = ["trajectory", "spin", "changes", "home", "following", "previous"]
+    here = ["trajectory", "spin", "radius", "changes", "home", "following", "previous"]
     here += [name for name in fields if name.startswith(MOMENT)]
     links = {name: (np.int32,) for name in ("home", "following", "previous", "later", "sooner")}
     fields |= links | {"leave": (float,)}
-    small = ("kind", "label")
+    small = ("kind", "label", "mass", "inertia", "species")
     ahead = [name for name in fields if name not in (*here, *small)]
-    arrays = {name: _array(number, *fields[name]) for name in small}
+    arrays = {name: _array(number, *fields[name]) for name in small if name in fields}
     arrays |= _records(number, {name: fields[name] for name in here if name in fields})
     arrays |= _records(number, {name: fields[name] for name in ahead})
     return _state(
@@ -144,6 +162,8 @@ def _fields(scene, dimension, precision, slots):
     }
     if effects.spin is not None:
         fields["spin"] = (precision, 2 * dimension - 3)
+    if effects.species is not None:
+        fields |= OF_BODIES
     fields |= {MOMENT + name: (float,) for name in _with_moments(effects)}
     if hooks.present(effects, "predict"):
         fields |= {"boundary_time": (float,), "boundary_code": (np.int32,)}
@@ -161,6 +181,7 @@ def _state(scene, arrays, **parts):
     return State(
         **{name: arrays.get(name) for name in ("trajectory", "spin")},
         **{name: arrays[name] for name in ("changes", "label")},
+        bodies=_bodies(effects.species, arrays),
         moments=type(effects)(**moments),
         phase=np.zeros(there) if hooks.present(effects, "phase") else None,
         ledger=np.zeros((2, hooks.accounts(effects) + 1, 2)),
@@ -170,6 +191,16 @@ def _state(scene, arrays, **parts):
         counts=np.zeros(12, np.int64),
         agenda=Agenda(**{name: arrays.get(name) for name in Agenda._fields}),
         **parts,
+    )
+
+
+def _bodies(species, arrays):
+    if species is None:
+        return None
+    return Bodies(
+        **{name: arrays[name] for name in OF_BODIES},
+        largest=np.zeros(1),
+        pairs=np.zeros((species.kinds, species.kinds + 1, 3)),
     )
 
 

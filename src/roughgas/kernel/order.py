@@ -47,6 +47,7 @@ def _settle_all(state, scene, time):
 def _exchange(state, i, j):
     _exchange_rows(state.trajectory, i, j)
     _exchange_spins(state.spin, i, j)
+    _exchange_bodies(state.bodies, i, j)
     _exchange_moments(state.moments, i, j)
     _exchange_entries(state.changes, i, j)
     _exchange_entries(state.label, i, j)
@@ -64,6 +65,14 @@ _exchange_spins = unless_absent(_exchange_rows.py_func)
 @jit
 def _exchange_entries(array, i, j):
     array[i], array[j] = array[j], array[i]
+
+
+@unless_absent
+def _exchange_bodies(bodies, i, j):
+    _exchange_entries(bodies.radius, i, j)
+    _exchange_entries(bodies.mass, i, j)
+    _exchange_entries(bodies.inertia, i, j)
+    _exchange_entries(bodies.species, i, j)
 
 
 @unrolled

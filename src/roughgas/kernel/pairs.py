@@ -9,16 +9,21 @@ import math
 
 from roughgas.kernel.arithmetic import choose
 from roughgas.kernel.flight import along
+from roughgas.kernel.hooks import either
 from roughgas.kernel.images import exceeds, image_numbers, shifted, slid, speed_limit
 from roughgas.kernel.jit import compiled, jit
 from roughgas.kernel.vectors import add_scaled, cross_squared, dot, subtract
 
 DIAMETER = 2.0
 
+_touching = either(lambda reach: reach, lambda reach: DIAMETER)
+
 
 @jit
-def time_to_contact(x, u):
+def time_to_contact(x, u, reach):
     """Return the time until two particles at separation x, with relative velocity u, touch, or inf.
+
+    They touch at the distance `reach`; None stands for 2, here and below.
 
     Touching or overlapping (by rounding) and approaching is a contact now; receding never is one.
     The smaller root is formed by division, so that it does not cancel when the particles are
@@ -29,8 +34,9 @@ def time_to_contact(x, u):
     are done at once.
     """
     b, uu = dot(x, u), dot(u, u)
-    c = dot(x, x) - DIAMETER * DIAMETER
-    discriminant = DIAMETER * DIAMETER * uu - cross_squared(x, u)
+    diameter = _touching(reach)
+    c = dot(x, x) - diameter * diameter
+    discriminant = diameter * diameter * uu - cross_squared(x, u)
     time = max(c, 0.0) / (math.sqrt(max(discriminant, 0.0)) - b)
     time = min(time, -b / uu)
     meets = (b < 0.0) & ((discriminant >= 0.0) | (c <= 0.0))
@@ -38,7 +44,7 @@ def time_to_contact(x, u):
 
 
 @jit
-def meeting(path_i, path_j, box, gravity, slide, middle, limit):
+def meeting(path_i, path_j, box, gravity, slide, middle, limit, reach):
     """Return the time of the first contact of two paths, and whether a second image might be met.
 
     The nearest image at `middle` is the only one that can be met as long as the pair moves less
@@ -51,12 +57,12 @@ def meeting(path_i, path_j, box, gravity, slide, middle, limit):
     u = subtract(velocity_j, velocity_i)
     numbers = image_numbers(add_scaled(x, u, middle - since), box, slid(slide, middle))
     x, u = shifted(x, u, numbers, box, slid(slide, since))
-    time = since + time_to_contact(x, u)
+    time = since + time_to_contact(x, u, reach)
     return time, exceeds(dot(u, u), limit)
 
 
 @compiled
-def meeting_of_any_image(path_i, path_j, box, gravity, slide, start, end):
+def meeting_of_any_image(path_i, path_j, box, gravity, slide, start, end, reach):
     """Return when, between `start` and `end`, any images of two paths first touch, or inf.
 
     The interval is cut until within each piece the nearest image decides.
@@ -66,8 +72,8 @@ def meeting_of_any_image(path_i, path_j, box, gravity, slide, start, end):
     while k < pieces:
         length = (end - start) / pieces
         middle = start + (k + 0.5) * length
-        limit = speed_limit(box, 0.5 * length)
-        time, unsure = meeting(path_i, path_j, box, gravity, slide, middle, limit)
+        limit = speed_limit(box, 0.5 * length, reach)
+        time, unsure = meeting(path_i, path_j, box, gravity, slide, middle, limit, reach)
         if unsure:
             pieces *= 2
             k *= 2

@@ -3,6 +3,7 @@
 import math
 from typing import NamedTuple
 
+from roughgas.kernel.bodies import mass_of, radius_of, spin_mass_of
 from roughgas.kernel.flight import arrive, come_in, put
 from roughgas.kernel.hooks import either, present, unless_absent
 from roughgas.kernel.jit import compiled, entry, jit
@@ -37,21 +38,21 @@ class Sampling(NamedTuple):
 def columns(scene):
     """Return the names of the columns that `record` fills, in order.
 
-    These are sums over all particles, and last what effects have summed since the start.
+    These are sums over all particles, then those over each species where there are any, as
+    `vv_x[0]`, and last what effects have summed since the start. Where particles differ, masses
+    weigh what has no spin in it; with s = m q over the q of the scene, `ww` is the sum of s (a w)^2
+    and `w` that of s a (a w), over a^2 the angular momentum.
     """
     dimension, effects = len(scene.box), scene.effects
     axes = "xyz"[:dimension]
-    spins = (
-        []
-        if effects.spin is None
-        else ["ww"] + (["w"] if dimension == 2 else ["w_x", "w_y", "w_z"])
-    )
+    sums = [f"vv_{k}" for k in axes] + [f"p_{k}" for k in axes] + ["y", "yy", "yv_x"]
+    if effects.spin is not None:
+        sums += ["ww"] + (["w"] if dimension == 2 else ["w_x", "w_y", "w_z"])
+    kinds = 0 if effects.species is None else effects.species.kinds
     return (
         ["time", "collisions", "exponent"]
-        + [f"vv_{k}" for k in axes]
-        + [f"p_{k}" for k in axes]
-        + ["y", "yy", "yv_x"]
-        + spins
+        + sums
+        + [f"{name}[{kind}]" for kind in range(kinds) for name in sums]
         + [name for part in present(effects, "sums") for name in part.own]
     )
 
@@ -80,8 +81,6 @@ def record(state, scene, plan, samples):
 @compiled
 def take_sample(state, scene, row):
     """Fill a row with sums over the particles at the present instant; nothing is moved."""
-    box = scene.box
-    dimension = len(box)
     time = state.clock[NOW]
     for k in range(len(row)):
         row[k] = 0.0
@@ -91,22 +90,48 @@ def take_sample(state, scene, row):
     row[2] = state.counts[EXPONENT]
     for i in range(len(state.changes)):
         position, velocity = arrive(state, scene, i, time)
-        for k in range(dimension):
-            row[3 + k] += velocity[k] * velocity[k]
-            row[3 + dimension + k] += velocity[k]
-        height = position[1] - scene.middle
-        row[3 + 2 * dimension] += height
-        row[4 + 2 * dimension] += height * height
-        row[5 + 2 * dimension] += height * velocity[0]
-        _add_spin(spin_of(state.spin, box, i), row, 6 + 2 * dimension)
+        _add(state, scene, i, position, velocity, row, 3)
+        _add_to_species(state.bodies, state, scene, i, position, velocity, row)
     _enter_sums(state.sums, state.counts[EXPONENT], row, len(row))
 
 
+@jit
+def _add(state, scene, i, position, velocity, row, first):
+    mass, dimension = mass_of(state.bodies, i), len(position)
+    for k in range(dimension):
+        row[first + k] += mass * (velocity[k] * velocity[k])
+        row[first + dimension + k] += mass * velocity[k]
+    height = position[1] - scene.middle
+    row[first + 2 * dimension] += mass * height
+    row[first + 1 + 2 * dimension] += mass * (height * height)
+    row[first + 2 + 2 * dimension] += mass * (height * velocity[0])
+    spin = spin_of(state.spin, scene.box, i)
+    _add_spin(spin, state.bodies, scene.effects.spin, i, row, first + 3 + 2 * dimension)
+
+
 @unless_absent
-def _add_spin(spin, row, first):
+def _add_to_species(bodies, state, scene, i, position, velocity, row):
+    length = 2 * len(position) + 3 + _components(state.spin)
+    first = 3 + length * (1 + bodies.species[i])
+    _add(state, scene, i, position, velocity, row, first)
+
+
+_components = either(lambda spin: 1 + spin.shape[1], lambda spin: 0)
+
+
+@unless_absent
+def _add_spin(spin, bodies, effect, i, row, first):
+    share = _share_of_spin(bodies, effect, i)
+    lever = share * radius_of(bodies, i)
     for k in range(len(spin)):
-        row[first] += spin[k] * spin[k]
-        row[first + 1 + k] += spin[k]
+        row[first] += share * (spin[k] * spin[k])
+        row[first + 1 + k] += lever * spin[k]
+
+
+_share_of_spin = either(
+    lambda bodies, effect, i: spin_mass_of(bodies, effect, i) / effect.inertia,
+    lambda bodies, effect, i: 1.0,
+)
 
 
 @unrolled
@@ -147,7 +172,7 @@ def refresh(state, scene):
         put(state, scene, i, position, velocity, time)
     square = 0.0
     for k in range(dimension, 2 * dimension):
-        mean = _conserved_mean(state.agenda.boundary_time, state.trajectory, k)
+        mean = _conserved_mean(state.agenda.boundary_time, state, k)
         for i in range(number):
             state.trajectory[i, k] -= mean
             square += state.trajectory[i, k] ** 2
@@ -156,14 +181,15 @@ def refresh(state, scene):
     start(state, scene)
 
 
-def _mean(boundary_time, trajectory, k):
-    mean = 0.0
-    for i in range(len(trajectory)):
-        mean += trajectory[i, k]
-    return mean / len(trajectory)
+def _mean(boundary_time, state, k):
+    momentum, mass = 0.0, 0.0
+    for i in range(len(state.trajectory)):
+        momentum += mass_of(state.bodies, i) * state.trajectory[i, k]
+        mass += mass_of(state.bodies, i)
+    return momentum / mass
 
 
-_conserved_mean = either(lambda boundary_time, trajectory, k: 0.0, _mean)
+_conserved_mean = either(lambda boundary_time, state, k: 0.0, _mean)
 
 
 @jit

@@ -7,8 +7,9 @@ import numpy as np
 from roughgas.kernel import hooks
 from roughgas.kernel.agenda import add_contact, set_contacts
 from roughgas.kernel.arithmetic import choose
+from roughgas.kernel.bodies import reach_of, widest_of
 from roughgas.kernel.flight import path_of
-from roughgas.kernel.hooks import either
+from roughgas.kernel.hooks import either, unless_absent
 from roughgas.kernel.images import speed_limit
 from roughgas.kernel.jit import jit
 from roughgas.kernel.lanes import (
@@ -40,13 +41,15 @@ def decide(state, scene, i, number, start, end, limit):
     gravity = hooks.acceleration(scene.effects, None)
     slide = hooks.sliding(scene.effects, None, state)
     half = 0.5 * (end - start)
-    fastest = speed_limit(box, half)
+    fastest = speed_limit(box, half, widest_of(state.bodies))
     first, more = 0, True
     while more:  # once mostly, and at least once, so that the processor can foresee it
         others = _paths_of(state.trajectory, state.shortlist.found, first, box)
-        when, unsure = meeting(path, others, box, gravity, slide, start + half, fastest)
+        reach = _reaches(state.bodies, state.shortlist.found, i, first)
+        when, unsure = meeting(path, others, box, gravity, slide, start + half, fastest, reach)
         listed = order(REGISTER) < number - first
-        when = _of_any_image(fastest, state, scene, path, first, start, end, when, unsure & listed)
+        unsure = unsure & listed
+        when = _of_any_image(fastest, state, scene, i, path, first, start, end, when, unsure)
         _note(state.cells, state, i, first, choose((when <= limit) & listed, when, math.inf))
         first += lanes_of(state.shortlist.when)
         more = first < number
@@ -62,7 +65,13 @@ def _paths_of(trajectory, found, first, box):
     )
 
 
-def _look_at_every_image(fastest, state, scene, path, first, start, end, when, unsure):
+@unless_absent
+def _reaches(bodies, found, i, first):
+    """Return the distances at which particle i touches the candidates from `first` on."""
+    return bodies.radius[i] + gather(bodies.radius, 0, found, first, REGISTER)
+
+
+def _look_at_every_image(fastest, state, scene, i, path, first, start, end, when, unsure):
     undecided = bits(unsure)
     if undecided == 0:
         return when
@@ -72,8 +81,10 @@ def _look_at_every_image(fastest, state, scene, path, first, start, end, when, u
     store(shortlist.when, 0, 0, when)
     while undecided != 0:
         k = trailing_zeros(undecided)
-        other = path_of(state.trajectory, shortlist.found[first + k], box)
-        time = meeting_of_any_image(path, other, box, gravity, slide, start, end)
+        j = shortlist.found[first + k]
+        other = path_of(state.trajectory, j, box)
+        reach = reach_of(state.bodies, i, j)
+        time = meeting_of_any_image(path, other, box, gravity, slide, start, end, reach)
         shortlist.when[0, k] = time
         undecided &= undecided - np.uint64(1)
     return load(shortlist.when, 0, 0, REGISTER)
@@ -81,7 +92,7 @@ def _look_at_every_image(fastest, state, scene, path, first, start, end, when, u
 
 _of_any_image = either(
     _look_at_every_image,
-    lambda fastest, state, scene, path, first, start, end, when, unsure: when,
+    lambda fastest, state, scene, i, path, first, start, end, when, unsure: when,
 )
 
 

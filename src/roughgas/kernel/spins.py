@@ -3,6 +3,7 @@
 A spin has one component in the plane, three in space.
 """
 
+from roughgas.kernel.bodies import spin_mass_of
 from roughgas.kernel.hooks import unless_absent
 from roughgas.kernel.unroll import unrolled
 from roughgas.kernel.vectors import add_scaled, dot, write
@@ -30,6 +31,7 @@ def turn_spin(spin, i, before, turn):
 
 
 @unless_absent
-def book_spin(before, turn, effect, account):
-    """Enter the rotational energy gained, q [w.dw + dw.dw/2], in an account of the ledger."""
-    account[1] += effect.inertia * (dot(before, turn) + 0.5 * dot(turn, turn))
+def book_spin(before, turn, effect, bodies, i, account):
+    """Enter the rotational energy gained, m q [w.dw + dw.dw/2], in an account of the ledger."""
+    gained = dot(before, turn) + 0.5 * dot(turn, turn)
+    account[1] += spin_mass_of(bodies, effect, i) * gained

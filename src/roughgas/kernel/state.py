@@ -34,6 +34,18 @@ HORIZON, BOUNDARY, NOTHING = -1, -2, -3
 NOBODY = -1  # ends a linked list of particles
 
 
+class Bodies(NamedTuple):
+    """What each particle is, where they differ; `species` are counted from 0."""
+
+    radius: np.ndarray  # (N,) in a
+    mass: np.ndarray  # (N,) in m
+    inertia: np.ndarray  # (N,) q = I/(m a^2), of its own mass and radius
+    species: np.ndarray  # (N,)
+    largest: np.ndarray  # (1,) radius
+    pairs: np.ndarray  # (species, species + 1, 3) r, beta and mu of their contacts, mu NaN without
+    # friction; last those with walls, of which only mu is used
+
+
 class Agenda(NamedTuple):
     """The upcoming events of each particle, and the earliest of them as the queue's key."""
 
@@ -68,6 +80,7 @@ class Sweep(NamedTuple):
     """Single-precision trajectories r0 + v0 t, which the all-pairs sweep tries."""
 
     lines: np.ndarray  # (2 D, N padded) r0 and v0 at the clock's base; NaN in the padding
+    sizes: np.ndarray | None  # (1, N padded) radii, rounded up; None where all are 1
 
 
 class Cells(NamedTuple):
@@ -95,6 +108,7 @@ class State(NamedTuple):
 
     trajectory: np.ndarray  # (N, 2 D + 1): position, velocity, and the time at which they hold
     spin: np.ndarray | None  # (N, 2 D - 3) surface velocity a w; None without spin
+    bodies: Bodies | None  # None where all particles are alike: radius and mass are 1
     moments: tuple  # an Effects with, for each effect that keeps one of each particle, times (N,)
     changes: np.ndarray  # (N,) how often each particle's velocity has changed
     label: np.ndarray  # (N,) the particle's number at the start: many are sorted anew now and then

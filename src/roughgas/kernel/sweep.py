@@ -16,8 +16,9 @@ import numpy as np
 from roughgas.kernel import hooks
 from roughgas.kernel.agenda import clear_contacts
 from roughgas.kernel.arithmetic import multiply_add
+from roughgas.kernel.bodies import widest_of
 from roughgas.kernel.flight import whereabouts
-from roughgas.kernel.hooks import unless_absent
+from roughgas.kernel.hooks import either, unless_absent
 from roughgas.kernel.images import exceeds, image_numbers, shifted, slid, speed_limit
 from roughgas.kernel.jit import jit
 from roughgas.kernel.lanes import REGISTER, append, lanes_of, load
@@ -28,6 +29,7 @@ from roughgas.kernel.unroll import unrolled
 from roughgas.kernel.vectors import add_scaled, cross_squared, dot, read, subtract
 
 ROUNDING = 2.0**-24  # half the spacing of single precision just above 1
+ROUNDED_UP = 1.0 + 2.0**-20  # radii in single precision are no less than they are
 
 
 def find_by_sweep(cells, state, scene, i, time):
@@ -35,7 +37,7 @@ def find_by_sweep(cells, state, scene, i, time):
     start, velocity = line_of(state, scene, i)
     end = time + horizon(state, scene, i)
     half = 0.5 * (end - time)
-    number = list_candidates(state, scene, single(start), single(velocity), time + half, half)
+    number = list_candidates(state, scene, i, single(start), single(velocity), time + half, half)
     draw_line(state, i, start, velocity)
     clear_contacts(state.agenda, i, end)
     decide(state, scene, i, number, time, end, end)
@@ -49,7 +51,13 @@ def horizon(state, scene, i):
     speed = math.sqrt(dot(v, v)) + 2.0 * state.clock[TYPICAL_SPEED]
     if speed == 0.0:
         return state.clock[SPAN]
-    return min((scene.extent - 2.0 * DIAMETER) / speed, state.clock[LONGEST_HORIZON])
+    return min(_free_way(state.bodies, scene) / speed, state.clock[LONGEST_HORIZON])
+
+
+_free_way = either(  # between side walls that are near nothing comes round
+    lambda bodies, scene: max(scene.extent - 4.0 * bodies.largest[0], bodies.largest[0]),
+    lambda bodies, scene: scene.extent - 2.0 * DIAMETER,
+)
 
 
 @jit
@@ -84,24 +92,27 @@ def draw_line(state, i, start, velocity):
 
 
 @jit
-def list_candidates(state, scene, start, velocity, middle, half):
+def list_candidates(state, scene, i, start, velocity, middle, half):
     """List every particle that one on this line may touch within `half` of time `middle` in the
     shortlist; return their number. The particle itself may be among them: it never meets itself."""
     clock = state.clock
-    margin = DIAMETER + 16.0 * ROUNDING * clock[EXTENT]
+    slack = 16.0 * ROUNDING * clock[EXTENT]
+    margin = _farthest(state.bodies, i) + slack
     speed = max(clock[TYPICAL_SPEED], 1e-30)
     # s |u| <= (s / 2) (u.u / w + w) for any speed w, which saves a root per pair
     reach = half + 0.55 * margin / speed
     slide = slid(hooks.sliding(scene.effects, None, state), middle)
     return _sweep(
         state.sweep.lines,
+        state.sweep.sizes,
+        _own(state.bodies, i, slack),
         state.shortlist.found,
         len(state.changes),
         start,
         velocity,
         single(scene.box),
         single(slide),
-        _single(speed_limit(scene.box, half)),
+        _single(speed_limit(scene.box, half, widest_of(state.bodies))),
         np.float32(middle),
         np.float32(reach),
         np.float32(0.55 * margin * speed),
@@ -110,17 +121,36 @@ def list_candidates(state, scene, start, velocity, middle, half):
 
 
 @jit
-def _sweep(lines, found, particles, x_i, u_i, box, slide, limit, middle, reach, spare, square):
+def _sweep(
+    lines, sizes, own, found, particles, x_i, u_i, box, slide, limit, middle, reach, spare, square
+):
     lanes, number = lanes_of(lines), 0
     for first in range(0, particles, lanes):
         u = subtract(u_i, _lines_of(lines, len(box), first, box))
         x = add_scaled(subtract(x_i, _lines_of(lines, 0, first, box)), u, middle)
         x, u = shifted(x, u, image_numbers(x, box, slide), box, slide)
         uu = dot(u, u)
-        passes = cross_squared(x, u) <= square * uu
+        passes = cross_squared(x, u) <= _square(sizes, own, first, square) * uu
         soon = abs(dot(x, u)) <= multiply_add(uu, reach, spare)
         number = append(found, number, (passes & soon) | exceeds(uu, limit), first)
     return number
+
+
+_farthest = either(
+    lambda bodies, i: bodies.radius[i] + bodies.largest[0], lambda bodies, i: DIAMETER
+)
+_own = either(
+    lambda bodies, i, slack: np.float32(ROUNDED_UP * (bodies.radius[i] + slack)),
+    lambda bodies, i, slack: None,
+)
+
+
+def _square_of_each(sizes, own, first, square):
+    reach = load(sizes, 0, first, REGISTER) + own
+    return reach * reach
+
+
+_square = either(_square_of_each, lambda sizes, own, first, square: square)
 
 
 @unrolled

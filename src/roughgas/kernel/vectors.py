@@ -32,6 +32,12 @@ def scale(a, s):
 
 
 @unrolled
+def divide(a, s):
+    """Return the vector a over the scalar s."""
+    return tuple(a[k] / s for k in range(len(a)))
+
+
+@unrolled
 def add_scaled(a, b, s):
     """Return a + s b, for vectors a and b and a scalar s."""
     return tuple(multiply_add(b[k], s, a[k]) for k in range(len(a)))

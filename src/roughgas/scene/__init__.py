@@ -2,5 +2,16 @@
 
 from roughgas.scene.composition import DIAMETER, Scene, build, is_closed
 from roughgas.scene.initial import check, check_places, initial_state
+from roughgas.scene.mixture import draw_bodies, given_bodies
 
-__all__ = ["DIAMETER", "Scene", "build", "check", "check_places", "initial_state", "is_closed"]
+__all__ = [
+    "DIAMETER",
+    "Scene",
+    "build",
+    "check",
+    "check_places",
+    "draw_bodies",
+    "given_bodies",
+    "initial_state",
+    "is_closed",
+]

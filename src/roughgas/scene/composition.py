@@ -4,13 +4,14 @@ Units: particle radius a = particle mass m = time unit T = 1.
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 from roughgas.base.errors import InputError
 from roughgas.base.legal import RESTITUTION, ROUGHNESS
 from roughgas.effects import KINDS, Effects
 from roughgas.effects.settings import Surroundings, make
+from roughgas.effects.species import mixture_of
 from roughgas.kernel import hooks
 
 DIAMETER = 2.0
@@ -40,14 +41,17 @@ def build(experiment: Mapping[str, Any], r: float, beta: float) -> Scene:
     RESTITUTION.check("restitution r", r)
     ROUGHNESS.check("roughness beta", beta)
     lengths = tuple(None if side == "open" else float(side) for side in experiment["box"])
-    effects = _effects(experiment["effects"], lengths, float(r), float(beta))
+    mixture = mixture_of(experiment)
+    effects = _effects(experiment["effects"], lengths, float(r), float(beta), mixture)
     if effects.spin is None and beta != -1.0:
         raise InputError("roughness beta", beta, "be -1 where particles do not spin")
     closed = is_closed(effects)
-    _check_box(lengths, effects, closed)
+    _check_axes(lengths, effects, closed)
+    largest = 1.0 if mixture is None else mixture.largest()
+    check_box(lengths, closed, largest)
     _check_company(experiment.get("particles"), effects)
     # walls that are near shorten no outlook
-    across = max(lengths[0], FAR_APART) if closed else lengths[0]
+    across = max(lengths[0], FAR_APART * largest) if closed else lengths[0]
     return Scene(
         box=(None, *lengths[1:]) if closed else lengths,
         restitution=float(r),
@@ -63,24 +67,30 @@ def is_closed(effects: Effects) -> bool:
     return bool(hooks.present(effects, "closes"))
 
 
-def _effects(settings, lengths, r, beta):
-    around = Surroundings(lengths, r, beta, settings)
+def check_box(lengths: Sequence[float | None], closed: bool, largest: float) -> None:
+    """Raise InputError where sides of the box are too short for particles of the largest radius."""
+    for k, length in enumerate(lengths):
+        least = (NARROWEST_CHANNEL if k == 0 and closed else NARROWEST) * largest
+        if length is not None and not least <= length < math.inf:
+            raise InputError(f"box[{k}]", length, f"be a number of at least {least:g}")
+
+
+def _effects(settings, lengths, r, beta, mixture):
+    own = () if mixture is None else (mixture.own("restitution"), mixture.own("roughness"))
+    around = Surroundings(lengths, r, beta, settings, *own)
     for name in settings:
         if name not in KINDS:
             raise InputError("effect", name, f"be one of {', '.join(KINDS)}")
     there = {name: kind for name, kind in KINDS.items() if name in settings}
-    return Effects(**{n: make(kind, n, settings[n], around) for n, kind in there.items()})
+    made = {name: make(kind, name, settings[name], around) for name, kind in there.items()}
+    return Effects(**made, species=None if mixture is None else mixture.effect())
 
 
-def _check_box(lengths, effects, closed):
-    """Refuse sides that are too short, and a top or walls that do not suit the effects."""
+def _check_axes(lengths, effects, closed):
+    """Refuse a top or walls that do not suit the effects."""
     open_axes = [k for k, length in enumerate(lengths) if length is None]
     if open_axes not in ([], [len(lengths) - 1]):
         raise InputError("box", list(lengths), "be open along its last axis only")
-    for k, length in enumerate(lengths):
-        least = NARROWEST_CHANNEL if k == 0 and closed else NARROWEST
-        if length is not None and not least <= length < math.inf:
-            raise InputError(f"box[{k}]", length, f"be a number of at least {least:g}")
     if effects.gravity is None and effects.floor is not None:
         legal = "come with gravity, or nothing would come back to it"
         raise InputError("effects.floor", "without gravity", legal)

@@ -11,6 +11,7 @@ from roughgas.kernel.hooks import displacement
 from roughgas.kernel.layout import new_state
 from roughgas.kernel.state import State
 from roughgas.scene.composition import DIAMETER, Scene, build
+from roughgas.scene.mixture import draw_bodies
 
 TEMPERATURE = 1.0  # m a^2/T^2
 GRAZE = 1e-6  # a: overlaps as small as this are roundings, such as those of single precision
@@ -28,7 +29,8 @@ CENTRED = {
 def check(experiment: Mapping[str, Any]) -> Scene:
     """Return the scene of some point. Raises InputError if no point could be simulated."""
     scene = build(experiment, 0.5, 0.0 if "spin" in experiment["effects"] else -1.0)
-    lattice(scene, experiment)
+    bodies = draw_bodies(scene, experiment, np.random.default_rng(0))
+    lattice(scene, experiment, 1.0 if bodies is None else float(bodies.largest[0]))
     if experiment.get("spin_temperature") and scene.effects.spin is None:
         value = experiment["spin_temperature"]
         raise InputError("spin_temperature", value, "not be given where particles do not spin")
@@ -52,48 +54,57 @@ def initial_state(
     trajectories and spins are kept. Raises InputError if they do not fit.
     """
     number = experiment["particles"]
-    sites = lattice(scene, experiment)
+    bodies = draw_bodies(scene, experiment, rng)
+    sites = lattice(scene, experiment, 1.0 if bodies is None else float(bodies.largest[0]))
     position = sites[np.sort(rng.permutation(len(sites))[:number])]
     velocity = math.sqrt(TEMPERATURE) * rng.standard_normal(position.shape)
-    velocity -= velocity.mean(axis=0)
+    if bodies is not None:
+        velocity /= np.sqrt(bodies.mass)[:, None]
+    velocity -= np.average(velocity, axis=0, weights=None if bodies is None else bodies.mass)
     shear = scene.effects.shear
     if shear is not None:
         height = position[:, 1] - scene.middle
         velocity[:, 0] += shear.velocity / (2.0 * scene.middle) * height
     spin = np.zeros((number, 2 * position.shape[1] - 3))
     temperature = experiment.get("spin_temperature", 0.0)
-    if temperature > 0.0:  # of q (a w)^2 for each component, as of v^2 above
-        spin = rng.standard_normal(spin.shape) * math.sqrt(temperature / scene.effects.spin.inertia)
-    return new_state(scene, position, velocity, spin, precision, rng)
+    if temperature > 0.0:  # of m q (a w)^2 for each component, as of m v^2 above
+        q = scene.effects.spin.inertia if bodies is None else bodies.mass * bodies.inertia
+        spin = rng.standard_normal(spin.shape) * np.sqrt(temperature / np.reshape(q, (-1, 1)))
+    return new_state(scene, position, velocity, spin, precision, rng, bodies)
 
 
-def check_places(scene: Scene, position: np.ndarray, time: float) -> None:
+def check_places(
+    scene: Scene, position: np.ndarray, time: float, radius: np.ndarray | None = None
+) -> None:
     """Raise InputError where particles at these positions (N, D) overlap, or are in a wall or in
-    the floor at `time` (T), by more than GRAZE."""
-    effects = scene.effects
+    the floor at `time` (T), by more than GRAZE. Their radii (N,) are 1 if not given."""
+    effects, radius = scene.effects, np.ones(len(position)) if radius is None else radius
     closed = effects.walls or effects.shaken_walls
     bounds = [(-math.inf, math.inf)] * position.shape[1]
     if closed is not None:
-        bounds[0] = 1.0, closed.width - 1.0
+        bounds[0] = 0.0, closed.width
     if effects.floor is not None:
-        bounds[-1] = displacement(effects.floor, time) + 1.0, math.inf
+        bounds[-1] = displacement(effects.floor, time), math.inf
     for places, (low, high) in zip(position.T, bounds, strict=True):
-        outside = np.flatnonzero((places < low - GRAZE) | (places > high + GRAZE))
+        outside = np.flatnonzero((places < low + radius - GRAZE) | (places > high - radius + GRAZE))
         if len(outside):
-            key = f"initial position of particle {outside[0]}"
-            raise InputError(key, places[outside[0]], f"lie in [{low:g}, {high:g}]")
-    pair = _overlapping(scene, position, time)
+            first = outside[0]
+            key, own = f"initial position of particle {first}", radius[first]
+            raise InputError(key, places[first], f"lie in [{low + own:g}, {high - own:g}]")
+    pair = _overlapping(scene, position, time, radius)
     if pair is not None:
-        legal = f"be {DIAMETER:g} or more, or the particles overlap"
-        raise InputError(f"distance of particles {pair[0]} and {pair[1]}", f"{pair[2]:.9g}", legal)
+        i, j, distance = pair
+        legal = f"be {radius[i] + radius[j]:g} or more, or the particles overlap"
+        raise InputError(f"distance of particles {i} and {j}", f"{distance:.9g}", legal)
 
 
-def _overlapping(scene, position, time):
+def _overlapping(scene, position, time, radius):
     """Return the numbers of two particles that overlap, and their distance; or None.
 
     Particles and their images near the box are sorted along the first axis, and each is compared
-    with those that follow it within a diameter.
+    with those that follow it within the largest diameter.
     """
+    diameter = DIAMETER * radius.max()
     inside = position.copy()
     for axis, length in enumerate(scene.box):
         if length is not None:
@@ -110,36 +121,40 @@ def _overlapping(scene, position, time):
         parts = [(owner, places)]
         for side in (-1, 1):
             image = places + side * shift
-            near = (image[:, axis] > -DIAMETER) & (image[:, axis] < length + DIAMETER)
+            near = (image[:, axis] > -diameter) & (image[:, axis] < length + diameter)
             parts.append((owner[near], image[near]))
         owner, places = (np.concatenate(one) for one in zip(*parts, strict=True))
     order = np.argsort(places[:, 0], kind="stable")
     owner, places = owner[order], places[order]
     for step in range(1, len(places)):
         apart = places[step:] - places[:-step]
-        if not np.any(apart[:, 0] < DIAMETER):
+        if not np.any(apart[:, 0] < diameter):
             return None
         distance = np.sqrt((apart**2).sum(axis=1))
-        worst = int(np.argmin(distance))
-        if distance[worst] < DIAMETER - GRAZE:
+        gap = distance - radius[owner[step:]] - radius[owner[:-step]]
+        worst = int(np.argmin(gap))
+        if gap[worst] < -GRAZE:
             return *sorted((owner[worst], owner[worst + step])), distance[worst]
     return None
 
 
-def lattice(scene: Scene, experiment: Mapping[str, Any]) -> np.ndarray:
-    """Return sites (M, D) of a lattice that fills the box, M >= the number of particles, in a."""
-    number, dimension = experiment["particles"], len(scene.box)
-    lengths, bottom = _room(scene, experiment)
-    spacing = max(LEAST, (math.prod(lengths) / (VACANCIES * number)) ** (1.0 / dimension))
+def lattice(scene: Scene, experiment: Mapping[str, Any], radius: float = 1.0) -> np.ndarray:
+    """Return sites (M, D) of a lattice that fills the box, M >= the number of particles, in a.
+
+    Particles of this radius do not overlap there.
+    """
+    number, dimension, least = experiment["particles"], len(scene.box), LEAST * radius
+    lengths, bottom = _room(scene, experiment, radius)
+    spacing = max(least, (math.prod(lengths) / (VACANCIES * number)) ** (1.0 / dimension))
     counts = [max(1, math.floor(length / spacing)) for length in lengths]
     if math.prod(counts) < number:  # too dense for vacancies: as many sites as there is room for
-        counts = [math.floor(length / LEAST) for length in lengths]
+        counts = [math.floor(length / least) for length in lengths]
     if math.prod(counts) > MOST_SITES:
         legal = f"have room for {MOST_SITES:.0e} particles at most, a lattice being laid over it"
         raise InputError("box", experiment["box"], legal)
     sites = _sites(lengths, counts, [(0.5,) * dimension])
     if len(sites) < number and None not in scene.box:  # too dense for one site to a cell
-        sites = max(sites, _sites(lengths, _closest(lengths), CENTRED[dimension]), key=len)
+        sites = max(sites, _sites(lengths, _closest(lengths, least), CENTRED[dimension]), key=len)
     if len(sites) < number:
         raise InputError("particles", number, f"be at most {len(sites)} in this box")
     sites[:, -1] += bottom
@@ -158,23 +173,23 @@ def _sites(lengths, counts, within):
     return np.concatenate([part.reshape(-1, len(lengths)) for part in parts])
 
 
-def _closest(lengths):
+def _closest(lengths, least):
     """Return the cells along each axis of the centred lattice that has the most sites.
 
-    No cell is narrower than LEAST, nor a face of it, from corner to corner, than twice that.
+    No cell is narrower than `least`, nor a face of it, from corner to corner, than twice that.
     """
     *others, last = lengths
-    choices = [np.arange(1, math.floor(length / LEAST) + 1) for length in others]
+    choices = [np.arange(1, math.floor(length / least) + 1) for length in others]
     counts = np.stack(np.meshgrid(*choices, indexing="ij"), axis=-1).reshape(-1, len(others))
     sides = np.array(others) / counts
-    beside = np.sqrt(np.maximum(4.0 * LEAST**2 - sides**2, LEAST**2))
+    beside = np.sqrt(np.maximum(4.0 * least**2 - sides**2, least**2))
     possible = np.all(sides[:, 1:] >= beside[:, :1], axis=1)
     layers = np.floor(last / beside.max(axis=1)).astype(int) * possible
     best = np.argmax(counts.prod(axis=1) * layers)
     return [*counts[best].tolist(), int(layers[best])]
 
 
-def _room(scene, experiment):
+def _room(scene, experiment, radius):
     """Return the lengths of the region to fill, and where it begins along the last axis."""
     number = experiment["particles"]
     lengths = [None if side == "open" else float(side) for side in experiment["box"]]
@@ -182,8 +197,10 @@ def _room(scene, experiment):
         return lengths, 0.0
     volume = math.pi if len(lengths) == 2 else 4.0 * math.pi / 3.0
     base = math.prod(lengths[:-1])
-    layers = math.ceil(number * volume / (LOOSE_PACKING * base) / DIAMETER + 1.0)
+    least = LEAST * radius
+    height = number * volume * radius ** len(lengths) / (LOOSE_PACKING * base)
+    layers = math.ceil(height / (DIAMETER * radius) + 1.0)
     # there is always room above
-    layers = max(layers, -(-number // math.prod(math.floor(side / LEAST) for side in lengths[:-1])))
-    lengths[-1] = layers * LEAST
+    layers = max(layers, -(-number // math.prod(math.floor(side / least) for side in lengths[:-1])))
+    lengths[-1] = layers * least
     return lengths, scene.effects.floor.amplitude

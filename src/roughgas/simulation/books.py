@@ -39,11 +39,17 @@ def _energy(state, scene):
     Velocities are those of the images that the particles last were in, as in the ledger.
     """
     dimension, gravity, spin = len(scene.box), scene.effects.gravity, scene.effects.spin
-    translational = 0.5 * np.sum(state.trajectory[:, dimension:-1] ** 2)
+    mass, bodies = np.ones(1), state.bodies
+    if bodies is not None:
+        mass = bodies.mass
+    translational = 0.5 * np.sum(mass[:, None] * state.trajectory[:, dimension:-1] ** 2)
     if gravity is not None:
         # free flight keeps the sum of both: take it where the flight began
-        translational += gravity.acceleration * np.sum(state.trajectory[:, dimension - 1])
-    rotational = 0.0 if spin is None else 0.5 * spin.inertia * np.sum(state.spin**2)
+        translational += gravity.acceleration * np.sum(mass * state.trajectory[:, dimension - 1])
+    if spin is None:
+        return np.array([translational, 0.0])
+    share = mass if bodies is None else mass * bodies.inertia / spin.inertia
+    rotational = 0.5 * spin.inertia * np.sum(share[:, None] * state.spin**2)
     return np.array([translational, rotational])
 
 

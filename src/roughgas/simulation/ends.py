@@ -20,13 +20,15 @@ from roughgas.base.errors import InputError, shown
 from roughgas.kernel.cache import source_hash
 from roughgas.kernel.layout import new_state
 from roughgas.kernel.state import BASE, EXPONENT, NOW, State
-from roughgas.scene import Scene, check_places
+from roughgas.scene import Scene, check_places, given_bodies
 from roughgas.simulation.instant import in_order, whereabouts
 
 if TYPE_CHECKING:
     import xarray
 
 
+OF_BODIES = {"radius": "radius", "species": "species_of"}
+"""What an Initial has of each particle that differs, and what variables call it."""
 SEAL = 32  # bytes at the end of a memory, a checksum
 
 
@@ -36,6 +38,8 @@ class Initial(NamedTuple):
     position: np.ndarray  # (N, D) in a
     velocity: np.ndarray  # (N, D) in a/T, of the images in the box
     spin: np.ndarray | None = None  # (N, 2 D - 3) in a/T; None: no particle spins
+    radius: np.ndarray | None = None  # (N,) in a; None: all are alike
+    species: np.ndarray | None = None  # (N,) from 0
     time: float = 0.0  # T: the phase of what drives the gas
     memory: bytes = b""  # of the kernel
     owner: str = ""  # whose memory it is
@@ -47,7 +51,7 @@ class Initial(NamedTuple):
 
     def physics(self) -> bytes:
         """Return all of it but the kernel's memory."""
-        parts = [np.asarray(one, float).tobytes() for one in self[:3] if one is not None]
+        parts = [np.asarray(one, float).tobytes() for one in self[:5] if one is not None]
         return b"".join(parts) + repr(float(self.time)).encode()
 
 
@@ -69,8 +73,9 @@ def initial_of(dataset: "xarray.Dataset") -> list[Initial]:
     """Return the states in a dataset, one a replica.
 
     It may be a point that has kept its last state, a frame of a trajectory, or of one's own:
-    `position` and `velocity` (particle, axis), `spin` (particle, spin_axis), `time`. Raises
-    InputError where any of these lacks or is not a finite number.
+    `position` and `velocity` (particle, axis), `spin` (particle, spin_axis), `radius` and
+    `species_of` (particle), `time`. Raises InputError where any of the first two lacks or any is
+    not a finite number.
     """
     prefix = "last_" if "last_position" in dataset else ""
     found = {}
@@ -80,6 +85,9 @@ def initial_of(dataset: "xarray.Dataset") -> list[Initial]:
         elif name != "spin":
             legal = "be in the dataset: a point made with keep_state, or a frame of a trajectory"
             raise InputError("initial", f"without {name}", legal)
+    for name, variable in OF_BODIES.items():
+        if prefix + variable in dataset:
+            found[name] = _by_replica(dataset, prefix + variable, 1)
     times = np.atleast_1d(dataset[f"{prefix}time"].values) if f"{prefix}time" in dataset else [0.0]
     if not np.isfinite(times).all() or np.min(times) < 0.0:
         raise InputError("initial.time", shown(list(times)), "be a number >= 0")
@@ -95,15 +103,16 @@ def initial_of(dataset: "xarray.Dataset") -> list[Initial]:
     ]
 
 
-def _by_replica(dataset, name):
-    """Return an array (replicas, N, components)."""
+def _by_replica(dataset, name, axes=2):
+    """Return an array (replicas, N, components), or without components."""
     values = np.asarray(dataset[name].values, float)
     if "frame" in dataset[name].dims:
         legal = "have no frames: choose one, as by initial.isel(frame=-1)"
         raise InputError(f"initial.{name}", dataset[name].dims, legal)
-    values = values[None] if values.ndim == 2 else values
-    if values.ndim != 3 or not np.isfinite(values).all():
-        raise InputError(f"initial.{name}", f"of shape {values.shape}", "be finite vectors")
+    values = values[None] if values.ndim == axes else values
+    if values.ndim != 1 + axes or not np.isfinite(values).all():
+        legal = "be finite vectors" if axes == 2 else "be finite numbers"
+        raise InputError(f"initial.{name}", f"of shape {values.shape}", legal)
     return values
 
 
@@ -123,8 +132,18 @@ def check_initial(initial: Sequence[Initial], experiment: Mapping[str, Any], sce
                 raise InputError(f"initial.{name}", f"of shape {values.shape}", legal)
         if one.spin is not None and scene.effects.spin is None and np.any(one.spin):
             raise InputError("initial.spin", "not zero", "not be there where particles do not spin")
+        if scene.effects.species is not None:
+            for name, variable in OF_BODIES.items():
+                if getattr(one, name) is None:
+                    legal = "be in the dataset where the experiment has species"
+                    raise InputError("initial", f"without {variable}", legal)
+                if getattr(one, name).shape != (number,):
+                    legal = f"have the shape ({number},) in this scene"
+                    raise InputError(f"initial.{variable}", getattr(one, name).shape, legal)
+            given_bodies(scene, experiment, one.radius, one.species.astype(int))
         if not is_memory_of(one, scene):
-            check_places(scene, one.position, one.time)
+            radius = None if scene.effects.species is None else one.radius
+            check_places(scene, one.position, one.time, radius)
 
 
 def owner(scene: Scene) -> str:
@@ -148,16 +167,18 @@ def _seal(memory: bytes, initial: Initial) -> bytes:
 
 
 def state_from(
-    initial: Initial, scene: Scene, rng: np.random.Generator
+    initial: Initial, scene: Scene, experiment: Mapping[str, Any], rng: np.random.Generator
 ) -> tuple[State, int | None, np.ndarray]:
     """Return the state in which a run begins, and the extents (D,) that it is laid out for; between
     them, where it goes on with its memory, the collisions when it began to cool."""
     if is_memory_of(initial, scene):
-        return _remembered(initial, scene)
-    spin = initial.spin
+        return _remembered(initial, scene, experiment)
+    spin, bodies = initial.spin, None
     if spin is None:
         spin = np.zeros((len(initial.position), 2 * len(scene.box) - 3))
-    state = new_state(scene, initial.position, initial.velocity, spin, rng=rng)
+    if scene.effects.species is not None:
+        bodies = given_bodies(scene, experiment, initial.radius, initial.species.astype(int))
+    state = new_state(scene, initial.position, initial.velocity, spin, rng=rng, bodies=bodies)
     base = math.floor(initial.time)  # whole, so that it stays exact as it moves on
     now = initial.time - base
     state.clock[BASE], state.clock[NOW] = base, now
@@ -179,6 +200,8 @@ def last_states(gases: Iterable[Run]) -> dict[str, Any]:
     }
     if states[0].spin is not None:
         found["last_spin"] = [one.spin for one in states]
+    for name, variable in OF_BODIES.items() if states[0].species is not None else ():
+        found[f"last_{variable}"] = [getattr(one, name) for one in states]
     return {name: np.array(values) for name, values in found.items()}
 
 
@@ -190,6 +213,7 @@ def _last(gas: Run) -> Initial:
         position=in_order(state, position),
         velocity=in_order(state, velocity * unit),
         spin=None if state.spin is None else in_order(state, state.spin * unit),
+        **_bodies_of(state),
         time=gas.time,
         owner=owner(scene),
     )
@@ -197,12 +221,18 @@ def _last(gas: Run) -> Initial:
     return found._replace(memory=memory + _seal(memory, found))
 
 
+def _bodies_of(state):
+    if state.bodies is None:
+        return {}
+    return {name: in_order(state, getattr(state.bodies, name)) for name in OF_BODIES}
+
+
 def _memory(gas: Run) -> bytes:
     header = np.array([gas.begun, *gas.extents], float)
     return b"".join(array.tobytes() for array in [header, *_arrays(gas.state)])
 
 
-def _remembered(initial, scene):
+def _remembered(initial, scene, experiment):
     number, dimension = initial.position.shape
     memory = np.frombuffer(initial.memory[:-SEAL], np.uint8)
     place = 8 * (1 + dimension)
@@ -210,7 +240,10 @@ def _remembered(initial, scene):
     position = np.zeros((number, dimension))
     position[0] = extents  # all that the layout asks of positions
     spin = np.zeros((number, 2 * dimension - 3))
-    state = new_state(scene, position, np.zeros_like(position), spin)
+    bodies = None
+    if scene.effects.species is not None:
+        bodies = given_bodies(scene, experiment, initial.radius, initial.species.astype(int))
+    state = new_state(scene, position, np.zeros_like(position), spin, bodies=bodies)
     for array in _arrays(state):
         if place + array.nbytes <= len(memory):
             part = memory[place : place + array.nbytes].copy()

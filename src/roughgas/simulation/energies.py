@@ -3,7 +3,8 @@
 The kernel hands over, for each sample, sums over all particles at that instant; here they are a
 dict of arrays of shape (samples,), named `vv_x` (sum of v_x^2), `ww` (sum of (a w)^2), `w` (sum of
 a w; in three dimensions `w_x`, `w_y`, `w_z`), and for the sheared gas `yy` (sum of (y - L/2)^2)
-and `yv_x` (sum of (y - L/2) v_x). Units: particle radius a = mass m = time unit T = 1, so energies
+and `yv_x` (sum of (y - L/2) v_x). Where particles differ they weigh with their masses (see
+roughgas.kernel.record.columns). Units: particle radius a = mass m = time unit T = 1, so energies
 are in m a^2/T^2.
 """
 
@@ -31,7 +32,11 @@ class Energies(NamedTuple):
 
 
 def energies(
-    columns: Columns, particles: int, inertia: float | None, shear_rate: float | None = None
+    columns: Columns,
+    particles: int,
+    inertia: float | None,
+    shear_rate: float | None = None,
+    spins: float | None = None,
 ) -> Energies:
     """Return E_tr = sum m v^2/2 / (N D) and E_rot = sum m q (a w)^2/2 / (N n_r).
 
@@ -44,7 +49,8 @@ def energies(
     v_x minus that expands in the columns. The mean spin is the one observed in each sample:
     sum (w - <w>)^2 = sum w^2 - (sum w)^2/N. Removing it takes one of N spins from E_rot, just as
     the conserved momentum takes one of N velocities from E_tr, so that their ratio has no bias of
-    order 1/N.
+    order 1/N. Where particles differ it is the mean angular velocity, weighted with the moments of
+    inertia; `spins` is the sum of these over q, N if not given.
     """
     components = _components(columns, "vv")
     speed_squared = sum(columns[name] for name in components)
@@ -53,7 +59,9 @@ def energies(
         flow = shear_rate * (shear_rate * columns["yy"] - 2 * columns["yv_x"])
         speed_squared = speed_squared + flow
     if shear_rate is not None and spin_squared is not None:
-        mean_spin = sum(columns[name] ** 2 for name in _components(columns, "w")) / particles
+        mean_spin = sum(columns[name] ** 2 for name in _components(columns, "w")) / (
+            spins or particles
+        )
         spin_squared = spin_squared - mean_spin
     translational = speed_squared / (2 * particles * len(components))
     if spin_squared is None:
@@ -61,6 +69,13 @@ def energies(
     return Energies(
         translational, inertia * spin_squared / (2 * particles * (2 * len(components) - 3))
     )
+
+
+def of_species(columns: Columns, kind: int) -> Columns:
+    """The columns of one species."""
+    ending = f"[{kind}]"
+    own = (name for name in columns if name.endswith(ending))
+    return {name.removesuffix(ending): columns[name] for name in own}
 
 
 def restored(energies: Energies, exponent: np.ndarray) -> Energies:

@@ -31,7 +31,7 @@ from roughgas.kernel.state import (
 from roughgas.scene import Scene, initial_state
 from roughgas.simulation.books import Books, books
 from roughgas.simulation.ends import Initial, state_from
-from roughgas.simulation.energies import Columns, Energies, energies
+from roughgas.simulation.energies import Columns, Energies, energies, of_species
 
 REPORTS = 50
 SOON = 0.5  # seconds after which a call of the kernel should come back
@@ -134,7 +134,7 @@ class Gas:
         if initial is None:
             gas = cls(scene, initial_state(scene, experiment, rng), recorder)
         else:
-            state, begun, extents = state_from(initial, scene, rng)
+            state, begun, extents = state_from(initial, scene, experiment, rng)
             gas = cls(scene, state, recorder)
             gas.extents = extents
             if begun is not None:
@@ -224,9 +224,23 @@ class Gas:
 
     def energies(self, columns: Columns) -> Energies:
         """Return the energies of samples, of a sheared gas without mean flow and mean spin."""
-        effects, shear = self.scene.effects, self.scene.effects.shear
+        return self._energies(columns, np.ones(self.particles, bool))
+
+    def energies_of_species(self, columns: Columns) -> list[Energies]:
+        """Return the same of the particles of each species; none where all particles are alike."""
+        species, bodies = self.scene.effects.species, self.state.bodies
+        return [
+            self._energies(of_species(columns, kind), bodies.species == kind)
+            for kind in range(species.kinds if species else 0)
+        ]
+
+    def _energies(self, columns: Columns, which: np.ndarray) -> Energies:
+        q, shear, bodies = inertia(self.scene.effects), self.scene.effects.shear, self.state.bodies
         shear_rate = None if shear is None else shear.velocity / (2.0 * self.scene.middle)
-        return energies(columns, self.particles, inertia(effects), shear_rate)
+        spins = float(which.sum())
+        if bodies is not None and q is not None:
+            spins = np.sum((bodies.mass * bodies.inertia * bodies.radius**2)[which]) / q
+        return energies(columns, int(which.sum()), q, shear_rate, spins)
 
     def books(self) -> Books:
         """Return the books of energy at the present instant."""
@@ -242,10 +256,12 @@ class Gas:
 
 def elastic(scene: Scene) -> Scene:
     """Return the scene with smooth elastic particles, and side walls if it has any."""
-    walls = scene.effects.walls
+    walls, species = scene.effects.walls, scene.effects.species
     if walls is not None:
         walls = walls._replace(restitution=1.0, roughness=-1.0)
-    effects = scene.effects._replace(walls=walls)
+    if species is not None:
+        species = species._replace(alike=True)
+    effects = scene.effects._replace(walls=walls, species=species)
     return scene._replace(restitution=1.0, roughness=-1.0, effects=effects)
 
 

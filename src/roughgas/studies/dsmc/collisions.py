@@ -85,7 +85,7 @@ def collide(gas, material, i, j, n, v):
     axes, effects = gas.axes, material.effects
     w_i, w_j = spin_of(gas.spin, axes, i), spin_of(gas.spin, axes, j)
     both = material.restitution, material.roughness
-    push, turn = response(effects.spin, effects, both, n, v, spin_sum(w_i, w_j), 0.5)
+    push, turn = response(effects.spin, effects, both, n, v, spin_sum(w_i, w_j), 0.5, None)
     write(gas.velocity, i, 0, subtract(read(gas.velocity, i, 0, axes), push))
     write(gas.velocity, j, 0, add_scaled(read(gas.velocity, j, 0, axes), push, 1.0))
     turn_spin(gas.spin, i, w_i, turn)
