@@ -19,6 +19,9 @@ Side = float | Literal["open"]
 Effects = Mapping[str, Mapping[str, float | str] | None]
 """Parameters of effects by the effects' names; None takes away one that the experiment has."""
 
+Species = Sequence[Mapping[str, Any]]
+"""Species, or pairs of them, each a mapping of keys to values."""
+
 
 class Schedule(TypedDict, total=False):
     """How long to simulate and what to measure, as `schedule` in config.yaml.
@@ -47,6 +50,8 @@ def simulate(
     particles: int | None = None,
     box: Sequence[Side] | None = None,
     effects: Effects | None = None,
+    species: Species | None = None,
+    species_pairs: Species | None = None,
     schedule: Schedule | None = None,
     spin_temperature: float | None = None,
     initial: "xarray.Dataset | None" = None,
@@ -81,6 +86,12 @@ def simulate(
     effects
         The effects that act, such as ``{"friction": {"mu": 0.3}}``; None removes one, as in
         ``{"contact_time": None}``. docs/effects.md lists them all.
+    species
+        Species, if particles are not all alike, such as
+        ``[{"fraction": 0.5}, {"fraction": 0.5, "radius": 2}]``; docs/effects.md has all keys.
+    species_pairs
+        Materials of contacts of two species, such as
+        ``[{"between": [0, 1], "restitution": 0.7}]``.
     schedule
         How long to simulate, such as ``{"measure": 200}``; see `Schedule`.
     spin_temperature
@@ -146,9 +157,9 @@ def simulate(
     True
     """
     changes = {"particles": particles, "box": box, "effects": effects, "schedule": schedule}
+    changes |= {"species": species, "species_pairs": species_pairs}
     changes |= {"spin_temperature": spin_temperature, "keep_state": keep_state}
     legal_r, legal_beta, number = _numbers(r, beta, seed)
-    settings = _settings(experiment, changes, scale, config)
 
     from roughgas.config.provenance import provenance
     from roughgas.data.point import as_dataset
@@ -157,8 +168,10 @@ def simulate(
     from roughgas.simulation.ends import initial_of
     from roughgas.simulation.point import run_point
     from roughgas.simulation.progress import Bar, Progress
+    from roughgas.simulation.settings import settings_of
 
     name = experiment or UNNAMED
+    settings = settings_of(experiment, changes, scale, config, UNNAMED)
     scene = build(settings, legal_r, legal_beta)
     with Bar(f"pilot of {name}", None, quiet=not progress or "target_stderr" not in settings):
         settings = complete(scene, settings)
@@ -179,6 +192,8 @@ def trajectory(
     particles: int | None = None,
     box: Sequence[Side] | None = None,
     effects: Effects | None = None,
+    species: Species | None = None,
+    species_pairs: Species | None = None,
     schedule: Schedule | None = None,
     start: float | None = None,
     length: float | None = None,
@@ -196,7 +211,8 @@ def trajectory(
 
     Parameters
     ----------
-    experiment, r, beta, seed, particles, box, effects, schedule, initial, scale, config, progress
+    experiment, r, beta, seed, particles, box, effects, species, species_pairs, schedule, initial,
+    scale, config, progress
         As for `simulate`.
     start
         Where the frames begin; by default at `initial`, or when a driven gas should be steady.
@@ -210,7 +226,8 @@ def trajectory(
     xarray.Dataset
         ``position``, ``velocity`` (frame, particle, axis), ``spin`` (frame, particle, spin_axis),
         of disks ``angle`` (frame, particle), ``radius``, ``box``, ``time``, of a sheared gas
-        ``image_shift`` (frame), and the energies of each frame. The function
+        ``image_shift`` (frame), the energies of each frame, and of a mixture ``species_of``,
+        ``mass`` and ``inertia`` (particle). The function
         `roughgas.data.particle_files.write_trajectory` makes files of it for other programs.
 
     Raises
@@ -226,18 +243,20 @@ def trajectory(
     (2, 40, 2)
     """
     changes = {"particles": particles, "box": box, "effects": effects, "schedule": schedule}
+    changes |= {"species": species, "species_pairs": species_pairs}
     legal_r, legal_beta, number = _numbers(r, beta, seed)
-    settings = _settings(experiment, changes, scale, config)
 
     from roughgas.config.provenance import provenance
     from roughgas.data.trajectory import as_trajectory
     from roughgas.scene import build
     from roughgas.simulation.ends import initial_of
     from roughgas.simulation.progress import watched
+    from roughgas.simulation.settings import settings_of
     from roughgas.simulation.snapshots import chosen, snapshots
     from roughgas.simulation.trajectory import variables
 
     name = experiment or UNNAMED
+    settings = settings_of(experiment, changes, scale, config, UNNAMED)
     scene = build(settings, legal_r, legal_beta)
     states = [] if initial is None else initial_of(initial)
     take = chosen(settings, scene, start, length, frames, times, states)
@@ -270,31 +289,3 @@ def _numbers(r: Any, beta: Any, seed: Any) -> tuple[float, float, int]:
     from roughgas import config
 
     return config.restitution(r), config.roughness(beta), config.seed(seed)
-
-
-def _settings(
-    name: str | None, changes: Mapping[str, Any], scale: str, path: str | Path | None
-) -> dict[str, Any]:
-    """Return the settings of a point, checked as those of the pipeline are."""
-    from roughgas import config
-    from roughgas.config.schema import check_schema
-    from roughgas.simulation import schedule
-
-    given = {key: _plain(value) for key, value in changes.items() if value is not None}
-    known = {} if name is None else config.load_experiment(path or config.SHIPPED, name, scale)
-    settings = config.merged(config.point_settings(known), given)
-    for part in ("experiment", "point"):
-        check_schema(settings, name or UNNAMED, part)
-    schedule.check(settings)
-    return settings
-
-
-def _plain(value: Any) -> Any:
-    """Return a value as JSON would have it: no numpy, no tuples."""
-    if isinstance(value, Mapping):
-        return {str(key): _plain(inner) for key, inner in value.items()}
-    if hasattr(value, "tolist"):
-        return value.tolist()
-    if isinstance(value, Sequence) and not isinstance(value, str):
-        return [_plain(inner) for inner in value]
-    return value

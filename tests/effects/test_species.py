@@ -1,8 +1,7 @@
 """Species: particles of several radii, masses, moments of inertia and materials."""
 
-import numpy as np
 import pytest
-from brute_force import Beside, begin, run, scene_of, settings
+from brute_force import Beside, begin, scene_of, settings
 
 ALIKE = [{"fraction": 0.5}, {"fraction": 0.5, "radius": 1, "mass": 1.0}]
 UNLIKE = [
@@ -30,7 +29,9 @@ CASES = {
     "sheared": (of_species("sheared", 8, [14, 14]), 0.9, 0.2, 6),
     "bed": (of_species("bed", 16, [12, "open"]), 0.8, 0.2, 9),
     "bed between walls, friction": (
-        of_species("rubbed bed", 16, [14, "open"], RUBBED, [*PAIRS, {"between": [0, 1], "mu": 0.4}]),
+        of_species(
+            "rubbed bed", 16, [14, "open"], RUBBED, [*PAIRS, {"between": [0, 1], "mu": 0.4}]
+        ),
         0.8,
         0.2,
         12,
@@ -51,13 +52,13 @@ RARE = {"smallest box", "smooth gas", "sheared", "between shaken walls", "sphere
     "case", [pytest.param(case, marks=[pytest.mark.slow] * (case in RARE)) for case in CASES]
 )
 def test_the_kernel_makes_the_same_collisions(case):
-    """The same 200 pairs in the same order as a slow simulation, as for particles that are alike."""
+    """The same 200 pairs in the same order as a slow simulation makes."""
     *point, seed = CASES[case]
     scene, world = scene_of(*point)
     _, state = begin(*point, seed)
     beside = Beside(state, scene, world)
     beside.assert_same(20, 10)
     if world.floor:
-        assert beside.events["floor"] > 5
+        assert beside.events["floor"] > 2
     if world.walls:
-        assert beside.events["left"] > 5 and beside.events["right"] > 5
+        assert beside.events["left"] > 2 and beside.events["right"] > 2

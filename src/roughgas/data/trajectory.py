@@ -10,6 +10,8 @@ from roughgas.data.netcdf import Content, in_memory
 from roughgas.data.variables import (
     ENERGY,
     LENGTH,
+    MIXTURE,
+    NAMES,
     SHEARED,
     SPEED,
     SPIN,
@@ -47,6 +49,14 @@ TRAJECTORY = register(
             when=("disks that spin",),
         ),
         "radius": Variable("radius of a particle", LENGTH, ("particle",)),
+        "mass": Variable("mass of a particle", "m", ("particle",), when=(MIXTURE,)),
+        "inertia": Variable(
+            "moment of inertia of a particle over its m a^2", "1", ("particle",), when=(MIXTURE,)
+        ),
+        "species_of": Variable(
+            "number of a particle's species, from 0", "1", ("particle",), "i4", when=(MIXTURE,)
+        ),
+        **NAMES,
         "box": Variable("length of the box, NaN where it is open above", LENGTH, ("axis",)),
         "periodic": Variable(
             "whether the box repeats along the axis", "1", ("axis",), "i1", flags="bounded periodic"

@@ -27,6 +27,7 @@ SPIN, COOLING, DRIVEN = "where particles spin", "cooling gas", "driven gas"
 SHEARED, TARGET = "sheared gas", "with a `target_stderr`"
 CONTACT = "where the contact-time model acts"
 KEPT = "with `keep_state`"
+MIXTURE = "with `species`"
 AT_CONTACTS = "driven gas with `contact_averages`"
 
 
@@ -81,10 +82,31 @@ def _of_target(long_name: str, units: str = "1") -> Variable:
     return Variable(long_name, units, when=(TARGET,))
 
 
+NAMES = {
+    "species": Variable("name of the species", "", ("species",), "str", (MIXTURE,), over_seeds=""),
+    "species_particles": Variable("particles of a species", "1", ("species",), "i8", (MIXTURE,)),
+}
+"""What the species of a mixture are, in all kinds of datasets."""
+
+
 def _kept(long_name: str, units: str, dims: tuple[str, ...], *when: str) -> Variable:
     dtype = "u1" if dims == ("byte",) else "f8"
     dims = ("replica", *dims)
     return Variable(long_name, units, dims, dtype, (KEPT, *when), of_settings=True)
+
+
+def _of_species(name: str, long_name: str, units: str = "1", *when: str) -> dict[str, Variable]:
+    """Return a mean of each species, with its error and, but for R, its series."""
+    when = (MIXTURE, *when)
+    error = f"standard error of {name} within this file"
+    found = {
+        name: Variable(f"{long_name} of a species", units, ("species",), when=when),
+        f"{name}_stderr": Variable(error, units, ("species",), when=when, over_seeds=""),
+    }
+    if units == ENERGY:
+        series = f"{long_name} of a species"
+        found[f"{name}_series"] = Variable(series, units, ("species", "sample"), when=when)
+    return found
 
 
 POINT = {
@@ -147,6 +169,10 @@ POINT = {
         ENERGY,
         ("motion",),
     ),
+    **NAMES,
+    **_of_species("E_trans_species", "translational energy per degree of freedom", ENERGY),
+    **_of_species("E_rot_species", "rotational energy per degree of freedom", ENERGY, SPIN),
+    **_of_species("R_species", "share of rotation in the energy", "1", SPIN),
     "time": _series("time since the start", TIME, DRIVEN),
     "collisions_per_particle": _series("collisions per particle since the start", TIME, COOLING),
     "R_series": _series("share of rotation in the energy", "1", SPIN),
@@ -157,6 +183,8 @@ POINT = {
     "last_position": _kept("position of a particle then", LENGTH, ("particle", "axis")),
     "last_velocity": _kept("velocity then of the image in the box", SPEED, ("particle", "axis")),
     "last_spin": _kept("spin a w of a particle then", SPEED, ("particle", "spin_axis"), SPIN),
+    "last_radius": _kept("radius of a particle", LENGTH, ("particle",), MIXTURE),
+    "last_species_of": _kept("number of its species, from 0", "1", ("particle",), MIXTURE),
     "last_memory": _kept("the kernel's arrays then, as they lie in memory", "1", ("byte",)),
 }
 
@@ -176,11 +204,22 @@ def _pooled(name: str) -> dict[str, Variable]:
 
 REDUCED = {
     name: about._replace(
-        dims=(GRID,), dtype=about.dtype if about.over_seeds == "sum" else "f8", flags=""
+        dims=(GRID, *about.dims), dtype=about.dtype if about.over_seeds == "sum" else "f8", flags=""
     )
     for name, about in POINT.items()
-    if about.over_seeds and not about.dims
+    if about.over_seeds and about.dims in ((), ("species",))
 } | {
+    "species": NAMES["species"],
+    **{
+        f"{name}_stderr": Variable(
+            f"standard error of {name}: scatter over seeds",
+            POINT[name].units,
+            (GRID, "species"),
+            when=POINT[name].when,
+            over_seeds="",
+        )
+        for name in ("E_trans_species", "E_rot_species", "R_species")
+    },
     "R_seed": Variable("R of each seed", dims=(GRID, "seed"), over_seeds=""),
     **_pooled("R"),
     "R_ci95_trusted": _derived("share of seeds whose R_ci95 holds the truth as often as it says"),

@@ -59,6 +59,16 @@ class Kind(NamedTuple):
             return np.broadcast_to(mean, self.number)
         return rng.choice(mean, self.number)
 
+    def mean_power(self, power: int) -> float:
+        """Return the mean of radius^2 or radius^3, as it is expected."""
+        mean = float(np.mean(np.array(self.radius) ** power))
+        if self.spread is None:
+            return mean
+        name, deviation = self.spread
+        if name == UNIFORM:
+            return mean * (1.0 + (2 * power - 3) * deviation**2)
+        return mean * (1.0 + deviation**2) ** (power * (power - 1) / 2)
+
 
 class Mixture(NamedTuple):
     """All species of an experiment, and what is special about contacts of two of them."""
@@ -73,6 +83,11 @@ class Mixture(NamedTuple):
     def largest(self) -> float:
         """Return the largest radius, as far as it is known before any are drawn."""
         return max(max(kind.radius) for kind in self.kinds)
+
+    def mean_volume(self, dimension: int) -> float:
+        """Return the mean of radius^D; of radii that are drawn, what it is on average."""
+        total = sum(kind.number for kind in self.kinds)
+        return sum(kind.number * kind.mean_power(dimension) for kind in self.kinds) / total
 
     def own(self, quantity: str) -> list[float]:
         """Return what any species or pair has in place of the point's restitution or the like."""

@@ -28,8 +28,12 @@ from roughgas.theory.prediction import equation_of
 SAME = ("experiment", "scale", "dimension", "inertia", "spin_share", "mu", "particles", "swept")
 OF_A_POINT = ("r", "beta", "seed", "r_label", "beta_label", "variant", "swept_value", "command")
 PROVENANCE = ("roughgas_version", "numpy_version", "numba_version", "kernel_source_hash")
-SCATTERED = ("R_ratio_of_means", "R_unsubtracted", "R_drift", "E_trans", "input_spin_share")
+SCATTERED = (
+    *("R_ratio_of_means", "R_unsubtracted", "R_drift", "E_trans", "input_spin_share"),
+    *("E_trans_species", "E_rot_species", "R_species"),
+)
 """Means over seeds that carry a standard error, `<name>_stderr`, from their scatter."""
+OF_SPECIES = [name for name, one in POINT.items() if one.dims == ("species",) and one.over_seeds]
 POOLED = ("R", "R_collisional", "contact_correlation")
 """Those whose standard error pools the scatter with the errors of the seeds themselves."""
 
@@ -37,10 +41,11 @@ POOLED = ("R", "R_collisional", "contact_correlation")
 class Summary(NamedTuple):
     """The scalars and attributes of one point's file, and where it is in the reduced dataset."""
 
-    scalars: dict[str, float]
+    scalars: dict[str, Any]  # float, or (species,) of them
     attributes: dict[str, Any]
     place: tuple[Any, ...]  # (r, beta, seed), preceded by the value of what is swept besides
     replicas: np.ndarray  # R of each, of a cooling gas: else empty
+    species: tuple[str, ...] = ()  # names
 
 
 def reduce_points(paths: Iterable[str | Path], output: str | Path) -> None:
@@ -75,13 +80,16 @@ def _summary(path: Path) -> Summary:
         require(attributes, ("swept_value",) if "swept" in attributes else (), path)
         found = [name for name, about in POINT.items() if not about.dims]
         scalars = {name: file[name][...].item() for name in found if name in file.variables}
+        scalars |= {name: file[name][...] for name in OF_SPECIES if name in file.variables}
+        names = file["species"][...].tolist() if "species" in file.variables else []
         for name in scalars.keys() & SOUND:
             check_sound(path, name, scalars[name])
         scalars["measured_for"], scalars["R_drift"] = _window(file, scalars)
         replicas = file["R_replica"][...] if "R_replica" in file.variables else np.empty(0)
     swept = (attributes["swept_value"],) if "swept" in attributes else ()
     r, beta, seed = (attributes[name] for name in (*GRID, "seed"))
-    return Summary(scalars, attributes, (*swept, float(r), float(beta), int(seed)), replicas)
+    place = (*swept, float(r), float(beta), int(seed))
+    return Summary(scalars, attributes, place, replicas, tuple(names))
 
 
 def _window(file: netCDF4.Dataset, scalars: Mapping[str, float]) -> tuple[float, float]:
@@ -113,9 +121,18 @@ def _combined(points: Sequence[Summary]) -> Content:
     if swept is not None:
         about = {"long_name": f"swept setting: {attributes['swept']}"}
         third[swept] = Array((swept,), coordinates.pop(swept), about)
-    values = _over_seeds(stacks) | coordinates
+    values = _over_seeds(stacks) | coordinates | _species(points)
     values["equilibrated"] = np.where(_mixed(points, axes[:-1]), 0.0, values["equilibrated"])
     return Content(third | described("reduced", values, "plateau_end" in stacks, grid), attributes)
+
+
+def _species(points: Sequence[Summary]) -> dict[str, Any]:
+    """Return the names of the species, which all points share; none where particles are alike."""
+    names = {point.species for point in points}
+    if len(names) > 1:
+        found = " and ".join(sorted(", ".join(one) or "(none)" for one in names))
+        raise InputError("species of the points", found, "be the same")
+    return {"species": list(points[0].species)} if points[0].species else {}
 
 
 def _mixed(points: Sequence[Summary], axes: Sequence[Sequence[Any]]) -> np.ndarray:
@@ -142,14 +159,18 @@ def _coordinate(values: Sequence[Any]) -> np.ndarray:
 def _stacks(points: Sequence[Summary], axes: Sequence[Sequence[Any]]) -> dict[str, np.ndarray]:
     """Return every scalar over the axes, NaN where there is no point."""
     shape, seen = tuple(map(len, axes)), set()
-    stacks = {name: np.full(shape, math.nan) for point in points for name in point.scalars}
+    stacks = {
+        name: np.full((*shape[:-1], *np.shape(value), shape[-1]), math.nan)
+        for point in points
+        for name, value in point.scalars.items()
+    }
     for point in points:
         if point.place in seen:
             raise InputError("point (..., r, beta, seed)", point.place, "be given once")
         seen.add(point.place)
         index = tuple(axis.index(value) for axis, value in zip(axes, point.place, strict=True))
         for name, value in point.scalars.items():
-            stacks[name][index] = value
+            stacks[name][index[:-1]][..., index[-1]] = value
     return stacks
 
 

@@ -2,7 +2,7 @@
 
 from roughgas.scene.composition import DIAMETER, Scene, build, is_closed
 from roughgas.scene.initial import check, check_places, initial_state
-from roughgas.scene.mixture import draw_bodies, given_bodies
+from roughgas.scene.mixture import draw_bodies, given_bodies, packing
 
 __all__ = [
     "DIAMETER",
@@ -14,4 +14,5 @@ __all__ = [
     "given_bodies",
     "initial_state",
     "is_closed",
+    "packing",
 ]

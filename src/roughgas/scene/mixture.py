@@ -13,6 +13,7 @@ from roughgas.base.errors import InputError
 from roughgas.effects.species import Mixture, mixture_of
 from roughgas.kernel.state import Bodies
 from roughgas.scene.composition import Scene, check_box, is_closed
+from roughgas.theory.frequencies import packing_fraction
 
 
 def draw_bodies(
@@ -30,6 +31,13 @@ def draw_bodies(
     species = np.repeat(np.arange(len(mixture.kinds)), [kind.number for kind in mixture.kinds])
     order = own.permutation(len(species))
     return _bodies(mixture, scene, experiment, radius[order], species[order])
+
+
+def packing(experiment: Mapping[str, Any]) -> float:
+    """Return the packing fraction of a periodic gas; of radii that are drawn, the expected one."""
+    mixture, box = mixture_of(experiment), experiment["box"]
+    volume = 1.0 if mixture is None else mixture.mean_volume(len(box))
+    return volume * packing_fraction(experiment["particles"], box)
 
 
 def given_bodies(

@@ -8,6 +8,7 @@ import numpy as np
 
 from roughgas.effects import inertia
 from roughgas.scene import Scene
+from roughgas.simulation import by_species
 from roughgas.simulation.books import Books, exchange
 from roughgas.simulation.ends import Initial
 from roughgas.simulation.energies import Columns, Energies, ratio, ratio_of_means, restored
@@ -32,6 +33,7 @@ class Cooled(NamedTuple):
     exponent: np.ndarray
     before: Books
     after: Books
+    species: list[Energies]  # as `energies`, of each species
 
 
 def length(scene: Scene, schedule: Mapping[str, Any]) -> float:
@@ -129,15 +131,20 @@ def _cool(gas, every, samples):
     present = gas.energies(rows).map(lambda part: part / unit)
     energy = math.ldexp(unit, 2 * exponent)
     before, after = (Books(*(part / energy for part in b)) for b in (before, gas.books()))
-    return Cooled(present, rows["exponent"].astype(int) - exponent, before, after)
+    parts = [one.map(lambda part: part / unit) for one in gas.energies_of_species(rows)]
+    return Cooled(present, rows["exponent"].astype(int) - exponent, before, after, parts)
 
 
 def _together(runs):
     """Return all replicas as one: energies stacked, books averaged."""
-    present, exponent, *books = zip(*runs, strict=True)
-    stacked = Energies(*map(np.array, zip(*(one.there() for one in present), strict=True)))
+    present, exponent, *books, species = zip(*runs, strict=True)
+    stacked, parts = _stacked(present), [_stacked(one) for one in zip(*species, strict=True)]
     means = (Books(*(np.mean(part, axis=0) for part in zip(*one, strict=True))) for one in books)
-    return Cooled(stacked, np.array(exponent), *means)
+    return Cooled(stacked, np.array(exponent), *means, parts)
+
+
+def _stacked(runs):
+    return Energies(*map(np.array, zip(*(one.there() for one in runs), strict=True)))
 
 
 def _measure(ensemble, passed, transient, every):
@@ -166,6 +173,7 @@ def _measure(ensemble, passed, transient, every):
         "R_series": R.mean(axis=0),
         "R_series_stderr": _scatter(R),
         "E_rot_series": E_rot,
+        **_of_species(ensemble, inside),
     }
 
 
@@ -180,7 +188,12 @@ def _decay(ensemble, passed, first):
         "plateau_end": passed[-1],
         "collisions_per_particle": passed,
         "E_trans_series": E_trans.mean(axis=0),
+        **_of_species(ensemble, np.arange(len(passed)) >= first),
     }
+
+
+def _of_species(ensemble, inside):
+    return by_species.cooling(ensemble.species, ensemble.energies, ensemble.exponent, inside)
 
 
 def _scatter(values):

@@ -8,11 +8,10 @@ import numpy as np
 from roughgas.base.version import __version__
 from roughgas.data.point import Point
 from roughgas.kernel.cache import source_hash
-from roughgas.scene import Scene, build
-from roughgas.simulation import schedule
+from roughgas.scene import Scene, build, packing
+from roughgas.simulation import by_species, schedule
 from roughgas.simulation.ends import Initial, check_initial, is_memory_of, last_states, owner
 from roughgas.simulation.gas import Gas, Recorder
-from roughgas.theory import packing_fraction
 
 ENERGIES = ("E_trans", "E_rot", "R", "R_ratio_of_means")
 VOUCHED = {
@@ -45,6 +44,7 @@ def run_point(
     found = schedule.of(experiment).run(scene, experiment, seed, recorder, initial)
     if keep:
         found |= last_states(recorder.gases)
+    found |= by_species.names(experiment)
     found |= {"collisions": recorder.collisions, "kernel_seconds": recorder.seconds}
     if scene.effects.contact_time is not None:
         found["contact_time"] = scene.effects.contact_time.duration
@@ -57,7 +57,7 @@ def run_point(
             "seed": int(seed),
             "particles": number,
             "dimension": len(scene.box),
-            **({} if None in scene.box else {"packing": packing_fraction(number, scene.box)}),
+            **({} if None in scene.box else {"packing": packing(experiment)}),
             **_known_to_theory(scene, experiment),
             **({"memory_of": owner(scene)} if keep else {}),
             **_about_start(initial, scene),

@@ -13,14 +13,14 @@ import numpy as np
 from roughgas.base.errors import InputError
 from roughgas.base.legal import Interval
 from roughgas.kernel.hooks import displacement
-from roughgas.kernel.state import BASE, EXPONENT, NOW, State
-from roughgas.scene import Scene, build
+from roughgas.kernel.state import BASE, EXPONENT, NOW, Bodies, State
+from roughgas.scene import Scene, build, packing
 from roughgas.simulation import cooling, schedule
 from roughgas.simulation.ends import Initial, check_initial
 from roughgas.simulation.energies import Energies, ratio, restored
 from roughgas.simulation.gas import Gas
 from roughgas.simulation.instant import in_order, whereabouts
-from roughgas.theory.frequencies import collision_frequency, packing_fraction
+from roughgas.theory.frequencies import collision_frequency
 
 STRIDES = 200  # steps are of one collision in the gas for each so many particles
 PATIENCE = 1_000_000  # particles times T that a movie waits for its gas to be stationary, at most
@@ -70,6 +70,11 @@ class Snapshot(NamedTuple):
     floor: float | None  # its height in a; None without one
     slide: float | None  # displacement of the image above a sheared gas, from 0 to L
     walls: float | None  # displacement of shaken walls
+    bodies: Bodies | None = None  # what each particle is; None where all are alike
+
+    def radius(self) -> np.ndarray:
+        """Return the radii of the particles, (N,) in a."""
+        return np.ones(len(self.position)) if self.bodies is None else self.bodies.radius
 
 
 def chosen(
@@ -174,7 +179,7 @@ def snapshots(
     for frame in range(1 if kind is cooling else 0, take.frames):
         until = take.start + (frame + 0.5) * interval
         if kind is cooling:
-            until = gas.time + interval / _collision_frequency(gas, experiment["box"])
+            until = gas.time + interval / _collision_frequency(gas, experiment)
         _let_pass(gas, until, stride)
         yield _snapshot(gas, before)
 
@@ -215,9 +220,9 @@ class Turning:
         self.angle += self._spin * (contact - self._begun) + spin * (now - contact)
 
 
-def _collision_frequency(gas, box):
-    packing = packing_fraction(gas.particles, box)
-    return float(collision_frequency(2.0 * _energies(gas).translational, packing, len(box)))
+def _collision_frequency(gas, experiment):
+    present = 2.0 * _energies(gas).translational
+    return float(collision_frequency(present, packing(experiment), len(experiment["box"])))
 
 
 def _snapshot(gas: Gas, before: int) -> Snapshot:
@@ -240,7 +245,15 @@ def _snapshot(gas: Gas, before: int) -> Snapshot:
         floor=displacement(effects.floor, time),
         slide=displacement(effects.shear, time),
         walls=displacement(effects.shaken_walls, time),
+        bodies=_bodies(state),
     )
+
+
+def _bodies(state):
+    if state.bodies is None:
+        return None
+    *of_each, largest, pairs = state.bodies
+    return Bodies(*(in_order(state, values) for values in of_each), largest, pairs)
 
 
 def _energies(gas: Gas) -> Energies:

@@ -7,6 +7,7 @@ import numpy as np
 
 from roughgas.effects import inertia
 from roughgas.scene import Scene
+from roughgas.simulation import by_species
 from roughgas.simulation.books import exchange
 from roughgas.simulation.contacts import contact_averages
 from roughgas.simulation.ends import Initial
@@ -76,6 +77,7 @@ def run(
         **(_shared(window, per_period, every) if window.rotational is not None else {}),
         **contact_averages(rows, first, per_period, inertia(scene.effects), sums),
         **_unsubtracted(gas, rows, first),
+        **_of_species(gas, rows, first, per_period),
         **exchange(before, gas.books(), scene, gas.particles),
         "equilibrated": found,
         "measured_from": begun + first * every,
@@ -117,6 +119,12 @@ def _series(time, window, together):
     if window.rotational is not None:
         found |= {"R_series": ratio(window), "E_rot_series": window.rotational}
     return {name: period_means(values, together) for name, values in found.items()}
+
+
+def _of_species(gas, rows, first, per_period):
+    """Return the energies and R of each species."""
+    parts = [part.map(lambda values: values[first:]) for part in gas.energies_of_species(rows)]
+    return by_species.driven(parts, per_period, max(1, per_period // KEPT))
 
 
 def _unsubtracted(gas, rows, first):
