@@ -29,6 +29,24 @@ def cut_by_friction(mu, push, along):
     return along * (most / size) if size > most else along
 
 
+def viscoelastic(r, speed, reference):
+    """Restitution at a normal speed of what has r at the reference, 0 < r < 1: Ramirez et al. 1999.
+
+    The root of a polynomial, and a power; the kernel has neither.
+    """
+    above, below = [2.583, 1.0], [0.326, 1.148, 2.983, 3.583, 1.0]
+    roots = np.roots(np.polysub(np.multiply(r, below), above))
+    (x,) = roots[(abs(roots.imag) < 1e-9) & (roots.real > 0.0)].real
+    x *= (speed / reference) ** 0.2
+    return np.polyval(above, x) / np.polyval(below, x)
+
+
+def tabulated(r, speed, speeds, restitutions, reference):
+    """Restitution at a normal speed of what has r at the reference, 1 - r going as the table's."""
+    lost, whole = (1.0 - np.interp(v, speeds, restitutions) for v in (speed, reference))
+    return max(0.0, 1.0 - (1.0 - r) * lost / whole)
+
+
 def in_space(vector):
     """A vector in the plane or in space as one in space."""
     full = np.zeros(3)

@@ -25,6 +25,7 @@ _BED = _DISKS | {
 }
 _FRICTION = {"friction": {"mu": 0.5}}
 _HEAT = {"thermostat": {"power": 1.0, "spin_share": 0.5, "interval": 0.5}}
+_TABLE = {"speed": [0.0, 0.5, 2.0, 5.0], "restitution": [1.0, 0.9, 0.8, 0.5], "reference": 1.0}
 KERNELS = {
     "gas": {"particles": 160, "box": [100, 100], "effects": _DISKS},
     "smooth": {"particles": 160, "box": [100, 100], "effects": {}},
@@ -72,10 +73,21 @@ KERNELS = {
         "box": [12, 12, 12],
         "effects": {"spin": {"inertia": 0.4}} | _HEAT | _FRICTION | _SUMS,
     },
+    "viscoelastic": {
+        "particles": 160,
+        "box": [100, 100],
+        "effects": _DISKS
+        | {"viscoelastic": {"speed": 1.0}, "threshold": {"speed": 1e-3, "restitution": 1.0}},
+    },
+    "tabulated bed": {
+        "particles": 160,
+        "box": [50, "open"],
+        "effects": _BED | {"restitution_table": _TABLE},
+    },
 }
 
 
-RARE = ("rubbed bed", "heated, smooth", "heated spheres")
+RARE = ("rubbed bed", "heated, smooth", "heated spheres", "tabulated bed")
 """Kernels that only tests marked as slow compile: in others, each effect of theirs acts as well."""
 
 
@@ -101,6 +113,7 @@ def scene_of(experiment, r, beta):
     effects = experiment["effects"]
     periods = [None if side == "open" else float(side) for side in experiment["box"]]
     floor, heat, shaken = (effects.get(name) for name in ("floor", "thermostat", "shaken_walls"))
+    table, threshold = (effects.get(name) for name in ("restitution_table", "threshold"))
     walls = effects.get("walls", shaken)
     if walls:
         width, periods[0] = periods[0], None
@@ -122,6 +135,9 @@ def scene_of(experiment, r, beta):
         contents=Contents(experiment["species"], experiment.get("species_pairs", []))
         if "species" in experiment
         else None,
+        viscous=effects.get("viscoelastic", {}).get("speed", 0.0),
+        table=table and (table["speed"], table["restitution"], table["reference"]),
+        threshold=threshold and (threshold["speed"], threshold["restitution"]),
     )
     return build(experiment, r, beta), world
 

@@ -11,7 +11,14 @@ import math
 import numpy as np
 
 from brute_force.company import alike
-from brute_force.formulas import cut_by_friction, falling_time, in_space, meeting_times
+from brute_force.formulas import (
+    cut_by_friction,
+    falling_time,
+    in_space,
+    meeting_times,
+    tabulated,
+    viscoelastic,
+)
 from brute_force.kicks import Kicks
 from brute_force.world import Event, Snapshot
 
@@ -233,9 +240,17 @@ class BruteForce:
         amplitude, period = self.world.shaken
         return 2.0 * np.pi * amplitude / period * np.cos(2.0 * np.pi * self.time / period)
 
-    def _restitution(self, r, *particles):
+    def _restitution(self, r, speed, *particles):
+        """Of a contact at a normal speed, from the restitution that its material has by itself."""
+        world = self.world
+        if world.viscous and 0.0 < r < 1.0:
+            r = viscoelastic(r, speed, world.viscous)
+        if world.table:
+            r = tabulated(r, speed, *world.table)
+        if world.threshold and speed < world.threshold[0]:
+            r = max(r, world.threshold[1])
         recent = max(self.last[k] for k in particles)
-        quick = self.world.contact_time > 0.0 and self.time - recent < self.world.contact_time
+        quick = world.contact_time > 0.0 and self.time - recent < world.contact_time
         for k in particles:
             self.last[k] = self.time
         return 1.0 if quick else r
@@ -248,7 +263,7 @@ class BruteForce:
         n, v = in_space(x + shift), in_space(v + drift)
         n /= math.sqrt(n @ n)
         r, beta, mu = self._material(i, j)
-        r = self._restitution(r, i, j)
+        r = self._restitution(r, abs(v @ n), i, j)
         v_n = (v @ n) * n
         m, s = self.mass[[i, j]], (self.mass * self.q)[[i, j]]
         push = (1.0 + r) * v_n / (1.0 / m).sum()
@@ -282,7 +297,7 @@ class BruteForce:
         g = in_space(self.v[i])
         g[self.dimension - 1] -= speed
         g -= np.cross(self.w[i], n)
-        r = self._restitution(r, i)
+        r = self._restitution(r, abs(g @ n), i)
         g_n = (g @ n) * n
         m = self.mass[i]
         push = m * (1.0 + r) * g_n

@@ -25,6 +25,9 @@ class World(NamedTuple):
     contact_time: float = 0.0
     wave: str = "sawtooth"  # of the floor
     contents: Contents | None = None  # None: one species
+    viscous: float = 0.0  # normal speed at which viscoelastic contacts have their r; 0: not so
+    table: tuple[list, list, float] | None = None  # speeds, restitutions, speed at which r is r
+    threshold: tuple[float, float] | None = None  # slower contacts have this restitution, or more
 
 
 class Snapshot(NamedTuple):

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from roughgas.base.layout import markdown
 from roughgas.effects import KINDS
-from roughgas.effects.settings import OfParticles, Word
+from roughgas.effects.settings import Numbers, OfParticles, Word
 
 ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "effects.md"
@@ -68,6 +68,9 @@ def _row(name, kind):
 def _parameter(key, one):
     if isinstance(one, Word):
         legal, about = " or ".join(f"`{word}`" for word in one.words), one.description
+    elif isinstance(one, Numbers):
+        legal = f"{one.fewest} to {one.most} numbers in {one.interval}"
+        about = one.description
     elif isinstance(one, OfParticles):
         legal, about = f"in {one.number.interval} or `particles`", one.number.description
     else:

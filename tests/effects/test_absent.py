@@ -55,7 +55,7 @@ def poisoned(folder, kernel, *effects):
     return subprocess.run(command, env=environment, capture_output=True, text=True, timeout=600)
 
 
-EVERY_EFFECT = ["sheared", "walled", "shaken", "heated spheres"]
+EVERY_EFFECT = ["sheared", "walled", "shaken", "heated spheres", "viscoelastic", "tabulated bed"]
 """Kernels in which each effect is there at least once; from the barest one all are absent."""
 
 

@@ -12,6 +12,8 @@ import math
 from decimal import Decimal
 from typing import NamedTuple
 
+from exact.laws import restitution
+
 DIGITS = 50
 decimal.getcontext().prec = DIGITS
 ZERO, HALF, NEVER = Decimal(0), Decimal("0.5"), Decimal("Infinity")
@@ -184,14 +186,15 @@ class Exact:
     def _collide(self, i, j, image):
         x, v = self.apart(i, j, image)
         n = times(x, 1 / dot(x, x).sqrt())
-        r = self._restitution(self.r, i, j)
+        r = self._restitution(self.r, abs(dot(v, n)), i, j)
         push, turn = self._response(n, v, plus(self.w[i], self.w[j]), r, self.beta)
         self._kick(i, times(push, -HALF), times(turn, HALF))
         self._kick(j, times(push, HALF), times(turn, HALF))
 
     def _bounce(self, i, n, wall_velocity, r, beta):
-        r = self._restitution(r, i)
-        push, turn = self._response(n, minus(self.v[i], wall_velocity), self.w[i], r, beta)
+        v = minus(self.v[i], wall_velocity)
+        r = self._restitution(r, abs(dot(v, n)), i)
+        push, turn = self._response(n, v, self.w[i], r, beta)
         self._kick(i, times(push, Decimal(-1)), turn)
 
     def _response(self, n, v, w, r, beta):
@@ -207,8 +210,9 @@ class Exact:
     def _kick(self, i, push, turn):
         self.v[i], self.w[i] = plus(self.v[i], push), plus(self.w[i], turn)
 
-    def _restitution(self, r, *particles):
+    def _restitution(self, r, speed, *particles):
         """Contacts soon after the previous one lose nothing along the normal."""
+        r = restitution(self.world, r, speed)
         previous = max(self.last[k] for k in particles)
         for k in particles:
             self.last[k] = self.time

@@ -19,6 +19,8 @@ CASES = {
     "bed": (settings("bed", 8, [9, "open"]), 0.8, 0.2),
     "walled": (settings("walled", 8, [9, "open"], contact_time={"duration": 0.05}), 0.8, 0.2),
     "spheres": (settings("spheres", 8, [6, 6.5, 7]), 0.98, 0.2),
+    "viscoelastic": (settings("viscoelastic", 8, [12, 11], threshold={"speed": 0.2}), 0.8, 0.2),
+    "tabulated": (settings("tabulated bed", 8, [9, "open"], floor={"restitution": 0.9}), 0.8, 0.2),
 }
 
 

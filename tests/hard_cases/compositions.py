@@ -4,6 +4,7 @@ PARAMETERS, and one in NEEDS or EXCLUDES if it does not go with everything.
 """
 
 import itertools
+import random
 
 from hypothesis import strategies as st
 
@@ -32,6 +33,13 @@ PARAMETERS = {
         "interval": st.floats(0.02, 5.0),
     },
     "friction": {"mu": st.sampled_from([0.0, 0.05, 0.3, 1.0, 20.0])},
+    "viscoelastic": {"speed": st.floats(0.1, 10.0)},
+    "restitution_table": {
+        "speed": st.just([0.0, 0.3, 2.0]),
+        "restitution": st.sampled_from([[1.0, 0.9, 0.7], [0.95, 0.95, 1.0]]),
+        "reference": st.floats(0.1, 1.0),
+    },
+    "threshold": {"speed": st.floats(1e-3, 1.0), "restitution": st.sampled_from([1.0, 0.5])},
     "contact_time": {"duration": st.sampled_from([1e-5, 1e-3, 1e-1])},
     "contact_averages": {},
 }
@@ -41,7 +49,12 @@ NEEDS = [
     ("friction", "spin"),
     ("contact_averages", "spin"),
 ]
-EXCLUDES = [("walls", "shear"), ("shaken_walls", "shear"), ("walls", "shaken_walls")]
+EXCLUDES = [
+    ("walls", "shear"),
+    ("shaken_walls", "shear"),
+    ("walls", "shaken_walls"),
+    ("viscoelastic", "restitution_table"),
+]
 # A bed in space that is sheared between its sides heats up without end: flights grow long while
 # images slide past by thousands, and a scene may take minutes
 ENDLESS = {"gravity", "shear"}
@@ -58,9 +71,30 @@ def is_legal(effects, dimension):
 
 
 def every_set():
-    """Every set of effects, legal or not."""
-    for chosen in itertools.product((False, True), repeat=len(KINDS)):
-        yield {name for name, there in zip(KINDS, chosen, strict=True) if there}
+    """Every set of up to three effects, the same with what they need, and all effects but these:
+    there and not there, any three occur together in every way that is legal."""
+    sets = [set(c) for n in range(4) for c in itertools.combinations(sorted(KINDS), n)]
+    found = [which for one in sets for which in (one, with_needs(one), set(KINDS) - one)]
+    return [set(one) for one in dict.fromkeys(map(frozenset, found))]
+
+
+def with_needs(effects):
+    """These effects and all that they need, directly or not."""
+    whole = effects | {needed for one, needed in NEEDS if one in effects}
+    return whole if whole == effects else with_needs(whole)
+
+
+def random_sets(number):
+    """Legal (effects, dimension), with effects added in random order for as long as it is legal."""
+    draw, found = random.Random(0), []
+    for _ in range(number):
+        dimension, effects = draw.choice((2, 3)), set()
+        for name in draw.sample(sorted(KINDS), len(KINDS)):
+            more = with_needs(effects | {name})
+            if draw.random() < 0.7 and is_legal(more, dimension) and not more >= ENDLESS:
+                effects = more
+        found.append((effects, dimension))
+    return found
 
 
 def covering(strength):
@@ -69,13 +103,14 @@ def covering(strength):
     for any so many effects (the dimension counts as one), every legal pattern of there and not
     there. Wave forms of the floor, each with code of its own, take turns.
     """
-    legal = [
+    legal = random_sets(600) + [
         (one, D) for one in every_set() for D in (2, 3) if is_legal(one, D) and not one >= ENDLESS
     ]
-    found, missing = [], set().union(*(_patterns(*one, strength) for one in legal))
+    patterns = [(one, _patterns(*one, strength)) for one in legal]
+    found, missing = [], set().union(*(all_of for _, all_of in patterns))
     while missing:
-        best = max(legal, key=lambda one: len(missing & _patterns(*one, strength)))
-        missing -= _patterns(*best, strength)
+        best, there = max(patterns, key=lambda pair: len(missing & pair[1]))
+        missing -= there
         found.append((*best, WAVES[len(found) % len(WAVES)]))
     return found
 

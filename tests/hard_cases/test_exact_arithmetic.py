@@ -27,9 +27,11 @@ SCENES = {
         0.2,
         6,
     ),
+    "viscoelastic gas": (settings("viscoelastic", 8, [12, 11]), 0.9, 1.0, 8),
     "spheres": (settings("spheres", 8, [6, 6.5, 7]), 1.0, 1.0, 7),
 }
-STEADY = [name for name in SCENES if name != "cooling gas"]
+COLD = {"cooling gas", "viscoelastic gas"}
+STEADY = [name for name in SCENES if name not in COLD]
 SMALL = 1e-6  # separation up to which it only grows, without a say in who meets whom
 # The kernel rounds a few times where the prediction does so once, and the ratio of the two is
 # that of one normal deviate to the root mean square of eight, which is above 10 once in 100,000.
@@ -63,7 +65,7 @@ def test_separates_from_exact_arithmetic_as_chaos_demands(name, margins):
     *point, seed = SCENES[name]
     scene, world = scene_of(*point)
     _, state = begin(*point, seed)
-    most = 400 if name == "cooling gas" else 10_000  # a cold one only moves as a whole
+    most = 400 if name in COLD else 10_000  # a cold one only moves as a whole
     collisions = min(most, margins.size(quick=200, full=10_000))
     segments, tried = compare(margins, name, state, scene, world, collisions)
     first = min(one.parted for one in segments)

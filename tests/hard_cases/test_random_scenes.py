@@ -167,9 +167,9 @@ JUNK = (math.nan, math.inf, -7, "x", None, True, [], {})
     "error that no user understands",
 )
 def test_every_set_of_effects_is_accepted_or_refused_in_one_line(margins):
-    """All sets of effects, in two and three dimensions, closed and open above, and with parameters
+    """Sets of effects, in two and three dimensions, closed and open above, and with parameters that
 
-    that are none. What is legal is said in compositions.py.
+    are none. What is legal, and which sets are tried, is said in compositions.py.
     """
     assert set(PARAMETERS) == set(KINDS)
     tried = wrong = junk = accepted = 0

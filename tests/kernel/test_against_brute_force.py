@@ -55,6 +55,21 @@ CASES = {
         0.2,
         16,
     ),
+    "viscoelastic gas": (settings("viscoelastic", 8, [12, 12]), 0.9, 0.2, 19),
+    "slow viscoelastic gas": (
+        settings(
+            "viscoelastic", 8, [12, 12], viscoelastic={"speed": 50.0}, threshold={"speed": 0.2}
+        ),
+        0.6,
+        0.2,
+        20,
+    ),
+    "tabulated bed": (
+        settings("tabulated bed", 16, [10, "open"], floor={"restitution": 0.9, "roughness": 0.5}),
+        0.85,
+        0.2,
+        21,
+    ),
     "spheres": (settings("spheres", 8, [7, 7, 7]), 0.98, 0.2, 14),
     "sheared spheres": (settings("sheared", 8, [8, 7, 9], spin={"inertia": 0.4}), 0.9, 0.2, 17),
     "bed of spheres": (settings("bed", 16, [7, 8, "open"], spin={"inertia": 0.4}), 0.8, 0.2, 18),
@@ -66,7 +81,7 @@ CASES = {
     ),
 }
 SEGMENTS, COLLISIONS = 40, 10
-RARE = {"sheared spheres", "bed of spheres"}  # kernels that no other test compiles
+RARE = {"sheared spheres", "bed of spheres", "tabulated bed"}  # kernels that no other test compiles
 
 
 @pytest.mark.parametrize(

@@ -29,7 +29,7 @@ NUMBER, WHOLE, WORD, JSON = "a number", "a whole number", "text", "a JSON object
 ATTRIBUTES = {
     "schema_version": WHOLE,
     **dict.fromkeys(("seed", "dimension", "particles"), WHOLE),
-    **dict.fromkeys(("r", "beta", "inertia", "spin_share", "mu", "packing"), NUMBER),
+    **dict.fromkeys(("r", "beta", "inertia", "spin_share", "mu", "packing", "r_at_speed"), NUMBER),
     **dict.fromkeys(("experiment", "scale", "r_label", "beta_label", "command", "swept"), WORD),
     **dict.fromkeys(("variant", "theory", "study", "task"), WORD),
     **dict.fromkeys(("experiment_json", "settings_json"), JSON),

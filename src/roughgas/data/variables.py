@@ -175,6 +175,13 @@ POINT = {
     **_of_species("R_species", "share of rotation in the energy", "1", SPIN),
     "time": _series("time since the start", TIME, DRIVEN),
     "collisions_per_particle": _series("collisions per particle since the start", TIME, COOLING),
+    "time_series": Variable(
+        "time since dissipation was switched on, mean over replicas",
+        TIME,
+        ("sample",),
+        when=(COOLING, "whose r depends on the speed"),
+        of_settings=True,
+    ),
     "R_series": _series("share of rotation in the energy", "1", SPIN),
     "R_series_stderr": _series("standard error of R_series over replicas", "1", COOLING, SPIN),
     "E_trans_series": _series("translational energy per degree of freedom", ENERGY),

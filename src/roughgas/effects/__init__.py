@@ -11,11 +11,14 @@ from roughgas.effects.contact_time import ContactTime
 from roughgas.effects.floor import Floor
 from roughgas.effects.friction import Friction
 from roughgas.effects.gravity import Gravity
+from roughgas.effects.restitution_table import RestitutionTable
 from roughgas.effects.shaken_walls import ShakenWalls
 from roughgas.effects.shear import Shear
 from roughgas.effects.species import Species
 from roughgas.effects.spin import Spin
 from roughgas.effects.thermostat import Thermostat
+from roughgas.effects.threshold import Threshold
+from roughgas.effects.viscoelastic import Viscoelastic
 from roughgas.effects.walls import Walls
 
 
@@ -31,6 +34,9 @@ class Effects(NamedTuple):
     shear: Shear | None = None
     thermostat: Thermostat | None = None
     friction: Friction | None = None
+    viscoelastic: Viscoelastic | None = None
+    restitution_table: RestitutionTable | None = None
+    threshold: Threshold | None = None
     contact_time: ContactTime | None = None
     contact_averages: ContactAverages | None = None
 
@@ -38,6 +44,12 @@ class Effects(NamedTuple):
 def inertia(effects: Effects) -> float | None:
     """Return q of the particles, None where they do not spin."""
     return None if effects.spin is None else effects.spin.inertia
+
+
+def speed_of_r(effects: Effects) -> float | None:
+    """Return the normal speed at which contacts have their r, in a/T; None where it is any."""
+    law = effects.viscoelastic or effects.restitution_table
+    return None if law is None else law.speed
 
 
 KINDS = {name: kind.__args__[0] for name, kind in Effects.__annotations__.items()}

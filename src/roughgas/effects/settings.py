@@ -44,6 +44,29 @@ class Number(NamedTuple):
         return {"description": self.description} | Interval(self.interval).schema()
 
 
+class Numbers(NamedTuple):
+    """A parameter that is a list of numbers in an interval; it must be given."""
+
+    description: str
+    interval: str
+    fewest: int
+    most: int
+    default = None
+
+    def read(self, key: str, value: Any, around: Surroundings) -> tuple[float, ...]:
+        """Return the numbers as floats; raise InputError unless they are as many as is legal."""
+        if not isinstance(value, list | tuple) or not self.fewest <= len(value) <= self.most:
+            raise InputError(key, value, f"be a list of {self.fewest} to {self.most} numbers")
+        one = Number(self.description, self.interval)
+        return tuple(one.read(f"{key}[{k}]", x, around) for k, x in enumerate(value))
+
+    def schema(self) -> dict[str, Any]:
+        """Return the same as a JSON schema."""
+        items = {"items": Interval(self.interval).schema()}
+        size = {"minItems": self.fewest, "maxItems": self.most}
+        return {"description": self.description, "type": "array"} | items | size
+
+
 class Word(NamedTuple):
     """A parameter that is one of some words; the first is what it is if not given."""
 
@@ -103,9 +126,9 @@ MATERIAL = {
 def register(kind: type, parameters: Mapping[str, Any] | None = None, **hooks: Any) -> None:
     """Give an effect's class its parameters and its hooks (see roughgas.kernel.hooks.Hooks).
 
-    `parameters` maps names to Number, Word or OfParticles; None is a variant that another effect's
-    `from_settings` returns. A class without `from_settings` is made from its parameters as they
-    are. Raises TypeError for a hook that does not exist.
+    `parameters` maps names to Number, Numbers, Word or OfParticles; None is a variant that another
+    effect's `from_settings` returns. A class without `from_settings` is made from its parameters as
+    they are. Raises TypeError for a hook that does not exist.
     """
     kind.hooks = Hooks(**hooks)
     kind.parameters = parameters

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from roughgas.effects import inertia
+from roughgas.effects import inertia, speed_of_r
 from roughgas.scene import Scene
 from roughgas.simulation import by_species
 from roughgas.simulation.books import Books, exchange
@@ -31,6 +31,7 @@ class Cooled(NamedTuple):
 
     energies: Energies  # of each sample, over 4^exponent: they may fall below the smallest number
     exponent: np.ndarray
+    time: np.ndarray  # of each sample, in T since dissipation was switched on
     before: Books
     after: Books
     species: list[Energies]  # as `energies`, of each species
@@ -102,6 +103,8 @@ def run(
     ensemble = _together([_cool(gas, every, samples) for gas in gases])
     passed = every * np.arange(1, samples + 1)
     exchanged = exchange(ensemble.before, ensemble.after, scene, experiment["particles"])
+    if speed_of_r(scene.effects) is not None:  # how it cools depends on how fast it is
+        exchanged["time_series"] = ensemble.time.mean(axis=0)
     if scene.effects.spin is None:
         first = min(math.ceil(transient / every), samples) - 1
         return _decay(ensemble, passed, first) | exchanged
@@ -126,21 +129,22 @@ def _replica(scene, experiment, stream, recorder, initial=None):
 def _cool(gas, every, samples):
     """Return what one replica does from when dissipation is switched on."""
     unit, exponent = gas.energies(gas.sample).translational[0], int(gas.sample["exponent"][0])
-    before = gas.books()
+    before, begun = gas.books(), gas.time
     rows = sample(gas, every, samples)
     present = gas.energies(rows).map(lambda part: part / unit)
     energy = math.ldexp(unit, 2 * exponent)
     before, after = (Books(*(part / energy for part in b)) for b in (before, gas.books()))
     parts = [one.map(lambda part: part / unit) for one in gas.energies_of_species(rows)]
-    return Cooled(present, rows["exponent"].astype(int) - exponent, before, after, parts)
+    exponents = rows["exponent"].astype(int) - exponent
+    return Cooled(present, exponents, rows["time"] - begun, before, after, parts)
 
 
 def _together(runs):
     """Return all replicas as one: energies stacked, books averaged."""
-    present, exponent, *books, species = zip(*runs, strict=True)
+    present, exponent, time, *books, species = zip(*runs, strict=True)
     stacked, parts = _stacked(present), [_stacked(one) for one in zip(*species, strict=True)]
     means = (Books(*(np.mean(part, axis=0) for part in zip(*one, strict=True))) for one in books)
-    return Cooled(stacked, np.array(exponent), *means, parts)
+    return Cooled(stacked, np.array(exponent), np.array(time), *means, parts)
 
 
 def _stacked(runs):

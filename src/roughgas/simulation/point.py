@@ -7,6 +7,7 @@ import numpy as np
 
 from roughgas.base.version import __version__
 from roughgas.data.point import Point
+from roughgas.effects import speed_of_r
 from roughgas.kernel.cache import source_hash
 from roughgas.scene import Scene, build, packing
 from roughgas.simulation import by_species, schedule
@@ -59,6 +60,7 @@ def run_point(
             "dimension": len(scene.box),
             **({} if None in scene.box else {"packing": packing(experiment)}),
             **_known_to_theory(scene, experiment),
+            **_about_restitution(scene),
             **({"memory_of": owner(scene)} if keep else {}),
             **_about_start(initial, scene),
             "roughgas_version": __version__,
@@ -94,6 +96,12 @@ def _known_to_theory(scene, experiment):
     if effects.thermostat is not None:
         found["spin_share"] = float(experiment["effects"]["thermostat"]["spin_share"])
     return found
+
+
+def _about_restitution(scene):
+    """Return at which normal speed (a/T) contacts have the point's r, where it depends on that."""
+    speed = speed_of_r(scene.effects)
+    return {} if speed is None else {"r_at_speed": speed}
 
 
 def effort(experiment: Mapping[str, Any], r: float, beta: float) -> float:

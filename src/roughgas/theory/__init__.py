@@ -70,5 +70,12 @@ from roughgas.theory.runaway import (
     runaway_time,
     spinner_temperature,
 )
+from roughgas.theory.viscoelastic import (
+    maxwellian_restitution,
+    viscoelastic_cooling,
+    viscoelastic_restitution,
+    viscoelastic_temperature,
+    viscoelastic_time,
+)
 
 __all__ = [name for name, public in globals().items() if callable(public)]

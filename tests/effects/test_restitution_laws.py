@@ -1,0 +1,208 @@
+"""Restitution that depends on the normal speed: viscoelastic, tabulated, or constant when slow."""
+
+import math
+from decimal import Decimal
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from brute_force import KERNELS, begin, run, settings
+
+from roughgas.base.errors import InputError
+from roughgas.effects.viscoelastic import ABOVE, B_1, B_2, B_3, B_4, fifth_root, pade, x_of
+from roughgas.kernel.layout import new_state
+from roughgas.kernel.state import EXPONENT
+from roughgas.scene import build
+
+TABLE = KERNELS["tabulated bed"]["effects"]["restitution_table"]
+
+
+def measured(experiment, r, speed, exponent=0):
+    """Restitution of two disks that meet head-on at a speed in a/T, in units of 2^exponent a/T."""
+    scene = build(experiment | {"box": [20, 20]}, r, 0.0)
+    present = math.ldexp(speed, -exponent)
+    velocity = np.array([[present / 2.0, 0.0], [-present / 2.0, 0.0]])
+    state = new_state(scene, np.array([[6.0, 10.0], [14.0, 10.0]]), velocity, np.zeros((2, 1)))
+    state.counts[EXPONENT] = exponent
+    run(state, scene, 1, collisions=1)
+    return (state.trajectory[1, 2] - state.trajectory[0, 2]) / present
+
+
+def at_exponent(exponent):
+    """All that the laws ask of a state: how often its velocities have been doubled."""
+    return SimpleNamespace(counts={EXPONENT: exponent})
+
+
+def gas(**effects):
+    return settings("viscoelastic", **effects)
+
+
+# ---------------------------------------------------------------------- viscoelastic
+
+
+def test_the_series_is_that_of_the_literature():
+    """C_1 to C_4 of Ramirez et al. (1999), in powers of x = C_1 A alpha^(2/5) g^(1/5)."""
+    C = 1.15344, 0.79826, 0.483582, 0.285279
+    below, series = [1.0, B_1, B_2, B_3, B_4], [1.0]
+    for k in range(1, 5):
+        rest = sum(below[j] * series[k - j] for j in range(1, k + 1))
+        series.append((ABOVE if k == 1 else 0.0) - rest)
+    expected = [(-1) ** k * C[k - 1] / C[0] ** k for k in range(1, 5)]
+    assert series[1:] == pytest.approx(expected, abs=1.5e-3)
+
+
+def test_the_pade_approximation_falls_from_one_to_zero():
+    at = np.geomspace(1e-6, 1e6, 2000)
+    values = np.array([pade(x) for x in at])
+    assert pade(0.0) == 1.0 and np.all(np.diff(values) < 0.0) and 0.0 < values[-1] < 1e-15
+
+
+@pytest.mark.parametrize("r", [1e-9, 1e-3, 0.3, 0.72, 0.9, 0.999, 1.0 - 1e-12])
+def test_x_is_where_the_law_has_r(r):
+    assert pade(x_of(r)) == pytest.approx(r, rel=1e-14)
+    assert 1.0 - pade(x_of(r)) == pytest.approx(1.0 - r, abs=4e-16)
+
+
+def test_fifth_roots():
+    """At once and by way of powers of two, far beyond what a number can hold."""
+    rng = np.random.default_rng(1)
+    for x in np.concatenate([10.0 ** rng.uniform(-300, 300, 500), [1.0, 32.0, 5e-324]]):
+        root = float(Decimal(float(x)) ** Decimal("0.2"))
+        assert fifth_root(float(x), 0) == pytest.approx(root, rel=1e-15)
+        assert fifth_root(float(x), -35) == math.ldexp(fifth_root(float(x), 0), -7)
+    assert fifth_root(1.0, -5000) == pytest.approx(math.ldexp(1.0, -1000), rel=1e-15)
+    assert fifth_root(0.0, 12) == 0.0
+
+
+@pytest.mark.parametrize("r", [0.3, 0.9])
+def test_contacts_have_their_r_at_the_reference_and_less_of_a_loss_below(r):
+    """At 2^-5 of the speed x is half as large."""
+    experiment = gas(viscoelastic={"speed": 4.0}, threshold={"speed": 1e-9})
+    assert measured(experiment, r, 4.0) == pytest.approx(r, rel=1e-13)
+    assert measured(experiment, r, 4.0 / 32.0) == pytest.approx(pade(x_of(r) / 2.0), rel=1e-13)
+    assert measured(experiment, r, 4.0 * 32.0) == pytest.approx(pade(x_of(r) * 2.0), rel=1e-13)
+
+
+@pytest.mark.parametrize("r", [0.0, 1.0])
+def test_at_the_ends_restitution_is_the_same_at_all_speeds(r):
+    experiment = gas(viscoelastic={"speed": 4.0}, threshold={"speed": 1e-9})
+    for speed in (0.01, 4.0, 100.0):
+        assert measured(experiment, r, speed) == pytest.approx(r, abs=1e-9)
+
+
+def test_elastic_viscoelastic_particles_are_the_elastic_gas():
+    """The same bits after 1000 collisions; the threshold has nothing to do, either."""
+    ends = []
+    for kernel in ("gas", "viscoelastic"):
+        scene, state = begin(settings(kernel, 40, [25, 25]), 1.0, 0.3, 1)
+        run(state, scene, 5, collisions=200)
+        ends.append((state.trajectory.tobytes(), state.spin.tobytes()))
+    assert ends[0] == ends[1]
+
+
+def test_walls_have_a_law_of_their_own():
+    """The x that a wall's r stands for, not that of the particles."""
+    law = KERNELS["viscoelastic"]["effects"]["viscoelastic"]
+    scene = build(gas(viscoelastic=law), 0.9, 0.0)
+    hook = type(scene.effects.viscoelastic).hooks.restitution
+    for r in (0.5, 0.9):
+        found = hook(scene.effects.viscoelastic, 0, r, at_exponent(0), 0, -1, 0.0, -0.2)
+        assert found == pytest.approx(pade(x_of(r) * 0.2**0.2), rel=1e-14)
+
+
+# ---------------------------------------------------------------------- tables, thresholds
+
+TABULATED = {
+    "particles": 2,
+    "effects": {"spin": {"inertia": 0.5}, "restitution_table": TABLE},
+}
+
+
+def hook_of(r, **table):
+    """(speed in a/T, restitution of a contact) -> what the table makes of it, as plain Python."""
+    experiment = {"box": [20, 20], "effects": {"restitution_table": TABLE | table}}
+    effect = build(experiment, r, -1.0).effects.restitution_table
+
+    def found(speed, own=r, exponent=0):
+        state, present = at_exponent(exponent), -math.ldexp(speed, -exponent)
+        return type(effect).hooks.restitution(effect, 0, own, state, 0, 1, 0.0, present)
+
+    return found
+
+
+def test_a_table_is_read_along_straight_lines():
+    speeds, values, reference = TABLE.values()
+    r = float(np.interp(reference, speeds, values))
+    restitution = hook_of(r)
+    for speed in (0.0, 0.1, 0.5, 0.6, 1.0, 2.0, 3.7, 5.0, 100.0):
+        assert restitution(speed) == pytest.approx(np.interp(speed, speeds, values), rel=1e-14)
+        assert restitution(speed, exponent=-40) == restitution(speed)
+
+
+def test_other_contacts_lose_in_proportion():
+    speeds, values, reference = TABLE.values()
+    restitution, whole = hook_of(0.6), 1.0 - np.interp(reference, speeds, values)
+    assert restitution(reference) == pytest.approx(0.6, rel=1e-14)
+    assert restitution(0.5) == pytest.approx(1.0 - 0.4 * (1.0 - 0.9) / whole, rel=1e-14)
+    assert restitution(5.0) == 0.0  # by the proportion it would be negative
+    assert [restitution(v, 1.0) for v in (0.1, 5.0)] == [1.0, 1.0]
+
+
+def test_contacts_below_a_threshold_are_elastic_and_no_others():
+    experiment = gas(viscoelastic={"speed": 1e9}, threshold={"speed": 0.5})
+    faster = measured(experiment, 0.5, 0.6)
+    assert measured(experiment, 0.5, 0.49) == pytest.approx(1.0, rel=1e-14) and faster < 1.0
+    dull = gas(viscoelastic={"speed": 1e-9}, threshold={"speed": 0.5, "restitution": 0.7})
+    assert measured(dull, 0.5, 0.4) == pytest.approx(0.7, rel=1e-14)
+    assert measured(dull, 0.5, 0.6) < 0.5
+
+
+# ---------------------------------------------------------------------- a gas that cools
+
+
+@pytest.mark.parametrize("exponent", [-60, -3, 4])
+def test_speeds_are_those_in_a_per_T_however_slow_the_gas_has_become(exponent):
+    """The same restitution whatever power of two the velocities have been divided by."""
+    speed = math.ldexp(1.3, exponent)
+    experiment = gas(
+        viscoelastic={"speed": math.ldexp(1.0, exponent)},
+        threshold={"speed": math.ldexp(1.2, exponent)},
+    )
+    at_unit_speed = measured(gas(threshold={"speed": 1.2}), 0.8, 1.3)
+    assert measured(experiment, 0.8, speed, exponent) == pytest.approx(at_unit_speed, rel=1e-14)
+    assert measured(experiment, 0.8, 0.9 * speed, exponent) == pytest.approx(1.0, rel=1e-14)
+
+
+def test_a_gas_is_the_same_in_any_unit_of_velocity():
+    """To the last bit: in units of 2^20 a/T, and of 1 a/T."""
+    ends = []
+    for power in (0, 20):
+        unit = math.ldexp(1.0, power)
+        scene, state = begin(gas(), 0.8, 0.2, 4)
+        state.trajectory[:, 2:4] /= unit
+        state.counts[EXPONENT] = power
+        run(state, scene, 1, collisions=1000)
+        ends.append((state.trajectory[:, :4] * [1.0, 1.0, unit, unit], state.spin * unit))
+    assert np.array_equal(*(trajectory for trajectory, _ in ends))
+    assert np.array_equal(*(spin for _, spin in ends))
+
+
+# ---------------------------------------------------------------------- mistakes
+
+REFUSED = {
+    "be a list of 2 to 32 numbers": {"speed": [1.0]},
+    "be a number in [0, inf)": {"speed": [-1.0, 0.0, 1.0, 2.0]},
+    "be a number in [0, 1]": {"restitution": [1.0, 0.9, 0.8, 1.1]},
+    "have as many entries as speed, 4": {"restitution": [1.0, 0.9]},
+    "increase": {"speed": [0.0, 1.0, 1.0, 2.0]},
+    "be a speed at which the table has less than 1": {"reference": 0.0},
+}
+
+
+@pytest.mark.parametrize("legal", REFUSED)
+def test_a_table_that_is_none_is_refused(legal):
+    effects = {"restitution_table": TABLE | REFUSED[legal]}
+    with pytest.raises(InputError) as caught:
+        build({"box": [20, 20], "effects": effects}, 0.9, -1.0)
+    assert str(caught.value).endswith(f": must {legal}")
+    assert "effects.restitution_table." in str(caught.value)
