@@ -17,6 +17,7 @@ need be. A machine with narrower registers takes several for one.
 | least(lanes) | the least of them; their number is a power of two |
 | append(places, number, lanes of booleans, first) | see operations.py |
 | trailing_zeros(integer) | the number of zeros below its lowest bit |
+| prefetch(array, row) | nothing; array[row] is on its way to the cache |
 | index(number) | the number, promised not to count from the end of an array |
 """
 
@@ -34,4 +35,5 @@ bits = Primitive("bits")
 least = Primitive("least")
 append = Primitive("append")
 trailing_zeros = Primitive("trailing_zeros")
+prefetch = Primitive("prefetch")
 index = Primitive("index")

@@ -205,6 +205,30 @@ def index(context, number):
 
 
 @intrinsic
+def prefetch(context, array, row):
+    """Have the processor fetch array[row] from memory, if it is not in a cache, and go on."""
+
+    def generate(context, builder, signature, arguments):
+        kind, indices = signature.args[0], [arguments[1]]
+        indices += [ir.Constant(indices[0].type, 0)] * (kind.ndim - 1)
+        pointer = _pointer(context, builder, kind, arguments[0], indices)
+        pointer = builder.bitcast(pointer, ir.IntType(8).as_pointer())
+        read, near, data = (ir.Constant(ir.IntType(32), number) for number in (0, 3, 1))
+        function = builder.module.declare_intrinsic(
+            "llvm.prefetch", [pointer.type], _prefetch_type(pointer.type)
+        )
+        builder.call(function, [pointer, read, near, data])
+        return context.get_dummy_value()
+
+    return types.none(array, types.intp), generate
+
+
+def _prefetch_type(pointer):
+    number = ir.IntType(32)
+    return ir.FunctionType(ir.VoidType(), [pointer, number, number, number])
+
+
+@intrinsic
 def lanes_of(context, array):
     """Return how many of an array's numbers a vector register has."""
     number = _count(types.IntegerLiteral(0), array.dtype)

@@ -4,6 +4,7 @@ import math
 
 from roughgas.kernel.arithmetic import choose
 from roughgas.kernel.clock import FLIGHTS
+from roughgas.kernel.fetching import fetch_ahead
 from roughgas.kernel.hooks import either
 from roughgas.kernel.jit import jit
 from roughgas.kernel.lanes import bits, least, load, order, store, trailing_zeros
@@ -78,6 +79,7 @@ def _earliest_in_calendar(cells, state):
             queue.today[0] = day
             return place
         day += 1
+        fetch_ahead(state, day)
     return _earliest_of_all(state)
 
 
