@@ -115,7 +115,7 @@ def draw_map(axes: Axes, data: xr.Dataset) -> None:
         )
         _event_driven(axes, data, float(one.map_r), look.colour)
     for k, packing in enumerate(data.packing.values):
-        axes.plot([], [], PACKING_MARKERS[k], color=GREY, label=f"event-driven, {packing:g} filled")
+        axes.plot([], [], PACKING_MARKERS[k], color=GREY, label=f"events, packing {packing:g}")
     axes.plot([], [], color=GREY, linewidth=0.8, label="first order in $a_{20}$ and $a_{11}$")
     axes.axhline(0, color=THEORY, linewidth=0.8, zorder=0)
     axes.set(xlim=(-1.04, 1.04), xlabel=r"roughness $\beta$")
