@@ -136,6 +136,11 @@ COMMANDS = {
         ),
         value("--spin-share S", "share of the drive's power that goes into rotation", default="0"),
         value("--mu", "Coulomb friction (default: none, contacts never slide)"),
+        value(
+            "--species YAML",
+            "a mixture: a list of species as in config.yaml, or a file with such a list",
+        ),
+        value("--packing", "share of the box that a mixture fills", default="0"),
         one_of(
             flag("--json", "print JSON, for scripts"), flag("--csv", "print CSV, for spreadsheets")
         ),
@@ -145,10 +150,14 @@ COMMANDS = {
             "roughgas theory --r 0.8 0.9 0.99 --beta 0 --inertia 0.1 --json",
             "roughgas theory --r 0.9 --beta 0.5 --mu 0.3",
             "roughgas theory --r 0.9 --beta -0.9:0.9:0.1 --spin-share 0.2 --csv",
+            "roughgas theory --r 0.9 --beta 0 --dimension 2 --species"
+            " '[{fraction: 0.5}, {fraction: 0.5, radius: 2, mass: 4}]'",
         ),
         about="Print R = E_rot/(E_rot + E_trans) of theory, driven and freely cooling, how fast "
         "it is reached, and how fast energy decays, with the equation behind each number. r and "
-        "beta take several values, or a range START:STOP:STEP with both ends.",
+        "beta take several values, or a range START:STOP:STEP with both ends. Of a mixture, R and "
+        "the translational temperature of each species, over its mean; it is driven as by the "
+        "effect thermostat.",
     ),
     "plan": Command(
         "cli.planning:plan",

@@ -6,14 +6,16 @@ import sys
 from argparse import Namespace
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from decimal import Decimal
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from roughgas import config, theory
 from roughgas.base.errors import InputError
 from roughgas.base.layout import as_json, columns
+from roughgas.base.legal import Interval
 from roughgas.cli.options import number
+from roughgas.cli.quantities import GasParameters, Quantity
 from roughgas.theory.arguments import FRICTION, SHARE, check, moment_of_inertia
 from roughgas.theory.prediction import equation_of, predicted_ratio
 
@@ -22,25 +24,6 @@ MOST = 100_000  # values in a range
 TOLERANCE = 0.01  # of R, within which it counts as settled
 PAPER = "S. McNamara, S. Luding, Phys. Rev. E 58, 2247 (1998)"
 NOTES = f"Rates are per collision per particle. Equations: docs/physics.md, and\n{PAPER}."
-
-
-class Quantity(NamedTuple):
-    """An array over the points, what it is, and which equation it is from."""
-
-    values: Any
-    meaning: str
-    source: str
-
-
-class GasParameters(NamedTuple):
-    """Points (r, beta), arrays of equal shape, and what they share; no friction: `mu` is None."""
-
-    r: Any
-    beta: Any
-    dimension: int
-    inertia: float
-    spin_share: float
-    mu: float | None
 
 
 Tables = Sequence[tuple[GasParameters, Mapping[str, Quantity]]]
@@ -73,7 +56,21 @@ def _gases(options: Namespace) -> list[GasParameters]:
     if options.inertia is not None:
         q = float(check("inertia q", number("--inertia", options.inertia)))
     dimensions = [int(options.dimension)] if options.dimension else [2, 3]
-    return [GasParameters(r, beta, D, q or moment_of_inertia(D), share, mu) for D in dimensions]
+    gases = [GasParameters(r, beta, D, q or moment_of_inertia(D), share, mu) for D in dimensions]
+    return [gas._replace(**_mixed(options)) for gas in gases]
+
+
+def _mixed(options: Namespace) -> dict[str, Any]:
+    """Return what makes a mixture of a gas."""
+    packing = number("--packing", options.packing, Interval("[0, 1)"))
+    if options.species is None:
+        if packing:
+            legal = "come with --species: one species has the same R at any packing"
+            raise InputError("--packing", options.packing, legal)
+        return {}
+    from roughgas.cli.theory_of_mixtures import species_from
+
+    return {"species": species_from(options.species), "packing": packing}
 
 
 def _values(key: str, texts: Sequence[str], legal: Callable[[str], float]) -> list[float]:
@@ -99,6 +96,10 @@ def _range(key: str, text: str, ends: re.Match[str]) -> list[str]:
 
 def quantities(gas: GasParameters) -> dict[str, Quantity]:
     """Return all that theory says of a gas, by name."""
+    if gas.species is not None:
+        from roughgas.cli.theory_of_mixtures import quantities_of_mixture
+
+        return quantities_of_mixture(gas)
     about = {"dimension": gas.dimension, "inertia": gas.inertia, "spin_share": gas.spin_share}
     if gas.mu is not None:
         about["mu"] = gas.mu
@@ -172,6 +173,7 @@ def _record(tables: Tables) -> dict[str, Any]:
         "inertia": {str(gas.dimension): gas.inertia for gas, _ in tables},
         "spin_share": gas.spin_share,
         "mu": gas.mu,
+        **({} if gas.species is None else {"species": gas.species, "packing": gas.packing}),
         "reference": PAPER,
         "quantities": about,
         "points": list(_rows(tables)),

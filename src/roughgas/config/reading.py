@@ -70,6 +70,11 @@ def read_yaml(path: str | Path) -> Any:
         raise FileNotFoundError(error.errno, hint, str(path)) from error
     except UnicodeDecodeError as error:
         raise InputError(name, "(not text)", "be YAML in UTF-8") from error
+    return parse_yaml(text, name)
+
+
+def parse_yaml(text: str, name: str) -> Any:
+    """Return what YAML holds that messages call `name`; raise InputError as `read_yaml`."""
     try:
         events = list(_checked(_reader().parse(_named(text, name))))
         return _reader(events).load(_named(text, name))

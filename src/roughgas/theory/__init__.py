@@ -44,6 +44,23 @@ from roughgas.theory.friction import (
     friction_relaxation_rate,
     sliding_fraction,
 )
+from roughgas.theory.mixture_composition import Mixture, mixture
+from roughgas.theory.mixture_states import (
+    kick_power,
+    mimicry_masses,
+    mixture_cooling,
+    mixture_decay_rate,
+    mixture_driven,
+    mixture_relaxation_rate,
+    mixture_rotation,
+)
+from roughgas.theory.mixture_structure import (
+    compressibility,
+    mixture_contact_values,
+    mixture_density,
+    mixture_frequency,
+)
+from roughgas.theory.mixtures import Temperatures, mixture_changes
 from roughgas.theory.rate_equations import (
     Rates,
     collision_rates,

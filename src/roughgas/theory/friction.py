@@ -8,7 +8,7 @@ one collision changes the energies of its pair by the normal part -m (1-r^2) g_n
     translation: m (eta^2 g_t^2 - eta g_t.v_t)      rotation: m (eta^2 g_t^2 - q eta g_t.v_r)/q.
 
 In a Maxwellian gas v_t and v_r are on average T_tr : T_rot/q of g_t, whatever eta, so that only
-the averages of eta g_t^2 and eta^2 g_t^2 are needed, and these are elementary (`_moments`). Source
+the averages of eta g_t^2 and eta^2 g_t^2 are needed, and these are elementary (`moments`). Source
 of the rule: O. R. Walton, in Particulate Two-Phase Flow, ed. M. C. Roco (1993). Rate equations with
 these averages are those of O. Herbst, M. Huthmann & A. Zippelius (Granular Matter 2, 211, 2000),
 who found that a cooling gas of spheres with weak friction may keep its spin while translation dies
@@ -162,7 +162,7 @@ def _rates(T_tr, T_rot, gas: Material, mu) -> Rates:
     """
     r, _, dimension, q = gas
     sticking = collision_rates(*gas)
-    first, second = _moments(_threshold(T_tr, T_rot, gas, mu), dimension)
+    first, second = moments(_threshold(T_tr, T_rot, gas, mu), dimension)
     slid = 2 * (dimension - 1) * gas.eta * (first - second)
     inelastic = (1 - r) * (1 + r) / dimension
     return Rates(
@@ -175,7 +175,7 @@ def _rates(T_tr, T_rot, gas: Material, mu) -> Rates:
     )
 
 
-def _moments(threshold, dimension) -> tuple[np.ndarray, np.ndarray]:
+def moments(threshold, dimension) -> tuple[np.ndarray, np.ndarray]:
     """Return <eta g_t^2>/(eta_0 <g_t^2>) and <eta^2 g_t^2>/(eta_0^2 <g_t^2>), both in [0, 1].
 
     With x = g_n/sqrt(<g_n^2>/2) and y = |g_t|/sqrt(<g_t^2>/(D-1)), of density x y^(D-2)
@@ -191,6 +191,6 @@ def _moments(threshold, dimension) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _threshold(T_tr, T_rot, gas: Material, mu) -> np.ndarray:
-    """Return x/y (`_moments`) below which contacts slide: eta_0/[mu (1+r)/2], scaled."""
+    """Return x/y (`moments`) below which contacts slide: eta_0/[mu (1+r)/2], scaled."""
     normal = np.sqrt(shares(T_tr, T_rot / gas.inertia, neither=0)[0])
     return quotient(quotient(gas.eta, mu * (1 + gas.r) / 2), normal)

@@ -1,0 +1,194 @@
+"""Stationary temperatures of a mixture: cooling freely, driven, and Lun's formula for mixtures.
+
+All rates are those of `mixtures`, at a packing that matters through the contact values alone.
+Temperatures come in units of their mean over particles, <T_tr> = 1, unless said otherwise. A gas
+whose contacts never change the spin of a species has T_rot = 0 there, as it starts without spin.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from roughgas.base.errors import InputError
+from roughgas.base.legal import Interval
+from roughgas.theory.arguments import check, check_dimension
+from roughgas.theory.mixture_composition import Mixture, mixture
+from roughgas.theory.mixture_structure import mixture_contact_values
+from roughgas.theory.mixtures import Temperatures, contact_frequencies, rate_matrix
+
+ROUNDING = 1e-13
+SWEEPS = 1000
+SLOPE = 1e-5  # of ln T, for a derivative
+BEGIN = 1e-2  # T_rot of gases that start with hardly any spin
+FIRST, GROWTH, STEPS = 0.3, 2.5, 60  # first step in collisions per particle, the next over it
+FARTHEST = 1.0  # of ln T in a step
+
+
+def mixture_cooling(gas: Mixture, packing=0.0) -> Temperatures:
+    """Return the temperatures of a gas that cools, once all of them fall at the same rate.
+
+    Starting with hardly any spin, the rate equations of the logarithms are followed by implicit
+    steps, short at first, so that a gas with friction goes where it would go, and at last Newton's.
+    """
+    return _cooling(gas, mixture_contact_values(gas, packing))
+
+
+def mixture_decay_rate(gas: Mixture, packing=0.0) -> float:
+    """Return -d ln T/dn of that state, n in collisions per particle; see `decay_rate`."""
+    crowding = mixture_contact_values(gas, packing)
+    return -_growth(gas, _cooling(gas, crowding), crowding)[0]
+
+
+def mixture_relaxation_rate(gas: Mixture, packing=0.0) -> float:
+    """Return how fast ratios of temperatures settle when the gas cools, per collision per particle.
+
+    From the linear stability of `mixture_cooling`: the slowest of its modes, by central
+    differences. For one species it is `relaxation_rate`.
+    """
+    crowding = mixture_contact_values(gas, packing)
+    found = np.concatenate(_cooling(gas, crowding))
+    moves = found > 0
+    slopes = _slopes(lambda logs: _drift(gas, logs, moves, crowding), np.log(found[moves]))
+    return float(-np.linalg.eigvals(slopes).real.max()) if slopes.size else 0.0
+
+
+def mixture_driven(gas: Mixture, power, packing=0.0, spin_power=0.0) -> Temperatures:
+    """Return the temperatures of a gas whose drive replaces what collisions dissipate.
+
+    `power` and `spin_power` are what a particle of each species gets per time, in translation and
+    rotation: numbers, or (species,). Only their ratios matter. White noise that accelerates all
+    particles alike gives in proportion to the mass; `kick_power` is that of the effect thermostat.
+    Raises InputError for a gas that cannot dissipate what it is given.
+    """
+    powers = [_power("power", power, gas), _power("spin power", spin_power, gas)]
+    crowding, D = mixture_contact_values(gas, packing), gas.dimension
+    drive = np.concatenate([powers[0] / D, powers[1] / (2 * D - 3)])
+    moves = np.append(np.ones(len(gas.mass), bool), gas.spins)
+    if not drive.any() or mixture_decay_rate(gas, packing) < ROUNDING or drive[~moves].any():
+        raise InputError("power", powers[0].tolist(), "be what collisions can dissipate, and not 0")
+
+    def sweep(state: np.ndarray) -> np.ndarray:
+        matrix = rate_matrix(gas, *np.split(state, 2), crowding)
+        found = _solved(-matrix, drive, moves)
+        # rates go with the root of the temperature: so its scale is there at once
+        return np.cbrt(state * found**2)
+
+    start = np.append(np.ones(len(gas.mass)), np.where(gas.spins, BEGIN, 0.0))
+    return _in_units(gas, _settled(sweep, start))
+
+
+def kick_power(gas: Mixture) -> np.ndarray:
+    """Return what the effect `thermostat` gives to each species, over its mean, (species,).
+
+    Kicks to pairs leave momentum as it is: of a pair, i gets m_j/(m_i + m_j) of the energy, which
+    is the same for all pairs. To spins they give the same, whatever the species.
+    """
+    return 2 * (gas.fraction * gas.reduced_mass).sum(axis=1) / gas.mass
+
+
+def mixture_rotation(gas: Mixture, T_tr, packing=0.0) -> np.ndarray:
+    """Return T_rot of each species from all T_tr (> 0): Lun's formula for mixtures, (species,).
+
+    Steady states whose drive adds translational energy only leave the energy of each species' spin
+    as it is, on average over its contacts, whatever they do to translation. Units are those of
+    T_tr. r matters through friction alone.
+    """
+    T_tr = check("temperature T_tr", T_tr, Interval("(0, inf)"))
+    T_tr = np.broadcast_to(T_tr, gas.mass.shape)
+    crowding, size = mixture_contact_values(gas, packing), len(gas.mass)
+
+    def sweep(T_rot: np.ndarray) -> np.ndarray:
+        matrix = rate_matrix(gas, T_tr, T_rot, crowding)[size:]
+        return _solved(-matrix[:, size:], matrix[:, :size] @ T_tr, gas.spins)
+
+    return _settled(sweep, np.where(gas.spins, BEGIN * T_tr, 0.0))
+
+
+def mimicry_masses(fraction, radius, dimension=2, packing=0.0) -> np.ndarray:
+    """Return the masses with which a mixture looks like one component, their mean 1.
+
+    Species of equal r, beta, mu and q then have equal temperatures T_tr and T_rot in a cooling gas,
+    those of one species, whatever r, beta, mu and q are: at equal temperatures a contact changes
+    the energy of i by m_ij/m_i times the same number, m_ij being the reduced mass, so that sum_j
+    x_j chi_ij (a_i + a_j)^(D-1) m_ij^(1/2)/m_i has to be the same for all. The effect is that of A.
+    Lasanta, F. Vega Reyes, V. Garzo & A. Santos (Phys. Fluids 31, 063306, 2019).
+    """
+    pairs = zip(*np.broadcast_arrays(fraction, radius), strict=True)
+    species = [{"fraction": float(x), "radius": float(a)} for x, a in pairs]
+    gas = mixture(species, 1.0, 1.0, check_dimension(dimension))
+    crowding = mixture_contact_values(gas, packing)
+
+    def sweep(mass: np.ndarray) -> np.ndarray:
+        nu = contact_frequencies(gas._replace(mass=mass), np.ones(len(mass)), crowding)
+        loss = (nu * gas._replace(mass=mass).reduced_mass).sum(axis=1) / mass
+        mass = mass * loss
+        return mass / (gas.fraction @ mass)
+
+    return _settled(sweep, np.ones(len(gas.mass)))
+
+
+def _cooling(gas: Mixture, crowding: np.ndarray) -> Temperatures:
+    """Return the temperatures of `mixture_cooling`."""
+    state = np.append(np.ones(len(gas.mass)), np.where(gas.spins, BEGIN, 0.0))
+    moves = state > 0
+    logs = np.log(state[moves])
+
+    def drift(logs: np.ndarray) -> np.ndarray:
+        return _drift(gas, logs, moves, crowding)
+
+    for step in FIRST * GROWTH ** np.arange(STEPS if len(logs) > 1 else 0):
+        change = np.linalg.solve(np.eye(len(logs) - 1) / step - _slopes(drift, logs), drift(logs))
+        logs[1:] += np.clip(change, -FARTHEST, FARTHEST)
+        if np.abs(change).max() < ROUNDING:
+            break
+    state[moves] = np.exp(logs - logs.max())
+    return _in_units(gas, state)
+
+
+def _drift(gas: Mixture, logs, moves, crowding) -> np.ndarray:
+    """Return d ln(T/T_1)/dn of all temperatures that move but the first, T_1."""
+    state = np.zeros(len(moves))
+    state[moves] = np.exp(logs)
+    growth = _growth(gas, Temperatures(*np.split(state, 2)), crowding)[moves]
+    return growth[1:] - growth[0]
+
+
+def _slopes(function: Callable[[np.ndarray], np.ndarray], at: np.ndarray) -> np.ndarray:
+    """Return the derivatives of a function by all its arguments but the first, in columns."""
+    steps = SLOPE * np.eye(len(at))[1:]
+    found = [(function(at + step) - function(at - step)) / (2 * SLOPE) for step in steps]
+    return np.array(found).T.reshape(len(at) - 1, len(at) - 1)
+
+
+def _growth(gas: Mixture, state: Temperatures, crowding: np.ndarray) -> np.ndarray:
+    """Return d ln T/dn of T_tr and T_rot, n in collisions per particle; 0 where T = 0."""
+    together = np.concatenate(state)
+    change = rate_matrix(gas, *state, crowding) @ together
+    collisions = gas.fraction @ contact_frequencies(gas, state.T_tr, crowding).sum(axis=1)
+    return change / np.where(together > 0, together, 1.0) / collisions
+
+
+def _solved(matrix: np.ndarray, right: np.ndarray, moves: np.ndarray) -> np.ndarray:
+    """Return x of matrix x = right among what moves; 0 elsewhere."""
+    found = np.zeros(len(right))
+    found[moves] = np.linalg.solve(matrix[np.ix_(moves, moves)], right[moves])
+    return found
+
+
+def _settled(sweep: Callable[[np.ndarray], np.ndarray], state: np.ndarray) -> np.ndarray:
+    """Return what a sweep leaves as it is, reached from `state` (>= 0)."""
+    for _ in range(SWEEPS):
+        before, state = state, sweep(state)
+        if np.all(np.abs(state - before) <= ROUNDING * np.abs(state)):
+            break
+    return state
+
+
+def _power(key: str, power, gas: Mixture) -> np.ndarray:
+    return np.broadcast_to(check(key, power), gas.mass.shape)
+
+
+def _in_units(gas: Mixture, state: np.ndarray) -> Temperatures:
+    T_tr, T_rot = np.split(state, 2)
+    mean = gas.fraction @ T_tr
+    return Temperatures(T_tr / mean, T_rot / mean)

@@ -1,0 +1,125 @@
+"""A slow, independent account of contacts between unlike particles, in three dimensions throughout:
+disks move and meet in a plane, and spin about its normal."""
+
+import numpy as np
+
+
+def directions(rng, size, dimension):
+    """Return random unit vectors, (size, 3)."""
+    n = np.zeros((size, 3))
+    n[:, :dimension] = rng.standard_normal((size, dimension))
+    return n / np.linalg.norm(n, axis=1, keepdims=True)
+
+
+def drawn(rng, size, dimension, width):
+    """Return Maxwellian velocities, (size, 3), of this standard deviation, (size,) or a number."""
+    v = np.zeros((size, 3))
+    v[:, :dimension] = rng.standard_normal((size, dimension))
+    return v * np.reshape(width, (-1, 1))
+
+
+def drawn_spins(rng, size, dimension, width):
+    w = np.zeros((size, 3))
+    w[:, 2 if dimension == 2 else slice(None)] = rng.standard_normal(
+        size if dimension == 2 else (size, 3)
+    )
+    return w * np.reshape(width, (-1, 1))
+
+
+def after_contact(n, first, second, r, beta, mu=np.inf):
+    """Return v and w after a contact, of both. `n` points from the second to the first.
+
+    A particle is (v, w, mass, inertia I, radius). The impulse is found from what it has to do: it
+    reverses the velocity at the contact, r times its normal part and beta times its tangential one,
+    whatever the ease with which each particle yields to it; if that takes more tangential impulse
+    than mu allows, it takes mu times the normal one along the slip.
+    """
+
+    def at_contact(v, w, radius, sign):
+        return v + np.cross(w, sign * radius[:, None] * n)
+
+    def yielding(impulse, mass, inertia, radius, sign):
+        arm = sign * radius[:, None] * n
+        return impulse / mass[:, None], np.cross(arm, impulse) / inertia[:, None]
+
+    (v1, w1, m1, i1, a1), (v2, w2, m2, i2, a2) = first, second
+    g = at_contact(v1, w1, a1, -1) - at_contact(v2, w2, a2, 1)
+    speed = np.sum(g * n, axis=1, keepdims=True)
+    slip = g - speed * n
+    along = slip / np.maximum(np.linalg.norm(slip, axis=1, keepdims=True), 1e-300)
+
+    def response(push):
+        dv1, dw1 = yielding(push, m1, i1, a1, -1)
+        dv2, dw2 = yielding(-push, m2, i2, a2, 1)
+        return np.sum((at_contact(dv1, dw1, a1, -1) - at_contact(dv2, dw2, a2, 1)) * push, axis=1)
+
+    normal = -(1 + r) * speed[:, 0] / response(n)
+    drag = -(1 + beta) * np.linalg.norm(slip, axis=1) / response(along)
+    drag = np.sign(drag) * np.minimum(np.abs(drag), mu * np.abs(normal))
+    impulse = normal[:, None] * n + drag[:, None] * along
+    dv1, dw1 = yielding(impulse, m1, i1, a1, -1)
+    dv2, dw2 = yielding(-impulse, m2, i2, a2, 1)
+    return (v1 + dv1, w1 + dw1), (v2 + dv2, w2 + dw2)
+
+
+def energies(v, w, mass, inertia):
+    """Return the translational and the rotational energy of each particle."""
+    return mass * np.sum(v**2, axis=1) / 2, inertia * np.sum(w**2, axis=1) / 2
+
+
+class Dsmc:
+    """A mixture without positions: pairs meet at random, in proportion to how fast they approach.
+
+    `gas` is a `theory.Mixture`, from which only the properties of the particles are taken.
+    """
+
+    def __init__(self, gas, number, seed, T_rot=0.0):
+        self.rng, self.gas = np.random.default_rng(seed), gas
+        counts = np.round(gas.fraction * number).astype(int)
+        self.kind = np.repeat(np.arange(len(counts)), counts)
+        self.mass, self.radius = gas.mass[self.kind], gas.radius[self.kind]
+        self.inertia = gas.inertia[self.kind] * self.mass * self.radius**2
+        size, D = len(self.kind), gas.dimension
+        self.v = drawn(self.rng, size, D, 1 / np.sqrt(self.mass))
+        self.w = drawn_spins(self.rng, size, D, np.sqrt(T_rot / self.inertia))
+
+    def collide(self, per_particle):
+        """Make about so many collisions per particle; keep the translational energy at 1."""
+        done = 0.0
+        while done < per_particle * len(self.kind):
+            done += 2 * self._round()
+            self._scale()
+
+    def temperatures(self):
+        """Return T_tr and T_rot of each species."""
+        D, kinds = self.gas.dimension, np.arange(len(self.gas.mass))
+        tr, rot = energies(self.v, self.w, self.mass, self.inertia)
+        return [
+            np.array([2 * e[self.kind == k].mean() / freedoms for k in kinds])
+            for e, freedoms in ((tr, D), (rot, 2 * D - 3))
+        ]
+
+    def _round(self):
+        size, D = len(self.kind), self.gas.dimension
+        order = self.rng.permutation(size)[: size // 2 * 2]
+        i, j = order[::2], order[1::2]
+        n = directions(self.rng, len(i), D)
+        speed = np.sum((self.v[i] - self.v[j]) * n, axis=1)
+        rate = np.abs(speed) * (self.radius[i] + self.radius[j]) ** (D - 1)
+        hit = rate > self.rng.random(len(i)) * self._most(i, j)
+        i, j = i[hit], j[hit]
+        columns = self.v, self.w, self.mass, self.inertia, self.radius
+        one, two = ([column[k] for column in columns] for k in (i, j))
+        tables = self.gas.restitution, self.gas.roughness, self.gas.friction
+        rule = (table[self.kind[i], self.kind[j]] for table in tables)
+        (self.v[i], self.w[i]), (self.v[j], self.w[j]) = after_contact(n[hit], one, two, *rule)
+        return len(i)
+
+    def _most(self, i, j):
+        fastest = np.sqrt((self.v**2).sum(axis=1).max())
+        return 2 * fastest * (2 * self.radius.max()) ** (self.gas.dimension - 1)
+
+    def _scale(self):
+        self.v -= (self.mass[:, None] * self.v).sum(axis=0) / self.mass.sum()
+        tr = energies(self.v, self.w, self.mass, self.inertia)[0].mean()
+        self.v, self.w = self.v / np.sqrt(tr), self.w / np.sqrt(tr)

@@ -1,0 +1,219 @@
+"""Rates of mixtures: against contacts that are sampled, one species, and what collisions keep."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from tests.theory.collisions import after_contact, directions, drawn, drawn_spins, energies
+
+from roughgas import theory
+from roughgas.base.errors import InputError
+
+SAMPLES = 60_000
+UNLIKE = [
+    {"fraction": 0.3, "radius": 1.0, "mass": 1.0, "inertia": 0.5},
+    {"fraction": 0.7, "radius": 2.5, "mass": 5.0, "inertia": 0.3, "restitution": 0.7},
+]
+T_TR, T_ROT = np.array([1.0, 2.0]), np.array([0.6, 3.0])
+dimensions = pytest.mark.parametrize("dimension", [2, 3])
+
+
+def sampled_changes(gas, i, j, seed=0):
+    """Return the energies that a contact with j brings to a particle of i, and their errors.
+
+    Normals are uniform and velocities Maxwellian; pairs count as fast as they approach.
+    """
+    rng, D = np.random.default_rng(seed), gas.dimension
+    n = directions(rng, SAMPLES, D)
+
+    def particles(k):
+        inertia = gas.inertia[k] * gas.mass[k] * gas.radius[k] ** 2
+        v = drawn(rng, SAMPLES, D, np.sqrt(T_TR[k] / gas.mass[k]))
+        w = drawn_spins(rng, SAMPLES, D, np.sqrt(T_ROT[k] / inertia))
+        return [v, w, *(np.full(SAMPLES, x) for x in (gas.mass[k], inertia, gas.radius[k]))]
+
+    one, two = particles(i), particles(j)
+    weight = np.maximum(-np.sum((one[0] - two[0]) * n, axis=1), 0)
+    rule = gas.restitution[i, j], gas.roughness[i, j], gas.friction[i, j]
+    (v, w), _ = after_contact(n, one, two, *rule)
+    before, after = energies(*one[:4]), energies(v, w, *one[2:4])
+    weight = weight / weight.mean()
+    gains = [weight * (new - old) for new, old in zip(after, before, strict=True)]
+    return np.mean(gains, axis=1), np.std(gains, axis=1) / np.sqrt(SAMPLES)
+
+
+@dimensions
+@pytest.mark.parametrize(("beta", "mu"), [(0.4, np.inf), (-0.6, np.inf), (0.5, 0.4)])
+def test_rates_are_those_of_sampled_contacts(dimension, beta, mu):
+    gas = theory.mixture(UNLIKE, 0.9, beta, dimension, mu=mu)
+    nu = theory.mixture_frequency(gas, T_TR, 0.1) / theory.mixture_density(gas, 0.1)
+    expected, error = np.zeros((2, 2)), np.zeros((2, 2))
+    for i in range(2):
+        for j in range(2):
+            energy, spread = sampled_changes(gas, i, j)
+            expected[:, i] += nu[i, j] * energy
+            error[:, i] += (nu[i, j] * spread) ** 2
+    crowding = theory.mixture_contact_values(gas, 0.1)
+    found = np.array(theory.mixture_changes(gas, T_TR, T_ROT, crowding))
+    found *= np.array([[dimension], [2 * dimension - 3]]) / 2
+    assert (np.abs(found - expected) < 4 * np.sqrt(error)).all()
+    assert (np.sqrt(error) < 0.04 * np.abs(expected).max(axis=1, keepdims=True)).all()
+
+
+def alike(number, **about):
+    shares = np.arange(1, number + 1) / (number * (number + 1) / 2)
+    return [{"fraction": share} | about for share in shares]
+
+
+@settings(derandomize=True, deadline=None, max_examples=60)
+@given(
+    r=st.floats(0, 1),
+    beta=st.floats(-0.999, 1),
+    q=st.floats(0.05, 1),
+    dimension=st.sampled_from([2, 3]),
+    size=st.floats(0.1, 10),
+    mu=st.sampled_from([np.inf, 1.0, 0.2]),
+)
+def test_equal_species_have_the_rates_of_one(r, beta, q, dimension, size, mu):
+    gas = theory.mixture(alike(3, radius=size, mass=1 / size), r, beta, dimension, q, mu)
+    changes = theory.mixture_changes(gas, np.full(3, 1.3), np.full(3, 0.7))
+    nu = theory.mixture_frequency(gas, 1.3, 0.1)
+    rate = theory.mixture_density(gas, 0.1) / nu.sum(axis=1)
+    crowding = theory.mixture_contact_values(gas, 0.1)
+    expected = theory.friction_changes(1.3, 0.7, r, beta, mu, dimension, q)
+    for found, one in zip(changes, expected, strict=True):
+        assert found * rate * crowding[0, 0] == pytest.approx(np.full(3, one), abs=1e-13)
+
+
+@dimensions
+def test_equal_species_collide_as_often_as_one(dimension):
+    gas = theory.mixture(alike(4), 0.9, 0, dimension)
+    nu = theory.mixture_frequency(gas, 1.7, 0.2).sum(axis=1)
+    assert nu == pytest.approx(theory.collision_frequency(1.7, 0.2, dimension), rel=1e-14)
+
+
+@dimensions
+def test_contacts_are_counted_by_both(dimension):
+    gas = theory.mixture(UNLIKE, 0.9, 0, dimension)
+    met = gas.fraction[:, None] * theory.mixture_frequency(gas, T_TR, 0.3)
+    assert met == pytest.approx(met.T, rel=1e-14)
+
+
+@dimensions
+@pytest.mark.parametrize("beta", [-1, 1])
+def test_elastic_mixtures_keep_their_energy_and_share_it_equally(dimension, beta):
+    elastic = [one | {"restitution": 1.0} for one in UNLIKE]
+    gas = theory.mixture(elastic, 1, beta, dimension)
+    tr, rot = theory.mixture_changes(gas, T_TR, T_ROT)
+    assert np.abs(tr).min() > 0.1  # while each species gains or loses
+    change = gas.fraction @ (dimension * tr + (2 * dimension - 3) * rot)
+    assert change == pytest.approx(0, abs=1e-12)
+    changes = np.array(theory.mixture_changes(gas, [2, 2], [2, 2]))
+    assert changes == pytest.approx(0, abs=1e-12)
+
+
+@dimensions
+def test_inelastic_mixtures_lose_energy(dimension):
+    gas = theory.mixture(UNLIKE, 0.9, 0.3, dimension)
+    tr, rot = theory.mixture_changes(gas, T_TR, T_ROT)
+    assert gas.fraction @ (dimension * tr + (2 * dimension - 3) * rot) < -0.1
+
+
+def test_fractions_and_numbers_say_the_same():
+    numbers = [{"number": 30}, {"number": 90, "radius": 2}]
+    gas = theory.mixture(numbers, 0.9, 0)
+    assert gas.fraction == pytest.approx([0.25, 0.75])
+    assert gas.inertia == pytest.approx([0.5, 0.5])
+
+
+@dimensions
+def test_what_is_not_said_is_of_one_material(dimension):
+    """Masses are those of one density: the volume's."""
+    gas = theory.mixture([{"number": 1}, {"number": 1, "radius": 3}], 0.9, 0, dimension)
+    assert gas.mass == pytest.approx([1, 3**dimension])
+
+
+@pytest.mark.parametrize("kind", ["uniform", "lognormal"])
+def test_a_distribution_has_its_moments(kind):
+    """As radii that are drawn have them; masses are those of one density, unless given."""
+    radius = {"distribution": kind, "deviation": 0.2, "mean": 1.5}
+    species = [{"fraction": 0.4, "radius": radius}, {"fraction": 0.6, "mass": 3}]
+    gas = theory.mixture(species, 0.9, 0)
+    mine = gas.part_of == 0
+    share = gas.fraction[mine] / 0.4
+    rng = np.random.default_rng(1)
+    width = np.sqrt(np.log(1.04))
+    drawn = {
+        "uniform": 1.5 * (1 + np.sqrt(3) * 0.2 * rng.uniform(-1, 1, 400_000)),
+        "lognormal": 1.5 * np.exp(width * rng.standard_normal(400_000) - width**2 / 2),
+    }[kind]
+    assert share.sum() == pytest.approx(1, rel=1e-14)
+    for power in (1, 2, 3, 5):
+        assert share @ gas.radius[mine] ** power == pytest.approx((drawn**power).mean(), rel=0.01)
+    assert share @ gas.mass[mine] == pytest.approx(1.5**2 * 1.04, rel=1e-9)
+    assert (gas.mass[~mine] == 3).all()
+
+
+def test_a_list_of_radii_is_a_distribution(tmp_path):
+    gas = theory.mixture([{"fraction": 1, "radius": [1, 2, 2, 3]}], 0.9, 0)
+    assert gas.radius == pytest.approx([1, 2, 3])
+    assert gas.fraction == pytest.approx([0.25, 0.5, 0.25])
+    (tmp_path / "radii").write_text("1\n3\n")
+    of_file = {"distribution": "file", "file": str(tmp_path / "radii")}
+    assert theory.mixture([{"fraction": 1, "radius": of_file}], 0.9, 0).radius == pytest.approx(
+        [1, 3]
+    )
+    many = np.linspace(1, 3, 1001)
+    gas = theory.mixture([{"fraction": 1, "radius": many.tolist()}], 0.9, 0)
+    assert len(gas.radius) == 12
+    assert gas.fraction @ gas.radius**2 == pytest.approx((many**2).mean(), rel=1e-3)
+
+
+def test_pairs_have_what_they_are_given():
+    species = [{"fraction": 0.5, "name": "steel"}, {"fraction": 0.5, "name": "glass"}]
+    pairs = [{"between": ["glass", "steel"], "restitution": 0.5}, {"between": [1, 1], "mu": 0.2}]
+    gas = theory.mixture(species, 0.9, 0, pairs=pairs[:1])
+    assert gas.restitution == pytest.approx(np.array([[0.9, 0.5], [0.5, 0.9]]))
+    unnamed = [{"fraction": 0.5}, {"fraction": 0.5}]
+    assert theory.mixture(unnamed, 0.9, 0, pairs=pairs[1:]).friction[1, 1] == 0.2
+    with pytest.raises(InputError, match=r"species_pairs\.between = wood: must be one of st"):
+        theory.mixture(species, 0.9, 0, pairs=[{"between": ["wood", "steel"]}])
+
+
+def test_unlike_partners_meet_half_way():
+    species = [{"fraction": 0.5}, {"fraction": 0.5, "restitution": 0.7, "roughness": 1, "mu": 0.3}]
+    gas = theory.mixture(species, 0.9, 0, mu=0.1)
+    assert gas.restitution == pytest.approx(np.array([[0.9, 0.8], [0.8, 0.7]]))
+    assert gas.roughness == pytest.approx(np.array([[0, 0.5], [0.5, 1]]))
+    assert gas.friction == pytest.approx(np.array([[0.1, 0.2], [0.2, 0.3]]))
+
+
+HALF = {"fraction": 0.5}
+BAD = [
+    ([], "species = []: must be a list of species, each with a fraction or a number"),
+    ([{"fraction": 0.5}], "species.fraction = 0.5 in all: must add up to 1"),
+    ([HALF, {"fraction": 0.0}], "species.fraction = 0.0: must lie in (0, 1]"),
+    ([HALF, {"number": 5}], "species = fraction and number: must have one of them throughout"),
+    ([HALF, {"radius": 2}], "species = {'radius': 2}: must have either fraction or number"),
+    ([HALF, HALF | {"radius": 0}], "species.radius = 0.0: must be a positive number"),
+    (
+        [HALF, HALF | {"radius": {"distribution": "uniform", "deviation": 0.6}}],
+        "species.radius.deviation = 0.6: must lie in [0, 0.5773]",
+    ),
+    ([HALF, HALF | {"mass": -1}], "species.mass = -1.0: must be a positive number"),
+    ([HALF, HALF | {"restitution": 2}], "restitution r = 2.0: must lie in [0, 1]"),
+    ([HALF, HALF | {"roughness": None}], "roughness beta = None: must lie in [-1, 1]"),
+    ([HALF, HALF | {"inertia": 0}], "inertia q = 0.0: must be a positive number"),
+]
+
+
+@pytest.mark.parametrize(("species", "text"), BAD)
+def test_bad_species_are_one_line(species, text):
+    with pytest.raises(InputError) as caught:
+        theory.mixture(species, 0.9, 0)
+    assert str(caught.value) == text
+
+
+def test_a_misspelt_key_is_answered_with_the_right_one():
+    with pytest.raises(InputError, match=r"species = raduis: .*did you mean radius\?"):
+        theory.mixture([{"fraction": 1, "raduis": 2}], 0.9, 0)
