@@ -21,7 +21,8 @@ import pytest
 from hypothesis import HealthCheck, Phase, given, seed, settings
 from hypothesis import strategies as st
 
-HANGS = 60  # seconds
+HANGS = 60  # seconds of processor time: what else a machine does is not a command's fault
+SLEEPS = 600  # seconds by the clock
 MEMORY = 6 << 30  # bytes
 
 
@@ -46,13 +47,13 @@ class Campaign:
         )
         @given(strategy)
         def see(example):
-            signal.alarm(HANGS)
+            _watch(HANGS, SLEEPS)
             try:
                 self.outcomes[attempt(example)] += 1
             except BaseException as error:
                 self._note(error)
             finally:
-                signal.alarm(0)
+                _watch(0, 0)
 
         try:
             see()
@@ -76,8 +77,13 @@ class Campaign:
         self.faults[where].append(text)
 
 
+def _watch(processor, clock):
+    signal.setitimer(signal.ITIMER_PROF, processor)
+    signal.alarm(clock)
+
+
 def _hangs(*_):
-    raise TimeoutError(f"not over after {HANGS} s")
+    raise TimeoutError(f"not over after {HANGS} s of processor time, or {SLEEPS} s")
 
 
 def configurations(campaign, folder):
@@ -150,7 +156,8 @@ def main():
         parser.add_argument(f"--{name}", type=int, default=0, help=one.__doc__)
     parser.add_argument("--seed", type=int, default=1)
     options = vars(parser.parse_args())
-    signal.signal(signal.SIGALRM, _hangs)
+    for number in (signal.SIGALRM, signal.SIGPROF):
+        signal.signal(number, _hangs)
     for number in (signal.SIGINT, signal.SIGTERM):  # what has been tried is reported
         signal.signal(number, signal.default_int_handler)
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
