@@ -4,12 +4,14 @@ The names of this module are there as `roughgas.simulate`, `roughgas.trajectory`
 `roughgas.experiments`.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, TypedDict
 
 if TYPE_CHECKING:
     import xarray
+
+    from roughgas.observables import Frame
 
 UNNAMED = "scene"
 """What a dataset calls the experiment where it has no name."""
@@ -21,6 +23,10 @@ Effects = Mapping[str, Mapping[str, float | str] | None]
 
 Species = Sequence[Mapping[str, Any]]
 """Species, or pairs of them, each a mapping of keys to values."""
+
+
+Observe = Sequence[str] | Mapping[str, Mapping[str, float] | Callable[["Frame"], Any] | None]
+"""Observables by name, each with settings, with None for the usual ones, or a function."""
 
 
 class Schedule(TypedDict, total=False):
@@ -56,6 +62,7 @@ def simulate(
     spin_temperature: float | None = None,
     initial: "xarray.Dataset | None" = None,
     keep_state: bool | None = None,
+    observe: Observe | None = None,
     scale: str = "paper",
     config: str | Path | None = None,
     progress: bool = True,
@@ -101,6 +108,10 @@ def simulate(
         of a trajectory, or a dataset with its variables ``position``, ``velocity`` and ``spin``.
     keep_state
         Whether to keep the last state in the dataset, for `initial` of another run.
+    observe
+        What to watch besides: names of observables, such as ``["profiles", "stress"]``, or names
+        with their settings, or with a function that returns a number or an array of a frame
+        (`roughgas.observables.Frame`). docs/observables.md lists them.
     scale
         ``"paper"``, ``"small"`` (a quarter of the particles, and short), ``"coarse"`` or ``"fine"``
         (as long as a pilot says).
@@ -159,6 +170,7 @@ def simulate(
     changes = {"particles": particles, "box": box, "effects": effects, "schedule": schedule}
     changes |= {"species": species, "species_pairs": species_pairs}
     changes |= {"spin_temperature": spin_temperature, "keep_state": keep_state}
+    changes["observables"], functions = _observed(observe)
     legal_r, legal_beta, number = _numbers(r, beta, seed)
 
     from roughgas.config.provenance import provenance
@@ -179,7 +191,7 @@ def simulate(
     about = provenance(name, settings, labels, scale, "point.nc", told=told)
     states = [] if initial is None else initial_of(initial)
     with Progress(name, scene, settings, quiet=not progress) as bar:
-        found = run_point(scene, settings, number, bar, states)
+        found = run_point(scene, settings, number, bar, states, functions)
     return as_dataset(found._replace(attributes=about | found.attributes))
 
 
@@ -289,3 +301,15 @@ def _numbers(r: Any, beta: Any, seed: Any) -> tuple[float, float, int]:
     from roughgas import config
 
     return config.restitution(r), config.roughness(beta), config.seed(seed)
+
+
+def _observed(
+    observe: Observe | None,
+) -> tuple[dict[str, Any] | None, dict[str, Callable[["Frame"], Any]]]:
+    """Return the observables that settings name, and those that are functions."""
+    if observe is None:
+        return None, {}
+    named = [observe] if isinstance(observe, str) else observe
+    given = named if isinstance(named, Mapping) else dict.fromkeys(named)
+    functions = {name: one for name, one in given.items() if callable(one)}
+    return {name: one or {} for name, one in given.items() if not callable(one)}, functions

@@ -18,6 +18,7 @@ NEVER = 1e-300  # a contact time
 UNLIMITED = 2**60
 
 _SUMS = {"contact_averages": {}}
+_ALL_SUMS = _SUMS | {"contact_stress": {}}
 _DISKS = {"spin": {"inertia": 0.5}}
 _BED = _DISKS | {
     "gravity": {"acceleration": 1.0},
@@ -47,7 +48,7 @@ KERNELS = {
     "spheres": {
         "particles": 64,
         "box": [12, 12, 12],
-        "effects": {"spin": {"inertia": 0.4}, "contact_time": {"duration": NEVER}} | _SUMS,
+        "effects": {"spin": {"inertia": 0.4}, "contact_time": {"duration": NEVER}} | _ALL_SUMS,
     },
     "friction": {"particles": 160, "box": [100, 100], "effects": _DISKS | _FRICTION},
     "rubbed bed": {
@@ -71,7 +72,7 @@ KERNELS = {
     "heated spheres": {
         "particles": 64,
         "box": [12, 12, 12],
-        "effects": {"spin": {"inertia": 0.4}} | _HEAT | _FRICTION | _SUMS,
+        "effects": {"spin": {"inertia": 0.4}} | _HEAT | _FRICTION | _ALL_SUMS,
     },
     "viscoelastic": {
         "particles": 160,

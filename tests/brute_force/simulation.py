@@ -66,6 +66,7 @@ class BruteForce:
         drawn = drive and world.thermostat
         self.kicks = Kicks(drawn, world.q, self.dimension, drive, company) if drawn else None
         self.seen = np.zeros(3)  # v_t^2, v_r^2 and v_t.v_r, over the contacts of pairs so far
+        self.carried = np.zeros((3, 3))  # momentum times distance, by component and axis
         self._fold()
 
     def run(self, collisions):
@@ -275,6 +276,7 @@ class BruteForce:
             push = push + along
             self.w[i] += np.cross(n, along) / s[0]
             self.w[j] += np.cross(n, along) / s[1]
+        self.carried += np.outer(-push, self.radius[[i, j]].sum() * n)
         self.v[i] -= push[: self.dimension] / m[0]
         self.v[j] += push[: self.dimension] / m[1]
 

@@ -75,7 +75,7 @@ MISTAKES = [
     (
         "experiments.cooling.effects.gravty",
         {"acceleration": 1},
-        "effects: key = 'gravty': must be one of contact_averages, contact_time, floor, ",
+        "effects: key = 'gravty': must be one of contact_averages, contact_stress, contact_time, ",
     ),
     (
         "experiments.vibrated.effects.floor.height",

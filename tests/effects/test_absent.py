@@ -14,7 +14,7 @@ from schedules import COOLING, STEADY
 
 from roughgas.data.point import read_point, write_point
 from roughgas.data.variables import POINT
-from roughgas.effects import KINDS
+from roughgas.effects import KINDS, contact_stress
 from roughgas.kernel import random
 from roughgas.kernel.record import columns, record
 from roughgas.kernel.state import BOUNDARY, BOUNDARY_HITS
@@ -25,7 +25,7 @@ PROGRAM = Path(__file__).parent.parent / "machine_code.py"
 SMALL = {2: (16, [20, 20]), 3: (16, [12, 12, 12])}
 MOMENTS = {"contact_time", "thermostat"}  # what keeps a time for each particle
 EVENTS = {"floor", "walls", "shaken_walls", "thermostat"}  # what has events of its own
-SUMS = {"contact_averages"}  # what keeps running sums
+SUMS = {"contact_averages": 3, "contact_stress": 9}  # what keeps running sums, and how many
 PHASES = {"floor", "shaken_walls", "shear"}
 
 
@@ -138,9 +138,9 @@ def test_a_state_holds_what_its_effects_need(kernel):
     needed |= {"agenda.boundary_time", "agenda.boundary_code"} if there & EVENTS else set()
     needed |= {"phase"} if there & PHASES else set()
     needed |= {"random"} if "thermostat" in there else set()
-    needed |= {f"sums.{name}" for name in there & SUMS}
+    needed |= {f"sums.{name}" for name in there & SUMS.keys()}
     assert set(found) == EVERYWHERE | needed
-    assert found["ledger"].shape == (2, len(there - SUMS) + 1, 2)
+    assert found["ledger"].shape == (2, len(there - SUMS.keys()) + 1, 2)
     for name in needed & {"moments.contact_time", "moments.thermostat", "agenda.boundary_time"}:
         assert found[name].shape == (16,)
     if "spin" in there:
@@ -162,9 +162,9 @@ def test_what_an_effect_needs_is_what_it_adds(kernel):
     )
     added = 16 * 8 * (2 * dimension - 3) * ("spin" in there)
     added += 16 * 8 * len(there & MOMENTS) + 16 * (8 + 4) * bool(there & EVENTS)
-    added += 3 * 3 * 8 * len(there & SUMS)
+    added += 3 * 8 * sum(SUMS[name] for name in there & SUMS.keys())
     added += 8 * ("thermostat" in there) + 8 * len(there) * bool(there & PHASES)
-    assert size - least == added + 2 * 2 * 8 * len(there - SUMS)
+    assert size - least == added + 2 * 2 * 8 * len(there - SUMS.keys())
 
 
 @pytest.mark.parametrize("kernel", ["smooth", "gas", "sheared", "friction", "heated"])
@@ -193,7 +193,7 @@ def test_columns_without_spin():
     ends = {
         "gas": ["yv_x", "ww", "w"],
         "bed": ["ww", "w", *summed],
-        "spheres": ["ww", "w_x", "w_y", "w_z", *summed],
+        "spheres": ["ww", "w_x", "w_y", "w_z", *summed, *contact_stress.SUMS],
     }
     for name, end in ends.items():
         assert columns(begin(small(name), 0.9, -1.0)[0])[-len(end) :] == end

@@ -30,6 +30,7 @@ COMMANDS = {
         ),
         FROM,
         flag("--keep-state", "keep the last state in the dataset, for --from"),
+        value("--observe NAME", "what to watch besides, such as stress or profiles", nargs="+"),
         output("datasets, one a seed", required=False, nargs="+"),
         flag("--json", "print a line of JSON as each seed is done"),
         examples=(
@@ -38,6 +39,7 @@ COMMANDS = {
             "roughgas run vibrated_inertia/inertia0.3 --r 0.9 --beta 1 -o hollow.nc",
             "roughgas run sheared --r 0.9 --beta 0 --keep-state -o first.nc",
             "roughgas run sheared --r 0.9 --beta 0 --from first.nc -o second.nc",
+            "roughgas run sheared --r 0.9 --beta 0 --observe stress profiles -o stress.nc",
         ),
         about="Simulate a point of an experiment, for one seed or for several in turn, and write "
         "a dataset for each. Without -o the dataset goes into the present folder, under a name "

@@ -10,9 +10,11 @@ from roughgas import config
 from roughgas.base.errors import InputError
 from roughgas.base.layout import as_json
 from roughgas.config.provenance import provenance, variant_attributes
+from roughgas.config.schema import check_schema
 from roughgas.data.point import Point, read_point, write_point
 from roughgas.planning.reach import complete
 from roughgas.scene import Scene, build
+from roughgas.simulation import schedule
 from roughgas.simulation.ends import Initial, initial_of
 from roughgas.simulation.point import compile_kernels, run_point
 from roughgas.simulation.progress import Bar, Progress
@@ -84,7 +86,14 @@ def point_of(options: Namespace, beta: str) -> tuple[Scene, dict[str, Any]]:
 def _settings(options: Namespace) -> dict[str, Any]:
     if options.settings is not None:
         return config.from_text(options.settings, "--settings", options.checked)
-    return config.load_experiment(options.config, options.experiment, options.scale)
+    found = config.load_experiment(options.config, options.experiment, options.scale)
+    watched = getattr(options, "observe", None)
+    if not watched:
+        return found
+    found = config.merged(found, {"observables": {name: {} for name in watched}})
+    check_schema(found, options.experiment, "experiment")
+    schedule.check(found)
+    return found
 
 
 def _own_name(options: Namespace, r: str, beta: str, seed: str) -> str:

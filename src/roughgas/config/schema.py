@@ -53,8 +53,8 @@ def _validator(part: str | None) -> "Draft202012Validator":
 
 @functools.cache
 def _schema() -> dict[str, Any]:
-    """Return the whole schema: of config.yaml, of its studies, and of the effects."""
-    from roughgas import effects
+    """Return the whole schema: of config.yaml, its studies, the effects, and the observables."""
+    from roughgas import effects, observables
     from roughgas.config.reading import read_yaml
 
     schema, studies = (
@@ -62,6 +62,7 @@ def _schema() -> dict[str, Any]:
     )
     schema["$defs"] |= studies["$defs"]
     schema["$defs"] |= {"effects": effects.schema(), "effects_in_full": effects.required()}
+    schema["$defs"]["observables"] = observables.schema()
     return schema
 
 

@@ -1,11 +1,12 @@
 """The dataset of one simulated point."""
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from roughgas.data import opening
 from roughgas.data.netcdf import Content, in_memory, read_netcdf, write_netcdf
-from roughgas.data.variables import CLOCKS, described, refuse
+from roughgas.data.variables import CLOCKS, Variable, described, refuse
 
 if TYPE_CHECKING:
     import xarray
@@ -28,6 +29,7 @@ class Point(NamedTuple):
 
     variables: dict[str, Any]
     attributes: dict[str, str | int | float]
+    observed: Mapping[str, Variable] = {}  # what those of observables are
 
 
 def write_point(path: str | Path, point: Point) -> None:
@@ -61,4 +63,6 @@ def _content(point: Point) -> Content:
     refuse("missing variables of a point", required - set(point.variables))
     refuse("missing attributes of a point", least.attributes - set(point.attributes))
     cooling = CLOCKS[1] in point.variables
-    return Content(described("point", point.variables, cooling), point.attributes)
+    return Content(
+        described("point", point.variables, cooling, observed=point.observed), point.attributes
+    )

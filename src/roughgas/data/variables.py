@@ -42,6 +42,7 @@ class Variable(NamedTuple):
     over_seeds: str = "mean"  # how a reduced dataset combines a scalar: mean, sum, or "" for not
     flags: str = ""  # the meanings of 0, 1, ..., a word each
     of_settings: bool = False  # in units of the settings even in a cooling gas
+    observable: str = ""  # which has watched it
 
     def units_of(self, cooling: bool) -> str:
         """Return its units in a cooling gas, or in a driven one."""
@@ -291,14 +292,19 @@ def register(kind: str, variables: Mapping[str, Variable]) -> Mapping[str, Varia
 
 
 def described(
-    kind: str, values: Mapping[str, Any], cooling: bool = False, grid: tuple[str, ...] = (GRID,)
+    kind: str,
+    values: Mapping[str, Any],
+    cooling: bool = False,
+    grid: tuple[str, ...] = (GRID,),
+    observed: Mapping[str, Variable] | None = None,
 ) -> dict[str, Array]:
     """Return `values` with dimensions and attributes, in the order in which they are registered.
 
     Attributes are `long_name`, `units`, and those of flags. `grid` are the dimensions that GRID
-    stands for. Raises ValueError for unregistered variables, and for shapes that disagree.
+    stands for; `observed` describes variables of observables, which come last. Raises ValueError
+    for unregistered variables, and for shapes that disagree.
     """
-    known = REGISTRY[kind]
+    known = {**REGISTRY[kind], **(observed or {})}
     refuse(f"unknown variables of a {kind}", set(values) - set(known))
     found = {
         name: _array(about, values[name], cooling, grid)
@@ -325,6 +331,8 @@ def _array(about: Variable, values: Any, cooling: bool, grid: tuple[str, ...]) -
     attributes: dict[str, Any] = {"long_name": about.long_name}
     if about.units:
         attributes["units"] = about.units_of(cooling)
+    if about.observable:
+        attributes["observable"] = about.observable
     if about.flags:
         meanings = np.arange(len(about.flags.split()), dtype=about.dtype)
         attributes |= {"flag_values": meanings, "flag_meanings": about.flags}

@@ -7,6 +7,7 @@ looks comes last.
 from typing import Any, NamedTuple
 
 from roughgas.effects.contact_averages import ContactAverages
+from roughgas.effects.contact_stress import ContactStress
 from roughgas.effects.contact_time import ContactTime
 from roughgas.effects.floor import Floor
 from roughgas.effects.friction import Friction
@@ -39,6 +40,7 @@ class Effects(NamedTuple):
     threshold: Threshold | None = None
     contact_time: ContactTime | None = None
     contact_averages: ContactAverages | None = None
+    contact_stress: ContactStress | None = None
 
 
 def inertia(effects: Effects) -> float | None:

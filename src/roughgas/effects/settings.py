@@ -30,7 +30,7 @@ class Number(NamedTuple):
     interval: str = "(0, inf)"
     default: float | None = None
 
-    def read(self, key: str, value: Any, around: Surroundings) -> float:
+    def read(self, key: str, value: Any, around: Surroundings | None = None) -> float:
         """Return the number as a float; raise InputError unless it is one in the interval."""
         if value is None and self.default is not None:
             return self.default

@@ -21,6 +21,7 @@ from roughgas.data.opening import POINT as OF_POINT
 from roughgas.data.opening import DamagedError, attributes_of, opened, require
 from roughgas.data.reduced import GRID, SOUND, check_sound, third_axis
 from roughgas.data.variables import CLOCKS, POINT, Array, described
+from roughgas.results.observed import observed_in, reduced_observables
 from roughgas.statistics.bimodal import is_bimodal
 from roughgas.statistics.intervals import pooled
 from roughgas.theory.prediction import equation_of
@@ -46,6 +47,7 @@ class Summary(NamedTuple):
     place: tuple[Any, ...]  # (r, beta, seed), preceded by the value of what is swept besides
     replicas: np.ndarray  # R of each, of a cooling gas: else empty
     species: tuple[str, ...] = ()  # names
+    observed: Mapping[str, Array] = {}  # what observables have watched
 
 
 def reduce_points(paths: Iterable[str | Path], output: str | Path) -> None:
@@ -85,11 +87,12 @@ def _summary(path: Path) -> Summary:
         for name in scalars.keys() & SOUND:
             check_sound(path, name, scalars[name])
         scalars["measured_for"], scalars["R_drift"] = _window(file, scalars)
+        observed = observed_in(file)
         replicas = file["R_replica"][...] if "R_replica" in file.variables else np.empty(0)
     swept = (attributes["swept_value"],) if "swept" in attributes else ()
     r, beta, seed = (attributes[name] for name in (*GRID, "seed"))
     place = (*swept, float(r), float(beta), int(seed))
-    return Summary(scalars, attributes, place, replicas, tuple(names))
+    return Summary(scalars, attributes, place, replicas, tuple(names), observed)
 
 
 def _window(file: netCDF4.Dataset, scalars: Mapping[str, float]) -> tuple[float, float]:
@@ -123,7 +126,9 @@ def _combined(points: Sequence[Summary]) -> Content:
         third[swept] = Array((swept,), coordinates.pop(swept), about)
     values = _over_seeds(stacks) | coordinates | _species(points)
     values["equilibrated"] = np.where(_mixed(points, axes[:-1]), 0.0, values["equilibrated"])
-    return Content(third | described("reduced", values, "plateau_end" in stacks, grid), attributes)
+    reduced = described("reduced", values, "plateau_end" in stacks, grid)
+    seen = reduced_observables(points, axes, grid)
+    return Content(third | reduced | seen, attributes)
 
 
 def _species(points: Sequence[Summary]) -> dict[str, Any]:

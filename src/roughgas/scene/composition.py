@@ -42,7 +42,8 @@ def build(experiment: Mapping[str, Any], r: float, beta: float) -> Scene:
     ROUGHNESS.check("roughness beta", beta)
     lengths = tuple(None if side == "open" else float(side) for side in experiment["box"])
     mixture = mixture_of(experiment)
-    effects = _effects(experiment["effects"], lengths, float(r), float(beta), mixture)
+    asked_for = _asked_for(experiment) | dict(experiment["effects"])
+    effects = _effects(asked_for, lengths, float(r), float(beta), mixture)
     if effects.spin is None and beta != -1.0:
         raise InputError("roughness beta", beta, "be -1 where particles do not spin")
     closed = is_closed(effects)
@@ -73,6 +74,15 @@ def check_box(lengths: Sequence[float | None], closed: bool, largest: float) -> 
         least = (NARROWEST_CHANNEL if k == 0 and closed else NARROWEST) * largest
         if length is not None and not least <= length < math.inf:
             raise InputError(f"box[{k}]", length, f"be a number of at least {least:g}")
+
+
+def _asked_for(experiment):
+    """Return the effects that only look, for observables of the experiment."""
+    if not experiment.get("observables"):
+        return {}
+    from roughgas.observables import effects_of  # imported where they are wanted
+
+    return effects_of(experiment["observables"])
 
 
 def _effects(settings, lengths, r, beta, mixture):

@@ -78,6 +78,17 @@ def sample(gas: Gas, every: float, samples: int) -> Columns:
     return gas.in_collisions(gas.count(every), samples)
 
 
+def samples_per_period(schedule: Mapping[str, Any]) -> int:
+    """Return 1: nothing drives a cooling gas."""
+    return 1
+
+
+def wait(scene: Scene, schedule: Mapping[str, Any]) -> int:
+    """Return the samples before any counts, of the transient that theory expects."""
+    transient = transient_length(scene, schedule["relaxation_times"])
+    return math.floor(transient / schedule["sample_every"])
+
+
 def run(
     scene: Scene,
     experiment: Mapping[str, Any],

@@ -7,7 +7,7 @@ after the same collisions.
 
 import math
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, Protocol, Self
 
 import numpy as np
@@ -43,15 +43,20 @@ class Recorder:
     """Sums up what gases have cost together.
 
     CPU seconds in the kernel, collisions, and contacts that the contact-time model touched.
-    `tell(time, collisions)` is called at least some fifty times a run.
+    `tell(time, collisions)` is called at least some fifty times a run, `begin(gas)` for each gas.
     """
 
-    def __init__(self, tell: Callable[[float, int], None] | None = None, keep: bool = False):
+    def __init__(
+        self,
+        tell: Callable[[float, int], None] | None = None,
+        keep: bool = False,
+        begin: "Callable[[Gas], None] | None" = None,
+    ) -> None:
         self.seconds = 0.0
         self.collisions = 0
         self.touched = 0
         self.gases: list[Gas] = []  # all that it has seen begin, if it is to `keep` them
-        self._tell, self._keep = tell, keep
+        self._tell, self._keep, self._begin = tell, keep, begin
         self._begun = 0.0, 0  # time and collisions at which the present gas has begun
 
     def begin(self, gas: "Gas") -> None:
@@ -59,6 +64,8 @@ class Recorder:
         self._begun = gas.time, int(gas.state.counts[COLLISIONS])
         if self._keep:
             self.gases.append(gas)
+        if self._begin:
+            self._begin(gas)
 
     def run(
         self, state: State, scene: Scene, sampling: Sampling, samples: int, timed: bool = False
@@ -102,6 +109,14 @@ class Watcher(Protocol):
     def after(self, state: State) -> None: ...
 
 
+class Observer(Protocol):
+    """Looks at a gas between samples (roughgas.simulation.observing)."""
+
+    def lengths(self, samples: int, first: int, unit: int) -> Iterator[int]: ...
+
+    def look(self, gas: "Gas", taken: int) -> None: ...
+
+
 class Gas:
     """A scene, the state that it has reached, and the recorder of what this has cost.
 
@@ -113,6 +128,7 @@ class Gas:
         self.scene, self.state = scene, state
         self.recorder = Recorder() if recorder is None else recorder
         self.watcher: Watcher | None = None
+        self.observer: Observer | None = None
         self.sample: Columns = {}
         self.refresh_every = self.begun = 0
         self._resumed = False  # with its memory, just now
@@ -176,7 +192,8 @@ class Gas:
     def in_time(self, interval: float, samples: int) -> Columns:
         """Return columns (name -> array of length `samples`), sampled every `interval` T."""
         most = math.ceil(self.particles / 2 * JAMMED * max(1.0, interval))
-        return self._run(Sampling(float(interval), most, 0), samples, timed=True)
+        sampling = Sampling(float(interval), most, 0)
+        return self._observed(lambda n: self._run(sampling, n, timed=True), samples, 0, 1)
 
     def in_collisions(self, collisions: int, samples: int) -> Columns:
         """Return the same, sampled every so many collisions, a divisor of `refresh_every`.
@@ -185,16 +202,39 @@ class Gas:
         from where it was counted before. It changes the unit of velocity, to 2^exponent a/T: see
         roughgas.simulation.energies.restored.
         """
-        refresh = self.refresh_every // collisions
-        late = self.collisions % self.refresh_every if self._resumed and refresh else 0
-        late, self._resumed = 0 if late % collisions else late, False
+        unit = max(1, self.refresh_every // collisions)
+        first = unit - self._late(collisions) // collisions
+        return self._observed(lambda n: self._in_collisions(collisions, n), samples, first, unit)
+
+    def _in_collisions(self, collisions: int, samples: int) -> Columns:
+        refresh, late = self.refresh_every // collisions, self._late(collisions)
+        self._resumed = False
         left = (self.refresh_every - late) // collisions
         if not late or samples < left:
             return self._run(Sampling(np.inf, collisions, 0 if late else refresh), samples)
         parts = [self._run(Sampling(np.inf, collisions, left), left)]
         if samples > left:
             parts.append(self._run(Sampling(np.inf, collisions, refresh), samples - left))
-        return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+        return _joined(parts)
+
+    def _late(self, collisions: int) -> int:
+        """Return the collisions since the last refresh, in the first call after a run went on."""
+        refreshed = self._resumed and self.refresh_every >= collisions
+        late = self.collisions % self.refresh_every if refreshed else 0
+        return 0 if late % collisions else late
+
+    def _observed(
+        self, advance: Callable[[int], Columns], samples: int, first: int, unit: int
+    ) -> Columns:
+        """Return samples, taken in pieces where an observer looks in between."""
+        if self.observer is None:
+            return advance(samples)
+        parts = []
+        for length in self.observer.lengths(samples, first, unit):
+            if length:
+                parts.append(advance(length))
+            self.observer.look(self, length)
+        return _joined(parts)
 
     def look(self) -> None:
         """Take a sample of the present instant."""
@@ -252,6 +292,10 @@ class Gas:
         columns = self.recorder.run(self.state, scene or self.scene, sampling, samples, timed)
         self.sample = {name: column[-1:] for name, column in columns.items()}
         return columns
+
+
+def _joined(parts: Sequence[Columns]) -> Columns:
+    return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 
 
 def elastic(scene: Scene) -> Scene:

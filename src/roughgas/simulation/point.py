@@ -1,18 +1,23 @@
 """One point of an experiment: from its settings to the dataset's variables."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import Any
+from math import inf
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from roughgas.base.version import __version__
 from roughgas.data.point import Point
+from roughgas.data.variables import Variable
 from roughgas.effects import speed_of_r
 from roughgas.kernel.cache import source_hash
 from roughgas.scene import Scene, build, packing
 from roughgas.simulation import by_species, schedule
 from roughgas.simulation.ends import Initial, check_initial, is_memory_of, last_states, owner
 from roughgas.simulation.gas import Gas, Recorder
+
+if TYPE_CHECKING:
+    from roughgas.simulation.observing import Functions
 
 ENERGIES = ("E_trans", "E_rot", "R", "R_ratio_of_means")
 VOUCHED = {
@@ -28,6 +33,7 @@ def run_point(
     seed: int,
     tell: Callable[[float, int], None] | None = None,
     initial: Sequence[Initial] = (),
+    functions: "Functions | None" = None,
 ) -> Point:
     """Simulate one point and measure it.
 
@@ -35,11 +41,13 @@ def run_point(
     roughgas.scene.build makes of them at r and beta. The same settings, r, beta and seed give the
     same numbers to the last bit, but for `kernel_seconds`. `tell(time, collisions)` is called as
     the simulation goes on. It begins in the `initial` states, one a replica, or else on a lattice.
+    Its observables are those of the settings, and `functions` of frames by name.
     Raises InputError if the particles do not fit or could not begin so, CollapseError if contacts
     accumulate without end.
     """
     keep, number = experiment.get("keep_state", False), experiment["particles"]
-    recorder = Recorder(tell, keep)
+    watching = _watching(scene, experiment, functions)
+    recorder = Recorder(tell, keep, watching.begin if watching else None)
     if initial:
         check_initial(initial, experiment, scene)
     found = schedule.of(experiment).run(scene, experiment, seed, recorder, initial)
@@ -50,7 +58,12 @@ def run_point(
     if scene.effects.contact_time is not None:
         found["contact_time"] = scene.effects.contact_time.duration
         found["contact_time_fraction"] = recorder.touched / max(1, recorder.collisions)
+    observed: Mapping[str, Variable] = {}
+    if watching:
+        values, observed = watching.results(found["measured_from"], found.get("plateau_end", inf))
+        found |= values
     return Point(
+        observed=observed,
         variables=found | _withdrawn(found),
         attributes={
             "r": scene.restitution,
@@ -68,6 +81,15 @@ def run_point(
             "kernel_source_hash": source_hash(),
         },
     )
+
+
+def _watching(scene, experiment, functions):
+    """Return the observables that are asked for; None if there are none."""
+    if not functions and not experiment.get("observables"):
+        return None
+    from roughgas.simulation.observing import Watching  # imported where it is wanted
+
+    return Watching(scene, experiment, functions)
 
 
 def _withdrawn(found):

@@ -1,16 +1,20 @@
 """Kinds of schedule: all that depends on whether a gas is driven or cools, by one look-up."""
 
 from collections.abc import Mapping, Sequence
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 from roughgas import scene
 from roughgas.base.errors import InputError
+from roughgas.effects import inertia
 from roughgas.kernel import hooks
 from roughgas.scene import Scene
 from roughgas.simulation import cooling, steady
 from roughgas.simulation.ends import Initial
 from roughgas.simulation.energies import Columns
 from roughgas.simulation.gas import Gas, Recorder
+
+if TYPE_CHECKING:
+    from roughgas.observables import System
 
 
 class Kind(Protocol):
@@ -19,6 +23,7 @@ class Kind(Protocol):
     DRIVEN: bool  # whether effects drive the gas; else progress is counted in collisions
     UNIT: str  # of lengths
     LENGTH: str  # key of the schedule: how long R is measured
+    SAMPLES_PER_REFRESH: int  # samples after which a gas is refreshed; 1 where none is
 
     def length(self, scene: Scene, schedule: Mapping[str, Any]) -> float:
         """Return how much a point simulates, in UNIT."""
@@ -30,6 +35,12 @@ class Kind(Protocol):
 
     def sample(self, gas: Gas, every: float, samples: int) -> Columns:
         """Advance a gas; return columns, sampled at intervals of `every` UNIT."""
+
+    def samples_per_period(self, schedule: Mapping[str, Any]) -> int:
+        """Return the samples in a period of the drive."""
+
+    def wait(self, scene: Scene, schedule: Mapping[str, Any]) -> int:
+        """Return the samples that are taken before any can count."""
 
     def run(
         self,
@@ -55,9 +66,28 @@ def measured(schedule: Mapping[str, Any]) -> float:
     return schedule.get("replicas", 1) * schedule[KINDS[schedule["kind"]].LENGTH]
 
 
+def system_of(scene: Scene, experiment: Mapping[str, Any]) -> "System":
+    """Return what observables know of a run."""
+    from roughgas.observables import System
+
+    effects, schedule = scene.effects, experiment["schedule"]
+    shear = effects.shear
+    return System(
+        particles=experiment["particles"],
+        box=tuple(None if side == "open" else float(side) for side in experiment["box"]),
+        periodic=tuple(length is not None for length in scene.box),
+        inertia=inertia(effects),
+        shear_rate=0.0 if shear is None else shear.velocity / (2.0 * scene.middle),
+        interval=schedule["sample_every"],
+        cooling=not KINDS[schedule["kind"]].DRIVEN,
+        alike=effects.species is None,
+    )
+
+
 def check(experiment: Mapping[str, Any]) -> None:
     """Raise InputError if no point of the experiment could be simulated."""
-    effects = scene.check(experiment).effects
+    built = scene.check(experiment)
+    effects = built.effects
     drives = [effects._fields[part.place] for part in hooks.present(effects, "drives")]
     kind = experiment["schedule"]["kind"]
     if drives and not KINDS[kind].DRIVEN:
@@ -65,3 +95,13 @@ def check(experiment: Mapping[str, Any]) -> None:
         raise InputError("schedule.kind", kind, legal)
     if KINDS[kind].DRIVEN and not drives:
         raise InputError("schedule.kind", kind, "be cooling where no effect drives the gas")
+    if experiment.get("observables"):
+        _check_observables(experiment, built)
+
+
+def _check_observables(experiment, scene):
+    """Raise InputError for settings that are illegal, or observables that do not suit the scene."""
+    from roughgas.observables import wanted
+
+    for one in wanted(experiment["observables"]):
+        one.make(system_of(scene, experiment))

@@ -18,7 +18,8 @@ from roughgas.statistics.equilibration import detect_start, is_equilibrated
 from roughgas.statistics.errors import autocorrelation_time, blocking
 from roughgas.statistics.intervals import Error, degrees_of_freedom, is_trusted
 
-DRIVEN, UNIT, LENGTH = True, "T", "measure"  # see roughgas.simulation.schedule.Kind
+# see roughgas.simulation.schedule.Kind
+DRIVEN, UNIT, LENGTH, SAMPLES_PER_REFRESH = True, "T", "measure", 1
 KEPT = 4  # values in a period that the stored series have
 LEAST_LEFT = 0.5  # share of the planned measurement below which a late start is not worth having
 
@@ -43,6 +44,12 @@ def samples_per_period(schedule: Mapping[str, Any]) -> int:
     """Return the samples in a period of the drive; 1 if it has none."""
     every = schedule["sample_every"]
     return max(1, round(schedule.get("period", every) / every))
+
+
+def wait(scene: Scene, schedule: Mapping[str, Any]) -> int:
+    """Return the samples before any counts: whole periods."""
+    planned = round(schedule["equilibrate"] / schedule["sample_every"])
+    return -(-planned // samples_per_period(schedule)) * samples_per_period(schedule)
 
 
 def run(

@@ -1,0 +1,38 @@
+"""Collisional stress: this effect only looks, for the observable `stress`.
+
+In a contact the momentum -push passes to particle i, and is carried at once from the centre of j to
+that of i, over 2a where particles are alike. Summed over contacts, per time and volume, that is the
+collisional part of the pressure tensor (the virial of J. H. Irving & J. G. Kirkwood, J. Chem. Phys.
+18, 817 (1950)).
+"""
+
+from itertools import product
+from typing import NamedTuple
+
+from roughgas.effects.settings import register
+from roughgas.kernel.hooks import either
+from roughgas.kernel.jit import jit
+
+AXES = "xyz"
+SUMS = {f"J_{k} s_{along}": 1 for k, along in product(AXES, AXES)}
+"""Momentum times distance: its component k, carried along an axis."""
+
+
+class ContactStress(NamedTuple):
+    """Momentum times the distance over which contacts carry it is summed over all pairs."""
+
+
+distance = either(
+    lambda bodies, i, j: bodies.radius[i] + bodies.radius[j], lambda bodies, i, j: 2.0
+)
+
+
+@jit
+def contact_seen(stress, index, none, state, i, j, n, v, w, push):
+    sums, far = state.sums.contact_stress, distance(state.bodies, i, j)
+    for k in range(len(n)):
+        for along in range(len(n)):
+            sums[0, 3 * k + along] -= push[k] * far * n[along]
+
+
+register(ContactStress, {}, contact_seen=contact_seen, sums=SUMS)

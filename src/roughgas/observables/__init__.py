@@ -1,0 +1,110 @@
+"""What can be watched during a run, by the names that it has in settings: one file each.
+
+To add one is to add a file with a class (see roughgas.observables.plugin), and its line in KINDS.
+An observable that nobody asks for is not made, and costs nothing.
+"""
+
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any, NamedTuple
+
+from roughgas.base.errors import InputError, not_one_of
+from roughgas.observables.cumulants import Cumulants
+from roughgas.observables.frame import Frame, System
+from roughgas.observables.histograms import Histograms
+from roughgas.observables.mean_square_displacement import MeanSquareDisplacement
+from roughgas.observables.pair_correlation import PairCorrelation
+from roughgas.observables.plugin import Function, Observable, Setting, Whole
+from roughgas.observables.profiles import Profiles
+from roughgas.observables.spin_correlation import SpinCorrelation
+from roughgas.observables.stress import Stress
+
+__all__ = ["KINDS", "Frame", "Observable", "System"]
+
+KINDS: dict[str, type[Observable]] = {
+    "profiles": Profiles,
+    "cumulants": Cumulants,
+    "histograms": Histograms,
+    "spin_correlation": SpinCorrelation,
+    "pair_correlation": PairCorrelation,
+    "stress": Stress,
+    "mean_square_displacement": MeanSquareDisplacement,
+}
+"""The observables by the names that they have in settings."""
+EVERY = Whole("Samples from one look to the next.", 1, 1_000_000, 1)
+"""A setting of all of them."""
+
+
+class Wanted(NamedTuple):
+    """An observable that is asked for; a new one is made for every gas."""
+
+    name: str
+    every: int  # samples from one look to the next
+    make: Callable[[System], Observable]
+
+
+def wanted(
+    settings: Mapping[str, Mapping[str, Any]],
+    functions: Mapping[str, Callable[[Frame], Any]] | None = None,
+) -> list[Wanted]:
+    """Return the observables of settings, by name, and those that are functions of a user's.
+
+    Raises InputError for unknown names, and for settings that are unknown or illegal.
+    """
+    found = [_wanted(name, given) for name, given in settings.items()]
+    for name, function in (functions or {}).items():
+        if name in KINDS or not name.isidentifier():
+            raise InputError("observe", name, "be a name, and not that of another observable")
+        found.append(Wanted(name, 1, lambda system, n=name, f=function: Function(system, n, f)))
+    return found
+
+
+def _wanted(name, given):
+    if name not in KINDS:
+        raise not_one_of("observables: key", name, KINDS)
+    kind, known = KINDS[name], _settings(KINDS[name])
+    for key in given:
+        if key not in known:
+            raise not_one_of(f"observables.{name}: key", key, known)
+    values = {key: _read(f"observables.{name}.{key}", given.get(key), known[key]) for key in known}
+    every = values.pop("every")
+
+    def make(system):
+        if kind.spins and system.inertia is None:
+            raise InputError(f"observables.{name}", "without spin", "come with spin")
+        if kind.alike and not system.alike:
+            raise InputError(f"observables.{name}", "with species", "come without species")
+        return kind(system, **values)
+
+    return Wanted(name, every, make)
+
+
+def _settings(kind: type[Observable]) -> dict[str, Setting]:
+    return {**kind.settings, "every": EVERY}
+
+
+def _read(key, value, setting):
+    return setting.default if value is None else setting.read(key, value)
+
+
+def effects_of(names: Iterable[str]) -> dict[str, dict[str, Any]]:
+    """Return the settings of the effects that observables of these names need."""
+    kinds = (KINDS[name] for name in names if name in KINDS)
+    return {effect: {} for kind in kinds for effect in kind.effects}
+
+
+def schema() -> dict[str, Any]:
+    """Return what `observables` may hold in settings, as a JSON schema; null takes one away."""
+    return {
+        "description": "What is watched during a run; what is not listed costs nothing.",
+        "type": "object",
+        "additionalProperties": False,
+        "properties": {
+            name: {
+                "description": kind.__doc__,
+                "type": ["object", "null"],
+                "additionalProperties": False,
+                "properties": {key: one.schema() for key, one in _settings(kind).items()},
+            }
+            for name, kind in KINDS.items()
+        },
+    }

@@ -1,0 +1,242 @@
+"""Observables of a run: when they look at its gases, and what lands in the dataset.
+
+Samples are taken in pieces that end where something is to be looked at, which changes no bit.
+"""
+
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from roughgas.base.errors import InputError
+from roughgas.data.variables import ENERGY, POINT, SPEED, TIME, Variable
+from roughgas.kernel.hooks import displacement, present
+from roughgas.kernel.state import EXPONENT
+from roughgas.observables import Frame, System, wanted
+from roughgas.observables.averages import averaged
+from roughgas.observables.plugin import Observable, Values
+from roughgas.scene import Scene
+from roughgas.simulation import schedule
+from roughgas.simulation.gas import Gas
+from roughgas.simulation.instant import in_order, whereabouts
+
+Functions = Mapping[str, Callable[[Frame], Any]]
+PRESENT = {
+    ENERGY: "present E_trans",
+    SPEED: "sqrt(present E_trans/m)",
+    TIME: "collisions per particle",
+}
+"""Units of a cooling gas in place of those of a driven one."""
+
+
+class Look(NamedTuple):
+    """What an observable has seen after so many samples."""
+
+    taken: int
+    values: Values
+
+
+class Watched(NamedTuple):
+    """An observable of one gas, and what it has seen."""
+
+    observable: Observable
+    every: int  # samples
+    looks: list[Look]
+    before: dict[str, Any]  # the clock, unit of speed and running sums of the look before
+
+
+class Observer:
+    """Looks at one gas; it is a Gas's `observer`."""
+
+    def __init__(self, gas: Gas, watched: Sequence[Watched], wait: int) -> None:
+        self.begun, self.watched = gas.time, watched
+        self._wait, self._start, self._taken = wait, 0, 0
+        self._stride = math.gcd(*(one.every for one in watched))
+
+    def lengths(self, samples: int, first: int, unit: int) -> Iterator[int]:
+        """Yield the lengths of the pieces that so many samples are taken in.
+
+        Pieces end `first` samples from the start, or a multiple of `unit` later.
+        """
+        self._start = first + unit * max(0, math.ceil((self._wait - first) / unit))
+        yield min(self._start, samples)
+        for done in range(self._start, samples, self._stride):
+            yield min(self._stride, samples - done)
+
+    def look(self, gas: Gas, taken: int) -> None:
+        """Look at a gas that so many samples more have been taken of."""
+        self._taken += taken
+        since = self._taken - self._start
+        due = [one for one in self.watched if since >= 0 and since % one.every == 0]
+        if not due:
+            return
+        if not gas.sample:
+            gas.look()
+        sums, frame = running_sums(gas), frame_of(gas, due[0].observable.system)
+        now = {"time": frame.time, "unit": frame.speed_unit, "sums": sums}
+        for one in due:
+            if since:
+                seen = frame._replace(
+                    system=one.observable.system, rates=_rates(one.before, now, gas)
+                )
+                one.looks.append(Look(self._taken, one.observable.look(seen)))
+            one.before.update(now)
+
+
+class Watching:
+    """The observables of a run: looks at each of its gases, and averages what was seen."""
+
+    def __init__(
+        self, scene: Scene, experiment: Mapping[str, Any], functions: Functions | None = None
+    ) -> None:
+        """Raise InputError for settings that are illegal, or do not suit the scene."""
+        self._wanted = wanted(experiment.get("observables", {}), functions)
+        self._schedule, self._kind = experiment["schedule"], schedule.of(experiment)
+        self._scene, self._system = scene, schedule.system_of(scene, experiment)
+        self._observers: list[Observer] = []
+        self._make()
+
+    def _make(self) -> list[Watched]:
+        unit = self._kind.SAMPLES_PER_REFRESH
+        found = []
+        for one in self._wanted:
+            every = unit * math.ceil(one.every / unit)
+            system = self._system._replace(interval=every * self._system.interval)
+            found.append(Watched(one.make(system), every, [], {}))
+        return found
+
+    def begin(self, gas: Gas) -> None:
+        """Watch a gas from now on."""
+        wait = self._kind.wait(self._scene, self._schedule)
+        gas.observer = Observer(gas, self._make(), wait)
+        self._observers.append(gas.observer)
+
+    def results(self, start: float, stop: float = math.inf) -> tuple[dict, dict[str, Variable]]:
+        """Return variables of a point by name, and what they are, of a measured window.
+
+        Its ends are in T since the start, or in collisions per particle of a cooling gas.
+        """
+        values, about = {}, {}
+        for number, one in enumerate(self._wanted):
+            watched = [observer.watched[number] for observer in self._observers]
+            found = self._averaged(watched, start, stop)
+            kind = watched[0].observable
+            shared = _same(values, kind.coordinates)
+            _refuse_twice(one.name, (found.keys() | kind.variables.keys() - shared), values)
+            values |= kind.coordinates | found
+            about |= self._described(one.name, kind.variables, found)
+        return values, about
+
+    def _averaged(self, watched: Sequence[Watched], start: float, stop: float) -> dict[str, Any]:
+        every = self._system.interval
+        runs = []
+        for one, observer in zip(watched, self._observers, strict=True):
+            begun = observer.begun if self._kind.DRIVEN else 0.0
+            low, high = ((end - begun) / every + 0.5 for end in (start, stop))
+            runs.append([look.values for look in one.looks if low < look.taken < high])
+        runs = [run for run in runs if run]
+        if not runs:
+            legal = "be small enough for looks during the measurement"
+            raise InputError("observables: every", watched[0].every, legal)
+        period = self._kind.samples_per_period(self._schedule)
+        per_period = period // one.every if period % one.every == 0 else 1
+        found = averaged(one.observable.combine, runs, per_period)
+        return {
+            f"{name}{end}": values[name]
+            for name in found.value
+            for end, values in zip(("", "_stderr", "_dof"), found, strict=True)
+        }
+
+    def _described(self, observable, variables, found) -> dict[str, Variable]:
+        """Return what the variables of an observable are, errors included."""
+        described = {}
+        for name, about in variables.items():
+            units = _present(about.units) if self._system.cooling else about.units
+            about = about._replace(units=units, of_settings=True, observable=observable)
+            described[name] = about
+            if f"{name}_stderr" in found:
+                error = f"standard error of {name} within this file"
+                freedom = f"degrees of freedom that {name}_stderr is known with"
+                described[f"{name}_stderr"] = about._replace(long_name=error)
+                described[f"{name}_dof"] = about._replace(long_name=freedom, units="1")
+        return described
+
+
+def frame_of(gas: Gas, system: System) -> Frame:
+    """Return a frame of the present instant, without `rates`."""
+    state, time = gas.state, gas.time
+    position, velocity = whereabouts(state, gas.scene, time)
+    scale = unit = 2.0 ** int(state.counts[EXPONENT])
+    radius, mass, inertia = _bodies(state, system)
+    if system.cooling:
+        present_energy = 0.5 * np.mean(mass[:, None] * in_order(state, velocity) ** 2)
+        scale = 1.0 / math.sqrt(present_energy) if present_energy else 0.0
+    spin = None if state.spin is None else in_order(state, state.spin * scale)
+    return Frame(
+        system=system,
+        time=time,
+        collisions=2.0 * gas.collisions / gas.particles,
+        position=in_order(state, position),
+        velocity=in_order(state, velocity * scale),
+        spin=spin,
+        radius=radius,
+        mass=mass,
+        inertia=inertia,
+        image_shift=displacement(gas.scene.effects.shear, time) or 0.0,
+        rates={},
+        speed_unit=unit / scale if scale else math.nan,
+    )
+
+
+def _bodies(state, system):
+    """Return radius, mass and q of each particle, (N,)."""
+    if state.bodies is None:
+        ones = np.ones(system.particles)
+        return ones, ones, ones * (system.inertia or 0.0)
+    bodies = state.bodies
+    return tuple(in_order(state, one) for one in (bodies.radius, bodies.mass, bodies.inertia))
+
+
+def running_sums(gas: Gas) -> dict[str, float]:
+    """Return what effects have summed up until the last sample, in units of a, m and T."""
+    return {name: float(gas.sample[name][0]) for name in _powers(gas)}
+
+
+def _powers(gas):
+    """Return, for each sum of effects, the power of velocity that it has."""
+    parts = present(gas.scene.effects, "sums")
+    return {name: power for part in parts for name, power in part.own.items()}
+
+
+def _rates(before, now, gas):
+    """Return what was summed up between two looks, per T, in the frame's units of velocity.
+
+    In a gas that cools by Haff's law, the mean of a power of the thermal speed over an interval is
+    that of the two ends' geometric mean: exactly so for its square, as in a pressure.
+    """
+    elapsed = now["time"] - before["time"]
+    unit = math.sqrt(before["unit"]) * math.sqrt(now["unit"])
+    return {
+        name: (now["sums"][name] - before["sums"][name]) / unit**power / (elapsed * unit)
+        for name, power in _powers(gas).items()
+    }
+
+
+def _present(units: str) -> str:
+    for driven, cooling in PRESENT.items():
+        units = cooling if units == driven else units.replace(f"{driven} ", f"{cooling} ")
+    return units
+
+
+def _same(values, coordinates):
+    """Return the names of coordinates that are there already, with the same values."""
+    there = coordinates.keys() & values.keys()
+    return {name for name in there if np.array_equal(values[name], coordinates[name])}
+
+
+def _refuse_twice(observable, names, values):
+    for name in sorted(names):
+        if name in values or name in POINT:
+            legal = "have a name that no other variable of the dataset has"
+            raise InputError(f"variable of {observable}", name, legal)

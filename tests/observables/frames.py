@@ -1,0 +1,39 @@
+"""Frames of particles that the tests put together."""
+
+import numpy as np
+
+from roughgas.observables import Frame, System
+
+
+def system_of(box, **changes):
+    """A system in a periodic box of disks or spheres."""
+    found = System(
+        particles=30,
+        box=tuple(map(float, box)),
+        periodic=(True,) * len(box),
+        inertia=0.5 if len(box) == 2 else 0.4,
+        shear_rate=0.0,
+        interval=1.0,
+        cooling=False,
+    )
+    return found._replace(**changes)
+
+
+def frame_of(system, position=None, velocity=None, spin=None, **changes):
+    """A frame; what is not given is random."""
+    rng = np.random.default_rng(7)
+    shape = system.particles, system.dimension
+    frame = Frame(
+        system=system,
+        time=0.0,
+        collisions=0.0,
+        position=rng.uniform(0, 1, shape) * system.box if position is None else position,
+        velocity=rng.standard_normal(shape) if velocity is None else velocity,
+        spin=rng.standard_normal((shape[0], 2 * shape[1] - 3)) if spin is None else spin,
+        radius=np.ones(shape[0]),
+        mass=np.ones(shape[0]),
+        inertia=np.full(shape[0], system.inertia),
+        image_shift=0.0,
+        rates={},
+    )
+    return frame._replace(**changes)

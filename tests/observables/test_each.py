@@ -1,0 +1,203 @@
+"""Each observable on frames whose answer is known, and against plain loops."""
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+from tests.observables.frames import frame_of, system_of
+
+from roughgas.base.errors import InputError
+from roughgas.observables import KINDS
+from roughgas.observables.pair_correlation import squares
+
+NUMBER = 40_000
+
+
+def results(name, frames, **settings):
+    """What an observable makes of frames."""
+    kind = KINDS[name]
+    usual = {key: one.default for key, one in kind.settings.items()}
+    observable = kind(frames[0].system, **(usual | settings))
+    looks = [observable.look(frame) for frame in frames]
+    means = {key: np.nanmean([look[key] for look in looks], axis=0) for key in looks[0]}
+    return observable, observable.combine(means)
+
+
+def distances(frame, reach):
+    """Distances below `reach`, of each pair over all images, in plain Python."""
+    box, found = frame.system.box, []
+    for one, other in itertools.combinations(frame.position, 2):
+        for numbers in itertools.product((-1, 0, 1), repeat=len(box)):
+            shift = [n * length for n, length in zip(numbers, box, strict=True)]
+            shift[0] += numbers[1] * frame.image_shift
+            for more in (-box[0], 0.0, box[0]) if frame.image_shift else (0.0,):
+                shifted = [x - y - s for x, y, s in zip(one, other, shift, strict=True)]
+                shifted[0] -= more
+                found.append(math.hypot(*shifted))
+    return sorted({round(one, 9) for one in found if one < reach})
+
+
+@pytest.mark.parametrize(
+    ("box", "shift", "reach"), [((20, 15), 0.0, 7.0), ((20, 15), 13.0, 7.5), ((9, 8, 10), 0.0, 4.0)]
+)
+def test_pairs_are_those_of_a_loop_over_all_images(box, shift, reach):
+    system = system_of(box, shear_rate=0.1 if shift else 0.0, particles=90)
+    frame = frame_of(system, image_shift=shift)
+    found = np.concatenate([np.sqrt(part) for part in squares(frame, reach)])
+    assert np.sort(found) == pytest.approx(distances(frame, reach), abs=1e-8)
+    assert len(found) > 100
+
+
+@pytest.mark.parametrize("box", [(30, 30), (14, 14, 14)])
+def test_g_is_1_where_particles_do_not_know_of_each_other(box):
+    rng = np.random.default_rng(1)
+    system = system_of(box, particles=400)
+    frames = [frame_of(system, rng.uniform(0, 1, (400, len(box))) * box) for _ in range(20)]
+    observable, found = results("pair_correlation", frames, bins=2)
+    counted = found["pair_correlation"] * observable._ideal * len(frames)
+    expected = observable._ideal * len(frames)
+    assert np.all(abs(counted - expected) < 5 * np.sqrt(expected))
+
+
+def test_a_pair_in_contact_counts_outside_the_diameter():
+    """Though roundings have pushed it together."""
+    system = system_of((20, 20), particles=2)
+    position = np.array([[1.0, 1.0], [1.0, 3.0 - 1e-14]])
+    observable, found = results("pair_correlation", [frame_of(system, position)], bins=20)
+    (place,) = np.flatnonzero(found["pair_correlation"])
+    assert observable.coordinates["distance"][place] == pytest.approx(2.05)
+
+
+@pytest.mark.parametrize("box", [(30, 30), (14, 14, 14)])
+def test_gaussian_velocities_and_spins_have_no_cumulants(box):
+    frame = frame_of(system_of(box, particles=NUMBER))
+    _, cumulants = results("cumulants", [frame])
+    _, correlation = results("spin_correlation", [frame])
+    every = {**cumulants, **correlation, "cos2_angle": correlation.get("cos2_angle", 1 / 3) - 1 / 3}
+    for name, value in every.items():
+        assert abs(value) < 0.03, name
+
+
+def test_cumulants_of_a_distribution_that_is_known():
+    """Velocities on a circle, and spins +-1: <V^4> = <V^2>^2, <w^4> = <w^2>^2."""
+    angle = np.linspace(0, 2 * np.pi, NUMBER, endpoint=False)
+    velocity = 3.0 * np.array([np.cos(angle), np.sin(angle)]).T
+    spin = np.where(np.arange(NUMBER) % 2, 1.0, -1.0)[:, None]
+    frame = frame_of(system_of((30, 30), particles=NUMBER), velocity=velocity, spin=spin)
+    _, found = results("cumulants", [frame])
+    assert found["a20"] == pytest.approx(-0.5) and found["a02"] == pytest.approx(-2 / 3)
+
+
+def test_spins_along_and_across_the_velocity():
+    system = system_of((14, 14, 14), particles=NUMBER)
+    frame = frame_of(system)
+    _, along = results("spin_correlation", [frame._replace(spin=2.0 * frame.velocity)])
+    across = np.cross(frame.velocity, [0.0, 0.0, 1.0])
+    _, found = results("spin_correlation", [frame._replace(spin=across)])
+    assert along["alignment"] == pytest.approx(2.0) and along["cos2_angle"] == pytest.approx(1.0)
+    assert found["alignment"] == pytest.approx(-1.0) and abs(found["cos2_angle"]) < 1e-12
+
+
+def test_a_gaussian_has_the_histogram_of_a_gaussian():
+    frame = frame_of(system_of((30, 30), particles=NUMBER))
+    frame = frame._replace(velocity=5.0 * frame.velocity)
+    observable, found = results("histograms", [frame], bins=24)
+    c, width = observable.coordinates["reduced_velocity"], 0.5
+    expected = np.exp(-(c**2) / 2) / math.sqrt(2 * math.pi)
+    for histogram in (*found["velocity_histogram"].T, found["spin_histogram"]):
+        assert np.sum(histogram) * width == pytest.approx(1.0)
+        assert histogram == pytest.approx(expected, abs=0.015)
+
+
+def test_profiles_of_a_gas_that_is_hotter_and_denser_below():
+    """Two layers: the lower one has two thirds of the particles, moves, and is hotter."""
+    rng = np.random.default_rng(2)
+    system = system_of((10, 20), particles=NUMBER, periodic=(True, False))
+    low = np.arange(NUMBER) % 3 < 2
+    height = np.where(low, rng.uniform(0, 5, NUMBER), rng.uniform(5, 10, NUMBER))
+    position = np.array([rng.uniform(0, 10, NUMBER), height]).T
+    velocity = rng.standard_normal((NUMBER, 2)) * np.where(low, 2.0, 1.0)[:, None]
+    velocity[:, 0] += np.where(low, 3.0, 0.0)
+    spin = rng.standard_normal((NUMBER, 1)) + 10.0
+    frame = frame_of(system, position, velocity, spin)
+    observable, found = results("profiles", [frame], bins=2, height=10.0)
+    assert observable.coordinates["height"].tolist() == [2.5, 7.5]
+    packing = math.pi * NUMBER * np.array([2, 1]) / 3 / 50
+    assert found["packing_profile"] == pytest.approx(packing, rel=1e-3)
+    assert found["flow_profile"] == pytest.approx(np.array([[3, 0], [0, 0]]), abs=0.06)
+    assert found["temperature_profile"] == pytest.approx(np.array([[4, 4], [1, 1]]), rel=0.05)
+    assert found["T_rot_profile"] == pytest.approx([0.5, 0.5], rel=0.05)
+    assert found["R_profile"] == pytest.approx([0.5 / 4.5, 0.5 / 1.5], rel=0.05)
+    assert found["share_above"] == 0.0
+    _, lower = results("profiles", [frame], bins=2, height=5.0)
+    assert lower["share_above"] == pytest.approx(1 / 3, rel=1e-3)
+
+
+def test_in_a_sheared_gas_layers_are_across_the_shear_and_the_flow_is_seen():
+    system = system_of((20, 20), particles=NUMBER, shear_rate=0.1)
+    frame = frame_of(system)
+    moving = frame.velocity + np.array([0.1, 0.0]) * (frame.position[:, 1:] - 10.0)
+    observable, found = results("profiles", [frame._replace(velocity=moving)], bins=4)
+    linear = 0.1 * (observable.coordinates["height"] - 10.0)
+    assert found["flow_profile"][:, 0] == pytest.approx(linear, abs=0.06)
+    _, cumulants = results("cumulants", [frame._replace(velocity=moving)])
+    _, plain = results("cumulants", [frame._replace(system=system_of((20, 20), particles=NUMBER))])
+    assert cumulants["a20"] == pytest.approx(plain["a20"], abs=1e-9)
+
+
+def flight(system, velocity, times, acceleration=0.0):
+    """Frames of free flight through a periodic box."""
+    start = frame_of(system, velocity=velocity).position
+    fall = np.zeros(system.dimension)
+    fall[-1] = acceleration
+    for time in times:
+        now = velocity - fall * time
+        place = start + velocity * time - 0.5 * fall * time**2
+        for axis, periodic in enumerate(system.periodic):
+            if periodic:
+                place[:, axis] %= system.box[axis]
+        yield frame_of(system, place, now, time=time)
+
+
+@pytest.mark.parametrize("speed", [0.1, 40.0])
+def test_free_particles_get_as_far_as_they_fly(speed):
+    """<v^2> t^2, also through several boxes between two looks."""
+    system = system_of((20, 15), particles=50, interval=0.5)
+    velocity = speed * frame_of(system).velocity
+    frames = list(flight(system, velocity, 0.5 * np.arange(20)))
+    observable, found = results("mean_square_displacement", frames, lags=4)
+    lag = observable.coordinates["lag"]
+    assert lag.tolist() == [0.5, 1.0, 2.0, 4.0]
+    expected = np.outer(lag**2, (velocity**2).mean(axis=0))
+    assert found["mean_square_displacement"] == pytest.approx(expected, rel=1e-9)
+
+
+def test_along_a_sheared_flow_no_displacement_is_told():
+    system = system_of((20, 15), particles=50, shear_rate=0.1)
+    frames = list(flight(system, frame_of(system).velocity, range(5)))
+    observable, found = results("mean_square_displacement", frames, lags=2)
+    assert observable.coordinates["moving"] == ["y"]
+    assert found["mean_square_displacement"].shape == (2, 1)
+
+
+@pytest.mark.parametrize(
+    ("name", "changes", "settings", "message"),
+    [
+        ("stress", {"box": (20.0, None)}, {}, "an open box has no volume"),
+        ("pair_correlation", {"periodic": (True, False)}, {}, "the box must be periodic"),
+        ("pair_correlation", {}, {"reach": 11.0}, r"reach = 11\.0: must be in \(2, 10\]"),
+        ("profiles", {}, {"height": 21.0}, r"height = 21\.0: must be 20 or less, the box"),
+    ],
+)
+def test_what_a_system_does_not_have_is_refused(name, changes, settings, message):
+    with pytest.raises(InputError, match=message):
+        results(
+            name,
+            [
+                frame_of(system_of((20, 20)))._replace(
+                    system=system_of((20, 20))._replace(**changes)
+                )
+            ],
+            **settings,
+        )

@@ -1,0 +1,130 @@
+"""Stress: contacts as brute force has them, the books of energy, and equations of state."""
+
+import math
+
+import numpy as np
+import pytest
+from brute_force import begin, run, scene_of, settings, snapshot
+from brute_force.beside import brute_force_from
+
+from roughgas import simulate, theory
+from roughgas.effects.contact_stress import SUMS
+from roughgas.kernel.state import NOW
+from roughgas.simulation.instant import whereabouts
+
+SHEARED = settings("sheared", 40, [20, 20])
+SHEARED["effects"] = SHEARED["effects"] | {"contact_stress": {}}
+U, L = SHEARED["effects"]["shear"]["velocity"], 20.0
+
+
+def carried(rows):
+    """The last running sums of momentum times distance (3, 3)."""
+    return np.array([rows[name][-1] for name in SUMS]).reshape(3, 3)
+
+
+def test_each_contact_counts_as_brute_force_has_it():
+    """Collision by collision, to roundings; each piece starts where the kernel stands."""
+    experiment = settings("spheres", 40)
+    scene, world = scene_of(experiment, 0.9, 0.3)
+    _, state = begin(experiment, 0.9, 0.3, 4)
+    run(state, scene, 1, collisions=200)
+    for _ in range(10):
+        before = carried(run(state, scene, 1, collisions=0))
+        brute = brute_force_from(world, snapshot(state, scene))
+        for _ in range(5):
+            brute.run(1)
+            found = carried(run(state, scene, 1, collisions=1)) - before
+            assert found == pytest.approx(brute.carried, abs=1e-11 * abs(before).max())
+
+
+def flown(position, velocity, elapsed):
+    """The time integral of sum v_x v_y over free flight; at the boundary v_x changes by U."""
+    integral = elapsed * np.sum(velocity[:, 0] * velocity[:, 1])
+    for y, v in zip(position[:, 1], velocity[:, 1], strict=True):
+        crossings = int(np.floor((y + v * elapsed) / L))
+        for k in range(abs(crossings)):
+            edge = (k + 1) * L if crossings > 0 else -k * L
+            integral -= math.copysign(U, crossings) * v * (elapsed - (edge - y) / v)
+    return integral
+
+
+def booked(state):
+    """The work of the shear so far: booked, or due since particles have left the box unnoticed."""
+    velocity, elapsed = state.trajectory[:, 2:4], state.clock[NOW] - state.trajectory[:, 4]
+    images = np.floor((state.trajectory[:, 1] + velocity[:, 1] * elapsed) / L)
+    due = 0.5 * ((velocity[:, 0] - images * U) ** 2 - velocity[:, 0] ** 2)
+    return state.ledger[0, :-1].sum() + due.sum()
+
+
+def test_stress_times_shear_rate_is_the_account_of_the_shear():
+    """Exactly: with G = sum v_x (y - L/2) of the images in the box, which a steady state keeps, its
+
+    work is -(U/L) (time integral of sum v_x v_y + sum over contacts of J_x s_y - change of G).
+    """
+    scene, state = begin(SHEARED, 0.8, 0.3, 3)
+    run(state, scene, 1, interval=10.0)
+
+    def seen():
+        rows = run(state, scene, 1, interval=0.0)
+        time = rows["time"][0]
+        position, velocity = whereabouts(state, scene, time)
+        G = np.sum(velocity[:, 0] * (position[:, 1] - L / 2))
+        return time, position, velocity, G, carried(rows)[0, 1], booked(state)
+
+    first, kinetic = seen(), 0.0
+    for _ in range(400):
+        time, position, velocity, *_ = seen()
+        run(state, scene, 1, collisions=1)
+        last = seen()
+        kinetic += flown(position, velocity, last[0] - time)
+    dG, contacts, work = (last[k] - first[k] for k in (3, 4, 5))
+    assert work == pytest.approx(-U / L * (kinetic + contacts - dG), rel=1e-9)
+    assert abs(contacts) > 0.1 * abs(kinetic) > 0.0 and work > 0.0
+
+
+def test_of_a_point_both_powers_agree_within_the_error():
+    sheared = {"effects": {"contact_averages": {}, "contact_time": None}, "particles": 80}
+    schedule = {"kind": "steady", "equilibrate": 0, "measure": 1500, "sample_every": 0.5}
+    gas = simulate(
+        "sheared",
+        r=0.8,
+        beta=0.3,
+        box=(24, 24),
+        schedule=schedule,
+        **sheared,
+        observe=["stress"],
+        progress=False,
+    )
+    work = float(gas.energy_input.sel(source="shear").sum()) / 1500
+    assert abs(gas.shear_power - work) < 4 * gas.shear_power_stderr < 0.3 * work
+    assert gas.shear_power == pytest.approx(work, rel=0.1)
+    total = gas.stress_kinetic + gas.stress_collisional
+    assert gas.pressure == pytest.approx(float(total[0, 0] + total[1, 1]) / 2)
+
+
+def compressibility(kernel, number, box, collisions, **effects):
+    """p/(n T) of an elastic, smooth gas: 1 + the virial over twice the kinetic energy."""
+    experiment = settings(kernel, number, box)
+    experiment["effects"] = experiment["effects"] | effects
+    scene, state = begin(experiment, 1.0, -1.0, 5)
+    before = run(state, scene, 1, collisions=20 * number)
+    after = run(state, scene, 1, collisions=collisions)
+    square = sum(after[f"vv_{k}"][0] for k in "xyz"[: len(box)])
+    elapsed = after["time"][0] - before["time"][0]
+    return 1.0 + np.trace(carried(after) - carried(before)) / (elapsed * square)
+
+
+def test_the_pressure_of_elastic_spheres_is_that_of_carnahan_and_starling():
+    box = [12, 12, 12]
+    packing = theory.packing_fraction(64, box)
+    expected = 1 + 4 * packing * theory.contact_value(packing, 3)
+    assert compressibility("spheres", 64, box, 20_000) == pytest.approx(expected, rel=0.02)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("side", [100, 60, 50])
+def test_the_pressure_of_elastic_disks_is_that_of_henderson(side):
+    packing = theory.packing_fraction(400, [side, side])
+    expected = 1 + 2 * packing * theory.contact_value(packing, 2)
+    found = compressibility("smooth", 400, [side, side], 200_000, contact_stress={})
+    assert found == pytest.approx(expected, rel=0.01)
