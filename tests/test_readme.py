@@ -1,10 +1,15 @@
 """README.md is true: it is short, and what it says to type does what it says, in a fresh clone."""
 
+import json
 import os
 import re
 import shlex
+import signal
+import socket
 import subprocess
+import time
 from pathlib import Path
+from urllib.request import urlopen
 
 import pytest
 
@@ -19,6 +24,12 @@ MADE = (
     *("cooling_r0.9_beta0.5_seed1.nc", "bed.mp4", "figures/hollow.png"),
     *(f"results/small/{page}.html" for page in ("report", "explore", "living")),
 )
+
+JUPYTER = ("JUPYTER_CONFIG_DIR", "JUPYTER_DATA_DIR", "IPYTHONDIR")
+SERVER = """
+c.ServerApp.allow_root, c.ServerApp.open_browser, c.ServerApp.port = True, False, {port}
+c.IdentityProvider.token = ""
+"""
 
 
 def blocks(language):
@@ -76,34 +87,63 @@ def test_its_snippet_belongs_where_it_says(tmp_path):
     assert "hollow" in read_yaml(path)["experiments"]
 
 
-@pytest.mark.slow
-def test_all_of_it_typed_in_a_fresh_clone(tmp_path):
-    """Every command, in its order, as one would type it; it prints what is said, and git sees no
-    file that was not there."""
+@pytest.fixture(scope="module")
+def typed(tmp_path_factory):
+    """All that is printed where every command is typed, in its order, and the clone."""
+    folder = tmp_path_factory.mktemp("typed")
     (first, *rest), (snippet,) = commands(), blocks("yaml")
     assert first.startswith(CLONE)
     place = next(k for k, line in enumerate(rest) if line.startswith("snakemake"))
     paste = "sed -i '/^experiments:$/r snippet.yaml' config.yaml && rm snippet.yaml"
     script = [first.replace("ADDRESS", shlex.quote(str(ROOT)), 1), *rest[:place]]
     script += [f"cat > snippet.yaml <<'END'\n{snippet}END", paste, *rest[place:]]
-    ran = subprocess.run(
-        ["bash", "-e", "-c", "\n".join(script)],
-        cwd=tmp_path,
-        capture_output=True,
-        text=True,
-        env=environment(tmp_path),
-    )
+    command, around = ["bash", "-e", "-c", "\n".join(script)], environment(folder)
+    ran = subprocess.run(command, cwd=folder, capture_output=True, text=True, env=around)
     said = ran.stdout + ran.stderr
     assert ran.returncode == 0, said[-3000:]
-    lines = [line.rstrip() for line in said.splitlines()]
+    return [line.rstrip() for line in said.splitlines()], folder / "roughgas"
+
+
+@pytest.mark.slow
+def test_all_of_it_typed_in_a_fresh_clone(typed):
+    """It prints what is said, and git sees no file that was not there."""
+    lines, clone = typed
     assert not [line for line in answers() if line.rstrip() not in lines]
     assert any(re.fullmatch(r"  50 of \d+ packages", line) for line in lines)
-    clone = tmp_path / "roughgas"
     assert all((clone / path).stat().st_size > 1000 for path in MADE)
     status = subprocess.run(
         ["git", "status", "--porcelain"], cwd=clone, capture_output=True, text=True, check=True
     )
     assert status.stdout.split() == ["M", "config.yaml"]
+
+
+@pytest.mark.slow
+def test_make_notebook_serves_the_tutorial(typed, tmp_path):
+    """It installs Jupyter by itself; a browser is not opened here."""
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    (tmp_path / "jupyter_server_config.py").write_text(SERVER.format(port=port))
+    around = environment(tmp_path) | dict.fromkeys(JUPYTER, str(tmp_path))
+    serving = subprocess.Popen(["make", "notebook"], cwd=typed[1], env=around, process_group=0)
+    address = f"http://127.0.0.1:{port}/api/contents/tutorial.ipynb?content=0"
+    try:
+        while not (found := asked(address)):
+            assert serving.poll() is None
+            time.sleep(0.5)
+    finally:
+        os.killpg(serving.pid, signal.SIGTERM)
+        serving.wait()
+    assert found["type"] == "notebook" and found["size"] > 5000
+
+
+def asked(address):
+    """What a server answers; None as long as there is none."""
+    try:
+        with urlopen(address, timeout=10) as answer:
+            return json.load(answer)
+    except OSError:
+        return None
 
 
 def environment(folder):
