@@ -2,19 +2,18 @@
 
     make bench          or          python -m benchmarks [--quick]
 
-Prints the table, and writes docs/benchmarks.md, docs/benchmarks.png and docs/effects_cost.png, in
-less than ten minutes on two cores. With --quick up to 10,000 particles, without the pipeline and
-the cost of effects, and nothing is written.
+Prints the table, and writes the page of this processor and its pictures into docs/benchmarks, and
+the table of all processors, docs/benchmarks.md, in less than ten minutes on two cores. With --quick
+up to 10,000 particles, without the pipeline and the cost of effects, and nothing is written.
 """
 
 import argparse
 import sys
 import time
 
-from benchmarks import effects, generality, kernel, machine, pipeline, plot, yardstick
+from benchmarks import effects, generality, kernel, machine, machines, pipeline, plot, yardstick
 from benchmarks.report import report
 from benchmarks.scenes import CASES, DOCS
-from roughgas.base.files import write_text
 
 QUICK = 10_000  # particles at most
 
@@ -47,12 +46,13 @@ def main() -> None:
         for number in numbers:
             say(f"{case.title}, N = {number}")
             timings.append(kernel.measure(case, number))
-    page = report(timings, plain, comparisons, costs, overhead, machine.description())
+    here = machine.description()
+    page, name = report(timings, plain, comparisons, costs, overhead, here), machines.name_of(here)
     print(page)
     if not quick:
-        write_text(DOCS / "benchmarks.md", page)
-        plot.draw(timings, plain, DOCS / "benchmarks.png")
-        effects.draw(costs, DOCS / "effects_cost.png")
+        plot.draw(timings, plain, DOCS / "benchmarks" / f"{name}.png")
+        effects.draw(costs, DOCS / "benchmarks" / f"{name}-effects.png")
+        machines.write(DOCS, name, page, machines.summary(here, timings, plain))
     say("done")
 
 

@@ -1,13 +1,13 @@
-"""What was measured, as Markdown: for the terminal and for docs/benchmarks.md."""
+"""What was measured on a machine, as Markdown: for the terminal and for its page in docs."""
 
 from collections.abc import Sequence
 
 from benchmarks import effects, generality
 from benchmarks.kernel import LONGEST, RUNS, WARM_UP, Timing
+from benchmarks.machines import name_of, plain_rate
 from benchmarks.tables import short, table
-from benchmarks.yardstick import Rate
+from benchmarks.yardstick import REFERENCE, Rate
 
-REFERENCE = 160  # particles: what costs are relative to
 OVERHEAD = (  # of benchmarks.pipeline: key, words, format
     ("job_cpu", "start-up of a job: CPU besides its kernel (s)", ".2f"),
     ("job_wall", "start-up of a job: wall time besides its kernel (s)", ".2f"),
@@ -42,12 +42,13 @@ a change of machine.
 
 def report(timings, yardstick, comparisons, costs, overhead, machine) -> str:
     """The whole page."""
+    name = name_of(machine)
     parts = [
-        "# Benchmarks",
+        f"# Benchmarks: {machine.get('processor', 'unknown')} ({machine['instruction set']})",
         "Written by `make bench`.",
         table(["", "machine"], machine.items()),
         "## The kernel",
-        "![Cost per collision against the number of particles](benchmarks.png)",
+        f"![Cost per collision against the number of particles]({name}.png)",
         kernel_table(timings, yardstick),
         EXPLANATION,
         "## The yardstick",
@@ -58,8 +59,8 @@ def report(timings, yardstick, comparisons, costs, overhead, machine) -> str:
         generality.table(comparisons),
     ]
     if costs:
-        parts += ["## What each effect costs", "![Collisions per second with each effect]"]
-        parts[-1] += "(effects_cost.png)"
+        picture = f"![Collisions per second with each effect]({name}-effects.png)"
+        parts += ["## What each effect costs", picture]
         parts += [effects.table(costs), effects.EXPLANATION]
     if overhead:
         rows = [(words, format(overhead[key], form)) for key, words, form in OVERHEAD]
@@ -69,17 +70,18 @@ def report(timings, yardstick, comparisons, costs, overhead, machine) -> str:
 
 def kernel_table(timings: Sequence[Timing], yardstick: Sequence[Rate]) -> str:
     """One row a scene and size."""
-    heads = ["scene", "N", "collisions/s", "slowest", "fastest", "events/s", "µs/collision"]
-    heads += ["relative", "x plain", "hits", "renewals", "stale", "B state", "B cells", "B work"]
+    heads = ["scene", "N", "x plain", "collisions/s", "slowest", "fastest", "events/s"]
+    heads += ["µs/collision", "relative", "hits", "renewals", "stale"]
+    heads += ["B state", "B cells", "B work"]
     reference = {one.case: one.cost for one in timings if one.number == REFERENCE}
-    plain = next((one.median for one in yardstick if one.number == REFERENCE), float("nan"))
+    plain = plain_rate(yardstick)
     rows = []
     for one in timings:
         low, high = one.extremes
         rows.append(
-            [one.case.title, f"{one.number:,}", *map(short, (one.rate, low, high, one.events))]
+            [one.case.title, f"{one.number:,}", f"{one.rate / plain:.1f}"]
+            + [*map(short, (one.rate, low, high, one.events))]
             + [f"{one.cost:.2f}", f"{one.cost / reference.get(one.case, float('nan')):.2f}"]
-            + [f"{one.rate / plain:.1f}"]
             + [f"{count / one.counts.collisions:.2f}" for count in one.counts[1:]]
             + [f"{size:.0f}" for size in one.memory]
         )

@@ -14,7 +14,8 @@ from typing import NamedTuple
 import numba
 import numpy as np
 
-NUMBERS = (40, 160, 1_000)
+REFERENCE = 160  # particles: of the rate that all others are multiples of
+NUMBERS = (40, REFERENCE, 1_000)
 DENSITY = 160 / 100**2  # disks of radius 1 per area: the paper's cooling gas
 LEAST_WORK = 10_000_000  # pairs that are tried in a run
 RUNS = 5
