@@ -143,6 +143,29 @@ def test_a_key_in_the_wrong_place_is_told_its_place(
     assert refusal(checking.check, whole).endswith(f"; did you mean it under `{where}`?")
 
 
+def test_a_quantity_of_a_species_is_a_variant(with_experiments):
+    species = [
+        {"fraction": 0.5, "name": "light"},
+        {"fraction": 0.5, "radius": {"distribution": "uniform", "deviation": 0.1}},
+    ]
+    heavy = {"extends": "cooling", "species": species, "sweep": {"species.1.mass": ["1", "4"]}}
+    wide = {"extends": "cooling", "species": species, "sweep": {"species.1.deviation": ["0.2"]}}
+    grown = {"extends": "cooling", "species": species, "sweep": {"species.light.radius": ["3"]}}
+    found = with_experiments(heavy=heavy, wide=wide, grown=grown)
+    checking.check(found)
+    (one, four) = config.variants("heavy", config.experiment(found, "heavy", "paper"))
+    assert (one, four) == ("heavy/mass1", "heavy/mass4")
+    settings = config.experiment(found, four, "paper")
+    assert settings["species"] == [species[0], species[1] | {"mass": 4.0}]
+    assert config.swept_value(settings, "species.1.mass") == 4.0
+    assert variant_attributes(four, settings)["swept"] == "species.1.mass"
+    settings = config.experiment(found, "wide/deviation0.2", "paper")
+    assert settings["species"][1]["radius"] == {"distribution": "uniform", "deviation": 0.2}
+    settings = config.experiment(found, "grown/radius2", "paper")
+    assert settings["species"][0] == {"fraction": 0.5, "name": "light", "radius": 2.0}
+    assert species[1]["radius"]["deviation"] == 0.1  # what is written stays as it is
+
+
 def test_settings_of_a_variant_survive_the_way_through_text(whole):
     settings = config.point_settings(config.experiment(whole, "spun/inertia1", "paper"))
     assert settings["swept"] == "spin.inertia" and "sweep" not in settings
@@ -161,6 +184,8 @@ def test_no_parameter_has_a_name_that_datasets_need():
     effects = schema._validator("experiment").schema["$defs"]["effects"]["properties"]
     parameters = {name for about in effects.values() for name in about["properties"]}
     parameters |= {"particles", "box", *schema._schema()["$defs"]["schedule"]["properties"]}
+    definitions = schema._schema()["$defs"]
+    parameters |= {*definitions["one_species"]["properties"], *definitions["radii"]["properties"]}
     assert parameters & taken == {"inertia", "mu", "spin_share", "particles"}
 
 
@@ -171,6 +196,10 @@ MISTAKES = [
         f"{SWEPT}: key = 'spn.inertia': must begin with an effect of this experiment: "
         "contact_averages, contact_time, shear, spin",
     ),
+    (
+        {"species.heavy.mass": ["1"]},
+        f"{SWEPT}: key = 'species.heavy.mass': must name one of species: there are none",
+    ),
     ({"floor.roughness": ["1"]}, "key = 'floor.roughness': must begin with an effect of this exp"),
     (
         {"spin.mass": ["1"]},
@@ -178,8 +207,8 @@ MISTAKES = [
     ),
     (
         {"inertia": ["1"]},
-        "sweep: key = 'inertia': must be one of beta, box, particles, r, seeds, EFFECT.PARAMETER, "
-        "schedule.KEY; did you mean it under `effects: spin:`?",
+        "sweep: key = 'inertia': must be one of beta, box, particles, r, seeds, species.NAME.KEY, "
+        "EFFECT.PARAMETER, schedule.KEY; did you mean it under `effects: spin:`?",
     ),
     (
         {"particles": ["1.5"]},

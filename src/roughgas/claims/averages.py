@@ -77,9 +77,7 @@ def averaged(gas: xr.Dataset, name: str) -> xr.Dataset:
         raise NotTestedError(f"the dataset holds no {name}")
     ratio = gas[name].where(np.isfinite(gas.R))
     dof = gas.get(f"{name}_dof", gas.n_seeds - 1.0)
-    return gas.assign(
-        R=ratio, R_stderr=gas[f"{name}_stderr"], R_dof=dof, deviation=ratio - gas.theory
-    )
+    return gas.assign(R=ratio, R_stderr=gas[f"{name}_stderr"], R_dof=dof)
 
 
 def beyond_correlation(gas: xr.Dataset) -> Sample:

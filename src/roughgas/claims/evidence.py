@@ -104,7 +104,7 @@ def load(path: str | Path) -> xr.Dataset:
 
 
 def beside_theory(data: xr.Dataset) -> xr.Dataset:
-    """Return a reduced dataset with `theory` and `deviation` (R - theory), which are like its R.
+    """Return a reduced dataset with `theory`, which is like its R.
 
     Points that are not in a steady state cannot test a theory of one: their R is NaN, and the
     attribute `set_aside` counts them. Values of r that were simulated with the contact-time model
@@ -117,7 +117,6 @@ def beside_theory(data: xr.Dataset) -> xr.Dataset:
     found, steady = np.isfinite(data.R), data.equilibrated > EQUILIBRATED
     data["theory"] = data.R.copy(data=theory_of(data))
     data["R"] = data.R.where(steady)
-    data["deviation"] = data.R - data.theory
     return data.assign_attrs(points=int(found.sum()), set_aside=int((found & ~steady).sum()))
 
 
@@ -153,7 +152,7 @@ def over_seeds(data: xr.Dataset, values: xr.DataArray, name: str) -> Sample:
 
 def deviation(data: xr.Dataset) -> Sample:
     """Return R - theory at every point."""
-    return of_ratio(data, data.deviation)
+    return of_ratio(data, data.R - data.theory)
 
 
 def deviation_in_proportion(data: xr.Dataset) -> Sample:

@@ -51,7 +51,7 @@ def theory_underestimates(bed: xr.Dataset) -> Finding:
     """The mean of R - Lun's formula at intermediate beta is positive at the lowest r, and larger
     there than at the highest r."""
     middle = bed.sel(beta=np.abs(bed.beta) <= INTERMEDIATE)
-    there = [float(r) for r in bed.r.values if np.isfinite(middle.deviation.sel(r=r)).any()]
+    there = [float(r) for r in bed.r.values if np.isfinite(middle.R.sel(r=r)).any()]
     if not there:
         raise NotTestedError(f"no point with |beta| <= {INTERMEDIATE:g} in a steady state")
     means = [(r, deviation(middle.sel(r=[r])).mean()) for r in there]

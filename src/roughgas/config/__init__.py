@@ -1,7 +1,8 @@
 """config.yaml: read, checked, and merged into the settings of one experiment at one scale.
 
 A sweep may have a third axis, with its labels: one parameter of one effect, as EFFECT.PARAMETER,
-such as `spin.inertia: ["1", "0.1"]`; one length of the schedule, as schedule.KEY; the number of
+such as `spin.inertia: ["1", "0.1"]`; one quantity of one species, as species.NAME.KEY, a KEY of its
+`radius` too where radii are spread; one length of the schedule, as schedule.KEY; the number of
 `particles`; or the width of the `box`, whose other sides keep their proportion to it. Each label
 makes a variant of the experiment, named EXPERIMENT/PARAMETERLABEL, such as
 vibrated_inertia/inertia0.1: an experiment like any other, whose settings have that value.
@@ -15,6 +16,7 @@ from typing import Any
 
 from roughgas.base.errors import InputError, not_one_of, shown
 from roughgas.base.layout import as_text, from_json  # noqa: F401
+from roughgas.config.axis import SPECIES, changed, scaled, value_of
 from roughgas.config.labels import (  # noqa: F401
     SWEPT,
     level,
@@ -261,30 +263,26 @@ def variant(name: str, settings: Mapping[str, Any]) -> dict[str, Any]:
 def swept_to(settings: Mapping[str, Any], key: str, value: float | str) -> dict[str, Any]:
     """Return the change to an experiment's settings that gives its third axis `key` this value."""
     part, _, parameter = key.rpartition(".")
+    if part.startswith(SPECIES):
+        return {"species": changed(settings["species"], part, parameter, value)}
     if part and part != "schedule":
         return {"effects": {part: {parameter: value}}}
     if isinstance(value, float) and value.is_integer():
         value = int(value)  # as config.yaml would have it
     if part:
         return {part: {parameter: value}}
-    return {key: _scaled(settings[key], value) if key == "box" else value}
+    return {key: scaled(settings[key], value) if key == "box" else value}
 
 
 def swept_value(settings: Mapping[str, Any], key: str) -> Any:
     """Return the value that the settings of a variant have on its third axis; None without it."""
     part, _, parameter = key.rpartition(".")
+    if part.startswith(SPECIES):
+        return value_of(settings, part, parameter)
     if part:
         chosen = settings if part == "schedule" else settings["effects"]
         return chosen.get(part, {}).get(parameter)
     return settings["box"][0] if key == "box" else settings.get(key)
-
-
-def _scaled(box: Iterable[float | str], width: Any) -> Any:
-    """Return a box of another width and of the same proportions; no width: what was given."""
-    if isinstance(width, str):
-        return width
-    sides = list(box)
-    return [width, *(x if x == "open" else x * width / sides[0] for x in sides[1:])]
 
 
 def check_one_variant(name: str, settings: Mapping[str, Any]) -> None:

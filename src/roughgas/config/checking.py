@@ -10,6 +10,7 @@ from typing import Any
 
 from roughgas import config as settings_of
 from roughgas.base.errors import InputError, shown
+from roughgas.config.axis import SPECIES, names_of, species_called
 from roughgas.config.labels import level, restitution, roughness
 from roughgas.config.reading import read_yaml
 from roughgas.config.schema import check_schema
@@ -88,7 +89,11 @@ def _check_axis(settings: Mapping[str, Any], where: str) -> None:
         if part == "schedule" and parameter not in timed:
             legal = f"name a length of this schedule: {', '.join(sorted(timed))}"
             raise InputError(f"{where}.sweep: key", shown(key), legal)
-        if part not in ("", "schedule", *listed):
+        if part.startswith(SPECIES):
+            if species_called(settings, part) is None:
+                legal = f"name one of species: {', '.join(names_of(settings)) or 'there are none'}"
+                raise InputError(f"{where}.sweep: key", shown(key), legal)
+        elif part not in ("", "schedule", *listed):
             legal = f"begin with an effect of this experiment: {', '.join(sorted(listed))}"
             raise InputError(f"{where}.sweep: key", shown(key), legal)
         if not part and key not in settings:
