@@ -5,9 +5,8 @@ import xarray as xr
 
 from roughgas import studies
 from roughgas.config import as_text
-from roughgas.data.film import write_film
+from roughgas.data.film import FILM, write_film
 from roughgas.data.point import Point, write_point
-from roughgas.data.variables import FILM
 from roughgas.results.reduce import reduce_points
 from roughgas.studies.files import combine, write_task
 from roughgas.studies.runs.coverage import MEASURED

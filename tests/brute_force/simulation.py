@@ -270,7 +270,7 @@ class BruteForce:
         push = (1.0 + r) * v_n / (1.0 / m).sum()
         if world.q is not None:
             v_t, v_r = v - v_n, -np.cross(self.w[i] + self.w[j], n)
-            self.seen += v_t @ v_t, v_r @ v_r, v_t @ v_r
+            self._see(v_t, v_r, m, s)
             along = (1.0 + beta) * (v_t + v_r) / (1.0 / m + 1.0 / s).sum()
             along = cut_by_friction(mu, push, along)
             push = push + along
@@ -279,6 +279,11 @@ class BruteForce:
         self.carried += np.outer(-push, self.radius[[i, j]].sum() * n)
         self.v[i] -= push[: self.dimension] / m[0]
         self.v[j] += push[: self.dimension] / m[1]
+
+    def _see(self, v_t, v_r, m, s):
+        if self.world.contents is not None:  # sqrt(m v^2) and sqrt(m q v^2) instead, for m of both
+            v_t, v_r = (x * math.sqrt(2.0 / (1.0 / y).sum()) for x, y in ((v_t, m), (v_r, s)))
+        self.seen += v_t @ v_t, v_r @ v_r, v_t @ v_r
 
     def _material(self, i, j):
         """Restitution, roughness and mu of two particles."""

@@ -9,10 +9,10 @@ import re
 from pathlib import Path
 
 from roughgas.base.layout import markdown
+from roughgas.data.film import FILM
 from roughgas.data.trajectory import TRAJECTORY
 from roughgas.data.variables import (
     COOLING,
-    FILM,
     GRID,
     POINT,
     REDUCED,

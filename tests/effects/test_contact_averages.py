@@ -17,16 +17,25 @@ from roughgas.simulation.point import run_point
 ENDS = ("", "_stderr", "_dof", "_ci95")
 LOOKED_AT = ("bed", "sheared", "shaken", "heated", "spheres")
 
+TWO = [{"fraction": 0.5}, {"fraction": 0.5, "radius": 1.5, "inertia": 0.3}]
+
 
 def sums(rows):
     """The last running sums of v_t^2, v_r^2 and v_t.v_r."""
     return np.array([rows[name][-1] for name in SUMS])
 
 
-@pytest.mark.parametrize("kernel", LOOKED_AT)
-def test_each_contact_counts_as_brute_force_has_it(kernel):
+@pytest.mark.parametrize(
+    ("kernel", "species"),
+    [
+        *((kernel, {}) for kernel in LOOKED_AT),
+        ("bed", {"species": TWO}),
+        ("heated", {"species": TWO}),
+    ],
+)
+def test_each_contact_counts_as_brute_force_has_it(kernel, species):
     """Collision by collision, to roundings; each piece starts where the kernel stands."""
-    experiment = settings(kernel, 40)
+    experiment = settings(kernel, 40) | species
     scene, world = scene_of(experiment, 0.9, 0.3)
     _, state = begin(experiment, 0.9, 0.3, 4)
     run(state, scene, 1, collisions=200)

@@ -13,12 +13,51 @@ import numpy as np
 
 from roughgas.data import opening
 from roughgas.data.netcdf import Content, read_netcdf, write_netcdf
-from roughgas.data.variables import FILM, described, refuse
+from roughgas.data.variables import (
+    ENERGY,
+    LENGTH,
+    START,
+    TIME,
+    Variable,
+    described,
+    refuse,
+    register,
+)
 
 if TYPE_CHECKING:
     import xarray
 
 COMPLEVEL = 4
+FILM = register(
+    "film",
+    {
+        "x": Variable("middle of a cell of the map", LENGTH, ("x",)),
+        "y": Variable("middle of a cell of the map", LENGTH, ("y",)),
+        "time": Variable("time since cooling began", TIME, ("frame",)),
+        "collisions_per_particle": Variable(
+            "collisions per particle since cooling began", dims=("frame",)
+        ),
+        "E_trans": Variable("translational energy per degree of freedom", START, ("frame",)),
+        "E_rot": Variable("rotational energy per degree of freedom", START, ("frame",)),
+        "R": Variable(
+            "share of rotation in the energy, E_rot / (E_rot + E_trans)", dims=("frame",)
+        ),
+        "count": Variable("number of particle centres in a cell", "1", ("frame", "y", "x"), "u2"),
+        "disks": Variable("number of disks that reach into the window", "1", ("frame",), "i4"),
+        "disk_x": Variable("position of a disk", LENGTH, ("disk",), "f4"),
+        "disk_y": Variable("position of a disk", LENGTH, ("disk",), "f4"),
+        "disk_spin": Variable(
+            "spin of a disk", "root mean square spin of all disks in its frame", ("disk",), "f4"
+        ),
+        "E_trans_start": Variable("E_trans when cooling began", ENERGY),
+        "contact_time": Variable(
+            "contact time t_c of the contact-time model, NaN without it", TIME
+        ),
+        "contact_time_fraction": Variable("share of contacts changed by the contact-time model"),
+        "collisions": Variable("collisions simulated", dtype="i8"),
+        "kernel_seconds": Variable("time spent in the kernel", "s"),
+    },
+)
 
 
 def write_film(

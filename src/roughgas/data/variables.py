@@ -1,7 +1,7 @@
 """The registry of all variables: what each is, over which dimensions, and in which units.
 
-Writers, the tables of docs/data.md, and `roughgas show` read it. Points, films, and reduced
-datasets are registered here, and those of studies by the module that makes them.
+Writers, the tables of docs/data.md, and `roughgas show` read it. Points and reduced
+datasets are registered here, others by the module that makes them.
 
 Units: particle radius a = particle mass m = time unit T = 1. A freely cooling gas has no lasting
 time scale: there, times are counted in collisions per particle, energies in the initial E_trans.
@@ -253,34 +253,9 @@ REDUCED = {
     "seed": Variable("seed of the random generator", dims=("seed",), dtype="i8"),
 }
 
-FILM = {
-    "x": Variable("middle of a cell of the map", LENGTH, ("x",)),
-    "y": Variable("middle of a cell of the map", LENGTH, ("y",)),
-    "time": Variable("time since cooling began", TIME, ("frame",)),
-    "collisions_per_particle": Variable(
-        "collisions per particle since cooling began", dims=("frame",)
-    ),
-    "E_trans": Variable("translational energy per degree of freedom", START, ("frame",)),
-    "E_rot": Variable("rotational energy per degree of freedom", START, ("frame",)),
-    "R": Variable("share of rotation in the energy, E_rot / (E_rot + E_trans)", dims=("frame",)),
-    "count": Variable("number of particle centres in a cell", "1", ("frame", "y", "x"), "u2"),
-    "disks": Variable("number of disks that reach into the window", "1", ("frame",), "i4"),
-    "disk_x": Variable("position of a disk", LENGTH, ("disk",), "f4"),
-    "disk_y": Variable("position of a disk", LENGTH, ("disk",), "f4"),
-    "disk_spin": Variable(
-        "spin of a disk", "root mean square spin of all disks in its frame", ("disk",), "f4"
-    ),
-    "E_trans_start": Variable("E_trans when cooling began", ENERGY),
-    "contact_time": Variable("contact time t_c of the contact-time model, NaN without it", TIME),
-    "contact_time_fraction": Variable("share of contacts changed by the contact-time model"),
-    "collisions": Variable("collisions simulated", dtype="i8"),
-    "kernel_seconds": Variable("time spent in the kernel", "s"),
-}
-
 REGISTRY: dict[str, Mapping[str, Variable]] = {
     "point": POINT,
     "reduced": REDUCED,
-    "film": FILM,
 }
 """All variables by name, for each kind of dataset; each study is a kind, too."""
 

@@ -4,12 +4,19 @@ McNamara & Luding (1998) average over the collisions of pairs: v_t is the tangen
 relative velocity of the centres, v_r = -a (w1 + w2) x n that of the surfaces due to both spins
 (Eq. collrule). Where nothing but contacts changes the rotational energy of a steady state, their
 squares and their product are tied together (theory.contact_share).
+
+Where particles differ, v_t is weighted with the root of twice the reduced mass of the pair, v_r
+with that of twice its reduced m q: if all species had one temperature of translation and one of
+rotation, the mean squares would be 2 (D-1) times these. Then q = 1 belongs to the sums.
 """
 
+import math
 from typing import NamedTuple
 
 from roughgas.base.errors import InputError
 from roughgas.effects.settings import register
+from roughgas.kernel.bodies import pair_of
+from roughgas.kernel.hooks import either
 from roughgas.kernel.jit import jit
 from roughgas.kernel.vectors import add_scaled, dot, spin_cross
 
@@ -33,9 +40,18 @@ def contact_seen(averages, index, none, state, i, j, n, v, w, push):
     sums = state.sums.contact_averages
     v_t = add_scaled(v, n, -dot(v, n))
     minus_v_r = spin_cross(w, n)
-    sums[0, 0] += dot(v_t, v_t)
-    sums[0, 1] += dot(minus_v_r, minus_v_r)
-    sums[0, 2] -= dot(v_t, minus_v_r)
+    m, s = _weights(state.bodies, i, j)
+    sums[0, 0] += m * dot(v_t, v_t)
+    sums[0, 1] += s * dot(minus_v_r, minus_v_r)
+    sums[0, 2] -= math.sqrt(m * s) * dot(v_t, minus_v_r)
+
+
+def _of_pair(bodies, i, j):
+    pair = pair_of(bodies, i, j)
+    return pair.mass, pair.bulk
+
+
+_weights = either(_of_pair, lambda bodies, i, j: (1.0, 1.0))
 
 
 register(ContactAverages, {}, contact_seen=contact_seen, sums=SUMS)

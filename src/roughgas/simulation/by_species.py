@@ -8,8 +8,18 @@ from typing import Any
 
 import numpy as np
 
+from roughgas.effects import inertia
 from roughgas.effects.species import mixture_of
-from roughgas.simulation.energies import Energies, ratio, restored
+from roughgas.kernel.state import State
+from roughgas.scene import Scene
+from roughgas.simulation.energies import (
+    Columns,
+    Energies,
+    energies,
+    of_species,
+    ratio,
+    restored,
+)
 from roughgas.statistics.averages import period_means
 from roughgas.statistics.errors import blocking
 
@@ -23,6 +33,27 @@ def names(experiment: Mapping[str, Any]) -> dict[str, Any]:
         "species": [kind.name for kind in mixture.kinds],
         "species_particles": [kind.number for kind in mixture.kinds],
     }
+
+
+def energies_of(
+    columns: Columns, scene: Scene, state: State, species: int | None = None
+) -> Energies:
+    """Return the energies of samples, of all particles or of one species; of a sheared gas without
+    mean flow and mean spin."""
+    shear, q, bodies = scene.effects.shear, inertia(scene.effects), state.bodies
+    shear_rate = None if shear is None else shear.velocity / (2.0 * scene.middle)
+    if bodies is None:
+        return energies(columns, len(state.changes), q, shear_rate)
+    which = np.full(len(bodies.mass), True) if species is None else bodies.species == species
+    columns = columns if species is None else of_species(columns, species)
+    moments = (bodies.mass * bodies.inertia * bodies.radius**2)[which]
+    return energies(columns, int(which.sum()), q, shear_rate, float(np.sum(moments / (q or 1.0))))
+
+
+def energies_of_each(columns: Columns, scene: Scene, state: State) -> list[Energies]:
+    """Return the energies of the particles of each species; none where all particles are alike."""
+    number = 0 if scene.effects.species is None else scene.effects.species.kinds
+    return [energies_of(columns, scene, state, species) for species in range(number)]
 
 
 def driven(parts: Sequence[Energies], per_period: int, together: int) -> dict[str, Any]:

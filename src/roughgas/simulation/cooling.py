@@ -10,6 +10,7 @@ from roughgas.effects import inertia, speed_of_r
 from roughgas.scene import Scene
 from roughgas.simulation import by_species
 from roughgas.simulation.books import Books, exchange
+from roughgas.simulation.by_species import energies_of_each
 from roughgas.simulation.ends import Initial
 from roughgas.simulation.energies import Columns, Energies, ratio, ratio_of_means, restored
 from roughgas.simulation.gas import Gas, Recorder
@@ -145,7 +146,8 @@ def _cool(gas, every, samples):
     present = gas.energies(rows).map(lambda part: part / unit)
     energy = math.ldexp(unit, 2 * exponent)
     before, after = (Books(*(part / energy for part in b)) for b in (before, gas.books()))
-    parts = [one.map(lambda part: part / unit) for one in gas.energies_of_species(rows)]
+    parts = energies_of_each(rows, gas.scene, gas.state)
+    parts = [one.map(lambda part: part / unit) for one in parts]
     exponents = rows["exponent"].astype(int) - exponent
     return Cooled(present, exponents, rows["time"] - begun, before, after, parts)
 

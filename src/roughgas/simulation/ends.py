@@ -85,7 +85,8 @@ def initial_of(dataset: "xarray.Dataset") -> list[Initial]:
         elif name != "spin":
             legal = "be in the dataset: a point made with keep_state, or a frame of a trajectory"
             raise InputError("initial", f"without {name}", legal)
-    for name, variable in OF_BODIES.items():
+    differ = f"{prefix}species_of" in dataset
+    for name, variable in OF_BODIES.items() if differ else ():
         if prefix + variable in dataset:
             found[name] = _by_replica(dataset, prefix + variable, 1)
     times = np.atleast_1d(dataset[f"{prefix}time"].values) if f"{prefix}time" in dataset else [0.0]

@@ -13,7 +13,6 @@ from typing import Any, Protocol, Self
 import numpy as np
 
 from roughgas.base.errors import CollapseError, JammedError
-from roughgas.effects import inertia
 from roughgas.kernel.clock import INSTANT
 from roughgas.kernel.record import Sampling, columns, record
 from roughgas.kernel.state import (
@@ -30,8 +29,9 @@ from roughgas.kernel.state import (
 )
 from roughgas.scene import Scene, initial_state
 from roughgas.simulation.books import Books, books
+from roughgas.simulation.by_species import energies_of
 from roughgas.simulation.ends import Initial, state_from
-from roughgas.simulation.energies import Columns, Energies, energies, of_species
+from roughgas.simulation.energies import Columns, Energies
 
 REPORTS = 50
 SOON = 0.5  # seconds after which a call of the kernel should come back
@@ -264,23 +264,7 @@ class Gas:
 
     def energies(self, columns: Columns) -> Energies:
         """Return the energies of samples, of a sheared gas without mean flow and mean spin."""
-        return self._energies(columns, np.ones(self.particles, bool))
-
-    def energies_of_species(self, columns: Columns) -> list[Energies]:
-        """Return the same of the particles of each species; none where all particles are alike."""
-        species, bodies = self.scene.effects.species, self.state.bodies
-        return [
-            self._energies(of_species(columns, kind), bodies.species == kind)
-            for kind in range(species.kinds if species else 0)
-        ]
-
-    def _energies(self, columns: Columns, which: np.ndarray) -> Energies:
-        q, shear, bodies = inertia(self.scene.effects), self.scene.effects.shear, self.state.bodies
-        shear_rate = None if shear is None else shear.velocity / (2.0 * self.scene.middle)
-        spins = float(which.sum())
-        if bodies is not None and q is not None:
-            spins = np.sum((bodies.mass * bodies.inertia * bodies.radius**2)[which]) / q
-        return energies(columns, int(which.sum()), q, shear_rate, spins)
+        return energies_of(columns, self.scene, self.state)
 
     def books(self) -> Books:
         """Return the books of energy at the present instant."""

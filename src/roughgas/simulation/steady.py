@@ -82,7 +82,7 @@ def run(
         "E_trans": window.translational.mean(),
         "E_trans_stderr": blocking(translational)[0],
         **(_shared(window, per_period, every) if window.rotational is not None else {}),
-        **contact_averages(rows, first, per_period, inertia(scene.effects), sums),
+        **contact_averages(rows, first, per_period, _inertia_of_sums(scene), sums),
         **_unsubtracted(gas, rows, first),
         **_of_species(gas, rows, first, per_period),
         **exchange(before, gas.books(), scene, gas.particles),
@@ -128,9 +128,17 @@ def _series(time, window, together):
     return {name: period_means(values, together) for name, values in found.items()}
 
 
+def _inertia_of_sums(scene):
+    """Return the q that sums over contacts belong to."""
+    return inertia(scene.effects) if scene.effects.species is None else 1.0
+
+
 def _of_species(gas, rows, first, per_period):
     """Return the energies and R of each species."""
-    parts = [part.map(lambda values: values[first:]) for part in gas.energies_of_species(rows)]
+    parts = [
+        part.map(lambda values: values[first:])
+        for part in by_species.energies_of_each(rows, gas.scene, gas.state)
+    ]
     return by_species.driven(parts, per_period, max(1, per_period // KEPT))
 
 

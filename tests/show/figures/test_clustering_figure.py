@@ -7,8 +7,7 @@ from matplotlib.image import imread
 from roughgas import theory
 from roughgas.base.errors import InputError
 from roughgas.cli import main
-from roughgas.data.film import read_film, write_film
-from roughgas.data.variables import FILM
+from roughgas.data.film import FILM, read_film, write_film
 from roughgas.show.figures import clustering
 
 FRAMES, CELLS, SIDE, PER_CELL = 5, 30, 120.0, 3
