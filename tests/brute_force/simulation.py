@@ -36,19 +36,9 @@ INSTANTS = np.linspace(0.0, 1.0, 2001) ** 2  # at which a floor without a formul
 class BruteForce:
     """A simulation under way; `step` carries out one event, `run` so many pair collisions."""
 
-    def __init__(
-        self,
-        world,
-        position,
-        velocity,
-        spin,
-        time=0.0,
-        last_contact=None,
-        drive=None,
-        company=None,
-    ):
+    def __init__(self, world, x, v, spin, time=0.0, last_contact=None, drive=None, company=None):
         self.world = world
-        self.x, self.v = np.array(position, float), np.array(velocity, float)
+        self.x, self.v = np.array(x, float), np.array(v, float)
         self.number, self.dimension = self.x.shape
         self.w = np.zeros((self.number, 3))  # a times the angular velocity, always in space
         if spin is not None:

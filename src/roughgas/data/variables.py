@@ -83,11 +83,10 @@ def _of_target(long_name: str, units: str = "1") -> Variable:
     return Variable(long_name, units, when=(TARGET,))
 
 
-NAMES = {
+NAMES = {  # in all kinds of datasets
     "species": Variable("name of the species", "", ("species",), "str", (MIXTURE,), over_seeds=""),
     "species_particles": Variable("particles of a species", "1", ("species",), "i8", (MIXTURE,)),
 }
-"""What the species of a mixture are, in all kinds of datasets."""
 
 
 def _kept(long_name: str, units: str, dims: tuple[str, ...], *when: str) -> Variable:

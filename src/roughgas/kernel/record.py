@@ -182,11 +182,20 @@ def refresh(state, scene):
 
 
 def _mean(boundary_time, state, k):
-    momentum, mass = 0.0, 0.0
+    momentum = 0.0
     for i in range(len(state.trajectory)):
         momentum += mass_of(state.bodies, i) * state.trajectory[i, k]
-        mass += mass_of(state.bodies, i)
-    return momentum / mass
+    return momentum / _total_mass(state.bodies, state.trajectory)
+
+
+def _sum_of_masses(bodies, trajectory):
+    total = 0.0
+    for i in range(len(trajectory)):
+        total += bodies.mass[i]
+    return total
+
+
+_total_mass = either(_sum_of_masses, lambda bodies, trajectory: len(trajectory))
 
 
 _conserved_mean = either(lambda boundary_time, state, k: 0.0, _mean)

@@ -9,6 +9,7 @@ from roughgas.effects import inertia
 from roughgas.scene import Scene
 from roughgas.simulation import by_species
 from roughgas.simulation.books import exchange
+from roughgas.simulation.by_species import energies_of_each
 from roughgas.simulation.contacts import contact_averages
 from roughgas.simulation.ends import Initial
 from roughgas.simulation.energies import Columns, energies, ratio, ratio_of_means
@@ -135,10 +136,8 @@ def _inertia_of_sums(scene):
 
 def _of_species(gas, rows, first, per_period):
     """Return the energies and R of each species."""
-    parts = [
-        part.map(lambda values: values[first:])
-        for part in by_species.energies_of_each(rows, gas.scene, gas.state)
-    ]
+    parts = energies_of_each(rows, gas.scene, gas.state)
+    parts = [part.map(lambda values: values[first:]) for part in parts]
     return by_species.driven(parts, per_period, max(1, per_period // KEPT))
 
 
