@@ -66,6 +66,16 @@ def test_the_image_holds_all_that_a_run_consists_of():
         assert target == "./" or sources == [target]
 
 
+def test_what_links_of_the_package_lead_to_is_inside():
+    """Such as config.yaml, without which no command knows any experiment."""
+    package = ROOT / "src" / "roughgas"
+    links = [path for path in package.rglob("*") if path.is_symlink()]
+    led_to = {str(path.resolve().relative_to(ROOT)) for path in links}
+    assert led_to == {"config.yaml"}
+    assert led_to <= {source for text in texts("COPY") for source in copied(text)[0]}
+    assert led_to <= {line.split()[0] for line in apptainer("files")}
+
+
 def test_commands_use_files_that_are_there_by_then_and_both_recipes_the_same():
     there, installs = set(), []
     for instruction, text in steps():
