@@ -48,5 +48,5 @@ def test_what_fits_nowhere_is_refused():
     experiment = settings("smooth", 130, [20, 20]) | {
         "species": [{"fraction": 1, "radius": SPREAD}]
     }
-    with pytest.raises(InputError, match="particles = 100: must be fewer or smaller"):
+    with pytest.raises(InputError, match="particles = 130: must be fewer or smaller"):
         begin(experiment, 0.9, -1.0)
