@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from roughgas.base.errors import InputError
+from roughgas.effects import inertia_of_spin
 from roughgas.kernel.hooks import displacement
 from roughgas.kernel.layout import new_state
 from roughgas.kernel.state import State
@@ -73,7 +74,7 @@ def initial_state(
     spin = np.zeros((number, 2 * position.shape[1] - 3))
     temperature = experiment.get("spin_temperature", 0.0)
     if temperature > 0.0:  # of m q (a w)^2 for each component, as of m v^2 above
-        q = scene.effects.spin.inertia if bodies is None else bodies.mass * bodies.inertia
+        q = inertia_of_spin(scene.effects) if bodies is None else bodies.mass * bodies.inertia
         spin = rng.standard_normal(spin.shape) * np.sqrt(temperature / np.reshape(q, (-1, 1)))
     return new_state(scene, position, velocity, spin, precision, rng, bodies)
 
