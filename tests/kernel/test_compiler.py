@@ -9,6 +9,8 @@ from pathlib import Path
 import numba
 import numpy as np
 import pytest
+from llvmlite import binding
+from numba.core import event
 
 import roughgas
 from roughgas.kernel import compiler
@@ -72,9 +74,28 @@ def test_only_what_is_called_from_python_is_finished():
     assert engine.is_symbol_defined(outer.fndesc.llvm_cpython_wrapper_name)
 
 
-def test_memory_is_collected_again_after_compiling():
-    entry(lambda x: x + 1.0)(1.0)
+def test_after_compiling_memory_is_collected_again_and_events_are_told():
+    told = []
+
+    class Listener(event.Listener):
+        on_start = on_end = told.append
+
+    with event.install_listener("numba:compiler_lock", Listener()):
+        entry(lambda x: x + 1.0)(1.0)
+        assert not told
+        numba.njit(double)(1.0)
+    assert told, "no longer needed"
     assert gc.isenabled()
+
+
+def test_functions_are_optimised_by_passes_of_numba():
+    """With a manager of passes for each function, as numba has, it would take longer."""
+    text = "define i64 @f(i64 %x) { %y = alloca i64 store i64 %x, ptr %y"
+    text += " %z = load i64, ptr %y ret i64 %z }"
+    library = compiler.cpu_target.target_context.codegen().create_library("passes")
+    module = binding.parse_assembly(text + " declare i64 @g(i64)")
+    library._optimize_functions(module)
+    assert "alloca" not in str(module)
 
 
 @pytest.mark.parametrize("own", [compiler.Folder, compiler.Sealed, compiler.Kept])

@@ -32,8 +32,7 @@ def closure(*modules: str) -> set[str]:
     Of a package that is only around a module, imports inside functions do not count; nowhere those
     that only type checkers see. The facade, `roughgas` itself, is not among them.
     """
-    todo = [(name, True) for name in modules]
-    found: dict[str, bool] = {}
+    todo, found = [(name, True) for name in modules], {}
     while todo:
         name, whole = todo.pop()
         if name and whole > found.get(name, -1):

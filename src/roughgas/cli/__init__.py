@@ -44,7 +44,7 @@ def process() -> NoReturn:
     try:
         status = main()
     except SystemExit as end:  # argparse has said why
-        status = int(end.code or 0)
+        status = end.code
     os._exit(_flush(status))
 
 

@@ -8,6 +8,7 @@ tests/kernel/test_compiler.py:
   a state for a call from Python takes more code, and time to compile it, than most functions do;
 - `_numba_type_`: how a value tells its type;
 - `Library`, `set_env`: machine code is made of a kernel, and not of each function in it besides;
+- `event.broadcast`: a tenth of the time went into telling of locks that nobody asked for;
 - `_cache`, the classes of numba.core.caching, `rtsys`: to load a kernel without setting up the
   compiler, to share it among copies of the project, to seal files with a checksum, to have one
   writer at a time.
@@ -23,6 +24,7 @@ from contextlib import suppress
 from pathlib import Path
 
 import numba
+from numba.core import event
 from numba.core.caching import (
     CompileResultCacheImpl,
     FunctionCache,
@@ -56,20 +58,30 @@ def dispatcher(function, cache=False, inner=False, inline=False):
     if cache:
         made._cache = Kept(function)
     if not inner:
-        made.compile = _without_collection(made.compile)
+        made.compile = _undisturbed(made.compile)
     return made
 
 
-def _without_collection(compile_it):
-    """Have memory collected once, after compiling: nothing that is compiled can be thrown away."""
+def _tell_nobody(event):
+    pass
+
+
+def _undisturbed(compile_it):
+    """Have memory collected once, after compiling: nothing that is compiled can be thrown away.
+
+    And let numba tell nobody of each lock that it takes: all functions that are being compiled
+    listen, each within the one that calls it.
+    """
 
     @functools.wraps(compile_it)
     def compiling(*args):
-        enabled = gc.isenabled()
+        enabled, broadcast = gc.isenabled(), event.broadcast
         gc.disable()
+        event.broadcast = _tell_nobody
         try:
             return compile_it(*args)
         finally:
+            event.broadcast = broadcast
             if enabled:
                 gc.enable()
 
@@ -83,6 +95,14 @@ class Library(JITCodeLibrary):
     with all that it calls, though only the kernel's own is ever run. Here only what Python or C
     calls is finished; the rest is handed on as it is.
     """
+
+    def _optimize_functions(self, ll_module):
+        """As numba's, with one pass manager for a module; a declaration needs none."""
+        ll_module.data_layout = self._codegen._data_layout
+        passes, builder = self._codegen._function_pass_manager()
+        for function in ll_module.functions:
+            if not function.is_declaration:
+                passes.run(function, builder)
 
     def finalize(self):
         if any(_is_entry(function.name) for function in self._final_module.functions):
@@ -158,7 +178,7 @@ class Folder(_CacheLocator):
 
 
 class InFolder(CompileResultCacheImpl):
-    _locator_classes = (Folder,)  # type: ignore[assignment]  # of numba, which has a list
+    _locator_classes = (Folder,)
 
 
 class Sealed(IndexDataCacheFile):

@@ -5,7 +5,6 @@ machine. Division by zero gives inf or NaN as in numpy, so that no loop carries 
 """
 
 import functools
-from collections.abc import Callable
 
 
 class Compiled:
@@ -71,7 +70,7 @@ class Primitive:
         return compiler.type_of(self.name)
 
 
-overloads: list[tuple[Callable, Callable]] = []
+overloads = []
 """(function, chooser) of each overload that numba has not been told of yet."""
 
 

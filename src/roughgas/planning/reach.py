@@ -37,8 +37,7 @@ def reach(
         "planned_collisions": plan.collisions,
         "planned_seconds": plan.seconds,
     }
-    runs: list[list[Any]] = []
-    wanted = plan.seeds
+    runs, wanted = [], plan.seeds
     while True:
         while len(runs) < wanted:
             point = run_point(scene, settings, len(runs) + 1, tell)

@@ -22,11 +22,8 @@ SIMPLE = ("long_name", "observable")
 class Seen(Protocol):
     """A point (roughgas.results.reduce.Summary)."""
 
-    @property
-    def place(self) -> tuple[Any, ...]: ...
-
-    @property
-    def observed(self) -> Mapping[str, Array]: ...
+    place: tuple[Any, ...]
+    observed: dict[str, Array]
 
 
 def observed_in(file: netCDF4.Dataset) -> dict[str, Array]:

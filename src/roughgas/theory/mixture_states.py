@@ -68,8 +68,7 @@ def mixture_driven(gas: Mixture, power, packing=0.0, spin_power=0.0) -> Temperat
         raise InputError("power", powers[0].tolist(), "be what collisions can dissipate, and not 0")
 
     def sweep(state: np.ndarray) -> np.ndarray:
-        trans, rot = np.split(state, 2)
-        matrix = rate_matrix(gas, trans, rot, crowding)
+        matrix = rate_matrix(gas, *np.split(state, 2), crowding)
         found = _solved(-matrix, drive, moves)
         # rates go with the root of the temperature: so its scale is there at once
         return np.cbrt(state * found**2)
