@@ -126,7 +126,7 @@ def versions() -> Diagnosis:
     lines = [line for line in lock.read_text(encoding="utf-8").splitlines() if line[:1].isalnum()]
     others = []
     for one in (Requirement(line.rstrip(" \\")) for line in lines):
-        version = there.get(one.name)
+        version = there.get(canonicalize_name(one.name))
         meant = one.marker is None or one.marker.evaluate()
         if meant and (version is None or version not in one.specifier):
             others.append(f"{one.name} {version or 'missing'} ({one.specifier} is pinned)")

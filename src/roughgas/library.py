@@ -167,7 +167,12 @@ def simulate(
     >>> bool(second.measured_from == first.last_time)
     True
     """
-    changes = {"particles": particles, "box": box, "effects": effects, "schedule": schedule}
+    changes: dict[str, Any] = {
+        "particles": particles,
+        "box": box,
+        "effects": effects,
+        "schedule": schedule,
+    }
     changes |= {"species": species, "species_pairs": species_pairs}
     changes |= {"spin_temperature": spin_temperature, "keep_state": keep_state}
     changes["observables"], functions = _observed(observe)
@@ -254,7 +259,12 @@ def trajectory(
     >>> gas.position.shape
     (2, 40, 2)
     """
-    changes = {"particles": particles, "box": box, "effects": effects, "schedule": schedule}
+    changes: dict[str, Any] = {
+        "particles": particles,
+        "box": box,
+        "effects": effects,
+        "schedule": schedule,
+    }
     changes |= {"species": species, "species_pairs": species_pairs}
     legal_r, legal_beta, number = _numbers(r, beta, seed)
 
@@ -275,8 +285,8 @@ def trajectory(
     labels, told = (str(r), str(beta), str(seed)), ["--from", "start.nc"] if states else []
     told += take.options()
     about = provenance(name, settings, labels, scale, "bed.xyz", "trajectory", told)
-    shots = snapshots(settings, legal_r, legal_beta, number, take, states)
-    shots = list(watched(name, take.frames, "frames", shots, quiet=not progress))
+    filmed = snapshots(settings, legal_r, legal_beta, number, take, states)
+    shots = list(watched(name, take.frames, "frames", filmed, quiet=not progress))
     return as_trajectory(variables(scene, settings, shots), about)
 
 

@@ -93,7 +93,7 @@ class LogHandler(LogHandlerBase):
     def _stream(self) -> Any:
         return sys.stdout if self.common_settings.stdout else sys.stderr
 
-    def _show(self, record: LogRecord) -> None:
+    def _show(self, record: Any) -> None:
         event, text = getattr(record, "event", None), record.getMessage()
         if event == LogEvent.RUN_INFO:
             self._begin(record.stats)
@@ -108,7 +108,7 @@ class LogHandler(LogHandlerBase):
         if text.startswith(END):
             self._end(text.removeprefix(END))
         elif record.levelno >= WARNING or not (event in STEPS or text.startswith(NOISE)):
-            self._say(self._brief.format(record))
+            self._say(self._brief.format(record) if self._brief else text)
 
     def _begin(self, stats: dict[str, int]) -> None:
         """Show a bar of points, or of steps where no points are made."""
@@ -119,7 +119,7 @@ class LogHandler(LogHandlerBase):
         total, unit = (points, "points") if points else (stats["total"], "steps")
         self._bar = Bar("roughgas", total, unit, self._stream())
 
-    def _named(self, record: LogRecord) -> tuple[str, int]:
+    def _named(self, record: Any) -> tuple[str, int]:
         """Return what a job does, and how much of the bar that is."""
         weight = POINTS.get(record.rule_name, 0) if self._counts_points else 1
         return record.rule_msg or record.rule_name, weight

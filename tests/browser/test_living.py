@@ -10,8 +10,8 @@ from roughgas.kernel.state import EXPONENT, LAST_FIRST, LAST_SECOND
 from roughgas.scene import build
 from roughgas.show.living.assemble import SCENES, scenes, settings, write_living
 from roughgas.simulation import schedule
-from roughgas.simulation.gas import Recorder
 from roughgas.simulation.instant import in_order, whereabouts
+from roughgas.simulation.recorder import Recorder
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 

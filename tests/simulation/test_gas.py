@@ -11,7 +11,8 @@ from roughgas.base.errors import JammedError
 from roughgas.kernel.state import EXPONENT
 from roughgas.scene import build, initial_state
 from roughgas.simulation.energies import restored
-from roughgas.simulation.gas import Gas, Recorder, elastic
+from roughgas.simulation.gas import Gas, elastic
+from roughgas.simulation.recorder import Recorder
 
 GAS = settings("gas", 20, [25, 25])
 
@@ -126,7 +127,7 @@ def test_a_gas_in_which_time_hardly_goes_on_is_given_up(monkeypatch):
     """As in a box so dense that it jams: here the limit is low instead."""
     gas = gas_of(0.9, 0.2, 1)
     gas.in_time(2.0, 10)
-    monkeypatch.setattr("roughgas.simulation.gas.JAMMED", 0.02)
+    monkeypatch.setattr("roughgas.simulation.recorder.JAMMED", 0.02)
     with pytest.raises(JammedError) as found:
         gas.in_time(30.0, 100)
     assert re.fullmatch(
@@ -140,7 +141,7 @@ def test_a_gas_in_which_time_hardly_goes_on_is_given_up(monkeypatch):
 def test_no_bit_depends_on_how_long_the_calls_of_the_kernel_are(monkeypatch, soon):
     plain, refreshed = gas_of(0.5, 0.5, 2), gas_of(0.5, 0.5, 2, 40)
     expected = plain.in_time(1.0, 300), refreshed.in_collisions(10, 300)
-    monkeypatch.setattr("roughgas.simulation.gas.SOON", soon)
+    monkeypatch.setattr("roughgas.simulation.recorder.SOON", soon)
     plain, refreshed = gas_of(0.5, 0.5, 2), gas_of(0.5, 0.5, 2, 40)
     found = plain.in_time(1.0, 300), refreshed.in_collisions(10, 300)
     for one, other in zip(expected, found, strict=True):

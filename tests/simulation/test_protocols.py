@@ -7,7 +7,7 @@ from brute_force import begin, settings
 from roughgas import theory
 from roughgas.simulation import cooling, steady
 from roughgas.simulation.energies import Energies
-from roughgas.simulation.gas import Recorder
+from roughgas.simulation.recorder import Recorder
 
 BED = settings("bed", 40, [12.5, "open"]) | {
     "schedule": {

@@ -38,7 +38,7 @@ class Interval:
 
     def schema(self) -> dict[str, Any]:
         """Return the interval as a JSON schema."""
-        found = {"type": "number"}
+        found: dict[str, Any] = {"type": "number"}
         found["minimum" if self.text[0] == "[" else "exclusiveMinimum"] = _plain(self.low)
         if self.high < float("inf"):
             found["maximum" if self.text[-1] == "]" else "exclusiveMaximum"] = _plain(self.high)

@@ -32,7 +32,8 @@ def closure(*modules: str) -> set[str]:
     Of a package that is only around a module, imports inside functions do not count; nowhere those
     that only type checkers see. The facade, `roughgas` itself, is not among them.
     """
-    todo, found = [(name, True) for name in modules], {}
+    todo = [(name, True) for name in modules]
+    found: dict[str, bool] = {}
     while todo:
         name, whole = todo.pop()
         if name and whole > found.get(name, -1):

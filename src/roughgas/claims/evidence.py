@@ -2,7 +2,7 @@
 and studies."""
 
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -128,13 +128,13 @@ def theory_of(data: xr.Dataset, **others: np.ndarray) -> np.ndarray:
     return predicted_ratio(data.attrs | places | others, places["r"], places["beta"])
 
 
-def sample(values: xr.DataArray, stderr: xr.DataArray, dof: xr.DataArray) -> Sample:
+def sample(values: xr.DataArray, stderr: Any, dof: Any) -> Sample:
     """Return the finite `values` as a sample; raise NotTestedError where there is none."""
     there = np.isfinite(values.values)
     if not there.any():
         raise NotTestedError("no point is in a steady state and measured in all that is compared")
     axes = [*GRID, *(name for name in values.coords if name not in GRID)]
-    places = {name: values[name].broadcast_like(values).values[there] for name in axes}
+    places = {str(name): values[name].broadcast_like(values).values[there] for name in axes}
     known = np.where(np.asarray(dof) >= 1, stderr, np.nan)
     return Sample(places, values.values[there], known[there], np.asarray(dof)[there])
 
@@ -206,4 +206,4 @@ def effect_of_restitution(data: xr.Dataset) -> Sample:
     if len(set(ends)) < 2:
         raise NotTestedError(f"{data.attrs['experiment']} holds fewer than two values of r")
     low, high = (data.sel(r=r) for r in ends)
-    return difference(low, high.assign_coords(r=ends[0]))
+    return difference(low, high.assign_coords(r=low.r))

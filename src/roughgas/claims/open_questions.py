@@ -139,7 +139,7 @@ def follows_rates(gas: xr.Dataset) -> Finding:
 def _rough_from(ratio: xr.DataArray) -> dict[float, str]:
     """Return for each beta the smallest mu from which R at every r stays within AGREE of R at the
     largest mu; "none" where R at the largest is unknown."""
-    far = ~(np.abs(ratio - ratio.isel(mu=-1)) <= AGREE).all("r")
+    far = ~(abs(ratio - ratio.isel(mu=-1)) <= AGREE).all("r")
     smallest = {}
     for beta in ratio.beta.values:
         beyond = ratio.mu[np.flatnonzero(np.append([True], far.sel(beta=beta)))[-1] :]

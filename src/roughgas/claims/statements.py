@@ -69,7 +69,8 @@ def _statement(
 ) -> Statement:
     def agrees(*datasets: xr.Dataset) -> Finding:
         if in_proportion:
-            return agreement_in_proportion(*datasets, agrees_with)
+            (gas,) = datasets
+            return agreement_in_proportion(gas, agrees_with)
         return agreement(FUNCTIONS[sample](*datasets), agrees_with)
 
     criterion = _said_of(FUNCTIONS[judge or sample])
@@ -83,7 +84,7 @@ def _statement(
 
 def _said_of(function: Callable) -> str:
     """Return the first paragraph of a docstring, as one line."""
-    return " ".join(inspect.getdoc(function).split("\n\n")[0].split())
+    return " ".join((inspect.getdoc(function) or "").split("\n\n")[0].split())
 
 
 def _size(data: xr.Dataset) -> str:

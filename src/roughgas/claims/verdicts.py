@@ -95,7 +95,7 @@ def agreement_in_proportion(gas: xr.Dataset, theory: str) -> Finding:
     verdict = graded(off.mean() <= FEW and vague.mean() <= FEW, far.mean() <= FEW)
     near = int((np.abs(relative.value) <= NEAR).sum())
     reason = f"In proportion, {near} of {relative.size} points are within {NEAR:.0%}"
-    numbers = ()
+    numbers: tuple[tuple[str, Estimate], ...] = ()
     if off.any():
         largest, place = relative.where(off).largest()
         reason += f"; the largest significant difference is {text(largest)} of {theory} at {place}"

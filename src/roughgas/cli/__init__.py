@@ -44,7 +44,7 @@ def process() -> NoReturn:
     try:
         status = main()
     except SystemExit as end:  # argparse has said why
-        status = end.code
+        status = int(end.code or 0)
     os._exit(_flush(status))
 
 

@@ -1,7 +1,9 @@
 """`roughgas bench`: how fast this machine simulates."""
 
 from argparse import Namespace
+from collections.abc import Callable, Sequence
 from statistics import median
+from typing import Any
 
 from roughgas import config
 from roughgas.base.layout import as_json, columns
@@ -12,14 +14,19 @@ from roughgas.simulation.progress import Bar
 from roughgas.simulation.speed import rates_of
 
 HEAD = ["experiment", "r", "beta", "particles", "collisions / s", "slowest", "fastest"]
-PICKS = {"collisions_per_second": median, "slowest": min, "fastest": max}
+PICKS: dict[str, Callable[[Sequence[float]], float]] = {
+    "collisions_per_second": median,
+    "slowest": min,
+    "fastest": max,
+}
 
 
 def bench(options: Namespace) -> None:
     """Measure and print the speeds of experiments."""
     r, beta = config.restitution(options.r), config.roughness(options.beta)
     runs = whole_number("--runs", options.runs, 1)
-    loaded, found = config.load(options.config), {}
+    loaded = config.load(options.config)
+    found: dict[str, dict[str, Any]] = {}
     basic = [name for name, one in loaded["experiments"].items() if "extends" not in one]
     for name in options.experiments or basic:
         settings = config.experiment(loaded, name, options.scale)

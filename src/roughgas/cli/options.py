@@ -9,7 +9,7 @@ from roughgas.base.legal import Interval
 from roughgas.cli.parser import Option, flag, value
 
 
-def _experiments(prefix: str, parsed_args: Namespace, **_: Any) -> list[str]:
+def _experiments(prefix: str, parsed_args: Namespace, **others: Any) -> list[str]:
     """Return the names of experiments; after a `/`, those of an experiment's variants."""
     config = _configuration(parsed_args)
     base, slash, _ = prefix.partition("/")

@@ -84,9 +84,9 @@ class Parser(argparse.ArgumentParser):
     """A parser that reports errors in one line, and takes whatever begins like a negative number
     as a value: --beta -1:1:0.1."""
 
-    def __init__(self, *arguments: Any, **others: Any) -> None:
+    def __init__(self, **keywords: Any) -> None:
         form = argparse.RawDescriptionHelpFormatter  # which leaves examples as they are
-        super().__init__(*arguments, formatter_class=form, **others)
+        super().__init__(**{"formatter_class": form, **keywords})
         self._negative_number_matcher = re.compile(r"-\.?\d")
 
     def error(self, message: str) -> NoReturn:

@@ -56,7 +56,7 @@ def plan(options: Namespace) -> None:
     """Print what experiments will cost."""
     cores = whole_number("--cores", options.cores, 1)
     loaded = config.load(options.config)
-    found = {}
+    found: dict[str, dict[str, Any]] = {}
     for name in options.experiments or loaded["experiments"]:
         found |= config.every_variant(name, config.experiment(loaded, name, options.scale))
     folder = Path(options.pilots or f"results/{options.scale}")
@@ -83,7 +83,8 @@ def _explore(options: Namespace, scene: Scene, settings: dict[str, Any]) -> Pilo
 
 def _pilots(name: str, settings: dict[str, Any], folder: Path):
     """Return the pilots of a sweep by (r, beta), and the CPU seconds spent on missing ones."""
-    axes, found, begin = settings["sweep"], {}, time.process_time()
+    axes, begin = settings["sweep"], time.process_time()
+    found: dict[tuple[str, str], Pilot] = {}
     with Bar(f"pilots of {name}", len(axes["r"]) * len(axes["beta"]), "points") as bar:
         for r in axes["r"]:
             for beta in axes["beta"]:

@@ -29,7 +29,7 @@ def figure(options: Namespace) -> None:
             raise InputError("--slide", options.name, "be given for figures of experiments")
         if len(options.inputs) > 1:
             raise InputError("number of datasets", len(options.inputs), "be 1, with all studies")
-        of_studies.draw(options.name, *options.inputs, options.output)
+        of_studies.draw(options.name, options.inputs[0], options.output)
     else:
         gallery.draw(options.name, options.inputs, options.output, options.slide)
 

@@ -3,7 +3,7 @@
 import json
 import math
 from argparse import Namespace
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -72,15 +72,15 @@ def _read(path: str | Path) -> tuple[str, Any]:
         return "pilot of a point", read_pilot(path)
     with opening.opened(path) as file:
         kind = opening.kind_of(file)
-        opening.require(opening.attributes_of(file), QUOTED.get(kind, ()), path)
+        opening.require(opening.attributes_of(file), QUOTED.get(kind or "", ()), path)
     data = read_studies(path) if kind == opening.STUDIES else read_netcdf(path)
-    return kind.removeprefix("a "), data
+    return (kind or "").removeprefix("a "), data
 
 
 def _scalars(data: Dataset) -> dict[str, Any]:
     """Return the single numbers of a dataset by name, flags as True and False."""
     return {
-        name: bool(one) if "flag_meanings" in one.attrs else one.item()
+        str(name): bool(one) if "flag_meanings" in one.attrs else one.values.item()
         for name, one in data.variables.items()
         if not one.dims
     }
@@ -240,7 +240,7 @@ def _task_text(data: Dataset) -> str:
     table = [["variable", "over", "value"]]
     for name, one in data.variables.items():
         over = ", ".join(f"{dim} ({data.sizes[dim]})" for dim in one.dims)
-        table.append([name, over, _values(one.values)])
+        table.append([str(name), over, _values(one.values)])
     again = f"roughgas study {about['study']} {about['task']} --scale {about['scale']} -o task.nc"
     return "\n\n".join([columns(head), columns(table), f"To make it again: {again}"])
 
@@ -282,7 +282,7 @@ def _pilot_text(pilot: Any) -> str:
     return f"{columns(rows)}\n\nA run that measures for a length of 1000 finds R to about {error}."
 
 
-KINDS = {
+KINDS: dict[str, tuple[Callable[[Any], str], Callable[[Any], dict[str, Any]]]] = {
     "point": (_point_text, _point_record),
     "film of a cooling gas": (
         _film_text,

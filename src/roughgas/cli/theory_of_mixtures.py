@@ -44,7 +44,7 @@ def _at_a_point(gas: GasParameters, r: float, beta: float) -> dict[str, Quantity
     found = {}
     for way, state in states.items():
         found[f"R_{way}"] = Quantity(state.overall_ratio(mixed), f"R of all, {way}", SOURCE)
-        for k, one in enumerate(gas.species):
+        for k, one in enumerate(gas.species or ()):
             name = str(one.get("name", k + 1))
             found[f"R_{way}_{name}"] = Quantity(state.R[k], f"R of {name}, {way}", SOURCE)
             about = f"T_tr of {name} over its mean, {way}"

@@ -33,7 +33,7 @@ def changed(species: Iterable[Mapping[str, Any]], part: str, key: str, value: An
 def _holder(one: dict[str, Any], key: str) -> dict[str, Any]:
     """Return what of a species has this key: its distribution of radii, or itself."""
     radius = one.get("radius")
-    return radius if key in OF_RADII and isinstance(radius, Mapping) else one
+    return radius if key in OF_RADII and isinstance(radius, dict) else one
 
 
 def value_of(settings: Mapping[str, Any], part: str, key: str) -> Any:

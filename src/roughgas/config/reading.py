@@ -128,19 +128,19 @@ def _checked(events: Iterable[Event]) -> Iterator[Event]:
     for event in events:
         mark = event.start_mark
         if getattr(event, "tag", None) is not None:
-            _refuse(mark, event.tag, "have no tag")
+            _refuse(mark, getattr(event, "tag", ""), "have no tag")
         if getattr(event, "version", None):
             _refuse(mark, "%YAML", "not be there: this is YAML 1.2")
         if isinstance(event, CollectionEndEvent):
             anchor, before = opened.pop()
-            sizes[anchor] = values - before
+            sizes[anchor or ""] = values - before
         elif isinstance(event, NodeEvent):
             if not isinstance(event, AliasEvent) and event.anchor in anchors:
                 _refuse(mark, f"&{event.anchor}", "be given once")
             anchors |= {event.anchor} - {None}
             if isinstance(event, AliasEvent) and event.anchor in (anchor for anchor, _ in opened):
                 _refuse(mark, f"*{event.anchor}", "be no part of itself")
-            values += sizes.get(event.anchor, 1) if isinstance(event, AliasEvent) else 1
+            values += sizes.get(event.anchor or "", 1) if isinstance(event, AliasEvent) else 1
         if isinstance(event, CollectionStartEvent):
             opened.append((event.anchor, values))
         if len(opened) > DEEPEST:

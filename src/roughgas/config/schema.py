@@ -80,25 +80,28 @@ def _position(path: Iterable[Any], instance: Any) -> list[int]:
 
 
 def _input_error(error: "ValidationError", source: str, separator: str) -> InputError:
+    schema: Any = error.schema
+    instance: Any = error.instance
+    missed: Any = error.validator_value
     # a path is written as in cooling.sweep.r[1]
     steps = (f"[{x}]" if isinstance(x, int) else f".{x}" for x in error.absolute_path)
     path = "".join(steps).removeprefix(".")
     key = f"{source}{separator}{path}" if path else source
     if "propertyNames" in error.absolute_schema_path:
-        return InputError(f"{key}: key", shown(error.instance), _legal(error.schema))
+        return InputError(f"{key}: key", shown(instance), _legal(schema))
     if error.validator == "additionalProperties":
-        known, patterns = error.schema["properties"], error.schema.get("patternProperties", {})
+        known, patterns = schema["properties"], schema.get("patternProperties", {})
         legal = re.compile("|".join([*map(re.escape, known), *patterns]))
-        unknown = next(name for name in error.instance if not legal.fullmatch(name))
+        unknown = next(name for name in instance if not legal.fullmatch(name))
         titles = (about["title"] for about in patterns.values())
         refused = not_one_of(f"{key}: key", shown(unknown), [*sorted(known), *titles])
-        if place := _place_of(unknown, error.instance[unknown], known):
+        if place := _place_of(unknown, instance[unknown], known):
             refused.legal += f"; did you mean it under `{place}`?"
         return refused
     if error.validator == "required":
-        missing = next(name for name in error.validator_value if name not in error.instance)
+        missing = next(name for name in missed if name not in instance)
         return InputError(f"{key}.{missing}", "(nothing)", "be given")
-    return InputError(key, shown(error.instance), _legal(error.schema))
+    return InputError(key, shown(instance), _legal(schema))
 
 
 def _place_of(name: str, value: Any, known: Mapping[str, Any]) -> str:

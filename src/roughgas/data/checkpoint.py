@@ -28,7 +28,7 @@ def save(path: str | Path, owner: str, state: Any, record: Mapping[str, np.ndarr
 
     `owner` says which run this is: only the same one may resume from here. Raises OSError.
     """
-    content = {OWNER: np.array(owner)}
+    content: dict[str, Any] = {OWNER: np.array(owner)}
     content |= {STATE + name: array for name, array in arrays_of(state)}
     content |= {RECORD + name: array for name, array in record.items()}
     with whole_file(path) as draft, open(draft, "wb") as file:

@@ -50,7 +50,7 @@ class Content(NamedTuple):
 def content_of(dataset: "xarray.Dataset") -> Content:
     """Return what `dataset` holds, whose variables have attributes as those of `described`."""
     clocks = sorted(str(name) for name in dataset.coords if name not in dataset.dims)
-    return Content(dataset.variables, dataset.attrs, clocks)
+    return Content({str(k): one for k, one in dataset.variables.items()}, dataset.attrs, clocks)
 
 
 def write_netcdf(
@@ -119,14 +119,14 @@ def _fill(
     for variable in content.variables.values():
         for dim, length in zip(variable.dims, variable.values.shape, strict=True):
             if dim not in group.dimensions:
-                group.createDimension(dim, length)
+                group.createDimension(str(dim), length)
     for name in content.variables:
         _write_variable(group, name, content, complevel)
 
 
 def _write_variable(group: "netCDF4.Dataset", name: str, content: Content, complevel: int) -> None:
     variable = content.variables[name]
-    dims, values = variable.dims, variable.values
+    dims, values = tuple(map(str, variable.dims)), variable.values
     words = values.dtype.kind in "OU"
     is_coordinate = name in dims or name in content.clocks
     layout: dict[str, Any] = {}

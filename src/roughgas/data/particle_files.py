@@ -129,7 +129,7 @@ def _write_amber(path: Path, trajectory: "xarray.Dataset") -> None:
         file.createVariable("radius", "f8", ("atom",))[:] = trajectory.radius.values
         for number, frame in enumerate(frames(trajectory)):
             lengths, angles = lengths_and_angles(frame.cell)
-            rows = {
+            rows: dict[str, tuple[Any, tuple[str, ...]]] = {
                 "time": (frame.time, ("frame",)),
                 "coordinates": (frame.position, ("frame", "atom", "spatial")),
                 "velocities": (frame.velocity, ("frame", "atom", "spatial")),

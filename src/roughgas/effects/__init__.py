@@ -54,6 +54,12 @@ def speed_of_r(effects: Effects) -> float | None:
     return None if law is None else law.speed
 
 
+def inertia_of_spin(effects: Effects) -> float:
+    """Return q of particles that spin."""
+    assert effects.spin is not None
+    return effects.spin.inertia
+
+
 KINDS = {name: kind.__args__[0] for name, kind in Effects.__annotations__.items()}
 del KINDS["species"]  # a key of its own in settings
 """The effects by the names that they have in settings under `effects`."""

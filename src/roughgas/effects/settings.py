@@ -51,7 +51,7 @@ class Numbers(NamedTuple):
     interval: str
     fewest: int
     most: int
-    default = None
+    default: None = None
 
     def read(self, key: str, value: Any, around: Surroundings) -> tuple[float, ...]:
         """Return the numbers as floats; raise InputError unless they are as many as is legal."""
@@ -95,7 +95,7 @@ class OfParticles(NamedTuple):
 
     number: Number
     own: str  # the name of theirs in Surroundings
-    default = None
+    default: None = None
 
     def read(self, key: str, value: Any, around: Surroundings) -> float:
         """Return the number; raise InputError if it is illegal, or a roughness without spins."""
@@ -123,7 +123,7 @@ MATERIAL = {
 """The parameters of what particles bounce off."""
 
 
-def register(kind: type, parameters: Mapping[str, Any] | None = None, **hooks: Any) -> None:
+def register(kind: Any, parameters: Mapping[str, Any] | None = None, **hooks: Any) -> None:
     """Give an effect's class its parameters and its hooks (see roughgas.kernel.hooks.Hooks).
 
     `parameters` maps names to Number, Numbers, Word or OfParticles; None is a variant that another
@@ -136,7 +136,7 @@ def register(kind: type, parameters: Mapping[str, Any] | None = None, **hooks: A
         kind.from_settings = lambda settings, around: kind(**settings)
 
 
-def make(kind: type, name: str, settings: Mapping[str, Any], around: Surroundings) -> Any:
+def make(kind: Any, name: str, settings: Mapping[str, Any], around: Surroundings) -> Any:
     """Return the effect called `name` from its settings, None where it has nothing to do.
 
     Raises InputError for parameters that are illegal, unknown, or contradict their surroundings.

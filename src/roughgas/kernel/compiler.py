@@ -178,7 +178,7 @@ class Folder(_CacheLocator):
 
 
 class InFolder(CompileResultCacheImpl):
-    _locator_classes = (Folder,)
+    _locator_classes = (Folder,)  # type: ignore[assignment]  # of numba, which has a list
 
 
 class Sealed(IndexDataCacheFile):

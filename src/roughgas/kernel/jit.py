@@ -5,6 +5,7 @@ machine. Division by zero gives inf or NaN as in numpy, so that no loop carries 
 """
 
 import functools
+from collections.abc import Callable
 
 
 class Compiled:
@@ -70,7 +71,7 @@ class Primitive:
         return compiler.type_of(self.name)
 
 
-overloads = []
+overloads: list[tuple[Callable, Callable]] = []
 """(function, chooser) of each overload that numba has not been told of yet."""
 
 

@@ -5,6 +5,7 @@ An observable that nobody asks for is not made, and costs nothing.
 """
 
 from collections.abc import Callable, Iterable, Mapping
+from functools import partial
 from typing import Any, NamedTuple
 
 from roughgas.base.errors import InputError, not_one_of
@@ -54,7 +55,7 @@ def wanted(
     for name, function in (functions or {}).items():
         if name in KINDS or not name.isidentifier():
             raise InputError("observe", name, "be a name, and not that of another observable")
-        found.append(Wanted(name, 1, lambda system, n=name, f=function: Function(system, n, f)))
+        found.append(Wanted(name, 1, partial(Function, name=name, function=function)))
     return found
 
 

@@ -68,7 +68,8 @@ class Frame(NamedTuple):
         rate, velocity = self.system.shear_rate, self.velocity
         if rate:
             velocity = velocity.copy()
-            velocity[:, 0] -= rate * (self.position[:, 1] - self.system.box[1] / 2.0)
+            middle = (self.system.box[1] or 0.0) / 2.0
+            velocity[:, 0] -= rate * (self.position[:, 1] - middle)
         return velocity
 
     @property
@@ -76,4 +77,8 @@ class Frame(NamedTuple):
         """Spins (N, 2 D - 3) without their mean in a sheared gas; zeros where nothing spins."""
         if self.spin is None:
             return np.zeros((self.system.particles, 2 * self.system.dimension - 3))
-        return self.spin - self.spin.mean(axis=0) if self.system.shear_rate else self.spin
+        if not self.system.shear_rate:
+            return self.spin
+        turning = (self.mass * self.inertia * self.radius)[:, None]
+        rotation = (turning * self.spin).sum(axis=0) / (turning[:, 0] @ self.radius)
+        return self.spin - self.radius[:, None] * rotation

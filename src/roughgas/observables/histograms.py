@@ -12,11 +12,11 @@ import numpy as np
 from roughgas.data.variables import SPIN, Variable
 from roughgas.effects.settings import Number
 from roughgas.observables.frame import Frame, System
-from roughgas.observables.plugin import Observable, Values, Whole
+from roughgas.observables.plugin import Observable, Setting, Values, Whole
 
 ALONG = "reduced_velocity"
 
-SETTINGS = {
+SETTINGS: dict[str, Setting] = {
     "bins": Whole("Number of bins.", 2, 10_000, 60),
     "reach": Number("End of the last bin, in root mean squares.", "(0, 1000]", 6.0),
 }

@@ -14,11 +14,11 @@ import numpy as np
 
 from roughgas.data.variables import LENGTH, TIME, Variable
 from roughgas.observables.frame import Frame, System
-from roughgas.observables.plugin import Observable, Values, Whole
+from roughgas.observables.plugin import Observable, Setting, Values, Whole
 
 NAME = "mean_square_displacement"
 
-SETTINGS = {
+SETTINGS: dict[str, Setting] = {
     "lags": Whole("Number of times, each twice the one before.", 1, 20, 8),
 }
 VARIABLES = {

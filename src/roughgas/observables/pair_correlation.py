@@ -17,7 +17,7 @@ from roughgas.base.errors import InputError
 from roughgas.data.variables import LENGTH, Variable
 from roughgas.effects.settings import Number
 from roughgas.observables.frame import Frame, System
-from roughgas.observables.plugin import Observable, Values, Whole
+from roughgas.observables.plugin import Observable, Setting, Values, Whole
 from roughgas.theory.frequencies import VOLUME
 
 DIAMETER = 2.0
@@ -26,7 +26,7 @@ REACH = 10.0  # a, or half of the box
 FITTED = 0.6  # a: the distance from contact over which g is taken for a parabola
 ROWS = 64  # particles that are compared with others at once
 
-SETTINGS = {
+SETTINGS: dict[str, Setting] = {
     "bins": Whole("Number of bins in a diameter.", 1, 1000, 20),
     "reach": Number(f"Largest distance, in a; {REACH:g} if the box is wide enough."),
 }
@@ -76,8 +76,10 @@ class PairCorrelation(Observable):
         g, near = means["pair_correlation"], self._near
         order = min(2, len(near) - 1)
         away = self.coordinates["distance"][near] - DIAMETER
-        chi = np.polynomial.polynomial.polyfit(away, g[near], order)[0] if order >= 0 else np.nan
-        return dict(means) | {"contact_value": chi}
+        if order < 0:
+            return {**means, "contact_value": np.array(np.nan)}
+        chi = np.polynomial.polynomial.polyfit(away, g[near], order)[0]
+        return {**means, "contact_value": np.asarray(chi)}
 
 
 def squares(frame: Frame, reach: float) -> Iterator[np.ndarray]:

@@ -113,7 +113,9 @@ class Function(Observable):
             if dim in dims:
                 text = {"long_name": str(dim), "units": "1"} | _told(along)
                 words = np.asarray(along).dtype.kind not in "iuf"
-                kind = {"units": "", "dtype": "str"} if words else {"units": text["units"]}
+                kind: dict[str, Any] = (
+                    {"units": "", "dtype": "str"} if words else {"units": text["units"]}
+                )
                 self.variables[dim] = Variable(text["long_name"], dims=(dim,), **kind)
                 self.coordinates[dim] = np.asarray(along)
 

@@ -16,14 +16,14 @@ from roughgas.base.errors import InputError
 from roughgas.data.variables import ENERGY, LENGTH, SPEED, Variable
 from roughgas.effects.settings import Number
 from roughgas.observables.frame import Frame, System
-from roughgas.observables.plugin import Observable, Values, Whole
+from roughgas.observables.plugin import Observable, Setting, Values, Whole
 from roughgas.theory.frequencies import VOLUME
 
 WIDTH = 2.0  # of a layer in a, in an open box
 ALONG = ("height",)
 EACH = (*ALONG, "component")
 
-SETTINGS = {
+SETTINGS: dict[str, Setting] = {
     "bins": Whole("Number of layers.", 1, 10_000, 50),
     "height": Number(
         "Height up to which layers reach, in a; the box's, or two a layer if it is open."

@@ -5,11 +5,12 @@ from typing import Any
 
 import numpy as np
 
+from roughgas.effects import inertia_of_spin
 from roughgas.planning.lengths import BIAS, FEWEST_SEEDS, relaxation, to_measure, whole
 from roughgas.planning.pilot import SEED, Pilot
 from roughgas.scene import Scene
 from roughgas.simulation import cooling
-from roughgas.simulation.gas import Recorder
+from roughgas.simulation.recorder import Recorder
 from roughgas.theory import cooling_ratio
 
 TRIED = {"replicas": 40, "relaxation_times": 16}
@@ -52,8 +53,8 @@ def effort(scene: Scene, experiment: Mapping[str, Any]) -> float:
 
 def choose(scene: Scene, given: Mapping[str, Any], pilot: Pilot, target: float) -> dict[str, Any]:
     """Return the complete schedule of a run that belongs to a target."""
-    r, beta, inertia = scene.restitution, scene.roughness, scene.effects.spin.inertia
-    final = cooling_ratio(r, beta, len(scene.box), inertia)
+    r, beta, inertia = scene.restitution, scene.roughness, inertia_of_spin(scene.effects)
+    final = float(cooling_ratio(r, beta, len(scene.box), inertia))
     e_folds = relaxation(scene, BIAS * target, final, None) * cooling.rate_of(scene)
     e_folds = float(f"{max(e_folds, 1.0):.3g}")
     spent = given["thermalise"] + cooling.transient_length(scene, e_folds)

@@ -2,6 +2,7 @@
 
 import math
 
+from roughgas.effects import inertia_of_spin
 from roughgas.planning.pilot import Pilot
 from roughgas.scene import Scene
 from roughgas.simulation.cooling import TRANSIENT
@@ -21,7 +22,7 @@ def relaxation(scene: Scene, tolerated: float, final: float, spin_share: float |
     """
     if final <= tolerated:
         return 0.0
-    r, beta, inertia = scene.restitution, scene.roughness, scene.effects.spin.inertia
+    r, beta, inertia = scene.restitution, scene.roughness, inertia_of_spin(scene.effects)
     left = tolerated / float(final)
     needed = collisions_to_relax(r, beta, left, len(scene.box), inertia, spin_share)
     return min(CARE * float(needed), TRANSIENT[1])

@@ -14,7 +14,7 @@ from roughgas.simulation import cooling as of_cooling
 from roughgas.simulation import schedule
 from roughgas.simulation import steady as of_steady
 
-PLANNERS = {of_steady: steady, of_cooling: cooling}
+PLANNERS: dict[schedule.Kind, Any] = {of_steady: steady, of_cooling: cooling}
 """By kind of schedule, its pilots and plans."""
 ALONE = 0.5  # of a seed: if less would do, run one; its own error bar is enough
 BLOCKS = 6.0  # degrees of freedom of the error within one run

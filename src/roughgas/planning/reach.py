@@ -37,7 +37,8 @@ def reach(
         "planned_collisions": plan.collisions,
         "planned_seconds": plan.seconds,
     }
-    runs, wanted = [], plan.seeds
+    runs: list[list[Any]] = []
+    wanted = plan.seeds
     while True:
         while len(runs) < wanted:
             point = run_point(scene, settings, len(runs) + 1, tell)

@@ -6,12 +6,13 @@ from typing import Any
 
 import numpy as np
 
+from roughgas.effects import inertia_of_spin
 from roughgas.planning.lengths import BIAS, FEWEST_SEEDS, relaxation, to_measure, whole
 from roughgas.planning.pilot import SEED, Pilot
 from roughgas.scene import Scene
 from roughgas.simulation import steady
 from roughgas.simulation.energies import Energies, ratio
-from roughgas.simulation.gas import Recorder
+from roughgas.simulation.recorder import Recorder
 from roughgas.statistics.averages import period_means
 from roughgas.statistics.errors import (
     autocorrelation_time,
@@ -41,7 +42,8 @@ def explore(scene: Scene, experiment: Mapping[str, Any]) -> Pilot:
     recorder, number = Recorder(), experiment["particles"]
     streams = np.random.SeedSequence(SEED).spawn(CHAINS)
     gases = [steady.start(scene, experiment, stream, recorder) for stream in streams]
-    known, periods = [[] for _ in gases], SHORTEST
+    known: list[list[Energies]] = [[] for _ in gases]
+    periods = SHORTEST
     while True:
         for gas, pieces in zip(gases, known, strict=True):
             pieces.append(gas.energies(gas.in_time(every, periods * per_period)))
@@ -62,7 +64,7 @@ def effort(scene: Scene, experiment: Mapping[str, Any]) -> float:
 def choose(scene: Scene, given: Mapping[str, Any], pilot: Pilot, target: float) -> dict[str, Any]:
     """Return the complete schedule of a run that belongs to a target."""
     unit = given.get("period", given["sample_every"])
-    final = lun_ratio(scene.roughness, scene.effects.spin.inertia)
+    final = float(lun_ratio(scene.roughness, inertia_of_spin(scene.effects)))
     relaxed = relaxation(scene, BIAS * target, final, 0.0) / pilot.pace
     transient = whole(max(relaxed, TWICE * pilot.transient), unit)
     measure = whole(to_measure(transient, FEWEST_SEEDS, target, MEMORIES, pilot), unit)
@@ -72,7 +74,9 @@ def choose(scene: Scene, given: Mapping[str, Any], pilot: Pilot, target: float) 
 def _together(known: list[list[Energies]], per_period: int) -> np.ndarray:
     """Return E_trans, E_rot and R of each period of each chain, (3, chains, periods)."""
     series = [Energies(*map(np.concatenate, zip(*pieces, strict=True))) for pieces in known]
-    means = [[period_means(part, per_period) for part in (*one, ratio(one))] for one in series]
+    means = [
+        [period_means(part, per_period) for part in (*one.there(), ratio(one))] for one in series
+    ]
     return np.array([*zip(*means, strict=True)])
 
 

@@ -1,6 +1,6 @@
 """What a run of experiments will cost, before it is run: the table of `roughgas plan`."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from roughgas.base.layout import markdown
@@ -77,7 +77,7 @@ def _time(seconds: float) -> str:
     return f"{minutes} min" if minutes < 120 else f"{minutes / 60:.1f} h"
 
 
-COLUMNS = {
+COLUMNS: dict[str, tuple[str, Callable[[Any], str]]] = {
     "experiment": ("experiment", str),
     "target": ("target", lambda target: "" if target is None else f"{target:g}"),
     "points": ("points", str),

@@ -104,7 +104,11 @@ def write_costs(paths: Iterable[str | Path], fixed: str, output: str | Path) -> 
         if "measure" in schedule:  # a length in T
             length = schedule["equilibrate"] + schedule["measure"]
             against.append([name, f"{length:g} T", *(f"{x:.1f}" for x in saved(data, schedule))])
-    rows.append(_row("in all", max(targets), Cost(*map(sum, zip(*costs, strict=True)))))
+    rows.append(
+        _row(
+            "in all", max(targets), Cost(*(np.sum(one, axis=0) for one in zip(*costs, strict=True)))
+        )
+    )
     head = [*COLUMNS.split(" | "), "collisions"]
     write_text(output, TEXT.format(markdown(head, rows), markdown(AGAINST, against)))
 

@@ -74,30 +74,30 @@ def write_crate(
     points of results/paper/cooling.nc are those in results/paper/cooling/.
     Raises InputError if a product is elsewhere, or the folder exists; OSError as files do.
     """
-    output, products = Path(output), [str(product) for product in products]
+    output, made = Path(output), [str(product) for product in products]
     if missing := [name for name in PROJECT if not Path(name).is_file()]:
         legal = (
             f"be one with the workflow, such as a clone of the repository: {missing[0]} is missing"
         )
         raise InputError("folder", Path.cwd(), legal)
-    for product in products:
+    for product in made:
         if Path(product).is_absolute() or ".." in Path(product).parts:
             raise InputError("product", product, "be in this folder")
     if output.suffix != ".zip" and output.exists():
         raise InputError("--output", output, "be a new folder, or end in .zip")
     points = []
-    for folder in (Path(name).with_suffix("") for name in products if name.endswith(".nc")):
+    for folder in (Path(name).with_suffix("") for name in made if name.endswith(".nc")):
         points += sorted(map(str, folder.rglob("seed*.nc")))
     texts = {
         CONFIGURATION: json.dumps(configuration, indent=1, sort_keys=True) + "\n",
         ENVIRONMENT: json.dumps(environment(), indent=1) + "\n",
         POINTS: _list_of(points),
     }
-    files = [*project_files(), *products, *(points if with_points else ())]
-    crate = _described(texts, files, products)
+    files = [*project_files(), *made, *(points if with_points else ())]
+    crate = _described(texts, files, made)
     output.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(dir=output.parent, prefix=f".{output.name}.") as folder:
-        content = Path(folder) / "crate"
+    with tempfile.TemporaryDirectory(dir=output.parent, prefix=f".{output.name}.") as draft:
+        content = Path(draft) / "crate"
         crate.write(content)
         if output.suffix == ".zip":
             _pack(content, output)

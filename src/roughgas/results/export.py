@@ -47,7 +47,8 @@ def export(path: str | Path, output: str | Path) -> list[Path]:
 
 def _export(dataset: Dataset, output: Path) -> list[Path]:
     """Write one dataset; return the paths of its files, the one that describes it last."""
-    files, found_in = [], {}
+    files: list[Path] = []
+    found_in: dict[str, str] = {}
     for dims, names in _columns(dataset).items():
         is_grid = "n_seeds" in dataset and dims == dataset["n_seeds"].dims
         file = output if is_grid or dims in MAIN else _beside(output, "-".join(dims))
@@ -109,7 +110,7 @@ def _descriptions(dataset: Dataset, found_in: Mapping[str, str]) -> Iterator[tup
     for name, variable in dataset.variables.items():
         about = variable.attrs
         value = "" if variable.dims else variable.values.item()
-        yield name, found_in.get(name, ""), value, unit_of(about), about.get("long_name", "")
+        yield name, found_in.get(str(name), ""), value, unit_of(about), about.get("long_name", "")
     for name, value in dataset.attrs.items():
         yield f":{name}", "", value, "", "attribute"
 

@@ -22,8 +22,11 @@ SIMPLE = ("long_name", "observable")
 class Seen(Protocol):
     """A point (roughgas.results.reduce.Summary)."""
 
-    place: tuple[Any, ...]
-    observed: dict[str, Array]
+    @property
+    def place(self) -> tuple[Any, ...]: ...
+
+    @property
+    def observed(self) -> Mapping[str, Array]: ...
 
 
 def observed_in(file: netCDF4.Dataset) -> dict[str, Array]:

@@ -52,7 +52,7 @@ def build(experiment: Mapping[str, Any], r: float, beta: float) -> Scene:
     check_box(lengths, closed, largest)
     _check_company(experiment.get("particles"), effects)
     # walls that are near shorten no outlook
-    across = max(lengths[0], FAR_APART * largest) if closed else lengths[0]
+    across = max(lengths[0] or 0.0, FAR_APART * largest) if closed else lengths[0]
     return Scene(
         box=(None, *lengths[1:]) if closed else lengths,
         restitution=float(r),

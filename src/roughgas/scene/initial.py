@@ -7,17 +7,20 @@ from typing import Any
 import numpy as np
 
 from roughgas.base.errors import InputError
+from roughgas.effects import inertia_of_spin
 from roughgas.kernel.hooks import displacement
 from roughgas.kernel.layout import new_state
 from roughgas.kernel.state import State
-from roughgas.scene.composition import DIAMETER, Scene, build
+from roughgas.scene.composition import DIAMETER, NARROWEST_CHANNEL, Scene, build
 from roughgas.scene.mixture import draw_bodies
+from roughgas.scene.places import places_for
 
 TEMPERATURE = 1.0  # m a^2/T^2
 GRAZE = 1e-6  # a: overlaps as small as this are roundings, such as those of single precision
 VACANCIES = 1.3  # lattice sites per particle, if there is room
 LOOSE_PACKING = 0.2  # volume fraction of a gas with an open top
 MOST_SITES = 200_000_000
+FITTING = 10.0  # volume of the largest particle, over the mean, that a bed's lattice is laid for
 LEAST = DIAMETER * (1.0 + 1e-9)  # distance of two sites, in a
 # Where the sites are in a cell of the closer lattice: in space a cube with centred faces
 CENTRED = {
@@ -29,8 +32,12 @@ CENTRED = {
 def check(experiment: Mapping[str, Any]) -> Scene:
     """Return the scene of some point. Raises InputError if no point could be simulated."""
     scene = build(experiment, 0.5, 0.0 if "spin" in experiment["effects"] else -1.0)
-    bodies = draw_bodies(scene, experiment, np.random.default_rng(0))
-    lattice(scene, experiment, 1.0 if bodies is None else float(bodies.largest[0]))
+    rng = np.random.default_rng(0)
+    bodies = draw_bodies(scene, experiment, rng)
+    if bodies is None:
+        lattice(scene, experiment)
+    else:
+        _places(scene, experiment, bodies, rng)
     if experiment.get("spin_temperature") and scene.effects.spin is None:
         value = experiment["spin_temperature"]
         raise InputError("spin_temperature", value, "not be given where particles do not spin")
@@ -55,8 +62,7 @@ def initial_state(
     """
     number = experiment["particles"]
     bodies = draw_bodies(scene, experiment, rng)
-    sites = lattice(scene, experiment, 1.0 if bodies is None else float(bodies.largest[0]))
-    position = sites[np.sort(rng.permutation(len(sites))[:number])]
+    position = _places(scene, experiment, bodies, rng)
     velocity = math.sqrt(TEMPERATURE) * rng.standard_normal(position.shape)
     if bodies is not None:
         velocity /= np.sqrt(bodies.mass)[:, None]
@@ -68,9 +74,40 @@ def initial_state(
     spin = np.zeros((number, 2 * position.shape[1] - 3))
     temperature = experiment.get("spin_temperature", 0.0)
     if temperature > 0.0:  # of m q (a w)^2 for each component, as of m v^2 above
-        q = scene.effects.spin.inertia if bodies is None else bodies.mass * bodies.inertia
+        q = inertia_of_spin(scene.effects) if bodies is None else bodies.mass * bodies.inertia
         spin = rng.standard_normal(spin.shape) * np.sqrt(temperature / np.reshape(q, (-1, 1)))
     return new_state(scene, position, velocity, spin, precision, rng, bodies)
+
+
+def _places(scene, experiment, bodies, rng):
+    """Return places (N, D) on random sites of a lattice; where the largest are much larger than the
+    others, or too large for it, wherever there is room."""
+    number, largest = experiment["particles"], 1.0 if bodies is None else float(bodies.largest[0])
+    if bodies is None or _fits_lattice(scene, experiment, bodies.radius):
+        sites = lattice(scene, experiment, largest)
+        return sites[np.sort(rng.permutation(len(sites))[:number])]
+    lengths, bottom = _room(
+        scene, experiment, largest, float(np.sum(bodies.radius ** len(scene.box)))
+    )
+    periodic = [side is not None for side in scene.box]
+    while (found := places_for(bodies.radius, lengths, periodic, rng)) is None:
+        if scene.box[-1] is not None:
+            legal = "be fewer or smaller: no places without overlap were found for them"
+            raise InputError("particles", number, legal)
+        lengths[-1] *= 2.0
+    found[:, -1] += bottom
+    return found
+
+
+def _fits_lattice(scene, experiment, radius):
+    """Return whether a lattice for the largest particles has room for all, not too high up."""
+    if scene.box[-1] is None:
+        return radius.max() ** len(scene.box) <= FITTING * np.mean(radius ** len(scene.box))
+    try:
+        lattice(scene, experiment, float(radius.max()))
+    except InputError:
+        return False
+    return True
 
 
 def check_places(
@@ -189,8 +226,11 @@ def _closest(lengths, least):
     return [*counts[best].tolist(), int(layers[best])]
 
 
-def _room(scene, experiment, radius):
-    """Return the lengths of the region to fill, and where it begins along the last axis."""
+def _room(scene, experiment, radius, filled=None):
+    """Return the lengths of the region to fill, and where it begins along the last axis.
+
+    The particles are those of this radius, or no larger; `filled` is then the sum of radius^D.
+    """
     number = experiment["particles"]
     lengths = [None if side == "open" else float(side) for side in experiment["box"]]
     if lengths[-1] is not None:
@@ -199,6 +239,9 @@ def _room(scene, experiment, radius):
     base = math.prod(lengths[:-1])
     least = LEAST * radius
     height = number * volume * radius ** len(lengths) / (LOOSE_PACKING * base)
+    if filled is not None:
+        lengths[-1] = max(filled * volume / (LOOSE_PACKING * base), NARROWEST_CHANNEL * radius)
+        return lengths, scene.effects.floor.amplitude
     layers = math.ceil(height / (DIAMETER * radius) + 1.0)
     # there is always room above
     layers = max(layers, -(-number // math.prod(math.floor(side / least) for side in lengths[:-1])))

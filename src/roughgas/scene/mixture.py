@@ -48,6 +48,7 @@ def given_bodies(
     Raises InputError where these are not the species of the experiment.
     """
     mixture = mixture_of(experiment)
+    assert mixture is not None
     numbers = [kind.number for kind in mixture.kinds]
     found = np.bincount(np.maximum(species, 0), minlength=len(numbers)).tolist()
     if found != numbers or species.min() < 0:

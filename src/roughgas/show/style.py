@@ -6,7 +6,7 @@ share.
 
 from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from matplotlib import rc_context, rcParamsDefault
 from matplotlib.figure import Figure
@@ -53,6 +53,10 @@ METADATA = {
 }
 
 
+Style = dict[str, Any]
+"""Keywords of matplotlib."""
+
+
 class Look(NamedTuple):
     """What tells a series from the others: colour, marker and line at once."""
 
@@ -78,15 +82,15 @@ def draw(figure: Callable[[], Figure], outputs: Iterable[str | Path], slide: boo
 
     Raises InputError if one of them is none of .pdf, .png and .svg.
     """
-    outputs = [Path(output) for output in outputs]
-    for output in outputs:
+    paths = [Path(output) for output in outputs]
+    for output in paths:
         if output.suffix not in METADATA:
             raise InputError("figure file", output, f"end in {' or '.join(METADATA)}")
     with rc_context(PARAMETERS):
         drawn = figure()
         if slide:
             drawn.set_size_inches(SLIDE)
-        save(drawn, outputs)
+        save(drawn, paths)
 
 
 def save(figure: Figure, outputs: Iterable[str | Path]) -> None:

@@ -13,7 +13,8 @@ from roughgas.simulation.books import Books, exchange
 from roughgas.simulation.by_species import energies_of_each
 from roughgas.simulation.ends import Initial
 from roughgas.simulation.energies import Columns, Energies, ratio, ratio_of_means, restored
-from roughgas.simulation.gas import Gas, Recorder
+from roughgas.simulation.gas import Gas
+from roughgas.simulation.recorder import Recorder
 from roughgas.statistics.errors import autocorrelation_time
 from roughgas.statistics.intervals import Error
 from roughgas.statistics.plateau import find_plateau
@@ -109,8 +110,7 @@ def run(
     every = schedule["sample_every"]
     samples = math.ceil((transient + schedule["plateau"]) / every)
     streams = _streams(seed, schedule["replicas"])
-    begin = initial or [None] * len(streams)
-    pairs = zip(streams, begin, strict=True)
+    pairs = zip(streams, initial, strict=True) if initial else ((one, None) for one in streams)
     gases = (_replica(scene, experiment, stream, recorder, one) for stream, one in pairs)
     ensemble = _together([_cool(gas, every, samples) for gas in gases])
     passed = every * np.arange(1, samples + 1)

@@ -49,6 +49,11 @@ class Initial(NamedTuple):
         content = self.physics() + self.memory + self.owner.encode()
         return hashlib.sha256(content).hexdigest()[:16]
 
+    def bodies(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return the radii and the species of the particles, where they differ."""
+        assert self.radius is not None and self.species is not None
+        return self.radius, self.species.astype(int)
+
     def physics(self) -> bytes:
         """Return all of it but the kernel's memory."""
         parts = [np.asarray(one, float).tobytes() for one in self[:5] if one is not None]
@@ -141,7 +146,7 @@ def check_initial(initial: Sequence[Initial], experiment: Mapping[str, Any], sce
                 if getattr(one, name).shape != (number,):
                     legal = f"have the shape ({number},) in this scene"
                     raise InputError(f"initial.{variable}", getattr(one, name).shape, legal)
-            given_bodies(scene, experiment, one.radius, one.species.astype(int))
+            given_bodies(scene, experiment, *one.bodies())
         if not is_memory_of(one, scene):
             radius = None if scene.effects.species is None else one.radius
             check_places(scene, one.position, one.time, radius)
@@ -178,7 +183,7 @@ def state_from(
     if spin is None:
         spin = np.zeros((len(initial.position), 2 * len(scene.box) - 3))
     if scene.effects.species is not None:
-        bodies = given_bodies(scene, experiment, initial.radius, initial.species.astype(int))
+        bodies = given_bodies(scene, experiment, *initial.bodies())
     state = new_state(scene, initial.position, initial.velocity, spin, rng=rng, bodies=bodies)
     base = math.floor(initial.time)  # whole, so that it stays exact as it moves on
     now = initial.time - base
@@ -243,7 +248,7 @@ def _remembered(initial, scene, experiment):
     spin = np.zeros((number, 2 * dimension - 3))
     bodies = None
     if scene.effects.species is not None:
-        bodies = given_bodies(scene, experiment, initial.radius, initial.species.astype(int))
+        bodies = given_bodies(scene, experiment, *initial.bodies())
     state = new_state(scene, position, np.zeros_like(position), spin, bodies=bodies)
     for array in _arrays(state):
         if place + array.nbytes <= len(memory):

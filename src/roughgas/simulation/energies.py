@@ -53,7 +53,7 @@ def energies(
     inertia; `spins` is the sum of these over q, N if not given.
     """
     components = _components(columns, "vv")
-    speed_squared = sum(columns[name] for name in components)
+    speed_squared = np.asarray(sum(columns[name] for name in components))
     spin_squared = columns.get("ww")
     if shear_rate is not None:
         flow = shear_rate * (shear_rate * columns["yy"] - 2 * columns["yv_x"])
@@ -64,7 +64,7 @@ def energies(
         )
         spin_squared = spin_squared - mean_spin
     translational = speed_squared / (2 * particles * len(components))
-    if spin_squared is None:
+    if spin_squared is None or inertia is None:
         return Energies(translational)
     return Energies(
         translational, inertia * spin_squared / (2 * particles * (2 * len(components) - 3))
@@ -89,10 +89,9 @@ def restored(energies: Energies, exponent: np.ndarray) -> Energies:
 
 def ratio(energies: Energies) -> np.ndarray:
     """R = E_rot / (E_rot + E_tr) of each sample, in [0, 1]; NaN where both energies vanish."""
-    total = energies.rotational + energies.translational
-    return np.divide(
-        energies.rotational, total, out=np.full(np.shape(total), np.nan), where=total > 0
-    )
+    rotational = np.asarray(energies.rotational)
+    total = rotational + energies.translational
+    return np.divide(rotational, total, out=np.full(np.shape(total), np.nan), where=total > 0)
 
 
 def ratio_of_means(energies: Energies, axis: int = -1) -> np.ndarray:

@@ -6,25 +6,15 @@ after the same collisions.
 """
 
 import math
-import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, Protocol, Self
 
 import numpy as np
 
-from roughgas.base.errors import CollapseError, JammedError
-from roughgas.kernel.clock import INSTANT
-from roughgas.kernel.record import Sampling, columns, record
+from roughgas.kernel.record import Sampling
 from roughgas.kernel.state import (
-    BASE,
     COLLISIONS,
     EXPONENT,
-    LAST_FIRST,
-    LAST_SECOND,
-    NOW,
-    ORIGIN,
-    SPAN,
-    TOUCHED,
     State,
 )
 from roughgas.scene import Scene, initial_state
@@ -32,70 +22,7 @@ from roughgas.simulation.books import Books, books
 from roughgas.simulation.by_species import energies_of
 from roughgas.simulation.ends import Initial, state_from
 from roughgas.simulation.energies import Columns, Energies
-
-REPORTS = 50
-SOON = 0.5  # seconds after which a call of the kernel should come back
-JAMMED = 50_000  # collisions of each particle within a sample, or within a T if that is longer
-NAMED = 8  # of the particles in a collapse
-
-
-class Recorder:
-    """Sums up what gases have cost together.
-
-    CPU seconds in the kernel, collisions, and contacts that the contact-time model touched.
-    `tell(time, collisions)` is called at least some fifty times a run, `begin(gas)` for each gas.
-    """
-
-    def __init__(
-        self,
-        tell: Callable[[float, int], None] | None = None,
-        keep: bool = False,
-        begin: "Callable[[Gas], None] | None" = None,
-    ) -> None:
-        self.seconds = 0.0
-        self.collisions = 0
-        self.touched = 0
-        self.gases: list[Gas] = []  # all that it has seen begin, if it is to `keep` them
-        self._tell, self._keep, self._begin = tell, keep, begin
-        self._begun = 0.0, 0  # time and collisions at which the present gas has begun
-
-    def begin(self, gas: "Gas") -> None:
-        """Note that a gas begins."""
-        self._begun = gas.time, int(gas.state.counts[COLLISIONS])
-        if self._keep:
-            self.gases.append(gas)
-        if self._begin:
-            self._begin(gas)
-
-    def run(
-        self, state: State, scene: Scene, sampling: Sampling, samples: int, timed: bool = False
-    ) -> Columns:
-        """Advance `state`; return columns (name -> array of length `samples`).
-
-        Raises CollapseError if contacts accumulate without end, JammedError where samples are due
-        at times and one of them takes `sampling.collisions`.
-        """
-        names = columns(scene)
-        rows = np.empty((samples, len(names)))
-        record(state, scene, sampling, rows[:0])  # compiles, or fetches the kernel from its cache
-        begin, before = time.process_time(), state.counts.copy()
-        first, length = 0, max(1, sampling.refresh)
-        while first < samples:
-            part, called = rows[first : first + length], time.perf_counter()
-            made = int(state.counts[COLLISIONS])
-            if record(state, scene, sampling, part) < len(part):
-                raise _collapse(state, scene)
-            if timed and np.diff(part[:, 1], prepend=made).max() >= sampling.collisions:
-                raise _jam(state, sampling.interval)
-            first += len(part)
-            length = _next_length(length, time.perf_counter() - called, samples, sampling.refresh)
-            if self._tell:
-                time_begun, collisions_begun = self._begun
-                self._tell(float(part[-1, 0] - time_begun), int(part[-1, 1]) - collisions_begun)
-        self.seconds += time.process_time() - begin
-        self.collisions += state.counts[COLLISIONS] - before[COLLISIONS]
-        self.touched += state.counts[TOUCHED] - before[TOUCHED]
-        return dict(zip(names, rows.T, strict=True))
+from roughgas.simulation.recorder import Recorder, most_in, now
 
 
 class Watcher(Protocol):
@@ -166,7 +93,7 @@ class Gas:
     @property
     def time(self) -> float:
         """T since the start."""
-        return _now(self.state)
+        return now(self.state)
 
     @property
     def collisions(self) -> int:
@@ -191,8 +118,7 @@ class Gas:
 
     def in_time(self, interval: float, samples: int) -> Columns:
         """Return columns (name -> array of length `samples`), sampled every `interval` T."""
-        most = math.ceil(self.particles / 2 * JAMMED * max(1.0, interval))
-        sampling = Sampling(float(interval), most, 0)
+        sampling = Sampling(float(interval), most_in(interval, self.particles), 0)
         return self._observed(lambda n: self._run(sampling, n, timed=True), samples, 0, 1)
 
     def in_collisions(self, collisions: int, samples: int) -> Columns:
@@ -291,50 +217,3 @@ def elastic(scene: Scene) -> Scene:
         species = species._replace(alike=True)
     effects = scene.effects._replace(walls=walls, species=species)
     return scene._replace(restitution=1.0, roughness=-1.0, effects=effects)
-
-
-def _next_length(length: int, took: float, samples: int, refresh: int) -> int:
-    """Return how many samples the next call of the kernel makes: no bit depends on it.
-
-    So many that it comes back soon, and that there are some REPORTS calls; a whole number of times
-    `refresh`, which the kernel counts from the start of each call.
-    """
-    if took < SOON:
-        return min(2 * length, max(1, refresh) * -(-samples // (REPORTS * max(1, refresh))))
-    return max(1, length // 2) if refresh == 0 else max(refresh, length // 2 // refresh * refresh)
-
-
-def _jam(state: State, interval: float) -> JammedError:
-    limit = f"{JAMMED} collisions of each particle within {max(1.0, interval):g} T"
-    remedy = "give it more room, raise r, or sample it more often"
-    return JammedError(
-        f"more than {limit}, at t = {_now(state):.6g} T: the gas is jammed: {remedy}"
-    )
-
-
-def _now(state: State) -> float:
-    clock, unit = state.clock, 2.0 ** -int(state.counts[EXPONENT])
-    return float(clock[ORIGIN] + (clock[BASE] + clock[NOW]) * unit)
-
-
-def _collapse(state: State, scene: Scene) -> CollapseError:
-    names = [str(label) for label in _collapsing(state)]
-    others = f" and {len(names) - NAMED} more" if len(names) > NAMED else ""
-    effects, remedy = scene.effects, "raise r, or the duration of contact_time"
-    if effects.contact_time is None:
-        remedy = "add the contact_time effect to the experiment, or raise r"
-    elif effects.floor is not None or effects.walls is not None:
-        remedy = "raise r, or make floor or walls smoother, between which a particle may be held"
-    where = f"at t = {_now(state):.6g} T of particles {', '.join(names[:NAMED])}{others}"
-    return CollapseError(f"inelastic collapse {where}: {remedy}")
-
-
-def _collapsing(state):
-    """Return the numbers of particles whose last contact is simultaneous with the present instant.
-
-    A refresh brings all particles to the present: just after it, those of the last contact.
-    """
-    last = state.clock[NOW] - INSTANT * state.clock[SPAN]
-    found = state.label[state.trajectory[:, -1] >= last]
-    refreshed = len(found) == len(state.label)
-    return np.sort(state.counts[[LAST_FIRST, LAST_SECOND]] if refreshed else found)

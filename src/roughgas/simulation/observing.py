@@ -117,7 +117,8 @@ class Watching:
 
         Its ends are in T since the start, or in collisions per particle of a cooling gas.
         """
-        values, about = {}, {}
+        values: dict[str, Any] = {}
+        about: dict[str, Variable] = {}
         for number, one in enumerate(self._wanted):
             watched = [observer.watched[number] for observer in self._observers]
             found = self._averaged(watched, start, stop)

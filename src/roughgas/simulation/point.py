@@ -14,7 +14,8 @@ from roughgas.kernel.cache import source_hash
 from roughgas.scene import Scene, build, packing
 from roughgas.simulation import by_species, schedule
 from roughgas.simulation.ends import Initial, check_initial, is_memory_of, last_states, owner
-from roughgas.simulation.gas import Gas, Recorder
+from roughgas.simulation.gas import Gas
+from roughgas.simulation.recorder import Recorder
 
 if TYPE_CHECKING:
     from roughgas.simulation.observing import Functions
@@ -152,7 +153,7 @@ def kernels(experiments: Iterable[Mapping[str, Any]]) -> dict[Any, tuple[Scene, 
 
     The keys are what decides which machine code a scene runs: the types in it.
     """
-    needed = {}
+    needed: dict[Any, tuple[Scene, Mapping[str, Any]]] = {}
     for experiment in experiments:
         for r in experiment["sweep"]["r"]:
             scene = build(experiment, float(r), -1.0)

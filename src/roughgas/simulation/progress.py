@@ -173,7 +173,7 @@ class FilmProgress(Bar):
 
     def _left(self, frame: int) -> str:
         """Return the time that is left, by the frames that this process has made."""
-        begun, since = self._begun
+        begun, since = self._begun or (frame, 0.0)
         if frame == begun:
             return ""
         left = (time.monotonic() - since) / (frame - begun) * (self._frames - frame)

@@ -11,7 +11,8 @@ from roughgas.scene import Scene
 from roughgas.simulation import cooling, steady
 from roughgas.simulation.ends import Initial
 from roughgas.simulation.energies import Columns
-from roughgas.simulation.gas import Gas, Recorder
+from roughgas.simulation.gas import Gas
+from roughgas.simulation.recorder import Recorder
 
 if TYPE_CHECKING:
     from roughgas.observables import System

@@ -89,7 +89,7 @@ def chosen(
     """Return the take that is asked for; what is None is as usual, but that it begins where an
     `initial` state is. Raises InputError."""
     given = {"start": start, "length": length, "frames": frames}
-    asked = {name: value for name, value in given.items() if value is not None}
+    asked: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
     for name, legal in LEGAL.items():
         if name in asked:
             asked[name] = legal.check(name, asked[name])
@@ -209,15 +209,19 @@ class Turning:
 
     def before(self, state: State) -> None:
         """Note the instant, and the spins at it."""
-        self._begun, self._spin = _now(state), in_order(state, state.spin)[:, 0]
+        self._begun, self._spin = _now(state), _turning(state)
 
     def after(self, state: State) -> None:
         """Add what was turned since then: with the old spin up to a contact, the new one after."""
         now = _now(state)
         path = in_order(state, state.clock[BASE] + state.trajectory[:, -1])
         contact = np.clip(path, self._begun, now)  # the last one, if there was one in this step
-        spin = in_order(state, state.spin)[:, 0]
+        spin = _turning(state)
         self.angle += self._spin * (contact - self._begun) + spin * (now - contact)
+
+
+def _turning(state):
+    return in_order(state, state.spin)[:, 0]
 
 
 def _collision_frequency(gas, experiment):
@@ -238,9 +242,9 @@ def _snapshot(gas: Gas, before: int) -> Snapshot:
         position=in_order(state, position),
         velocity=in_order(state, velocity * unit),
         spin=spin,
-        angle=gas.watcher.angle.copy() if gas.watcher else None,
-        E_trans=present.translational,
-        E_rot=present.rotational,
+        angle=gas.watcher.angle.copy() if isinstance(gas.watcher, Turning) else None,
+        E_trans=float(present.translational),
+        E_rot=None if present.rotational is None else float(present.rotational),
         R=None if spin is None else float(ratio(present)),
         floor=displacement(effects.floor, time),
         slide=displacement(effects.shear, time),
@@ -259,7 +263,7 @@ def _bodies(state):
 def _energies(gas: Gas) -> Energies:
     """Return the energies of the last sample, in m a^2/T^2."""
     present = restored(gas.energies(gas.sample), gas.sample["exponent"])
-    return present.map(lambda part: float(part[0]))
+    return present.map(lambda part: part[0])
 
 
 def _now(state):

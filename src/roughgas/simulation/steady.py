@@ -13,7 +13,8 @@ from roughgas.simulation.by_species import energies_of_each
 from roughgas.simulation.contacts import contact_averages
 from roughgas.simulation.ends import Initial
 from roughgas.simulation.energies import Columns, energies, ratio, ratio_of_means
-from roughgas.simulation.gas import Gas, Recorder
+from roughgas.simulation.gas import Gas
+from roughgas.simulation.recorder import Recorder
 from roughgas.statistics.averages import period_means
 from roughgas.statistics.equilibration import detect_start, is_equilibrated
 from roughgas.statistics.errors import autocorrelation_time, blocking

@@ -1,7 +1,7 @@
 """A number with its standard error: the one type for it, and how it is written."""
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 DIGITS = 2  # of an error
 SIGNIFICANT = 3.0
@@ -16,9 +16,9 @@ class Estimate(NamedTuple):
     `f"{estimate:+±}"` the error has two digits.
     """
 
-    value: float
-    stderr: float
-    dof: float = math.inf
+    value: Any  # a float, in studies also an array of them; so are the others
+    stderr: Any
+    dof: Any = math.inf
 
     @property
     def sigma(self) -> float:

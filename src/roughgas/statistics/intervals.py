@@ -7,9 +7,10 @@ a given probability.
 
 import math
 from statistics import NormalDist
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from roughgas.statistics.errors import student_t
 
@@ -20,8 +21,8 @@ SHORTEST = 10.0  # autocorrelation times, in a series whose interval at 95 % hol
 class Error(NamedTuple):
     """A standard error, and the degrees of freedom that it is known with."""
 
-    stderr: float
-    dof: float
+    stderr: Any  # a float, or an array of them; so are the degrees of freedom
+    dof: Any
 
     def half_width(self, level: float) -> float:
         """Return half the width of the interval that holds the truth at `level` in (0, 1)."""
@@ -81,7 +82,7 @@ def pooled(means: np.ndarray, within: np.ndarray, dof: np.ndarray) -> Error:
     return Error(math.sqrt(variance / runs), total)
 
 
-def sum_error(stderr: np.ndarray, dof: np.ndarray) -> Error:
+def sum_error(stderr: ArrayLike, dof: ArrayLike) -> Error:
     """Return the error of sums of independent numbers along the first axis.
 
     The degrees of freedom are those of Welch, Biometrika 34, 28 (1947), and Satterthwaite.

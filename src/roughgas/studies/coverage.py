@@ -82,8 +82,8 @@ def several(
     variance, over runs, of how often the groups with this run hold the truth.
     """
     number = len(runs.value) // seeds * seeds
-    groups = [rng.permutation(len(runs.value))[:number] for _ in range(REGROUPINGS)]
-    groups = np.concatenate(groups).reshape(-1, seeds)
+    orders = [rng.permutation(len(runs.value))[:number] for _ in range(REGROUPINGS)]
+    groups = np.concatenate(orders).reshape(-1, seeds)
     errors = [pooled(*(part[group] for part in runs)) for group in groups]
     pools = Estimate(runs.value[groups].mean(axis=1), *np.array(errors).T)
     return [_hoeffding(_held(pools, truth, level), groups, len(runs.value)) for level in levels]
@@ -91,7 +91,8 @@ def several(
 
 def _held(runs: Estimate, truth: float, level: float) -> np.ndarray:
     """Return whether the interval of each run holds the truth; without an interval it does not."""
-    widths = [half_width(*known, level) for known in zip(runs.stderr, runs.dof, strict=True)]
+    known = zip(runs.stderr, runs.dof, strict=True)
+    widths = [half_width(stderr, dof, level) for stderr, dof in known]
     return np.abs(runs.value - truth) <= np.array(widths)
 
 

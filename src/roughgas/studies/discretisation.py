@@ -77,7 +77,7 @@ def statistical_error(series, truth) -> tuple[np.ndarray, Estimate]:
     """
     most = max(SHORTEST, len(series) // FEWEST_PARTS)
     lengths = SHORTEST * 2 ** np.arange(int(math.log2(most / SHORTEST)) + 1)
-    offsets = [period_means(series, length) - truth for length in lengths]
+    offsets = [period_means(series, int(length)) - truth for length in lengths]
     errors = np.array([math.sqrt(np.mean(one**2)) for one in offsets])
     return lengths, Estimate(errors, errors / np.sqrt(2.0 * (len(series) // lengths)))
 
@@ -94,7 +94,7 @@ def slowdown(target: float, t, seconds, deviation: PowerLaw, events: float) -> f
     order = np.argsort(t)
     known = np.interp(np.log(fine), np.log(t[order]), np.log(seconds[order]))
     cost = np.exp(known) * np.maximum(1.0, t.min() / fine)
-    left = 1.0 - (deviation(fine) / target) ** 2
+    left = np.asarray(1.0 - (deviation(fine) / target) ** 2)
     return float((cost[left > 0.0] / left[left > 0.0]).min(initial=math.inf) / events)
 
 

@@ -113,7 +113,7 @@ def _shares(parts, reference):
 
 
 def _map(rows: Sequence[xr.Dataset]):
-    found = stacked([{name: one.values for name, one in row.data_vars.items()} for row in rows])
+    found = stacked([{str(k): one.values for k, one in row.data_vars.items()} for row in rows])
     theory, explained = found["theory"], found.pop("explained")
     found["gap"] = Estimate(found["R"] / theory - 1, found["R_stderr"] / theory)
     found["gap_explained"], found["beta"] = explained / theory - 1, rows[0].beta.values

@@ -36,14 +36,16 @@ def combine(parts: Mapping[str, xr.Dataset], settings: Mapping[str, Any]) -> xr.
         sheared = float(runs[0].shear_rate) > 0.0
         found = [_found(run, point) | (_shear(run) if sheared else NO_SHEAR) for run in runs]
         rows.append(_estimates(found) | _exact(runs, point))
-    about = {key: [point[key] for point in points] for key in ("experiment", "r", "beta")}
+    about: dict[str, Any] = {
+        key: [point[key] for point in points] for key in ("experiment", "r", "beta")
+    }
     about |= {
         "point": [profile_name(point) for point in points],
         "slice": range(settings["slices"]),
     }
     about["phase"] = np.arange(settings["phases"]) / settings["phases"]
-    found = stacked(rows) | about
-    return dataset("profiles", found, seed=settings["seed"], runs=settings["runs"])
+    every = stacked(rows) | about
+    return dataset("profiles", every, seed=settings["seed"], runs=settings["runs"])
 
 
 def fields(run: xr.Dataset, width: float) -> xr.Dataset:

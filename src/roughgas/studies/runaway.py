@@ -30,13 +30,13 @@ def combine(parts: Mapping[str, xr.Dataset], settings: Mapping[str, Any]) -> xr.
     r, beta, friction = float(settings["r"]), float(settings["beta"]), settings["mu"]
     found: dict[str, Any] = {"mu": friction}
     for kind in SIMULATED:
-        numbers = [one["particles"] for one in settings[kind]]
+        particles = [one["particles"] for one in settings[kind]]
         cells = [
-            stacked([_escapes(parts[runaway_name(kind, n, mu)]) for n in numbers])
+            stacked([_escapes(parts[runaway_name(kind, n, mu)]) for n in particles])
             for mu in friction
         ]
         found |= {f"{kind}_{name}": x for name, x in stacked(cells).items()}
-        found[f"{kind}_particles"] = numbers
+        found[f"{kind}_particles"] = particles
     found |= _compared(found)
     numbers = np.array(found["dsmc_particles"])
     rates = [_rate(parts, numbers, mu, (r, beta, mu)) for mu in friction]

@@ -43,7 +43,7 @@ def mean(values: np.ndarray) -> Estimate:
 
 def flat(found: Mapping[str, Any]) -> dict[str, Any]:
     """Return values by name, an Estimate NAME as NAME and NAME_stderr."""
-    values = {}
+    values: dict[str, Any] = {}
     for name, value in found.items():
         if isinstance(value, Estimate):
             values |= {name: value.value, f"{name}_stderr": value.stderr}
@@ -52,7 +52,7 @@ def flat(found: Mapping[str, Any]) -> dict[str, Any]:
     return values
 
 
-def stacked(rows: Sequence[Mapping[str, Any]]) -> dict[str, np.ndarray]:
+def stacked(rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     """Return what is found in several places by name, the places along the first axis."""
     rows = [flat(row) for row in rows]
     return {name: np.array([row[name] for row in rows]) for name in rows[0]}

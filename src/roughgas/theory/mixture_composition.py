@@ -67,7 +67,7 @@ class Mixture(NamedTuple):
     @property
     def spins(self) -> np.ndarray:
         """Whether contacts ever change the spin of a species."""
-        return ((self.tangential > 0) & (self.friction > 0)).any(axis=1)
+        return np.asarray(((self.tangential > 0) & (self.friction > 0)).any(axis=1))
 
 
 def mixture(species, r, beta, dimension=2, inertia=None, mu=np.inf, pairs=()) -> Mixture:
@@ -93,12 +93,17 @@ def mixture(species, r, beta, dimension=2, inertia=None, mu=np.inf, pairs=()) ->
     given = {"restitution": r, "roughness": beta, "mu": mu}
     tables = {key: pair_means(_each(species, key, MATERIAL[key], x)) for key, x in given.items()}
     _put_pairs(tables, pairs, species)
+    restitution, roughness, friction = (
+        table[np.ix_(part_of, part_of)] for table in tables.values()
+    )
     return Mixture(
         _fractions(species)[part_of] * share,
         radius,
         np.where(heavy, own, radius**dimension),
         _each(species, "inertia", "inertia q", inertia)[part_of],
-        *(table[np.ix_(part_of, part_of)] for table in tables.values()),
+        restitution,
+        roughness,
+        friction,
         dimension,
         part_of,
     )

@@ -68,7 +68,8 @@ def mixture_driven(gas: Mixture, power, packing=0.0, spin_power=0.0) -> Temperat
         raise InputError("power", powers[0].tolist(), "be what collisions can dissipate, and not 0")
 
     def sweep(state: np.ndarray) -> np.ndarray:
-        matrix = rate_matrix(gas, *np.split(state, 2), crowding)
+        trans, rot = np.split(state, 2)
+        matrix = rate_matrix(gas, trans, rot, crowding)
         found = _solved(-matrix, drive, moves)
         # rates go with the root of the temperature: so its scale is there at once
         return np.cbrt(state * found**2)

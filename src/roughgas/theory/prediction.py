@@ -14,7 +14,7 @@ class Equation(NamedTuple):
     name: str  # "theory of free cooling", "rate equations with Coulomb friction"...
 
 
-def equation_of(attributes: Mapping[str, Any], variables: Container[str] = ()) -> Equation:
+def equation_of(attributes: Mapping[str, Any], variables: Container[Any] = ()) -> Equation:
     """Return the equation that a point or a reduced dataset obeys.
 
     A point has no attribute `theory`: there, `variables` tell whether R has a plateau that ends,
@@ -47,7 +47,8 @@ def predicted_ratio(attributes: Mapping[str, Any], r: Any, beta: Any) -> np.ndar
     r, beta, q, share, mu = np.broadcast_arrays(*(np.asarray(x, float) for x in (r, beta, *given)))
     if np.isnan(q).any():
         return np.full(r.shape, math.nan)
-    dimension, share = int(attributes["dimension"]), None if attributes["theory"] == "K" else share
+    dimension, driven = int(attributes["dimension"]), attributes["theory"] != "K"
+    of_drive = share if driven else None
     if np.isfinite(mu).any():
-        return np.asarray(theory.friction_ratio(r, beta, mu, dimension, q, share))
-    return np.asarray(theory.stationary_ratio(r, beta, dimension, q, share))
+        return np.asarray(theory.friction_ratio(r, beta, mu, dimension, q, of_drive))
+    return np.asarray(theory.stationary_ratio(r, beta, dimension, q, of_drive))

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -22,13 +23,13 @@ from roughgas.show.encoding import write_movie
 KINDS = (*style.METADATA, ".mp4")
 SHOWN = 0.05, 0.25, 1.0  # instants in the picture, as shares of the film
 SMOOTHING = 6.0  # in a: standard deviation of the Gaussian that packing is averaged with
-PACKING = {"cmap": "cividis", "vmin": 0.0, "vmax": 0.8, "interpolation": "bilinear"}
+PACKING: dict[str, Any] = {"cmap": "cividis", "vmin": 0.0, "vmax": 0.8, "interpolation": "bilinear"}
 SPIN = {"cmap": "RdBu_r", "clim": (-2.0, 2.0)}
 SPIN_LABEL, PACKING_LABEL = "spin / its r.m.s.", "packing fraction"
 VOID = "#222222"
 CLOSEUP = 160.0  # side in a of the square in which single disks are shown
 TRANSLATION, ROTATION, UNEVENNESS = (look.colour for look in style.LOOKS[:3])
-DOTTED = {"color": style.THEORY, "linestyle": ":"}
+DOTTED: dict[str, Any] = {"color": style.THEORY, "linestyle": ":"}
 FRAMES_PER_SECOND, LAST_FRAME = 12, 1.5  # seconds that the movie rests on its last frame
 LETTERS, TITLE = "abc", 9
 PER_PARTICLE = "collisions per particle"
@@ -40,16 +41,16 @@ def draw(path: str | Path, outputs: Iterable[str | Path]) -> None:
     Raises InputError for another kind of file, or one without what is drawn, OSError where one
     cannot be read or written.
     """
-    outputs = [Path(output) for output in outputs]
-    for output in outputs:
+    paths = [Path(output) for output in outputs]
+    for output in paths:
         if output.suffix not in KINDS:
             raise InputError("file", output, f"end in {', '.join(KINDS)}")
     film = read_film(path)
     require(film.attrs, ("box", "window", "packing", "r", "beta"), path)
-    style.draw(lambda: picture(film), [one for one in outputs if one.suffix != ".mp4"])
+    style.draw(lambda: picture(film), [one for one in paths if one.suffix != ".mp4"])
     frames = list(range(film.sizes["frame"]))
     frames += frames[-1:] * round(LAST_FRAME * FRAMES_PER_SECOND)
-    for output in outputs:
+    for output in paths:
         if output.suffix == ".mp4":
             write_movie(output, lambda: moving_picture(film), frames, FRAMES_PER_SECOND)
 
@@ -57,7 +58,7 @@ def draw(path: str | Path, outputs: Iterable[str | Path]) -> None:
 def picture(film: xr.Dataset) -> Figure:
     """Return maps of packing at three instants, single disks, and how the gas cooled meanwhile."""
     figure = Figure(figsize=(9.2, 6.4), layout="constrained")
-    above, below = figure.subfigures(2, 1, height_ratios=(1, 1.02))
+    above, below = np.asarray(figure.subfigures(2, 1, height_ratios=(1, 1.02)))
     frames = [round(share * (film.sizes["frame"] - 1)) for share in SHOWN]
     maps = above.subplots(1, 3, sharey=True)
     for axes, frame, letter in zip(maps, frames, LETTERS, strict=True):
@@ -120,8 +121,8 @@ def _draw_map(axes: Axes, film: xr.Dataset, frame: int) -> AxesImage:
 
 def _outline(axes: Axes, film: xr.Dataset) -> tuple[float, float, float]:
     """Outline the square on a map, and return it."""
-    *corner, side = square = closeup(film)
-    axes.add_patch(Rectangle(corner, side, side, fill=False, edgecolor="white"))
+    left, bottom, side = square = closeup(film)
+    axes.add_patch(Rectangle((left, bottom), side, side, fill=False, edgecolor="white"))
     return square
 
 
@@ -137,7 +138,8 @@ def _draw_disks(axes: Axes, film: xr.Dataset, frame: int, square: tuple) -> Elli
 
 def _move(disks: EllipseCollection, film: xr.Dataset, frame: int) -> None:
     x, y, spin = disks_of(film, frame)
-    (left, right), (bottom, top) = disks.axes.get_xlim(), disks.axes.get_ylim()
+    axes: Any = disks.axes
+    (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
     seen = (x > left - 1) & (x < right + 1) & (y > bottom - 1) & (y < top + 1)
     circles.move(disks, x[seen], y[seen])
     disks.set_array(spin[seen])
@@ -197,7 +199,7 @@ def _caption(film: xr.Dataset) -> str:
 def moving_picture(film: xr.Dataset) -> tuple[Figure, Callable[[int], None]]:
     """Return a figure of the gas, and a function that brings it to a frame."""
     figure = Figure(figsize=(8.4, 4.1), dpi=160, layout="constrained")
-    squares, graphs = figure.subfigures(1, 2, width_ratios=(2.5, 1))
+    squares, graphs = np.asarray(figure.subfigures(1, 2, width_ratios=(2.5, 1)))
     whole, zoom = squares.subplots(1, 2)
     image = _draw_map(whole, film, 0)
     disks = _draw_disks(zoom, film, 0, _outline(whole, film))

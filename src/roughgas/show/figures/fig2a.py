@@ -1,6 +1,7 @@
 """Fig. 2a of McNamara & Luding (1998): the sheared gas for several r, against Lun's formula."""
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -11,7 +12,7 @@ from roughgas.show.figures.panel import ANY_R, WIDE, Series, content_for_each_r,
 from roughgas.show.style import GREY
 
 MESSAGE = "R follows Lun's formula, once the mean flow is removed"
-FAINT = {"alpha": 0.5, "markersize": 2.6, "markeredgewidth": 0, "zorder": 0}
+FAINT: dict[str, Any] = {"alpha": 0.5, "markersize": 2.6, "markeredgewidth": 0, "zorder": 0}
 POINTED_AT = 0.3
 """The beta of a faint point, from which a line leads to what these are."""
 
@@ -34,6 +35,11 @@ def _draw_unsubtracted(main: Axes, drawn: Sequence[Series]) -> None:
     nearest = int(np.argmin(abs(first.at - POINTED_AT)))
     at = first.at[nearest], first.data.R_unsubtracted.values[nearest]
     arrow = {"arrowstyle": "-", "color": GREY, "linewidth": 0.6, "shrinkB": 3}
-    place = {"xytext": (6, 12), "textcoords": "offset points", "ha": "center", "va": "bottom"}
+    place: dict[str, Any] = {
+        "xytext": (6, 12),
+        "textcoords": "offset points",
+        "ha": "center",
+        "va": "bottom",
+    }
     text = "faint: mean flow and\nmean spin left in"
     main.annotate(text, at, fontsize=7, color=GREY, arrowprops=arrow, **place)

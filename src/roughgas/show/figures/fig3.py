@@ -8,8 +8,8 @@ from matplotlib.figure import Figure
 
 from roughgas.show.figures.panel import ANY_R, content_for_each_r, ratio_figure
 
-COOLING, SHEARED = "Free cooling: as theory says", "Shear: nearly any r alike"
-BED = "A bed: over collisions only"
+COOLING, SHEARED = "Free cooling: as theory says", "Shear: r hardly matters"
+BED = "A bed: only over collisions"
 
 
 def draw(cooling: xr.Dataset, sheared: xr.Dataset, bed: xr.Dataset) -> Figure:

@@ -1,6 +1,7 @@
 """Fig. 4: Coulomb friction. R against its coefficient, for several beta_0, forced and cooling."""
 
 from collections.abc import Sequence
+from typing import Any
 
 import xarray as xr
 from matplotlib.axes import Axes
@@ -10,7 +11,11 @@ from roughgas.show.figures import panel
 
 BED = "A bed follows the rate equations"
 COOLING = "A cooling gas does, unless spins run away"
-COMMON = {"symbol": r"\beta_0", "theories": "lines: rate equations", "axis": panel.FRICTION}
+COMMON: dict[str, Any] = {
+    "symbol": r"\beta_0",
+    "theories": "lines: rate equations",
+    "axis": panel.FRICTION,
+}
 
 
 def draw(bed: xr.Dataset, cooling: xr.Dataset) -> Figure:
@@ -19,7 +24,7 @@ def draw(bed: xr.Dataset, cooling: xr.Dataset) -> Figure:
     mu = 0, where R = 0, has no place on a logarithmic axis; it is in the data.
     """
     bed, cooling = (data.sel(mu=data.mu > 0.0) for data in (bed, cooling))
-    free = {"loc": "upper right", "scale": _staying, "extra": _tell_of_runaways}
+    free: dict[str, Any] = {"loc": "upper right", "scale": _staying, "extra": _tell_of_runaways}
     return panel.ratio_figure(
         panel.content_for_each_beta("Vibrated bed", bed, message=BED, **COMMON),
         panel.content_for_each_beta("Cooling gas", cooling, message=COOLING, **COMMON, **free),

@@ -10,8 +10,12 @@ from matplotlib.figure import Figure
 from roughgas.show.figures import panel
 from roughgas.show.style import GREY, LOOKS
 
-DRIVES = (("random kicks", "o"), ("rough floor", "^"), ("rough side walls", "v"))
-DRIVES += (("rough shaken walls", "D"),)
+DRIVES = (
+    ("random kicks", "o"),
+    ("rough floor", "^"),
+    ("rough side walls", "v"),
+    ("rough shaken walls", "D"),
+)
 """Labels and markers, in the order of the datasets."""
 MESSAGE = "Averaged over collisions, one curve for all drives"
 

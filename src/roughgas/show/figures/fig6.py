@@ -4,6 +4,8 @@ McNamara & Luding (1998): "changing the wave form does not significantly change 
 are those from the sawtooth, not from theory.
 """
 
+from typing import Any
+
 import xarray as xr
 from matplotlib.figure import Figure
 
@@ -38,5 +40,5 @@ def _content(waves: xr.Dataset, r: float, message: str) -> PanelContent:
         for (wave, label), look in zip(LABELS.items(), LOOKS, strict=False)
     ]
     beside = [one._replace(theory=drawn[0].data.R.values) for one in drawn]
-    how = {"theory": "Lun's formula", "message": message, "loc": "half"}
+    how: dict[str, Any] = {"theory": "Lun's formula", "message": message, "loc": "half"}
     return PanelContent(f"Vibrated bed, $r = {r:g}$", [waves], beside, **how)

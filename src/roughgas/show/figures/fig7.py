@@ -1,15 +1,17 @@
 """Fig. 7: the moment of inertia, from a ring (q = 1) towards a point mass in the centre (q = 0)."""
 
+from typing import Any
+
 import xarray as xr
 from matplotlib.figure import Figure
 
 from roughgas.show.figures.panel import INERTIA, TWO_WIDE, content_for_each_beta, ratio_figure
 
-BED = {
+BED: dict[str, Any] = {
     "message": "A bed departs from theory at both ends",
     "theories": "lines: Lun's formula",
 }
-COOLING = {
+COOLING: dict[str, Any] = {
     "message": "A cooling gas follows theory at any q",
     "theories": "lines: theory of free cooling",
 }
@@ -17,7 +19,7 @@ COOLING = {
 
 def draw(bed: xr.Dataset, cooling: xr.Dataset) -> Figure:
     """Draw the figure from the reduced datasets of disks with several moments of inertia."""
-    how = {"loc": "best", "axis": INERTIA}
+    how: dict[str, Any] = {"loc": "best", "axis": INERTIA}
     return ratio_figure(
         content_for_each_beta("Vibrated bed", bed, **BED, **how),
         content_for_each_beta("Cooling gas", cooling, **COOLING, **how),

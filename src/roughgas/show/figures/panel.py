@@ -12,7 +12,7 @@ from matplotlib.ticker import MaxNLocator, MultipleLocator
 
 from roughgas.data.reduced import particles_of
 from roughgas.show.figures.series import RESTITUTION, Series, series, series_for_each
-from roughgas.show.style import FAINT, GREY, HEIGHT, THEORY, WIDTH
+from roughgas.show.style import FAINT, GREY, HEIGHT, THEORY, WIDTH, Style
 
 __all__ = ["RESTITUTION", "Series", "series", "series_for_each"]
 ENERGY_RATIO = r"$R = E_\mathrm{rot}/(E_\mathrm{rot} + E_\mathrm{trans})$"
@@ -31,7 +31,7 @@ AVERAGES = {
 """The ways in which R is averaged, by the names of variables; the first is the paper's."""
 ANY_R = "Lun's formula, any $r$"
 DOTS = (0, (1, 2))
-RING = {"marker": "o", "markersize": 7, "markeredgewidth": 0.5, "fillstyle": "none"}
+RING: Style = {"marker": "o", "markersize": 7, "markeredgewidth": 0.5, "fillstyle": "none"}
 
 
 class Axis(NamedTuple):
@@ -223,13 +223,13 @@ def frame_residuals(
     notes += ["arrows: beyond this scale"] * any(beyond)
     residual.set_title("; ".join(notes), fontsize=6.5, color=GREY, loc="right", pad=2)
     if not beyond:
-        note = {"color": GREY, "fontsize": 7.5, "ha": "center", "transform": residual.transAxes}
-        residual.text(0.5, 0.6, "only in a steady state", **note)
+        note: Style = {"color": GREY, "fontsize": 7.5, "ha": "center"}
+        residual.text(0.5, 0.6, "only in a steady state", transform=residual.transAxes, **note)
 
 
 def add_legend(main: Axes, drawn: Sequence[Series], theory: str = "", **how: Any) -> None:
     """Say what points and lines are. `theory` names a black line; without it each has its own."""
-    handles = [
+    handles: list[Any] = [
         _key(one.look.colour, one.label, one.look.marker, "none" if theory else one.look.line)
         for one in drawn
     ]
@@ -262,8 +262,8 @@ def add_title(main: Axes, datasets: Sequence[xr.Dataset], what: str, message: st
     text = f"{what}, $N = {number}${scale}\nError bars: {bars}"
     main.set_title(text, fontsize=8, loc="left")
     if message:
-        place = {"xy": (0, 1), "xycoords": "axes fraction", "textcoords": "offset points"}
-        main.annotate(message, xytext=(0, 27), fontsize=8.5, fontweight="bold", **place)
+        place: Style = {"xycoords": "axes fraction", "textcoords": "offset points"}
+        main.annotate(message, (0, 1), (0, 27), fontsize=8.5, fontweight="bold", **place)
 
 
 def draw_points(
@@ -275,11 +275,11 @@ def draw_points(
     average: str = "R",
 ) -> None:
     """Draw symbols: filled in a steady state, else open; ringed where contact times acted."""
-    common = {"color": one.look.colour, "fmt": one.look.marker, "elinewidth": 0.8, "capsize": 1.5}
-    open_ones = {"markerfacecolor": "white", "zorder": 4}  # which no other symbol hides
-    for part, look in ((one.steady, {}), (~one.steady, open_ones)):
+    common: Style = {"color": one.look.colour, "fmt": one.look.marker, "elinewidth": 0.8}
+    open_ones: Style = {"markerfacecolor": "white", "zorder": 4}  # which no other symbol hides
+    for part, look in ((one.steady, common), (~one.steady, common | open_ones)):
         bars = one.error_of(average)[part]
-        axes.errorbar(at[part], values[part], bars, markersize=size, **common, **look)
+        axes.errorbar(at[part], values[part], bars, markersize=size, capsize=1.5, **look)
     axes.plot(at[one.touched], values[one.touched], color=GREY, linestyle="none", zorder=1, **RING)
 
 
@@ -294,6 +294,6 @@ def _draw_arrows(residual: Axes, one: Series, average: str) -> bool:
     above, below = away > high, away < low
     for beyond, height, marker in ((above, 0.95, "^"), (below, 0.05, "v")):
         heights = np.full(beyond.sum(), low + height * (high - low))
-        style = {"color": one.look.colour, "fillstyle": "none", "ms": 3, "mew": 0.7}
+        style: Style = {"color": one.look.colour, "fillstyle": "none", "ms": 3, "mew": 0.7}
         residual.plot(one.at[beyond], heights, marker, **style)
     return bool(above.any() or below.any())

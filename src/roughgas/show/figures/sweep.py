@@ -55,7 +55,8 @@ def draw(data: xr.Dataset, over: str | None = None, **chosen: Sequence[float]) -
     parts = [_content(shown, layout, axis, place) for place in places]
     figure = panel.ratio_figure(*parts, width=width + LEGEND, averaged=True)
     for axes in figure.axes[: len(parts) - 1]:  # all panels have the same
-        axes.get_legend().remove()
+        if legend := axes.get_legend():
+            legend.remove()
     _name_words(figure, data, layout.over)
     return figure
 
@@ -113,7 +114,7 @@ def _numbered(data: xr.Dataset, over: str) -> tuple[xr.Dataset, panel.Axis]:
         numbered = data.assign_coords({over: np.arange(len(values))})
         return numbered, panel.Axis(over, label, ends, ends)
     if over == "beta":
-        return data, known
+        return data, panel.BETA
     low, high = float(values.min()), float(values.max())
     wide = low > 0.0 and high / low > (1.0 if known and known.logarithmic else WIDE_RANGE)
     if wide:
@@ -141,7 +142,11 @@ def _content(
         series(data, _label(layout.series, value), look, **{layout.series: value}, **place)
         for value, look in zip(layout.values[layout.series], LOOKS, strict=False)
     ]
-    how = {"theories": f"lines: {equation_of(data.attrs).name}", "loc": "outside", "axis": axis}
+    how: dict[str, Any] = {
+        "theories": f"lines: {equation_of(data.attrs).name}",
+        "loc": "outside",
+        "axis": axis,
+    }
     return panel.PanelContent(_title(data, place), [data], drawn, **how)
 
 

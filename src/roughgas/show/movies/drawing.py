@@ -64,7 +64,7 @@ def picture(
     room = min(3.9, 3.4 * (view.top - view.bottom) / (view.right - view.left))
     inches = math.ceil(10 * (room + FRAME_SPACE + GRAPH)) / 10  # even numbers of pixels
     figure = Figure(figsize=(WIDTH * len(panels), inches), dpi=dpi, layout="constrained")
-    parts = [figure] if len(panels) == 1 else figure.subfigures(1, len(panels))
+    parts: Any = [figure] if len(panels) == 1 else figure.subfigures(1, len(panels))
     shows = [_panel(part, *one, view, room) for part, one in zip(parts, panels, strict=True)]
     highest = max(part.axes[1].get_ylim()[1] for part in parts)
     for part, (subject, _) in zip(parts, panels, strict=True):
@@ -158,7 +158,7 @@ def _set_up(axes: Axes, scene: Scene, view: View) -> None:
     axes.minorticks_off()
     axes.tick_params(top=False, right=False, direction="out")
     if scene.effects.shear is not None:
-        for edge in (0.0, scene.box[1]):
+        for edge in (0.0, 2.0 * scene.middle):
             axes.axhline(edge, color=style.GREY, linewidth=0.6, linestyle="--")
 
 
@@ -173,7 +173,7 @@ def _title(subject: MovieSubject, view: View) -> str:
     name, _, variant = subject.name.partition("/")
     name = name.replace("_", " ")
     if variant:  # `waves, wave = sine`
-        parameter = third_axis(subject.settings)
+        parameter = third_axis(subject.settings) or ""
         name += f", {parameter.replace('_', ' ')} = {variant.removeprefix(parameter)}"
     return f"{name}\n{', '.join(about)}"
 

@@ -75,14 +75,14 @@ class Disks:
         if shot.spin is not None:
             colours = self.coloured.to_rgba(shot.spin[of, 0] / scale)
         move(self._disks, x, y)
-        self._disks.set_facecolor(to_rgba_array(colours, opacity))
-        self._disks.set_edgecolor(to_rgba_array(EDGE, opacity))
-        if shot.spin is not None:
+        self._disks.set_facecolor(list(to_rgba_array(colours, opacity)))
+        self._disks.set_edgecolor(list(to_rgba_array(EDGE, opacity)))
+        if shot.spin is not None and shot.angle is not None:
             tip = np.stack([np.cos(shot.angle[of]), np.sin(shot.angle[of])], axis=-1)
             middle = np.stack([x, y], axis=-1)
-            self._marks.set_segments(np.stack([middle, middle + 0.9 * tip], axis=1))
+            self._marks.set_segments(list(np.stack([middle, middle + 0.9 * tip], axis=1)))
             dark = colours[:, :3] @ LUMINANCE < DARK
-            self._marks.set_color(to_rgba_array(np.where(dark[:, None], 1.0, EDGE), opacity))
+            self._marks.set_color(list(to_rgba_array(np.where(dark[:, None], 1.0, EDGE), opacity)))
 
 
 class Spheres:
@@ -110,8 +110,8 @@ class Spheres:
             colours[:, :3] += (1.0 - colours[:, :3]) * share[:, None]
         rim = np.where(white == 0.0, opacity, 0.0)
         move(self._disks, x - shift, y + shift, 2.0 * radius)
-        self._disks.set_facecolor(to_rgba_array(colours, opacity))
-        self._disks.set_edgecolor(to_rgba_array(EDGE, rim))
+        self._disks.set_facecolor(list(to_rgba_array(colours, opacity)))
+        self._disks.set_edgecolor(list(to_rgba_array(EDGE, rim)))
 
 
 class Boundaries:
@@ -134,9 +134,9 @@ class Boundaries:
     def show(self, shot: Snapshot) -> None:
         """Bring them to a snapshot."""
         view = self._view
-        if self._floor is not None:
+        if self._floor is not None and shot.floor is not None:
             self._floor.set_height(shot.floor - view.bottom)
-        if self._scratches is not None:
+        if self._scratches is not None and shot.walls is not None:
             spacing = (view.top - view.bottom) / 12.0
             y = view.bottom + spacing * np.arange(-1, 14) + math.fmod(shot.walls, spacing)
             left = [((view.left, one), (0.0, one + spacing / 3)) for one in y]

@@ -75,7 +75,7 @@ def write_page(
         {
             "colour": look.colour,
             "symbol": SYMBOLS[look.marker],
-            "dash": DASHES.get(look.line, "longdashdot"),
+            "dash": DASHES.get(str(look.line), "longdashdot"),
         }
         for look in LOOKS
     ]

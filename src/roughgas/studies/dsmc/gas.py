@@ -67,7 +67,7 @@ def material(r, beta, dimension=2, inertia=None, crowding=1.0, mu=None) -> Colli
     Contacts slide where they would exceed the coefficient of friction `mu`; None: they always
     stick. `crowding`, number density times chi, sets the unit of time only. Raises InputError.
     """
-    r, beta, _, q = map(float, arguments.material(r, beta, dimension, inertia))
+    r, beta, _, q = (float(one) for one in arguments.material(r, beta, dimension, inertia))
     crowding = float(arguments.check("crowding", crowding))
     friction = None if mu is None else Friction(float(arguments.check("friction mu", mu)), q)
     return Colliding(r, beta, Effects(spin=Spin(q), friction=friction), crowding)
@@ -100,10 +100,12 @@ def run(
     The same generator in the same state gives the same bits.
     """
     (number, dimension), spins = gas.velocity.shape, gas.spin.shape[1]
+    spin = material.effects.spin
+    assert spin is not None  # see `material`
     rows = np.empty((samples, len(COLUMNS)))
     record(gas, material, rng, max(1, round(every * number / 2)), rows)
     time, collisions, log_unit, vv, ww, vvvv, wwww, vvww, vwvw = rows.T
-    T_tr, T_rot = vv / (number * dimension), material.effects.spin.inertia * ww / (number * spins)
+    T_tr, T_rot = vv / (number * dimension), spin.inertia * ww / (number * spins)
     return Samples(
         time=time,
         collisions_per_particle=2.0 * collisions / number,

@@ -2,6 +2,7 @@
 accuracy_limits.py of springs and time steps, with the map of what the Maxwellian theory misses."""
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -27,8 +28,8 @@ ROOM = 0.4  # for the legend beneath, of the range of the data
 PACKING_MARKERS = ("X", "P", "d")
 BOTH = np.sqrt(2.0)  # statistical error and deviation being equal
 RESOLVED = 2.0  # standard errors: deviations below are not told from zero
-BARS = {"elinewidth": 0.8, "capsize": 1.5}
-THIN = {"ls": "none", "elinewidth": 0.9}
+BARS: dict[str, Any] = {"elinewidth": 0.8, "capsize": 1.5}
+THIN: dict[str, Any] = {"ls": "none", "elinewidth": 0.9}
 
 
 def draw_figure(statistical: xr.Dataset, models: xr.Dataset, discretisation: xr.Dataset) -> Figure:
@@ -56,18 +57,23 @@ def draw_statistical(axes: Axes, data: xr.Dataset) -> None:
         for way, line in WAYS.items():
             own, R = scene.sel(way=way), float(scene.R)
             x, error, groups = own.seconds.values, own.error.values / R, own.groups.values
-            about = {"color": look.colour, "marker": look.marker, "ls": "none", "zorder": 3}
+            about: dict[str, Any] = {
+                "color": look.colour,
+                "marker": look.marker,
+                "ls": "none",
+                "zorder": 3,
+            }
             about |= {"label": label} if way == "length" else {"mfc": "white"}
             axes.errorbar(x, error, own.error_stderr / R, mew=0.9, **about, **BARS)
             ends = np.array([x.min(), x.max()])
             law = power_law(x, error, groups, bias=-0.5 / groups)
             axes.plot(ends, law(ends), color=look.colour, ls=line, lw=0.9)
     axes.set_ylim(bottom=min(data.relative_error.values) / 4)  # leaves room for the legend
-    grey = {"color": GREY, "fontsize": 7.5, "ha": "right"}
-    beside = {"xytext": (-3, 1), "textcoords": "offset points", "va": "bottom"}
+    grey: dict[str, Any] = {"color": GREY, "fontsize": 7.5, "ha": "right"}
+    beside: dict[str, Any] = {"xytext": (-3, 1), "textcoords": "offset points", "va": "bottom"}
     for accuracy in data.relative_error.values:
         axes.axhline(accuracy, color=FAINT, lw=0.6, ls=":", zorder=0)
-        place = {"xy": (1.0, accuracy), "xycoords": ("axes fraction", "data")}
+        place: dict[str, Any] = {"xy": (1.0, accuracy), "xycoords": ("axes fraction", "data")}
         axes.annotate(f"{100 * accuracy:g} %", **place, **beside, **grey)
     axes.legend(loc="lower left", title="slopes of error against time", alignment="left")
     text = "filled: longer runs, open: more runs"
@@ -81,10 +87,10 @@ def draw_models(axes: Axes, data: xr.Dataset) -> None:
     """
     _logarithmic(axes, "CPU time of one run / s", r"relative error of $R$")
     for method, (label, look) in METHODS.items():
-        points = data[f"{method}_seconds"].values, *_with_error(data, f"{method}_error")
-        size = {"markersize": 10} if look.marker == "*" else {}
-        colours = {"color": look.colour, "marker": look.marker}
-        axes.errorbar(*points, label=label, zorder=3, **colours, **size, **THIN)
+        x, (y, bar) = data[f"{method}_seconds"].values, _with_error(data, f"{method}_error")
+        size: dict[str, Any] = {"markersize": 10} if look.marker == "*" else {}
+        colours: dict[str, Any] = {"color": look.colour, "marker": look.marker}
+        axes.errorbar(x, y, bar, label=label, zorder=3, **colours, **size, **THIN)
     seconds = data.event_driven_seconds.values
     fit = data.event_driven_prefactor.values * seconds**data.event_driven_slope.values
     axes.plot(seconds, fit, color=LOOKS[0].colour, linewidth=0.8, zorder=1)
@@ -103,7 +109,7 @@ def draw_map(axes: Axes, data: xr.Dataset) -> None:
         one = data.isel(map_r=row)
         x, (y, bar) = one.map_beta.values, _with_error(one, "map_gap")
         label = f"$r = {float(one.map_r):g}$"
-        about = {"color": look.colour, "marker": look.marker, "label": label}
+        about: dict[str, Any] = {"color": look.colour, "marker": look.marker, "label": label}
         x_beside = x + SIDESTEP * (place - 1.5)
         axes.errorbar(x_beside, 100 * y, 100 * bar, markersize=3.6, **about, **THIN)
         axes.plot(

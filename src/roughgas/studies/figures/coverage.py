@@ -1,6 +1,7 @@
 """The figure of how often stated intervals hold the truth."""
 
 from collections.abc import Sequence
+from typing import Any
 
 import xarray as xr
 from matplotlib.axes import Axes
@@ -42,7 +43,7 @@ def _panel(axes: Axes, corners: Sequence[xr.Dataset], level: float) -> None:
     axes.axvline(level, color=GREY, lw=0.8, ls="--", zorder=0)
     for row, corner in enumerate(one.sel(level=level) for one in corners):
         look = COLOURS.get(str(corner.experiment.values), LOOKS[3])
-        about = BARS | {"color": look.colour, "marker": look.marker}
+        about: dict[str, Any] = BARS | {"color": look.colour, "marker": look.marker}
         for way, (shift, fill) in enumerate(((-SHIFT, look.colour), (SHIFT, "white"))):
             share, stderr = corner.coverage[way], corner.coverage_stderr[way]
             axes.errorbar(share, row + shift, xerr=stderr, mfc=fill, **about)

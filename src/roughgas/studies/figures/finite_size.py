@@ -1,5 +1,7 @@
 """The figure of how much of R in a cooling gas is due to the number of particles and to the box."""
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
@@ -10,7 +12,7 @@ from roughgas.studies.figures.panels import paired_panels
 from roughgas.studies.tables import along
 
 SIZE = (10.2, 8.2)  # inches
-THIN = {"ls": "none", "elinewidth": 0.8}
+THIN: dict[str, Any] = {"ls": "none", "elinewidth": 0.8}
 SIDESTEP = 0.014  # in beta, between kinds of gas at the same beta
 LINEAR = 4.0  # per cent up to which the axis of deviations is linear
 TYPICAL = "cooling_r0.9_beta0"  # the point whose R(t) is drawn, if it is there
@@ -30,7 +32,7 @@ def draw_number(axes: Axes, data: xr.Dataset) -> None:
         few, many = (_percent(one.sel(particles=n), "dsmc_R") for n in ends)
         axes.plot([x, x], [few[0], many[0]], color=look.colour, lw=0.8)
         for (y, bar), fill in ((few, "white"), (many, look.colour)):
-            about = {"color": look.colour, "marker": look.marker, "mfc": fill}
+            about: dict[str, Any] = {"color": look.colour, "marker": look.marker, "mfc": fill}
             axes.errorbar(x, y, bar, **about, **THIN)
     for n, fill in zip(ends, ("white", GREY), strict=True):
         axes.plot([], [], "o", color=GREY, mfc=fill, label=f"$N = {n}$")
@@ -47,7 +49,11 @@ def draw_box(axes: Axes, data: xr.Dataset) -> None:
     fills = ("white", None)
     for one, look, shift in _points(data):
         for place, fill in zip(along(one, "packing"), fills, strict=False):
-            about = {"color": look.colour, "marker": look.marker, "mfc": fill or look.colour}
+            about: dict[str, Any] = {
+                "color": look.colour,
+                "marker": look.marker,
+                "mfc": fill or look.colour,
+            }
             y, bar = 100 * place.over_dsmc, 100 * place.over_dsmc_stderr
             axes.errorbar(place.box * (1 + 2 * shift), y, bar, **about, **THIN)
     for place, fill in zip(data.packing.values, fills, strict=False):
@@ -71,7 +77,12 @@ def draw_time(axes: Axes, data: xr.Dataset) -> None:
     for gas, look in zip(along(one, "particles"), LOOKS, strict=False):
         for place, fill in zip(along(gas, "packing"), ("white", look.colour), strict=False):
             middle = (place.part - float(place.part[0]) / 2) * place.length
-            about = {"color": look.colour, "marker": look.marker, "mfc": fill, "ms": 3.5}
+            about: dict[str, Any] = {
+                "color": look.colour,
+                "marker": look.marker,
+                "mfc": fill,
+                "ms": 3.5,
+            }
             label = f"$N = {int(gas.particles)}$" if fill != "white" else None
             axes.errorbar(
                 middle, place.R_series, place.R_series_stderr, lw=0.8, label=label, **about
@@ -86,8 +97,8 @@ def draw_tails(axes: Axes, data: xr.Dataset) -> None:
     """Draw the fourth cumulant of the spins over the number of particles."""
     number, dilute = data.particles.values, int(np.argmin(data.packing.values))
     for one, look, _ in _points(data):
-        about = {"color": look.colour, "marker": look.marker}
-        bars = {"lw": 0.8, "elinewidth": 0.8}
+        about: dict[str, Any] = {"color": look.colour, "marker": look.marker}
+        bars: dict[str, Any] = {"lw": 0.8, "elinewidth": 0.8}
         axes.errorbar(number, one.dsmc_a02, one.dsmc_a02_stderr, **about, **bars)
         events = one.isel(packing=dilute)
         bar = events.a02_stderr

@@ -1,6 +1,7 @@
 """Profiles across vibrated beds, and the averages of R that they tell apart; sheared gases."""
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -25,7 +26,7 @@ AVERAGES = {
     "R_meeting": "those near,\napproaching",
     "R_collisional": "at contacts",
 }
-BARS = {"capsize": 1.5, "elinewidth": 0.8}
+BARS: dict[str, Any] = {"capsize": 1.5, "elinewidth": 0.8}
 
 
 def draw_figure(data: xr.Dataset) -> Figure:
@@ -78,7 +79,7 @@ def draw_ratios(axes: Axes, beds: Sequence[xr.Dataset]) -> None:
         axes.plot(*_drawn(one, "R_slice"), color=look.colour, lw=1.4)
         height, at_contacts = _drawn(one, "R_slice_collisional", least=FEW)
         every = slice(None, None, 2)
-        style = {"color": look.colour, "ms": 2.8}
+        style: dict[str, Any] = {"color": look.colour, "ms": 2.8}
         axes.plot(height[every], at_contacts[every], look.marker, **style)
     axes.plot([], [], color=GREY, lw=1.4, label="of the temperatures")
     axes.plot([], [], "o", color=GREY, ms=2.8, label="at contacts")
@@ -128,7 +129,7 @@ def draw_sheared(axes: Axes, gases: Sequence[xr.Dataset]) -> None:
         scale = (1 - lun) / lun
         value, bar = float(one.theta) * scale, float(one.theta_stderr) * scale
         label = point_label(one)
-        about = {"xerr": float(one.factor_stderr), "yerr": bar, "fmt": look.marker}
+        about: dict[str, Any] = {"xerr": float(one.factor_stderr), "yerr": bar, "fmt": look.marker}
         axes.errorbar(float(one.factor), value, color=look.colour, label=label, **about, **BARS)
         top = max(top, value + bar, float(one.factor))
     ends = (1.0, 1.0 + 1.1 * (top - 1.0))

@@ -1,5 +1,7 @@
 """The figure of single particles that run away from a cooling gas with friction."""
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
@@ -14,7 +16,7 @@ SIZE = (10.2, 8.0)  # inches
 BLACK = Look("#222222", "P", "-")
 SKY = Look("#56B4E9", "X", (0, (4, 1)))
 BY_FRICTION = (*LOOKS, SKY, BLACK)
-THIN = {"ls": "none", "elinewidth": 0.8, "capsize": 1.5}
+THIN: dict[str, Any] = {"ls": "none", "elinewidth": 0.8, "capsize": 1.5}
 SIDESTEP, BESIDE = 1.04, 1.15  # factors of N between values of mu, and of event-driven gases
 
 
@@ -54,7 +56,7 @@ def draw_times(axes: Axes, data: xr.Dataset) -> None:
         ):
             x = shift * one[f"{kind}_particles"].values
             time, error = (one[f"{kind}_time{end}"].values for end in ("", "_stderr"))
-            about = {"color": look.colour, "mfc": fill}
+            about: dict[str, Any] = {"color": look.colour, "mfc": fill}
             label = rf"$\mu = {mu:g}$" if kind == "dsmc" else None
             axes.errorbar(x, time, error, marker=look.marker, label=label, **about, **THIN)
             bound = one[f"{kind}_bound"].values
@@ -71,7 +73,7 @@ def draw_times(axes: Axes, data: xr.Dataset) -> None:
 
 def draw_rates(axes: Axes, data: xr.Dataset) -> None:
     """Draw the rate of crossings over mu, beside theory."""
-    about = {"color": LOOKS[0].colour, "marker": LOOKS[0].marker, "label": "DSMC"}
+    about: dict[str, Any] = {"color": LOOKS[0].colour, "marker": LOOKS[0].marker, "label": "DSMC"}
     axes.errorbar(data.mu, data.rate, data.rate_stderr, **about, **THIN)
     axes.plot(
         data.mu, data.rate_bound, ls="none", marker=r"$\downarrow$", ms=8, color=about["color"]
@@ -97,7 +99,12 @@ def draw_shares(axes: Axes, data: xr.Dataset) -> None:
         for kind, fill in (("dsmc", look.colour), ("events", "white")):
             x, share = (one[f"{kind}_{name}"].values for name in ("particles", "largest_share"))
             line = look.line if kind == "dsmc" else "none"
-            about = {"color": look.colour, "mfc": fill, "marker": look.marker, "lw": 0.7}
+            about: dict[str, Any] = {
+                "color": look.colour,
+                "mfc": fill,
+                "marker": look.marker,
+                "lw": 0.7,
+            }
             axes.plot(x, share, ls=line, **about)
     axes.set(xscale="log", xlabel="number of particles $N$")
     axes.set_ylabel("largest share in the energy of spins")

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -25,15 +26,15 @@ SEEN = ("R", "R_now", "a02", "flow")
 
 def run(task: str, settings, experiments, progress: Callable[[int, int], None]) -> xr.Dataset:
     """Return what one task finds, as roughgas.studies.finite_size combines it."""
-    names, (point, _, number) = point_names(settings), task.rpartition("-n")
+    names, (point, _, label) = point_names(settings), task.rpartition("-n")
     experiment, r, beta = names[point]
     cooling = FreeCooling(experiments[experiment], float(r), float(beta))
-    number, packings, precision = int(number), settings["packings"], settings["precision"]
+    number, packings, precision = int(label), settings["packings"], settings["precision"]
     row = list(names).index(point), settings["particles"].index(number)
     homogeneous(cooling, 10, 1.0, stream(settings, 0))
     without = homogeneous(cooling, number, SHARPER * precision, stream(settings, 1, *row))
     kept = ("R", "R_stderr", "a02", "a02_stderr", "seconds")
-    found = {f"dsmc_{name}": without[name] for name in kept}
+    found: dict[str, Any] = {f"dsmc_{name}": without[name] for name in kept}
     length, runs = part_length(cooling), _runs(cooling, number, precision)
     seen, seconds = [], []
     for k, packing in enumerate(packings):
@@ -97,6 +98,7 @@ def look(gas: Gas) -> tuple[float, float]:
     (number, dimension), box = position.shape, np.array(gas.scene.box)
     waves = np.exp(2j * np.pi * position / box).T @ velocity  # (direction, component)
     across = np.abs(waves[~np.eye(dimension, dtype=bool)]) ** 2
-    ww, spins = np.sum(gas.state.spin**2, axis=1), gas.state.spin.shape[1]
+    spin = np.asarray(gas.state.spin)
+    ww, spins = np.sum(spin**2, axis=1), spin.shape[1]
     a02 = spins * np.mean(ww**2) / ((spins + 2) * np.mean(ww) ** 2) - 1.0
     return float(a02), float(2.0 * np.sum(across) / (number * np.sum(velocity**2)))

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from roughgas import theory
+from roughgas.effects import inertia
 from roughgas.scene import build
 from roughgas.simulation.cooling import SAMPLES_PER_REFRESH
 from roughgas.simulation.energies import ratio
@@ -189,8 +190,9 @@ def thermalised(cooling: FreeCooling, seed: np.random.SeedSequence) -> Gas:
     scene = build(cooling.experiment, cooling.r, cooling.beta)
     rng = np.random.default_rng(seed)
     gas = Gas.start(scene, cooling.experiment, rng)
-    spin = gas.state.spin
-    spin[:] = rng.standard_normal(spin.shape) * (cooling.theta / scene.effects.spin.inertia) ** 0.5
+    spin, q = gas.state.spin, inertia(scene.effects)
+    assert spin is not None and q is not None  # FreeCooling is of particles that spin
+    spin[:] = rng.standard_normal(spin.shape) * (cooling.theta / q) ** 0.5
     gas.thermalise(cooling.experiment["schedule"]["thermalise"])
     gas.cool(SAMPLES_PER_REFRESH * gas.count(1.0))
     return gas

@@ -58,7 +58,7 @@ class Profile:
         """Go on to the beginning of the next phase, the `number`-th in all, and sample there."""
         self._advance(self.begun + (number + 1) * self.period / self.phases)
         phase = (number + 1) % self.phases
-        E_trans, E_rot = (float(part[0]) for part in self.gas.energies(self.gas.sample))
+        E_trans, E_rot = (float(x[0]) for x in self.gas.energies(self.gas.sample).there())
         R = E_rot / (E_rot + E_trans)
         self.whole[:, phase] += E_trans, E_rot, R
         position, velocity = whereabouts(self.gas.state, self.gas.scene, self.gas.time)
@@ -145,7 +145,7 @@ def run(task: str, settings, experiments, progress: Callable[[int, int], None]) 
         seconds += timed(_one_period, profile, done)[1]
         progress(done + 1, periods)
     grid = ("phase", "slice")
-    found = {name: (grid, values) for name, values in zip(SUMS, profile.sums, strict=True)}
+    found: dict[str, Any] = dict(zip(SUMS, ((grid, one) for one in profile.sums), strict=True))
     for name, values in zip(("contacts", *CONTACTS), profile.contacts, strict=True):
         found[name] = (grid, values)
     for name, values in zip(WHOLE, profile.whole, strict=True):

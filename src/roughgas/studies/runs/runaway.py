@@ -54,8 +54,9 @@ def run(task: str, settings, experiments, progress: Callable[[int, int], None]) 
 
 def without_positions(cooling: FreeCooling, settings, mu, particles, seed) -> Step:
     """Return how to move a homogeneous gas by direct simulation Monte Carlo."""
-    rng, (r, beta, *kind) = np.random.default_rng(seed), cooling.constants
-    gas, material = dsmc.new_gas(particles, 0.0, rng, *kind), dsmc.material(r, beta, *kind, mu=mu)
+    rng, (r, beta, dimension, q) = np.random.default_rng(seed), cooling.constants
+    gas = dsmc.new_gas(particles, 0.0, rng, dimension, q)
+    material = dsmc.material(r, beta, dimension, q, mu=mu)
     return lambda: (dsmc.run(gas, material, rng, 1.0, STRIDE).R, gas.spin)
 
 

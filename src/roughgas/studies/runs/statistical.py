@@ -124,5 +124,7 @@ def _estimates(settings, shortest, chains, way) -> dict[str, tuple]:
         part = part if way == "length" else part.swapaxes(1, 2)
         R, seconds = part.reshape(2, -1, runs[level])
         filled[:, level, : len(R)] = R.mean(axis=1), seconds.sum(axis=1)
-    R, seconds = ((("level", "group"), values) for values in filled)
-    return {"R": R, "seconds": seconds, "equilibration": ("chain", equilibration)}
+    found = {
+        name: (("level", "group"), x) for name, x in zip(("R", "seconds"), filled, strict=True)
+    }
+    return {**found, "equilibration": ("chain", equilibration)}
