@@ -58,6 +58,12 @@ BEYOND = {  # the experiments beyond the paper, and the third axis of their swee
     "cooling_inertia": {"spin.inertia": ["0.1"]},
     "floor_materials": {"floor.roughness": ["1"]},
     "wall_materials": {"walls.roughness": ["1"]},
+    "vibrated_masses": {"species.heavy.mass": ["4"]},
+    "vibrated_sizes": {"species.large.radius": ["2"]},
+    "cooling_masses": {"species.heavy.mass": ["4"]},
+    "cooling_sizes": {"species.large.radius": ["2"]},
+    "vibrated_polydisperse": {"species.disks.deviation": ["0.2"]},
+    "cooling_polydisperse": {"species.disks.deviation": ["0.2"]},
 }
 TINY |= {name: {"sweep": SWEEP | axis} for name, axis in BEYOND.items()}
 for name, box in (
@@ -65,6 +71,7 @@ for name, box in (
     ("sheared_spheres", [10, 10, 10]),
     ("vibrated_spheres", [10, 10, "open"]),
     ("heated", [20, 20]),
+    ("cooling_sizes", [20, 20]),
     ("shaken_walls", [20, 20]),
 ):
     TINY[name] |= {"particles": 10, "box": box}

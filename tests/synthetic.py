@@ -1,5 +1,6 @@
 """Reduced datasets as simulations would give them, but with R known beforehand."""
 
+import json
 from collections.abc import Callable
 
 import numpy as np
@@ -8,6 +9,7 @@ import xarray as xr
 from roughgas import theory
 from roughgas.data.reduced import third_axis
 from roughgas.theory.prediction import predicted_ratio
+from roughgas.theory.prediction_of_mixtures import species_at
 
 BETA = (-0.95, *(round(-0.9 + 0.1 * step, 1) for step in range(20)))
 
@@ -20,12 +22,14 @@ def reduced(
     error: float = 0.001,
     seeds: int = 4,
     third: tuple[str, tuple] | None = None,
+    about: dict[str, object] | None = None,
     **others: float | np.ndarray,
 ) -> xr.Dataset:
     """R = theory + shift(r, beta) + noise of standard error `error`; `others` set more of it.
 
     `third`: a parameter that is swept besides, such as "friction.mu", with its values; `shift` then
-    gets these, too. Theory is that of the energy books where `others` have an input_spin_share.
+    gets these, too. `about` are more attributes. Theory is that of the energy books where `others`
+    have an input_spin_share.
     """
     spheres = experiment.endswith("spheres")
     attributes = {
@@ -36,7 +40,7 @@ def reduced(
         "particles": 160,
         "packing": 0.05,
         "theory": "K" if experiment.startswith("cooling") else "lun",
-    }
+    } | (about or {})
     axes = {"r": list(r), "beta": list(beta)}
     if third is not None:
         attributes["swept"], values = third
@@ -71,6 +75,35 @@ def reduced(
     variables = {name: (tuple(axes), np.full(exact.shape, value)) for name, value in values.items()}
     variables["R_seed"] = ((*axes, "seed"), ratio)
     return xr.Dataset(variables, axes | {"seed": np.arange(1, seeds + 1)}, attributes)
+
+
+HALF = [
+    {"name": "first", "fraction": 0.5, "radius": 1, "mass": 1},
+    {"name": "second", "fraction": 0.5, "radius": 2, "mass": 2},
+]
+
+
+def mixed(experiment, third, shift=0.0, hotter=1.0, species=HALF, **how) -> xr.Dataset:
+    """A mixture: R of each species is theory + `shift`, and T_2/T_1 `hotter` times that of theory,
+    or of a driven gas that itself."""
+    known = {"species": species, "species_pairs": [], "volume": 1e4}
+    about = {"species_json": json.dumps(known)}
+    data = reduced(experiment, third=third, about=about, **how)
+    name, shape = third_axis(data.attrs), (*data.R.shape, len(species))
+    T_tr, R = np.ones(shape), np.empty(shape)
+    for index in np.ndindex(data.R.shape):
+        here = data.isel(dict(zip(data.R.dims, index, strict=True)))
+        place = {one: here[one].item() for one in ("r", "beta", name)}
+        measured = np.array([1.0, hotter])[: len(species)]
+        state = species_at(data.attrs, place, measured)
+        T_tr[index], R[index] = state.T_tr, state.R + shift
+    if data.attrs["theory"] == "K":
+        T_tr[..., -1] *= hotter
+    values = {"E_trans_species": T_tr / 2, "R_species": R, "E_rot_species": T_tr * R / (1 - R) / 2}
+    values |= {f"{one}_stderr": np.full(shape, 0.001) for one in values}
+    dims = (*data.R.dims, "species")
+    data = data.assign({one: (dims, value) for one, value in values.items()})
+    return data.assign_coords(species=[one["name"] for one in species])
 
 
 def averaged(

@@ -32,7 +32,7 @@ ATTRIBUTES = {
     **dict.fromkeys(("r", "beta", "inertia", "spin_share", "mu", "packing", "r_at_speed"), NUMBER),
     **dict.fromkeys(("experiment", "scale", "r_label", "beta_label", "command", "swept"), WORD),
     **dict.fromkeys(("variant", "theory", "study", "task"), WORD),
-    **dict.fromkeys(("experiment_json", "settings_json"), JSON),
+    **dict.fromkeys(("experiment_json", "settings_json", "species_json"), JSON),
 }
 """What the attributes that are read must be, where they are there."""
 
@@ -46,7 +46,7 @@ class Kind(NamedTuple):
 
 POINT, REDUCED, FILM = "a point", "a reduced dataset", "a film of a cooling gas"
 TASK, STUDIES = "a task of a study", "a dataset of studies"
-SWEPT = re.compile(r"(\w+\.)?\w+")
+SWEPT = re.compile(r"(\w+\.)*\w+")
 KINDS = {
     TASK: Kind(frozenset({"study", "task"}), frozenset()),
     FILM: Kind(frozenset(), frozenset({"disks", "disk_spin", "R"})),

@@ -26,7 +26,7 @@ def explore(scene: Scene, experiment: Mapping[str, Any]) -> Pilot:
     R remembers as long as it relaxes, twice the e-fold of theory (Ornstein and Uhlenbeck).
     """
     recorder, replicas = Recorder(), TRIED["replicas"]
-    e_fold = 1.0 / max(cooling.rate_of(scene), 1.0 / PLATEAU[1])
+    e_fold = 1.0 / max(cooling.rate_of(scene, experiment), 1.0 / PLATEAU[1])
     plateau = min(max(E_FOLDS * e_fold, PLATEAU[0]), PLATEAU[1])
     tried = {**experiment, "schedule": experiment["schedule"] | TRIED | {"plateau": plateau}}
     found = cooling.run(scene, tried, SEED, recorder)
@@ -48,16 +48,19 @@ def explore(scene: Scene, experiment: Mapping[str, Any]) -> Pilot:
 def effort(scene: Scene, experiment: Mapping[str, Any]) -> float:
     """Return how long a pilot is at least, in collisions per particle."""
     tried = experiment["schedule"] | TRIED | {"plateau": PLATEAU[0]}
-    return cooling.length(scene, tried)
+    return cooling.length(scene, {**experiment, "schedule": tried})
 
 
-def choose(scene: Scene, given: Mapping[str, Any], pilot: Pilot, target: float) -> dict[str, Any]:
+def choose(
+    scene: Scene, experiment: Mapping[str, Any], pilot: Pilot, target: float
+) -> dict[str, Any]:
     """Return the complete schedule of a run that belongs to a target."""
+    given = experiment["schedule"]
     r, beta, inertia = scene.restitution, scene.roughness, inertia_of_spin(scene.effects)
     final = float(cooling_ratio(r, beta, len(scene.box), inertia))
-    e_folds = relaxation(scene, BIAS * target, final, None) * cooling.rate_of(scene)
+    e_folds = relaxation(scene, BIAS * target, final, None) * cooling.rate_of(scene, experiment)
     e_folds = float(f"{max(e_folds, 1.0):.3g}")
-    spent = given["thermalise"] + cooling.transient_length(scene, e_folds)
+    spent = given["thermalise"] + cooling.transient_length(scene, e_folds, experiment)
     plateau = to_measure(spent, FEWEST_SEEDS * REPLICAS, target, MEMORIES, pilot)
     chosen = {
         "replicas": REPLICAS,

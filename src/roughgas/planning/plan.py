@@ -48,7 +48,7 @@ def plan_point(scene: Scene, experiment: Mapping[str, Any], pilot: Pilot) -> Pla
     kind, chosen = schedule.of(experiment), dict(experiment["schedule"])
     if "target_stderr" in experiment:
         target = float(experiment["target_stderr"])
-        chosen = PLANNERS[kind].choose(scene, chosen, pilot, target)
+        chosen = PLANNERS[kind].choose(scene, experiment, pilot, target)
         enough = pilot.variance / (schedule.measured(chosen) * target**2)
         wanted = enough / RESERVE**2
         seeds = 1 if wanted <= ALONE else max(FEWEST_SEEDS, math.ceil(wanted))
@@ -56,7 +56,7 @@ def plan_point(scene: Scene, experiment: Mapping[str, Any], pilot: Pilot) -> Pla
         made = seeds * (1.0 + added(enough / seeds, seeds * freedom))
     else:
         made = seeds = experiment["sweep"]["seeds"]
-    simulated = made * kind.length(scene, chosen)
+    simulated = made * kind.length(scene, {**experiment, "schedule": chosen})
     return Plan(
         schedule=chosen,
         seeds=seeds,
@@ -78,7 +78,7 @@ def share_of_pilots(experiments: Iterable[Mapping[str, Any]]) -> float:
             return 0.0
         for r, beta in product(axes["r"], axes["beta"]):
             scene = build(experiment, float(r), float(beta))
-            length = axes["seeds"] * kind.length(scene, experiment["schedule"])
+            length = axes["seeds"] * kind.length(scene, experiment)
             runs += experiment["particles"] * length
             pilots += experiment["particles"] * PLANNERS[kind].effort(scene, experiment)
     return pilots / runs

@@ -61,8 +61,11 @@ def effort(scene: Scene, experiment: Mapping[str, Any]) -> float:
     return CHAINS * USUAL
 
 
-def choose(scene: Scene, given: Mapping[str, Any], pilot: Pilot, target: float) -> dict[str, Any]:
+def choose(
+    scene: Scene, experiment: Mapping[str, Any], pilot: Pilot, target: float
+) -> dict[str, Any]:
     """Return the complete schedule of a run that belongs to a target."""
+    given = experiment["schedule"]
     unit = given.get("period", given["sample_every"])
     final = float(lun_ratio(scene.roughness, inertia_of_spin(scene.effects)))
     relaxed = relaxation(scene, BIAS * target, final, 0.0) / pilot.pace

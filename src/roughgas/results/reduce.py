@@ -24,6 +24,7 @@ from roughgas.data.variables import CLOCKS, POINT, Array, described
 from roughgas.results.observed import observed_in, reduced_observables
 from roughgas.statistics.bimodal import is_bimodal
 from roughgas.statistics.intervals import pooled
+from roughgas.theory.mixture_composition import SPECIES
 from roughgas.theory.prediction import equation_of
 
 SAME = ("experiment", "scale", "dimension", "inertia", "spin_share", "mu", "particles", "swept")
@@ -241,7 +242,7 @@ def _common_attributes(points: Sequence[Summary]) -> dict[str, Any]:
         values = {str(point.attributes.get(name, "")) for point in points}
         if len(values) > 1 and name in PROVENANCE:
             shared[name] = ", ".join(sorted(values))
-        elif len(values) > 1 or name in OF_A_POINT or name == swept:
+        elif (len(values) > 1 and name != SPECIES) or name in OF_A_POINT or name == swept:
             del shared[name]
     over = "r and beta" if swept is None else f"{swept}, r and beta"
     return shared | COMMON_ATTRIBUTES | {"title": f"{shared['experiment']}: R over {over}"}

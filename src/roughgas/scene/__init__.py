@@ -2,7 +2,7 @@
 
 from roughgas.scene.composition import DIAMETER, Scene, build, is_closed
 from roughgas.scene.initial import check, check_places, initial_state
-from roughgas.scene.mixture import draw_bodies, given_bodies, packing
+from roughgas.scene.mixture import draw_bodies, for_theory, given_bodies, packing
 
 __all__ = [
     "DIAMETER",
@@ -11,6 +11,7 @@ __all__ = [
     "check",
     "check_places",
     "draw_bodies",
+    "for_theory",
     "given_bodies",
     "initial_state",
     "is_closed",

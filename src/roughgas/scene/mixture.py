@@ -4,11 +4,13 @@ That of positions and velocities is left as it is: particles of several species 
 all things begin as those of one.
 """
 
+import math
 from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
+from roughgas import theory
 from roughgas.base.errors import InputError
 from roughgas.effects.species import Mixture, mixture_of
 from roughgas.kernel.state import Bodies
@@ -38,6 +40,22 @@ def packing(experiment: Mapping[str, Any]) -> float:
     mixture, box = mixture_of(experiment), experiment["box"]
     volume = 1.0 if mixture is None else mixture.mean_volume(len(box))
     return volume * packing_fraction(experiment["particles"], box)
+
+
+def for_theory(scene: Scene, experiment: Mapping[str, Any]) -> theory.Mixture | None:
+    """Return the species as theory takes them; None where all particles are alike."""
+    if not experiment.get("species"):
+        return None
+    friction, spin = scene.effects.friction, scene.effects.spin
+    return theory.mixture(
+        experiment["species"],
+        scene.restitution,
+        scene.roughness,
+        len(scene.box),
+        None if spin is None else spin.inertia,
+        math.inf if friction is None else friction.mu,
+        experiment.get("species_pairs") or (),
+    )
 
 
 def given_bodies(

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from roughgas.effects import inertia, speed_of_r
-from roughgas.scene import Scene
+from roughgas.scene import Scene, for_theory, packing
 from roughgas.simulation import by_species
 from roughgas.simulation.books import Books, exchange
 from roughgas.simulation.by_species import energies_of_each
@@ -18,7 +18,7 @@ from roughgas.simulation.recorder import Recorder
 from roughgas.statistics.errors import autocorrelation_time
 from roughgas.statistics.intervals import Error
 from roughgas.statistics.plateau import find_plateau
-from roughgas.theory import friction_relaxation_rate, relaxation_rate
+from roughgas.theory import friction_relaxation_rate, mixture_relaxation_rate, relaxation_rate
 
 # see roughgas.simulation.schedule.Kind
 DRIVEN, UNIT, LENGTH = False, "collisions per particle", "plateau"
@@ -39,23 +39,33 @@ class Cooled(NamedTuple):
     species: list[Energies]  # as `energies`, of each species
 
 
-def length(scene: Scene, schedule: Mapping[str, Any]) -> float:
+def length(scene: Scene, experiment: Mapping[str, Any]) -> float:
     """Return the collisions per particle that a point simulates, in all replicas together."""
-    transient = transient_length(scene, schedule["relaxation_times"])
+    schedule = experiment["schedule"]
+    transient = transient_length(scene, schedule["relaxation_times"], experiment)
     return schedule["replicas"] * (schedule["thermalise"] + transient + schedule["plateau"])
 
 
-def transient_length(scene: Scene, relaxation_times: float) -> float:
-    """Return the collisions per particle that R needs to settle, by the rate equations."""
-    rate = rate_of(scene)
+def transient_length(
+    scene: Scene, relaxation_times: float, experiment: Mapping[str, Any] | None = None
+) -> float:
+    """Return the collisions per particle that R needs to settle, by the rate equations.
+
+    `experiment` need not be given where particles are alike.
+    """
+    rate = rate_of(scene, experiment)
     return min(max(relaxation_times / rate if rate > 0.0 else math.inf, TRANSIENT[0]), TRANSIENT[1])
 
 
-def rate_of(scene: Scene) -> float:
+def rate_of(scene: Scene, experiment: Mapping[str, Any] | None = None) -> float:
     """Return the rate at which R relaxes, by the rate equations, per collision per particle.
 
-    Without spin there is nothing to relax: infinity.
+    That is the slowest at which any temperatures of a mixture do. Of particles that are alike and
+    without spin there is nothing to relax: infinity.
     """
+    mixture = for_theory(scene, experiment or {})
+    if mixture is not None:
+        return mixture_relaxation_rate(mixture, packing(experiment))
     q = inertia(scene.effects)
     if q is None:
         return math.inf
@@ -106,7 +116,7 @@ def run(
     `relaxation_times` of its e-folds, and for `plateau` collisions per particle more.
     """
     schedule = experiment["schedule"]
-    transient = transient_length(scene, schedule["relaxation_times"])
+    transient = transient_length(scene, schedule["relaxation_times"], experiment)
     every = schedule["sample_every"]
     samples = math.ceil((transient + schedule["plateau"]) / every)
     streams = _streams(seed, schedule["replicas"])

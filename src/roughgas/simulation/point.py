@@ -1,7 +1,8 @@
 """One point of an experiment: from its settings to the dataset's variables."""
 
+import json
+import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from math import inf
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,6 +17,7 @@ from roughgas.simulation import by_species, schedule
 from roughgas.simulation.ends import Initial, check_initial, is_memory_of, last_states, owner
 from roughgas.simulation.gas import Gas
 from roughgas.simulation.recorder import Recorder
+from roughgas.theory.mixture_composition import SPECIES
 
 if TYPE_CHECKING:
     from roughgas.simulation.observing import Functions
@@ -61,7 +63,9 @@ def run_point(
         found["contact_time_fraction"] = recorder.touched / max(1, recorder.collisions)
     observed: Mapping[str, Variable] = {}
     if watching:
-        values, observed = watching.results(found["measured_from"], found.get("plateau_end", inf))
+        values, observed = watching.results(
+            found["measured_from"], found.get("plateau_end", math.inf)
+        )
         found |= values
     return Point(
         observed=observed,
@@ -118,6 +122,10 @@ def _known_to_theory(scene, experiment):
         found["mu"] = effects.friction.mu
     if effects.thermostat is not None:
         found["spin_share"] = float(experiment["effects"]["thermostat"]["spin_share"])
+    if experiment.get("species"):
+        known = {name: experiment.get(name) or [] for name in ("species", "species_pairs")}
+        sides = [0.0 if side == "open" else float(side) for side in experiment["box"]]
+        found[SPECIES] = json.dumps(known | {"volume": math.prod(sides)})
     return found
 
 
@@ -137,7 +145,7 @@ def effort(experiment: Mapping[str, Any], r: float, beta: float) -> float:
     if "target_stderr" in experiment:
         return number
     kind = schedule.of(experiment)
-    return number * kind.length(build(experiment, r, beta), experiment["schedule"])
+    return number * kind.length(build(experiment, r, beta), experiment)
 
 
 def compile_kernels(experiments: Iterable[Mapping[str, Any]]) -> int:

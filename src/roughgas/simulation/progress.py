@@ -119,7 +119,7 @@ class Progress(Bar):
         self._compiled = name
         self._particles, self._kind = experiment["particles"], schedule.of(experiment)
         self._before = self._now = 0.0  # lengths: of the simulations that are over, of this one
-        total = round(seeds * self._kind.length(scene, experiment["schedule"]))
+        total = round(seeds * self._kind.length(scene, experiment))
         super().__init__(f"{name} (compiling)", total, self._kind.UNIT, stream, quiet)
 
     def __call__(self, simulated: float, collisions: int) -> None:

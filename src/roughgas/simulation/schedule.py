@@ -26,7 +26,7 @@ class Kind(Protocol):
     LENGTH: str  # key of the schedule: how long R is measured
     SAMPLES_PER_REFRESH: int  # samples after which a gas is refreshed; 1 where none is
 
-    def length(self, scene: Scene, schedule: Mapping[str, Any]) -> float:
+    def length(self, scene: Scene, experiment: Mapping[str, Any]) -> float:
         """Return how much a point simulates, in UNIT."""
 
     def start(

@@ -26,8 +26,9 @@ KEPT = 4  # values in a period that the stored series have
 LEAST_LEFT = 0.5  # share of the planned measurement below which a late start is not worth having
 
 
-def length(scene: Scene, schedule: Mapping[str, Any]) -> float:
+def length(scene: Scene, experiment: Mapping[str, Any]) -> float:
     """Return the T that a point simulates."""
+    schedule = experiment["schedule"]
     return schedule["equilibrate"] + schedule["measure"]
 
 

@@ -14,6 +14,8 @@ from roughgas.theory.arguments import (
     moment_of_inertia,
 )
 
+SPECIES = "species_json"
+"""Attribute of datasets of mixtures, from which theory knows them: see `prediction_of_mixtures`."""
 AMOUNTS = "fraction", "number"
 MATERIAL = {"restitution": "restitution r", "roughness": "roughness beta", "mu": "friction mu"}
 KEYS = (*AMOUNTS, "radius", "mass", "inertia", "name", *MATERIAL)

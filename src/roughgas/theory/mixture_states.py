@@ -20,7 +20,7 @@ ROUNDING = 1e-13
 SWEEPS = 1000
 SLOPE = 1e-5  # of ln T, for a derivative
 BEGIN = 1e-2  # T_rot of gases that start with hardly any spin
-FIRST, GROWTH, STEPS = 0.3, 2.5, 60  # first step in collisions per particle, the next over it
+FIRST, GROWTH, STEPS = 0.5, 4.0, 60  # first step in collisions per particle, the next over it
 FARTHEST = 1.0  # of ln T in a step
 
 
@@ -147,26 +147,25 @@ def _cooling(gas: Mixture, crowding: np.ndarray) -> Temperatures:
 
 
 def _drift(gas: Mixture, logs, moves, crowding) -> np.ndarray:
-    """Return d ln(T/T_1)/dn of all temperatures that move but the first, T_1."""
-    state = np.zeros(len(moves))
-    state[moves] = np.exp(logs)
-    growth = _growth(gas, Temperatures(*np.split(state, 2)), crowding)[moves]
-    return growth[1:] - growth[0]
+    """Return d ln(T/T_1)/dn of all temperatures that move but the first, T_1, (..., moving - 1)."""
+    state = np.zeros((*np.shape(logs)[:-1], len(moves)))
+    state[..., moves] = np.exp(logs)
+    growth = _growth(gas, Temperatures(*np.split(state, 2, -1)), crowding)[..., moves]
+    return growth[..., 1:] - growth[..., :1]
 
 
 def _slopes(function: Callable[[np.ndarray], np.ndarray], at: np.ndarray) -> np.ndarray:
     """Return the derivatives of a function by all its arguments but the first, in columns."""
     steps = SLOPE * np.eye(len(at))[1:]
-    found = [(function(at + step) - function(at - step)) / (2 * SLOPE) for step in steps]
-    return np.array(found).T.reshape(len(at) - 1, len(at) - 1)
+    return (function(at + steps) - function(at - steps)).T / (2 * SLOPE)
 
 
 def _growth(gas: Mixture, state: Temperatures, crowding: np.ndarray) -> np.ndarray:
     """Return d ln T/dn of T_tr and T_rot, n in collisions per particle; 0 where T = 0."""
-    together = np.concatenate(state)
-    change = rate_matrix(gas, *state, crowding) @ together
-    collisions = gas.fraction @ contact_frequencies(gas, state.T_tr, crowding).sum(axis=1)
-    return change / np.where(together > 0, together, 1.0) / collisions
+    together = np.concatenate(state, -1)
+    change = (rate_matrix(gas, *state, crowding) @ together[..., None])[..., 0]
+    collisions = contact_frequencies(gas, state.T_tr, crowding).sum(axis=-1) @ gas.fraction
+    return change / np.where(together > 0, together, 1.0) / collisions[..., None]
 
 
 def _solved(matrix: np.ndarray, right: np.ndarray, moves: np.ndarray) -> np.ndarray:

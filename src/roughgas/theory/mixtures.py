@@ -66,7 +66,7 @@ def contact_frequencies(gas: Mixture, T_tr, crowding=1.0) -> np.ndarray:
 
     `crowding` is chi_ij, from `mixture_contact_values`; 1 in a dilute gas.
     """
-    speed = np.add.outer(T_tr / gas.mass, T_tr / gas.mass)
+    speed = _of_pairs(T_tr / gas.mass)
     area = SURFACE[gas.dimension] * gas.distance ** (gas.dimension - 1)
     return gas.fraction * crowding * area * np.sqrt(speed / (2 * np.pi))
 
@@ -74,7 +74,8 @@ def contact_frequencies(gas: Mixture, T_tr, crowding=1.0) -> np.ndarray:
 def rate_matrix(gas: Mixture, T_tr, T_rot, crowding=1.0) -> np.ndarray:
     """Return A, (2 species, 2 species): d(T_tr, T_rot)/dt = A (T_tr, T_rot).
 
-    Per time and number density, as `contact_frequencies`. It depends on the temperatures through
+    Temperatures may have more axes before that of the species. Per time and number density, as
+    `contact_frequencies`. It depends on the temperatures through
     frequencies and, with friction, through the share of contacts that slide. All that is off its
     diagonal is >= 0.
     """
@@ -88,7 +89,7 @@ def rate_matrix(gas: Mixture, T_tr, T_rot, crowding=1.0) -> np.ndarray:
     def part(from_all: np.ndarray, own: np.ndarray, other: np.ndarray, spins: int) -> np.ndarray:
         """Return what squared velocities bring: of both partners, and of the particle itself."""
         both = nu * from_all
-        total = both + eye * (both - nu * own).sum(axis=1)[:, None]
+        total = both + eye * (both - nu * own).sum(axis=-1)[..., None]
         return 2 * total / (spins * other)
 
     into_velocity, into_spin = drag / m, drag / turned
@@ -97,7 +98,8 @@ def rate_matrix(gas: Mixture, T_tr, T_rot, crowding=1.0) -> np.ndarray:
     from_spin = part(into_velocity, nothing, gas.mass * gas.inertia, D)
     to_spin = part(into_spin, nothing, gas.mass, 2 * D - 3)
     spin = part(into_spin, lost, gas.mass * gas.inertia, 2 * D - 3)
-    return np.block([[velocity, from_spin], [to_spin, spin]])
+    rows = [np.concatenate(pair, -1) for pair in ((velocity, from_spin), (to_spin, spin))]
+    return np.concatenate(rows, -2)
 
 
 def mixture_changes(gas: Mixture, T_tr, T_rot, crowding=1.0, density=1.0) -> Temperatures:
@@ -111,9 +113,14 @@ def mixture_changes(gas: Mixture, T_tr, T_rot, crowding=1.0, density=1.0) -> Tem
     return Temperatures(*np.split(change, 2))
 
 
+def _of_pairs(values: np.ndarray) -> np.ndarray:
+    """Return x_i + x_j, (..., species, species), of x (..., species)."""
+    return values[..., :, None] + values[..., None, :]
+
+
 def _sliding(gas: Mixture, T_tr, T_rot) -> tuple[np.ndarray, np.ndarray]:
     """Return kappa_1 and kappa_2 of each pair."""
     velocity, spin = T_tr / gas.mass, T_rot / (gas.mass * gas.inertia)
-    speed = np.add.outer(velocity, velocity)
-    slip = np.sqrt(quotient(speed + np.add.outer(spin, spin), speed))
+    speed = _of_pairs(velocity)
+    slip = np.sqrt(quotient(speed + _of_pairs(spin), speed))
     return moments(quotient(gas.tangential, gas.friction * gas.normal) * slip, gas.dimension)

@@ -6,6 +6,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from roughgas.theory.mixture_composition import SPECIES
+
 
 class Equation(NamedTuple):
     """What R of a gas is compared with."""
@@ -22,6 +24,10 @@ def equation_of(attributes: Mapping[str, Any], variables: Container[Any] = ()) -
     """
     kind = attributes.get("theory", "K" if "plateau_end" in variables else "lun")
     swept = attributes.get("swept", "").rpartition(".")[2]
+    if SPECIES in attributes:
+        from roughgas.theory.prediction_of_mixtures import name_of_mixture
+
+        return Equation(kind, name_of_mixture(attributes, kind))
     if "mu" in attributes or swept == "mu":
         return Equation(kind, "rate equations with Coulomb friction")
     if kind == "K":
@@ -38,8 +44,13 @@ def predicted_ratio(attributes: Mapping[str, Any], r: Any, beta: Any) -> np.ndar
     That is the theory of free cooling for a gas without a drive, Lun's formula for one whose drive
     adds translation only, and the result of the rate equations for other drives, and for friction.
     `attributes` are those of a reduced dataset, with what is its third axis: `inertia`,
-    `spin_share` (of the drive), or `mu`; these broadcast with `r` and `beta`.
+    `spin_share` (of the drive), or `mu`; these broadcast with `r` and `beta`. Mixtures have
+    `species_json`, and a theory of their own.
     """
+    if SPECIES in attributes:
+        from roughgas.theory.prediction_of_mixtures import ratio_of_mixture
+
+        return ratio_of_mixture(attributes, r, beta)
     from roughgas import theory
 
     names = {"inertia": math.nan, "spin_share": 0.0, "mu": math.inf}

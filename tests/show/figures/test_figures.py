@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 from matplotlib.image import imread
-from synthetic import BETA, reduced
+from synthetic import BETA, mixed, reduced
 
 from roughgas.base.errors import InputError
 from roughgas.base.sources import closure
@@ -39,6 +39,19 @@ def boundaries(experiment):
     return over(experiment, "walls.roughness", values, **known)
 
 
+def mixtures(scene):
+    how = {"r": (0.9,), "beta": (0.0, 1.0)}
+    masses = mixed(f"{scene}_masses", ("species.second.mass", (1.0, 4.0)), **how)
+    return masses, mixed(f"{scene}_sizes", ("species.second.radius", (1.0, 2.0)), **how)
+
+
+def spread(scene):
+    disks = [{"name": "disks", "fraction": 1}]
+    disks[0]["radius"] = {"distribution": "uniform", "deviation": 0.1}
+    third = "species.disks.deviation", (0.0, 0.2)
+    return mixed(f"{scene}_polydisperse", third, species=disks, r=(0.9,), beta=(0.0, 1.0))
+
+
 SCENES = ("cooling", "sheared", "vibrated")
 WAVES = ("reversed_sawtooth", "sawtooth", "sine", "triangle")
 DATA = {
@@ -61,6 +74,9 @@ DATA = {
         over(name, "spin.inertia", (0.01, 1.0)) for name in FIGURES["fig7"].shows
     ),
     "fig8": lambda: tuple(boundaries(one) for one in FIGURES["fig8"].shows),
+    "mixtures_vibrated": lambda: mixtures("vibrated"),
+    "mixtures_cooling": lambda: mixtures("cooling"),
+    "polydispersity": lambda: tuple(spread(one) for one in ("vibrated", "cooling")),
 }
 
 

@@ -1,0 +1,17 @@
+"""A vibrated bed of two species: how they share energy, over the ratio of masses and of radii."""
+
+import xarray as xr
+from matplotlib.figure import Figure
+
+from roughgas.show.figures.two_species import Column, columns_figure
+
+THEORIES = "lines: Lun's formula for mixtures,\nfrom the measured temperatures"
+
+
+def draw(masses: xr.Dataset, sizes: xr.Dataset) -> Figure:
+    """Draw the figure from the reduced datasets of beds of unlike masses, and of unlike radii."""
+    columns = (
+        Column(masses, "Vibrated bed", "Heavy disks are hotter"),
+        Column(sizes, "Vibrated bed", "Size alone changes little"),
+    )
+    return columns_figure(columns, THEORIES)

@@ -1,0 +1,41 @@
+"""Disks of many sizes: what spread radii change in the bed of Fig. 1a and the gas of Fig. 2b.
+
+The residuals are those from disks that are all alike, not from theory.
+"""
+
+import xarray as xr
+from matplotlib.figure import Figure
+
+from roughgas.show.figures.panel import TWO_WIDE, PanelContent, ratio_figure, series
+from roughgas.show.style import LOOKS
+
+ALIKE = 0.0
+MESSAGES = "Sizes spread by 20 % change R hardly", "nor that of a cooling gas"
+
+
+def draw(bed: xr.Dataset, cooling: xr.Dataset) -> Figure:
+    """Draw the figure from the reduced datasets of polydisperse beds and cooling gases.
+
+    Colours stand for r, symbols for the deviation of the radii.
+    """
+    parts = [
+        _content(data, name, message)
+        for data, name, message in zip(
+            (bed, cooling), ("Vibrated bed", "Cooling gas"), MESSAGES, strict=True
+        )
+    ]
+    figure = ratio_figure(*parts, width=TWO_WIDE)
+    figure.axes[len(parts)].set_ylabel("$R$ minus $R$ of\nequal disks")
+    return figure
+
+
+def _content(data: xr.Dataset, name: str, message: str) -> PanelContent:
+    drawn = []
+    for r, colours in zip(sorted(data.r.values, reverse=True), LOOKS, strict=False):
+        alike = data.R.sel(r=r, deviation=ALIKE)
+        for deviation, markers in zip(data.deviation.values, LOOKS, strict=False):
+            look = colours._replace(marker=markers.marker)
+            label = f"$r = {r:g}$, radii ± {100 * deviation:g} %"
+            one = series(data, label, look, r=r, deviation=deviation)
+            drawn.append(one._replace(theory=alike.sel(beta=one.at).values))
+    return PanelContent(name, [data], drawn, theories="lines: theory", message=message)
