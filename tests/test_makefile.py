@@ -1,6 +1,7 @@
 """What the Makefile says while packages are installed, with a pip that only talks."""
 
 import os
+import re
 import subprocess
 from pathlib import Path
 
@@ -55,3 +56,25 @@ def test_of_a_failure_it_says_all(install):
     assert ran.returncode != 0 and not ready.exists()
     for line in ("Collecting package7==1.0", "ERROR: hashes differ", "pip has failed"):
         assert line in ran.stdout.splitlines()
+
+
+def planned(*arguments):
+    """The lines that make would carry out."""
+    command = ["make", "-n", *arguments]
+    ran = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
+    return ran.stdout.splitlines()
+
+
+TARGETS = re.findall(r"^([a-z]+):.*## ", (ROOT / "Makefile").read_text(), re.M)
+
+
+@pytest.mark.parametrize("target", ["figures", "report", "plan"])
+def test_what_simulates_obeys_the_scale(target):
+    said = "\n".join(planned("SCALE=small", target))
+    assert "--config scale=small" in said and "results/small/" in said
+    assert "scale=paper" not in said and "results/paper" not in said
+
+
+@pytest.mark.parametrize("target", sorted({*TARGETS} - {"help", "notebook"}))
+def test_every_target_ends_by_saying_where_to_look_or_what_is_done(target):
+    assert planned(target)[-1].startswith("echo ")
