@@ -201,6 +201,18 @@ def test_it_is_dark_where_that_is_asked_for_and_white_on_paper(page):
         page.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "", "features": []})
 
 
+def test_the_camera_button_hides_no_legend(page):
+    overlap = """
+        const plot = document.getElementById("ratios"), { data, layout } = plot;
+        const box = one => plot.querySelector(one).getBoundingClientRect();
+        await Plotly.newPlot(plot, data, layout, { ...CONFIG, displayModeBar: true });
+        const [button, legend] = [".modebar", ".legend"].map(box);
+        return [button.width, Math.min(button.right, legend.right) > Math.max(button.x, legend.x)
+          && Math.min(button.bottom, legend.bottom) > Math.max(button.y, legend.y)];"""
+    width, hidden = page.script(f"return (async () => {{{overlap}}})()")
+    assert width > 0 and not hidden
+
+
 def test_it_fits_on_a_phone(page):
     page.driver.execute_cdp_cmd(
         "Emulation.setDeviceMetricsOverride",

@@ -6,13 +6,14 @@ import random
 
 import numpy as np
 import pytest
+from tests.synthetic import reduced
 
 from roughgas import theory
 from roughgas.base.errors import InputError
 from roughgas.data.point import Point, write_point
 from roughgas.data.reduced import read_reduced
 from roughgas.results.reduce import reduce_points
-from roughgas.results.table import write_table
+from roughgas.results.table import why_wide, write_table
 from roughgas.theory.prediction import predicted_ratio
 
 ABOUT = {"experiment": "sheared", "scale": "small", "dimension": 2, "inertia": 0.5, "particles": 40}
@@ -210,3 +211,10 @@ def test_the_table_has_one_row_for_each_place_with_data(paths, tmp_path):
     assert float(row["residual"]) == pytest.approx(0.23 - theory.lun_ratio(-0.5, 0.5))
     assert row["R_unsubtracted"] == "" and "kernel_seconds" not in row
     assert float(rows[3]["R_theory"]) == pytest.approx(theory.cooling_ratio(0.7, 0.0, 2, 0.5))
+
+
+def test_intervals_from_two_seeds_say_why_they_are_wide():
+    said = " ".join(why_wide(reduced(seeds=2, beta=(0.0, 0.5), R_dof=2.0)).split())
+    assert said.startswith("Wide intervals: 6 of 6, since errors from 2 seeds are uncertain")
+    assert "known with 2 degrees of freedom, 95 % are 4.5 standard errors to each side" in said
+    assert why_wide(reduced(beta=(0.0, 0.5))) == ""

@@ -2,7 +2,9 @@
 
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.image import imread
+from matplotlib.text import Text
 
 from roughgas import theory
 from roughgas.base.errors import InputError
@@ -123,6 +125,16 @@ def test_disks_are_as_large_as_they_are(path):
     (disks,) = panels(clustering.picture(read_film(path)))["d"].collections
     assert np.all(disks.get_widths() == 2.0) and len(disks.get_offsets()) == 7
     assert disks.get_rasterized()
+
+
+def test_no_words_are_cut(path):
+    figure = clustering.picture(read_film(path))
+    FigureCanvasAgg(figure).draw()
+    every = [one for one in figure.findobj(Text) if one.get_visible() and one.get_text().strip()]
+    shown = [one.get_window_extent() for one in every if one.axes is None or one.axes.axison]
+    assert len(shown) > 50
+    inside = figure.bbox.padded(1.0)
+    assert all(inside.contains(x, y) for box in shown for x, y in box.corners())
 
 
 def test_another_kind_of_file_is_refused(path, tmp_path):
