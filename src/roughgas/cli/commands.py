@@ -54,6 +54,12 @@ COMMANDS = {
         value("--seed", "seed of the random generator", default="1"),
         *TAKE,
         value("--fps RATE", "frames a second", default="25"),
+        value(
+            "--colour",
+            "what colours tell of particles of several species",
+            choices=("spin", "species"),
+            default="spin",
+        ),
         output(".mp4 or .gif files", nargs="+"),
         examples=(
             "roughgas movie vibrated --r 0.9 --beta 0.5 -o bed.mp4 bed.gif",

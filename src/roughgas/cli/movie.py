@@ -38,4 +38,5 @@ def _panel(options: Namespace, beta: str, scene: Scene, settings: dict[str, Any]
     take = chosen_take(options, settings, scene)
     simulated = snapshots(settings, float(options.r), float(beta), seed, take)
     shots = list(watched(f"{name}: simulated", take.frames, "frames", simulated))
-    return MovieSubject(name, settings, scene, seed), shots
+    by_species = options.colour == "species"
+    return MovieSubject(name, settings, scene, seed, by_species), shots

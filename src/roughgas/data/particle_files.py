@@ -8,7 +8,8 @@ These have no units: lengths are in a, times in T, masses in m.
 
 A sheared box is a triclinic cell, whose second vector leads to the image above: (shift, L_y). An
 open axis is as long as the particles reach, and not periodic where the format can say so. Disks lie
-in the plane z = 0 of a cell that is one diameter thick.
+in the plane z = 0 of a cell that is the largest diameter thick. Particles of several species have
+their masses, and the number of the species from 0 (`kind`); in .gsd these are types with a name.
 """
 
 from collections.abc import Callable, Iterator
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
     import xarray
 
 SPECIES = "X"  # of no element
-DEPTH = 2.0  # of the cell of disks, in a
+DEPTH = 2.0  # of the cell of disks, in radii of the largest
 AMBER = {"Conventions": "AMBER", "ConventionVersion": "1.0", "program": "roughgas"}
 
 
@@ -65,7 +66,8 @@ def frames(trajectory: "xarray.Dataset") -> Iterator[Frame]:
     heights = _heights(trajectory)
     for number in range(trajectory.sizes["frame"]):
         one = trajectory.isel(frame=number)
-        cell = np.diag(np.append(heights, DEPTH)[:3])
+        depth = DEPTH * float(trajectory.radius.max())
+        cell = np.diag(np.append(heights, depth)[:3])
         cell[1, 0] = float(one.image_shift) if "image_shift" in one else 0.0
         yield Frame(
             time=float(one.time),
@@ -80,7 +82,8 @@ def frames(trajectory: "xarray.Dataset") -> Iterator[Frame]:
 def _heights(trajectory):
     """Return the lengths of the box, (D,), those of open axes such that all particles fit."""
     lengths = trajectory.box.values.copy()
-    tops = trajectory.position.values.max(axis=(0, 1)) + 1.0
+    reach = trajectory.position.values + trajectory.radius.values[:, None]
+    tops = reach.max(axis=(0, 1))
     return np.where(np.isnan(lengths), tops, lengths)
 
 
@@ -95,11 +98,12 @@ def _axial(spin):
 
 def _write_xyz(path: Path, trajectory: "xarray.Dataset") -> None:
     radius = trajectory.radius.values[:, None]
+    more = {name: values[:, None] for name, values in _differing(trajectory).items()}
     bounded = [*(trajectory.periodic.values == 0), True][:3]
     pbc = " ".join("F" if one else "T" for one in bounded)
     with open(path, "w", encoding="utf-8", newline="\n") as file:
         for frame in frames(trajectory):
-            columns = {"pos": frame.position, "velo": frame.velocity, "radius": radius}
+            columns = {"pos": frame.position, "velo": frame.velocity, "radius": radius} | more
             if frame.spin is not None:
                 columns["omega"] = frame.spin
             if frame.angle is not None:
@@ -127,6 +131,8 @@ def _write_amber(path: Path, trajectory: "xarray.Dataset") -> None:
         _label(file, "cell_spatial", ("cell_spatial",), "abc")
         _label(file, "cell_angular", ("cell_angular", "label"), ["alpha", "beta ", "gamma"])
         file.createVariable("radius", "f8", ("atom",))[:] = trajectory.radius.values
+        for name, values in _differing(trajectory).items():
+            file.createVariable(name, "f8", ("atom",))[:] = values
         for number, frame in enumerate(frames(trajectory)):
             lengths, angles = lengths_and_angles(frame.cell)
             rows: dict[str, tuple[Any, tuple[str, ...]]] = {
@@ -145,6 +151,13 @@ def _write_amber(path: Path, trajectory: "xarray.Dataset") -> None:
                         values
                     )
         file["cell_angles"].units = "degree"
+
+
+def _differing(trajectory: "xarray.Dataset") -> dict[str, np.ndarray]:
+    """Return mass and species of each particle, (N,), where they differ."""
+    if "species_of" not in trajectory:
+        return {}
+    return {"mass": trajectory.mass.values, "kind": trajectory.species_of.values.astype(float)}
 
 
 def _label(file: "netCDF4.Dataset", name: str, dims: tuple[str, ...], letters: Any) -> None:
@@ -173,6 +186,10 @@ def _write_gsd(path: Path, trajectory: "xarray.Dataset") -> None:
             shot.configuration.box = [*lengths[:2], depth, _least(tilt, lengths), 0.0, 0.0]
             shot.particles.N = number
             shot.particles.types = [SPECIES]
+            if "species_of" in trajectory:
+                shot.particles.types = trajectory.species.values.tolist()
+                shot.particles.typeid = trajectory.species_of.values.astype(np.uint32)
+                shot.particles.mass = trajectory.mass.values
             shot.particles.diameter = 2.0 * trajectory.radius.values
             shot.particles.position = _centred(frame, dimension)
             shot.particles.velocity = frame.velocity

@@ -225,8 +225,17 @@ def _turning(state):
 
 
 def _collision_frequency(gas, experiment):
-    present = 2.0 * _energies(gas).translational
-    return float(collision_frequency(present, packing(experiment), len(experiment["box"])))
+    """Return Enskog's; of a mixture about what it would be, from means of radii and masses."""
+    T, dimension, bodies = (
+        2.0 * _energies(gas).translational,
+        len(experiment["box"]),
+        gas.state.bodies,
+    )
+    found = float(collision_frequency(T, packing(experiment), dimension))
+    if bodies is None:
+        return found
+    wide = np.mean(bodies.radius) ** (dimension - 1) / np.mean(bodies.radius**dimension)
+    return found * float(wide * np.sqrt(np.mean(1.0 / bodies.mass)))
 
 
 def _snapshot(gas: Gas, before: int) -> Snapshot:

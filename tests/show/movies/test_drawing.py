@@ -7,6 +7,7 @@ from imageio_ffmpeg import read_frames
 from PIL import Image
 from schedules import COOLING, STEADY
 
+from roughgas.kernel.state import Bodies
 from roughgas.scene import build
 from roughgas.show import encoding as movie
 from roughgas.show.movies import particles
@@ -216,3 +217,34 @@ def test_an_encoder_that_fails_leaves_nothing_and_says_why(tmp_path, monkeypatch
         write(path, [(subject("gas", [SIDE, SIDE]), shots())], 20.0)
     assert "\n" not in str(failure.value) and failure.value.filename == str(path)
     assert list(tmp_path.iterdir()) == []
+
+
+UNLIKE = Bodies(
+    radius=np.array([1.0, 2.0, 1.0]),
+    mass=np.array([1.0, 4.0, 1.0]),
+    inertia=np.full(3, 0.5),
+    species=np.array([0, 1, 0]),
+    largest=np.array([2.0]),
+    pairs=np.zeros((2, 3, 3)),
+)
+TWO = [{"name": "small", "fraction": 0.6}, {"name": "large", "fraction": 0.4, "radius": 2}]
+
+
+def test_particles_that_differ_are_drawn_at_their_size():
+    about = subject("gas", [SIDE, SIDE], species=TWO)
+    _, disks, (marks,) = drawn(about, shots(bodies=UNLIKE))
+    assert disks.get_widths()[:2].tolist() == [2.0, 4.0]
+    (_, tip), (_, other) = marks.get_segments()[:2]
+    assert tip == pytest.approx([3.9, 4.0]) and other == pytest.approx([6.0, 6.8])
+    # thermal spins: the heavier, the slower
+    assert spin_scales(about, shots(bodies=UNLIKE))[0] == pytest.approx(
+        spin_scales(about, shots())[0] / np.array([1.0, 2.0, 1.0])
+    )
+
+
+def test_colours_may_tell_the_species():
+    about = subject("gas", [SIDE, SIDE], species=TWO)._replace(by_species=True)
+    above, disks, _ = drawn(about, shots(bodies=UNLIKE))
+    one, other, third = disks.get_facecolor()[:3]
+    assert np.all(one == third) and not np.all(one == other)
+    assert [text.get_text() for text in above.get_legend().get_texts()] == ["small", "large"]

@@ -1,5 +1,6 @@
 """The movie of a scene: particles that move and spin, boundaries, and R(t) running beneath."""
 
+import itertools
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
@@ -10,11 +11,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
+from roughgas.config.axis import names_of
 from roughgas.data.reduced import third_axis
 from roughgas.scene import Scene
 from roughgas.show import style
 from roughgas.show.encoding import write_movie
-from roughgas.show.movies.particles import Boundaries, Disks, Spheres, View
+from roughgas.show.movies.particles import OF_SPECIES, Boundaries, Disks, Spheres, View
 from roughgas.simulation import schedule
 from roughgas.simulation.snapshots import Snapshot
 
@@ -34,6 +36,7 @@ class MovieSubject(NamedTuple):
     settings: Mapping[str, Any]
     scene: Scene
     seed: int
+    by_species: bool = False  # how particles are coloured; else by their spin
 
 
 Panel = tuple[MovieSubject, Sequence[Snapshot]]
@@ -84,21 +87,36 @@ def _panel(figure, subject, shots, view, room):
     above, below = figure.subplots(2, 1, height_ratios=(room + FRAME_SPACE, GRAPH))
     figure.suptitle(_title(subject, view), fontsize=9, linespacing=1.4)
     _set_up(above, subject.scene, view)
-    particles = (Disks if len(subject.scene.box) == 2 else Spheres)(above, view)
+    kind = Disks if len(subject.scene.box) == 2 else Spheres
+    by_species = shots[0].bodies is not None and (subject.by_species or shots[0].spin is None)
+    particles = kind(above, view, by_species)
     scales = spin_scales(subject, shots)
     boundaries = Boundaries(above, view, subject.scene.effects)
-    if shots[0].spin is not None:
+    if by_species:
+        _name_species(above, subject)
+    elif shots[0].spin is not None:
         bar = figure.colorbar(particles.coloured, ax=above, shrink=0.9, pad=0.02)
         bar.set_label(f"{particles.quantity} / thermal spin")
         bar.minorticks_off()
     present = _graph(below, subject, shots)
 
     def show(frame: int) -> None:
-        particles.show(shots[frame], scales[frame])
+        scale = np.broadcast_to(scales[frame], len(shots[frame].position))
+        particles.show(shots[frame], scale)
         boundaries.show(shots[frame])
         present(frame)
 
     return show
+
+
+def _name_species(axes, subject):
+    """Say which colour is which species, beside the box."""
+    names = names_of(subject.settings)
+    dots = [
+        axes.plot([], [], "o", color=colour, label=name)[0]
+        for name, colour in zip(names, itertools.cycle(OF_SPECIES), strict=False)
+    ]
+    axes.legend(handles=dots, loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
 
 
 def _common_view(views):
@@ -118,7 +136,7 @@ def view_of(subject: MovieSubject, shots: Sequence[Snapshot]) -> View:
     width, tall = float(lengths[0]), lengths[vertical]
     bottom = 0.0
     if scene.box[vertical] is None:
-        tall = 1.0 + max(shot.position[:, vertical].max() for shot in shots)
+        tall = max((shot.position[:, vertical] + shot.radius()).max() for shot in shots)
         bottom = -0.05 * width
     shown = min(tall, TALLEST * width)
     margin = 0.04 * width if scene.box[0] is None else 0.0  # where walls are drawn
@@ -138,7 +156,7 @@ def spin_scales(subject: MovieSubject, shots: Sequence[Snapshot]) -> np.ndarray:
     """Return the thermal spin of each frame, in a/T; NaN without spin.
 
     It is the r.m.s. that spins would have if the energy of the frame were shared equally; in a
-    driven gas, that of all frames.
+    driven gas, that of all frames. Where particles differ, each has its own, (frames, N).
     """
     effects = subject.scene.effects
     if effects.spin is None:
@@ -149,6 +167,9 @@ def spin_scales(subject: MovieSubject, shots: Sequence[Snapshot]) -> np.ndarray:
     energy = np.average(parts, axis=1, weights=(dimension, rotations))
     if not _cools(subject):
         energy = np.full(len(shots), energy.mean())
+    bodies = shots[0].bodies
+    if bodies is not None:
+        return np.sqrt(2.0 * rotations * energy[:, None] / (bodies.mass * bodies.inertia))
     return np.sqrt(2.0 * rotations * energy / effects.spin.inertia)
 
 

@@ -11,10 +11,12 @@ from matplotlib.colors import Normalize, to_rgba_array
 from matplotlib.patches import Rectangle
 
 from roughgas.effects import Effects
+from roughgas.show import style
 from roughgas.show.circles import add_circles, move
 from roughgas.simulation.snapshots import Snapshot
 
 PLAIN = to_rgba_array("#9ecae1")  # of particles that do not spin
+OF_SPECIES = to_rgba_array([look.colour for look in style.LOOKS])
 EDGE = to_rgba_array("#333333")
 LUMINANCE, DARK = np.array([0.299, 0.587, 0.114]), 0.4  # below which a mark is white
 IMAGE = 0.35  # opacity of the sliding images
@@ -42,7 +44,7 @@ def copies(view: View, shot: Snapshot) -> tuple[np.ndarray, ...]:
     Under shear, the images above and below have slid, and are faint. Returns numbers of particles,
     x, y and opacities, all (M,).
     """
-    parts = []
+    parts, radius = [], shot.radius()
     width, tall = view.periods
     for row in (0,) if tall is None else (0, -1, 1):
         y = shot.position[:, view.vertical] + row * (tall or 0.0)
@@ -50,52 +52,65 @@ def copies(view: View, shot: Snapshot) -> tuple[np.ndarray, ...]:
         opacity = 1.0 if row == 0 or shot.slide is None else IMAGE
         for column in (0,) if width is None else (0, -2, -1, 1, 2):
             x = start + column * (width or 0.0)
-            seen = (x > view.left - 1.0) & (x < view.right + 1.0)
-            seen &= (y > view.bottom - 1.0) & (y < view.top + 1.0)
+            seen = (x > view.left - radius) & (x < view.right + radius)
+            seen &= (y > view.bottom - radius) & (y < view.top + radius)
             (of,) = np.nonzero(seen)
             parts.append((of, x[of], y[of], np.full(len(of), opacity)))
     return tuple(map(np.concatenate, zip(*parts, strict=True)))
 
 
+def colours_of(
+    shot: Snapshot, of: np.ndarray, spin: np.ndarray | None, coloured: ScalarMappable | None
+) -> np.ndarray:
+    """Return the colours (M, 4) of particles with these numbers, by their `spin` (M,) in units of
+    the thermal one; without `coloured` by their species."""
+    if coloured is None and shot.bodies is not None:
+        return OF_SPECIES[shot.bodies.species[of] % len(OF_SPECIES)]
+    if spin is None or coloured is None:
+        return np.tile(PLAIN, (len(of), 1))
+    return coloured.to_rgba(spin)
+
+
 class Disks:
-    """Disks, coloured by their spin, with a mark that turns."""
+    """Disks, coloured by their spin or their species, with a mark that turns."""
 
-    quantity, coloured = "spin", ScalarMappable(Normalize(-2.0, 2.0), "PuOr")
+    quantity, by_spin = "spin", ScalarMappable(Normalize(-2.0, 2.0), "PuOr")
 
-    def __init__(self, axes: Axes, view: View) -> None:
-        self._view = view
+    def __init__(self, axes: Axes, view: View, by_species: bool = False) -> None:
+        self._view, self.coloured = view, None if by_species else self.by_spin
         self._disks = add_circles(axes, edgecolor=EDGE, linewidth=0.4)
         self._marks = LineCollection([], color=EDGE, linewidth=0.9, capstyle="round")
         axes.add_collection(self._marks)
 
-    def show(self, shot: Snapshot, scale: float) -> None:
-        """Bring them to a snapshot whose thermal spin is `scale`."""
+    def show(self, shot: Snapshot, scale: np.ndarray) -> None:
+        """Bring them to a snapshot; `scale` are the particles' thermal spins, (N,)."""
         of, x, y, opacity = copies(self._view, shot)
-        colours = np.tile(PLAIN, (len(of), 1))
-        if shot.spin is not None:
-            colours = self.coloured.to_rgba(shot.spin[of, 0] / scale)
-        move(self._disks, x, y)
+        spin = None if shot.spin is None else shot.spin[of, 0] / scale[of]
+        colours, radius = colours_of(shot, of, spin, self.coloured), shot.radius()[of]
+        move(self._disks, x, y, 2.0 * radius)
         self._disks.set_facecolor(list(to_rgba_array(colours, opacity)))
         self._disks.set_edgecolor(list(to_rgba_array(EDGE, opacity)))
         if shot.spin is not None and shot.angle is not None:
             tip = np.stack([np.cos(shot.angle[of]), np.sin(shot.angle[of])], axis=-1)
             middle = np.stack([x, y], axis=-1)
-            self._marks.set_segments(list(np.stack([middle, middle + 0.9 * tip], axis=1)))
+            end = middle + 0.9 * radius[:, None] * tip
+            self._marks.set_segments(list(np.stack([middle, end], axis=1)))
             dark = colours[:, :3] @ LUMINANCE < DARK
             self._marks.set_color(list(to_rgba_array(np.where(dark[:, None], 1.0, EDGE), opacity)))
 
 
 class Spheres:
-    """Spheres seen from the side, the nearest last, coloured by the amount of their spin."""
+    """Spheres seen from the side, the nearest last, coloured by the amount of their spin or by
+    their species."""
 
-    quantity, coloured = "|spin|", ScalarMappable(Normalize(0.0, 2.0), "viridis")
+    quantity, by_spin = "|spin|", ScalarMappable(Normalize(0.0, 2.0), "viridis")
 
-    def __init__(self, axes: Axes, view: View) -> None:
-        self._view = view
+    def __init__(self, axes: Axes, view: View, by_species: bool = False) -> None:
+        self._view, self.coloured = view, None if by_species else self.by_spin
         self._disks = add_circles(axes, linewidth=0.3)
 
-    def show(self, shot: Snapshot, scale: float) -> None:
-        """Bring them to a snapshot whose thermal spin is `scale`."""
+    def show(self, shot: Snapshot, scale: np.ndarray) -> None:
+        """Bring them to a snapshot; `scale` are the particles' thermal spins, (N,)."""
         axis = 3 - self._view.vertical  # neither across nor up
         depth = shot.position[:, axis] * (-1.0 if axis == 2 else 1.0)  # z points to the viewer
         seen = copies(self._view, shot)
@@ -103,13 +118,12 @@ class Spheres:
         of, x, y, opacity = (np.repeat(part[order], len(SHADES)) for part in seen)
         radius, shift, white = np.tile(np.array(SHADES), (len(order), 1)).T
         near = (depth[of] - depth.min()) / max(np.ptp(depth), 1e-9)
-        colours = np.tile(PLAIN, (len(of), 1))
-        if shot.spin is not None:
-            colours = self.coloured.to_rgba(np.linalg.norm(shot.spin[of], axis=1) / scale)
+        spin = None if shot.spin is None else np.linalg.norm(shot.spin[of], axis=1) / scale[of]
+        colours, size = colours_of(shot, of, spin, self.coloured), shot.radius()[of]
         for share in (FAR * near, white):
             colours[:, :3] += (1.0 - colours[:, :3]) * share[:, None]
         rim = np.where(white == 0.0, opacity, 0.0)
-        move(self._disks, x - shift, y + shift, 2.0 * radius)
+        move(self._disks, x - shift * size, y + shift * size, 2.0 * radius * size)
         self._disks.set_facecolor(list(to_rgba_array(colours, opacity)))
         self._disks.set_edgecolor(list(to_rgba_array(EDGE, rim)))
 
