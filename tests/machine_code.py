@@ -21,12 +21,13 @@ from roughgas.kernel.jit import jit
 from roughgas.kernel.record import record
 
 
-def sections(kernel):
-    """The instructions and constants of a kernel, as bytes by the name of their section.
+def sections(kernel, more=None):
+    """The instructions and constants of a kernel, as bytes by the name of their section; `more` are
+    other settings of the experiment.
 
     Without texts, which hold names of functions, into which numba writes how many it has compiled.
     """
-    scene, state = begin(settings(kernel), 0.9, -1.0)
+    scene, state = begin(settings(kernel) | (more or {}), 0.9, -1.0)
     run(state, scene, 0)
     wanted = numba.typeof(state), numba.typeof(scene)
     signature = next(one for one in record.dispatcher.signatures if one[:2] == wanted)

@@ -16,6 +16,7 @@ from roughgas.data.point import read_point, write_point
 from roughgas.data.variables import POINT
 from roughgas.effects import KINDS, contact_stress
 from roughgas.kernel import random
+from roughgas.kernel.contact import SPLIT
 from roughgas.kernel.record import columns, record
 from roughgas.kernel.state import BOUNDARY, BOUNDARY_HITS
 from roughgas.scene import build
@@ -27,6 +28,8 @@ MOMENTS = {"contact_time", "thermostat"}  # what keeps a time for each particle
 EVENTS = {"floor", "walls", "shaken_walls", "thermostat"}  # what has events of its own
 SUMS = {"contact_averages": 3, "contact_stress": 9}  # what keeps running sums, and how many
 PHASES = {"floor", "shaken_walls", "shear"}
+
+TWO = [{"fraction": 0.5}, {"fraction": 0.5, "radius": 1.5}]
 
 
 def small(kernel):
@@ -106,6 +109,14 @@ def test_the_multipliers_of_random_numbers_are_where_they_are_drawn(kernel):
         assert (np.uint64(number).tobytes() in code) == heated
 
 
+def test_what_the_normal_of_unlike_particles_needs_is_only_where_there_are_some():
+    """The number that cuts the digits of their distance in two, which is in nothing else."""
+    cut = np.float64(SPLIT).tobytes()
+    for more, there in (({}, False), ({"species": TWO}, True)):
+        code = b"".join(sections("gas", more).values())
+        assert (cut in code) == there
+
+
 # ---------------------------------------------------------------------- memory and events
 
 
@@ -145,6 +156,19 @@ def test_a_state_holds_what_its_effects_need(kernel):
         assert found[name].shape == (16,)
     if "spin" in there:
         assert found["spin"].shape == (16, 2 * len(scene.box) - 3)
+
+
+@pytest.mark.parametrize("kernel", ["smooth", "walled", "spheres"])
+def test_what_particles_are_is_kept_where_they_differ(kernel):
+    """Three numbers and a species each, their radii for the sweep, and a table of pairs."""
+    alike, unlike = (
+        arrays(begin(small(kernel) | more, 0.9, -1.0)[1]) for more in ({}, {"species": TWO})
+    )
+    added = set(unlike) - set(alike)
+    of_each = {"bodies.radius", "bodies.mass", "bodies.inertia", "bodies.species"}
+    assert added == of_each | {"bodies.largest", "bodies.pairs", "sweep.sizes"}
+    size = sum(unlike[name].nbytes for name in added)
+    assert size == 16 * (3 * 8 + 4 + 4) + 8 + 2 * 3 * 3 * 8
 
 
 @pytest.mark.parametrize("kernel", ["gas", "heated", "spheres", "walled"])
@@ -232,6 +256,7 @@ def test_a_point_holds_nothing_of_absent_effects(kernel, tmp_path):
     point = run_point(build(experiment, 0.9, 0.2 if "spin" in there else -1.0), experiment, 1)
     found = set(point.variables)
     assert found <= set(POINT)
+    assert not [name for name in found if "species" in name]
     assert bool(found & OF_SPIN) == ("spin" in there)
     assert bool(found & OF_CONTACT_TIME) == ("contact_time" in there)
     assert bool(found & OF_CONTACTS) == ("contact_averages" in there and bool(driven))
