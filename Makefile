@@ -5,7 +5,7 @@ PYTHON ?= python3.11 python3.12 python3.13 python3.14 python3
 JOBS ?= 2
 SCALE ?= paper
 REPORTED ?= figures
-SNAKEFILES := Snakefile rules
+SNAKEFILES := Snakefile workflow rules
 BIN := .venv/bin
 READY = "Ready. Next:  source .venv/bin/activate   and then, for example:  roughgas --help"
 SNAKEMAKE = $(BIN)/snakemake -j$(JOBS) --config scale=$(SCALE) --

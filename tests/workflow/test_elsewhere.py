@@ -90,6 +90,14 @@ def test_every_rule_has_a_container_and_lint_says_nothing_without_a_reason():
     assert all(reason in reasons for reason in REASONED)
 
 
+def test_the_catalogue_finds_the_workflow_where_it_looks(tmp_path):
+    """In workflow/Snakefile, which is the one above."""
+    command = [sys.executable, "-m", "snakemake", "-n", "-s", ROOT / "workflow" / "Snakefile"]
+    told = [*command, "--config", "scale=small", "--", "living"]
+    done = subprocess.run(told, cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 0 and "results/small/living.html" in done.stdout + done.stderr
+
+
 def test_the_catalogue_of_workflows_is_told_how_it_is_used():
     usage = read_yaml(ROOT / ".snakemake-workflow-catalog.yml")["usage"]
     assert usage["software-stack-deployment"]["apptainer"] and usage["report"]
