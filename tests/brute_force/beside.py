@@ -31,7 +31,8 @@ def snapshot(state, scene):
         velocity[:, -1] -= g * elapsed
     spin = None if state.spin is None else state.spin[order]
     time, drive = state.clock[BASE] + now, drive_of(state, order)
-    return Snapshot(time, position, velocity, spin, drive, company_of(state, order))
+    word = 0 if state.random is None else int(state.random[0])
+    return Snapshot(time, position, velocity, spin, drive, company_of(state, order), word)
 
 
 def drive_of(state, order):
@@ -44,8 +45,8 @@ def drive_of(state, order):
 
 def brute_force_from(world, shot, last_contact=None):
     """A brute-force simulation that starts where the kernel stands."""
-    *particles, drive, company = shot[1:]
-    return BruteForce(world, *particles, shot.time, last_contact, drive, company)
+    *particles, drive, company, word = shot[1:]
+    return BruteForce(world, *particles, shot.time, last_contact, drive, company, word)
 
 
 def largest_overlap(state, scene, world):
@@ -96,7 +97,7 @@ class Beside:
             assert {step[-1].i, step[-1].j} == pair, (step[-1], pair)
             events.update(event.kind for event in step)
         assert counts[BOUNDARY_HITS] - hits == events.total() - collisions - events["kick"]
-        assert not brute.kicks or brute.kicks.random.word == self.state.random[0]
+        assert self.state.random is None or brute.random.word == self.state.random[0]
         other.run(collisions)
         self.last_contact = brute.last
         self.events += events

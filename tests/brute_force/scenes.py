@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from brute_force.company import Contents
+from brute_force.sides import sides_of
 from brute_force.world import World
 from roughgas.kernel.record import Sampling, columns, record
 from roughgas.scene import build
@@ -80,6 +81,17 @@ KERNELS = {
         "effects": _DISKS
         | {"viscoelastic": {"speed": 1.0}, "threshold": {"speed": 1e-3, "restitution": 1.0}},
     },
+    "container": {
+        "particles": 160,
+        "box": [50, 50],
+        "effects": _DISKS
+        | {
+            "left_wall": {"temperature": 2.0, "velocity": 0.7},
+            "right_wall": {"restitution": 0.9, "roughness": 0.5},
+            "bottom_wall": {"velocity": -1.0, "roughness": 0.8},
+            "lid": {"amplitude": 1.0, "period": 2.0, "wave": "sine", "roughness": 0.3},
+        },
+    },
     "tabulated bed": {
         "particles": 160,
         "box": [50, "open"],
@@ -118,6 +130,9 @@ def scene_of(experiment, r, beta):
     walls = effects.get("walls", shaken)
     if walls:
         width, periods[0] = periods[0], None
+    sides = sides_of(effects, experiment["box"])
+    for side in sides:
+        periods[side.axis] = None
     world = World(
         box=tuple(periods),
         r=r,
@@ -136,6 +151,7 @@ def scene_of(experiment, r, beta):
         contents=Contents(experiment["species"], experiment.get("species_pairs", []))
         if "species" in experiment
         else None,
+        sides=sides,
         viscous=effects.get("viscoelastic", {}).get("speed", 0.0),
         table=table and (table["speed"], table["restitution"], table["reference"]),
         threshold=threshold and (threshold["speed"], threshold["restitution"]),

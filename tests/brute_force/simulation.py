@@ -11,15 +11,10 @@ import math
 import numpy as np
 
 from brute_force.company import alike
-from brute_force.formulas import (
-    cut_by_friction,
-    falling_time,
-    in_space,
-    meeting_times,
-    tabulated,
-    viscoelastic,
-)
-from brute_force.kicks import Kicks
+from brute_force.contacts import Contacts
+from brute_force.formulas import falling_time, meeting_times
+from brute_force.kicks import Kicks, SplitMix
+from brute_force.sides import INSTANTS, leave_thermal
 from brute_force.world import Event, Snapshot
 
 # Strokes that make up a period of the floor: when they begin and end, in periods, and at what
@@ -30,13 +25,14 @@ STROKES = {
     "triangle": [(0.0, 0.5, 0.0, 1.0), (0.5, 1.0, 1.0, 0.0)],
     "sine": [(0.0, 1.0, 0.0, 0.0)],
 }
-INSTANTS = np.linspace(0.0, 1.0, 2001) ** 2  # at which a floor without a formula is looked for
 
 
-class BruteForce:
+class BruteForce(Contacts):
     """A simulation under way; `step` carries out one event, `run` so many pair collisions."""
 
-    def __init__(self, world, x, v, spin, time=0.0, last_contact=None, drive=None, company=None):
+    def __init__(
+        self, world, x, v, spin, time=0.0, last_contact=None, drive=None, company=None, word=0
+    ):
         self.world = world
         self.x, self.v = np.array(x, float), np.array(v, float)
         self.number, self.dimension = self.x.shape
@@ -55,6 +51,7 @@ class BruteForce:
         self.radius, self.mass, self.q, self.species = company
         drawn = drive and world.thermostat
         self.kicks = Kicks(drawn, world.q, self.dimension, drive, company) if drawn else None
+        self.random = self.kicks.random if drawn else SplitMix(word)
         self.seen = np.zeros(3)  # v_t^2, v_r^2 and v_t.v_r, over the contacts of pairs so far
         self.carried = np.zeros((3, 3))  # momentum times distance, by component and axis
         self._fold()
@@ -102,6 +99,7 @@ class BruteForce:
         periods = [length for length in self.world.box if length is not None]
         fastest = 2.0 * np.sqrt((self.v**2).sum(axis=1).max()) + abs(self.world.shear) + 1e-12
         limit = 0.5 * min(periods) / fastest if periods else math.inf
+        limit = min([limit, *(one.settings["period"] / 2 for one in self.world.sides)])
         return min(limit, self._stroke()[1] - self.time) if self.world.floor else limit
 
     def _stroke(self):
@@ -169,6 +167,14 @@ class BruteForce:
                     yield max(0.0, (radius - x) / v), "left", i, -1
                 if v > 0.0:
                     yield max(0.0, (world.walls[0] - radius - x) / v), "right", i, -1
+            for side in world.sides:
+                yield self._side_wait(side, i, limit), side.name, i, -1
+
+    def _side_wait(self, side, i, limit):
+        gap = side.inwards * (self.x[i, side.axis] - side.at) - self.radius[i]
+        speed = side.inwards * self.v[i, side.axis]
+        weight = side.inwards * self.world.gravity if side.axis == self.dimension - 1 else 0.0
+        return side.wait(gap, speed, weight, self.time, limit)
 
     def _floor_wait(self, i, limit):
         """Time until particle i meets the floor, if that is before the limit."""
@@ -220,9 +226,29 @@ class BruteForce:
         elif kind == "pair":
             self._collide(i, j)
         elif kind == "floor":
-            self._bounce(i, self.dimension - 1, 1.0, self.surface(0.0)[1], *world.floor[2:])
+            rise = self._along_last(self.surface(0.0)[1])
+            self._bounce(i, self.dimension - 1, 1.0, rise, *world.floor[2:])
+        elif kind in ("left", "right"):
+            moving = self._along_last(self._shaking())
+            self._bounce(i, 0, 1.0 if kind == "left" else -1.0, moving, *world.walls[1:])
         else:
-            self._bounce(i, 0, 1.0 if kind == "left" else -1.0, self._shaking(), *world.walls[1:])
+            self._meet_side(i, next(side for side in world.sides if side.name == kind))
+
+    def _meet_side(self, i, side):
+        if side.settings["temperature"] is None:
+            material = side.settings["restitution"], side.settings["roughness"]
+            self._bounce(i, side.axis, side.inwards, side.velocity(self.time), *material)
+            return
+        m = self.mass[i]
+        spin_mass = None if self.world.q is None else m * self.q[i]
+        left = leave_thermal(side, self.random, self.dimension, m, spin_mass)
+        self.v[i], self.w[i] = left
+        self.last[i] = self.time
+
+    def _along_last(self, speed):
+        vector = np.zeros(3)
+        vector[self.dimension - 1] = speed
+        return vector
 
     def _shaking(self):
         """Velocity of the side walls, along the last axis."""
@@ -230,79 +256,3 @@ class BruteForce:
             return 0.0
         amplitude, period = self.world.shaken
         return 2.0 * np.pi * amplitude / period * np.cos(2.0 * np.pi * self.time / period)
-
-    def _restitution(self, r, speed, *particles):
-        """Of a contact at a normal speed, from the restitution that its material has by itself."""
-        world = self.world
-        if world.viscous and 0.0 < r < 1.0:
-            r = viscoelastic(r, speed, world.viscous)
-        if world.table:
-            r = tabulated(r, speed, *world.table)
-        if world.threshold and speed < world.threshold[0]:
-            r = max(r, world.threshold[1])
-        recent = max(self.last[k] for k in particles)
-        quick = world.contact_time > 0.0 and self.time - recent < world.contact_time
-        for k in particles:
-            self.last[k] = self.time
-        return 1.0 if quick else r
-
-    def _collide(self, i, j):
-        """the collision rule of the paper, term by term."""
-        world = self.world
-        x, v = self.x[i] - self.x[j], self.v[i] - self.v[j]
-        shift, drift = min(self.images(), key=lambda image: ((x + image[0]) ** 2).sum())
-        n, v = in_space(x + shift), in_space(v + drift)
-        n /= math.sqrt(n @ n)
-        r, beta, mu = self._material(i, j)
-        r = self._restitution(r, abs(v @ n), i, j)
-        v_n = (v @ n) * n
-        m, s = self.mass[[i, j]], (self.mass * self.q)[[i, j]]
-        push = (1.0 + r) * v_n / (1.0 / m).sum()
-        if world.q is not None:
-            v_t, v_r = v - v_n, -np.cross(self.w[i] + self.w[j], n)
-            self._see(v_t, v_r, m, s)
-            along = (1.0 + beta) * (v_t + v_r) / (1.0 / m + 1.0 / s).sum()
-            along = cut_by_friction(mu, push, along)
-            push = push + along
-            self.w[i] += np.cross(n, along) / s[0]
-            self.w[j] += np.cross(n, along) / s[1]
-        self.carried += np.outer(-push, self.radius[[i, j]].sum() * n)
-        self.v[i] -= push[: self.dimension] / m[0]
-        self.v[j] += push[: self.dimension] / m[1]
-
-    def _see(self, v_t, v_r, m, s):
-        if self.world.contents is not None:  # sqrt(m v^2) and sqrt(m q v^2) instead, for m of both
-            v_t, v_r = (x * math.sqrt(2.0 / (1.0 / y).sum()) for x, y in ((v_t, m), (v_r, s)))
-        self.seen += v_t @ v_t, v_r @ v_r, v_t @ v_r
-
-    def _material(self, i, j):
-        """Restitution, roughness and mu of two particles."""
-        world = self.world
-        if world.contents is None:
-            return world.r, world.beta, world.mu
-        common = {"restitution": world.r, "roughness": world.beta, "mu": world.mu}
-        found = world.contents.between(self.species[i], self.species[j], common)
-        return found["restitution"], found["roughness"], found.get("mu")
-
-    def _bounce(self, i, axis, direction, speed, r, beta):
-        """As with a partner of infinite mass: both prefactors of the collision rule double.
-
-        The partner moves along the last axis.
-        """
-        world, n = self.world, np.zeros(3)
-        n[axis] = direction
-        g = in_space(self.v[i])
-        g[self.dimension - 1] -= speed
-        g -= np.cross(self.w[i], n)
-        r = self._restitution(r, abs(g @ n), i)
-        g_n = (g @ n) * n
-        m = self.mass[i]
-        push = m * (1.0 + r) * g_n
-        if world.q is not None:
-            q, mu = self.q[i], world.mu
-            if world.contents is not None:
-                mu = world.contents.species[self.species[i]].get("mu", mu)
-            along = cut_by_friction(mu, push, m * q * (1.0 + beta) / (1.0 + q) * (g - g_n))
-            push = push + along
-            self.w[i] += np.cross(n, along) / (m * q)
-        self.v[i] -= push[: self.dimension] / m

@@ -6,6 +6,7 @@ import numpy as np
 
 from brute_force.company import Company, Contents
 from brute_force.kicks import Drive
+from brute_force.sides import Side
 
 
 class World(NamedTuple):
@@ -25,6 +26,7 @@ class World(NamedTuple):
     contact_time: float = 0.0
     wave: str = "sawtooth"  # of the floor
     contents: Contents | None = None  # None: one species
+    sides: tuple[Side, ...] = ()  # walls on single sides of the box
     viscous: float = 0.0  # normal speed at which viscoelastic contacts have their r; 0: not so
     table: tuple[list, list, float] | None = None  # speeds, restitutions, speed at which r is r
     threshold: tuple[float, float] | None = None  # slower contacts have this restitution, or more
@@ -39,6 +41,7 @@ class Snapshot(NamedTuple):
     spin: np.ndarray | None  # (N, 2D - 3)
     drive: Drive | None = None
     company: Company | None = None  # None: all particles are alike
+    word: int = 0  # state of the random generator, where there is one
 
 
 class Event(NamedTuple):

@@ -25,7 +25,7 @@ from roughgas.simulation.point import run_point
 PROGRAM = Path(__file__).parent.parent / "machine_code.py"
 SMALL = {2: (16, [20, 20]), 3: (16, [12, 12, 12])}
 MOMENTS = {"contact_time", "thermostat"}  # what keeps a time for each particle
-EVENTS = {"floor", "walls", "shaken_walls", "thermostat"}  # what has events of its own
+EVENTS = {"floor", "walls", "shaken_walls", *SIDES, "thermostat"}  # what has events of its own
 SUMS = {"contact_averages": 3, "contact_stress": 9}  # what keeps running sums, and how many
 PHASES = {"floor", "shaken_walls", "shear"}
 
@@ -244,7 +244,14 @@ OF_CONTACTS = {f"R_collisional{end}" for end in ("", "_stderr", "_dof", "_ci95")
     f"contact_correlation{end}" for end in ("", "_stderr", "_dof", "_ci95")
 }
 OF_CONTACT_TIME = {"contact_time", "contact_time_fraction"}
-WORK = ("floor", "walls", "shaken_walls", "shear", "thermostat")  # what does work has an account
+WORK = (
+    "floor",
+    "walls",
+    "shaken_walls",
+    *SIDES,
+    "shear",
+    "thermostat",
+)  # what does work has an account
 
 
 @pytest.mark.parametrize("kernel", kernels())

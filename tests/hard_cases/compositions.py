@@ -26,6 +26,24 @@ PARAMETERS = {
     },
     "walls": MATERIAL,
     "shaken_walls": {"amplitude": st.floats(0.0, 5.0), "period": st.floats(0.2, 5.0), **MATERIAL},
+    **{
+        name: {
+            "restitution": st.sampled_from([0.5, 0.9, 1.0]),
+            "roughness": MATERIAL["roughness"],
+            "velocity": st.sampled_from([-2.0, 0.0, 1.0]),
+        }
+        for name in ("left_wall", "back_wall", "lid")
+    },
+    **{
+        name: {
+            "amplitude": st.floats(0.1, 1.0),
+            "period": st.floats(0.5, 5.0),
+            "wave": st.sampled_from(WAVES),
+            "shaken": st.sampled_from(["normal", "along"]),
+        }
+        for name in ("right_wall", "bottom_wall")
+    },
+    "front_wall": {"temperature": st.floats(0.5, 2.0), "velocity": st.floats(-1.0, 1.0)},
     "shear": {"velocity": st.floats(0.01, 100.0)},
     "thermostat": {
         "power": st.floats(0.1, 10.0),
@@ -43,17 +61,23 @@ PARAMETERS = {
     "contact_time": {"duration": st.sampled_from([1e-5, 1e-3, 1e-1])},
     "contact_averages": {},
 }
+OPPOSITE = [("left_wall", "right_wall"), ("front_wall", "back_wall")]
 NEEDS = [
     ("gravity", "floor"),
     ("floor", "gravity"),
     ("friction", "spin"),
     ("contact_averages", "spin"),
+    *((name, other) for pair in OPPOSITE for name, other in (pair, pair[::-1])),
+    ("bottom_wall", "lid"),
 ]
 EXCLUDES = [
     ("walls", "shear"),
     ("shaken_walls", "shear"),
     ("walls", "shaken_walls"),
     ("viscoelastic", "restitution_table"),
+    ("bottom_wall", "gravity"),
+    *itertools.product(("walls", "shaken_walls", "shear"), OPPOSITE[0]),
+    *(("shear", name) for name in OPPOSITE[1]),
 ]
 # A bed in space that is sheared between its sides heats up without end: flights grow long while
 # images slide past by thousands, and a scene may take minutes
@@ -67,6 +91,9 @@ def is_legal(effects, dimension):
         all(needed in effects for one, needed in NEEDS if one in effects)
         and not any(effects >= {*pair} for pair in EXCLUDES)
         and not (dimension == 2 and effects >= {"gravity", "shear"})  # sheared between its sides
+        and not (dimension == 2 and effects & {"front_wall", "back_wall"})
+        and not (dimension == 2 and effects >= {"lid", "shear"})
+        and not ("lid" in effects and not effects & {"bottom_wall", "floor"})
     )
 
 
@@ -81,6 +108,8 @@ def every_set():
 def with_needs(effects):
     """These effects and all that they need, directly or not."""
     whole = effects | {needed for one, needed in NEEDS if one in effects}
+    if "lid" in effects and "floor" not in effects:
+        whole = whole | {"bottom_wall"}
     return whole if whole == effects else with_needs(whole)
 
 
@@ -128,10 +157,11 @@ def scenes(draw, compositions):
     if "floor" in names:
         effects["floor"]["wave"] = wave
     box = [draw(st.floats(7.0, 40.0)) for _ in range(dimension)]
-    if "gravity" in names:
+    if "gravity" in names and "lid" not in names:
         box[-1] = "open"
     # what is more inelastic than that may collapse, and has a contact time
-    narrow = names & {"walls", "shaken_walls"} and "gravity" not in names
+    narrow = names & {"walls", "shaken_walls", "left_wall", "lid", "back_wall"}
+    narrow = narrow and ("gravity" not in names or "lid" in names)
     r = draw(st.floats(0.2 if "contact_time" in names and not narrow else 0.9, 1.0))
     return (
         {"particles": draw(st.integers(2, 40)), "box": box, "effects": effects},

@@ -9,9 +9,9 @@ from brute_force import begin, run, settings
 
 from roughgas.base.errors import JammedError
 from roughgas.kernel.state import EXPONENT
-from roughgas.scene import build, initial_state
+from roughgas.scene import build, elastic, initial_state
 from roughgas.simulation.energies import restored
-from roughgas.simulation.gas import Gas, elastic
+from roughgas.simulation.gas import Gas
 from roughgas.simulation.recorder import Recorder
 
 GAS = settings("gas", 20, [25, 25])

@@ -16,6 +16,7 @@ LENGTH = "a"
 TIME = "T"
 SPEED = "a/T"
 ENERGY = "m a^2 T^-2"
+RATE = "1/T"
 START = "initial E_trans"
 COOLING_UNITS = {TIME: "collisions per particle", ENERGY: START}
 CLOCKS = ("time", "collisions_per_particle")
@@ -149,6 +150,11 @@ POINT = {
     "R_unsubtracted": _of_spin("R with the mean flow and the mean spin left in", "1", SHEARED),
     "E_trans_unsubtracted": Variable("E_trans with the mean flow left in", ENERGY, when=(SHEARED,)),
     "E_rot_unsubtracted": _of_spin("E_rot with the mean spin left in", ENERGY, SHEARED),
+    "shear_rate": Variable(
+        "gradient of the mean flow, by a straight line fitted to the velocities",
+        RATE,
+        when=("gas between walls that move along themselves",),
+    ),
     "plateau_end": Variable("end of the plateau of R", TIME, when=(COOLING,)),
     "R_replica": Variable(
         "plateau mean of R of each replica", dims=("replica",), when=(COOLING, SPIN)

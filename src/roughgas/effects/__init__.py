@@ -15,6 +15,7 @@ from roughgas.effects.gravity import Gravity
 from roughgas.effects.restitution_table import RestitutionTable
 from roughgas.effects.shaken_walls import ShakenWalls
 from roughgas.effects.shear import Shear
+from roughgas.effects.side import SideWall
 from roughgas.effects.species import Species
 from roughgas.effects.spin import Spin
 from roughgas.effects.thermostat import Thermostat
@@ -32,6 +33,12 @@ class Effects(NamedTuple):
     floor: Floor | None = None
     walls: Walls | None = None
     shaken_walls: ShakenWalls | None = None
+    left_wall: SideWall | None = None
+    right_wall: SideWall | None = None
+    front_wall: SideWall | None = None
+    back_wall: SideWall | None = None
+    bottom_wall: SideWall | None = None
+    lid: SideWall | None = None
     shear: Shear | None = None
     thermostat: Thermostat | None = None
     friction: Friction | None = None

@@ -54,11 +54,13 @@ def predict(floor, index, state, scene, i):
 def time_to_floor(floor, gravity, height, speed, phase):
     """Return when a particle with its lowest point at `height`, rising at `speed`, meets the floor.
 
-    phase is the time since some stroke began; gravity > 0. Times in T, lengths in a.
+    phase is the time since some stroke began. Times in T, lengths in a; inf where they never meet.
     """
-    stroke = _stroke_to_meet(floor, gravity, height, speed, phase, 0.0)
+    stroke = math.floor(phase / floor.period)
     floor_speed = floor.amplitude / floor.period
-    while True:
+    back = until_back(floor.amplitude, gravity, height, speed, 0.0)
+    while back < math.inf:
+        stroke = max(stroke, math.floor((phase + back) / floor.period))
         begin = max(0.0, stroke * floor.period - phase)
         end = (stroke + 1.0) * floor.period - phase
         surface = floor_speed * (phase + begin - stroke * floor.period)
@@ -67,14 +69,9 @@ def time_to_floor(floor, gravity, height, speed, phase):
         meeting = begin + fall(gap, relative, gravity)
         if meeting <= end:
             return meeting
-        stroke = max(stroke + 1.0, _stroke_to_meet(floor, gravity, height, speed, phase, end))
-
-
-@jit
-def _stroke_to_meet(floor, gravity, height, speed, phase, time):
-    """Return the stroke at `time`, or when a particle above all strokes is back from there."""
-    time = until_back(floor.amplitude, gravity, height, speed, time)
-    return math.floor((phase + time) / floor.period)
+        stroke += 1
+        back = until_back(floor.amplitude, gravity, height, speed, end)
+    return math.inf
 
 
 @jit

@@ -21,6 +21,7 @@ class Surroundings(NamedTuple):
     effects: Mapping[str, Any]  # the settings of all effects, by name
     restitution_of_species: Sequence[float] = ()  # what some of them have in place of that above
     roughness_of_species: Sequence[float] = ()
+    name: str = ""  # of the effect itself
 
 
 class Number(NamedTuple):
@@ -95,10 +96,11 @@ class OfParticles(NamedTuple):
 
     number: Number
     own: str  # the name of theirs in Surroundings
-    default: None = None
+    default: float | None = None
 
     def read(self, key: str, value: Any, around: Surroundings) -> float:
         """Return the number; raise InputError if it is illegal, or a roughness without spins."""
+        value = self.default if value is None else value
         if value == "particles" and getattr(around, f"{self.own}_of_species"):
             raise InputError(key, value, "be a number where a species has one of its own")
         found = getattr(around, self.own) if value == "particles" else None
@@ -141,7 +143,7 @@ def make(kind: Any, name: str, settings: Mapping[str, Any], around: Surroundings
 
     Raises InputError for parameters that are illegal, unknown, or contradict their surroundings.
     """
-    known = kind.parameters
+    known, around = kind.parameters, around._replace(name=name)
     for key in settings:
         if key not in known:
             legal = f"be one of {', '.join(known)}" if known else "not be given"

@@ -35,8 +35,8 @@ def predict(floor, index, state, scene, i):
 def time_to_floor(floor, gravity, height, speed, phase):
     """Return when a particle with its lowest point at `height`, rising at `speed`, meets the floor.
 
-    phase is the time since some period began, negative before; gravity > 0. Times in T, lengths
-    in a.
+    phase is the time since some period began, negative before. Times in T, lengths in a; inf where
+    they never meet.
 
     With f the gap at the time t that has been reached, b a bound of -f'' within the reach D of the
     next step, f(t + d) >= f + f' d - b d^2/2 for 0 <= d <= D: the step d to the root of that
@@ -49,10 +49,11 @@ def time_to_floor(floor, gravity, height, speed, phase):
     rate = TURN / floor.period
     sharpest = 0.5 * floor.amplitude * rate * rate
     # within it the gap closes by a rounding, whatever the floor does
-    slack = math.sqrt(2.0 * ROUNDING * (floor.amplitude + abs(height)) / (gravity + sharpest))
+    most = abs(gravity) + sharpest
+    slack = math.sqrt(2.0 * ROUNDING * (floor.amplitude + abs(height)) / most)
     time, reach = 0.0, floor.period  # so far that the floor's acceleration may be any
-    while True:
-        surface, surface_speed, acceleration = _motion(floor, phase + time)
+    while time < math.inf:
+        surface, surface_speed, acceleration = motion(floor, phase + time)
         gap = height + speed * time - 0.5 * gravity * time * time - surface
         relative = speed - gravity * time - surface_speed
         bend = gravity + min(sharpest, acceleration + sharpest * rate * reach / 3.0)
@@ -67,10 +68,11 @@ def time_to_floor(floor, gravity, height, speed, phase):
         step = max(step, back - time)
         reach = 2.0 * step
         time += step
+    return math.inf
 
 
 @jit
-def _motion(floor, phase):
+def motion(floor, phase):
     """Return (height, speed, acceleration) of the surface."""
     rate = TURN / floor.period
     half = 0.5 * floor.amplitude
@@ -94,7 +96,7 @@ def _stays_above(gap, speed, bend):
 
 @jit
 def resolve(floor, index, what, state, scene, i, time):
-    _, speed, _ = _motion(floor, state.phase[index] + time)
+    _, speed, _ = motion(floor, state.phase[index] + time)
     return bounce(floor, index, state, scene, i, time, speed)
 
 

@@ -34,9 +34,11 @@ def flight(floor, index, state, scene, i):
 def fall(gap, speed, gravity):
     """Return the first time at which gap + speed t - gravity t^2 / 2 = 0, without cancellation.
 
-    gravity > 0. What is on the surface, or below it by rounding, is met at once if it approaches,
-    else after its hop.
+    What is on the surface, or below it by rounding, is met at once if it approaches, else after its
+    hop. Where gravity pulls away from the surface it is negative; inf where there is no meeting.
     """
+    if gravity <= 0.0:
+        return _drift(gap, speed, -gravity)
     if gap <= 0.0:
         return 0.0 if speed < 0.0 else 2.0 * speed / gravity
     root = math.sqrt(speed * speed + 2.0 * gravity * gap)
@@ -44,10 +46,19 @@ def fall(gap, speed, gravity):
 
 
 @jit
+def _drift(gap, speed, lift):
+    square = speed * speed - 2.0 * lift * gap
+    if speed >= 0.0 or square < 0.0:
+        return math.inf
+    return 2.0 * max(gap, 0.0) / (math.sqrt(square) - speed)
+
+
+@jit
 def until_back(amplitude, gravity, height, speed, time):
     """Return when a particle that is above all strokes at `time` is back from there, else `time`.
 
-    A long flight passes over millions of strokes. Height and speed are those at time 0.
+    A long flight passes over millions of strokes. Height and speed are those at time 0. What never
+    comes back does so at inf.
     """
     above = height + speed * time - 0.5 * gravity * time * time - amplitude
     if above > 0.0:

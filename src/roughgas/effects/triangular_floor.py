@@ -41,11 +41,13 @@ def time_to_floor(floor, gravity, height, speed, phase):
     """(time, RISING or FALLING): when a particle whose lowest point is at `height`, rising at
     `speed`, meets the floor, and on which piece of its motion.
 
-    phase is the time since some period began; gravity > 0. Times in T, lengths in a. At a turning
-    point it is the earlier piece on which the particle approaches the floor.
+    phase is the time since some period began. Times in T, lengths in a; inf where they never meet.
+    At a turning point it is the earlier piece on which the particle approaches the floor.
     """
-    number = _piece_to_meet(floor, gravity, height, speed, phase, 0.0)
-    while True:
+    number = _piece_at(floor, phase)
+    back = until_back(floor.amplitude, gravity, height, speed, 0.0)
+    while back < math.inf:
+        number = max(number, _piece_at(floor, phase + back))
         piece = number & 1
         floor_speed = speed_of(floor, piece)
         start = _begin(floor, number) - phase
@@ -57,7 +59,9 @@ def time_to_floor(floor, gravity, height, speed, phase):
         meeting = begin + fall(gap, speed - gravity * begin - floor_speed, gravity)
         if meeting <= end:
             return meeting, piece
-        number = max(number + 1, _piece_to_meet(floor, gravity, height, speed, phase, end))
+        number += 1
+        back = until_back(floor.amplitude, gravity, height, speed, end)
+    return math.inf, RISING
 
 
 @jit
@@ -75,9 +79,9 @@ def _begin(floor, number):
 
 
 @jit
-def _piece_to_meet(floor, gravity, height, speed, phase, time):
-    """Return the piece at `time`, or when a particle above all strokes is back from there."""
-    periods = (phase + until_back(floor.amplitude, gravity, height, speed, time)) / floor.period
+def _piece_at(floor, phase):
+    """Return the number of the piece at a time since some period began."""
+    periods = phase / floor.period
     whole = math.floor(periods)
     return 2 * whole + (FALLING if periods - whole > floor.rise else RISING)
 

@@ -75,7 +75,7 @@ class Hooks(NamedTuple):
     drives: bool = False
     """The effect puts energy in"""
     closes: bool = False
-    """The effect closes the first axis of the box"""
+    """The effect closes an axis of the box: the one that is its `axis`, else the first one"""
 
 
 class Part(NamedTuple):

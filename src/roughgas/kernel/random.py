@@ -4,9 +4,12 @@ G. L. Steele, D. Lea and C. H. Flood, OOPSLA 2014, p. 453. Integer arithmetic an
 that the same seed gives the same numbers on every machine.
 """
 
+import math
+
 import numpy as np
 
 from roughgas.kernel.jit import jit
+from roughgas.kernel.turns import logarithm
 from roughgas.kernel.unroll import unrolled
 
 STEP = np.uint64(0x9E3779B97F4A7C15)
@@ -28,6 +31,22 @@ def uniform(state):
 def random_vector(state, like, size):
     """Return a vector of as many components as `like`, each uniform in [-size, size]."""
     return tuple(_centred(state, size) for k in range(len(like)))
+
+
+@unrolled
+def gaussian_vector(state, like, size):
+    """Return a vector of as many components as `like`, each Gaussian with the deviation `size`."""
+    return tuple(size * gaussian(state) for k in range(len(like)))
+
+
+@jit
+def gaussian(state):
+    """Draw a Gaussian number of mean 0 and variance 1: G. Marsaglia's polar method (1962)."""
+    while True:
+        x, y = _centred(state, 1.0), _centred(state, 1.0)
+        square = x * x + y * y
+        if 0.0 < square < 1.0:
+            return x * math.sqrt(-2.0 * logarithm(square) / square)
 
 
 @jit

@@ -75,6 +75,12 @@ def along_last(like, s):
 
 
 @unrolled
+def along_axis(like, axis, s):
+    """Return the vector s along an axis, with as many components as `like`."""
+    return tuple(s if k == axis else 0.0 for k in range(len(like)))
+
+
+@unrolled
 def spin_cross(w, n):
     """Return w x n; in the plane w has one component, along the third axis."""
     if len(w) == 1:

@@ -1,8 +1,9 @@
 """What is simulated: box, material and effects, and the state that it starts from."""
 
-from roughgas.scene.composition import DIAMETER, Scene, build, is_closed
+from roughgas.scene.composition import DIAMETER, Scene, build, closed_axes, elastic
 from roughgas.scene.initial import check, check_places, initial_state
 from roughgas.scene.mixture import draw_bodies, for_theory, given_bodies, packing
+from roughgas.scene.sides import moves_along
 
 __all__ = [
     "DIAMETER",
@@ -10,10 +11,12 @@ __all__ = [
     "build",
     "check",
     "check_places",
+    "closed_axes",
     "draw_bodies",
+    "elastic",
     "for_theory",
     "given_bodies",
     "initial_state",
-    "is_closed",
+    "moves_along",
     "packing",
 ]

@@ -7,12 +7,15 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from roughgas.base.errors import InputError
 from roughgas.base.legal import RESTITUTION, ROUGHNESS
 from roughgas.effects import KINDS, Effects
 from roughgas.effects.settings import Surroundings, make
 from roughgas.effects.species import mixture_of
 from roughgas.kernel import hooks
+from roughgas.scene.sides import check_sides, smooth_walls
 
 DIAMETER = 2.0
 # Of a periodic box, in a: below two diameters a particle could meet two images of another, and a
@@ -46,32 +49,62 @@ def build(experiment: Mapping[str, Any], r: float, beta: float) -> Scene:
     effects = _effects(asked_for, lengths, float(r), float(beta), mixture)
     if effects.spin is None and beta != -1.0:
         raise InputError("roughness beta", beta, "be -1 where particles do not spin")
-    closed = is_closed(effects)
-    _check_axes(lengths, effects, closed)
+    closed = closed_axes(effects)
+    _check_axes(lengths, effects)
+    check_sides(effects)
     largest = 1.0 if mixture is None else mixture.largest()
-    check_box(lengths, closed, largest)
+    check_box(lengths, effects, largest)
     _check_company(experiment.get("particles"), effects)
     # walls that are near shorten no outlook
-    across = max(lengths[0] or 0.0, FAR_APART * largest) if closed else lengths[0]
+    across = [
+        max(length, FAR_APART * largest) if axis in closed else length
+        for axis, length in enumerate(lengths)
+        if length is not None
+    ]
     return Scene(
-        box=(None, *lengths[1:]) if closed else lengths,
+        box=tuple(None if axis in closed else length for axis, length in enumerate(lengths)),
         restitution=float(r),
         roughness=float(beta),
         effects=effects,
-        extent=min(length for length in (across, *lengths[1:]) if length is not None),
+        extent=min(across),
         middle=0.0 if lengths[1] is None else lengths[1] / 2.0,
     )
 
 
-def is_closed(effects: Effects) -> bool:
-    """Return whether walls close the first axis of the box."""
-    return bool(hooks.present(effects, "closes"))
+def elastic(scene: Scene) -> Scene:
+    """Return the scene with smooth elastic particles, and walls if it has any."""
+    species, effects = scene.effects.species, smooth_walls(scene.effects)
+    if species is not None:
+        effects = effects._replace(species=species._replace(alike=True))
+    return scene._replace(restitution=1.0, roughness=-1.0, effects=effects)
 
 
-def check_box(lengths: Sequence[float | None], closed: bool, largest: float) -> None:
+def closed_axes(effects: Effects) -> set[int]:
+    """Return the axes of the box that walls close."""
+    walls = (effects[part.place] for part in hooks.present(effects, "closes"))
+    return {getattr(wall, "axis", 0) for wall in walls}
+
+
+def strokes(effects: Effects, dimension: int) -> np.ndarray:
+    """Return how far walls at the low and the high end of each axis come into the box, in a.
+
+    Those that do are shaken along their normal, as a floor is; shape (D, 2).
+    """
+    found = np.zeros((dimension, 2))
+    if effects.floor is not None:
+        found[-1, 0] = effects.floor.amplitude
+    for part in hooks.present(effects, "closes"):
+        wall = effects[part.place]
+        if hasattr(wall, "motion"):
+            found[wall.axis, int(wall.place.inwards < 0.0)] = wall.motion.amplitude
+    return found
+
+
+def check_box(lengths: Sequence[float | None], effects: Effects, largest: float) -> None:
     """Raise InputError where sides of the box are too short for particles of the largest radius."""
+    closed, taken = closed_axes(effects), strokes(effects, len(lengths)).sum(axis=1)
     for k, length in enumerate(lengths):
-        least = (NARROWEST_CHANNEL if k == 0 and closed else NARROWEST) * largest
+        least = (NARROWEST_CHANNEL if k in closed else NARROWEST) * largest + taken[k]
         if length is not None and not least <= length < math.inf:
             raise InputError(f"box[{k}]", length, f"be a number of at least {least:g}")
 
@@ -96,7 +129,7 @@ def _effects(settings, lengths, r, beta, mixture):
     return Effects(**made, species=None if mixture is None else mixture.effect())
 
 
-def _check_axes(lengths, effects, closed):
+def _check_axes(lengths, effects):
     """Refuse a top or walls that do not suit the effects."""
     open_axes = [k for k, length in enumerate(lengths) if length is None]
     if open_axes not in ([], [len(lengths) - 1]):
@@ -107,11 +140,9 @@ def _check_axes(lengths, effects, closed):
     if effects.gravity is not None and effects.floor is None:
         legal = "come with a floor, or particles would fall forever"
         raise InputError("effects.gravity", "without floor", legal)
-    if (effects.gravity is None) == bool(open_axes):
+    if (effects.gravity is None or effects.lid is not None) == bool(open_axes):
         legal = "be open at the top if and only if there is gravity"
         raise InputError("box", list(lengths), legal)
-    if closed and effects.shear is not None:
-        raise InputError("effects", "walls and shear", "not close the axis that is sheared along")
 
 
 def _check_company(particles, effects):

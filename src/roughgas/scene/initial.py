@@ -7,11 +7,12 @@ from typing import Any
 import numpy as np
 
 from roughgas.base.errors import InputError
-from roughgas.effects import inertia_of_spin
+from roughgas.effects import Effects, inertia_of_spin
+from roughgas.kernel import hooks
 from roughgas.kernel.hooks import displacement
 from roughgas.kernel.layout import new_state
 from roughgas.kernel.state import State
-from roughgas.scene.composition import DIAMETER, NARROWEST_CHANNEL, Scene, build
+from roughgas.scene.composition import DIAMETER, NARROWEST_CHANNEL, Scene, build, strokes
 from roughgas.scene.mixture import draw_bodies
 from roughgas.scene.places import places_for
 
@@ -86,22 +87,21 @@ def _places(scene, experiment, bodies, rng):
     if bodies is None or _fits_lattice(scene, experiment, bodies.radius):
         sites = lattice(scene, experiment, largest)
         return sites[np.sort(rng.permutation(len(sites))[:number])]
-    lengths, bottom = _room(
+    lengths, begins = _room(
         scene, experiment, largest, float(np.sum(bodies.radius ** len(scene.box)))
     )
     periodic = [side is not None for side in scene.box]
     while (found := places_for(bodies.radius, lengths, periodic, rng)) is None:
-        if scene.box[-1] is not None:
+        if experiment["box"][-1] != "open":
             legal = "be fewer or smaller: no places without overlap were found for them"
             raise InputError("particles", number, legal)
         lengths[-1] *= 2.0
-    found[:, -1] += bottom
-    return found
+    return found + begins
 
 
 def _fits_lattice(scene, experiment, radius):
     """Return whether a lattice for the largest particles has room for all, not too high up."""
-    if scene.box[-1] is None:
+    if experiment["box"][-1] == "open":
         return radius.max() ** len(scene.box) <= FITTING * np.mean(radius ** len(scene.box))
     try:
         lattice(scene, experiment, float(radius.max()))
@@ -116,13 +116,9 @@ def check_places(
     """Raise InputError where particles at these positions (N, D) overlap, or are in a wall or in
     the floor at `time` (T), by more than GRAZE. Their radii (N,) are 1 if not given."""
     effects, radius = scene.effects, np.ones(len(position)) if radius is None else radius
-    closed = effects.walls or effects.shaken_walls
-    bounds = [(-math.inf, math.inf)] * position.shape[1]
-    if closed is not None:
-        bounds[0] = 0.0, closed.width
-    if effects.floor is not None:
-        bounds[-1] = displacement(effects.floor, time), math.inf
-    for places, (low, high) in zip(position.T, bounds, strict=True):
+    for places, (low, high) in zip(
+        position.T, bounds(effects, position.shape[1], time), strict=True
+    ):
         outside = np.flatnonzero((places < low + radius - GRAZE) | (places > high - radius + GRAZE))
         if len(outside):
             first = outside[0]
@@ -133,6 +129,22 @@ def check_places(
         i, j, distance = pair
         legal = f"be {radius[i] + radius[j]:g} or more, or the particles overlap"
         raise InputError(f"distance of particles {i} and {j}", f"{distance:.9g}", legal)
+
+
+def bounds(effects: Effects, dimension: int, time: float) -> list[tuple[float, float]]:
+    """Return between which planes the gas is at `time` (T) along each axis, in a; inf: no wall."""
+    found = [[-math.inf, math.inf] for _ in range(dimension)]
+    closed = effects.walls or effects.shaken_walls
+    if closed is not None:
+        found[0] = [0.0, closed.width]
+    if effects.floor is not None:
+        found[-1][0] = displacement(effects.floor, time)
+    for wall in (effects[part.place] for part in hooks.present(effects, "closes")):
+        if hasattr(wall, "place"):
+            _, inwards, at, _ = wall.place
+            moved = displacement(wall, time) if hasattr(wall, "motion") else 0.0
+            found[wall.axis][int(inwards < 0.0)] = at + inwards * moved
+    return [(low, high) for low, high in found]
 
 
 def _overlapping(scene, position, time, radius):
@@ -181,7 +193,7 @@ def lattice(scene: Scene, experiment: Mapping[str, Any], radius: float = 1.0) ->
     Particles of this radius do not overlap there.
     """
     number, dimension, least = experiment["particles"], len(scene.box), LEAST * radius
-    lengths, bottom = _room(scene, experiment, radius)
+    lengths, begins = _room(scene, experiment, radius)
     spacing = max(least, (math.prod(lengths) / (VACANCIES * number)) ** (1.0 / dimension))
     counts = [max(1, math.floor(length / spacing)) for length in lengths]
     if math.prod(counts) < number:  # too dense for vacancies: as many sites as there is room for
@@ -194,8 +206,7 @@ def lattice(scene: Scene, experiment: Mapping[str, Any], radius: float = 1.0) ->
         sites = max(sites, _sites(lengths, _closest(lengths, least), CENTRED[dimension]), key=len)
     if len(sites) < number:
         raise InputError("particles", number, f"be at most {len(sites)} in this box")
-    sites[:, -1] += bottom
-    return sites
+    return sites + begins
 
 
 def _sites(lengths, counts, within):
@@ -227,14 +238,16 @@ def _closest(lengths, least):
 
 
 def _room(scene, experiment, radius, filled=None):
-    """Return the lengths of the region to fill, and where it begins along the last axis.
+    """Return the lengths of the region to fill, and where it begins along each axis.
 
     The particles are those of this radius, or no larger; `filled` is then the sum of radius^D.
     """
     number = experiment["particles"]
     lengths = [None if side == "open" else float(side) for side in experiment["box"]]
+    taken = strokes(scene.effects, len(lengths))
     if lengths[-1] is not None:
-        return lengths, 0.0
+        return list(lengths - taken.sum(axis=1)), taken[:, 0]
+    lengths[:-1] = lengths[:-1] - taken[:-1].sum(axis=1)
     volume = math.pi if len(lengths) == 2 else 4.0 * math.pi / 3.0
     base = math.prod(lengths[:-1])
     least = LEAST * radius
@@ -246,4 +259,4 @@ def _room(scene, experiment, radius, filled=None):
     # there is always room above
     layers = max(layers, -(-number // math.prod(math.floor(side / least) for side in lengths[:-1])))
     lengths[-1] = layers * least
-    return lengths, scene.effects.floor.amplitude
+    return lengths, taken[:, 0]

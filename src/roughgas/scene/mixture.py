@@ -14,7 +14,7 @@ from roughgas import theory
 from roughgas.base.errors import InputError
 from roughgas.effects.species import Mixture, mixture_of
 from roughgas.kernel.state import Bodies
-from roughgas.scene.composition import Scene, check_box, is_closed
+from roughgas.scene.composition import Scene, check_box
 from roughgas.theory.frequencies import packing_fraction
 
 
@@ -78,7 +78,7 @@ def given_bodies(
 
 def _bodies(mixture: Mixture, scene, experiment, radius, species):
     sides = [None if side == "open" else float(side) for side in experiment["box"]]
-    check_box(sides, is_closed(scene.effects), float(radius.max()))
+    check_box(sides, scene.effects, float(radius.max()))
     effects = scene.effects
     q = 1.0 if effects.spin is None else effects.spin.inertia
     mass, inertia = radius ** len(scene.box), np.full(len(radius), q)

@@ -11,11 +11,12 @@ import numpy as np
 from roughgas.effects import inertia
 from roughgas.effects.species import mixture_of
 from roughgas.kernel.state import State
-from roughgas.scene import Scene
+from roughgas.scene import Scene, moves_along
 from roughgas.simulation.energies import (
     Columns,
     Energies,
     energies,
+    fitted_flow,
     of_species,
     ratio,
     restored,
@@ -42,12 +43,21 @@ def energies_of(
     mean flow and mean spin."""
     shear, q, bodies = scene.effects.shear, inertia(scene.effects), state.bodies
     shear_rate = None if shear is None else shear.velocity / (2.0 * scene.middle)
+    flows = moves_along(scene.effects)
     if bodies is None:
-        return energies(columns, len(state.changes), q, shear_rate)
+        number = len(state.changes)
+        return energies(columns, number, q, shear_rate, mass=float(number) if flows else None)
     which = np.full(len(bodies.mass), True) if species is None else bodies.species == species
     columns = columns if species is None else of_species(columns, species)
     moments = (bodies.mass * bodies.inertia * bodies.radius**2)[which]
-    return energies(columns, int(which.sum()), q, shear_rate, float(np.sum(moments / (q or 1.0))))
+    spins, mass = float(np.sum(moments / (q or 1.0))), float(np.sum(bodies.mass[which]))
+    return energies(columns, int(which.sum()), q, shear_rate, spins, mass if flows else None)
+
+
+def shear_rates(columns: Columns, state: State) -> np.ndarray:
+    """Return the gradient of the mean flow of samples between walls that move, in 1/T."""
+    mass = len(state.changes) if state.bodies is None else np.sum(state.bodies.mass)
+    return fitted_flow(columns, float(mass))[0]
 
 
 def energies_of_each(columns: Columns, scene: Scene, state: State) -> list[Energies]:

@@ -37,6 +37,7 @@ def energies(
     inertia: float | None,
     shear_rate: float | None = None,
     spins: float | None = None,
+    mass: float | None = None,
 ) -> Energies:
     """Return E_tr = sum m v^2/2 / (N D) and E_rot = sum m q (a w)^2/2 / (N n_r).
 
@@ -51,6 +52,9 @@ def energies(
     the conserved momentum takes one of N velocities from E_tr, so that their ratio has no bias of
     order 1/N. Where particles differ it is the mean angular velocity, weighted with the moments of
     inertia; `spins` is the sum of these over q, N if not given.
+
+    Between walls that move along themselves the mean flow is not known before. If the `mass` of the
+    particles is given, it is the straight line that fits the velocities of each sample best.
     """
     components = _components(columns, "vv")
     speed_squared = np.asarray(sum(columns[name] for name in components))
@@ -58,7 +62,9 @@ def energies(
     if shear_rate is not None:
         flow = shear_rate * (shear_rate * columns["yy"] - 2 * columns["yv_x"])
         speed_squared = speed_squared + flow
-    if shear_rate is not None and spin_squared is not None:
+    if mass is not None:
+        speed_squared = speed_squared - fitted_flow(columns, mass)[1]
+    if (shear_rate is not None or mass is not None) and spin_squared is not None:
         mean_spin = sum(columns[name] ** 2 for name in _components(columns, "w")) / (
             spins or particles
         )
@@ -69,6 +75,14 @@ def energies(
     return Energies(
         translational, inertia * spin_squared / (2 * particles * (2 * len(components) - 3))
     )
+
+
+def fitted_flow(columns: Columns, mass: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return the gradient of the line that fits v_x over y best, and the sum of its m v_x^2."""
+    height, speed = columns["y"] / mass, columns["p_x"] / mass
+    spread = columns["yy"] - mass * height**2
+    rate = (columns["yv_x"] - mass * height * speed) / spread
+    return rate, rate**2 * spread + mass * speed**2
 
 
 def of_species(columns: Columns, kind: int) -> Columns:

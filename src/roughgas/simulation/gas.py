@@ -17,7 +17,7 @@ from roughgas.kernel.state import (
     EXPONENT,
     State,
 )
-from roughgas.scene import Scene, initial_state
+from roughgas.scene import Scene, elastic, initial_state
 from roughgas.simulation.books import Books, books
 from roughgas.simulation.by_species import energies_of
 from roughgas.simulation.ends import Initial, state_from
@@ -189,7 +189,10 @@ class Gas:
         return made == most
 
     def energies(self, columns: Columns) -> Energies:
-        """Return the energies of samples, of a sheared gas without mean flow and mean spin."""
+        """Return the energies of samples, of a sheared gas without mean flow and mean spin.
+
+        A gas between walls that move along themselves is one, too.
+        """
         return energies_of(columns, self.scene, self.state)
 
     def books(self) -> Books:
@@ -206,14 +209,3 @@ class Gas:
 
 def _joined(parts: Sequence[Columns]) -> Columns:
     return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
-
-
-def elastic(scene: Scene) -> Scene:
-    """Return the scene with smooth elastic particles, and side walls if it has any."""
-    walls, species = scene.effects.walls, scene.effects.species
-    if walls is not None:
-        walls = walls._replace(restitution=1.0, roughness=-1.0)
-    if species is not None:
-        species = species._replace(alike=True)
-    effects = scene.effects._replace(walls=walls, species=species)
-    return scene._replace(restitution=1.0, roughness=-1.0, effects=effects)

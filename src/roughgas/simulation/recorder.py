@@ -127,7 +127,7 @@ def _collapse(state: State, scene: Scene) -> CollapseError:
     effects, remedy = scene.effects, "raise r, or the duration of contact_time"
     if effects.contact_time is None:
         remedy = "add the contact_time effect to the experiment, or raise r"
-    elif effects.floor is not None or effects.walls is not None:
+    elif effects.floor is not None or hooks.present(effects, "closes"):
         remedy = "raise r, or make floor or walls smoother, between which a particle may be held"
     where = f"at t = {now(state):.6g} T of particles {', '.join(names[:NAMED])}{others}"
     return CollapseError(f"inelastic collapse {where}: {remedy}")

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from roughgas.effects import inertia
-from roughgas.scene import Scene
+from roughgas.scene import Scene, moves_along
 from roughgas.simulation import by_species
 from roughgas.simulation.books import exchange
 from roughgas.simulation.by_species import energies_of_each
@@ -145,12 +145,14 @@ def _of_species(gas, rows, first, per_period):
 
 def _unsubtracted(gas, rows, first):
     """Return energies of a sheared gas with its mean flow and mean spin left in, not meant by R."""
-    effects = gas.scene.effects
-    if effects.shear is None:
+    effects, found = gas.scene.effects, {}
+    if effects.shear is None and not moves_along(effects):
         return {}
+    if effects.shear is None:
+        found["shear_rate"] = by_species.shear_rates(rows, gas.state)[first:].mean()
     series = energies(rows, gas.particles, inertia(effects))
     window = series.map(lambda part: part[first:])
-    found = {"E_trans_unsubtracted": window.translational.mean()}
+    found["E_trans_unsubtracted"] = window.translational.mean()
     if window.rotational is not None:
         found["E_rot_unsubtracted"] = window.rotational.mean()
         found["R_unsubtracted"] = ratio(window).mean()

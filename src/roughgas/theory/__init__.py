@@ -44,6 +44,12 @@ from roughgas.theory.friction import (
     friction_relaxation_rate,
     sliding_fraction,
 )
+from roughgas.theory.heat_flux import (
+    fourier_flux,
+    free_molecular_flux,
+    heat_flux,
+    thermal_conductivity,
+)
 from roughgas.theory.mixture_composition import Mixture, mixture
 from roughgas.theory.mixture_states import (
     kick_power,

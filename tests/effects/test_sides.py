@@ -1,0 +1,313 @@
+"""Walls on single sides of the box: at rest, moving, shaken along their normal, thermal."""
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+from brute_force import KERNELS, Beside, begin, run, scene_of, settings
+from brute_force.sides import ALIKE, Side, sides_of
+
+from roughgas import theory
+from roughgas.base.errors import InputError
+from roughgas.effects import floor, piston, sine_floor, thermal_wall, triangular_floor
+from roughgas.kernel.layout import new_state
+from roughgas.kernel.turns import logarithm
+from roughgas.scene import build
+from roughgas.scene.initial import bounds, check_places
+from roughgas.simulation.books import books
+
+DISKS = {"spin": {"inertia": 0.5}}
+BED = DISKS | {
+    "gravity": {"acceleration": 1.0},
+    "floor": {"amplitude": 1.0, "period": 1.0, "restitution": 1.0, "roughness": -1.0},
+}
+SHAKEN = {"amplitude": 1.0, "period": 1.7}
+
+
+def closed(effects, box, particles=12):
+    return {"particles": particles, "box": box, "effects": effects}
+
+
+# ---------------------------------------------------------------------- collision by collision
+
+WITH_PISTONS = DISKS | {
+    "bottom_wall": SHAKEN | {"restitution": 0.9},
+    "lid": SHAKEN | {"wave": "triangle", "period": 1.0},
+}
+UNDER_A_LID = BED | {
+    "lid": {"temperature": 3.0},
+    "left_wall": {"velocity": 2.0, "roughness": 0.4},
+    "right_wall": {"shaken": "along", "wave": "triangle", "roughness": 0.4} | SHAKEN,
+}
+IN_SPACE = {
+    "spin": {"inertia": 0.4},
+    "front_wall": {"velocity": 1.0, "roughness": 0.5},
+    "back_wall": {"temperature": 2.0, "velocity": -0.5},
+    "bottom_wall": {"shaken": "along", "wave": "sine", "roughness": 0.4} | SHAKEN,
+    "lid": {"restitution": 0.95},
+}
+CASES = {
+    # experiment, r, beta, seed
+    "one of each kind": (settings("container", 12, [12, 14]), 0.95, 0.2, 1),
+    "pistons": (closed(WITH_PISTONS, [14, 16]), 0.95, 0.2, 1),
+    "under a lid": (closed(UNDER_A_LID, [14, 16]), 0.95, 0.2, 1),
+    "under an inelastic lid": (
+        closed(BED | {"lid": {"restitution": 0.8, "roughness": 0.3}}, [14, 12]),
+        0.95,
+        0.2,
+        1,
+    ),
+    "in space": (closed(IN_SPACE, [8, 9, 10]), 0.95, 0.2, 1),
+}
+
+
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(one, marks=[pytest.mark.slow] * (one != "one of each kind")) for one in CASES],
+)
+def test_the_kernel_makes_the_same_collisions(name):
+    """Beside brute force; every wall is met, and thermal walls draw the same random numbers."""
+    *point, seed = CASES[name]
+    scene, world = scene_of(*point)
+    _, state = begin(*point, seed)
+    beside = Beside(state, scene, world)
+    beside.assert_same(40, 10)
+    assert {side.name for side in world.sides} <= set(beside.events)
+
+
+# ---------------------------------------------------------------------- when walls are met
+
+SOLVERS = {
+    "sawtooth": (floor.Floor, {}, floor.time_to_floor),
+    "reversed_sawtooth": (triangular_floor.TriangularFloor, {"rise": 0.1}, None),
+    "triangle": (triangular_floor.TriangularFloor, {"rise": 0.5}, None),
+    "sine": (sine_floor.SineFloor, {}, sine_floor.time_to_floor),
+}
+
+
+@pytest.mark.parametrize("wave", SOLVERS)
+@pytest.mark.parametrize("weight", [0.0, -0.7, 0.9])
+def test_strokes_are_met_as_brute_force_finds_them(wave, weight):
+    """Particles that nothing pulls, or gravity towards the wall, or away from it."""
+    kind, more, solve = SOLVERS[wave]
+    solve = solve or (lambda *way: triangular_floor.time_to_floor(*way)[0])
+    motion = kind(amplitude=1.5, period=1.1, restitution=1.0, roughness=-1.0, **more)
+    moving = ALIKE | {"amplitude": 1.5, "period": 1.1, "wave": wave}
+    side, rng, met = Side("lid", 0, 1.0, 0.0, 0, moving), np.random.default_rng(1), 0
+    for _ in range(6):
+        gap, speed, phase = 1.5 + rng.uniform(0, 2), rng.normal() - 1.5, rng.uniform(0, 1.1)
+        found, expected = solve(motion, weight, gap, speed, phase), math.inf
+        time, step = 0.0, 0.5
+        while time < 4.0 and math.isinf(expected):
+            here = gap + speed * time - weight * time**2 / 2
+            wait = side.wait(here, speed - weight * time, weight, phase + time, step)
+            expected = time + wait
+            time += step
+        if math.isfinite(expected):
+            met += 1
+            assert found == pytest.approx(expected, abs=1e-9)
+        else:
+            assert found > 3.9
+    assert met > 1
+
+
+def test_what_drifts_away_never_comes_back():
+    """Above all strokes, and away from them; a particle at rest out of reach."""
+    for (kind, more, _), speed in itertools.product(SOLVERS.values(), (0.0, 1.0)):
+        motion = kind(amplitude=1.5, period=1.1, restitution=1.0, roughness=-1.0, **more)
+        solve = {floor.Floor: floor, sine_floor.SineFloor: sine_floor}.get(kind, triangular_floor)
+        assert np.isinf(np.max(solve.time_to_floor(motion, 0.0, 2.0, speed, 0.3)))
+        assert np.isinf(np.max(solve.time_to_floor(motion, -1.0, 2.0, speed, 0.3)))
+
+
+# ---------------------------------------------------------------------- energy, places
+
+STILL = DISKS | {"bottom_wall": {}, "lid": {}, "left_wall": {}, "right_wall": {}}
+
+
+def test_the_books_close_wall_by_wall():
+    """What each wall has put in is all that was gained, to rounding."""
+    scene, state = begin(settings("container", 40, [25, 25]), 0.9, 0.3, 2)
+    begun = books(state, scene)
+    run(state, scene, 1, collisions=3000)
+    now = books(state, scene)
+    booked, gain = now.ledger - begun.ledger, now.energy - begun.energy
+    assert booked.sum(axis=0) == pytest.approx(gain, abs=1e-11 * np.abs(booked).sum())
+    assert np.all(np.abs(booked[1:]).sum(axis=1) > 1.0)  # four walls and the contacts
+
+
+def test_particles_stay_in_the_container():
+    scene, state = begin(settings("container", 40, [25, 25]), 0.9, 0.3, 3)
+    for _ in range(100):
+        run(state, scene, 1, interval=0.137)
+        position = state.trajectory[:, :2] + state.trajectory[:, 2:4] * (
+            state.clock[1] - state.trajectory[:, 4:]
+        )
+        time = state.clock[0] + state.clock[1]
+        for places, (low, high) in zip(position.T, bounds(scene.effects, 2, time), strict=True):
+            assert low + 1.0 - 1e-11 < places.min() and places.max() < high - 1.0 + 1e-11
+
+
+def test_initial_places_are_checked_against_every_wall():
+    scene = build(closed(KERNELS["container"]["effects"], [20, 20]), 0.9, 0.0)
+    check_places(scene, np.array([[1.0, 1.0]]), 0.0)
+    check_places(scene, np.array([[19.0, 19.0]]), 0.0)
+    with pytest.raises(InputError, match=r"= 19\.0: must lie in \[1, 18\]"):
+        check_places(scene, np.array([[10.0, 19.0]]), 1.0)  # the lid is at the end of its stroke
+    with pytest.raises(InputError, match=r"= 0\.9: must lie in \[1, 19\]"):
+        check_places(scene, np.array([[0.9, 10.0]]), 0.0)
+
+
+# ---------------------------------------------------------------------- thermal walls
+
+
+def test_logarithms():
+    for x in (1e-300, 1e-3, 0.3, 0.7071, 0.70711, 0.999999, 1.0, 1.0 + 1e-9, 2.0, 3.7, 1e200):
+        assert logarithm(x) == pytest.approx(math.log(x), rel=1e-15, abs=1e-16)
+
+
+def left(number, dimension, temperature, inertia):
+    """(velocities, spins, energy booked) of particles that have left a thermal wall on the left."""
+    effects = {"spin": {"inertia": inertia}, "right_wall": {}}
+    effects["left_wall"] = {"temperature": temperature, "velocity": 0.5}
+    scene = build(closed(effects, [20] * dimension, 1 + number), 0.9, 0.0)
+    position = np.full((1, dimension), 10.0)
+    spin = np.zeros((1, 2 * dimension - 3))
+    state = new_state(scene, position, np.full((1, dimension), -1.0), spin)
+    velocities, spins = [], []
+    for _ in range(number):
+        with np.errstate(over="ignore"):  # of the generator's words, which wrap around
+            thermal_wall.resolve(scene.effects.left_wall, 1, 0, state, scene, 0, 0.0)
+        velocities.append(state.trajectory[0, dimension:-1].copy())
+        spins.append(state.spin[0].copy())
+    return np.array(velocities), np.array(spins), state.ledger[0, 1]
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_particles_leave_a_thermal_wall_as_they_would_leave_a_gas(dimension):
+    """Means, variances and fourth moments within four standard errors, and the energy booked."""
+    T, q, number = 1.7, 0.4, 8000
+    velocity, spin, booked = left(number, dimension, T, q)
+    v, along, others = velocity[:, 0], velocity[:, -1] - 0.5, velocity[:, 1:-1]
+    expected = [
+        (v, math.sqrt(math.pi * T / 2)),
+        (v**2, 2 * T),
+        (v**4, 8 * T**2),
+        *((x, 0.0) for x in (along, *others.T, *spin.T)),
+        *((x**2, T) for x in (along, *others.T)),
+        *((x**4, 3 * T**2) for x in (along, *others.T)),
+        *((x**2, T / q) for x in spin.T),
+        *((x**4, 3 * (T / q) ** 2) for x in spin.T),
+    ]
+    for sample, mean in expected:
+        assert abs(sample.mean() - mean) < 4.0 * sample.std() / math.sqrt(number)
+    assert v.min() > 0.0
+    gained = 0.5 * (velocity[-1] @ velocity[-1] - dimension), 0.5 * q * spin[-1] @ spin[-1]
+    assert booked == pytest.approx(gained, rel=1e-9)
+
+
+def flux(experiment, r, beta, seed, warm, measured):
+    """(energy per time that flows from the left wall to the right one, its error), per length."""
+    scene, state = begin(experiment, r, beta, seed)
+    run(state, scene, 1, interval=warm)
+    pieces = 40
+    before, seen = books(state, scene).ledger, []
+    for _ in range(pieces):
+        run(state, scene, 1, interval=measured / pieces)
+        now = books(state, scene).ledger
+        seen.append((now - before).sum(axis=1))
+        before = now
+    accounts = [name for name in ("spin", "left_wall", "right_wall") if name in names(scene)]
+    seen = np.array(seen)[:, : len(accounts)]
+    through = (seen[:, -2] - seen[:, -1]) / 2 / (measured / pieces)
+    return through.mean(), through.std(ddof=1) / math.sqrt(pieces)
+
+
+def names(scene):
+    return [name for name, one in scene.effects._asdict().items() if one is not None]
+
+
+def between(hot, cold, box, particles, **effects):
+    walls = {"left_wall": {"temperature": hot}, "right_wall": {"temperature": cold}}
+    return closed(effects | walls, box, particles)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("effects", "beta"), [({}, -1.0), (DISKS, 0.3)])
+def test_heat_flux_without_collisions(effects, beta):
+    """Knudsen's limit: eight disks of which each flies hundreds of times between meetings."""
+    experiment = between(4.0, 1.0, [12.0, 20_000.0], 8, **effects)
+    found, error = flux(experiment, 1.0, beta, 1, 1e3, 4e5)
+    expected = theory.free_molecular_flux(4.0, 1.0, 8.0, 10.0, 2, bool(effects))
+    assert abs(found - expected) < 4.0 * error + 0.005 * expected and error < 0.01 * expected
+
+
+@pytest.mark.slow
+def test_heat_flux_through_many_mean_free_paths():
+    """Smooth elastic disks, 3 % of the room filled: Fourier's law, between both limits."""
+    number, box = 600, [250.0, 250.0]
+    found, error = flux(between(2.0, 1.0, box, number), 1.0, -1.0, 1, 2e3, 2e4)
+    expected = theory.heat_flux(2.0, 1.0, number / box[1], 248.0)
+    assert error / box[1] < 0.04 * expected
+    assert found / box[1] == pytest.approx(expected, rel=0.1)
+
+
+def test_limits_of_the_heat_flux():
+    """A dense gas conducts as Fourier has it, a dilute one as free particles."""
+    assert theory.heat_flux(2, 1, 1e9, 1e6) == pytest.approx(theory.fourier_flux(2, 1, 1e6), 1e-6)
+    free = theory.free_molecular_flux(2.0, 1.0, 1e-9, 10.0)
+    assert theory.heat_flux(2.0, 1.0, 1e-9, 10.0) == pytest.approx(free, rel=1e-6)
+    assert theory.thermal_conductivity(1.0, 2) == pytest.approx(1 / math.sqrt(math.pi))
+    assert theory.thermal_conductivity(1.0, 3) == pytest.approx(75 / 256 / math.sqrt(math.pi))
+
+
+# ---------------------------------------------------------------------- what settings mean
+
+LID = DISKS | {"bottom_wall": {}}
+REFUSED = {
+    "effects.lid = without bottom_wall: must come with bottom_wall, or particles would leave on "
+    "the other side": DISKS | {"lid": {}},
+    "effects.front_wall = in the plane: must be bottom_wall or lid there": {"front_wall": {}},
+    "effects.lid.restitution = 0.5: must not be given where the wall has a temperature": LID
+    | {"lid": {"temperature": 1.0, "restitution": 0.5}},
+    "effects.lid.period = (nothing): must be given where the wall is shaken": LID
+    | {"lid": {"amplitude": 1.0}},
+    "effects.lid.velocity = 1.0: must be 0 where the wall is shaken": LID
+    | {"lid": SHAKEN | {"velocity": 1.0}},
+    "effects.lid.temperature = 0: must be a number in (0, inf)": LID | {"lid": {"temperature": 0}},
+    "effects = walls and left_wall: must not close the same axis twice": DISKS
+    | {"walls": {"restitution": 1, "roughness": 1}, "left_wall": {}, "right_wall": {}},
+    "effects = bottom_wall and shear: must not close the axis along which images slide past each "
+    "other": LID | {"lid": {}, "shear": {"velocity": 1.0}},
+    "box[1] = 20.0: must be a number of at least 20.01": LID | {"lid": SHAKEN | {"amplitude": 18}},
+}
+
+
+@pytest.mark.parametrize("message", REFUSED)
+def test_what_is_refused(message):
+    with pytest.raises(InputError) as caught:
+        build(closed(REFUSED[message], [20, 20]), 0.9, 0.0 if "spin" in REFUSED[message] else -1.0)
+    assert str(caught.value) == message
+
+
+def test_a_bottom_wall_under_gravity_is_a_floor():
+    with pytest.raises(InputError, match=r"bottom_wall = with gravity: must be a floor there"):
+        build(closed(BED | {"bottom_wall": {}, "lid": {}}, [20, 20]), 0.9, 0.0)
+    with pytest.raises(InputError, match=r"lid = where the box is open: must come with a length"):
+        build(closed(BED | {"lid": {}}, [20, "open"]), 0.9, 0.0)
+
+
+def test_walls_are_what_their_parameters_say():
+    chosen = closed(IN_SPACE | {"lid": SHAKEN | {"wave": "sine"}}, [8, 9, 10])
+    effects = build(chosen, 0.9, 0.0).effects
+    assert effects.front_wall.place == (1, 1.0, 0.0, 0)
+    assert effects.back_wall == thermal_wall.ThermalWall((1, -1.0, 9.0, 0), 2.0, -0.5)
+    assert effects.bottom_wall.rise == 0.0 and effects.bottom_wall.amplitude == 1.0
+    assert isinstance(effects.lid, piston.SinePiston) and effects.lid.place[:3] == (2, -1.0, 10.0)
+
+
+def test_rest_and_motion_of_the_twin():
+    """The brute force has the walls of the same settings, on the same sides."""
+    names = [side.name for side in sides_of(IN_SPACE, [8, 9, 10])]
+    assert names == ["front_wall", "back_wall", "bottom_wall", "lid"]
