@@ -92,6 +92,23 @@ KERNELS = {
             "lid": {"amplitude": 1.0, "period": 2.0, "wave": "sine", "roughness": 0.3},
         },
     },
+    "closed spheres": {
+        "particles": 64,
+        "box": [12, 12, 12],
+        "effects": {
+            "spin": {"inertia": 0.4},
+            "front_wall": {"temperature": 2.0, "velocity": -0.5},
+            "back_wall": {"velocity": 1.0, "roughness": 0.5},
+            "bottom_wall": {"restitution": 0.9},
+            "lid": {
+                "amplitude": 1.0,
+                "period": 2.0,
+                "wave": "sine",
+                "shaken": "along",
+                "roughness": 0.4,
+            },
+        },
+    },
     "tabulated bed": {
         "particles": 160,
         "box": [50, "open"],
@@ -100,7 +117,7 @@ KERNELS = {
 }
 
 
-RARE = ("rubbed bed", "heated, smooth", "heated spheres", "tabulated bed")
+RARE = ("rubbed bed", "heated, smooth", "heated spheres", "tabulated bed", "closed spheres")
 """Kernels that only tests marked as slow compile: in others, each effect of theirs acts as well."""
 
 

@@ -15,6 +15,7 @@ from schedules import COOLING, STEADY
 from roughgas.data.point import read_point, write_point
 from roughgas.data.variables import POINT
 from roughgas.effects import KINDS, contact_stress
+from roughgas.effects.side import SIDES
 from roughgas.kernel import random
 from roughgas.kernel.contact import SPLIT
 from roughgas.kernel.record import columns, record
@@ -23,11 +24,13 @@ from roughgas.scene import build
 from roughgas.simulation.point import run_point
 
 PROGRAM = Path(__file__).parent.parent / "machine_code.py"
+RANDOM = {"thermostat", "left_wall", "front_wall"}  # of the sides, those that are thermal here
+DRIVES = {"floor", "shaken_walls", "shear", "thermostat", "bottom_wall", "front_wall"}
 SMALL = {2: (16, [20, 20]), 3: (16, [12, 12, 12])}
 MOMENTS = {"contact_time", "thermostat"}  # what keeps a time for each particle
 EVENTS = {"floor", "walls", "shaken_walls", *SIDES, "thermostat"}  # what has events of its own
 SUMS = {"contact_averages": 3, "contact_stress": 9}  # what keeps running sums, and how many
-PHASES = {"floor", "shaken_walls", "shear"}
+PHASES = {"floor", "shaken_walls", "bottom_wall", "lid", "shear"}  # sides: those that move
 
 TWO = [{"fraction": 0.5}, {"fraction": 0.5, "radius": 1.5}]
 
@@ -59,6 +62,7 @@ def poisoned(folder, kernel, *effects):
 
 
 EVERY_EFFECT = ["sheared", "walled", "shaken", "heated spheres", "viscoelastic", "tabulated bed"]
+EVERY_EFFECT += ["container", "closed spheres"]
 """Kernels in which each effect is there at least once; from the barest one all are absent."""
 
 
@@ -148,7 +152,7 @@ def test_a_state_holds_what_its_effects_need(kernel):
     needed |= {"spin"} if "spin" in there else set()
     needed |= {"agenda.boundary_time", "agenda.boundary_code"} if there & EVENTS else set()
     needed |= {"phase"} if there & PHASES else set()
-    needed |= {"random"} if "thermostat" in there else set()
+    needed |= {"random"} if there & RANDOM else set()
     needed |= {f"sums.{name}" for name in there & SUMS.keys()}
     assert set(found) == EVERYWHERE | needed
     assert found["ledger"].shape == (2, len(there - SUMS.keys()) + 1, 2)
@@ -187,7 +191,7 @@ def test_what_an_effect_needs_is_what_it_adds(kernel):
     added = 16 * 8 * (2 * dimension - 3) * ("spin" in there)
     added += 16 * 8 * len(there & MOMENTS) + 16 * (8 + 4) * bool(there & EVENTS)
     added += 3 * 8 * sum(SUMS[name] for name in there & SUMS.keys())
-    added += 8 * ("thermostat" in there) + 8 * len(there) * bool(there & PHASES)
+    added += 8 * bool(there & RANDOM) + 8 * len(there) * bool(there & PHASES)
     assert size - least == added + 2 * 2 * 8 * len(there - SUMS.keys())
 
 
@@ -244,21 +248,15 @@ OF_CONTACTS = {f"R_collisional{end}" for end in ("", "_stderr", "_dof", "_ci95")
     f"contact_correlation{end}" for end in ("", "_stderr", "_dof", "_ci95")
 }
 OF_CONTACT_TIME = {"contact_time", "contact_time_fraction"}
-WORK = (
-    "floor",
-    "walls",
-    "shaken_walls",
-    *SIDES,
-    "shear",
-    "thermostat",
-)  # what does work has an account
+# what does work has an account
+WORK = ("floor", "walls", "shaken_walls", *SIDES, "shear", "thermostat")
 
 
 @pytest.mark.parametrize("kernel", kernels())
 def test_a_point_holds_nothing_of_absent_effects(kernel, tmp_path):
     """By whatever protocol fits; written and read."""
     there = set(KERNELS[kernel]["effects"])
-    driven = there & {"floor", "shaken_walls", "shear", "thermostat"}
+    driven = there & DRIVES
     experiment = small(kernel) | {"schedule": STEADY if driven else COOLING}
     point = run_point(build(experiment, 0.9, 0.2 if "spin" in there else -1.0), experiment, 1)
     found = set(point.variables)

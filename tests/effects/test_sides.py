@@ -40,13 +40,7 @@ UNDER_A_LID = BED | {
     "left_wall": {"velocity": 2.0, "roughness": 0.4},
     "right_wall": {"shaken": "along", "wave": "triangle", "roughness": 0.4} | SHAKEN,
 }
-IN_SPACE = {
-    "spin": {"inertia": 0.4},
-    "front_wall": {"velocity": 1.0, "roughness": 0.5},
-    "back_wall": {"temperature": 2.0, "velocity": -0.5},
-    "bottom_wall": {"shaken": "along", "wave": "sine", "roughness": 0.4} | SHAKEN,
-    "lid": {"restitution": 0.95},
-}
+IN_SPACE = KERNELS["closed spheres"]["effects"]
 CASES = {
     # experiment, r, beta, seed
     "one of each kind": (settings("container", 12, [12, 14]), 0.95, 0.2, 1),
@@ -58,7 +52,7 @@ CASES = {
         0.2,
         1,
     ),
-    "in space": (closed(IN_SPACE, [8, 9, 10]), 0.95, 0.2, 1),
+    "in space": (settings("closed spheres", 12, [8, 9, 10]), 0.95, 0.2, 1),
 }
 
 
@@ -301,9 +295,10 @@ def test_a_bottom_wall_under_gravity_is_a_floor():
 def test_walls_are_what_their_parameters_say():
     chosen = closed(IN_SPACE | {"lid": SHAKEN | {"wave": "sine"}}, [8, 9, 10])
     effects = build(chosen, 0.9, 0.0).effects
-    assert effects.front_wall.place == (1, 1.0, 0.0, 0)
-    assert effects.back_wall == thermal_wall.ThermalWall((1, -1.0, 9.0, 0), 2.0, -0.5)
-    assert effects.bottom_wall.rise == 0.0 and effects.bottom_wall.amplitude == 1.0
+    assert effects.front_wall == thermal_wall.ThermalWall((1, 1.0, 0.0, 0), 2.0, -0.5)
+    assert effects.back_wall.place == (1, -1.0, 9.0, 0) and effects.back_wall.velocity == 1.0
+    assert effects.bottom_wall == ((2, 1.0, 0.0, 0), 0.9, -1.0)
+    assert build(closed(IN_SPACE, [8, 9, 10]), 0.9, 0.0).effects.lid.rise == 0.0
     assert isinstance(effects.lid, piston.SinePiston) and effects.lid.place[:3] == (2, -1.0, 10.0)
 
 

@@ -9,17 +9,13 @@ import math
 from typing import NamedTuple
 
 from roughgas.base.errors import InputError
+from roughgas.effects import piston, thermal_wall
 from roughgas.effects.floor import Floor
+from roughgas.effects.plane import Place, bounce, closed_axis, predict
 from roughgas.effects.settings import MATERIAL, Number, Word, register
-from roughgas.effects.surface import fall
 from roughgas.effects.triangular_floor import REVERSED_RISE
-from roughgas.kernel import hooks
-from roughgas.kernel.bodies import radius_of
-from roughgas.kernel.contact import collide_with_wall
-from roughgas.kernel.hooks import either
 from roughgas.kernel.jit import jit
 from roughgas.kernel.turns import TURN, sine_and_cosine
-from roughgas.kernel.vectors import along_axis
 
 SIDES = {  # name -> (axis, the end of it: 0 or 1); -1 is the last axis
     "left_wall": (0, 0),
@@ -52,15 +48,6 @@ SETTINGS = {
 }
 
 
-class Place(NamedTuple):
-    """Which plane a wall is; one that is shaken along its normal, when it is farthest out."""
-
-    axis: int
-    inwards: float  # component of its normal into the gas, 1 or -1
-    at: float  # in a
-    along: int  # axis along which it moves
-
-
 class SideWall(NamedTuple):
     """A wall at rest on one side of the box."""
 
@@ -68,16 +55,11 @@ class SideWall(NamedTuple):
     restitution: float
     roughness: float
 
-    @property
-    def axis(self):
-        """The axis that it closes."""
-        return self.place.axis
+    axis = closed_axis
 
     @classmethod
     def from_settings(cls, settings, around):
         """Return the wall that the settings describe; raise InputError where they contradict."""
-        from roughgas.effects import piston, thermal_wall
-
         place = _place(around)
         _refuse_contradictions(settings, around)
         material = settings["restitution"], settings["roughness"]
@@ -104,7 +86,7 @@ class MovingWall(NamedTuple):
     period: float  # T
     rise: float  # share of the period in which it goes forwards; 0 stands for a sine
 
-    axis = SideWall.axis
+    axis = closed_axis
 
 
 def _place(around):
@@ -138,42 +120,6 @@ def _refuse_contradictions(settings, around):
 
 
 # ---------------------------------------------------------------------- part in the kernel
-
-
-@jit
-def approach(place, state, scene, i):
-    """Particle i's way to the plane: (acceleration towards it, gap, speed away from it), all when
-    its path begins, and that time."""
-    dimension = len(scene.box)
-    time = state.trajectory[i, 2 * dimension]
-    position = state.trajectory[i, place.axis]
-    speed = place.inwards * state.trajectory[i, dimension + place.axis]
-    gap = place.inwards * (position - place.at) - radius_of(state.bodies, i)
-    return (pull(hooks.acceleration(scene.effects, None), place, dimension), gap, speed), time
-
-
-def _pull(gravity, place, dimension):
-    return place.inwards * gravity if place.axis == dimension - 1 else 0.0
-
-
-pull = either(_pull, lambda gravity, place, dimension: 0.0)
-
-
-@jit
-def predict(wall, index, state, scene, i):
-    (gravity, gap, speed), time = approach(wall.place, state, scene, i)
-    return time + fall(gap, speed, gravity), 0
-
-
-@jit
-def bounce(wall, index, state, scene, i, time, axis, velocity, least_departure):
-    """Carry out particle i's contact with a wall that moves along an axis at `velocity`."""
-    normal = along_axis(scene.box, wall.place.axis, wall.place.inwards)
-    moving = along_axis(scene.box, axis, velocity)
-    material = (wall.restitution, wall.roughness)
-    return collide_with_wall(
-        state, scene, index, i, time, material, normal, moving, least_departure
-    )
 
 
 @jit

@@ -9,8 +9,8 @@ itself; that is then the mean velocity of what leaves.
 import math
 from typing import NamedTuple
 
+from roughgas.effects.plane import Place, closed_axis, predict
 from roughgas.effects.settings import register
-from roughgas.effects.side import Place, SideWall, predict
 from roughgas.kernel import hooks
 from roughgas.kernel.bodies import mass_of, spin_mass_of
 from roughgas.kernel.flight import come_in, put
@@ -31,7 +31,7 @@ class ThermalWall(NamedTuple):
     temperature: float  # m a^2/T^2
     velocity: float  # along itself, in a/T
 
-    axis = SideWall.axis
+    axis = closed_axis
 
 
 def make(place, settings, around):

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from roughgas.base.errors import CollapseError, JammedError
+from roughgas.kernel import hooks
 from roughgas.kernel.clock import INSTANT
 from roughgas.kernel.record import Sampling, columns, record
 from roughgas.kernel.state import (
