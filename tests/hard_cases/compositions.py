@@ -60,6 +60,7 @@ PARAMETERS = {
     "threshold": {"speed": st.floats(1e-3, 1.0), "restitution": st.sampled_from([1.0, 0.5])},
     "contact_time": {"duration": st.sampled_from([1e-5, 1e-3, 1e-1])},
     "contact_averages": {},
+    "contact_stress": {},
 }
 OPPOSITE = [("left_wall", "right_wall"), ("front_wall", "back_wall")]
 NEEDS = [
