@@ -5,7 +5,15 @@ import inspect
 import pytest
 from tests.claims import page
 
-from roughgas.claims import OPEN_QUESTIONS, PAPER, open_questions, paper, verdicts
+from roughgas.claims import (
+    OPEN_QUESTIONS,
+    PAPER,
+    averages,
+    of_studies,
+    open_questions,
+    paper,
+    verdicts,
+)
 
 STATEMENTS = PAPER.statements + OPEN_QUESTIONS.statements
 
@@ -24,7 +32,7 @@ def test_each_statement_says_its_criterion_and_when_it_was_fixed(statement):
 def test_no_tolerance_is_left_out():
     """Each number that a judge is in these files is a constant of the page, or says that it decides
     nothing."""
-    for module in (verdicts, paper, open_questions):
+    for module in (verdicts, averages, of_studies, paper, open_questions):
         said = page.said(module)
         numbers = {name for name in said if isinstance(getattr(module, name), float)}
         left = {name for name in numbers if page.SAID.get(name) is not module}
