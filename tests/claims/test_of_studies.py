@@ -97,6 +97,11 @@ def test_one_number_of_particles_says_nothing_of_others():
     assert judged("sooner_the_larger", runaway=study).verdict == NOT_TESTED
 
 
+def test_uncertain_times_tell_no_direction():
+    found = judged("sooner_the_larger", runaway=escapes(-0.1, error=0.5))
+    assert found.verdict == NOT_TESTED and "errors are too large" in found.reason
+
+
 def test_files_of_studies_are_judged_beside_reduced_datasets(tmp_path):
     paths = [tmp_path / "runaway.nc", tmp_path / "heated.nc"]
     groups = {"runaway": content_of(escapes(-0.3, -1.0))}

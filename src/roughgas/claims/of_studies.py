@@ -60,6 +60,8 @@ def sooner_the_larger(runaway: xr.Dataset) -> Finding:
     found.sort(key=lambda pair: -pair[1].value)
     (flattest, least), (steepest, most) = found[0], found[-1]
     falls, rises = ([one.real and sign * one.value > 0 for _, one in found] for sign in (-1, 1))
+    if not any(falls) and not any(rises):
+        raise NotTestedError(f"the errors are too large to tell a direction: {text(most)} at most")
     reason = (
         f"The time falls significantly with N in {sum(falls)} of {len(found)} cases, and rises in "
         f"{sum(rises)}. The exponent is from {text(least)} ({flattest}) to {text(most)}"
