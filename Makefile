@@ -60,6 +60,14 @@ extras: .venv/with-browser .venv-slurm/ready ## run what takes minutes more, a b
 	$(BIN)/python -m pytest -n $(JOBS) --dist loadfile -m "$(EXTRA_TESTS)"
 	@echo "All of these pass, too."
 
+versions: ## install the wheel for each Python that is here, with the newest and the oldest dependencies, and test it
+	@tested=; for python in python3.11 python3.12 python3.13 python3.14; do \
+	    $$python -c 'import ensurepip, venv' 2>/dev/null || { echo "$$python is not here"; continue; }; \
+	    $$python -m tests.versions newest $$python || exit 1; tested="$$tested $$python"; \
+	done; \
+	set -- $$tested; $$1 -m tests.versions oldest $$1 && \
+	echo "All of these pass with the newest dependencies, and $$1 with the oldest:$$tested"
+
 docs: .venv/with-docs ## run the tutorial, and build the documentation: docs/_build/html/index.html
 	$(BIN)/python -m sphinx --fresh-env --fail-on-warning --keep-going -q docs docs/_build/html
 	@echo "Look at  docs/_build/html/index.html"
@@ -72,12 +80,13 @@ bench: setup ## measure the speed: docs/benchmarks.md
 	$(BIN)/python -m benchmarks
 	@echo "Look at  docs/benchmarks.md"
 
-lint: setup ## check style and format
+lint: setup ## check style, format, imports and types
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/snakefmt --check $(SNAKEFILES)
 	$(BIN)/lint-imports
-	@echo "Style, format and imports are as they should be."
+	$(BIN)/mypy
+	@echo "Style, format, imports and types are as they should be."
 
 format: setup ## bring the sources into format
 	$(BIN)/ruff check --fix
@@ -132,5 +141,5 @@ clean: ## remove all results; the environment and the committed figures stay
 	    $(filter-out figures/movies/,$(wildcard figures/*/))
 	@echo "All results are gone. To make them again:  make figures"
 
-.PHONY: help figures report plan test extras docs notebook bench lint format setup lock clean
+.PHONY: help figures report plan test extras versions docs notebook bench lint format setup lock clean
 .DELETE_ON_ERROR:
