@@ -21,8 +21,6 @@ ROOT = Path(__file__).parent.parent
 WAYS = ("newest", "oldest", "coming")
 TOOLS = ("pytest", "hypothesis", "mpmath")
 BASE = (
-    "tests/base",
-    "tests/config/test_config.py",
     "tests/data/test_point_file.py",
     "tests/kernel/test_collision_rule.py",
     "tests/kernel/test_compiler.py",

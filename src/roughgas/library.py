@@ -4,47 +4,19 @@ The names of this module are there as `roughgas.simulate`, `roughgas.trajectory`
 `roughgas.experiments`.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, TypedDict
+from typing import TYPE_CHECKING, Any
+
+from roughgas.config.arguments import Effects, Schedule, Side, Species
 
 if TYPE_CHECKING:
     import xarray
 
-    from roughgas.observables import Frame
+    from roughgas.simulation.settings import Observe
 
 UNNAMED = "scene"
 """What a dataset calls the experiment where it has no name."""
-
-Side = float | Literal["open"]
-"""Length of a box along one axis in a; the last axis may be open above."""
-Effects = Mapping[str, Mapping[str, float | str] | None]
-"""Parameters of effects by the effects' names; None takes away one that the experiment has."""
-
-Species = Sequence[Mapping[str, Any]]
-"""Species, or pairs of them, each a mapping of keys to values."""
-
-
-Observe = Sequence[str] | Mapping[str, Mapping[str, float] | Callable[["Frame"], Any] | None]
-"""Observables by name, each with settings, with None for the usual ones, or a function."""
-
-
-class Schedule(TypedDict, total=False):
-    """How long to simulate and what to measure, as `schedule` in config.yaml.
-
-    A driven gas has the kind `steady`, and its lengths in T; one that nothing drives has the kind
-    `cooling`, and its lengths in collisions per particle.
-    """
-
-    kind: Literal["steady", "cooling"]  #: driven, or not
-    sample_every: float  #: between samples
-    equilibrate: float  #: (steady) before the measurement
-    measure: float  #: (steady) length of the measurement
-    period: float  #: (steady) of the drive; averages are over whole periods
-    replicas: int  #: (cooling) independent runs
-    thermalise: float  #: (cooling) as smooth elastic particles, at the start
-    relaxation_times: float  #: (cooling) e-folds of theory until R is on its plateau
-    plateau: float  #: (cooling) length of the plateau
 
 
 def simulate(
@@ -62,7 +34,7 @@ def simulate(
     spin_temperature: float | None = None,
     initial: "xarray.Dataset | None" = None,
     keep_state: bool | None = None,
-    observe: Observe | None = None,
+    observe: "Observe | None" = None,
     scale: str = "paper",
     config: str | Path | None = None,
     progress: bool = True,
@@ -175,7 +147,6 @@ def simulate(
     }
     changes |= {"species": species, "species_pairs": species_pairs}
     changes |= {"spin_temperature": spin_temperature, "keep_state": keep_state}
-    changes["observables"], functions = _observed(observe)
     legal_r, legal_beta, number = _numbers(r, beta, seed)
 
     from roughgas.config.provenance import provenance
@@ -185,9 +156,10 @@ def simulate(
     from roughgas.simulation.ends import initial_of
     from roughgas.simulation.point import run_point
     from roughgas.simulation.progress import Bar, Progress
-    from roughgas.simulation.settings import settings_of
+    from roughgas.simulation.settings import observables_of, settings_of
 
     name = experiment or UNNAMED
+    changes["observables"], functions = observables_of(observe)
     settings = settings_of(experiment, changes, scale, config, UNNAMED)
     scene = build(settings, legal_r, legal_beta)
     with Bar(f"pilot of {name}", None, quiet=not progress or "target_stderr" not in settings):
@@ -311,15 +283,3 @@ def _numbers(r: Any, beta: Any, seed: Any) -> tuple[float, float, int]:
     from roughgas import config
 
     return config.restitution(r), config.roughness(beta), config.seed(seed)
-
-
-def _observed(
-    observe: Observe | None,
-) -> tuple[dict[str, Any] | None, dict[str, Callable[["Frame"], Any]]]:
-    """Return the observables that settings name, and those that are functions."""
-    if observe is None:
-        return None, {}
-    named = [observe] if isinstance(observe, str) else observe
-    given = named if isinstance(named, Mapping) else dict.fromkeys(named)
-    functions = {name: one for name, one in given.items() if callable(one)}
-    return {name: one or {} for name, one in given.items() if not callable(one)}, functions

@@ -8,7 +8,8 @@ from roughgas import config
 from roughgas.base.errors import InputError
 from roughgas.config import checking, schema
 from roughgas.config.provenance import variant_attributes
-from roughgas.data.variables import POINT, REDUCED
+from roughgas.data.reduced import REDUCED
+from roughgas.data.variables import POINT
 from roughgas.results.reduce import SAME
 
 INERTIA = {"extends": "sheared", "sweep": {"r": ["0.9"], "spin.inertia": ["1", "0.50", "1e-3"]}}

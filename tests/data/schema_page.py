@@ -10,12 +10,12 @@ from pathlib import Path
 
 from roughgas.base.layout import markdown
 from roughgas.data.film import FILM
+from roughgas.data.reduced import REDUCED
 from roughgas.data.trajectory import TRAJECTORY
 from roughgas.data.variables import (
     COOLING,
     GRID,
     POINT,
-    REDUCED,
     REGISTRY,
     SPIN,
 )

@@ -201,67 +201,7 @@ POINT = {
     "last_memory": _kept("the kernel's arrays then, as they lie in memory", "1", ("byte",)),
 }
 
-
-def _derived(long_name: str, units: str = "1", dtype: str = "f8") -> Variable:
-    return Variable(long_name, units, (GRID,), dtype, over_seeds="")
-
-
-def _pooled(name: str) -> dict[str, Variable]:
-    pooled = f"standard error of {name}: scatter over seeds and error within them, pooled"
-    return {
-        f"{name}_stderr": _derived(pooled),
-        f"{name}_dof": _derived(f"degrees of freedom that {name}_stderr is known with"),
-        f"{name}_ci95": _derived(f"half width of the 95 % interval of {name}, by Student's t"),
-    }
-
-
-REDUCED = {
-    name: about._replace(
-        dims=(GRID, *about.dims), dtype=about.dtype if about.over_seeds == "sum" else "f8", flags=""
-    )
-    for name, about in POINT.items()
-    if about.over_seeds and about.dims in ((), ("species",))
-} | {
-    "species": NAMES["species"],
-    **{
-        f"{name}_stderr": Variable(
-            f"standard error of {name}: scatter over seeds",
-            POINT[name].units,
-            (GRID, "species"),
-            when=POINT[name].when,
-            over_seeds="",
-        )
-        for name in ("E_trans_species", "E_rot_species", "R_species")
-    },
-    "R_seed": Variable("R of each seed", dims=(GRID, "seed"), over_seeds=""),
-    **_pooled("R"),
-    "R_ci95_trusted": _derived("share of seeds whose R_ci95 holds the truth as often as it says"),
-    **_pooled("R_collisional"),
-    **_pooled("contact_correlation"),
-    "R_ratio_of_means_stderr": _derived("standard error of R_ratio_of_means: scatter over seeds"),
-    "equilibrated": _derived(
-        "share of seeds that were found in a steady state; 0 for a mixture of two"
-    ),
-    "R_stderr_over_seeds": _derived("standard error of R from the scatter over seeds alone"),
-    "R_stderr_within": _derived("standard error of R from within the files, combined over seeds"),
-    "R_unsubtracted_stderr": _derived("standard error of R_unsubtracted: scatter over seeds"),
-    "E_trans_stderr": _derived("standard error of E_trans: scatter over seeds", ENERGY),
-    "input_spin_share_stderr": _derived("standard error of input_spin_share: scatter over seeds"),
-    "R_drift": _derived(
-        "mean of R in the second half of the measured window minus that in the first"
-    ),
-    "R_drift_stderr": _derived("standard error of R_drift: scatter over seeds"),
-    "measured_for": _derived("length of the measured window, mean over seeds", TIME),
-    "n_seeds": _derived("number of seeds found", dtype="i8"),
-    "r": Variable("normal restitution", dims=("r",)),
-    "beta": Variable("tangential restitution", dims=("beta",)),
-    "seed": Variable("seed of the random generator", dims=("seed",), dtype="i8"),
-}
-
-REGISTRY: dict[str, Mapping[str, Variable]] = {
-    "point": POINT,
-    "reduced": REDUCED,
-}
+REGISTRY: dict[str, Mapping[str, Variable]] = {"point": POINT}
 """All variables by name, for each kind of dataset; each study is a kind, too."""
 
 

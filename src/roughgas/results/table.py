@@ -11,8 +11,7 @@ from xarray import Dataset
 
 from roughgas.base.files import whole_file
 from roughgas.base.layout import in_csv
-from roughgas.data.reduced import GRID, read_reduced, third_axis
-from roughgas.data.variables import REDUCED
+from roughgas.data.reduced import GRID, REDUCED, read_reduced, third_axis
 from roughgas.results.datapackage import Field, field, write_package
 from roughgas.statistics.intervals import half_width
 from roughgas.theory.prediction import predicted_ratio

@@ -65,7 +65,7 @@ def rate_of(scene: Scene, experiment: Mapping[str, Any] | None = None) -> float:
     """
     mixture = for_theory(scene, experiment or {})
     if mixture is not None:
-        return mixture_relaxation_rate(mixture, packing(experiment))
+        return mixture_relaxation_rate(mixture, packing(experiment or {}))
     q = inertia(scene.effects)
     if q is None:
         return math.inf
@@ -95,9 +95,10 @@ def samples_per_period(schedule: Mapping[str, Any]) -> int:
     return 1
 
 
-def wait(scene: Scene, schedule: Mapping[str, Any]) -> int:
+def wait(scene: Scene, experiment: Mapping[str, Any]) -> int:
     """Return the samples before any counts, of the transient that theory expects."""
-    transient = transient_length(scene, schedule["relaxation_times"])
+    schedule = experiment["schedule"]
+    transient = transient_length(scene, schedule["relaxation_times"], experiment)
     return math.floor(transient / schedule["sample_every"])
 
 

@@ -92,7 +92,7 @@ class Watching:
     ) -> None:
         """Raise InputError for settings that are illegal, or do not suit the scene."""
         self._wanted = wanted(experiment.get("observables", {}), functions)
-        self._schedule, self._kind = experiment["schedule"], schedule.of(experiment)
+        self._experiment, self._kind = experiment, schedule.of(experiment)
         self._scene, self._system = scene, schedule.system_of(scene, experiment)
         self._observers: list[Observer] = []
         self._make()
@@ -108,7 +108,7 @@ class Watching:
 
     def begin(self, gas: Gas) -> None:
         """Watch a gas from now on."""
-        wait = self._kind.wait(self._scene, self._schedule)
+        wait = self._kind.wait(self._scene, self._experiment)
         gas.observer = Observer(gas, self._make(), wait)
         self._observers.append(gas.observer)
 
@@ -140,7 +140,7 @@ class Watching:
         if not runs:
             legal = "be small enough for looks during the measurement"
             raise InputError("observables: every", watched[0].every, legal)
-        period = self._kind.samples_per_period(self._schedule)
+        period = self._kind.samples_per_period(self._experiment["schedule"])
         per_period = period // one.every if period % one.every == 0 else 1
         found = averaged(one.observable.combine, runs, per_period)
         return {

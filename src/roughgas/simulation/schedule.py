@@ -40,7 +40,7 @@ class Kind(Protocol):
     def samples_per_period(self, schedule: Mapping[str, Any]) -> int:
         """Return the samples in a period of the drive."""
 
-    def wait(self, scene: Scene, schedule: Mapping[str, Any]) -> int:
+    def wait(self, scene: Scene, experiment: Mapping[str, Any]) -> int:
         """Return the samples that are taken before any can count."""
 
     def run(

@@ -1,12 +1,18 @@
 """Settings of a point from keyword arguments, merged over an experiment's and checked."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from roughgas import config
 from roughgas.config.schema import check_schema
 from roughgas.simulation import schedule
+
+if TYPE_CHECKING:
+    from roughgas.observables import Frame
+
+Observe = Sequence[str] | Mapping[str, Mapping[str, float] | Callable[["Frame"], Any] | None]
+"""Observables by name, each with settings, with None for the usual ones, or a function."""
 
 
 def settings_of(
@@ -28,6 +34,18 @@ def settings_of(
         check_schema(settings, name or unnamed, part)
     schedule.check(settings)
     return settings
+
+
+def observables_of(
+    observe: Observe | None,
+) -> tuple[dict[str, Any] | None, dict[str, Callable[["Frame"], Any]]]:
+    """Return the observables that settings name, and those that are functions."""
+    if observe is None:
+        return None, {}
+    named = [observe] if isinstance(observe, str) else observe
+    given = named if isinstance(named, Mapping) else dict.fromkeys(named)
+    functions = {name: one for name, one in given.items() if callable(one)}
+    return {name: one or {} for name, one in given.items() if not callable(one)}, functions
 
 
 def _plain(value: Any) -> Any:

@@ -49,8 +49,9 @@ def samples_per_period(schedule: Mapping[str, Any]) -> int:
     return max(1, round(schedule.get("period", every) / every))
 
 
-def wait(scene: Scene, schedule: Mapping[str, Any]) -> int:
+def wait(scene: Scene, experiment: Mapping[str, Any]) -> int:
     """Return the samples before any counts: whole periods."""
+    schedule = experiment["schedule"]
     planned = round(schedule["equilibrate"] / schedule["sample_every"])
     return -(-planned // samples_per_period(schedule)) * samples_per_period(schedule)
 

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from roughgas.show.figures import panel
-from roughgas.show.style import FAINT, LOOKS, THEORY, Look
+from roughgas.show.style import FAINT, LOOKS, THEORY, Look, Style
 from roughgas.theory.prediction_of_mixtures import species_at
 
 SIZE = (7.6, 5.6)  # inches
@@ -73,7 +73,7 @@ def ratio_of(row: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
 
 def _draw_temperatures(axes: Axes, row: xr.Dataset, look: Look, axis: str) -> None:
     ratio, error = ratio_of(row)
-    style = {"color": look.colour, "fmt": look.marker, "capsize": 1.5, "elinewidth": 0.8}
+    style: Style = {"color": look.colour, "fmt": look.marker, "capsize": 1.5, "elinewidth": 0.8}
     axes.errorbar(row[axis], ratio, error, label=rf"$\beta = {row.beta.item():g}$", **style)
     if row.attrs["theory"] == "K":
         at = _fine(row[axis].values)
@@ -84,7 +84,7 @@ def _draw_temperatures(axes: Axes, row: xr.Dataset, look: Look, axis: str) -> No
 def _draw_ratios(axes: Axes, row: xr.Dataset, look: Look, axis: str) -> None:
     for k, fill in ((0, look.colour), (1, "white")):
         one = row.isel(species=k)
-        style = {"color": look.colour, "fmt": look.marker, "capsize": 1.5, "elinewidth": 0.8}
+        style: Style = {"color": look.colour, "fmt": look.marker, "capsize": 1.5, "elinewidth": 0.8}
         style |= {"markerfacecolor": fill, "zorder": 3}
         axes.errorbar(row[axis], one.R_species, one.R_species_stderr, **style)
     cooling = row.attrs["theory"] == "K"
@@ -123,7 +123,7 @@ def _keys(data: xr.Dataset):
     from matplotlib.lines import Line2D
 
     first, second = (str(name) for name in data.species.values)
-    filled, hollow = {"color": THEORY, "marker": "o"}, {"color": THEORY, "marker": "o"}
-    hollow["markerfacecolor"] = "white"
-    handles = [Line2D([], [], linestyle="-", **filled), Line2D([], [], linestyle="--", **hollow)]
+    about: Style = {"color": THEORY, "marker": "o"}
+    hollow = Line2D([], [], linestyle="--", markerfacecolor="white", **about)
+    handles = [Line2D([], [], linestyle="-", **about), hollow]
     return handles, [f"1: {first} (small)", f"2: {second} (large)"]
