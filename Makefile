@@ -137,7 +137,7 @@ lock: ## choose and pin the newest versions of all dependencies (needs uv)
 	@echo "To see what has changed:  git diff requirements.lock requirements"
 
 clean: ## remove all results; the environment and the committed figures stay
-	rm -rf results logs .snakemake figures/*.pdf docs/_build .pytest_cache .ruff_cache .import_linter_cache .hypothesis \
+	rm -rf results logs .snakemake figures/*.pdf docs/_build .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis \
 	    $(filter-out figures/movies/,$(wildcard figures/*/))
 	@echo "All results are gone. To make them again:  make figures"
 
