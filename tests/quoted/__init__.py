@@ -15,7 +15,7 @@ from tests.quoted.quotes import QUOTES
 
 ROOT = Path(__file__).parents[2]
 SUMMARY = ROOT / "docs" / "numbers.json"
-NUMBER = r"([+−]?[\d.]*\d(?:\(\d+\))?|[a-z]+)"
+NUMBER = r"([+−]?[\d.]*\d(?:\(\d+\))?|[a-z-]+)"
 PLACE = re.compile(r"\{(\w+)(?::([^}]*))?\}")
 
 

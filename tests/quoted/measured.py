@@ -13,6 +13,7 @@ from roughgas.statistics.estimate import Estimate
 
 WORDS = "none one two three four five six seven eight nine ten eleven twelve thirteen fourteen "
 WORDS = (WORDS + "fifteen sixteen seventeen eighteen nineteen twenty").split()
+WORDS += [f"twenty-{one}" for one in WORDS[1:10]]
 
 
 def measured(folder):
