@@ -32,7 +32,7 @@ class Contacts:
         shift, drift = min(self.images(), key=lambda image: ((x + image[0]) ** 2).sum())
         n, v = in_space(x + shift), in_space(v + drift)
         n /= math.sqrt(n @ n)
-        r, beta, mu = self._material(i, j)
+        r, beta, mu = self.material(i, j)
         r = self._restitution(r, abs(v @ n), i, j)
         v_n = (v @ n) * n
         m, s = self.mass[[i, j]], (self.mass * self.q)[[i, j]]
@@ -54,7 +54,7 @@ class Contacts:
             v_t, v_r = (x * math.sqrt(2.0 / (1.0 / y).sum()) for x, y in ((v_t, m), (v_r, s)))
         self.seen += v_t @ v_t, v_r @ v_r, v_t @ v_r
 
-    def _material(self, i, j):
+    def material(self, i, j):
         """Restitution, roughness and mu of two particles."""
         world = self.world
         if world.contents is None:

@@ -172,6 +172,23 @@ def scenes(draw, compositions):
 
 
 @st.composite
+def mixtures(draw, compositions):
+    """As `scenes`, of one to three species: their sizes differ threefold, their masses by 1e6."""
+    experiment, r, beta = draw(scenes(compositions))
+    material = {"restitution": st.floats(max(r, 0.9), 1.0)}
+    if "spin" in experiment["effects"]:
+        material |= {"inertia": st.floats(0.05, 1.0), "roughness": st.floats(-1.0, 1.0)}
+    if "friction" in experiment["effects"]:
+        material["mu"] = st.sampled_from([0.0, 0.2, 5.0])
+    one = st.fixed_dictionaries(
+        {"radius": st.floats(0.6, 1.7)}, optional={"mass": st.floats(1e-3, 1e3), **material}
+    )
+    number = min(draw(st.integers(1, 3)), experiment["particles"])
+    species = [draw(one) | {"fraction": 1.0 / number} for _ in range(number)]
+    return experiment | {"species": species}, r, beta
+
+
+@st.composite
 def parameters(draw, names):
     """Legal parameters of these effects."""
     fixed = {} if "spin" in names else WITHOUT_SPIN

@@ -13,6 +13,7 @@ from hard_cases.compositions import (
     covering,
     every_set,
     is_legal,
+    mixtures,
     parameters,
     scenes,
     with_needs,
@@ -23,7 +24,6 @@ from roughgas.effects.side import SIDES
 from roughgas.kernel.record import Sampling, columns, record
 from roughgas.kernel.state import BOUNDARY_HITS, COLLISIONS, LAST_FIRST, LAST_SECOND
 from roughgas.scene import build, check
-from roughgas.scene.initial import lattice
 from roughgas.simulation.books import books, imbalance
 
 ROUNDING = 2.0**-53
@@ -34,6 +34,13 @@ FEW = [
     for name in QUICK
 ]
 """Compositions that other tests run, too: each is a kernel of its own."""
+
+
+UNLIKE = [
+    (set(KERNELS[name]["effects"]), len(KERNELS[name]["box"]), "sawtooth")
+    for name in ("gas", "bed", "heated", "rubbed bed")
+]
+"""Those of which other tests run mixtures, too."""
 
 
 class Worst:
@@ -109,14 +116,15 @@ def gain_of_momentum(before, after, world):
 
     A particle that becomes another image loses U at the height L: v_x - U y/L stays.
     """
-    drifts = []
+    drifts, mass = [], 1.0 if before.company is None else before.company.mass[:, None]
     for shot in (before, after):
         v = shot.velocity.copy()
         if world.shear:
             v[:, 0] -= world.shear * shot.position[:, 1] / world.box[1]
-        drifts.append(v.sum(axis=0))
+        drifts.append((mass * v).sum(axis=0))
     # places are rounded on the scale of the box, and what crosses it on that of U
-    size = np.abs(after.velocity).sum() + world.shear * (1.0 + world.shear * after.time / 7.0)
+    size = world.shear * (1.0 + world.shear * after.time / 7.0) * np.max(mass)
+    size += np.abs(mass * after.velocity).sum()
     return np.abs(drifts[1] - drifts[0]).max() / size
 
 
@@ -134,30 +142,30 @@ def beyond_cone(before, after, pair, world):
     speed = np.abs(before.velocity[[i, j]]).max() + world.gravity * (after.time - before.time)
     normal = impulse @ n
     along = np.linalg.norm(impulse - normal * n)
-    return max(0.0, along - world.mu * abs(normal)) / (size + 1e-3 * speed)
+    mu = brute_force_from(world, before).material(i, j)[2]
+    return max(0.0, along - mu * abs(normal)) / (size + 1e-3 * speed)
 
 
 def outside(shot, world):
     """By how much a particle reaches through a wall or the floor, in a."""
-    depth = 0.0
+    depth, radius = 0.0, brute_force_from(world, shot).radius
     if world.walls is not None:
         x = shot.position[:, 0]
-        depth = max(depth, (1.0 - x).max(), (x + 1.0 - world.walls[0]).max())
+        depth = max(depth, (radius - x).max(), (x + radius - world.walls[0]).max())
     for side in world.sides:
-        inside = side.inwards * (shot.position[:, side.axis] - side.at) - 1.0
+        inside = side.inwards * (shot.position[:, side.axis] - side.at) - radius
         depth = max(depth, ((side.shift(shot.time) if side.goes_in else 0.0) - inside).max())
     if world.floor is not None:
         surface, _ = brute_force_from(world, shot).surface(0.0)
-        depth = max(depth, (surface + 1.0 - shot.position[:, -1]).max())
+        depth = max(depth, (surface + radius - shot.position[:, -1]).max())
     return depth
 
 
-def fits(experiment, r, beta):
+def fits(experiment, r, beta, seed):
     """Whether the particles find room."""
-    scene, _ = scene_of(experiment, r, beta)
     try:
-        lattice(scene, experiment)
-    except ValueError:
+        begin(experiment, r, beta, seed)
+    except InputError:
         return False
     return True
 
@@ -244,18 +252,33 @@ def test_invariants_of_random_scenes(margins):
     A particle may be held for ever in the corner of a rough floor that rises and a rough wall:
     then the simulation stops with an error, as it must.
     """
+    keep_invariants(margins, scenes(FEW + covering(3) if margins.full else FEW), 90, 1500)
+
+
+@hard_case(
+    "any legal composition of effects, of particles that differ",
+    "what one particle gives the other does not take, or they meet, walls and floor included, as "
+    "if they had another radius",
+)
+def test_invariants_of_random_mixtures(margins):
+    """As above, of up to three species of any material, with masses that differ by 1e6."""
+    keep_invariants(margins, mixtures(covering(2) if margins.full else UNLIKE), 40, 600)
+
+
+def keep_invariants(margins, kinds, few, many):
+    """Simulate scenes of these kinds, and measure what must hold in all of them."""
     worst = Worst()
 
     @settings(
-        max_examples=margins.size(90, 1500),
+        max_examples=margins.size(few, many),
         phases=[Phase.generate],
         derandomize=True,
         database=None,
         deadline=None,
     )
-    @given(scenes(FEW + covering(3) if margins.full else FEW))
+    @given(kinds)
     def see(scene):
-        if fits(*scene):
+        if fits(*scene, worst.tried):
             worst.see(*scene)
 
     see()
