@@ -3,6 +3,7 @@
 MOVIES = {
     "vibrated": ("vibrated", "--r=0.9 --beta=0.5 --length=8 --frames=160"),
     "roughness": ("vibrated", "--r=0.9 --beta -1 0 1 --length=12 --frames=180"),
+    "mixture": ("vibrated_sizes/radius2", "--r=0.9 --beta=0.5 --length=4 --frames=80"),
     "sheared": ("sheared", "--r=0.9 --beta=0.5 --frames=160"),
     "cooling": ("cooling", "--r=0.9 --beta=0.5 --length=16 --frames=160"),
     "rough_walls": ("vibrated_rough_walls", "--r=0.9 --beta=-1 --length=8 --frames=160"),
