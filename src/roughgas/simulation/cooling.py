@@ -63,7 +63,8 @@ def rate_of(scene: Scene, experiment: Mapping[str, Any] | None = None) -> float:
     That is the slowest at which any temperatures of a mixture do. Of particles that are alike and
     without spin there is nothing to relax: infinity.
     """
-    mixture = for_theory(scene, experiment or {})
+    settings = experiment or {}
+    mixture = for_theory(scene, settings)
     if mixture is not None:
         return mixture_relaxation_rate(mixture, packing(experiment or {}))
     q = inertia(scene.effects)

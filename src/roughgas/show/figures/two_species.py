@@ -1,12 +1,13 @@
 """T and R of two species over what they differ in: the form that figures of mixtures share."""
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from roughgas.show.figures import panel
 from roughgas.show.style import FAINT, LOOKS, THEORY, Look, Style
@@ -73,8 +74,8 @@ def ratio_of(row: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
 
 def _draw_temperatures(axes: Axes, row: xr.Dataset, look: Look, axis: str) -> None:
     ratio, error = ratio_of(row)
-    style: Style = {"color": look.colour, "fmt": look.marker, "capsize": 1.5, "elinewidth": 0.8}
-    axes.errorbar(row[axis], ratio, error, label=rf"$\beta = {row.beta.item():g}$", **style)
+    label = rf"$\beta = {row.beta.item():g}$"
+    axes.errorbar(row[axis], ratio, error, label=label, **_bars(look))
     if row.attrs["theory"] == "K":
         at = _fine(row[axis].values)
         found = np.array([_theory(row, {axis: x}).T_tr for x in at])
@@ -84,14 +85,17 @@ def _draw_temperatures(axes: Axes, row: xr.Dataset, look: Look, axis: str) -> No
 def _draw_ratios(axes: Axes, row: xr.Dataset, look: Look, axis: str) -> None:
     for k, fill in ((0, look.colour), (1, "white")):
         one = row.isel(species=k)
-        style: Style = {"color": look.colour, "fmt": look.marker, "capsize": 1.5, "elinewidth": 0.8}
-        style |= {"markerfacecolor": fill, "zorder": 3}
+        style = _bars(look, markerfacecolor=fill, zorder=3)
         axes.errorbar(row[axis], one.R_species, one.R_species_stderr, **style)
     cooling = row.attrs["theory"] == "K"
     at = _fine(row[axis].values) if cooling else row[axis].values
     found = np.array([_theory(row, {axis: x}).R for x in at])
     for k, line in ((0, "-"), (1, "--")):
         axes.plot(at, found[:, k], color=look.colour, linestyle=line, linewidth=0.9)
+
+
+def _bars(look: Look, **more: Any) -> Style:
+    return {"color": look.colour, "fmt": look.marker, "capsize": 1.5, "elinewidth": 0.8} | more
 
 
 def _theory(row: xr.Dataset, place: dict[str, float]):
@@ -119,11 +123,9 @@ def _finish(upper: Axes, lower: Axes, column: Column) -> None:
     panel.add_title(upper, [column.data], title, column.message)
 
 
-def _keys(data: xr.Dataset):
-    from matplotlib.lines import Line2D
-
+def _keys(data: xr.Dataset) -> tuple[list[Line2D], list[str]]:
     first, second = (str(name) for name in data.species.values)
-    about: Style = {"color": THEORY, "marker": "o"}
-    hollow = Line2D([], [], linestyle="--", markerfacecolor="white", **about)
-    handles = [Line2D([], [], linestyle="-", **about), hollow]
-    return handles, [f"1: {first} (small)", f"2: {second} (large)"]
+    common: Style = {"color": THEORY, "marker": "o"}
+    filled = Line2D([], [], linestyle="-", **common)
+    hollow = Line2D([], [], linestyle="--", markerfacecolor="white", **common)
+    return [filled, hollow], [f"1: {first} (small)", f"2: {second} (large)"]
