@@ -66,7 +66,7 @@ def rate_of(scene: Scene, experiment: Mapping[str, Any] | None = None) -> float:
     settings = experiment or {}
     mixture = for_theory(scene, settings)
     if mixture is not None:
-        return mixture_relaxation_rate(mixture, packing(experiment or {}))
+        return mixture_relaxation_rate(mixture, packing(settings))
     q = inertia(scene.effects)
     if q is None:
         return math.inf
