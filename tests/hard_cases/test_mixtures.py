@@ -1,0 +1,89 @@
+"""Mixtures of particles that have little in common."""
+
+import math
+
+import numpy as np
+from brute_force import begin, largest_overlap, run, scene_of, settings
+
+from hard_cases.catalogue import hard_case
+from roughgas.effects.species import UNIFORM
+from roughgas.kernel import layout
+from roughgas.kernel.state import COLLISIONS
+from roughgas.simulation.books import books, imbalance
+
+ROUNDING = 2.0**-53
+SPREAD = {"distribution": UNIFORM, "deviation": 0.2}
+
+
+def check(margins, particles, box, species, collisions, r=1.0, beta=-1.0):
+    """Run a gas of these species; measure overlaps, the books, and the momentum."""
+    experiment = settings("gas", particles, box) | {"species": species}
+    scene, world = scene_of(experiment, r, beta)
+    _, state = begin(experiment, r, beta, 1)
+    run(state, scene, 0)
+    before = books(state, scene)
+    columns = run(state, scene, 10, collisions=collisions // 10)
+    after, made = books(state, scene), int(state.counts[COLLISIONS])
+    tried = {"tried": made, "unit": "collisions"}
+    largest = state.bodies.radius.max()
+    if particles <= 2000:  # the brute force tries every pair
+        overlap = largest_overlap(state, scene, world) / (ROUNDING * (max(box) + largest))
+        margins.at_most("overlap, in roundings of the box", overlap, 100.0, **tried)
+    missing = imbalance(after.ledger - before.ledger, after.energy - before.energy, 1e3)
+    missing *= 1.0 if r < 1.0 else np.abs(after.ledger - before.ledger).sum() + 1.0
+    margins.at_most("energy missing in the books, over it", missing, 1e-11, **tried)
+    if r == 1.0 and beta == -1.0:
+        change = abs(after.energy.sum() / before.energy.sum() - 1.0)
+        margins.at_most("change of the energy of an elastic gas, over it", change, 1e-11, **tried)
+    thermal = math.sqrt(columns["vv_x"][-1] * state.bodies.mass.sum())
+    momentum = max(abs(columns["p_x"]).max(), abs(columns["p_y"]).max()) / thermal
+    margins.at_most("momentum gained, over that of thermal motion", momentum, 1e-12, **tried)
+    assert np.isfinite(state.trajectory).all() and np.isfinite(state.spin).all()
+    return state
+
+
+@hard_case(
+    "sizes that differ a hundredfold",
+    "a small particle is a rounding of the large one, whose contacts are then missed or made twice",
+)
+def test_size_ratio_100(margins):
+    species = [{"number": 2, "radius": 100.0}, {"number": 300}]
+    state = check(margins, 302, [500, 450], species, margins.size(3000, 100_000), 0.99, 0.3)
+    assert state.changes[state.bodies.species == 0].min() > 10
+
+
+@hard_case(
+    "masses that differ by a factor of 1e9",
+    "momentum and energy of the light ones are lost in roundings of the heavy ones'",
+)
+def test_mass_ratio_1e9(margins):
+    species = [{"fraction": 0.5, "mass": 1.0}, {"fraction": 0.5, "mass": 1e9}]
+    check(margins, 100, [60, 60], species, margins.size(5000, 200_000))
+    check(margins, 100, [60, 60], species, margins.size(5000, 200_000), 0.95, 0.3)
+
+
+@hard_case(
+    "a lone large particle among many small ones, in cells as wide as it",
+    "cells hold more particles than fit on a shortlist, and some are never met",
+)
+def test_a_lone_large_one(margins, monkeypatch):
+    """Full: among a million."""
+    number = margins.size(1500, 1_000_000)
+    side = 4.0 * math.sqrt(number)
+    radius = side / (2.1 * layout.FEWEST)
+    species = [{"number": 1, "radius": radius}, {"number": number}]
+    monkeypatch.setattr(layout, "FEW", 160)
+    state = check(margins, number + 1, [side, side], species, 2000)
+    assert state.cells is not None
+    found = np.bincount(state.cells.home, minlength=len(state.cells.first)).max()
+    assert found > 20
+
+
+@hard_case(
+    "a packed box of many sizes",
+    "particles that touch on all sides begin with overlaps, or meet at once without end",
+)
+def test_a_packed_polydisperse_box(margins):
+    """Radii that scatter by a fifth fill 0.74 of the box."""
+    species = [{"fraction": 1, "radius": SPREAD}]
+    check(margins, 400, [42.0, 42.0], species, margins.size(20_000, 500_000))
