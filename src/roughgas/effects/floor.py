@@ -14,13 +14,14 @@ from roughgas.effects.surface import bounce, fall, flight, phase, until_back
 from roughgas.effects.triangular_floor import REVERSED_RISE, TriangularFloor
 from roughgas.kernel.jit import jit
 
+WAVES = ("sawtooth", "reversed_sawtooth", "triangle", "sine")
 SETTINGS = {
     "amplitude": Number("Height of a stroke, in a; 0 is a floor at rest.", "[0, inf)"),
     "period": Number("Time between strokes, in T."),
     "wave": Word(
         "Form of its motion; the sawtooth is back at once, the reversed one rises in a tenth of "
         "the period.",
-        ("sawtooth", "reversed_sawtooth", "triangle", "sine"),
+        WAVES,
     ),
     **MATERIAL,
 }

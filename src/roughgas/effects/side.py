@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from roughgas.base.errors import InputError
 from roughgas.effects import piston, thermal_wall
-from roughgas.effects.floor import Floor
+from roughgas.effects.floor import WAVES
 from roughgas.effects.plane import Place, bounce, closed_axis, predict
 from roughgas.effects.settings import MATERIAL, Number, Word, register
 from roughgas.effects.triangular_floor import REVERSED_RISE
@@ -38,7 +38,7 @@ SETTINGS = {
     ),
     "amplitude": Number("Height of a stroke of a wall that is shaken, in a.", "[0, inf)", 0.0),
     "period": Number("Time between strokes, in T; given where it is shaken.", default=math.inf),
-    "wave": Word("Form of its motion, as of floors.", Floor.parameters["wave"].words),
+    "wave": Word("Form of its motion, as of floors.", WAVES),
     "shaken": Word("Whether it is shaken along its normal or along itself.", (NORMAL, ALONG)),
     "temperature": Number(
         "Temperature of a thermal wall, in m a^2/T^2: particles leave it with Maxwellian "

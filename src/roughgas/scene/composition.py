@@ -94,7 +94,7 @@ def strokes(effects: Effects, dimension: int) -> np.ndarray:
     if effects.floor is not None:
         found[-1, 0] = effects.floor.amplitude
     for part in hooks.present(effects, "closes"):
-        wall = effects[part.place]
+        wall: Any = effects[part.place]
         if hasattr(wall, "motion"):
             found[wall.axis, int(wall.place.inwards < 0.0)] = wall.motion.amplitude
     return found

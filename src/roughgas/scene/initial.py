@@ -139,7 +139,8 @@ def bounds(effects: Effects, dimension: int, time: float) -> list[tuple[float, f
         found[0] = [0.0, closed.width]
     if effects.floor is not None:
         found[-1][0] = displacement(effects.floor, time)
-    for wall in (effects[part.place] for part in hooks.present(effects, "closes")):
+    walls: list[Any] = [effects[part.place] for part in hooks.present(effects, "closes")]
+    for wall in walls:
         if hasattr(wall, "place"):
             _, inwards, at, _ = wall.place
             moved = displacement(wall, time) if hasattr(wall, "motion") else 0.0

@@ -25,9 +25,9 @@ def check_sides(effects: Effects) -> None:
         for pair in PAIRS:
             if name not in PAIRS and wall.axis == 0 and getattr(effects, pair) is not None:
                 raise InputError("effects", f"{pair} and {name}", "not close the same axis twice")
-    for pair in OPPOSITE:
-        _check_opposite(effects, *pair)
-        _check_opposite(effects, *reversed(pair))
+    for one, other in OPPOSITE:
+        _check_opposite(effects, one, other)
+        _check_opposite(effects, other, one)
 
 
 def _check_opposite(effects, name, other):
