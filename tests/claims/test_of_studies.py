@@ -98,6 +98,10 @@ def test_one_number_of_particles_says_nothing_of_others():
 
 
 def test_uncertain_times_tell_no_direction():
+    alone = escapes(-1.0)
+    for kind in ("dsmc", "events"):  # one escape at each number: nothing is known of its error
+        alone[f"{kind}_escapes"] = alone[f"{kind}_escapes"].clip(max=1)
+    assert judged("sooner_the_larger", runaway=alone).verdict == NOT_TESTED
     found = judged("sooner_the_larger", runaway=escapes(-0.1, error=0.5))
     assert found.verdict == NOT_TESTED and "errors are too large" in found.reason
 

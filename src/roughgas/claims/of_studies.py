@@ -81,4 +81,5 @@ def _exponent(gases: xr.Dataset, kind: str) -> Estimate | None:
         return None
     number, time, stderr = gases[f"{kind}_particles"].values[known], time[known], stderr[known]
     law = power_law(number, time, (time / stderr) ** 2)
-    return Estimate(law.exponent, law.stderr, float(escapes[known].sum() - known.sum()))
+    dof = float(escapes[known].sum() - known.sum())
+    return Estimate(law.exponent, law.stderr if dof >= 1 else np.nan, dof)
