@@ -64,6 +64,8 @@ BEYOND = {  # the experiments beyond the paper, and the third axis of their swee
     "cooling_sizes": {"species.large.radius": ["2"]},
     "vibrated_polydisperse": {"species.disks.deviation": ["0.2"]},
     "cooling_polydisperse": {"species.disks.deviation": ["0.2"]},
+    "cooling_viscoelastic": {},
+    "couette": {},
 }
 TINY |= {name: {"sweep": SWEEP | axis} for name, axis in BEYOND.items()}
 for name, box in (
@@ -73,6 +75,7 @@ for name, box in (
     ("heated", [20, 20]),
     ("cooling_sizes", [20, 20]),
     ("shaken_walls", [20, 20]),
+    ("couette", [20, 20]),
 ):
     TINY[name] |= {"particles": 10, "box": box}
 

@@ -127,3 +127,26 @@ def averaged(
         "contact_correlation_dof": 100.0,
     }
     return data.assign({n: (("r", "beta"), np.full(beta.shape, v)) for n, v in values.items()})
+
+
+def viscoelastic(shift: float = 0.0, exponent: float = 5 / 3) -> xr.Dataset:
+    """A cooling gas of viscoelastic disks: R is that of the present restitution, + `shift`."""
+    about = {"r_at_speed": 1.0, "packing": 0.0126}
+    data = reduced("cooling_viscoelastic", r=(0.9,), beta=(-1.0, 0.0, 1.0), about=about, error=1e-6)
+    time = np.geomspace(1.0, 1e6, 50)
+    energy = np.broadcast_to((1.0 + time / 30.0) ** -exponent, (1, 3, 50))
+    R = theory.viscoelastic_ratio(energy, 0.9, data.beta.values[:, None]) + shift
+    made = np.broadcast_to(np.arange(1.0, 51.0), energy.shape)
+    series = {"E_trans_series": energy, "R_series": R, "collisions_per_particle": made}
+    series["time_series"] = np.broadcast_to(time, energy.shape)
+    scalars = {"decay_exponent": exponent, "decay_exponent_stderr": 1e-4}
+    scalars |= {"measured_from": 10.0, "plateau_end": 50.0}
+    of_points = {name: (data.R.dims, np.full(data.R.shape, x)) for name, x in scalars.items()}
+    over_time = {name: ((*data.R.dims, "sample"), x) for name, x in series.items()}
+    return data.assign(of_points | over_time)
+
+
+def couette(shift: float = 0.0) -> xr.Dataset:
+    """A gas between sliding walls, whose R is that of theory, + `shift`."""
+    data = reduced("couette", lambda r, beta: shift + 0.0 * beta, r=(0.9,), error=1e-6)
+    return data.assign(shear_rate=data.R.copy(data=np.full(data.R.shape, 0.04)))

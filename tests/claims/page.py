@@ -11,7 +11,15 @@ from itertools import pairwise
 from pathlib import Path
 
 from roughgas.base.layout import markdown
-from roughgas.claims import OPEN_QUESTIONS, PAPER, averages, open_questions, paper, verdicts
+from roughgas.claims import (
+    OPEN_QUESTIONS,
+    PAPER,
+    averages,
+    materials,
+    open_questions,
+    paper,
+    verdicts,
+)
 from roughgas.statistics import estimate
 
 PAGE = Path(__file__).parents[2] / "docs" / "claims.md"
@@ -19,6 +27,7 @@ BEGIN, END = "<!-- {}: made by tests/claims/page.py -->\n", "<!-- until here -->
 SAID = {"AGREE": verdicts, "LIMIT": verdicts, "TENDENCY": verdicts, "FEW": verdicts}
 SAID |= {"NEAR": verdicts, "FAR": verdicts, "SIGNIFICANT": estimate, "INTERMEDIATE": paper}
 SAID |= {"CONSIDERABLY": paper, "NO_ROTATION": open_questions, "MOST": averages}
+SAID |= {"CLOSE": materials, "ROUGHLY": materials}
 """What decides verdicts, and where it stands."""
 
 

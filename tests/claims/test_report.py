@@ -90,5 +90,5 @@ def test_each_table_says_what_it_is_about(tmp_path):
         title = json.loads((tmp_path / "c.json").read_text())["title"]
         assert tables[-1].startswith(f"# {title}\n\nS. McNamara")
     assert "19 statements: holds 0," in tables[0] and "`open_questions.md`" in tables[0]
-    assert "23 statements: holds 1," in tables[1] and "`open_questions.md`" not in tables[1]
+    assert "27 statements: holds 1," in tables[1] and "`open_questions.md`" not in tables[1]
     assert all("{" not in table and "Significance and size" in table for table in tables)

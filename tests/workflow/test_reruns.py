@@ -11,7 +11,7 @@ CONFIGURED = {"effective_config": 1, "document": 1, "figures": 1}
 AFTER_BOTH = AFTER_POINTS | CONFIGURED | {"document": 3}
 
 FIGURES = {"fig1a", "fig1b", "fig2a", "fig2b", "fig3", "fig4", "fig5", "fig6", "fig7", "fig8"}
-FIGURES |= {"mixtures_vibrated", "mixtures_cooling", "polydispersity"}
+FIGURES |= {"mixtures_vibrated", "mixtures_cooling", "polydispersity", "viscoelastic", "couette"}
 REDUCED = FIGURES | {"reduce", "table", "claims", "run_times", "page", "document"}
 AIMED = {"point", "reach"}  # of the experiment with a target
 POINTS = REDUCED | AIMED | {"seeds"}

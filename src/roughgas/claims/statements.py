@@ -8,7 +8,15 @@ from typing import NamedTuple
 import xarray as xr
 import yaml
 
-from roughgas.claims import averages, evidence, mixtures, of_studies, open_questions, paper
+from roughgas.claims import (
+    averages,
+    evidence,
+    materials,
+    mixtures,
+    of_studies,
+    open_questions,
+    paper,
+)
 from roughgas.claims.evidence import NotTestedError
 from roughgas.claims.verdicts import (
     NOT_TESTED,
@@ -18,7 +26,7 @@ from roughgas.claims.verdicts import (
     points,
 )
 
-ROOM = (evidence, averages, mixtures, of_studies, open_questions, paper)
+ROOM = (evidence, averages, materials, mixtures, of_studies, open_questions, paper)
 FUNCTIONS = {name: one for module in ROOM for name, one in vars(module).items()}
 """The samples and judges that the tables name."""
 REFERENCE = """\

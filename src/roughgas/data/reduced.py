@@ -10,7 +10,7 @@ from roughgas.base.errors import InputError
 from roughgas.base.legal import Interval
 from roughgas.data import opening
 from roughgas.data.netcdf import read_netcdf
-from roughgas.data.variables import ENERGY, NAMES, POINT, TIME, Variable, register
+from roughgas.data.variables import ENERGY, NAMES, POINT, RATE, TIME, Variable, register
 from roughgas.data.variables import GRID as OF_GRID
 
 if TYPE_CHECKING:
@@ -103,6 +103,12 @@ REDUCED = {
     ),
     "R_stderr_over_seeds": _derived("standard error of R from the scatter over seeds alone"),
     "R_stderr_within": _derived("standard error of R from within the files, combined over seeds"),
+    **{
+        name: POINT[name]._replace(dims=(OF_GRID, "sample"), over_seeds="")
+        for name in ("time_series", "E_trans_series", "R_series", "collisions_per_particle")
+    },
+    "decay_exponent_stderr": _derived("standard error of decay_exponent: scatter over seeds"),
+    "shear_rate_stderr": _derived("standard error of shear_rate: scatter over seeds", RATE),
     "R_unsubtracted_stderr": _derived("standard error of R_unsubtracted: scatter over seeds"),
     "E_trans_stderr": _derived("standard error of E_trans: scatter over seeds", ENERGY),
     "input_spin_share_stderr": _derived("standard error of input_spin_share: scatter over seeds"),

@@ -28,6 +28,7 @@ SPIN, COOLING, DRIVEN = "where particles spin", "cooling gas", "driven gas"
 SHEARED, TARGET = "sheared gas", "with a `target_stderr`"
 CONTACT = "where the contact-time model acts"
 KEPT = "with `keep_state`"
+OF_SPEED = "whose r depends on the speed"
 MIXTURE = "with `species`"
 AT_CONTACTS = "driven gas with `contact_averages`"
 
@@ -181,11 +182,15 @@ POINT = {
     **_of_species("R_species", "share of rotation in the energy", "1", SPIN),
     "time": _series("time since the start", TIME, DRIVEN),
     "collisions_per_particle": _series("collisions per particle since the start", TIME, COOLING),
+    "decay_exponent": Variable(
+        "-d ln E_trans/d ln t over the second half of the samples",
+        when=(COOLING, OF_SPEED),
+    ),
     "time_series": Variable(
         "time since dissipation was switched on, mean over replicas",
         TIME,
         ("sample",),
-        when=(COOLING, "whose r depends on the speed"),
+        when=(COOLING, OF_SPEED),
         of_settings=True,
     ),
     "R_series": _series("share of rotation in the energy", "1", SPIN),

@@ -33,8 +33,10 @@ PROVENANCE = ("roughgas_version", "numpy_version", "numba_version", "kernel_sour
 SCATTERED = (
     *("R_ratio_of_means", "R_unsubtracted", "R_drift", "E_trans", "input_spin_share"),
     *("E_trans_species", "E_rot_species", "R_species"),
+    *("decay_exponent", "shear_rate"),
 )
 """Means over seeds that carry a standard error, `<name>_stderr`, from their scatter."""
+SERIES = ("time_series", "E_trans_series", "R_series", "collisions_per_particle")
 OF_SPECIES = [name for name, one in POINT.items() if one.dims == ("species",) and one.over_seeds]
 POOLED = ("R", "R_collisional", "contact_correlation")
 """Those whose standard error pools the scatter with the errors of the seeds themselves."""
@@ -84,6 +86,7 @@ def _summary(path: Path) -> Summary:
         found = [name for name, about in POINT.items() if not about.dims]
         scalars = {name: file[name][...].item() for name in found if name in file.variables}
         scalars |= {name: file[name][...] for name in OF_SPECIES if name in file.variables}
+        scalars |= _series(file)
         names = file["species"][...].tolist() if "species" in file.variables else []
         for name in scalars.keys() & SOUND:
             check_sound(path, name, scalars[name])
@@ -94,6 +97,13 @@ def _summary(path: Path) -> Summary:
     r, beta, seed = (attributes[name] for name in (*GRID, "seed"))
     place = (*swept, float(r), float(beta), int(seed))
     return Summary(scalars, attributes, place, replicas, tuple(names), observed)
+
+
+def _series(file: netCDF4.Dataset) -> dict[str, np.ndarray]:
+    """Return what changes over time, of a cooling gas that has no R for all times."""
+    if "time_series" not in file.variables:
+        return {}
+    return {name: file[name][...] for name in SERIES if name in file.variables}
 
 
 def _window(file: netCDF4.Dataset, scalars: Mapping[str, float]) -> tuple[float, float]:
@@ -118,7 +128,7 @@ def _combined(points: Sequence[Summary]) -> Content:
     axes = [sorted(set(column), key=lambda x: (isinstance(x, str), x)) for column in columns]
     swept = third_axis(attributes)
     grid = GRID if swept is None else (swept, *GRID)
-    stacks = _stacks(points, axes)
+    stacks = _stacks(_of_one_length(points), axes)
     attributes["theory"] = equation_of(attributes, stacks).kind
     coordinates = dict(zip((*grid, "seed"), map(_coordinate, axes), strict=True))
     third = {}
@@ -160,6 +170,21 @@ def _coordinate(values: Sequence[Any]) -> np.ndarray:
     if any(isinstance(value, str) for value in values):
         values = [value if isinstance(value, str) else f"{value:.10g}" for value in values]
     return np.array(values)
+
+
+def _of_one_length(points: Sequence[Summary]) -> list[Summary]:
+    """Return the points with series as long as the shortest of them."""
+    lengths = [len(point.scalars[SERIES[0]]) for point in points if SERIES[0] in point.scalars]
+    shorter = {name: slice(min(lengths, default=None)) for name in SERIES}
+    return [
+        point._replace(
+            scalars={
+                name: value[shorter[name]] if name in shorter else value
+                for name, value in point.scalars.items()
+            }
+        )
+        for point in points
+    ]
 
 
 def _stacks(points: Sequence[Summary], axes: Sequence[Sequence[Any]]) -> dict[str, np.ndarray]:

@@ -128,7 +128,7 @@ def run(
     passed = every * np.arange(1, samples + 1)
     exchanged = exchange(ensemble.before, ensemble.after, scene, experiment["particles"])
     if speed_of_r(scene.effects) is not None:  # how it cools depends on how fast it is
-        exchanged["time_series"] = ensemble.time.mean(axis=0)
+        exchanged |= _over_time(ensemble)
     if scene.effects.spin is None:
         first = min(math.ceil(transient / every), samples) - 1
         return _decay(ensemble, passed, first) | exchanged
@@ -162,6 +162,16 @@ def _cool(gas, every, samples):
     parts = [one.map(lambda part: part / unit) for one in parts]
     exponents = rows["exponent"].astype(int) - exponent
     return Cooled(present, exponents, rows["time"] - begun, before, after, parts)
+
+
+def _over_time(ensemble):
+    """Return when the samples were taken, and by which power of time the energy falls: over the
+    second half of them, where the time is long against that of the first."""
+    time = ensemble.time.mean(axis=0)
+    E_trans = restored(ensemble.energies, ensemble.exponent).translational.mean(axis=0)
+    later = slice(len(time) // 2, None)
+    known = np.log(time[later]), np.log(np.maximum(E_trans[later], np.finfo(float).tiny))
+    return {"time_series": time, "decay_exponent": -np.polyfit(*known, 1)[0]}
 
 
 def _together(runs):

@@ -96,6 +96,7 @@ from roughgas.theory.runaway import (
 from roughgas.theory.viscoelastic import (
     maxwellian_restitution,
     viscoelastic_cooling,
+    viscoelastic_ratio,
     viscoelastic_restitution,
     viscoelastic_temperature,
     viscoelastic_time,

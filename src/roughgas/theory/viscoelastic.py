@@ -19,6 +19,7 @@ import numpy as np
 
 from roughgas.base.legal import Interval
 from roughgas.theory.arguments import POSITIVE, check, check_dimension, material
+from roughgas.theory.closed_forms import cooling_ratio
 from roughgas.theory.rate_equations import collision_rates
 from roughgas.theory.shares import quotient
 
@@ -55,6 +56,12 @@ def maxwellian_restitution(T_tr, r, speed=1.0) -> np.ndarray:
     """Return r_T, the constant restitution by which Maxwellian particles lose as much energy."""
     T_tr, speed = check("temperature T_tr", T_tr), check("speed", speed, POSITIVE)
     return np.sqrt(1 - _lost(_x_of(r) * (4 * T_tr / speed**2) ** 0.1))[()]
+
+
+def viscoelastic_ratio(T_tr, r, beta, speed=1.0, dimension=2, inertia=None) -> np.ndarray:
+    """Return R of a cooling gas at T_tr, which follows its restitution without delay: that of the
+    theory of free cooling with r_T."""
+    return cooling_ratio(maxwellian_restitution(T_tr, r, speed), beta, dimension, inertia)
 
 
 def viscoelastic_time(T0, r, frequency, speed=1.0, dimension=2) -> np.ndarray:

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 from matplotlib.image import imread
-from synthetic import BETA, mixed, reduced
+from synthetic import BETA, couette, mixed, reduced, viscoelastic
 
 from roughgas.base.errors import InputError
 from roughgas.base.sources import closure
@@ -76,6 +76,8 @@ DATA = {
     "fig8": lambda: tuple(boundaries(one) for one in FIGURES["fig8"].shows),
     "mixtures_vibrated": lambda: mixtures("vibrated"),
     "mixtures_cooling": lambda: mixtures("cooling"),
+    "viscoelastic": lambda: (viscoelastic(),),
+    "couette": lambda: (couette(), sheared()),
     "polydispersity": lambda: tuple(spread(one) for one in ("vibrated", "cooling")),
 }
 
