@@ -75,7 +75,7 @@ MISTAKES = [
     (
         "experiments.cooling.effects.gravty",
         {"acceleration": 1},
-        "effects: key = 'gravty': must be one of contact_averages, contact_stress, contact_time, ",
+        "effects: key = 'gravty': must be one of back_wall, bottom_wall, contact_averages, ",
     ),
     (
         "experiments.vibrated.effects.floor.height",

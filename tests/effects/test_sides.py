@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 from brute_force import KERNELS, Beside, begin, run, scene_of, settings
-from brute_force.sides import ALIKE, Side, sides_of
+from brute_force.sides import ALIKE, Side
 
 from roughgas import theory
 from roughgas.base.errors import InputError
@@ -300,9 +300,3 @@ def test_walls_are_what_their_parameters_say():
     assert effects.bottom_wall == ((2, 1.0, 0.0, 0), 0.9, -1.0)
     assert build(closed(IN_SPACE, [8, 9, 10]), 0.9, 0.0).effects.lid.rise == 0.0
     assert isinstance(effects.lid, piston.SinePiston) and effects.lid.place[:3] == (2, -1.0, 10.0)
-
-
-def test_rest_and_motion_of_the_twin():
-    """The brute force has the walls of the same settings, on the same sides."""
-    names = [side.name for side in sides_of(IN_SPACE, [8, 9, 10])]
-    assert names == ["front_wall", "back_wall", "bottom_wall", "lid"]
