@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 from brute_force import run
+from brute_force.company import Company, company_of
 
 from exact.simulation import ZERO, Exact, minus, plus, times
 from roughgas.kernel.state import BASE, COLLISIONS, LAST_FIRST, LAST_SECOND, NOW, SPAN
@@ -53,7 +54,14 @@ def exactly(state, scene, world):
         rank = sum(effect is not None for effect in scene.effects[:place])
         (phase,) = _decimals(state.phase[[rank]])
         slide = phase - Decimal(world.shear) * base
-    return Exact(world, base + now, x, v, w, last, slide)
+    return Exact(world, base + now, x, v, w, last, slide, _company(company_of(state, order)))
+
+
+def _company(company):
+    if company is None:
+        return None
+    *numbers, species = company
+    return Company(*map(_decimals, numbers), species.tolist())
 
 
 def _decimals(numbers):

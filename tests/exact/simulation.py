@@ -12,12 +12,13 @@ import math
 from decimal import Decimal
 from typing import NamedTuple
 
+from brute_force.company import Company
+
 from exact.laws import restitution
 
 DIGITS = 50
 decimal.getcontext().prec = DIGITS
 ZERO, HALF, NEVER = Decimal(0), Decimal("0.5"), Decimal("Infinity")
-DIAMETER = 2
 
 
 class Event(NamedTuple):
@@ -31,9 +32,10 @@ class Event(NamedTuple):
 class Exact:
     """A simulation under way: `step` finds the next event and carries it out."""
 
-    def __init__(self, world, time, x, v, w, last=None, slide=ZERO):
+    def __init__(self, world, time, x, v, w, last=None, slide=ZERO, company=None):
         """World as in brute_force; all numbers Decimals, vectors of three of them. `slide`: place
-        at time 0 of the image above a sheared box."""
+        at time 0 of the image above a sheared box; `company` as in brute_force where particles
+        differ, but for lists of Decimals."""
         self.world = world
         self.time, self.x, self.v, self.w = time, list(x), list(v), list(w)
         self.last = [-NEVER] * len(x) if last is None else list(last)
@@ -46,11 +48,15 @@ class Exact:
         self.floor, self.walls = (
             tuple(map(Decimal, wall)) if wall else None for wall in (world.floor, world.walls)
         )
+        ones = [Decimal(1)] * len(x)
+        self.company = company or Company(ones, ones, [self.q] * len(x), [0] * len(x))
         self.contact_time = Decimal(world.contact_time)
         self.stroke = math.floor(time / self.floor[1]) if self.floor else 0
 
     def copy(self):
-        return Exact(self.world, self.time, self.x, self.v, self.w, self.last, self.slide)
+        return Exact(
+            self.world, self.time, self.x, self.v, self.w, self.last, self.slide, self.company
+        )
 
     def run(self, collisions):
         """The events up to and with the so-manieth pair collision."""
@@ -121,7 +127,7 @@ class Exact:
         if length is None:
             return (0,)
         nearest = -round(distance / length)
-        reach = DIAMETER + HALF * min(self.periods)
+        reach = 2 * max(self.company.radius) + HALF * min(self.periods)
         near = range(nearest - 1, nearest + 2)
         return [k for k in near if abs(distance + k * length) <= reach]
 
@@ -140,22 +146,25 @@ class Exact:
         """Time until this event on the present paths."""
         if event.kind == "pair":
             return self._until_contact(event.i, event.j, event.image)
-        x, v = self.x[event.i], self.v[event.i]
+        x, v, radius = self.x[event.i], self.v[event.i], self.company.radius[event.i]
         if event.kind == "floor":
             rise = self.floor[0] / self.floor[1]
-            gap = x[self.top] - 1 - rise * (self.time - event.stroke * self.floor[1])
+            gap = x[self.top] - radius - rise * (self.time - event.stroke * self.floor[1])
             return _fall(gap, v[self.top] - rise, self.gravity)
-        gap, speed = (x[0] - 1, -v[0]) if event.kind == "left" else (self.walls[0] - 1 - x[0], v[0])
+        gap, speed = x[0] - radius, -v[0]
+        if event.kind == "right":
+            gap, speed = self.walls[0] - radius - x[0], v[0]
         return max(gap, ZERO) / speed if speed > 0 else NEVER
 
     def _until_contact(self, i, j, image):
-        """First root of |x + v t| = 2, if they approach; overlapping is now."""
+        """First root of |x + v t| = a_i + a_j, if they approach; overlapping is now."""
         x, v = self.apart(i, j, image)
         b = dot(x, v)
         if b >= 0:
             return NEVER
         vv = dot(v, v)
-        discriminant = b * b - vv * (dot(x, x) - DIAMETER**2)
+        reach = self.company.radius[i] + self.company.radius[j]
+        discriminant = b * b - vv * (dot(x, x) - reach**2)
         if discriminant < 0:
             return NEVER
         return max(ZERO, (-b - discriminant.sqrt()) / vv)
@@ -186,29 +195,44 @@ class Exact:
     def _collide(self, i, j, image):
         x, v = self.apart(i, j, image)
         n = times(x, 1 / dot(x, x).sqrt())
-        r = self._restitution(self.r, abs(dot(v, n)), i, j)
-        push, turn = self._response(n, v, plus(self.w[i], self.w[j]), r, self.beta)
-        self._kick(i, times(push, -HALF), times(turn, HALF))
-        self._kick(j, times(push, HALF), times(turn, HALF))
+        r, beta = self._material(i, j)
+        r = self._restitution(r, abs(dot(v, n)), i, j)
+        push, twist = self._impulse(n, v, plus(self.w[i], self.w[j]), r, beta, i, j)
+        self._kick(i, times(push, Decimal(-1)), twist)
+        self._kick(j, push, twist)
+
+    def _material(self, i, j):
+        if self.world.contents is None:
+            return self.r, self.beta
+        common = {"restitution": self.world.r, "roughness": self.world.beta, "mu": None}
+        species = self.company.species
+        found = self.world.contents.between(species[i], species[j], common)
+        return Decimal(found["restitution"]), Decimal(found["roughness"])
 
     def _bounce(self, i, n, wall_velocity, r, beta):
         v = minus(self.v[i], wall_velocity)
         r = self._restitution(r, abs(dot(v, n)), i)
-        push, turn = self._response(n, v, self.w[i], r, beta)
-        self._kick(i, times(push, Decimal(-1)), turn)
+        push, twist = self._impulse(n, v, self.w[i], r, beta, i)
+        self._kick(i, times(push, Decimal(-1)), twist)
 
-    def _response(self, n, v, w, r, beta):
-        """Push and turn by a partner of infinite mass: between two particles it is half of that."""
+    def _impulse(self, n, v, w, r, beta, *partners):
+        """The momentum that is exchanged, and n times its part along the surfaces; a wall, which is
+        no partner, takes any without moving."""
+        mass, q = self.company.mass, self.company.q
         normal = times(n, dot(v, n))
-        push, turn = times(normal, 1 + r), (ZERO,) * 3
-        if self.q is not None:
-            slip = minus(minus(v, cross(w, n)), normal)
-            push = plus(push, times(slip, self.q * (1 + beta) / (1 + self.q)))
-            turn = times(cross(n, slip), (1 + beta) / (1 + self.q))
-        return push, turn
+        push = times(normal, (1 + r) / sum(1 / mass[k] for k in partners))
+        if self.q is None:
+            return push, (ZERO,) * 3
+        slip = minus(minus(v, cross(w, n)), normal)
+        ease = sum(1 / mass[k] + 1 / (mass[k] * q[k]) for k in partners)
+        along = times(slip, (1 + beta) / ease)
+        return plus(push, along), cross(n, along)
 
-    def _kick(self, i, push, turn):
-        self.v[i], self.w[i] = plus(self.v[i], push), plus(self.w[i], turn)
+    def _kick(self, i, push, twist):
+        mass = self.company.mass[i]
+        self.v[i] = plus(self.v[i], times(push, 1 / mass))
+        if self.q is not None:
+            self.w[i] = plus(self.w[i], times(twist, 1 / (mass * self.company.q[i])))
 
     def _restitution(self, r, speed, *particles):
         """Contacts soon after the previous one lose nothing along the normal."""

@@ -7,6 +7,7 @@ from exact import segment
 
 from hard_cases.catalogue import hard_case
 
+TWO = [{"fraction": 0.5}, {"fraction": 0.5, "radius": 1.5, "mass": 6.0, "inertia": 0.25}]
 SCENES = {
     # experiment, r, beta, seed
     "gas": (settings("gas", 8, [12, 11]), 1.0, 1.0, 1),
@@ -27,6 +28,7 @@ SCENES = {
         0.2,
         6,
     ),
+    "mixture": (settings("gas", 8, [14, 13]) | {"species": TWO}, 1.0, 1.0, 9),
     "viscoelastic gas": (settings("viscoelastic", 8, [12, 11]), 0.9, 1.0, 8),
     "spheres": (settings("spheres", 8, [6, 6.5, 7]), 1.0, 1.0, 7),
 }
