@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 from tests.data.schema_page import check_study
 
 from roughgas import theory
+from roughgas.base.errors import InputError
 from roughgas.statistics.estimate import Estimate
 from roughgas.studies import models, study
 from roughgas.studies.figures import accuracy as plotting
@@ -73,6 +74,12 @@ def test_the_integrator_is_of_fourth_order():
     exact = theory.relax(0.3, 0.7, 0.2, 3.0).T_tr
     coarse, fine = (abs(integrate(0.3, 3.0, step, 0.7, 0.2)[0] - exact) for step in (0.15, 0.0375))
     assert np.log(coarse / fine) / np.log(4) == pytest.approx(4.0, abs=0.2)
+
+
+def test_species_are_refused():
+    mixed = FreeCooling(EXPERIMENT | {"species": [{"fraction": 1}]}, 0.8, 0.0)
+    with pytest.raises(InputError, match=r"species = .*: must not be there"):
+        _ = mixed.theta
 
 
 def test_a_box_is_scaled_to_the_packing():

@@ -6,11 +6,20 @@ from typing import Any
 
 import numpy as np
 
+from roughgas.base.errors import InputError, shown
+
 
 def timed(function: Callable[..., Any], *arguments: Any) -> tuple[Any, float]:
     """Return what a call returns, and the CPU seconds that it takes."""
     begin = time.process_time()
     return function(*arguments), time.process_time() - begin
+
+
+def check_alike(experiment: Mapping[str, Any]) -> None:
+    """Raise InputError for an experiment with species, in a study of particles that are alike."""
+    if experiment.get("species"):
+        legal = "not be there in an experiment of this study, whose particles are alike"
+        raise InputError("species", shown(experiment["species"]), legal)
 
 
 def stream(settings: Mapping[str, Any], *key: int) -> np.random.SeedSequence:

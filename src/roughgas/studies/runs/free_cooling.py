@@ -19,7 +19,7 @@ from roughgas.simulation.energies import ratio
 from roughgas.simulation.gas import Gas
 from roughgas.statistics.errors import blocking_stderr
 from roughgas.studies import dsmc
-from roughgas.studies.runs import timed
+from roughgas.studies.runs import check_alike, timed
 from roughgas.theory.shares import positive_root, shares
 
 E_FOLDS = 10.0  # of theory's relaxation before R is measured
@@ -37,6 +37,7 @@ class FreeCooling(NamedTuple):
     @property
     def constants(self) -> tuple[float, float, int, float]:
         """(r, beta, dimension, inertia), as theory takes them."""
+        check_alike(self.experiment)
         inertia = self.experiment["effects"]["spin"]["inertia"]
         return self.r, self.beta, len(self.experiment["box"]), inertia
 

@@ -20,7 +20,7 @@ from roughgas.scene import Scene, build
 from roughgas.simulation import schedule
 from roughgas.simulation.gas import Gas
 from roughgas.simulation.instant import whereabouts
-from roughgas.studies.runs import stream, timed
+from roughgas.studies.runs import check_alike, stream, timed
 from roughgas.studies.tasks import profile_name
 
 SUMS = ("particles", "u", "v", "uu", "vv", "uv", "w", "ww")
@@ -138,6 +138,7 @@ def run(task: str, settings, experiments, progress: Callable[[int, int], None]) 
     point = next(one for one in settings["points"] if task.startswith(profile_name(one) + "-"))
     number = int(task.removeprefix(profile_name(point) + "-"))
     seed = stream(settings, zlib.crc32(profile_name(point).encode()), number)
+    check_alike(experiments[point["experiment"]])
     profile = _equilibrated(point, experiments[point["experiment"]], settings, seed)
     periods = round(point["measure"] / point["period"])
     seconds, before = 0.0, profile.gas.collisions
