@@ -14,11 +14,12 @@ from typing import NamedTuple
 
 from brute_force.company import Company
 
+from exact.falling import NEVER, ZERO, exact_side, fall, fall_or_drift
 from exact.laws import restitution
 
 DIGITS = 50
 decimal.getcontext().prec = DIGITS
-ZERO, HALF, NEVER = Decimal(0), Decimal("0.5"), Decimal("Infinity")
+HALF = Decimal("0.5")
 
 
 class Event(NamedTuple):
@@ -50,6 +51,7 @@ class Exact:
         )
         ones = [Decimal(1)] * len(x)
         self.company = company or Company(ones, ones, [self.q] * len(x), [0] * len(x))
+        self.sides = {side.name: exact_side(side) for side in world.sides}
         self.contact_time = Decimal(world.contact_time)
         self.stroke = math.floor(time / self.floor[1]) if self.floor else 0
 
@@ -110,6 +112,7 @@ class Exact:
             for image in self._images(i, j):
                 yield self._until_contact(i, j, image), Event("pair", i, j, image)
         kinds = ("floor",) * bool(self.floor) + ("left", "right") * bool(self.walls)
+        kinds += tuple(self.sides)
         for kind, i in itertools.product(kinds, range(number)):
             event = Event(kind, i, stroke=self.stroke)
             yield self._wait(event), event
@@ -150,7 +153,12 @@ class Exact:
         if event.kind == "floor":
             rise = self.floor[0] / self.floor[1]
             gap = x[self.top] - radius - rise * (self.time - event.stroke * self.floor[1])
-            return _fall(gap, v[self.top] - rise, self.gravity)
+            return fall(gap, v[self.top] - rise, self.gravity)
+        if event.kind in self.sides:
+            side = self.sides[event.kind]
+            weight = side.inwards * self.gravity if side.axis == self.top else ZERO
+            gap = side.inwards * (x[side.axis] - side.at) - radius
+            return fall_or_drift(gap, side.inwards * v[side.axis], weight)
         gap, speed = x[0] - radius, -v[0]
         if event.kind == "right":
             gap, speed = self.walls[0] - radius - x[0], v[0]
@@ -188,9 +196,18 @@ class Exact:
             rise = [ZERO] * 3
             rise[self.top] = self.floor[0] / self.floor[1]
             self._bounce(event.i, times(rise, 1 / rise[self.top]), rise, *self.floor[2:])
+        elif event.kind in self.sides:
+            self._meet_side(event.i, self.sides[event.kind])
         else:
             n = (Decimal(1 if event.kind == "left" else -1), ZERO, ZERO)
             self._bounce(event.i, n, (ZERO,) * 3, *self.walls[1:])
+
+    def _meet_side(self, i, side):
+        n, moving = [ZERO] * 3, [ZERO] * 3
+        n[side.axis] = side.inwards
+        moving[side.along] = Decimal(side.settings["velocity"])
+        material = (Decimal(side.settings[name]) for name in ("restitution", "roughness"))
+        self._bounce(i, n, moving, *material)
 
     def _collide(self, i, j, image):
         x, v = self.apart(i, j, image)
@@ -245,13 +262,6 @@ class Exact:
 
 def _exact(number):
     return None if number is None else Decimal(number)
-
-
-def _fall(gap, speed, gravity):
-    """First time at which gap + speed t - gravity t^2/2 vanishes, from above."""
-    if gap <= 0 and speed < 0:
-        return ZERO
-    return (speed + (speed * speed + 2 * gravity * max(gap, ZERO)).sqrt()) / gravity
 
 
 def plus(a, b):

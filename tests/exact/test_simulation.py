@@ -4,7 +4,7 @@ from decimal import Decimal
 
 import numpy as np
 import pytest
-from brute_force import BruteForce, begin, compare, scene_of, settings, snapshot
+from brute_force import KERNELS, BruteForce, begin, compare, scene_of, settings, snapshot
 
 from exact import Exact, exactly, separation
 from exact.simulation import DIGITS, dot, times
@@ -13,6 +13,15 @@ TWO = [
     {"fraction": 0.5, "restitution": 0.9},
     {"fraction": 0.5, "radius": 1.5, "mass": 5.0, "inertia": 0.25, "roughness": -0.5},
 ]
+SLIDING = {
+    "spin": {"inertia": 0.5},
+    "left_wall": {"velocity": 0.7, "roughness": 0.5},
+    "right_wall": {"restitution": 0.9, "roughness": 1.0},
+    "bottom_wall": {"velocity": -1.0, "roughness": 0.8},
+    "lid": {"velocity": 1.0, "restitution": 0.8},
+}
+UNDER_A_LID = KERNELS["bed"]["effects"] | {"lid": {"restitution": 0.8, "roughness": 0.5}}
+UNDER_A_LID.pop("contact_averages")
 CASES = {
     # experiment, r, beta
     "gas": (settings("gas", 8, [12, 11]), 0.98, 0.2),
@@ -26,6 +35,12 @@ CASES = {
     "two species": (settings("gas", 8, [14, 13]) | {"species": TWO}, 0.98, 0.2),
     "bed of two species": (settings("bed", 8, [12, "open"]) | {"species": TWO}, 0.8, 0.2),
     "viscoelastic": (settings("viscoelastic", 8, [12, 11], threshold={"speed": 0.2}), 0.8, 0.2),
+    "sliding walls": (
+        {"particles": 8, "box": [9, 10], "effects": SLIDING},
+        0.9,
+        0.2,
+    ),
+    "under a lid": ({"particles": 8, "box": [9, 14], "effects": UNDER_A_LID}, 0.9, 0.2),
     "tabulated": (settings("tabulated bed", 8, [9, "open"], floor={"restitution": 0.9}), 0.8, 0.2),
 }
 
