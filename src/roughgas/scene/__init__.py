@@ -1,13 +1,14 @@
 """What is simulated: box, material and effects, and the state that it starts from."""
 
 from roughgas.scene.composition import DIAMETER, Scene, build, closed_axes, elastic
-from roughgas.scene.initial import check, check_places, initial_state
+from roughgas.scene.initial import bounds, check, check_places, initial_state
 from roughgas.scene.mixture import draw_bodies, for_theory, given_bodies, packing
-from roughgas.scene.sides import moves_along
+from roughgas.scene.sides import has_sides, moves_along
 
 __all__ = [
     "DIAMETER",
     "Scene",
+    "bounds",
     "build",
     "check",
     "check_places",
@@ -16,6 +17,7 @@ __all__ = [
     "elastic",
     "for_theory",
     "given_bodies",
+    "has_sides",
     "initial_state",
     "moves_along",
     "packing",

@@ -55,3 +55,9 @@ def smooth_walls(effects: Effects) -> Effects:
         if hasattr(wall, "restitution")
     }
     return effects._replace(**smooth)
+
+
+def has_sides(effects: Effects) -> bool:
+    """Return whether there are walls on single sides of the box."""
+    walls = (effects[part.place] for part in hooks.present(effects, "closes"))
+    return any(hasattr(wall, "place") for wall in walls)

@@ -14,7 +14,7 @@ from roughgas.base.errors import InputError
 from roughgas.base.legal import Interval
 from roughgas.kernel.hooks import displacement
 from roughgas.kernel.state import BASE, EXPONENT, NOW, Bodies, State
-from roughgas.scene import Scene, build, packing
+from roughgas.scene import Scene, bounds, build, has_sides, packing
 from roughgas.simulation import cooling, schedule
 from roughgas.simulation.ends import Initial, check_initial
 from roughgas.simulation.energies import Energies, ratio, restored
@@ -71,6 +71,8 @@ class Snapshot(NamedTuple):
     slide: float | None  # displacement of the image above a sheared gas, from 0 to L
     walls: float | None  # displacement of shaken walls
     bodies: Bodies | None = None  # what each particle is; None where all are alike
+    # (low, high) of each axis, in a: the surfaces of walls on single sides; inf where there is none
+    planes: Sequence[tuple[float, float]] = ()
 
     def radius(self) -> np.ndarray:
         """Return the radii of the particles, (N,) in a."""
@@ -259,6 +261,7 @@ def _snapshot(gas: Gas, before: int) -> Snapshot:
         slide=displacement(effects.shear, time),
         walls=displacement(effects.shaken_walls, time),
         bodies=_bodies(state),
+        planes=bounds(effects, position.shape[1], time) if has_sides(effects) else (),
     )
 
 

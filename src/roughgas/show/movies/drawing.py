@@ -135,12 +135,17 @@ def view_of(subject: MovieSubject, shots: Sequence[Snapshot]) -> View:
     vertical = len(lengths) - 1 if scene.effects.gravity is not None else 1
     width, tall = float(lengths[0]), lengths[vertical]
     bottom = 0.0
-    if scene.box[vertical] is None:
+    if lengths[vertical] == "open":
         tall = max((shot.position[:, vertical] + shot.radius()).max() for shot in shots)
         bottom = -0.05 * width
     shown = min(tall, TALLEST * width)
     margin = 0.04 * width if scene.box[0] is None else 0.0  # where walls are drawn
     images = SLIDING_IMAGES * tall if scene.effects.shear is not None else 0.0
+    if scene.box[vertical] is None and lengths[vertical] != "open":  # a lid, and what is beneath
+        bottom, images = -0.04 * width, 0.04 * width
+        return View(
+            -margin, width + margin, bottom, shown + images, vertical, (scene.box[0], None), False
+        )
     return View(
         left=-margin,
         right=width + margin,

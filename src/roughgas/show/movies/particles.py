@@ -1,6 +1,7 @@
 """Particles and boundaries as a movie shows them, each drawn once and then moved."""
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -145,9 +146,28 @@ class Boundaries:
             self._floor = Rectangle((view.left, view.bottom), wide, 0.0, color=WALL)
             axes.add_patch(self._floor)
 
+        self._sides = [Rectangle((0.0, 0.0), 0.0, 0.0, color=WALL) for _ in range(4)]
+        for side in self._sides:
+            axes.add_patch(side)
+
+    def _show_sides(self, planes: Sequence[tuple[float, float]]) -> None:
+        """Draw walls on single sides from the edge of the picture to their surfaces."""
+        view = self._view
+        (left, right), (low, high) = planes[0], planes[view.vertical]
+        ends = (view.left, left), (right, view.right)
+        for side, (begin, end) in zip(self._sides[:2], ends, strict=True):
+            if math.isfinite(end - begin):
+                side.set_bounds(begin, view.bottom, end - begin, view.top - view.bottom)
+        ends = (view.bottom, low), (high, view.top)
+        for side, (begin, end) in zip(self._sides[2:], ends, strict=True):
+            if math.isfinite(end - begin):
+                side.set_bounds(view.left, begin, view.right - view.left, end - begin)
+
     def show(self, shot: Snapshot) -> None:
         """Bring them to a snapshot."""
         view = self._view
+        if shot.planes:
+            self._show_sides(shot.planes)
         if self._floor is not None and shot.floor is not None:
             self._floor.set_height(shot.floor - view.bottom)
         if self._scratches is not None and shot.walls is not None:
