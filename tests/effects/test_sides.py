@@ -40,6 +40,10 @@ UNDER_A_LID = BED | {
     "left_wall": {"velocity": 2.0, "roughness": 0.4},
     "right_wall": {"shaken": "along", "wave": "triangle", "roughness": 0.4} | SHAKEN,
 }
+TWO = [
+    {"fraction": 0.5},
+    {"fraction": 0.5, "radius": 1.5, "mass": 5.0, "inertia": 0.25, "roughness": -0.5},
+]
 IN_SPACE = KERNELS["closed spheres"]["effects"]
 CASES = {
     # experiment, r, beta, seed
@@ -52,6 +56,7 @@ CASES = {
         0.2,
         1,
     ),
+    "two species": (settings("container", 12, [14, 16]) | {"species": TWO}, 0.95, 0.2, 1),
     "in space": (settings("closed spheres", 12, [8, 9, 10]), 0.95, 0.2, 1),
 }
 

@@ -40,6 +40,11 @@ CASES = {
         0.9,
         0.2,
     ),
+    "sliding walls, two species": (
+        {"particles": 8, "box": [12, 13], "effects": SLIDING, "species": TWO},
+        0.9,
+        0.2,
+    ),
     "under a lid": ({"particles": 8, "box": [9, 14], "effects": UNDER_A_LID}, 0.9, 0.2),
     "tabulated": (settings("tabulated bed", 8, [9, "open"], floor={"restitution": 0.9}), 0.8, 0.2),
 }
