@@ -34,6 +34,7 @@ nitpicky = True
 nitpick_ignore_regex = [
     ("py:.*", r"(numpy|xarray|pathlib|collections)\..*"),  # whose pages are not here
     ("py:class", r"roughgas\.(kernel|effects|simulation)\..*"),  # no library, but what is compiled
+    ("py:class", "Observe|Functions"),  # types of arguments, imported for the checker alone
 ]
 
 html_theme = "furo"

@@ -200,8 +200,9 @@ def trajectory(
 
     Parameters
     ----------
-    experiment, r, beta, seed, particles, box, effects, species, species_pairs, schedule, initial,
-    scale, config, progress
+    experiment, r, beta, seed, particles, box, effects, species, species_pairs, schedule
+        As for `simulate`.
+    initial, scale, config, progress
         As for `simulate`.
     start
         Where the frames begin; by default at `initial`, or when a driven gas should be steady.

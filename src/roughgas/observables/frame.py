@@ -37,7 +37,7 @@ class System(NamedTuple):
 
     @property
     def across(self) -> int:
-        """The axis that layers are across: the vertical one, of a sheared gas that of the shear."""
+        """The axis that layers are across, the vertical one; of a sheared gas that of the shear."""
         return 1 if self.shear_rate else self.dimension - 1
 
     @property
