@@ -10,6 +10,7 @@ import pytest
 from files import ABOUT
 
 from roughgas.base.errors import InputError
+from roughgas.base.files import write_text
 from roughgas.data import point as dataset
 from roughgas.data.point import Point, read_point, write_point
 
@@ -179,6 +180,16 @@ def test_what_a_killed_run_left_behind_is_removed(tmp_path):
     write_point(tmp_path / "a.nc", point())
     assert os.listdir(tmp_path) == ["a.nc"]
     assert read_point(tmp_path / "a.nc").R.item() == 0.25
+
+
+def test_what_a_process_has_left_is_removed_before_its_parent_notes_its_end(tmp_path):
+    over = subprocess.Popen([sys.executable, "-c", ""])
+    os.waitid(os.P_PID, over.pid, os.WEXITED | os.WNOWAIT)
+    left = tmp_path / f"table.csv.{over.pid}.tmp"
+    left.write_bytes(b"half a file")
+    write_text(tmp_path / "table.csv", "whole")
+    over.wait()
+    assert not left.exists()
 
 
 def test_writing_does_not_import_xarray(tmp_path):

@@ -51,12 +51,21 @@ def check_place(path: str | Path) -> None:
 def remove_dead_drafts(path: Path) -> None:
     """Remove what killed writers of `path` have left."""
     for left in path.parent.glob(f"{path.name}.*.tmp"):
-        try:
-            os.kill(int(left.name.split(".")[-2]), 0)
-        except (ValueError, ProcessLookupError):
+        if not _is_alive(left.name.split(".")[-2]):
             left.unlink(missing_ok=True)
-        except PermissionError:  # alive, and somebody else's
-            pass
+
+
+def _is_alive(process: str) -> bool:
+    """Return whether a process is there that can still write: one that is over, and whose end its
+    parent has not yet taken note of, cannot."""
+    try:
+        os.kill(int(process), 0)
+        state = Path(f"/proc/{process}/stat").read_bytes().rpartition(b")")[2].split()[0]
+    except (ValueError, ProcessLookupError):
+        return False
+    except OSError:  # somebody else's, or a system without /proc
+        return True
+    return state not in (b"Z", b"X")
 
 
 def write_text(path: str | Path, text: str) -> None:
