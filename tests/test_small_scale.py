@@ -39,6 +39,10 @@ BEYOND = [  # all at r = 0.9: an experiment or a variant of one, and beta
     ("waves/wavereversed_sawtooth", 1.0),
     ("vibrated_inertia/inertia0.3", 0.0),
     ("cooling_inertia/inertia0.05", 1.0),
+    ("vibrated_masses/mass4", 1.0),
+    ("vibrated_sizes/radius2", 1.0),
+    ("cooling_masses/mass4", 1.0),
+    ("cooling_polydisperse/deviation0.2", 0.0),
 ]
 COOLING = [(0.99, 0.0), (0.99, 1.0), (0.9, 0.0), (0.9, 0.5), (0.8, 0.5), (0.8, 1.0)]
 
