@@ -10,6 +10,7 @@ from test_targets import refusal
 
 from roughgas.data.point import read_point
 from roughgas.data.reduced import read_reduced
+from roughgas.show import catalogue
 
 EXPERIMENTS = {
     "spun": {"extends": "sheared", "sweep": {"spin.inertia": ["1", "0.1"]}},
@@ -98,7 +99,7 @@ def test_a_plan_has_a_pilot_for_each_variant(project, tmp_path):
     swept.configure(
         lambda config: config["scales"]["tiny"]["vibrated_inertia"]["sweep"].update(sweep)
     )
-    assert swept.planned("plan_extensions")["pilot"] == len(BEYOND) + 2
+    assert swept.planned("plan_extensions")["pilot"] == len(catalogue.shown_in("beyond")) + 2
 
 
 def test_any_legal_value_can_be_asked_for(project):
