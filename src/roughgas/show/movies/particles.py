@@ -146,13 +146,15 @@ class Boundaries:
             self._floor = Rectangle((view.left, view.bottom), wide, 0.0, color=WALL)
             axes.add_patch(self._floor)
 
-        self._sides = [Rectangle((0.0, 0.0), 0.0, 0.0, color=WALL) for _ in range(4)]
-        for side in self._sides:
-            axes.add_patch(side)
+        self._axes = axes
+        self._sides: list[Rectangle] = []
 
     def _show_sides(self, planes: Sequence[tuple[float, float]]) -> None:
         """Draw walls on single sides from the edge of the picture to their surfaces."""
         view = self._view
+        while len(self._sides) < 4:
+            self._sides.append(Rectangle((0.0, 0.0), 0.0, 0.0, color=WALL))
+            self._axes.add_patch(self._sides[-1])
         (left, right), (low, high) = planes[0], planes[view.vertical]
         ends = (view.left, left), (right, view.right)
         for side, (begin, end) in zip(self._sides[:2], ends, strict=True):
