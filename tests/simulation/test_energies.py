@@ -4,6 +4,7 @@ import pytest
 from roughgas.simulation.energies import (
     Energies,
     energies,
+    fitted_flow,
     ratio,
     ratio_of_means,
 )
@@ -97,3 +98,25 @@ def test_ratio_of_means_over_replicas_keeps_the_samples():
 def test_ratio_without_any_energy_is_undefined_and_silent(recwarn):
     assert np.isnan(ratio(Energies(np.zeros(1), np.zeros(1))))
     assert not recwarn.list
+
+
+def test_a_line_that_fits_the_flow_is_taken_off():
+    """What is left has neither mean velocity nor gradient; beside a weighted regression."""
+    rng = np.random.default_rng(5)
+    y, m = rng.uniform(-10, 10, 50), rng.uniform(0.5, 2.0, 50)
+    v = np.stack([0.3 + 0.7 * y + rng.standard_normal(50), rng.standard_normal(50)])
+    columns = {
+        "vv_x": (m * v[0] ** 2).sum(),
+        "vv_y": (m * v[1] ** 2).sum(),
+        "p_x": (m * v[0]).sum(),
+        "y": (m * y).sum(),
+        "yy": (m * y**2).sum(),
+        "yv_x": (m * y * v[0]).sum(),
+    }
+    columns = {name: np.array([value]) for name, value in columns.items()}
+    slope, level = np.polyfit(y, v[0], 1, w=np.sqrt(m))
+    rest = v[0] - level - slope * y
+    expected = (m * rest**2).sum() + (m * v[1] ** 2).sum()
+    found = energies(columns, 50, None, mass=m.sum())
+    assert found.translational == pytest.approx(expected / 200, rel=1e-12)
+    assert fitted_flow(columns, m.sum())[0] == pytest.approx(slope, rel=1e-12)
