@@ -125,14 +125,15 @@ def files(campaign, folder):
 
 
 def scenes(campaign, folder):
-    """Random legal scenes."""
+    """Random legal scenes, half of them of particles that differ."""
     from hard_cases import test_random_scenes as one
-    from hard_cases.compositions import scenes as random_scenes
+    from hard_cases.compositions import mixtures
+    from hard_cases.compositions import scenes as alike
 
     worst = one.Worst()
 
     def attempt(scene):
-        if not one.fits(*scene):
+        if not one.fits(*scene, worst.tried):
             return "too dense"
         stopped = worst.stopped
         worst.see(*scene)
@@ -140,7 +141,7 @@ def scenes(campaign, folder):
         assert worst.imbalance < 10.0 and worst.overlap < 1e-11 and worst.outside < 1e-11, scene
         return "stopped" if worst.stopped > stopped else "run"
 
-    sound = campaign.run(random_scenes(one.FEW), attempt)
+    sound = campaign.run(st.one_of(alike(one.FEW), mixtures(one.UNLIKE)), attempt)
     print(f"  {worst.collisions} contacts; energy missing: {worst.imbalance:.2g} roundings each;")
     print(f"  overlap {worst.overlap:.2g} a, depth in a wall or the floor {worst.outside:.2g} a")
     return sound
