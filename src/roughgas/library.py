@@ -8,12 +8,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from roughgas.config.arguments import Effects, Schedule, Side, Species
+from roughgas.config.arguments import Effects, Observe, Schedule, Side, Species
 
 if TYPE_CHECKING:
     import xarray
-
-    from roughgas.simulation.settings import Observe
 
 UNNAMED = "scene"
 """What a dataset calls the experiment where it has no name."""
@@ -34,7 +32,7 @@ def simulate(
     spin_temperature: float | None = None,
     initial: "xarray.Dataset | None" = None,
     keep_state: bool | None = None,
-    observe: "Observe | None" = None,
+    observe: Observe | None = None,
     scale: str = "paper",
     config: str | Path | None = None,
     progress: bool = True,

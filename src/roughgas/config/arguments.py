@@ -1,6 +1,6 @@
 """The types of keyword arguments that stand for keys of an experiment in config.yaml."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Literal, TypedDict
 
 Side = float | Literal["open"]
@@ -10,6 +10,9 @@ Effects = Mapping[str, Mapping[str, float | str] | None]
 
 Species = Sequence[Mapping[str, Any]]
 """Species, or pairs of them, each a mapping of keys to values."""
+Observe = Sequence[str] | Mapping[str, Mapping[str, float] | Callable[[Any], Any] | None]
+"""Observables by name, each with settings, with None for the usual ones, or a function of frames
+(`roughgas.observables.Frame`)."""
 
 
 class Schedule(TypedDict, total=False):

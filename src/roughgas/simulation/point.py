@@ -3,7 +3,7 @@
 import json
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -19,9 +19,6 @@ from roughgas.simulation.gas import Gas
 from roughgas.simulation.recorder import Recorder
 from roughgas.theory.mixture_composition import SPECIES
 
-if TYPE_CHECKING:
-    from roughgas.simulation.observing import Functions
-
 ENERGIES = ("E_trans", "E_rot", "R", "R_ratio_of_means")
 VOUCHED = {
     "equilibrated": ENERGIES,
@@ -36,7 +33,7 @@ def run_point(
     seed: int,
     tell: Callable[[float, int], None] | None = None,
     initial: Sequence[Initial] = (),
-    functions: "Functions | None" = None,
+    functions: Mapping[str, Callable[[Any], Any]] | None = None,
 ) -> Point:
     """Simulate one point and measure it.
 

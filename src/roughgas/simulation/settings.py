@@ -2,17 +2,12 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from roughgas import config
+from roughgas.config.arguments import Observe
 from roughgas.config.schema import check_schema
 from roughgas.simulation import schedule
-
-if TYPE_CHECKING:
-    from roughgas.observables import Frame
-
-Observe = Sequence[str] | Mapping[str, Mapping[str, float] | Callable[["Frame"], Any] | None]
-"""Observables by name, each with settings, with None for the usual ones, or a function."""
 
 
 def settings_of(
@@ -38,7 +33,7 @@ def settings_of(
 
 def observables_of(
     observe: Observe | None,
-) -> tuple[dict[str, Any] | None, dict[str, Callable[["Frame"], Any]]]:
+) -> tuple[dict[str, Any] | None, dict[str, Callable[[Any], Any]]]:
     """Return the observables that settings name, and those that are functions."""
     if observe is None:
         return None, {}
