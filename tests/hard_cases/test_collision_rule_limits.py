@@ -219,6 +219,6 @@ def test_without_parting(without):
         "particles part at 1e-10 of the typical speed at least",
         test_parting,
         "kernel/contact.py",
-        "    push = _parted(push, n, v, 0.5, least)\n",
+        "    push = _parted(push, n, v, 0.5 * mass_in(pair), least)\n",
         "",
     )

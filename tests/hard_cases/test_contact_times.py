@@ -102,7 +102,7 @@ def test_without_the_cross_product(without):
         "a discriminant from the cross product",
         test_grazing,
         "kernel/pairs.py",
-        "discriminant = DIAMETER * DIAMETER * uu - cross_squared(x, u)",
+        "discriminant = diameter * diameter * uu - cross_squared(x, u)",
         "discriminant = b * b - uu * c",
     )
 
