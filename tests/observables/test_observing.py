@@ -1,6 +1,8 @@
 """Observables of a run: they change no bit, land in the dataset, and refuse what makes no sense."""
 
 import shlex
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -47,6 +49,12 @@ def test_watching_changes_no_other_number(scene):
     more = watched.data_vars.keys() - plain.data_vars.keys()
     for name in KINDS["cumulants"].variables:
         assert {name, f"{name}_stderr", f"{name}_dof"} <= more
+
+
+def test_a_point_without_observables_does_not_even_import_them():
+    code = "import sys, roughgas.simulation.point; print('roughgas.observables' in sys.modules)"
+    found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert found.stdout == "False\n"
 
 
 def test_a_run_that_goes_on_is_watched_and_keeps_its_bits():
