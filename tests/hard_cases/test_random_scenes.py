@@ -164,8 +164,10 @@ def spoiled(chosen):
     """These settings of effects with each parameter in turn being each thing that it may not be."""
     for name in chosen:
         for key, about in KINDS[name].parameters.items():
+            either_sign = getattr(about, "interval", "").startswith("[-1e")
             for value in JUNK:
-                if value is not None or about.default is None:
+                legal = value == -7 and either_sign  # as a velocity may be
+                if not legal and (value is not None or about.default is None):
                     yield chosen | {name: chosen[name] | {key: value}}
 
 
