@@ -29,6 +29,8 @@ from roughgas.show.style import FAINT, LOOKS, PARAMETERS, THEORY, WIDTH, save
 PARTICLES = 160
 SQUARE = [50, 50]  # packing 0.2
 CUBE = [14.96] * 3  # packing 0.2
+WIDER = [79.06] * 2  # packing 0.2 of disks of radius 1 and 2, equally many
+TWO = ({"fraction": 0.5}, {"fraction": 0.5, "radius": 2})
 LENGTH = 200_000  # collisions that are timed in a run
 RUNS = 15
 
@@ -49,6 +51,7 @@ class Row(NamedTuple):
     box: list = SQUARE
     r: float = 1.0  # elastic, where nothing drives the gas or takes energy away
     beta: float = 1.0  # of particles that spin; the others are smooth
+    species: Sequence[dict] = ()
 
 
 SMOOTH = {"restitution": 1, "roughness": -1}
@@ -72,6 +75,7 @@ ROWS = (  # the barest gas comes first
     Row("+ spin, thermostat", SPIN | {"thermostat": HEAT}, r=0.9),
     Row("+ spin, thermostat, friction", SPIN | {"thermostat": HEAT, "friction": {"mu": 1}}, r=0.9),
     Row("+ third dimension", {}, box=CUBE),
+    Row("+ disks twice as large, one in two", {}, box=WIDER, species=TWO),
 )
 
 
@@ -112,6 +116,7 @@ def measure(rows=ROWS, runs: int = RUNS) -> list[Cost]:
 def prepare(row: Row):
     """(scene, state) of a row, in the steady state."""
     experiment = {"particles": PARTICLES, "box": row.box, "effects": row.effects}
+    experiment |= {"species": list(row.species)} if row.species else {}
     scene = build(experiment, row.r, row.beta if "spin" in row.effects else -1.0)
     state = initial_state(scene, experiment, np.random.default_rng(1))
     advance(scene, state, time=SETTLING)

@@ -8,11 +8,15 @@ from brute_force.scenes import KERNELS, RARE, begin, run, settings
 
 from roughgas.scene.initial import initial_state
 
+TWO = [{"fraction": 0.5}, {"fraction": 0.5, "radius": 1.5}]
+MIXED = ("gas", "heated", "rubbed bed")
+
 SCENES = {  # those that take longest first
     "walled, in cells": settings("walled", 800, [80, "open"]),
     "spheres, in cells": settings("spheres", 800, [28, 28, 28]),
     "sheared, in cells": settings("sheared", 800, [100, 100]),
     **{name: settings(name) for name in KERNELS if name not in RARE},
+    **{f"{name} of two species": settings(name) | {"species": TWO} for name in MIXED},
     "triangle": settings("bed", floor={"wave": "triangle"}),
     "sine": settings("bed", floor={"wave": "sine"}),
     "contact time": settings("gas")

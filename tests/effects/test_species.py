@@ -54,7 +54,14 @@ CASES = {
         14,
     ),
 }
-RARE = {"smallest box", "smooth gas", "sheared", "between shaken walls", "spheres, contact time"}
+RARE = {
+    "bed",
+    "smallest box",
+    "smooth gas",
+    "sheared",
+    "between shaken walls",
+    "spheres, contact time",
+}
 
 
 @pytest.mark.parametrize(
