@@ -11,7 +11,7 @@ THEORIES = "lines: theory of free cooling of mixtures"
 def draw(masses: xr.Dataset, sizes: xr.Dataset) -> Figure:
     """Draw the figure from the reduced datasets of gases of unlike masses, and of unlike radii."""
     columns = (
-        Column(masses, "Cooling gas", "A cooling mixture nearly follows theory"),
+        Column(masses, "Cooling gas", "A cooling mixture follows theory"),
         Column(sizes, "Cooling gas"),
     )
     return columns_figure(columns, THEORIES)

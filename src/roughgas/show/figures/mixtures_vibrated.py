@@ -11,7 +11,7 @@ THEORIES = "lines: Lun's formula for mixtures,\nfrom the measured temperatures"
 def draw(masses: xr.Dataset, sizes: xr.Dataset) -> Figure:
     """Draw the figure from the reduced datasets of beds of unlike masses, and of unlike radii."""
     columns = (
-        Column(masses, "Vibrated bed", "Heavy disks are hotter"),
-        Column(sizes, "Vibrated bed", "Size alone changes little"),
+        Column(masses, "Vibrated bed", "Heavy disks are hotter, at nearly one R"),
+        Column(sizes, "Vibrated bed", "Large disks rise; R knows nothing of it"),
     )
     return columns_figure(columns, THEORIES)

@@ -10,7 +10,8 @@ from roughgas.show.figures.panel import TWO_WIDE, PanelContent, ratio_figure, se
 from roughgas.show.style import LOOKS
 
 ALIKE = 0.0
-MESSAGES = "Sizes spread by 20 % change R hardly", "nor that of a cooling gas"
+LEGEND = 1.6  # inches beside the panels
+MESSAGES = "A bed does not feel a spread of sizes", "A cooling gas does, where R is steep"
 
 
 def draw(bed: xr.Dataset, cooling: xr.Dataset) -> Figure:
@@ -18,18 +19,16 @@ def draw(bed: xr.Dataset, cooling: xr.Dataset) -> Figure:
 
     Colours stand for r, symbols for the deviation of the radii.
     """
-    parts = [
-        _content(data, name, message)
-        for data, name, message in zip(
-            (bed, cooling), ("Vibrated bed", "Cooling gas"), MESSAGES, strict=True
-        )
-    ]
-    figure = ratio_figure(*parts, width=TWO_WIDE)
+    parts = (
+        _content("Vibrated bed", bed, message=MESSAGES[0], loc="upper left"),
+        _content("Cooling gas", cooling, message=MESSAGES[1], loc="outside"),
+    )
+    figure = ratio_figure(*parts, width=TWO_WIDE + LEGEND)
     figure.axes[len(parts)].set_ylabel("$R$ minus $R$ of\nequal disks")
     return figure
 
 
-def _content(data: xr.Dataset, name: str, message: str) -> PanelContent:
+def _content(name: str, data: xr.Dataset, **how: str) -> PanelContent:
     drawn = []
     for r, colours in zip(sorted(data.r.values, reverse=True), LOOKS, strict=False):
         alike = data.R.sel(r=r, deviation=ALIKE)
@@ -38,4 +37,4 @@ def _content(data: xr.Dataset, name: str, message: str) -> PanelContent:
             label = f"$r = {r:g}$, radii ± {100 * deviation:g} %"
             one = series(data, label, look, r=r, deviation=deviation)
             drawn.append(one._replace(theory=alike.sel(beta=one.at).values))
-    return PanelContent(name, [data], drawn, theories="lines: theory", message=message)
+    return PanelContent(name, [data], drawn, theories="lines: theory", **how)
