@@ -68,17 +68,17 @@ def test_particles_leave_a_thermal_wall_as_they_would_leave_a_gas(dimension):
 def flux(experiment, r, beta, seed, warm, measured):
     """(energy per time that flows from the left wall to the right one, its error), per length."""
     scene, state = begin(experiment, r, beta, seed)
-    run(state, scene, 1, interval=warm)
+    time = run(state, scene, 1, interval=warm)["time"][0]
     pieces = 40
     before, seen = books(state, scene).ledger, []
-    for _ in range(pieces):
-        run(state, scene, 1, interval=measured / pieces)
+    for _ in range(pieces):  # in steps that are short: a sample waits for a limited time only
+        until = run(state, scene, 20, interval=measured / pieces / 20)["time"][-1]
         now = books(state, scene).ledger
-        seen.append((now - before).sum(axis=1))
-        before = now
+        seen.append((now - before).sum(axis=1) / (until - time))
+        before, time = now, until
     accounts = [name for name in ("spin", "left_wall", "right_wall") if name in names(scene)]
     seen = np.array(seen)[:, : len(accounts)]
-    through = (seen[:, -2] - seen[:, -1]) / 2 / (measured / pieces)
+    through = (seen[:, -2] - seen[:, -1]) / 2
     return through.mean(), through.std(ddof=1) / math.sqrt(pieces)
 
 
