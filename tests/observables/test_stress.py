@@ -128,3 +128,30 @@ def test_the_pressure_of_elastic_disks_is_that_of_henderson(side):
     expected = 1 + 2 * packing * theory.contact_value(packing, 2)
     found = compressibility("smooth", 400, [side, side], 200_000, contact_stress={})
     assert found == pytest.approx(expected, rel=0.01)
+
+
+def test_g_at_contact_of_elastic_disks_is_that_of_henderson():
+    schedule = {
+        "kind": "cooling",
+        "replicas": 4,
+        "thermalise": 50,
+        "relaxation_times": 0,
+        "plateau": 100,
+        "sample_every": 0.25,
+    }
+    gas = simulate(
+        r=1.0,
+        beta=-1.0,
+        particles=160,
+        box=(40, 40),
+        effects={},
+        schedule=schedule,
+        observe="pair_correlation",
+        progress=False,
+    )
+    g = gas.pair_correlation
+    assert not g.where(g.distance < 2, drop=True).any()
+    expected = float(theory.contact_value(gas.packing, 2))
+    assert abs(gas.contact_value - expected) < 4 * gas.contact_value_stderr + 0.02 * expected
+    assert gas.contact_value_stderr < 0.05 * expected
+    assert float(g[-20:].mean()) == pytest.approx(1.0, abs=0.03)

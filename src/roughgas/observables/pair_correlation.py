@@ -2,7 +2,8 @@
 
     g(r) = <pairs at a distance in [r, r + dr)> / (N (N - 1)/2 * V_shell/V),
 
-1 where particles do not know of each other, and 0 below the diameter 2a. Its value at contact, chi,
+1 where particles do not know of each other, and 0 below the diameter 2a. A cooling gas is looked at
+in the moment of a collision; the pair that collides does not count. Its value at contact, chi,
 is that of a parabola through g just outside the diameter. In equilibrium chi is
 theory.contact_value: D. Henderson, Mol. Phys. 30, 971 (1975); N. F. Carnahan & K. E. Starling,
 J. Chem. Phys. 51, 635 (1969). M. P. Allen & D. J. Tildesley, Computer Simulation of Liquids (2017),
@@ -67,6 +68,8 @@ class PairCorrelation(Observable):
         """Return g of a frame."""
         counts = np.zeros(len(self._ideal))
         for square in squares(frame, self._edges[-1]):
+            if self.system.cooling:
+                square = square[np.abs(np.sqrt(square) - DIAMETER) > GRAZE]
             place = ((np.sqrt(square) + GRAZE) / self._width).astype(int)
             counts += np.bincount(place[place < len(counts)], minlength=len(counts))
         return {"pair_correlation": counts / self._ideal}
