@@ -142,7 +142,8 @@ def scenes(campaign, folder):
         return "stopped" if worst.stopped > stopped else "run"
 
     sound = campaign.run(st.one_of(alike(one.FEW), mixtures(one.UNLIKE)), attempt)
-    print(f"  {worst.collisions} contacts; energy missing: {worst.imbalance:.2g} roundings each;")
+    missing = f"energy missing: {worst.imbalance:.2g} roundings an exchange"
+    print(f"  {worst.collisions} contacts; {missing};")
     print(f"  overlap {worst.overlap:.2g} a, depth in a wall or the floor {worst.outside:.2g} a")
     return sound
 

@@ -62,7 +62,7 @@ class Worst:
             if record(state, scene, Sampling(20.0, 150, 0), row) == 0:
                 self.stopped += 1
                 break
-            self._see_books(before, books(state, scene), contacts_of(state))
+            self._see_books(before, books(state, scene), exchanges_of(state))
             shot = snapshot(state, scene)
             self.overlap = max(self.overlap, largest_overlap(state, scene, world))
             self.outside = max(self.outside, outside(shot, world))
@@ -77,12 +77,12 @@ class Worst:
         self.tried += 1
         self.collisions += contacts_of(state)
 
-    def _see_books(self, before, after, contacts):
+    def _see_books(self, before, after, exchanges):
         booked = after.ledger - before.ledger
         missing = imbalance(booked, after.energy - before.energy)
         exchanged = np.abs(booked).sum()
         scale = exchanged / (exchanged + np.abs(before.energy).sum())
-        self.imbalance = max(self.imbalance, missing * scale / ROUNDING / (10 + contacts))
+        self.imbalance = max(self.imbalance, missing * scale / ROUNDING / (10 + exchanges))
         self.gained = max(self.gained, booked[-1].sum() / (exchanged + np.abs(before.energy).sum()))
 
     def _see_contacts(self, state, scene, world, row):
@@ -104,6 +104,11 @@ class Worst:
 def contacts_of(state):
     """Contacts made so far, those with boundaries among them."""
     return int(state.counts[COLLISIONS] + state.counts[BOUNDARY_HITS])
+
+
+def exchanges_of(state):
+    """Contacts and kicks of a thermostat so far: a gas may have thousands of kicks alone."""
+    return (int(state.changes.sum()) + int(state.counts[BOUNDARY_HITS])) / 2
 
 
 def changes_by_label(state):
@@ -235,7 +240,7 @@ def keep_invariants(margins, kinds, few, many):
 
     see()
     tried = {"tried": worst.tried, "unit": f"scenes, {worst.collisions} contacts"}
-    what = "energy missing in the books, in roundings of it a contact"
+    what = "energy missing in the books, in roundings of it an exchange"
     margins.at_most(what, worst.imbalance, 10.0, **tried)
     margins.at_most("energy that contacts give, over all", worst.gained, 1e-12, **tried)
     what = "momentum gained without boundaries, over the sum of speeds"
