@@ -37,7 +37,8 @@ QUOTES = {
         "how little r matters), "
         "and {claims_fail} fail.",
         "judges {open_questions_statements} statements in `results/paper/open_questions.md`, of "
-        "which {open_questions_fail} fail: two on weak friction, and Lun's formula in a bed of",
+        "which {open_questions_fail} fail: two on weak friction, two on rough walls that slide, "
+        "and Lun's formula in a bed of",
         "within {cooling_spheres_off:.3f} at all of {cooling_spheres_points:.0f} points, sheared "
         "ones Lun's formula within {sheared_spheres_off:.3f}.",
         "A bed lies above it by up to {vibrated_spheres_most_above:()}, averaged over collisions "
