@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parent.parent
+MAKE = ["make", "--no-print-directory"]  # which is said within `make test`
 PACKAGES = 60
 PIP = """#!/bin/sh
 echo "$@" > told
@@ -32,7 +33,7 @@ def install(tmp_path):
         pip = tmp_path / "pip"
         pip.write_text(PIP.format(packages=PACKAGES, end=end))
         pip.chmod(0o755)
-        command = ["make", "-f", ROOT / "Makefile", ".venv/with-docs", "PIP=./pip"]
+        command = [*MAKE, "-f", ROOT / "Makefile", ".venv/with-docs", "PIP=./pip"]
         ran = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
         return ran, tmp_path / ".venv/with-docs", (tmp_path / "told").read_text()
 
@@ -60,7 +61,7 @@ def test_of_a_failure_it_says_all(install):
 
 def planned(*arguments):
     """The lines that make would carry out."""
-    command = ["make", "-n", *arguments]
+    command = [*MAKE, "-n", *arguments]
     ran = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
     return ran.stdout.splitlines()
 

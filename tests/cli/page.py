@@ -18,6 +18,7 @@ from roughgas.cli import main
 ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "command_line.md"
 BLOCK = re.compile(r"^```console\n(.*?)^```$", re.DOTALL | re.MULTILINE)
+PROGRESS = re.compile(r"^.* s so far\n", re.MULTILINE)  # which a slow machine makes
 WIDEST = 140
 NUMBER = r"[\d.]+(?:e\+\d+)?"
 MACHINE = [
@@ -52,7 +53,7 @@ def written(block, printed):
     for command in commands(block):
         program, *arguments = shlex.split(command)
         assert program == "roughgas"
-        lines = printed(arguments).splitlines()
+        lines = PROGRESS.sub("", printed(arguments)).splitlines()
         text += f"$ {command}\n" + "".join(f"{cut(line)}\n" for line in lines)
     return text
 

@@ -46,7 +46,7 @@ def completed(line, script):
         ("roughgas comp", {"compile", "completion"}),
         ("roughgas theory --dim", {"--dimension"}),
         ("roughgas theory --dimension ", {"2", "3"}),
-        ("roughgas run coo", {"cooling", "cooling_spheres", "cooling_friction", "cooling_inertia"}),
+        ("roughgas run cooling_s", {"cooling_spheres", "cooling_sizes"}),
         ("roughgas run vibrated_friction/mu0.0", {f"vibrated_friction/mu0.0{k}" for k in "13"}),
         ("roughgas plan sheared vibrated_i", {"vibrated_inertia"}),
         ("roughgas bench cooling --scale ", {"paper", "coarse", "fine", "small"}),

@@ -6,6 +6,7 @@ from PIL import Image
 NAMES = (
     "vibrated",
     "roughness",
+    "mixture",
     "sheared",
     "cooling",
     "rough_walls",
@@ -26,7 +27,7 @@ def test_movies_need_no_point(project):
 def test_an_unknown_movie_is_refused_in_one_line(project):
     status, output = project.snakemake("-j1", "figures/movies/flow.gif")
     assert status != 0
-    assert "roughgas: error: movie = flow: must be one of vibrated, roughness, sheared" in output
+    assert f"roughgas: error: movie = flow: must be one of {', '.join(NAMES)}" in output
 
 
 @pytest.mark.slow
