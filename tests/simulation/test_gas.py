@@ -137,6 +137,35 @@ def test_a_gas_in_which_time_hardly_goes_on_is_given_up(monkeypatch):
     )
 
 
+def test_particles_that_do_little_but_hit_walls_are_given_up(monkeypatch):
+    bed = settings("bed")
+    gas = Gas.start(build(bed, 0.9, 0.2), bed, np.random.default_rng(1))
+    gas.in_time(2.0, 10)
+    monkeypatch.setattr("roughgas.simulation.recorder.HELD", 0.002)
+    with pytest.raises(JammedError, match=r"more than 0\.002 hits of walls and floor by each part"):
+        gas.in_time(30.0, 100)
+
+
+@pytest.mark.slow
+def test_a_particle_held_in_a_corner_is_given_up():
+    """Found by a campaign: elastic within the contact time, it hits the wall 1e7 times a T."""
+    material = {"restitution": 0.3, "roughness": 0.5}
+    corner = {
+        "particles": 3,
+        "box": [8.150308597455371, "open"],
+        "effects": {
+            "spin": {"inertia": 0.9318785065468795},
+            "gravity": {"acceleration": 9.0},
+            "floor": {"amplitude": 0.7302816097250766, "period": 2.7221786675685795, **material},
+            "walls": material,
+            "contact_time": {"duration": 1e-5},
+        },
+    }
+    scene, state = begin(corner, 0.6435775350489338, 0.0, 3)
+    with pytest.raises(JammedError, match="some are held: make walls and floor smoother"):
+        Gas(scene, state).in_time(0.5, 40)
+
+
 @pytest.mark.parametrize("soon", [0.0, math.inf])
 def test_no_bit_depends_on_how_long_the_calls_of_the_kernel_are(monkeypatch, soon):
     plain, refreshed = gas_of(0.5, 0.5, 2), gas_of(0.5, 0.5, 2, 40)

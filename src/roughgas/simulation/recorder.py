@@ -13,6 +13,7 @@ from roughgas.kernel.clock import INSTANT
 from roughgas.kernel.record import Sampling, columns, record
 from roughgas.kernel.state import (
     BASE,
+    BOUNDARY_HITS,
     COLLISIONS,
     EXPONENT,
     LAST_FIRST,
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
 REPORTS = 50
 SOON = 0.5  # seconds after which a call of the kernel should come back
 JAMMED = 50_000  # collisions of each particle within a sample, or within a T if that is longer
+HELD = 1_000_000  # hits of walls and floor by each particle within a T, or a call if that is longer
 NAMED = 8  # of the particles in a collapse
 
 
@@ -69,7 +71,7 @@ class Recorder:
         """Advance `state`; return columns (name -> array of length `samples`).
 
         Raises CollapseError if contacts accumulate without end, JammedError where samples are due
-        at times and one of them takes `sampling.collisions`.
+        at times and one of them takes `sampling.collisions`, or particles do little but hit walls.
         """
         names = columns(scene)
         rows = np.empty((samples, len(names)))
@@ -78,11 +80,14 @@ class Recorder:
         first, length = 0, max(1, sampling.refresh)
         while first < samples:
             part, called = rows[first : first + length], time.perf_counter()
-            made = int(state.counts[COLLISIONS])
+            made, hits, start = int(state.counts[COLLISIONS]), _hits(state), now(state)
             if record(state, scene, sampling, part) < len(part):
                 raise _collapse(state, scene)
             if timed and np.diff(part[:, 1], prepend=made).max() >= sampling.collisions:
                 raise _jam(state, sampling.interval)
+            most = HELD * len(state.label) * max(1.0, now(state) - start)
+            if timed and _hits(state) - hits > most:
+                raise _held(state)
             first += len(part)
             length = _next_length(length, time.perf_counter() - called, samples, sampling.refresh)
             if self._tell:
@@ -114,6 +119,16 @@ def _jam(state: State, interval: float) -> JammedError:
     limit = f"{JAMMED} collisions of each particle within {max(1.0, interval):g} T"
     remedy = "give it more room, raise r, or sample it more often"
     return JammedError(f"more than {limit}, at t = {now(state):.6g} T: the gas is jammed: {remedy}")
+
+
+def _hits(state: State) -> int:
+    return int(state.counts[BOUNDARY_HITS])
+
+
+def _held(state: State) -> JammedError:
+    limit = f"{HELD} hits of walls and floor by each particle within a T"
+    remedy = "make walls and floor smoother, or raise their r"
+    return JammedError(f"more than {limit}, at t = {now(state):.6g} T: some are held: {remedy}")
 
 
 def now(state: State) -> float:
