@@ -59,7 +59,8 @@ def poison(kind):
 
 if __name__ == "__main__":
     kernel, *others = sys.argv[1:]
-    absent = KINDS.keys() - settings(kernel)["effects"].keys()
-    for name in absent | set(others):
-        poison(KINDS[name])
+    effects = settings(kernel)["effects"]
+    absent = {*KINDS.values()} - {KINDS[name] for name in effects}  # walls of all sides are a kind
+    for kind in absent | {KINDS[name] for name in others}:
+        poison(kind)
     print(json.dumps(checksums(kernel)))
