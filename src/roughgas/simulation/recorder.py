@@ -80,13 +80,12 @@ class Recorder:
         first, length = 0, max(1, sampling.refresh)
         while first < samples:
             part, called = rows[first : first + length], time.perf_counter()
-            made, hits, start = int(state.counts[COLLISIONS]), _hits(state), now(state)
+            made, hits = int(state.counts[COLLISIONS]), _hits(state)
             if record(state, scene, sampling, part) < len(part):
                 raise _collapse(state, scene)
             if timed and np.diff(part[:, 1], prepend=made).max() >= sampling.collisions:
                 raise _jam(state, sampling.interval)
-            most = HELD * len(state.label) * max(1.0, now(state) - start)
-            if timed and _hits(state) - hits > most:
+            if timed and _hits(state) - hits > _most_hits(len(part) * sampling.interval, state):
                 raise _held(state)
             first += len(part)
             length = _next_length(length, time.perf_counter() - called, samples, sampling.refresh)
@@ -102,6 +101,11 @@ class Recorder:
 def most_in(interval: float, particles: int) -> int:
     """Return the collisions in a gas within a sample of `interval` T after which it is jammed."""
     return math.ceil(particles / 2 * JAMMED * max(1.0, interval))
+
+
+def _most_hits(time: float, state: State) -> float:
+    """Return the hits of walls and floor within some T after which particles are held there."""
+    return HELD * len(state.label) * max(1.0, time)
 
 
 def _next_length(length: int, took: float, samples: int, refresh: int) -> int:
