@@ -3,6 +3,8 @@
 import pytest
 from PIL import Image
 
+from roughgas.simulation.snapshots import COOLING
+
 NAMES = (
     "vibrated",
     "roughness",
@@ -35,4 +37,4 @@ def test_one_is_made(project, tmp_path):
     copy = project.copy_to(tmp_path / "copy")
     copy.succeed("-j1", *TINY, "figures/tiny/movies/cooling.gif")
     with Image.open(copy.folder / "figures/tiny/movies/cooling.gif") as image:
-        assert image.n_frames == 100 and image.width == 480
+        assert image.n_frames == COOLING.frames and image.width == 480

@@ -13,6 +13,7 @@ from roughgas.effects.floor import Floor
 from roughgas.effects.friction import Friction
 from roughgas.effects.gravity import Gravity
 from roughgas.effects.restitution_table import RestitutionTable
+from roughgas.effects.settings import schema_of_kinds
 from roughgas.effects.shaken_walls import ShakenWalls
 from roughgas.effects.shear import Shear
 from roughgas.effects.side import SideWall
@@ -74,20 +75,8 @@ del KINDS["species"]  # a key of its own in settings
 
 def schema() -> dict[str, Any]:
     """Return what `effects` may hold in settings, as a JSON schema; null takes an effect away."""
-    return {
-        "description": "What acts in this experiment; an effect that is not listed costs nothing.",
-        "type": "object",
-        "additionalProperties": False,
-        "properties": {
-            name: {
-                "description": kind.__doc__,
-                "type": ["object", "null"],
-                "additionalProperties": False,
-                "properties": {key: one.schema() for key, one in kind.parameters.items()},
-            }
-            for name, kind in KINDS.items()
-        },
-    }
+    description = "What acts in this experiment; an effect that is not listed costs nothing."
+    return schema_of_kinds(description, KINDS, lambda kind: kind.parameters)
 
 
 def required() -> dict[str, Any]:

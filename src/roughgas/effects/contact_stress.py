@@ -10,7 +10,7 @@ from itertools import product
 from typing import NamedTuple
 
 from roughgas.effects.settings import register
-from roughgas.kernel.hooks import either
+from roughgas.kernel.bodies import radius_of
 from roughgas.kernel.jit import jit
 
 AXES = "xyz"
@@ -22,14 +22,10 @@ class ContactStress(NamedTuple):
     """Momentum times the distance over which contacts carry it is summed over all pairs."""
 
 
-distance = either(
-    lambda bodies, i, j: bodies.radius[i] + bodies.radius[j], lambda bodies, i, j: 2.0
-)
-
-
 @jit
 def contact_seen(stress, index, none, state, i, j, n, v, w, push):
-    sums, far = state.sums.contact_stress, distance(state.bodies, i, j)
+    sums, bodies = state.sums.contact_stress, state.bodies
+    far = radius_of(bodies, i) + radius_of(bodies, j)
     for k in range(len(n)):
         for along in range(len(n)):
             sums[0, 3 * k + along] -= push[k] * far * n[along]

@@ -4,7 +4,7 @@ An effect's file registers its parameters and its hooks; what config.yaml may ho
 messages quote, is made from the parameters.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from roughgas.base.errors import InputError
@@ -123,6 +123,29 @@ MATERIAL = {
     "roughness": OfParticles(Number("Roughness of contacts with it", ROUGHNESS.text), "roughness"),
 }
 """The parameters of what particles bounce off."""
+
+
+def schema_of_kinds(
+    description: str, kinds: Mapping[str, Any], parameters: Callable[[Any], Mapping[str, Any]]
+) -> dict[str, Any]:
+    """Return what may be listed by these names, with the parameters of each, as a JSON schema.
+
+    null takes an inherited one away.
+    """
+    return {
+        "description": description,
+        "type": "object",
+        "additionalProperties": False,
+        "properties": {
+            name: {
+                "description": kind.__doc__,
+                "type": ["object", "null"],
+                "additionalProperties": False,
+                "properties": {key: one.schema() for key, one in parameters(kind).items()},
+            }
+            for name, kind in kinds.items()
+        },
+    }
 
 
 def register(kind: Any, parameters: Mapping[str, Any] | None = None, **hooks: Any) -> None:

@@ -9,6 +9,7 @@ from functools import partial
 from typing import Any, NamedTuple
 
 from roughgas.base.errors import InputError, not_one_of
+from roughgas.effects.settings import schema_of_kinds
 from roughgas.observables.cumulants import Cumulants
 from roughgas.observables.frame import Frame, System
 from roughgas.observables.histograms import Histograms
@@ -95,17 +96,5 @@ def effects_of(names: Iterable[str]) -> dict[str, dict[str, Any]]:
 
 def schema() -> dict[str, Any]:
     """Return what `observables` may hold in settings, as a JSON schema; null takes one away."""
-    return {
-        "description": "What is watched during a run; what is not listed costs nothing.",
-        "type": "object",
-        "additionalProperties": False,
-        "properties": {
-            name: {
-                "description": kind.__doc__,
-                "type": ["object", "null"],
-                "additionalProperties": False,
-                "properties": {key: one.schema() for key, one in _settings(kind).items()},
-            }
-            for name, kind in KINDS.items()
-        },
-    }
+    description = "What is watched during a run; what is not listed costs nothing."
+    return schema_of_kinds(description, KINDS, _settings)

@@ -1,6 +1,6 @@
 """What is simulated: box, material and effects, and the state that it starts from."""
 
-from roughgas.scene.composition import DIAMETER, Scene, build, closed_axes, elastic
+from roughgas.scene.composition import DIAMETER, Scene, build, closed_axes, elastic, shear_rate
 from roughgas.scene.initial import bounds, check, check_places, initial_state
 from roughgas.scene.mixture import draw_bodies, for_theory, given_bodies, packing
 from roughgas.scene.sides import has_sides, moves_along
@@ -21,4 +21,5 @@ __all__ = [
     "initial_state",
     "moves_along",
     "packing",
+    "shear_rate",
 ]

@@ -36,6 +36,12 @@ class Scene(NamedTuple):
     middle: float  # height at which the mean flow vanishes, in a
 
 
+def shear_rate(scene: Scene) -> float:
+    """Return Gamma in 1/T, 0 where nothing shears the gas."""
+    shear = scene.effects.shear
+    return 0.0 if shear is None else shear.velocity / (2.0 * scene.middle)
+
+
 def build(experiment: Mapping[str, Any], r: float, beta: float) -> Scene:
     """Return the scene of an experiment, with particles of restitution r and roughness beta.
 

@@ -12,7 +12,14 @@ from roughgas.kernel import hooks
 from roughgas.kernel.hooks import displacement
 from roughgas.kernel.layout import new_state
 from roughgas.kernel.state import State
-from roughgas.scene.composition import DIAMETER, NARROWEST_CHANNEL, Scene, build, strokes
+from roughgas.scene.composition import (
+    DIAMETER,
+    NARROWEST_CHANNEL,
+    Scene,
+    build,
+    shear_rate,
+    strokes,
+)
 from roughgas.scene.mixture import draw_bodies
 from roughgas.scene.places import places_for
 
@@ -68,10 +75,8 @@ def initial_state(
     if bodies is not None:
         velocity /= np.sqrt(bodies.mass)[:, None]
     velocity -= np.average(velocity, axis=0, weights=None if bodies is None else bodies.mass)
-    shear = scene.effects.shear
-    if shear is not None:
-        height = position[:, 1] - scene.middle
-        velocity[:, 0] += shear.velocity / (2.0 * scene.middle) * height
+    if scene.effects.shear is not None:
+        velocity[:, 0] += shear_rate(scene) * (position[:, 1] - scene.middle)
     spin = np.zeros((number, 2 * position.shape[1] - 3))
     temperature = experiment.get("spin_temperature", 0.0)
     if temperature > 0.0:  # of m q (a w)^2 for each component, as of m v^2 above

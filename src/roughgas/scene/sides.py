@@ -39,19 +39,17 @@ def _check_opposite(effects, name, other):
 
 def moves_along(effects: Effects) -> bool:
     """Return whether walls that close the second axis move along the first, so that gas flows."""
-    walls = (effects[part.place] for part in hooks.present(effects, "closes"))
     return any(
-        getattr(wall, "axis", 0) == 1 and getattr(wall, "velocity", 0.0) != 0.0 for wall in walls
+        getattr(wall, "axis", 0) == 1 and getattr(wall, "velocity", 0.0) != 0.0
+        for wall in _walls(effects).values()
     )
 
 
 def smooth_walls(effects: Effects) -> Effects:
     """Return the effects with all walls smooth and elastic."""
-    names = (effects._fields[part.place] for part in hooks.present(effects, "closes"))
-    walls = {name: getattr(effects, name) for name in names}
     smooth = {
         name: wall._replace(restitution=1.0, roughness=-1.0)
-        for name, wall in walls.items()
+        for name, wall in _walls(effects).items()
         if hasattr(wall, "restitution")
     }
     return effects._replace(**smooth)
@@ -59,5 +57,10 @@ def smooth_walls(effects: Effects) -> Effects:
 
 def has_sides(effects: Effects) -> bool:
     """Return whether there are walls on single sides of the box."""
-    walls = (effects[part.place] for part in hooks.present(effects, "closes"))
-    return any(hasattr(wall, "place") for wall in walls)
+    return any(hasattr(wall, "place") for wall in _walls(effects).values())
+
+
+def _walls(effects):
+    """Return all that closes an axis, by name."""
+    places = (part.place for part in hooks.present(effects, "closes"))
+    return {effects._fields[place]: effects[place] for place in places}

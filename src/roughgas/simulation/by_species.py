@@ -11,7 +11,7 @@ import numpy as np
 from roughgas.effects import inertia
 from roughgas.effects.species import mixture_of
 from roughgas.kernel.state import State
-from roughgas.scene import Scene, moves_along
+from roughgas.scene import Scene, moves_along, shear_rate
 from roughgas.simulation.energies import (
     Columns,
     Energies,
@@ -41,17 +41,17 @@ def energies_of(
 ) -> Energies:
     """Return the energies of samples, of all particles or of one species; of a sheared gas without
     mean flow and mean spin."""
-    shear, q, bodies = scene.effects.shear, inertia(scene.effects), state.bodies
-    shear_rate = None if shear is None else shear.velocity / (2.0 * scene.middle)
+    q, bodies = inertia(scene.effects), state.bodies
+    rate = None if scene.effects.shear is None else shear_rate(scene)
     flows = moves_along(scene.effects)
     if bodies is None:
         number = len(state.changes)
-        return energies(columns, number, q, shear_rate, mass=float(number) if flows else None)
+        return energies(columns, number, q, rate, mass=float(number) if flows else None)
     which = np.full(len(bodies.mass), True) if species is None else bodies.species == species
     columns = columns if species is None else of_species(columns, species)
     moments = (bodies.mass * bodies.inertia * bodies.radius**2)[which]
     spins, mass = float(np.sum(moments / (q or 1.0))), float(np.sum(bodies.mass[which]))
-    return energies(columns, int(which.sum()), q, shear_rate, spins, mass if flows else None)
+    return energies(columns, int(which.sum()), q, rate, spins, mass if flows else None)
 
 
 def shear_rates(columns: Columns, state: State) -> np.ndarray:

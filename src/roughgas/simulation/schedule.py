@@ -7,7 +7,7 @@ from roughgas import scene
 from roughgas.base.errors import InputError
 from roughgas.effects import inertia
 from roughgas.kernel import hooks
-from roughgas.scene import Scene
+from roughgas.scene import Scene, shear_rate
 from roughgas.simulation import cooling, steady
 from roughgas.simulation.ends import Initial
 from roughgas.simulation.energies import Columns
@@ -72,13 +72,12 @@ def system_of(scene: Scene, experiment: Mapping[str, Any]) -> "System":
     from roughgas.observables import System
 
     effects, schedule = scene.effects, experiment["schedule"]
-    shear = effects.shear
     return System(
         particles=experiment["particles"],
         box=tuple(None if side == "open" else float(side) for side in experiment["box"]),
         periodic=tuple(length is not None for length in scene.box),
         inertia=inertia(effects),
-        shear_rate=0.0 if shear is None else shear.velocity / (2.0 * scene.middle),
+        shear_rate=shear_rate(scene),
         interval=schedule["sample_every"],
         cooling=not KINDS[schedule["kind"]].DRIVEN,
         alike=effects.species is None,

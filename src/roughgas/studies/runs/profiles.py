@@ -16,7 +16,7 @@ import xarray as xr
 
 from roughgas.effects import inertia
 from roughgas.kernel.state import LAST_FIRST, LAST_SECOND
-from roughgas.scene import Scene, build
+from roughgas.scene import build, shear_rate
 from roughgas.simulation import schedule
 from roughgas.simulation.gas import Gas
 from roughgas.simulation.instant import whereabouts
@@ -162,12 +162,6 @@ def _about(scene):
     """Return what the sums are turned into averages with; `area` is that of a slice, a^(D - 1)."""
     found = {"dimension": len(scene.box), "inertia": inertia(scene.effects)}
     return found | {"area": math.prod(scene.box[:-1]), "shear_rate": shear_rate(scene)}
-
-
-def shear_rate(scene: Scene) -> float:
-    """Return Gamma in 1/T, 0 where nothing shears the gas."""
-    shear = scene.effects.shear
-    return 0.0 if shear is None else shear.velocity / (2.0 * scene.middle)
 
 
 def _one_period(profile, done):
