@@ -25,15 +25,15 @@ class Side(NamedTuple):
     settings: dict
 
     def shift(self, time):
-        """How far a stroke has gone, of a wall that is shaken."""
+        """How far a stroke has gone, of a wall that is shaken; of one time or an array of them."""
         share = time / self.settings["period"] % 1.0
         return (
             self.settings["amplitude"]
             * {
                 "sawtooth": lambda: share,
-                "reversed_sawtooth": lambda: share / 0.1 if share < 0.1 else (1.0 - share) / 0.9,
-                "triangle": lambda: 2.0 * min(share, 1.0 - share),
-                "sine": lambda: 0.5 - 0.5 * math.cos(2.0 * math.pi * share),
+                "reversed_sawtooth": lambda: np.where(share < 0.1, share / 0.1, (1.0 - share) / 0.9),
+                "triangle": lambda: 2.0 * np.minimum(share, 1.0 - share),
+                "sine": lambda: 0.5 - 0.5 * np.cos(2.0 * math.pi * share),
             }[self.settings["wave"]]()
         )
 
@@ -88,10 +88,10 @@ class Side(NamedTuple):
             return gap + speed * wait - weight * wait**2 / 2.0 - self.shift(time + wait)
 
         waits = limit * INSTANTS
-        below = next((k for k in range(1, len(waits)) if apart(waits[k]) < 0.0), None)
-        if below is None:
+        through = np.flatnonzero(apart(waits[1:]) < 0.0)
+        if len(through) == 0:
             return math.inf
-        above, below = waits[below - 1], waits[below]
+        above, below = waits[through[0]], waits[through[0] + 1]
         for _ in range(60):
             middle = 0.5 * (above + below)
             above, below = (above, middle) if apart(middle) < 0.0 else (middle, below)
