@@ -137,13 +137,16 @@ def test_a_gas_in_which_time_hardly_goes_on_is_given_up(monkeypatch):
     )
 
 
-def test_particles_that_do_little_but_hit_walls_are_given_up(monkeypatch):
+@pytest.mark.parametrize(
+    "go_on", [lambda gas: gas.in_time(30.0, 100), lambda gas: gas.step(gas.time + 30.0, 10**6)]
+)
+def test_particles_that_do_little_but_hit_walls_are_given_up(monkeypatch, go_on):
     bed = settings("bed")
     gas = Gas.start(build(bed, 0.9, 0.2), bed, np.random.default_rng(1))
     gas.in_time(2.0, 10)
     monkeypatch.setattr("roughgas.simulation.recorder.HELD", 0.002)
     with pytest.raises(JammedError, match=r"more than 0\.002 hits of walls and floor by each part"):
-        gas.in_time(30.0, 100)
+        go_on(gas)
 
 
 @pytest.mark.slow

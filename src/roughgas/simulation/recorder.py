@@ -70,8 +70,8 @@ class Recorder:
     ) -> Columns:
         """Advance `state`; return columns (name -> array of length `samples`).
 
-        Raises CollapseError if contacts accumulate without end, JammedError where samples are due
-        at times and one of them takes `sampling.collisions`, or particles do little but hit walls.
+        Raises CollapseError if contacts accumulate without end, JammedError where particles do
+        little but hit walls, or where samples are `timed` and one takes `sampling.collisions`.
         """
         names = columns(scene)
         rows = np.empty((samples, len(names)))
@@ -85,7 +85,7 @@ class Recorder:
                 raise _collapse(state, scene)
             if timed and np.diff(part[:, 1], prepend=made).max() >= sampling.collisions:
                 raise _jam(state, sampling.interval)
-            if timed and _hits(state) - hits > _most_hits(len(part) * sampling.interval, state):
+            if _hits(state) - hits > _most_hits(len(part) * sampling.interval, state):
                 raise _held(state)
             first += len(part)
             length = _next_length(length, time.perf_counter() - called, samples, sampling.refresh)
