@@ -24,6 +24,11 @@ from hypothesis import strategies as st
 HANGS = 60  # seconds of processor time: what else a machine does is not a command's fault
 SLEEPS = 600  # seconds by the clock
 MEMORY = 6 << 30  # bytes
+WORST = {  # of all scenes
+    "roundings of energy missing an exchange": "imbalance",
+    "a of overlap": "overlap",
+    "a of depth in a wall or the floor": "outside",
+}
 
 
 class Campaign:
@@ -32,6 +37,11 @@ class Campaign:
     def __init__(self, name, number, first):
         self.name, self.number, self.first = name, number, first
         self.outcomes, self.faults = Counter(), defaultdict(list)
+
+    @property
+    def tried(self):
+        """How many examples have been tried: the number of the one under way, counted from 0."""
+        return self.outcomes.total() + sum(map(len, self.faults.values()))
 
     def run(self, strategy, attempt):
         """Draw examples, and give each to `attempt`, which returns what came of it or raises."""
@@ -51,7 +61,7 @@ class Campaign:
             try:
                 self.outcomes[attempt(example)] += 1
             except BaseException as error:
-                self._note(error)
+                self._note(error, example)
             finally:
                 _watch(0, 0)
 
@@ -61,18 +71,17 @@ class Campaign:
             print(f"{self.name}: stopped")
         took = time.monotonic() - begun
         counts = ", ".join(f"{count} {what}" for what, count in sorted(self.outcomes.items()))
-        tried = self.outcomes.total() + sum(map(len, self.faults.values()))
-        print(f"{self.name}: {tried} tried with seed {self.first}: {counts}; {took:.0f} s")
+        print(f"{self.name}: {self.tried} tried with seed {self.first}: {counts}; {took:.0f} s")
         for where, found in self.faults.items():
             print(f"  {len(found)} times {where}, such as\n    {found[0]}")
         print(f"  faults: {sum(map(len, self.faults.values()))}", flush=True)
         return not self.faults
 
-    def _note(self, error):
+    def _note(self, error, example):
         if type(error).__module__.startswith("hypothesis") or isinstance(error, KeyboardInterrupt):
             raise error
         last = traceback.extract_tb(error.__traceback__)[-1]
-        text = " ".join(str(error).split())[:300]
+        text = " ".join(f"number {self.tried}: {error} {example!r}".split())[:1000]
         where = f"{type(error).__name__} in {Path(last.filename).name}, line {last.lineno}"
         self.faults[where].append(text)
 
@@ -129,22 +138,26 @@ def scenes(campaign, folder):
     from hard_cases import test_random_scenes as one
     from hard_cases.compositions import mixtures
     from hard_cases.compositions import scenes as alike
+    from hard_cases.watched import Worst
 
-    worst = one.Worst()
+    seen = []
 
     def attempt(scene):
-        if not one.fits(*scene, worst.tried):
+        number = campaign.tried
+        if not one.fits(*scene, number):
             return "too dense"
-        stopped = worst.stopped
-        worst.see(*scene)
-        assert worst.broken == 0 and worst.backwards == 0, scene
-        assert worst.imbalance < 10.0 and worst.overlap < 1e-11 and worst.outside < 1e-11, scene
-        return "stopped" if worst.stopped > stopped else "run"
+        found = Worst()
+        end = found.see(*scene, number)
+        seen.append((found, number, scene))
+        assert found.broken == 0 and found.backwards == 0
+        assert found.imbalance < 10.0 and found.overlap < 1e-11 and found.outside < 1e-11
+        return end
 
     sound = campaign.run(st.one_of(alike(one.FEW), mixtures(one.UNLIKE)), attempt)
-    missing = f"energy missing: {worst.imbalance:.2g} roundings an exchange"
-    print(f"  {worst.collisions} contacts; {missing};")
-    print(f"  overlap {worst.overlap:.2g} a, depth in a wall or the floor {worst.outside:.2g} a")
+    print(f"  {sum(found.collisions for found, *_ in seen)} contacts; at most")
+    for what, name in WORST.items() if seen else ():
+        found, number, scene = max(seen, key=lambda one: getattr(one[0], name))
+        print(f"  {getattr(found, name):.2g} {what}: number {number}, {scene}")
     return sound
 
 

@@ -2,8 +2,7 @@
 
 import math
 
-import numpy as np
-from brute_force import KERNELS, begin, largest_overlap, scene_of, snapshot
+from brute_force import KERNELS, begin
 from hypothesis import Phase, given, settings
 
 from hard_cases.catalogue import hard_case
@@ -17,17 +16,11 @@ from hard_cases.compositions import (
     scenes,
     with_needs,
 )
-from hard_cases.invariants import beyond_cone, gain_of_momentum, outside
+from hard_cases.watched import Worst
 from roughgas.base.errors import InputError
 from roughgas.effects import KINDS
-from roughgas.effects.side import SIDES
-from roughgas.kernel.record import Sampling, columns, record
-from roughgas.kernel.state import BOUNDARY_HITS, COLLISIONS, LAST_FIRST, LAST_SECOND
 from roughgas.scene import build, check
-from roughgas.simulation.books import books, imbalance
 
-ROUNDING = 2.0**-53
-BOUNDARIES = {"floor", "walls", "shaken_walls", *SIDES}
 QUICK = ("friction", "sheared", "walled", "shaken", "heated", "spheres")
 FEW = [
     (set(KERNELS[name]["effects"]), len(KERNELS[name]["box"]), "sawtooth")  # the floor's, if any
@@ -35,87 +28,11 @@ FEW = [
 ]
 """Compositions that other tests run, too: each is a kernel of its own."""
 
-
 UNLIKE = [
     (set(KERNELS[name]["effects"]), len(KERNELS[name]["box"]), "sawtooth")
     for name in ("gas", "heated", "rubbed bed")
 ]
 """Those of which other tests run mixtures, too."""
-
-
-class Worst:
-    """The worst that was seen of each invariant, over all scenes."""
-
-    def __init__(self):
-        self.tried = self.collisions = self.stopped = 0
-        self.imbalance = self.overlap = self.outside = self.broken = self.backwards = 0.0
-        self.momentum = self.gained = self.cone = 0.0
-
-    def see(self, experiment, r, beta):
-        """Simulate a scene for some hundreds of collisions."""
-        scene, state = begin(experiment, r, beta, self.tried)
-        _, world = scene_of(experiment, r, beta)
-        self.broken += (state.spin is None) != ("spin" not in experiment["effects"])
-        row = np.empty((1, len(columns(scene))))
-        before, first, last = books(state, scene), snapshot(state, scene), -1.0
-        for _ in range(4):
-            if record(state, scene, Sampling(20.0, 150, 0), row) == 0:
-                self.stopped += 1
-                break
-            self._see_books(before, books(state, scene), exchanges_of(state))
-            shot = snapshot(state, scene)
-            self.overlap = max(self.overlap, largest_overlap(state, scene, world))
-            self.outside = max(self.outside, outside(shot, world))
-            if not BOUNDARIES & set(experiment["effects"]):
-                self.momentum = max(self.momentum, gain_of_momentum(first, shot, world))
-            self.backwards += (
-                row[0, 0] < last
-            )  # light ones between heavy ones make hundreds at once
-            last = row[0, 0]
-            self.broken += not (np.all(np.isfinite(state.trajectory)) and np.all(np.isfinite(row)))
-            self.broken += state.spin is not None and not np.all(np.isfinite(state.spin))
-        else:
-            self._see_contacts(state, scene, world, row)
-        self.tried += 1
-        self.collisions += contacts_of(state)
-
-    def _see_books(self, before, after, exchanges):
-        booked = after.ledger - before.ledger
-        missing = imbalance(booked, after.energy - before.energy)
-        exchanged = np.abs(booked).sum()
-        scale = exchanged / (exchanged + np.abs(before.energy).sum())
-        self.imbalance = max(self.imbalance, missing * scale / ROUNDING / (10 + exchanges))
-        self.gained = max(self.gained, booked[-1].sum() / (exchanged + np.abs(before.energy).sum()))
-
-    def _see_contacts(self, state, scene, world, row):
-        """Ten more, one by one."""
-        if world.mu is None or world.shear:  # where images slide the same velocity has two values
-            return
-        for _ in range(10):
-            before, changes = snapshot(state, scene), changes_by_label(state)
-            made = state.counts[COLLISIONS]
-            record(state, scene, Sampling(20.0, 1, 0), row)
-            if state.counts[COLLISIONS] == made:
-                return
-            pair = state.counts[[LAST_FIRST, LAST_SECOND]]
-            if np.all(changes_by_label(state)[pair] == changes[pair] + 1):  # by this contact alone
-                after = snapshot(state, scene)
-                self.cone = max(self.cone, beyond_cone(before, after, pair, world))
-
-
-def contacts_of(state):
-    """Contacts made so far, those with boundaries among them."""
-    return int(state.counts[COLLISIONS] + state.counts[BOUNDARY_HITS])
-
-
-def exchanges_of(state):
-    """Contacts and kicks of a thermostat so far: a gas may have thousands of kicks alone."""
-    return (int(state.changes.sum()) + int(state.counts[BOUNDARY_HITS])) / 2
-
-
-def changes_by_label(state):
-    """How often each particle's velocity has changed, in the order of the start."""
-    return state.changes[np.argsort(state.label)]
 
 
 def fits(experiment, r, beta, seed):
@@ -238,7 +155,7 @@ def keep_invariants(margins, kinds, few, many):
     @given(kinds)
     def see(scene):
         if fits(*scene, worst.tried):
-            worst.see(*scene)
+            worst.see(*scene, worst.tried)
 
     see()
     tried = {"tried": worst.tried, "unit": f"scenes, {worst.collisions} contacts"}
@@ -252,8 +169,30 @@ def keep_invariants(margins, kinds, few, many):
     margins.at_most("depth in a wall or the floor, in a", worst.outside, 1e-11, **tried)
     margins.at_most("scenes with numbers that are none", worst.broken, 0, **tried)
     margins.at_most("samples earlier than the one before", worst.backwards, 0, **tried)
-    stopped = worst.stopped / worst.tried
-    margins.at_most("share of scenes that are stopped", stopped, 0.05, **tried)
+    given_up = worst.given_up / worst.tried
+    # Hypothesis varies what it has drawn: of few scenes, several may stem from one that collapses
+    most = 0.05 if margins.full else 0.1
+    margins.at_most("share of scenes that are stopped", given_up, most, **tried)
+
+
+def test_roundings_of_energy_that_has_gone_are_not_missing():
+    """Random kicks raise the energy from 0.08 to 44, and then take it back to 0.24.
+
+    Of so little, roundings of what was there before are 32 an exchange.
+    """
+    heat = {"power": 2.281931965746018, "spin_share": 1.0, "interval": 4.768556541726747}
+    same = 0.9658698438656339
+    alike = {name: same for name in ("radius", "mass", "restitution", "roughness")}
+    experiment = {
+        "particles": 2,
+        "box": [7.0, 18.241065684322493],
+        "effects": {"spin": {"inertia": 0.6498636082543502}, "thermostat": heat}
+        | {"contact_averages": {}},
+        "species": [alike | {"inertia": 0.9566424242067445, "fraction": 1.0}],
+    }
+    worst = Worst()
+    assert worst.see(experiment, 0.901071948700902, -0.11080577233027777, 7187) == "run"
+    assert 0.0 < worst.imbalance < 0.2
 
 
 def test_without_the_work_of_contacts_across_the_boundary(without):
