@@ -15,7 +15,7 @@ BOUNDARIES = {"floor", "walls", "shaken_walls", *SIDES}
 
 
 class Account:
-    """The books of a gas since now, and the most that they have held at any look at them."""
+    """The books of a gas from now on, and the most energy that any look at them has found."""
 
     def __init__(self, gas):
         self.gas, self.before, self.most = gas, gas.books(), 0.0
@@ -46,7 +46,10 @@ class Worst:
         self.momentum = self.gained = self.cone = 0.0
 
     def see(self, experiment, r, beta, seed):
-        """Simulate a scene for some hundreds of collisions; return how it ended."""
+        """Simulate a scene for some hundreds of collisions; return what came of it.
+
+        "run", or "held" or "stopped" where it is given up, as a run would be.
+        """
         gas, end = Gas(*begin(experiment, r, beta, seed)), "run"
         _, world = scene_of(experiment, r, beta)
         self.broken += (gas.state.spin is None) != ("spin" not in experiment["effects"])
