@@ -31,7 +31,7 @@ class Side(NamedTuple):
             self.settings["amplitude"]
             * {
                 "sawtooth": lambda: share,
-                "reversed_sawtooth": lambda: np.where(share < 0.1, share / 0.1, (1.0 - share) / 0.9),
+                "reversed_sawtooth": lambda: np.minimum(share / 0.1, (1.0 - share) / 0.9),
                 "triangle": lambda: 2.0 * np.minimum(share, 1.0 - share),
                 "sine": lambda: 0.5 - 0.5 * np.cos(2.0 * math.pi * share),
             }[self.settings["wave"]]()
