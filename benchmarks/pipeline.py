@@ -19,6 +19,7 @@ from typing import NamedTuple
 import netCDF4
 
 from roughgas import config
+from roughgas.show.catalogue import FIGURES, figures_of
 
 ROOT = Path(__file__).parent.parent
 COPIED = ("Snakefile", "config.yaml", "rules", "profiles", "src")
@@ -40,8 +41,8 @@ def measure() -> dict[str, float]:
     """The cost of a job and the efficiency of the pipeline, in seconds and as a share.
 
     `job_cpu` and `job_wall`: of a job on the smallest point besides its kernel, medians.
-    `pipeline_efficiency`: time in the kernel over cores x wall time, for a part of the paper's
-    sweep, from the start of Snakemake to the last reduced dataset, kernels compiled before;
+    `pipeline_efficiency`: time in the kernel over cores x wall time, for a part of the sweeps of
+    the paper's figures, from the start of Snakemake to the last reduced dataset, kernels compiled before;
     `pipeline_kernel` and `pipeline_wall` are what it is made of, `pipeline_points` how many.
     """
     with tempfile.TemporaryDirectory() as folder:
@@ -75,18 +76,18 @@ def efficiency(project: Path) -> dict[str, float]:
             shutil.copytree(ROOT / name, project / name)
         else:
             shutil.copy2(ROOT / name, project)
-    known = config.load(project / "config.yaml")["experiments"]
-    fewer = {"experiments": {name: {"sweep": {"beta": BETAS}} for name in known}}
+    shown = sorted({name for figure in figures_of("paper") for name in FIGURES[figure].shows})
+    fewer = {"experiments": {name: {"sweep": {"beta": BETAS}} for name in shown}}
     (project / "fewer.json").write_text(json.dumps(fewer))
     everything = config.load(project / "config.yaml", fewer)
     kernels = [
         f"results/paper/{name}/r{r}/compiled.txt"
-        for name in known
+        for name in shown
         for r in config.experiment(everything, name, "paper")["sweep"]["r"]
     ]
     _snakemake(project, kernels)
     begin = time.perf_counter()
-    _snakemake(project, [f"results/paper/{name}.nc" for name in known])
+    _snakemake(project, [f"results/paper/{name}.nc" for name in shown])
     wall = time.perf_counter() - begin
     points = list(project.glob("results/paper/*/*/*/*.nc"))
     kernel = sum(_kernel_seconds(path) for path in points)
