@@ -19,7 +19,7 @@ from typing import NamedTuple
 import netCDF4
 
 from roughgas import config
-from roughgas.show.catalogue import FIGURES, figures_of
+from roughgas.show.catalogue import shown_in
 
 ROOT = Path(__file__).parent.parent
 COPIED = ("Snakefile", "config.yaml", "rules", "profiles", "src")
@@ -42,8 +42,8 @@ def measure() -> dict[str, float]:
 
     `job_cpu` and `job_wall`: of a job on the smallest point besides its kernel, medians.
     `pipeline_efficiency`: time in the kernel over cores x wall time, for a part of the sweeps of
-    the paper's figures, from the start of Snakemake to the last reduced dataset, kernels compiled before;
-    `pipeline_kernel` and `pipeline_wall` are what it is made of, `pipeline_points` how many.
+    the paper's figures, from the start of Snakemake to the last reduced dataset, kernels compiled
+    before; `pipeline_kernel` and `pipeline_wall` are what it is made of, `pipeline_points` how many.
     """
     with tempfile.TemporaryDirectory() as folder:
         costs = [cost_of_job(Path(folder)) for _ in range(RUNS + 1)][1:]  # the first may compile
@@ -76,7 +76,7 @@ def efficiency(project: Path) -> dict[str, float]:
             shutil.copytree(ROOT / name, project / name)
         else:
             shutil.copy2(ROOT / name, project)
-    shown = sorted({name for figure in figures_of("paper") for name in FIGURES[figure].shows})
+    shown = shown_in("paper")
     fewer = {"experiments": {name: {"sweep": {"beta": BETAS}} for name in shown}}
     (project / "fewer.json").write_text(json.dumps(fewer))
     everything = config.load(project / "config.yaml", fewer)
