@@ -3,7 +3,7 @@
     make bench          or          python -m benchmarks [--quick]
 
 Prints the table, and writes the page of this processor and its pictures into docs/benchmarks, and
-the table of all processors, docs/benchmarks.md, in less than ten minutes on two cores. With --quick
+the table of all processors, docs/benchmarks.md, in some seven minutes on two cores. With --quick
 up to 10,000 particles, without the pipeline and the cost of effects, and nothing is written.
 """
 

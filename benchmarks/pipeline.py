@@ -43,7 +43,8 @@ def measure() -> dict[str, float]:
     `job_cpu` and `job_wall`: of a job on the smallest point besides its kernel, medians.
     `pipeline_efficiency`: time in the kernel over cores x wall time, for a part of the sweeps of
     the paper's figures, from the start of Snakemake to the last reduced dataset, kernels compiled
-    before; `pipeline_kernel` and `pipeline_wall` are what it is made of, `pipeline_points` how many.
+    before; `pipeline_kernel` and `pipeline_wall` are what it is made of, `pipeline_points` how
+    many.
     """
     with tempfile.TemporaryDirectory() as folder:
         costs = [cost_of_job(Path(folder)) for _ in range(RUNS + 1)][1:]  # the first may compile
