@@ -204,7 +204,8 @@ def test_what_is_installed_elsewhere_knows_the_experiments(tmp_path, monkeypatch
 
     monkeypatch.chdir(ROOT)
     with tarfile.open(tmp_path / build_sdist(str(tmp_path))) as archive:
-        archive.extractall(tmp_path, filter="data")
+        archive.extraction_filter = getattr(tarfile, "data_filter", None)  # from Python 3.11.4 on
+        archive.extractall(tmp_path)
     monkeypatch.chdir(next(tmp_path.glob("roughgas-*/")))
     with zipfile.ZipFile(tmp_path / build_wheel(str(tmp_path))) as wheel:
         assert wheel.read("roughgas/config.yaml") == (ROOT / "config.yaml").read_bytes()

@@ -14,6 +14,7 @@ from roughgas.effects import Floor, sine_floor, triangular_floor
 from roughgas.effects.settings import Surroundings, make
 from roughgas.effects.sine_floor import SineFloor
 from roughgas.effects.triangular_floor import FALLING, RISING, TriangularFloor
+from roughgas.kernel.hooks import CODES
 from roughgas.kernel.layout import new_state
 from roughgas.kernel.state import BASE, BOUNDARY_HITS, NOW
 
@@ -167,6 +168,21 @@ def test_an_elastic_floor_reverses_the_velocity_relative_to_its_surface(wave):
     index = there.index("floor")
     assert state.ledger.sum(axis=0)[index] == pytest.approx([gained, 0.0], rel=1e-9)
     assert abs(gained) > 1.0
+
+
+def test_a_particle_above_a_sine_looks_again_when_it_is_back():
+    """What is foreseen then is the same meeting that a search from the start of its path finds."""
+    scene, state = one_particle(21.3, (0.3, 0.0), wave="sine")
+    floor, lowest = scene.effects.floor, 20.3
+    run(state, scene, 1, interval=1e-9)
+    back, code = state.agenda.boundary_time[0], state.agenda.boundary_code[0]
+    assert back == pytest.approx(math.sqrt(2.0 * (lowest - floor.amplitude)), rel=1e-14)
+    assert code % CODES == sine_floor.LOOK
+    run(state, scene, 1, interval=back)
+    assert state.agenda.boundary_code[0] % CODES == sine_floor.MEET
+    meeting = state.clock[BASE] + state.agenda.boundary_time[0]
+    assert meeting == pytest.approx(time_to_sine(floor, 1.0, lowest, 0.0, 0.0), rel=1e-14)
+    assert state.counts[BOUNDARY_HITS] == 0 and state.changes[0] == 0
 
 
 @pytest.mark.parametrize("wave", WAVES)

@@ -11,9 +11,11 @@ from typing import NamedTuple
 from roughgas.effects.settings import register
 from roughgas.effects.surface import bounce, fall, flight, phase, until_back
 from roughgas.kernel.jit import jit
+from roughgas.kernel.state import NOBODY, NOW
 from roughgas.kernel.turns import TURN, sine_and_cosine
 
 ROUNDING = 2.0**-52
+MEET, LOOK = range(2)  # what comes next: the floor, or the search for when it does
 
 
 class SineFloor(NamedTuple):
@@ -27,8 +29,13 @@ class SineFloor(NamedTuple):
 
 @jit
 def predict(floor, index, state, scene, i):
+    """A particle above all strokes looks again when it is back from there: most collide before."""
     falling, time = flight(floor, index, state, scene, i)
-    return time + time_to_floor(floor, *falling), 0
+    gravity, height, speed, _ = falling
+    back = time + until_back(floor.amplitude, gravity, height, speed, 0.0)
+    if back > state.clock[NOW]:
+        return back, LOOK
+    return time + time_to_floor(floor, *falling), MEET
 
 
 @jit
@@ -96,6 +103,8 @@ def _stays_above(gap, speed, bend):
 
 @jit
 def resolve(floor, index, what, state, scene, i, time):
+    if what == LOOK:
+        return NOBODY
     _, speed, _ = motion(floor, state.phase[index] + time)
     return bounce(floor, index, state, scene, i, time, speed)
 

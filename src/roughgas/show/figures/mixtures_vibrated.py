@@ -12,6 +12,6 @@ def draw(masses: xr.Dataset, sizes: xr.Dataset) -> Figure:
     """Draw the figure from the reduced datasets of beds of unlike masses, and of unlike radii."""
     columns = (
         Column(masses, "Vibrated bed", "Heavy disks are hotter, at nearly one R"),
-        Column(sizes, "Vibrated bed", "Large disks rise; R knows nothing of it"),
+        Column(sizes, "Vibrated bed", "Large disks are mostly colder, at nearly one R"),
     )
     return columns_figure(columns, THEORIES)
