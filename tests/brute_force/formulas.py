@@ -1,8 +1,23 @@
-"""Textbook roots, and Coulomb's friction."""
+"""Textbook roots, roots that are looked for, and Coulomb's friction."""
 
 import math
 
 import numpy as np
+
+INSTANTS = np.linspace(0.0, 1.0, 2001) ** 2  # at which what has no formula is looked for
+
+
+def first_touch(gap, limit):
+    """First time before `limit` at which a gap, as a function of time, closes; of arrays, too."""
+    times = limit * INSTANTS
+    closed = np.flatnonzero(gap(times[1:]) < 0.0)
+    if len(closed) == 0:
+        return math.inf
+    above, below = times[closed[0]], times[closed[0] + 1]
+    for _ in range(60):
+        middle = 0.5 * (above + below)
+        above, below = (above, middle) if gap(middle) < 0.0 else (middle, below)
+    return below
 
 
 def meeting_times(x, v, reach):

@@ -5,9 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from brute_force.formulas import in_space
+from brute_force.formulas import first_touch, in_space
 
-INSTANTS = np.linspace(0.0, 1.0, 2001) ** 2  # at which what has no formula is looked for
 AXES = {"left_wall": 0, "right_wall": 0, "front_wall": 1, "back_wall": 1}  # others: the last
 LOW = ("left_wall", "front_wall", "bottom_wall")
 ALIKE = {"velocity": 0.0, "amplitude": 0.0, "period": 1.0, "wave": "sawtooth", "shaken": "normal"}
@@ -87,15 +86,7 @@ class Side(NamedTuple):
         def apart(wait):
             return gap + speed * wait - weight * wait**2 / 2.0 - self.shift(time + wait)
 
-        waits = limit * INSTANTS
-        through = np.flatnonzero(apart(waits[1:]) < 0.0)
-        if len(through) == 0:
-            return math.inf
-        above, below = waits[through[0]], waits[through[0] + 1]
-        for _ in range(60):
-            middle = 0.5 * (above + below)
-            above, below = (above, middle) if apart(middle) < 0.0 else (middle, below)
-        return below
+        return first_touch(apart, limit)
 
 
 def sides_of(effects, box):

@@ -12,9 +12,9 @@ import numpy as np
 
 from brute_force.company import alike
 from brute_force.contacts import Contacts
-from brute_force.formulas import falling_time, meeting_times
+from brute_force.formulas import falling_time, first_touch, meeting_times
 from brute_force.kicks import Kicks, SplitMix
-from brute_force.sides import INSTANTS, leave_thermal
+from brute_force.sides import leave_thermal
 from brute_force.world import Event, Snapshot
 
 # Strokes that make up a period of the floor: when they begin and end, in periods, and at what
@@ -186,15 +186,7 @@ class BruteForce(Contacts):
         def gap(wait):
             return height + v * wait - g * wait**2 / 2.0 - self.surface(wait)[0]
 
-        waits = limit * INSTANTS
-        below = np.flatnonzero(gap(waits[1:]) < 0.0)
-        if len(below) == 0:
-            return math.inf
-        above, below = waits[below[0]], waits[below[0] + 1]
-        for _ in range(60):
-            middle = 0.5 * (above + below)
-            above, below = (above, middle) if gap(middle) < 0.0 else (middle, below)
-        return below
+        return first_touch(gap, limit)
 
     # ------------------------------------------------------------------ what happens
 
