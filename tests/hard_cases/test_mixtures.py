@@ -9,9 +9,12 @@ from hard_cases.catalogue import hard_case
 from roughgas.effects.species import UNIFORM
 from roughgas.kernel import layout
 from roughgas.kernel.state import COLLISIONS
-from roughgas.simulation.books import books, imbalance
+from roughgas.simulation.books import books
 
 ROUNDING = 2.0**-53
+# The reduced mass of two species is rounded once and for all, and so to the same side each time;
+# mass, push and both changes of velocity have a rounding each.
+MISSED = 4.0
 SPREAD = {"distribution": UNIFORM, "deviation": 0.2}
 
 
@@ -29,9 +32,12 @@ def check(margins, particles, box, species, collisions, r=1.0, beta=-1.0):
     if particles <= 2000:  # the brute force tries every pair
         overlap = largest_overlap(state, scene, world) / (ROUNDING * (max(box) + largest))
         margins.at_most("overlap, in roundings of the box", overlap, 100.0, **tried)
-    missing = imbalance(after.ledger - before.ledger, after.energy - before.energy, 1e3)
-    missing *= 1.0 if r < 1.0 else np.abs(after.ledger - before.ledger).sum() + 1.0
-    margins.at_most("energy missing in the books, over it", missing, 1e-11, **tried)
+    missing = np.abs(
+        after.energy - before.energy - (after.ledger - before.ledger).sum(axis=0)
+    ).max()
+    missing /= before.energy.sum() / particles * ROUNDING * (made + particles)
+    what = "energy missing in the books, in roundings of a particle's energy a collision"
+    margins.at_most(what, missing, MISSED, **tried)
     if r == 1.0 and beta == -1.0:
         change = abs(after.energy.sum() / before.energy.sum() - 1.0)
         margins.at_most("change of the energy of an elastic gas, over it", change, 1e-11, **tried)
@@ -57,9 +63,10 @@ def test_size_ratio_100(margins):
     "momentum and energy of the light ones are lost in roundings of the heavy ones'",
 )
 def test_mass_ratio_1e9(margins):
+    """Elastic ones; and others, until two heavy ones close in on a light one: a collapse."""
     species = [{"fraction": 0.5, "mass": 1.0}, {"fraction": 0.5, "mass": 1e9}]
     check(margins, 100, [60, 60], species, margins.size(5000, 200_000))
-    check(margins, 100, [60, 60], species, margins.size(5000, 200_000), 0.95, 0.3)
+    check(margins, 100, [60, 60], species, 5000, 0.95, 0.3)
 
 
 @hard_case(

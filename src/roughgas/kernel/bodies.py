@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from roughgas.kernel.hooks import either, unless_absent
 from roughgas.kernel.jit import jit
-from roughgas.kernel.vectors import scale
+from roughgas.kernel.vectors import divide, scale
 
 
 class Pair(NamedTuple):
@@ -41,8 +41,8 @@ spin_mass_of = either(
 )
 """(bodies, spin, i) -> s of a particle, which its energy of rotation is s (a w)^2/2 with."""
 
-change_of_velocity = either(
-    lambda bodies, i, push: scale(push, 1.0 / bodies.mass[i]),
+change_of_velocity = either(  # a product with 1/m would be rounded to the same side each time
+    lambda bodies, i, push: divide(push, bodies.mass[i]),
     lambda bodies, i, push: push,
 )
 """(bodies, i, push) -> what an impulse changes the particle's velocity by."""
