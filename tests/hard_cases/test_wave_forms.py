@@ -91,7 +91,8 @@ def touching(rng):
         heights = height + speed * waits - 0.5 * gravity * waits**2
         if all(y > level(floor, phase + t) for y, t in zip(heights, waits, strict=True)):
             shift = rng.choice([-1.0, 0.0, 1.0]) * 10.0 ** rng.uniform(-16, -6) * floor.amplitude
-            return floor, gravity, height + shift, speed, phase
+            if height + shift > level(floor, phase):  # none is let go below the floor
+                return floor, gravity, height + shift, speed, phase
 
 
 @hard_case(
