@@ -16,7 +16,8 @@ from sphinx.errors import SphinxError
 import roughgas
 
 DOCS = Path(__file__).resolve().parent
-INDEX, README = DOCS / "index.md", DOCS.parent / "README.md"
+ROOT = DOCS.parent
+INDEX, README = DOCS / "index.md", ROOT / "README.md"
 LINK = re.compile(r"\[([^\]]*)\]\(([^)#\s]+)(#[^)\s]*)?\)")
 LOADED = re.compile(
     r"""<(?:script|img|iframe|source)\b[^>]*\bsrc=["']?(?:https?:)?//"""
@@ -71,9 +72,14 @@ def setup(app):
 
 
 def mend_links(app, docname, source):
-    """Links in pages, which are right where the repository is read, become right here."""
+    """Links in pages, which are right where the repository is read, become right here.
+
+    The first page is README.md.
+    """
     folder = (DOCS / docname).parent
     source[0] = linked(source[0], folder, folder)
+    if docname == "index":
+        source[0] = f"{linked(README.read_text(encoding='utf-8'), ROOT, DOCS)}\n{source[0]}"
 
 
 def inline_formula(translator, node):
@@ -94,8 +100,8 @@ def mathml(node, display):
 def linked(text, base, folder):
     """Links in `text` that are relative to `base`, made relative to `folder`.
 
-    Those to README.md become links to the first page; those to folders, and to pages that are not
-    part of the site, mere text.
+    Those to README.md become links to the first page, those to HTML addresses; those to folders,
+    and to pages that are not part of the site, mere text.
     """
 
     def here(link):
@@ -105,6 +111,8 @@ def linked(text, base, folder):
             return link[0]
         if target.is_dir() or (target.suffix == ".md" and not target.is_relative_to(DOCS)):
             return label if target != README else f"[{label}]({os.path.relpath(INDEX, folder)})"
+        if target.suffix == ".html":
+            return f'<a href="{os.path.relpath(target, folder)}">{label}</a>'
         return f"[{label}]({os.path.relpath(target, folder)}{anchor})"
 
     return LINK.sub(here, text)

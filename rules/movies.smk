@@ -1,5 +1,5 @@
 # One short movie a scene, for README and docs. To add one, add a line here: its name, its experiment or
-# variant, and what else `roughgas movie` is told (docs/movies.md).
+# variant, and what else `roughgas movie` is told (docs/gallery.md).
 MOVIES = {
     "vibrated": ("vibrated", "--r=0.9 --beta=0.5 --length=8 --frames=160"),
     "roughness": ("vibrated", "--r=0.9 --beta -1 0 1 --length=12 --frames=180"),

@@ -11,7 +11,7 @@ from roughgas.base.version import __version__
 from roughgas.config.reading import read_yaml
 
 ROOT = Path(__file__).parent.parent
-PAGES = ("CONTRIBUTING.md", "CODE_OF_CONDUCT.md", "docs/compared.md", "docs/release.md")
+PAGES = ("CONTRIBUTING.md", "CODE_OF_CONDUCT.md", "docs/compared.md", "docs/development.md")
 PAGES += ("config/README.md",)
 LINK = re.compile(r"\]\(([^)#\s]+)(?:#[^)]*)?\)")
 
@@ -50,7 +50,7 @@ def test_what_the_paper_cites_is_in_its_bibliography():
 
 
 def test_the_readme_of_a_package_index_has_no_relative_image():
-    page = (ROOT / "docs" / "release.md").read_text()
+    page = (ROOT / "docs" / "development.md").read_text()
     (script,) = re.findall(r'^ +sed -E "(.*)" README\.md >', page, re.MULTILINE)
     told = ["sed", "-E", script.replace("RAW", "https://example.org"), "README.md"]
     made = subprocess.run(told, cwd=ROOT, capture_output=True, text=True, check=True).stdout

@@ -23,7 +23,6 @@ def tables():
     found = {"file": _table(_schema())}
     for name in ("experiment", "sweep", "schedule", "showcase"):
         found[name] = _table(parts[name])
-    found["effects"] = _table(parts["effects"], depth=2)
     found["studies"] = _table(parts["studies"], depth=4)
     return found
 

@@ -115,7 +115,7 @@ def test_one_file_and_one_line(changed):
 def test_the_experiment_of_the_page(changed):
     """R is first the theory of free cooling's at the r that was set, and in the end that of r = 1.
 
-    Velocities are correlated, which theory neglects: 4 % at most, as docs/physics.md has it.
+    Velocities are correlated, which theory neglects: 4 % at most, as docs/accuracy.md has it.
     """
     point = changed.point_of("cooling_plastic", f"--config={changed.config}")
     shown = page.rows(EXAMPLE)

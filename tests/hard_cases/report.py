@@ -20,7 +20,7 @@ from roughgas.show.style import save
 HEAD = """# Hard cases
 
 Where a simulation could go wrong, and how far this one stays from that. Written by
-`snakemake hard_cases`{scale}; docs/hard_cases.md tells the stories.
+`snakemake hard_cases`{scale}; docs/trust.md explains the cases.
 
 {cases} cases, {margins} margins, all within their limits. Of {remedies} cases it was shown that
 they fail once a remedy is taken out of the source.
