@@ -49,6 +49,6 @@ def test_criteria_are_those_of_judges_or_samples():
     judges = {one.name: one for one in STATEMENTS}
     said = " ".join(inspect.getdoc(paper.theory_underestimates).split())
     assert judges["theory_underestimates"].criterion == said
-    agrees = "R - theory at every point, is as good as zero: agreement with Lun's formula"
-    agrees += ", in proportion, too."
+    agrees = "R - theory at every point is compatible with zero: agreement with Lun's formula"
+    agrees += ", also relative to theory."
     assert judges["vibrated_follows_lun"].criterion == agrees

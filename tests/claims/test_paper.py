@@ -83,7 +83,7 @@ def test_a_small_ratio_must_follow_theory_in_proportion(judged, gas):
     data = reduced(gas, lambda r, beta: 0.25 * lun(r, beta) * (beta <= -0.6), error=1e-4)
     found = judged(f"{gas}_follows_lun", data)
     assert found.verdict == QUALIFIED and "63 of 63 points within 0.02" in found.reason
-    assert "In proportion, 48 of 63 points are within 10%" in found.reason
+    assert "Relative to theory, 48 of 63 points are within 10%" in found.reason
 
 
 @pytest.mark.parametrize(

@@ -23,7 +23,7 @@ from roughgas.claims.verdicts import (
 )
 
 MOST = 0.5
-"""Share of the excess over Lun's formula that must go with the way of averaging to be most of it. A
+"""Share of the excess over Lun's formula that must come from averaging to be most of it. A
 convention. Fixed when R of four points at beta = 0 was known."""
 WAYS = {
     "R": "for the mean of R(t)",
@@ -33,15 +33,15 @@ WAYS = {
 
 
 def follows_over_collisions(gas: xr.Dataset) -> Finding:
-    """R averaged over collisions, minus theory, is as good as zero at every point, and in
-    proportion, too."""
+    """R averaged over collisions, minus theory, is compatible with zero at every point, also
+    relative to theory."""
     return agreement_in_proportion(averaged(gas, "R_collisional"), "Lun's formula")
 
 
 def excess_is_of_averaging(bed: xr.Dataset) -> Finding:
     """At intermediate beta and the lowest r the mean of R - Lun's formula is at most half as large
-    averaged over collisions as for the mean of R(t); and what is left is the correlation of
-    translation and rotation at contacts: R - Lun's formula at that correlation is as good as
+    averaged over collisions as for the mean of R(t); and the rest is the correlation of
+    translation and rotation at contacts: R - Lun's formula at that correlation is compatible with
     zero."""
     low = float(bed.r.min())
     strong = bed.sel(r=[low], beta=np.abs(bed.beta) <= INTERMEDIATE)
@@ -57,8 +57,8 @@ def excess_is_of_averaging(bed: xr.Dataset) -> Finding:
 
 
 def one_curve_for_all_drives(*gases: xr.Dataset) -> Finding:
-    """R averaged over collisions - the rate equations, at the share that the energy books say, is
-    as good as zero, whatever drives the gas."""
+    """R averaged over collisions - the rate equations, at the measured share of rotation, is
+    compatible with zero, whatever drives the gas."""
     return together(
         (
             gas.attrs["experiment"],

@@ -33,7 +33,7 @@ def viscoelastic_exponent(gas: xr.Dataset) -> Finding:
 
 def follows_present_restitution(gas: xr.Dataset) -> Finding:
     """R - the theory of free cooling at the restitution of the present temperature, averaged over
-    the plateau, is as good as zero."""
+    the plateau, is compatible with zero."""
     return agreement(beside_present_theory(gas), "the theory of free cooling at the present r")
 
 
@@ -53,7 +53,7 @@ def beside_present_theory(gas: xr.Dataset) -> Sample:
 
 
 def couette_is_lees_edwards(couette: xr.Dataset, sheared: xr.Dataset) -> Finding:
-    """R between sliding rough walls - R between sliding images is as good as zero.
+    """R between sliding rough walls - R between sliding images is compatible with zero.
 
     R of either does not depend on the shear rate, which only sets the unit of time: so it is
     compared at the same one, whatever that is. The rates over the thermal speed are told.

@@ -24,18 +24,18 @@ ALIKE = 0.0
 
 def species_follow_lun(*beds: xr.Dataset) -> Finding:
     """R of each species - Lun's formula for mixtures, from the measured translational temperatures
-    of the species, is as good as zero."""
+    of the species, is compatible with zero."""
     return together((bed.attrs["experiment"], _ratios(bed, "Lun's formula")) for bed in beds)
 
 
 def species_follow_cooling_theory(*gases: xr.Dataset) -> Finding:
-    """R of each species - the theory of free cooling of mixtures is as good as zero; and T_2/T_1 of
-    the two species is within 10 % of theory's at nine points of ten or more."""
+    """R of each species - the theory of free cooling of mixtures is compatible with zero; and
+    T_2/T_1 of the two species is within 10 % of theory's at nine points of ten or more."""
     return together((gas.attrs["experiment"], _cooling(gas)) for gas in gases)
 
 
 def spread_changes_nothing(*gases: xr.Dataset) -> Finding:
-    """R of disks with spread radii - R of disks that are alike is as good as zero.
+    """R of disks with spread radii - R of disks that are alike is compatible with zero.
 
     Deviations are compared one by one, since the errors of equal disks are common to them.
     """

@@ -51,7 +51,7 @@ def without_rotation(heated: xr.Dataset) -> Sample:
 
 
 def follows_its_share(driven: xr.Dataset) -> Finding:
-    """R - the rate equations, at the share that the energy books say, is as good as zero."""
+    """R - the rate equations, at the measured share of rotation, is compatible with zero."""
     found = agreement(deviation_at_shares(driven), "the rate equations at the measured share")
     shares = spin_shares(driven)
     low, high, taken = float(shares.min()), float(shares.max()), int((shares < 0).sum())
@@ -61,7 +61,7 @@ def follows_its_share(driven: xr.Dataset) -> Finding:
 
 def only_rotation_matters(bed: xr.Dataset) -> Finding:
     """R with rough boundaries differs from R with smooth ones where they put in rotation; where
-    they do not, the difference is as good as zero."""
+    they do not, the difference is compatible with zero."""
     if SMOOTH not in bed.roughness:
         raise NotTestedError(f"the sweep does not reach roughness = {SMOOTH:g}")
     shares = spin_shares(bed)
@@ -107,7 +107,7 @@ def _roughest(bed: xr.Dataset) -> list[tuple[str, Estimate]]:
 
 
 def wave_form_changes_nothing(waves: xr.Dataset) -> Finding:
-    """R over a floor that moves in any other wave - R over the sawtooth is as good as zero.
+    """R over a floor that moves in any other wave - R over the sawtooth is compatible with zero.
 
     Waves are compared one by one, since the errors of the sawtooth are common to them.
     """
@@ -122,7 +122,7 @@ def wave_form_changes_nothing(waves: xr.Dataset) -> Finding:
 
 
 def follows_rates(gas: xr.Dataset) -> Finding:
-    """R - the rate equations with friction is as good as zero, in proportion, too."""
+    """R - the rate equations with friction is compatible with zero, also relative to theory."""
     held = gas.sel(mu=gas.mu > 0.0)  # at mu = 0 spin is decoupled: R keeps its initial value
     found = agreement_in_proportion(held, "the rate equations")
     measured, expected = _rough_from(held.R), _rough_from(held.theory)
@@ -148,7 +148,8 @@ def _rough_from(ratio: xr.DataArray) -> dict[float, str]:
 
 
 def keeps_spin_when_weak(cooling: xr.Dataset) -> Finding:
-    """Where theory has R = 1, R - 1 is as good as zero; beyond the last such mu, R jumps down."""
+    """Where theory has R = 1, R - 1 is compatible with zero; beyond the last such mu, R jumps
+    down."""
     held = cooling.sel(mu=cooling.mu > 0.0)
     alone = held.theory > SPIN_ALONE
     if not alone.any():

@@ -120,7 +120,8 @@ def above_half_at_smooth_particles(rough: xr.Dataset) -> Finding:
 
 
 def fails_unsubtracted(sheared: xr.Dataset) -> Finding:
-    """R - Lun's formula, nothing removed, is not as good as zero, and worse than after removal."""
+    """R - Lun's formula, nothing removed, is not compatible with zero, and worse than after
+    removal."""
     if "R_unsubtracted" not in sheared:
         raise NotTestedError("the dataset holds no un-subtracted R")
     gap = (sheared.R_unsubtracted - sheared.theory).where(np.isfinite(sheared.R))
@@ -188,7 +189,7 @@ def _ratio(log: Estimate) -> str:
 
 
 def follows_k(cooling: xr.Dataset) -> Finding:
-    """R - the theory of free cooling at every point is as good as zero."""
+    """R - the theory of free cooling at every point is compatible with zero."""
     found = agreement(deviation(cooling), "the theory of free cooling")
     relative = deviation_in_proportion(cooling)
     near = int((np.abs(relative.value) <= NEAR).sum())
@@ -214,7 +215,7 @@ def reaches_a_constant(cooling: xr.Dataset) -> Finding:
 
 
 def depends_on_restitution(cooling: xr.Dataset) -> Finding:
-    """R at the lowest r - R at the highest is far from zero at some beta."""
+    """R at the lowest r - R at the highest is large at some beta."""
     effect = effect_of_restitution(cooling)
     largest, _ = effect.largest()
     size = abs(largest.value) if largest.real else 0.0
@@ -230,7 +231,7 @@ def depends_on_restitution(cooling: xr.Dataset) -> Finding:
 
 
 def forcing_decides(cooling: xr.Dataset, bed: xr.Dataset) -> Finding:
-    """R cooling - R vibrated is far from zero and is what the theory of free cooling minus
+    """R cooling - R vibrated is large and is what the theory of free cooling minus
     Lun's formula says."""
     change, expected = (
         difference(*(gas.assign(R=gas[name].where(np.isfinite(gas.R))) for gas in (cooling, bed)))

@@ -43,9 +43,9 @@ How to read it. A number is "value ± standard error (sigma)". Significance and 
 separately: with small errors a theory that is 2 % off is 20 sigma off and still useful. R agrees
 where it is within {agree:g}, and disagrees beyond {limit:g} where the difference is significant,
 {significant_sigma:g} sigma or more. In between, agreement is qualified, and so it is where errors
-are too large to tell at more than a few points ({few:.0%} of them). Where R spans decades it must
-follow theory in proportion, too: agreement is qualified where more than a few points are off by
-{near:.0%} of it, and fails where by {far:.0%}. A direction (above, below) needs {tendency:g} in R.
+are too large to tell at more than a few points ({few:.0%} of them). Where R spans decades it is
+also judged relative to theory: agreement is qualified where more than a few points differ by
+{near:.0%} of theory, and fails at {far:.0%}. A direction (above, below) needs {tendency:g} in R.
 Points that are not in a steady state are set aside, and counted. docs/claims.md gives the reason
 for each of these numbers, and says what was fixed before the data were seen.
 

@@ -84,8 +84,8 @@ def _statement(
     criterion = _said_of(FUNCTIONS[judge or sample])
     if not judge:
         value = criterion.removeprefix("Return ").rstrip(".")
-        criterion = f"{value}, is as good as zero: agreement with {agrees_with}"
-        criterion += ", in proportion, too." if in_proportion else "."
+        criterion = f"{value} is compatible with zero: agreement with {agrees_with}"
+        criterion += ", also relative to theory." if in_proportion else "."
     decide = FUNCTIONS[judge] if judge else agrees
     return Statement(name, quote, tuple(experiments), decide, criterion, fixed)
 

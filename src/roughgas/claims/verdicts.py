@@ -22,13 +22,12 @@ FAILS = "fails"
 NOT_TESTED = "not tested"
 
 AGREE = 0.02
-"""Difference in R up to which two values agree. What the paper is to tell apart, Lun's formula and
-the theory of free cooling at r = 0.9 and beta = 0, is 0.12: this is a sixth of it. Where R < 0.02
-it asks nothing, so what spans such R is judged in proportion, too. Fixed before any data; the
-reason is of later."""
+"""Difference in R up to which two values agree. Lun's formula and the theory of free cooling differ
+by 0.12 at r = 0.9, beta = 0; this is a sixth of that. Where R < 0.02 the criterion is empty, so
+such ranges are also judged relative to theory. Fixed before any data; justified later."""
 LIMIT = 0.06
 """Difference in R beyond which they disagree; between the two, agreement is qualified. Half of that
-0.12: beyond it the other theory may be nearer. Fixed before any data; the reason is of later."""
+0.12: beyond it the other theory may be nearer. Fixed before any data; justified later."""
 TENDENCY = 0.005
 """Difference in R from which a statement about a direction (above, below) has content. A
 convention: a quarter of AGREE. Fixed before any data."""
@@ -36,7 +35,7 @@ FEW = 0.1
 """Share of the points of a sweep that may be exceptions. A convention: two of the 21 values of beta
 at one r. Fixed before any data."""
 NEAR = 0.1
-"""Fraction of R up to which a value agrees with theory in proportion. AGREE over the R of a driven
+"""Fraction of R up to which a value agrees relative to theory. AGREE over the R of a driven
 gas in mid-range, Lun's formula at beta = 0. Fixed before the data of friction and inertia; for beds
 and sheared gases (Figs. 1a, 2a, 3) after their data."""
 FAR = 0.5
@@ -57,7 +56,7 @@ class Finding(NamedTuple):
 
 
 def agreement(sample: Sample, other: str) -> Finding:
-    """Judge whether the values of `sample`, differences from `other`, are as good as zero.
+    """Judge whether the values of `sample`, differences from `other`, are compatible with zero.
 
     A point disagrees where it differs significantly and by more than the tolerance. Fails: more
     than a few points differ by more than LIMIT. Holds: no point differs by more than AGREE.
@@ -88,13 +87,13 @@ def _along(sample: Sample) -> list[tuple[str, Estimate]]:
 
 
 def agreement_in_proportion(gas: xr.Dataset, theory: str) -> Finding:
-    """Judge whether R - theory is as good as zero, and so is its ratio to theory at all but a few
-    points: where R spans decades, a small R must follow theory, too."""
+    """Judge whether R - theory is compatible with zero, and so is its ratio to theory at all but a
+    few points: where R spans decades, a small R must follow theory, too."""
     found, relative = agreement(deviation(gas), theory), deviation_in_proportion(gas)
     off, far, vague = relative.off(NEAR), relative.off(FAR), relative.vague(NEAR)
     verdict = graded(off.mean() <= FEW and vague.mean() <= FEW, far.mean() <= FEW)
     near = int((np.abs(relative.value) <= NEAR).sum())
-    reason = f"In proportion, {near} of {relative.size} points are within {NEAR:.0%}"
+    reason = f"Relative to theory, {near} of {relative.size} points are within {NEAR:.0%}"
     numbers: tuple[tuple[str, Estimate], ...] = ()
     if off.any():
         largest, place = relative.where(off).largest()
