@@ -38,7 +38,7 @@ figures: setup ## simulate, and draw the four figures of the paper
 	@echo "Every number in them:  $(RESULTS)/R.csv"
 	@echo "Every point, to click on, and one file to share:  make$(AT_SCALE) report"
 
-report: setup ## pages for a browser: the report, every point to click on, a living gas, and how all was made
+report: setup ## pages for a browser: the report, every point to click on, a gas in motion, and how all was made
 	$(SNAKEMAKE) $(REPORTED) explore living $(RESULTS)/report.html
 	$(BIN)/snakemake --config scale=$(SCALE) --report $(RESULTS)/workflow.html -- $(REPORTED)
 	@echo

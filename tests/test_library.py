@@ -106,7 +106,7 @@ def test_an_experiment_of_another_configuration(tmp_path):
         ("cooling", {"box": 50}, "cooling.box = 50: must be a list of 2 to 3 entries"),
         ("cooling", {"effects": {"frction": {}}}, "cooling.effects: key = 'frction': must be one"),
         ("cooling", {"schedule": {"measure": 9}}, "cooling.schedule: key = 'measure': must be one"),
-        ("vibrated", {"effects": {"gravity": None}}, "effects.floor = without gravity: must come"),
+        ("vibrated", {"effects": {"gravity": None}}, "effects.floor needs gravity"),
         ("vibrated_friction", {}, "vibrated_friction.effects.friction.mu = (nothing): must be"),
         (
             "vibrated_friction/mu0.3",

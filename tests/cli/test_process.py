@@ -181,7 +181,10 @@ def test_points_to_reduce_are_read_from_standard_input(point, tmp_path, monkeypa
 
 @pytest.mark.parametrize(
     ("seeds", "files", "message"),
-    [("12", ["1.nc"], "must name 2, one a seed"), (["1", "x"], ["1.nc", "x.nc"], "seed = x: must")],
+    [
+        ("12", ["1.nc"], "must name 2, one per seed"),
+        (["1", "x"], ["1.nc", "x.nc"], "seed = x: must"),
+    ],
 )
 def test_a_mistake_in_one_seed_stops_all_of_them(tmp_path, capsys, seeds, files, message):
     assert run_seeds(tmp_path, seeds, files) == 2

@@ -42,7 +42,7 @@ def test_a_point(product, capsys):
     assert rows["cost"].startswith(f"{int(point.collisions):,} collisions in ")
     assert len(rows["R(t)"].split()[0]) == min(48, point.sizes["sample"])
     assert text.rstrip().endswith(point.attrs["command"])
-    assert "\n  contacts " in text and "the books miss" in text
+    assert "\n  contacts " in text and "energy balance closes to" in text
 
 
 def test_a_point_for_a_script(product, capsys):

@@ -67,7 +67,7 @@ def test_table_and_csv(capsys):
         (["--species=[{fraction: 1, size: 2}]"], "species = size: must be one of fraction,"),
         (["--species=[{fraction: 1"], "--species: line 1 = "),
         (["--species=[1]"], "species = 1: must be a list of species, each with"),
-        (["--packing=0.1"], "--packing = 0.1: must come with --species"),
+        (["--packing=0.1"], "--packing needs --species"),
         (["--species=[{number: 3}]", "--packing=2"], "--packing = 2.0: must lie in [0, 1)"),
     ],
 )

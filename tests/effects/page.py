@@ -50,8 +50,11 @@ def config_with(experiment, folder):
 
 
 def table():
-    """What effects there are, as a table."""
-    return markdown(HEAD, (_row(name, kind) for name, kind in KINDS.items()))
+    """What effects there are, as a table; those alike share a row."""
+    alike = {}
+    for name, kind in KINDS.items():
+        alike.setdefault(_about(kind), []).append(f"`{name}`")
+    return markdown(HEAD, ((", ".join(names), *about) for about, names in alike.items()))
 
 
 def written():
@@ -59,10 +62,10 @@ def written():
     return PAGE.read_text(encoding="utf-8").split(BEGIN)[1].split(END)[0]
 
 
-def _row(name, kind):
+def _about(kind):
     there = [f"`{hook}`" for hook, own in kind.hooks._asdict().items() if own]
     described = "<br>".join(_parameter(key, one) for key, one in kind.parameters.items())
-    return f"`{name}`", kind.__doc__, described, ", ".join(there)
+    return kind.__doc__, described, ", ".join(there)
 
 
 def _parameter(key, one):

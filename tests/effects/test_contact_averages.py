@@ -92,7 +92,7 @@ def test_looking_changes_no_bit(kernel):
 
 
 def test_without_spin_it_is_refused():
-    with pytest.raises(InputError, match="contact_averages = without spin: must come with spin"):
+    with pytest.raises(InputError, match="contact_averages needs spin"):
         build(settings("smooth") | {"effects": {"contact_averages": {}}}, 0.9, -1.0)
 
 

@@ -159,8 +159,7 @@ def test_initial_places_are_checked_against_every_wall():
 
 LID = DISKS | {"bottom_wall": {}}
 REFUSED = {
-    "effects.lid = without bottom_wall: must come with bottom_wall, or particles would leave on "
-    "the other side": DISKS | {"lid": {}},
+    "effects.lid needs bottom_wall": DISKS | {"lid": {}},
     "effects.front_wall = in the plane: must be bottom_wall or lid there": {"front_wall": {}},
     "effects.lid.restitution = 0.5: must not be given where the wall has a temperature": LID
     | {"lid": {"temperature": 1.0, "restitution": 0.5}},
@@ -187,7 +186,7 @@ def test_what_is_refused(message):
 def test_a_bottom_wall_under_gravity_is_a_floor():
     with pytest.raises(InputError, match=r"bottom_wall = with gravity: must be a floor there"):
         build(closed(BED | {"bottom_wall": {}, "lid": {}}, [20, 20]), 0.9, 0.0)
-    with pytest.raises(InputError, match=r"lid = where the box is open: must come with a length"):
+    with pytest.raises(InputError, match=r"lid needs a length"):
         build(closed(BED | {"lid": {}}, [20, "open"]), 0.9, 0.0)
 
 

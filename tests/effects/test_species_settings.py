@@ -89,9 +89,9 @@ WRONG = [
     ([{"fraction": 0.5}, {"number": 20}], "species[1].number = 20: must be a fraction"),
     ([{"radius": 2}], "species[0].fraction = (nothing): must be given, or number"),
     ([{"number": 40, "fraction": 1}], "species[0].fraction = 1: must not stand beside number"),
-    ([{"fraction": 0.999}, {"fraction": 0.001}], "species[1].fraction = 0.001: must be so much"),
+    ([{"fraction": 0.999}, {"fraction": 0.001}], "species[1].fraction = 0.001: must be large"),
     ([{"fraction": 1, "radius": 11}], "box[0] = 40.0: must be a number of at least 44.11"),
-    ([{"fraction": 1, "mu": 0.1}], "species[0].mu = 0.1: must come with effects.friction"),
+    ([{"fraction": 1, "mu": 0.1}], "species[0].mu needs effects.friction"),
     ([{"name": "a", "fraction": 0.5}] * 2, "species[1].name = a: must be given once"),
     ([{"fraction": 1, "radius": SPREAD}], "species[0].radius.deviation = (nothing): must be given"),
     (
@@ -100,7 +100,7 @@ WRONG = [
     ),
     (
         [{"fraction": 1, "radius": {"distribution": "file", "file": "nowhere"}}],
-        "species[0].radius.file = nowhere: must be a file of radii, one a line",
+        "species[0].radius.file = nowhere: must be a file of radii, one per line",
     ),
 ]
 

@@ -150,7 +150,7 @@ def test_names_may_be_one_text():
         ({"words": lambda frame: "many"}, r"^observe\.words = str: must return a number, an array"),
         (
             {"odd": lambda frame: np.zeros(int(frame.time) % 3)},
-            r"^observe\.odd: shapes = .*: must be the same at every look, as it was at first",
+            r"^observe\.odd: shapes = .*: must be the same at every observation, as at the first",
         ),
         ({"cumulants": {"every": 10**6}}, r"^observables: every = 1000000: must be small enough"),
     ],
@@ -169,7 +169,7 @@ def test_observables_that_do_not_suit_the_scene_are_refused_before_it_runs():
     scene = SHEARED | {"effects": bed, "box": (25, "open")}
     with pytest.raises(InputError, match=r"^observables\.stress = in this box: must not be given"):
         point(scene, ["stress"], beta=-1)
-    with pytest.raises(InputError, match=r"^observables\.spin_correlation = without spin"):
+    with pytest.raises(InputError, match=r"^observables\.spin_correlation needs spin"):
         point(scene, ["spin_correlation"], beta=-1)
 
 

@@ -22,6 +22,18 @@ class InputError(ValueError):
         return f"{self.key} = {self.value}: must {self.legal}"
 
 
+class NeedsError(InputError):
+    """A setting without another one that it needs, `needed`; its text: `effects.gravity needs a
+    floor`."""
+
+    def __init__(self, key: str, needed: str) -> None:
+        super().__init__(key, "alone", f"come with {needed}")
+        self.needed = needed
+
+    def __str__(self) -> str:
+        return f"{self.key} needs {self.needed}"
+
+
 def shown(value: object) -> str:
     """Return a value as a message quotes it: as Python writes it, on one line, not too long."""
     text = " ".join(repr(value).split())

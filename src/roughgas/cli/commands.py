@@ -31,7 +31,7 @@ COMMANDS = {
         FROM,
         flag("--keep-state", "keep the last state in the dataset, for --from"),
         value("--observe NAME", "what to watch besides, such as stress or profiles", nargs="+"),
-        output("datasets, one a seed", required=False, nargs="+"),
+        output("datasets, one per seed", required=False, nargs="+"),
         flag("--json", "print a line of JSON as each seed is done"),
         examples=(
             "roughgas run cooling --r 0.9 --beta -0.5",

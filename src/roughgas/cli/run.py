@@ -32,7 +32,7 @@ def run(options: Namespace) -> None:
     places = [(options.r, beta, seed) for beta in options.beta for seed in options.seed]
     outputs = options.output or [_own_name(options, *place) for place in places]
     if len(outputs) != len(places):
-        raise InputError("--output", " ".join(outputs), f"name {len(places)}, one a seed")
+        raise InputError("--output", " ".join(outputs), f"name {len(places)}, one per seed")
     remaining = zip(places, outputs, strict=True)
     for scene, settings in points:
         with Bar(f"pilot of {options.experiment}", None, quiet="target_stderr" not in settings):

@@ -190,7 +190,7 @@ def _books(point: Dataset) -> str:
         rows.append([f"  {source}", *(f"{one:.6g}" for one in energies)])
     rows.append(["  what the gas has gained", *(f"{one:.6g}" for one in point.energy_gain.values)])
     imbalance, units = float(point.energy_imbalance), unit_of(point.energy_gain.attrs)
-    return f"{columns(rows, numbers=True)}\n  in {units}; the books miss {imbalance:.1g} of it all"
+    return f"{columns(rows, numbers=True)}\n  in {units}; energy balance closes to {imbalance:.1g}"
 
 
 def _reduced_record(data: Dataset) -> dict[str, Any]:

@@ -38,7 +38,7 @@ STEPS = {
         "combine the points of an experiment",
         value(
             "inputs POINT",
-            "datasets, or folders of them; - reads their names from standard input, one a line",
+            "datasets, or folders of them; - reads their names from standard input, one per line",
             nargs="+",
         ),
         output("reduced dataset"),

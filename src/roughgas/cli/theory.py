@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from roughgas import config, theory
-from roughgas.base.errors import InputError
+from roughgas.base.errors import InputError, NeedsError
 from roughgas.base.layout import as_json, columns
 from roughgas.base.legal import Interval
 from roughgas.cli.options import number
@@ -65,8 +65,7 @@ def _mixed(options: Namespace) -> dict[str, Any]:
     packing = number("--packing", options.packing, Interval("[0, 1)"))
     if options.species is None:
         if packing:
-            legal = "come with --species: one species has the same R at any packing"
-            raise InputError("--packing", options.packing, legal)
+            raise NeedsError("--packing", "--species: one species has the same R at any packing")
         return {}
     from roughgas.cli.theory_of_mixtures import species_from
 
@@ -116,7 +115,7 @@ def _relaxation(gas: GasParameters) -> dict[str, Quantity]:
     """Return how fast R settles and energy decays."""
     point, source = (gas.r, gas.beta), "rate equations"
     spins = {"dimension": gas.dimension, "inertia": gas.inertia}
-    until = f"collisions per particle until R is there to {TOLERANCE:.0%}"
+    until = f"collisions per particle to reach R within {TOLERANCE:.0%}"
     found = {}
     for name, share in (("driven", gas.spin_share), ("cooling", None)):
         rate = theory.relaxation_rate(*point, **spins, spin_share=share)

@@ -13,7 +13,7 @@ rotation, the mean squares would be 2 (D-1) times these. Then q = 1 belongs to t
 import math
 from typing import NamedTuple
 
-from roughgas.base.errors import InputError
+from roughgas.base.errors import NeedsError
 from roughgas.effects.settings import register
 from roughgas.kernel.bodies import pair_of
 from roughgas.kernel.hooks import either
@@ -24,14 +24,13 @@ SUMS = {"v_t^2": 2, "v_r^2": 2, "v_t.v_r": 2}
 
 
 class ContactAverages(NamedTuple):
-    """Squares and product of translation and rotation are summed over all contacts of pairs."""
+    """Measures R averaged over collisions, from sums over all contacts of pairs."""
 
     @classmethod
     def from_settings(cls, settings, around):
         """Return the effect; raise InputError where nothing spins."""
         if "spin" not in around.effects:
-            legal = "come with spin, which it looks at"
-            raise InputError("effects.contact_averages", "without spin", legal)
+            raise NeedsError("effects.contact_averages", "spin")
         return cls()
 
 

@@ -19,7 +19,7 @@ SUMS = {f"J_{k} s_{along}": 1 for k, along in product(AXES, AXES)}
 
 
 class ContactStress(NamedTuple):
-    """Momentum times the distance over which contacts carry it is summed over all pairs."""
+    """Measures the collisional stress, from sums over all contacts of pairs."""
 
 
 @jit

@@ -17,8 +17,7 @@ from roughgas.kernel.state import EXPONENT
 SETTINGS = {
     "duration": Number("Contact time t_c, in T."),
     "below_r": Number(
-        "The model acts at points whose r is smaller than this, at others not at all; if not given "
-        "it acts everywhere.",
+        "The model acts only at points whose r is smaller; if not given, at all points.",
         "[0, 1]",
         default=math.inf,
     ),

@@ -19,7 +19,7 @@ SETTINGS = {
     "amplitude": Number("Height of a stroke, in a; 0 is a floor at rest.", "[0, inf)"),
     "period": Number("Time between strokes, in T."),
     "wave": Word(
-        "Form of its motion; the sawtooth is back at once, the reversed one rises in a tenth of "
+        "Form of its motion; the sawtooth returns at once, the reversed one rises in a tenth of "
         "the period.",
         WAVES,
     ),
@@ -28,7 +28,7 @@ SETTINGS = {
 
 
 class Floor(NamedTuple):
-    """A floor under a gas with gravity, that shakes it."""
+    """A shaken floor under a gas with gravity."""
 
     amplitude: float
     period: float

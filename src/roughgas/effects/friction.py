@@ -13,7 +13,7 @@ over what one along the normal moves the centres by; and mu is that of the pair.
 import math
 from typing import NamedTuple
 
-from roughgas.base.errors import InputError
+from roughgas.base.errors import NeedsError
 from roughgas.effects.settings import Number, register
 from roughgas.kernel.hooks import either
 from roughgas.kernel.jit import jit
@@ -32,7 +32,7 @@ class Friction(NamedTuple):
     def from_settings(cls, settings, around):
         """Return the effect; raise InputError where nothing spins."""
         if "spin" not in around.effects:
-            raise InputError("effects.friction", "without spin", "come with spin, which it acts on")
+            raise NeedsError("effects.friction", "spin")
         inertia = around.effects["spin"]["inertia"]
         return cls(**settings, inertia=float(inertia))
 

@@ -18,7 +18,7 @@ from roughgas.kernel.unroll import unrolled
 MOST = 32  # entries: a table that is shorter is filled up, so that all have the same machine code
 SETTINGS = {
     "speed": Numbers("Normal speeds, increasing, in a/T.", "[0, inf)", 2, MOST),
-    "restitution": Numbers("Restitution at each of them.", "[0, 1]", 2, MOST),
+    "restitution": Numbers("Restitution at each speed.", "[0, 1]", 2, MOST),
     "reference": Number(
         "Normal speed at which contacts have their restitution r, in a/T.", "[0, inf)", 1.0
     ),
@@ -26,7 +26,7 @@ SETTINGS = {
 
 
 class RestitutionTable(NamedTuple):
-    """Restitution depends on the normal speed as a table has it."""
+    """A table gives the restitution at each normal speed."""
 
     speed: float  # the reference, at which contacts have the r of their material, in a/T
     lowest: float  # 1 - r at the lowest speed, over that at the reference

@@ -9,7 +9,7 @@ it, where the impulses on the two partners are opposite but the velocities at wh
 
 from typing import NamedTuple
 
-from roughgas.base.errors import InputError
+from roughgas.base.errors import NeedsError
 from roughgas.effects.settings import Number, register
 from roughgas.kernel.jit import jit
 
@@ -26,8 +26,7 @@ class Shear(NamedTuple):
     def from_settings(cls, settings, around):
         """Return the effect; raise InputError for a box that is not periodic."""
         if None in around.box[:2]:
-            legal = "come with a box periodic in both directions"
-            raise InputError("effects.shear", "given", legal)
+            raise NeedsError("effects.shear", "a box periodic in both directions")
         return cls(**settings, length=around.box[0])
 
 

@@ -8,7 +8,7 @@ is follows from its parameters: `SideWall.from_settings` makes it.
 import math
 from typing import NamedTuple
 
-from roughgas.base.errors import InputError
+from roughgas.base.errors import InputError, NeedsError
 from roughgas.effects import piston, thermal_wall
 from roughgas.effects.floor import WAVES
 from roughgas.effects.plane import Place, bounce, closed_axis, predict
@@ -36,8 +36,8 @@ SETTINGS = {
         "[-1e+06, 1e+06]",
         default=0.0,
     ),
-    "amplitude": Number("Height of a stroke of a wall that is shaken, in a.", "[0, inf)", 0.0),
-    "period": Number("Time between strokes, in T; given where it is shaken.", default=math.inf),
+    "amplitude": Number("Height of a stroke of a shaken wall, in a.", "[0, inf)", 0.0),
+    "period": Number("Time between strokes, in T; given for a shaken wall.", default=math.inf),
     "wave": Word("Form of its motion, as of floors.", WAVES),
     "shaken": Word("Whether it is shaken along its normal or along itself.", (NORMAL, ALONG)),
     "temperature": Number(
@@ -49,7 +49,7 @@ SETTINGS = {
 
 
 class SideWall(NamedTuple):
-    """A wall at rest on one side of the box."""
+    """A wall on one side of the box: at rest, sliding, shaken or thermal."""
 
     place: Place
     restitution: float
@@ -97,8 +97,7 @@ def _place(around):
         raise InputError(key, "in the plane", "be bottom_wall or lid there")
     axis %= dimension
     if around.box[axis] is None:
-        legal = f"come with a length of the box along its {'last' if axis else 'first'} axis"
-        raise InputError(key, "where the box is open", legal)
+        raise NeedsError(key, f"a length of the box along its {'last' if axis else 'first'} axis")
     if around.name == "bottom_wall" and "gravity" in around.effects:
         raise InputError(key, "with gravity", "be a floor there, which may be at rest")
     along = dimension - 1 if axis == 0 else 0

@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from roughgas.base.errors import InputError, shown
+from roughgas.base.errors import InputError, NeedsError, shown
 from roughgas.base.legal import RESTITUTION, ROUGHNESS, Interval
 from roughgas.effects.settings import register
 
@@ -115,7 +115,7 @@ def mixture_of(experiment: Mapping[str, Any]) -> Mixture | None:
     """
     if not experiment.get("species"):
         if experiment.get("species_pairs"):
-            raise InputError("species_pairs", "given", "come with species")
+            raise NeedsError("species_pairs", "species")
         return None
     settings = experiment["species"]
     numbers = _numbers(settings, experiment["particles"])
@@ -163,7 +163,7 @@ def _numbers(settings, particles):
         numbers[k] += 1
     for k, number in enumerate(numbers):
         if number == 0:
-            legal = f"be so much that one of {particles} particles is of this species"
+            legal = f"be large enough for one of {particles} particles"
             raise InputError(f"species[{k}].fraction", parts[k], legal)
     return numbers
 
@@ -211,9 +211,9 @@ def _radii_in(key, path):
     try:
         numbers = np.loadtxt(Path(path), ndmin=1)
     except (OSError, ValueError) as error:
-        raise InputError(key, path, "be a file of radii, one a line") from error
+        raise InputError(key, path, "be a file of radii, one per line") from error
     if numbers.ndim != 1 or not numbers.size:
-        raise InputError(key, path, "be a file of radii, one a line")
+        raise InputError(key, path, "be a file of radii, one per line")
     return tuple(SIZE.check(f"radius in {path}", one) for one in numbers.tolist())
 
 
@@ -221,7 +221,7 @@ def _material(key, settings, effects):
     """Return what a species, or a pair of them, has of its own."""
     for name, effect in (("roughness", "spin"), ("mu", "friction")):
         if name in settings and effect not in effects:
-            raise InputError(f"{key}.{name}", settings[name], f"come with effects.{effect}")
+            raise NeedsError(f"{key}.{name}", f"effects.{effect}")
     found = {name: _own(key, name, settings, legal) for name, legal in MATERIAL.items()}
     return {name: value for name, value in found.items() if value is not None}
 

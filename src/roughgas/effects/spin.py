@@ -8,7 +8,7 @@ SETTINGS = {"inertia": Number("q = I/(m a^2), 1/2 for disks and 2/5 for spheres.
 
 
 class Spin(NamedTuple):
-    """Particles spin, which makes their roughness felt."""
+    """Particles spin; rough contacts exchange energy between translation and rotation."""
 
     inertia: float
 

@@ -34,13 +34,13 @@ from roughgas.kernel.vectors import add_scaled, dot, scale, subtract
 
 SETTINGS = {
     "power": Number("Energy put in per particle and time, in m a^2/T^3."),
-    "spin_share": Number("Share of it that goes into rotation.", "[0, 1]"),
+    "spin_share": Number("Share of the power that goes into rotation.", "[0, 1]"),
     "interval": Number("Time between the kicks that a particle starts, in T."),
 }
 
 
 class Thermostat(NamedTuple):
-    """Random kicks to pairs of particles, a chosen share of their energy into the spins."""
+    """Random kicks to pairs of particles; a chosen share of their energy goes into rotation."""
 
     push: float  # largest component of a kick to the velocity, in a/T
     turn: float  # the same of a kick to the spin, as a surface velocity

@@ -16,7 +16,7 @@ from roughgas.kernel.state import EXPONENT
 SETTINGS = {
     "speed": Number("Contacts at a lower normal speed are slow, in a/T."),
     "restitution": Number(
-        "Restitution of slow contacts; of contacts more elastic than that, their own.",
+        "Restitution of slow contacts; more elastic contacts keep their own.",
         "[0, 1]",
         default=1.0,
     ),
@@ -24,7 +24,7 @@ SETTINGS = {
 
 
 class Threshold(NamedTuple):
-    """Contacts that are slower than a threshold have a constant restitution, such as 1."""
+    """Contacts slower than a threshold have a constant restitution, such as 1."""
 
     speed: float
     restitution: float

@@ -33,7 +33,7 @@ FIFTH_ROOTS = (  # of 1, 2, 4, 8, 16
 
 
 class Viscoelastic(NamedTuple):
-    """Restitution falls with the normal speed, as that of viscoelastic particles does."""
+    """Restitution of viscoelastic particles, which falls with the normal speed."""
 
     speed: float  # at which contacts have the r of their material, in a/T
     root: float  # fifth root of that speed
@@ -45,7 +45,7 @@ class Viscoelastic(NamedTuple):
         """Return the effect; raise InputError beside another law."""
         if "restitution_table" in around.effects:
             what = "viscoelastic and restitution_table"
-            raise InputError("effects", what, "not both say how r depends on the speed")
+            raise InputError("effects", what, "not both define r of the speed")
         r, speed = around.restitution, settings["speed"]
         return cls(speed, fifth_root(speed, 0), r, x_of(r) if 0.0 < r < 1.0 else 0.0)
 

@@ -14,7 +14,7 @@ LEFT, RIGHT = 0, 1
 
 
 class Walls(NamedTuple):
-    """Resting side walls that close the first axis."""
+    """Side walls at rest that close the first axis."""
 
     width: float  # they are at 0 and at this place, in a
     restitution: float

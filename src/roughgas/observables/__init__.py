@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Mapping
 from functools import partial
 from typing import Any, NamedTuple
 
-from roughgas.base.errors import InputError, not_one_of
+from roughgas.base.errors import InputError, NeedsError, not_one_of
 from roughgas.effects.settings import schema_of_kinds
 from roughgas.observables.cumulants import Cumulants
 from roughgas.observables.frame import Frame, System
@@ -72,7 +72,7 @@ def _wanted(name, given):
 
     def make(system):
         if kind.spins and system.inertia is None:
-            raise InputError(f"observables.{name}", "without spin", "come with spin")
+            raise NeedsError(f"observables.{name}", "spin")
         if kind.alike and not system.alike:
             raise InputError(f"observables.{name}", "with species", "come without species")
         return kind(system, **values)

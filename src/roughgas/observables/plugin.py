@@ -93,7 +93,7 @@ class Function(Observable):
             for name, one in found.items():
                 self._describe(str(name), one, values[name].ndim)
         if shapes != self._shapes:
-            legal = f"be the same at every look, as it was at first: {self._shapes}"
+            legal = f"be the same at every observation, as at the first: {self._shapes}"
             raise InputError(f"observe.{self._name}: shapes", shapes, legal)
         return values
 

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from roughgas.base.errors import InputError
+from roughgas.base.errors import InputError, NeedsError
 from roughgas.base.legal import RESTITUTION, ROUGHNESS
 from roughgas.effects import KINDS, Effects
 from roughgas.effects.settings import Surroundings, make
@@ -141,11 +141,9 @@ def _check_axes(lengths, effects):
     if open_axes not in ([], [len(lengths) - 1]):
         raise InputError("box", list(lengths), "be open along its last axis only")
     if effects.gravity is None and effects.floor is not None:
-        legal = "come with gravity, or nothing would come back to it"
-        raise InputError("effects.floor", "without gravity", legal)
+        raise NeedsError("effects.floor", "gravity")
     if effects.gravity is not None and effects.floor is None:
-        legal = "come with a floor, or particles would fall forever"
-        raise InputError("effects.gravity", "without floor", legal)
+        raise NeedsError("effects.gravity", "a floor")
     if (effects.gravity is None or effects.lid is not None) == bool(open_axes):
         legal = "be open at the top if and only if there is gravity"
         raise InputError("box", list(lengths), legal)

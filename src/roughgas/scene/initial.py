@@ -98,7 +98,7 @@ def _places(scene, experiment, bodies, rng):
     periodic = [side is not None for side in scene.box]
     while (found := places_for(bodies.radius, lengths, periodic, rng)) is None:
         if experiment["box"][-1] != "open":
-            legal = "be fewer or smaller: no places without overlap were found for them"
+            legal = "be fewer or smaller: no positions without overlap were found"
             raise InputError("particles", number, legal)
         lengths[-1] *= 2.0
     return found + begins
@@ -205,7 +205,7 @@ def lattice(scene: Scene, experiment: Mapping[str, Any], radius: float = 1.0) ->
     if math.prod(counts) < number:  # too dense for vacancies: as many sites as there is room for
         counts = [math.floor(length / least) for length in lengths]
     if math.prod(counts) > MOST_SITES:
-        legal = f"have room for {MOST_SITES:.0e} particles at most, a lattice being laid over it"
+        legal = f"have at most {MOST_SITES:.0e} lattice sites"
         raise InputError("box", experiment["box"], legal)
     sites = _sites(lengths, counts, [(0.5,) * dimension])
     if len(sites) < number and None not in scene.box:  # too dense for one site to a cell

@@ -1,6 +1,6 @@
 """The walls of a scene: which go together, and what they mean for its gas."""
 
-from roughgas.base.errors import InputError
+from roughgas.base.errors import InputError, NeedsError
 from roughgas.effects import Effects
 from roughgas.kernel import hooks
 
@@ -33,8 +33,7 @@ def check_sides(effects: Effects) -> None:
 def _check_opposite(effects, name, other):
     there = getattr(effects, other) or (other == "bottom_wall" and effects.floor)
     if getattr(effects, name) is not None and not there:
-        legal = f"come with {other}, or particles would leave on the other side"
-        raise InputError(f"effects.{name}", f"without {other}", legal)
+        raise NeedsError(f"effects.{name}", other)
 
 
 def moves_along(effects: Effects) -> bool:

@@ -75,7 +75,7 @@ class Run(Protocol):
 
 
 def initial_of(dataset: "xarray.Dataset") -> list[Initial]:
-    """Return the states in a dataset, one a replica.
+    """Return the states in a dataset, one per replica.
 
     It may be a point that has kept its last state, a frame of a trajectory, or of one's own:
     `position` and `velocity` (particle, axis), `spin` (particle, spin_axis), `radius` and
@@ -126,7 +126,7 @@ def check_initial(initial: Sequence[Initial], experiment: Mapping[str, Any], sce
     """Raise InputError where a run of this scene could not begin with these states."""
     replicas = experiment["schedule"].get("replicas", 1)
     if len(initial) != replicas:
-        raise InputError("number of initial states", len(initial), f"be {replicas}, one a replica")
+        raise InputError("number of initial states", len(initial), f"be {replicas}, as replicas")
     number, dimension = experiment["particles"], len(scene.box)
     components = 2 * dimension - 3
     for one in initial:

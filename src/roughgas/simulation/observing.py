@@ -138,7 +138,7 @@ class Watching:
             runs.append([look.values for look in one.looks if low < look.taken < high])
         runs = [run for run in runs if run]
         if not runs:
-            legal = "be small enough for looks during the measurement"
+            legal = "be small enough for observations during the measurement"
             raise InputError("observables: every", watched[0].every, legal)
         period = self._kind.samples_per_period(self._experiment["schedule"])
         per_period = period // one.every if period % one.every == 0 else 1

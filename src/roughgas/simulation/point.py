@@ -40,8 +40,8 @@ def run_point(
     `experiment` holds settings as roughgas.config.experiment gives them, and `scene` is what
     roughgas.scene.build makes of them at r and beta. The same settings, r, beta and seed give the
     same numbers to the last bit, but for `kernel_seconds`. `tell(time, collisions)` is called as
-    the simulation goes on. It begins in the `initial` states, one a replica, or else on a lattice.
-    Its observables are those of the settings, and `functions` of frames by name.
+    the simulation goes on. It begins in the `initial` states, one per replica, or else on a
+    lattice. Its observables are those of the settings, and `functions` of frames by name.
     Raises InputError if the particles do not fit or could not begin so, CollapseError if contacts
     accumulate without end.
     """

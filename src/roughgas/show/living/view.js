@@ -122,7 +122,6 @@ function change() {
   at("law").textContent = `theory: ${free() ? "free cooling" : "Lun's formula"}`;
   at("theory").textContent = theory().toFixed(3);
   at("clock-name").textContent = free() ? "collisions per disk" : "time, in T";
-  at("energy-name").textContent = free() ? "energy left, of that at the start" : "energy, over that at the start";
   history.replaceState(null, "", `#${name}/r${gas.r}/beta${gas.beta}`);
   startRecord();
   draw();
