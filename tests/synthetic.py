@@ -100,6 +100,7 @@ def mixed(experiment, third, shift=0.0, hotter=1.0, species=HALF, **how) -> xr.D
     if data.attrs["theory"] == "K":
         T_tr[..., -1] *= hotter
     values = {"E_trans_species": T_tr / 2, "R_species": R, "E_rot_species": T_tr * R / (1 - R) / 2}
+    values["T_ratio_species"] = T_tr / T_tr[..., :1]
     values |= {f"{one}_stderr": np.full(shape, 0.001) for one in values}
     dims = (*data.R.dims, "species")
     data = data.assign({one: (dims, value) for one, value in values.items()})

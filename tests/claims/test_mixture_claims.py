@@ -1,10 +1,14 @@
 """Verdicts on mixtures, with data whose R and temperatures are known."""
 
+import numpy as np
 import pytest
 from synthetic import mixed
 
 from roughgas.claims import evidence, mixtures
 from roughgas.claims.verdicts import FAILS, HOLDS, QUALIFIED
+from roughgas.data.point import Point, write_point
+from roughgas.results.reduce import reduce_points
+from roughgas.show.figures import mixtures_cooling
 
 HOW = {"r": (0.9,), "beta": (-0.5, 0.0, 0.5, 1.0)}
 MASSES = "species.second.mass", (1.0, 4.0)
@@ -60,3 +64,28 @@ def test_data_without_equal_disks_or_species_test_nothing():
         judged(mixtures.spread_changes_nothing, gas.sel(deviation=[0.2]))
     with pytest.raises(evidence.NotTestedError, match="holds no species"):
         judged(mixtures.species_follow_lun, gas.drop_vars("R_species"))
+
+
+def test_a_decay_that_species_share_is_no_error_of_their_ratio(tmp_path):
+    """Whoever shows or judges T_2/T_1 has the scatter of the ratio, not of energies that decay."""
+    ratios, decays, paths = [1.654, 1.656, 1.664, 1.677], [1.0, 0.3, 2.1, 0.6], []
+    about = mixed("cooling_masses", MASSES, **HOW).attrs | {"r": 0.9, "beta": 0.0}
+    for seed, (ratio, decay) in enumerate(zip(ratios, decays, strict=True), 1):
+        known = {"R": 0.3, "R_stderr": 0.01, "R_dof": 30.0, "R_ci95": 0.02, "R_ratio_of_means": 0.3}
+        known |= {"E_trans": decay, "E_rot": decay, "collisions": 100, "kernel_seconds": 0.5}
+        known |= {"equilibrated": 1, "measured_from": 3.0, "species": ["first", "second"]}
+        known |= {"R_species": np.array([0.3, 0.3])}
+        known |= {"E_trans_species": decay * np.array([1.0, ratio])}
+        known |= {"R_series": np.full(9, 0.3), "collisions_per_particle": np.arange(9.0)}
+        paths.append(tmp_path / f"seed{seed}.nc")
+        place = {"seed": seed, "swept_value": 4.0}
+        write_point(paths[-1], Point(known, about | place))
+    reduce_points(paths, tmp_path / "cooling_masses.nc")
+    gas = evidence.load(tmp_path / "cooling_masses.nc")
+    error = np.std(ratios, ddof=1) / 2
+    first, second = mixtures._of_theory(gas, "T_tr").values.ravel()
+    assert mixtures.temperature_ratio(gas).stderr == pytest.approx([error * first / second])
+    axes = mixtures_cooling.draw(gas, gas).axes[0]
+    (low, high) = axes.containers[0][2][0].get_segments()[0][:, 1]
+    assert (low + high) / 2 == pytest.approx(np.mean(ratios))
+    assert (high - low) / 2 == pytest.approx(error)

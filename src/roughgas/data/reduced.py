@@ -10,7 +10,7 @@ from roughgas.base.errors import InputError
 from roughgas.base.legal import Interval
 from roughgas.data import opening
 from roughgas.data.netcdf import read_netcdf
-from roughgas.data.variables import ENERGY, NAMES, POINT, RATE, TIME, Variable, register
+from roughgas.data.variables import ENERGY, MIXTURE, NAMES, POINT, RATE, TIME, Variable, register
 from roughgas.data.variables import GRID as OF_GRID
 
 if TYPE_CHECKING:
@@ -72,6 +72,15 @@ def _pooled(name: str) -> dict[str, Variable]:
     }
 
 
+T_RATIO = Variable(
+    "E_trans_species over that of the first species: mean of the ratios of the seeds",
+    dims=(OF_GRID, "species"),
+    when=(MIXTURE,),
+    over_seeds="",
+)
+OF_SPECIES = {name: POINT[name] for name in ("E_trans_species", "E_rot_species", "R_species")}
+OF_SPECIES["T_ratio_species"] = T_RATIO
+
 REDUCED = {
     name: about._replace(
         dims=(OF_GRID, *about.dims),
@@ -82,15 +91,16 @@ REDUCED = {
     if about.over_seeds and about.dims in ((), ("species",))
 } | {
     "species": NAMES["species"],
+    "T_ratio_species": T_RATIO,
     **{
         f"{name}_stderr": Variable(
             f"standard error of {name}: scatter over seeds",
-            POINT[name].units,
+            about.units,
             (OF_GRID, "species"),
-            when=POINT[name].when,
+            when=about.when,
             over_seeds="",
         )
-        for name in ("E_trans_species", "E_rot_species", "R_species")
+        for name, about in OF_SPECIES.items()
     },
     "R_seed": Variable("R of each seed", dims=(OF_GRID, "seed"), over_seeds=""),
     **_pooled("R"),

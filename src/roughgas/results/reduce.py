@@ -32,7 +32,7 @@ OF_A_POINT = ("r", "beta", "seed", "r_label", "beta_label", "variant", "swept_va
 PROVENANCE = ("roughgas_version", "numpy_version", "numba_version", "kernel_source_hash")
 SCATTERED = (
     *("R_ratio_of_means", "R_unsubtracted", "R_drift", "E_trans", "input_spin_share"),
-    *("E_trans_species", "E_rot_species", "R_species"),
+    *("E_trans_species", "E_rot_species", "R_species", "T_ratio_species"),
     *("decay_exponent", "shear_rate"),
 )
 """Means over seeds that carry a standard error, `<name>_stderr`, from their scatter."""
@@ -86,6 +86,9 @@ def _summary(path: Path) -> Summary:
         found = [name for name, about in POINT.items() if not about.dims]
         scalars = {name: file[name][...].item() for name in found if name in file.variables}
         scalars |= {name: file[name][...] for name in OF_SPECIES if name in file.variables}
+        if "E_trans_species" in scalars:  # a ratio in each seed: what all species share is no error
+            energy = scalars["E_trans_species"]
+            scalars["T_ratio_species"] = energy / energy[0]
         scalars |= _series(file)
         names = file["species"][...].tolist() if "species" in file.variables else []
         for name in scalars.keys() & SOUND:

@@ -5,7 +5,7 @@ from matplotlib.figure import Figure
 
 from roughgas.show.figures.two_species import Column, columns_figure
 
-THEORIES = "lines: theory of free cooling of mixtures"
+THEORIES = "theory of free cooling"
 
 
 def draw(masses: xr.Dataset, sizes: xr.Dataset) -> Figure:

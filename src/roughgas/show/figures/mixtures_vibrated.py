@@ -5,13 +5,13 @@ from matplotlib.figure import Figure
 
 from roughgas.show.figures.two_species import Column, columns_figure
 
-THEORIES = "lines: Lun's formula for mixtures,\nfrom the measured temperatures"
+THEORIES = "Lun's formula at the measured temperatures"
 
 
 def draw(masses: xr.Dataset, sizes: xr.Dataset) -> Figure:
     """Draw the figure from the reduced datasets of beds of unlike masses, and of unlike radii."""
     columns = (
-        Column(masses, "Vibrated bed", "Heavy disks are hotter, at nearly one R"),
-        Column(sizes, "Vibrated bed", "Large disks are mostly colder, at nearly one R"),
+        Column(masses, "Vibrated bed", "Heavy disks are hotter, R is nearly the same"),
+        Column(sizes, "Vibrated bed", "Large disks are mostly colder, R nearly the same"),
     )
     return columns_figure(columns, THEORIES)

@@ -1,24 +1,33 @@
 """T and R of two species over what they differ in: the form that figures of mixtures share."""
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.markers import TICKLEFT, TICKRIGHT
 
 from roughgas.show.figures import panel
-from roughgas.show.style import FAINT, LOOKS, THEORY, Look, Style
+from roughgas.show.style import FAINT, GREY, LOOKS, THEORY, Look, Style
 from roughgas.theory.prediction_of_mixtures import species_at
 
-SIZE = (7.6, 5.6)  # inches
-LABELS = {"mass": "ratio of the masses", "radius": "ratio of the radii"}
+SIZE = (7.6, 6.2)  # inches
+LABELS = {
+    "mass": "mass of heavy (2) / mass of light (1)",
+    "radius": "radius of large (2) / radius of small (1)",
+}
 FINE = 25
 """Ratios at which theory is drawn."""
 ROOM = 1.15
 """Factor that an axis goes on beyond the data."""
+SIZES = 3.0, 6.0
+"""Marker sizes of the two species: the light or small one, the heavy or large one."""
+LINES = "-", "--"
+DASHES = TICKLEFT, TICKRIGHT
+"""What stands for theory, of each species: lines where it is known at any ratio, else dashes."""
 
 
 class Column(NamedTuple):
@@ -33,69 +42,63 @@ class Column(NamedTuple):
         """What is swept."""
         return self.data.attrs["swept"].rpartition(".")[2]
 
-    @property
-    def names(self) -> list[str]:
-        """What the species are called."""
-        return [str(name) for name in self.data.species.values]
-
 
 def columns_figure(columns: Sequence[Column], theories: str) -> Figure:
     """Draw T_2/T_1 above, R of both species beneath, a column for each dataset.
 
-    Lines are theory: of a cooling gas `mixture_cooling`; of a driven one Lun's formula for
-    mixtures, from the measured temperatures, at the points alone.
+    Theory is lines of a cooling gas, `mixture_cooling`; of a driven one dashes at the points, Lun's
+    formula for mixtures from the measured temperatures.
     """
     figure = Figure(figsize=SIZE, layout="constrained")
     above, beneath = figure.subplots(2, len(columns), sharex="col", sharey="row", squeeze=False)
+    every = []
     for upper, lower, column in zip(above, beneath, columns, strict=True):
         rows = column.data.sel(r=panel.RESTITUTION)
         for beta, look in zip(rows.beta.values, LOOKS, strict=False):
             row = rows.sel(beta=beta)
-            _draw_temperatures(upper, row, look, column.axis)
-            _draw_ratios(lower, row, look, column.axis)
+            both = [_series(row, k, look, column.axis) for k in (0, 1)]
+            _draw_temperatures(upper, row, both[1], column.axis)
+            _draw_ratios(lower, row, both, column.axis)
+            every.append(both[1])
         _finish(upper, lower, column)
     above[0].set_ylabel(r"$T_2/T_1$, translational")
     beneath[0].set_ylabel(r"$R$ of a species")
-    above[0].legend(loc="upper left")
-    beneath[0].legend(*_keys(columns[0].data), loc="upper left", ncols=2, title=theories)
-    low, high = beneath[0].get_ylim()
-    beneath[0].set_ylim(low, high + 0.35 * (high - low))
+    above[0].legend(handles=_keys_of_beta(every), loc="upper left")
+    cooling = columns[0].data.attrs["theory"] == "K"
+    figure.legend(handles=_keys_of_species(theories, cooling), loc="outside lower center", ncols=2)
     figure.align_ylabels()
     return figure
 
 
-def ratio_of(row: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
-    """Return T_2/T_1 along an axis, and its standard error, (n,) each."""
-    first, second = (row.E_trans_species.isel(species=k).values for k in (0, 1))
-    relative = [row.E_trans_species_stderr.isel(species=k).values for k in (0, 1)]
-    ratio = second / first
-    return ratio, ratio * np.hypot(relative[0] / first, relative[1] / second)
+def _series(row: xr.Dataset, k: int, look: Look, axis: str) -> panel.Series:
+    """Return one species along the axis, without theory."""
+    one = row.isel(species=k)
+    one = one.isel({axis: np.isfinite(one.T_ratio_species.values)})
+    return panel.Series("", look, one, one[axis].values, np.empty(0), np.empty)
 
 
-def _draw_temperatures(axes: Axes, row: xr.Dataset, look: Look, axis: str) -> None:
-    ratio, error = ratio_of(row)
-    label = rf"$\beta = {row.beta.item():g}$"
-    axes.errorbar(row[axis], ratio, error, label=label, **_bars(look))
+def _draw_temperatures(axes: Axes, row: xr.Dataset, second: panel.Series, axis: str) -> None:
+    ratio = second.data.T_ratio_species.values
+    panel.draw_points(axes, second, second.at, ratio, average="T_ratio_species")
     if row.attrs["theory"] == "K":
         at = _fine(row[axis].values)
         found = np.array([_theory(row, {axis: x}).T_tr for x in at])
+        look = second.look
         axes.plot(at, found[:, 1] / found[:, 0], color=look.colour, linestyle=look.line)
 
 
-def _draw_ratios(axes: Axes, row: xr.Dataset, look: Look, axis: str) -> None:
-    for k, fill in ((0, look.colour), (1, "white")):
-        one = row.isel(species=k)
-        style = _bars(look, markerfacecolor=fill, zorder=3)
-        axes.errorbar(row[axis], one.R_species, one.R_species_stderr, **style)
-    cooling = row.attrs["theory"] == "K"
-    at = _fine(row[axis].values) if cooling else row[axis].values
+def _draw_ratios(axes: Axes, row: xr.Dataset, both: list[panel.Series], axis: str) -> None:
+    for one, size in reversed([*zip(both, SIZES, strict=True)]):
+        ratio = one.data.R_species.values
+        panel.draw_points(axes, one, one.at, ratio, size, average="R_species")
+    cooling, colour = row.attrs["theory"] == "K", both[0].look.colour
+    at = _fine(row[axis].values) if cooling else both[0].at
     found = np.array([_theory(row, {axis: x}).R for x in at])
-    for k, line in ((0, "-"), (1, "--")):
-        axes.plot(at, found[:, k], color=look.colour, linestyle=line, linewidth=0.9)
-
-
-def _bars(look: Look, **more: Any) -> Style:
-    return {"color": look.colour, "fmt": look.marker, "capsize": 1.5, "elinewidth": 0.8} | more
+    for ratio, line, dash in zip(found.T, LINES, DASHES, strict=True):
+        if cooling:
+            axes.plot(at, ratio, color=colour, linestyle=line, linewidth=0.9)
+        else:
+            axes.plot(at, ratio, linestyle="none", marker=dash, color=colour, ms=9, mew=1.2)
 
 
 def _theory(row: xr.Dataset, place: dict[str, float]):
@@ -118,14 +121,37 @@ def _finish(upper: Axes, lower: Axes, column: Column) -> None:
     lower.set_xticks(values, [f"{x:g}" for x in values])
     lower.minorticks_off()
     lower.set_xlabel(LABELS[column.axis])
-    first, second = column.names
-    title = f"{column.title}, $r = {panel.RESTITUTION:g}$, 1 {first}, 2 {second}"
+    title = f"{column.title}, $r = {panel.RESTITUTION:g}$"
     panel.add_title(upper, [column.data], title, column.message)
 
 
-def _keys(data: xr.Dataset) -> tuple[list[Line2D], list[str]]:
-    first, second = (str(name) for name in data.species.values)
-    common: Style = {"color": THEORY, "marker": "o"}
-    filled = Line2D([], [], linestyle="-", **common)
-    hollow = Line2D([], [], linestyle="--", markerfacecolor="white", **common)
-    return [filled, hollow], [f"1: {first} (small)", f"2: {second} (large)"]
+def _keys_of_beta(every: Sequence[panel.Series]) -> list[Line2D]:
+    """Return what colours are, and open symbols if there are any."""
+    looks = {float(one.data.beta): one.look for one in every}
+    keys = [
+        Line2D(
+            [], [], ls="none", marker=look.marker, color=look.colour, label=rf"$\beta = {beta:g}$"
+        )
+        for beta, look in looks.items()
+    ]
+    if not all(one.steady.all() for one in every):
+        label = "open: no steady state found"
+        keys.append(Line2D([], [], ls="none", marker="o", color=GREY, mfc="white", label=label))
+    return keys
+
+
+def _keys_of_species(theories: str, cooling: bool) -> list[Line2D]:
+    """Return what stands for the species, and for theory of each."""
+    common: Style = {"color": THEORY}
+    names = "1: light or small (small symbols)", "2: heavy or large (large symbols)"
+    keys = [
+        Line2D([], [], ls="none", marker="o", ms=size, label=name, **common)
+        for name, size in zip(names, SIZES, strict=True)
+    ]
+    for number, line, dash, side in zip((1, 2), LINES, DASHES, ("left", "right"), strict=True):
+        how: Style = (
+            {"ls": line} if cooling else {"ls": "none", "marker": dash, "ms": 9, "mew": 1.2}
+        )
+        label = f"{theories}, {number}" + ("" if cooling else f": dash to the {side}")
+        keys.append(Line2D([], [], label=label, **how, **common))
+    return keys
