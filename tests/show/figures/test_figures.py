@@ -1,13 +1,29 @@
+from importlib import import_module
+
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
 from matplotlib.image import imread
+from matplotlib.markers import TICKLEFT, TICKRIGHT
 from synthetic import BETA, couette, mixed, reduced, viscoelastic
+from tests.show.figures.legibility import faults
 
 from roughgas.base.errors import InputError
 from roughgas.base.sources import closure
 from roughgas.show.catalogue import FIGURES, figures_of
-from roughgas.show.figures import fig1a, fig1b, fig2a, fig2b, fig4, fig5, fig6, fig8, panel
+from roughgas.show.figures import (
+    fig1a,
+    fig1b,
+    fig2a,
+    fig2b,
+    fig4,
+    fig5,
+    fig6,
+    fig8,
+    mixtures_vibrated,
+    panel,
+    polydispersity,
+)
 from roughgas.show.gallery import draw
 from roughgas.show.style import LOOKS
 from roughgas.show.style import draw as draw_in_style
@@ -302,6 +318,41 @@ def test_shifts_need_a_smooth_boundary():
     floor, walls = DATA["fig8"]()
     with pytest.raises(InputError, match="roughness of floor_materials"):
         fig8.draw(floor.sel(roughness=[0.0, 1.0]), walls)
+
+
+def test_points_of_mixtures_that_are_not_steady_are_open_in_both_rows():
+    masses, sizes = DATA["mixtures_vibrated"]()
+    masses["equilibrated"][:, :, 1] = 0.5
+    every = mixtures_vibrated.draw(masses, sizes).axes
+    for axes, expected in ((every[0], 2), (every[2], 4), (every[1], 0), (every[3], 0)):
+        empty = [box[0] for box in axes.containers if box[0].get_markerfacecolor() == "white"]
+        assert sum(len(line.get_xdata()) for line in empty) == expected
+    assert "open: no steady state found" in words(every[0])
+
+
+def test_theory_of_a_bed_of_two_species_is_drawn_at_its_points_alone():
+    masses, sizes = DATA["mixtures_vibrated"]()
+    *_, lower, _ = mixtures_vibrated.draw(masses, sizes).axes
+    dashes = [line for line in lower.lines if line.get_marker() in (TICKLEFT, TICKRIGHT)]
+    assert len(dashes) == 4 and {line.get_linestyle() for line in dashes} == {"None"}
+
+
+def test_spread_radii_are_compared_with_equal_disks_where_they_were_simulated():
+    bed, cooling = DATA["polydispersity"]()
+    cooling["R"] = cooling.R + 0.2 * (cooling.deviation > 0)
+    *_, below_bed, shift = polydispersity.draw(bed, cooling).axes
+    (points,) = (column for column in bars(shift) if len(column))
+    change = cooling.R.sel(deviation=0.2, r=0.9) - cooling.R.sel(deviation=0.0, r=0.9)
+    np.testing.assert_allclose(points, np.column_stack([cooling.beta, change]))
+    assert below_bed.get_ylim()[1] < 0.1  # which the other gas does not flatten
+
+
+@pytest.mark.parametrize(
+    "name", ["mixtures_vibrated", "mixtures_cooling", "polydispersity", "couette", "viscoelastic"]
+)
+def test_a_referee_can_read_it(name):
+    module, data = import_module(f"roughgas.show.figures.{name}"), DATA[name]()
+    assert faults(lambda: module.draw(*data)) == []
 
 
 def test_a_slide_is_16_to_9(tmp_path):

@@ -6,46 +6,65 @@ import math
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
-from roughgas.show.figures.panel import ANY_R, ENERGY_RATIO, add_title
-from roughgas.show.style import GREY, LOOKS, THEORY
+from roughgas.show.figures import panel
+from roughgas.show.style import FAINT, GREY, LOOKS, THEORY
 from roughgas.theory.closed_forms import lun_ratio
 from roughgas.theory.prediction import predicted_ratio
 
-SIZE = (5.6, 5.2)  # inches
-GASES = "rough walls", "sliding images"
+SIZE = (4.6, 5.2)  # inches
+GASES = {"rough walls": "o", "sliding images": "D"}
+"""Their markers, in the order of the datasets."""
+AT_SHARE = "rate equations, measured share of rotation"
+MESSAGE = "Rough walls put in spin; at small β theory is above"
 
 
 def draw(couette: xr.Dataset, sheared: xr.Dataset) -> Figure:
     """Draw the figure from the reduced datasets of Couette flow and of the sheared gas.
 
-    Filled symbols stand for walls, open ones for images; only values of r and beta of both.
+    Colours stand for r; only values of r and beta of both. The rate equations need the measured
+    share of rotation, and are drawn at the points alone.
     """
     figure = Figure(figsize=SIZE, layout="constrained")
     above, beneath = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
     betas = np.intersect1d(couette.beta, sheared.beta)
     values = sorted(np.intersect1d(couette.r, sheared.r), reverse=True)
+    drawn = []
     for r, look in zip(values, LOOKS, strict=False):
-        for data, name, fill in zip((couette, sheared), GASES, ("full", "none"), strict=True):
-            one = data.sel(r=r, beta=betas)
-            style = {"color": look.colour, "fmt": look.marker, "fillstyle": fill, "ms": 4}
-            above.errorbar(
-                betas, one.R, one.R_stderr, label=f"$r = {r:g}$, {name}", capsize=1.5, **style
-            )
-            if data is couette and "input_spin_share" in one:
-                above.plot(betas, _at_share(one), color=look.colour, lw=0.9, zorder=1)
-            beneath.plot(betas, _rate(one), look.marker, color=look.colour, fillstyle=fill, ms=4)
+        for data, marker in zip((couette, sheared), GASES.values(), strict=True):
+            look = look._replace(marker=marker)
+            one = panel.series(data.sel(beta=betas), f"$r = {r:g}$", look, r=r)
+            panel.draw_points(above, one, one.at, one.data.R.values)
+            beneath.plot(one.at, _rate(one.data), marker, color=look.colour, ms=3.6)
+            if data is couette and "input_spin_share" in one.data:
+                above.plot(one.at, _at_share(one.data), "_", color=look.colour, ms=10, mew=1.2)
+            drawn.append(one)
     grid = np.linspace(-1, 1, 401)
-    above.plot(grid, lun_ratio(grid, couette.attrs["inertia"]), color=THEORY, label=ANY_R, zorder=0)
-    above.set(ylabel=ENERGY_RATIO, ylim=(0, 1.02))
-    above.plot(
-        [], [], color=GREY, lw=0.9, label="rate equations at the\nmeasured share of rotation"
-    )
-    above.legend(fontsize=6.5, ncols=2)
-    beneath.set(xlabel=r"roughness $\beta$", ylabel=r"$\Gamma a\,(m/T_\mathrm{tr})^{1/2}$", ylim=0)
-    message = "Rough walls that slide put in spin, sliding images do not"
-    add_title(above, [couette, sheared], "Couette flow and Lees-Edwards images", message)
+    above.axhline(0.5, color=FAINT, linewidth=0.8, linestyle=panel.DOTS, zorder=0)
+    above.plot(grid, lun_ratio(grid, couette.attrs["inertia"]), color=THEORY, zorder=0)
+    above.set(ylabel=panel.ENERGY_RATIO, ylim=(-0.02, 1.02))
+    above.legend(handles=_keys(drawn), loc="upper right")
+    panel.BETA.prepare(beneath)
+    beneath.set(ylabel="shear rate\n" r"$\Gamma a\,(m/T_\mathrm{tr})^{1/2}$")
+    beneath.set_ylim(0, 1.1 * beneath.get_ylim()[1])
+    panel.add_title(above, [couette, sheared], "Couette flow and Lees-Edwards images", MESSAGE)
+    figure.align_ylabels()
     return figure
+
+
+def _keys(drawn: list[panel.Series]) -> list[Line2D]:
+    """Return what colours, symbols, dashes and the line are."""
+    looks = {one.label: one.look for one in drawn}
+    keys = [
+        Line2D([], [], ls="none", marker="s", color=look.colour, label=label)
+        for label, look in looks.items()
+    ]
+    for label, marker in GASES.items():
+        keys.append(Line2D([], [], ls="none", marker=marker, color=GREY, label=label))
+    keys.append(Line2D([], [], ls="none", marker="_", ms=10, mew=1.2, color=GREY, label=AT_SHARE))
+    keys.append(Line2D([], [], color=THEORY, label=panel.ANY_R))
+    return keys + panel.keys_of_steadiness(drawn)
 
 
 def _at_share(data: xr.Dataset) -> np.ndarray:

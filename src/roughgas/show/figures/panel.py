@@ -236,8 +236,7 @@ def add_legend(main: Axes, drawn: Sequence[Series], theory: str = "", **how: Any
     if theory:
         handles.append(_key(THEORY, theory, "", "-"))
     handles.append(_key(FAINT, "equipartition, $R = 1/2$", "", DOTS))
-    if not all(one.steady.all() for one in drawn):
-        handles.append(_key(GREY, "open: no steady state found", "o", fillstyle="none"))
+    handles += keys_of_steadiness(drawn)
     if any(one.touched.any() for one in drawn):
         handles.append(_key(GREY, "ringed: contact-time model acted", **RING))
     handles += main.get_legend_handles_labels()[0]
@@ -248,6 +247,13 @@ def add_legend(main: Axes, drawn: Sequence[Series], theory: str = "", **how: Any
     elif how.get("loc") == "outside":
         how |= {"loc": "upper left", "bbox_to_anchor": (1.01, 1.02), "borderaxespad": 0.0}
     main.legend(handles=handles, **how)
+
+
+def keys_of_steadiness(drawn: Sequence[Series]) -> list[Line2D]:
+    """Return what open symbols are, if there are any."""
+    if all(one.steady.all() for one in drawn):
+        return []
+    return [_key(GREY, "open: no steady state found", "o", fillstyle="none")]
 
 
 def add_title(main: Axes, datasets: Sequence[xr.Dataset], what: str, message: str = "") -> None:

@@ -1,47 +1,80 @@
-"""Disks of many sizes: what spread radii change in the bed of Fig. 1a and the gas of Fig. 2b.
+"""Disks of many sizes: what spread radii change in the bed of Fig. 1a and the gas of Fig. 2b."""
 
-The residuals are those from disks that are all alike, not from theory.
-"""
+from collections.abc import Sequence
 
+import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from roughgas.show.figures import panel
-from roughgas.show.style import LOOKS
+from roughgas.show.style import FAINT, LOOKS, THEORY, Look
 
+SIZE = (7.0, 5.4)  # inches
 ALIKE = 0.0
-LEGEND = 1.6  # inches beside the panels
-MESSAGES = "A bed does not feel a spread of sizes", "A cooling gas does, where R is steep"
+MESSAGES = "A bed hardly feels a spread of sizes", "A cooling gas does, where R is steep"
 
 
 def draw(bed: xr.Dataset, cooling: xr.Dataset) -> Figure:
     """Draw the figure from the reduced datasets of polydisperse beds and cooling gases.
 
-    Colours stand for r, symbols for the deviation of the radii.
+    Colours stand for r, symbols and lines for the deviation of the radii. Beneath: R minus R of
+    disks that are all alike, lines: the same of theory; each gas has a scale of its own.
     """
-    figure, panels = panel.ratio_panels([panel.BETA] * 2, panel.TWO_WIDE + LEGEND)
-    both = (bed, "Vibrated bed", "upper left"), (cooling, "Cooling gas", "outside")
-    series_of = [_series(data) for data, _, _ in both]
-    every = [one for drawn in series_of for one in drawn]
-    for one, drawn, (data, title, loc), message in zip(
-        panels, series_of, both, MESSAGES, strict=True
+    figure = Figure(figsize=SIZE, layout="constrained")
+    above, beneath = figure.subplots(2, 2, sharex="col", height_ratios=(1.6, 1))
+    values = sorted({*bed.r.values, *cooling.r.values}, reverse=True)
+    colours = dict(zip(values, LOOKS, strict=False))
+    drawn = []
+    for data, title, message, main, shift in zip(
+        (bed, cooling), ("Vibrated bed", "Cooling gas"), MESSAGES, above, beneath, strict=True
     ):
-        panel.draw_series(one, drawn)  # not apart: a step aside would take points off steep lines
-        panel.draw_theory(one, drawn)
-        panel.add_legend(one.main, drawn, title="lines: theory", loc=loc)
-        panel.add_title(one.main, [data], title, message)
-        panel.frame_rows(one, drawn, every, ["R"])
-    figure.axes[len(panels)].set_ylabel("$R$ minus $R$ of\nequal disks")
+        main.axhline(0.5, color=FAINT, linewidth=0.8, linestyle=panel.DOTS, zorder=0)
+        drawn += [one for r in data.r.values for one in _draw_r(main, shift, data, r, colours[r])]
+        main.set_ylim(-0.03, 1.03)
+        main.tick_params(labelbottom=False)
+        panel.BETA.prepare(shift)
+        panel.add_title(main, [data], title, message)
+    above[0].set_ylabel(panel.ENERGY_RATIO)
+    beneath[0].set_ylabel("$R$ minus $R$ of\nequal disks")
+    above[0].legend(handles=_keys(colours, drawn), loc="upper left", title="lines: theory")
+    figure.align_ylabels()
     return figure
 
 
-def _series(data: xr.Dataset) -> list[panel.Series]:
-    drawn = []
-    for r, colours in zip(sorted(data.r.values, reverse=True), LOOKS, strict=False):
-        alike = data.R.sel(r=r, deviation=ALIKE)
-        for deviation, markers in zip(data.deviation.values, LOOKS, strict=False):
-            look = colours._replace(marker=markers.marker)
-            label = f"$r = {r:g}$, radii ± {100 * deviation:g} %"
-            one = panel.series(data, label, look, r=r, deviation=deviation)
-            drawn.append(one._replace(theory=alike.sel(beta=one.at).values))
-    return drawn
+def _draw_r(
+    main: Axes, shift: Axes, data: xr.Dataset, r: float, colour: Look
+) -> list[panel.Series]:
+    """Draw R at one r, and what the deviation of the radii changes; return the series."""
+    grid, equal = panel.BETA.grid, data.sel(r=r, deviation=ALIKE)
+    every, of_equal = [], np.full(grid.shape, np.nan)
+    for deviation, form in zip(data.deviation.values, LOOKS, strict=False):
+        look = form._replace(colour=colour.colour)
+        one = panel.series(data, f"{100 * deviation:g} %", look, r=r, deviation=deviation)
+        every.append(one)
+        line = {"color": look.colour, "linestyle": look.line, "linewidth": 0.9, "zorder": 1}
+        theory = np.broadcast_to(one.predict(beta=grid), grid.shape)
+        of_equal = theory if deviation == ALIKE else of_equal
+        panel.draw_points(main, one, one.at, one.data.R.values)
+        main.plot(grid, theory, **line)
+        if deviation != ALIKE:
+            alike = equal.sel(beta=one.at)
+            error = np.hypot(one.data.R_stderr, alike.R_stderr)
+            apart = one._replace(data=one.data.assign(R_stderr=error))
+            panel.draw_points(shift, apart, one.at, (one.data.R - alike.R).values)
+            shift.plot(grid, theory - of_equal, **line)
+    return every
+
+
+def _keys(colours: dict[float, Look], drawn: Sequence[panel.Series]) -> list[Line2D]:
+    """Return what colours, symbols and lines are, and open symbols if there are any."""
+    keys = [
+        Line2D([], [], ls="none", marker="s", color=look.colour, label=f"$r = {r:g}$")
+        for r, look in colours.items()
+    ]
+    forms = {one.label: one.look for one in drawn}
+    for label, look in forms.items():
+        form = {"ls": look.line, "marker": look.marker, "color": THEORY}
+        keys.append(Line2D([], [], label=f"standard deviation of radii {label}", **form))
+    return keys + panel.keys_of_steadiness(drawn)

@@ -6,15 +6,16 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.markers import TICKLEFT, TICKRIGHT
 
 from roughgas.show.figures import panel
-from roughgas.show.style import FAINT, GREY, LOOKS, THEORY, Look, Style
+from roughgas.show.style import FAINT, LOOKS, THEORY, Look, Style
 from roughgas.theory.prediction_of_mixtures import species_at
 
-SIZE = (7.6, 6.2)  # inches
+SIZE = (7.0, 6.2)  # inches
 LABELS = {
     "mass": "mass of heavy (2) / mass of light (1)",
     "radius": "radius of large (2) / radius of small (1)",
@@ -23,8 +24,8 @@ FINE = 25
 """Ratios at which theory is drawn."""
 ROOM = 1.15
 """Factor that an axis goes on beyond the data."""
-SIZES = 3.0, 6.0
-"""Marker sizes of the two species: the light or small one, the heavy or large one."""
+SMALL, LARGE = 3.0, 6.5
+"""Marker sizes of the light or small species, and of the heavy or large one, which is paler."""
 LINES = "-", "--"
 DASHES = TICKLEFT, TICKRIGHT
 """What stands for theory, of each species: lines where it is known at any ratio, else dashes."""
@@ -35,7 +36,8 @@ class Column(NamedTuple):
 
     data: xr.Dataset
     title: str
-    message: str = ""
+    message: str = ""  # on T_2/T_1
+    of_ratios: str = ""  # on R
 
     @property
     def axis(self) -> str:
@@ -50,9 +52,10 @@ def columns_figure(columns: Sequence[Column], theories: str) -> Figure:
     formula for mixtures from the measured temperatures.
     """
     figure = Figure(figsize=SIZE, layout="constrained")
-    above, beneath = figure.subplots(2, len(columns), sharex="col", sharey="row", squeeze=False)
+    above, beneath = figure.subplots(2, len(columns), sharex="col", squeeze=False)
     every = []
     for upper, lower, column in zip(above, beneath, columns, strict=True):
+        lower.sharey(beneath[0])
         rows = column.data.sel(r=panel.RESTITUTION)
         for beta, look in zip(rows.beta.values, LOOKS, strict=False):
             row = rows.sel(beta=beta)
@@ -63,7 +66,7 @@ def columns_figure(columns: Sequence[Column], theories: str) -> Figure:
         _finish(upper, lower, column)
     above[0].set_ylabel(r"$T_2/T_1$, translational")
     beneath[0].set_ylabel(r"$R$ of a species")
-    above[0].legend(handles=_keys_of_beta(every), loc="upper left")
+    above[0].legend(handles=_keys_of_beta(every), loc="best")
     cooling = columns[0].data.attrs["theory"] == "K"
     figure.legend(handles=_keys_of_species(theories, cooling), loc="outside lower center", ncols=2)
     figure.align_ylabels()
@@ -88,7 +91,9 @@ def _draw_temperatures(axes: Axes, row: xr.Dataset, second: panel.Series, axis: 
 
 
 def _draw_ratios(axes: Axes, row: xr.Dataset, both: list[panel.Series], axis: str) -> None:
-    for one, size in reversed([*zip(both, SIZES, strict=True)]):
+    small, large = both
+    large = large._replace(look=large.look._replace(colour=_pale(large.look.colour)))
+    for one, size in ((large, LARGE), (small, SMALL)):
         ratio = one.data.R_species.values
         panel.draw_points(axes, one, one.at, ratio, size, average="R_species")
     cooling, colour = row.attrs["theory"] == "K", both[0].look.colour
@@ -99,6 +104,11 @@ def _draw_ratios(axes: Axes, row: xr.Dataset, both: list[panel.Series], axis: st
             axes.plot(at, ratio, color=colour, linestyle=line, linewidth=0.9)
         else:
             axes.plot(at, ratio, linestyle="none", marker=dash, color=colour, ms=9, mew=1.2)
+
+
+def _pale(colour: str) -> str:
+    """Return what symbols of the second species have, on which those of the first are seen."""
+    return to_hex(0.5 + 0.5 * np.array(to_rgb(colour)))
 
 
 def _theory(row: xr.Dataset, place: dict[str, float]):
@@ -123,6 +133,7 @@ def _finish(upper: Axes, lower: Axes, column: Column) -> None:
     lower.set_xlabel(LABELS[column.axis])
     title = f"{column.title}, $r = {panel.RESTITUTION:g}$"
     panel.add_title(upper, [column.data], title, column.message)
+    lower.set_title(column.of_ratios, fontsize=8.5, fontweight="bold", loc="left")
 
 
 def _keys_of_beta(every: Sequence[panel.Series]) -> list[Line2D]:
@@ -134,24 +145,20 @@ def _keys_of_beta(every: Sequence[panel.Series]) -> list[Line2D]:
         )
         for beta, look in looks.items()
     ]
-    if not all(one.steady.all() for one in every):
-        label = "open: no steady state found"
-        keys.append(Line2D([], [], ls="none", marker="o", color=GREY, mfc="white", label=label))
-    return keys
+    return keys + panel.keys_of_steadiness(every)
 
 
 def _keys_of_species(theories: str, cooling: bool) -> list[Line2D]:
     """Return what stands for the species, and for theory of each."""
-    common: Style = {"color": THEORY}
-    names = "1: light or small (small symbols)", "2: heavy or large (large symbols)"
+    looks = (SMALL, THEORY, "1: light or small"), (LARGE, _pale(THEORY), "2: heavy or large")
     keys = [
-        Line2D([], [], ls="none", marker="o", ms=size, label=name, **common)
-        for name, size in zip(names, SIZES, strict=True)
+        Line2D([], [], ls="none", marker="o", ms=size, color=colour, label=name)
+        for size, colour, name in looks
     ]
     for number, line, dash, side in zip((1, 2), LINES, DASHES, ("left", "right"), strict=True):
         how: Style = (
             {"ls": line} if cooling else {"ls": "none", "marker": dash, "ms": 9, "mew": 1.2}
         )
         label = f"{theories}, {number}" + ("" if cooling else f": dash to the {side}")
-        keys.append(Line2D([], [], label=label, **how, **common))
+        keys.append(Line2D([], [], label=label, color=THEORY, **how))
     return keys
