@@ -160,7 +160,7 @@ POINT = {
     "R_replica": Variable(
         "plateau mean of R of each replica", dims=("replica",), when=(COOLING, SPIN)
     ),
-    "energy_imbalance": Variable("energy that the books miss, over all that was exchanged"),
+    "energy_imbalance": Variable("error of the energy balance, over all energy exchanged"),
     "source": Variable("what exchanged energy with the gas", "", ("source",), "str"),
     "motion": Variable("motion that holds the energy", "", ("motion",), "str"),
     "energy_input": Variable(
