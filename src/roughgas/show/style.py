@@ -15,7 +15,9 @@ from roughgas.base.errors import InputError
 from roughgas.base.files import whole_file
 
 SLIDE = 10.0, 5.625  # inches: 16 to 9
-WIDTH, HEIGHT = 4.8, 5.0  # inches; prints at 85 % in one column of a journal
+WIDTH, TWO_WIDE, HEIGHT = 4.4, 7.0, 4.8
+"""Inches, in print: of one panel, half of a page of the README; of two, a page of a journal; and
+how high R with its residuals is. Letters have 7 points or more."""
 # what a matplotlibrc of the user may change, except where figures are shown
 PLAIN = {
     name: value
@@ -69,7 +71,7 @@ LOOKS = (  # colours of Okabe and Ito
     Look("#0072B2", "o", "-"),
     Look("#D55E00", "s", "--"),
     Look("#009E73", "^", "-."),
-    Look("#CC79A7", "D", ":"),
+    Look("#CC79A7", "D", (0, (9, 2))),
     Look("#E69F00", "v", (0, (5, 1, 1, 1, 1, 1))),
 )
 THEORY = "#222222"

@@ -1,5 +1,6 @@
 """What a referee asks of any figure: letters of 7 pt, text beside the data, nothing cut off."""
 
+import re
 from collections.abc import Callable, Iterator
 from itertools import combinations
 
@@ -100,8 +101,9 @@ def _cut_off(figure, axes) -> Iterator[str]:
     """Symbols that the frame hides or cuts, unless a text in or above the axes says how many."""
     places, radii = _symbols(axes, figure.dpi / 72)
     hidden = int((~_inside(axes, places, -radii)).sum())
-    said = [text.get_text() for text in axes.findobj(Text) if text.get_visible()]
-    if hidden and not any(f"{hidden} point" in text for text in said):
+    texts = " ".join(text.get_text() for text in axes.findobj(Text) if text.get_visible())
+    said = sum(int(number) for number in re.findall(r"(\d+) points?\b", texts))
+    if hidden > said:
         yield f"{hidden} points are cut off by the frame"
 
 

@@ -8,10 +8,10 @@ from roughgas.show.figures.panel import RESTITUTION, PanelContent, ratio_figure,
 from roughgas.show.style import LOOKS
 
 LABELS = (
-    "periodic, no walls",
-    r"rough elastic walls, $r = \beta = 1$",
-    r"walls with the particles' $r$ and $\beta$",
-    r"smooth elastic walls, $r = -\beta = 1$",
+    "no side walls",
+    "rough elastic walls",
+    "walls like the particles",
+    "smooth elastic walls",
 )
 
 
@@ -29,9 +29,10 @@ def draw(*beds: xr.Dataset) -> Figure:
         beds,
         drawn,
         theory="Lun's formula",
-        loc="lower right",
+        legend={"loc": "lower right"},
         message="Only rough elastic walls matter: they put in spin",
         # rough walls shift R ten times as much as the others: the scale is that of the others
         scale=lambda drawn: [drawn[0], *drawn[2:]],
+        room=0.15,
     )
     return ratio_figure(part)

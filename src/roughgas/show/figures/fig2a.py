@@ -3,25 +3,28 @@
 from collections.abc import Sequence
 from typing import Any
 
-import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from roughgas.show.figures.panel import ANY_R, WIDE, Series, content_for_each_r, ratio_figure
+from roughgas.show.figures.panel import ANY_R, HALF, Series, content_for_each_r, ratio_figure
 from roughgas.show.style import GREY
 
-MESSAGE = "R follows Lun's formula, once the mean flow is removed"
+MESSAGE = "Without its mean flow, R is near Lun's formula"
 FAINT: dict[str, Any] = {"alpha": 0.5, "markersize": 2.6, "markeredgewidth": 0, "zorder": 0}
-POINTED_AT = 0.3
-"""The beta of a faint point, from which a line leads to what these are."""
 
 
 def draw(sheared: xr.Dataset) -> Figure:
     """Draw the figure from the reduced dataset of the sheared gas."""
-    how = {"theory": ANY_R, "extra": _draw_unsubtracted, "loc": "half", "message": MESSAGE}
+    how = {
+        "theory": ANY_R,
+        "extra": _draw_unsubtracted,
+        "room": 0.1,
+        "legend": HALF,
+        "message": MESSAGE,
+    }
     content = content_for_each_r("Sheared gas", sheared, **how)
-    return ratio_figure(content, width=WIDE, averaged=True)
+    return ratio_figure(content)
 
 
 def _draw_unsubtracted(main: Axes, drawn: Sequence[Series]) -> None:
@@ -31,15 +34,5 @@ def _draw_unsubtracted(main: Axes, drawn: Sequence[Series]) -> None:
     for one in drawn:
         ratio = one.data.R_unsubtracted.values
         main.plot(one.at, ratio, one.look.marker, color=one.look.colour, **FAINT)
-    first = drawn[0]
-    nearest = int(np.argmin(abs(first.at - POINTED_AT)))
-    at = first.at[nearest], first.data.R_unsubtracted.values[nearest]
-    arrow = {"arrowstyle": "-", "color": GREY, "linewidth": 0.6, "shrinkB": 3}
-    place: dict[str, Any] = {
-        "xytext": (6, 12),
-        "textcoords": "offset points",
-        "ha": "center",
-        "va": "bottom",
-    }
-    text = "faint: mean flow and\nmean spin left in"
-    main.annotate(text, at, fontsize=7, color=GREY, arrowprops=arrow, **place)
+    text = "small, faint: mean flow and mean spin left in"
+    main.text(0.98, 0.03, text, transform=main.transAxes, fontsize=7.5, color=GREY, ha="right")

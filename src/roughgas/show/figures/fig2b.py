@@ -10,5 +10,9 @@ MESSAGE = "R depends on r, as the theory of free cooling says"
 
 def draw(cooling: xr.Dataset) -> Figure:
     """Draw the figure from the reduced dataset of the cooling gas."""
-    how = {"theories": "lines: theory of free cooling", "loc": "upper right", "message": MESSAGE}
+    how = {
+        "theories": "lines: theory of free cooling",
+        "legend": {"loc": "upper right"},
+        "message": MESSAGE,
+    }
     return ratio_figure(content_for_each_r("Cooling gas", cooling, **how))

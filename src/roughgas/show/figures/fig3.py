@@ -7,19 +7,19 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from roughgas.show.figures.panel import ANY_R, content_for_each_r, ratio_figure
+from roughgas.show.style import TWO_WIDE
 
-COOLING, SHEARED = "Free cooling: as theory says", "Shear: r hardly matters"
-BED = "A bed: only over collisions"
+COOLING, SHEARED = "Cooling: as theory says", "Shear: r hardly matters"
+BED = "Bed: above the formula"
 
 
 def draw(cooling: xr.Dataset, sheared: xr.Dataset, bed: xr.Dataset) -> Figure:
     """Draw the figure from the reduced datasets of the three scenes in space."""
-    free = {"theories": "lines: theory of free cooling", "loc": "upper right"}
+    free = {"theories": "lines: theory", "legend": {"loc": "upper right"}}
     driven = {"theory": ANY_R}
     return ratio_figure(
         content_for_each_r("Cooling spheres", cooling, message=COOLING, **free),
         content_for_each_r("Sheared spheres", sheared, message=SHEARED, **driven),
         content_for_each_r("Vibrated spheres", bed, message=BED, **driven),
-        width=8.4,
-        averaged=True,
+        width=TWO_WIDE,
     )

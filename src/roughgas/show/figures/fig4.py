@@ -8,6 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from roughgas.show.figures import panel
+from roughgas.show.style import TWO_WIDE
 
 BED = "A bed follows the rate equations"
 COOLING = "A cooling gas does, unless spins run away"
@@ -24,11 +25,16 @@ def draw(bed: xr.Dataset, cooling: xr.Dataset) -> Figure:
     mu = 0, where R = 0, has no place on a logarithmic axis; it is in the data.
     """
     bed, cooling = (data.sel(mu=data.mu > 0.0) for data in (bed, cooling))
-    free: dict[str, Any] = {"loc": "upper right", "scale": _staying, "extra": _tell_of_runaways}
+    columns = {"loc": "upper left", "ncols": 2}
+    free: dict[str, Any] = {
+        "legend": {"loc": "upper right"},
+        "scale": _staying,
+        "extra": _tell_of_runaways,
+    }
     return panel.ratio_figure(
-        panel.content_for_each_beta("Vibrated bed", bed, message=BED, **COMMON),
+        panel.content_for_each_beta("Vibrated bed", bed, message=BED, legend=columns, **COMMON),
         panel.content_for_each_beta("Cooling gas", cooling, message=COOLING, **COMMON, **free),
-        width=panel.TWO_WIDE,
+        width=TWO_WIDE,
     )
 
 

@@ -10,14 +10,14 @@ from matplotlib.figure import Figure
 from roughgas.show.figures import panel
 from roughgas.show.style import GREY, LOOKS
 
-DRIVES = (
-    ("random kicks", "o"),
-    ("rough floor", "^"),
-    ("rough side walls", "v"),
-    ("rough shaken walls", "D"),
-)
-"""Labels and markers, in the order of the datasets."""
-MESSAGE = "Averaged over collisions, one curve for all drives"
+DRIVES = {
+    "random kicks": "o",
+    "rough floor": "^",
+    "rough side walls": "v",
+    "rough shaken walls": "D",
+}
+"""Their markers, in the order of the datasets."""
+MESSAGE = "The share of rotation in the drive sets R"
 
 
 def draw(heated: xr.Dataset, *boundaries: xr.Dataset) -> Figure:
@@ -27,22 +27,22 @@ def draw(heated: xr.Dataset, *boundaries: xr.Dataset) -> Figure:
     `boundaries` are the bed on rough floors, the bed between rough walls, and the gas between
     shaken walls.
     """
-    averages = [name for name in ("R", "R_collisional") if name in heated]
-    figure, (one,) = panel.ratio_panels([panel.SPIN_SHARE], panel.WIDE, averages)
+    averages = panel.averages_of(heated)
+    figure, (one,) = panel.ratio_panels([panel.SPIN_SHARE], averages=averages)
     drawn = []
-    for data, (label, marker) in zip((heated, *boundaries), DRIVES, strict=True):
+    for data, marker in zip((heated, *boundaries), DRIVES.values(), strict=True):
         looks = [look._replace(marker=marker) for look in LOOKS]
         part = panel.series_for_each(data, "beta", looks=looks)
         part = part if data is heated else [_over_measured_share(series) for series in part]
         panel.draw_series(one, part, averages)
-        one.main.plot([], [], marker, color=GREY, label=label)
         drawn += part
     of_heated = drawn[: heated.beta.size]
     panel.draw_theory(one, of_heated)
-    one.main.set_ylim(0.03, 1.12)  # room for the legend
     panel.frame_rows(one, drawn, drawn, averages)
+    drives = [one.main.plot([], [], mark, color=GREY)[0] for mark in DRIVES.values()]
+    one.main.add_artist(one.main.legend(drives, DRIVES, loc="upper left"))
     lines = [series._replace(look=series.look._replace(marker="")) for series in of_heated]
-    panel.add_legend(one.main, lines, title="lines: rate equations", loc="upper left")
+    panel.add_legend(one.main, lines, title="lines: rate equations", loc="lower right")
     panel.add_title(one.main, [heated], rf"Driven disks, $r = {panel.RESTITUTION:g}$", MESSAGE)
     return figure
 

@@ -9,8 +9,8 @@ from typing import Any
 import xarray as xr
 from matplotlib.figure import Figure
 
-from roughgas.show.figures.panel import TWO_WIDE, WIDTH, PanelContent, ratio_figure, series
-from roughgas.show.style import LOOKS
+from roughgas.show.figures.panel import HALF, PanelContent, ratio_figure, series
+from roughgas.show.style import LOOKS, TWO_WIDE, WIDTH
 
 LABELS = {
     "sawtooth": "sawtooth (the paper's)",
@@ -40,5 +40,5 @@ def _content(waves: xr.Dataset, r: float, message: str) -> PanelContent:
         for (wave, label), look in zip(LABELS.items(), LOOKS, strict=False)
     ]
     beside = [one._replace(theory=drawn[0].data.R.values) for one in drawn]
-    how: dict[str, Any] = {"theory": "Lun's formula", "message": message, "loc": "half"}
+    how: dict[str, Any] = {"theory": "Lun's formula", "message": message, "legend": HALF}
     return PanelContent(f"Vibrated bed, $r = {r:g}$", [waves], beside, **how)

@@ -5,7 +5,8 @@ from typing import Any
 import xarray as xr
 from matplotlib.figure import Figure
 
-from roughgas.show.figures.panel import INERTIA, TWO_WIDE, content_for_each_beta, ratio_figure
+from roughgas.show.figures.panel import INERTIA, content_for_each_beta, ratio_figure
+from roughgas.show.style import TWO_WIDE
 
 BED: dict[str, Any] = {
     "message": "A bed departs from theory at both ends",
@@ -19,7 +20,7 @@ COOLING: dict[str, Any] = {
 
 def draw(bed: xr.Dataset, cooling: xr.Dataset) -> Figure:
     """Draw the figure from the reduced datasets of disks with several moments of inertia."""
-    how: dict[str, Any] = {"loc": "best", "axis": INERTIA}
+    how: dict[str, Any] = {"legend": {"loc": "upper right", "ncols": 2}, "axis": INERTIA}
     return ratio_figure(
         content_for_each_beta("Vibrated bed", bed, **BED, **how),
         content_for_each_beta("Cooling gas", cooling, **COOLING, **how),

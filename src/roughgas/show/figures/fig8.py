@@ -1,4 +1,4 @@
-"""Fig. 8: what the boundaries are made of. How far they shift R, and how much rotation they put in.
+"""Fig. 8: what the boundaries are made of, and how far that shifts R.
 
 Shifts are from the same bed with a smooth boundary, beside those that the rate equations expect of
 the measured share of rotation: what sets a bed apart from theory anyway is not shown (Fig. 1a is).
@@ -11,14 +11,10 @@ from matplotlib.figure import Figure
 
 from roughgas.base.errors import InputError
 from roughgas.show.figures import panel
-from roughgas.show.style import THEORY
+from roughgas.show.style import THEORY, TWO_WIDE
 
 SMOOTH = -1.0
-SIZE = (6.4, 4.6)  # inches
-MESSAGES = {
-    "Rough floor": "A floor matters by the spin it puts in",
-    "Rough side walls": "So do side walls",
-}
+MESSAGE = "Boundaries shift R by the spin they put in"
 
 
 def draw(floor: xr.Dataset, walls: xr.Dataset) -> Figure:
@@ -26,24 +22,20 @@ def draw(floor: xr.Dataset, walls: xr.Dataset) -> Figure:
 
     Raises InputError where a sweep has no smooth boundary.
     """
-    figure = Figure(figsize=SIZE, layout="constrained")
-    above, beneath = figure.subplots(2, 2, sharex="col", sharey="row")
-    parts = (floor, "Rough floor"), (walls, "Rough side walls")
-    for upper, lower, (data, name) in zip(above, beneath, parts, strict=True):
+    figure = Figure(figsize=(TWO_WIDE, 3.2), layout="constrained")
+    both = figure.subplots(1, 2, sharey=True)
+    parts = (floor, "Rough floor", MESSAGE), (walls, "Rough side walls", "")
+    for axes, (data, name, message) in zip(both, parts, strict=True):
         if SMOOTH not in data.roughness:
             given = data.roughness.values
             raise InputError(f"roughness of {data.attrs['experiment']}", given, "include -1")
         for one in panel.series_for_each(data, "beta"):
-            _draw_shift(upper, one)
-            _draw_share(lower, one)
-        for axes in (upper, lower):
-            axes.axhline(0, color=THEORY, linewidth=0.8, zorder=0)
-        panel.ROUGHNESS.prepare(lower)
-        panel.add_title(upper, [data], rf"{name}, $r = {panel.RESTITUTION:g}$", MESSAGES[name])
-    above[0].legend(title="lines: rate equations", loc="upper left")
-    above[0].set_ylabel("$R$ minus $R$ with\na smooth boundary")
-    beneath[0].set_ylabel("share of rotation in\nthe energy put in")
-    figure.align_ylabels()
+            _draw_shift(axes, one)
+        axes.axhline(0, color=THEORY, linewidth=0.8, zorder=0)
+        panel.ROUGHNESS.prepare(axes)
+        panel.add_title(axes, [data], rf"{name}, $r = {panel.RESTITUTION:g}$", message)
+    both[0].legend(title="lines: rate equations", loc="upper left")
+    both[0].set_ylabel("$R$ minus $R$ with\na smooth boundary")
     return figure
 
 
@@ -57,9 +49,3 @@ def _draw_shift(axes: Axes, one: panel.Series) -> None:
     axes.plot(one.at, expected, color=colour, linestyle=line, zorder=1)
     panel.draw_points(axes, shifted, one.at, (one.data.R - smooth.R).values)
     axes.plot([], [], color=colour, marker=marker, linestyle=line, label=one.label)
-
-
-def _draw_share(axes: Axes, one: panel.Series) -> None:
-    """Draw the share of rotation in the energy that all sources put in."""
-    shared = one._replace(data=one.data.assign(R_stderr=one.data.input_spin_share_stderr))
-    panel.draw_points(axes, shared, one.at, one.data.input_spin_share.values)

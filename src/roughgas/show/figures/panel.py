@@ -1,6 +1,6 @@
 """R against one parameter, residuals beneath: the form that all figures of R share."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,22 +16,15 @@ from roughgas.show.style import FAINT, GREY, HEIGHT, THEORY, WIDTH, Style
 
 __all__ = ["RESTITUTION", "Series", "series", "series_for_each"]
 ENERGY_RATIO = r"$R = E_\mathrm{rot}/(E_\mathrm{rot} + E_\mathrm{trans})$"
-WIDE, TWO_WIDE = 5.6, 7.6  # inches, for one panel of many points, and for two
-SIZE = 4.2
-"""Marker size of the first series; each further one is smaller."""
-SIDESTEP = 0.012
-"""Distance between the points of two series, as a share of the axis: none hides another."""
-ROW = 1.05
-"""Height of each row of residuals beyond the first, in inches."""
-AVERAGES = {
-    "R": "mean of $R(t)$",
-    "R_ratio_of_means": "ratio of the mean energies",
-    "R_collisional": "averaged over collisions",
-}
+ROW = 1.0
+"""Height of a second row of residuals, in inches."""
+AVERAGES = {"R": "mean of $R(t)$", "R_collisional": "averaged over collisions"}
 """The ways in which R is averaged, by the names of variables; the first is the paper's."""
 ANY_R = "Lun's formula, any $r$"
 DOTS = (0, (1, 2))
-RING: Style = {"marker": "o", "markersize": 7, "markeredgewidth": 0.5, "fillstyle": "none"}
+NOT_STEADY: Style = {"markerfacecolor": "white", "zorder": 4}  # which no other symbol hides
+NOT_KNOWN: Style = {"fillstyle": "bottom", "markerfacecoloralt": "white", "zorder": 4}
+TOUCHED = "†"
 
 
 class Axis(NamedTuple):
@@ -61,13 +54,6 @@ class Axis(NamedTuple):
             axes.xaxis.set_major_locator(MultipleLocator(step))
             axes.xaxis.set_minor_locator(MultipleLocator(step / 5))
 
-    def aside(self, at: np.ndarray, steps: float) -> np.ndarray:
-        """Return places that are `steps` steps beside those given."""
-        low, high = self.limits
-        if self.logarithmic:
-            return at * (high / low) ** (SIDESTEP * steps)
-        return at + SIDESTEP * (high - low) * steps
-
 
 BETA = Axis("beta", r"roughness $\beta$", (-1.06, 1.06), (-1, 1))
 FRICTION = Axis("mu", r"coefficient of friction $\mu$", (0.007, 14), (0.007, 14), True)
@@ -84,10 +70,8 @@ class Panel(NamedTuple):
     residuals: Sequence[Axes]
     axis: Axis
 
-    @property
-    def residual(self) -> Axes:
-        """The first row of residuals, those of R."""
-        return self.residuals[0]
+
+HALF: Style = {"loc": "half"}
 
 
 class PanelContent(NamedTuple):
@@ -98,10 +82,10 @@ class PanelContent(NamedTuple):
     drawn: Sequence[Series]
     theory: str = ""  # of all series: a black line, so called in the legend
     theories: str = ""  # of each series: a line in its look; the title of the legend
-    # of the legend; "half" is beneath the line at 1/2, "outside" beside the panel
-    loc: str = "upper left"
+    legend: Mapping[str, Any] = {"loc": "upper left"}  # of draw_legend; empty: there is none
     axis: Axis = BETA
     message: str = ""  # what one learns from it, above the title
+    room: float = 0.0  # beneath the points, as a share of their height
     # of the series drawn: those whose residuals are to fit
     scale: Callable[[Sequence[Series]], Sequence[Series]] = lambda drawn: drawn
     # draws what only this figure has
@@ -121,24 +105,35 @@ def content_for_each_beta(
     return PanelContent(rf"{title}, $r = {RESTITUTION:g}$", [data], drawn, **how)
 
 
-def ratio_figure(*parts: PanelContent, width: float = WIDTH, averaged: bool = False) -> Figure:
+def ratio_figure(
+    *parts: PanelContent, width: float = WIDTH, averages: Sequence[str] = ("R",)
+) -> Figure:
     """Draw the parts side by side: points above theory, minus theory beneath, legends, titles.
 
-    Where R is `averaged` in several ways, there is a row of residuals for each that the data hold.
+    There is a row of residuals for each of `averages`; R itself is the first of AVERAGES.
     """
-    known = {name for part in parts for one in part.drawn for name in one.data.data_vars}
-    averages = [name for name in AVERAGES if name in known] if averaged else ["R"]
     figure, panels = ratio_panels([part.axis for part in parts], width, averages)
     for part, panel in zip(parts, panels, strict=True):
-        draw_series(panel, part.drawn, averages, apart=True)
+        draw_series(panel, part.drawn, averages)
         draw_theory(panel, part.drawn[:1] if part.theory else part.drawn, black=bool(part.theory))
         part.extra(panel.main, part.drawn)
-        add_legend(panel.main, part.drawn, part.theory, title=part.theories or None, loc=part.loc)
+        frame_rows(panel, part.drawn, part.scale(part.drawn), averages)
         add_title(panel.main, part.data, part.title, part.message)
-    scale = [one for part in parts for one in part.scale(part.drawn)]
+    known: set[str] = set()
     for part, panel in zip(parts, panels, strict=True):
-        frame_rows(panel, part.drawn, scale, averages)
+        low, high = panel.main.get_ylim()
+        panel.main.set_ylim(low - part.room * (high - low), high)
+        if part.legend:
+            keys = _keys(panel.main, part.drawn, part.theory)
+            new = [key for key in keys if key.get_label() not in known]
+            known.update(key.get_label() for key in keys)
+            draw_legend(panel.main, new, title=part.theories or None, **part.legend)
     return figure
+
+
+def averages_of(data: xr.Dataset) -> list[str]:
+    """Return the averages of R that theory is for: in a sheared gas contacts see the mean flow."""
+    return [name for name in AVERAGES if name in data][: 1 if "R_unsubtracted" in data else None]
 
 
 def ratio_panels(
@@ -147,21 +142,21 @@ def ratio_panels(
     """Return an empty figure, and its panels side by side; R has the same scale in all."""
     rows = len(averages)
     figure = Figure(figsize=(width, HEIGHT + ROW * (rows - 1)), layout="constrained")
-    heights = (2.3, *(1 if rows == 1 else 0.75 for _ in averages))
-    above, *beneath = figure.subplots(
-        1 + rows, len(axes), sharex="col", sharey="row", height_ratios=heights, squeeze=False
+    every = figure.subplots(
+        1 + rows, len(axes), sharex="col", height_ratios=(2.3, *[1.0] * rows), squeeze=False
     )
-    above[0].set_ylabel(ENERGY_RATIO)
-    for row in beneath:
-        row[0].set_ylabel(r"$R - R_\mathrm{theory}$")
-    columns = zip(above, zip(*beneath, strict=True), axes, strict=True)
-    panels = [Panel(*parts) for parts in columns]
+    every[0, 0].set_ylabel(ENERGY_RATIO)
+    panels = [Panel(*column) for column in zip(every[0], every[1:].T, axes, strict=True)]
     for main, residuals, axis in panels:
+        main.sharey(every[0, 0])
+        main.label_outer()
         main.axhline(0.5, color=FAINT, linewidth=0.8, linestyle=DOTS, zorder=0)
         for residual in residuals:
-            residual.axhline(0, color=THEORY, linewidth=0.8)
+            residual.axhline(0, color=THEORY, linewidth=0.8, zorder=0)
             residual.yaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
         axis.prepare(residuals[-1])
+    for residual in every[1:, 0]:
+        residual.set_ylabel(r"$R - R_\mathrm{theory}$")
     figure.align_ylabels()
     return figure, panels
 
@@ -175,85 +170,95 @@ def draw_theory(panel: Panel, drawn: Sequence[Series], black: bool = False) -> N
         panel.main.plot(panel.axis.grid, predicted, linestyle=line, color=colour, zorder=1)
 
 
-def draw_series(
-    panel: Panel,
-    drawn: Sequence[Series],
-    averages: Sequence[str] = ("R",),
-    apart: bool = False,
-) -> None:
-    """Draw points with error bars above, series set `apart` sideways; beneath, residuals, which
-    always are."""
+def draw_series(panel: Panel, drawn: Sequence[Series], averages: Sequence[str] = ("R",)) -> None:
+    """Draw points with error bars above, and beneath what they differ from theory by."""
     for index, one in enumerate(drawn):
-        aside = panel.axis.aside(one.at, index - (len(drawn) - 1) / 2)
-        at, size = aside if apart else one.at, SIZE - 0.3 * index
-        draw_points(panel.main, one, at, one.data.R.values, size)
+        size = 4.2 - 0.3 * index  # none hides another
+        draw_points(panel.main, one, one.at, one.data.R.values, size)
         for average, residual in zip(averages, panel.residuals, strict=True):
             if average in one.data:
-                draw_points(residual, one, aside, one.residual_of(average), average=average)
+                draw_points(residual, one, one.at, one.residual_of(average), size - 0.6, average)
 
 
 def frame_rows(
     panel: Panel, drawn: Sequence[Series], scale: Sequence[Series], averages: Sequence[str]
 ) -> None:
-    """Frame the residuals of each average of R, and say which one it is if there are several."""
+    """Scale each row of residuals to the steady points of `scale`, and say which average it has,
+    and how many points of those drawn lie outside."""
+    heights = []
     for average, residual in zip(averages, panel.residuals, strict=True):
-        frame_residuals(residual, drawn, scale, average, averages)
+        low, high = _limits(drawn, scale, average)
+        residual.set_ylim(low, high)
+        heights.append(high - low)
+        away = np.concatenate([one.residual_of(average) for one in drawn if average in one.data])
+        beyond = {"above": np.sum(away > high), "below": np.sum(away < low)}
+        notes = [f"{n} point{'s' if n > 1 else ''} {where}" for where, n in beyond.items() if n]
+        if notes:
+            note = f"{', '.join(notes)} this scale"
+            residual.set_title(note, fontsize=7, color=GREY, loc="right", pad=2)
         if len(averages) > 1:
-            residual.set_title(AVERAGES[average], fontsize=7.5, loc="left", pad=2)
+            finer = ", finer scale" if heights[-1] < 0.8 * heights[0] else ""
+            residual.set_title(f"{AVERAGES[average]}{finer}", fontsize=7.5, loc="left", pad=2)
 
 
-def frame_residuals(
-    residual: Axes,
-    drawn: Sequence[Series],
-    scale: Sequence[Series],
-    average: str = "R",
-    averages: Sequence[str] = ("R",),
-) -> None:
-    """Scale residuals to the steady points of `scale`, all averages of R having the same scale;
-    draw arrows for those beyond."""
+def _limits(drawn, scale, average) -> tuple[float, float]:
+    """Return what spans the steady points of `scale`, and those drawn that lie just outside."""
     low, high = -0.005, 0.005
-    for one, name in ((one, name) for one in scale for name in averages if name in one.data):
-        bar = np.nan_to_num(one.error_of(name))[one.steady]
-        low = np.nanmin(one.residual_of(name)[one.steady] - bar, initial=low)
-        high = np.nanmax(one.residual_of(name)[one.steady] + bar, initial=high)
+    for one in (one for one in scale if average in one.data):
+        away, bar = one.residual_of(average), np.nan_to_num(one.error_of(average))
+        low = np.nanmin((away - bar)[one.steady], initial=low)
+        high = np.nanmax((away + bar)[one.steady], initial=high)
     room = 0.12 * (high - low)
-    residual.set_ylim(low - room, high + room)
-    beyond = [_draw_arrows(residual, one, average) for one in drawn if average in one.data]
-    notes = ["points shifted sideways for legibility"] * (average == averages[0])
-    notes += ["arrows: beyond this scale"] * any(beyond)
-    residual.set_title("; ".join(notes), fontsize=6.5, color=GREY, loc="right", pad=2)
-    if not beyond:
-        note: Style = {"color": GREY, "fontsize": 7.5, "ha": "center"}
-        residual.text(0.5, 0.6, "only in a steady state", transform=residual.transAxes, **note)
+    for away in (one.residual_of(average) for one in drawn if average in one.data):
+        near = away[(away > low - 2 * room) & (away < high + 2 * room)]
+        low, high = np.nanmin(near, initial=low), np.nanmax(near, initial=high)
+    return low - room, high + room
 
 
 def add_legend(main: Axes, drawn: Sequence[Series], theory: str = "", **how: Any) -> None:
     """Say what points and lines are. `theory` names a black line; without it each has its own."""
-    handles: list[Any] = [
-        _key(one.look.colour, one.label, one.look.marker, "none" if theory else one.look.line)
+    draw_legend(main, _keys(main, drawn, theory), **how)
+
+
+def draw_legend(main: Axes, keys: Sequence[Any], loc: str = "best", **how: Any) -> None:
+    """Draw a legend; `loc` "half" is beneath the line at 1/2, "outside" beside the panel."""
+    if loc == "half":
+        low, high = main.get_ylim()
+        how |= {"bbox_to_anchor": (0.0, (0.5 - low) / (high - low)), "borderaxespad": 0.8}
+    elif loc == "outside":
+        how |= {"bbox_to_anchor": (1.01, 1.02), "borderaxespad": 0.0}
+    if keys or how.get("title"):
+        main.legend(handles=keys, loc="upper left" if loc in ("half", "outside") else loc, **how)
+
+
+def _keys(main: Axes, drawn: Sequence[Series], theory: str) -> list[Any]:
+    line = "none" if theory else None
+    keys = [
+        _key(
+            one.look.colour,
+            one.label + (TOUCHED if one.touched.any() else ""),
+            one.look.marker,
+            line or one.look.line,
+        )
         for one in drawn
     ]
     if theory:
-        handles.append(_key(THEORY, theory, "", "-"))
-    handles.append(_key(FAINT, "equipartition, $R = 1/2$", "", DOTS))
-    handles += keys_of_steadiness(drawn)
+        keys.append(_key(THEORY, theory, "", "-"))
+    keys.append(_key(FAINT, "equipartition", "", DOTS))
+    keys += keys_of_steadiness(drawn)
     if any(one.touched.any() for one in drawn):
-        handles.append(_key(GREY, "ringed: contact-time model acted", **RING))
-    handles += main.get_legend_handles_labels()[0]
-    if how.get("loc") == "half":
-        low, high = main.get_ylim()
-        how |= {"loc": "upper left", "bbox_to_anchor": (0.0, (0.5 - low) / (high - low))}
-        how |= {"borderaxespad": 0.8}
-    elif how.get("loc") == "outside":
-        how |= {"loc": "upper left", "bbox_to_anchor": (1.01, 1.02), "borderaxespad": 0.0}
-    main.legend(handles=handles, **how)
+        keys.append(_key(GREY, "contact-time model acted", f"${TOUCHED}$"))
+    return keys + main.get_legend_handles_labels()[0]
 
 
 def keys_of_steadiness(drawn: Sequence[Series]) -> list[Line2D]:
-    """Return what open symbols are, if there are any."""
-    if all(one.steady.all() for one in drawn):
-        return []
-    return [_key(GREY, "open: no steady state found", "o", fillstyle="none")]
+    """Return what open and half filled symbols are, if there are any."""
+    keys = []
+    if any((one.known & ~one.steady).any() for one in drawn):
+        keys.append(_key(GREY, "open: not steady", "o", **NOT_STEADY))
+    if not all(one.known.all() for one in drawn):
+        keys.append(_key(GREY, "half filled: not known whether steady", "o", **NOT_KNOWN))
+    return keys
 
 
 def add_title(main: Axes, datasets: Sequence[xr.Dataset], what: str, message: str = "") -> None:
@@ -261,15 +266,16 @@ def add_title(main: Axes, datasets: Sequence[xr.Dataset], what: str, message: st
     counts = np.concatenate([data.n_seeds.values.ravel() for data in datasets])
     low, high = counts[counts > 0].min(), counts.max()
     seeds = f"{high} seeds" if low == high else f"{low} to {high} seeds"
-    bars = f"standard error from {seeds}" if high > 1 else "standard error within the run"
+    bars = f"standard error, {seeds}" if high > 1 else "standard error within the run"
     about = datasets[0].attrs
-    scale = "" if about["scale"] == "paper" else f" (scale: {about['scale']})"
+    scale = "" if about["scale"] == "paper" else f"\nScale: {about['scale']}"
     number = particles_of(datasets[0]).replace(" to ", "$ to $")
-    text = f"{what}, $N = {number}${scale}\nError bars: {bars}"
-    main.set_title(text, fontsize=8, loc="left")
+    text = f"{what}, $N = {number}$\nBars: {bars}{scale}"
+    main.set_title(text, fontsize=7.5, loc="left")
     if message:
         place: Style = {"xycoords": "axes fraction", "textcoords": "offset points"}
-        main.annotate(message, (0, 1), (0, 27), fontsize=8.5, fontweight="bold", **place)
+        height = 10 * len(text.splitlines()) + 6
+        main.annotate(message, (0, 1), (0, height), fontsize=8.5, fontweight="bold", **place)
 
 
 def draw_points(
@@ -280,26 +286,13 @@ def draw_points(
     size: float = 3.6,
     average: str = "R",
 ) -> None:
-    """Draw symbols: filled in a steady state, else open; ringed where contact times acted."""
+    """Draw symbols: filled in a steady state, open in none, half filled where it is not known."""
     common: Style = {"color": one.look.colour, "fmt": one.look.marker, "elinewidth": 0.8}
-    open_ones: Style = {"markerfacecolor": "white", "zorder": 4}  # which no other symbol hides
-    for part, look in ((one.steady, common), (~one.steady, common | open_ones)):
+    looks = (one.steady, {}), (one.known & ~one.steady, NOT_STEADY), (~one.known, NOT_KNOWN)
+    for part, look in looks:
         bars = one.error_of(average)[part]
-        axes.errorbar(at[part], values[part], bars, markersize=size, capsize=1.5, **look)
-    axes.plot(at[one.touched], values[one.touched], color=GREY, linestyle="none", zorder=1, **RING)
+        axes.errorbar(at[part], values[part], bars, ms=size, capsize=1.5, **common, **look)
 
 
 def _key(colour: str, label: str, marker: str, linestyle: Any = "none", **how: Any) -> Line2D:
     return Line2D([], [], color=colour, label=label, marker=marker, linestyle=linestyle, **how)
-
-
-def _draw_arrows(residual: Axes, one: Series, average: str) -> bool:
-    """Draw an arrow at the rim for each residual beyond the scale; return whether there are any."""
-    low, high = residual.get_ylim()
-    away = one.residual_of(average)
-    above, below = away > high, away < low
-    for beyond, height, marker in ((above, 0.95, "^"), (below, 0.05, "v")):
-        heights = np.full(beyond.sum(), low + height * (high - low))
-        style: Style = {"color": one.look.colour, "fillstyle": "none", "ms": 3, "mew": 0.7}
-        residual.plot(one.at[beyond], heights, marker, **style)
-    return bool(above.any() or below.any())

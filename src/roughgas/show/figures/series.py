@@ -44,6 +44,11 @@ class Series(NamedTuple):
         return self.data.equilibrated.values > EQUILIBRATED
 
     @property
+    def known(self) -> np.ndarray:
+        """Whether there was evidence to tell, (n,)."""
+        return self.data.equilibrated.values >= 0
+
+    @property
     def touched(self) -> np.ndarray:
         """Whether the contact-time model acted, (n,)."""
         return self.data.get("contact_time_fraction", 0 * self.data.R).values > 0

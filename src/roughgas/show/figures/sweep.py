@@ -12,7 +12,7 @@ from roughgas.base.errors import InputError, not_one_of
 from roughgas.data.reduced import GRID, third_axis
 from roughgas.show.figures import panel
 from roughgas.show.figures.series import series
-from roughgas.show.style import HEIGHT, LOOKS
+from roughgas.show.style import HEIGHT, LOOKS, TWO_WIDE, WIDTH
 from roughgas.theory.prediction import equation_of
 
 MOST_SERIES, MOST_PANELS = len(LOOKS), 3
@@ -49,14 +49,11 @@ def draw(data: xr.Dataset, over: str | None = None, **chosen: Sequence[float]) -
     shown, axis = _numbered(data, layout.over)
     panels = layout.values[layout.panels] if layout.panels else [None]
     places = [{layout.panels: value} if layout.panels else {} for value in panels]
-    width = panel.WIDE if len(panels) == 1 else 0.5 * panel.TWO_WIDE * len(panels)
+    width = WIDTH if len(panels) == 1 else 0.5 * TWO_WIDE * len(panels)
     if "R" not in data:
         return _energies(shown, layout, axis, places, width)
-    parts = [_content(shown, layout, axis, place) for place in places]
-    figure = panel.ratio_figure(*parts, width=width + LEGEND, averaged=True)
-    for axes in figure.axes[: len(parts) - 1]:  # all panels have the same
-        if legend := axes.get_legend():
-            legend.remove()
+    parts = [_content(shown, layout, axis, place, place is places[-1]) for place in places]
+    figure = panel.ratio_figure(*parts, width=width + LEGEND, averages=panel.averages_of(shown))
     _name_words(figure, data, layout.over)
     return figure
 
@@ -136,7 +133,7 @@ def _name_words(figure: Figure, data: xr.Dataset, over: str) -> None:
 
 
 def _content(
-    data: xr.Dataset, layout: Layout, axis: panel.Axis, place: Mapping[str, Any]
+    data: xr.Dataset, layout: Layout, axis: panel.Axis, place: Mapping[str, Any], last: bool
 ) -> panel.PanelContent:
     drawn = [
         series(data, _label(layout.series, value), look, **{layout.series: value}, **place)
@@ -144,7 +141,7 @@ def _content(
     ]
     how: dict[str, Any] = {
         "theories": f"lines: {equation_of(data.attrs).name}",
-        "loc": "outside",
+        "legend": {"loc": "outside"} if last else {},
         "axis": axis,
     }
     return panel.PanelContent(_title(data, place), [data], drawn, **how)

@@ -31,7 +31,7 @@ from roughgas.theory.prediction import equation_of, predicted_ratio
 
 # Plotly's names of the figures' markers and lines
 SYMBOLS = {"o": "circle", "s": "square", "^": "triangle-up", "D": "diamond", "v": "triangle-down"}
-DASHES = {"-": "solid", "--": "dash", "-.": "dashdot", ":": "dot"}
+DASHES = {"-": "solid", "--": "dash", "-.": "dashdot", "(0, (9, 2))": "longdash"}
 NUMBERS = {
     "R": "R",
     "stderr": "R_stderr",
