@@ -13,7 +13,7 @@
 #   snakemake -j2 finite_size                   how much of R in a cooling gas is due to number and box
 #   snakemake -j2 hard_cases                    where simulations go wrong, and how far from it we are
 #   snakemake -j2 crate                         the run as one file: an RO-Crate with checksums
-#   snakemake -j2 figures/sheared.png           R of any experiment over what its sweep varies
+#   snakemake -j2 fig1a                         a figure by its name, or an experiment's R over its sweep
 #   snakemake -j1 results/paper/cooling/r0.87/beta-0.33/seed7.nc     any one point
 
 
@@ -22,9 +22,11 @@ include: "rules/messages.smk"
 
 
 # of --sdm apptainer, which gives every rule the environment that Apptainer.def builds
-container: IMAGE
+container: image()
 
 
+check_folders()
+config = own_config(config)
 CHANGES = {key: change for key, change in config.items() if key != "scale"}  # the command line's
 config = checked_config(CONFIG, config)
 SCALE = config["scale"]
@@ -63,17 +65,19 @@ include: "rules/crate.smk"
 report: "rules/captions/workflow.rst"
 
 
-# on a cluster, these take less than sending them there
-localrules:
-    figure,
-    picture_for_talks,
-    table,
-    claims,
-    document,
-    effective_config,
-    run_times,
-    living_page,
-    front,
+# on a cluster, these take less than sending them there; of modules Snakemake does not know the names
+if not IS_MODULE:
+
+    localrules:
+        figure,
+        picture_for_talks,
+        table,
+        claims,
+        document,
+        effective_config,
+        run_times,
+        living_page,
+        front,
 
 
 rule figures:
@@ -183,6 +187,20 @@ rule everything:
         rules.explore.input,
         rules.explore_extensions.input,
         rules.living.input,
+
+
+# figures by their names, and experiments by theirs, but for names that have a rule
+for name in [*catalogue.FIGURES, *config["experiments"]]:
+    if not rules.has(name):
+
+        rule:
+            name:
+                name
+            input:
+                drawn([name]),
+
+
+logger.addFilter(say_what_was_meant)
 
 
 onstart:

@@ -1,16 +1,24 @@
 # What the rules share. Bad input ends the workflow with one line, before anything is run.
+import difflib
 import fcntl
 import functools
+import hashlib
+import json
 import os
+import re
 import sys
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
+from snakemake.logging import logger
+from snakemake.settings.types import DeploymentMethod
+
 try:
     import roughgas.config
     from roughgas.base import sources
-    from roughgas.base.errors import InputError, not_one_of
+    from roughgas.base.errors import InputError, not_one_of, shown
     from roughgas.base.layout import in_rst
+    from roughgas.config.schema import keys
     from roughgas.show import catalogue
     from roughgas.studies.figures import DATASETS, FIGURES
 except ModuleNotFoundError as error:
@@ -19,13 +27,20 @@ except ModuleNotFoundError as error:
 # where the Snakefile is: this folder, or another one, or, of a module, a site from which Snakemake
 # fetches what it needs
 SOURCE = Path(os.path.relpath(Path(workflow.current_basedir.get_path_or_uri(True)).parent))
+PACKAGE = os.path.relpath(sources.PACKAGE)  # so that a folder may be moved with its results
+# a module leaves the configuration of this folder to its host; so does what includes the Snakefile
+IS_MODULE = workflow.modifier.namespace is not None
 # the configuration of this folder, or else the one beside the Snakefile
 CONFIG = next(
-    (str(p / "config.yaml") for p in (Path(), SOURCE) if (p / "config.yaml").exists()), None
+    (
+        str(folder / "config.yaml")
+        for folder in ([] if IS_MODULE else [Path()]) + [SOURCE]
+        if (folder / "config.yaml").exists()
+    ),
+    None,
 )
 CONFIG = CONFIG or workflow.source_path("../config.yaml")
-IMAGE = str((SOURCE / "roughgas.sif").absolute())
-PACKAGE = os.path.relpath(sources.PACKAGE)  # so that a folder may be moved with its results
+IMAGE = str(SOURCE / "roughgas.sif")
 KERNEL = "results/{scale}/{experiment}/r{r}/compiled.txt"
 POINT = "results/{scale}/{experiment}/r{r}/beta{beta}/seed{seed}.nc"
 PILOT = "results/{scale}/{experiment}/r{r}/beta{beta}/pilot.json"
@@ -39,7 +54,7 @@ NAME = r"[\w+.-]+"  # nothing that means something to a shell: wildcards become 
 EXPERIMENT = rf"(?!(?:{STUDY_FIGURE})\.|(?:studies|showcase|hard_cases)/){NAME}"
 VARIANT = rf"(?:/(?!(?:r|beta|seed)[-+.\d]){NAME})?"
 # rules call the `roughgas` beside this snakemake, wherever it was started from
-os.environ["PATH"] = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+os.environ |= {"PATH": os.pathsep.join([str(Path(sys.executable).parent), *os.get_exec_path()])}
 
 
 @contextmanager
@@ -53,10 +68,73 @@ def one_line(place=None):
         sys.exit(f"roughgas: error: {error.filename}: {error.strerror}")
 
 
+def check_folders():
+    """End the workflow with one line where Snakemake would take a folder's name for a pattern."""
+    for folder in (str(SOURCE), PACKAGE):
+        with one_line():
+            if set("{}") & set(folder):
+                legal = "have no { or }, Snakemake's signs of a wildcard, or be where you work"
+                raise InputError("folder", os.path.abspath(folder), legal)
+
+
+def image():
+    """The container of --sdm apptainer. Snakemake takes it for part of a command, used or not."""
+    if re.fullmatch(r"[\w./+@%:,=-]+", IMAGE, re.ASCII):
+        return IMAGE
+    with one_line():
+        if DeploymentMethod.APPTAINER in workflow.deployment_settings.deployment_method:
+            legal = "be a path without spaces, quotes and brackets for apptainer"
+            raise InputError("container", os.path.abspath(IMAGE), legal)
+    return None
+
+
+def of_project(*paths):
+    """Files beside the Snakefile, or of the package: none of them lies below a module's prefix, and
+    none begins as an option does."""
+    return [local(os.path.abspath(p) if str(p).startswith("-") else str(p)) for p in paths]
+
+
+def own_config(changes):
+    """What the command line, or the host of a module, changes. A host's own keys are no mistake."""
+    known = keys()
+    foreign = [key for key in changes if key not in known] if IS_MODULE else []
+    if foreign:
+        logger.warning(f"roughgas: of the host's config these are not read: {', '.join(foreign)}")
+    return {key: value for key, value in changes.items() if key not in foreign}
+
+
 def checked_config(path, changes):
     """The configuration at `path`, with the changes that the command line makes to it."""
     with one_line():
         return roughgas.config.load(path, changes)
+
+
+def nearest(key, name, kind, known):
+    """The error of a name that is not known, with the known ones that are most like it."""
+    found = difflib.get_close_matches(name, sorted(known), 3, 0.0)
+    return InputError(key, shown(name), f"be {kind}, such as {', '.join(found)}")
+
+
+def content_of_files(settings):
+    """The hashes of files that settings take radii from, wherever in them."""
+    if isinstance(settings, dict):
+        if settings.get("distribution") == "file":
+            return [hash_of_file(settings["file"])]
+        settings = list(settings.values())
+    found = map(content_of_files, settings) if isinstance(settings, list) else ()
+    return [one for some in found for one in some]
+
+
+def with_files(code, settings):
+    """The hash of code, and those of files that settings, as JSON, take radii from."""
+    files = content_of_files(json.loads(settings)) if '"file"' in settings else []
+    return " ".join([code, *files])
+
+
+@functools.cache
+def hash_of_file(path):
+    with one_line():
+        return hashlib.sha256(Path(path).read_bytes()).hexdigest()[:16]
 
 
 @functools.cache
@@ -118,16 +196,18 @@ def drawn(figures, kinds=(".pdf", ".png")):
     return [f"figures/{folder}{figure}{kind}" for figure in figures for kind in kinds]
 
 
-def code_of(*modules, alone=()):
+def code_of(*modules, alone=(), settings=None):
     """A param for the code that a result depends on: a hash of these modules, such as
     "simulation.point", and of all that they import. Of those in `alone` their imports do not count.
+    Files count that settings name which the function `settings` returns as JSON.
 
     As a param it makes Snakemake redo what an edit may change. Lists of files would rerun after an
     edit of a comment, and at every step the scheduler looks at every input of every job.
     """
 
     def code(wildcards):
-        return sources.code_of(*modules, alone=alone)
+        found = sources.code_of(*modules, alone=alone)
+        return with_files(found, settings(wildcards)) if settings else found
 
     return code
 

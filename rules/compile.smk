@@ -56,5 +56,5 @@ rule compile_kernel:
     message:
         "compile the kernel of {wildcards.experiment} at r = {wildcards.r}"
     shell:
-        "roughgas compile {wildcards.experiment} --scale {wildcards.scale} --r={wildcards.r}"
-        " --settings {params.settings:q} --checked > {log} 2>&1"
+        "roughgas compile {wildcards.experiment:q} --scale {wildcards.scale:q} --r={wildcards.r:q}"
+        " --settings {params.settings:q} --checked > {log:q} 2>&1"

@@ -11,7 +11,7 @@ def files_of_project(wildcards):
     with one_line():
         if SOURCE != Path():
             raise InputError("folder", os.getcwd(), f"be {SOURCE.resolve()}, which a crate packs")
-    return project_files()
+    return of_project(*project_files())
 
 
 rule crate:
@@ -30,5 +30,5 @@ rule crate:
     message:
         "pack the run into {output}"
     shell:
-        "roughgas crate {input.data} {input.tables} {input.figures} --output {output}"
-        " --configuration {params.configuration:q} > {log} 2>&1"
+        "roughgas crate {input.data:q} {input.tables:q} {input.figures:q} --output {output:q}"
+        " --configuration {params.configuration:q} > {log:q} 2>&1"

@@ -4,7 +4,7 @@ HARD_CASES = TESTS / "hard_cases"
 FAMILIES = sorted(path.stem.removeprefix("test_") for path in HARD_CASES.glob("test_*.py"))
 DRAWING = [HARD_CASES / "report.py", HARD_CASES / "pictures.py"]
 SHARED = [  # what a family may import
-    str(path)
+    path
     for folder in ("", "brute_force", "exact", "hard_cases")
     for path in sorted(Path(TESTS, folder).glob("*.py"))
     if not path.name.startswith("test_") and path not in DRAWING
@@ -23,6 +23,10 @@ def place_of_tests(wildcards, output):
     return TESTS
 
 
+def cases_of_family(wildcards):
+    return of_project(HARD_CASES / f"test_{wildcards.family}.py")
+
+
 def urgency_of_family(wildcards):
     return 10 if wildcards.family in LONGEST else 0
 
@@ -30,8 +34,8 @@ def urgency_of_family(wildcards):
 rule family:
     # other families start while this one compiles: the kernels of all are the same few
     input:
-        SHARED,
-        cases=f"{HARD_CASES}/test_{{family}}.py",
+        of_project(*SHARED),
+        cases=cases_of_family,
     output:
         "results/{folder}hard_cases/{family}.json",
     log:
@@ -45,12 +49,13 @@ rule family:
     message:
         "hard cases: {wildcards.family}"
     shell:
-        "python -m pytest -n0 -q -s {params.size} --margins {output} {input.cases} > {log} 2>&1"
+        "python -m pytest -n0 -q -s {params.size:q} --margins {output:q} {input.cases:q}"
+        " > {log:q} 2>&1"
 
 
 rule catalogue:
     input:
-        DRAWING,
+        of_project(*DRAWING),
         families=expand("results/{{folder}}hard_cases/{family}.json", family=FAMILIES),
     output:
         table="results/{folder}hard_cases.md",
@@ -65,5 +70,5 @@ rule catalogue:
     message:
         "write {output.table}"
     shell:
-        "PYTHONPATH={params.tests} python -m hard_cases.report {input.families} {params.size}"
-        " --table {output.table} --pictures {output.pictures} {output.shown} > {log} 2>&1"
+        "PYTHONPATH={params.tests:q} python -m hard_cases.report {input.families:q} {params.size:q}"
+        " --table {output.table:q} --pictures {output.pictures:q} {output.shown:q} > {log:q} 2>&1"

@@ -22,7 +22,8 @@ def settings_of_movie(wildcards):
 
 
 def told_of_movie(wildcards):
-    return " ".join(MOVIES[wildcards.movie])
+    experiment, options = MOVIES[wildcards.movie]
+    return [experiment, *options.split()]
 
 
 rule movie:
@@ -34,11 +35,11 @@ rule movie:
     benchmark:
         "logs/figures/{folder}movies/{movie}.tsv"
     params:
-        code=code_of("show.movies.drawing", alone=["cli.movie"]),
+        code=code_of("show.movies.drawing", alone=["cli.movie"], settings=settings_of_movie),
         settings=settings_of_movie,
         told=told_of_movie,
     message:
         "show {wildcards.folder}{wildcards.movie} as it moves"
     shell:
-        "roughgas movie {params.told} --fps=20 --settings {params.settings:q} --checked"
-        " --output {output} > {log} 2>&1"
+        "roughgas movie {params.told:q} --fps=20 --settings {params.settings:q} --checked"
+        " --output {output:q} > {log:q} 2>&1"

@@ -1,6 +1,4 @@
 # Accuracy on demand: a pilot of each point says how many seeds it needs, and what they will cost.
-from snakemake.logging import logger
-
 PLANNED = [
     name
     for name in config["experiments"]
@@ -61,14 +59,19 @@ rule pilot:
     benchmark:
         "logs/{scale}/{experiment}/r{r}/beta{beta}/pilot.tsv"
     params:
-        code=code_of("planning.pilot", "planning.plan", alone=["cli.planning"]),
+        code=code_of(
+            "planning.pilot",
+            "planning.plan",
+            alone=["cli.planning"],
+            settings=settings_without_lengths,
+        ),
         settings=settings_without_lengths,
     message:
         "pilot of {wildcards.experiment}: r = {wildcards.r}, beta = {wildcards.beta}"
     shell:
-        "roughgas pilot {wildcards.experiment} --scale {wildcards.scale} --r={wildcards.r}"
-        " --beta={wildcards.beta} --settings {params.settings:q} --checked --output {output}"
-        " > {log} 2>&1"
+        "roughgas pilot {wildcards.experiment:q} --scale {wildcards.scale:q} --r={wildcards.r:q}"
+        " --beta={wildcards.beta:q} --settings {params.settings:q} --checked --output {output:q}"
+        " > {log:q} 2>&1"
 
 
 rule reach:
@@ -88,14 +91,14 @@ rule reach:
     message:
         "{wildcards.experiment}: r = {wildcards.r}, beta = {wildcards.beta}, to its target"
     shell:
-        "roughgas reach {wildcards.experiment} --scale {wildcards.scale} --r={wildcards.r}"
-        " --beta={wildcards.beta} --settings {params.settings:q} --checked --pilot {input.pilot}"
-        " --output {output} > {log} 2>&1"
+        "roughgas reach {wildcards.experiment:q} --scale {wildcards.scale:q} --r={wildcards.r:q}"
+        " --beta={wildcards.beta:q} --settings {params.settings:q} --checked --pilot {input.pilot:q}"
+        " --output {output:q} > {log:q} 2>&1"
 
 
 rule plan_of_scale:
     input:
-        config=CONFIG,
+        config=of_project(CONFIG),
         pilots=pilots,
     output:
         "results/{scale}/{plan}.md",
@@ -110,9 +113,9 @@ rule plan_of_scale:
     message:
         "write {output}"
     shell:
-        "roughgas plan {params.names} --scale {wildcards.scale} --cores {params.cores}"
-        " --config {input.config:q} --output {output}"
-        " > {log} 2>&1"
+        "roughgas plan {params.names:q} --scale {wildcards.scale:q} --cores {params.cores:q}"
+        " --config {input.config:q} --output {output:q}"
+        " > {log:q} 2>&1"
 
 
 rule costs_of_scale:
@@ -128,4 +131,4 @@ rule costs_of_scale:
     message:
         "write {output}"
     shell:
-        "roughgas costs {input.data} --fixed {params.fixed:q} --output {output} > {log} 2>&1"
+        "roughgas costs {input.data:q} --fixed {params.fixed:q} --output {output:q} > {log:q} 2>&1"

@@ -22,9 +22,8 @@ def data_of_plot(wildcards):
     """The reduced dataset of the experiment by whose name a figure is asked for."""
     with one_line():
         if wildcards.plotted not in config["experiments"]:
-            raise not_one_of(
-                "figure", wildcards.plotted, [*DRAWN_FROM_DATA, *config["experiments"]]
-            )
+            known = {*DRAWN_FROM_DATA, *config["experiments"]}
+            raise nearest("figure", wildcards.plotted, "a figure or an experiment", known)
     return reduced(scale_of(wildcards.folder), [wildcards.plotted])
 
 
@@ -65,7 +64,12 @@ def studies_of_claims(wildcards):
 
 def name_of_config(wildcards, output):
     """Made from the output and therefore not recorded: results do not depend on where it is."""
-    return CONFIG
+    return of_project(CONFIG)
+
+
+def folder_of_points(wildcards, output):
+    """That of the page, too; in a module with a prefix it lies below that."""
+    return Path(output[0]).parent
 
 
 def which_claims(wildcards):
@@ -92,7 +96,7 @@ rule figure:
     message:
         "draw {wildcards.folder}{wildcards.figure}"
     shell:
-        "roughgas figure {wildcards.figure} {input.data} --output {output} > {log} 2>&1"
+        "roughgas figure {wildcards.figure:q} {input.data:q} --output {output:q} > {log:q} 2>&1"
 
 
 rule plot:
@@ -108,7 +112,7 @@ rule plot:
     message:
         "draw {wildcards.folder}{wildcards.plotted}"
     shell:
-        "roughgas plot {input.data} --output {output} > {log} 2>&1"
+        "roughgas plot {input.data:q} --output {output:q} > {log:q} 2>&1"
 
 
 rule picture_for_talks:
@@ -124,7 +128,7 @@ rule picture_for_talks:
     message:
         "draw {output}"
     shell:
-        "roughgas figure {wildcards.figure} {input.data} --slide --output {output} > {log} 2>&1"
+        "roughgas figure {wildcards.figure:q} {input.data:q} --slide --output {output:q} > {log:q} 2>&1"
 
 
 rule table:
@@ -147,7 +151,7 @@ rule table:
     message:
         "write {output.csv}"
     shell:
-        "roughgas table {input.data} --output {output.csv} > {log} 2>&1"
+        "roughgas table {input.data:q} --output {output.csv:q} > {log:q} 2>&1"
 
 
 rule claims:
@@ -167,8 +171,8 @@ rule claims:
     message:
         "write {output}"
     shell:
-        "roughgas claims {params.which} {input} --json {output.json} --markdown {output.markdown}"
-        " > {log} 2>&1"
+        "roughgas claims {params.which:q} {input:q} --json {output.json:q}"
+        " --markdown {output.markdown:q} > {log:q} 2>&1"
 
 
 rule run_times:
@@ -185,13 +189,13 @@ rule run_times:
     message:
         "write {output}"
     shell:
-        "roughgas times {input.data} --output {output} > {log} 2>&1"
+        "roughgas times {input.data:q} --output {output:q} > {log:q} 2>&1"
 
 
 rule page:
     input:
-        multiext(f"{PACKAGE}/show/page/page", ".css", ".html"),
-        sorted(map(str, Path(PACKAGE, "show/page").glob("*.js"))),
+        of_project(f"{PACKAGE}/show/page/page.css", f"{PACKAGE}/show/page/page.html"),
+        of_project(*sorted(Path(PACKAGE, "show/page").glob("*.js"))),
         points_of_product,
         data=data_of_product,
     output:
@@ -204,19 +208,20 @@ rule page:
         code=code_of("show.page.explore"),
         descriptions=descriptions_of_product,
         config=name_of_config,
+        points=folder_of_points,
     message:
         "write {output}"
     shell:
-        "roughgas page {input.data} --points results/{wildcards.scale} --config {params.config:q}"
-        " --output {output} > {log} 2>&1"
+        "roughgas page {input.data:q} --points {params.points:q} --config {params.config:q}"
+        " --output {output:q} > {log:q} 2>&1"
 
 
 rule living_page:
     # at any scale: its gas is as large as the page can show
     input:
-        multiext(f"{PACKAGE}/show/living/page", ".css", ".html"),
-        sorted(map(str, Path(PACKAGE, "show/living").glob("*.js"))),
-        config=CONFIG,
+        of_project(f"{PACKAGE}/show/living/page.css", f"{PACKAGE}/show/living/page.html"),
+        of_project(*sorted(Path(PACKAGE, "show/living").glob("*.js"))),
+        config=of_project(CONFIG),
     output:
         "results/{scale}/living.html",
     log:
@@ -226,4 +231,4 @@ rule living_page:
     message:
         "write {output}"
     shell:
-        "roughgas living --config {input.config} --output {output} > {log} 2>&1"
+        "roughgas living --config {input.config:q} --output {output:q} > {log:q} 2>&1"

@@ -24,4 +24,4 @@ rule reduce:
         "reduce {wildcards.experiment}"
     shell:
         # a hundred thousand points are more than a command line holds
-        "printf '%s\\n' {input.points} | roughgas reduce - --output {output} > {log} 2>&1"
+        "printf '%s\\n' {input.points:q} | roughgas reduce - --output {output:q} > {log:q} 2>&1"

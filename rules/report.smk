@@ -77,7 +77,7 @@ def documents(*names):
 
 rule document:
     input:
-        multiext(f"{PACKAGE}/show/page/document", ".css", ".html"),
+        of_project(f"{PACKAGE}/show/page/document.css", f"{PACKAGE}/show/page/document.html"),
         shown=source_of_document,
     output:
         report(
@@ -96,7 +96,7 @@ rule document:
     message:
         "write {output}"
     shell:
-        "roughgas html {input.shown} --output {output} > {log} 2>&1"
+        "roughgas html {input.shown:q} --output {output:q} > {log:q} 2>&1"
 
 
 def pictures_of_paper(wildcards):
@@ -107,8 +107,10 @@ def pictures_of_paper(wildcards):
 rule front:
     # stands in front of Snakemake's report, which opens on the graph of the workflow
     input:
-        multiext(f"{PACKAGE}/show/page/front", ".css", ".html"),
-        captions=[f"rules/captions/{name}.rst" for name in catalogue.figures_of("paper")],
+        of_project(f"{PACKAGE}/show/page/front.css", f"{PACKAGE}/show/page/front.html"),
+        captions=of_project(
+            *(SOURCE / f"rules/captions/{name}.rst" for name in catalogue.figures_of("paper"))
+        ),
         figures=pictures_of_paper,
         claims="results/{scale}/claims.md",
     output:
@@ -120,14 +122,14 @@ rule front:
     message:
         "write {output}"
     shell:
-        "roughgas front {input.claims} --figures {input.figures} --captions {input.captions}"
-        " --output {output} > {log} 2>&1"
+        "roughgas front {input.claims:q} --figures {input.figures:q} --captions {input.captions:q}"
+        " --output {output:q} > {log:q} 2>&1"
 
 
 rule effective_config:
     input:
-        sorted(map(str, Path(PACKAGE, "config").glob("*.yaml"))),
-        file=CONFIG,
+        of_project(*sorted(Path(PACKAGE, "config").glob("*.yaml"))),
+        file=of_project(CONFIG),
     output:
         report(
             "results/{scale}/config.yaml",
@@ -143,5 +145,5 @@ rule effective_config:
     message:
         "write {output}"
     shell:
-        "roughgas config --config {input.file} --scale {wildcards.scale} --changes {params.changes:q}"
-        " --output {output} > {log} 2>&1"
+        "roughgas config --config {input.file:q} --scale {wildcards.scale:q}"
+        " --changes {params.changes:q} --output {output:q} > {log:q} 2>&1"

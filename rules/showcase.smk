@@ -17,7 +17,7 @@ def film_of_figure(wildcards):
     return FILM.format(scale=scale_of(wildcards.folder))
 
 
-rule clustering:
+rule gas_of_film:
     # It leaves checkpoints beside its output. They are no output: Snakemake would delete them where
     # a job fails, while from the last one the same command goes on after a kill.
     output:
@@ -28,13 +28,18 @@ rule clustering:
         "logs/{scale}/showcase/clustering.tsv"
     priority: 5
     params:
-        code=code_of("simulation.clustering", "data.film", alone=["cli.showcase"]),
+        code=code_of(
+            "simulation.clustering",
+            "data.film",
+            alone=["cli.showcase"],
+            settings=settings_of_showcase,
+        ),
         settings=settings_of_showcase,
     message:
         "film a cooling gas; how far it is: {log}"
     shell:
-        "roughgas clustering --scale {wildcards.scale} --settings {params.settings:q} --checked"
-        " --output {output} > {log} 2>&1"
+        "roughgas clustering --scale {wildcards.scale:q} --settings {params.settings:q} --checked"
+        " --output {output:q} > {log:q} 2>&1"
 
 
 rule film:
@@ -56,4 +61,4 @@ rule film:
     message:
         "draw the picture and the movie of the cooling gas"
     shell:
-        "roughgas film {input.data} --output {output} > {log} 2>&1"
+        "roughgas film {input.data:q} --output {output:q} > {log:q} 2>&1"

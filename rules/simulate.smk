@@ -1,23 +1,26 @@
 # From an experiment's settings to its points, where their lengths are set (where a target is set
 # instead: planning.smk). Of the sweep, `seeds_per_job` seeds at `betas_per_job` values of beta are
 # made by one job (see config.yaml); any other point is a job of its own.
-import re
-
 SIMULATING = ("simulation.point", "data.point")
 RECORDING = ("cli.run", "config.labels", "config.provenance")  # these hand on and write down
 
 
 def settings_of_points(wildcards):
     """All in config.yaml that the points of an experiment depend on, as JSON."""
-    found = settings(wildcards.scale, wildcards.experiment)
-    return roughgas.config.as_text(roughgas.config.point_settings(found))
+    return text_of_points(wildcards.scale, wildcards.experiment)
+
+
+@functools.cache
+def text_of_points(scale, experiment):
+    return roughgas.config.as_text(roughgas.config.point_settings(settings(scale, experiment)))
 
 
 def code_of_points(wildcards):
     """The code that points depend on. A point with a target plans its own lengths."""
     planned = "target_stderr" in settings(wildcards.scale, wildcards.experiment)
     planning = ("planning.reach",) if planned else ()
-    return sources.code_of(*SIMULATING, *planning, alone=RECORDING)
+    code = sources.code_of(*SIMULATING, *planning, alone=RECORDING)
+    return with_files(code, settings_of_points(wildcards))
 
 
 def points_of_job(wildcards, output):
@@ -26,7 +29,7 @@ def points_of_job(wildcards, output):
     files = [Path(file) for file in output]
     betas = dict.fromkeys(file.parent.name.removeprefix("beta") for file in files)
     seeds = dict.fromkeys(file.stem.removeprefix("seed") for file in files)
-    return " ".join([*(f"--beta={beta}" for beta in betas), "--seed", *seeds])
+    return [*(f"--beta={beta}" for beta in betas), "--seed", *seeds]
 
 
 def urgency(wildcards):
@@ -92,9 +95,9 @@ for job, files, log_of_job, swept_values in jobs_of_points():
         message:
             "{wildcards.experiment}: r = {wildcards.r}, {params.points}"
         shell:
-            "roughgas run {wildcards.experiment} --scale {wildcards.scale} --r={wildcards.r}"
-            " {params.points} --settings {params.settings:q} --checked --output {output}"
-            " > {log} 2>&1"
+            "roughgas run {wildcards.experiment:q} --scale {wildcards.scale:q} --r={wildcards.r:q}"
+            " {params.points:q} --settings {params.settings:q} --checked --output {output:q}"
+            " > {log:q} 2>&1"
 
     POINTS[job] = len(files)
     if job != "point":

@@ -38,7 +38,8 @@ def urgency_of_task(wildcards):
 
 def code_of_study(wildcards):
     writing = ("cli.studies", "studies.files")
-    return sources.code_of(f"studies.runs.{wildcards.study}", alone=writing)
+    code = sources.code_of(f"studies.runs.{wildcards.study}", alone=writing)
+    return with_files(code, settings_of_study(wildcards))
 
 
 def code_of_combining(wildcards):
@@ -70,8 +71,8 @@ rule study:
     message:
         "study {wildcards.study}: {wildcards.task}"
     shell:
-        "roughgas study {wildcards.study} {wildcards.task} --scale {wildcards.scale}"
-        " --settings {params.settings:q} --output {output} > {log} 2>&1"
+        "roughgas study {wildcards.study:q} {wildcards.task:q} --scale {wildcards.scale:q}"
+        " --settings {params.settings:q} --output {output:q} > {log:q} 2>&1"
 
 
 rule combined_studies:
@@ -86,7 +87,7 @@ rule combined_studies:
     message:
         "combine the studies of {wildcards.study_figure}"
     shell:
-        "roughgas combine {input.tasks} --output {output} > {log} 2>&1"
+        "roughgas combine {input.tasks:q} --output {output:q} > {log:q} 2>&1"
 
 
 rule study_figure:
@@ -108,7 +109,7 @@ rule study_figure:
     message:
         "draw {wildcards.folder}{wildcards.study_figure}"
     shell:
-        "roughgas figure {wildcards.study_figure} {input.data} --output {output} > {log} 2>&1"
+        "roughgas figure {wildcards.study_figure:q} {input.data:q} --output {output:q} > {log:q} 2>&1"
 
 
 rule study_table:
@@ -123,4 +124,4 @@ rule study_table:
     message:
         "write {output}"
     shell:
-        "roughgas tables {input.data} --output {output} > {log} 2>&1"
+        "roughgas tables {input.data:q} --output {output:q} > {log:q} 2>&1"

@@ -2,27 +2,39 @@
 
 import json
 import os
+import re
 import subprocess
 import sys
 
 import pytest
+import snakemakes
 from project import ROOT, Project
 
 from roughgas.config.reading import read_yaml
 
 POINT = "results/tiny/cooling/r0.9/beta0/seed9.nc"
 CONFIG = "results/tiny/config.yaml"
-MODULE = """
+HOST = """
+configfile: "config.yaml"
+
+
+rule a_rule_of_the_host:
+    output:
+        touch("a.txt"),
+
+
 module roughgas:
     snakefile:
         "{}/Snakefile"
     config:
-        {{"scale": "tiny"}}
+        config
+    prefix:
+        "other folder"
 
 
 use rule * from roughgas as roughgas_*
 """
-REASONED = ("Mixed rules and functions", "Environment variable PATH used")
+REASONED = ("Mixed rules and functions",)
 """What snakemake --lint may say: docs/development.md has the reasons."""
 
 
@@ -70,13 +82,51 @@ def test_the_configuration_of_the_working_folder_comes_first(source, tmp_path):
     assert status != 0 and "experiment = 'mine': must be one of" in output
 
 
+@pytest.fixture
+def host(source, tmp_path):
+    """A workflow with a configuration of its own, of which the project is a module."""
+    (tmp_path / "Snakefile").write_text(HOST.format(source.folder))
+    own = {"samples": ["a"], "scale": "tiny", "seeds_per_job": 2}
+    (tmp_path / "config.yaml").write_text(json.dumps(own))
+    return tmp_path
+
+
+def test_it_is_a_module_beside_its_hosts_configuration(source, host):
+    status, output = snakemakes.run(host, source.environment(), ("-c1", f"other folder/{CONFIG}"))
+    assert status == 0 and "of the host's config these are not read: samples\n" in output, output
+    assert "localrules" not in output
+    found = read_yaml(host / "other folder" / CONFIG)
+    assert (found["scale"], found["seeds_per_job"]) == ("tiny", 2) and found["experiments"]
+
+
+def test_a_module_with_a_prefix_finds_its_points_below_it(source, host):
+    told = ("-n", "-p", "roughgas_figures", "roughgas_explore")
+    status, output = snakemakes.run(host, source.environment(), told)
+    assert status == 0 and "roughgas_reduce" in output and "roughgas_cooling_block_1" in output
+    assert "--points 'other folder/results/tiny'" in output
+    outputs = re.findall("--output (.*)", output)
+    assert len(outputs) > 10 and all(one.startswith("'other folder/") for one in outputs)
+
+
+def test_a_host_is_told_what_is_wrong_with_its_configuration(source, host):
+    (host / "config.yaml").write_text('{"samples": ["a"], "scale": 3}')
+    status, output = snakemakes.run(host, source.environment(), ("-n", "roughgas_figures"))
+    (said,) = [line for line in output.splitlines() if "error" in line]
+    assert status == 1 and said.startswith("roughgas: error: config.yaml with the command line's")
+    assert "scale = 3: must" in said
+
+
 @pytest.mark.slow
-def test_it_is_a_module_of_another_workflow(source, tmp_path):
-    (tmp_path / "Snakefile").write_text(MODULE.format(source.folder))
-    succeed(source, tmp_path, "-c1", POINT, CONFIG)
-    assert (tmp_path / POINT).exists() and read_yaml(tmp_path / CONFIG)["scale"] == "tiny"
-    output = succeed(source, tmp_path, "-n", "-c1", "roughgas_figures")
-    assert "roughgas_reduce" in output and "roughgas_cooling_block_1" in output
+def test_a_module_makes_points_and_pages_of_them(source, host):
+    succeed(source, host, "-c1", f"other folder/{POINT}", "roughgas_explore")
+    assert (host / "other folder" / POINT).exists()
+    assert (host / "other folder/results/tiny/explore.html").exists()
+    assert {path.name for path in host.iterdir()} <= {
+        ".snakemake",
+        "Snakefile",
+        "config.yaml",
+        "other folder",
+    }
 
 
 @pytest.mark.slow

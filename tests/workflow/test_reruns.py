@@ -18,7 +18,7 @@ POINTS = REDUCED | AIMED | {"seeds"}
 PILOTS = AIMED | {"pilot", "plan_of_scale", "reduce"}
 COMPILED = POINTS | PILOTS | {"compile_kernel"}
 FAMILIES = {"family", "catalogue", "document"}
-FILM = {"clustering", "film", "document"}
+FILM = {"gas_of_film", "film", "document"}
 ACCURACY = {"accuracy", "accuracy_limits", "combined_studies", "study_table", "document"}
 COVERAGE = {"coverage", "combined_studies", "study_table", "document"}
 OF_THEIR_OWN = {"profiles", "finite_size", "runaway"}
@@ -202,7 +202,7 @@ def test_an_edit_of_an_experiment_concerns_its_movie(finished):
     assert finished.planned("movies")["movie"] == 1
 
 
-FILMED = {"clustering": 1, "film": 1, "document": 1, "showcase": 1}
+FILMED = {"gas_of_film": 1, "film": 1, "document": 1, "showcase": 1}
 
 
 def test_an_edit_of_the_settings_of_the_showcase(finished):

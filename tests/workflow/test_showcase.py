@@ -17,7 +17,7 @@ DRAWN = {"film": 1, "document": 1, "showcase": 1}
 
 
 def test_the_showcase_needs_no_point(project):
-    assert project.planned("showcase") == {"clustering": 1} | DRAWN
+    assert project.planned("showcase") == {"gas_of_film": 1} | DRAWN
 
 
 @pytest.mark.parametrize(

@@ -51,6 +51,11 @@ def _validator(part: str | None) -> "Draft202012Validator":
     return extend(Draft202012Validator, type_checker=types)(schema, format_checker=formats)
 
 
+def keys() -> list[str]:
+    """Return the keys that a configuration may have."""
+    return list(_schema()["properties"])
+
+
 @functools.cache
 def _schema() -> dict[str, Any]:
     """Return the whole schema: of config.yaml, its studies, the effects, and the observables."""

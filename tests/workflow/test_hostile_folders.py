@@ -1,0 +1,61 @@
+"""Folders with any name: what a shell or Snakemake would read in it stays a part of a name."""
+
+import pytest
+import snakemakes
+from project import Project
+
+NAMES = ["a b 'c' \"d\" ä (e) [f] $(touch pwned);touch pwned||touch pwned& `g` #h *? ~ % =", "-x"]
+BRACES = "a{scale}b"
+DRY = ("hard_cases", "movies", "coverage", "plan", "explore")
+REAL = ("results/tiny/config.yaml", "results/tiny/living.html")
+
+
+def project_in(folder):
+    folder.mkdir(parents=True)
+    return Project(folder)
+
+
+def run(project, folder, *arguments):
+    """Exit status and output of Snakemake in a folder, with the project's Snakefile."""
+    options = ("-c1", f"--snakefile={project.folder / 'Snakefile'}", "--config", "scale=tiny")
+    return snakemakes.run(folder, project.environment(), (*options, *arguments))
+
+
+def assert_runs(project, folder):
+    status, output = run(project, folder, "--", *REAL)
+    assert status == 0, output
+    assert all((folder / made).exists() for made in REAL)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_project_is_in_it_and_one_works_elsewhere(tmp_path, name):
+    project = project_in(tmp_path / name)
+    assert_runs(project, tmp_path)
+    status, output = run(project, tmp_path, "-n", "--", *DRY)
+    assert status == 0, output
+    assert not list(tmp_path.rglob("pwned"))
+
+
+@pytest.mark.parametrize("name", [*NAMES, BRACES])
+def test_one_works_in_it(tmp_path, name):
+    project = project_in(tmp_path / name)
+    assert_runs(project, project.folder)
+    (tmp_path / "other" / name).mkdir(parents=True)
+    if name != BRACES:
+        assert_runs(project, tmp_path / "other" / name)
+    assert not list(tmp_path.rglob("pwned"))
+
+
+def test_what_snakemake_cannot_read_is_said_in_one_line(tmp_path):
+    project = project_in(tmp_path / BRACES)
+    status, output = run(project, tmp_path, "-n", "--", *REAL)
+    (said,) = [line for line in output.splitlines() if "error" in line.lower()]
+    assert status == 1 and said.startswith(
+        f"roughgas: error: folder = {project.folder}: must have no "
+    )
+
+
+def test_apptainer_says_which_path_it_cannot_take(tmp_path):
+    project = project_in(tmp_path / "a b")
+    status, output = run(project, tmp_path, "-n", "--sdm", "apptainer", "--", *REAL)
+    assert status == 1 and f"container = {project.folder}/roughgas.sif: must be a path" in output
