@@ -217,7 +217,8 @@ def be_alone():
     works in this folder. Snakemake's own locks outlive a process that is killed: see `nolock` in
     the profiles."""
     global alive
-    alive = open(".snakemake/alive", "w")
+    with one_line():
+        alive = open(".snakemake/alive", "w")
     with suppress(OSError):  # such as on a disk without such locks
         try:
             fcntl.flock(alive, fcntl.LOCK_EX | fcntl.LOCK_NB)

@@ -177,9 +177,9 @@ def test_a_dataset_says_a_command_that_a_shell_reads_as_it_was_meant(tmp_path, m
 def test_everything_is_quoted_in_every_command_of_a_rule():
     """JSON may hold anything, and so may names of folders."""
     text = "".join(file.read_text("utf-8") for file in [*RULES, RULES[0].parents[1] / "Snakefile"])
-    commands = re.findall(r"shell:\n((?:\s+(?:#.*|\".*\")\n)+)", text)
+    commands = re.findall(r"^ +shell:\n((?:\s+(?:#.*|\".*\")\n)+)", text, re.M)
     placeholders = [re.findall(r"\{.*?\}", command) for command in commands]
-    assert len(commands) == text.count("shell:") > 20 and all(placeholders)
+    assert len(commands) == len(re.findall("^ +shell:", text, re.M)) > 20 and all(placeholders)
     assert [one for some in placeholders for one in some if not one.endswith(":q}")] == []
 
 

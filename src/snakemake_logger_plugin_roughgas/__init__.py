@@ -5,6 +5,7 @@ On a terminal there is one bar: points done, time left, and what runs. In a pipe
 own log, in .snakemake/log/, has all of it.
 """
 
+import re
 import sys
 import time
 from logging import WARNING, LogRecord
@@ -33,6 +34,8 @@ NOISE = (
     *("Updating jobs", "Job stats", "Touching output file"),
 )
 END = "Complete log(s): "
+REFUSED = re.compile(r"Traceback .*\n\w+: \[Errno \d+\] ([^\n]*): '([^\n]*)'", re.DOTALL)
+"""A traceback that ends in a place that cannot be read or written: what is wrong, and where."""
 
 
 class Brief(DefaultFormatter):
@@ -73,6 +76,9 @@ class LogHandler(LogHandlerBase):
 
     def emit(self, record: LogRecord) -> None:
         """Show a message of Snakemake's."""
+        if self._brief and (refused := REFUSED.fullmatch(record.getMessage().strip())):
+            self._say(refusal(*refused.groups()))
+            return
         if self._brief and record.getMessage().startswith(REPEATED):
             return
         if self._shows_bar:
@@ -146,6 +152,12 @@ class LogHandler(LogHandlerBase):
         self._clear()
         took = f"{seconds:.0f} s" if seconds < 100 else f"{seconds / 60:.0f} min"
         self._say(f"{self._done} {unit} in {took}. Every step of the run: {log}")
+
+
+def refusal(why: str, path: str) -> str:
+    """Return the line for a place that cannot be read or written."""
+    other = "; XDG_CACHE_HOME may name another folder" if ".cache" in Path(path).parts else ""
+    return f"roughgas: error: {path}: {why}{other}"
 
 
 def last_lines(log: str | Path) -> str:

@@ -1,9 +1,16 @@
-"""Folders with any name: what a shell or Snakemake would read in it stays a part of a name."""
+"""Folders with any name: what a shell or Snakemake would read in it stays a part of a name. Folders
+that cannot be written."""
+
+import subprocess
+import sys
 
 import pytest
 import snakemakes
 from project import Project
 
+READ_ONLY = (
+    'mount --bind "$0" "$0" && mount -o remount,ro,bind "$0" && cd "$1" && shift && exec "$@"'
+)
 NAMES = ["a b 'c' \"d\" ä (e) [f] $(touch pwned);touch pwned||touch pwned& `g` #h *? ~ % =", "-x"]
 BRACES = "a{scale}b"
 DRY = ("hard_cases", "movies", "coverage", "plan", "explore")
@@ -59,3 +66,43 @@ def test_apptainer_says_which_path_it_cannot_take(tmp_path):
     project = project_in(tmp_path / "a b")
     status, output = run(project, tmp_path, "-n", "--sdm", "apptainer", "--", *REAL)
     assert status == 1 and f"container = {project.folder}/roughgas.sif: must be a path" in output
+
+
+@pytest.mark.parametrize(
+    ("at", "hint"), [(".snakemake", ""), (".cache", "; XDG_CACHE_HOME may name another folder")]
+)
+def test_a_place_that_cannot_be_written_is_said_in_one_line(tmp_path, at, hint):
+    project = project_in(tmp_path / "project")
+    (project.folder / at).write_text("no folder")
+    around = project.environment() | {"XDG_CACHE_HOME": str(project.folder / ".cache" / "inner")}
+    status, output = snakemakes.run(project.folder, around, ("-n", "--", *REAL))
+    (said,) = [line for line in output.splitlines() if "roughgas: error" in line]
+    assert status == 1 and "Traceback" not in output
+    assert said.startswith(f"roughgas: error: {project.folder / at}") and said.endswith(hint)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("read_only", "place", "told"),
+    [
+        ("project", "work", ""),
+        ("project", "project", "{}/.snakemake: Read-only file system"),
+        ("work", "work", "{}/.snakemake: Read-only file system"),
+        ("home", "work", "{}/.cache: Read-only file system; XDG_CACHE_HOME may name another"),
+    ],
+)
+def test_read_only_places(tmp_path, read_only, place, told):
+    """The project as it is installed for all, one's home, the folder one works in."""
+    project = project_in(tmp_path / "project")
+    for name in ("work", "home"):
+        (tmp_path / name).mkdir()
+    command = ["unshare", "--mount", "--map-root-user", "sh", "-c", READ_ONLY]
+    command += [tmp_path / read_only, tmp_path / place, sys.executable, "-m", "snakemake", "-c1"]
+    command += ["-s", project.folder / "Snakefile", "--config", "scale=tiny", "--", *REAL]
+    around = project.environment() | {"HOME": str(tmp_path / "home"), "XDG_CACHE_HOME": ""}
+    done = subprocess.run(command, env=around, capture_output=True, text=True)
+    if "mount" in done.stderr or "unshare" in done.stderr:
+        pytest.skip(done.stderr)
+    assert "Traceback" not in done.stderr
+    assert (done.returncode == 0) == (told == ""), done.stderr
+    assert told.format(tmp_path / read_only) in done.stderr

@@ -94,6 +94,27 @@ def finished(made, tmp_path):
     return made.copy_to(tmp_path / "copy")
 
 
+def test_an_edit_of_a_file_of_radii(tmp_path):
+    """Its points run again, and no others."""
+    project = Project(tmp_path)
+    radii = {"name": "disks", "radius": {"distribution": "file", "file": "radii.txt"}}
+    listed = {"extends": "cooling", "species": [radii | {"fraction": 1}], "particles": 10}
+    project.configure(
+        lambda config: config["experiments"].update(listed=listed | {"box": [20, 20]})
+    )
+    points = [f"results/paper/{name}/r0.9/beta0/seed1.nc" for name in ("listed", "cooling")]
+    project.append("radii.txt", "1\n" * 10)
+    for path in points:
+        (tmp_path / path).parent.mkdir(parents=True)
+        (tmp_path / path).touch()
+    project.succeed("-j1", "--touch", "--forceall", "--", *points)
+    assert "Nothing to be done" in project.succeed("-n", "--", *points)
+    (tmp_path / "radii.txt").touch()
+    assert "Nothing to be done" in project.succeed("-n", "--", *points)
+    project.append("radii.txt", "1.5\n" * 10)
+    assert jobs_by_rule(project.succeed("-n", "--", *points)) == {"compile_kernel": 1, "seeds": 1}
+
+
 def test_nothing_is_run_twice(made):
     assert made.planned() == {}
 

@@ -28,7 +28,10 @@ ILLEGAL = [
         "scale = 'large': must be one of coarse, fine, paper, small",
     ),
     ("figures/large/fig1a.pdf", "scale = 'large': must be one of coarse, fine, paper, small"),
-    ("figures/fig9.png", "figure = fig9: must be one of fig1a, fig1b, fig2a, fig2b"),
+    (
+        "figures/fig9.png",
+        "figure = 'fig9': must be a figure or an experiment, such as fig8, fig7, fig6",
+    ),
 ]
 
 
@@ -181,6 +184,14 @@ def test_a_study_is_a_job_for_each_of_its_tasks(project, figure):
 def test_any_legal_point_can_be_asked_for(project):
     planned = project.planned(*LEGAL)
     assert planned == {"compile_kernel": len(LEGAL), "point": len(LEGAL)}
+
+
+def test_figures_and_experiments_are_targets_by_their_names(project):
+    planned = project.planned("fig1b", "fig2a", "waves", "couette", "cooling_inertia")
+    assert planned["figure"] == 3 and planned["plot"] == 2 and planned["fig1b"] == 1
+    status, output = project.snakemake("-n", "--", "figg2a")
+    assert status == 1 and "target = 'figg2a': must be a path of a file, or a name" in output
+    assert "such as fig2a, " in output
 
 
 @pytest.mark.parametrize(("target", "message"), ILLEGAL)
