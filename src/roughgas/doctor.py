@@ -152,7 +152,7 @@ def configuration() -> Diagnosis:
     try:
         known = config.load(path)
     except (ValueError, OSError) as error:
-        return Diagnosis(PROBLEM, str(error), f"mend {path}, or work in another folder")
+        return Diagnosis(PROBLEM, str(error), f"correct {path}, or work in another folder")
     whose = "the one that comes with roughgas" if path == config.SHIPPED else "of this folder"
     said = f"{path.absolute()}, {whose}, with {len(known['experiments'])} experiments"
     return Diagnosis(OK, said)
@@ -218,7 +218,7 @@ def figure() -> Diagnosis:
         drawing = Figure()
         drawing.text(0.5, 0.5, r"$\beta$ = 0")
         drawing.savefig(file, format="png")
-    return Diagnosis(OK, f"matplotlib {matplotlib.__version__}, which brings its fonts")
+    return Diagnosis(OK, f"matplotlib {matplotlib.__version__}, with its own fonts")
 
 
 def movie() -> Diagnosis:

@@ -30,9 +30,9 @@ COMMANDS = {
         ),
         FROM,
         flag("--keep-state", "keep the last state in the dataset, for --from"),
-        value("--observe NAME", "what to watch besides, such as stress or profiles", nargs="+"),
+        value("--observe NAME", "observables, such as stress or profiles", nargs="+"),
         output("datasets, one per seed", required=False, nargs="+"),
-        flag("--json", "print a line of JSON as each seed is done"),
+        flag("--json", "print a line of JSON per seed"),
         examples=(
             "roughgas run cooling --r 0.9 --beta -0.5",
             "roughgas run vibrated --r 0.87 --beta 0.5 --seed 1 2 3 --scale small --json",
@@ -56,7 +56,7 @@ COMMANDS = {
         value("--fps RATE", "frames a second", default="25"),
         value(
             "--colour",
-            "what colours tell of particles of several species",
+            "meaning of colour in a mixture",
             choices=("spin", "species"),
             default="spin",
         ),
@@ -71,11 +71,11 @@ COMMANDS = {
     ),
     "trajectory": Command(
         "cli.trajectory:trajectory",
-        "write where all particles of a point are, for OVITO, ASE, freud ...",
+        "write the trajectories of all particles, for OVITO, ASE, freud ...",
         *POINT,
         value("--seed", "seed of the random generator", default="1"),
         *TAKE,
-        value("--times TIME", "the times themselves, rising, in place of these", nargs="+"),
+        value("--times TIME", "increasing times of frames, in place of these three", nargs="+"),
         FROM,
         output(".xyz, .nc or .gsd files", nargs="+"),
         examples=(
@@ -90,7 +90,7 @@ COMMANDS = {
     ),
     "show": Command(
         "cli.show:show",
-        "summarise any dataset that the pipeline wrote",
+        "summarise any dataset of the pipeline",
         value("files FILE", "datasets", nargs="+"),
         flag("--json", "print attributes and single numbers, a line of JSON for each file"),
         examples=(
@@ -108,7 +108,7 @@ COMMANDS = {
         "cli.products:plot",
         "draw any reduced dataset, beside theory",
         value("input REDUCED", "reduced dataset"),
-        value("--over AXIS", "horizontal axis: r, beta, or what is swept besides (the default)"),
+        value("--over AXIS", "horizontal axis: r, beta, or the third axis (the default)"),
         value("--r VALUE", "values of r to show", nargs="+"),
         value("--beta VALUE", "values of beta to show", nargs="+"),
         output(".png, .pdf or .svg files", nargs="+"),
@@ -117,10 +117,9 @@ COMMANDS = {
             "roughgas plot results/paper/vibrated_inertia.nc --beta 0 1 -o my.png my.pdf",
             "roughgas plot results/paper/waves.nc --over beta --r 0.9 -o waves.png",
         ),
-        about="Draw R of a sweep with error bars and theory, and what lies between them. The "
-        "horizontal axis is what the sweep varies besides r and beta, or else beta. Of many "
-        "series some are shown, spread evenly: --r and --beta choose. Where nothing spins, the "
-        "energy is drawn.",
+        about="Draw R of a sweep with error bars and theory, and R minus theory. The horizontal "
+        "axis is the third axis of the sweep, else beta. Of many series an evenly spaced selection "
+        "is drawn; --r and --beta choose. Without spin, the energy is drawn.",
     ),
     "experiments": Command(
         "cli.experiments:experiments",
@@ -129,13 +128,13 @@ COMMANDS = {
         CONFIG,
         flag("--json", "print JSON, for scripts"),
         examples=("roughgas experiments", "roughgas experiments --scale small"),
-        about="Print the name of each experiment, what it is, and what its sweep consists of at a "
-        "scale. The names are those that `roughgas run`, `plan` and `bench` take, and those of "
-        "results/SCALE/NAME.nc and figures/NAME.png.",
+        about="Print the name, the description and the sweep of each experiment at a scale. "
+        "`roughgas run`, `plan` and `bench` take these names, as do results/SCALE/NAME.nc and "
+        "figures/NAME.png.",
     ),
     "theory": Command(
         "cli.theory:print_theory",
-        "print what theory says of R, at a point or along a curve",
+        "print R of theory, at a point or along a curve",
         value("--r VALUE", RESTITUTION, required=True, nargs="+"),
         value("--beta VALUE", ROUGHNESS, required=True, nargs="+"),
         value("--dimension", "of disks or of spheres (default: both)", choices=("2", "3")),
@@ -198,12 +197,12 @@ COMMANDS = {
         ),
         about="Measure how many collisions a second of CPU time experiments make on one core of "
         "this machine: the median of several runs, the slowest and the fastest. Missing kernels "
-        "are compiled first, which takes 12 s for each kind of scene and is not counted.",
+        "are compiled first, which takes 12 s for each set of effects and is not counted.",
     ),
     "export": Command(
         "cli.products:export",
         "write a dataset as CSV tables",
-        value("input DATASET", "dataset that the pipeline wrote"),
+        value("input DATASET", "dataset of the pipeline"),
         output("CSV file (default: DATASET with the ending .csv)", required=False),
         examples=("roughgas export results/paper/vibrated.nc -o vibrated.csv",),
         about="Write any dataset of the pipeline as CSV: the time series of a point, the grid of "
@@ -232,13 +231,12 @@ COMMANDS = {
     ),
     "doctor": Command(
         "doctor:doctor",
-        "say what is wrong with the installation",
+        "check the installation",
         flag("--json", "print JSON, for scripts or for asking for help"),
         flag("--clean", "remove compiled kernels of other versions, and do nothing else"),
         examples=("roughgas doctor",),
         about="Check libraries and their versions, compiled kernels, figures, movies and folders, "
-        "and say what is wrong and what to do about it. The exit status is 1 if there is a "
-        "problem.",
+        "and say what to do about each problem. The exit status is 1 if there is a problem.",
     ),
     "completion": Command(
         "cli.options:print_completion",

@@ -55,7 +55,7 @@ ROUGHNESS = "roughness, in [-1, 1]: -1 is smooth, 1 perfectly rough"
 KERNEL = (EXPERIMENT, *SETTINGS, value("--r", RESTITUTION, required=True))
 POINT = (*KERNEL, value("--beta", ROUGHNESS, required=True))
 """What names a point, except for its seed."""
-FROM = value("--from POINT", "go on from the last state of this dataset", dest="start_from")
+FROM = value("--from POINT", "continue from the last state of this dataset", dest="start_from")
 TAKE = (
     value("--start TIME", "time of the first frame (default: when steady)"),
     value("--length TIME", "time shown (default: by experiment)"),

@@ -12,7 +12,7 @@ STEPS = {
     ),
     "pilot": Command(
         "cli.planning:pilot",
-        "measure what a point costs and how much it scatters, in a short run",
+        "measure the cost and the scatter of a point in a short run",
         *POINT,
         output("JSON file"),
         examples=("roughgas pilot sheared --r 0.9 --beta 0 -o pilot.json",),
@@ -27,7 +27,7 @@ STEPS = {
     ),
     "costs": Command(
         "results.costs:write_costs",
-        "compare what was planned with what happened",
+        "compare planned and actual cost and accuracy",
         REDUCED,
         value("--fixed JSON", "schedules to compare with", required=True),
         output("Markdown file"),
@@ -67,7 +67,7 @@ STEPS = {
         "cli.products:claims",
         "judge the claims of the paper on reduced datasets",
         REDUCED,
-        flag("--open-questions", "judge what the paper leaves open, not what it claims"),
+        flag("--open-questions", "judge the open questions instead"),
         value("--json FILE", "verdicts for programs", required=True),
         value("--markdown FILE", "verdicts for people", required=True),
         examples=("roughgas claims results/paper/*.nc --json claims.json --markdown claims.md",),
@@ -97,7 +97,7 @@ STEPS = {
     ),
     "living": Command(
         "show.living.assemble:write_living",
-        "write a page in which a gas of disks moves, to be changed with sliders",
+        "write a page that simulates a gas of disks, with sliders",
         CONFIG,
         output("HTML file"),
         examples=("roughgas living -o living.html",),
@@ -133,7 +133,7 @@ STEPS = {
         output("dataset"),
         examples=("roughgas clustering --scale small -o clustering.nc",),
         about="Film a large cooling gas until it forms clusters. If a run was interrupted or "
-        "killed, the same command goes on from its last checkpoint, FILE.checkpoint.npz; the "
+        "killed, the same command resumes from its last checkpoint, FILE.checkpoint.npz; the "
         "result is the same to the last bit.",
     ),
     "film": Command(
@@ -161,7 +161,7 @@ STEPS = {
     ),
     "tables": Command(
         "studies.tables:write_tables",
-        "write what studies have found as tables in Markdown",
+        "write the results of studies as tables in Markdown",
         value("input COMBINED", "combined dataset"),
         output("Markdown file"),
         examples=("roughgas tables results/small/accuracy.nc -o accuracy.md",),
