@@ -270,7 +270,7 @@ def experiments(config: str | Path | None = None) -> dict[str, str]:
     --------
     >>> from roughgas import experiments
     >>> experiments()["cooling"]
-    'A gas that nothing drives, started from equilibrium as smooth elastic disks.'
+    'A freely cooling gas, started from equilibrium as smooth elastic disks.'
     """
     from roughgas.config import SHIPPED, load
 

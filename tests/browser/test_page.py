@@ -99,7 +99,7 @@ def test_the_keyboard_is_enough(page, ran):
 
 def test_a_click_on_a_point_chooses_it(page, ran):
     page.script("location.hash = '#cooling/r0.9/beta-0.5'")
-    page.wait(lambda: page.text("#title").startswith("A gas that nothing drives"))
+    page.wait(lambda: page.text("#title").startswith("A freely cooling gas"))
     where = """
         const plot = document.getElementById("ratios"), { xaxis, yaxis } = plot._fullLayout;
         const trace = plot.data.find(one => one.name === "r = 0.8" && one.mode === "markers");
@@ -179,7 +179,7 @@ def test_the_scene_is_pictured(page):
     assert page.find("#scene svg .bar") and page.find("#scene svg .disk")
     select(page, "experiment", "cooling")
     assert not page.find("#scene svg .bar")
-    assert "nothing drives" in page.find("#scene svg")[0].get_attribute("aria-label")
+    assert "freely cooling" in page.find("#scene svg")[0].get_attribute("aria-label")
 
 
 def test_it_is_dark_where_that_is_asked_for_and_white_on_paper(page):

@@ -71,7 +71,7 @@ def test_every_figure_is_shown_with_the_parameters_of_this_run(report):
         text = caption(report, title)
         assert "What to notice." in text and "scale tiny" in text
         assert "10 particles in a box of" in text and "2 seeds of each point" in text
-    assert "cooling: A gas that nothing drives" in text and "beta: -0.5, 0, 0.5" in text
+    assert "cooling: A freely cooling gas" in text and "beta: -0.5, 0, 0.5" in text
     assert "replicas 3" in text and "plateau 20" in text
 
 

@@ -1,10 +1,9 @@
 """How much of R of a cooling gas is due to its number of particles, and how much to its box.
 
-The homogeneous gas, by direct simulation Monte Carlo, has a number of particles only: its R depends
-on it since energies fluctuate, and since few particles do not fill the tails of the spins'
-distribution. Event-driven gases have a box, too: where it is many mean free paths wide, shear waves
-grow, which hold energy of translation, and then clusters, so that R falls for good. A dilute gas of
-as many particles has a box of few mean free paths, and neither.
+The homogeneous gas, by direct simulation Monte Carlo, has a number of particles but no box.
+Event-driven gases have a box, too: where it is many mean free paths wide, shear waves grow, which
+hold energy of translation, and then clusters, so that R keeps falling. A dilute gas of as many
+particles has a box of few mean free paths, and neither.
 """
 
 from collections.abc import Mapping

@@ -133,7 +133,7 @@ PANELS = (
     (draw_number, "(a) the homogeneous gas (DSMC): number of particles"),
     (draw_box, "(b) what the box adds"),
     (draw_time, "(c) over time: open symbols denser, filled ones dilute"),
-    (draw_tails, "(d) how far the tails of the spins are filled"),
+    (draw_tails, "(d) fourth cumulant of the spins"),
 )
 
 
