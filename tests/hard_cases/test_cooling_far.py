@@ -138,5 +138,5 @@ def test_a_point_may_cool_below_the_smallest_number(margins):
     margins.at_most("samples without an R", np.sum(~np.isfinite(series)), 0, **tried)
     margins.at_most("E_trans at the end", found["E_trans_series"][-1], 0.0, **tried)
     margins.at_most(
-        "energy missing in the books, relative", found["energy_imbalance"], 1e-13, **tried
+        "error of the energy balance, relative", found["energy_imbalance"], 1e-13, **tried
     )

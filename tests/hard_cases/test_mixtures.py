@@ -36,7 +36,7 @@ def check(margins, particles, box, species, collisions, r=1.0, beta=-1.0):
         after.energy - before.energy - (after.ledger - before.ledger).sum(axis=0)
     ).max()
     missing /= before.energy.sum() / particles * ROUNDING * (made + particles)
-    what = "energy missing in the books, in roundings of a particle's energy a collision"
+    what = "error of the energy balance, in roundings of a particle's energy per collision"
     margins.at_most(what, missing, MISSED, **tried)
     if r == 1.0 and beta == -1.0:
         change = abs(after.energy.sum() / before.energy.sum() - 1.0)

@@ -159,7 +159,7 @@ def keep_invariants(margins, kinds, few, many):
 
     see()
     tried = {"tried": worst.tried, "unit": f"scenes, {worst.collisions} contacts"}
-    what = "energy missing in the books, in roundings of it an exchange"
+    what = "error of the energy balance, in roundings per exchange"
     margins.at_most(what, worst.imbalance, 10.0, **tried)
     margins.at_most("energy that contacts give, over all", worst.gained, 1e-12, **tried)
     what = "momentum gained without boundaries, over the sum of speeds"

@@ -1,4 +1,4 @@
-"""What can be watched during a run, by the names that it has in settings: one file each.
+"""Observables of a run, by their names in settings: one file each.
 
 To add one is to add a file with a class (see roughgas.observables.plugin), and its line in KINDS.
 An observable that nobody asks for is not made, and costs nothing.
@@ -32,7 +32,7 @@ KINDS: dict[str, type[Observable]] = {
     "mean_square_displacement": MeanSquareDisplacement,
 }
 """The observables by the names that they have in settings."""
-EVERY = Whole("Samples from one look to the next.", 1, 1_000_000, 1)
+EVERY = Whole("Samples from one observation to the next.", 1, 1_000_000, 1)
 """A setting of all of them."""
 
 
@@ -96,5 +96,5 @@ def effects_of(names: Iterable[str]) -> dict[str, dict[str, Any]]:
 
 def schema() -> dict[str, Any]:
     """Return what `observables` may hold in settings, as a JSON schema; null takes one away."""
-    description = "What is watched during a run; what is not listed costs nothing."
+    description = "Observables of a run; one that is not listed costs nothing."
     return schema_of_kinds(description, KINDS, _settings)

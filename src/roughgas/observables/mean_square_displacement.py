@@ -22,14 +22,14 @@ SETTINGS: dict[str, Setting] = {
     "lags": Whole("Number of times, each twice the one before.", 1, 20, 8),
 }
 VARIABLES = {
-    "lag": Variable("time between two looks", TIME, ("lag",)),
+    "lag": Variable("time between two observations", TIME, ("lag",)),
     "moving": Variable("component of the displacement", "", ("moving",), "str"),
     NAME: Variable("mean square displacement", f"{LENGTH}^2", ("lag", "moving")),
 }
 
 
 class MeanSquareDisplacement(Observable):
-    """How far particles get in times of 1, 2, 4, 8, ... looks."""
+    """Mean square displacement after 1, 2, 4, 8, ... observations."""
 
     settings = SETTINGS
     variables = VARIABLES

@@ -24,7 +24,7 @@ VARIABLES = {
 
 
 class SpinCorrelation(Observable):
-    """How velocities and spins depend on each other, in magnitude and, of spheres, in direction."""
+    """Correlation of velocities and spins, in magnitude and, for spheres, in direction."""
 
     spins = True
     alike = True
