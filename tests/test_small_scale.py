@@ -1,9 +1,12 @@
 """The points of the small scale, as config.yaml has them, against the paper's theory.
 
-How far theory may be off is the project's own yardstick (README): 0.06 in R where the gas is
-driven, 8 % where it cools. To it come three standard errors over the seeds; with two seeds these
-are those within the points, pooled. Chance alone then fails one point in about 700 that lies on the
-limit, and far fewer inside. Seeds are fixed, so a run that passes passes always.
+BEYOND_THEORY has what R was found to be above theory at these numbers of particles: the mean over
+seeds 101 to 228, and its standard error (`python tests/test_small_scale.py` measures it anew). Most
+of it is physics that theory leaves out; R (1 - R)/N of it, .004 to .006, is the momentum that few
+particles lack. The mean of R over seeds 1 to 4 may be four standard errors from that. The errors
+are those of the scatter between the 128 seeds, not those that the runs say: by chance fails one
+point in 16 000. Seeds are fixed, so a run that passes passes always. The least that is seen so is
+an error of .004 to .012 in R; 15 % less friction at contacts moves it by .02 to .06.
 """
 
 import math
@@ -16,88 +19,91 @@ from brute_force.scenes import NEVER
 from roughgas import config
 from roughgas.scene import build
 from roughgas.simulation.point import run_point
-from roughgas.theory import cooling_ratio, lun_ratio
 from roughgas.theory.prediction import predicted_ratio
 
 CONFIG = Path(__file__).parent.parent / "config.yaml"
-SIGMAS = 3
-DRIVEN = [("vibrated", 0.99, 0.0), ("vibrated", 0.9, 0.5), ("vibrated", 0.9, 1.0)]
-DRIVEN += [("sheared", 0.99, 0.0), ("sheared", 0.9, 0.5), ("sheared", 0.8, 1.0)]
-DRIVEN += [("vibrated_smooth_walls", 0.9, 0.5), ("vibrated_particle_walls", 0.9, 0.5)]
-BEYOND = [  # all at r = 0.9: an experiment or a variant of one, and beta
-    ("cooling_spheres", 0.5),
-    ("sheared_spheres", 0.5),
-    ("vibrated_spheres", 0.5),
-    ("vibrated_friction/mu0.3", 1.0),
-    ("cooling_friction/mu1", 0.0),
-    ("heated/spin_share0.4", 0.0),
-    ("heated/spin_share1", 1.0),
-    ("floor_materials/roughness1", 0.0),
-    ("wall_materials/roughness0", 1.0),
-    ("shaken_walls/roughness1", 1.0),
-    ("waves/wavesine", 0.0),
-    ("waves/wavereversed_sawtooth", 1.0),
-    ("vibrated_inertia/inertia0.3", 0.0),
-    ("cooling_inertia/inertia0.05", 1.0),
-    ("vibrated_masses/mass4", 1.0),
-    ("vibrated_sizes/radius2", 1.0),
-    ("cooling_masses/mass4", 1.0),
-    ("cooling_polydisperse/deviation0.2", 0.0),
-]
-COOLING = [(0.99, 0.0), (0.99, 1.0), (0.9, 0.0), (0.9, 0.5), (0.8, 0.5), (0.8, 1.0)]
+SIGMAS = 4
+SEEDS, LONG = range(1, 5), range(101, 229)
+BEYOND_THEORY = {
+    ("vibrated", 0.99, 0.0): (0.0133, 0.00020),
+    ("vibrated", 0.9, 0.5): (0.0230, 0.00020),
+    ("vibrated", 0.9, 1.0): (0.0028, 0.00032),
+    ("sheared", 0.99, 0.0): (0.0157, 0.00031),
+    ("sheared", 0.9, 0.5): (0.0312, 0.00050),
+    ("sheared", 0.8, 1.0): (0.0211, 0.00046),
+    ("vibrated_smooth_walls", 0.9, 0.5): (0.0144, 0.00022),
+    ("vibrated_particle_walls", 0.9, 0.5): (0.0191, 0.00019),
+    ("cooling", 0.99, 0.0): (-0.0004, 0.00033),
+    ("cooling", 0.99, 1.0): (0.0005, 0.00038),
+    ("cooling", 0.9, 0.0): (-0.0023, 0.00045),
+    ("cooling", 0.9, 0.5): (-0.0023, 0.00040),
+    ("cooling", 0.8, 0.5): (-0.0045, 0.00042),
+    ("cooling", 0.8, 1.0): (-0.0004, 0.00035),
+    ("vibrated_rough_walls", 0.9, -1.0): (0.0389, 0.00047),
+    ("cooling_spheres", 0.9, 0.5): (0.0013, 0.00020),
+    ("sheared_spheres", 0.9, 0.5): (0.0175, 0.00042),
+    ("vibrated_spheres", 0.9, 0.5): (0.0385, 0.00016),
+    ("vibrated_friction/mu0.3", 0.9, 1.0): (0.0231, 0.00020),
+    ("cooling_friction/mu1", 0.9, 0.0): (-0.0038, 0.00044),
+    ("heated/spin_share0.4", 0.9, 0.0): (0.0073, 0.00032),
+    ("heated/spin_share1", 0.9, 1.0): (0.0024, 0.00020),
+    ("floor_materials/roughness1", 0.9, 0.0): (0.0297, 0.00023),
+    ("wall_materials/roughness0", 0.9, 1.0): (-0.0039, 0.00021),
+    ("shaken_walls/roughness1", 0.9, 1.0): (-0.0113, 0.00013),
+    ("waves/wavesine", 0.9, 0.0): (0.0316, 0.00024),
+    ("waves/wavereversed_sawtooth", 0.9, 1.0): (0.0066, 0.00053),
+    ("vibrated_inertia/inertia0.3", 0.9, 0.0): (0.0184, 0.00014),
+    ("cooling_inertia/inertia0.05", 0.9, 1.0): (-0.0050, 0.00055),
+    ("vibrated_masses/mass4", 0.9, 1.0): (-0.0006, 0.00031),
+    ("vibrated_sizes/radius2", 0.9, 1.0): (-0.0020, 0.00025),
+    ("cooling_masses/mass4", 0.9, 1.0): (0.0002, 0.00035),
+    ("cooling_polydisperse/deviation0.2", 0.9, 0.0): (-0.0012, 0.00051),
+}
+QUICK = ("vibrated", "sheared", "cooling", "vibrated_smooth_walls", "vibrated_particle_walls")
+QUICK += ("vibrated_rough_walls",)  # the others need a kernel each
 
 
-def points_of_seeds(name, r, beta):
-    """The point of each seed of the sweep."""
+def points_of(name, r, beta, seeds):
+    """The point of each seed."""
     experiment = config.experiment(config.load(CONFIG), name, "small")
     if "walls" in experiment["effects"]:  # the kernel of other tests, and the same R
         experiment["effects"]["contact_time"] = {"duration": NEVER}
         del experiment["effects"]["contact_averages"]
-    seeds = range(1, experiment["sweep"]["seeds"] + 1)
     return [run_point(build(experiment, r, beta), experiment, seed) for seed in seeds]
 
 
-def mean_ratio(points):
-    """Mean of R over seeds, and its standard error."""
-    errors = np.array([point.variables["R_stderr"] for point in points])
-    return np.mean([point.variables["R"] for point in points]), math.hypot(*errors) / len(errors)
+def beyond_theory(points, r, beta):
+    """The mean of R over points less R of theory, and what each has of it.
 
-
-def ratio_of_seeds(name, r, beta):
-    """Mean of R over the seeds of the sweep, and its standard error."""
-    return mean_ratio(points_of_seeds(name, r, beta))
-
-
-@pytest.mark.parametrize(("name", "r", "beta"), DRIVEN)
-def test_a_driven_gas_follows_lun(name, r, beta):
-    R, stderr = ratio_of_seeds(name, r, beta)
-    assert abs(R - lun_ratio(beta, 0.5)) < 0.06 + SIGMAS * stderr
-    assert stderr < 0.02  # else the comparison says nothing
-
-
-@pytest.mark.parametrize(("r", "beta"), COOLING)
-def test_a_cooling_gas_follows_K(r, beta):
-    R, stderr = ratio_of_seeds("cooling", r, beta)
-    expected = cooling_ratio(r, beta)
-    assert abs(R - expected) < 0.08 * expected + SIGMAS * stderr
-    assert stderr < 0.02
-
-
-@pytest.mark.slow  # a kernel each
-@pytest.mark.parametrize(("name", "beta"), BEYOND)
-def test_what_lies_beyond_the_paper_follows_the_rate_equations(name, beta):
-    """Drives at the share of rotation that their energy books say."""
-    points = points_of_seeds(name, 0.9, beta)
-    R, stderr = mean_ratio(points)
+    Drives are taken at the share of rotation that their energy books say. Rough walls make smooth
+    particles spin, of which theory says nothing: they are compared with equipartition.
+    """
     about, variables = points[0].attributes, points[0].variables
     about["theory"] = "K" if "plateau_end" in variables else "lun"
     if "input_spin_share" in variables:
-        shares = [point.variables["input_spin_share"] for point in points]
-        about["spin_share"] = np.mean(shares)
-    assert abs(R - predicted_ratio(about, 0.9, beta)) < 0.06 + SIGMAS * stderr
-    assert stderr < 0.02
+        about["spin_share"] = np.mean([one.variables["input_spin_share"] for one in points])
+    theory = 0.5 if beta == -1.0 else predicted_ratio(about, r, beta)
+    return np.array([one.variables["R"] for one in points]) - theory
 
 
-def test_rough_walls_push_smooth_particles_past_equipartition():
-    R, stderr = ratio_of_seeds("vibrated_rough_walls", 0.9, -1.0)
-    assert R - SIGMAS * stderr > 0.5
+PLACES = [
+    pytest.param(*one, marks=[pytest.mark.slow] * (one[0] not in QUICK)) for one in BEYOND_THEORY
+]
+
+
+@pytest.mark.parametrize(("name", "r", "beta"), PLACES)
+def test_R_is_as_far_from_theory_as_a_long_run_found(name, r, beta):
+    expected, error = BEYOND_THEORY[name, r, beta]
+    points = points_of(name, r, beta, SEEDS)
+    scatter = error * math.sqrt(len(LONG))
+    combined = math.hypot(error, scatter / math.sqrt(len(SEEDS)))
+    assert abs(beyond_theory(points, r, beta).mean() - expected) < SIGMAS * combined
+    said = [one.variables["R_stderr"] for one in points]
+    assert scatter / 1.6 < math.sqrt(np.mean(np.square(said))) < 1.6 * scatter
+
+
+if __name__ == "__main__":
+    for place in BEYOND_THEORY:
+        above = beyond_theory(points_of(*place, LONG), *place[1:])
+        error = above.std(ddof=1) / math.sqrt(len(LONG))
+        print(f"    {place}: ({above.mean():.4f}, {error:.5f}),", flush=True)
