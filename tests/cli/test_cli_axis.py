@@ -54,11 +54,11 @@ SETTINGS = json.dumps(TINY | {"swept": "spin.inertia"})
 )
 def test_bad_input_is_refused_in_one_line(configuration, tmp_path, capsys, name, settings, message):
     source = configuration if settings is None else f"--settings={settings}"
-    command = ["run", name, source, *PLACE, "--seed=1", "-o", str(tmp_path / "new" / "point.nc")]
+    command = ["run", name, source, *PLACE, "--seed=1", "-o", str(tmp_path / "point.nc")]
     assert main(command) == cli.BAD_INPUT
     said = capsys.readouterr().err
     assert said.startswith(f"roughgas: error: {message}") and said.count("\n") == 1
-    assert not (tmp_path / "new").exists()
+    assert not (tmp_path / "point.nc").exists()
 
 
 @pytest.mark.parametrize(

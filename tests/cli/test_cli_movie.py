@@ -61,7 +61,7 @@ def test_the_same_seed_gives_the_same_bytes(tmp_path):
     ],
 )
 def test_bad_input_is_refused_in_one_line(tmp_path, capsys, choice, message):
-    assert make(tmp_path / "new" / "gas.gif", **choice) == 2
+    assert make(tmp_path / "gas.gif", **choice) == 2
     said = capsys.readouterr()
     assert said.err.startswith(f"roughgas: error: {message}") and said.err.count("\n") == 1
     assert said.out == "" and list(tmp_path.iterdir()) == []

@@ -41,7 +41,7 @@ def test_every_file_that_is_asked_for_is_made_and_the_same_each_time(tmp_path, c
     ],
 )
 def test_bad_input_is_refused_in_one_line(tmp_path, capsys, choice, message):
-    assert make(tmp_path / "new" / "gas.xyz", **choice) == 2
+    assert make(tmp_path / "gas.xyz", **choice) == 2
     said = capsys.readouterr()
     assert said.err.startswith(f"roughgas: error: {message}") and said.err.count("\n") == 1
     assert said.out == "" and list(tmp_path.iterdir()) == []

@@ -243,7 +243,7 @@ def test_a_film_says_what_it_shows_and_how_to_make_it_again(tmp_path):
     ],
 )
 def test_bad_input_is_refused_in_one_line(tmp_path, capsys, changed, message):
-    assert main(arguments(tmp_path / "new" / "a.nc", **changed)) == 2
+    assert main(arguments(tmp_path / "a.nc", **changed)) == 2
     said = capsys.readouterr().err
     assert said.startswith(f"roughgas: error: {message}") and said.count("\n") == 1
     assert list(tmp_path.iterdir()) == []

@@ -16,10 +16,10 @@ from typing import NoReturn
 
 from roughgas.base import extras
 from roughgas.base.errors import CollapseError, InputError, on_one_line, shown
-from roughgas.base.files import check_place
 from roughgas.base.version import __version__
 from roughgas.cli.commands import COMMANDS
-from roughgas.cli.parser import BAD_INPUT, Parser, add_commands, overview
+from roughgas.cli.outputs import check_outputs
+from roughgas.cli.parser import BAD_INPUT, Given, Parser, add_commands, overview
 from roughgas.cli.steps import STEPS
 
 FAILED, INTERRUPTED, NOBODY_READS = 1, 130, 141
@@ -82,8 +82,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Raises SystemExit after --help, --version and what argparse refuses.
     """
     options = argparse.Namespace()
+    given = sys.argv[1:] if arguments is None else arguments
     try:
-        options = _options(sys.argv[1:] if arguments is None else arguments)
+        options = _options(given or ["--help"])
         options.command(options)
     except (InputError, CollapseError) as error:
         return _fail(BAD_INPUT if isinstance(error, InputError) else FAILED, str(error))
@@ -111,25 +112,23 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _options(arguments: Sequence[str]) -> argparse.Namespace:
     """Parse the command line.
 
-    Raises InputError where it is not UTF-8, OSError if a file or folder to write could not be
-    written.
+    Raises InputError where it is not UTF-8, and where `check_outputs` does; OSError likewise.
     """
     for one in arguments:
         if not one.isascii() and one != one.encode(errors="ignore").decode():
             raise InputError("argument", shown(one), "be text in UTF-8")
     parser = parser_of(*arguments[:1])
     if "_ARGCOMPLETE" in os.environ:  # a shell asks how its line may go on
-        from argcomplete import autocomplete
+        from argcomplete import autocomplete, safe_actions
 
+        safe_actions.add(Given)  # whose values completions look at
         autocomplete(parser)
     options = parser.parse_args(arguments)
     if getattr(options, "config", "") is None:
         from roughgas.config import in_use
 
         options.config = in_use()
-    outputs = getattr(options, "output", None) or []
-    for place in [outputs] if isinstance(outputs, str) else outputs:
-        check_place(place)
+    check_outputs(options)
     return options
 
 

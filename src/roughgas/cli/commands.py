@@ -5,11 +5,12 @@ import os
 from roughgas.cli.options import (
     CONFIG,
     FROM,
-    KERNEL,
     POINT,
+    POINTS,
     RESTITUTION,
     ROUGHNESS,
     SCALE,
+    SET,
     TAKE,
     experiments,
 )
@@ -20,38 +21,34 @@ COMMANDS = {
     "run": Command(
         "cli.run:run",
         "simulate a point, and write its dataset",
-        *KERNEL,
-        value("--beta", ROUGHNESS, required=True, action="append"),
-        value(
-            "--seed",
-            "seeds of the random generator: 0, 1, ... (default: 1)",
-            nargs="+",
-            default=["1"],
-        ),
+        *POINTS,
+        SET,
         FROM,
         flag("--keep-state", "keep the last state in the dataset, for --from"),
         value("--observe NAME", "observables, such as stress or profiles", nargs="+"),
-        output("datasets, one per seed", required=False, nargs="+"),
+        output("datasets, one per point", required=False, nargs="+"),
         flag("--json", "print a line of JSON per seed"),
+        writes="POINT",
         examples=(
             "roughgas run cooling --r 0.9 --beta -0.5",
+            "roughgas run cooling --r 0.9 --beta 0 .5 1 --seed 1 2 3 --scale small",
+            "roughgas run vibrated --r 0.9 --beta 0 --set particles=80 effects.friction.mu=0.3",
             "roughgas run vibrated --r 0.87 --beta 0.5 --seed 1 2 3 --scale small --json",
             "roughgas run vibrated_inertia/inertia0.3 --r 0.9 --beta 1 -o hollow.nc",
             "roughgas run sheared --r 0.9 --beta 0 --keep-state -o first.nc",
             "roughgas run sheared --r 0.9 --beta 0 --from first.nc -o second.nc",
             "roughgas run sheared --r 0.9 --beta 0 --observe stress profiles -o stress.nc",
         ),
-        about="Simulate a point of an experiment, for one seed or for several in turn, and write "
-        "a dataset for each. Without -o the dataset goes into the present folder, under a name "
-        "made from the point's, and its summary is printed, as by `roughgas show`. --beta may be "
-        "given several times: each seed is then run at each beta.",
+        about="Simulate a point of an experiment, or each r with each beta and each seed in turn, "
+        "and write a dataset for each. Without -o the dataset goes into the present folder, under "
+        "a name made from the point's, and its summary is printed, as by `roughgas show`. --set "
+        "changes any setting of the experiment, by its key in config.yaml.",
     ),
     "movie": Command(
         "cli.movie:movie",
         "show a point as it moves",
-        *KERNEL,
-        value("--beta", f"{ROUGHNESS}; several are shown side by side", required=True, nargs="+"),
-        value("--seed", "seed of the random generator", default="1"),
+        *POINTS,
+        SET,
         *TAKE,
         value("--fps RATE", "frames a second", default="25"),
         value(
@@ -66,14 +63,16 @@ COMMANDS = {
             "roughgas movie vibrated --r 0.9 --beta -1 0 1 --length 10 -o roughness.mp4",
         ),
         about="Simulate a point of an experiment, and draw its particles as they move and spin, "
-        "its boundaries, and R(t). The trajectory is that of `roughgas run` with the same seed. "
-        "Times are in T; for a cooling gas, in collisions per particle.",
+        "its boundaries, and R(t); several r, beta and seeds are shown side by side. The "
+        "trajectory is that of `roughgas run` with the same seed. Times are in T; for a cooling "
+        "gas, in collisions per particle.",
     ),
     "trajectory": Command(
         "cli.trajectory:trajectory",
         "write the trajectories of all particles, for OVITO, ASE, freud ...",
         *POINT,
         value("--seed", "seed of the random generator", default="1"),
+        SET,
         *TAKE,
         value("--times TIME", "increasing times of frames, in place of these three", nargs="+"),
         FROM,
@@ -174,6 +173,7 @@ COMMANDS = {
         value("--pilots FOLDER", "folder of pilots (default: results/SCALE)"),
         flag("--json", "print the table as JSON; times in s"),
         output("a file for the table as well", required=False),
+        writes="a plan",
         examples=(
             "roughgas plan sheared --scale small",
             "roughgas plan --scale fine --cores 8",
@@ -204,6 +204,7 @@ COMMANDS = {
         "write a dataset as CSV tables",
         value("input DATASET", "dataset of the pipeline"),
         output("CSV file (default: DATASET with the ending .csv)", required=False),
+        writes="a table of roughgas",
         examples=("roughgas export results/paper/vibrated.nc -o vibrated.csv",),
         about="Write any dataset of the pipeline as CSV: the time series of a point, the grid of "
         "a reduced dataset or the frames of a film to the file named; beside it other tables, "
@@ -221,6 +222,7 @@ COMMANDS = {
         flag("--points", "pack the points' files too, and not only their list"),
         CONFIG,
         value("--configuration JSON", "the configuration, in place of --config"),
+        writes="a crate",
         examples=(
             "roughgas crate results/paper/*.nc results/paper/R.csv figures/fig*.png -o run.zip",
             "roughgas crate --verify run.zip",

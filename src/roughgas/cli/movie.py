@@ -7,8 +7,8 @@ from typing import Any
 
 from roughgas import config
 from roughgas.base.legal import Interval
-from roughgas.cli.options import number
-from roughgas.cli.run import point_of
+from roughgas.cli.options import labels, number
+from roughgas.cli.run import points_of
 from roughgas.cli.trajectory import chosen_take
 from roughgas.scene import Scene
 from roughgas.show.encoding import check_kind
@@ -20,23 +20,25 @@ RATES = Interval("[1, 50]")
 
 
 def movie(options: Namespace) -> None:
-    """Simulate a point, or several that differ in beta, and write their movie."""
+    """Simulate a point, or several, and write their movie, side by side."""
     fps = number("--fps", options.fps, RATES)
     for output in options.output:
         check_kind(output)
-    points = [(beta, *point_of(options, beta)) for beta in options.beta]
-    panels = [_panel(options, *one) for one in points]
+    points, seeds = points_of(options), labels("--seed", options.seed, config.seed)
+    panels = [_panel(options, seed, *one) for one in points for seed in seeds]
     for output in options.output:
         shown = partial(watched, f"{output}: drawn", len(panels[0][1]), "frames")
         write(output, panels, fps, shown)
         print(f"{output}: {len(panels[0][1])} frames", file=sys.stderr)
 
 
-def _panel(options: Namespace, beta: str, scene: Scene, settings: dict[str, Any]) -> Panel:
+def _panel(
+    options: Namespace, label: str, r: str, beta: str, scene: Scene, settings: dict[str, Any]
+) -> Panel:
     """Simulate a point; return it with what is to be seen of it."""
-    name, seed = options.experiment, config.seed(options.seed)
+    name, seed = options.experiment, config.seed(label)
     take = chosen_take(options, settings, scene)
-    simulated = snapshots(settings, float(options.r), float(beta), seed, take)
+    simulated = snapshots(settings, float(r), float(beta), seed, take)
     shots = list(watched(f"{name}: simulated", take.frames, "frames", simulated))
     by_species = options.colour == "species"
     return MovieSubject(name, settings, scene, seed, by_species), shots

@@ -1,12 +1,18 @@
 """Options that several commands share, what a shell completes them to, and their numbers."""
 
 import math
+import re
 from argparse import Namespace
+from collections.abc import Callable, Iterable
+from decimal import Decimal
 from typing import Any
 
 from roughgas.base.errors import InputError
 from roughgas.base.legal import Interval
 from roughgas.cli.parser import Option, flag, value
+
+RANGE = re.compile(r"([^:]+):([^:]+):([^:]+)")
+MOST = 100_000  # values in a range
 
 
 def _experiments(prefix: str, parsed_args: Namespace, **others: Any) -> list[str]:
@@ -55,6 +61,27 @@ ROUGHNESS = "roughness, in [-1, 1]: -1 is smooth, 1 perfectly rough"
 KERNEL = (EXPERIMENT, *SETTINGS, value("--r", RESTITUTION, required=True))
 POINT = (*KERNEL, value("--beta", ROUGHNESS, required=True))
 """What names a point, except for its seed."""
+LISTED = "a list, or START:STOP:STEP"
+POINTS = (
+    EXPERIMENT,
+    *SETTINGS,
+    value("--r VALUE", f"{RESTITUTION}; {LISTED}", required=True, nargs="+"),
+    value("--beta VALUE", f"{ROUGHNESS}; {LISTED}", required=True, nargs="+"),
+    value(
+        "--seed SEED",
+        f"seeds of the random generator: 0, 1, ...; {LISTED} (default: 1)",
+        nargs="+",
+        default=["1"],
+    ),
+)
+"""What names several points: each r with each beta and each seed."""
+SET = value(
+    "--set KEY=VALUE",
+    "change settings: particles=80, schedule.measure=100, effects.friction.mu=0.3; null removes",
+    nargs="+",
+    default=(),
+    dest="changes",
+)
 FROM = value("--from POINT", "continue from the last state of this dataset", dest="start_from")
 TAKE = (
     value("--start TIME", "time of the first frame (default: when steady)"),
@@ -86,6 +113,35 @@ def number(key: str, text: str, legal: Interval | None = None) -> float:
     except ValueError:
         raise InputError(key, text, "be a number") from None
     return legal.check(key, found) if legal else found
+
+
+def labels(key: str, texts: Iterable[str], value_of: Callable[[str], Any]) -> list[str]:
+    """Return the labels in a list, its ranges START:STOP:STEP written out.
+
+    Raises InputError for values that `value_of` does not accept, or that are given twice.
+    """
+    found: dict[Any, str] = {}
+    for label in (one for text in texts for one in _written_out(key, text)):
+        value = value_of(label)
+        if value in found:
+            raise InputError(key, label, "be given once")
+        found[value] = label
+    return list(found.values())
+
+
+def _written_out(key: str, text: str) -> list[str]:
+    """Return the labels from START to STOP, as exact as they are written; another text as it is."""
+    ends = RANGE.fullmatch(text)
+    if ends is None:
+        return [text]
+    try:
+        start, stop, step = (Decimal(part) for part in ends.groups())
+        count = int((stop - start) / step) + 1
+    except (ArithmeticError, ValueError):
+        raise InputError(key, text, "be START:STOP:STEP, such as -1:1:0.1") from None
+    if not 0 < count <= MOST or stop < start:
+        raise InputError(key, text, f"go up from START to STOP in at most {MOST:,} steps")
+    return [str(start + k * step) for k in range(count)]
 
 
 def print_completion(options: Namespace) -> None:

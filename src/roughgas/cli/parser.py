@@ -21,12 +21,20 @@ class Command:
 
     `calls` names a function, "room.module:function". One of `cli` is given all options (an
     argparse.Namespace); one of another room is given their values, in the order of `options`.
+    `writes` is the kind of its outputs, one of `cli.outputs.KINDS`; "" if their endings tell it.
     """
 
     def __init__(
-        self, calls: str, summary: str, *options: Option, examples: tuple[str, ...], about: str = ""
+        self,
+        calls: str,
+        summary: str,
+        *options: Option,
+        examples: tuple[str, ...],
+        about: str = "",
+        writes: str = "",
     ) -> None:
         self.calls, self.summary, self.options, self.examples = calls, summary, options, examples
+        self.writes = writes
         self.description = about or f"{summary[0].upper()}{summary[1:]}."
 
     def __call__(self, options: argparse.Namespace) -> None:
@@ -51,12 +59,29 @@ def value(name: str, help: str, *, completer: Any = None, **settings: Any) -> Op
     if isinstance(settings.get("default"), str):
         help += " (default: %(default)s)"
 
+    if names[0].startswith("-"):
+        settings.setdefault("action", Given)
+
     def add(parser: Any) -> None:
         action = parser.add_argument(*names, help=help, **settings)
         if completer:
             action.completer = completer
 
     return add
+
+
+class Given(argparse.Action):
+    """Stores a value, which is given once; values of a list that is given in parts are joined."""
+
+    seen = False
+
+    def __call__(self, parser: Any, namespace: Any, values: Any, option_string: Any = None) -> None:
+        """Store what the option is given. Raises ArgumentError for a second value."""
+        if self.seen and self.nargs is None:
+            raise argparse.ArgumentError(self, f"given twice, the second time as {values}")
+        given = [*getattr(namespace, self.dest), *values] if self.seen else values
+        setattr(namespace, self.dest, given)
+        self.seen = True
 
 
 def flag(name: str, help: str) -> Option:

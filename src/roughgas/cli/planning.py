@@ -24,13 +24,13 @@ PILOT = "{experiment}/r{r}/beta{beta}/pilot.json"
 
 def pilot(options: Namespace) -> None:
     """Run the pilot of a point."""
-    scene, settings = point_of(options, options.beta)
+    scene, settings = point_of(options)
     write_pilot(options.output, _explore(options, scene, settings))
 
 
 def reach(options: Namespace) -> None:
     """Run seeds of a point until its standard error is the target of its experiment."""
-    scene, settings = point_of(options, options.beta)
+    scene, settings = point_of(options)
     if "target_stderr" not in settings:
         raise InputError("target_stderr", "(nothing)", f"be set for {options.experiment}")
     known = read_pilot(options.pilot) if options.pilot else _explore(options, scene, settings)

@@ -9,6 +9,7 @@ from pathlib import Path
 from roughgas.base.errors import InputError
 from roughgas.base.layout import from_json
 from roughgas.cli.options import number
+from roughgas.cli.outputs import check_outputs
 
 
 def reduce(options: Namespace) -> None:
@@ -68,6 +69,8 @@ def export(options: Namespace) -> None:
     output = Path(options.output or f"{os.path.splitext(options.input)[0]}.csv")
     if output.suffix != ".csv":
         raise InputError("--output", output, "end in .csv")
+    if options.output is None:
+        check_outputs(options, [output])
     for file in export_dataset(options.input, output):
         print(file, file=sys.stderr)
 

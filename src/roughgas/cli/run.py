@@ -9,6 +9,9 @@ import numpy as np
 from roughgas import config
 from roughgas.base.errors import InputError
 from roughgas.base.layout import as_json
+from roughgas.cli.changes import as_label, changed_by
+from roughgas.cli.options import labels
+from roughgas.cli.outputs import check_outputs
 from roughgas.config.provenance import provenance, variant_attributes
 from roughgas.config.schema import check_schema
 from roughgas.data.point import Point, read_point, write_point
@@ -26,22 +29,23 @@ IDENTITY = ("experiment", "variant", "scale", "r", "beta", "seed")
 
 def run(options: Namespace) -> None:
     """Simulate the points that `options` name, and write each dataset as soon as it is there."""
-    seeds = {label: config.seed(label) for label in options.seed}
-    points = [point_of(options, beta) for beta in options.beta]
-    initial = initial_in(options)
-    places = [(options.r, beta, seed) for beta in options.beta for seed in options.seed]
+    initial, seeds = initial_in(options), labels("--seed", options.seed, config.seed)
+    points = points_of(options)
+    places = [(r, beta, seed) for r, beta, *_ in points for seed in seeds]
     outputs = options.output or [_own_name(options, *place) for place in places]
     if len(outputs) != len(places):
-        raise InputError("--output", " ".join(outputs), f"name {len(places)}, one per seed")
+        raise InputError("--output", " ".join(outputs), f"name {len(places)}, one per point")
+    if options.output is None:
+        check_outputs(options, outputs)
     remaining = zip(places, outputs, strict=True)
-    for scene, settings in points:
+    for _, _, scene, settings in points:
         with Bar(f"pilot of {options.experiment}", None, quiet="target_stderr" not in settings):
             settings = complete(scene, config.point_settings(settings))
         if options.keep_state:
             settings["keep_state"] = True
-        for seed in options.seed:
+        for seed in seeds:
             with Progress(f"{options.experiment}, seed {seed}", scene, settings) as progress:
-                point = run_point(scene, settings, seeds[seed], progress, initial)
+                point = run_point(scene, settings, config.seed(seed), progress, initial)
             place, output = next(remaining)
             written = write_seed(options, place, settings, output, point)
             if options.json:
@@ -71,35 +75,55 @@ def compile_kernel(options: Namespace) -> None:
     compile_kernels([one | {"sweep": {"r": [r]}} for one in every])
 
 
-def point_of(options: Namespace, beta: str) -> tuple[Scene, dict[str, Any]]:
-    """Return the scene of a point, and the settings of its experiment or variant.
+def points_of(options: Namespace) -> list[tuple[str, str, Scene, dict[str, Any]]]:
+    """Return the labels of each r with each beta, its scene, and the settings of its experiment.
+
+    Raises InputError as `point_of` does.
+    """
+    settings = _settings(options)
+    every_r = labels("--r", options.r, config.restitution)
+    every_beta = labels("--beta", options.beta, config.roughness)
+    places = [(r, beta) for r in every_r for beta in every_beta]
+    return [(*one, _scene(options, settings, *one), settings) for one in places]
+
+
+def point_of(options: Namespace) -> tuple[Scene, dict[str, Any]]:
+    """Return the scene of the one point that is named, and the settings of its experiment.
 
     Raises InputError for illegal values, and for a name that disagrees with --settings.
     """
-    r, roughness = config.restitution(options.r), config.roughness(beta)
     settings = _settings(options)
+    return _scene(options, settings, options.r, options.beta), settings
+
+
+def _scene(options: Namespace, settings: dict[str, Any], r: str, beta: str) -> Scene:
+    place = config.restitution(r), config.roughness(beta)
     config.check_one_variant(options.experiment, settings)
     variant_attributes(options.experiment, settings)
-    return build(settings, r, roughness), settings
+    return build(settings, *place)
 
 
 def _settings(options: Namespace) -> dict[str, Any]:
+    """Return the settings of the experiment, with what --set and --observe change."""
     if options.settings is not None:
-        return config.from_text(options.settings, "--settings", options.checked)
-    found = config.load_experiment(options.config, options.experiment, options.scale)
-    watched = getattr(options, "observe", None)
-    if not watched:
-        return found
-    found = config.merged(found, {"observables": {name: {} for name in watched}})
-    check_schema(found, options.experiment, "experiment")
-    schedule.check(found)
+        found = config.from_text(options.settings, "--settings", options.checked)
+    else:
+        found = config.load_experiment(options.config, options.experiment, options.scale)
+    told, watched = getattr(options, "changes", ()), getattr(options, "observe", None)
+    if watched:
+        found = config.merged(found, {"observables": {name: {} for name in watched}})
+    if told or watched:
+        found = changed_by(found, told)
+        for part in ("experiment", "point"):
+            check_schema(config.point_settings(found), options.experiment, part)
+        schedule.check(found)
     return found
 
 
 def _own_name(options: Namespace, r: str, beta: str, seed: str) -> str:
     """Return the file in the present folder for a point that was given none."""
     scale = [] if options.scale == "paper" else [options.scale]
-    name = [options.experiment.replace("/", "_"), *scale]
+    name = [options.experiment.replace("/", "_"), *as_label(options.changes), *scale]
     return "_".join([*name, f"r{r}", f"beta{beta}", f"seed{seed}.nc"])
 
 

@@ -15,6 +15,7 @@ STEPS = {
         "measure the cost and the scatter of a point in a short run",
         *POINT,
         output("JSON file"),
+        writes="a pilot",
         examples=("roughgas pilot sheared --r 0.9 --beta 0 -o pilot.json",),
     ),
     "reach": Command(
@@ -23,6 +24,7 @@ STEPS = {
         *POINT,
         value("--pilot FILE", "pilot of the point (default: run one first)"),
         output("folder for the datasets", "FOLDER"),
+        writes="a folder",
         examples=("roughgas reach sheared --scale fine --r 0.9 --beta 0 -o seeds",),
     ),
     "costs": Command(
@@ -31,6 +33,7 @@ STEPS = {
         REDUCED,
         value("--fixed JSON", "schedules to compare with", required=True),
         output("Markdown file"),
+        writes="costs",
         examples=("roughgas costs results/fine/sheared.nc --fixed '{}' -o costs.md",),
     ),
     "reduce": Command(
@@ -42,6 +45,7 @@ STEPS = {
             nargs="+",
         ),
         output("reduced dataset"),
+        writes="REDUCED",
         examples=("roughgas reduce results/paper/sheared/r*/beta*/seed*.nc -o sheared.nc",),
     ),
     "table": Command(
@@ -49,6 +53,7 @@ STEPS = {
         "write reduced datasets as one CSV table",
         REDUCED,
         output("CSV file"),
+        writes="a table of roughgas",
         examples=("roughgas table results/paper/sheared.nc results/paper/cooling.nc -o R.csv",),
     ),
     "figure": Command(
@@ -79,6 +84,7 @@ STEPS = {
         value("--points FOLDER", "folder of their points: results/SCALE", required=True),
         output("HTML file"),
         value("--config FILE", "describes the experiments (default: that of roughgas)"),
+        writes="a web page",
         examples=(
             "roughgas page results/small/vibrated.nc --points results/small -o explore.html",
         ),
@@ -90,6 +96,7 @@ STEPS = {
         value("--figures PNG", "pictures of figures", nargs="+", required=True),
         value("--captions RST", "their captions", nargs="+", required=True),
         output("HTML file"),
+        writes="a web page",
         examples=(
             "roughgas front results/small/claims.md --figures figures/small/fig1a.png"
             " --captions rules/captions/fig1a.rst -o report.html",
@@ -100,6 +107,7 @@ STEPS = {
         "write a page that simulates a gas of disks, with sliders",
         CONFIG,
         output("HTML file"),
+        writes="a web page",
         examples=("roughgas living -o living.html",),
     ),
     "html": Command(
@@ -107,6 +115,7 @@ STEPS = {
         "write a Markdown, YAML, MP4 or GIF file as one page of HTML",
         value("input FILE", "file to show"),
         output("HTML file"),
+        writes="a web page",
         examples=("roughgas html results/small/claims.md -o claims.html",),
     ),
     "times": Command(
@@ -114,6 +123,7 @@ STEPS = {
         "write how long experiments took, in CPU seconds",
         REDUCED,
         output("Markdown file"),
+        writes="run times",
         examples=("roughgas times results/small/vibrated.nc -o run_times.md",),
     ),
     "config": Command(
@@ -123,6 +133,7 @@ STEPS = {
         CONFIG,
         value("--changes JSON", "changes to the configuration", default="{}"),
         output("YAML file"),
+        writes="a complete configuration",
         examples=("roughgas config --scale small -o config_small.yaml",),
     ),
     "clustering": Command(
@@ -131,6 +142,7 @@ STEPS = {
         *SETTINGS,
         value("--checkpoint-every FRAMES", "frames from one checkpoint to the next", default="10"),
         output("dataset"),
+        writes="FILM",
         examples=("roughgas clustering --scale small -o clustering.nc",),
         about="Film a large cooling gas until it forms clusters. If a run was interrupted or "
         "killed, the same command resumes from its last checkpoint, FILE.checkpoint.npz; the "
@@ -150,6 +162,7 @@ STEPS = {
         value("task TASK", "name of the task"),
         *SETTINGS,
         output("dataset"),
+        writes="TASK",
         examples=("roughgas study statistical cooling-reference --scale small -o reference.nc",),
     ),
     "combine": Command(
@@ -157,6 +170,7 @@ STEPS = {
         "combine the tasks of studies into one dataset",
         value("inputs TASK", "datasets", nargs="+"),
         output("dataset"),
+        writes="STUDIES",
         examples=("roughgas combine results/small/studies/*/*.nc -o accuracy.nc",),
     ),
     "tables": Command(
@@ -164,6 +178,7 @@ STEPS = {
         "write the results of studies as tables in Markdown",
         value("input COMBINED", "combined dataset"),
         output("Markdown file"),
+        writes="tables of studies",
         examples=("roughgas tables results/small/accuracy.nc -o accuracy.md",),
     ),
 }

@@ -1,11 +1,9 @@
 """`roughgas theory`: what theory says of R, at a point or along a curve, and by which equations."""
 
 import csv
-import re
 import sys
 from argparse import Namespace
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from decimal import Decimal
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -14,13 +12,11 @@ from roughgas import config, theory
 from roughgas.base.errors import InputError, NeedsError
 from roughgas.base.layout import as_json, columns
 from roughgas.base.legal import Interval
-from roughgas.cli.options import number
+from roughgas.cli.options import labels, number
 from roughgas.cli.quantities import GasParameters, Quantity
 from roughgas.theory.arguments import FRICTION, SHARE, check, moment_of_inertia
 from roughgas.theory.prediction import equation_of, predicted_ratio
 
-RANGE = re.compile(r"([^:]+):([^:]+):([^:]+)")
-MOST = 100_000  # values in a range
 TOLERANCE = 0.01  # of R, within which it counts as settled
 PAPER = "S. McNamara, S. Luding, Phys. Rev. E 58, 2247 (1998)"
 NOTES = f"Rates are per collision per particle. Equations: docs/physics.md, and\n{PAPER}."
@@ -46,9 +42,10 @@ def _gases(options: Namespace) -> list[GasParameters]:
 
     Raises InputError for illegal values.
     """
-    found_r = _values("--r", options.r, config.restitution)
-    found_beta = _values("--beta", options.beta, config.roughness)
-    r, beta = (axis.ravel() for axis in np.meshgrid(found_r, found_beta, indexing="ij"))
+    found_r = labels("--r", options.r, config.restitution)
+    found_beta = labels("--beta", options.beta, config.roughness)
+    axes = (list(map(float, axis)) for axis in (found_r, found_beta))
+    r, beta = (axis.ravel() + 0.0 for axis in np.meshgrid(*axes, indexing="ij"))
     share = SHARE.check("spin share of the drive", number("--spin-share", options.spin_share))
     mu = q = None
     if options.mu is not None:
@@ -70,27 +67,6 @@ def _mixed(options: Namespace) -> dict[str, Any]:
     from roughgas.cli.theory_of_mixtures import species_from
 
     return {"species": species_from(options.species), "packing": packing}
-
-
-def _values(key: str, texts: Sequence[str], legal: Callable[[str], float]) -> list[float]:
-    """Return the numbers of an axis, each of them as `legal` accepts it."""
-    found: list[float] = []
-    for text in texts:
-        ends = RANGE.fullmatch(text)
-        found += [legal(one) for one in (_range(key, text, ends) if ends else [text])]
-    return found
-
-
-def _range(key: str, text: str, ends: re.Match[str]) -> list[str]:
-    """Return the labels from START to STOP, as exact as they are written."""
-    try:
-        start, stop, step = (Decimal(part) for part in ends.groups())
-        count = int((stop - start) / step) + 1
-    except (ArithmeticError, ValueError):
-        raise InputError(key, text, "be START:STOP:STEP, such as -1:1:0.1") from None
-    if not 0 < count <= MOST or stop < start:
-        raise InputError(key, text, f"go up from START to STOP in at most {MOST:,} steps")
-    return [str(start + k * step) for k in range(count)]
 
 
 def quantities(gas: GasParameters) -> dict[str, Quantity]:

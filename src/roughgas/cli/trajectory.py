@@ -21,7 +21,7 @@ from roughgas.simulation.trajectory import variables
 def trajectory(options: Namespace) -> None:
     """Simulate a point, and write its trajectory."""
     name, seed = options.experiment, config.seed(options.seed)
-    scene, settings = point_of(options, options.beta)
+    scene, settings = point_of(options)
     for output in options.output:
         check_format(output)
     initial = initial_in(options)

@@ -104,6 +104,15 @@ def _absence(path: Path) -> str:
     return f"{why}; to make it: snakemake -j2 {path}" if made else why
 
 
+def is_of_kind(path: str | Path, kind: str) -> bool:
+    """Return whether the file at `path` is a dataset of roughgas of this kind, whole."""
+    try:
+        with opened(path, kind):
+            return True
+    except InputError:
+        return False
+
+
 def kind_of(file: "netCDF4.Dataset") -> str | None:
     """Return the kind of an open file; None if it is of none."""
     if file.groups:

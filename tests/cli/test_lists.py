@@ -1,0 +1,110 @@
+"""Lists of r, beta and seeds, and settings changed by `--set`."""
+
+import json
+import shlex
+from pathlib import Path
+
+import pytest
+
+from cli.conftest import GAS
+from roughgas.cli import main
+from roughgas.data.point import read_point
+from roughgas.show.movies import drawing
+
+RUN = ["run", "cooling", f"--settings={json.dumps(GAS)}"]
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+
+
+@pytest.mark.parametrize(
+    "told",
+    [
+        "--r 0.9 .8 --beta -.5 .5 --seed 1 2",
+        "--r 0.9 --r .8 --beta=-.5 --beta=.5 --seed 1 --seed 2",
+        "--r 0.9 .8 --beta -.5:.5:1 --seed 1:2:1",
+    ],
+)
+def test_each_r_is_run_with_each_beta_and_each_seed(told, capsys):
+    assert main([*RUN, *told.split(), "--json"]) == 0
+    lines = map(json.loads, capsys.readouterr().out.splitlines())
+    found = [(one["r"], one["beta"], one["seed"]) for one in lines]
+    assert found == [(r, b, s) for r in (0.9, 0.8) for b in (-0.5, 0.5) for s in (1, 2)]
+    assert len(list(Path().iterdir())) == 8
+
+
+def test_a_movie_takes_the_same_lists(monkeypatch):
+    drawn = []
+    monkeypatch.setattr(drawing, "write_movie", lambda _, picture, *__: drawn.append(picture()[0]))
+    line = "--r 0.9 .8 --beta .5 --seed 1 2 --frames=2 --set particles=10 -o gas.gif"
+    assert main(["movie", *RUN[1:], *line.split()]) == 0
+    titles = [part.get_suptitle().partition("\n")[2] for part in drawn[0].subfigs]
+    for (r, seed), title in zip([(0.9, 1), (0.9, 2), (0.8, 1), (0.8, 2)], titles, strict=True):
+        assert title == rf"$r = {r}$, $\beta = 0.5$, $N = 10$, seed {seed}"
+
+
+@pytest.mark.parametrize(
+    "line", ["plan --scale small --scale paper", "bench --r .9 --r .8", "table a.nc -o a -o b"]
+)
+def test_what_is_no_list_is_given_once(line, capsys):
+    with pytest.raises(SystemExit):
+        main(line.split())
+    said = capsys.readouterr().err
+    assert said.startswith("roughgas: error: ") and "given twice" in said
+
+
+def test_settings_that_are_changed_are_those_of_the_dataset(capsys):
+    changes = ["particles=10", "schedule.plateau=4", "effects.friction.mu=.3", "box=18"]
+    line = [*RUN, "--r=.9", "--beta=.5", "--set", *changes[:2], "--set", *changes[2:], "--json"]
+    assert main(line) == 0
+    name = "cooling_particles10_plateau4_mu.3_box18_r.9_beta.5_seed1.nc"
+    point = read_point(name)
+    settings = json.loads(point.attrs["experiment_json"])
+    assert settings["particles"] == 10 and settings["box"] == [18, 18]
+    assert settings["schedule"] == GAS["schedule"] | {"plateau": 4}
+    assert settings["effects"] == GAS["effects"] | {"friction": {"mu": 0.3}}
+    assert point.attrs["particles"] == 10 and point.attrs["mu"] == 0.3
+    again = shlex.split(point.attrs["command"])[1:]
+    assert main([*again[:-1], "again.nc"]) == 0 and read_point("again.nc").R == point.R
+    short = ["friction.mu=.3", "spin.inertia=0.1"]
+    assert main([*line[:5], "--set", *short, "-o", "short.nc"]) == 0
+    found = json.loads(read_point("short.nc").attrs["experiment_json"])["effects"]
+    assert found["friction"] == {"mu": 0.3} and found["spin"] == {"inertia": 0.1}
+    assert main(["trajectory", *line[1:5], "--set", changes[0], "--frames=2", "-o=t.xyz"]) == 0
+    assert Path("t.xyz").read_text().startswith("10\n")
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ("particle=10", "cooling: key = 'particle': must be one of box, "),
+        ("schedule.plato=10", "cooling.schedule: key = 'plato': must be one of "),
+        ("mu=0.3", "did you mean it under `effects: friction:`?"),
+        ("particles=0", "cooling.particles = 0: must be a whole number in [1, 100000000]"),
+        ("effects.friction.mu=many", "cooling.effects.friction.mu = 'many': must be a number"),
+        (
+            "species.heavy.mass=2",
+            "--set = species.heavy.mass: must name one of species: there are none",
+        ),
+        ("particles", "--set = particles: must be KEY=VALUE, such as particles=80"),
+        ("particles=", "--set = particles=: must be KEY=VALUE"),
+        ("particles=[", "--set particles: line 1 = '[': must be YAML"),
+        ("sweep.r=[1]", "--set = sweep.r: must be a setting of one point"),
+        ("box=30 box=20", "--set = box: must be given once"),
+    ],
+)
+def test_a_change_that_makes_no_sense_is_one_line(change, message, capsys):
+    assert main([*RUN, "--r=0.9", "--beta=0", "--set", *change.split()]) == 2
+    (said,) = capsys.readouterr().err.splitlines()
+    assert said.startswith("roughgas: error: ") and message in said
+    assert list(Path().iterdir()) == []
+
+
+def test_the_command_alone_is_its_help(capsys):
+    with pytest.raises(SystemExit) as stop:
+        main([])
+    said = capsys.readouterr()
+    assert stop.value.code == 0 and said.err == ""
+    assert said.out.startswith("usage: roughgas") and "  run " in said.out
