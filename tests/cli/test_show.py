@@ -1,12 +1,14 @@
 """`roughgas show`: a summary of whatever the pipeline writes."""
 
 import json
+import shutil
 from pathlib import Path
 
+import netCDF4
 import numpy as np
 import pytest
 import xarray
-from tests.cli.conftest import ROOT
+from tests.cli.conftest import GAS, ROOT
 
 from roughgas import theory
 from roughgas.cli import main
@@ -32,7 +34,10 @@ def test_a_point(product, capsys):
     rows = {name.strip(): value.strip() for name, value in rows.items()}
     assert text.startswith(f"{path}: point\n")
     assert rows["point"] == "r = 0.9, beta = 0.5, seed 1"
-    assert rows["gas"] == "20 disks, box 20 x 20 a"
+    assert rows["gas"] == "20 disks, box 20 x 20 a, packing 0.157"
+    assert rows["E_trans"].endswith(
+        "initial E_trans, per degree of freedom, as the measurement begins"
+    )
     assert rows["R"] == f"{Estimate(float(point.R), float(point.R_stderr))}"
     interval, _, doubt = rows["95 % interval"].partition(" (")
     ends = [float(end) for end in interval.split(" to ")]
@@ -54,6 +59,70 @@ def test_a_point_for_a_script(product, capsys):
     assert found["variables"]["equilibrated"] is bool(point.equilibrated)
     residual = float(point.R - theory.cooling_ratio(0.9, 0.5))
     assert found["variables"]["residual"] == pytest.approx(residual)
+
+
+@pytest.mark.parametrize(
+    ("more", "attributes", "lines"),
+    [
+        (
+            {"R_collisional": 0.35, "R_collisional_stderr": 0.002},
+            {},
+            ["R_collisional  0.3500(20), averaged over collisions, as theory of free cooling"],
+        ),
+        (
+            {"R_collisional": 0.35, "R_collisional_stderr": 0.002, "R_unsubtracted": 0.1},
+            {},
+            ["averaged over collisions, mean flow and mean spin included, unlike theory"],
+        ),
+        ({"E_rot_stderr": 1e-5}, {}, ["E_rot          {}"]),
+        (
+            {"contact_time_fraction": 0.264},
+            {},
+            ["contact time   26 % of contacts were altered"],
+        ),
+        ({"contact_time_fraction": 0.264}, {}, ["by the contact-time model: R depends on it\n"]),
+        (
+            {"contact_time_fraction": 3e-5},
+            {},
+            ["0.003 % of contacts were altered"],
+        ),
+        (
+            {},
+            {"beta": -1.0},
+            ["none (theory of free cooling): at beta = -1 contacts"],
+        ),
+        ({}, {"command": "\x1b[31mred\n\x9bJR  1"}, ["red\\n\\x9bJR  1\n"]),
+        ({}, {"scale": "a\x1b]0;b\x07"}, [r"cooling, scale a\x1b]0;b\x07"]),
+    ],
+)
+def test_what_a_point_may_say_besides(product, tmp_path, capsys, more, attributes, lines):
+    path = shutil.copy(product / "beta0.5_1.nc", tmp_path / "p.nc")
+    with netCDF4.Dataset(path, "a") as file:
+        file.setncatts(attributes)
+        for name, value in more.items():
+            file.createVariable(name, "f8")[...] = value
+        E_rot = Estimate(file["E_rot"][...].item(), 1e-5)
+    text = shown(capsys, path)
+    for line in lines:
+        assert line.format(E_rot) in text
+    for each in (text, shown(capsys, path, "--json")):
+        assert all(sign.isprintable() for sign in each.replace("\n", ""))
+
+
+def test_a_mixture_is_shown_species_by_species(tmp_path, capsys):
+    species = [{"name": name, "fraction": 0.5, "mass": mass} for name, mass in (("a", 1), ("b", 4))]
+    settings = json.dumps(GAS | {"species": species, "swept": "species.b.mass"})
+    run = ["run", "pair/mass4", f"--settings={settings}", "--r=0.9", "--beta=0.5"]
+    assert main([*run, "-o", str(tmp_path / "p.nc")]) == 0
+    point, text = read_point(tmp_path / "p.nc"), shown(capsys, tmp_path / "p.nc")
+    for k, name in enumerate("ab"):
+        one = point.isel(species=k)
+        found = [
+            f"{Estimate(float(one[f'{key}_species']), float(one[f'{key}_species_stderr']))}"
+            for key in ("E_trans", "E_rot", "R")
+        ]
+        assert [name, "10", *found] in [line.split() for line in text.splitlines()]
+    assert "theory of free cooling of mixtures: R is " in text
 
 
 def test_a_reduced_dataset(product, capsys):
@@ -97,6 +166,16 @@ def test_studies(tmp_path, capsys, monkeypatch):
     assert shown(capsys, tmp_path / "all.nc").endswith("scale small\n\n[0.1]\n")
     found = json.loads(shown(capsys, tmp_path / "all.nc", "--json"))
     assert found["studies"]["coverage"]["sizes"] == {"corner": 1}
+
+
+def test_descriptions_cannot_move_the_cursor(tmp_path, capsys):
+    config = read_yaml(ROOT / "config.yaml")
+    config["experiments"]["cooling"]["description"] = "a \x1b[2Jgas\x9b1A\nthat \u202ecools"
+    (tmp_path / "c.yaml").write_text(json.dumps(config))
+    for more in ((), ("--json",)):
+        assert main(["experiments", "--config", str(tmp_path / "c.yaml"), *more]) == 0
+        text = capsys.readouterr().out
+        assert "1b[2Jgas" in text and all(one.isprintable() for one in text.replace("\n", ""))
 
 
 def test_a_film(tmp_path, monkeypatch, capsys):

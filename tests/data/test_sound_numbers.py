@@ -18,6 +18,12 @@ from roughgas.data.point import write_point
         ("R_ratio_of_means", -0.1, "[0, 1]"),
         ("E_trans", math.inf, "[0, inf)"),
         ("E_rot", math.nan, "[0, inf)"),
+        ("R_stderr", -1.0, "[0, inf]"),
+        ("R_ci95", -1.0, "[0, inf]"),
+        ("equilibrated", 7, "[-1, 1]"),
+        ("R_ci95_trusted", -2, "[-1, 1]"),
+        ("collisions", -3, "[0, inf)"),
+        ("kernel_seconds", -0.5, "[0, inf)"),
     ],
 )
 def test_a_point_with_an_impossible_number_is_not_reduced(tmp_path, capsys, name, value, legal):
@@ -27,6 +33,21 @@ def test_a_point_with_an_impossible_number_is_not_reduced(tmp_path, capsys, name
     message = f"{name} of {tmp_path}/point.nc = {value}: must lie in {legal}"
     assert capsys.readouterr().err == f"roughgas: error: {message}\n"
     assert [one.name for one in tmp_path.iterdir()] == ["point.nc"]
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "legal"),
+    [("beta", 5.0, "[-1, 1]"), ("r", -0.1, "[0, 1]"), ("seed", -1, "[0, inf)")],
+)
+def test_a_point_of_an_impossible_place_is_not_reduced(tmp_path, capsys, name, value, legal):
+    made = point()
+    made = made._replace(attributes=made.attributes | {name: value})
+    write_point(tmp_path / "point.nc", made)
+    for command in (["reduce"], ["show"]):
+        output = ["-o", str(tmp_path / "all.nc")] if command == ["reduce"] else []
+        assert main([*command, str(tmp_path / "point.nc"), *output]) == 2
+        message = f"{name} of {tmp_path}/point.nc = {value}: must lie in {legal}"
+        assert capsys.readouterr().err == f"roughgas: error: {message}\n"
 
 
 @pytest.mark.parametrize(("name", "value"), [("R", math.nan), ("R", -0.1), ("E_trans", math.inf)])

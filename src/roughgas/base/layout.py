@@ -9,16 +9,21 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NoReturn
 
-from roughgas.base.errors import InputError, shown
+from roughgas.base.errors import InputError, on_one_line, shown
 
 DIGITS = 19  # of a whole number: what 64 bits can hold
+UNPRINTABLE = re.compile("[\x7f-\x9f\u200b-\u200f\u2028-\u202e\u2066-\u2069]")
+"""Control characters that JSON may hold as they are; some of them move a terminal's cursor."""
 FORMULAS = ("=", "+", "-", "@", "\t")
 """How a text begins that a spreadsheet takes for a formula."""
 
 
 def columns(rows: Iterable[Sequence[str]], numbers: bool = False) -> str:
-    """Return rows as aligned columns, all but the first to the right if they are `numbers`."""
-    rows = list(rows)
+    """Return rows as aligned columns, all but the first to the right if they are `numbers`.
+
+    A terminal gets no control characters from cells: they are escaped.
+    """
+    rows = [[on_one_line(cell) for cell in row] for row in rows]
     align = "<" + (">" if numbers else "<") * (len(rows[0]) - 1)
     return "\n".join("  ".join(row).rstrip() for row in _padded(rows, align))
 
@@ -56,9 +61,10 @@ def in_rst(text: str) -> str:
 def as_json(answer: Any, indent: int | None = 2) -> str:
     """Return strict JSON of dictionaries, lists, numbers, and numpy's scalars and arrays.
 
-    Numbers that are not finite become null.
+    Numbers that are not finite become null. Control characters, all of them, are escaped.
     """
-    return json.dumps(_plain(answer), indent=indent, ensure_ascii=False, allow_nan=False)
+    text = json.dumps(_plain(answer), indent=indent, ensure_ascii=False, allow_nan=False)
+    return UNPRINTABLE.sub(lambda sign: f"\\u{ord(sign[0]):04x}", text)
 
 
 def from_json(text: str, source: str) -> dict[str, Any]:

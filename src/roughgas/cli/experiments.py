@@ -5,6 +5,7 @@ from math import prod
 from textwrap import fill
 
 from roughgas import config
+from roughgas.base.errors import on_one_line
 from roughgas.base.layout import as_json
 from roughgas.cli.parser import WIDTH
 
@@ -34,5 +35,6 @@ def _axes(settings):
 def _text(name, about):
     counts = ", ".join(f"{len(labels)} {key}" for key, labels in about["sweep"].items())
     extends = f"; extends {about['extends']}" if about["extends"] else ""
-    lines = [name, fill(about["description"], WIDTH, initial_indent="  ", subsequent_indent="  ")]
+    description = on_one_line(" ".join(about["description"].split()))
+    lines = [name, fill(description, WIDTH, initial_indent="  ", subsequent_indent="  ")]
     return "\n".join([*lines, f"  {about['points']} points: {counts}{extends}"])

@@ -153,6 +153,9 @@ def say_done(output: str, point: Point) -> None:
     """Print the result of a point, and what it took."""
     found = point.variables
     name = "R" if "R" in found else "E_trans"
-    value = Estimate(float(found[name]), float(found[f"{name}_stderr"]))
+    value = f"{Estimate(float(found[name]), float(found[f'{name}_stderr']))}"
+    if "R_collisional" in found:
+        errors = float(found["R_collisional"]), float(found["R_collisional_stderr"])
+        value += f" over time, {Estimate(*errors)} over collisions"
     took = f"{int(found['collisions']):,} collisions in {float(found['kernel_seconds']):.1f} s"
     print(f"{output}: {name} = {value}, {took}", file=sys.stderr)

@@ -1,6 +1,5 @@
 """`roughgas show`: a summary of any dataset that the pipeline writes."""
 
-import json
 import math
 from argparse import Namespace
 from collections.abc import Callable, Mapping
@@ -10,18 +9,29 @@ from typing import Any
 import numpy as np
 from xarray import Dataset
 
+from roughgas.base.errors import on_one_line
 from roughgas.base.layout import as_json, columns, from_json
+from roughgas.cli.show_point import altered, by_species, collisional, energies, theory_beside
+from roughgas.cli.show_studies import (
+    pilot_text,
+    scalars,
+    studies_record,
+    studies_text,
+    task_record,
+    task_text,
+)
 from roughgas.data import opening
 from roughgas.data.netcdf import read_netcdf, unit_of
 from roughgas.data.reduced import EQUILIBRATED, particles_of, third_axis
 from roughgas.results.table import rows as rows_of
 from roughgas.results.table import why_wide
+from roughgas.scene import packing
 from roughgas.statistics.estimate import Estimate, decimals_of
 from roughgas.theory.prediction import equation_of, predicted_ratio
 
 QUOTED = {
     opening.POINT: ("experiment_json", "command"),
-    opening.FILM: ("settings_json", "packing", "r", "beta", "seed", "command"),
+    opening.FILM: ("settings_json", "r", "beta", "seed", "command"),
     opening.TASK: ("settings_json",),
 }
 """Attributes of each kind that a summary quotes."""
@@ -30,19 +40,6 @@ SHAPES = {2: "disks", 3: "spheres"}
 BLOCKS, WIDTH = "▁▂▃▄▅▆▇█", 48
 FRAMES = 8  # of a film, that are shown
 FILMED = ("collisions_per_particle", "time", "E_trans", "R")
-MOST_VALUES = 4  # of a variable, that are all shown
-UNIT = "T (cooling gas: collisions per particle)"
-MEANING = {
-    "transient": f"until energies are steady, in {UNIT}",
-    "autocorrelation_time": f"of R, in {UNIT}",
-    "variance": "of the mean of R over a length of one",
-    "dof": "degrees of freedom of the variance",
-    "pace": "collisions per particle in a length of one",
-    "seconds_per_length": "s of CPU time",
-    "settled": "whether a steady state was found",
-    "length": f"that was simulated, in {UNIT}",
-    "seconds": "s of CPU time that the pilot took",
-}
 
 
 def show(options: Namespace) -> None:
@@ -60,7 +57,8 @@ def show(options: Namespace) -> None:
 def summary(path: str | Path) -> str:
     """Return the text about a dataset. Raises InputError for files of other programs."""
     kind, data = _read(path)
-    return f"{path}: {kind}\n\n{KINDS[kind][0](data)}"
+    lines = f"{path}: {kind}\n\n{KINDS[kind][0](data)}".split("\n")
+    return "\n".join(map(on_one_line, lines))
 
 
 def _read(path: str | Path) -> tuple[str, Any]:
@@ -73,17 +71,16 @@ def _read(path: str | Path) -> tuple[str, Any]:
     with opening.opened(path) as file:
         kind = opening.kind_of(file)
         opening.require(opening.attributes_of(file), QUOTED.get(kind or "", ()), path)
-    data = read_studies(path) if kind == opening.STUDIES else read_netcdf(path)
+    data = read_studies(path) if kind == opening.STUDIES else _printable(read_netcdf(path))
     return (kind or "").removeprefix("a "), data
 
 
-def _scalars(data: Dataset) -> dict[str, Any]:
-    """Return the single numbers of a dataset by name, flags as True and False."""
-    return {
-        str(name): bool(one) if "flag_meanings" in one.attrs else one.values.item()
-        for name, one in data.variables.items()
-        if not one.dims
-    }
+def _printable(data: Dataset) -> Dataset:
+    """Return a dataset whose attributes are all on one line: another program may have set them."""
+    given = data.attrs.items()
+    return data.assign_attrs(
+        {name: on_one_line(one) if isinstance(one, str) else one for name, one in given}
+    )
 
 
 def _cost(data: Dataset) -> list[str]:
@@ -94,7 +91,7 @@ def _cost(data: Dataset) -> list[str]:
 
 def _point_record(point: Dataset) -> dict[str, Any]:
     """Return the single numbers of a point, and those of theory where particles spin."""
-    found = _scalars(point)
+    found = scalars(point)
     if "R" in found:
         expected = _theory(point)
         found |= {"R_theory": expected, "residual": found["R"] - expected}
@@ -110,20 +107,16 @@ def _point_text(point: Dataset) -> str:
         ["", ""],
         *(_ratio(point) if "R" in point else []),
     ]
-    for name in ("E_trans", "E_rot"):
-        if name in point:
-            value = Estimate(float(point[name]), float(point.get(f"{name}_stderr", math.nan)))
-            rows.append([name, f"{value} {unit_of(point[name].attrs)}, per degree of freedom"])
-    rows += [["steady state", _steady(point)], _cost(point)]
-    books = [_books(point)] if BOOKS <= set(point.variables) else []
-    return "\n\n".join([columns(rows), *books, f"To make it again:\n{about['command']}"])
+    rows += [*energies(point), ["steady state", _steady(point)], *altered(point), _cost(point)]
+    parts = [columns(rows), *([by_species(point)] if "species" in point else [])]
+    parts += [_books(point)] if BOOKS <= set(point.variables) else []
+    return "\n\n".join([*parts, f"To make it again:\n{about['command']}"])
 
 
 def _film_text(film: Dataset) -> str:
     about, last = film.attrs, film.sizes["frame"] - 1
     head = [
         *_settings(about, about["settings_json"]),
-        ["packing", f"{about['packing']:.4g}"],
         ["frames", f"{last + 1}, of {film.sizes['x']} x {film.sizes['y']} cells"],
         _cost(film),
     ]
@@ -139,10 +132,11 @@ def _settings(about: Mapping[str, Any], text: str) -> list[list[str]]:
     experiment = from_json(text, "settings of the dataset")
     opening.require(experiment, ("particles", "box", "effects"), "its settings")
     box = " x ".join(f"{side:g}" if side != "open" else "open" for side in experiment["box"])
+    filled = "" if "open" in experiment["box"] else f", packing {packing(experiment):.3g}"
     effects = [f"{name} ({_listed(one)})" for name, one in experiment["effects"].items()]
     rows = [
         ["point", f"r = {about['r']:g}, beta = {about['beta']:g}, seed {about['seed']}"],
-        ["gas", f"{experiment['particles']} {SHAPES[len(experiment['box'])]}, box {box} a"],
+        ["gas", f"{experiment['particles']} {SHAPES[len(experiment['box'])]}, box {box} a{filled}"],
         *(["" if k else "effects", one] for k, one in enumerate(effects)),
     ]
     schedule = experiment.get("schedule")  # a film has none
@@ -154,7 +148,10 @@ def _listed(settings: Mapping[str, Any]) -> str:
 
 
 def _theory(point: Dataset) -> float:
+    """Return R of theory; where a quantity of a species is swept, it is the value that counts."""
     about = point.attrs | {"theory": equation_of(point.attrs, point).kind}
+    if not isinstance(value := about.get("swept_value", ""), str):
+        about[third_axis(about) or ""] = value
     return float(predicted_ratio(about, about["r"], about["beta"]))
 
 
@@ -162,16 +159,16 @@ def _ratio(point: Dataset) -> list[list[str]]:
     R, half, expected = float(point.R), float(point.R_ci95), _theory(point)
     digits = decimals_of(half) if 0.0 < half < 1.0 else 4
     trust = "" if point.R_ci95_trusted else " (the run is too short to trust it)"
-    off = f"{abs(R - expected):.4f} {'below' if R < expected else 'above'}"
     series = point.R_series.values[np.isfinite(point.R_series.values)]
     parts = np.array([part.mean() for part in np.array_split(series, min(WIDTH, len(series)))])
-    low, high = parts.min(), parts.max()
+    low, high, over_time = parts.min(), parts.max(), "R_collisional" in point
     heights = (parts - low) / ((high - low) or 1.0) * (len(BLOCKS) - 1)
     blocks = "".join(BLOCKS[round(height)] for height in heights)
     return [
-        ["R", f"{Estimate(R, float(point.R_stderr))}"],
+        ["R", f"{Estimate(R, float(point.R_stderr))}{', averaged over time' * over_time}"],
         ["95 % interval", f"{R - half:.{digits}f} to {R + half:.{digits}f}{trust}"],
-        ["theory", f"{expected:.4f}, {equation_of(point.attrs, point).name}: R is {off} it"],
+        *collisional(point),
+        *theory_beside(point, R, expected),
         ["R(t)", f"{blocks}  {low:.3f} to {high:.3f}"],
     ]
 
@@ -186,8 +183,8 @@ def _steady(point: Dataset) -> str:
 def _books(point: Dataset) -> str:
     """Return what each source has put into each motion."""
     rows = [["energy put in, per particle", *point.motion.values]]
-    for source, energies in zip(point.source.values, point.energy_input.values, strict=True):
-        rows.append([f"  {source}", *(f"{one:.6g}" for one in energies)])
+    for source, put_in in zip(point.source.values, point.energy_input.values, strict=True):
+        rows.append([f"  {source}", *(f"{one:.6g}" for one in put_in)])
     rows.append(["  what the gas has gained", *(f"{one:.6g}" for one in point.energy_gain.values)])
     imbalance, units = float(point.energy_imbalance), unit_of(point.energy_gain.attrs)
     return f"{columns(rows, numbers=True)}\n  in {units}; energy balance closes to {imbalance:.1g}"
@@ -232,65 +229,15 @@ def _found(row: dict[str, Any]) -> list[str]:
     return [value, half, f"{row['R_theory']:.4f}", f"{row['residual']:+.4f}"]
 
 
-def _task_text(data: Dataset) -> str:
-    about = data.attrs
-    chosen = json.loads(about["settings_json"])["study"]
-    head = [["task", f"{about['task']} of the study {about['study']}, scale {about['scale']}"]]
-    head += [[key, str(one)] for key, one in chosen.items() if not isinstance(one, dict | list)]
-    table = [["variable", "over", "value"]]
-    for name, one in data.variables.items():
-        over = ", ".join(f"{dim} ({data.sizes[dim]})" for dim in one.dims)
-        table.append([str(name), over, _values(one.values)])
-    again = f"roughgas study {about['study']} {about['task']} --scale {about['scale']} -o task.nc"
-    return "\n\n".join([columns(head), columns(table), f"To make it again: {again}"])
-
-
-def _values(values: np.ndarray) -> str:
-    """Return few values as they are, many as their range."""
-    if values.size <= MOST_VALUES or values.dtype.kind not in "fiu":
-        few = values.ravel()[:MOST_VALUES]
-        return ", ".join(str(one) if isinstance(one, str) else f"{one:.5g}" for one in few)
-    there = values[np.isfinite(values)]
-    if not there.size:
-        return "nothing"
-    return f"{there.min():.5g} to {there.max():.5g}, {there.mean():.5g} on average"
-
-
-def _task_record(data: Dataset) -> dict[str, Any]:
-    return {"sizes": dict(data.sizes), "variables": _scalars(data)}
-
-
-def _studies_record(studies: Mapping[str, Dataset]) -> dict[str, Any]:
-    found = {name: {"attributes": one.attrs} | _task_record(one) for name, one in studies.items()}
-    return {"studies": found}
-
-
-def _studies_text(studies: Mapping[str, Dataset]) -> str:
-    from roughgas.studies.tables import TABLES
-
-    scales = {data.attrs["scale"] for data in studies.values()}
-    parts = [TABLES[name](data).strip() for name, data in studies.items()]
-    return "\n\n".join([f"scale {', '.join(sorted(scales))}", *parts])
-
-
-def _pilot_text(pilot: Any) -> str:
-    rows = []
-    for name, value in pilot._asdict().items():
-        shown = ("no", "yes")[value] if isinstance(value, bool) else f"{value:.5g}"
-        rows.append([name, shown, MEANING[name]])
-    error = f"{(pilot.variance / 1000.0) ** 0.5:.2g}"
-    return f"{columns(rows)}\n\nA run that measures for a length of 1000 finds R to about {error}."
-
-
 KINDS: dict[str, tuple[Callable[[Any], str], Callable[[Any], dict[str, Any]]]] = {
     "point": (_point_text, _point_record),
     "film of a cooling gas": (
         _film_text,
-        lambda film: {"frames": film.sizes["frame"], "variables": _scalars(film)},
+        lambda film: {"frames": film.sizes["frame"], "variables": scalars(film)},
     ),
     "reduced dataset": (_reduced_text, _reduced_record),
-    "task of a study": (_task_text, _task_record),
-    "dataset of studies": (_studies_text, _studies_record),
-    "pilot of a point": (_pilot_text, lambda pilot: {"variables": pilot._asdict()}),
+    "task of a study": (task_text, task_record),
+    "dataset of studies": (studies_text, studies_record),
+    "pilot of a point": (pilot_text, lambda pilot: {"variables": pilot._asdict()}),
 }
 """The kinds of files: what a person reads of each, and what a script reads."""

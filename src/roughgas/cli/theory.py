@@ -123,6 +123,7 @@ def _point(tables: Tables) -> str:
     rows = [[f"r = {gas.r[0]:g}, beta = {gas.beta[0]:g}{friction}", *_titles(tables), ""]]
     for name, quantity in first.items():
         numbers = [f"{found[name].values.flat[0]:.5g}" for _, found in tables]
+        numbers = ["none" if one == "nan" else one for one in numbers]
         rows.append([quantity.meaning, *numbers, _sources(tables, name)])
     return f"{columns(rows)}\n"
 

@@ -18,6 +18,7 @@ import numpy as np
 
 from roughgas.base.errors import InputError, shown
 from roughgas.base.layout import from_json
+from roughgas.base.legal import RESTITUTION, ROUGHNESS, Interval
 
 if TYPE_CHECKING:
     import netCDF4
@@ -35,6 +36,18 @@ ATTRIBUTES = {
     **dict.fromkeys(("experiment_json", "settings_json", "species_json"), JSON),
 }
 """What the attributes that are read must be, where they are there."""
+LEGAL = {
+    "r": RESTITUTION,
+    "beta": ROUGHNESS,
+    "seed": Interval("[0, inf)"),
+    "dimension": Interval("[2, 3]"),
+    "particles": Interval("[1, inf)"),
+    "inertia": Interval("(0, 1]"),
+    "spin_share": Interval("[0, 1]"),
+    "mu": Interval("[0, inf)"),
+    "packing": Interval("[0, 1]"),
+}
+"""Which of these numbers are legal."""
 
 
 class Kind(NamedTuple):
@@ -165,6 +178,8 @@ def _check_attributes(file: "netCDF4.Dataset", path: str | Path) -> None:
         wanted = ATTRIBUTES.get(name)
         if wanted and not _fits(value, wanted):
             raise InputError(f"{name} of {path}", shown(value), f"be {wanted}")
+        if name in LEGAL:
+            LEGAL[name].check(f"{name} of {path}", value)
         if wanted == JSON:
             from_json(value, f"{name} of {path}")
     swept = getattr(file, "swept", "effect.parameter")

@@ -19,8 +19,19 @@ if TYPE_CHECKING:
 GRID = ("r", "beta")
 EQUILIBRATED = 0.5
 """A point counts as being in a steady state where more than this share of its seeds is."""
-SHARE, AMOUNT = Interval("[0, 1]"), Interval("[0, inf)")
-SOUND = {"R": SHARE, "R_ratio_of_means": SHARE, "E_trans": AMOUNT, "E_rot": AMOUNT}
+SHARE, AMOUNT, VERDICT = Interval("[0, 1]"), Interval("[0, inf)"), Interval("[-1, 1]")
+UNSURE = {
+    f"{name}_{quality}": Interval("[0, inf]")
+    for name in ("R", "R_collisional", "E_trans", "E_rot")
+    for quality in ("stderr", "dof", "ci95")
+}
+"""Those that may be unknown, which is NaN."""
+SOUND = {
+    **dict.fromkeys(("R", "R_ratio_of_means"), SHARE),
+    **dict.fromkeys(("E_trans", "E_rot", "collisions", "kernel_seconds"), AMOUNT),
+    **dict.fromkeys(("equilibrated", "R_ci95_trusted"), VERDICT),
+    **UNSURE,
+}
 """What numbers of a simulation lie in, whatever was simulated."""
 
 
@@ -38,7 +49,8 @@ def read_reduced(path: str | Path) -> "xarray.Dataset":
 
 def check_sound(path: str | Path, name: str, values: Any) -> None:
     """Raise InputError for the first of `values`, of one of SOUND, that cannot be right."""
-    wrong = np.atleast_1d(values)[~np.atleast_1d(SOUND[name].holds(values))]
+    right = SOUND[name].holds(values) | ((name in UNSURE) & np.isnan(values))
+    wrong = np.atleast_1d(values)[~np.atleast_1d(right)]
     if wrong.size:
         raise InputError(f"{name} of {path}", wrong[0], SOUND[name].legal)
 

@@ -39,7 +39,8 @@ def equation_of(attributes: Mapping[str, Any], variables: Container[Any] = ()) -
 
 
 def predicted_ratio(attributes: Mapping[str, Any], r: Any, beta: Any) -> np.ndarray:
-    """Return R of theory, over the broadcast shape of its arguments; NaN where nothing spins.
+    """Return R of theory, over the broadcast shape of its arguments; NaN where nothing spins, and
+    for a cooling gas at beta = -1: contacts leave spins alone there, and R has no stationary value.
 
     That is the theory of free cooling for a gas without a drive, Lun's formula for one whose drive
     adds translation only, and the result of the rate equations for other drives, and for friction.
@@ -61,5 +62,7 @@ def predicted_ratio(attributes: Mapping[str, Any], r: Any, beta: Any) -> np.ndar
     dimension, driven = int(attributes["dimension"]), attributes["theory"] != "K"
     of_drive = share if driven else None
     if np.isfinite(mu).any():
-        return np.asarray(theory.friction_ratio(r, beta, mu, dimension, q, of_drive))
-    return np.asarray(theory.stationary_ratio(r, beta, dimension, q, of_drive))
+        found = theory.friction_ratio(r, beta, mu, dimension, q, of_drive)
+    else:
+        found = theory.stationary_ratio(r, beta, dimension, q, of_drive)
+    return np.where((beta == -1.0) & (not driven), math.nan, found)
