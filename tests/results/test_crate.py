@@ -38,6 +38,7 @@ def project(tmp_path, monkeypatch):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_bytes(name.encode())
     written(tmp_path / POINT)
+    (tmp_path / "made").mkdir()
     monkeypatch.chdir(tmp_path)
     return tmp_path
 
