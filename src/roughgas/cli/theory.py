@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from roughgas import config, theory
-from roughgas.base.errors import InputError, NeedsError
+from roughgas.base.errors import NeedsError
 from roughgas.base.layout import as_json, columns
 from roughgas.base.legal import Interval
 from roughgas.cli.options import labels, number
