@@ -182,7 +182,7 @@ def test_the_same_settings_give_the_same_runs(parts):
 def test_figure_and_table_show_every_point(parts):
     data = profiles.combine(parts, SETTINGS)
     figure = draw_figure(data)
-    averages, sheared = figure.axes[4], figure.axes[5]
+    averages, sheared = figure.axes[2], figure.axes[3]
     assert len(averages.containers) == len(sheared.containers) == 1
     assert "disks, r = 0.9, β = 0.3" in table(data)
     assert "disks, r = 0.8, β = 1 |" in table(data)

@@ -151,7 +151,7 @@ def _round(places: np.ndarray, radius: float) -> tuple[np.ndarray, np.ndarray]:
 
 def _along(vertices: np.ndarray, radius: float, unit: float) -> tuple[np.ndarray, np.ndarray]:
     """Close places along a path."""
-    vertices = np.clip(vertices, -1e4, 1e4)  # NaN stays
+    vertices = np.clip(vertices, -1e4, 1e4).reshape(-1, 2)  # NaN stays; a bar may be empty
     if len(vertices) < 2:
         return _round(vertices, radius)
     length = np.nan_to_num(np.hypot(*np.diff(vertices, axis=0).T))

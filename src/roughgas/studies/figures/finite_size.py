@@ -8,65 +8,87 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from roughgas.show.style import GREY, LOOKS, THEORY, Look
-from roughgas.studies.figures.panels import paired_panels
 from roughgas.studies.tables import along
 
-SIZE = (10.2, 8.2)  # inches
+SIZE = (7.0, 7.6)  # inches
 THIN: dict[str, Any] = {"ls": "none", "elinewidth": 0.8}
-SIDESTEP = 0.014  # in beta, between kinds of gas at the same beta
-LINEAR = 4.0  # per cent up to which the axis of deviations is linear
+SMALL, LARGE = 3.0, 6.0
+"""Marker sizes of the fewest and of the most particles."""
 TYPICAL = "cooling_r0.9_beta0"  # the point whose R(t) is drawn, if it is there
-APART = 1.19  # least ratio of the heights of two words at the end of series
+TITLES = (
+    "(a) the number of particles",
+    "(b) fourth cumulant of the spins",
+    "(c) a large box lowers R",
+    "(d) the dense gas loses R over time",
+)
 
 
 def draw_figure(data: xr.Dataset) -> Figure:
     """Return the figure, from the study's dataset."""
-    return paired_panels(PANELS, SIZE, *[data] * len(PANELS))
+    figure = Figure(figsize=SIZE, layout="constrained")
+    rows, graphs = figure.subfigures(2, 1, height_ratios=(1.15, 1))
+    every = [*rows.subplots(1, 2, sharey=True), *graphs.subplots(1, 2)]
+    panels = draw_number, draw_tails, draw_box, draw_time
+    for axes, panel, title in zip(every, panels, TITLES, strict=True):
+        panel(axes, data)
+        axes.set_title(title, loc="left", fontsize=8.5)
+    points = _points(data)
+    every[0].set_yticks(range(len(points)), [_label(one) for one, _ in points], fontsize=7.5)
+    every[0].set_ylim(len(points) - 0.4, -0.6)
+    for axes in every[:2]:
+        axes.tick_params(axis="y", which="both", left=False, right=False)
+    return figure
 
 
 def draw_number(axes: Axes, data: xr.Dataset) -> None:
-    """Draw R of the homogeneous gas over theory, minus 1, of the fewest and the most particles."""
+    """Draw R of the homogeneous gas over theory, minus 1, of the fewest and the most particles, a
+    row for each point."""
+    _draw_ends(axes, data, lambda one: _percent(one, "dsmc_R"))
+    axes.axvline(0.0, color=THEORY, lw=0.8, zorder=0)
+    axes.set_xlabel(r"$R/R_\mathrm{theory} - 1$  (%), DSMC")
     ends = data.particles.values[[0, -1]]
-    for one, look, shift in _points(data):
-        x = float(one.beta.item()) + shift
-        few, many = (_percent(one.sel(particles=n), "dsmc_R") for n in ends)
-        axes.plot([x, x], [few[0], many[0]], color=look.colour, lw=0.8)
-        for (y, bar), fill in ((few, "white"), (many, look.colour)):
-            about: dict[str, Any] = {"color": look.colour, "marker": look.marker, "mfc": fill}
-            axes.errorbar(x, y, bar, **about, **THIN)
-    for n, fill in zip(ends, ("white", GREY), strict=True):
-        axes.plot([], [], "o", color=GREY, mfc=fill, label=f"$N = {n}$")
-    _name_kinds(axes, data)
-    axes.axhline(0.0, color=THEORY, lw=0.8, zorder=0)
-    axes.set(xlabel=r"roughness $\beta$", ylabel=r"$R/R_\mathrm{theory} - 1$  (%)")
-    low, high = axes.get_ylim()
-    axes.set_ylim(low - 0.3 * (high - low), high)
-    axes.legend(loc="lower right", ncols=2)
+    for n, size in zip(ends, (SMALL, LARGE), strict=True):
+        axes.plot([], [], "o", color=GREY, ms=size, label=f"$N = {n}$")
+    axes.legend(loc="upper left")
+
+
+def draw_tails(axes: Axes, data: xr.Dataset) -> None:
+    """Draw the fourth cumulant of the spins, of the fewest and the most particles."""
+    dilute = int(np.argmin(data.packing.values))
+    _draw_ends(axes, data, lambda one: (float(one.dsmc_a02), float(one.dsmc_a02_stderr)))
+    for row, (one, look) in enumerate(_points(data)):
+        for n, size in zip((0, -1), (SMALL, LARGE), strict=True):
+            events = one.isel(packing=dilute, particles=n)
+            about: dict[str, Any] = {"color": look.colour, "marker": "x", "ms": size, "mew": 0.9}
+            axes.errorbar(events.a02, row + 0.35, xerr=events.a02_stderr, **about, **THIN)
+    packing = f"{data.packing.values[dilute]:g}"
+    for marker, label in (("o", "DSMC"), ("x", f"events, packing {packing}")):
+        axes.plot([], [], marker, color=GREY, ms=4, label=label)
+    axes.set_xscale("log")
+    axes.set_xlabel(r"fourth cumulant of spins, $a_{02}$")
+    axes.legend(loc="upper right")
 
 
 def draw_box(axes: Axes, data: xr.Dataset) -> None:
     """Draw R by events over R by DSMC of as many particles, minus 1, over the size of the box."""
     fills = ("white", None)
-    for one, look, shift in _points(data):
+    for one, look in _points(data):
         for place, fill in zip(along(one, "packing"), fills, strict=False):
             about: dict[str, Any] = {
                 "color": look.colour,
                 "marker": look.marker,
                 "mfc": fill or look.colour,
+                "ms": 4,
             }
             y, bar = 100 * place.over_dsmc, 100 * place.over_dsmc_stderr
-            axes.errorbar(place.box * (1 + 2 * shift), y, bar, **about, **THIN)
+            axes.errorbar(place.box, y, bar, **about, **THIN)
+    for (name, r), look in _kinds(data).items():
+        axes.plot([], [], look.marker, color=look.colour, ms=4, label=f"{_kind(name)}, $r = {r}$")
     for place, fill in zip(data.packing.values, fills, strict=False):
-        axes.plot([], [], "o", color=GREY, mfc=fill or GREY, label=f"packing {place:g}")
+        axes.plot([], [], "o", color=GREY, mfc=fill or GREY, ms=4, label=f"packing {place:g}")
     axes.axhline(0.0, color=THEORY, lw=0.8, zorder=0)
-    axes.set_xscale("log")
-    axes.set_yscale("symlog", linthresh=LINEAR, linscale=1.5)
-    ticks = [-100, -50, -20, -10, -4, -2, 0, 2, 4, 8]
-    axes.set_yticks(ticks, [f"{tick}".replace("-", "−") for tick in ticks])
-    axes.minorticks_off()
-    axes.set_ylim(-130, 10)
-    axes.set(xlabel="side of the box / mean free path")
-    axes.set_ylabel(r"$R_{\mathrm{events}}/R_{\mathrm{DSMC}} - 1$  (%), as many particles")
+    axes.set(xscale="log", xlabel="side of the box / mean free path")
+    axes.set_ylabel(r"$R_{\mathrm{events}}/R_{\mathrm{DSMC}} - 1$  (%)")
     axes.legend(loc="lower left")
 
 
@@ -89,52 +111,17 @@ def draw_time(axes: Axes, data: xr.Dataset) -> None:
             )
     axes.axhline(float(one.dsmc_R[-1]), color=THEORY, lw=0.8, ls="--", zorder=0, label="DSMC")
     axes.set(xlabel="collisions per particle", ylabel="$R$")
-    title = rf"{_kind(one)}, $r = {one.r.item()}$, $\beta = {one.beta.item()}$"
-    axes.legend(loc="lower left", title=title)
+    axes.legend(loc="lower left", title=f"{_label(one)}\nopen: denser, filled: dilute")
 
 
-def draw_tails(axes: Axes, data: xr.Dataset) -> None:
-    """Draw the fourth cumulant of the spins over the number of particles."""
-    number, dilute = data.particles.values, int(np.argmin(data.packing.values))
-    for one, look, _ in _points(data):
-        about: dict[str, Any] = {"color": look.colour, "marker": look.marker}
-        bars: dict[str, Any] = {"lw": 0.8, "elinewidth": 0.8}
-        axes.errorbar(number, one.dsmc_a02, one.dsmc_a02_stderr, **about, **bars)
-        events = one.isel(packing=dilute)
-        bar = events.a02_stderr
-        axes.errorbar(1.1 * number, events.a02, bar, **about | {"mfc": "white"}, **THIN)
-    _name_ends(axes, data)
-    packing = f"{data.packing.values[dilute]:g}"
-    for fill, label in ((GREY, "DSMC"), ("white", f"events, packing {packing}")):
-        axes.plot([], [], "o", color=GREY, mfc=fill, label=label)
-    axes.set(xscale="log", yscale="log", xlabel="number of particles $N$")
-    axes.set_xticks(number, map(str, number))
-    ticks = [0.003, 0.01, 0.03, 0.1, 0.3, 1, 3, 10]
-    axes.set_yticks(ticks, map(str, ticks))
-    axes.minorticks_off()
-    axes.set_xlim(number[0] / 1.2, number[-1] * 2.2)
-    low, high = data.dsmc_a02.values.min(), data.dsmc_a02.values.max()
-    axes.set_ylim(max(low, ticks[0]) / 1.5, 2.5 * max(high, ticks[1]))
-    axes.set_ylabel(r"fourth cumulant of spins, $a_{02}$")
-    axes.legend(loc="upper left", ncols=2)
-
-
-def _name_ends(axes, data):
-    """Write beta at the end of each series, from below, none upon another."""
-    x, below = data.particles.values[-1] * 1.3, 0.0
-    points = sorted(_points(data), key=lambda point: float(point[0].dsmc_a02[-1]))
-    for one, look, _ in points:
-        below = max(APART * below, float(one.dsmc_a02[-1]))
-        text = rf"$\beta = {one.beta.item()}$"
-        axes.text(x, below, text, va="center", fontsize=7, color=look.colour)
-
-
-PANELS = (
-    (draw_number, "(a) the homogeneous gas (DSMC): number of particles"),
-    (draw_box, "(b) what the box adds"),
-    (draw_time, "(c) over time: open symbols denser, filled ones dilute"),
-    (draw_tails, "(d) fourth cumulant of the spins"),
-)
+def _draw_ends(axes, data, number):
+    """Draw a row for each point: a number, with its error, of the fewest and the most particles."""
+    ends = data.particles.values[[0, -1]]
+    for row, (one, look) in enumerate(_points(data)):
+        found = [number(one.sel(particles=n)) for n in ends]
+        axes.plot([x for x, _ in found], [row, row], color=look.colour, lw=0.8)
+        for (x, bar), size in zip(found, (SMALL, LARGE), strict=True):
+            axes.errorbar(x, row, xerr=bar, color=look.colour, marker="o", ms=size, **THIN)
 
 
 def _kinds(data):
@@ -144,27 +131,23 @@ def _kinds(data):
     return dict(zip(kinds, LOOKS, strict=False))
 
 
-def _kind(one):
-    """Return what the particles of a point are."""
-    return "spheres" if "spheres" in str(one.experiment.item()) else "disks"
+def _kind(experiment):
+    """Return what the particles of an experiment are."""
+    return "spheres" if "spheres" in str(experiment) else "disks"
 
 
-def _points(data) -> list[tuple[xr.Dataset, Look, float]]:
-    """Return each point, its look, and its sidestep in beta."""
+def _points(data) -> list[tuple[xr.Dataset, Look]]:
+    """Return each point and its look, kind by kind and from rough particles to smooth ones."""
     kinds = _kinds(data)
     order = list(kinds)
-    points = []
-    for one in along(data, "point"):
-        kind = one.experiment.item(), one.r.item()
-        shift = SIDESTEP * (order.index(kind) - (len(order) - 1) / 2)
-        points.append((one, kinds[kind], shift))
-    return points
+    points = [(one, (one.experiment.item(), one.r.item())) for one in along(data, "point")]
+    points.sort(key=lambda point: (order.index(point[1]), -float(point[0].beta.item())))
+    return [(one, kinds[kind]) for one, kind in points]
 
 
-def _name_kinds(axes, data):
-    for (name, r), look in _kinds(data).items():
-        kind = "spheres" if "spheres" in name else "disks"
-        axes.plot([], [], look.marker, color=look.colour, label=f"{kind}, $r = {r}$")
+def _label(one):
+    beta = str(one.beta.item()).replace("-", "\N{MINUS SIGN}")
+    return rf"{_kind(one.experiment.item())}, $r = {one.r.item()}$, $\beta = {beta}$"
 
 
 def _percent(one, name):

@@ -15,5 +15,5 @@ def paired_panels(panels: Sequence[Panel], size: tuple[float, float], *data: xr.
     every = figure.subplots(len(panels) // 2, 2).flat
     for axes, (panel, title), one in zip(every, panels, data, strict=True):
         panel(axes, one)
-        axes.set_title(title, loc="left", fontsize=9)
+        axes.set_title(title, loc="left", fontsize=8.5)
     return figure

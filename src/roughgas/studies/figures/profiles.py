@@ -7,13 +7,14 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from roughgas.show.style import FAINT, GREY, LOOKS, THEORY
 from roughgas.studies.profiles import QUARTERS
 from roughgas.studies.tables import along, point_label
 from roughgas.theory.closed_forms import lun_ratio
 
-SIZE = (11.2, 7.2)  # inches
+SIZE = (7.0, 7.0)  # inches
 LEAST = 5e-4
 """Share of the particles below which a slice is not drawn."""
 FEW = 1e-2
@@ -29,48 +30,32 @@ AVERAGES = {
 BARS: dict[str, Any] = {"capsize": 1.5, "elinewidth": 0.8}
 
 
+TITLES = (
+    "(a) beds: R over height",
+    "(b) beds: R over a period of the floor",
+    "(c) beds: ways of averaging R",
+    "(d) sheared gases and a formula for them",
+)
+
+
 def draw_figure(data: xr.Dataset) -> Figure:
-    """Return profiles of beds, averages of R, and sheared gases, from group `profiles`."""
+    """Return R over height and phase, averages of R, and sheared gases, from group `profiles`."""
     beds = [one for one in along(data, "point") if np.isnan(one.theta)]
     sheared = [one for one in along(data, "point") if np.isfinite(one.theta)]
     figure = Figure(figsize=SIZE, layout="constrained")
-    panels = figure.subplots(2, 3)
-    draw_density(panels[0, 0], beds)
-    draw_temperatures(panels[0, 1], beds)
-    draw_ratios(panels[0, 2], beds)
-    draw_phases(panels[1, 0], beds)
-    draw_averages(panels[1, 1], beds)
-    draw_sheared(panels[1, 2], sheared)
-    for letter, axes in zip("abcdef", panels.flat, strict=True):
-        axes.set_title(f"({letter})", loc="left", fontsize=9)
-    handles, labels = panels[0, 0].get_legend_handles_labels()
-    figure.legend(
-        handles, labels, loc="outside upper center", ncols=len(beds), title="vibrated beds"
-    )
+    panels = figure.subplots(2, 2)
+    draw_ratios(panels[0, 0], beds)
+    draw_phases(panels[0, 1], beds)
+    draw_averages(panels[1, 0], beds)
+    draw_sheared(panels[1, 1], sheared)
+    for title, axes in zip(TITLES, panels.flat, strict=True):
+        axes.set_title(title, loc="left", fontsize=8.5)
+    keys = [
+        Line2D([], [], color=look.colour, marker=look.marker, ms=4, label=point_label(one))
+        for one, look in zip(beds, LOOKS, strict=False)
+    ]
+    figure.legend(handles=keys, loc="outside upper center", ncols=3, title="vibrated beds")
     return figure
-
-
-def draw_density(axes: Axes, beds: Sequence[xr.Dataset]) -> None:
-    """Draw number density over height."""
-    for one, look in zip(beds, LOOKS, strict=False):
-        axes.plot(*_drawn(one, "density"), color=look.colour, ls=look.line, label=point_label(one))
-    axes.set(yscale="log", xlabel="height / $a$", ylabel="number density / $a^{-D}$", xlim=0)
-
-
-def draw_temperatures(axes: Axes, beds: Sequence[xr.Dataset]) -> None:
-    """Draw both temperatures over height: of translation thick, of rotation thin."""
-    for one, look in zip(beds, LOOKS, strict=False):
-        height, rot, across, vertical = _drawn(one, "T_rot", "T_across", "T_along")
-        D = int(one.dimension)
-        axes.plot(height, ((D - 1) * across + vertical) / D, color=look.colour, lw=1.8)
-        axes.plot(height, rot, color=look.colour, lw=0.9, ls="--")
-    for text, how in (
-        ("translation, without the\nmean velocity of the slice", {"lw": 1.8}),
-        ("rotation", {"lw": 0.9, "ls": "--"}),
-    ):
-        axes.plot([], [], color=GREY, label=text, **how)
-    axes.set(yscale="log", xlabel="height / $a$", ylabel="temperature / $m a^2 T^{-2}$", xlim=0)
-    axes.legend()
 
 
 def draw_ratios(axes: Axes, beds: Sequence[xr.Dataset]) -> None:
@@ -102,7 +87,7 @@ def draw_phases(axes: Axes, beds: Sequence[xr.Dataset]) -> None:
     axes.plot([], [], "o", color=GREY, label="at the paper's four phases")
     axes.plot([], [], color=GREY, lw=0.9, ls=":", label="at contacts")
     _draw_lun(axes, beds)
-    axes.set(xlabel="time since the floor fell back / period", ylabel="$R$", xlim=(0, 1))
+    axes.set(xlabel="phase of the floor, from its fall", ylabel="$R$", xlim=(-0.03, 1.03))
     axes.set_ylim(0, 0.95)
     axes.legend(loc="upper left")
 
@@ -136,7 +121,7 @@ def draw_sheared(axes: Axes, gases: Sequence[xr.Dataset]) -> None:
     axes.plot(ends, ends, color=THEORY, lw=0.8, zorder=0, label="if the formula were exact")
     axes.set_xlabel(FORMULA)
     axes.set_ylabel(r"$\theta/\theta_\mathrm{Lun}$ of the simulation")
-    axes.legend(loc="upper left", title="sheared disks")
+    axes.legend(loc="best", title="sheared disks")
 
 
 FORMULA = r"$1 + (p^2 + d^2)/4 + \sqrt{\pi}\,gp/4 + g^2/4$"

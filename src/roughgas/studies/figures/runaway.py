@@ -12,17 +12,18 @@ from roughgas.show.style import FAINT, GREY, LOOKS, THEORY, Look
 from roughgas.studies.figures.panels import paired_panels
 from roughgas.studies.tables import along
 
-SIZE = (10.2, 8.0)  # inches
+SIZE = (7.0, 6.6)  # inches
 BLACK = Look("#222222", "P", "-")
 SKY = Look("#56B4E9", "X", (0, (4, 1)))
 BY_FRICTION = (*LOOKS, SKY, BLACK)
 THIN: dict[str, Any] = {"ls": "none", "elinewidth": 0.8, "capsize": 1.5}
-SIDESTEP, BESIDE = 1.04, 1.15  # factors of N between values of mu, and of event-driven gases
 
 
 def draw_figure(data: xr.Dataset) -> Figure:
     """Return the figure, from the study's dataset."""
-    return paired_panels(PANELS, SIZE, *[data] * len(PANELS))
+    figure = paired_panels(PANELS, SIZE, *[data] * len(PANELS))
+    figure.legend(*figure.axes[1].get_legend_handles_labels(), loc="outside lower center", ncols=5)
+    return figure
 
 
 def draw_example(axes: Axes, data: xr.Dataset) -> None:
@@ -33,55 +34,51 @@ def draw_example(axes: Axes, data: xr.Dataset) -> None:
         look = looks.get(mu, LOOKS[0])
         there = np.isfinite(one.example_R.values)
         passed = one.passed.values[there]
-        label = rf"$\mu = {mu:g}$"
-        axes.plot(passed, one.example_R.values[there], color=look.colour, label=label)
+        axes.plot(passed, one.example_R.values[there], color=look.colour)
         axes.plot(passed, one.example_largest_share.values[there], ":", color=look.colour)
-    for line, label in (("-", "$R$"), (":", "largest share of a particle")):
+    for line, label in (("-", "$R$"), (":", "largest share")):
         axes.plot([], [], line, color=GREY, label=label)
     axes.set(xlabel="collisions per particle", ylabel="$R$, share of the energy of spins")
     axes.set_ylim(-0.02, 1.04)
-    axes.set_xlim(right=1.55 * axes.dataLim.xmax)  # room for the legend
-    title = f"DSMC, $N = {int(data.example_particles)}$"
-    axes.legend(loc="center right", title=title)
+    axes.legend(loc="upper left", title=f"DSMC, $N = {int(data.example_particles)}$")
 
 
 def draw_times(axes: Axes, data: xr.Dataset) -> None:
     """Draw the time of escape over the number of particles, at each mu."""
-    looks = _looks(data)
-    for (mu, look), one in zip(looks.items(), along(data, "mu"), strict=True):
-        aside = SIDESTEP ** (list(looks).index(mu) - (len(looks) - 1) / 2)
-        for kind, shift, fill in (
-            ("dsmc", aside, look.colour),
-            ("events", BESIDE * aside, "white"),
-        ):
-            x = shift * one[f"{kind}_particles"].values
+    bounds: dict[tuple[float, ...], list[float]] = {}
+    for (mu, look), one in zip(_looks(data).items(), along(data, "mu"), strict=True):
+        for kind, fill in (("dsmc", look.colour), ("events", "white")):
+            x = one[f"{kind}_particles"].values
             time, error = (one[f"{kind}_time{end}"].values for end in ("", "_stderr"))
-            about: dict[str, Any] = {"color": look.colour, "mfc": fill}
-            label = rf"$\mu = {mu:g}$" if kind == "dsmc" else None
-            axes.errorbar(x, time, error, marker=look.marker, label=label, **about, **THIN)
-            bound = one[f"{kind}_bound"].values
-            axes.plot(x, bound, ls="none", marker=r"$\uparrow$", ms=8, color=look.colour)
-            if kind == "dsmc":
-                axes.plot(x, time, color=look.colour, lw=0.7, ls=look.line)
+            about: dict[str, Any] = {"color": look.colour, "mfc": fill, "marker": look.marker}
+            axes.errorbar(x, time, error, ms=4, **about, **THIN)
+        axes.plot(one.dsmc_particles, one.dsmc_time, color=look.colour, lw=0.7, ls=look.line)
+        if np.isfinite(one.dsmc_time).any():
+            about = {"color": look.colour, "marker": look.marker, "ls": look.line}
+            axes.plot([], [], lw=0.7, label=rf"$\mu = {mu:g}$", **about)
+        bounds.setdefault(tuple(np.nan_to_num(one.dsmc_bound.values)), []).append(mu)
     for fill, label in ((GREY, "DSMC"), ("white", "events")):
         axes.plot([], [], "o", color=GREY, mfc=fill, label=label)
+    for bound, values in bounds.items():  # those of one value hide no other
+        if any(bound):
+            label = rf"$\mu = {', '.join(f'{mu:g}' for mu in values)}$: later than (95 %)"
+            there = np.where(bound, bound, np.nan)
+            about = {"ls": "none", "marker": r"$\uparrow$", "ms": 8}
+            axes.plot(data.dsmc_particles, there, color=BLACK.colour, label=label, **about)
     axes.set(xscale="log", yscale="log", xlabel="number of particles $N$")
-    axes.set_ylabel("collisions per particle until $R > 0.9$")
-    axes.set_ylim(top=5 * axes.get_ylim()[1])  # room for the legend
-    axes.legend(loc="upper right", ncols=3)
+    axes.set_ylabel("collisions per particle until $R > 0.9$", fontsize=9)
+    axes.set_ylim(top=2 * axes.get_ylim()[1])
 
 
 def draw_rates(axes: Axes, data: xr.Dataset) -> None:
     """Draw the rate of crossings over mu, beside theory."""
-    about: dict[str, Any] = {"color": LOOKS[0].colour, "marker": LOOKS[0].marker, "label": "DSMC"}
+    about: dict[str, Any] = {"color": GREY, "marker": "o", "label": "DSMC"}
     axes.errorbar(data.mu, data.rate, data.rate_stderr, **about, **THIN)
     axes.plot(
         data.mu, data.rate_bound, ls="none", marker=r"$\downarrow$", ms=8, color=about["color"]
     )
     shown = np.isfinite(data.rate.values) | np.isfinite(data.rate_bound.values)
-    axes.plot(
-        data.mu, data.predicted_rate, color=THEORY, label="large deviations, but for a factor"
-    )
+    axes.plot(data.mu, data.predicted_rate, color=THEORY, label="theory, up to a factor")
     axes.plot(data.mu, data.maxwellian_share, "--", color=FAINT, label="share of a Maxwellian")
     measured = np.append(data.rate.values[shown], data.rate_bound.values[shown])
     if np.isfinite(measured).any():
@@ -89,7 +86,7 @@ def draw_rates(axes: Axes, data: xr.Dataset) -> None:
     axes.set(xscale="log", yscale="log", xlabel=r"coefficient of friction $\mu$")
     axes.set_xticks(data.mu.values, [f"{mu:g}" for mu in data.mu.values])
     axes.xaxis.set_minor_locator(NullLocator())
-    axes.set_ylabel("crossings per particle and collision")
+    axes.set_ylabel("crossings per particle and collision", fontsize=9)
     axes.legend(loc="upper right")
 
 
@@ -107,15 +104,15 @@ def draw_shares(axes: Axes, data: xr.Dataset) -> None:
             }
             axes.plot(x, share, ls=line, **about)
     axes.set(xscale="log", xlabel="number of particles $N$")
-    axes.set_ylabel("largest share in the energy of spins")
+    axes.set_ylabel("largest share in the energy of spins", fontsize=9)
     axes.set_ylim(-0.02, 1.04)
 
 
 PANELS = (
     (draw_example, "(a) one particle outgrows the gas"),
     (draw_times, "(b) the more particles, the sooner"),
-    (draw_rates, "(c) how often a particle gets beyond the threshold"),
-    (draw_shares, r"(d) who holds the spin at $R = 0.9$ (symbols as in b)"),
+    (draw_rates, "(c) crossings of the threshold"),
+    (draw_shares, r"(d) who holds the spin at $R = 0.9$"),
 )
 
 
