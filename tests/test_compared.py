@@ -34,7 +34,7 @@ def told(command):
 @pytest.mark.parametrize(("number", "within", "command"), ROWS)
 def test_numbers_are_those_of_theory(number, within, command):
     options = told(command)
-    assert (options.r, options.beta) == (str(R), [str(BETA)])
+    assert (options.r, options.beta) == ([str(R)], [str(BETA)])
     assert number == f"{EXPECTED.get(options.experiment, LUN):.4f}"
 
 
