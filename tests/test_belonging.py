@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+import roughgas
 from roughgas.base.version import __version__
 from roughgas.config.reading import read_yaml
 
@@ -36,7 +37,10 @@ def test_the_metadata_say_what_it_is_and_where_it_runs():
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
     versions = [one.rsplit(" ", 1)[1] for one in project["classifiers"] if ":: 3." in one]
     assert versions[0] == project["requires-python"].removeprefix(">=")
-    assert project["version"] == __version__ and "granular gas" in project["keywords"]
+    assert (
+        project["version"] == __version__ == roughgas.__version__
+        and "granular gas" in project["keywords"]
+    )
     assert read_yaml(ROOT / "CITATION.cff")["version"] == __version__
 
 

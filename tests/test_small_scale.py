@@ -6,7 +6,7 @@ of it is physics that theory leaves out; R (1 - R)/N of it, .004 to .006, is the
 particles lack. The mean of R over seeds 1 to 4 may be four standard errors from that. The errors
 are those of the scatter between the 128 seeds, not those that the runs say: by chance fails one
 point in 16 000. Seeds are fixed, so a run that passes passes always. The least that is seen so is
-an error of .004 to .012 in R; 15 % less friction at contacts moves it by .02 to .06.
+an error of .004 to .012 in R; 15 % of eta are .03 to .06, and of q .01 to .02.
 """
 
 import math

@@ -1,6 +1,7 @@
 """The page of criteria is that of the code, and leaves none out."""
 
 import inspect
+import re
 
 import pytest
 from tests.claims import page
@@ -15,6 +16,7 @@ from roughgas.claims import (
     verdicts,
 )
 
+FIXED = re.compile(r"Fixed (before (any|its|the) data|as NEAR was|when R of four points at)")
 STATEMENTS = PAPER.statements + OPEN_QUESTIONS.statements
 
 
@@ -25,7 +27,7 @@ def test_the_tables_of_the_page_are_those_of_the_code(name):
 
 @pytest.mark.parametrize("statement", STATEMENTS, ids=lambda one: one.name)
 def test_each_statement_says_its_criterion_and_when_it_was_fixed(statement):
-    assert len(statement.criterion) > 20 and statement.criterion.endswith(".")
+    assert statement.criterion.endswith(".")
     assert statement.fixed.startswith(("before its data", "after its data", "after the data"))
 
 
@@ -42,7 +44,7 @@ def test_no_tolerance_is_left_out():
 
 @pytest.mark.parametrize("name", page.SAID)
 def test_each_tolerance_says_when_it_was_fixed(name):
-    assert "ixed" in page.said(page.SAID[name])[name]
+    assert FIXED.search(page.said(page.SAID[name])[name])
 
 
 def test_criteria_are_those_of_judges_or_samples():
