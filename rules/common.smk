@@ -15,6 +15,7 @@ from snakemake.settings.types import DeploymentMethod
 
 try:
     import roughgas.config
+    from roughgas.config import checking
     from roughgas.base import sources
     from roughgas.base.errors import InputError, not_one_of, shown
     from roughgas.base.layout import in_rst
@@ -49,9 +50,9 @@ REDUCED = "results/{scale}/{experiment}.nc"
 FIRST = 10**12  # priority: more urgent than any point
 # An experiment as a whole, or one of its variants: as wildcards, not what has rules of its own, nor
 # the folders of points.
-STUDY_FIGURE = "|".join(FIGURES)
+STUDY_FIGURE, RESERVED = "|".join(FIGURES), "|".join(checking.RESERVED)
 NAME = r"[\w+.-]+"  # nothing that means something to a shell: wildcards become parts of commands
-EXPERIMENT = rf"(?!(?:{STUDY_FIGURE})\.|(?:studies|showcase|hard_cases)/){NAME}"
+EXPERIMENT = rf"(?!(?:{RESERVED})[./]){NAME}"
 VARIANT = rf"(?:/(?!(?:r|beta|seed)[-+.\d]){NAME})?"
 # rules call the `roughgas` beside this snakemake, wherever it was started from
 os.environ |= {"PATH": os.pathsep.join([str(Path(sys.executable).parent), *os.get_exec_path()])}

@@ -25,6 +25,7 @@ def simulate(
     seed: int = 1,
     particles: int | None = None,
     box: Sequence[Side] | None = None,
+    packing: float | None = None,
     effects: Effects | None = None,
     species: Species | None = None,
     species_pairs: Species | None = None,
@@ -33,7 +34,7 @@ def simulate(
     initial: "xarray.Dataset | None" = None,
     keep_state: bool | None = None,
     observe: Observe | None = None,
-    scale: str = "paper",
+    scale: str | None = None,
     config: str | Path | None = None,
     progress: bool = True,
 ) -> "xarray.Dataset":
@@ -60,6 +61,9 @@ def simulate(
     box
         Lengths of the box in a, two for disks and three for spheres; the last one is vertical, and
         ``"open"`` if there is gravity.
+    packing
+        Volume fraction of the particles, in place of these lengths. The box keeps its shape, or has
+        that of the proportions in `box`, such as ``(1, 1, 1)``; by default it is a square.
     effects
         The effects that act, such as ``{"friction": {"mu": 0.3}}``; None removes one, as in
         ``{"contact_time": None}``. docs/effects.md lists them all.
@@ -84,7 +88,7 @@ def simulate(
         (`roughgas.observables.Frame`). docs/observables.md lists them.
     scale
         ``"paper"``, ``"small"`` (a quarter of the particles, and short), ``"coarse"`` or ``"fine"``
-        (as long as a pilot says).
+        (as long as a pilot says); by default the configuration's own ``scale``, ``"paper"``.
     config
         Path of a configuration to use instead of the one that comes with roughgas.
     progress
@@ -140,6 +144,7 @@ def simulate(
     changes: dict[str, Any] = {
         "particles": particles,
         "box": box,
+        "packing": packing,
         "effects": effects,
         "schedule": schedule,
     }
@@ -156,7 +161,7 @@ def simulate(
     from roughgas.simulation.progress import Bar, Progress
     from roughgas.simulation.settings import observables_of, settings_of
 
-    name = experiment or UNNAMED
+    name, scale = experiment or UNNAMED, scale or _scale_of(experiment, config)
     changes["observables"], functions = observables_of(observe)
     settings = settings_of(experiment, changes, scale, config, UNNAMED)
     scene = build(settings, legal_r, legal_beta)
@@ -178,6 +183,7 @@ def trajectory(
     seed: int = 1,
     particles: int | None = None,
     box: Sequence[Side] | None = None,
+    packing: float | None = None,
     effects: Effects | None = None,
     species: Species | None = None,
     species_pairs: Species | None = None,
@@ -187,7 +193,7 @@ def trajectory(
     frames: int | None = None,
     times: Sequence[float] | None = None,
     initial: "xarray.Dataset | None" = None,
-    scale: str = "paper",
+    scale: str | None = None,
     config: str | Path | None = None,
     progress: bool = True,
 ) -> "xarray.Dataset":
@@ -198,7 +204,7 @@ def trajectory(
 
     Parameters
     ----------
-    experiment, r, beta, seed, particles, box, effects, species, species_pairs, schedule
+    experiment, r, beta, seed, particles, box, packing, effects, species, species_pairs, schedule
         As for `simulate`.
     initial, scale, config, progress
         As for `simulate`.
@@ -233,6 +239,7 @@ def trajectory(
     changes: dict[str, Any] = {
         "particles": particles,
         "box": box,
+        "packing": packing,
         "effects": effects,
         "schedule": schedule,
     }
@@ -248,7 +255,7 @@ def trajectory(
     from roughgas.simulation.snapshots import chosen, snapshots
     from roughgas.simulation.trajectory import variables
 
-    name = experiment or UNNAMED
+    name, scale = experiment or UNNAMED, scale or _scale_of(experiment, config)
     settings = settings_of(experiment, changes, scale, config, UNNAMED)
     scene = build(settings, legal_r, legal_beta)
     states = [] if initial is None else initial_of(initial)
@@ -276,6 +283,13 @@ def experiments(config: str | Path | None = None) -> dict[str, str]:
 
     known = load(config or SHIPPED)["experiments"]
     return {name: settings.get("description", "") for name, settings in known.items()}
+
+
+def _scale_of(experiment: str | None, path: str | Path | None) -> str:
+    """Return the scale of a configuration; a scene without a name has that of the paper."""
+    from roughgas.config import PAPER, SHIPPED, usual_scale
+
+    return PAPER if experiment is None else usual_scale(path or SHIPPED)
 
 
 def _numbers(r: Any, beta: Any, seed: Any) -> tuple[float, float, int]:

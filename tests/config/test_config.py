@@ -1,19 +1,26 @@
 """config.yaml: what it resolves to."""
 
 import copy
+import json
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
-from roughgas import config
+from roughgas import config, simulate
 from roughgas.base.errors import InputError
+from roughgas.cli import main
 from roughgas.config import checking
+from roughgas.config.effective import write_effective
 from roughgas.config.reading import read_yaml
+from roughgas.show import catalogue
+from roughgas.studies.figures import DATASETS, FIGURES
 
-CONFIG = Path(__file__).parents[2] / "config.yaml"
+ROOT = Path(__file__).parents[2]
+CONFIG = ROOT / "config.yaml"
 
 
 def test_the_paper_as_data(paper):
@@ -151,3 +158,42 @@ def test_one_experiment_is_read_without_checking_every_scale(tmp_path, refusal):
     assert message in refusal(config.load_experiment, path, "cooling_inertia", "broken")
     path.write_text(text.replace("particles: 160", "particles: few", 1))
     assert "particles = 'few'" in refusal(config.load_experiment, path, "cooling", "small")
+
+
+def test_no_experiment_is_called_as_a_rule_or_a_product():
+    """Of a name that stands for something else `snakemake NAME` would make that."""
+    files = [ROOT / "Snakefile", *(ROOT / "rules").glob("*.smk")]
+    text = "".join(file.read_text() for file in files)
+    names = {*re.findall(r"^ *rule (\w+):", text, re.M), *DATASETS, *FIGURES, "point"}
+    names |= {*catalogue.DOCUMENTS, *re.findall(r"results/\{(?:scale|SCALE)\}/([a-z]\w*)", text)}
+    products = re.findall(r"product=\"(.*)\"", text) + re.findall(r"plan=\"(.*)\"", text)
+    names |= {one for some in products for one in some.split("|")} - {"R"}
+    assert len(names) > 50 and names - {*checking.RESERVED} == set()
+
+
+def test_experiments_alone_are_a_configuration(tmp_path, paper, refusal):
+    path = tmp_path / "mine.yaml"
+    own = config.experiment(paper, "cooling", "small")
+    path.write_text(json.dumps({"experiments": {"mine": own}}))
+    whole = config.load(path)
+    assert config.experiment(whole, "mine", "paper") == own and config.usual_scale(path) == "paper"
+    assert "scale = 'small': must be one of paper" in refusal(config.load, path, {"scale": "small"})
+    message = "in the configuration = (nothing): must be given for this"
+    assert refusal(config.showcase, whole, "paper") == f"showcase {message}"
+    assert refusal(config.study, whole, "coverage", "paper") == f"studies {message}"
+    path.write_text(json.dumps({"experiments": {"mine": own}, "studies": {}}))
+    assert "study = 'coverage'" in refusal(config.study, config.load(path), "coverage", "paper")
+
+
+def test_the_effective_configuration_stands_in_place_of_the_whole(tmp_path, paper, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    write_effective(paper, "small", "config.yaml")
+    found = config.load("config.yaml")
+    for name in paper["experiments"]:
+        assert config.experiment(found, name, "small") == config.experiment(paper, name, "small")
+    assert config.study(found, "coverage", "small") == config.study(paper, "coverage", "small")
+    tiny = {"r": 0.9, "beta": 0, "schedule": {"replicas": 2, "plateau": 10}, "progress": False}
+    here = simulate("cooling", **tiny, config="config.yaml")
+    there = simulate("cooling", **tiny, config=CONFIG, scale="small")
+    assert here.R == there.R and here.scale == "small"
+    assert main(["experiments"]) == 0

@@ -1,6 +1,7 @@
 """The third axis of a sweep: variants of an experiment, and how mistakes are named."""
 
 import copy
+import math
 
 import pytest
 
@@ -208,13 +209,16 @@ MISTAKES = [
     ),
     (
         {"inertia": ["1"]},
-        "sweep: key = 'inertia': must be one of beta, box, particles, r, seeds, species.NAME.KEY, "
-        "EFFECT.PARAMETER, schedule.KEY; did you mean it under `effects: spin:`?",
+        "sweep: key = 'inertia': must be one of beta, box, packing, particles, r, seeds, "
+        "species.NAME.KEY, EFFECT.PARAMETER, schedule.KEY; did you mean it under `effects: spin:`?",
     ),
     (
         {"particles": ["1.5"]},
         "experiments.spun/particles1.5.particles = 1.5: must be a whole number",
     ),
+    ({"packing": ["1"]}, "experiments.spun/packing1.packing = 1: must be a number in (0, 0.95]"),
+    ({"packing": ["much"]}, "experiments.spun/packingmuch.packing = 'much': must be a number in"),
+    ({"packing": ["0.1"], "box": ["9"]}, f"{SWEPT}: key = 'box': must not stand beside packing"),
     ({"box": ["wide"]}, "experiments.spun/boxwide.box = 'wide': must be a list of 2 to 3 entries"),
     ({"schedule.lenght": ["1"]}, "key = 'schedule.lenght': must name a length of this schedule: "),
     ({"schedule.measure": ["-1"]}, "experiments.spun/measure-1.schedule.measure = -1: must be a"),
@@ -239,6 +243,65 @@ MISTAKES = [
         f"{SWEPT}: key = 'shear.velocity': must not stand beside spin.inertia",
     ),
 ]
+
+
+def sides(whole, name):
+    found = config.experiment(whole, name, "paper")
+    return found["particles"], found["box"], found["packing"]
+
+
+def test_a_packing_is_the_size_of_the_box(with_experiments):
+    """It is that of N, radii and shape whatever scale, variant or inheritance has the last word."""
+    large = [{"fraction": 0.5}, {"fraction": 0.5, "radius": 3}]
+    whole = with_experiments(
+        dense={"extends": "cooling", "packing": 0.2},
+        wide={"extends": "dense", "box": [3, 1]},
+        cubes={"extends": "cooling_spheres", "packing": 0.2, "box": [1, 1, 2]},
+        mixed={"extends": "dense", "species": large},
+        counted={"extends": "dense", "sweep": {"particles": ["20", "640"]}},
+        packed={"extends": "cooling", "sweep": {"packing": ["0.1", "0.4"]}},
+        boxed={"extends": "dense", "box": [70, 80]},
+    )
+    whole["experiments"]["wide"]["packing"] = 0.1
+    whole["scales"]["small"]["dense"] = {"particles": 90}
+    checking.check(whole)
+    for name, packing, volume in (
+        ("dense", 0.2, math.pi),
+        ("wide", 0.1, math.pi),
+        ("cubes", 0.2, 4.0 / 3.0 * math.pi),
+        ("mixed", 0.2, 5.0 * math.pi),
+        ("counted/particles20", 0.2, math.pi),
+        ("counted/particles640", 0.2, math.pi),
+        ("packed/packing0.4", 0.4, math.pi),
+    ):
+        number, box, asked = sides(whole, name)
+        assert asked == packing and number * volume / math.prod(box) == pytest.approx(packing)
+    (*_, wide, _), (*_, cube, _) = sides(whole, "wide"), sides(whole, "cubes")
+    assert wide[0] == pytest.approx(3 * wide[1]) and cube[2] == pytest.approx(2 * cube[0])
+    small = config.experiment(whole, "dense", "small")
+    assert 90 * math.pi / math.prod(small["box"]) == pytest.approx(0.2)
+    assert config.fitted(small, "again") == small  # as the JSON of a point has it
+    boxed = config.experiment(whole, "boxed", "paper")
+    assert boxed["box"] == [70, 80] and "packing" not in boxed
+    about = variant_attributes(
+        "packed/packing0.4", config.experiment(whole, "packed/packing0.4", "paper")
+    )
+    assert about["swept"] == "packing" and about["swept_value"] == 0.4
+
+
+@pytest.mark.parametrize(
+    ("settings", "message"),
+    [
+        ({"packing": 0}, "dense.packing = 0: must be a number in (0, 0.95]"),
+        ({"packing": 0.1, "box": [50, 50]}, "dense.box = [50, 50]: must not stand beside packing"),
+        ({"packing": 1e-300}, "dense.packing = 1e-300: must be so large that no side of the box"),
+        ({"extends": "vibrated", "packing": 0.1}, "dense.packing = 0.1: must not be given for a"),
+        ({"packing": 0.1, "sweep": {"box": ["50"]}}, "key = 'box': must not be swept beside pack"),
+    ],
+)
+def test_a_packing_that_makes_no_box(settings, message, refusal, with_experiments):
+    whole = with_experiments(dense={"extends": "cooling"} | settings)
+    assert message in refusal(checking.check, whole)
 
 
 @pytest.mark.parametrize(("sweep", "message"), MISTAKES)

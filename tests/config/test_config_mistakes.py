@@ -49,7 +49,10 @@ MISTAKES = [
         {"plateau": 10},
         "scales.fine.cooling.schedule.plateau = 10: must not stand beside target_stderr",
     ),
-    ("experiments.studies", {}, "key of experiments = studies: must be another name"),
+    *(
+        (f"experiments.{name}", {}, f"key of experiments = {name}: must be another name: the work")
+        for name in ("studies", "accuracy", "coverage", "hard_cases", "reduce")
+    ),
     ("experiments.cooling.particles", 0, "particles = 0: must be a whole number in [1, 1"),
     (
         "experiments.cooling.particles",
@@ -123,7 +126,6 @@ MISTAKES = [
         "showcase at scale paper.effects.spin = None: must be a mapping",
     ),
     ("showcase.window", KeyError, "showcase at scale paper.window = (nothing): must be given"),
-    ("experiments.showcase", {}, "key of experiments = showcase: must be another name"),
     ("scales.small.cooling.extends", "vibrated", "must not be given here"),
     ("scales.small.cooling.particles", 0, "particles = 0: must be a whole number in [1, 1"),
     ("scale", "large", "config.yaml: scale = 'large': must be one of coarse, fine, paper, small"),

@@ -128,6 +128,11 @@ def _options(arguments: Sequence[str]) -> argparse.Namespace:
         from roughgas.config import in_use
 
         options.config = in_use()
+    if getattr(options, "scale", "") is None:
+        from roughgas.config import PAPER, usual_scale
+
+        told = getattr(options, "settings", None) is not None
+        options.scale = PAPER if told else usual_scale(options.config)
     check_outputs(options)
     return options
 

@@ -35,13 +35,15 @@ def _scales(parsed_args: Namespace, **_: Any) -> list[str]:
 def _configuration(options: Namespace) -> Any:
     """Return the configuration unchecked; errors make argcomplete offer nothing."""
     from roughgas.config import in_use
-    from roughgas.config.reading import read_yaml
+    from roughgas.config.checking import read
 
-    return read_yaml(options.config or in_use())
+    return read(options.config or in_use())[0]
 
 
 SCALE = value(
-    "--scale", "a scale of the configuration: small, ...", default="paper", completer=_scales
+    "--scale",
+    "a scale of the configuration: small, ... (default: its own)",
+    completer=_scales,
 )
 CONFIG = value("--config FILE", "the configuration (default: config.yaml here, or roughgas's own)")
 SETTINGS = (

@@ -3,7 +3,8 @@
 A sweep may have a third axis, with its labels: one parameter of one effect, as EFFECT.PARAMETER,
 such as `spin.inertia: ["1", "0.1"]`; one quantity of one species, as species.NAME.KEY, a KEY of its
 `radius` too where radii are spread; one length of the schedule, as schedule.KEY; the number of
-`particles`; or the width of the `box`, whose other sides keep their proportion to it. Each label
+`particles`; the width of the `box`, whose other sides keep their proportion to it; or the
+`packing`. Each label
 makes a variant of the experiment, named EXPERIMENT/PARAMETERLABEL, such as
 vibrated_inertia/inertia0.1: an experiment like any other, whose settings have that value.
 
@@ -25,12 +26,16 @@ from roughgas.config.labels import (  # noqa: F401
     roughness,
     seed,
 )
+from roughgas.config.sizes import fitted, layered
 
 # checking and YAML are imported where they are used: a job of checked settings needs neither
 
 SHIPPED = Path(__file__).parents[1] / "config.yaml"
 """The experiments that come with the package; in a clone of the repository, its config.yaml."""
 SHOWCASE, STUDIES = "showcase", "studies"
+"""Parts that scales change under these names; a configuration may be without them."""
+PAPER = "paper"
+"""The scale of a configuration that names none."""
 SEEDS_PER_JOB = 4
 GRID = ("r", "beta", "seeds")
 """The axes of every sweep; any other key of a sweep is its third axis."""
@@ -46,6 +51,16 @@ def in_use() -> Path:
     present folder, or where there is none the one that comes with the package."""
     here = Path("config.yaml")
     return here if here.exists() else SHIPPED
+
+
+def usual_scale(path: str | Path) -> str:
+    """Return the scale that the configuration at `path` is run at unless another is asked for.
+
+    Raises OSError where the file cannot be read.
+    """
+    from roughgas.config.checking import read
+
+    return read(path)[0]["scale"]
 
 
 def load(path: str | Path, overrides: Mapping[str, Any] | None = None) -> dict[str, Any]:
@@ -100,8 +115,9 @@ def _experiment(config: Mapping[str, Any], name: str, scale: str) -> dict[str, A
     parent = own.pop("extends", None)
     settings = _experiment(config, parent, scale) if parent else {}
     settings.pop("description", None)
-    found = merged(merged(settings, own), config["scales"][scale].get(name, {}))
-    return _without_lengths(found) if "target_stderr" in found else found
+    for changes in (own, config["scales"][scale].get(name, {})):
+        settings = fitted(changed_by(settings, changes), f"experiments.{name}")
+    return _without_lengths(settings) if "target_stderr" in settings else settings
 
 
 def _without_lengths(settings: Mapping[str, Any]) -> dict[str, Any]:
@@ -131,6 +147,8 @@ def study(config: Mapping[str, Any], name: str, scale: str) -> dict[str, Any]:
 
 def _at_scale(config: Mapping[str, Any], part: str, scale: str) -> dict[str, Any]:
     one_of("scale", scale, config["scales"])
+    if part not in config:
+        raise InputError(f"{part} in the configuration", "(nothing)", "be given for this")
     return merged(config[part], config["scales"][scale].get(part, {}))
 
 
@@ -146,6 +164,14 @@ def merged(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any
         else:
             result[key] = change
     return result
+
+
+def changed_by(settings: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
+    """Return an experiment's settings with `changes` merged in, to be `fitted` once all are.
+
+    Of a box and a packing the later one counts; beside a packing an earlier box is a shape.
+    """
+    return layered(merged, settings, changes)
 
 
 def point_settings(settings: Mapping[str, Any]) -> dict[str, Any]:
@@ -208,6 +234,7 @@ def from_text(
         from roughgas.config.schema import check_schema
 
         for part in parts:
+            settings = fitted(settings, source) if part == "point" else settings
             check_schema(settings, source, part)
     return settings
 
@@ -257,7 +284,8 @@ def variant(name: str, settings: Mapping[str, Any]) -> dict[str, Any]:
         legal = f"name a value of {parameter}, such as {variants(base, settings)[0]}"
         raise InputError("experiment", shown(name), legal)
     value = level(folder.removeprefix(parameter), f"{base}: {key}")
-    return merged(settings, swept_to(settings, key, value) | {"sweep": {key: None}, SWEPT: key})
+    changes = swept_to(settings, key, value) | {"sweep": {key: None}, SWEPT: key}
+    return fitted(changed_by(settings, changes), f"experiments.{name}")
 
 
 def swept_to(settings: Mapping[str, Any], key: str, value: float | str) -> dict[str, Any]:

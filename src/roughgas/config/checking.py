@@ -14,9 +14,21 @@ from roughgas.config.axis import SPECIES, names_of, species_called
 from roughgas.config.labels import level, restitution, roughness
 from roughgas.config.reading import read_yaml
 from roughgas.config.schema import check_schema
+from roughgas.config.sizes import PACKING
 
-RESERVED = (settings_of.SHOWCASE, settings_of.STUDIES)
-"""Names that no experiment may have, since scales change these parts under them."""
+PARTS = (settings_of.SHOWCASE, settings_of.STUDIES)
+RESERVED = (
+    *PARTS,
+    *("accuracy", "accuracy_limits", "catalogue", "claims", "clustering", "combined_studies"),
+    *("compile_kernel", "config", "costs", "costs_of_scale", "coverage", "crate", "document"),
+    *("effective_config", "everything", "explore", "explore_extensions", "extensions", "family"),
+    *("figure", "figures", "film", "finite_size", "front", "hard_cases", "living", "living_page"),
+    *("movie", "movies", "open_questions", "page", "picture_for_talks", "pictures", "pilot"),
+    *("plan", "plan_extensions", "plan_of_scale", "plot", "point", "profiles", "reach", "reduce"),
+    *("report", "run_times", "run_times_extensions", "runaway", "study", "study_figure"),
+    *("study_table", "table"),
+)
+"""Names that no experiment may have: those of rules and products of the workflow."""
 
 
 def read(
@@ -27,7 +39,9 @@ def read(
     source = Path(path).name
     config = read_yaml(path)
     if not isinstance(config, dict):
-        raise InputError(source, shown(config), "hold the keys scale, experiments, scales")
+        raise InputError(source, shown(config), "hold the key experiments")
+    config = {"scale": settings_of.PAPER} | config
+    config = {"scales": {str(config["scale"]): {}}} | config
     if not overrides:
         return config, source
     return settings_of.merged(config, overrides), f"{source} with the command line's changes"
@@ -41,7 +55,8 @@ def check(config: Mapping[str, Any], source: str = "config.yaml") -> None:
             (settings_of.SHOWCASE, "filmed", settings_of.showcase),
             (settings_of.STUDIES, "studied", settings_of.studies),
         ):
-            check_schema(of(config, scale), f"{source}: {part} at scale {scale}", whole)
+            if part in config:
+                check_schema(of(config, scale), f"{source}: {part} at scale {scale}", whole)
         for name in config["experiments"]:
             check_one(config, name, scale, source)
 
@@ -53,12 +68,14 @@ def check_file(config: Mapping[str, Any], source: str) -> None:
     settings_of.one_of(f"{source}: scale", config["scale"], scales)
     for name, settings in known.items():
         if name in RESERVED:
-            raise InputError(f"{source}: key of experiments", name, "be another name")
+            legal = "be another name: the workflow has a rule or a product of this one"
+            raise InputError(f"{source}: key of experiments", name, legal)
         _check_ancestors(name, known, source)
         _check_target(settings, f"{source}: experiments.{name}")
+    changeable = [*known, *(part for part in PARTS if part in config)]
     for scale, changes in scales.items():
         for name, settings in changes.items():
-            settings_of.one_of(f"{source}: key of scales.{scale}", name, [*known, *RESERVED])
+            settings_of.one_of(f"{source}: key of scales.{scale}", name, changeable)
             _check_target(settings, f"{source}: scales.{scale}.{name}")
 
 
@@ -96,7 +113,9 @@ def _check_axis(settings: Mapping[str, Any], where: str) -> None:
         elif part not in ("", "schedule", *listed):
             legal = f"begin with an effect of this experiment: {', '.join(sorted(listed))}"
             raise InputError(f"{where}.sweep: key", shown(key), legal)
-        if not part and key not in settings:
+        if key == "box" and PACKING in settings:
+            raise InputError(f"{where}.sweep: key", shown(key), "not be swept beside packing")
+        if not part and key not in settings and (key, "box" in settings) != (PACKING, True):
             raise InputError(f"{where}.{key}", "(nothing)", "be given, as it is swept")
         _check_distinct(settings["sweep"][key], level, f"{where}.sweep.{key}")
 

@@ -26,11 +26,12 @@ def write_effective(config: Mapping[str, Any], scale: str, output: str | Path) -
     effective = {
         "scale": scale,
         "seeds_per_job": config.get("seeds_per_job", settings.SEEDS_PER_JOB),
+        "betas_per_job": config.get("betas_per_job", 1),
         "experiments": {name: settings.experiment(config, name, scale) for name in names},
-        settings.SHOWCASE: settings.showcase(config, scale),
-        settings.STUDIES: settings.studies(config, scale),
-        "scales": {scale: {}},
     }
+    parts = {settings.SHOWCASE: settings.showcase, settings.STUDIES: settings.studies}
+    effective |= {part: of(config, scale) for part, of in parts.items() if part in config}
+    effective["scales"] = {scale: {}}
     plain = json.loads(json.dumps(effective))  # without anchors
     text = yaml.safe_dump(plain, sort_keys=False, width=100, default_flow_style=None)
     write_text(output, HEAD.format(scale=scale) + text)

@@ -20,6 +20,7 @@ import numpy as np
 from roughgas.base.errors import InputError, NeedsError, shown
 from roughgas.base.legal import RESTITUTION, ROUGHNESS, Interval
 from roughgas.effects.settings import register
+from roughgas.theory.frequencies import packing_fraction
 
 SIZE, MASS, INERTIA = Interval("[1e-06, 1e+06]"), Interval("[1e-12, 1e+12]"), Interval("[1e-06, 1]")
 MATERIAL = {"restitution": RESTITUTION, "roughness": ROUGHNESS, "mu": Interval("[0, inf)")}
@@ -135,6 +136,13 @@ def mixture_of(experiment: Mapping[str, Any]) -> Mixture | None:
             raise InputError(f"{key}.between", shown(one["between"]), "be given once")
         pairs[k, other] = pairs[other, k] = _material(key, one, experiment["effects"])
     return Mixture(kinds, pairs)
+
+
+def packing(experiment: Mapping[str, Any]) -> float:
+    """Return the packing fraction of a closed box; of radii that are drawn, the expected one."""
+    mixture, box = mixture_of(experiment), experiment["box"]
+    volume = 1.0 if mixture is None else mixture.mean_volume(len(box))
+    return volume * packing_fraction(experiment["particles"], box)
 
 
 def _numbers(settings, particles):

@@ -15,7 +15,6 @@ from roughgas.base.errors import InputError
 from roughgas.effects.species import Mixture, mixture_of
 from roughgas.kernel.state import Bodies
 from roughgas.scene.composition import Scene, check_box
-from roughgas.theory.frequencies import packing_fraction
 
 
 def draw_bodies(
@@ -33,13 +32,6 @@ def draw_bodies(
     species = np.repeat(np.arange(len(mixture.kinds)), [kind.number for kind in mixture.kinds])
     order = own.permutation(len(species))
     return _bodies(mixture, scene, experiment, radius[order], species[order])
-
-
-def packing(experiment: Mapping[str, Any]) -> float:
-    """Return the packing fraction of a periodic gas; of radii that are drawn, the expected one."""
-    mixture, box = mixture_of(experiment), experiment["box"]
-    volume = 1.0 if mixture is None else mixture.mean_volume(len(box))
-    return volume * packing_fraction(experiment["particles"], box)
 
 
 def for_theory(scene: Scene, experiment: Mapping[str, Any]) -> theory.Mixture | None:

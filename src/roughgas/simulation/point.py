@@ -73,7 +73,7 @@ def run_point(
             "seed": int(seed),
             "particles": number,
             "dimension": len(scene.box),
-            **({} if None in scene.box else {"packing": packing(experiment)}),
+            **_packing(scene, experiment),
             **_known_to_theory(scene, experiment),
             **_about_restitution(scene),
             **({"memory_of": owner(scene)} if keep else {}),
@@ -83,6 +83,15 @@ def run_point(
             "kernel_source_hash": source_hash(),
         },
     )
+
+
+def _packing(scene, experiment):
+    """Return the packing that was asked for, or that of a periodic box."""
+    asked = experiment.get("packing")
+    if asked is None and None in scene.box:
+        return {}
+    found = packing(experiment)
+    return {"packing": asked if asked and math.isclose(asked, found) else found}
 
 
 def _watching(scene, experiment, functions):

@@ -24,9 +24,11 @@ def settings_of(
     """
     given = {key: _plain(value) for key, value in changes.items() if value is not None}
     known = {} if name is None else config.load_experiment(path or config.SHIPPED, name, scale)
-    settings = config.merged(config.point_settings(known), given)
-    for part in ("experiment", "point"):
-        check_schema(settings, name or unnamed, part)
+    where = name or unnamed
+    settings = config.changed_by(config.point_settings(known), given)
+    check_schema(settings, where, "experiment")
+    settings = config.fitted(settings, where)
+    check_schema(settings, where, "point")
     schedule.check(settings)
     return settings
 

@@ -43,8 +43,11 @@ def scenes(configuration: Any) -> dict[str, dict[str, Any]]:
 
 
 def settings(configuration: Any, name: str) -> dict[str, Any]:
-    """Return the settings of an experiment at the paper's scale, with the page's changes."""
-    return config.experiment(configuration, name, "paper") | SCENES[name]
+    """Return the settings of an experiment at the paper's scale, or else at the usual one, with the
+    page's changes."""
+    paper = config.PAPER in configuration["scales"]
+    scale = config.PAPER if paper else configuration["scale"]
+    return config.experiment(configuration, name, scale) | SCENES[name]
 
 
 def scene_of(name: str, experiment: dict[str, Any]) -> dict[str, Any]:
