@@ -30,7 +30,7 @@ def changed_by(settings: Mapping[str, Any], told: Iterable[str]) -> dict[str, An
         if key.partition(".")[0] in NOT_TO_SET:
             raise InputError("--set", key, "be a setting of one point")
         seen.add(key)
-        found = config.merged(found, _change(found, key, parse_yaml(text, f"--set {key}")))
+        found = config.changed_by(found, _change(found, key, parse_yaml(text, f"--set {key}")))
     return found
 
 

@@ -114,8 +114,9 @@ def _settings(options: Namespace) -> dict[str, Any]:
         found = config.merged(found, {"observables": {name: {} for name in watched}})
     if told or watched:
         found = changed_by(found, told)
-        for part in ("experiment", "point"):
-            check_schema(config.point_settings(found), options.experiment, part)
+        check_schema(config.point_settings(found), options.experiment, "experiment")
+        found = config.fitted(found, options.experiment)
+        check_schema(config.point_settings(found), options.experiment, "point")
         schedule.check(found)
     return found
 
