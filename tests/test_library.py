@@ -162,7 +162,7 @@ def test_the_progress_bar_runs_from_none_to_all(name, bars, capsys):
     assert bar.closed and bar.seen == sorted(bar.seen) and bar.seen[-1] > 0.95
     assert len(bar.seen) > 20 and np.diff(bar.seen).max() < 0.1
     said = capsys.readouterr()
-    assert said.out == "" and f"{experiment} (compiling):   0%" in said.err
+    assert said.out == "" and f"{experiment} (placing particles):   0%" in said.err
     simulate(experiment, **POINT, **changes, progress=False)
     assert capsys.readouterr() == ("", "")
 

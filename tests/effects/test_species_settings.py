@@ -1,5 +1,11 @@
 """What settings of species mean, and what is refused in one line."""
 
+import gzip
+import os
+import subprocess
+import sys
+from pathlib import Path
+
 import numpy as np
 import pytest
 from brute_force import begin, settings
@@ -79,6 +85,24 @@ def test_radii_from_a_list_and_from_a_file(tmp_path):
     assert sorted(exactly.radius) == listed
 
 
+@pytest.mark.parametrize("kind", ["endless", "pipe", "archive", "too large", "empty", "folder"])
+def test_radii_come_from_text_files_of_an_end(tmp_path, kind):
+    path = Path("/dev/zero") if kind == "endless" else tmp_path / "radii.gz"
+    if kind == "pipe":
+        os.mkfifo(path)
+    elif kind == "archive":
+        path.write_bytes(gzip.compress(b"1.0\n" * 40))
+    elif kind == "folder":
+        path.mkdir()
+    elif kind != "endless":
+        path.touch()
+        os.truncate(path, 10**12 if kind == "too large" else 0)
+    code = f"from roughgas.effects.species import _radii_in; _radii_in('file', {str(path)!r})"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
+    legal = f"{path}: must be a text file of radii, one per line, of at most 1e+08 bytes\n"
+    assert done.stderr.endswith(legal)
+
+
 SPREAD = {"distribution": "uniform"}
 WRONG = [
     (
@@ -100,7 +124,7 @@ WRONG = [
     ),
     (
         [{"fraction": 1, "radius": {"distribution": "file", "file": "nowhere"}}],
-        "species[0].radius.file = nowhere: must be a file of radii, one per line",
+        "species[0].radius.file = nowhere: must be a text file of radii, one per line",
     ),
 ]
 

@@ -118,3 +118,35 @@ def test_a_folder_of_somebody_else_is_not_trusted(program):
         others = {"ROUGHGAS_CACHE_DIR": "/proc/none", "TMPDIR": folder}
         done = python(program, cwd=program.parent, **others)
     assert done.returncode != 0 and "belongs to somebody else" in done.stderr
+
+
+def test_what_others_can_write_is_never_unpickled(program, tmp_path):
+    folder, trap = tmp_path / "kernels", tmp_path / "sprung"
+    places = {"ROUGHGAS_CACHE_DIR": str(folder), "TMPDIR": str(tmp_path)}
+    old = os.umask(0o002)  # as many systems have it
+    try:
+        assert run(program, **places) == ("compiled", "")
+    finally:
+        os.umask(old)
+    (kernels,) = folder.iterdir()
+    assert kernels.stat().st_mode & 0o777 == 0o700
+    files = [path for path in kernels.rglob("*.nb?") if path.is_file()]
+    assert len(files) == 2 and not any(path.stat().st_mode & 0o077 for path in files)
+    for path in files:
+        path.write_bytes(pickle.dumps(Trap(str(trap))))
+        path.chmod(0o666)
+    assert run(program, **places) == ("compiled", "") and not trap.exists()
+    assert run(program, **places) == ("loaded", "")
+    kernels.chmod(0o777)
+    assert run(program, **places) == ("compiled", "")
+    assert list(tmp_path.glob(f"roughgas-{os.getuid()}/kernels-*/*/*.nbc"))
+
+
+class Trap:
+    """A pickle that makes a folder where it is loaded."""
+
+    def __init__(self, place):
+        self.place = place
+
+    def __reduce__(self):
+        return os.mkdir, (self.place,)

@@ -148,6 +148,11 @@ def test_names_may_be_one_text():
         ({"R": energy}, r"^variable of R = R: must have a name that no other variable"),
         ({"words": lambda frame: "many"}, r"^observe\.words = str: must return a number, an array"),
         (
+            {"none": lambda frame: None},
+            r"^observe\.none = NoneType: must return a number, an array",
+        ),
+        ({"none": lambda frame: {}}, r"^observe\.none = dict: must return a number, an array"),
+        (
             {"odd": lambda frame: np.zeros(int(frame.time) % 3)},
             r"^observe\.odd: shapes = .*: must be the same at every observation, as at the first",
         ),
@@ -182,6 +187,10 @@ def test_of_species_what_depends_on_the_particle_takes_its_size_and_mass():
     found = point(COOLED, {"profiles": {"bins": 1}}, species=MIXED, r=1.0, beta=-1)
     assert found.packing_profile.item() == pytest.approx(found.packing, rel=1e-12)
     assert np.mean(found.temperature_profile) == pytest.approx(2.0, rel=0.02)
+    mass = {"heavy": lambda frame: frame.mass[frame.species_of == 1].mean()}
+    assert point(COOLED, mass, species=MIXED).heavy == 3.0
+    alike = {"alike": lambda frame: frame.species_of is None}
+    assert point(COOLED, alike).alike == 1.0
     with pytest.raises(
         InputError, match=r"^observables\.cumulants = with species: must come without"
     ):

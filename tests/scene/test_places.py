@@ -44,6 +44,16 @@ def test_particles_end_where_they_are_pushed_on_the_side_that_is_free():
     assert places_for(radius, [11.5, 1.6], [True, False], rng) is None
 
 
+def test_a_giant_among_dwarfs_takes_no_lattice_of_dwarfs():
+    """Its sites would be 2.5e9."""
+    radius = np.array([10.0, *[0.001] * 99])
+    found = places_for(radius, [100.0, 100.0], [True, True], np.random.default_rng(1))
+    apart = found[1:] - found[0]
+    apart -= 100.0 * np.round(apart / 100.0)
+    assert len(found) == 100 and np.hypot(*apart.T).min() > 10.001
+    assert np.ptp(found, axis=0).min() > 50.0
+
+
 def test_what_fits_nowhere_is_refused():
     experiment = settings("smooth", 130, [20, 20]) | {
         "species": [{"fraction": 1, "radius": SPREAD}]

@@ -79,9 +79,19 @@ ILLEGAL = {
         BED | {"gravity": {"acceleration": g}} for g in (0, -1, math.nan, math.inf, None)
     ],
     "effects.floor.amplitude": [
-        BED | {"floor": FLOOR["floor"] | {"amplitude": A}} for A in (-1, math.inf, math.nan)
+        BED | {"floor": FLOOR["floor"] | {"amplitude": A}} for A in (-1, math.inf, math.nan, 1e300)
     ],
-    "effects.floor.period": [BED | {"floor": FLOOR["floor"] | {"period": P}} for P in (0, -1)],
+    "effects.floor.period": [
+        BED | {"floor": FLOOR["floor"] | {"period": P}} for P in (0, -1, 1e-300)
+    ],
+    "effects.floor: amplitude/period": [BED | {"floor": FLOOR["floor"] | {"period": 1e-5}}],
+    "effects.left_wall: amplitude/period": [
+        SPIN | {"left_wall": {"amplitude": 1, "period": 1e-5}, "right_wall": {}}
+    ],
+    "effects.shaken_walls: amplitude/period": [
+        SPIN | {"shaken_walls": FLOOR["floor"] | {"amplitude": 1, "period": 1e-5}}
+    ],
+    "effects.left_wall.temperature": [SPIN | {"left_wall": {"temperature": 1e12}}],
     "effects.floor.restitution": [
         BED | {"floor": FLOOR["floor"] | {"restitution": r}} for r in (-0.1, 1.1, "own", math.nan)
     ],
@@ -90,16 +100,17 @@ ILLEGAL = {
     ],
     "effects.walls.restitution": [BED | {"walls": {"restitution": 2, "roughness": 0}}],
     "effects.walls.roughness": [BED | {"walls": {"restitution": 1, "roughness": -2}}],
-    "effects.shear.velocity": [SPIN | {"shear": {"velocity": U}} for U in (0, -2, math.nan)],
+    "effects.shear.velocity": [SPIN | {"shear": {"velocity": U}} for U in (0, -2, math.nan, 1e300)],
     "effects.friction.mu": [SPIN | {"friction": {"mu": mu}} for mu in (-0.1, math.inf, "rough")],
     "effects.thermostat.power": [
-        SPIN | {"thermostat": HEAT["thermostat"] | {"power": p}} for p in (0, -1, math.nan)
+        SPIN | {"thermostat": HEAT["thermostat"] | {"power": p}} for p in (0, -1, math.nan, 1e300)
     ],
     "effects.thermostat.spin_share": [
         SPIN | {"thermostat": HEAT["thermostat"] | {"spin_share": s}} for s in (-0.1, 1.1, None)
     ],
     "effects.thermostat.interval": [
-        SPIN | {"thermostat": HEAT["thermostat"] | {"interval": t}} for t in (0, -1, math.inf)
+        SPIN | {"thermostat": HEAT["thermostat"] | {"interval": t}}
+        for t in (0, -1, math.inf, 1e-300)
     ],
     "effects.friction: key": [SPIN | {"friction": {"mu": 1, "nu": 1}}],
     "effects.contact_time.duration": [

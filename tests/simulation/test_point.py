@@ -62,5 +62,16 @@ def test_illegal_points(r, beta):
         point(POINTS["gas"], r, beta, 1)
 
 
+def test_a_gas_that_comes_to_rest_on_its_floor_is_refused():
+    """Its contacts would never end; one that loses nothing, or is driven otherwise, does not."""
+    bed = settings("bed", 20, [10, "open"], floor={"amplitude": 0, "roughness": -1})
+    bed |= {"schedule": STEADY | {"equilibrate": 1, "measure": 2}}
+    with pytest.raises(
+        InputError, match=r"^effects\.floor\.amplitude = 0\.0: must be 0\.001 a/T t"
+    ):
+        point(bed, 0.9, 0.2, 1)
+    assert point(bed, 1.0, -1.0, 1).variables["collisions"] > 0
+
+
 def test_each_composition_is_compiled_once():
     assert compile_kernels([POINTS["gas"], POINTS["gas"], POINTS["bed"]]) == 2

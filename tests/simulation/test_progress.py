@@ -5,10 +5,14 @@ import re
 import time
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from roughgas.kernel.record import Sampling
 from roughgas.scene import build
+from roughgas.simulation.gas import Gas
 from roughgas.simulation.progress import Bar, FilmProgress, Progress
+from roughgas.simulation.recorder import Recorder
 
 DRIVEN = {
     "particles": 10,
@@ -74,6 +78,17 @@ def test_a_cooling_gas_is_followed_through_its_replicas():
     shown = [int(one.split("| ")[1].split()[0]) for one in stream.shown[1:]]
     assert shown == pytest.approx([total * part / 8 for part in range(1, 9)], abs=1)
     assert stream.shown[-1].startswith("cooling: 100%|")
+
+
+def test_the_text_says_what_is_going_on():
+    """Placing, then compiling, then neither, long before the first sample is there."""
+    stream, scene = Terminal(), build(COOLING, 0.9, 0.0)
+    with Progress("cooling", scene, COOLING, stream=stream) as progress:
+        gas = Gas.start(scene, COOLING, np.random.default_rng(1), Recorder(progress))
+        asked = [line.split(":")[0] for line in stream.shown]
+        gas.recorder.run(gas.state, scene, Sampling(np.inf, 1, 0), 0)
+    assert asked == ["cooling (placing particles)", "cooling (compiling)"]
+    assert stream.shown[2].startswith("cooling:   0%|")
 
 
 def test_progress_is_silent_elsewhere_of_what_is_soon_over():

@@ -15,7 +15,7 @@ from roughgas.kernel.jit import jit
 from roughgas.kernel.state import EXPONENT
 
 SETTINGS = {
-    "duration": Number("Contact time t_c, in T."),
+    "duration": Number("Contact time t_c, in T.", "(0, 1e+09]"),
     "below_r": Number(
         "The model acts only at points whose r is smaller; if not given, at all points.",
         "[0, 1]",

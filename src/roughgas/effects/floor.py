@@ -8,7 +8,7 @@ Floors of another wave form are in files of their own: each has its own way to b
 import math
 from typing import NamedTuple
 
-from roughgas.effects.settings import MATERIAL, Number, Word, register
+from roughgas.effects.settings import LENGTH, MATERIAL, TIME, Number, Word, check_speed, register
 from roughgas.effects.sine_floor import SineFloor
 from roughgas.effects.surface import bounce, fall, flight, phase, until_back
 from roughgas.effects.triangular_floor import REVERSED_RISE, TriangularFloor
@@ -16,8 +16,8 @@ from roughgas.kernel.jit import jit
 
 WAVES = ("sawtooth", "reversed_sawtooth", "triangle", "sine")
 SETTINGS = {
-    "amplitude": Number("Height of a stroke, in a; 0 is a floor at rest.", "[0, inf)"),
-    "period": Number("Time between strokes, in T."),
+    "amplitude": Number("Height of a stroke, in a; 0 is a floor at rest.", LENGTH),
+    "period": Number("Time between strokes, in T.", TIME),
     "wave": Word(
         "Form of its motion; the sawtooth returns at once, the reversed one rises in a tenth of "
         "the period.",
@@ -38,6 +38,7 @@ class Floor(NamedTuple):
     @classmethod
     def from_settings(cls, settings, around):
         """Return the floor of the wave form that the settings name."""
+        check_speed(around, settings["amplitude"], settings["period"])
         wave = settings.pop("wave")
         rises = {"triangle": 0.5, "reversed_sawtooth": REVERSED_RISE}
         if wave in rises:

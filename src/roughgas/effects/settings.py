@@ -11,6 +11,12 @@ from roughgas.base.errors import InputError
 from roughgas.base.legal import RESTITUTION, ROUGHNESS, Interval
 from roughgas.kernel.hooks import Hooks
 
+SPEED = "[0, 10000]"
+"""Speeds that a drive may have, in a/T, beside an initial one of 1: faster, and no run ends."""
+TEMPERATURE = "(0, 1e+08]"
+"""Temperatures (m a^2/T^2) of such speeds."""
+LENGTH, TIME = "[0, 1e+06]", "[1e-09, 1e+09]"
+
 
 class Surroundings(NamedTuple):
     """What an effect may need to know of the scene that it is part of."""
@@ -159,6 +165,13 @@ def register(kind: Any, parameters: Mapping[str, Any] | None = None, **hooks: An
     kind.parameters = parameters
     if not hasattr(kind, "from_settings"):
         kind.from_settings = lambda settings, around: kind(**settings)
+
+
+def check_speed(around: Surroundings, amplitude: float, period: float) -> None:
+    """Raise InputError where what is shaken moves faster than a drive may."""
+    if not Interval(SPEED).holds(amplitude / period):
+        key = f"effects.{around.name}: amplitude/period"
+        raise InputError(key, amplitude / period, f"lie in {SPEED} a/T")
 
 
 def make(kind: Any, name: str, settings: Mapping[str, Any], around: Surroundings) -> Any:

@@ -9,15 +9,15 @@ from typing import NamedTuple
 
 from roughgas.base.errors import InputError
 from roughgas.effects import walls
-from roughgas.effects.settings import MATERIAL, Number, register
+from roughgas.effects.settings import LENGTH, MATERIAL, TIME, Number, check_speed, register
 from roughgas.kernel.contact import collide_with_wall
 from roughgas.kernel.jit import jit
 from roughgas.kernel.turns import TURN, sine_and_cosine
 from roughgas.kernel.vectors import along_first, along_last
 
 SETTINGS = {
-    "amplitude": Number("Largest displacement from the middle, in a.", "[0, inf)"),
-    "period": Number("Period of the motion, in T."),
+    "amplitude": Number("Largest displacement from the middle, in a.", LENGTH),
+    "period": Number("Period of the motion, in T.", TIME),
     **MATERIAL,
 }
 
@@ -37,6 +37,7 @@ class ShakenWalls(NamedTuple):
         if "walls" in around.effects:
             raise InputError("effects", "walls and shaken_walls", "not close the same axis twice")
         amplitude, period, *material = settings.values()
+        check_speed(around, amplitude, period)
         return cls(around.box[0], TURN * amplitude / period, period, *material)
 
 

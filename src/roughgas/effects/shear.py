@@ -13,7 +13,9 @@ from roughgas.base.errors import NeedsError
 from roughgas.effects.settings import Number, register
 from roughgas.kernel.jit import jit
 
-SETTINGS = {"velocity": Number("Velocity U of the images above relative to the box, in a/T.")}
+SETTINGS = {
+    "velocity": Number("Velocity U of the images above relative to the box, in a/T.", "(0, 10000]")
+}
 
 
 class Shear(NamedTuple):

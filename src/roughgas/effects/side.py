@@ -12,7 +12,16 @@ from roughgas.base.errors import InputError, NeedsError
 from roughgas.effects import piston, thermal_wall
 from roughgas.effects.floor import WAVES
 from roughgas.effects.plane import Place, bounce, closed_axis, predict
-from roughgas.effects.settings import MATERIAL, Number, Word, register
+from roughgas.effects.settings import (
+    LENGTH,
+    MATERIAL,
+    TEMPERATURE,
+    TIME,
+    Number,
+    Word,
+    check_speed,
+    register,
+)
 from roughgas.effects.triangular_floor import REVERSED_RISE
 from roughgas.kernel.jit import jit
 from roughgas.kernel.turns import TURN, sine_and_cosine
@@ -36,13 +45,14 @@ SETTINGS = {
         "[-1e+06, 1e+06]",
         default=0.0,
     ),
-    "amplitude": Number("Height of a stroke of a shaken wall, in a.", "[0, inf)", 0.0),
-    "period": Number("Time between strokes, in T; given for a shaken wall.", default=math.inf),
+    "amplitude": Number("Height of a stroke of a shaken wall, in a.", LENGTH, 0.0),
+    "period": Number("Time between strokes, in T; given for a shaken wall.", TIME, math.inf),
     "wave": Word("Form of its motion, as of floors.", WAVES),
     "shaken": Word("Whether it is shaken along its normal or along itself.", (NORMAL, ALONG)),
     "temperature": Number(
         "Temperature of a thermal wall, in m a^2/T^2: particles leave it with Maxwellian "
         "velocities and spins, whatever its material.",
+        TEMPERATURE,
         default=math.inf,
     ),
 }
@@ -109,6 +119,7 @@ def _refuse_contradictions(settings, around):
     shaken = settings["amplitude"] > 0.0
     if shaken and settings["period"] == math.inf:
         raise InputError(f"{key}.period", "(nothing)", "be given where the wall is shaken")
+    check_speed(around, settings["amplitude"], settings["period"])
     if shaken and settings["velocity"] != 0.0:
         raise InputError(f"{key}.velocity", settings["velocity"], "be 0 where the wall is shaken")
     if settings["temperature"] < math.inf:

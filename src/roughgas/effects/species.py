@@ -12,6 +12,7 @@ species without a value of its own has that of the point.
 import math
 import zlib
 from collections.abc import Mapping, Sequence
+from io import StringIO
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -25,6 +26,7 @@ from roughgas.theory.frequencies import packing_fraction
 SIZE, MASS, INERTIA = Interval("[1e-06, 1e+06]"), Interval("[1e-12, 1e+12]"), Interval("[1e-06, 1]")
 MATERIAL = {"restitution": RESTITUTION, "roughness": ROUGHNESS, "mu": Interval("[0, inf)")}
 SUM = 1e-9  # by how much the sum of all fractions may miss 1
+LARGEST_FILE = 100_000_000  # bytes of a file of radii
 UNIFORM, LOGNORMAL, FILE = "uniform", "lognormal", "file"
 
 
@@ -216,12 +218,19 @@ def _radius(key, given):
 
 
 def _radii_in(key, path):
+    legal = f"be a text file of radii, one per line, of at most {LARGEST_FILE:.0e} bytes"
     try:
-        numbers = np.loadtxt(Path(path), ndmin=1)
+        # nothing that waits, such as a pipe, or has no end, such as /dev/zero
+        if not Path(path).is_file() or not 0 < Path(path).stat().st_size <= LARGEST_FILE:
+            raise InputError(key, path, legal)
+        # as text: numpy would decompress an archive
+        numbers = np.loadtxt(StringIO(Path(path).read_text("utf-8")), ndmin=1)
+    except InputError:
+        raise
     except (OSError, ValueError) as error:
-        raise InputError(key, path, "be a file of radii, one per line") from error
+        raise InputError(key, path, legal) from error
     if numbers.ndim != 1 or not numbers.size:
-        raise InputError(key, path, "be a file of radii, one per line")
+        raise InputError(key, path, legal)
     return tuple(SIZE.check(f"radius in {path}", one) for one in numbers.tolist())
 
 

@@ -33,9 +33,9 @@ from roughgas.kernel.spins import book_spin, spin_of, turn_spin
 from roughgas.kernel.vectors import add_scaled, dot, scale, subtract
 
 SETTINGS = {
-    "power": Number("Energy put in per particle and time, in m a^2/T^3."),
+    "power": Number("Energy put in per particle and time, in m a^2/T^3.", "(0, 1e+12]"),
     "spin_share": Number("Share of the power that goes into rotation.", "[0, 1]"),
-    "interval": Number("Time between the kicks that a particle starts, in T."),
+    "interval": Number("Time between the kicks that a particle starts, in T.", "[0.0001, 1e+09]"),
 }
 
 

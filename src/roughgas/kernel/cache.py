@@ -6,6 +6,9 @@ The folder is therefore named by a hash of every source that machine code is mad
 
 The cache only saves time: kernels that are damaged are compiled again, and where nothing can be
 written each process compiles its own.
+
+What is loaded is run: folders are made for their owner alone, and a folder or a file that somebody
+else could have written is left alone.
 """
 
 import hashlib
@@ -34,8 +37,8 @@ def kernel_folder():
     """Return the folder of these sources' kernels; make it where it does not exist.
 
     It is in ROUGHGAS_CACHE_DIR, or XDG_CACHE_HOME, or ~/.cache; where that cannot be written (a
-    read-only home), in the system's temporary directory. Raises OSError where that cannot be
-    written either, or is somebody else's.
+    read-only home), or others can write there, in the system's temporary directory. Raises OSError
+    where that holds there as well.
     """
     folder = cache_root() / f"kernels-{source_hash()}"
     try:
@@ -43,7 +46,7 @@ def kernel_folder():
     except OSError:
         private = Path(tempfile.gettempdir()) / f"roughgas-{os.getuid()}"
         private.mkdir(mode=0o700, exist_ok=True)
-        if private.stat().st_uid != os.getuid():  # who may write there may have us run anything
+        if not is_own(private):
             raise PermissionError(None, "belongs to somebody else", str(private)) from None
         folder = private / folder.name
         _try_to_write(folder)
@@ -75,6 +78,15 @@ def cache_root():
     return Path(home) / "roughgas"
 
 
+def is_own(path):
+    """Return whether only the user, and root, can have written a file or folder."""
+    about = os.stat(path)
+    return about.st_uid in (os.getuid(), 0) and not about.st_mode & 0o022
+
+
 def _try_to_write(folder):
-    folder.mkdir(parents=True, exist_ok=True)
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    folder.mkdir(mode=0o700, exist_ok=True)
+    if not is_own(folder):
+        raise PermissionError(None, "can be written by others", str(folder))
     tempfile.TemporaryFile(dir=folder).close()

@@ -18,9 +18,10 @@ import fcntl
 import functools
 import gc
 import hashlib
+import os
 import pickle
 import sys
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 import numba
@@ -38,7 +39,7 @@ from numba.extending import overload
 
 from roughgas.base.errors import InputError
 from roughgas.kernel import operations
-from roughgas.kernel.cache import folder_of
+from roughgas.kernel.cache import folder_of, is_own
 
 INNER = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 
@@ -185,13 +186,26 @@ class Sealed(IndexDataCacheFile):
     """Numba's files with a checksum at their end; those without a right one count as missing.
 
     Machine code with a hole in it, as a power cut leaves it, would crash every process to come.
+    Those that somebody else can have written count as missing, too: a pickle runs what it says.
     """
+
+    def _load_index(self):
+        there = Path(self._index_path).exists()
+        return super()._load_index() if there and is_own(self._index_path) else {}
+
+    @contextmanager
+    def _open_for_write(self, filepath):
+        with super()._open_for_write(filepath) as file:
+            os.fchmod(file.fileno(), 0o600)
+            yield file
 
     def _dump(self, content):
         text = super()._dump(content)  # a pickle, which does not mind what comes after it
         return text + hashlib.sha256(text).digest()
 
     def _load_data(self, name):
+        if not is_own(self._data_path(name)):
+            raise OSError("written by others")
         content = Path(self._data_path(name)).read_bytes()
         text, seal = content[:-32], content[-32:]
         if hashlib.sha256(text).digest() != seal:

@@ -60,6 +60,7 @@ class Frame(NamedTuple):
     inertia: np.ndarray  # (N,) q, I over mass and radius^2
     image_shift: float  # displacement along x of the image above, of a sheared gas; else 0
     rates: Mapping[str, float]  # what effects have summed up since the look before, per T
+    species_of: np.ndarray | None = None  # (N,) index of each one's species; None: all are alike
     speed_unit: float = 1.0  # of the velocities, in a/T: not 1 in a cooling gas
 
     @property

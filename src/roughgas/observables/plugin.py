@@ -84,7 +84,7 @@ class Function(Observable):
     def look(self, frame: Frame) -> Values:
         """Return what the function does, as numbers."""
         found = self._function(frame)
-        if not isinstance(found, Mapping):
+        if not isinstance(found, Mapping) or not found:
             found = {self._name: found}
         values = {str(name): self._numbers(name, one) for name, one in found.items()}
         shapes = {name: one.shape for name, one in values.items()}
@@ -99,10 +99,13 @@ class Function(Observable):
 
     def _numbers(self, name: str, found: Any) -> np.ndarray:
         try:
-            return np.asarray(getattr(found, "values", found), float)
-        except (TypeError, ValueError):
+            numbers = np.asarray(getattr(found, "values", found))
+        except ValueError:  # of lists of unlike lengths
+            numbers = np.empty(0, object)
+        if numbers.dtype.kind not in "biuf":
             legal = "return a number, an array of numbers, or a mapping of names to these"
-            raise InputError(f"observe.{name}", type(found).__name__, legal) from None
+            raise InputError(f"observe.{name}", type(found).__name__, legal)
+        return numbers.astype(float)
 
     def _describe(self, name: str, found: Any, dimensions: int) -> None:
         about = {"long_name": name, "units": "1"} | _told(self._function) | _told(found)

@@ -15,6 +15,7 @@ import numpy as np
 SIMILAR = 1.5  # ratio of radii within a class
 ROOM = 1.0 + 1e-9  # distances, over those at contact
 AT_ONCE = 1_000_000  # sites that are looked at together
+MOST_SITES = 10_000_000  # of a lattice
 SKIN = 0.3  # of the mean radius: pairs as near as this may come to overlap
 DENSEST = 0.95  # share of the box; above it places are not looked for
 MOST_STEPS = 10_000
@@ -57,7 +58,10 @@ def _classes(radius):
 
 def _free_sites(own, placed, radius, lengths, periodic):
     """Return the sites (M, D) of a lattice at which a particle of radius `own` meets nobody."""
-    counts = np.array([max(1, math.floor(length / (2.0 * own * ROOM))) for length in lengths])
+    # of a lattice of the smallest, a coarser one: it has many more sites than it needs
+    least = (math.prod(lengths) / max(MOST_SITES, 4 * len(radius))) ** (1.0 / len(lengths))
+    least = max(2.0 * own * ROOM, least)
+    counts = np.array([max(1, math.floor(length / least)) for length in lengths])
     widths = np.array(lengths) / counts
     taken = np.zeros(counts, bool)
     here = np.flatnonzero(~np.isnan(placed[:, 0]))

@@ -186,6 +186,7 @@ def frame_of(gas: Gas, system: System) -> Frame:
         inertia=inertia,
         image_shift=displacement(gas.scene.effects.shear, time) or 0.0,
         rates={},
+        species_of=None if state.bodies is None else in_order(state, state.bodies.species),
         speed_unit=unit / scale if scale else math.nan,
     )
 

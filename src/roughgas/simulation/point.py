@@ -7,10 +7,13 @@ from typing import Any
 
 import numpy as np
 
+from roughgas.base.errors import InputError
 from roughgas.base.version import __version__
 from roughgas.data.point import Point
 from roughgas.data.variables import Variable
 from roughgas.effects import speed_of_r
+from roughgas.effects.surface import LEAST_DEPARTURE
+from roughgas.kernel import hooks
 from roughgas.kernel.cache import source_hash
 from roughgas.scene import Scene, build, packing
 from roughgas.simulation import by_species, schedule
@@ -45,6 +48,7 @@ def run_point(
     Raises InputError if the particles do not fit or could not begin so, CollapseError if contacts
     accumulate without end.
     """
+    _refuse_rest(scene)
     keep, number = experiment.get("keep_state", False), experiment["particles"]
     watching = _watching(scene, experiment, functions)
     recorder = Recorder(tell, keep, watching.begin if watching else None)
@@ -83,6 +87,21 @@ def run_point(
             "kernel_source_hash": source_hash(),
         },
     )
+
+
+def _refuse_rest(scene):
+    """Refuse a gas that comes to rest on its floor, where contacts no longer end."""
+    effects, floor = scene.effects, scene.effects.floor
+    if floor is None or len(hooks.present(effects, "drives")) > 1:
+        return
+    elastic = [(one.restitution, abs(one.roughness)) == (1.0, 1.0) for one in (scene, floor)]
+    speed = floor.amplitude / floor.period
+    if not all(elastic) and speed < LEAST_DEPARTURE:
+        legal = (
+            f"be {LEAST_DEPARTURE:g} a/T times the period or more where nothing else drives a gas "
+            "that loses energy, or it comes to rest: add a drive, or let contacts be elastic"
+        )
+        raise InputError("effects.floor.amplitude", floor.amplitude, legal)
 
 
 def _packing(scene, experiment):

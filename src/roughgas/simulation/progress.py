@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 BAR = "{desc}: {percentage:3.0f}%|{bar}| {n_fmt} of {total_fmt}{unit}, {remaining} left{postfix}"
 SECONDS_BETWEEN = 0.1  # looks of a bar
 PATIENCE, LONGEST_SILENCE = 10.0, 60.0  # seconds until the first line, and between lines at last
+PLACING = "placing particles"
 NOTEBOOK = "ipykernel"  # a notebook has imported it
 Item = TypeVar("Item")
 
@@ -116,18 +117,28 @@ class Progress(Bar):
         """`experiment` must be complete: its schedule says how long it runs."""
         from roughgas.simulation import schedule
 
-        self._compiled = name
+        self._running = name
         self._particles, self._kind = experiment["particles"], schedule.of(experiment)
         self._before = self._now = 0.0  # lengths: of the simulations that are over, of this one
         total = round(seeds * self._kind.length(scene, experiment))
-        super().__init__(f"{name} (compiling)", total, self._kind.UNIT, stream, quiet)
+        super().__init__(f"{name} ({PLACING})", total, self._kind.UNIT, stream, quiet)
+
+    def stage(self, doing: str) -> None:
+        """Say what is done before the first simulation."""
+        if self._name != self._running:
+            self._call(f"{self._running} ({doing})")
+
+    def _call(self, name: str, refresh: bool = True) -> None:
+        self._name = name
+        if self._bar is not None:
+            self._bar.set_description_str(name, refresh=refresh)
 
     def __call__(self, simulated: float, collisions: int) -> None:
         """Report simulated time (T) and collisions of the present simulation so far."""
-        if self._name != self._compiled and self._bar is not None:
-            self._bar.set_description_str(self._compiled, refresh=False)
-            self._bar.unpause()  # how long compiling took says nothing of the simulation
-        self._name = self._compiled
+        if self._name != self._running:
+            self._call(self._running, refresh=collisions == 0)
+            if self._bar is not None:
+                self._bar.unpause()  # how long compiling took says nothing of the simulation
         now = simulated if self._kind.DRIVEN else 2.0 * collisions / self._particles
         if now < self._now:  # another one has begun
             self._before += self._now

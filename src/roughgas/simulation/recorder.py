@@ -56,10 +56,14 @@ class Recorder:
         self.gases: list[Gas] = []  # all that it has seen begin, if it is to `keep` them
         self._tell, self._keep, self._begin = tell, keep, begin
         self._begun = 0.0, 0  # time and collisions at which the present gas has begun
+        self._compiled = True  # what the present gas runs
 
     def begin(self, gas: "Gas") -> None:
         """Note that a gas begins."""
         self._begun = gas.time, int(gas.state.counts[COLLISIONS])
+        self._compiled = False
+        if stage := getattr(self._tell, "stage", None):
+            stage("compiling")
         if self._keep:
             self.gases.append(gas)
         if self._begin:
@@ -76,6 +80,9 @@ class Recorder:
         names = columns(scene)
         rows = np.empty((samples, len(names)))
         record(state, scene, sampling, rows[:0])  # compiles, or fetches the kernel from its cache
+        if self._tell and not self._compiled:
+            self._tell(0.0, 0)
+        self._compiled = True
         begin, before = time.process_time(), state.counts.copy()
         first, length = 0, max(1, sampling.refresh)
         while first < samples:
