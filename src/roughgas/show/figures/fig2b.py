@@ -12,7 +12,7 @@ def draw(cooling: xr.Dataset) -> Figure:
     """Draw the figure from the reduced dataset of the cooling gas."""
     how = {
         "theories": "lines: theory of free cooling",
-        "legend": {"loc": "upper right"},
+        "legend": {"loc": "upper right", "ncols": 2},
         "message": MESSAGE,
     }
     return ratio_figure(content_for_each_r("Cooling gas", cooling, **how))

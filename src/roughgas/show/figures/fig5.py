@@ -43,6 +43,7 @@ def draw(heated: xr.Dataset, *boundaries: xr.Dataset) -> Figure:
     one.main.add_artist(one.main.legend(drives, DRIVES, loc="upper left"))
     lines = [series._replace(look=series.look._replace(marker="")) for series in of_heated]
     panel.add_legend(one.main, lines, title="lines: rate equations", loc="lower right")
+    panel.add_notes(figure, drawn)
     panel.add_title(one.main, [heated], rf"Driven disks, $r = {panel.RESTITUTION:g}$", MESSAGE)
     return figure
 

@@ -24,17 +24,20 @@ def draw(floor: xr.Dataset, walls: xr.Dataset) -> Figure:
     """
     figure = Figure(figsize=(TWO_WIDE, 3.2), layout="constrained")
     both = figure.subplots(1, 2, sharey=True)
+    drawn: list[panel.Series] = []
     parts = (floor, "Rough floor", MESSAGE), (walls, "Rough side walls", "")
     for axes, (data, name, message) in zip(both, parts, strict=True):
         if SMOOTH not in data.roughness:
             given = data.roughness.values
             raise InputError(f"roughness of {data.attrs['experiment']}", given, "include -1")
-        for one in panel.series_for_each(data, "beta"):
+        drawn += (series := panel.series_for_each(data, "beta"))
+        for one in series:
             _draw_shift(axes, one)
         axes.axhline(0, color=THEORY, linewidth=0.8, zorder=0)
         panel.ROUGHNESS.prepare(axes)
         panel.add_title(axes, [data], rf"{name}, $r = {panel.RESTITUTION:g}$", message)
     both[0].legend(title="lines: rate equations", loc="upper left")
+    panel.add_notes(figure, drawn)
     both[0].set_ylabel("$R$ minus $R$ with\na smooth boundary")
     return figure
 

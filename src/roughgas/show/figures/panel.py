@@ -1,6 +1,6 @@
 """R against one parameter, residuals beneath: the form that all figures of R share."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Container, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,8 +16,6 @@ from roughgas.show.style import FAINT, GREY, HEIGHT, THEORY, WIDTH, Style
 
 __all__ = ["RESTITUTION", "Series", "series", "series_for_each"]
 ENERGY_RATIO = r"$R = E_\mathrm{rot}/(E_\mathrm{rot} + E_\mathrm{trans})$"
-ROW = 1.0
-"""Height of a second row of residuals, in inches."""
 AVERAGES = {"R": "mean of $R(t)$", "R_collisional": "averaged over collisions"}
 """The ways in which R is averaged, by the names of variables; the first is the paper's."""
 ANY_R = "Lun's formula, any $r$"
@@ -71,7 +69,7 @@ class Panel(NamedTuple):
     axis: Axis
 
 
-HALF: Style = {"loc": "half"}
+HALF: Style = {"loc": "half", "fontsize": 7, "labelspacing": 0.2}
 
 
 class PanelContent(NamedTuple):
@@ -124,10 +122,10 @@ def ratio_figure(
         low, high = panel.main.get_ylim()
         panel.main.set_ylim(low - part.room * (high - low), high)
         if part.legend:
-            keys = _keys(panel.main, part.drawn, part.theory)
-            new = [key for key in keys if key.get_label() not in known]
-            known.update(key.get_label() for key in keys)
-            draw_legend(panel.main, new, title=part.theories or None, **part.legend)
+            how = {"title": part.theories or None, **part.legend}
+            add_legend(panel.main, part.drawn, part.theory, known, **how)
+            known |= {_mark(one) for one in part.drawn} | {part.theory, "equipartition"}
+    add_notes(figure, [one for part in parts for one in part.drawn])
     return figure
 
 
@@ -141,7 +139,7 @@ def ratio_panels(
 ) -> tuple[Figure, list[Panel]]:
     """Return an empty figure, and its panels side by side; R has the same scale in all."""
     rows = len(averages)
-    figure = Figure(figsize=(width, HEIGHT + ROW * (rows - 1)), layout="constrained")
+    figure = Figure(figsize=(width, HEIGHT + rows - 1), layout="constrained")
     every = figure.subplots(
         1 + rows, len(axes), sharex="col", height_ratios=(2.3, *[1.0] * rows), squeeze=False
     )
@@ -215,40 +213,38 @@ def _limits(drawn, scale, average) -> tuple[float, float]:
     return low - room, high + room
 
 
-def add_legend(main: Axes, drawn: Sequence[Series], theory: str = "", **how: Any) -> None:
-    """Say what points and lines are. `theory` names a black line; without it each has its own."""
-    draw_legend(main, _keys(main, drawn, theory), **how)
+def add_legend(
+    main: Axes, drawn: Sequence[Series], theory: str = "", known: Container = (), **how: Any
+) -> None:
+    """Say what points and lines are, but for labels that are `known` from panels before.
 
-
-def draw_legend(main: Axes, keys: Sequence[Any], loc: str = "best", **how: Any) -> None:
-    """Draw a legend; `loc` "half" is beneath the line at 1/2, "outside" beside the panel."""
-    if loc == "half":
+    `theory` names a black line; without it each series has its own. `loc` "half" is beneath the
+    line at 1/2, "outside" beside the panel.
+    """
+    line = "none" if theory else None
+    keys: list[Any] = [
+        _key(one.look.colour, _mark(one), one.look.marker, line or one.look.line) for one in drawn
+    ]
+    keys += [_key(THEORY, theory, "", "-")] if theory else []
+    keys += [_key(FAINT, "equipartition", "", DOTS), *main.get_legend_handles_labels()[0]]
+    keys = [key for key in keys if key.get_label() not in known]
+    if how.get("loc") == "half":
         low, high = main.get_ylim()
         how |= {"bbox_to_anchor": (0.0, (0.5 - low) / (high - low)), "borderaxespad": 0.8}
-    elif loc == "outside":
+    elif how.get("loc") == "outside":
         how |= {"bbox_to_anchor": (1.01, 1.02), "borderaxespad": 0.0}
+    how |= {"loc": "upper left"} if "bbox_to_anchor" in how else {}
     if keys or how.get("title"):
-        main.legend(handles=keys, loc="upper left" if loc in ("half", "outside") else loc, **how)
+        main.legend(handles=keys, **how)
 
 
-def _keys(main: Axes, drawn: Sequence[Series], theory: str) -> list[Any]:
-    line = "none" if theory else None
-    keys = [
-        _key(
-            one.look.colour,
-            one.label + (TOUCHED if one.touched.any() else ""),
-            one.look.marker,
-            line or one.look.line,
-        )
-        for one in drawn
-    ]
-    if theory:
-        keys.append(_key(THEORY, theory, "", "-"))
-    keys.append(_key(FAINT, "equipartition", "", DOTS))
-    keys += keys_of_steadiness(drawn)
+def add_notes(figure: Figure, drawn: Sequence[Series]) -> None:
+    """Say below the figure what open and half filled symbols and a dagger are, if there are any."""
+    keys = keys_of_steadiness(drawn)
     if any(one.touched.any() for one in drawn):
         keys.append(_key(GREY, "contact-time model acted", f"${TOUCHED}$"))
-    return keys + main.get_legend_handles_labels()[0]
+    if keys:
+        figure.legend(handles=keys, loc="outside lower right", ncols=len(keys), columnspacing=1.0)
 
 
 def keys_of_steadiness(drawn: Sequence[Series]) -> list[Line2D]:
@@ -257,7 +253,7 @@ def keys_of_steadiness(drawn: Sequence[Series]) -> list[Line2D]:
     if any((one.known & ~one.steady).any() for one in drawn):
         keys.append(_key(GREY, "open: not steady", "o", **NOT_STEADY))
     if not all(one.known.all() for one in drawn):
-        keys.append(_key(GREY, "half filled: not known whether steady", "o", **NOT_KNOWN))
+        keys.append(_key(GREY, "half: not known", "o", **NOT_KNOWN))
     return keys
 
 
@@ -288,10 +284,14 @@ def draw_points(
 ) -> None:
     """Draw symbols: filled in a steady state, open in none, half filled where it is not known."""
     common: Style = {"color": one.look.colour, "fmt": one.look.marker, "elinewidth": 0.8}
-    looks = (one.steady, {}), (one.known & ~one.steady, NOT_STEADY), (~one.known, NOT_KNOWN)
+    looks: Any = (one.steady, {}), (one.known & ~one.steady, NOT_STEADY), (~one.known, NOT_KNOWN)
     for part, look in looks:
         bars = one.error_of(average)[part]
         axes.errorbar(at[part], values[part], bars, ms=size, capsize=1.5, **common, **look)
+
+
+def _mark(one: Series) -> str:
+    return one.label + (TOUCHED if one.touched.any() else "")
 
 
 def _key(colour: str, label: str, marker: str, linestyle: Any = "none", **how: Any) -> Line2D:
