@@ -270,7 +270,7 @@ def test_fig1b_needs_its_restitution():
 def test_unsubtracted_ratio_is_shown_small_where_there_is_one():
     main, _ = fig2a.draw(sheared()).axes
     small = [line for line in main.lines if line.get_alpha() == 0.5 and len(line.get_xdata())]
-    assert len(small) == 3
+    assert len(small) == 4
     assert any("left in" in text.get_text() for text in main.texts)
     main, _ = fig2a.draw(reduced("sheared")).axes
     assert not any("left in" in text.get_text() for text in main.texts)
