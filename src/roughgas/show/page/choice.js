@@ -125,6 +125,6 @@ function showNumbers() {
 }
 
 function showCommands() {
-  at("target").textContent = `.venv/bin/snakemake -j1 --force ${chosen.point.target}`;
-  at("command").textContent = `.venv/bin/${chosen.point.command}`;
+  at("target").textContent = `snakemake -j1 --force ${chosen.point.target}`;
+  at("command").textContent = chosen.point.command;
 }
