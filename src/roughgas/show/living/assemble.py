@@ -22,7 +22,8 @@ KNOWN = {"spin", "gravity", "floor", "shear", "contact_time", "contact_averages"
 
 
 WAVE = "sawtooth"
-PROGRAM = ("gas.js", "start.js", "drawing.js", "questions.js", "view.js")
+PROGRAM = """paths.js gas.js start.js theory.js record.js run.js
+drawing.js panel.js questions.js view.js""".split()
 
 
 def write_living(config_path: str | Path, output: str | Path) -> None:

@@ -3,7 +3,7 @@
 const SPINS = [[179, 88, 6], [241, 163, 64], [247, 247, 247], [153, 142, 195], [84, 39, 136]];
 
 function colours() {
-  const style = getComputedStyle(document.documentElement);
+  const style = getComputedStyle(document.body);
   for (const one of ["ink", "soft", "paper", "line", "accent", "second"]) ink[one] = style.getPropertyValue(`--${one}`).trim();
 }
 
@@ -13,37 +13,24 @@ function colourOf(spin) {
 }
 
 // The part of the box that is seen: its height in a, and how much of it lies below the box.
-function view() {
-  const { box: [width, height], shear, floor } = gas.scene;
+function sight({ scene: { box: [width, height], shear, floor } }) {
   if (floor) return [1.4 * width, 1];
   return shear ? [1.3 * height, 0.15 * height] : [height, 0];
 }
 
-function fit() {
-  const canvas = at("gas"), [height] = view();
-  canvas.style.aspectRatio = `${gas.scene.box[0]} / ${height}`;
-  const share = innerWidth < 768 ? 50 : 78; // of the window's height, so that sliders are in sight
-  canvas.style.width = `min(100%, ${Math.round(share * gas.scene.box[0] / height)}vh)`;
-  for (const one of [canvas, at("graph")]) {
+function fit({ run: { gas }, root }) {
+  const canvas = root.querySelector(".gas"), [height] = sight(gas), shape = gas.scene.box[0] / height;
+  canvas.style.aspectRatio = shape;
+  canvas.style.width = `min(100%, calc(${shape} * var(--tall)))`;
+  for (const one of root.querySelectorAll("canvas")) {
     one.width = Math.round(one.clientWidth * devicePixelRatio);
     one.height = Math.round(one.clientHeight * devicePixelRatio);
   }
 }
 
-function draw() {
-  drawGas();
-  drawGraph();
-  const { translation, rotation, R } = gas.energies(), mean = average();
-  at("present").textContent = R.toFixed(3);
-  at("mean").textContent = mean ? `${mean[0].toFixed(3)} ± ${Math.max(mean[1], 0.0005).toFixed(3)}` : "…";
-  at("clock").textContent = clock().toFixed(free() ? 1 : 0);
-  const left = (2 * translation + rotation) / unit / 4 ** gas.halvings;
-  at("energy").textContent = left < 1 ? left.toPrecision(2) : left.toFixed(left < 10 ? 1 : 0);
-}
-
-function drawGas() {
-  const canvas = at("gas"), context = canvas.getContext("2d"), { box: [width, height], gravity, shear, floor } = gas.scene;
-  const [seen, below] = view(), scale = canvas.width / width, up = y => canvas.height - (y + below) * scale;
+function drawGas({ run: { gas, thermal }, root }) {
+  const canvas = root.querySelector(".gas"), context = canvas.getContext("2d"), { box: [width, height], shear, floor } = gas.scene;
+  const [seen, below] = sight(gas), scale = canvas.width / width, up = y => canvas.height - (y + below) * scale;
   context.clearRect(0, 0, canvas.width, canvas.height);
   if (floor) {
     context.fillStyle = ink.soft;
@@ -51,7 +38,7 @@ function drawGas() {
   }
   for (let i = 0; i < gas.number; i++) {
     const passed = gas.now - gas.since[i];
-    let x = gas.x[i] + gas.vx[i] * passed, y = gas.y[i] + gas.vy[i] * passed - 0.5 * gravity * passed * passed;
+    let x = gas.x[i] + gas.vx[i] * passed, y = gas.flight(i)[2];
     const rows = height ? Math.floor(y / height) : 0, angle = gas.angle[i] + gas.w[i] * passed;
     y -= rows * (height || 0);
     x -= rows * gas.slide(gas.now);
@@ -95,33 +82,37 @@ function line(context, points, colour, dash = [], width = 1) {
   context.setLineDash([]);
 }
 
-function drawGraph() {
-  const canvas = at("graph"), context = canvas.getContext("2d"), dot = devicePixelRatio;
-  const [left, top, right, bottom] = [44 * dot, 26 * dot, canvas.width - 10 * dot, canvas.height - 34 * dot];
-  const { values, step } = record, highest = Math.max(0.6, theory() + 0.05, ...values);
-  const y = R => bottom - (bottom - top) * R / Math.min(highest, 1.02);
-  const x = i => left + (right - left) * i / Math.max(values.length - 1, 40);
+function drawGraph({ run: { gas, record }, root }) {
+  const canvas = root.querySelector(".graph"), context = canvas.getContext("2d");
+  const dot = devicePixelRatio, font = dot * Math.max(12, 0.75 * parseFloat(getComputedStyle(document.documentElement).fontSize));
+  const [left, top, right, bottom] = [3.6 * font, 2.2 * font, canvas.width - 0.8 * font, canvas.height - 2.8 * font];
+  const { rows, width, begun } = record, [theory] = prediction(gas), average = record.average();
+  const most = Math.min(1.02, Math.max(0.6, (theory ?? 0) + 0.05, ...rows.map(([R]) => R)));
+  const span = Math.max(rows.length * width, 40 * record.step * (gas.scene.floor ? 20 : 1));
+  const y = R => bottom - (bottom - top) * R / most, x = time => left + (right - left) * time / span;
   context.clearRect(0, 0, canvas.width, canvas.height);
-  context.font = `${12 * dot}px system-ui, sans-serif`;
+  context.font = `${font}px system-ui, sans-serif`;
   const write = (text, X, Y, colour, align = "left") => {
     context.fillStyle = colour;
     context.textAlign = align;
     context.fillText(text, X, Y);
   };
-  for (const R of [0, 0.25, 0.5, 0.75, 1].filter(one => one <= highest)) write(R.toFixed(2), left - 6 * dot, y(R) + 4 * dot, ink.soft, "right");
+  for (const R of [0, 0.25, 0.5, 0.75, 1].filter(one => one <= most)) write(R.toFixed(2), left - 0.5 * font, y(R) + 0.35 * font, ink.soft, "right");
   line(context, [[left, top], [left, bottom], [right, bottom]], ink.soft);
   line(context, [[left, y(0.5)], [right, y(0.5)]], ink.soft, [2, 4]);
-  line(context, [[left, y(theory())], [right, y(theory())]], ink.second, [8, 4], 1.8);
-  line(context, values.map((R, i) => [x(i), y(R)]), ink.accent, [], 1.6);
-  const key = [["R", ink.accent, []], ["theory", ink.second, [8, 4]], ["equipartition", ink.soft, [2, 4]]];
-  let place = left;
-  for (const [text, colour, dash] of key) {
-    line(context, [[place, 13 * dot], [place + 24 * dot, 13 * dot]], colour, dash, 1.8);
-    write(text, place + 29 * dot, 17 * dot, ink.ink);
-    place += 45 * dot + context.measureText(text).width;
+  line(context, rows.map(([R], i) => [x((i + 0.5) * width), y(R)]), ink.accent, [], 1.6);
+  if (theory !== null) line(context, [[left, y(theory)], [right, y(theory)]], ink.second, [8, 4], 1.8);
+  if (average) line(context, [average.from, average.end].map(time => [x(time - begun), y(average.mean)]), ink.ink, [], 3);
+  const key = [["R", ink.accent, [], 1.6], ["mean", ink.ink, [], 3], ["theory", ink.second, [8, 4], 1.8], ["½", ink.soft, [2, 4], 1]];
+  const narrow = canvas.width < 24 * font, dashed = narrow ? 0.9 * font : 1.7 * font;
+  let place = narrow ? 0.5 * font : left;
+  for (const [text, colour, dash, thick] of key) {
+    line(context, [[place, font], [place + dashed, font]], colour, dash, thick);
+    write(text, place + dashed + 0.3 * font, 1.35 * font, ink.ink);
+    place += dashed + (narrow ? 0.6 : 1.3) * font + context.measureText(text).width;
   }
-  const span = Math.max(values.length - 1, 40) * step;
-  write(`${free() ? "collisions per disk" : "time in T"}, since the last change`, (left + right) / 2, canvas.height - 6 * dot, ink.soft, "center");
-  write("0", left, bottom + 14 * dot, ink.soft);
-  write(span.toPrecision(2) * 1, right, bottom + 14 * dot, ink.soft, "right");
+  const unit = gas.free() ? "collisions per disk" : "time in T";
+  write(narrow ? unit : `${unit}, since the last change`, (left + right) / 2, canvas.height - 0.4 * font, ink.soft, "center");
+  write("0", left, bottom + 1.15 * font, ink.soft);
+  write(Number(span.toPrecision(3)), right, bottom + 1.15 * font, ink.soft, "right");
 }

@@ -1,62 +1,20 @@
-"use strict";
 // Event-driven dynamics of rough, inelastic disks, as roughgas.kernel has it: from one contact to the
 // next, each time a root in double precision. Units: particle radius a = mass m = time unit T = 1.
 
-const DIAMETER = 2, NOTHING = -1, FLOOR = -2;
+const NOTHING = -1, FLOOR = -2;
 const LEAST_DEPARTURE = 1e-3; // from the floor, a/T: any less, and a disk could hit it without end
 const LAST_RESORT = 1e-8; // contact time, in T, where the scene has none: no collapse stops the page
 const LONG = 1000; // T after which times count from a new beginning, so that none loses digits
-
-// ---------------------------------------------------------------- when paths meet
-
-// Time until two disks at separation (x, y), with relative velocity (u, v), touch, or Infinity. The
-// root is formed by division, and the discriminant from the cross product, so that neither cancels.
-function timeToContact(x, y, u, v) {
-  const b = x * u + y * v;
-  if (b >= 0) return Infinity;
-  const square = u * u + v * v, gap = x * x + y * y - DIAMETER * DIAMETER, across = x * v - y * u;
-  const discriminant = DIAMETER * DIAMETER * square - across * across;
-  if (discriminant < 0 && gap > 0) return Infinity;
-  const time = Math.max(gap, 0) / (Math.sqrt(Math.max(discriminant, 0)) - b);
-  return Math.min(time, -b / square);
-}
-
-// First time at which gap + speed t - gravity t^2 / 2 = 0.
-function fall(gap, speed, gravity) {
-  if (gap <= 0) return speed < 0 ? 0 : 2 * speed / gravity;
-  const root = Math.sqrt(speed * speed + 2 * gravity * gap);
-  return speed < 0 ? 2 * gap / (root - speed) : (speed + root) / gravity;
-}
-
-// When a disk whose lowest point is at `height`, rising at `speed`, meets a floor that rises for a
-// period and is back at once; `phase` is the time since a stroke began.
-function timeToFloor({ amplitude, period }, gravity, height, speed, phase) {
-  const strokeAt = time => {
-    const above = height + speed * time - 0.5 * gravity * time * time - amplitude;
-    const back = above > 0 ? time + fall(above, speed - gravity * time, gravity) : time;
-    return Math.floor((phase + back) / period);
-  };
-  const rise = amplitude / period;
-  for (let stroke = strokeAt(0); ;) {
-    const begin = Math.max(0, stroke * period - phase), end = (stroke + 1) * period - phase;
-    const surface = rise * (phase + begin - stroke * period);
-    const gap = height + speed * begin - 0.5 * gravity * begin * begin - surface;
-    const meeting = begin + fall(gap, speed - gravity * begin - rise, gravity);
-    if (meeting <= end) return meeting;
-    stroke = Math.max(stroke + 1, strokeAt(end));
-  }
-}
-
-// ---------------------------------------------------------------- the gas
 
 const KEPT = ["x", "y", "vx", "vy", "w"];
 
 class Gas {
   // scene: {box: [width, height or null], inertia, gravity, floor, shear, contact_time, below_r};
+  // material: {r, beta, q, mu}, without q that of the scene, without mu no contact slides;
   // particles: {x, y, vx, vy, w}, an array each; w is the velocity of the surface, a times the spin.
-  constructor(scene, r, beta, particles) {
+  constructor(scene, material, particles) {
     const number = particles.x.length;
-    Object.assign(this, { scene, r, beta, number });
+    Object.assign(this, { scene, number, q: scene.inertia, mu: Infinity }, material);
     for (const name of KEPT) this[name] = Float64Array.from(particles[name]);
     for (const name of ["since", "angle", "next"]) this[name] = new Float64Array(number);
     this.touched = new Float64Array(number).fill(-Infinity); // when each had its last contact
@@ -65,10 +23,14 @@ class Gas {
     this.seen = new Int32Array(number); // changes of the partner's path when that was foreseen
     this.now = this.begun = this.collisions = this.halvings = 0;
     this.last = null;
+    this.openLedger();
     this.foreseeAll();
   }
 
   get time() { return this.begun + this.now; }
+
+  // Whether nothing drives it.
+  free() { return !this.scene.floor && !this.scene.shear; }
 
   // How far the image above has slid.
   slide(time) { return (this.scene.shear || 0) * time; }
@@ -90,7 +52,9 @@ class Gas {
     if (rows) {
       this.y[i] -= rows * height;
       this.x[i] -= rows * this.slide(time);
-      this.vx[i] -= rows * this.slide(1);
+      const faster = rows * this.slide(1);
+      this.ledger.driven += faster * (0.5 * faster - this.vx[i]);
+      this.vx[i] -= faster;
     }
     this.x[i] -= width * Math.round(this.x[i] / width - 0.5);
   }
@@ -167,6 +131,7 @@ class Gas {
     const r = now - previous < this.contactTime() ? 1 : this.r;
     const [px, py, turn] = this.response(r, this.beta, x / length, y / length, u,
       this.vy[i] - this.vy[j], this.w[i] + this.w[j], 0.5, 0);
+    this.ledger.driven -= px * rows * this.slide(1);
     this.change(i, -px, -py, turn);
     this.change(j, px, py, turn);
     this.last = [i, j];
@@ -174,22 +139,28 @@ class Gas {
   }
 
   bounce(i) {
-    const { floor } = this.scene;
+    const { floor } = this.scene, rise = floor.amplitude / floor.period;
     this.arrive(i, this.now);
-    const v = this.vy[i] - floor.amplitude / floor.period;
+    const v = this.vy[i] - rise;
     const [px, py, turn] = this.response(floor.restitution, floor.roughness, 0, 1, this.vx[i], v,
       this.w[i], 1, LEAST_DEPARTURE);
+    this.ledger.driven -= py * rise;
     this.change(i, -px, -py, turn);
   }
 
   // Momentum exchanged and change of each spin, McNamara & Luding (1998), the collision rule: n from the
   // partner to the disk, (u, v) the relative velocity, w the sum of the spins; share is 1/2 between
-  // disks and 1 at a wall, from which the disk parts at `least`.
+  // disks and 1 at a wall, from which the disk parts at `least`. Coulomb friction as Walton (1993): a
+  // contact slides where sticking takes a tangential impulse above mu times the normal one.
   response(r, beta, nx, ny, u, v, w, share, least) {
-    const q = this.scene.inertia, normal = u * nx + v * ny;
+    const { q, mu } = this, normal = u * nx + v * ny;
     const slipX = u - normal * nx + w * ny, slipY = v - normal * ny - w * nx;
+    const slip = Math.hypot(slipX, slipY), most = mu * (1 + r) * (1 + 1 / q) * Math.abs(normal);
+    if ((1 + beta) * slip > most) beta = most / slip - 1;
     const turn = share * (1 + beta) / (1 + q);
-    const push = share * Math.min((1 + r) * normal, normal - least);
+    const push = share * Math.min((1 + r) * normal, normal - least), parting = normal - push / share;
+    this.ledger.lost += 0.5 * share * (normal * normal - parting * parting
+      + (1 - beta * beta) * q / (1 + q) * slip * slip);
     return [push * nx + q * turn * slipX, push * ny + q * turn * slipY,
       turn * (nx * slipY - ny * slipX)];
   }
@@ -212,25 +183,81 @@ class Gas {
 
   // Energies per degree of freedom, Eq. (defE); of a sheared gas without mean flow and mean spin.
   energies() {
-    const { number, now, scene: { gravity, shear, inertia, box: [, height] } } = this;
+    const { number, q, scene: { shear, box: [, height] } } = this;
     let squares = 0, spins = 0, spin = 0;
     for (let i = 0; i < number; i++) {
-      const passed = now - this.since[i], vy = this.vy[i] - gravity * passed;
-      let vx = this.vx[i];
-      if (shear) vx -= shear * ((this.y[i] + this.vy[i] * passed) / height - 0.5);
+      const [seen, vy, y] = this.flight(i), vx = shear ? seen - shear * (y / height - 0.5) : seen;
       squares += vx * vx + vy * vy;
       spins += this.w[i] * this.w[i];
       spin += this.w[i];
     }
     if (shear) spins -= spin * spin / number;
-    const translation = squares / (4 * number), rotation = inertia * spins / (2 * number);
+    const translation = squares / (4 * number), rotation = q * spins / (2 * number);
     const whole = translation + rotation;
     return { translation, rotation, R: whole > 0 ? rotation / whole : 0 };
   }
 
+  // ---------------------------------------------------------------- what is conserved
+
+  // Velocity and height of disk i now: [vx, vy, y].
+  flight(i) {
+    const passed = this.now - this.since[i], { gravity } = this.scene;
+    return [this.vx[i], this.vy[i] - gravity * passed,
+      this.y[i] + (this.vy[i] - 0.5 * gravity * passed) * passed];
+  }
+
+  // Mean velocity [x, y], beside the mean flow of a sheared gas, in a/T; 0 along what a floor may change.
+  drift() {
+    const { scene: { floor, shear, box: [, height] }, number } = this;
+    let px = 0, py = 0;
+    for (let i = 0; i < number; i++) {
+      const [vx, vy, y] = this.flight(i);
+      px += shear ? vx - shear * (y / height - 0.5) : vx;
+      py += vy;
+    }
+    return [floor && floor.roughness > -1 ? 0 : px / number, floor ? 0 : py / number];
+  }
+
+  // Energy of all disks, kinetic and potential, in the box at rest, in m a^2/T^2.
+  energy() {
+    let sum = 0;
+    for (let i = 0; i < this.number; i++) {
+      const [vx, vy, y] = this.flight(i);
+      sum += 0.5 * (vx * vx + vy * vy + this.q * this.w[i] * this.w[i]) + this.scene.gravity * y;
+    }
+    return sum;
+  }
+
+  openLedger() { this.ledger = { begun: this.energy(), driven: 0, lost: 0 }; }
+
+  // What the balance misses, over what went through it: energy before, plus what the drive has put in,
+  // minus what contacts have lost, is the energy now.
+  imbalance() {
+    const { begun, driven, lost } = this.ledger;
+    return (this.energy() - begun - driven + lost) / (begun + lost);
+  }
+
+  // Least distance between the surfaces of two disks now, or of one and the floor, in a.
+  leastGap() {
+    const { now, number, scene: { box: [width, height], floor } } = this;
+    const x = Array.from({ length: number }, (_, i) => this.x[i] + this.vx[i] * (now - this.since[i]));
+    const y = x.map((_, i) => this.flight(i)[2]);
+    let least = floor ? Math.min(...y) - 1 - this.floorHeight() : Infinity;
+    for (let i = 0; i < number; i++) {
+      for (let j = 0; j < i; j++) {
+        const rows = height ? Math.round((y[i] - y[j]) / height) : 0;
+        const across = x[i] - x[j] - rows * this.slide(now);
+        const gap = Math.hypot(across - width * Math.round(across / width), y[i] - y[j] - rows * (height || 0));
+        least = Math.min(least, gap - DIAMETER);
+      }
+    }
+    return least;
+  }
+
   // ---------------------------------------------------------------- clocks and units
 
-  // Brings all disks to the present, and lets times count from whole periods of the drive before it.
+  // Brings all disks to the present, removes the momentum, and lets times count from whole periods of
+  // the drive before it.
   restartClock() {
     const { floor, shear, box } = this.scene;
     const period = floor ? floor.period : shear ? box[0] / Math.abs(shear) : this.now || 1;
@@ -243,7 +270,15 @@ class Gas {
     }
     this.begun += passed;
     this.now -= passed;
+    this.removeDrift();
     this.foreseeAll();
+  }
+
+  // Each contact leaves a rounding error in the momentum. In a cooling gas these errors do not decay as
+  // the velocities do, until the gas moves as one lump that holds all energy.
+  removeDrift() {
+    const [ux, uy] = this.drift();
+    for (let i = 0; i < this.number; i++) { this.vx[i] -= ux; this.vy[i] -= uy; }
   }
 
   // Doubles all velocities of a gas without a drive, which is the same motion in half the time.
@@ -251,6 +286,7 @@ class Gas {
     this.restartClock();
     for (const values of [this.vx, this.vy, this.w]) for (let i = 0; i < this.number; i++) values[i] *= 2;
     this.halvings += 1;
+    this.openLedger();
     this.foreseeAll();
   }
 }

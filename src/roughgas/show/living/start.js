@@ -1,4 +1,4 @@
-// Where a gas starts, and what theory says of where it goes.
+// Where a gas starts.
 
 // Random numbers from 0 to 1 that a seed repeats (mulberry32).
 function generator(seed) {
@@ -37,27 +37,11 @@ function atStart({ box: [width, height], floor, shear, particles }, seed) {
 }
 
 // A gas as its time begins to count; one that nothing drives is in equilibrium, smooth and elastic.
-function started(scene, r, beta, seed) {
-  const gas = new Gas(scene, r, beta, atStart(scene, seed));
-  if (scene.floor || scene.shear) return gas;
+function started(scene, material, seed) {
+  const gas = new Gas(scene, material, atStart(scene, seed));
+  if (!gas.free()) return gas;
+  const { r, beta } = gas;
   Object.assign(gas, { r: 1, beta: -1 }).run(Infinity, 10 * scene.particles);
-  return Object.assign(gas, { r, beta, collisions: 0 });
-}
-
-// ---------------------------------------------------------------- theory
-
-// Lun's formula: a gas whose drive puts energy into translation alone; any r.
-function lun(beta, q) {
-  const gain = q * (1 + beta);
-  return gain / (gain + 1 + 2 * q - beta);
-}
-
-// Theory of free cooling: R = 1/(1 + K), where K > 0 solves b K^2 - (2 a + c) K - b/2 = 0; the root is
-// written without cancellation. Where b vanishes spin is not touched, and lasts if anything is lost.
-function cooling(r, beta, q) {
-  const a = (1 - beta * beta) * (1 - q) / (1 + q) - 1 + r * r, b = 2 * q * ((1 + beta) / (1 + q)) ** 2;
-  const c = (1 + beta) * (2 * q + q * q * (1 - beta)) / (1 + q) ** 2;
-  const linear = 2 * a + c, size = Math.abs(linear) + Math.sqrt(linear * linear + 2 * b * b);
-  if (size === 0) return 0;
-  return linear > 0 ? 2 * b / (size + 2 * b) : size / (size + b);
+  Object.assign(gas, { r, beta, collisions: 0 }).openLedger();
+  return gas;
 }

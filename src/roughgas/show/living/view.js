@@ -1,100 +1,40 @@
-// The page around the gas: what is drawn, what is measured, what may be changed.
+// The page: gases beside each other, what may be changed, and the address that keeps it.
 
-const SCENES = JSON.parse(document.getElementById("scenes").textContent);
-const PACE = 16; // a typical disk moves so many radii in a second
-const STILL = 0.25; // share of the first temperature at which the speeds of a cooling gas are doubled
-const BUDGET = 11; // ms of a frame that the gas may take
-const HISTORY = 480; // values that the graph keeps
+const SCENES = JSON.parse(document.getElementById("scenes-data").textContent);
+const BUDGET = 11; // ms of a frame that the gases may take
 const at = id => document.getElementById(id);
-const words = number => String(number).replace("-", "−");
 
-let name, gas, seed = 1, playing = !matchMedia("(prefers-reduced-motion: reduce)").matches, frame = 0, before = 0;
-let speed = 1, pace = 1, thermal = 1, unit = 1, record, ink = {};
+let panels = [], name = "cooling", seed = 1, playing = !matchMedia("(prefers-reduced-motion: reduce)").matches;
+let frame = 0, before = 0, pointed = false, ink = {};
 
-const free = () => !gas.scene.floor && !gas.scene.shear;
-// What R is plotted over: time, or collisions per particle in a gas that cools.
-const clock = () => (free() ? 2 * gas.collisions / gas.number : gas.time);
-const every = () => (free() ? 0.5 : gas.scene.floor ? 0.2 : 1);
+// ---------------------------------------------------------------- the gases go on
 
-function theory() {
-  const q = gas.scene.inertia;
-  return free() ? cooling(gas.r, gas.beta, q) : lun(gas.beta, q);
-}
-
-// ---------------------------------------------------------------- what is measured
-
-// Values of R since the last change; when there are many, pairs of them become one.
-function startRecord() {
-  record = { due: clock() + every(), step: every(), values: [gas.energies().R], sum: 0, count: 0, pairs: 1 };
-}
-
-function note() {
-  record.sum += gas.energies().R;
-  record.count += 1;
-  record.due += every();
-  if (record.count < record.pairs) return;
-  record.values.push(record.sum / record.count);
-  record.sum = record.count = 0;
-  if (record.values.length < HISTORY) return;
-  const old = record.values;
-  record.values = old.filter((_, i) => i % 2 === 0).map((one, i) => (one + (old[2 * i + 1] ?? one)) / 2);
-  record.pairs *= 2;
-  record.step *= 2;
-}
-
-// Mean and standard error over the second half of what was recorded, from eight parts of it.
-function average() {
-  const half = record.values.slice(Math.ceil(record.values.length / 2)), size = Math.floor(half.length / 8);
-  if (size < 2) return null;
-  const parts = Array.from({ length: 8 }, (_, k) => half.slice(k * size, (k + 1) * size).reduce((a, b) => a + b) / size);
-  const mean = parts.reduce((a, b) => a + b) / 8;
-  return [mean, Math.sqrt(parts.reduce((sum, one) => sum + (one - mean) ** 2, 0) / 56)];
-}
-
-// ---------------------------------------------------------------- the gas goes on
-
-// Advances by so much of its own time, sampling on the way; false if that takes too long.
-function advance(time) {
-  const end = performance.now() + BUDGET, until = gas.time + time, inTime = () => performance.now() < end;
-  while (gas.time < until) {
-    const most = free() ? Math.ceil(record.due * gas.number / 2) : Infinity;
-    const next = free() ? until : Math.min(until, record.due);
-    if (!gas.run(next - gas.begun, most, inTime)) return false;
-    if (free() ? gas.collisions >= most : gas.time > record.due - 1e-9) note();
-    if (free() && gas.energies().translation < STILL) gas.doubleSpeeds();
-    if (free() && gas.collisions < most) break;
+// Driven gases beside each other have one clock, cooling ones each their own.
+function advance(seconds) {
+  for (const { run } of panels) run.follow();
+  const pace = Math.max(...panels.map(({ run }) => run.pace)), begun = Math.min(...panels.map(({ run }) => run.gas.time));
+  for (const panel of panels) {
+    const { run, run: { gas } } = panel, end = performance.now() + BUDGET / panels.length;
+    const time = seconds * Number(at("speed").value) * PACE / Math.max(gas.free() ? run.pace : pace, 1e-6);
+    const until = gas.free() ? time : begun + time - gas.time;
+    panel.inTime = run.advance(until, () => performance.now() < end);
   }
-  return true;
 }
 
 function tick(time) {
-  const passed = Math.min(0.05, (time - before) / 1000);
+  advance(Math.min(0.05, (time - before) / 1000));
   before = time;
-  const { translation, rotation } = gas.energies();
-  const typical = Math.sqrt(2 * translation);
-  pace += 0.05 * (Math.max(typical, 1e-6) - pace);
-  if (free()) pace = typical;
-  const shown = Math.sqrt(2 * (2 * translation + rotation) / (3 * gas.scene.inertia));
-  thermal += (free() ? 1 : 0.03) * (shown - thermal);
-  const inTime = advance(passed * speed * PACE / Math.max(pace, 1e-6));
-  say(remark(inTime));
   draw();
   if (playing && !document.hidden) frame = requestAnimationFrame(tick);
 }
 
-// What a person should know of the gas, if anything.
-function remark(inTime) {
-  if (!inTime) return "slower than asked for: many contacts";
-  if (!free() && gas.r === 1 && Math.abs(gas.beta) === 1) return "nothing is lost: it heats up without end";
-  const [seen, below] = view(), { gravity, floor } = gas.scene;
-  const above = gas.y.filter((y, i) => {
-    const passed = gas.now - gas.since[i];
-    return y + gas.vy[i] * passed - 0.5 * gravity * passed * passed > seen - below;
-  });
-  return floor && above.length > gas.number / 10 ? "many disks are above the picture" : "";
+function draw() {
+  for (const panel of panels) {
+    panel.tell();
+    drawGas(panel);
+    drawGraph(panel);
+  }
 }
-
-function say(text) { if (at("note").textContent !== text) at("note").textContent = text; }
 
 function go() {
   cancelAnimationFrame(frame);
@@ -103,58 +43,108 @@ function go() {
   if (playing && !document.hidden) frame = requestAnimationFrame(tick);
 }
 
-function restart() {
-  gas = started(SCENES[name], Number(at("r").value), Number(at("beta").value), seed++);
-  const { translation, rotation } = gas.energies();
-  unit = 2 * translation + rotation;
-  pace = Math.max(Math.sqrt(2 * translation), SCENES[name].floor ? 3 : 0);
-  thermal = Math.sqrt(2 * unit / (3 * gas.scene.inertia));
-  fit();
-  change();
+// ---------------------------------------------------------------- what is shown
+
+// Shows a scene with a gas of each of these materials, from the start.
+function show(scene, materials, message = "") {
+  name = scene;
+  document.querySelector(`input[value=${scene}]`).checked = true;
+  panels = materials.map((_, i) => panels[i] ?? new Panel(changed));
+  panels.forEach((panel, i) => panel.set(materials[i]));
+  at("panels").replaceChildren(...panels.map(panel => panel.root));
+  document.body.classList.toggle("compared", panels.length > 1);
+  at("compare").setAttribute("aria-pressed", panels.length > 1);
+  restart();
+  at("message").textContent = message;
 }
 
-// Takes over what the sliders say, at once.
-function change() {
-  gas.r = Number(at("r").value);
-  gas.beta = Number(at("beta").value);
-  at("r-value").textContent = gas.r.toFixed(2);
-  at("beta-value").textContent = words(gas.beta.toFixed(2));
-  at("law").textContent = `theory: ${free() ? "free cooling" : "Lun's formula"}`;
-  at("theory").textContent = theory().toFixed(3);
-  at("clock-name").textContent = free() ? "collisions per disk" : "time, in T";
-  history.replaceState(null, "", `#${name}/r${gas.r}/beta${gas.beta}`);
-  startRecord();
+function restart() {
+  for (const panel of panels) panel.restart(SCENES[name], seed);
+  seed += 1;
+  resized();
+  changed();
+}
+
+function changed() {
+  at("message").textContent = "";
+  history.replaceState(null, "", `#${[name, ...panels.map(panel => inAddress(panel.material()))].join("/vs/").replace("/vs", "")}`);
   draw();
+}
+
+function resized() {
+  for (const panel of panels) fit(panel);
+  draw();
+}
+
+function compare() {
+  const materials = panels.map(panel => panel.material());
+  show(name, materials.length > 1 ? materials.slice(0, 1) : [...materials, { ...materials[0], r: materials[0].r === 0.99 ? 0.8 : 0.99 }]);
+}
+
+function project() {
+  at("projector").setAttribute("aria-pressed", document.body.classList.toggle("projected"));
+  colours();
+  resized();
+}
+
+// ---------------------------------------------------------------- the address
+
+// As in #cooling/r0.8/beta-0.8, #vibrated/r0.9/beta0/q1/mu0.3, and #cooling/r0.9/beta0/vs/r0.8/beta0.
+function inAddress(material) {
+  const kept = Object.entries(material).filter(([key, value]) => key in LIMITS || value !== USUAL[key]);
+  return kept.map(([key, value]) => key + value).join("/");
+}
+
+// [scene, materials] that an address asks for; an Error says in one line what it asks for in vain.
+function read(address) {
+  const [scene, ...rest] = address.split("/");
+  if (!Object.hasOwn(SCENES, scene)) throw Error(`scene = ${scene}: must be one of ${Object.keys(SCENES).join(", ")}`);
+  const materials = [{}];
+  for (const part of rest) {
+    const [, key, text] = /^(r|beta|q|mu)(.+)$/.exec(part) ?? [], value = Number(text);
+    if (part === "vs" && materials.length === 1) materials.push({});
+    else if (!key) throw Error(`${part}: must be r, beta, q or mu with a number, or once vs`);
+    else materials.at(-1)[key] = checked(key, text, value);
+  }
+  return [scene, materials];
+}
+
+function checked(key, text, value) {
+  const [least, most] = LIMITS[key] ?? [];
+  if (key in LIMITS ? value >= least && value <= most : CHOICES[key].includes(value)) return value;
+  throw Error(`${key} = ${text}: must be ${key in LIMITS ? `from ${least} to ${most}` : `one of ${CHOICES[key].join(", ")}`}`);
+}
+
+function fromAddress() {
+  if (location.hash.length < 2) return show("cooling", [USUAL]);
+  try {
+    show(...read(decodeURIComponent(location.hash.slice(1))));
+  } catch (error) {
+    show("cooling", [USUAL], `The address cannot be followed: ${error.message}. This is the first scene.`);
+  }
 }
 
 // ---------------------------------------------------------------- from here on
 
-function set(scene, r, beta) {
-  name = scene;
-  document.querySelector(`input[value=${scene}]`).checked = true;
-  at("r").value = r;
-  at("beta").value = beta;
-  restart();
-}
-
-function fromAddress() {
-  const [, scene, r, beta] = /^#(\w+)\/r([\d.]+)\/beta([-\d.]+)$/.exec(decodeURIComponent(location.hash)) ?? [];
-  set(scene in SCENES ? scene : "cooling", r ?? 0.9, beta ?? 0.5);
-}
-
-const resized = () => { fit(); draw(); };
-for (const id of ["r", "beta"]) at(id).addEventListener("input", change);
 for (const one of document.querySelectorAll("input[name=scene]")) {
-  one.addEventListener("change", () => set(one.value, at("r").value, at("beta").value));
+  one.addEventListener("change", () => show(one.value, panels.map(panel => panel.material())));
 }
-at("speed").addEventListener("change", event => { speed = Number(event.target.value); });
 at("pause").addEventListener("click", () => { playing = !playing; go(); });
 at("restart").addEventListener("click", restart);
+at("compare").addEventListener("click", compare);
+at("projector").addEventListener("click", project);
 at("another").addEventListener("click", () => { asked = (asked + 1) % QUESTIONS.length; ask(); });
+// What a pointer has pressed gives the keys back; keys alone keep their place.
+addEventListener("pointerdown", () => { pointed = true; }, true);
+for (const kind of ["click", "change"]) {
+  addEventListener(kind, ({ target }) => { if (pointed && target.matches("button, select, input[type=radio]")) target.blur(); });
+}
 addEventListener("keydown", event => {
-  if (event.key !== " " || event.target !== document.body) return;
+  pointed = false;
+  const id = { " ": "pause", c: "compare", p: "projector" }[event.key.toLowerCase()];
+  if (!id || event.ctrlKey || event.metaKey || event.altKey || event.target.matches("button, select")) return;
   event.preventDefault();
-  at("pause").click();
+  at(id).click();
 });
 addEventListener("resize", resized);
 addEventListener("hashchange", fromAddress);
@@ -163,5 +153,5 @@ matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { co
 colours();
 fromAddress();
 ask();
-if (!playing) say("still, as your system asks: press Play");
+if (!playing) at("message").textContent = "Still, as your system asks: press Play.";
 go();

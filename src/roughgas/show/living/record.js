@@ -1,0 +1,96 @@
+// What is known of R over time: a series, the part of it that is steady, a mean and its standard error.
+
+const HISTORY = 480; // values that are kept: when there are more, pairs of them become one
+const CUTS = [0.1, 0.2, 0.3, 0.4, 0.5]; // shares of a series that may be its transient
+const SETTLED = 2, DOUBTED = 3.5; // sigmas of drift up to which a gas is, or remains, steady
+const LEAST_SAMPLES = 24, LEAST_BLOCKS = 8, LEAST_TIMES = 10; // evidence for a mean and its error
+
+const meanOf = values => values.reduce((sum, one) => sum + one, 0) / values.length;
+
+// Blocking with overlapping blocks, as in roughgas.statistics.errors: {error, blocks, time}, of the mean
+// of a correlated series, the number of blocks, and the correlation time in samples.
+function blocking(series) {
+  const n = series.length, mean = meanOf(series), sums = [0];
+  let naive = 0;
+  for (const one of series) { sums.push(sums.at(-1) + one - mean); naive += (one - mean) ** 2 / (n * (n - 1)); }
+  if (!(Math.max(...series) > Math.min(...series))) return { error: n < 2 ? NaN : 0, blocks: n, time: 1 };
+  for (let length = 1; ; length = Math.ceil(1.3 * length)) {
+    let squares = 0;
+    for (let i = length; i <= n; i++) squares += ((sums[i] - sums[i - length]) / length) ** 2;
+    const variance = length * squares / ((n - length) * (n - length + 1)), time = variance / naive;
+    if (length ** 3 > 2 * n * time * time || Math.ceil(1.3 * length) * 4 > n) {
+      return { error: Math.sqrt(variance * (1 + Math.min(time / (2 * length), 0.5))), blocks: n / length, time };
+    }
+  }
+}
+
+// How many standard errors hold the truth with 95 %, where these are known from so many blocks: Student's
+// t, by the formula of Wallace, Ann. Math. Stat. 30, 1121 (1959).
+function student(blocks) {
+  const freedom = blocks - 1, sigmas = 1.96 * (8 * freedom + 3) / (8 * freedom + 1);
+  return Math.sqrt(freedom * Math.expm1(sigmas * sigmas / freedom));
+}
+
+// Whether the last third of a series is where the first is, within so many sigmas of the noise, and the
+// noise is below half of the mean: as roughgas.statistics.equilibration.
+function isSteady(series, sigmas) {
+  const third = Math.floor(series.length / 3), late = series.slice(-2 * third), middle = (late.length - 1) / 2;
+  const mean = meanOf(late), last = meanOf(late.slice(third)), change = last - meanOf(series.slice(0, third));
+  let along = 0, square = 0;
+  late.forEach((one, i) => { along += (i - middle) * one; square += (i - middle) ** 2; });
+  const { error, blocks } = blocking(late.map((one, i) => one - mean - along / square * (i - middle)));
+  const noise = 2 * error * Math.sqrt(blocks / (blocks - 1));
+  return Math.abs(change) <= sigmas * noise + 1e-12 && Math.abs(change) + 2 * noise <= Math.max(0.5 * Math.abs(last), 1e-12);
+}
+
+class Record {
+  // begun: the time at which it begins; step: time between samples; group: samples that make a value,
+  // such as a period of the drive; signals: which numbers of a sample must be steady.
+  constructor(begun, step, group, signals) {
+    Object.assign(this, { begun, step, group, signals, due: begun + step, rows: [], latest: null, from: null, known: false });
+    this.end = this.judged = begun;
+    this.startValue();
+  }
+
+  startValue() { this.sums = this.signals.map(() => 0); this.count = 0; }
+
+  // Time that a value spans.
+  get width() { return this.step * this.group; }
+
+  // Adds what was seen at the time `due`; R is the first of the signals.
+  add(energies) {
+    this.signals.forEach((signal, k) => { this.sums[k] += energies[signal]; });
+    this.due += this.step;
+    if (++this.count < this.group) return;
+    this.rows.push(this.sums.map(one => one / this.group));
+    this.latest = this.rows.at(-1)[0];
+    this.end = this.begun + this.rows.length * this.width;
+    this.startValue();
+    if (this.rows.length === HISTORY) {
+      this.rows = this.rows.filter((_, i) => i % 2 === 0).map((row, i) => row.map((one, k) => (one + this.rows[2 * i + 1][k]) / 2));
+      this.group *= 2;
+    }
+    if (this.end - this.begun > 1.1 * (this.judged - this.begun)) this.judge();
+  }
+
+  // Finds the time `from` which it is steady: the earliest cut that leaves all signals so (P. Heidelberger
+  // and P. D. Welch, Oper. Res. 31, 1109, 1983), or null. What was steady needs more to be doubted.
+  judge() {
+    const sigmas = this.from === null ? SETTLED : DOUBTED;
+    this.judged = this.end;
+    const cut = CUTS.map(share => Math.ceil(share * this.rows.length)).find(first => this.rows.length - first >= LEAST_SAMPLES
+      && this.signals.every((_, k) => isSteady(this.rows.slice(first).map(row => row[k]), sigmas)));
+    this.from = cut === undefined ? null : this.begun + cut * this.width;
+  }
+
+  // Mean of R over [from, end], its standard error, and half the interval that holds the truth with 95 %,
+  // both NaN where there is too little to know them; null while the gas is not steady.
+  average() {
+    if (this.from === null) return null;
+    const series = this.rows.slice(Math.round((this.from - this.begun) / this.width)).map(row => row[0]);
+    const { error, blocks, time } = blocking(series);
+    this.known ||= error === 0 || blocks >= LEAST_BLOCKS && series.length >= LEAST_TIMES * time;
+    const sure = this.known ? error : NaN;
+    return { mean: meanOf(series), error: sure, half: sure && sure * student(blocks), from: this.from, end: this.end };
+  }
+}

@@ -1,0 +1,64 @@
+// A gas that goes on, and what is measured of it.
+
+const PACE = 16; // a typical disk moves so many radii in a second
+const STILL = 0.25; // share of the first temperature at which the speeds of a cooling gas are doubled
+const DECOUPLED = 1e100; // energy of spin from which they are not: spin outlives translation, R is 1
+
+class Run {
+  constructor(scene, material, seed) {
+    this.gas = started(scene, material, seed);
+    const { translation, rotation } = this.gas.energies(), { floor } = scene;
+    this.unit = 2 * translation + rotation;
+    this.pace = Math.max(Math.sqrt(2 * translation), floor ? 3 : 0); // typical speed, a/T
+    this.thermal = Math.sqrt(2 * this.unit / (3 * this.gas.q)); // typical spin, at equal shares
+    this.startRecord();
+  }
+
+  // What R is plotted over: time, or collisions per disk in a gas that cools.
+  clock() { return this.gas.free() ? 2 * this.gas.collisions / this.gas.number : this.gas.time; }
+
+  // A gas with a floor is sampled twenty times a period, each value is a mean over a period.
+  startRecord() {
+    const { floor } = this.gas.scene, [step, group] = this.gas.free() ? [0.5, 1] : floor ? [floor.period / 20, 20] : [1, 1];
+    this.record = new Record(this.clock(), step, group, this.gas.free() ? ["R"] : ["R", "translation", "rotation"]);
+  }
+
+  // Takes over another material at once.
+  change(material) {
+    Object.assign(this.gas, material).openLedger();
+    this.startRecord();
+  }
+
+  // Advances by so much of the gas's own time, sampling on the way; false where `goesOn` says stop.
+  advance(time, goesOn = () => true) {
+    const { gas, record } = this, free = gas.free(), until = gas.time + time;
+    while (gas.time < until) {
+      const most = free ? Math.ceil(record.due * gas.number / 2) : Infinity;
+      const next = free ? until : Math.min(until, record.due);
+      if (!gas.run(next - gas.begun, most, goesOn)) return false;
+      if (free ? gas.collisions >= most : gas.time > record.due - 1e-9) record.add(gas.energies());
+      if (free && this.isSlow()) gas.doubleSpeeds();
+      if (free && gas.collisions < most) break;
+    }
+    return true;
+  }
+
+  isSlow() {
+    const { translation, rotation } = this.gas.energies();
+    return translation < STILL && rotation < DECOUPLED;
+  }
+
+  // The time of the gas that is shown in so many seconds, at `pace`.
+  follow() {
+    const { translation, rotation } = this.gas.energies(), typical = Math.sqrt(2 * translation), free = this.gas.free();
+    this.pace = free ? typical : this.pace + 0.05 * (Math.max(typical, 1e-6) - this.pace);
+    const shown = Math.sqrt(2 * (2 * translation + rotation) / (3 * this.gas.q));
+    this.thermal += (free ? 1 : 0.03) * (shown - this.thermal);
+  }
+
+  // Kinetic energy over that at the start.
+  share() {
+    const { translation, rotation } = this.gas.energies();
+    return (2 * translation + rotation) / this.unit / 4 ** this.gas.halvings;
+  }
+}

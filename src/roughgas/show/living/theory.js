@@ -1,0 +1,31 @@
+// What theory says of where R goes.
+
+// R of a gas whose drive puts energy into translation alone: Lun's formula, any r, where contacts
+// stick; with Coulomb friction roughgas.theory.friction_ratio, in closed form for disks.
+function lun(beta, q, r = 1, mu = Infinity) {
+  const e = (1 + beta) / (2 + 2 * q), slid = q * e * 2 / (mu * (1 + r));
+  const theta = 2 * q * e / (1 - e + Math.hypot(1 - e, slid));
+  return theta / (1 + theta);
+}
+
+// Theory of free cooling: R = 1/(1 + K), where K > 0 solves b K^2 - (2 a + c) K - b/2 = 0; the root is
+// written without cancellation. Where b vanishes spin is not touched, and lasts if anything is lost.
+function cooling(r, beta, q) {
+  const a = (1 - beta * beta) * (1 - q) / (1 + q) - 1 + r * r, b = 2 * q * ((1 + beta) / (1 + q)) ** 2;
+  const c = (1 + beta) * (2 * q + q * q * (1 - beta)) / (1 + q) ** 2;
+  const linear = 2 * a + c, size = Math.abs(linear) + Math.sqrt(linear * linear + 2 * b * b);
+  if (size === 0) return 0;
+  return linear > 0 ? 2 * b / (size + 2 * b) : size / (size + b);
+}
+
+// [R or null, what it is from] of a gas.
+function prediction(gas) {
+  const { r, beta, q, mu } = gas, free = gas.free();
+  if (beta === -1) {
+    if (gas.w.every(one => one === 0)) return [0, "exact: smooth disks never start to spin"];
+    return free && r < 1 ? [1, "limit: smooth contacts leave spin, take translation"]
+      : [null, "none: no contact changes a spin, R depends on the start"];
+  }
+  if (!free) return [lun(beta, q, r, mu), mu < Infinity ? "with friction, for averages over collisions" : "Lun's formula, for averages over collisions"];
+  return mu < Infinity ? [null, "none here for friction: single disks escape"] : [cooling(r, beta, q), "theory of free cooling"];
+}
