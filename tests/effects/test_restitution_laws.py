@@ -214,7 +214,8 @@ def test_a_table_that_is_none_is_refused(legal):
 
 
 def test_a_smooth_viscoelastic_gas_cools_as_time_to_the_five_thirds():
-    """-d ln E/d ln t over the later half is that of the rate equations, and near 5/3."""
+    """E is that of the rate equations to four times the scatter of 8 seeds, which is 4 %; they are
+    2 % above. -d ln E/d ln t over the later half, near 5/3, is 1.687 and scatters by .0065."""
     schedule = {"kind": "cooling", "replicas": 8, "thermalise": 10, "relaxation_times": 0}
     schedule |= {"plateau": 240, "sample_every": 2}
     chosen = settings("viscoelastic", 80, [140, 140], threshold={"speed": 1e-12})
@@ -225,6 +226,6 @@ def test_a_smooth_viscoelastic_gas_cools_as_time_to_the_five_thirds():
     nu = theory.collision_frequency(1.0, packing)
     gas = theory.viscoelastic_cooling(collisions[-1], 1.0, 0.8, -1.0, nu)
     expected = np.interp(collisions, gas.collisions, gas.T_tr)
-    assert found["E_trans_series"] == pytest.approx(expected, rel=0.5)
+    assert found["E_trans_series"] == pytest.approx(1.02 * expected, rel=0.18)
     assert point.attributes["r_at_speed"] == 1.0
-    assert found["decay_exponent"] == pytest.approx(5 / 3, abs=0.06)
+    assert found["decay_exponent"] == pytest.approx(1.687, abs=4 * 0.0065)

@@ -154,10 +154,10 @@ def test_refreshing_takes_out_the_momentum_and_keeps_everything_else(experiment)
     speeds = np.sqrt(refreshed["vv_x"] + refreshed["vv_y"])
     assert np.all((speeds > 0.1) & (speeds < 100.0))  # in the units of the moment
     assert np.max(np.abs(refreshed["p_x"]) / speeds) < 1e-13
-    # Haff's law: the energy falls like t^-2 in the end
+    # Haff's law: the energy falls like t^-2 in the end; 30 seeds scatter by .0015 about -.9998
     t, v = refreshed["time"], speeds * unit
     slope = np.log(v[-1] / v[100]) / np.log(t[-1] / t[100])
-    assert slope == pytest.approx(-1.0, abs=0.25)
+    assert slope == pytest.approx(-1.0, abs=4 * 0.0015)
 
 
 def test_refreshing_alone_changes_no_collision():
