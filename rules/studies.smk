@@ -1,4 +1,4 @@
-# Studies, such as of what accuracy costs and of whether error bars are true: each is a few independent
+# Studies, for example of the cost of accuracy and the coverage of error bars: each is a few independent
 # tasks, a dataset that combines them, a figure, and a table.
 from roughgas import studies
 

@@ -22,8 +22,8 @@ HEAD = """# Hard cases
 Where a simulation could go wrong, and how far this one stays from that. Written by
 `snakemake hard_cases`{scale}; docs/trust.md explains the cases.
 
-{cases} cases, {margins} margins, all within their limits. Of {remedies} cases it was shown that
-they fail once a remedy is taken out of the source.
+{cases} cases, {margins} margins, all within their limits. {remedies} of the cases fail
+without the safeguard of the source that the table names.
 """
 
 
