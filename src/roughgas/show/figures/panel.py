@@ -181,14 +181,13 @@ def draw_series(panel: Panel, drawn: Sequence[Series], averages: Sequence[str] =
 def frame_rows(
     panel: Panel, drawn: Sequence[Series], scale: Sequence[Series], averages: Sequence[str]
 ) -> None:
-    """Scale each row of residuals to the steady points of `scale`, and say which average it has,
-    and how many points of those drawn lie outside."""
+    """Scale residuals to steady points of `scale`; say which average, and how many lie outside."""
     heights = []
     for average, residual in zip(averages, panel.residuals, strict=True):
-        low, high = _limits(drawn, scale, average)
+        away = np.concatenate([one.residual_of(average) for one in drawn if average in one.data])
+        low, high = _limits(away, scale, average)
         residual.set_ylim(low, high)
         heights.append(high - low)
-        away = np.concatenate([one.residual_of(average) for one in drawn if average in one.data])
         beyond = {"above": np.sum(away > high), "below": np.sum(away < low)}
         notes = [f"{n} point{'s' if n > 1 else ''} {where}" for where, n in beyond.items() if n]
         if notes:
@@ -199,18 +198,20 @@ def frame_rows(
             residual.set_title(f"{AVERAGES[average]}{finer}", fontsize=7.5, loc="left", pad=2)
 
 
-def _limits(drawn, scale, average) -> tuple[float, float]:
-    """Return what spans the steady points of `scale`, and those drawn that lie just outside."""
+def _limits(away, scale, average) -> tuple[float, float]:
+    """Return what spans the steady points of `scale`, and halves no symbol of those at `away`."""
     low, high = -0.005, 0.005
     for one in (one for one in scale if average in one.data):
-        away, bar = one.residual_of(average), np.nan_to_num(one.error_of(average))
-        low = np.nanmin((away - bar)[one.steady], initial=low)
-        high = np.nanmax((away + bar)[one.steady], initial=high)
+        middle, bar = one.residual_of(average), np.nan_to_num(one.error_of(average))
+        low = np.nanmin((middle - bar)[one.steady], initial=low)
+        high = np.nanmax((middle + bar)[one.steady], initial=high)
     room = 0.12 * (high - low)
-    for away in (one.residual_of(average) for one in drawn if average in one.data):
-        near = away[(away > low - 2 * room) & (away < high + 2 * room)]
-        low, high = np.nanmin(near, initial=low), np.nanmax(near, initial=high)
-    return low - room, high + room
+    low, high = low - room, high + room
+    for value in np.sort(away):
+        high = value + room / 2 if abs(value - high) < room / 2 else high
+    for value in np.sort(away)[::-1]:
+        low = value - room / 2 if abs(value - low) < room / 2 else low
+    return low, high
 
 
 def add_legend(
