@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import MaxNLocator
+from mpl_toolkits.axes_grid1.anchored_artists import AnchoredSizeBar
 
 from roughgas import theory
 from roughgas.base.errors import InputError
@@ -31,7 +32,8 @@ CLOSEUP = 160.0  # side in a of the square in which single disks are shown
 TRANSLATION, ROTATION, UNEVENNESS = (look.colour for look in style.LOOKS[:3])
 DOTTED: dict[str, Any] = {"color": style.THEORY, "linestyle": ":"}
 FRAMES_PER_SECOND, LAST_FRAME = 12, 1.5  # seconds that the movie rests on its last frame
-LETTERS, TITLE = "abc", 9
+LETTERS, TITLE = "abc", 8
+SIZE = (7.0, 5.0)  # inches, of the picture
 PER_PARTICLE = "collisions per particle"
 
 
@@ -57,7 +59,7 @@ def draw(path: str | Path, outputs: Iterable[str | Path]) -> None:
 
 def picture(film: xr.Dataset) -> Figure:
     """Return maps of packing at three instants, single disks, and how the gas cooled meanwhile."""
-    figure = Figure(figsize=(9.2, 6.4), layout="constrained")
+    figure = Figure(figsize=SIZE, layout="constrained")
     above, below = np.asarray(figure.subfigures(2, 1, height_ratios=(1, 1.02)))
     frames = [round(share * (film.sizes["frame"] - 1)) for share in SHOWN]
     maps = above.subplots(1, 3, sharey=True)
@@ -76,10 +78,8 @@ def picture(film: xr.Dataset) -> Figure:
     for axes, draw_graph in zip(graphs, (_energies, _ratio, _unevenness), strict=True):
         draw_graph(axes, film)
         axes.xaxis.set_major_locator(MaxNLocator(5, prune="upper"))  # the last number would be cut
-        for at, letter in zip(_at(film)[frames], LETTERS, strict=True):
-            axes.axvline(at, color=style.FAINT, linewidth=0.6, zorder=0)
-            place = {"xytext": (-2, 3), "textcoords": "offset points", "ha": "right"}
-            axes.annotate(letter, (at, 0), xycoords=("data", "axes fraction"), fontsize=7, **place)
+        for at in _at(film)[frames]:
+            axes.axvline(at, ymax=0.05, color=style.THEORY, linewidth=0.8)
         axes.label_outer()
     return figure
 
@@ -113,10 +113,20 @@ def closeup(film: xr.Dataset) -> tuple[float, float, float]:
 
 def _draw_map(axes: Axes, film: xr.Dataset, frame: int) -> AxesImage:
     width, height = film.attrs["box"]
-    axes.set(xlabel=r"$x/a$", ylabel=r"$y/a$")
-    axes.minorticks_off()
     shown = packing(film, frame)
-    return axes.imshow(shown, origin="lower", extent=(0, width, 0, height), **PACKING)
+    image = axes.imshow(shown, origin="lower", extent=(0, width, 0, height), **PACKING)
+    _add_scale_bar(axes)
+    return image
+
+
+def _add_scale_bar(axes: Axes) -> None:
+    """Say how long lengths are, in a, by a bar instead of numbers along the axes."""
+    low, high = axes.get_xlim()
+    power = 10.0 ** np.floor(np.log10((high - low) / 4))
+    length = max(step * power for step in (1, 2, 5) if step * power <= (high - low) / 4)
+    bar = AnchoredSizeBar(axes.transData, length, f"${length:g}\\,a$", "lower left", pad=0.3)
+    axes.add_artist(bar)
+    axes.set(xticks=[], yticks=[])
 
 
 def _outline(axes: Axes, film: xr.Dataset) -> tuple[float, float, float]:
@@ -129,8 +139,8 @@ def _outline(axes: Axes, film: xr.Dataset) -> tuple[float, float, float]:
 def _draw_disks(axes: Axes, film: xr.Dataset, frame: int, square: tuple) -> EllipseCollection:
     left, bottom, side = square
     axes.set(xlim=(left, left + side), ylim=(bottom, bottom + side), aspect="equal")
-    axes.set(xlabel=r"$x/a$", ylabel=r"$y/a$", facecolor=VOID)
-    axes.minorticks_off()
+    axes.set(facecolor=VOID)
+    _add_scale_bar(axes)
     disks = circles.add_circles(axes, edgecolor=VOID, linewidth=0.2, rasterized=True, **SPIN)
     _move(disks, film, frame)
     return disks
@@ -159,7 +169,7 @@ def _energies(axes: Axes, film: xr.Dataset) -> None:
     n, (smooth, haff) = _at(film), _homogeneous(film)
     axes.plot(n, film.E_trans, color=TRANSLATION, label="translation")
     axes.plot(n[1:], film.E_rot[1:], color=ROTATION, linestyle="--", label="rotation")
-    axes.plot(smooth, haff.T_tr, label="both, if homogeneous", **DOTTED)
+    axes.plot(smooth, haff.T_tr, label="homogeneous", **DOTTED)
     axes.plot(smooth[1:], haff.T_rot[1:], **DOTTED)
     low = film.E_rot.values[1:].min()
     axes.set(yscale="log", ylim=(low / 4, 3), xlim=(0, n[-1]))
@@ -171,17 +181,17 @@ def _energies(axes: Axes, film: xr.Dataset) -> None:
 def _ratio(axes: Axes, film: xr.Dataset) -> None:
     smooth, haff = _homogeneous(film)
     axes.plot(_at(film), film.R, color=ROTATION)
-    axes.plot(smooth, haff.theta / (1 + haff.theta), label="if homogeneous", **DOTTED)
+    axes.plot(smooth, haff.theta / (1 + haff.theta), label="homogeneous", **DOTTED)
     axes.set(ylabel=r"$R$", xlabel=PER_PARTICLE, xlim=(0, _at(film)[-1]), ylim=(0, None))
     axes.set_title("f   share of rotation", loc="left", fontsize=TITLE)
-    axes.legend(loc="right")
+    axes.legend(loc="best")
 
 
 def _unevenness(axes: Axes, film: xr.Dataset) -> None:
     maps = [packing(film, frame) for frame in range(film.sizes["frame"])]
     axes.plot(_at(film), [one.std() / one.mean() for one in maps], color=UNEVENNESS)
     axes.set(xlabel=PER_PARTICLE, ylabel=r"$\delta\phi/\phi$", ylim=(0, None))
-    axes.set_title("g   unevenness of the packing", loc="left", fontsize=TITLE)
+    axes.set_title("g   uneven packing", loc="left", fontsize=TITLE)
 
 
 def _passed(film: xr.Dataset, frame: int) -> str:
@@ -212,7 +222,7 @@ def moving_picture(film: xr.Dataset) -> tuple[Figure, Callable[[int], None]]:
     for axes, draw_graph in ((above, _energies), (below, _ratio)):
         draw_graph(axes, film)
         axes.set_title("", loc="left")
-        axes.legend(fontsize=6)
+        axes.legend(fontsize=7)
         axes.label_outer()
         marks.append(axes.axvline(0, color=style.FAINT, zorder=0))
 
