@@ -4,8 +4,9 @@ import math
 
 import pytest
 from hard_cases.catalogue import Margin, Margins, Remedy, Without
-from hard_cases.pictures import room
+from hard_cases.pictures import overview, room
 from hard_cases.report import number, table
+from tests.show.figures.legibility import faults
 
 
 def margin(**changed):
@@ -32,11 +33,19 @@ def test_the_table_has_every_margin_under_its_family_and_case():
     text = table(rows, [Remedy("Family", "a case", "the remedy")], full=True)
     assert text.count("\n## Family\n") == 1
     assert text.count("What could go wrong: it breaks.") == 2
-    assert "| error | 0.001 | at most 0.01 | 1 500 tries |" in text
-    assert "| share | 0.001 | at least 0.0001 | 1 500 tries |" in text
+    assert "| error | 0.001 | at most 0.01 | 10 | 1 500 tries |" in text
+    assert "| share | 0.001 | at least 0.0001 | 10 | 1 500 tries |" in text
     assert "2 cases, 3 margins" in text and "Of 1 cases" in text
     assert text.index("Fails without: the remedy.") < text.index("**another.**")
     assert "with few tries" in table(rows, [], full=False)
+
+
+def test_the_picture_has_a_line_for_each_family_and_counts_what_it_cannot_show():
+    rows = [margin(), margin(measured=0.0), margin(family="Another", measured=1e-9, limit=1.0)]
+    (axes,) = overview(rows).axes
+    assert [label.get_text() for label in axes.get_yticklabels()] == ["Family", "Another"]
+    assert [text.get_text() for text in axes.texts] == ["1", "1"]
+    assert faults(lambda: overview(rows)) == []
 
 
 def test_counts_are_readable():

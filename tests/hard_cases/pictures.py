@@ -1,6 +1,5 @@
 """Pictures of the hard cases: how much room each leaves, and what some of them look like."""
 
-import itertools
 import math
 from collections.abc import Callable, Mapping
 
@@ -10,13 +9,13 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
 from hard_cases.catalogue import Margin
-from roughgas.show.style import FAINT, GREY, LOOKS, PARAMETERS, THEORY, WIDTH
+from roughgas.show.style import FAINT, GREY, LOOKS, PARAMETERS, THEORY, TWO_WIDE
 from roughgas.theory import cooling_ratio
 
 Series = Mapping[str, Mapping[str, list[float]]]
 
-FARTHEST = 1e5  # of factors that are told apart; beyond, and where nothing at all was off, the rim
-ROW = 0.19  # inches
+FARTHEST = 1e5  # of factors that are told apart; numbers beyond, and without any error, are counted
+ROW = 0.24  # inches
 
 matplotlib.rcParams.update(PARAMETERS)
 
@@ -30,49 +29,28 @@ def room(row: Margin) -> float:
 
 
 def overview(margins: list[Margin]) -> Figure:
-    """One line for each case, with a symbol for each number that it measures, over the factor by
-    which that could be worse."""
-    families = [list(rows) for _, rows in itertools.groupby(margins, key=lambda row: row.family)]
-    cases = [list(dict.fromkeys(row.case for row in rows)) for rows in families]
-    lines = sum(map(len, cases)) + len(families)
-    figure = Figure(figsize=(1.55 * WIDTH, ROW * lines + 1.0), layout="constrained")
+    """One line for each family, with a symbol for each number that it measures, over the factor by
+    which that could be worse. The table has the cases."""
+    factors: dict[str, list[float]] = {}
+    for row in margins:
+        factors.setdefault(row.family, []).append(room(row))
+    figure = Figure(figsize=(TWO_WIDE, ROW * len(factors) + 1.0), layout="constrained")
     axes = figure.subplots()
-    labels, height = [], 0
-    for index, (rows, titles) in enumerate(zip(families, cases, strict=True)):
-        labels.append((height, rows[0].family, True))
-        for title in titles:
-            height += 1
-            labels.append((height, title, False))
-            factors = [room(row) for row in rows if row.case == title]
-            _line(axes, height, np.array(factors), LOOKS[index % len(LOOKS)])
-        height += 1
-    _frame(axes, labels)
-    return figure
-
-
-def _line(axes, height, factors, look):
-    near = factors[factors < FARTHEST]
-    axes.plot([1.0, min(factors.min(), FARTHEST)], [height, height], color=look.colour, lw=1.0)
-    axes.plot(near, np.full(near.size, height), look.marker, color=look.colour, ms=4)
-    if near.size < factors.size:
-        axes.plot(FARTHEST, height, ">", color=look.colour, ms=5, clip_on=False)
-
-
-def _frame(axes, labels):
+    for height, found in enumerate(map(np.array, factors.values())):
+        near, far = found[found < FARTHEST], int(np.sum(found >= FARTHEST))
+        axes.plot(near, np.full(near.size, height), "o", color=LOOKS[0].colour, ms=4, alpha=0.6)
+        beside = {"xytext": (4, 0), "textcoords": "offset points", "va": "center", "fontsize": 8}
+        axes.annotate(str(far), (FARTHEST, height), **beside)
     axes.set_xscale("log")
-    axes.set_xlim(1.0, FARTHEST)
-    axes.set_ylim(labels[-1][0] + 0.8, -0.8)
-    axes.set_yticks([height for height, _, _ in labels], [text for _, text, _ in labels])
-    for tick, (_, _, family) in zip(axes.get_yticklabels(), labels, strict=True):
-        tick.set_fontsize(8 if family else 7)
-        tick.set_fontweight("bold" if family else "normal")
+    axes.set(xlim=(0.7, FARTHEST), ylim=(len(factors) - 0.4, -0.6))
+    axes.set_yticks(range(len(factors)), factors, fontsize=8)
     axes.tick_params(axis="y", which="both", left=False, right=False)
     axes.grid(axis="x", color=FAINT, linewidth=0.3)
     axes.axvline(1.0, color=THEORY)
     axes.set_xlabel("factor by which a measured number could be worse", fontsize=9)
-    note = "each symbol is one measured number; a line ends at the one nearest to its limit;\n"
-    note += "arrows: off the scale, or without any error"
-    axes.set_title(note, fontsize=7, color=GREY, loc="right", pad=3)
+    note = "each symbol is one measured number; right: how many are further off, or without error"
+    axes.set_title(note, fontsize=8, color=GREY, loc="right", pad=3)
+    return figure
 
 
 def collapse(series: Series) -> Figure:
@@ -102,12 +80,12 @@ def cooling(series: Series) -> Figure:
         ratio.plot(columns["collisions"], columns[f"R {r}"], **style)
     energy.axhline(-308, color=FAINT, lw=0.8, linestyle=(0, (1, 2)))
     at_rim = energy.get_yaxis_transform()
-    energy.text(0.98, -300, "smallest double", transform=at_rim, ha="right", fontsize=7, color=GREY)
+    energy.text(0.98, -290, "smallest double", transform=at_rim, ha="right", fontsize=7, color=GREY)
     for r, look in zip(restitutions, LOOKS, strict=False):
         ratio.axhline(cooling_ratio(float(r), 0.0), color=look.colour, lw=0.5)
-    ratio.set_title("thin: the theory of free cooling", fontsize=7, color=GREY, loc="right", pad=3)
+    ratio.set_title("thin lines: theory of free cooling", fontsize=8, loc="left")
     energy.set_ylabel(r"$\log_{10} E_\mathrm{trans}$")
-    ratio.set_ylabel("$R$, means over a hundredth of the run")
+    ratio.set_ylabel("$R$, means of a hundredth of the run")
     ratio.set_ylim(0.0, 0.8)
     for axes in (energy, ratio):
         axes.set_xlabel("collisions per particle")
@@ -123,7 +101,7 @@ PICTURES: dict[str, Callable[[Series], Figure]] = {
 
 
 def _pair(*widths):
-    figure = Figure(figsize=(1.5 * WIDTH, 0.72 * WIDTH), layout="constrained")
+    figure = Figure(figsize=(TWO_WIDE, 0.48 * TWO_WIDE), layout="constrained")
     return figure, figure.subplots(1, 2, width_ratios=widths)
 
 
@@ -157,7 +135,7 @@ def _contact_times(axes, model):
     share = axes.twinx()
     share.plot(duration, touched, LOOKS[1].marker + "--", color=LOOKS[1].colour, ms=3.5)
     share.set_yscale("log")
-    share.set_ylabel("share of contacts touched by the model", color=LOOKS[1].colour)
+    share.set_ylabel("share of contacts changed", color=LOOKS[1].colour)
     axes.set_title(r"with the model, $r = 0.6$, $\beta = 0$", fontsize=8, loc="left")
 
 
@@ -165,12 +143,12 @@ def _separation(axes, columns):
     collision, kernel, expected = (
         np.array(columns[name]) for name in ("collision", "kernel", "expected")
     )
-    axes.semilogy(collision, kernel, "o", color=LOOKS[0].colour, ms=3, label="the kernel")
-    axes.plot(collision, expected, color=THEORY, label="what roundings grow to")
+    axes.semilogy(collision, kernel, "o", color=LOOKS[0].colour, ms=3, label="this program")
+    axes.plot(collision, expected, color=THEORY, label="prediction from roundings")
     axes.set_xlabel("collisions of eight disks")
-    axes.set_ylabel("separation from fifty digits")
+    axes.set_ylabel("distance from exact simulation")
     axes.legend(loc="upper left")
-    axes.set_title("until chaos separates them", fontsize=8, loc="left")
+    axes.set_title("rounding errors grow by chaos", fontsize=8, loc="left")
 
 
 def _way_back(axes, columns):
@@ -183,7 +161,7 @@ def _way_back(axes, columns):
         axes.semilogy(length, error, look.marker, color=look.colour, ms=3, label=name)
         seen = prediction < 1.0
         axes.plot(length[seen], prediction[seen], color=look.colour, linestyle=look.line, lw=0.9)
-    axes.set_xlabel("collisions per particle before the turn")
-    axes.set_ylabel("distance from the start after the return")
+    axes.set_xlabel("collisions per particle before the reversal")
+    axes.set_ylabel("distance from the start")
     axes.legend(loc="lower right")
-    axes.set_title("an elastic gas retraces its steps (lines: predicted)", fontsize=8, loc="left")
+    axes.set_title("a reversed elastic gas (lines: predicted)", fontsize=8, loc="left")

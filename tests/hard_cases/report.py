@@ -23,7 +23,8 @@ Where a simulation could go wrong, and how far this one stays from that. Written
 `snakemake hard_cases`{scale}; docs/trust.md explains the cases.
 
 {cases} cases, {margins} margins, all within their limits. {remedies} of the cases fail
-without the safeguard of the source that the table names.
+without the safeguard of the source that the table names. Room: how many times worse a number
+could be.
 """
 
 
@@ -65,11 +66,12 @@ def _case(case, danger, rows, taken):
             row.what,
             f"{row.measured:.3g}",
             f"{row.sense} {row.limit:g}",
+            f"{pictures.room(row):.3g}".replace("inf", "no error"),
             f"{number(row.tried)} {row.unit}",
         )
         for row in rows
     ]
-    lines = markdown(("measured", "value", "limit", "tried"), cells, "<>>>")
+    lines = markdown(("measured", "value", "limit", "room", "tried"), cells, "<>>>>")
     remedies = "".join(f"\nFails without: {remedy}.\n" for remedy in taken)
     return f"\n**{case}.** What could go wrong: {danger}.\n\n{lines}{remedies}"
 

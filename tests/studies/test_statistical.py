@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 from schedules import COOLING, STEADY
 from tests.data.schema_page import check_study
 
+from roughgas.statistics.estimate import Estimate
 from roughgas.studies import statistical, study
 from roughgas.studies.figures.accuracy import draw_statistical as draw
 from roughgas.studies.runs.statistical import Chain, time_from_blocks
@@ -141,4 +142,6 @@ def test_the_panel_shows_every_level_and_both_slopes_of_a_scene(parts):
     expected = np.column_stack([sheared.seconds, sheared.error / sheared.R])
     assert any(np.array_equal(points, expected) for points in shown)
     labels = [text.get_text() for text in axes.get_legend().get_texts()]
-    assert f"seeds: ${float(sheared.slope):.3f}" in labels[1]
+    assert labels[1].startswith("sheared: ")
+    slope = f"{Estimate(float(sheared.slope), float(sheared.slope_stderr))}"
+    assert labels[1].endswith(slope.replace("-", "\N{MINUS SIGN}"))

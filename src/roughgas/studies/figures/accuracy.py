@@ -11,10 +11,11 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, MultipleLocator
 
 from roughgas.show.style import FAINT, GREY, LOOKS, THEORY, Look
+from roughgas.statistics.estimate import Estimate
 from roughgas.statistics.fits import power_law
 from roughgas.studies.figures.panels import Panel, paired_panels
 
-SIZE = (10.2, 4.6)  # inches, of two panels
+SIZE = (7.0, 4.2)  # inches, of two panels
 WAYS = {"length": "-", "seeds": "--"}
 METHODS = {
     "closed_form": ("closed form (Maxwellian theory)", Look(THEORY, "*", "none")),
@@ -23,7 +24,6 @@ METHODS = {
     "event_driven": ("event-driven", LOOKS[0]),
 }
 LEAST = 1 / 3  # of the reference's own error, down to which the axis goes
-SIDESTEP = 0.01  # in beta, between series at the same beta
 ROOM = 0.4  # for the legend beneath, of the range of the data
 PACKING_MARKERS = ("X", "P", "d")
 BOTH = np.sqrt(2.0)  # statistical error and deviation being equal
@@ -53,7 +53,8 @@ def draw_statistical(axes: Axes, data: xr.Dataset) -> None:
     _logarithmic(axes, "CPU seconds of measurement", "relative error of $R$ (rms)")
     for look, name in zip(LOOKS, data.scene.values, strict=False):
         scene = data.sel(scene=name)
-        label = f"{name}\n" + "\n".join(_slope(scene.sel(way=way)) for way in WAYS)
+        slopes = ", ".join(_slope(scene.sel(way=way)) for way in WAYS)
+        label = f"{name}: {slopes}".replace("-", "\N{MINUS SIGN}")
         for way, line in WAYS.items():
             own, R = scene.sel(way=way), float(scene.R)
             x, error, groups = own.seconds.values, own.error.values / R, own.groups.values
@@ -69,15 +70,14 @@ def draw_statistical(axes: Axes, data: xr.Dataset) -> None:
             law = power_law(x, error, groups, bias=-0.5 / groups)
             axes.plot(ends, law(ends), color=look.colour, ls=line, lw=0.9)
     axes.set_ylim(bottom=min(data.relative_error.values) / 4)  # leaves room for the legend
-    grey: dict[str, Any] = {"color": GREY, "fontsize": 7.5, "ha": "right"}
-    beside: dict[str, Any] = {"xytext": (-3, 1), "textcoords": "offset points", "va": "bottom"}
+    grey: dict[str, Any] = {"color": GREY, "fontsize": 7.5}
+    beside: dict[str, Any] = {"xytext": (3, 3), "textcoords": "offset points", "va": "bottom"}
     for accuracy in data.relative_error.values:
         axes.axhline(accuracy, color=FAINT, lw=0.6, ls=":", zorder=0)
-        place: dict[str, Any] = {"xy": (1.0, accuracy), "xycoords": ("axes fraction", "data")}
+        place: dict[str, Any] = {"xy": (0.0, accuracy), "xycoords": ("axes fraction", "data")}
         axes.annotate(f"{100 * accuracy:g} %", **place, **beside, **grey)
-    axes.legend(loc="lower left", title="slopes of error against time", alignment="left")
-    text = "filled: longer runs, open: more runs"
-    axes.text(0.97, 0.95, text, transform=axes.transAxes, **grey)
+    title = "slope of longer runs (filled), of more (open)"
+    axes.legend(loc="lower left", title=title, alignment="left")
 
 
 def draw_models(axes: Axes, data: xr.Dataset) -> None:
@@ -95,34 +95,27 @@ def draw_models(axes: Axes, data: xr.Dataset) -> None:
     fit = data.event_driven_prefactor.values * seconds**data.event_driven_slope.values
     axes.plot(seconds, fit, color=LOOKS[0].colour, linewidth=0.8, zorder=1)
     _floors(axes, data)
-    title = f"cooling gas, $r = {data.attrs['r']:g}$, $\\beta = {data.attrs['beta']:g}$"
-    axes.legend(loc="lower left", title=title)
+    axes.legend(loc="lower left")
 
 
 def draw_map(axes: Axes, data: xr.Dataset) -> None:
     """Draw R of the homogeneous gas over theory, minus 1, against beta, a series for each r.
 
-    Lines are what its cumulants a20 and a11 explain.
+    Dashes are what its measured cumulants a20 and a11 explain.
     """
     order = np.argsort(-data.map_r.values)
-    for place, (row, look) in enumerate(zip(order, LOOKS, strict=False)):
+    for row, look in zip(order, LOOKS, strict=False):
         one = data.isel(map_r=row)
         x, (y, bar) = one.map_beta.values, _with_error(one, "map_gap")
         label = f"$r = {float(one.map_r):g}$"
         about: dict[str, Any] = {"color": look.colour, "marker": look.marker, "label": label}
-        x_beside = x + SIDESTEP * (place - 1.5)
-        axes.errorbar(x_beside, 100 * y, 100 * bar, markersize=3.6, **about, **THIN)
-        axes.plot(
-            x,
-            100 * one.map_gap_explained.values,
-            color=look.colour,
-            linestyle=look.line,
-            linewidth=0.8,
-        )
+        axes.errorbar(x, 100 * y, 100 * bar, markersize=3.6, **about, **THIN)
+        explained = 100 * one.map_gap_explained.values
+        axes.plot(x, explained, "_", color=look.colour, ms=7, zorder=1)
         _event_driven(axes, data, float(one.map_r), look.colour)
     for k, packing in enumerate(data.packing.values):
         axes.plot([], [], PACKING_MARKERS[k], color=GREY, label=f"events, packing {packing:g}")
-    axes.plot([], [], color=GREY, linewidth=0.8, label="first order in $a_{20}$ and $a_{11}$")
+    axes.plot([], [], "_", color=GREY, ms=7, label="$a_{20}$, $a_{11}$ to first order")
     axes.axhline(0, color=THEORY, linewidth=0.8, zorder=0)
     axes.set(xlim=(-1.04, 1.04), xlabel=r"roughness $\beta$")
     axes.set_ylabel(r"$R/R_\mathrm{theory} - 1$   (%)")
@@ -130,7 +123,7 @@ def draw_map(axes: Axes, data: xr.Dataset) -> None:
     axes.xaxis.set_minor_locator(MultipleLocator(0.1))
     low, high = axes.get_ylim()
     axes.set_ylim(low - ROOM * (high - low), high)
-    axes.legend(loc="lower center", ncols=2, title="homogeneous gas (DSMC), and what explains it")
+    axes.legend(loc="lower center", ncols=2, title="homogeneous gas (DSMC)")
 
 
 def draw_discretisation(axes: Axes, data: xr.Dataset) -> None:
@@ -142,15 +135,16 @@ def draw_discretisation(axes: Axes, data: xr.Dataset) -> None:
         _method(axes, data.sel(steps=steps), "soft", look, label)
     _name_contact_times(axes, data)
     _method(axes, data, "model", Look(THEORY, "x", ":"), "events, contact-time model")
+    axes.set_ylim(bottom=axes.get_ylim()[0] / 3)  # room for the legend
     axes.yaxis.set_major_formatter(FuncFormatter(lambda y, _: f"{100.0 * y:g} %"))
     axes.legend(loc="lower left")
 
 
 PANELS = (
-    (draw_statistical, "(a) noise: three scenes, {}"),
+    (draw_statistical, "(a) noise, {}"),
     (draw_models, "(b) models of a cooling gas, {}"),
-    (draw_discretisation, "(c) springs and time steps: cooling gas, {}"),
-    (draw_map, "(d) what the Maxwellian theory of a cooling gas misses"),
+    (draw_discretisation, "(c) springs and time steps, {}"),
+    (draw_map, "(d) what Maxwellian theory misses"),
 )
 
 
@@ -163,24 +157,26 @@ def _with_error(data, name):
 
 
 def _slope(own):
-    return f"  {own.way.values!s}: ${float(own.slope):.3f} \\pm {float(own.slope_stderr):.3f}$"
+    return f"{Estimate(float(own.slope), float(own.slope_stderr))}"
 
 
 def _floors(axes, data):
     """Draw what each model tends to, whatever is spent on it, and where the reference ends."""
-    across = {"transform": axes.get_yaxis_transform(), "fontsize": 7}
+    across = {"textcoords": "offset points", "fontsize": 7}
+    place = {"xycoords": axes.get_yaxis_transform()}
     for name, text, colour, x, side in (
         ("closed_form_error", "Maxwellian velocities", THEORY, 0.985, "right"),
         ("dsmc_floor", "no density, no correlations", LOOKS[1].colour, 0.015, "left"),
     ):
         level = float(data[name])
         axes.axhline(level, color=colour, linewidth=0.7, linestyle=(0, (4, 2)), zorder=0)
-        axes.text(x, 1.06 * level, text, color=colour, va="bottom", ha=side, **across)
+        how = {"color": colour, "va": "bottom", "ha": side} | across | place
+        axes.annotate(text, (x, level), (0, 3), **how)
     own = float(data.R_reference_stderr / data.R_reference)
     axes.axhspan(own * LEAST, own, color=FAINT, alpha=0.25, linewidth=0, zorder=0)
     axes.set_ylim(bottom=own * LEAST * 0.02)  # room for the legend beneath what is shaded
-    below = {"va": "top", "ha": "right", "color": GREY} | across
-    axes.text(0.985, 0.9 * own, "error of the reference", **below)
+    below = {"va": "top", "ha": "right", "color": GREY} | across | place
+    axes.annotate("error of the reference", (0.985, own), (0, -3), **below)
 
 
 def _event_driven(axes, data, r, colour):
@@ -188,7 +184,7 @@ def _event_driven(axes, data, r, colour):
     points = data.isel(density_point=np.flatnonzero(data.density_r.values == r))
     large = {"markersize": 7, "markeredgecolor": THEORY, "markeredgewidth": 0.6, "zorder": 4}
     for k in range(points.sizes["packing"] if points.sizes["density_point"] else 0):
-        x = points.density_beta.values + 2.5 * SIDESTEP * (k - 0.5)
+        x = points.density_beta.values
         y, bar = _with_error(points.isel(packing=k), "density_gap")
         marker = PACKING_MARKERS[k]
         axes.errorbar(x, 100 * y, 100 * bar, color=colour, marker=marker, **large, **THIN)
@@ -220,13 +216,13 @@ def _method(axes, data, kind, look, label):
 
 def _name_contact_times(axes, data):
     """t_c nu beside the outermost of the points that share it."""
-    small = {"fontsize": 6.5, "color": GREY}
+    small = {"fontsize": 7, "color": GREY}
     seen = np.abs(data.soft_deviation) > RESOLVED * data.soft_deviation_stderr
     seconds = data.soft_matched_seconds.where(seen, 0.0)
     for share in data.contact_time.values[seen.any("steps").values]:
         steps = seconds.sel(contact_time=share).idxmax("steps")
         point = data.sel(contact_time=share, steps=steps)
         place = point.soft_matched_seconds.item(), BOTH * abs(point.soft_deviation.item())
-        axes.annotate(f"{share:g}", place, (4, 3), textcoords="offset points", **small)
+        axes.annotate(f"{share:g}", place, (5, 4), textcoords="offset points", **small)
     about = {"transform": axes.transAxes, "ha": "right", "va": "top"}
     axes.text(0.98, 0.97, r"numbers: $t_c\nu$ of soft spheres", **about, **small)

@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import NullFormatter
 
 from roughgas.show.style import GREY, LOOKS, THEORY, Look
 from roughgas.studies.tables import along
@@ -65,6 +66,7 @@ def draw_tails(axes: Axes, data: xr.Dataset) -> None:
     for marker, label in (("o", "DSMC"), ("x", f"events, packing {packing}")):
         axes.plot([], [], marker, color=GREY, ms=4, label=label)
     axes.set_xscale("log")
+    axes.xaxis.set_minor_formatter(NullFormatter())
     axes.set_xlabel(r"fourth cumulant of spins, $a_{02}$")
     axes.legend(loc="upper right")
 
