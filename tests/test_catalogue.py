@@ -35,7 +35,7 @@ def test_the_table_has_every_margin_under_its_family_and_case():
     assert text.count("What could go wrong: it breaks.") == 2
     assert "| error | 0.001 | at most 0.01 | 10 | 1 500 tries |" in text
     assert "| share | 0.001 | at least 0.0001 | 10 | 1 500 tries |" in text
-    assert "2 cases, 3 margins" in text and "Of 1 cases" in text
+    assert "2 cases, 3 margins" in text and "1 of the cases fail" in text
     assert text.index("Fails without: the remedy.") < text.index("**another.**")
     assert "with few tries" in table(rows, [], full=False)
 
