@@ -105,20 +105,23 @@ COMMANDS = {
     ),
     "plot": Command(
         "cli.products:plot",
-        "draw any reduced dataset, beside theory",
-        value("input REDUCED", "reduced dataset"),
+        "draw a point over time, or any reduced dataset beside theory",
+        value("input DATASET", "a point, or a reduced dataset"),
         value("--over AXIS", "horizontal axis: r, beta, or the third axis (the default)"),
         value("--r VALUE", "values of r to show", nargs="+"),
         value("--beta VALUE", "values of beta to show", nargs="+"),
         output(".png, .pdf or .svg files", nargs="+"),
         examples=(
+            "roughgas plot cooling_r0.9_beta0.5_seed1.nc -o over_time.png",
             "roughgas plot results/paper/sheared.nc -o my.png",
             "roughgas plot results/paper/vibrated_inertia.nc --beta 0 1 -o my.png my.pdf",
             "roughgas plot results/paper/waves.nc --over beta --r 0.9 -o waves.png",
         ),
         about="Draw R of a sweep with error bars and theory, and R minus theory. The horizontal "
         "axis is the third axis of the sweep, else beta. Of many series an evenly spaced selection "
-        "is drawn; --r and --beta choose. Without spin, the energy is drawn.",
+        "is drawn; --r and --beta choose. Without spin, the energy is drawn. Of a point, R(t) and "
+        "both energies: the window in which R is measured is shaded, its mean, its 95 % interval "
+        "and theory are lines.",
     ),
     "experiments": Command(
         "cli.experiments:experiments",

@@ -27,7 +27,7 @@ from roughgas.results.table import rows as rows_of
 from roughgas.results.table import why_wide
 from roughgas.scene import packing
 from roughgas.statistics.estimate import Estimate, decimals_of
-from roughgas.theory.prediction import equation_of, predicted_ratio
+from roughgas.theory.prediction import equation_of, ratio_of_point
 
 QUOTED = {
     opening.POINT: ("experiment_json", "command"),
@@ -93,7 +93,7 @@ def _point_record(point: Dataset) -> dict[str, Any]:
     """Return the single numbers of a point, and those of theory where particles spin."""
     found = scalars(point)
     if "R" in found:
-        expected = _theory(point)
+        expected = ratio_of_point(point)
         found |= {"R_theory": expected, "residual": found["R"] - expected}
     return {"variables": found}
 
@@ -147,16 +147,8 @@ def _listed(settings: Mapping[str, Any]) -> str:
     return ", ".join(f"{name} {value}" for name, value in settings.items())
 
 
-def _theory(point: Dataset) -> float:
-    """Return R of theory; where a quantity of a species is swept, it is the value that counts."""
-    about = point.attrs | {"theory": equation_of(point.attrs, point).kind}
-    if not isinstance(value := about.get("swept_value", ""), str):
-        about[third_axis(about) or ""] = value
-    return float(predicted_ratio(about, about["r"], about["beta"]))
-
-
 def _ratio(point: Dataset) -> list[list[str]]:
-    R, half, expected = float(point.R), float(point.R_ci95), _theory(point)
+    R, half, expected = float(point.R), float(point.R_ci95), ratio_of_point(point)
     digits = decimals_of(half) if 0.0 < half < 1.0 else 4
     trust = "" if point.R_ci95_trusted else " (the run is too short to trust it)"
     series = point.R_series.values[np.isfinite(point.R_series.values)]

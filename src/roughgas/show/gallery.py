@@ -3,11 +3,15 @@
 from collections.abc import Iterable, Sequence
 from importlib import import_module
 from pathlib import Path
+from typing import Any
 
 from roughgas.base.errors import InputError, not_one_of
+from roughgas.data.opening import POINT, REDUCED, kind_of, opened
+from roughgas.data.point import read_point
 from roughgas.data.reduced import read_reduced
 from roughgas.show import style
 from roughgas.show.catalogue import FIGURES, figures_of
+from roughgas.theory.prediction import ratio_of_point
 
 
 def draw(
@@ -42,14 +46,29 @@ def plot(
     over: str | None = None,
     **chosen: Sequence[float],
 ) -> list[str]:
-    """Draw the reduced dataset at `path` into `outputs`, each a .pdf, .png or .svg.
+    """Draw the reduced dataset at `path`, or the time series of a point, into `outputs`, each a
+    .pdf, .png or .svg.
 
     Returns a line for each coordinate of which not all values are shown. Raises InputError as
-    `sweep.draw` does, and for another kind of file.
+    `sweep.draw` does, for another kind of file, and for an axis or values of a point.
     """
+    with opened(path, REDUCED, POINT) as file:
+        is_point = kind_of(file) == POINT
+    if is_point:
+        return _plot_point(path, outputs, over, *chosen.values())
     from roughgas.show.figures import sweep
 
     data = read_reduced(path)
     layout = sweep.arranged(data, over, chosen)
     style.draw(lambda: sweep.draw(data, over, **chosen), outputs)
     return sweep.left_out(data, layout)
+
+
+def _plot_point(path: str | Path, outputs: Iterable[str | Path], *axes: Any) -> list[str]:
+    from roughgas.show.figures import timeline
+
+    if any(axes):
+        raise InputError("dataset", path, "be a reduced one for --over, --r and --beta")
+    point = read_point(path)
+    style.draw(lambda: timeline.draw(point, ratio_of_point(point)), outputs)
+    return []

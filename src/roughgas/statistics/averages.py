@@ -1,4 +1,4 @@
-"""Averages over whole periods of the drive."""
+"""Averages over blocks of samples: whole periods of the drive, or what a line can show."""
 
 import numpy as np
 
@@ -20,3 +20,9 @@ def period_means(series: np.ndarray, samples_per_period: int) -> np.ndarray:
         )
     whole = series[..., : periods * samples_per_period]
     return whole.reshape(*series.shape[:-1], periods, samples_per_period).mean(axis=-1)
+
+
+def block_means(values: np.ndarray, block: int) -> np.ndarray:
+    """Return the means over blocks of `block` values; the last block may be shorter."""
+    begins = np.arange(0, values.size, block)
+    return np.add.reduceat(values, begins) / np.diff(np.append(begins, values.size))

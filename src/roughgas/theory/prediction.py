@@ -66,3 +66,14 @@ def predicted_ratio(attributes: Mapping[str, Any], r: Any, beta: Any) -> np.ndar
     else:
         found = theory.stationary_ratio(r, beta, dimension, q, of_drive)
     return np.where((beta == -1.0) & (not driven), math.nan, found)
+
+
+def ratio_of_point(point: Any) -> float:
+    """Return R of theory for a point (a Dataset); NaN where there is none.
+
+    Where a quantity of a species is swept, it is the value that counts.
+    """
+    about = point.attrs | {"theory": equation_of(point.attrs, point).kind}
+    if not isinstance(value := about.get("swept_value", ""), str):
+        about[about["swept"].rpartition(".")[2]] = value
+    return float(predicted_ratio(about, about["r"], about["beta"]))

@@ -28,6 +28,19 @@ def test_markdown_becomes_tables_and_stays_text(tmp_path):
     assert "&lt;b&gt;$x&lt;/b&gt;" in text
 
 
+def test_pictures_beside_a_text_are_part_of_its_page(tmp_path):
+    for name in ("secret.png", "a/pictures/fig 1.png", "a/key.txt"):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_bytes(name.encode())
+    named = ["pictures/fig%201.png", "../secret.png", "key.txt", "none.png", "http://x.org/a.png"]
+    table = "| ![t](pictures/fig%201.png) |\n| --- |\n"
+    (tmp_path / "a/page.md").write_text("\n\n".join([f"![p]({one})" for one in named] + [table]))
+    text = html(tmp_path / "a/page.md", tmp_path)
+    data = base64.b64encode(b"a/pictures/fig 1.png").decode()
+    assert text.count(f'src="data:image/png;base64,{data}"') == 2 and text.count("base64,") == 2
+    assert "img-src data:" in text
+
+
 def test_other_files_are_shown_as_what_they_are(tmp_path):
     (tmp_path / "config.yaml").write_text("box: [1, <2>]\n")
     assert "<pre>box: [1, &lt;2&gt;]\n</pre>" in html(tmp_path / "config.yaml", tmp_path)

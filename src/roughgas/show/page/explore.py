@@ -27,6 +27,7 @@ from roughgas.data.reduced import EQUILIBRATED, particles_of, read_reduced, thir
 from roughgas.data.variables import CLOCKS
 from roughgas.show.page.policy import policy
 from roughgas.show.style import LOOKS
+from roughgas.statistics.averages import block_means
 from roughgas.theory.prediction import equation_of, predicted_ratio
 
 # Plotly's names of the figures' markers and lines
@@ -205,12 +206,6 @@ def time_series(seed: Any) -> dict[str, Any]:
     block = math.ceil(columns["at"].size / LONGEST)
     thinned = {name: rounded(block_means(values, block)) for name, values in columns.items()}
     return {"clock": clock, "block": block, "measured": window} | thinned
-
-
-def block_means(values: np.ndarray, block: int) -> np.ndarray:
-    """Return the means over blocks of `block` values; the last block may be shorter."""
-    begins = np.arange(0, values.size, block)
-    return np.add.reduceat(values, begins) / np.diff(np.append(begins, values.size))
 
 
 def exact(value: Any) -> float | int | None:
