@@ -1,6 +1,7 @@
 """roughgas as a library: the same numbers, the same names and the same errors as the pipeline's."""
 
 import doctest
+import json
 import shlex
 import subprocess
 import sys
@@ -91,12 +92,39 @@ def test_an_experiment_of_another_configuration(tmp_path):
     assert "mine" in experiments(path) and "mine" not in experiments()
 
 
+def test_lists_make_the_reduced_dataset_of_their_points(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    small = {"particles": 10, "packing": 0.1, "schedule": {"replicas": 2, "plateau": 10}}
+    small |= {"progress": False, "observe": {"top": lambda frame: frame.position.max()}}
+    found = simulate("cooling", r=0.9, beta=np.array([0.5, 0]), seed=[1, 2], **small)
+    assert dict(found.sizes) == {"r": 1, "beta": 2, "seed": 2} and not list(tmp_path.iterdir())
+    one = simulate("cooling", r=0.9, beta=0.5, seed=2, **small)
+    assert found.R_seed.sel(r=0.9, beta=0.5, seed=2) == one.R
+    assert found.R.sel(beta=0.5).item() == pytest.approx(found.R_seed.sel(beta=0.5).mean().item())
+    assert found.attrs["packing"] == one.attrs["packing"] == 0.1 and found.top_stderr.min() > 0
+    sides = json.loads(one.experiment_json)["box"]
+    assert 10 * np.pi / np.prod(sides) == pytest.approx(0.1)
+
+
 @pytest.mark.parametrize(
     ("name", "changes", "message"),
     [
         ("colling", {}, "experiment = 'colling': must be one of cooling, cooling_friction, "),
         ("cooling", {"r": 1.5}, "restitution r = 1.5: must lie in [0, 1]"),
         ("cooling", {"beta": np.nan}, "roughness beta = nan: must lie in [-1, 1]"),
+        (
+            "cooling",
+            {"beta": [0, 0.5, 0]},
+            "beta = [0, 0.5, 0]: must be one value or several",
+        ),
+        ("cooling", {"seed": []}, "seed = []: must be one value or several, each of them once"),
+        ("cooling", {"r": [0.9, 1.5]}, "restitution r = 1.5: must lie in [0, 1]"),
+        ("cooling", {"beta": [0], "keep_state": True}, "keep_state = given: must come with one r,"),
+        (
+            "cooling",
+            {"packing": 0.2, "box": (40, 40)},
+            "cooling.box = [40, 40]: must not stand",
+        ),
         ("cooling", {"seed": -1}, "seed = -1: must be a whole number in [0, 2^63 - 1]"),
         ("cooling", {"scale": "big"}, "scale = 'big': must be one of coarse, fine, paper, small"),
         ("cooling", {"particles": 0}, "cooling.particles = 0: must be a whole number in [1, 1"),

@@ -8,7 +8,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from roughgas.config.arguments import Effects, Observe, Schedule, Side, Species
+from roughgas.base.errors import InputError
+from roughgas.config.arguments import Effects, Observe, Schedule, Side, Species, Values
 
 if TYPE_CHECKING:
     import xarray
@@ -20,9 +21,9 @@ UNNAMED = "scene"
 def simulate(
     experiment: str | None = None,
     *,
-    r: float,
-    beta: float,
-    seed: int = 1,
+    r: Values,
+    beta: Values,
+    seed: Values = 1,
     particles: int | None = None,
     box: Sequence[Side] | None = None,
     packing: float | None = None,
@@ -38,7 +39,7 @@ def simulate(
     config: str | Path | None = None,
     progress: bool = True,
 ) -> "xarray.Dataset":
-    """Simulate one point of an experiment, and measure it.
+    """Simulate one point of an experiment, or several, and measure them.
 
     The keyword arguments `particles`, `box`, `effects` and `schedule` are the keys of an experiment
     in config.yaml. Beside a name they are merged over its settings, key by key; without a name they
@@ -51,7 +52,8 @@ def simulate(
         Name of an experiment (see `experiments`), such as ``"vibrated"`` or ``"cooling"``, or of a
         variant, such as ``"vibrated_friction/mu0.3"``.
     r
-        Normal restitution of the particles, in [0, 1]; 1 is elastic.
+        Normal restitution of the particles, in [0, 1]; 1 is elastic. Of r, beta and the seed each
+        may be a list: then every r is combined with every beta and seed.
     beta
         Tangential restitution (roughness), in [-1, 1]; -1 is smooth, 1 perfectly rough.
     seed
@@ -103,6 +105,8 @@ def simulate(
         the energies. Their coordinate is ``time`` (T) or, if the gas cools,
         ``collisions_per_particle``. ``R_replica`` (replica) has the cooling runs one by one. Every
         variable has ``units`` and a ``long_name``; the attributes say how to make it again.
+        Of lists, the reduced dataset that the pipeline makes: ``R`` (r, beta) and its error pooled
+        over seeds, ``R_seed`` (r, beta, seed).
 
     Raises
     ------
@@ -150,29 +154,23 @@ def simulate(
     }
     changes |= {"species": species, "species_pairs": species_pairs}
     changes |= {"spin_temperature": spin_temperature, "keep_state": keep_state}
-    legal_r, legal_beta, number = _numbers(r, beta, seed)
 
-    from roughgas.config.provenance import provenance
     from roughgas.data.point import as_dataset
-    from roughgas.planning.reach import complete
-    from roughgas.scene import build
+    from roughgas.planning.points import is_several, places, points
+    from roughgas.results.reduce import reduced_in_memory
     from roughgas.simulation.ends import initial_of
-    from roughgas.simulation.point import run_point
-    from roughgas.simulation.progress import Bar, Progress
     from roughgas.simulation.settings import observables_of, settings_of
 
+    at, several = places(r, beta, seed), is_several(r, beta, seed)
+    if several and (keep_state or initial is not None):
+        key = "keep_state" if keep_state else "initial"
+        raise InputError(key, "given", "come with one r, one beta and one seed")
     name, scale = experiment or UNNAMED, scale or _scale_of(experiment, config)
     changes["observables"], functions = observables_of(observe)
     settings = settings_of(experiment, changes, scale, config, UNNAMED)
-    scene = build(settings, legal_r, legal_beta)
-    with Bar(f"pilot of {name}", None, quiet=not progress or "target_stderr" not in settings):
-        settings = complete(scene, settings)
-    labels, told = (str(r), str(beta), str(seed)), [] if initial is None else ["--from", "start.nc"]
-    about = provenance(name, settings, labels, scale, "point.nc", told=told)
-    states = [] if initial is None else initial_of(initial)
-    with Progress(name, scene, settings, quiet=not progress) as bar:
-        found = run_point(scene, settings, number, bar, states, functions)
-    return as_dataset(found._replace(attributes=about | found.attributes))
+    states = None if initial is None else initial_of(initial)
+    found = points(name, settings, at, scale, states, functions, quiet=not progress)
+    return reduced_in_memory(found) if several else as_dataset(next(found))
 
 
 def trajectory(

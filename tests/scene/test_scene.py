@@ -135,6 +135,7 @@ def test_illegal_effects(key):
     ("box", "effects", "key"),
     [
         ((4, 50), SPIN, "box[0]"),
+        ((50, 1e300), SPIN, "box[1]"),
         ((50, 4), SPIN, "box[1]"),
         ((50, 50, 3.9), SPIN, "box[2]"),
         ((4.009, 50), SPIN, "box[0]"),

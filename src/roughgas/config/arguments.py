@@ -3,6 +3,8 @@
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Literal, TypedDict
 
+Values = float | Sequence[float]
+"""One value of r, of beta or of the seed, or several."""
 Side = float | Literal["open"]
 """Length of a box along one axis in a; the last axis may be open above."""
 Effects = Mapping[str, Mapping[str, float | str] | None]

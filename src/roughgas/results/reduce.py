@@ -10,7 +10,8 @@ import math
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import netCDF4
 import numpy as np
@@ -19,13 +20,17 @@ from roughgas.base.errors import InputError
 from roughgas.data.netcdf import COMMON_ATTRIBUTES, Content, write_netcdf
 from roughgas.data.opening import POINT as OF_POINT
 from roughgas.data.opening import DamagedError, attributes_of, opened, require
-from roughgas.data.reduced import GRID, SOUND, check_sound, third_axis
+from roughgas.data.point import Point, write_point
+from roughgas.data.reduced import GRID, SOUND, check_sound, read_reduced, third_axis
 from roughgas.data.variables import CLOCKS, POINT, Array, described
 from roughgas.results.observed import observed_in, reduced_observables
 from roughgas.statistics.bimodal import is_bimodal
 from roughgas.statistics.intervals import pooled
 from roughgas.theory.mixture_composition import SPECIES
 from roughgas.theory.prediction import equation_of
+
+if TYPE_CHECKING:
+    import xarray
 
 SAME = ("experiment", "scale", "dimension", "inertia", "spin_share", "mu", "particles", "swept")
 OF_A_POINT = ("r", "beta", "seed", "r_label", "beta_label", "variant", "swept_value", "command")
@@ -66,6 +71,19 @@ def reduce_points(paths: Iterable[str | Path], output: str | Path) -> None:
     if not points:
         raise InputError("number of points to reduce", 0, "be at least 1")
     write_netcdf(output, _combined(points))
+
+
+def reduced_in_memory(points: Iterable[Point]) -> "xarray.Dataset":
+    """Return the reduced dataset of points, as `reduce_points` and `read_reduced` make it of files.
+
+    Raises InputError as these.
+    """
+    with TemporaryDirectory() as folder:
+        for number, point in enumerate(points):
+            write_point(Path(folder, f"seed{number}.nc"), point)
+        output = Path(folder, "reduced.nc")
+        reduce_points([folder], output)
+        return read_reduced(output)
 
 
 def _checked(path: Path) -> Summary:

@@ -22,6 +22,7 @@ DIAMETER = 2.0
 # little above that contacts are foreseen for moments only
 NARROWEST = 4.01
 NARROWEST_CHANNEL = 2.01  # between side walls, in a
+LONGEST = 1e9  # side of a box, in a: products of three still leave room for squares
 FAR_APART = 8.0  # of side walls, in a: nothing comes round there, however near they are
 
 
@@ -111,7 +112,9 @@ def check_box(lengths: Sequence[float | None], effects: Effects, largest: float)
     closed, taken = closed_axes(effects), strokes(effects, len(lengths)).sum(axis=1)
     for k, length in enumerate(lengths):
         least = (NARROWEST_CHANNEL if k in closed else NARROWEST) * largest + taken[k]
-        if length is not None and not least <= length < math.inf:
+        if length is not None and length > LONGEST:
+            raise InputError(f"box[{k}]", length, f"be at most {LONGEST:g}")
+        if length is not None and not least <= length:
             raise InputError(f"box[{k}]", length, f"be a number of at least {least:g}")
 
 
