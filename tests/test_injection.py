@@ -143,7 +143,7 @@ def test_names_that_become_parts_of_commands_are_words(name):
     """Scales and experiments, which stand in rules' commands as they are."""
     settings = {"scale": "paper", "experiments": {name: {}}, "scales": {"paper": {}}}
     settings |= {"showcase": {}, "studies": {}}
-    with pytest.raises(InputError, match="must be made of lower-case letters"):
+    with pytest.raises(InputError, match="must consist of lower-case letters"):
         checking.check(settings)
 
 

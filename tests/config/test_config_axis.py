@@ -222,8 +222,8 @@ MISTAKES = [
     ({"box": ["wide"]}, "experiments.spun/boxwide.box = 'wide': must be a list of 2 to 3 entries"),
     ({"schedule.lenght": ["1"]}, "key = 'schedule.lenght': must name a length of this schedule: "),
     ({"schedule.measure": ["-1"]}, "experiments.spun/measure-1.schedule.measure = -1: must be a"),
-    ({"spin.inertia": []}, "sweep.spin.inertia = []: must be a list of at least 1"),
-    ({"spin.inertia": "1"}, "sweep.spin.inertia = '1': must be a list of at least 1"),
+    ({"spin.inertia": []}, "sweep.spin.inertia = []: must be a list that is not empty"),
+    ({"spin.inertia": "1"}, "sweep.spin.inertia = '1': must be a list that is not empty"),
     ({"spin.inertia": ["1", "1.0"]}, "sweep.spin.inertia = '1.0': must be given once"),
     (
         {"spin.inertia": ["0.5", "2"]},

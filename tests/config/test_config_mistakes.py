@@ -36,7 +36,7 @@ MISTAKES = [
     ("experiments.cooling.sweep.beta", ["-1.1"], "sweep.beta[0] = '-1.1': must lie in [-1, 1]"),
     ("experiments.cooling.sweep.beta", ["abc"], "sweep.beta[0] = 'abc': must lie in [-1, 1]"),
     ("experiments.cooling.sweep.beta", ["0.1", "0.10"], "sweep.beta = '0.10': must be given once"),
-    ("experiments.cooling.sweep.r", [], "sweep.r = []: must be a list of at least 1"),
+    ("experiments.cooling.sweep.r", [], "sweep.r = []: must be a list that is not empty"),
     ("experiments.cooling.sweep.seeds", 0, "sweep.seeds = 0: must be a whole number >= 1"),
     ("experiments.cooling.target_stderr", 0, "target_stderr = 0: must be a number in (0, 0.1]"),
     (
@@ -111,7 +111,7 @@ MISTAKES = [
     ("experiments.cooling", None, "cooling = None: must be a mapping of keys to values"),
     ("experiments.vibrated_smooth_walls.extends", "foo", f"must be one of {EXPERIMENTS}"),
     ("experiments.cooling.extends", "cooling", "that does not itself build on this one"),
-    ("experiments.No Name", {}, "must be made of lower-case letters, digits and _, a letter first"),
+    ("experiments.No Name", {}, "must consist of lower-case letters, digits and _, a letter first"),
     (
         "scales.small.foo",
         {},

@@ -142,7 +142,7 @@ def test_what_makes_no_sense_is_one_line(species, message):
         ([{"fraction": 1, "radius": 0}], "radius = 0: must be a number"),
         ([{"fraction": 1, "radius": []}], "radius = []: must be"),
         ([{"fraction": 0.5}, {"fraction": 0.5, "mass": -1}], "species[1].mass = -1: must be"),
-        ([], "species = []: must be a list of at least 1"),
+        ([], "species = []: must be a list that is not empty"),
         ([{"fraction": 1, "charge": 1}], "species[0]: key"),
     ],
 )

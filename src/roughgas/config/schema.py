@@ -138,7 +138,8 @@ def _legal_type(schema: Mapping[str, Any]) -> str:
         return NOT_A_NUMBER[kind]
     if kind == "array":
         few, many = schema["minItems"], schema.get("maxItems")
-        return f"be a list of {few} to {many} entries" if many else f"be a list of at least {few}"
+        least = "a list that is not empty" if few == 1 else f"a list of at least {few} entries"
+        return f"be a list of {few} to {many} entries" if many else f"be {least}"
     noun = "a whole number" if kind == "integer" else "a number"
     low, closed = schema.get("minimum", schema.get("exclusiveMinimum")), "minimum" in schema
     if "maximum" in schema:
@@ -158,8 +159,8 @@ SAID = {
         f"be one of {', '.join(schema['enum'])}" if schema["enum"] else "not be given here"
     ),
     "format": lambda schema: FORMATS[schema["format"]][1],
-    "minLength": lambda _: "be text, and not empty",
-    "pattern": lambda _: "be made of lower-case letters, digits and _, a letter first",
+    "minLength": lambda _: "be text that is not empty",
+    "pattern": lambda _: "consist of lower-case letters, digits and _, a letter first",
     "type": _legal_type,
 }
 """What is legal by the keyword of a schema that decides, the most telling keyword first."""
