@@ -114,6 +114,8 @@ def simulate(
         For values that are illegal or contradict each other; its text is one line.
     roughgas.base.errors.CollapseError
         If contacts accumulate without end, as in a bed of r = 0.6 without ``contact_time``.
+    roughgas.base.errors.SilentError
+        If particles are so few that the collisions of a cooling gas do not come.
     OSError
         If `config` cannot be read.
 

@@ -11,6 +11,7 @@ import pytest
 from brute_force.company import Contents
 from brute_force.sides import sides_of
 from brute_force.world import World
+from roughgas.kernel.loop import REACHED
 from roughgas.kernel.record import Sampling, columns, record
 from roughgas.scene import build
 from roughgas.scene.initial import initial_state
@@ -186,7 +187,8 @@ def run(state, scene, samples, interval=np.inf, collisions=UNLIMITED, refresh=0)
     """Advance the kernel; columns by name. Fails where the gas collapses."""
     names = _columns(scene)
     rows = np.empty((samples, len(names)))
-    assert record(state, scene, Sampling(float(interval), collisions, refresh), rows) == samples
+    ended = record(state, scene, Sampling(float(interval), collisions, refresh), rows)
+    assert ended == (REACHED, samples)
     return dict(zip(names, rows.T, strict=True))
 
 

@@ -11,6 +11,7 @@ from brute_force.scenes import UNLIMITED
 from hard_cases.catalogue import hard_case
 from roughgas.base.errors import CollapseError
 from roughgas.kernel.layout import new_state
+from roughgas.kernel.loop import COLLAPSED
 from roughgas.kernel.record import Sampling, columns, record
 from roughgas.kernel.state import BASE, COLLISIONS, NOW, TOUCHED
 from roughgas.simulation.energies import ratio
@@ -51,7 +52,7 @@ def collapse(seed):
     time, collapsed = 0.0, False
     while time < 60.0 and not collapsed:
         before = state.counts[COLLISIONS]
-        collapsed = record(state, scene, Sampling(0.25, UNLIMITED, 0), row) == 0
+        collapsed = record(state, scene, Sampling(0.25, UNLIMITED, 0), row) == (COLLAPSED, 0)
         contacts = state.counts[COLLISIONS] - before
         time = state.clock[BASE] + state.clock[NOW]
     shot = snapshot(state, scene)
@@ -98,7 +99,7 @@ def test_a_dense_bed_is_not_taken_for_a_collapse(margins):
     for r in (0.8, 0.7):
         scene, state = begin(BED, r, 0.0, 1)
         rows = np.empty((samples, len(columns(scene))))
-        missing += samples - record(state, scene, Sampling(0.25, UNLIMITED, 0), rows)
+        missing += samples - record(state, scene, Sampling(0.25, UNLIMITED, 0), rows)[1]
     tried = {"tried": samples // 2, "unit": "T"}
     margins.at_most("quarters of T that are missing", missing, 0, **tried)
 
@@ -235,7 +236,7 @@ def squeezed(angle, spin, **model):
     velocity = np.array([[0.1, 0.0], [0.0, -0.2], [-0.1, 0.0]])
     state = new_state(scene, position, velocity, np.array([[spin], [0.0], [-spin]]))
     row = np.empty((1, len(columns(scene))))
-    collapsed = record(state, scene, Sampling(50.0, UNLIMITED, 0), row) == 0
+    collapsed = record(state, scene, Sampling(50.0, UNLIMITED, 0), row) == (COLLAPSED, 0)
     return collapsed, int(state.counts[COLLISIONS])
 
 

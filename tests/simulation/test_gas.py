@@ -9,7 +9,7 @@ from brute_force import begin, run, settings
 
 from roughgas.base.errors import JammedError
 from roughgas.kernel.state import EXPONENT
-from roughgas.scene import build, elastic, initial_state
+from roughgas.scene import build, elastic
 from roughgas.simulation.energies import restored
 from roughgas.simulation.gas import Gas
 from roughgas.simulation.recorder import Recorder
@@ -113,14 +113,6 @@ def test_a_recorder_sums_up_over_gases():
         gas.in_collisions(10, 7)
         gas.in_collisions(5, 4)
     assert recorder.collisions == 2 * (70 + 20) and recorder.seconds > 0.0
-
-
-def test_a_gas_that_never_collides_comes_to_an_end():
-    """One particle, sampled by collisions: the samples are taken all the same."""
-    scene = build(GAS, 0.9, 0.2)
-    alone = settings("gas", 1, [25, 25])
-    rows = Gas(scene, initial_state(scene, alone, np.random.default_rng(0))).in_collisions(10, 5)
-    assert np.all(rows["collisions"] == 0) and np.all(np.diff(rows["time"]) > 0.0)
 
 
 def test_a_gas_in_which_time_hardly_goes_on_is_given_up(monkeypatch):

@@ -55,9 +55,17 @@ def not_one_of(key: str, value: object, known: Iterable[str]) -> InputError:
     return InputError(key, value, f"{legal}; did you mean {meant[0]}?" if meant else legal)
 
 
-class CollapseError(RuntimeError):
-    """Inelastic collapse: infinitely many contacts in a finite time. Its text is one line."""
+class EndedEarlyError(RuntimeError):
+    """A run that ended before it had made what was asked of it. Its text is one line."""
+
+
+class CollapseError(EndedEarlyError):
+    """Inelastic collapse: infinitely many contacts in a finite time."""
 
 
 class JammedError(CollapseError):
-    """A gas so dense that time hardly goes on. Its text is one line."""
+    """A gas so dense that time hardly goes on."""
+
+
+class SilentError(EndedEarlyError):
+    """A gas so dilute, or so slow, that the collisions that were asked for do not come."""

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import NoReturn
 
 from roughgas.base import extras
-from roughgas.base.errors import CollapseError, InputError, on_one_line, shown
+from roughgas.base.errors import EndedEarlyError, InputError, on_one_line, shown
 from roughgas.base.version import __version__
 from roughgas.cli.commands import COMMANDS
 from roughgas.cli.outputs import check_outputs
@@ -86,7 +86,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         options = _options(given or ["--help"])
         options.command(options)
-    except (InputError, CollapseError) as error:
+    except (InputError, EndedEarlyError) as error:
         return _fail(BAD_INPUT if isinstance(error, InputError) else FAILED, str(error))
     except BrokenPipeError:  # of `| head`, which has seen enough
         return NOBODY_READS

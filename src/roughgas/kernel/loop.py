@@ -27,18 +27,27 @@ from roughgas.kernel.state import (
 )
 from roughgas.kernel.sweep import find_by_sweep, redraw_line
 
+REACHED, COLLAPSED, SILENT = range(3)  # how `advance` ends
+# Spans without a collision after which none is waited for any longer: so many in all, divided among
+# the particles, and so many at least. A hundred thousand of a gas of 100, a few seconds.
+SILENCE = 10_000_000, 1000
+
 
 @jit
 def advance(state, scene, until, collisions):
-    """Run to the absolute time `until`, or to a total number of pair collisions.
+    """Run to the absolute time `until`, or to a total number of collisions; return the outcome.
 
-    Returns False when the work per simulated time diverges (inelastic collapse), else True.
+    REACHED: at one of the two. COLLAPSED: the work per simulated time diverges (inelastic
+    collapse). SILENT: no time was given, and the collisions that were asked for do not come.
     """
     clock, counts, agenda = state.clock, state.counts, state.agenda
+    silent, patience = 0, max(SILENCE[0] // len(state.changes), SILENCE[1])
     while counts[COLLISIONS] < collisions:
         i = index(earliest(state.cells, state))
         time = agenda.key[i]
         if time > until - clock[BASE] or time == math.inf:
+            if until == math.inf:
+                return SILENT
             clock[NOW] = until - clock[BASE]
             break
         clock[NOW] = time
@@ -47,10 +56,13 @@ def advance(state, scene, until, collisions):
             if affected[k] >= 0:
                 foresee(state, scene, index(affected[k]), time)
         if time >= clock[SPAN]:
+            silent = 0 if counts[SINCE_REBASE] > 0 else silent + 1
             renew(state, scene)
+            if until == math.inf and silent > patience:
+                return SILENT
         elif not moves_on(state, time):
-            return False
-    return True
+            return COLLAPSED
+    return REACHED
 
 
 @jit

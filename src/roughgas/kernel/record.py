@@ -7,7 +7,7 @@ from roughgas.kernel.bodies import mass_of, radius_of, spin_mass_of
 from roughgas.kernel.flight import arrive, come_in, put
 from roughgas.kernel.hooks import either, present, unless_absent
 from roughgas.kernel.jit import compiled, entry, jit
-from roughgas.kernel.loop import advance, start
+from roughgas.kernel.loop import REACHED, advance, start
 from roughgas.kernel.spins import spin_of
 from roughgas.kernel.state import (
     BASE,
@@ -16,12 +16,9 @@ from roughgas.kernel.state import (
     INSTANT_END,
     NOW,
     ORIGIN,
-    SPAN,
     STARTED,
 )
 from roughgas.kernel.unroll import unrolled
-
-PATIENCE = 1000.0  # spans to wait for collisions that may never come
 
 
 class Sampling(NamedTuple):
@@ -61,21 +58,21 @@ def columns(scene):
 def record(state, scene, plan, samples):
     """Advance, filling one row of `samples` (see `columns`) at each instant of the plan.
 
-    Returns the number of rows filled: fewer than asked for when the gas collapses.
+    Returns how it ended (see `advance`) and the number of rows filled: all, if it REACHED the end.
     """
     if state.counts[STARTED] == 0:
         start(state, scene)
         state.counts[STARTED] = 1
     for k in range(len(samples)):
         now = state.clock[BASE] + state.clock[NOW]
-        until = now + min(plan.interval, PATIENCE * state.clock[SPAN])
         collisions = state.counts[COLLISIONS] + plan.collisions
-        if not advance(state, scene, until, collisions):
-            return k
+        ended = advance(state, scene, now + plan.interval, collisions)
+        if ended != REACHED:
+            return ended, k
         take_sample(state, scene, samples[k])
         if plan.refresh > 0 and (k + 1) % plan.refresh == 0:
             refresh(state, scene)
-    return len(samples)
+    return REACHED, len(samples)
 
 
 @compiled

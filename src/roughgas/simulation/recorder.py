@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from roughgas.base.errors import CollapseError, JammedError
+from roughgas.base.errors import CollapseError, EndedEarlyError, JammedError, SilentError
 from roughgas.kernel import hooks
 from roughgas.kernel.clock import INSTANT
+from roughgas.kernel.loop import COLLAPSED, REACHED
 from roughgas.kernel.record import Sampling, columns, record
 from roughgas.kernel.state import (
     BASE,
@@ -74,8 +75,9 @@ class Recorder:
     ) -> Columns:
         """Advance `state`; return columns (name -> array of length `samples`).
 
-        Raises CollapseError if contacts accumulate without end, JammedError where particles do
-        little but hit walls, or where samples are `timed` and one takes `sampling.collisions`.
+        Raises CollapseError if contacts accumulate without end, SilentError if the collisions of a
+        sample without an interval do not come, JammedError where particles do little but hit walls,
+        or where samples are `timed` and one takes `sampling.collisions`.
         """
         names = columns(scene)
         rows = np.empty((samples, len(names)))
@@ -88,8 +90,9 @@ class Recorder:
         while first < samples:
             part, called = rows[first : first + length], time.perf_counter()
             made, hits = int(state.counts[COLLISIONS]), _hits(state)
-            if record(state, scene, sampling, part) < len(part):
-                raise _collapse(state, scene)
+            ended, _ = record(state, scene, sampling, part)
+            if ended != REACHED:
+                raise _failure(ended, state, scene)
             if timed and np.diff(part[:, 1], prepend=made).max() >= sampling.collisions:
                 raise _jam(state, sampling.interval)
             if _hits(state) - hits > _most_hits(len(part) * sampling.interval, state):
@@ -124,6 +127,15 @@ def _next_length(length: int, took: float, samples: int, refresh: int) -> int:
     if took < SOON:
         return min(2 * length, max(1, refresh) * -(-samples // (REPORTS * max(1, refresh))))
     return max(1, length // 2) if refresh == 0 else max(refresh, length // 2 // refresh * refresh)
+
+
+def _failure(ended: int, state: State, scene: Scene) -> EndedEarlyError:
+    """Return the error of a call of the kernel that ended early."""
+    if ended == COLLAPSED:
+        return _collapse(state, scene)
+    made, remedy = int(state.counts[COLLISIONS]), "raise the packing, or the number of particles"
+    where = f"at t = {now(state):.6g} T, after {made} collisions"
+    return SilentError(f"particles do not meet any longer {where}: {remedy}")
 
 
 def _jam(state: State, interval: float) -> JammedError:
