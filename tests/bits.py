@@ -17,16 +17,18 @@ import numpy as np
 
 KNOWN = Path(__file__).with_name("bits.json")
 CLOCKS = ("kernel_seconds", "planned_seconds")
-SINCE = ("R_collisional", "contact_correlation")  # how variables begin that are newer than the file
+# how variables begin that are newer than the file
+SINCE = ("R_collisional", "contact_correlation", "E_rot_stderr", "measured_collisions")
+VERDICTS = ("equilibrated", "R_ci95_trusted")  # are no numbers, and their criteria may change
 FOUR_PHASES = "four_phases"
 
 
 def digest(path):
-    """A hash of all variables of a dataset but those that tell CPU time, and newer ones."""
+    """A hash of all variables of a dataset but CPU times, verdicts, and newer ones."""
     found = hashlib.sha256()
     with netCDF4.Dataset(path) as file:
         file.set_auto_mask(False)
-        names = set(file.variables) - set(CLOCKS)
+        names = set(file.variables) - {*CLOCKS, *VERDICTS}
         for name in sorted(name for name in names if not name.startswith(SINCE)):
             values = np.asarray(file[name][...])
             words = "|".join(map(str, values.ravel())) if values.dtype.kind == "O" else ""

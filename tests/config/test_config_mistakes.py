@@ -93,7 +93,7 @@ MISTAKES = [
     (
         "experiments.vibrated.schedule.measure",
         -1,
-        "schedule.measure = -1: must be a number > 0",
+        "schedule.measure = -1: must be a number in (0, 1000000000]",
     ),
     (
         "experiments.cooling.schedule.measure",

@@ -76,7 +76,7 @@ def test_flags_and_what_is_known_of_errors_are_told_as_cf_has_it(tmp_path):
     data = read_point(tmp_path / "a.nc")
     assert data.R.ancillary_variables.split() == ["R_stderr", "R_dof", "R_ci95", "R_ci95_trusted"]
     for flag in (data.equilibrated, data.R_ci95_trusted):
-        assert list(flag.flag_values) == [0, 1] and len(flag.flag_meanings.split()) == 2
+        assert list(flag.flag_values) == [-1, 0, 1] and len(flag.flag_meanings.split()) == 3
         assert flag.flag_values.dtype == flag.dtype == np.int8
 
 

@@ -8,7 +8,8 @@ from brute_force import KERNELS, settings
 from roughgas.base.errors import InputError
 from roughgas.simulation import cooling, schedule, steady
 
-STEADY, COOLING = {"kind": "steady", "measure": 30}, {"kind": "cooling", "plateau": 8}
+STEADY = {"kind": "steady", "equilibrate": 0, "measure": 30, "sample_every": 0.5, "period": 2}
+COOLING = {"kind": "cooling", "plateau": 8, "sample_every": 1}
 
 
 def test_each_kind_is_a_module():

@@ -118,4 +118,6 @@ def examine(statement: Statement, datasets: dict[str, xr.Dataset]) -> Finding:
     for sentence in filter(None, map(_size, used)):
         finding = finding.noting(sentence)
     aside = sum(data.attrs.get("set_aside", 0) for data in used)
-    return finding.noting(f"{points(aside)} not in a steady state set aside.") if aside else finding
+    if not aside:
+        return finding
+    return finding.noting(f"{points(aside)} not known to be in a steady state set aside.")

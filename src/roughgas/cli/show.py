@@ -27,6 +27,7 @@ from roughgas.results.table import rows as rows_of
 from roughgas.results.table import why_wide
 from roughgas.scene import packing
 from roughgas.statistics.estimate import Estimate, decimals_of
+from roughgas.statistics.evidence import NO, UNKNOWN, YES
 from roughgas.theory.prediction import equation_of, ratio_of_point
 
 QUOTED = {
@@ -40,6 +41,16 @@ SHAPES = {2: "disks", 3: "spheres"}
 BLOCKS, WIDTH = "▁▂▃▄▅▆▇█", 48
 FRAMES = 8  # of a film, that are shown
 FILMED = ("collisions_per_particle", "time", "E_trans", "R")
+TRUST = {
+    YES: "",
+    NO: " (not to be trusted: no steady state, or too short a run)",
+    UNKNOWN: " (whether to trust it is not known: too little was measured)",
+}
+STEADY = {
+    YES: "yes",
+    NO: "NOT found: energies or R still drift",
+    UNKNOWN: "not known: too little was measured",
+}
 
 
 def show(options: Namespace) -> None:
@@ -150,7 +161,7 @@ def _listed(settings: Mapping[str, Any]) -> str:
 def _ratio(point: Dataset) -> list[list[str]]:
     R, half, expected = float(point.R), float(point.R_ci95), ratio_of_point(point)
     digits = decimals_of(half) if 0.0 < half < 1.0 else 4
-    trust = "" if point.R_ci95_trusted else " (the run is too short to trust it)"
+    trust = TRUST[int(point.R_ci95_trusted)]
     series = point.R_series.values[np.isfinite(point.R_series.values)]
     parts = np.array([part.mean() for part in np.array_split(series, min(WIDTH, len(series)))])
     low, high, over_time = parts.min(), parts.max(), "R_collisional" in point
@@ -166,10 +177,13 @@ def _ratio(point: Dataset) -> list[list[str]]:
 
 
 def _steady(point: Dataset) -> str:
-    found = "yes" if point.equilibrated else "NOT found: energies or R still drift"
+    found, made = STEADY[int(point.equilibrated)], float(point.get("measured_collisions", math.nan))
     end = f" to {float(point.plateau_end):g}" if "plateau_end" in point else " on"
     units = unit_of(point.measured_from.attrs)
-    return f"{found}; measured from {float(point.measured_from):g}{end}, in {units}"
+    span = f"measured from {float(point.measured_from):g}{end}, in {units}"
+    return f"{found}; {span}" + (
+        f" ({made:.4g} collisions per particle)" if "time" in point else ""
+    )
 
 
 def _books(point: Dataset) -> str:
@@ -195,7 +209,8 @@ def _reduced_text(data: Dataset) -> str:
     for row in rows_of(data):
         values = [row["value"], row["r"], row["beta"]][-len(axes) :]
         place = [value if isinstance(value, str) else f"{value:g}" for value in values]
-        steady = "yes" if row["equilibrated"] > EQUILIBRATED else "NO"
+        steady = "not known" if row["equilibrated"] < 0 else "NO"
+        steady = "yes" if row["equilibrated"] > EQUILIBRATED else steady
         table.append([*place, f"{row['n_seeds']:.0f}", *_found(row), steady])
     over = f"{swept}, r and beta" if swept else "r and beta"
     head = [

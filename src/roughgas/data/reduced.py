@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 GRID = ("r", "beta")
 EQUILIBRATED = 0.5
 """A point counts as being in a steady state where more than this share of its seeds is."""
+VERDICTS = {"equilibrated", "R_ci95_trusted"}
 SHARE, AMOUNT, VERDICT = Interval("[0, 1]"), Interval("[0, inf)"), Interval("[-1, 1]")
 UNSURE = {
     f"{name}_{quality}": Interval("[0, inf]")
@@ -29,7 +30,7 @@ UNSURE = {
 SOUND = {
     **dict.fromkeys(("R", "R_ratio_of_means"), SHARE),
     **dict.fromkeys(("E_trans", "E_rot", "collisions", "kernel_seconds"), AMOUNT),
-    **dict.fromkeys(("equilibrated", "R_ci95_trusted"), VERDICT),
+    **dict.fromkeys(sorted(VERDICTS), VERDICT),
     **UNSURE,
 }
 """What numbers of a simulation lie in, whatever was simulated."""
@@ -116,12 +117,16 @@ REDUCED = {
     },
     "R_seed": Variable("R of each seed", dims=(OF_GRID, "seed"), over_seeds=""),
     **_pooled("R"),
-    "R_ci95_trusted": _derived("share of seeds whose R_ci95 holds the truth as often as it says"),
+    "R_ci95_trusted": _derived(
+        "share of seeds whose R_ci95 holds the truth as often as it says; -1 where most have too "
+        "little to tell"
+    ),
     **_pooled("R_collisional"),
     **_pooled("contact_correlation"),
     "R_ratio_of_means_stderr": _derived("standard error of R_ratio_of_means: scatter over seeds"),
     "equilibrated": _derived(
-        "share of seeds that were found in a steady state; 0 for a mixture of two"
+        "share of seeds that were found in a steady state; 0 for a mixture of two, -1 where most "
+        "have too little to tell"
     ),
     "R_stderr_over_seeds": _derived("standard error of R from the scatter over seeds alone"),
     "R_stderr_within": _derived("standard error of R from within the files, combined over seeds"),
@@ -133,6 +138,7 @@ REDUCED = {
     "shear_rate_stderr": _derived("standard error of shear_rate: scatter over seeds", RATE),
     "R_unsubtracted_stderr": _derived("standard error of R_unsubtracted: scatter over seeds"),
     "E_trans_stderr": _derived("standard error of E_trans: scatter over seeds", ENERGY),
+    "E_rot_stderr": _derived("standard error of E_rot: scatter over seeds", ENERGY),
     "input_spin_share_stderr": _derived("standard error of input_spin_share: scatter over seeds"),
     "R_drift": _derived(
         "mean of R in the second half of the measured window minus that in the first"

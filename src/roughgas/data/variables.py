@@ -42,7 +42,7 @@ class Variable(NamedTuple):
     dtype: str = "f8"  # or "str"
     when: tuple[str, ...] = ()  # which datasets have it; all by default
     over_seeds: str = "mean"  # how a reduced dataset combines a scalar: mean, sum, or "" for not
-    flags: str = ""  # the meanings of 0, 1, ..., a word each
+    flags: str = ""  # the meanings of 0, 1, ..., a word each; `unknown`, if it is there, is -1
     of_settings: bool = False  # in units of the settings even in a cooling gas
     observable: str = ""  # which has watched it
 
@@ -117,10 +117,10 @@ POINT = {
     "R_dof": _of_spin("degrees of freedom that R_stderr is known with", over_seeds=""),
     "R_ci95": _of_spin("half width of the 95 % interval of R, by Student's t", over_seeds=""),
     "R_ci95_trusted": Variable(
-        "whether R_ci95 holds the truth as often as it says",
+        "whether R_ci95 holds the truth as often as it says; -1 where there is too little to tell",
         dtype="i1",
         when=(SPIN,),
-        flags="untrusted trusted",
+        flags="unknown untrusted trusted",
     ),
     "R_ratio_of_means": _of_spin("share of rotation in the energy, from the mean energies"),
     **_at_contacts("R_collisional", "share of rotation in the energy, averaged over collisions"),
@@ -130,12 +130,16 @@ POINT = {
     "E_trans": Variable("translational energy per degree of freedom", ENERGY),
     "E_trans_stderr": Variable("standard error of E_trans within this file", ENERGY, over_seeds=""),
     "E_rot": _of_spin("rotational energy per degree of freedom", ENERGY),
+    "E_rot_stderr": _of_spin("standard error of E_rot within this file", ENERGY, over_seeds=""),
     "collisions": Variable("collisions simulated", dtype="i8", over_seeds="sum"),
     "kernel_seconds": Variable("CPU time spent in the kernel", "s", over_seeds="sum"),
     "equilibrated": Variable(
-        "whether a steady state was found", dtype="i1", flags="drifting equilibrated"
+        "whether a steady state was found; -1 where there is too little to tell",
+        dtype="i1",
+        flags="unknown drifting equilibrated",
     ),
     "measured_from": Variable("begin of the measured window", TIME),
+    "measured_collisions": Variable("collisions of each particle in the measured window"),
     "autocorrelation_time": _of_spin("integrated autocorrelation time of R", TIME),
     "target_stderr": _of_target("standard error of R that was asked for"),
     "planned_seeds": _of_target("seeds that its pilot run said the point would need"),
@@ -259,8 +263,9 @@ def _array(about: Variable, values: Any, cooling: bool, grid: tuple[str, ...]) -
     if about.observable:
         attributes["observable"] = about.observable
     if about.flags:
-        meanings = np.arange(len(about.flags.split()), dtype=about.dtype)
-        attributes |= {"flag_values": meanings, "flag_meanings": about.flags}
+        words = about.flags.split()
+        meanings = np.arange(len(words), dtype=about.dtype) - words.count("unknown")
+        attributes |= {"flag_values": meanings.astype(about.dtype), "flag_meanings": about.flags}
     dims = tuple(one for dim in about.dims for one in (grid if dim == GRID else (dim,)))
     dtype = object if about.dtype == "str" else about.dtype
     return Array(dims, np.asarray(values, dtype), attributes)

@@ -11,6 +11,7 @@ from roughgas.planning.pilot import SEED, Pilot
 from roughgas.scene import Scene
 from roughgas.simulation import cooling
 from roughgas.simulation.recorder import Recorder
+from roughgas.statistics.evidence import YES
 from roughgas.theory import cooling_ratio
 
 TRIED = {"replicas": 40, "relaxation_times": 16}
@@ -39,7 +40,7 @@ def explore(scene: Scene, experiment: Mapping[str, Any]) -> Pilot:
         dof=replicas - 1.0,
         pace=1.0,
         seconds_per_length=recorder.seconds / simulated,
-        settled=bool(found["equilibrated"]),
+        settled=found["equilibrated"] == YES,
         length=simulated,
         seconds=recorder.seconds,
     )

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from roughgas.base.errors import SilentError
 from roughgas.effects import inertia_of_spin
 from roughgas.planning.lengths import BIAS, FEWEST_SEEDS, relaxation, to_measure, whole
 from roughgas.planning.pilot import SEED, Pilot
@@ -51,6 +52,8 @@ def explore(scene: Scene, experiment: Mapping[str, Any]) -> Pilot:
         periods = chains.shape[2]
         length = periods * per_period * every
         pace = 2.0 * recorder.collisions / (number * CHAINS * length)
+        if pace == 0:
+            raise SilentError(f"no particle has met another within {length:g} T: nothing to plan")
         pilot = _judged(chains, per_period * every, pace, recorder.seconds)
         if _is_enough(pilot) or pace * length >= LONGEST:
             return pilot

@@ -21,10 +21,11 @@ from roughgas.data.netcdf import COMMON_ATTRIBUTES, Content, write_netcdf
 from roughgas.data.opening import POINT as OF_POINT
 from roughgas.data.opening import DamagedError, attributes_of, opened, require
 from roughgas.data.point import Point, write_point
-from roughgas.data.reduced import GRID, SOUND, check_sound, read_reduced, third_axis
+from roughgas.data.reduced import GRID, SOUND, VERDICTS, check_sound, read_reduced, third_axis
 from roughgas.data.variables import CLOCKS, POINT, Array, described
 from roughgas.results.observed import observed_in, reduced_observables
 from roughgas.statistics.bimodal import is_bimodal
+from roughgas.statistics.evidence import NO, UNKNOWN, YES
 from roughgas.statistics.intervals import pooled
 from roughgas.theory.mixture_composition import SPECIES
 from roughgas.theory.prediction import equation_of
@@ -36,7 +37,7 @@ SAME = ("experiment", "scale", "dimension", "inertia", "spin_share", "mu", "part
 OF_A_POINT = ("r", "beta", "seed", "r_label", "beta_label", "variant", "swept_value", "command")
 PROVENANCE = ("roughgas_version", "numpy_version", "numba_version", "kernel_source_hash")
 SCATTERED = (
-    *("R_ratio_of_means", "R_unsubtracted", "R_drift", "E_trans", "input_spin_share"),
+    *("R_ratio_of_means", "R_unsubtracted", "R_drift", "E_trans", "E_rot", "input_spin_share"),
     *("E_trans_species", "E_rot_species", "R_species", "T_ratio_species"),
     *("decay_exponent", "shear_rate"),
 )
@@ -157,7 +158,9 @@ def _combined(points: Sequence[Summary]) -> Content:
         about = {"long_name": f"swept setting: {attributes['swept']}"}
         third[swept] = Array((swept,), coordinates.pop(swept), about)
     values = _over_seeds(stacks) | coordinates | _species(points)
-    values["equilibrated"] = np.where(_mixed(points, axes[:-1]), 0.0, values["equilibrated"])
+    mixed = _mixed(points, axes[:-1])
+    for name in VERDICTS & values.keys():
+        values[name] = np.where(mixed & (values[name] > NO), float(NO), values[name])
     reduced = described("reduced", values, "plateau_end" in stacks, grid)
     seen = reduced_observables(points, axes, grid)
     return Content(third | reduced | seen, attributes)
@@ -233,6 +236,8 @@ def _over_seeds(stacks: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
         how = POINT[name].over_seeds if name in POINT else "mean"
         if how:
             reduced[name] = np.nansum(values, -1) if how == "sum" else _mean(values)
+        if name in VERDICTS:
+            reduced[name] = _share(values)
         if name in SCATTERED:
             reduced[f"{name}_stderr"] = _standard_error(values)
     for name in POOLED:
@@ -267,6 +272,13 @@ def _mean(values: np.ndarray) -> np.ndarray:
     """Return the mean over the last axis of finite values, NaN if there are none."""
     count = np.isfinite(values).sum(-1)
     return np.where(count > 0, np.nansum(values, -1) / np.maximum(count, 1), math.nan)
+
+
+def _share(verdicts: np.ndarray) -> np.ndarray:
+    """Return the share of YES over the last axis; UNKNOWN where half of them or more are."""
+    there = np.isfinite(verdicts)
+    yes, unknown = (_mean(np.where(there, verdicts == one, math.nan)) for one in (YES, UNKNOWN))
+    return np.where(unknown >= 0.5, float(UNKNOWN), yes)
 
 
 def _standard_error(values: np.ndarray) -> np.ndarray:

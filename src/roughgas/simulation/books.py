@@ -5,6 +5,7 @@ have booked is the change of the energy, to rounding. Gravity has no account: it
 as translational energy.
 """
 
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -72,7 +73,8 @@ def exchange(before: Books, after: Books, scene: Scene, particles: int) -> dict[
         return found
     sources = [number for name, number in accounts.items() if name != CONTACTS]
     put_in = booked[sources].sum(axis=0)
-    return found | {"input_spin_share": put_in[1] / put_in.sum()}
+    total = put_in.sum()
+    return found | {"input_spin_share": put_in[1] / total if total else math.nan}
 
 
 def imbalance(booked: np.ndarray, gain: np.ndarray, energy: float = 0.0) -> float:

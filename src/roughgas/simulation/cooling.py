@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from roughgas.base.errors import InputError
 from roughgas.effects import inertia, speed_of_r
 from roughgas.scene import Scene, for_theory, packing
 from roughgas.simulation import by_species
@@ -13,9 +14,10 @@ from roughgas.simulation.books import Books, exchange
 from roughgas.simulation.by_species import energies_of_each
 from roughgas.simulation.ends import Initial
 from roughgas.simulation.energies import Columns, Energies, ratio, ratio_of_means, restored
-from roughgas.simulation.gas import Gas
+from roughgas.simulation.gas import Gas, count
 from roughgas.simulation.recorder import Recorder
 from roughgas.statistics.errors import autocorrelation_time
+from roughgas.statistics.evidence import UNKNOWN, Evidence
 from roughgas.statistics.intervals import Error
 from roughgas.statistics.plateau import find_plateau
 from roughgas.theory import friction_relaxation_rate, mixture_relaxation_rate, relaxation_rate
@@ -33,6 +35,7 @@ class Cooled(NamedTuple):
 
     energies: Energies  # of each sample, over 4^exponent: they may fall below the smallest number
     exponent: np.ndarray
+    collisions: np.ndarray  # of each particle since the samples began
     time: np.ndarray  # of each sample, in T since dissipation was switched on
     before: Books
     after: Books
@@ -77,6 +80,21 @@ def rate_of(scene: Scene, experiment: Mapping[str, Any] | None = None) -> float:
     return float(friction_relaxation_rate(r, beta, friction.mu, dimension, q))
 
 
+def interval(experiment: Mapping[str, Any]) -> float:
+    """Return the collisions per particle between two samples: whole ones in the gas, at least one,
+    so that `sample_every` may not be what it is."""
+    number = experiment["particles"]
+    return 2 * count(number, experiment["schedule"]["sample_every"]) / number
+
+
+def check(scene: Scene, experiment: Mapping[str, Any]) -> None:
+    """Raise InputError for a plateau that is shorter than the interval between samples."""
+    plateau, every = experiment["schedule"]["plateau"], interval(experiment)
+    if plateau < every:
+        legal = f"be at least the interval between samples, {every:g} collisions per particle"
+        raise InputError("schedule.plateau", plateau, legal)
+
+
 def start(scene: Scene, experiment: Mapping[str, Any], seed: Any, recorder=None, initial=()) -> Gas:
     """Return the first replica of a point, thermalised, as dissipation is switched on.
 
@@ -100,7 +118,7 @@ def wait(scene: Scene, experiment: Mapping[str, Any]) -> int:
     """Return the samples before any counts, of the transient that theory expects."""
     schedule = experiment["schedule"]
     transient = transient_length(scene, schedule["relaxation_times"], experiment)
-    return math.floor(transient / schedule["sample_every"])
+    return math.floor(transient / interval(experiment))
 
 
 def run(
@@ -119,20 +137,21 @@ def run(
     """
     schedule = experiment["schedule"]
     transient = transient_length(scene, schedule["relaxation_times"], experiment)
-    every = schedule["sample_every"]
+    every = interval(experiment)
     samples = math.ceil((transient + schedule["plateau"]) / every)
     streams = _streams(seed, schedule["replicas"])
     pairs = zip(streams, initial, strict=True) if initial else ((one, None) for one in streams)
     gases = (_replica(scene, experiment, stream, recorder, one) for stream, one in pairs)
     ensemble = _together([_cool(gas, every, samples) for gas in gases])
-    passed = every * np.arange(1, samples + 1)
+    passed = ensemble.collisions[0]  # as in all replicas
     exchanged = exchange(ensemble.before, ensemble.after, scene, experiment["particles"])
     if speed_of_r(scene.effects) is not None:  # how it cools depends on how fast it is
         exchanged |= _over_time(ensemble)
     if scene.effects.spin is None:
         first = min(math.ceil(transient / every), samples) - 1
         return _decay(ensemble, passed, first) | exchanged
-    return _measure(ensemble, passed, transient, every) | exchanged
+    rate = rate_of(scene, experiment)
+    return _measure(ensemble, passed, transient, rate, every) | exchanged
 
 
 def _streams(seed, replicas):
@@ -153,7 +172,7 @@ def _replica(scene, experiment, stream, recorder, initial=None):
 def _cool(gas, every, samples):
     """Return what one replica does from when dissipation is switched on."""
     unit, exponent = gas.energies(gas.sample).translational[0], int(gas.sample["exponent"][0])
-    before, begun = gas.books(), gas.time
+    before, begun, made = gas.books(), gas.time, gas.sample["collisions"]
     rows = sample(gas, every, samples)
     present = gas.energies(rows).map(lambda part: part / unit)
     energy = math.ldexp(unit, 2 * exponent)
@@ -161,7 +180,8 @@ def _cool(gas, every, samples):
     parts = energies_of_each(rows, gas.scene, gas.state)
     parts = [one.map(lambda part: part / unit) for one in parts]
     exponents = rows["exponent"].astype(int) - exponent
-    return Cooled(present, exponents, rows["time"] - begun, before, after, parts)
+    passed = 2 * (rows["collisions"] - made) / gas.particles
+    return Cooled(present, exponents, passed, rows["time"] - begun, before, after, parts)
 
 
 def _over_time(ensemble):
@@ -176,42 +196,47 @@ def _over_time(ensemble):
 
 def _together(runs):
     """Return all replicas as one: energies stacked, books averaged."""
-    present, exponent, time, *books, species = zip(*runs, strict=True)
+    present, exponent, passed, time, *books, species = zip(*runs, strict=True)
     stacked, parts = _stacked(present), [_stacked(one) for one in zip(*species, strict=True)]
     means = (Books(*(np.mean(part, axis=0) for part in zip(*one, strict=True))) for one in books)
-    return Cooled(stacked, np.array(exponent), np.array(time), *means, parts)
+    return Cooled(stacked, *map(np.array, (exponent, passed, time)), *means, parts)
 
 
 def _stacked(runs):
     return Energies(*map(np.array, zip(*(one.there() for one in runs), strict=True)))
 
 
-def _measure(ensemble, passed, transient, every):
+def _measure(ensemble, passed, transient, rate, every):
     """Return R on its plateau, and how the energies decay."""
     R = ratio(ensemble.energies)
     plateau = find_plateau(passed, R, transient)
     inside = (passed >= plateau.start) & (passed <= plateau.stop)
     first = np.argmax(inside)
+    length = plateau.stop - (passed[first - 1] if first else 0.0)
+    evidence = Evidence(length, np.count_nonzero(inside), rate * plateau.start, len(R))
+    found = evidence.verdict(plateau.found)
     error = Error(plateau.stderr, len(R) - 1.0)
     exponent = ensemble.exponent
-    E_rot = restored(ensemble.energies, exponent).rotational.mean(axis=0)
+    E_rot = restored(ensemble.energies, exponent).rotational
     alike = restored(ensemble.energies, exponent - exponent.max(axis=0))
     return _decay(ensemble, passed, first) | {
         "R": plateau.mean,
         "R_stderr": error.stderr,
         "R_dof": error.dof,
         "R_ci95": error.half_width(0.95),
-        "R_ci95_trusted": plateau.found,
+        "R_ci95_trusted": found,
         "R_ratio_of_means": ratio_of_means(alike, axis=0)[inside].mean(),
-        "E_rot": E_rot[first],
-        "equilibrated": plateau.found,
+        "E_rot": E_rot.mean(axis=0)[first],
+        "E_rot_stderr": _scatter(E_rot)[first],
+        "equilibrated": found,
         "measured_from": plateau.start,
+        "measured_collisions": evidence.collisions,
         "plateau_end": plateau.stop,
         "autocorrelation_time": autocorrelation_time(R[:, inside]) * every,
         "R_replica": plateau.per_replica,
         "R_series": R.mean(axis=0),
         "R_series_stderr": _scatter(R),
-        "E_rot_series": E_rot,
+        "E_rot_series": E_rot.mean(axis=0),
         **_of_species(ensemble, inside),
     }
 
@@ -222,8 +247,9 @@ def _decay(ensemble, passed, first):
     return {
         "E_trans": E_trans.mean(axis=0)[first],
         "E_trans_stderr": _scatter(E_trans)[first],
-        "equilibrated": True,
+        "equilibrated": UNKNOWN,  # nothing but R would show it
         "measured_from": passed[first],
+        "measured_collisions": passed[-1] - (passed[first - 1] if first else 0.0),
         "plateau_end": passed[-1],
         "collisions_per_particle": passed,
         "E_trans_series": E_trans.mean(axis=0),

@@ -25,6 +25,11 @@ from roughgas.simulation.energies import Columns, Energies
 from roughgas.simulation.recorder import Recorder, most_in, now
 
 
+def count(particles: int, per_particle: float) -> int:
+    """Return the collisions in a gas of so many particles; at least one."""
+    return max(1, round(particles / 2 * per_particle))
+
+
 class Watcher(Protocol):
     """Looks at the state before and after each step of a gas (see Gas.step), and changes nothing.
 
@@ -102,7 +107,7 @@ class Gas:
 
     def count(self, per_particle: float) -> int:
         """Return the collisions in the whole gas, each with two partners; at least one."""
-        return max(1, round(self.particles / 2 * per_particle))
+        return count(self.particles, per_particle)
 
     def thermalise(self, per_particle: float) -> None:
         """Let particles, and side walls, collide as smooth elastic ones, so often per particle."""

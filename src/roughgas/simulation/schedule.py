@@ -34,6 +34,12 @@ class Kind(Protocol):
     ) -> Gas:
         """Return the gas of a point, the first of several, as its time begins to count."""
 
+    def interval(self, experiment: Mapping[str, Any]) -> float:
+        """Return the UNIT between two samples, as they are taken."""
+
+    def check(self, scene: Scene, experiment: Mapping[str, Any]) -> None:
+        """Raise InputError for lengths that cannot be run, or that measure nothing."""
+
     def sample(self, gas: Gas, every: float, samples: int) -> Columns:
         """Advance a gas; return columns, sampled at intervals of `every` UNIT."""
 
@@ -53,6 +59,8 @@ class Kind(Protocol):
     ) -> dict[str, Any]:
         """Return the variables of a point (see roughgas.data.point)."""
 
+
+MOST_SAMPLES = 10_000_000  # of all replicas together: they are kept in memory
 
 KINDS: dict[str, Kind] = {"steady": steady, "cooling": cooling}
 
@@ -78,7 +86,7 @@ def system_of(scene: Scene, experiment: Mapping[str, Any]) -> "System":
         periodic=tuple(length is not None for length in scene.box),
         inertia=inertia(effects),
         shear_rate=shear_rate(scene),
-        interval=schedule["sample_every"],
+        interval=KINDS[schedule["kind"]].interval(experiment),
         cooling=not KINDS[schedule["kind"]].DRIVEN,
         alike=effects.species is None,
     )
@@ -95,8 +103,23 @@ def check(experiment: Mapping[str, Any]) -> None:
         raise InputError("schedule.kind", kind, legal)
     if KINDS[kind].DRIVEN and not drives:
         raise InputError("schedule.kind", kind, "be cooling where no effect drives the gas")
+    if "target_stderr" not in experiment:
+        _check_samples(experiment)
+        KINDS[kind].check(built, experiment)
     if experiment.get("observables"):
         _check_observables(experiment, built)
+
+
+def _check_samples(experiment):
+    """Raise InputError for lengths that make too many samples to keep."""
+    schedule = experiment["schedule"]
+    lengths = [name for name in ("equilibrate", "measure", "plateau") if name in schedule]
+    samples = sum(schedule[name] for name in lengths) / schedule["sample_every"]
+    samples *= schedule.get("replicas", 1)
+    if samples > MOST_SAMPLES:
+        asked = " and ".join(f"schedule.{name}" for name in lengths)
+        legal = f"make at most {MOST_SAMPLES:.0e} samples of {asked}, not {samples:.0e}"
+        raise InputError("schedule.sample_every", schedule["sample_every"], legal)
 
 
 def _check_observables(experiment, scene):

@@ -1,11 +1,14 @@
 """A gas under steady driving: wait until it is stationary, then average over time."""
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
+from roughgas.base.errors import InputError
 from roughgas.effects import inertia
+from roughgas.kernel.hooks import present
 from roughgas.scene import Scene, moves_along
 from roughgas.simulation import by_species
 from roughgas.simulation.books import exchange
@@ -18,12 +21,16 @@ from roughgas.simulation.recorder import Recorder
 from roughgas.statistics.averages import period_means
 from roughgas.statistics.equilibration import detect_start, is_equilibrated
 from roughgas.statistics.errors import autocorrelation_time, blocking
+from roughgas.statistics.evidence import UNKNOWN, YES, Evidence, of_all
 from roughgas.statistics.intervals import Error, degrees_of_freedom, is_trusted
 
 # see roughgas.simulation.schedule.Kind
 DRIVEN, UNIT, LENGTH, SAMPLES_PER_REFRESH = True, "T", "measure", 1
 KEPT = 4  # values in a period that the stored series have
 LEAST_LEFT = 0.5  # share of the planned measurement below which a late start is not worth having
+# of a periodic drive, that samples must show: with 16 a bed has R within 0.0005 of that with 80
+LEAST_PHASES = 16
+WHOLE = 1e-6  # by which a number of samples, or of periods, may miss a whole one
 
 
 def length(scene: Scene, experiment: Mapping[str, Any]) -> float:
@@ -43,6 +50,57 @@ def sample(gas: Gas, every: float, samples: int) -> Columns:
     return gas.in_time(every, samples)
 
 
+def interval(experiment: Mapping[str, Any]) -> float:
+    """Return the T between two samples."""
+    return experiment["schedule"]["sample_every"]
+
+
+def check(scene: Scene, experiment: Mapping[str, Any]) -> None:
+    """Raise InputError for lengths that make no whole period, or samples that miss phases of it."""
+    schedule = experiment["schedule"]
+    measure, every = schedule["measure"], schedule["sample_every"]
+    period = schedule.get("period", every)
+    for name, own in drive_periods(scene).items():
+        if "period" not in schedule or not _is_whole(period / own):
+            found = schedule.get("period", "(none)")
+            legal = f"be a whole multiple of that of {name}, {own:g} T"
+            raise InputError("schedule.period", found, legal)
+    if not _is_whole(period / every):
+        legal = f"divide schedule.period, {period:g} T, into whole samples"
+        raise InputError("schedule.sample_every", every, legal)
+    if sum(_planned(schedule)) < wait(scene, experiment) + samples_per_period(schedule):
+        legal = f"hold a whole period, {period:g} T, after the whole ones of equilibrate"
+        raise InputError("schedule.measure", measure, legal)
+
+
+def drive_periods(scene: Scene) -> dict[str, float]:
+    """Return the period (T) of each effect that drives a gas periodically, by name."""
+    effects = scene.effects
+    found = {effects._fields[part.place]: effects[part.place] for part in present(effects, "phase")}
+    periods = {name: getattr(one, "period", math.inf) for name, one in found.items()}
+    return {name: period for name, period in periods.items() if period < math.inf}
+
+
+def phases(scene: Scene, schedule: Mapping[str, Any]) -> float:
+    """Return how many phases of the drive samples show; infinity where it has no period."""
+    per_period = samples_per_period(schedule)
+    of_each = [
+        per_period // math.gcd(per_period, round(schedule["period"] / period))
+        for period in drive_periods(scene).values()
+    ]
+    return min(of_each, default=math.inf)
+
+
+def _planned(schedule):
+    """Return the samples of the wait and of the measurement."""
+    every = schedule["sample_every"]
+    return tuple(round(schedule[part] / every) for part in ("equilibrate", "measure"))
+
+
+def _is_whole(number: float) -> bool:
+    return number > 0.5 and abs(number - round(number)) <= WHOLE * number
+
+
 def samples_per_period(schedule: Mapping[str, Any]) -> int:
     """Return the samples in a period of the drive; 1 if it has none."""
     every = schedule["sample_every"]
@@ -52,7 +110,7 @@ def samples_per_period(schedule: Mapping[str, Any]) -> int:
 def wait(scene: Scene, experiment: Mapping[str, Any]) -> int:
     """Return the samples before any counts: whole periods."""
     schedule = experiment["schedule"]
-    planned = round(schedule["equilibrate"] / schedule["sample_every"])
+    planned, _ = _planned(schedule)
     return -(-planned // samples_per_period(schedule)) * samples_per_period(schedule)
 
 
@@ -68,30 +126,37 @@ def run(
     The schedule gives `equilibrate` and `measure` (T), `sample_every` (T), and `period` (T), over
     whole multiples of which averages are formed. The measurement begins later than planned if the
     energies say that the gas is not yet stationary, and the point is flagged if half of it would be
-    lost or the energies drift in what is left.
+    lost or the energies drift in what is left. R is vouched for only in a steady state, and where
+    samples show enough phases of a periodic drive.
     """
     schedule = experiment["schedule"]
     every, per_period = schedule["sample_every"], samples_per_period(schedule)
-    planned, length = (round(schedule[part] / every) for part in ("equilibrate", "measure"))
+    planned, length = _planned(schedule)
     gas = start(scene, experiment, seed, recorder, initial)
     if initial:
         gas.look()  # at running sums that others have begun
-    begun, sums, before = gas.time, gas.sample, gas.books()
+    begun, sums, before, made = gas.time, gas.sample, gas.books(), gas.begun + gas.collisions
     rows = gas.in_time(every, planned + length)
     series = gas.energies(rows)
     first, found = _start(series, planned, length, per_period)
+    made = rows["collisions"][-1] - (rows["collisions"][first - 1] if first else made)
     window = series.map(lambda part: part[first:])
     translational = period_means(window.translational, per_period)
+    evidence = Evidence(2 * made / gas.particles, len(translational))
+    steady = evidence.verdict(found)
+    shown = phases(scene, schedule) >= LEAST_PHASES
+    vouched = steady if shown or steady != YES else UNKNOWN
     return {
         "E_trans": window.translational.mean(),
         "E_trans_stderr": blocking(translational)[0],
-        **(_shared(window, per_period, every) if window.rotational is not None else {}),
+        **(_shared(window, per_period, every, vouched) if window.rotational is not None else {}),
         **contact_averages(rows, first, per_period, _inertia_of_sums(scene), sums),
         **_unsubtracted(gas, rows, first),
         **_of_species(gas, rows, first, per_period),
         **exchange(before, gas.books(), scene, gas.particles),
-        "equilibrated": found,
+        "equilibrated": steady,
         "measured_from": begun + first * every,
+        "measured_collisions": evidence.collisions,
         **_series(rows["time"][first:], window, max(1, per_period // KEPT)),
     }
 
@@ -106,8 +171,8 @@ def _start(series, planned, length, per_period):
     return start, is_equilibrated(*means, start=start // per_period)
 
 
-def _shared(window, per_period, every):
-    """Return how the energy is shared between translation and rotation."""
+def _shared(window, per_period, every, steady):
+    """Return how the energy is shared between translation and rotation, steady or not."""
     R = ratio(window)
     R_periods = period_means(R, per_period)
     stderr, blocks = blocking(R_periods)
@@ -117,9 +182,10 @@ def _shared(window, per_period, every):
         "R_stderr": error.stderr,
         "R_dof": error.dof,
         "R_ci95": error.half_width(0.95),
-        "R_ci95_trusted": is_trusted(len(R_periods), memory),
+        "R_ci95_trusted": of_all(steady, is_trusted(len(R_periods), memory)),
         "R_ratio_of_means": ratio_of_means(window),
         "E_rot": window.rotational.mean(),
+        "E_rot_stderr": blocking(period_means(window.rotational, per_period))[0],
         "autocorrelation_time": memory * per_period * every,
     }
 

@@ -60,7 +60,7 @@ def is_equilibrated(*series: np.ndarray, start: int = 0) -> bool:
     * Its drift plus 2 standard errors must lie below half the energy: noise does not pass for
       equilibrium.
 
-    Series that leave fewer than 12 samples show nothing: False.
+    Series that leave fewer than 12 samples are not stationary as far as they show.
     """
     return all(_is_stationary(np.asarray(one, dtype=float)[start // 2 :]) for one in series)
 

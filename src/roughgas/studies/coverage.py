@@ -14,6 +14,7 @@ import numpy as np
 import xarray as xr
 
 from roughgas.statistics.estimate import Estimate
+from roughgas.statistics.evidence import YES
 from roughgas.statistics.intervals import half_width, pooled
 from roughgas.studies.tasks import corner_name
 from roughgas.studies.variables import dataset, stacked
@@ -118,7 +119,7 @@ def _corner(part: xr.Dataset, settings: Mapping[str, Any]) -> dict[str, Any]:
         "truth": truth,
         "dof": float(np.median(runs.dof)),
         "repetitions": len(runs.value),
-        "equilibrated": float(part.equilibrated.mean()),
+        "equilibrated": float((part.equilibrated == YES).mean()),
         "autocorrelation_time": float(part.truth_autocorrelation_time.mean()),
         "window": float(part.window),
         "cpu_seconds": float(part.cpu_seconds),
