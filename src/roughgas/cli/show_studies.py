@@ -8,6 +8,7 @@ import numpy as np
 from xarray import Dataset
 
 from roughgas.base.layout import columns
+from roughgas.statistics.evidence import NO, UNKNOWN, YES
 
 MOST_VALUES = 4  # of a variable, that are all shown
 UNIT = "T (cooling gas: collisions per particle)"
@@ -24,10 +25,13 @@ MEANING = {
 }
 
 
+FLAGS = {YES: True, NO: False, UNKNOWN: None}
+
+
 def scalars(data: Dataset) -> dict[str, Any]:
-    """Return the single numbers of a dataset by name, flags as True and False."""
+    """Return the single numbers of a dataset by name, flags as True, False, and None for unknown."""
     return {
-        str(name): bool(one) if "flag_meanings" in one.attrs else one.values.item()
+        str(name): FLAGS[int(one)] if "flag_meanings" in one.attrs else one.values.item()
         for name, one in data.variables.items()
         if not one.dims
     }
