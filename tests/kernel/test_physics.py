@@ -12,7 +12,7 @@ from roughgas.statistics.errors import blocking_stderr
 def test_a_rough_elastic_gas_shares_its_energy_equally():
     """E_rot is its share of the total, 1/(3 - 2/N), within 4 sigma: 1e-4 of seeds fail.
 
-    N spins share equally with 2 N - 2 translational degrees of freedom, since momentum is conserved.
+    N spins share equally with 2 N - 2 translational degrees of freedom: momentum is conserved.
     """
     number = 40
     scene, state = begin(settings("gas", number, [25, 25]), 1.0, 1.0, 1)

@@ -3,7 +3,6 @@
 Units: particle radius a = particle mass m = time unit T = 1.
 """
 
-import math
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
