@@ -35,7 +35,9 @@ RESERVED = (
     ),
     *("plan", "plan_extensions", "plan_of_scale", "plot", "point", "profiles", "reach", "reduce"),
     *("report", "run_times", "run_times_extensions", "runaway", "study", "study_figure"),
-    *("study_table", "table"),
+    *("study_table", "table", "fig1a", "fig1b", "fig2a", "fig2b", "fig3", "fig4", "fig5", "fig6"),
+    *("fig7", "fig8", "hard_cases_chaos", "hard_cases_collapse", "hard_cases_cooling"),
+    *("mixtures_cooling", "mixtures_vibrated", "polydispersity", "viscoelastic"),
 )
 """Names that no experiment may have: those of rules and products of the workflow."""
 
