@@ -77,7 +77,8 @@ def drive_periods(scene: Scene) -> dict[str, float]:
     """Return the period (T) of each effect that drives a gas periodically, by name."""
     effects = scene.effects
     found = {effects._fields[part.place]: effects[part.place] for part in present(effects, "phase")}
-    periods = {name: getattr(one, "period", math.inf) for name, one in found.items()}
+    moving = {name: one for name, one in found.items() if getattr(one, "amplitude", 1.0) > 0}
+    periods = {name: getattr(one, "period", math.inf) for name, one in moving.items()}
     return {name: period for name, period in periods.items() if period < math.inf}
 
 
