@@ -478,6 +478,7 @@ def test_for_projectors_type_is_large_and_all_is_in_sight(file, page, size, seco
             for box in boxes(page, selector):
                 assert 0 <= box["left"] < box["right"] <= size[0]
                 assert 0 <= box["top"] < box["bottom"] <= size[1]
+        lies_in_its_panel(page, ".mean")
         for one in page.find(".present"):
             assert float(one.value_of_css_property("font-size")[:-2]) > size[1] / 36
         assert not any(one.is_displayed() for one in page.find("table, .question, footer"))
@@ -564,6 +565,16 @@ def boxes(page, selector):
     )
 
 
+def lies_in_its_panel(page, selector):
+    """Whether the longest mean has room."""
+    page.script(
+        "playing = false; go(); for (const one of panels) one.say('mean', '0.2222 ± 0.0222')"
+    )
+    for panel, box in zip(boxes(page, ".controls"), boxes(page, selector), strict=True):
+        assert panel["left"] - 1 <= box["left"] < box["right"] <= panel["right"] + 1
+    assert page.script("return document.documentElement.scrollWidth <= innerWidth")
+
+
 @pytest.mark.parametrize("scene", ["cooling", "vibrated", "sheared"])
 @pytest.mark.parametrize("second", ["", "/vs/r0.8/beta0"])
 def test_on_a_phone_the_gas_its_sliders_and_R_are_in_one_view(file, page, scene, second):
@@ -574,6 +585,7 @@ def test_on_a_phone_the_gas_its_sliders_and_R_are_in_one_view(file, page, scene,
             found = boxes(page, selector)
             assert found and all(0 <= one["top"] < one["bottom"] <= 844 for one in found)
             assert all(0 <= one["left"] < one["right"] <= 390 for one in found)
+        lies_in_its_panel(page, ".mean")
     for width in (320, 390):
         with emulated(page, width, 740):
             assert page.script("return document.documentElement.scrollWidth") <= width
