@@ -49,7 +49,7 @@ def overview(margins: list[Margin]) -> Figure:
     axes.axvline(1.0, color=THEORY)
     axes.set_xlabel("factor by which a measured number could be worse", fontsize=9)
     note = "each symbol is one measured number; right: how many are further off, or without error"
-    axes.set_title(note, fontsize=8, color=GREY, loc="right", pad=3)
+    axes.set_title(note, fontsize=8, color=GREY, loc="right", pad=5)
     return figure
 
 
@@ -80,13 +80,13 @@ def cooling(series: Series) -> Figure:
         ratio.plot(columns["collisions"], columns[f"R {r}"], **style)
     energy.axhline(-308, color=FAINT, lw=0.8, linestyle=(0, (1, 2)))
     at_rim = energy.get_yaxis_transform()
-    energy.text(0.98, -290, "smallest double", transform=at_rim, ha="right", fontsize=7, color=GREY)
+    energy.text(0.98, -275, "smallest double", transform=at_rim, ha="right", fontsize=7, color=GREY)
     for r, look in zip(restitutions, LOOKS, strict=False):
         ratio.axhline(cooling_ratio(float(r), 0.0), color=look.colour, lw=0.5)
     ratio.set_title("thin lines: theory of free cooling", fontsize=8, loc="left")
     energy.set_ylabel(r"$\log_{10} E_\mathrm{trans}$")
     ratio.set_ylabel("$R$, means of a hundredth of the run")
-    ratio.set_ylim(0.0, 0.8)
+    ratio.set_ylim(0.2, 0.8)
     for axes in (energy, ratio):
         axes.set_xlabel("collisions per particle")
     energy.legend(loc="lower left")
