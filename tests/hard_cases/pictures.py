@@ -80,7 +80,7 @@ def cooling(series: Series) -> Figure:
         ratio.plot(columns["collisions"], columns[f"R {r}"], **style)
     energy.axhline(-308, color=FAINT, lw=0.8, linestyle=(0, (1, 2)))
     at_rim = energy.get_yaxis_transform()
-    energy.text(0.98, -275, "smallest double", transform=at_rim, ha="right", fontsize=7, color=GREY)
+    energy.text(0.98, -262, "smallest double", transform=at_rim, ha="right", fontsize=7, color=GREY)
     for r, look in zip(restitutions, LOOKS, strict=False):
         ratio.axhline(cooling_ratio(float(r), 0.0), color=look.colour, lw=0.5)
     ratio.set_title("thin lines: theory of free cooling", fontsize=8, loc="left")

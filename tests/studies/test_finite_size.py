@@ -5,6 +5,7 @@ import pytest
 from brute_force import KERNELS
 from matplotlib.figure import Figure
 from tests.data.schema_page import check_study
+from tests.show.figures.legibility import faults
 
 from roughgas import config, theory
 from roughgas.scene import build
@@ -123,6 +124,9 @@ def test_it_is_documented_tabulated_and_drawn(data):
     assert table.count("\n## ") + table.startswith("## ") == 1
     figure = draw_figure(data)
     assert isinstance(figure, Figure) and len(figure.axes) == 4
+    number, _, box, _ = figure.axes
+    assert len(number.get_yticklabels()) == data.sizes["point"] and box.get_yscale() == "linear"
+    assert not any("printed at" in fault for fault in faults(lambda: draw_figure(data)))
 
 
 def test_a_run_that_collapses_is_unknown_from_there_on():

@@ -7,6 +7,7 @@ from brute_force import scene_of, settings, snapshot
 from brute_force.beside import brute_force_from
 from schedules import STEADY
 from tests.data.schema_page import check_study
+from tests.show.figures.legibility import faults
 
 from roughgas.scene.initial import initial_state
 from roughgas.simulation.gas import Gas
@@ -182,7 +183,8 @@ def test_the_same_settings_give_the_same_runs(parts):
 def test_figure_and_table_show_every_point(parts):
     data = profiles.combine(parts, SETTINGS)
     figure = draw_figure(data)
-    averages, sheared = figure.axes[2], figure.axes[3]
+    _, _, averages, sheared = figure.axes
+    assert not any("printed at" in fault for fault in faults(lambda: draw_figure(data)))
     assert len(averages.containers) == len(sheared.containers) == 1
     assert "disks, r = 0.9, β = 0.3" in table(data)
     assert "disks, r = 0.8, β = 1 |" in table(data)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 from tests.data.schema_page import check_study
+from tests.show.figures.legibility import faults
 
 from roughgas import config, theory
 from roughgas.studies import runaway, study
@@ -132,6 +133,14 @@ def test_it_is_documented_tabulated_and_drawn(data):
     assert table.count("\n| 0.1 |") == 3 and "(0/5)" in table
     figure = draw_figure(data)
     assert isinstance(figure, Figure) and len(figure.axes) == 4
+    assert not any("printed at" in fault for fault in faults(lambda: draw_figure(data)))
+
+
+def test_arrows_at_one_place_are_one(data):
+    twice = data.isel(mu=[0, 1, 2, 2]).assign_coords(mu=[0.05, 0.1, 0.5, 1.0])
+    times = draw_figure(twice).axes[1]
+    arrows = [line for line in times.lines if line.get_marker() == r"$\uparrow$"]
+    assert [line.get_label() for line in arrows] == [r"$\mu = 0.5, 1$: later than (95 %)"]
 
 
 def test_the_more_particles_the_sooner():
