@@ -106,6 +106,15 @@ def test_help_imports_nothing_heavy():
     assert loaded.isdisjoint(heavy | {"tqdm", "argcomplete"})
 
 
+def test_a_process_has_one_thread_for_linear_algebra(monkeypatch):
+    """With several the sums, and so last bits, would depend on the number of cores."""
+    monkeypatch.delenv("OPENBLAS_NUM_THREADS", raising=False)
+    code = "import os, roughgas.cli as cli\n"
+    code += "cli.main = lambda: print(os.environ['OPENBLAS_NUM_THREADS']) or 0\ncli.process()"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "1\n"
+
+
 def test_an_interrupt_ends_in_one_line(tmp_path, capsys, monkeypatch):
     def interrupted(*_):
         raise KeyboardInterrupt

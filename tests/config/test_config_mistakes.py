@@ -111,6 +111,11 @@ MISTAKES = [
     ("experiments.cooling", None, "cooling = None: must be a mapping of keys to values"),
     ("experiments.vibrated_smooth_walls.extends", "foo", f"must be one of {EXPERIMENTS}"),
     ("experiments.cooling.extends", "cooling", "that does not itself build on this one"),
+    (
+        "experiments.cooling.extends",
+        "cooling_spheres",
+        "experiments.cooling_spheres.extends = cooling: must be an experiment that does not itself",
+    ),
     ("experiments.No Name", {}, "must consist of lower-case letters, digits and _, a letter first"),
     (
         "scales.small.foo",
