@@ -39,7 +39,7 @@ RESERVED = (
     *("fig7", "fig8", "hard_cases_chaos", "hard_cases_collapse", "hard_cases_cooling"),
     *("mixtures_cooling", "mixtures_vibrated", "polydispersity", "viscoelastic"),
 )
-"""Names that no experiment may have: those of rules and products of the workflow."""
+"""Names that no experiment may have, those of rules and products of the workflow."""
 
 
 def read(
