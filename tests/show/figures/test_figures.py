@@ -337,7 +337,9 @@ def test_contacts_of_a_sheared_gas_see_its_mean_flow_so_their_average_is_not_sho
 
 def test_boundary_drives_stand_at_their_measured_shares():
     heated, *beds, walls = DATA["fig5"]()
+    beds[0]["input_spin_share"][0] = -0.4  # which is within the axis
     main, residual = fig5.draw(heated, *beds, walls).axes
+    assert main.get_xlim()[0] < -0.4
     points = [column for column in bars(main) if len(column)]
     assert len(points) == 4 * heated.beta.size
     np.testing.assert_allclose(points[-1][:, 0], walls.input_spin_share.sel(r=0.9, beta=1.0))

@@ -28,7 +28,9 @@ def draw(heated: xr.Dataset, *boundaries: xr.Dataset) -> Figure:
     shaken walls.
     """
     averages = panel.averages_of(heated)
-    figure, (one,) = panel.ratio_panels([panel.SPIN_SHARE], averages=averages)
+    low = min(0.0, *(float(data.input_spin_share.min()) for data in boundaries))
+    axis = panel.SPIN_SHARE._replace(limits=(low - 0.03, 1.03), drawn=(low, 1))
+    figure, (one,) = panel.ratio_panels([axis], averages=averages)
     drawn = []
     for data, marker in zip((heated, *boundaries), DRIVES.values(), strict=True):
         looks = [look._replace(marker=marker) for look in LOOKS]

@@ -36,7 +36,7 @@ def draw(floor: xr.Dataset, walls: xr.Dataset) -> Figure:
         axes.axhline(0, color=THEORY, linewidth=0.8, zorder=0)
         panel.ROUGHNESS.prepare(axes)
         panel.add_title(axes, [data], rf"{name}, $r = {panel.RESTITUTION:g}$", message)
-    both[0].legend(title="lines: rate equations", loc="upper left")
+    both[0].legend(title="dashes: rate equations", loc="upper left")
     panel.add_notes(figure, drawn)
     both[0].set_ylabel("$R$ minus $R$ with\na smooth boundary")
     return figure
@@ -48,7 +48,6 @@ def _draw_shift(axes: Axes, one: panel.Series) -> None:
     error = np.hypot(one.data.R_stderr, smooth.R_stderr).where(rough, 0)
     shifted = one._replace(data=one.data.assign(R_stderr=error))
     expected = one.predict(spin_share=one.data.input_spin_share.values) - one.predict(spin_share=0)
-    colour, marker, line = one.look
-    axes.plot(one.at, expected, color=colour, linestyle=line, zorder=1)
+    axes.plot(one.at, expected, "_", color=one.look.colour, markersize=11, zorder=1)
     panel.draw_points(axes, shifted, one.at, (one.data.R - smooth.R).values)
-    axes.plot([], [], color=colour, marker=marker, linestyle=line, label=one.label)
+    axes.plot([], [], one.look.marker, color=one.look.colour, label=one.label)

@@ -57,7 +57,7 @@ BETA = Axis("beta", r"roughness $\beta$", (-1.06, 1.06), (-1, 1))
 FRICTION = Axis("mu", r"coefficient of friction $\mu$", (0.007, 14), (0.007, 14), True)
 INERTIA = Axis("inertia", r"moment of inertia $q = I/(ma^2)$", (0.008, 1.25), (0.008, 1), True)
 SHARE_LABEL = "share $s$ of the drive's power\nthat goes into rotation"
-SPIN_SHARE = Axis("spin_share", SHARE_LABEL, (-0.15, 1.03), (-0.12, 1))
+SPIN_SHARE = Axis("spin_share", SHARE_LABEL, (-0.03, 1.03), (0, 1))
 ROUGHNESS = Axis("roughness", r"roughness of the boundary", (-1.06, 1.06), (-1, 1))
 
 
