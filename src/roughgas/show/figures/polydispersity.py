@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from roughgas.show.figures import panel
-from roughgas.show.style import FAINT, LOOKS, THEORY, Look
+from roughgas.show.style import FAINT, LOOKS, THEORY, Look, Style
 
 SIZE = (7.0, 5.4)  # inches
 ALIKE = 0.0
@@ -53,7 +53,7 @@ def _draw_r(
         look = form._replace(colour=colour.colour)
         one = panel.series(data, f"{100 * deviation:g} %", look, r=r, deviation=deviation)
         every.append(one)
-        line = {"color": look.colour, "linestyle": look.line, "linewidth": 0.9, "zorder": 1}
+        line: Style = {"color": look.colour, "linestyle": look.line, "linewidth": 0.9, "zorder": 1}
         theory = np.broadcast_to(one.predict(beta=grid), grid.shape)
         of_equal = theory if deviation == ALIKE else of_equal
         panel.draw_points(main, one, one.at, one.data.R.values)
@@ -75,6 +75,6 @@ def _keys(colours: dict[float, Look], drawn: Sequence[panel.Series]) -> list[Lin
     ]
     forms = {one.label: one.look for one in drawn}
     for label, look in forms.items():
-        form = {"ls": look.line, "marker": look.marker, "color": THEORY}
+        form: Style = {"ls": look.line, "marker": look.marker, "color": THEORY}
         keys.append(Line2D([], [], label=f"standard deviation of radii {label}", **form))
     return keys + panel.keys_of_steadiness(drawn)

@@ -108,7 +108,8 @@ def _draw_ratios(axes: Axes, row: xr.Dataset, both: list[panel.Series], axis: st
 
 def _pale(colour: str) -> str:
     """Return what symbols of the second species have, on which those of the first are seen."""
-    return to_hex(0.5 + 0.5 * np.array(to_rgb(colour)))
+    red, green, blue = (0.5 + 0.5 * part for part in to_rgb(colour))
+    return to_hex((red, green, blue))
 
 
 def _theory(row: xr.Dataset, place: dict[str, float]):

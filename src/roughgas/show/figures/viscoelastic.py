@@ -12,7 +12,7 @@ from matplotlib.lines import Line2D
 
 from roughgas import theory
 from roughgas.data.reduced import particles_of
-from roughgas.show.style import FAINT, GREY, LOOKS, THEORY, Look
+from roughgas.show.style import FAINT, GREY, LOOKS, THEORY, Look, Style
 
 SIZE = (7.0, 4.4)  # inches
 MARKERS = "o", "^"
@@ -57,7 +57,7 @@ def draw(gas: xr.Dataset) -> Figure:
 def _draw_energy(axes: Axes, one: xr.Dataset, look: Look) -> None:
     time, energy = one.time_series.values, one.E_trans_series.values
     few = np.flatnonzero(time <= LATEST)[EVERY - 1 :: EVERY]
-    style = {"color": look.colour, "ms": 3.2, "linestyle": "none"}
+    style: Style = {"color": look.colour, "ms": 3.2, "linestyle": "none"}
     axes.plot(time[few], energy[few], marker=look.marker, **style)
     frequency = theory.collision_frequency(1.0, float(one.attrs["packing"]))
     gas = theory.viscoelastic_cooling(
@@ -87,7 +87,7 @@ def _draw_ratio(axes: Axes, one: xr.Dataset, look: Look) -> None:
         return  # spins that nothing changes
     few = slice(EVERY - 1, None, EVERY)
     energy = one.E_trans_series.values
-    style = {"color": look.colour, "ms": 3.2, "linestyle": "none"}
+    style: Style = {"color": look.colour, "ms": 3.2, "linestyle": "none"}
     axes.plot(energy[few], one.R_series.values[few], marker=look.marker, **style)
     about = one.attrs["r_at_speed"], one.attrs["dimension"], one.attrs["inertia"]
     expected = theory.viscoelastic_ratio(energy, float(one.r), float(one.beta), *about)

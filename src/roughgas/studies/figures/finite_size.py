@@ -27,7 +27,7 @@ TITLES = (
 def draw_figure(data: xr.Dataset) -> Figure:
     """Return the figure, from the study's dataset."""
     figure = Figure(figsize=SIZE, layout="constrained")
-    rows, graphs = figure.subfigures(2, 1, height_ratios=(1.15, 1))
+    rows, graphs = np.asarray(figure.subfigures(2, 1, height_ratios=(1.15, 1)))
     every = [*rows.subplots(1, 2, sharey=True), *graphs.subplots(1, 2)]
     panels = draw_number, draw_tails, draw_box, draw_time
     for axes, panel, title in zip(every, panels, TITLES, strict=True):
