@@ -134,6 +134,7 @@ def viscoelastic(shift: float = 0.0, exponent: float = 5 / 3) -> xr.Dataset:
     """A cooling gas of viscoelastic disks: R is that of the present restitution, + `shift`."""
     about = {"r_at_speed": 1.0, "packing": 0.0126}
     data = reduced("cooling_viscoelastic", r=(0.9,), beta=(-1.0, 0.0, 1.0), about=about, error=1e-6)
+    data["R"] = data.R.fillna(0.0)  # of smooth disks, whose spins nothing changes, theory has none
     time = np.geomspace(1.0, 1e6, 50)
     energy = np.broadcast_to((1.0 + time / 30.0) ** -exponent, (1, 3, 50))
     R = theory.viscoelastic_ratio(energy, 0.9, data.beta.values[:, None]) + shift
