@@ -118,8 +118,7 @@ def test_what_is_combined(data, parts):
     assert np.isnan(stays.dsmc_time) and np.isnan(stays.dsmc_largest_share)
     at = data.sel(mu=0.05, events_particles=40)
     both = at.events_time / data.sel(mu=0.05, dsmc_particles=40).dsmc_time
-    if at.events_escapes:
-        assert at.events_over_dsmc == pytest.approx(both.item())
+    assert at.events_escapes > 0 and at.events_over_dsmc == pytest.approx(both.item())
     exposed = 40 * 5 * 600 + 400 * 4 * 400
     assert data.rate_bound.sel(mu=0.5) == pytest.approx(math.log(20) / exposed)
     assert data.threshold.sel(mu=0.05) == 0 and np.isnan(data.rate.sel(mu=0.05))

@@ -65,7 +65,9 @@ def test_a_document_says_what_it_is(document):
 
 
 def test_pictures_of_hard_cases_have_captions():
-    for name in figures_of("hard_cases"):
+    names = figures_of("hard_cases")
+    assert names
+    for name in names:
         assert "What to notice." in rendered(name, params=SimpleNamespace(size="--full"))
 
 
