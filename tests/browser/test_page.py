@@ -2,11 +2,13 @@
 
 import re
 
+import netCDF4
+import numpy as np
 import pytest
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.select import Select
-from show.page.conftest import points_in
+from show.page.conftest import SAMPLES, points_in
 
 from roughgas.data.point import read_point
 from roughgas.data.reduced import read_reduced
@@ -129,6 +131,47 @@ def test_what_is_drawn_are_the_datasets(page, ran):
     residual = data.R - predicted_ratio(data.attrs, 0.8, data.beta.values)
     assert drawn[3] == pytest.approx(residual.values.tolist(), abs=1e-12)
     assert 0 < drawn[4] <= 200
+
+
+@pytest.fixture
+def made_up(browser, tmp_path):
+    """A page of made-up points: of a gas that cools by 90 decades, and of one whose steady state is
+    not known."""
+    points = points_in(tmp_path / "small")
+    for path in (points / "cooling").rglob("seed1.nc"):
+        with netCDF4.Dataset(path, "a") as file:
+            file["E_trans_series"][...] = 10.0 ** (-0.2 * np.arange(SAMPLES))
+    with netCDF4.Dataset(points / "sheared.nc", "a") as file:
+        file["equilibrated"][...] = -1.0
+    names = ("cooling", "sheared")
+    write_page([points / f"{name}.nc" for name in names], points, tmp_path / "e.html")
+    browser.open(tmp_path / "e.html")
+    browser.wait(lambda: browser.find("#ratios .main-svg") and browser.find("#over-time .main-svg"))
+    return browser
+
+
+def test_a_legend_names_the_theory_and_titles_lie_beside_their_numbers(made_up):
+    named = made_up.script("""
+        const { data } = document.getElementById("ratios");
+        return data.filter(one => one.showlegend !== false).map(one => one.name);""")
+    assert "lines: theory of free cooling" in named
+    assert made_up.text("#theory") == "theory of free cooling"
+    found = made_up.script("""
+        const plot = document.getElementById("over-time");
+        const left = one => one.getBoundingClientRect().left;
+        const title = plot.querySelector(".y2title").getBoundingClientRect();
+        const ticks = [...plot.querySelectorAll(".y2tick")];
+        return [ticks.length, ticks.some(one => left(one) < title.right)];""")
+    assert found[0] > 2 and not found[1]
+
+
+def test_what_is_not_known_is_said_and_drawn(made_up):
+    select(made_up, "experiment", "sheared")
+    assert numbers(made_up)["steady state"].startswith("not known")
+    symbols = made_up.script("""
+        const drawn = document.getElementById("ratios").data;
+        return drawn.filter(one => one.customdata).flatMap(one => one.marker.symbol);""")
+    assert set(symbols) == {"circle-open-dot"}
 
 
 def test_a_choice_can_be_shared(ran, browser):

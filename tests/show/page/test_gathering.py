@@ -5,6 +5,7 @@ import gzip
 import json
 import re
 
+import netCDF4
 import numpy as np
 import pytest
 from plotly.offline import get_plotlyjs
@@ -14,6 +15,7 @@ from roughgas.base.sources import PACKAGE
 from roughgas.cli import main
 from roughgas.data.point import read_point
 from roughgas.data.reduced import read_reduced
+from roughgas.results.reduce import reduce_points
 from roughgas.show.page.explore import (
     GRID,
     LONGEST,
@@ -24,7 +26,7 @@ from roughgas.show.page.explore import (
 )
 from roughgas.show.page.policy import policy
 from roughgas.theory.prediction import predicted_ratio
-from show.page.conftest import SAMPLES
+from show.page.conftest import SAMPLES, write
 
 THEORIES = {"Lun's formula", "theory of free cooling"}
 EXPERIMENTS = ("sheared", "cooling", "cooling_friction")
@@ -99,6 +101,23 @@ def test_time_series_are_means_over_blocks(points):
     for name in ("R", "E_trans", "E_rot"):
         expected = whole[f"{name}_series"].values.reshape(-1, 3).mean(1)
         np.testing.assert_allclose(shown[name], expected, rtol=6e-5)
+
+
+def test_a_verdict_without_evidence_the_size_and_fewer_samples(points, tmp_path, monkeypatch):
+    settings = {"box": [20, "open"], "effects": {}}
+    more = {"experiment_json": json.dumps(settings), "packing": 0.25}
+    made = write(tmp_path, "sheared", "0.9", "0.5", **more)
+    with netCDF4.Dataset(made, "a") as file:
+        file["equilibrated"][...] = -1
+    reduce_points([made], tmp_path / "sheared.nc")
+    with netCDF4.Dataset(tmp_path / "sheared.nc", "a") as file:
+        file["equilibrated"][...] = -1.0
+    monkeypatch.setattr("roughgas.show.page.explore.PLACES", 50)
+    write_page([tmp_path / "sheared.nc"], tmp_path, tmp_path / "e.html")
+    (found,) = data_in(tmp_path / "e.html")["experiments"]
+    assert (found["box"], found["packing"], found["particles"]) == ([20, "open"], 0.25, "40")
+    (shown,) = found["variants"][0]["series"][0]["points"]
+    assert shown["steady"] is None and len(shown["over_time"]["R"]) == 50
 
 
 def test_the_page_holds_its_data_and_asks_for_nothing(points, tmp_path):

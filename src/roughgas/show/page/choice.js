@@ -79,15 +79,28 @@ function residual({ R, theory, stderr }) {
   return withError(R - theory, stderr, R >= theory ? "+" : "");
 }
 
+const STEADY = new Map([[true, "found"], [false, "not found"], [null, "not known: too little was measured"]]);
+
+// Such as "theory: Lun's formula", and "theory of free cooling".
+const theoryName = theory => (theory.startsWith("theory") ? theory : `theory: ${theory}`);
+
+// How large the gas is: 160 disks, box 100 × 100 a, packing 0.0503.
+function sizeOf({ particles, dimension, box, packing }) {
+  const found = [`${particles} ${dimension === 3 ? "spheres" : "disks"}`];
+  if (box) found.push(`box ${box.map(String).join(" × ")}${box.includes("open") ? ", sides in a" : "\u00a0a"}`);
+  if (packing) found.push(`packing ${packing.toPrecision(3)}`);
+  return found.join(", ");
+}
+
 function rows(point) {
   const { theory } = chosen.experiment;
   const found = [
     ["R", withError(point.R, point.stderr)],
     ["standard error", point.stderr?.toPrecision(2) ?? "not known"],
     ["95 % interval", interval(point)],
-    [`theory, ${theory}`, point.theory?.toFixed(4) ?? "none here"],
+    [theoryName(theory), point.theory?.toFixed(4) ?? "none here"],
     ["R − theory", residual(point)],
-    ["steady state", point.steady ? "found" : "not found"],
+    ["steady state", STEADY.get(point.steady)],
     ["seeds", String(point.seeds)],
     ["collisions", point.collisions.toLocaleString("en")],
     ["CPU time", `${point.seconds.toPrecision(3)} s`],
@@ -108,11 +121,10 @@ function level(experiment, variant) {
 
 function showNumbers() {
   const { experiment, variant, series, point } = chosen;
-  const kind = experiment.dimension === 3 ? "spheres" : "disks";
   const which = experiment.swept ? `, ${parameterOf(experiment)} = ${minus(level(experiment, variant))}` : "";
-  at("title").textContent = `${experiment.description}: ${experiment.particles} ${kind}${which}`;
+  at("title").textContent = `${experiment.description}: ${sizeOf(experiment)}${which}`;
   at("scene").replaceChildren(pictureOf(experiment));
-  at("theory").textContent = experiment.theory;
+  at("theory").textContent = theoryName(experiment.theory);
   at("point-title").textContent = minus(`r = ${series.r}, β = ${point.beta}`);
   at("numbers").replaceChildren(...rows(point).map(([name, value]) => {
     const row = document.createElement("tr"), head = document.createElement("th");

@@ -33,7 +33,7 @@ function turnToPaper(begins) {
   }
 }
 
-const axis = (title, more = {}) => ({ showline: true, mirror: "all", ticks: "inside", linecolor: tone("ink"), zeroline: false,
+const axis = (title, more = {}) => ({ showline: true, mirror: "all", ticks: "inside", automargin: true, linecolor: tone("ink"), zeroline: false,
   gridcolor: tone("grid"), title: { text: title, standoff: 8 }, ...more });
 
 const layout = more => ({ font: { family: "system-ui, DejaVu Sans, sans-serif", size: 13, color: tone("ink") }, margin: MARGIN,
@@ -61,6 +61,9 @@ function drawnRows() {
   });
 }
 
+// of a symbol: filled where a steady state was found, open where not, open with a dot where it is not known
+const SUFFIX = new Map([[true, ""], [false, "-open"], [null, "-open-dot"]]);
+
 const difference = point => (point.theory === null ? null : point.R - point.theory);
 
 function points(row, index, valueOf, more) {
@@ -68,7 +71,7 @@ function points(row, index, valueOf, more) {
   return {
     x: row.places.map(one => one.x), y: shown.map(valueOf), mode: "markers",
     error_y: { array: shown.map(point => point.stderr), thickness: 1, width: 2 },
-    marker: { color: look.colour, symbol: shown.map(point => (point.steady ? look.symbol : `${look.symbol}-open`)),
+    marker: { color: look.colour, symbol: shown.map(point => look.symbol + SUFFIX.get(point.steady)),
       size: Math.max(10 - 1.5 * index, 5) },
     customdata: row.places.map((_, number) => [index, number]),
     text: row.places.map(({ choice: { series, point } }) => `r = ${series.r}, β = ${minus(point.beta)}<br>`
@@ -81,20 +84,23 @@ function curves(drawn, theory) {
   const line = (row, name, look) => ({ ...row.curve, mode: "lines", hoverinfo: "skip", name, line: look, showlegend: name !== "" });
   const [first, ...others] = drawn;
   if (others.every(one => String(one.curve.y) === String(first.curve.y)))
-    return [line(first, `theory, ${theory}`, { color: tone("ink"), width: 1.3 })];
-  return drawn.map((row, index) => {
+    return [line(first, theoryName(theory), { color: tone("ink"), width: 1.3 })];
+  const lines = drawn.map((row, index) => {
     const { colour, dash } = lookOf(index);
     return { ...line(row, "", { color: colour, dash, width: 1.3 }), legendgroup: row.group };
   });
+  const named = { curve: { x: [null], y: [null] } };
+  return [...lines, line(named, `lines: ${theoryName(theory)}`, { color: tone("ink"), width: 1.3 })];
 }
 
 // The figures' marks, and what they mean: open symbols, and rings where contact times acted.
 function marks(drawn) {
-  const places = drawn.flatMap(row => row.places), mark = (x, y, name, size) => ({ x, y, name, mode: "markers", hoverinfo: "skip",
-    marker: { symbol: "circle-open", size, color: tone("grey"), line: { width: 1.2 } } });
+  const places = drawn.flatMap(row => row.places), mark = (x, y, name, size, symbol = "circle-open") => ({ x, y, name, mode: "markers", hoverinfo: "skip",
+    marker: { symbol, size, color: tone("grey"), line: { width: 1.2 } } });
   const touched = places.filter(one => one.choice.point.contact_time);
   return [
-    ...(places.every(one => one.choice.point.steady) ? [] : [mark([null], [null], "open: no steady state found", 9)]),
+    ...(places.some(one => one.choice.point.steady === false) ? [mark([null], [null], "open: no steady state found", 9)] : []),
+    ...(places.some(one => one.choice.point.steady === null) ? [mark([null], [null], "dotted: not known", 9, "circle-open-dot")] : []),
     ...(touched.length ? [mark(touched.map(one => one.x), touched.map(one => one.choice.point.R), "ringed: contact-time model acted", 14)] : []),
   ];
 }

@@ -45,8 +45,10 @@ NUMBERS = {
 GRID = -np.cos(np.linspace(0.0, np.pi, 241))
 """Roughness at which theory is drawn as a curve, closest where it is steepest: at the ends."""
 PROGRAM = ("choice.js", "picture.js", "drawing.js", "page.js")
-LONGEST = 200
-"""The most values that are shown of a time series."""
+LONGEST, LEAST = 200, 40
+"""The most values that are shown of a time series, and the fewest where there are many points."""
+PLACES = 24_000
+"""Values of all time series together, about: with them the page has less than 3 MB."""
 DIGITS = 5
 
 
@@ -65,7 +67,10 @@ def write_page(
     from plotly.offline import get_plotlyjs
 
     known = read_yaml(config or PACKAGE / "config.yaml")["experiments"]
-    experiments = [experiment(path, Path(points)) for path in reduced]
+    paths = list(reduced)
+    number = sum(int((read_reduced(path).n_seeds > 0).sum()) for path in paths)
+    longest = min(LONGEST, max(LEAST, PLACES // max(number, 1)))
+    experiments = [experiment(path, Path(points), longest) for path in paths]
     for one in experiments:
         described = known.get(one["name"], {}).get("description", one["name"].replace("_", " "))
         one["description"] = described.rstrip(".")
@@ -98,8 +103,8 @@ def _packed(program):
     return base64.b64encode(gzip.compress(program.encode(), mtime=0)).decode("ascii")
 
 
-def experiment(reduced_path: str | Path, points: Path) -> dict[str, Any]:
-    """Return an experiment with its points and their theory.
+def experiment(reduced_path: str | Path, points: Path, longest: int = LONGEST) -> dict[str, Any]:
+    """Return an experiment with its points and their theory, and `longest` values of each series.
 
     They are read from its reduced dataset, and from seed 1 of each point, anywhere below
     `points`/EXPERIMENT. Raises InputError where nothing spins, so that there is no R, and where a
@@ -117,11 +122,12 @@ def experiment(reduced_path: str | Path, points: Path) -> dict[str, Any]:
         "name": name,
         "scale": data.attrs["scale"],
         "particles": particles_of(data),
+        **_size(runs, swept),
         "dimension": int(data.attrs["dimension"]),
         "swept": data.attrs.get("swept"),
         "theory": equation_of(data.attrs).name,
         "effects": _effects(runs),
-        "variants": [_variant(one, value, runs) for value, one in variants],
+        "variants": [_variant(one, value, runs, longest) for value, one in variants],
     }
 
 
@@ -131,14 +137,22 @@ def _effects(runs):
     return list(from_json(about.get("experiment_json", "{}"), "settings").get("effects", {}))
 
 
-def _variant(data, value, runs):
+def _size(runs, swept):
+    """Return the box and the packing of an experiment; None for what is swept, or not there."""
+    _, about = next(iter(runs.values()), (None, {}))
+    box = from_json(about.get("experiment_json", "{}"), "settings").get("box")
+    known = {"box": box, "packing": about.get("packing")}
+    return known if swept not in ("box", "packing", "particles") else dict.fromkeys(known)
+
+
+def _variant(data, value, runs, longest):
     """Return one value on the third axis: a series for each r, the most elastic first."""
     rows = [data.sel(r=r) for r in sorted(data.r.values.tolist(), reverse=True)]
-    series = [_series(row, value, runs) for row in rows if row.n_seeds.any()]
+    series = [_series(row, value, runs, longest) for row in rows if row.n_seeds.any()]
     return {"name": series[0].pop("variant"), "series": series}
 
 
-def _series(data, value, runs):
+def _series(data, value, runs, longest):
     """Return all points at one r, over beta, with the curve that theory has for them."""
     r, places = data.r.item(), [data.sel(beta=beta) for beta in data.beta[data.n_seeds > 0]]
     found = [_run(runs, value, r, place.beta.item()) for place in places]
@@ -147,20 +161,22 @@ def _series(data, value, runs):
         "r": about["r_label"],
         "variant": about.get("variant"),
         "curve": rounded(predicted_ratio(data.attrs, r, GRID)),
-        "points": [_point(place, *run) for place, run in zip(places, found, strict=True)],
+        "points": [_point(*one, longest) for one in zip(places, found, strict=True)],
     }
 
 
-def _point(data, path, about):
+def _point(data, run, longest):
+    path, about = run
     return {name: exact(data[column]) for name, column in NUMBERS.items()} | {
         "beta": about["beta_label"],
         "theory": exact(predicted_ratio(data.attrs, data.r.item(), data.beta.item())),
-        "steady": bool(data.equilibrated > EQUILIBRATED),
+        # None where there is too little to tell
+        "steady": None if data.equilibrated < 0 else bool(data.equilibrated > EQUILIBRATED),
         "contact_time": exact(data.get("contact_time_fraction", 0.0)),
         # as Snakemake knows it
         "target": str(path.parent if path.parent.name == "seeds" else path),
         "command": about["command"],
-        "over_time": time_series(read_point(path)),
+        "over_time": time_series(read_point(path), longest),
     }
 
 
@@ -192,8 +208,9 @@ def _place(value, r, beta):
         return value, float(r), float(beta)
 
 
-def time_series(seed: Any) -> dict[str, Any]:
-    """Return R and both energies of a seed (a Dataset) over time, as means over blocks.
+def time_series(seed: Any, longest: int = LONGEST) -> dict[str, Any]:
+    """Return R and both energies of a seed (a Dataset) over time, as means over blocks, at most
+    `longest` of them.
 
     `clock` is "time", in T, or "collisions_per_particle"; `block` is the number of samples in a
     mean; `measured` is the window in which R is measured, its ends None where they are unknown.
@@ -203,7 +220,7 @@ def time_series(seed: Any) -> dict[str, Any]:
         name: seed[f"{name}_series"].values for name in ("R", "E_trans", "E_rot")
     }
     window = [exact(seed.get(name, math.nan)) for name in ("measured_from", "plateau_end")]
-    block = math.ceil(columns["at"].size / LONGEST)
+    block = math.ceil(columns["at"].size / longest)
     thinned = {name: rounded(block_means(values, block)) for name, values in columns.items()}
     return {"clock": clock, "block": block, "measured": window} | thinned
 
