@@ -29,7 +29,7 @@ FLAGS = {YES: True, NO: False, UNKNOWN: None}
 
 
 def scalars(data: Dataset) -> dict[str, Any]:
-    """Return the single numbers of a dataset by name, flags as True, False, and None for unknown."""
+    """Return the single numbers of a dataset by name; flags are True, False, or None: unknown."""
     return {
         str(name): FLAGS[int(one)] if "flag_meanings" in one.attrs else one.values.item()
         for name, one in data.variables.items()
