@@ -1,13 +1,15 @@
 """Long campaigns of random examples: `python -m tests.fuzz.campaign --configurations 10000`.
 
 Each of --configurations, --commands, --files and --scenes tries so many examples, other ones for
-each --seed, and goes on after a fault. It prints its seed, how many were taken and how many
-refused, and what else came out; the exit status is 1 if anything else did. Random legal scenes are
-simulated for some hundreds of collisions each.
+each --seed, and goes on after a fault; --edges takes so many cases of the tables in edges.py.
+Without any, all edges are tried and some examples of each. It prints its seed, how many were taken
+and how many refused, and what else came out; the exit status is 1 if anything else did, or if
+hardly any were taken. Random legal scenes are simulated for some hundreds of collisions each.
 """
 
 import argparse
 import os
+import random
 import resource
 import signal
 import sys
@@ -20,10 +22,12 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, Phase, given, seed, settings
 from hypothesis import strategies as st
+from tests.fuzz.spoiling import ENOUGH
 
 HANGS = 60  # seconds of processor time: what else a machine does is not a command's fault
 SLEEPS = 600  # seconds by the clock
 MEMORY = 6 << 30  # bytes
+FEW = 50  # tries that say nothing yet of the share that is taken
 WORST = {  # of all scenes
     "roundings of energy missing an exchange": "imbalance",
     "a of overlap": "overlap",
@@ -45,7 +49,6 @@ class Campaign:
 
     def run(self, strategy, attempt):
         """Draw examples, and give each to `attempt`, which returns what came of it or raises."""
-        begun = time.monotonic()
 
         @seed(self.first)
         @settings(
@@ -57,14 +60,32 @@ class Campaign:
         )
         @given(strategy)
         def see(example):
-            _watch(HANGS, SLEEPS)
-            try:
-                self.outcomes[attempt(example)] += 1
-            except BaseException as error:
-                self._note(error, example)
-            finally:
-                _watch(0, 0)
+            self._try(attempt, example)
 
+        return self._report(see)
+
+    def walk(self, cases, attempt):
+        """Give so many cases of a list to `attempt`."""
+        cases = random.Random(self.first).sample(cases, min(self.number, len(cases)))
+
+        def see():
+            for case in cases:
+                self._try(attempt, case)
+
+        return self._report(see)
+
+    def _try(self, attempt, example):
+        _watch(HANGS, SLEEPS)
+        try:
+            self.outcomes[attempt(example)] += 1
+        except BaseException as error:
+            self._note(error, example)
+        finally:
+            _watch(0, 0)
+
+    def _report(self, see):
+        """Try all, print what came of them, and return whether that is as it should be."""
+        begun = time.monotonic()
         try:
             see()
         except KeyboardInterrupt:
@@ -75,7 +96,10 @@ class Campaign:
         for where, found in self.faults.items():
             print(f"  {len(found)} times {where}, such as\n    {found[0]}")
         print(f"  faults: {sum(map(len, self.faults.values()))}", flush=True)
-        return not self.faults
+        hardly = self.tried >= FEW and self.outcomes["refused"] > (1 - ENOUGH) * self.tried
+        if hardly:
+            print(f"  fewer than {ENOUGH:.0%} were taken")
+        return not (self.faults or hardly)
 
     def _note(self, error, example):
         if type(error).__module__.startswith("hypothesis") or isinstance(error, KeyboardInterrupt):
@@ -98,7 +122,6 @@ def _hangs(*_):
 def configurations(campaign, folder):
     """Configurations whose values or whose text are spoiled."""
     from tests.fuzz import test_configurations as one
-    from tests.fuzz.spoiling import spoiled_texts, spoiled_trees
 
     path = folder / "config.yaml"
 
@@ -106,8 +129,8 @@ def configurations(campaign, folder):
         kind, spoiled = example
         return (one.values_are_spoiled if kind == "values" else one.text_is_spoiled)(path, spoiled)
 
-    trees = st.tuples(st.just("values"), spoiled_trees(one.BRIEF))
-    texts = st.tuples(st.just("text"), spoiled_texts(one.TEXT))
+    trees = st.tuples(st.just("values"), one.TREES)
+    texts = st.tuples(st.just("text"), one.TEXTS)
     return campaign.run(st.one_of(trees, texts), attempt)
 
 
@@ -161,7 +184,17 @@ def scenes(campaign, folder):
     return sound
 
 
-KINDS = {one.__name__: one for one in (configurations, commands, files, scenes)}
+def edges(campaign, folder):
+    """Cases of the tables of options, keys of schedules, and environments."""
+    from tests.fuzz import edges as one
+
+    given = one.write_folder(folder / "files")
+    with pytest.MonkeyPatch.context() as patch:
+        return campaign.walk(one.cases(), lambda case: one.attempt(given, patch, case))
+
+
+KINDS = {one.__name__: one for one in (configurations, commands, files, scenes, edges)}
+WHOLE = {"configurations": 1000, "commands": 1000, "files": 1000, "scenes": 100, "edges": 10**6}
 
 
 def main():
@@ -177,6 +210,7 @@ def main():
         signal.signal(number, signal.default_int_handler)
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
     first, sound = options.pop("seed"), True
+    options = options if any(options.values()) else WHOLE
     for name, number in options.items():
         with tempfile.TemporaryDirectory() as folder:
             if number:

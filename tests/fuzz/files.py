@@ -53,6 +53,8 @@ COMMANDS = [
     "run gas --settings SETTINGS --r=0.9 --beta=0 --from {} -o out.nc",
 ]
 """Command lines, {} being the file, and SETTINGS those of a tiny gas."""
+FITTING = ["export {} -o out.csv"]
+"""Those that take a dataset of any kind."""
 
 
 def real_files(folder):
@@ -62,6 +64,13 @@ def real_files(folder):
     place = ["--r=0.9", "--beta=0", "--keep-state", "-o", str(state)]
     assert main(["run", "gas", "--settings", SETTINGS, *place]) == 0
     return [*write_all(folder).values(), folder / "task.nc", state, state]
+
+
+@st.composite
+def unspoiled(draw, source, target):
+    """The file as it is."""
+    shutil.copy(source, target)
+    return "as it was"
 
 
 @st.composite
@@ -164,9 +173,11 @@ def tries(draw, sources, folder):
     target = folder / draw(st.sampled_from(NAMES))
     source = draw(st.sampled_from(sources))
     spoil = draw(
-        st.sampled_from([spoiled_bytes, spoiled_contents, spoiled_contents, foreign_files])
+        st.sampled_from(
+            [unspoiled, unspoiled, spoiled_bytes, spoiled_contents, spoiled_contents, foreign_files]
+        )
     )
     became = draw(spoil(source, target))
     name = f"./{target.name}" if target.name.startswith("-") else target.name
-    parts = draw(st.sampled_from(COMMANDS)).split(" ")
+    parts = draw(st.sampled_from(FITTING if spoil is unspoiled else COMMANDS)).split(" ")
     return became, [SETTINGS if part == "SETTINGS" else part.format(name) for part in parts]

@@ -2,8 +2,10 @@
 
 import copy
 import math
+from collections import Counter
 
-from hypothesis import HealthCheck, settings
+import pytest
+from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 NUMBERS = [0, -1, 1, 2, 0.5, -0.5, 1e-300, 5e-324, 1e300, math.inf, math.nan, 10**18, 2**63, 10**30]
@@ -38,6 +40,26 @@ QUICK, LONG = (
     for number in (50, 2000)
 )
 """How often `make test` tries, and the extras: always the same examples."""
+OFTEN = pytest.mark.parametrize("often", [QUICK, pytest.param(LONG, marks=pytest.mark.slow)])
+ENOUGH = 0.2
+"""Least share of examples that are taken: what refuses everything is no program."""
+
+
+def outcomes(often, strategy, attempt):
+    """Count what came of the examples that `attempt` was given."""
+    found = Counter()
+
+    @often
+    @given(strategy)
+    def see(example):
+        found[attempt(example)] += 1
+
+    see()
+    return found
+
+
+def share(found, outcome):
+    return found[outcome] / found.total()
 
 
 def places(tree, path=()):
@@ -68,6 +90,17 @@ def spoiled_trees(draw, tree):
             inner[draw(st.sampled_from(["x", "spin", "friction", "r", "", "a b"]))] = draw(VALUES)
         else:
             inner.append(draw(VALUES))
+    return tree
+
+
+@st.composite
+def legal_trees(draw, tree):
+    """A configuration of which an experiment has other words and numbers, as legal as before."""
+    tree = copy.deepcopy(tree)
+    chosen = tree["experiments"][draw(st.sampled_from(sorted(tree["experiments"])))]
+    chosen["description"] = draw(st.sampled_from(WORDS))
+    if "particles" in chosen:
+        chosen["particles"] = draw(st.integers(2, 200))
     return tree
 
 

@@ -4,8 +4,16 @@ import json
 from pathlib import Path
 
 import pytest
-from hypothesis import given
-from tests.fuzz.spoiling import LONG, QUICK, spoiled_texts, spoiled_trees
+from hypothesis import strategies as st
+from tests.fuzz.spoiling import (
+    ENOUGH,
+    OFTEN,
+    legal_trees,
+    outcomes,
+    share,
+    spoiled_texts,
+    spoiled_trees,
+)
 
 from roughgas import config
 from roughgas.base.errors import InputError
@@ -35,6 +43,9 @@ experiments:
   other: *gas
 scales: {paper: {}}
 """
+
+TREES = st.one_of(legal_trees(BRIEF), spoiled_trees(BRIEF))
+TEXTS = st.one_of(st.just(TEXT), spoiled_texts(TEXT))
 
 
 def outcome(path):
@@ -73,27 +84,13 @@ def path(tmp_path_factory):
     return tmp_path_factory.mktemp("spoiled") / "config.yaml"
 
 
-@QUICK
-@given(tree=spoiled_trees(BRIEF))
-def test_spoiled_values(path, tree):
-    values_are_spoiled(path, tree)
+@OFTEN
+def test_spoiled_values(path, often):
+    found = outcomes(often, TREES, lambda tree: values_are_spoiled(path, tree))
+    assert share(found, "taken") > ENOUGH
 
 
-@QUICK
-@given(text=spoiled_texts(TEXT))
-def test_spoiled_text(path, text):
-    text_is_spoiled(path, text)
-
-
-@pytest.mark.slow
-@LONG
-@given(tree=spoiled_trees(BRIEF))
-def test_many_spoiled_values(path, tree):
-    values_are_spoiled(path, tree)
-
-
-@pytest.mark.slow
-@LONG
-@given(text=spoiled_texts(TEXT))
-def test_many_spoiled_texts(path, text):
-    text_is_spoiled(path, text)
+@OFTEN
+def test_spoiled_text(path, often):
+    found = outcomes(often, TEXTS, lambda text: text_is_spoiled(path, text))
+    assert share(found, "taken") > ENOUGH

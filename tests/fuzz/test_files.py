@@ -3,10 +3,9 @@
 import shutil
 
 import pytest
-from hypothesis import given
 from hypothesis import strategies as st
 from tests.fuzz.files import real_files, tries
-from tests.fuzz.spoiling import LONG, QUICK
+from tests.fuzz.spoiling import ENOUGH, OFTEN, outcomes, share
 from tests.fuzz.test_commands import outcome
 
 
@@ -30,14 +29,8 @@ def check(sources, folder, monkeypatch, data):
     return "refused" if status else "done"
 
 
-@QUICK
-@given(data=st.data())
-def test_spoiled_files(sources, tmp_path_factory, monkeypatch, data):
-    check(sources, tmp_path_factory.getbasetemp() / "spoiled", monkeypatch, data)
-
-
-@pytest.mark.slow
-@LONG
-@given(data=st.data())
-def test_many_spoiled_files(sources, tmp_path_factory, monkeypatch, data):
-    check(sources, tmp_path_factory.getbasetemp() / "spoiled", monkeypatch, data)
+@OFTEN
+def test_spoiled_files(sources, tmp_path_factory, monkeypatch, often):
+    folder = tmp_path_factory.getbasetemp() / "spoiled"
+    found = outcomes(often, st.data(), lambda data: check(sources, folder, monkeypatch, data))
+    assert share(found, "done") > ENOUGH

@@ -51,9 +51,9 @@ def _validator(part: str | None) -> "Draft202012Validator":
     return extend(Draft202012Validator, type_checker=types)(schema, format_checker=formats)
 
 
-def keys() -> list[str]:
-    """Return the keys that a configuration may have."""
-    return list(_schema()["properties"])
+def keys(part: str | None = None) -> list[str]:
+    """Return the keys that a configuration, or a definition of the schema, may have."""
+    return list((_schema() if part is None else _schema()["$defs"][part])["properties"])
 
 
 @functools.cache
