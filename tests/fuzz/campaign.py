@@ -122,6 +122,7 @@ def _hangs(*_):
 def configurations(campaign, folder):
     """Configurations whose values or whose text are spoiled."""
     from tests.fuzz import test_configurations as one
+    from tests.fuzz.spoiling import legal_trees, spoiled_texts, spoiled_trees
 
     path = folder / "config.yaml"
 
@@ -129,8 +130,9 @@ def configurations(campaign, folder):
         kind, spoiled = example
         return (one.values_are_spoiled if kind == "values" else one.text_is_spoiled)(path, spoiled)
 
-    trees = st.tuples(st.just("values"), one.TREES)
-    texts = st.tuples(st.just("text"), one.TEXTS)
+    trees = st.one_of(legal_trees(one.BRIEF), spoiled_trees(one.BRIEF))
+    trees = st.tuples(st.just("values"), trees)
+    texts = st.tuples(st.just("text"), st.one_of(one.NUMBERED, spoiled_texts(one.TEXT)))
     return campaign.run(st.one_of(trees, texts), attempt)
 
 
@@ -139,7 +141,7 @@ def commands(campaign, folder):
     from tests.fuzz import test_commands as one
 
     files = one.write_folder(folder / "files")
-    lines = one.command_lines(sorted(os.listdir(files)))
+    lines = st.one_of(one.right_lines(), one.command_lines(sorted(os.listdir(files))))
     with pytest.MonkeyPatch.context() as patch:
         return campaign.run(lines, lambda line: one.check(files, patch, line))
 

@@ -94,6 +94,7 @@ def write_folder(folder):
     (folder / "config.yaml").write_text(json.dumps(CONFIG))
     matplotlib.image.imsave(folder / "fig1a.png", np.zeros((2, 2)))
     shutil.rmtree(folder / "points")
+    (folder / POINTS).mkdir(parents=True)
     points = [str(folder / POINTS / f"seed{seed}.nc") for seed in (1, 2)]
     for line in (
         ["run", *GAS, "--seed", "1", "2", "--output", *points],

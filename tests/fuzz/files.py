@@ -53,7 +53,7 @@ COMMANDS = [
     "run gas --settings SETTINGS --r=0.9 --beta=0 --from {} -o out.nc",
 ]
 """Command lines, {} being the file, and SETTINGS those of a tiny gas."""
-FITTING = ["export {} -o out.csv"]
+FITTING = [f"export {{}} -o out{number}.csv" for number in range(100)]
 """Those that take a dataset of any kind."""
 
 
@@ -66,11 +66,10 @@ def real_files(folder):
     return [*write_all(folder).values(), folder / "task.nc", state, state]
 
 
-@st.composite
-def unspoiled(draw, source, target):
+def unspoiled(source, target):
     """The file as it is."""
     shutil.copy(source, target)
-    return "as it was"
+    return st.just("as it was")
 
 
 @st.composite
@@ -172,11 +171,8 @@ def tries(draw, sources, folder):
     """Spoil a file in a folder; return what became of it, and a command line about it."""
     target = folder / draw(st.sampled_from(NAMES))
     source = draw(st.sampled_from(sources))
-    spoil = draw(
-        st.sampled_from(
-            [unspoiled, unspoiled, spoiled_bytes, spoiled_contents, spoiled_contents, foreign_files]
-        )
-    )
+    spoilers = [spoiled_bytes, spoiled_contents, spoiled_contents, foreign_files]
+    spoil = unspoiled if draw(st.booleans()) else draw(st.sampled_from(spoilers))
     became = draw(spoil(source, target))
     name = f"./{target.name}" if target.name.startswith("-") else target.name
     parts = draw(st.sampled_from(FITTING if spoil is unspoiled else COMMANDS)).split(" ")

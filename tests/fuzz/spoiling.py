@@ -45,14 +45,14 @@ ENOUGH = 0.2
 """Least share of examples that are taken: what refuses everything is no program."""
 
 
-def outcomes(often, strategy, attempt):
-    """Count what came of the examples that `attempt` was given."""
+def outcomes(often, spoiled, attempt, legal=None):
+    """Count what came of the examples that `attempt` was given, every second one a `legal` one."""
     found = Counter()
 
     @often
-    @given(strategy)
-    def see(example):
-        found[attempt(example)] += 1
+    @given(spoiled, legal or spoiled)
+    def see(one, other):
+        found[attempt(other if found.total() % 2 else one)] += 1
 
     see()
     return found

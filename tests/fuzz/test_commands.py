@@ -134,11 +134,16 @@ def check(folder, monkeypatch, arguments):
 
 
 @st.composite
+def right_lines(draw):
+    """A command with a file that it takes."""
+    number = draw(st.integers(0, 10**6))
+    return draw(st.sampled_from(RIGHT)).replace("out", f"out{number}").split()
+
+
+@st.composite
 def command_lines(draw, names):
     """A command with files, as it is meant to be given or with words and options anywhere."""
     files = st.sampled_from([*names, "none.nc", "."])
-    if draw(st.booleans()):
-        return draw(st.sampled_from(RIGHT)).split()
     if draw(st.booleans()):
         command, *rest = draw(st.sampled_from(MEANT)).split()
         return [command, *draw(st.lists(files, min_size=1, max_size=3)), *rest]
@@ -153,7 +158,7 @@ def command_lines(draw, names):
 @OFTEN
 def test_command_lines(folder, monkeypatch, often):
     lines = command_lines(sorted(os.listdir(folder)))
-    found = outcomes(often, lines, lambda line: check(folder, monkeypatch, line))
+    found = outcomes(often, lines, lambda line: check(folder, monkeypatch, line), right_lines())
     assert share(found, "done") > ENOUGH
 
 
