@@ -173,7 +173,7 @@ def judged(status, said, before, after, names=()):
 def check_option(folder, monkeypatch, name, action, text):
     """Give an option this value."""
     option = (action.option_strings or [action.dest])[-1].lstrip("-")
-    names = [option, option.replace("-", " "), action.dest, str(action.metavar)]
+    names = [option, option.replace("-", " "), option.rstrip("s"), str(action.metavar)]
     names += [text[:10], Path(text).name, "file"] if text else [".", "file"]
     is_new = action.dest in OUTPUTS and text not in RIGHT[name]
     line = line_with(name, action, text)
