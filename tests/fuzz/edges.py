@@ -15,7 +15,7 @@ from pathlib import Path
 import matplotlib.image
 import numpy as np
 from habits.conftest import environment
-from schedules import BRIEF, COOLING, STEADY, TINY
+from schedules import COOLING, STEADY, TINY
 from tests.cli.parsers import commands
 from tests.files import write_all
 from tests.fuzz import test_configurations
@@ -30,6 +30,10 @@ LONG = "x" * 5000
 TEXTS = ["", "0", "-1", "1e300", "nan", "inf", LONG, "a b'\"äü.nc", "-x.nc", "/dev/null", "points"]
 TEXTS += ["/proc/none", "/sys/none", "gas.nc"]
 GAS = ["gas", "--r=0.9", "--beta=0", "--settings", json.dumps(TINY)]
+DRIVEN = TINY | {
+    "effects": test_configurations.WHOLE["experiments"]["sheared"]["effects"],
+    "schedule": STEADY | {"equilibrate": 1, "measure": 4},
+}
 AIMED = TINY | {
     "target_stderr": 0.1,
     "schedule": {"kind": "cooling", "thermalise": 1, "sample_every": 1},
@@ -192,8 +196,9 @@ def schedule_keys():
 
 def check_schedule(folder, monkeypatch, kind, key, value):
     """Run a tiny gas whose schedule has this value."""
-    right = STEADY | {"equilibrate": 1, "measure": 4} if kind == "steady" else BRIEF
-    line = ["run", *GAS[:-1], json.dumps(TINY | {"schedule": right | {key: value}})]
+    gas = DRIVEN if kind == "steady" else TINY
+    settings = gas | {"schedule": gas["schedule"] | {key: value}}
+    line = ["run", *GAS[:-1], json.dumps(settings)]
     return check(folder, monkeypatch, [*line, "--output", "out.nc"], (key, "--settings"))
 
 

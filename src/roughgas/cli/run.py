@@ -117,6 +117,7 @@ def _settings(options: Namespace) -> dict[str, Any]:
         check_schema(config.point_settings(found), options.experiment, "experiment")
         found = config.fitted(found, options.experiment)
         check_schema(config.point_settings(found), options.experiment, "point")
+    if told or watched or not options.checked:
         schedule.check(found)
     return found
 
