@@ -247,7 +247,7 @@ def check_environment(folder, tmp, name, command):
 def cases():
     """All cases: a kind, and what it is about."""
     options_ = [("option", name, action, text) for name, action in options() for text in TEXTS]
-    values = [*NUMBERS, *WORDS, *OTHERS]
+    values = [*NUMBERS, 3, 4, 5, 8, *WORDS[:3], *OTHERS[:4]]
     schedules = [("schedule", *key, value) for key in schedule_keys() for value in values]
     around = [("environment", name, command) for name in ENVIRONMENTS for command in COMMANDS]
     return [*options_, *schedules, *around]

@@ -35,4 +35,4 @@ def test_a_slice_of(folder, monkeypatch, kind, number):
     cases = [one for one in CASES[kind] if number > len(CASES[kind]) or one[1] not in edges.SLOW]
     some = random.Random(number).sample(cases, min(number, len(cases)))
     found = Counter(edges.attempt(folder, monkeypatch, case) for case in some)
-    assert share(found, "refused") < 1 - ENOUGH, found
+    assert share(found, "done") > ENOUGH / 2, found
