@@ -47,7 +47,7 @@ GRID = -np.cos(np.linspace(0.0, np.pi, 241))
 PROGRAM = ("choice.js", "picture.js", "drawing.js", "page.js")
 LONGEST, LEAST = 200, 40
 """The most values that are shown of a time series, and the fewest where there are many points."""
-PLACES = 24_000
+PLACES = 22_000
 """Values of all time series together, about: with them the page has less than 3 MB."""
 DIGITS = 5
 
