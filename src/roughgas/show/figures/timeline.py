@@ -1,7 +1,6 @@
 """A point over time: R(t) beside its mean and theory, and both energies."""
 
 import math
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -10,7 +9,7 @@ from matplotlib.figure import Figure
 
 from roughgas.data.netcdf import unit_of
 from roughgas.data.variables import CLOCKS, ENERGY, START
-from roughgas.show.style import LOOKS, THEORY
+from roughgas.show.style import LOOKS, THEORY, Style
 from roughgas.statistics.averages import block_means
 from roughgas.statistics.estimate import Estimate
 from roughgas.theory.prediction import equation_of
@@ -54,11 +53,11 @@ def _draw_ratio(axes: Axes, point, theory, at, block, window) -> None:
     mean = Estimate(R, float(point.R_stderr))
     trust = TRUST.get(int(point.get("R_ci95_trusted", 1)), "")
     axes.plot(window, (R, R), color=LOOKS[1].colour, label=f"mean of $R(t)$: {mean}")
-    band: dict[str, Any] = {"alpha": 0.3, "linewidth": 0.0, "label": f"95 % interval{trust}"}
+    band: Style = {"alpha": 0.3, "linewidth": 0.0, "label": f"95 % interval{trust}"}
     axes.fill_between(window, R - half, R + half, color=LOOKS[1].colour, **band)
     if "R_collisional" in point:
         found = Estimate(float(point.R_collisional), float(point.R_collisional_stderr))
-        about = {"color": LOOKS[2].colour, "linestyle": LOOKS[2].line}
+        about: Style = {"color": LOOKS[2].colour, "linestyle": LOOKS[2].line}
         axes.plot(window, [found.value] * 2, label=f"over collisions: {found}", **about)
     if math.isfinite(theory):
         name = equation_of(point.attrs, point).name
@@ -74,7 +73,7 @@ def _draw_energies(axes: Axes, point, at, block, cooling) -> None:
     for (name, label), look in zip(ENERGIES.items(), LOOKS, strict=False):
         if f"{name}_series" in point:
             values = block_means(point[f"{name}_series"].values, block)
-            style = {"color": look.colour, "linestyle": look.line, "linewidth": 0.9}
+            style: Style = {"color": look.colour, "linestyle": look.line, "linewidth": 0.9}
             axes.plot(block_means(at, block), values, label=label, **style)
     unit = UNITS.get(unit_of(point.E_trans.attrs), "1")
     axes.set_ylabel(f"energy per degree of\nfreedom / {unit}")
