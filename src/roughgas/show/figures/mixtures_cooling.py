@@ -11,7 +11,9 @@ THEORIES = "theory of free cooling"
 def draw(masses: xr.Dataset, sizes: xr.Dataset) -> Figure:
     """Draw the figure from the reduced datasets of gases of unlike masses, and of unlike radii."""
     columns = (
-        Column(masses, "Cooling gas", "Temperatures follow theory", "R of both follows theory"),
+        Column(
+            masses, "Cooling gas", "Temperatures nearly follow theory", "R of both follows theory"
+        ),
         Column(sizes, "Cooling gas"),
     )
     return columns_figure(columns, THEORIES)
