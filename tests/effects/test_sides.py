@@ -167,7 +167,8 @@ REFUSED = {
     | {"lid": {"amplitude": 1.0}},
     "effects.lid.velocity = 1.0: must be 0 where the wall is shaken": LID
     | {"lid": SHAKEN | {"velocity": 1.0}},
-    "effects.lid.temperature = 0: must be a number in (0, inf)": LID | {"lid": {"temperature": 0}},
+    "effects.lid.temperature = 0: must be a number in (0, 1e+08]": LID
+    | {"lid": {"temperature": 0}},
     "effects = walls and left_wall: must not close the same axis twice": DISKS
     | {"walls": {"restitution": 1, "roughness": 1}, "left_wall": {}, "right_wall": {}},
     "effects = bottom_wall and shear: must not close the axis along which images slide past each "

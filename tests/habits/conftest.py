@@ -15,7 +15,7 @@ from schedules import BRIEF, TINY
 from roughgas.kernel.cache import kernel_folder
 
 ROOT = Path(__file__).parent.parent.parent
-LONG = TINY | {"schedule": BRIEF | {"plateau": 5_000_000}}
+LONG = TINY | {"schedule": BRIEF | {"plateau": 5_000_000, "sample_every": 25}}
 TMPFS = "mount -t tmpfs -o {options} none {folder} && exec {command}"
 
 

@@ -30,7 +30,7 @@ def start(command, cwd, **changes):
     ("number", "after"), [(signal.SIGINT, 0.0), (signal.SIGTERM, 1.5)], ids=["Ctrl-C", "SIGTERM"]
 )
 def test_a_simulation_stops_in_one_line(tmp_path, number, after):
-    command = [sys.executable, "-m", "roughgas", *point("new/point.nc", LONG)]
+    command = [sys.executable, "-m", "roughgas", *point("point.nc", LONG)]
     running = start(command, tmp_path)
     wait_until(lambda: catches(running, signal.SIGTERM), running)
     time.sleep(after)

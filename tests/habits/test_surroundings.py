@@ -68,7 +68,7 @@ def test_where_nothing_can_be_written_is_said_at_once(tmp_path, mounts):
     done = roughgas(*point("disk/a/point.nc"), cwd=tmp_path, mount=("ro", "disk"))
     assert done.returncode != 0  # there is no such folder
     (tmp_path / "disk").mkdir()
-    done = roughgas(*point("disk/a/point.nc"), cwd=tmp_path, mount=("ro", "disk"))
+    done = roughgas(*point("disk/point.nc"), cwd=tmp_path, mount=("ro", "disk"))
     assert (done.returncode, done.stdout) == (1, "")
     assert done.stderr == f"roughgas: error: {tmp_path / 'disk'}: cannot be written\n"
 

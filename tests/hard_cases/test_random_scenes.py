@@ -111,7 +111,7 @@ def verdict(judge, *arguments):
     try:
         judge(*arguments)
     except InputError as error:
-        assert "\n" not in str(error) and ": must " in str(error)
+        assert "\n" not in str(error) and (": must " in str(error) or " needs " in str(error))
         return False
     return True
 

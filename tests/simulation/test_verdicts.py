@@ -84,7 +84,7 @@ def runs(kernels, shortest=0.3, thinnest=1e-5):
             "thermalise": lengths(0.1, 20),
             "relaxation_times": lengths(0.5, 30),
             "plateau": lengths(shortest, 200),
-            "sample_every": lengths(0.01, 30),
+            "sample_every": lengths(0.01, 25),
         }
     )
 
@@ -274,7 +274,12 @@ def test_a_bed_seen_at_few_phases_of_its_floor_is_not_trusted():
         ("bed", {"period": 1.0, "sample_every": 0.3}, "schedule.sample_every = 0.3: must divide"),
         ("bed", {"period": 1.0, "sample_every": 1.5}, "schedule.sample_every = 1.5: must divide"),
         ("gas", {"plateau": 0.5}, "schedule.plateau = 0.5: must be at least the interval"),
-        ("gas", {"sample_every": 100.0}, "schedule.plateau = 30.0: must be at least the interval"),
+        (
+            "gas",
+            {"sample_every": 24.0, "plateau": 20.0},
+            "schedule.plateau = 20.0: must be at least",
+        ),
+        ("gas", {"sample_every": 50.0}, "schedule.sample_every = 50.0: must be at most 25 coll"),
         ("gas", {"sample_every": 1e-9}, "schedule.sample_every = 1e-09: must make at most"),
     ],
 )

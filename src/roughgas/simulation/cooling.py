@@ -25,6 +25,9 @@ from roughgas.theory import friction_relaxation_rate, mixture_relaxation_rate, r
 # see roughgas.simulation.schedule.Kind
 DRIVEN, UNIT, LENGTH = False, "collisions per particle", "plateau"
 SAMPLES_PER_REFRESH = 4
+# Collisions per particle. Without a refresh for four times as many, velocities fall to 1e-9 of what
+# they were at the strongest dissipation; after 400 their roundings would be as large as they are.
+LONGEST_INTERVAL = 25.0
 # Collisions per particle that theory's estimate of the transient is kept between. At r <= 0.9 none
 # is longer; nearly elastic disks or spheres can need a hundred times as many, close to beta = -1.
 TRANSIENT = 10.0, 2500.0
@@ -88,8 +91,12 @@ def interval(experiment: Mapping[str, Any]) -> float:
 
 
 def check(scene: Scene, experiment: Mapping[str, Any]) -> None:
-    """Raise InputError for a plateau that is shorter than the interval between samples."""
+    """Raise InputError for samples so far apart that velocities would be lost between them, or for
+    a plateau that is shorter than the interval between samples."""
     plateau, every = experiment["schedule"]["plateau"], interval(experiment)
+    if every > LONGEST_INTERVAL:
+        legal = f"be at most {LONGEST_INTERVAL:g} collisions per particle in a cooling gas"
+        raise InputError("schedule.sample_every", experiment["schedule"]["sample_every"], legal)
     if plateau < every:
         legal = f"be at least the interval between samples, {every:g} collisions per particle"
         raise InputError("schedule.plateau", plateau, legal)

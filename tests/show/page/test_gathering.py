@@ -175,11 +175,11 @@ def test_several_scales_do_not_mix(points, tmp_path):
 
 
 def test_the_committed_page_is_the_present_one():
-    """Its data are of the scale `small`; its program is that of the sources."""
+    """Its data are of the paper's scale; its program is that of the sources."""
     text = (PACKAGE.parents[1] / "docs/explore.html").read_text("utf-8")
-    again = "write it anew: snakemake -j2 explore --config scale=small; copy it from results/small"
+    again = "write it anew: snakemake -j2 explore; copy results/paper/explore.html to docs"
     parts = [PACKAGE / "show/page" / name for name in (*PROGRAM, "page.css")]
     assert all(part.read_text("utf-8") in text for part in parts), again
     data = data_in(PACKAGE.parents[1] / "docs/explore.html")
-    assert data["scale"] == "small" and len(data["experiments"]) == 6
+    assert data["scale"] == "paper" and len(data["experiments"]) == 6
     assert {one["theory"] for one in data["experiments"]} == THEORIES, again
