@@ -126,15 +126,12 @@ class Rounded:
 
 
 def next_pair(state, scene, until):
-    """The kernel's next collision; none if there is none up to some time after `until`.
-
-    One call waits for a limited time, which may be short where the images are fast.
-    """
+    """The kernel's next collision; none if there is none up to some time after `until`."""
     made = state.counts[COLLISIONS]
     while state.counts[COLLISIONS] == made:
         if state.clock[BASE] + state.clock[NOW] > until:
             return set()
-        run(state, scene, 1, collisions=1)
+        run(state, scene, 1, interval=1.0, collisions=1)
     return {int(state.counts[LAST_FIRST]), int(state.counts[LAST_SECOND])}
 
 

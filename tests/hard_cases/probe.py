@@ -16,6 +16,7 @@ from roughgas.kernel import hooks
 from roughgas.kernel.flight import arrive
 from roughgas.kernel.images import image_numbers, shifted, slid
 from roughgas.kernel.jit import entry, jit
+from roughgas.kernel.loop import REACHED
 from roughgas.kernel.record import Sampling, columns, record
 from roughgas.kernel.vectors import dot, subtract
 from roughgas.scene import Scene, build
@@ -58,6 +59,6 @@ def gaps_at_contacts(experiment, r, beta, collisions, seed=1):
     scene = plain._replace(effects=Probed(*plain.effects, probe))
     state = initial_state(scene, experiment, np.random.default_rng(seed))
     row = np.empty((1, len(columns(scene))))
-    assert _record(state, scene, Sampling(np.inf, collisions, 0), row) == 1
+    assert _record(state, scene, Sampling(np.inf, collisions, 0), row) == (REACHED, 1)
     assert probe.gaps.any()  # else it has not looked
     return probe.gaps

@@ -245,13 +245,3 @@ def test_without_the_centred_lattice(without):
         "if len(sites) < number and None not in scene.box:",
         "if False:",
     )
-
-
-def test_without_the_refusal_of_one_alone(without):
-    without(
-        "a point of one particle that nothing drives is refused",
-        test_few_particles,
-        "scene/composition.py",
-        '    _check_company(experiment.get("particles"), effects)\n',
-        "",
-    )

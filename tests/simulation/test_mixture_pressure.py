@@ -11,6 +11,7 @@ from roughgas import theory
 from roughgas.effects import Effects
 from roughgas.effects.settings import register
 from roughgas.kernel.jit import entry, jit
+from roughgas.kernel.loop import REACHED
 from roughgas.kernel.record import Sampling, columns, record
 from roughgas.kernel.vectors import dot
 from roughgas.scene import build, packing
@@ -47,10 +48,10 @@ def watched(experiment, seed=1):
     state = initial_state(scene, experiment, np.random.default_rng(seed))
     names = columns(scene)
     rows = np.empty((1, len(names)))
-    assert _record(state, scene, Sampling(np.inf, COLLISIONS // 10, 0), rows) == 1
+    assert _record(state, scene, Sampling(np.inf, COLLISIONS // 10, 0), rows) == (REACHED, 1)
     begun = dict(zip(names, rows[0], strict=True))["time"]
     virial.sums[:] = 0.0
-    assert _record(state, scene, Sampling(np.inf, COLLISIONS, 0), rows) == 1
+    assert _record(state, scene, Sampling(np.inf, COLLISIONS, 0), rows) == (REACHED, 1)
     found = dict(zip(names, rows[0], strict=True))
     energy = sum(found[name] for name in names if name.startswith("vv_") and "[" not in name) / 2
     return virial.sums + virial.sums.transpose(1, 0, 2), found["time"] - begun, energy

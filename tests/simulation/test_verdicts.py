@@ -273,7 +273,7 @@ def test_a_bed_seen_at_few_phases_of_its_floor_is_not_trusted():
         ("bed", {"period": 8.66}, "schedule.period = 8.66: must be a whole multiple of that of fl"),
         ("bed", {"period": 1.0, "sample_every": 0.3}, "schedule.sample_every = 0.3: must divide"),
         ("bed", {"period": 1.0, "sample_every": 1.5}, "schedule.sample_every = 1.5: must divide"),
-        ("gas", {"plateau": 0.5}, "schedule.plateau = 0.5: must be at least the interval"),
+        ("gas", {"plateau": 0.5}, "schedule.plateau = 0.5: must be at least schedule.sampl"),
         (
             "gas",
             {"sample_every": 24.0, "plateau": 20.0},

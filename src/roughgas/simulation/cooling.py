@@ -98,7 +98,7 @@ def check(scene: Scene, experiment: Mapping[str, Any]) -> None:
         legal = f"be at most {LONGEST_INTERVAL:g} collisions per particle in a cooling gas"
         raise InputError("schedule.sample_every", experiment["schedule"]["sample_every"], legal)
     if plateau < every:
-        legal = f"be at least the interval between samples, {every:g} collisions per particle"
+        legal = f"be at least schedule.sample_every, {every:g} collisions per particle"
         raise InputError("schedule.plateau", plateau, legal)
 
 
