@@ -58,7 +58,9 @@ def gaps_at_contacts(experiment, r, beta, collisions, seed=1):
     probe = Probe(plain, np.zeros(2))
     scene = plain._replace(effects=Probed(*plain.effects, probe))
     state = initial_state(scene, experiment, np.random.default_rng(seed))
-    row = np.empty((1, len(columns(scene))))
-    assert _record(state, scene, Sampling(np.inf, collisions, 0), row) == (REACHED, 1)
+    each = experiment["particles"] // 2
+    rows = np.empty((collisions // each, len(columns(scene))))
+    refresh = 0 if hooks.present(scene.effects, "drives") else 4  # a cooling gas would lose digits
+    assert _record(state, scene, Sampling(np.inf, each, refresh), rows) == (REACHED, len(rows))
     assert probe.gaps.any()  # else it has not looked
     return probe.gaps

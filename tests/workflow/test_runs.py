@@ -82,6 +82,7 @@ def test_a_run_is_packed_with_all_that_it_takes_to_repeat_it(undisturbed, tmp_pa
     assert program == "roughgas"
     command = [sys.executable, "-m", "roughgas", *arguments]
     sources = {"PYTHONPATH": str(tmp_path / "crate/src")}
+    (tmp_path / rows[0]["point"]).parent.mkdir(parents=True)
     subprocess.run(command, cwd=tmp_path, env=os.environ | sources, check=True)
     assert not verify(tmp_path / "crate", [tmp_path / rows[0]["point"]])
 

@@ -43,7 +43,7 @@ def check_outputs(options: Namespace, more: Iterable[str | Path] = ()) -> None:
     """Raise InputError for an output that would replace another output, an input, or a file of
     another kind, and for one in a folder that is not there; OSError where it could not be written.
 
-    `more` are outputs that the command line does not name. A recorded command makes its folder.
+    `more` are outputs that the command line does not name.
     """
     named, inputs = (
         [path for option in those for path in _paths(getattr(options, option, None))]
@@ -56,8 +56,7 @@ def check_outputs(options: Namespace, more: Iterable[str | Path] = ()) -> None:
         seen.add(path.resolve())
         if any(one.exists() and path.exists() and path.samefile(one) for one in inputs):
             raise InputError("--output", path, "be another file than those that are read")
-        recorded = getattr(options, "settings", None)  # a command of the workflow, or of a dataset
-        if not path.parent.is_dir() and not recorded:
+        if not path.parent.is_dir():
             raise InputError("--output", path, "lie in a folder that exists")
         check_place(path)
         _check_kind(path, options.command.writes or path.suffix)
