@@ -19,6 +19,7 @@
 
 include: "rules/common.smk"
 include: "rules/messages.smk"
+include: "rules/scheduling.smk"
 
 
 # of --sdm apptainer, which gives every rule the environment that Apptainer.def builds
@@ -205,6 +206,7 @@ logger.addFilter(say_what_was_meant)
 
 onstart:
     be_alone()
+    start_jobs_at_once(workflow)
 
 
 onerror:

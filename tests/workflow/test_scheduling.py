@@ -1,0 +1,44 @@
+"""Snakemake's timers of jobs per second, which a long run must not pile up."""
+
+import re
+import subprocess
+import sys
+
+import pytest
+from project import ROOT
+
+JOBS = 40
+WORKFLOW = """
+import threading
+include: "{rules}"
+rule all:
+    input: expand("{{job}}.done", job=range({jobs}))
+rule one:
+    output: "{{job}}.done"
+    shell: "sleep 0.3; touch {{output}}"
+onstart:
+    {start}
+onsuccess:
+    print("threads:", threading.active_count(), file=sys.stderr)
+"""
+
+
+def threads_at_the_end(folder, start):
+    """Return how many threads Snakemake has after JOBS short jobs."""
+    rules = ROOT / "rules" / "scheduling.smk"
+    (folder / "Snakefile").write_text(
+        "import sys\n" + WORKFLOW.format(rules=rules, jobs=JOBS, start=start)
+    )
+    command = [sys.executable, "-m", "snakemake", "-j4", "--quiet", "all"]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=True)
+    return int(re.search(r"threads: (\d+)", done.stderr)[1])
+
+
+def test_timers_do_not_pile_up(tmp_path):
+    assert threads_at_the_end(tmp_path, "start_jobs_at_once(workflow)") < 10
+
+
+@pytest.mark.slow
+def test_timers_pile_up_in_the_installed_snakemake(tmp_path):
+    """Once this fails, Snakemake has mended it: rules/scheduling.smk may go."""
+    assert threads_at_the_end(tmp_path, "pass") > JOBS / 2
