@@ -9,7 +9,7 @@ SHARED = [  # what a family may import
     for path in sorted(Path(TESTS, folder).glob("*.py"))
     if not path.name.startswith("test_") and path not in DRAWING
 ]
-LONGEST = ["long_times"]  # starts first
+LONGEST = ["random_scenes", "long_times"]  # start first
 PICTURES = catalogue.figures_of("hard_cases")
 
 

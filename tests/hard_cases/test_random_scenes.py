@@ -1,7 +1,12 @@
 """Random scenes."""
 
 import math
+import multiprocessing
+from collections import defaultdict
+from concurrent.futures import ProcessPoolExecutor
 
+import numba
+import pytest
 from brute_force import KERNELS, begin
 from hypothesis import Phase, given, settings
 
@@ -16,7 +21,7 @@ from hard_cases.compositions import (
     scenes,
     with_needs,
 )
-from hard_cases.watched import Worst
+from hard_cases.watched import Worst, worst_of
 from roughgas.base.errors import InputError
 from roughgas.effects import KINDS
 from roughgas.scene import build, check
@@ -142,22 +147,13 @@ def test_invariants_of_random_mixtures(margins):
 
 
 def keep_invariants(margins, kinds, few, many):
-    """Simulate scenes of these kinds, and measure what must hold in all of them."""
-    worst = Worst()
+    """Simulate scenes of these kinds, and measure what must hold in all of them.
 
-    @settings(
-        max_examples=margins.size(few, many),
-        phases=[Phase.generate],
-        derandomize=True,
-        database=None,
-        deadline=None,
-    )
-    @given(kinds)
-    def see(scene):
-        if fits(*scene, worst.tried):
-            worst.see(*scene, worst.tried)
-
-    see()
+    In full, each kernel has a process of its own: numba never frees the memory of compiling, and
+    dozens of kernels would take several GB.
+    """
+    groups = by_kernel(drawn(kinds, margins.size(few, many)))
+    worst = sum(in_processes(groups) if margins.full else map(worst_of, groups), Worst())
     tried = {"tried": worst.tried, "unit": f"scenes, {worst.collisions} contacts"}
     what = "error of the energy balance, in roundings per exchange"
     margins.at_most(what, worst.imbalance, 10.0, **tried)
@@ -173,6 +169,49 @@ def keep_invariants(margins, kinds, few, many):
     # Hypothesis varies what it has drawn: of few scenes, several may stem from one that collapses
     most = 0.05 if margins.full else 0.1
     margins.at_most("share of scenes that are stopped", given_up, most, **tried)
+
+
+def drawn(kinds, number):
+    """Return [(experiment, r, beta, seed)] of those scenes whose particles find room."""
+    found = []
+
+    @settings(
+        max_examples=number,
+        phases=[Phase.generate],
+        derandomize=True,
+        database=None,
+        deadline=None,
+    )
+    @given(kinds)
+    def draw(scene):
+        if fits(*scene, len(found)):
+            found.append((*scene, len(found)))
+
+    draw()
+    return found
+
+
+def by_kernel(found):
+    """Return lists of the scenes that one kernel simulates."""
+    groups = defaultdict(list)
+    for experiment, r, beta, seed in found:
+        kernel = numba.typeof(build(experiment, r, beta))
+        groups[kernel].append((experiment, r, beta, seed))
+    return list(groups.values())
+
+
+def in_processes(groups):
+    """Yield the Worst of each group, simulated in a process of its own, one after the other."""
+    spawn = multiprocessing.get_context("spawn")
+    with ProcessPoolExecutor(1, mp_context=spawn, max_tasks_per_child=1) as one:
+        yield from one.map(worst_of, groups)
+
+
+def test_an_error_in_a_process_tells_its_scene():
+    crowded = {"particles": 40, "box": [7.0, 7.0], "effects": {}}
+    with pytest.raises(InputError, match="box") as raised:
+        next(in_processes([[(crowded, 0.9, -1.0, 3)]]))
+    assert raised.value.__notes__ == [f"scene {(crowded, 0.9, -1.0, 3)}"]
 
 
 def test_roundings_of_energy_that_has_gone_are_not_missing():

@@ -1,5 +1,7 @@
 """What is watched in a scene: its books of energy, and the worst that is seen of each invariant."""
 
+import operator
+
 import numpy as np
 from brute_force import begin, largest_overlap, scene_of, snapshot
 
@@ -12,6 +14,7 @@ from roughgas.simulation.gas import Gas
 ROUNDING = 2.0**-53
 LONGEST = 20.0  # T until a look at a scene where hardly anything collides
 BOUNDARIES = {"floor", "walls", "shaken_walls", *SIDES}
+COUNTS = {"tried", "collisions", "given_up", "broken", "backwards"}
 
 
 class Account:
@@ -64,6 +67,14 @@ class Worst:
         self.collisions += contacts_of(gas.state)
         return end
 
+    def __add__(self, other):
+        """Return the worst of both: counts are added, of numbers the larger is kept."""
+        both = Worst()
+        for name, mine in vars(self).items():
+            join = operator.add if name in COUNTS else max
+            setattr(both, name, join(mine, getattr(other, name)))
+        return both
+
     def _see_samples(self, gas, world, keeps_momentum):
         state, scene, account, last = gas.state, gas.scene, Account(gas), -1.0
         first = snapshot(state, scene)
@@ -96,6 +107,21 @@ class Worst:
             if np.all(changes_by_label(state)[pair] == changes[pair] + 1):  # by this contact alone
                 after = snapshot(state, gas.scene)
                 self.cone = max(self.cone, beyond_cone(before, after, pair, world))
+
+
+def worst_of(scenes):
+    """Simulate scenes (experiment, r, beta, seed); return the Worst of them.
+
+    An error says which scene it is of.
+    """
+    worst = Worst()
+    for scene in scenes:
+        try:
+            worst.see(*scene)
+        except Exception as error:
+            error.add_note(f"scene {scene}")
+            raise
+    return worst
 
 
 def go_on(gas, account):
