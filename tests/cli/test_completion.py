@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from roughgas.cli import main
+from roughgas.cli.commands import COMMANDS
 
 ROOT = Path(__file__).parents[2]
 ASK = {  # each prints what the shell would offer, a word and perhaps its description a line
@@ -81,3 +82,14 @@ def test_what_is_offered(line, offered, capsys):
 @pytest.mark.parametrize("shell", SHELLS)
 def test_every_shell_takes_its_lines(shell, capsys):
     assert completed("roughgas theory --dimension ", lines_for(shell, capsys), shell) == {"2", "3"}
+
+
+def test_zsh_describes_each_command_by_its_summary(tmp_path):
+    line, offered = "roughgas ", tmp_path / "offered"
+    about = {"_ARGCOMPLETE": "1", "_ARGCOMPLETE_SHELL": "zsh", "_ARGCOMPLETE_IFS": "\n"}
+    about |= {"_ARGCOMPLETE_STDOUT_FILENAME": str(offered)}
+    about |= {"COMP_LINE": line, "COMP_POINT": str(len(line)), "COMP_TYPE": "9"}
+    subprocess.run([sys.executable, "-m", "roughgas"], env=os.environ | about, timeout=60)
+    described = dict(one.split(":", 1) for one in offered.read_text().splitlines())
+    assert described["run"] == COMMANDS["run"].summary
+    assert set(described) > set(COMMANDS) and "None" not in described.values()

@@ -9,6 +9,7 @@ from schedules import COOLING, STEADY
 
 from roughgas.scene import build
 from roughgas.simulation.point import VOUCHED, _withdrawn, run_point
+from roughgas.statistics.evidence import NO, UNKNOWN, YES
 
 SHEARED = settings("sheared", 20, [20, 20]) | {"schedule": STEADY}
 GAS = settings("gas", 20, [20, 20]) | {"schedule": COOLING}
@@ -38,12 +39,12 @@ def test_the_books_of_particles_that_hardly_lose_energy_miss_roundings_alone(bet
     assert point(GAS, 1.0, beta)["energy_imbalance"] < 1e-11
 
 
-def test_no_flag_vouches_for_a_number_that_is_none():
-    flags = dict.fromkeys(VOUCHED, True)
-    sound = flags | dict.fromkeys(VOUCHED["R_ci95_trusted"], 0.5)
+def test_no_verdict_vouches_for_a_number_that_is_not_finite():
+    sound = dict.fromkeys(VOUCHED, YES) | dict.fromkeys(VOUCHED["R_ci95_trusted"], 0.5)
     assert _withdrawn(sound) == {}
-    assert _withdrawn(sound | {"R_stderr": math.nan}) == {"R_ci95_trusted": False}
-    both = {"equilibrated": False, "R_ci95_trusted": False}
-    assert _withdrawn(sound | {"R": math.nan}) == both
-    smooth = {"E_trans": math.inf, "equilibrated": True}  # where nothing spins
-    assert _withdrawn(smooth) == {"equilibrated": False}
+    assert _withdrawn(sound | {"R_stderr": math.nan}) == {"R_ci95_trusted": UNKNOWN}
+    assert _withdrawn(sound | {"R": math.nan}) == dict.fromkeys(VOUCHED, UNKNOWN)
+    drifting = sound | {"R": math.nan, "equilibrated": NO}  # which R does not unsay
+    assert _withdrawn(drifting) == {"R_ci95_trusted": UNKNOWN}
+    smooth = {"E_trans": math.inf, "equilibrated": YES}  # where nothing spins
+    assert _withdrawn(smooth) == {"equilibrated": UNKNOWN}

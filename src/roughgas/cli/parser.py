@@ -128,7 +128,8 @@ def add_commands(parser: Parser, commands: Mapping[str, Command]) -> None:
     for name, command in commands.items():
         title = "example:" if len(command.examples) == 1 else "examples:"
         epilog = "\n  ".join([title, *command.examples])
-        one = parsers.add_parser(name, description=fill(command.description, WIDTH), epilog=epilog)
+        about = {"help": command.summary, "description": fill(command.description, WIDTH)}
+        one = parsers.add_parser(name, **about, epilog=epilog)
         for option in command.options:
             option(one)
         one.set_defaults(command=command)

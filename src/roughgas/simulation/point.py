@@ -20,6 +20,7 @@ from roughgas.simulation import by_species, schedule
 from roughgas.simulation.ends import Initial, check_initial, is_memory_of, last_states, owner
 from roughgas.simulation.gas import Gas
 from roughgas.simulation.recorder import Recorder
+from roughgas.statistics.evidence import UNKNOWN, YES
 from roughgas.theory.mixture_composition import SPECIES
 
 ENERGIES = ("E_trans", "E_rot", "R", "R_ratio_of_means")
@@ -123,10 +124,10 @@ def _watching(scene, experiment, functions):
 
 
 def _withdrawn(found):
-    """Return the flags that must not stand, since a number that they vouch for is none."""
+    """Return verdicts that are not known, since a number that they vouch for is not finite."""
     given = {flag: [found[one] for one in VOUCHED[flag] if one in found] for flag in VOUCHED}
     wrong = (flag for flag, numbers in given.items() if not np.isfinite(numbers).all())
-    return {flag: False for flag in wrong if flag in found}
+    return {flag: UNKNOWN for flag in wrong if found.get(flag) == YES}
 
 
 def _about_start(initial, scene):
