@@ -128,8 +128,8 @@ def add_commands(parser: Parser, commands: Mapping[str, Command]) -> None:
     for name, command in commands.items():
         title = "example:" if len(command.examples) == 1 else "examples:"
         epilog = "\n  ".join([title, *command.examples])
-        about = {"help": command.summary, "description": fill(command.description, WIDTH)}
-        one = parsers.add_parser(name, **about, epilog=epilog)
+        about = fill(command.description, WIDTH)
+        one = parsers.add_parser(name, help=command.summary, description=about, epilog=epilog)
         for option in command.options:
             option(one)
         one.set_defaults(command=command)
