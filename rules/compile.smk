@@ -56,5 +56,5 @@ rule compile_kernel:
     message:
         "compile the kernel of {wildcards.experiment} at r = {wildcards.r}"
     shell:
-        "roughgas compile {wildcards.experiment:q} --scale {wildcards.scale:q} --r={wildcards.r:q}"
+        "python -P -m roughgas.steps compile_kernels {wildcards.experiment:q} --r={wildcards.r:q}"
         " --settings {params.settings:q} --checked > {log:q} 2>&1"

@@ -96,7 +96,8 @@ rule figure:
     message:
         "draw {wildcards.folder}{wildcards.figure}"
     shell:
-        "roughgas figure {wildcards.figure:q} {input.data:q} --output {output:q} > {log:q} 2>&1"
+        "python -P -m roughgas.steps figure {wildcards.figure:q} {input.data:q}"
+        " --output {output:q} > {log:q} 2>&1"
 
 
 rule plot:
@@ -128,7 +129,8 @@ rule picture_for_talks:
     message:
         "draw {output}"
     shell:
-        "roughgas figure {wildcards.figure:q} {input.data:q} --slide --output {output:q} > {log:q} 2>&1"
+        "python -P -m roughgas.steps figure {wildcards.figure:q} {input.data:q} --slide"
+        " --output {output:q} > {log:q} 2>&1"
 
 
 rule table:
@@ -151,7 +153,7 @@ rule table:
     message:
         "write {output.csv}"
     shell:
-        "roughgas table {input.data:q} --output {output.csv:q} > {log:q} 2>&1"
+        "python -P -m roughgas.steps table {input.data:q} --output {output.csv:q} > {log:q} 2>&1"
 
 
 rule claims:
@@ -171,7 +173,7 @@ rule claims:
     message:
         "write {output}"
     shell:
-        "roughgas claims {params.which:q} {input:q} --json {output.json:q}"
+        "python -P -m roughgas.steps claims {params.which:q} {input:q} --json {output.json:q}"
         " --markdown {output.markdown:q} > {log:q} 2>&1"
 
 
@@ -189,7 +191,7 @@ rule run_times:
     message:
         "write {output}"
     shell:
-        "roughgas times {input.data:q} --output {output:q} > {log:q} 2>&1"
+        "python -P -m roughgas.steps run_times {input.data:q} --output {output:q} > {log:q} 2>&1"
 
 
 rule page:
@@ -212,7 +214,7 @@ rule page:
     message:
         "write {output}"
     shell:
-        "roughgas page {input.data:q} --points {params.points:q} --config {params.config:q}"
+        "python -P -m roughgas.steps explore {input.data:q} --points {params.points:q} --config {params.config:q}"
         " --output {output:q} > {log:q} 2>&1"
 
 
@@ -231,4 +233,4 @@ rule living_page:
     message:
         "write {output}"
     shell:
-        "roughgas living --config {input.config:q} --output {output:q} > {log:q} 2>&1"
+        "python -P -m roughgas.steps living --config {input.config:q} --output {output:q} > {log:q} 2>&1"

@@ -96,7 +96,7 @@ rule document:
     message:
         "write {output}"
     shell:
-        "roughgas html {input.shown:q} --output {output:q} > {log:q} 2>&1"
+        "python -P -m roughgas.steps document {input.shown:q} --output {output:q} > {log:q} 2>&1"
 
 
 def pictures_of_paper(wildcards):
@@ -122,8 +122,8 @@ rule front:
     message:
         "write {output}"
     shell:
-        "roughgas front {input.claims:q} --figures {input.figures:q} --captions {input.captions:q}"
-        " --output {output:q} > {log:q} 2>&1"
+        "python -P -m roughgas.steps front {input.claims:q} --figures {input.figures:q}"
+        " --captions {input.captions:q} --output {output:q} > {log:q} 2>&1"
 
 
 rule effective_config:
@@ -145,5 +145,5 @@ rule effective_config:
     message:
         "write {output}"
     shell:
-        "roughgas config --config {input.file:q} --scale {wildcards.scale:q}"
+        "python -P -m roughgas.steps effective_config {input.file:q} --scale {wildcards.scale:q}"
         " --changes {params.changes:q} --output {output:q} > {log:q} 2>&1"

@@ -31,14 +31,13 @@ rule gas_of_film:
         code=code_of(
             "simulation.clustering",
             "data.film",
-            alone=["cli.showcase"],
             settings=settings_of_showcase,
         ),
         settings=settings_of_showcase,
     message:
         "film a cooling gas; how far it is: {log}"
     shell:
-        "roughgas clustering --scale {wildcards.scale:q} --settings {params.settings:q} --checked"
+        "python -P -m roughgas.steps clustering --scale {wildcards.scale:q} --settings {params.settings:q} --checked"
         " --output {output:q} > {log:q} 2>&1"
 
 
@@ -61,4 +60,4 @@ rule film:
     message:
         "draw the picture and the movie of the cooling gas"
     shell:
-        "roughgas film {input.data:q} --output {output:q} > {log:q} 2>&1"
+        "python -P -m roughgas.steps film {input.data:q} --output {output:q} > {log:q} 2>&1"

@@ -37,8 +37,7 @@ def urgency_of_task(wildcards):
 
 
 def code_of_study(wildcards):
-    writing = ("cli.studies", "studies.files")
-    code = sources.code_of(f"studies.runs.{wildcards.study}", alone=writing)
+    code = sources.code_of(f"studies.runs.{wildcards.study}", alone=["studies.files"])
     return with_files(code, settings_of_study(wildcards))
 
 
@@ -71,7 +70,7 @@ rule study:
     message:
         "study {wildcards.study}: {wildcards.task}"
     shell:
-        "roughgas study {wildcards.study:q} {wildcards.task:q} --scale {wildcards.scale:q}"
+        "python -P -m roughgas.steps study {wildcards.study:q} {wildcards.task:q} --scale {wildcards.scale:q}"
         " --settings {params.settings:q} --output {output:q} > {log:q} 2>&1"
 
 
@@ -87,7 +86,7 @@ rule combined_studies:
     message:
         "combine the studies of {wildcards.study_figure}"
     shell:
-        "roughgas combine {input.tasks:q} --output {output:q} > {log:q} 2>&1"
+        "python -P -m roughgas.steps combine {input.tasks:q} --output {output:q} > {log:q} 2>&1"
 
 
 rule study_figure:
@@ -109,7 +108,8 @@ rule study_figure:
     message:
         "draw {wildcards.folder}{wildcards.study_figure}"
     shell:
-        "roughgas figure {wildcards.study_figure:q} {input.data:q} --output {output:q} > {log:q} 2>&1"
+        "python -P -m roughgas.steps figure {wildcards.study_figure:q} {input.data:q}"
+        " --output {output:q} > {log:q} 2>&1"
 
 
 rule study_table:
@@ -124,4 +124,4 @@ rule study_table:
     message:
         "write {output}"
     shell:
-        "roughgas tables {input.data:q} --output {output:q} > {log:q} 2>&1"
+        "python -P -m roughgas.steps study_tables {input.data:q} --output {output:q} > {log:q} 2>&1"

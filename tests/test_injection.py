@@ -13,11 +13,11 @@ from docutils.core import publish_parts
 from markdown_it import MarkdownIt
 from plotly.offline import get_plotlyjs
 from show.page.conftest import write
+from tests.entry import main
 from tests.files import point
 
 from roughgas.base.errors import InputError
 from roughgas.base.layout import in_csv, in_rst, markdown
-from roughgas.cli import main
 from roughgas.config import checking
 from roughgas.config.provenance import provenance
 from roughgas.data.point import write_point
@@ -48,7 +48,7 @@ def page_of(folder, text):
     about = {"command": text, "scale": text, "r_label": text}
     paths = [write(folder, "sheared", "0.9", "0.5", seed, **about) for seed in (1, 2)]
     reduce_points(paths, folder / "sheared.nc")
-    arguments = ["page", str(folder / "sheared.nc"), "--points", str(folder)]
+    arguments = ["explore", str(folder / "sheared.nc"), "--points", str(folder)]
     assert main([*arguments, "-o", str(folder / "page.html")]) == 0
     return (folder / "page.html").read_text("utf-8")
 
@@ -78,7 +78,7 @@ def test_documents_run_nothing_and_load_nothing(tmp_path, text):
     (tmp_path / "a.md").write_text(markdown(["name"], [[text]]), "utf-8")
     (tmp_path / "a.yaml").write_text(text, "utf-8")
     for name in ("a.md", "a.yaml"):
-        assert main(["html", str(tmp_path / name), "-o", str(tmp_path / "a.html")]) == 0
+        assert main(["document", str(tmp_path / name), "-o", str(tmp_path / "a.html")]) == 0
         page = (tmp_path / "a.html").read_text("utf-8")
         assert f'content="{policy()}"' in page and "script-src" not in policy()
         assert "<script" not in page and 'href="javascript' not in page

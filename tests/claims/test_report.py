@@ -2,11 +2,11 @@ import json
 
 import pytest
 from synthetic import BETA, averaged, reduced
+from tests.entry import main
 
 from roughgas.base.errors import InputError
 from roughgas.claims import OPEN_QUESTIONS, PAPER, judge
 from roughgas.claims.verdicts import NOT_TESTED
-from roughgas.cli import main
 
 
 @pytest.fixture

@@ -9,7 +9,6 @@ from roughgas import cli
 from roughgas.cli import main
 from roughgas.config.reading import read_yaml
 from roughgas.data.point import read_point
-from roughgas.simulation.point import kernels
 
 SWEEP = {"r": ["0.9"], "beta": ["0"], "seeds": 1, "spin.inertia": ["1", "0.1"]}
 PLACE = ("--r=0.9", "--beta=0")
@@ -59,18 +58,6 @@ def test_bad_input_is_refused_in_one_line(configuration, tmp_path, capsys, name,
     said = capsys.readouterr().err
     assert said.startswith(f"roughgas: error: {message}") and said.count("\n") == 1
     assert not (tmp_path / "point.nc").exists()
-
-
-@pytest.mark.parametrize(
-    ("name", "inertia"), [("spun", [1, 0.1]), ("spun/inertia1", [1]), ("plain", [0.5])]
-)
-def test_all_variants_are_compiled_at_once(configuration, monkeypatch, name, inertia):
-    told = []
-    monkeypatch.setattr("roughgas.cli.run.compile_kernels", told.extend)
-    assert main(["compile", name, configuration, "--r=0.9"]) == 0
-    assert [one["effects"]["spin"]["inertia"] for one in told] == inertia
-    assert all(one["sweep"] == {"r": [0.9]} for one in told)
-    assert len(kernels(told)) == 1
 
 
 def test_a_plan_has_a_row_for_each_variant(configuration, tmp_path, capsys):

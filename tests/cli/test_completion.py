@@ -63,7 +63,7 @@ def completed(line, script, shell="bash"):
 @pytest.mark.parametrize(
     ("line", "offered"),
     [
-        ("roughgas comp", {"compile", "completion"}),
+        ("roughgas comp", {"completion"}),
         ("roughgas theory --dim", {"--dimension"}),
         ("roughgas run cooling_s", {"cooling_spheres", "cooling_sizes"}),
         ("roughgas run vibrated_friction/mu0.0", {f"vibrated_friction/mu0.0{k}" for k in "13"}),

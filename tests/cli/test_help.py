@@ -23,7 +23,6 @@ REALLY_RUN = {  # what each prints; besides those that docs/command_line.md and 
     "theory --r 0.8 0.9 0.99 --beta 0 --inertia 0.1 --json": r'"R_driven": 0\.0769230',
     "theory --r 0.9 --beta 0.5 --mu 0.3": r"\nR, cooling +0\.37269 +0\.40344 ",
     "theory --r 0.9 --beta -0.9:0.9:0.1 --spin-share 0.2 --csv": r"\n2,0\.9,-0\.9,0\.4674285714,",
-    "compile cooling --r 0.9": r"^\s*$",
     "pilot sheared --r 0.9 --beta 0 -o pilot.json": r"^\s*$",
 }
 

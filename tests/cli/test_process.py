@@ -62,7 +62,7 @@ def test_bad_input_is_refused_in_one_line_and_leaves_no_file(tmp_path, capsys, c
         (["fly"], "argument COMMAND: invalid choice: 'fly'"),
         (["run", "cooling"], "the following arguments are required: --r, --beta (see `r"),
         (["run", "cooling", "--mu", "1"], "the following arguments are required"),
-        (["figure", "fig1a"], "the following arguments are required: REDUCED"),
+        (["reduce"], "the following arguments are required: POINT, -o/--output"),
     ],
 )
 def test_bad_arguments_are_refused_in_one_line(capsys, arguments, message):
@@ -72,11 +72,6 @@ def test_bad_arguments_are_refused_in_one_line(capsys, arguments, message):
     assert stop.value.code == 2
     assert said.err.startswith(f"roughgas: error: {message}")
     assert said.err.count("\n") == 1
-
-
-def test_a_figure_that_does_not_exist(tmp_path, capsys):
-    assert main(["figure", "fig9", "x.nc", "--output", str(tmp_path / "f.png")]) == 2
-    assert capsys.readouterr().err.startswith("roughgas: error: figure = fig9: must")
 
 
 def test_a_dataset_that_does_not_exist(tmp_path, capsys):

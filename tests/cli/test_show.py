@@ -2,16 +2,16 @@
 
 import json
 import shutil
-from pathlib import Path
 
 import netCDF4
 import numpy as np
 import pytest
 import xarray
 from tests.cli.conftest import GAS, ROOT
+from tests.entry import main
 
 from roughgas import theory
-from roughgas.cli import main
+from roughgas.config import showcase
 from roughgas.config.reading import read_yaml
 from roughgas.data.point import read_point
 from roughgas.data.reduced import read_reduced
@@ -154,7 +154,7 @@ def test_a_task_of_a_study(tmp_path, capsys):
     text = shown(capsys, tmp_path / "task.nc")
     assert "dsmc of the study models, scale small" in text and "groups  3\n" in text
     assert "R         chain (11)  0.1 to 0.2, 0.15 on average\n" in text
-    assert "roughgas study models dsmc --scale small" in text
+    assert text.rstrip().endswith("snakemake -j1 results/small/studies/models/dsmc.nc")
     found = json.loads(shown(capsys, tmp_path / "task.nc", "--json"))
     assert found["sizes"] == {"chain": 11} and found["variables"] == {"seconds": 1.5}
 
@@ -179,16 +179,15 @@ def test_descriptions_cannot_move_the_cursor(tmp_path, capsys):
         assert "1b[2Jgas" in text and all(one.isprintable() for one in text.replace("\n", ""))
 
 
-def test_a_film(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    config = read_yaml(ROOT / "config.yaml")
-    config["scales"]["small"]["showcase"]["particles"] = 100  # too few for cells: one kernel less
-    Path("config.yaml").write_text(json.dumps(config))
+def test_a_film(tmp_path, capsys):
+    settings = showcase(read_yaml(ROOT / "config.yaml"), "small")
+    settings["particles"] = 100  # too few for cells: one kernel less
     film = tmp_path / "film.nc"
-    assert main(["clustering", "--scale=small", f"--output={film}"]) == 0
+    told = ["--scale=small", f"--settings={json.dumps(settings)}", f"--output={film}"]
+    assert main(["clustering", *told]) == 0
     text = shown(capsys, film)
     assert f"{film}: film of a cooling gas" in text and "61, of 31 x 31 cells" in text
-    assert "\n60 " in text and "roughgas clustering --scale small" in text
+    assert "\n60 " in text and "roughgas.steps clustering --scale small" in text
     assert json.loads(shown(capsys, film, "--json"))["frames"] == 61
 
 

@@ -6,18 +6,17 @@ import shutil
 
 import netCDF4
 import pytest
-
-from roughgas.cli import main
+from tests.entry import main
 
 TAKEN = {
     "reduce {} -o out.nc": "point",
     "table {} -o out.csv": "reduced",
     "claims {} --json out.json --markdown out.md": "reduced studies",
-    "times {} -o out.md": "reduced",
+    "run_times {} -o out.md": "reduced",
     "costs --fixed={{}} {} -o out.md": "reduced",
-    "page {} --points points -o out.html": "reduced",
+    "explore {} --points points -o out.html": "reduced",
     "figure fig1a {} -o out.png": "reduced",
-    "tables {} -o out.md": "studies",
+    "study_tables {} -o out.md": "studies",
     "figure coverage {} -o out.png": "studies",
     "combine {} -o out.nc": "task",
     "film {} -o out.png": "film",
@@ -66,7 +65,7 @@ def test_a_schema_of_somebody_else_is_refused(folder, capsys, kind, value):
 
 
 def test_a_page_needs_the_labels_of_points(folder, capsys):
-    line = "page reduced.nc --points . -o out.html".split()
+    line = "explore reduced.nc --points . -o out.html".split()
     (folder / "vibrated").mkdir()
     (folder / "points/saw0.9_1.nc").rename(folder / "vibrated/seed1.nc")
     assert said(capsys, line) == "attribute r_label of vibrated/seed1.nc = (nothing): must be given"

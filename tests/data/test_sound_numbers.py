@@ -4,9 +4,9 @@ import math
 
 import pytest
 from synthetic import reduced
+from tests.entry import main
 from tests.files import point
 
-from roughgas.cli import main
 from roughgas.data.point import write_point
 
 

@@ -7,9 +7,9 @@ import netCDF4
 import numpy as np
 from hypothesis import strategies as st
 from schedules import BRIEF
+from tests.entry import main
 from tests.files import write_all
 
-from roughgas.cli import main
 from roughgas.config import as_text
 from roughgas.data.opening import SEAL
 
@@ -37,11 +37,11 @@ COMMANDS = [
     "table {} -o out.csv",
     "claims {} --json out.json --markdown out.md",
     "claims --open-questions {} --json out.json --markdown out.md",
-    "page {} --points . -o out.html",
-    "html {} -o out.html",
-    "times {} -o out.md",
+    "explore {} --points . -o out.html",
+    "document {} -o out.html",
+    "run_times {} -o out.md",
     'costs --fixed {{"vibrated":{{"equilibrate":1,"measure":1}}}} {} -o out.md',
-    "tables {} -o out.md",
+    "study_tables {} -o out.md",
     "combine {} -o out.nc",
     "film {} -o out.png",
     "plot {} -o out.png",

@@ -11,10 +11,9 @@ import netCDF4
 import pytest
 import xarray as xr
 from hypothesis import strategies as st
+from tests.entry import main
 from tests.files import write_all
 from tests.fuzz.spoiling import ENOUGH, OFTEN, outcomes, share
-
-from roughgas.cli import main
 
 WORDS = [
     "",
@@ -40,11 +39,11 @@ MEANT = [
     "table -o out.csv",
     "claims --json out.json --markdown out.md",
     "claims --open-questions --json out.json --markdown out.md",
-    "page --points . -o out.html",
-    "html -o out.html",
-    "times -o out.md",
+    "explore --points . -o out.html",
+    "document -o out.html",
+    "run_times -o out.md",
     "costs --fixed {} -o out.md",
-    "tables -o out.md",
+    "study_tables -o out.md",
     "combine -o out.nc",
     "film -o out.png",
     "crate -o out.zip",
@@ -54,10 +53,10 @@ MEANT = [
 RIGHT = [
     "export point.nc -o out.csv",
     "table reduced.nc -o out.csv",
-    "html page.md -o out.html",
+    "document page.md -o out.html",
     "combine task.nc -o out.nc",
-    "tables studies.nc -o out.md",
-    "times reduced.nc -o out.md",
+    "study_tables studies.nc -o out.md",
+    "run_times reduced.nc -o out.md",
 ]
 """Command lines that are right."""
 OPTIONS = ["--json", "-o", "--output", "--points", "--verify", "--fixed", "--markdown", "--help"]
@@ -167,7 +166,7 @@ def test_command_lines(folder, monkeypatch, often):
     "arguments",
     [
         ["run", "cooling", "--r=0.9", "--beta=0", "-o", "out.nc", "--settings"],
-        ["config", "-o", "out", "--changes"],
+        ["effective_config", "config.yaml", "--scale=paper", "-o", "out", "--changes"],
         ["study", "statistical", "cooling-reference", "-o", "out.nc", "--settings"],
         ["costs", "reduced.nc", "-o", "out.md", "--fixed"],
         ["crate", "page.md", "-o", "out.zip", "--configuration"],

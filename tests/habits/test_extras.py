@@ -20,14 +20,15 @@ WITHOUT_ANY = {
 }
 WITH_ONE = {
     "figures": f"movie {POINT} -o gas.gif",
-    "report": "html text.md -o text.html",
+    "report": "document text.md -o text.html",
     "crate": "crate --verify run.zip",
     "trajectories": f"trajectory {POINT} -o gas.gsd",
 }
 BLOCKED = """
 import sys
 sys.modules.update(dict.fromkeys({packages!r}))
-from roughgas.cli import main
+from roughgas import cli, steps
+main = (steps if sys.argv[1] in steps.STEPS else cli).main
 sys.exit(main(sys.argv[1:]))
 """
 

@@ -7,7 +7,7 @@ import sys
 from schedules import TINY
 from synthetic import reduced
 
-from habits.conftest import environment, point, roughgas
+from habits.conftest import environment, point, python, roughgas
 
 HOSTILE_STYLE = "lines.linewidth: 9\naxes.facecolor: red\naxes.grid: True\nfont.size: 30\n"
 
@@ -58,7 +58,7 @@ def test_no_setting_of_the_users_changes_a_figure(tmp_path):
     for folder, changes in ((tmp_path, {}), (tmp_path / "home", hostile)):
         files = [folder / "fig2a.png", folder / "fig2a.pdf"]
         arguments = ["figure", "fig2a", tmp_path / "sheared.nc", "--output", *files]
-        done = roughgas(*arguments, cwd=folder, **changes)
+        done = python("-m", "roughgas.steps", *arguments, cwd=folder, **changes)
         assert (done.returncode, done.stderr) == (0, "")
         drawn.append([file.read_bytes() for file in files])
     assert drawn[0] == drawn[1]

@@ -6,8 +6,8 @@ import json
 import netCDF4
 import numpy as np
 import xarray as xr
+from tests.entry import main
 
-from roughgas.cli import main
 from roughgas.theory.prediction import predicted_ratio
 
 

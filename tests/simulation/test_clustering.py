@@ -9,8 +9,8 @@ import time
 
 import numpy as np
 import pytest
+from tests.entry import main
 
-from roughgas.cli import main
 from roughgas.data import checkpoint
 from roughgas.data.film import disks_of, read_film
 from roughgas.simulation import clustering
@@ -171,9 +171,8 @@ def test_a_killed_command_goes_on_from_its_last_checkpoint_with_the_same_bits(tm
     whole, killed = tmp_path / "whole.nc", tmp_path / "killed.nc"
     saved = tmp_path / "killed.nc.checkpoint.npz"
     assert main(arguments(whole, **long)) == 0
-    process = subprocess.Popen(
-        [sys.executable, "-m", "roughgas", *arguments(killed, 1, **long)], stderr=subprocess.PIPE
-    )
+    step = [sys.executable, "-m", "roughgas.steps", *arguments(killed, 1, **long)]
+    process = subprocess.Popen(step, stderr=subprocess.PIPE)
     deadline = time.monotonic() + 300
     while not saved.exists():
         assert process.poll() is None and time.monotonic() < deadline
@@ -230,7 +229,9 @@ def test_a_film_says_what_it_shows_and_how_to_make_it_again(tmp_path):
     x, y, spin = disks_of(film, 2)
     assert len(x) == len(y) == len(spin) == film.disks[2]
     assert x[-1] == film.disk_x[film.disks[:3].sum().item() - 1]
-    assert film.attrs["command"].startswith("roughgas clustering --scale paper --settings '{")
+    assert film.attrs["command"].startswith(
+        "python -m roughgas.steps clustering --scale paper --settings '{"
+    )
 
 
 @pytest.mark.parametrize(

@@ -59,7 +59,7 @@ TOGETHER = {  # files of which hardly anything needs two: their edits are tried 
     "show/figures/fig1a.py",
     "show/movies/drawing.py",
 }
-UNUSED = ("cli/steps.py", "doctor.py", "library.py", "show/catalogue.py")
+UNUSED = ("steps.py", "doctor.py", "library.py", "show/catalogue.py")
 
 
 @pytest.fixture(scope="module")

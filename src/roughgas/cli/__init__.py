@@ -10,7 +10,7 @@ import logging
 import os
 import signal
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import NoReturn
 
@@ -26,8 +26,8 @@ FAILED, INTERRUPTED, NOBODY_READS = 1, 130, 141
 GO_ON = "nothing is half-written; the same command begins anew"
 
 
-def process() -> NoReturn:
-    """Run `main` as a process of its own, without what would slow down a short one.
+def process(run: Callable[[], int] | None = None) -> NoReturn:
+    """Run `run`, by default `main`, as a process of its own, without what slows down a short one.
 
     Of a job that takes half a second, a sixth went into freeing its memory at the end, and as much
     into threads for linear algebra that has nothing for them to do (and whose sums would depend on
@@ -42,7 +42,7 @@ def process() -> NoReturn:
     os.environ["MPLBACKEND"] = "agg"  # whatever it was: nothing is shown on a screen
     logging.getLogger("matplotlib").setLevel(logging.ERROR)  # hide warnings of read-only folders
     try:
-        status = main()
+        status = (run or main)()
     except SystemExit as end:  # argparse has said why
         status = int(end.code or 0)
     os._exit(_flush(status))
@@ -81,10 +81,23 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
     Raises SystemExit after --help, --version and what argparse refuses.
     """
+    return status_of(_options, arguments)
+
+
+def status_of(
+    parse: Callable[[Sequence[str]], argparse.Namespace], arguments: Sequence[str] | None = None
+) -> int:
+    """Return the exit status of what `parse` makes of arguments, and runs as its `command`.
+
+    Errors are printed in one line. Raises what `parse` raises of SystemExit.
+    """
     options = argparse.Namespace()
     given = sys.argv[1:] if arguments is None else arguments
     try:
-        options = _options(given or ["--help"])
+        for one in given:
+            if not one.isascii() and one != one.encode(errors="ignore").decode():
+                raise InputError("argument", shown(one), "be text in UTF-8")
+        options = parse(given or ["--help"])
         options.command(options)
     except (InputError, EndedEarlyError) as error:
         return _fail(BAD_INPUT if isinstance(error, InputError) else FAILED, str(error))
@@ -110,13 +123,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _options(arguments: Sequence[str]) -> argparse.Namespace:
-    """Parse the command line.
-
-    Raises InputError where it is not UTF-8, and where `check_outputs` does; OSError likewise.
-    """
-    for one in arguments:
-        if not one.isascii() and one != one.encode(errors="ignore").decode():
-            raise InputError("argument", shown(one), "be text in UTF-8")
+    """Parse the command line. Raises InputError and OSError as `check_outputs`."""
     parser = parser_of(*arguments[:1])
     if "_ARGCOMPLETE" in os.environ:  # a shell asks how its line may go on
         from argcomplete import autocomplete, safe_actions

@@ -123,6 +123,20 @@ COMMANDS = {
         "both energies: the window in which R is measured is shaded, its mean, its 95 % interval "
         "and theory are lines.",
     ),
+    "reduce": Command(
+        "cli.products:reduce",
+        "combine the points of an experiment into a dataset",
+        value(
+            "inputs POINT",
+            "datasets, or folders of them; - reads their names from standard input, one per line",
+            nargs="+",
+        ),
+        output("reduced dataset"),
+        writes="REDUCED",
+        examples=("roughgas reduce results/paper/sheared/r*/beta*/seed*.nc -o sheared.nc",),
+        about="Combine points of one experiment, at any r and beta, of any seeds, into a dataset "
+        "that `roughgas show` and `roughgas plot` take: R with its error, beside theory.",
+    ),
     "experiments": Command(
         "cli.experiments:experiments",
         "list the experiments of the configuration",

@@ -60,8 +60,12 @@ EXPERIMENT = value(
 )
 RESTITUTION = "normal restitution, in [0, 1]: 1 is elastic"
 ROUGHNESS = "roughness, in [-1, 1]: -1 is smooth, 1 perfectly rough"
-KERNEL = (EXPERIMENT, *SETTINGS, value("--r", RESTITUTION, required=True))
-POINT = (*KERNEL, value("--beta", ROUGHNESS, required=True))
+POINT = (
+    EXPERIMENT,
+    *SETTINGS,
+    value("--r", RESTITUTION, required=True),
+    value("--beta", ROUGHNESS, required=True),
+)
 """What names a point, except for its seed."""
 LISTED = "a list, or START:STOP:STEP"
 POINTS = (

@@ -1,5 +1,4 @@
-"""What is made from results: `roughgas reduce`, `figure`, `plot`, `claims`, `config`, `export` and
-`crate`."""
+"""What is made from results: `roughgas reduce`, `plot`, `export` and `crate`."""
 
 import os
 import sys
@@ -20,21 +19,6 @@ def reduce(options: Namespace) -> None:
     reduce_points(sys.stdin.read().splitlines() if piped else options.inputs, options.output)
 
 
-def figure(options: Namespace) -> None:
-    """Draw one figure."""
-    from roughgas.show import gallery
-    from roughgas.studies import figures as of_studies
-
-    if options.name in of_studies.FIGURES:
-        if options.slide:
-            raise InputError("--slide", options.name, "be given for figures of experiments")
-        if len(options.inputs) > 1:
-            raise InputError("number of datasets", len(options.inputs), "be 1, with all studies")
-        of_studies.draw(options.name, options.inputs[0], options.output)
-    else:
-        gallery.draw(options.name, options.inputs, options.output, options.slide)
-
-
 def plot(options: Namespace) -> None:
     """Draw any reduced dataset."""
     from roughgas.show import gallery
@@ -43,23 +27,6 @@ def plot(options: Namespace) -> None:
     chosen = {n: [number(f"--{n}", one) for one in getattr(options, n) or ()] for n in names}
     for line in gallery.plot(options.input, options.output, options.over, **chosen):
         print(line, file=sys.stderr)
-
-
-def claims(options: Namespace) -> None:
-    """Judge the claims of the paper, or what it leaves open."""
-    from roughgas.claims import OPEN_QUESTIONS, PAPER, judge
-
-    subject = OPEN_QUESTIONS if options.open_questions else PAPER
-    judge(options.inputs, options.json, options.markdown, subject)
-
-
-def effective_config(options: Namespace) -> None:
-    """Write the configuration of a scale."""
-    from roughgas import config
-    from roughgas.config.effective import write_effective
-
-    changes = config.from_text(options.changes, "--changes", checked=True)
-    write_effective(config.load(options.config, changes), options.scale, options.output)
 
 
 def export(options: Namespace) -> None:

@@ -1,4 +1,4 @@
-"""`roughgas run` simulates points of an experiment; `roughgas compile` prepares their kernels."""
+"""`roughgas run` simulates points of an experiment."""
 
 import sys
 from argparse import Namespace
@@ -19,7 +19,7 @@ from roughgas.planning.reach import complete
 from roughgas.scene import Scene, build
 from roughgas.simulation import schedule
 from roughgas.simulation.ends import Initial, initial_of
-from roughgas.simulation.point import compile_kernels, run_point
+from roughgas.simulation.point import run_point
 from roughgas.simulation.progress import Bar, Progress
 from roughgas.statistics.estimate import Estimate
 
@@ -66,13 +66,6 @@ def initial_in(options: Namespace) -> list[Initial]:
         legal = "be one with --from, which has the random numbers of its own run"
         raise InputError("--seed", " ".join(options.seed), legal)
     return initial_of(read_point(options.start_from))
-
-
-def compile_kernel(options: Namespace) -> None:
-    """Compile what the points of an experiment run at some r: of all its variants."""
-    r, settings = config.restitution(options.r), _settings(options)
-    every = config.every_variant(options.experiment, settings).values()
-    compile_kernels([one | {"sweep": {"r": [r]}} for one in every])
 
 
 def points_of(options: Namespace) -> list[tuple[str, str, Scene, dict[str, Any]]]:

@@ -47,8 +47,8 @@ def task_text(data: Dataset) -> str:
     for name, one in data.variables.items():
         over = ", ".join(f"{dim} ({data.sizes[dim]})" for dim in one.dims)
         table.append([str(name), over, _values(one.values)])
-    again = f"roughgas study {about['study']} {about['task']} --scale {about['scale']} -o task.nc"
-    return "\n\n".join([columns(head), columns(table), f"To make it again: {again}"])
+    file = f"results/{about['scale']}/studies/{about['study']}/{about['task']}.nc"
+    return "\n\n".join([columns(head), columns(table), f"To make it again: snakemake -j1 {file}"])
 
 
 def _values(values: np.ndarray) -> str:

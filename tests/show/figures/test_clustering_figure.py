@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from matplotlib.image import imread
 from mpl_toolkits.axes_grid1.anchored_artists import AnchoredSizeBar
+from tests.entry import main
 from tests.show.figures.legibility import faults
 
 from roughgas import theory
 from roughgas.base.errors import InputError
-from roughgas.cli import main
 from roughgas.data.film import FILM, read_film, write_film
 from roughgas.show.figures import clustering
 

@@ -3,10 +3,10 @@
 from pathlib import Path
 
 import pytest
+from tests.entry import main
 
 from roughgas import config
 from roughgas.base.errors import InputError
-from roughgas.cli import main
 from roughgas.show.living.assemble import scene_of, settings
 
 ROOT = Path(__file__).parents[3]
@@ -17,7 +17,9 @@ MOST = 60_000  # bytes
 def test_the_committed_page_is_what_the_command_writes_and_small(tmp_path):
     page = tmp_path / "living.html"
     assert main(["living", "--config", str(ROOT / "config.yaml"), "-o", str(page)]) == 0
-    again = "write it anew: roughgas living -o docs/living.html"
+    again = (
+        "write it anew: python -m roughgas.steps living --config=config.yaml -o=docs/living.html"
+    )
     assert (ROOT / "docs/living.html").read_bytes() == page.read_bytes(), again
     assert page.stat().st_size < MOST
 

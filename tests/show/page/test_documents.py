@@ -5,9 +5,9 @@ import json
 from pathlib import Path
 
 import pytest
+from tests.entry import main
 
 from roughgas import config
-from roughgas.cli import main
 from roughgas.data.reduced import read_reduced
 from roughgas.results.costs import write_times
 
@@ -15,7 +15,7 @@ CONFIG = Path(__file__).parents[3] / "config.yaml"
 
 
 def html(source, tmp_path):
-    assert main(["html", str(source), "--output", str(tmp_path / "shown.html")]) == 0
+    assert main(["document", str(source), "--output", str(tmp_path / "shown.html")]) == 0
     return (tmp_path / "shown.html").read_text("utf-8")
 
 
@@ -51,7 +51,7 @@ def test_other_files_are_shown_as_what_they_are(tmp_path):
 
 def test_an_unknown_kind_is_refused(tmp_path, capsys):
     (tmp_path / "a.txt").write_text("text")
-    assert main(["html", str(tmp_path / "a.txt"), "-o", str(tmp_path / "a.html")]) == 2
+    assert main(["document", str(tmp_path / "a.txt"), "-o", str(tmp_path / "a.html")]) == 2
     assert "must end in one of .md, .yaml, .mp4, .gif" in capsys.readouterr().err
     assert not (tmp_path / "a.html").exists()
 
@@ -71,8 +71,8 @@ def test_run_times_are_sums_over_points_and_seeds(points, tmp_path):
 def test_the_complete_configuration_says_the_same_and_can_be_run(scale, tmp_path):
     path = tmp_path / "config.yaml"
     changes = {"experiments": {"cooling": {"particles": 99}}, "seeds_per_job": 2}
-    arguments = [f"--config={CONFIG}", f"--scale={scale}", f"--changes={json.dumps(changes)}"]
-    assert main(["config", *arguments, "--output", str(path)]) == 0
+    arguments = [str(CONFIG), f"--scale={scale}", f"--changes={json.dumps(changes)}"]
+    assert main(["effective_config", *arguments, "--output", str(path)]) == 0
     given, found = config.load(CONFIG, changes), config.load(path)
     assert found["scale"] == scale and list(found["scales"]) == [scale]
     assert found["seeds_per_job"] == 2
@@ -85,6 +85,6 @@ def test_the_complete_configuration_says_the_same_and_can_be_run(scale, tmp_path
 
 def test_the_configuration_of_no_scale_is_refused(tmp_path, capsys):
     path = tmp_path / "config.yaml"
-    assert main(["config", f"--config={CONFIG}", "--scale=large", f"-o={path}"]) == 2
+    assert main(["effective_config", str(CONFIG), "--scale=large", f"-o={path}"]) == 2
     assert "scale = 'large': must be one of" in capsys.readouterr().err
     assert not path.exists()

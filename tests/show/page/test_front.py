@@ -4,8 +4,8 @@ import base64
 from html import unescape
 
 import pytest
+from tests.entry import main
 
-from roughgas.cli import main
 from roughgas.show.catalogue import FIGURES, figures_of
 
 NAMES = figures_of("paper")
@@ -27,7 +27,7 @@ def files(tmp_path):
 
 
 def front(folder, figures=NAMES, captions=NAMES):
-    """The exit status of `roughgas front`, which writes report.html."""
+    """The exit status of the step `front`, which writes report.html."""
     parts = ["--figures", *(str(folder / f"{name}.png") for name in figures)]
     parts += ["--captions", *(str(folder / f"{name}.rst") for name in captions)]
     return main(["front", str(folder / "claims.md"), *parts, "-o", str(folder / "report.html")])

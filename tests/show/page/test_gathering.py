@@ -9,10 +9,10 @@ import netCDF4
 import numpy as np
 import pytest
 from plotly.offline import get_plotlyjs
+from tests.entry import main
 
 from roughgas.base.errors import InputError
 from roughgas.base.sources import PACKAGE
-from roughgas.cli import main
 from roughgas.data.point import read_point
 from roughgas.data.reduced import read_reduced
 from roughgas.results.reduce import reduce_points
@@ -123,7 +123,7 @@ def test_a_verdict_without_evidence_the_size_and_fewer_samples(points, tmp_path,
 def test_the_page_holds_its_data_and_asks_for_nothing(points, tmp_path):
     reduced = [str(points / f"{name}.nc") for name in EXPERIMENTS]
     page = tmp_path / "explore.html"
-    assert main(["page", *reduced, "--points", str(points), "--output", str(page)]) == 0
+    assert main(["explore", *reduced, "--points", str(points), "--output", str(page)]) == 0
     found = data_in(page)
     described = [one.pop("description") for one in found["experiments"]]
     assert described[0].startswith("A gas under uniform shear") and described[0][-1] != "."
@@ -159,7 +159,7 @@ def test_plotly_is_packed_and_allowed_by_its_hash(points, tmp_path):
 def test_what_is_not_there_is_named_in_one_line(points, tmp_path, capsys):
     (points / "cooling/r1/beta0.50/seed1.nc").unlink()
     page = tmp_path / "explore.html"
-    assert main(["page", str(points / "cooling.nc"), f"--points={points}", f"-o={page}"]) == 2
+    assert main(["explore", str(points / "cooling.nc"), f"--points={points}", f"-o={page}"]) == 2
     assert capsys.readouterr().err == (
         "roughgas: error: point (..., r, beta) = 1.0, 0.5: must have its seed 1 in the folder of"
         " points\n"

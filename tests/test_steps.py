@@ -1,0 +1,67 @@
+"""Steps of the workflow: what they refuse, and that each is what a rule gives."""
+
+import json
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from schedules import TINY
+
+from roughgas import steps
+from roughgas.simulation.point import kernels
+
+ROOT = Path(__file__).parents[1]
+AXIS = {"r": ["0.9"], "beta": ["0"], "seeds": 1}
+
+
+@pytest.mark.parametrize(
+    ("line", "message"),
+    [
+        ("fly", "argument STEP: invalid choice: 'fly'"),
+        ("figure fig1a", "the following arguments are required: inputs, -o/--output"),
+        ("table a.nc --output a.csv --slide", "unrecognized arguments: --slide"),
+    ],
+)
+def test_bad_arguments_are_refused_in_one_line(line, message, capsys):
+    with pytest.raises(SystemExit) as stop:
+        steps.main(line.split())
+    said = capsys.readouterr()
+    assert (stop.value.code, said.out) == (2, "")
+    assert said.err.startswith(f"roughgas: error: {message}") and said.err.count("\n") == 1
+
+
+def test_a_mistake_ends_a_process_in_one_line(tmp_path):
+    line = ["figure", "fig9", "x.nc", "--output", "f.png"]
+    done = subprocess.run(
+        [sys.executable, "-m", "roughgas.steps", *line],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+    )
+    assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
+    assert done.stderr.startswith("roughgas: error: figure = fig9: must")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_each_step_is_what_a_rule_gives():
+    rules = "".join(path.read_text() for path in (ROOT / "rules").glob("*.smk"))
+    assert set(re.findall(r"roughgas\.steps (\w+)", rules)) == set(steps.STEPS)
+
+
+@pytest.mark.parametrize(
+    ("name", "sweep", "inertia"),
+    [
+        ("spun", {"spin.inertia": ["1", "0.1"]}, [1, 0.1]),
+        ("plain", {}, [0.5]),
+    ],
+)
+def test_all_variants_are_compiled_at_once(monkeypatch, name, sweep, inertia):
+    told = []
+    monkeypatch.setattr("roughgas.simulation.point.compile_kernels", told.extend)
+    settings = json.dumps(TINY | {"sweep": AXIS | sweep})
+    assert steps.main(["compile_kernels", name, "--settings", settings, "--r=0.9"]) == 0
+    assert [one["effects"]["spin"]["inertia"] for one in told] == inertia
+    assert all(one["sweep"] == {"r": [0.9]} for one in told)
+    assert len(kernels(told)) == 1
