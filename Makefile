@@ -46,12 +46,6 @@ report: setup ## pages for a browser: the report, every point to click on, a gas
 	@echo "each is one file, to be sent as it is. All products, and how each was made:  $(RESULTS)/workflow.html"
 	@echo "With more in it:  make$(AT_SCALE) REPORTED='figures extensions' report"
 
-plan: setup ## say what `make figures` at SCALE will cost, from pilot runs
-	$(SNAKEMAKE) plan
-	@cat $(RESULTS)/plan.md
-	@echo
-	@echo "The same table is in  $(RESULTS)/plan.md.  To run what it plans:  make$(AT_SCALE) figures"
-
 test: setup ## run the tests, but for those of `make extras`
 	$(BIN)/python -m pytest -n $(JOBS) --dist loadfile --no-loadscope-reorder -m "not ($(EXTRA_TESTS))"
 	@echo "All tests pass. Those that take minutes more, a browser, or Slurm:  make extras"
@@ -141,5 +135,5 @@ clean: ## remove all results; the environment and the committed figures stay
 	    $(filter-out figures/movies/,$(wildcard figures/*/))
 	@echo "All results are gone. To make them again:  make figures"
 
-.PHONY: help figures report plan test extras versions docs notebook bench lint format setup lock clean
+.PHONY: help figures report test extras versions docs notebook bench lint format setup lock clean
 .DELETE_ON_ERROR:

@@ -53,7 +53,6 @@ wildcard_constraints:
 include: "rules/report.smk"
 include: "rules/compile.smk"
 include: "rules/simulate.smk"
-include: "rules/planning.smk"
 include: "rules/reduce.smk"
 include: "rules/products.smk"
 include: "rules/studies.smk"
@@ -119,21 +118,6 @@ rule pictures:
             for name in catalogue.figures_of("paper")
             for kind in ("svg", "pdf")
         ],
-
-
-rule plan:
-    input:
-        f"results/{SCALE}/plan.md",
-
-
-rule plan_extensions:
-    input:
-        f"results/{SCALE}/plan_extensions.md",
-
-
-rule costs:
-    input:
-        f"results/{SCALE}/costs.md",
 
 
 rule movies:

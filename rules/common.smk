@@ -44,8 +44,6 @@ CONFIG = CONFIG or workflow.source_path("../config.yaml")
 IMAGE = str(SOURCE / "roughgas.sif")
 KERNEL = "results/{scale}/{experiment}/r{r}/compiled.txt"
 POINT = "results/{scale}/{experiment}/r{r}/beta{beta}/seed{seed}.nc"
-PILOT = "results/{scale}/{experiment}/r{r}/beta{beta}/pilot.json"
-SEEDS = "results/{scale}/{experiment}/r{r}/beta{beta}/seeds"  # as many as a target needs
 REDUCED = "results/{scale}/{experiment}.nc"
 FIRST = 10**12  # priority: more urgent than any point
 # An experiment as a whole, or one of its variants: as wildcards, not what has rules of its own, nor
@@ -157,25 +155,11 @@ def variants(scale, experiment):
 
 
 def points(scale, experiment):
-    """The datasets of all points in the sweep of an experiment, or the folders that hold them."""
-    found = settings(scale, experiment)
-    if "target_stderr" in found:
-        return swept(SEEDS, scale, experiment)
+    """The datasets of all points in the sweep of an experiment."""
     return [
         POINT.format(scale=scale, experiment=variant, r=r, beta=beta, seed=seed)
         for variant in variants(scale, experiment)
-        for r, beta, seed in roughgas.config.sweep(found)
-    ]
-
-
-def swept(pattern, scale, experiment):
-    """A file, or a folder, for each variant and each (r, beta) in the sweep of an experiment."""
-    axes = settings(scale, experiment)["sweep"]
-    return [
-        pattern.format(scale=scale, experiment=variant, r=r, beta=beta)
-        for variant in variants(scale, experiment)
-        for r in axes["r"]
-        for beta in axes["beta"]
+        for r, beta, seed in roughgas.config.sweep(settings(scale, experiment))
     ]
 
 

@@ -7,7 +7,7 @@ try:
 except ModuleNotFoundError:  # not in a wheel, which has one module
     POINTS = {}
 
-POINTS |= {"point": 1, "reach": 1, "pilot": 1}  # blocks of points: simulate.smk
+POINTS |= {"point": 1}  # blocks of points: simulate.smk
 
 
 def say_what_was_meant(record):

@@ -187,7 +187,7 @@ rule run_times:
     wildcard_constraints:
         product="run_times|run_times_extensions",
     params:
-        code=code_of("results.costs"),
+        code=code_of("results.table"),
     message:
         "write {output}"
     shell:

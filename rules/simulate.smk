@@ -1,6 +1,5 @@
-# From an experiment's settings to its points, where their lengths are set (where a target is set
-# instead: planning.smk). Of the sweep, `seeds_per_job` seeds at `betas_per_job` values of beta are
-# made by one job (see config.yaml); any other point is a job of its own.
+# From an experiment's settings to its points. Of the sweep, `seeds_per_job` seeds at `betas_per_job`
+# values of beta are made by one job (see config.yaml); any other point is a job of its own.
 SIMULATING = ("simulation.point", "data.point")
 RECORDING = ("cli.run", "config.labels", "config.provenance")  # these hand on and write down
 
@@ -16,10 +15,8 @@ def text_of_points(scale, experiment):
 
 
 def code_of_points(wildcards):
-    """The code that points depend on. A point with a target plans its own lengths."""
-    planned = "target_stderr" in settings(wildcards.scale, wildcards.experiment)
-    planning = ("planning.reach",) if planned else ()
-    code = sources.code_of(*SIMULATING, *planning, alone=RECORDING)
+    """The code that points depend on."""
+    code = sources.code_of(*SIMULATING, alone=RECORDING)
     return with_files(code, settings_of_points(wildcards))
 
 

@@ -16,7 +16,7 @@ import netCDF4
 import numpy as np
 
 KNOWN = Path(__file__).with_name("bits.json")
-CLOCKS = ("kernel_seconds", "planned_seconds")
+CLOCKS = ("kernel_seconds",)
 # how variables begin that are newer than the file
 SINCE = ("R_collisional", "contact_correlation", "E_rot_stderr", "measured_collisions")
 VERDICTS = ("equilibrated", "R_ci95_trusted")  # are no numbers, and their criteria may change

@@ -17,7 +17,7 @@ signal.signal(signal.SIGINT, signal.default_int_handler)
 settings.register_profile("shared machine", deadline=None)
 settings.load_profile("shared machine")
 
-SHORT = {"base", "claims", "config", "data", "planning", "results", "scene", "statistics", "theory"}
+SHORT = {"base", "claims", "config", "data", "results", "scene", "statistics", "theory"}
 """Folders in which no file takes more than some seconds."""
 WHOLE = 20
 """How many folders, or files beside them, a run of all tests has at least."""

@@ -28,7 +28,6 @@ ELSEWHERE = {  # tests of a room that are not in its own folder
     "effects": ["hard_cases"],
     "kernel": ["hard_cases"],
     "library": ["test_library.py"],
-    "results": ["planning"],
     "scene": ["simulation/test_schedule.py"],
 }
 

@@ -126,7 +126,7 @@ def test_lists_make_the_reduced_dataset_of_their_points(tmp_path, monkeypatch):
             "cooling.box = [40, 40]: must not stand",
         ),
         ("cooling", {"seed": -1}, "seed = -1: must be a whole number in [0, 2^63 - 1]"),
-        ("cooling", {"scale": "big"}, "scale = 'big': must be one of coarse, fine, paper, small"),
+        ("cooling", {"scale": "big"}, "scale = 'big': must be one of paper, small"),
         ("cooling", {"particles": 0}, "cooling.particles = 0: must be a whole number in [1, 1"),
         ("cooling", {"particles": 10**6}, "particles = 1000000: must be at most 2842 in this box"),
         ("cooling", {"box": 50}, "cooling.box = 50: must be a list of 2 to 3 entries"),

@@ -69,7 +69,7 @@ def planned(*arguments):
 TARGETS = re.findall(r"^([a-z]+):.*## ", (ROOT / "Makefile").read_text(), re.M)
 
 
-@pytest.mark.parametrize("target", ["figures", "report", "plan"])
+@pytest.mark.parametrize("target", ["figures", "report"])
 def test_what_simulates_obeys_the_scale(target):
     said = "\n".join(planned("SCALE=small", target))
     assert "--config scale=small" in said and "results/small/" in said

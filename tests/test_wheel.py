@@ -22,7 +22,6 @@ LINES = {
     "plot": "plot cooling.nc -o R.png",
     "experiments": "experiments",
     "theory": "theory --r 0.9 --beta 0.5",
-    "plan": "plan sheared --scale small",
     "bench": "bench cooling --scale small --runs 1",
     "export": "export point.nc",
     "doctor": "doctor",

@@ -89,8 +89,8 @@ def simulate(
         with their settings, or with a function that returns a number or an array of a frame
         (`roughgas.observables.Frame`). docs/observables.md lists them.
     scale
-        ``"paper"``, ``"small"`` (a quarter of the particles, and short), ``"coarse"`` or ``"fine"``
-        (as long as a pilot says); by default the configuration's own ``scale``, ``"paper"``.
+        ``"paper"`` or ``"small"`` (a quarter of the particles, and short); by default the
+        configuration's own ``scale``, ``"paper"``.
     config
         Path of a configuration to use instead of the one that comes with roughgas.
     progress
@@ -158,9 +158,9 @@ def simulate(
     changes |= {"spin_temperature": spin_temperature, "keep_state": keep_state}
 
     from roughgas.data.point import as_dataset
-    from roughgas.planning.points import is_several, places, points
     from roughgas.results.reduce import reduced_in_memory
     from roughgas.simulation.ends import initial_of
+    from roughgas.simulation.points import is_several, places, points
     from roughgas.simulation.settings import observables_of, settings_of
 
     at, several = places(r, beta, seed), is_several(r, beta, seed)

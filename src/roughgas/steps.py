@@ -90,7 +90,7 @@ def document(input: str, *, output: str) -> None:
 
 def run_times(inputs: list[str], *, output: str) -> None:
     """Write how long experiments took, in CPU seconds, as Markdown."""
-    from roughgas.results.costs import write_times
+    from roughgas.results.table import write_times
 
     write_times(inputs, output)
 

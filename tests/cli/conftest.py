@@ -15,7 +15,7 @@ GAS = TINY | {"particles": 20, "schedule": COOLING | {"replicas": 4, "thermalise
 
 @pytest.fixture(scope="package")
 def product(tmp_path_factory):
-    """A folder with points of a cooling gas, what they are reduced to, and a pilot."""
+    """A folder with points of a cooling gas and what they are reduced to."""
     folder = tmp_path_factory.mktemp("products")
     shutil.copy(ROOT / "config.yaml", folder)
     settings = f"--settings={json.dumps(GAS)}"
@@ -26,6 +26,4 @@ def product(tmp_path_factory):
         assert main(run) == 0
     points = sorted(map(str, folder.glob("beta*.nc")))
     assert main(["reduce", *points, "-o", str(folder / "reduced.nc")]) == 0
-    pilot = ["pilot", "cooling", settings, *place, "-o", str(folder / "pilot.json")]
-    assert main(pilot) == 0
     return folder

@@ -58,13 +58,3 @@ def test_bad_input_is_refused_in_one_line(configuration, tmp_path, capsys, name,
     said = capsys.readouterr().err
     assert said.startswith(f"roughgas: error: {message}") and said.count("\n") == 1
     assert not (tmp_path / "point.nc").exists()
-
-
-def test_a_plan_has_a_row_for_each_variant(configuration, tmp_path, capsys):
-    command = ["plan", configuration, f"--pilots={tmp_path}", "--cores=2"]
-    assert main(command) == 0
-    names = [line.split("|")[1].strip() for line in capsys.readouterr().out.splitlines()[2:6]]
-    assert names == ["spun/inertia1", "spun/inertia0.1", "plain", "in all"]
-    assert (tmp_path / "spun/inertia0.1/r0.9/beta0/pilot.json").exists()
-    assert main([*command, "spun/inertia0.3"]) == 0
-    assert "| spun/inertia0.3 |" in capsys.readouterr().out

@@ -23,25 +23,15 @@ REALLY_RUN = {  # what each prints; besides those that docs/command_line.md and 
     "theory --r 0.8 0.9 0.99 --beta 0 --inertia 0.1 --json": r'"R_driven": 0\.0769230',
     "theory --r 0.9 --beta 0.5 --mu 0.3": r"\nR, cooling +0\.37269 +0\.40344 ",
     "theory --r 0.9 --beta -0.9:0.9:0.1 --spin-share 0.2 --csv": r"\n2,0\.9,-0\.9,0\.4674285714,",
-    "pilot sheared --r 0.9 --beta 0 -o pilot.json": r"^\s*$",
 }
 
 
-def test_every_command_is_in_one_group_and_built_alone_as_with_all(capsys):
-    assert list(COMMANDS) and not set(cli.COMMANDS) & set(cli.STEPS)
-    assert set(COMMANDS) == {*cli.COMMANDS, *cli.STEPS}
+def test_every_command_is_built_alone_as_with_all(capsys):
+    assert list(COMMANDS) and set(COMMANDS) == {*cli.COMMANDS}
     for name, parser in COMMANDS.items():
         with pytest.raises(SystemExit):
             main([name, "--help"])
         assert capsys.readouterr().out == parser.format_help()
-
-
-def test_the_overview_has_people_first(capsys):
-    with pytest.raises(SystemExit):
-        main(["--help"])
-    shown = capsys.readouterr().out
-    places = [shown.index(f"\n  {name} ") for name in [*cli.COMMANDS, *cli.STEPS]]
-    assert places == sorted(places)
 
 
 @pytest.mark.parametrize("name", COMMANDS)
@@ -58,7 +48,7 @@ def test_help_explains_the_command_and_its_examples_parse(name):
 
 @pytest.mark.parametrize("name", COMMANDS)
 def test_a_command_calls_a_function_that_takes_its_options(name):
-    module, _, function = (cli.COMMANDS | cli.STEPS)[name].calls.partition(":")
+    module, _, function = cli.COMMANDS[name].calls.partition(":")
     found = getattr(import_module(f"roughgas.{module}"), function)
     options = [one for one in COMMANDS[name]._actions if one.dest != "help"]
     inspect.signature(found).bind(*(options[:1] if module.startswith("cli.") else options))
@@ -78,4 +68,3 @@ def test_examples_run(folder, monkeypatch, capsys, line):
     assert main(line.split()) == 0
     said = capsys.readouterr().out
     assert re.search(REALLY_RUN[line], said)
-    assert (folder / "pilot.json").exists() == line.endswith("-o pilot.json")

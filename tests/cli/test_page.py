@@ -7,7 +7,6 @@ from roughgas import cli
 
 BLOCKS = [block for block in page.blocks() if not block.startswith("$ roughgas bench")]
 """All but what prints nothing that does not depend on the machine."""
-SLOW = "$ roughgas plan"  # compiles a kernel of its own
 
 
 @pytest.fixture(scope="module")
@@ -17,11 +16,7 @@ def folder():
         yield path
 
 
-@pytest.mark.parametrize(
-    "block",
-    [pytest.param(one, marks=[pytest.mark.slow] * one.startswith(SLOW)) for one in BLOCKS],
-    ids=lambda block: block.splitlines()[0],
-)
+@pytest.mark.parametrize("block", BLOCKS, ids=lambda block: block.splitlines()[0])
 def test_a_block_is_what_its_commands_print(folder, block):
     found = page.written(block, page.in_this_process)
     assert page.without_machine(found) == page.without_machine(block), (

@@ -1,4 +1,4 @@
-"""`roughgas run`, `plan` and `bench`: what people see of them, and scripts read."""
+"""`roughgas run` and `bench`: what people see of them, and scripts read."""
 
 import json
 import shlex
@@ -10,6 +10,7 @@ from cli.conftest import GAS
 from roughgas.cli import main
 from roughgas.cli.show import summary
 from roughgas.data.point import read_point
+from roughgas.data.reduced import read_reduced
 from roughgas.simulation import speed
 from roughgas.simulation.point import run_point
 
@@ -73,18 +74,21 @@ def test_a_script_reads_a_line_for_each_seed_as_it_is_done(tmp_path, monkeypatch
             assert found[name] == float(point[name])
 
 
-def test_a_plan_for_a_script(product, monkeypatch, capsys, tmp_path):
-    monkeypatch.chdir(product)
-    command = ["plan", "cooling_inertia", "--scale=small", f"--pilots={tmp_path}", "--cores=2"]
-    assert main([*command, "--json"]) == 0
-    rows = json.loads(capsys.readouterr().out)
-    assert main(command) == 0
-    table = [line.split("|") for line in capsys.readouterr().out.splitlines()[2:6]]
-    for row, line in zip(rows, table, strict=True):
-        name, _, points, seeds = (cell.strip() for cell in line[1:5])
-        assert [row["experiment"], row["points"], row["seeds"]] == [name, int(points), int(seeds)]
-        assert row["target"] is None and f"{row['collisions']:.2e}" == line[7].strip()
-    assert rows[0]["points"] == 2 and rows[0]["wall_seconds"] <= rows[0]["cpu_seconds"]
+@pytest.mark.parametrize(
+    ("target", "said", "share"),
+    [(0.05, "met", 1.0), (1e-9, "NOT met, in 2 times the schedule", 0.0)],
+)
+def test_a_target_and_whether_it_was_met(tmp_path, monkeypatch, capsys, target, said, share):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("roughgas.simulation.target.MOST_BLOCKS", 2)
+    lengths = {"replicas": 40, "relaxation_times": 8, "target_stderr": target}
+    changes = ["--set", *(f"schedule.{key}={value}" for key, value in lengths.items())]
+    assert main(["run", "cooling", *PLACE, *changes, "--seed", "1", "2", "-o", "1.nc", "2.nc"]) == 0
+    assert capsys.readouterr().err.count(f", target {said.partition(',')[0]}, ") == 2
+    assert f"target         standard error {target:g}: {said}\n" in f"{summary('1.nc')}\n"
+    assert main(["reduce", "1.nc", "2.nc", "-o", "reduced.nc"]) == 0
+    data = read_reduced("reduced.nc")
+    assert data.target_met.item() == share and data.target_blocks.item() == 2.0 - share
 
 
 @pytest.fixture

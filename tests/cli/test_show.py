@@ -139,13 +139,6 @@ def test_a_reduced_dataset(product, capsys):
     assert (first["beta"], first["R"], first["theory"]) == (-0.5, data.R.values[0, 0], "K")
 
 
-def test_a_pilot(product, capsys):
-    path = product / "pilot.json"
-    known = json.loads(path.read_text())
-    assert f"variance              {known['variance']:.5g} " in shown(capsys, path)
-    assert json.loads(shown(capsys, path, "--json"))["variables"] == known
-
-
 def test_a_task_of_a_study(tmp_path, capsys):
     data = xarray.Dataset({"R": ("chain", np.linspace(0.1, 0.2, 11)), "seconds": 1.5})
     about = {"study": "models", "task": "dsmc", "scale": "small"}
@@ -194,15 +187,15 @@ def test_a_film(tmp_path, capsys):
 def test_several_files(product, capsys):
     text = shown(capsys, product / "beta0.5_1.nc", product / "beta0.5_2.nc")
     assert text.count(": point\n") == 2
-    lines = shown(capsys, product / "beta0.5_1.nc", product / "pilot.json", "--json").splitlines()
-    assert [json.loads(line)["kind"] for line in lines] == ["point", "pilot of a point"]
+    lines = shown(capsys, product / "beta0.5_1.nc", product / "reduced.nc", "--json").splitlines()
+    assert [json.loads(line)["kind"] for line in lines] == ["point", "reduced dataset"]
 
 
 @pytest.mark.parametrize(
     ("name", "content", "status", "message"),
     [
         ("README.md", "words", 2, "must be a dataset of roughgas: it is of another program"),
-        ("x.json", "{}", 2, "pilot = "),
+        ("x.json", "{}", 2, "must be a dataset of roughgas"),
         ("x.nc", "", 2, "must be a dataset of roughgas"),
         ("", None, 2, "must be a file"),
         ("no.nc", None, 1, "No such file or directory"),

@@ -13,7 +13,6 @@ TAKEN = {
     "table {} -o out.csv": "reduced",
     "claims {} --json out.json --markdown out.md": "reduced studies",
     "run_times {} -o out.md": "reduced",
-    "costs --fixed={{}} {} -o out.md": "reduced",
     "explore {} --points points -o out.html": "reduced",
     "figure fig1a {} -o out.png": "reduced",
     "study_tables {} -o out.md": "studies",

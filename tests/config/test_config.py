@@ -66,24 +66,6 @@ def test_small_has_the_density_of_paper(paper, name):
     assert density("small") == density("paper")
 
 
-@pytest.mark.parametrize("name", ["vibrated", "cooling", "vibrated_rough_walls"])
-def test_a_target_replaces_lengths_and_seeds(paper, name):
-    settings = config.experiment(paper, name, "fine")
-    plain = config.experiment(paper, name, "paper")
-    assert settings["target_stderr"] == 0.002 and "target_stderr" not in plain
-    assert settings["sweep"] == {key: plain["sweep"][key] for key in ("r", "beta")}
-    assert set(settings["schedule"]) <= {"kind", "sample_every", "period", "thermalise"}
-    assert settings["effects"] == plain["effects"]
-
-
-def test_a_target_of_what_is_extended_counts_before_own_seeds(paper):
-    whole = copy.deepcopy(paper)
-    whole["experiments"]["wide"] = {"extends": "cooling", "sweep": {"seeds": 1}}
-    checking.check(whole)
-    assert config.experiment(whole, "wide", "paper")["sweep"]["seeds"] == 1
-    assert "seeds" not in config.experiment(whole, "wide", "fine")["sweep"]
-
-
 def test_a_study_has_its_settings_and_those_of_the_experiments(paper):
     found = config.study(paper, "statistical", "small")
     assert found["experiments"]["sheared"]["particles"] == 40
@@ -166,7 +148,7 @@ def test_no_experiment_is_called_as_a_rule_or_a_product(paper):
     text = "".join(file.read_text() for file in files)
     names = {*re.findall(r"^ *rule (\w+):", text, re.M), *DATASETS, *FIGURES, "point"}
     names |= {*catalogue.DOCUMENTS, *re.findall(r"results/\{(?:scale|SCALE)\}/([a-z]\w*)", text)}
-    products = re.findall(r"product=\"(.*)\"", text) + re.findall(r"plan=\"(.*)\"", text)
+    products = re.findall(r"product=\"(.*)\"", text)
     names |= {one for some in products for one in some.split("|")} - {"R"}
     names |= catalogue.FIGURES.keys() - paper["experiments"].keys()
     assert len(names) > 60 and names - {*checking.RESERVED} == set()

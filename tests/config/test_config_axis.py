@@ -82,11 +82,6 @@ def test_a_scale_has_its_own_values(whole):
         assert config.variants(name, found) == [f"{name}/inertia0.2"]
 
 
-def test_a_target_holds_for_every_variant(whole):
-    found = config.experiment(whole, "child/inertia1", "fine")
-    assert found["target_stderr"] == 0.002 and set(found["sweep"]) == {"r", "beta"}
-
-
 def test_the_effect_need_not_give_a_value_beside_the_sweep(with_experiments):
     bare = {"extends": "vibrated", "effects": {"walls": {"restitution": 1}}}
     whole = with_experiments(bare=bare | {"sweep": {"walls.roughness": ["0"]}})

@@ -38,16 +38,10 @@ MISTAKES = [
     ("experiments.cooling.sweep.beta", ["0.1", "0.10"], "sweep.beta = '0.10': must be given once"),
     ("experiments.cooling.sweep.r", [], "sweep.r = []: must be a list that is not empty"),
     ("experiments.cooling.sweep.seeds", 0, "sweep.seeds = 0: must be a whole number >= 1"),
-    ("experiments.cooling.target_stderr", 0, "target_stderr = 0: must be a number in (0, 0.1]"),
     (
-        "experiments.cooling.target_stderr",
-        0.01,
-        "experiments.cooling.sweep.seeds = 4: must not stand beside target_stderr",
-    ),
-    (
-        "scales.fine.cooling.schedule",
-        {"plateau": 10},
-        "scales.fine.cooling.schedule.plateau = 10: must not stand beside target_stderr",
+        "experiments.cooling.schedule.target_stderr",
+        0,
+        "schedule.target_stderr = 0: must be a number in (0, 0.1]",
     ),
     *(
         (f"experiments.{name}", {}, f"key of experiments = {name}: must be another name: the work")
@@ -133,7 +127,7 @@ MISTAKES = [
     ("showcase.window", KeyError, "showcase at scale paper.window = (nothing): must be given"),
     ("scales.small.cooling.extends", "vibrated", "must not be given here"),
     ("scales.small.cooling.particles", 0, "particles = 0: must be a whole number in [1, 1"),
-    ("scale", "large", "config.yaml: scale = 'large': must be one of coarse, fine, paper, small"),
+    ("scale", "large", "config.yaml: scale = 'large': must be one of paper, small"),
     (
         "n_particles",
         5,
@@ -165,7 +159,7 @@ def test_unknown_names(paper, refusal):
     said = refusal(config.experiment, paper, "foo", "paper")
     assert said == f"experiment = 'foo': must be one of {EXPERIMENTS}"
     said = refusal(config.experiment, paper, "cooling", "foo")
-    assert said == "scale = 'foo': must be one of coarse, fine, paper, small"
+    assert said == "scale = 'foo': must be one of paper, small"
 
 
 @pytest.mark.parametrize(

@@ -32,10 +32,6 @@ DRIVEN = TINY | {
     "effects": test_configurations.WHOLE["experiments"]["sheared"]["effects"],
     "schedule": STEADY | {"equilibrate": 1, "measure": 4},
 }
-AIMED = TINY | {
-    "target_stderr": 0.1,
-    "schedule": {"kind": "cooling", "thermalise": 1, "sample_every": 1},
-}
 FILM = {key: value for key, value in TINY.items() if key != "schedule"}
 FILM |= {"particles": 40, "box": [40, 40], "r": "0.9", "beta": "0", "seed": 1, "thermalise": 1}
 FILM |= {"collisions": 5, "frames": 3, "cell": 4, "window": 30}
@@ -54,12 +50,10 @@ RIGHT = {
     "bench": ["gas", "--config=config.yaml", "--runs=1"],
     "export": ["point.nc", "--output", "out.csv"],
     "completion": ["bash"],
-    "pilot": [*GAS, "--output", "out.json"],
-    "reach": [*GAS[:-1], json.dumps(AIMED), "--output", "out"],
     "reduce": [f"{POINTS}/seed1.nc", f"{POINTS}/seed2.nc", "--output", "out.nc"],
 }
 """For each command what it takes: the positional arguments first."""
-LEFT_OUT = {"doctor", "plan", "crate", "costs"}
+LEFT_OUT = {"doctor", "crate"}
 """These have no options with values of their own, or take minutes or a whole project."""
 OUTPUTS = {"output"}
 SLOW = {"movie", "bench", "trajectory"}

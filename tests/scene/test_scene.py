@@ -222,8 +222,8 @@ MISMATCHES = {
         (50, 50),
         {},
         -1.0,
-        {"target_stderr": 0.01},
-        "target_stderr = 0.01: must not be given where nothing spins: R is 0",
+        {"schedule": {"target_stderr": 0.01}},
+        "schedule.target_stderr = 0.01: must not be given where nothing spins",
     ),
 }
 
@@ -245,7 +245,7 @@ def test_what_does_not_go_together_is_said_in_one_line(what):
         ((50, 50), WALLS | {"walls": {"restitution": 1, "roughness": "particles"}}, {}),
         ((50, 50), {"thermostat": HEAT["thermostat"] | {"spin_share": 0}}, {}),
         ((50, 50), SPIN | HEAT | FRICTION | SHEAR, {}),
-        ((50, 50), SPIN, {"target_stderr": 0.01}),
+        ((50, 50), SPIN, {"schedule": {"target_stderr": 0.01}}),
         ((50, 50, "open"), BED | SHEAR | HEAT | FRICTION | TIME, {}),
         ((50, "open"), GRAVITY | FLOOR | TIME, {}),
     ],

@@ -51,10 +51,10 @@ def every_step_is_shown(monkeypatch):
 
 def test_a_bar_says_how_far_how_long_and_what_and_is_cleared():
     stream = Terminal()
-    with Bar("pilots", 4, "points", stream) as bar:
+    with Bar("points", 4, "points", stream) as bar:
         bar.reach(1, "r = 0.9")
         bar.advance()
-    assert stream.shown[1].startswith("pilots:  25%|") and stream.shown[1].endswith(", r = 0.9")
+    assert stream.shown[1].startswith("points:  25%|") and stream.shown[1].endswith(", r = 0.9")
     assert "| 2 of 4 points, 00:00 left" in stream.shown[2]
     assert stream.getvalue().endswith("\r") and not stream.getvalue().split("\r")[-2].strip()
 
@@ -126,12 +126,12 @@ def test_a_log_has_a_line_for_each_checkpoint_of_a_film(monkeypatch):
 def test_a_pipe_hears_now_and_then_of_what_takes_long(monkeypatch):
     monkeypatch.setattr("roughgas.simulation.progress.PATIENCE", 0.02)
     stream = io.StringIO()
-    with Bar("pilots", 4, "points", stream) as bar:
+    with Bar("points", 4, "points", stream) as bar:
         bar.reach(1, "r = 0.9")
         time.sleep(0.2)
     said = stream.getvalue().splitlines()
     assert 2 <= len(said) <= 6  # at longer and longer intervals
-    assert re.fullmatch(r"pilots: 1 of 4 points \(r = 0\.9\), \d+ s so far", said[0])
+    assert re.fullmatch(r"points: 1 of 4 points \(r = 0\.9\), \d+ s so far", said[0])
     time.sleep(0.2)
     assert stream.getvalue().splitlines() == said
     with Bar("task", None, stream=stream):
@@ -142,6 +142,6 @@ def test_a_pipe_hears_now_and_then_of_what_takes_long(monkeypatch):
 def test_whoever_wants_silence_has_it(monkeypatch):
     monkeypatch.setattr("roughgas.simulation.progress.PATIENCE", 0.01)
     stream = io.StringIO()
-    with Bar("pilots", 4, "points", stream, quiet=True):
+    with Bar("points", 4, "points", stream, quiet=True):
         time.sleep(0.05)
     assert stream.getvalue() == ""

@@ -13,7 +13,7 @@ READ_ONLY = (
 )
 NAMES = ["a b 'c' \"d\" ä (e) [f] $(touch pwned);touch pwned||touch pwned& `g` #h *? ~ % =", "-x"]
 BRACES = "a{scale}b"
-DRY = ("hard_cases", "movies", "coverage", "plan", "explore")
+DRY = ("hard_cases", "movies", "coverage", "explore")
 REAL = ("results/tiny/config.yaml", "results/tiny/living.html")
 
 

@@ -23,8 +23,8 @@ def test_the_showcase_needs_no_point(project):
 @pytest.mark.parametrize(
     ("target", "change", "message"),
     [
-        ("results/large/showcase/clustering.nc", {}, "scale = 'large': must be one of coarse"),
-        ("figures/large/clustering.mp4", {}, "scale = 'large': must be one of coarse"),
+        ("results/large/showcase/clustering.nc", {}, "scale = 'large': must be one of paper"),
+        ("figures/large/clustering.mp4", {}, "scale = 'large': must be one of paper"),
         (FILM, {"particles": 10_000}, "showcase at scale tiny: particles = 10000: must be at"),
         (FILM, {"box": [3, 3]}, "showcase at scale tiny: box[0] = 3"),
     ],

@@ -25,9 +25,9 @@ ILLEGAL = [
     ("results/paper/heating/r0.9/beta0/seed1.nc", "experiment = 'heating': must be one of cooling"),
     (
         "results/large/cooling/r0.9/beta0/seed1.nc",
-        "scale = 'large': must be one of coarse, fine, paper, small",
+        "scale = 'large': must be one of paper, small",
     ),
-    ("figures/large/fig1a.pdf", "scale = 'large': must be one of coarse, fine, paper, small"),
+    ("figures/large/fig1a.pdf", "scale = 'large': must be one of paper, small"),
     (
         "figures/fig9.png",
         "figure = 'fig9': must be a figure or an experiment, such as fig8, fig7, fig6",
@@ -105,18 +105,6 @@ def test_one_job_makes_points_at_several_betas(tmp_path):
     assert project.planned("results/tiny/cooling.nc") == expected
     assert project.planned("results/tiny/cooling/r0.8/beta0.5/seed1.nc")["point"] == 1
     assert project.planned("results/tiny/cooling/r0.8/beta0.1/seed1.nc")["point"] == 1
-
-
-def test_a_point_with_a_target_is_one_job_after_its_pilot(project):
-    planned = project.planned("results/coarse/cooling.nc")
-    assert planned == {"compile_kernel": 4, "pilot": 84, "reach": 84, "reduce": 1}
-    assert project.planned("results/fine/cooling/r0.9/beta0/seed3.nc")["point"] == 1
-
-
-def test_a_plan_takes_pilots_and_no_points(project):
-    for target, every in (("plan", JOBS), ("plan_extensions", SHOWN)):
-        planned = project.planned(target)
-        assert planned == {"compile_kernel": every, "pilot": every, "plan_of_scale": 1, target: 1}
 
 
 def tasks_of(project, name):
@@ -202,7 +190,7 @@ def test_an_illegal_target_is_refused_in_one_line(project, target, message):
 @pytest.mark.parametrize(
     ("setting", "message"),
     [
-        ("scale=large", "scale = 'large': must be one of coarse, fine, paper, small"),
+        ("scale=large", "scale = 'large': must be one of paper, small"),
         ("seeds_per_job=0", "seeds_per_job = 0: must be a whole number >= 1"),
         (
             "n_particles=5",

@@ -20,7 +20,6 @@ from roughgas.base.version import __version__
 from roughgas.cli.commands import COMMANDS
 from roughgas.cli.outputs import check_outputs
 from roughgas.cli.parser import BAD_INPUT, Given, Parser, add_commands, overview
-from roughgas.cli.steps import STEPS
 
 FAILED, INTERRUPTED, NOBODY_READS = 1, 130, 141
 GO_ON = "nothing is half-written; the same command begins anew"
@@ -168,15 +167,13 @@ def _fail(status: int, message: str) -> int:
 
 def parser_of(command: str = "") -> Parser:
     """Return the parser of `command` alone, which is faster; of all commands if it is none."""
-    people, workflow = overview("commands", COMMANDS), overview("commands of the workflow", STEPS)
     more = "`roughgas COMMAND --help` explains a command, with examples."
     parser = Parser(
         prog="roughgas",
         usage="roughgas [-h] [--version] COMMAND ...",
         description="Event-driven simulation of gases of rough, inelastic disks and spheres.",
-        epilog=f"{people}\n\n{workflow}\n\n{more}",
+        epilog=f"{overview('commands', COMMANDS)}\n\n{more}",
     )
     parser.add_argument("--version", action="version", version=f"roughgas {__version__}")
-    known = COMMANDS | STEPS
-    add_commands(parser, {command: known[command]} if command in known else known)
+    add_commands(parser, {command: COMMANDS[command]} if command in COMMANDS else COMMANDS)
     return parser

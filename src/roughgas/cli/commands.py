@@ -100,7 +100,7 @@ COMMANDS = {
         ),
         about="Print what a dataset holds: what was simulated, R with its error, theory, "
         "energies, cost, and how to make it again. It may be a point, a reduced dataset, a film, "
-        "a dataset of studies or a task of one, or a pilot.json. 0.3565(30) is 0.3565 with a "
+        "a dataset of studies or a task of one. 0.3565(30) is 0.3565 with a "
         "standard error of 0.0030.",
     ),
     "plot": Command(
@@ -145,7 +145,7 @@ COMMANDS = {
         flag("--json", "print JSON, for scripts"),
         examples=("roughgas experiments", "roughgas experiments --scale small"),
         about="Print the name, the description and the sweep of each experiment at a scale. "
-        "`roughgas run`, `plan` and `bench` take these names, as do results/SCALE/NAME.nc and "
+        "`roughgas run` and `bench` take these names, as do results/SCALE/NAME.nc and "
         "figures/NAME.png.",
     ),
     "theory": Command(
@@ -181,23 +181,6 @@ COMMANDS = {
         "beta take several values, or a range START:STOP:STEP with both ends. Of a mixture, R and "
         "the translational temperature of each species, over its mean; it is driven as by the "
         "effect thermostat.",
-    ),
-    "plan": Command(
-        "cli.planning:plan",
-        "predict what experiments will cost, and how accurate they will be",
-        *experiments("default: all"),
-        value("--cores", "number of cores, for the wall time", default=CORES),
-        value("--pilots FOLDER", "folder of pilots (default: results/SCALE)"),
-        flag("--json", "print the table as JSON; times in s"),
-        output("a file for the table as well", required=False),
-        writes="a plan",
-        examples=(
-            "roughgas plan sheared --scale small",
-            "roughgas plan --scale fine --cores 8",
-            "roughgas plan vibrated cooling --scale fine --json",
-        ),
-        about="Print a table of points, seeds, errors and times, from pilot runs. Missing pilots "
-        "are run first; nothing else is.",
     ),
     "bench": Command(
         "cli.bench:bench",

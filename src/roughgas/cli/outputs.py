@@ -8,14 +8,11 @@ from pathlib import Path
 from roughgas.base.errors import InputError
 from roughgas.base.files import check_place
 
-INPUTS = ("inputs", "input", "files", "start_from", "config", "pilot")
+INPUTS = ("inputs", "input", "files", "start_from", "config")
 FOLDER, CRATE, TABLE = "a folder", "a crate", "a table of roughgas"
 DATASETS = ("POINT", "REDUCED")  # as roughgas.data.opening has them
 BEGINNINGS = {
     CRATE: rb"PK",
-    "a pilot": rb'\{\s*"transient"',
-    "costs": rb"# What was planned",
-    "a plan": rb"(\| experiment|\[)",
     ".nc": rb"\x89HDF|CDF",
     ".xyz": rb"\d+\n",
     ".gsd": rb"[\s\S]",

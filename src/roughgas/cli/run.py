@@ -15,16 +15,17 @@ from roughgas.cli.outputs import check_outputs
 from roughgas.config.provenance import provenance, variant_attributes
 from roughgas.config.schema import check_schema
 from roughgas.data.point import Point, read_point, write_point
-from roughgas.planning.reach import complete
 from roughgas.scene import Scene, build
 from roughgas.simulation import schedule
 from roughgas.simulation.ends import Initial, initial_of
 from roughgas.simulation.point import run_point
-from roughgas.simulation.progress import Bar, Progress
+from roughgas.simulation.progress import Progress
 from roughgas.statistics.estimate import Estimate
+from roughgas.statistics.evidence import NO, UNKNOWN, YES
 
 IDENTITY = ("experiment", "variant", "scale", "r", "beta", "seed")
 """The attributes that name a point."""
+REACHED = {YES: "met", NO: "NOT met", UNKNOWN: "not known to be met"}
 
 
 def run(options: Namespace) -> None:
@@ -39,8 +40,7 @@ def run(options: Namespace) -> None:
         check_outputs(options, outputs)
     remaining = zip(places, outputs, strict=True)
     for _, _, scene, settings in points:
-        with Bar(f"pilot of {options.experiment}", None, quiet="target_stderr" not in settings):
-            settings = complete(scene, config.point_settings(settings))
+        settings = config.point_settings(settings)
         if options.keep_state:
             settings["keep_state"] = True
         for seed in seeds:
@@ -152,5 +152,7 @@ def say_done(output: str, point: Point) -> None:
     if "R_collisional" in found:
         errors = float(found["R_collisional"]), float(found["R_collisional_stderr"])
         value += f" over time, {Estimate(*errors)} over collisions"
+    if "target_met" in found:
+        value += f", target {REACHED[int(found['target_met'])]}"
     took = f"{int(found['collisions']):,} collisions in {float(found['kernel_seconds']):.1f} s"
     print(f"{output}: {name} = {value}, {took}", file=sys.stderr)

@@ -13,7 +13,6 @@ from roughgas.base.errors import on_one_line
 from roughgas.base.layout import as_json, columns, from_json
 from roughgas.cli.show_point import altered, by_species, collisional, energies, theory_beside
 from roughgas.cli.show_studies import (
-    pilot_text,
     scalars,
     studies_record,
     studies_text,
@@ -46,6 +45,7 @@ TRUST = {
     NO: " (not to be trusted: no steady state, or too short a run)",
     UNKNOWN: " (whether to trust it is not known: too little was measured)",
 }
+MET = {YES: "met", NO: "NOT met", UNKNOWN: "not known: too little was measured"}
 STEADY = {
     YES: "yes",
     NO: "NOT found: energies or R still drift",
@@ -74,11 +74,8 @@ def summary(path: str | Path) -> str:
 
 def _read(path: str | Path) -> tuple[str, Any]:
     """Return the kind of a file, one of KINDS, and what is in it."""
-    from roughgas.planning.pilot import read_pilot
     from roughgas.studies.variables import read_studies
 
-    if Path(path).suffix == ".json":
-        return "pilot of a point", read_pilot(path)
     with opening.opened(path) as file:
         kind = opening.kind_of(file)
         opening.require(opening.attributes_of(file), QUOTED.get(kind or "", ()), path)
@@ -171,9 +168,20 @@ def _ratio(point: Dataset) -> list[list[str]]:
         ["R", f"{Estimate(R, float(point.R_stderr))}{', averaged over time' * over_time}"],
         ["95 % interval", f"{R - half:.{digits}f} to {R + half:.{digits}f}{trust}"],
         *collisional(point),
+        *_target(point),
         *theory_beside(point, R, expected),
         ["R(t)", f"{blocks}  {low:.3f} to {high:.3f}"],
     ]
+
+
+def _target(point: Dataset) -> list[list[str]]:
+    """Return a row on the target error of R, where the run had one."""
+    if "target_met" not in point:
+        return []
+    settings = from_json(point.attrs["experiment_json"], "settings of the dataset")
+    wanted, blocks = settings["schedule"]["target_stderr"], int(point.target_blocks)
+    found = f"standard error {wanted:g}: {MET[int(point.target_met)]}"
+    return [["target", found + f", in {blocks} times the schedule" * (blocks > 1)]]
 
 
 def _steady(point: Dataset) -> str:
@@ -245,6 +253,5 @@ KINDS: dict[str, tuple[Callable[[Any], str], Callable[[Any], dict[str, Any]]]] =
     "reduced dataset": (_reduced_text, _reduced_record),
     "task of a study": (task_text, task_record),
     "dataset of studies": (studies_text, studies_record),
-    "pilot of a point": (pilot_text, lambda pilot: {"variables": pilot._asdict()}),
 }
 """The kinds of files: what a person reads of each, and what a script reads."""

@@ -1,4 +1,4 @@
-"""What `roughgas show` says of studies, their tasks, and pilots."""
+"""What `roughgas show` says of studies and their tasks."""
 
 import json
 from collections.abc import Mapping
@@ -11,20 +11,6 @@ from roughgas.base.layout import columns
 from roughgas.statistics.evidence import NO, UNKNOWN, YES
 
 MOST_VALUES = 4  # of a variable, that are all shown
-UNIT = "T (cooling gas: collisions per particle)"
-MEANING = {
-    "transient": f"until energies are steady, in {UNIT}",
-    "autocorrelation_time": f"of R, in {UNIT}",
-    "variance": "of the mean of R over a length of one",
-    "dof": "degrees of freedom of the variance",
-    "pace": "collisions per particle in a length of one",
-    "seconds_per_length": "s of CPU time",
-    "settled": "whether a steady state was found",
-    "length": f"that was simulated, in {UNIT}",
-    "seconds": "s of CPU time that the pilot took",
-}
-
-
 FLAGS = {YES: True, NO: False, UNKNOWN: None}
 
 
@@ -80,13 +66,3 @@ def studies_text(studies: Mapping[str, Dataset]) -> str:
     scales = {data.attrs["scale"] for data in studies.values()}
     parts = [TABLES[name](data).strip() for name, data in studies.items()]
     return "\n\n".join([f"scale {', '.join(sorted(scales))}", *parts])
-
-
-def pilot_text(pilot: Any) -> str:
-    """Return a row for each number of a pilot."""
-    rows = []
-    for name, value in pilot._asdict().items():
-        shown = ("no", "yes")[value] if isinstance(value, bool) else f"{value:.5g}"
-        rows.append([name, shown, MEANING[name]])
-    error = f"{(pilot.variance / 1000.0) ** 0.5:.2g}"
-    return f"{columns(rows)}\n\nA run that measures for a length of 1000 finds R to about {error}."

@@ -41,9 +41,6 @@ GRID = ("r", "beta", "seeds")
 """The axes of every sweep; any other key of a sweep is its third axis."""
 NOT_OF_A_POINT = ("description", "sweep")
 """Settings of an experiment that do not concern any single point of it."""
-LENGTHS = ("equilibrate", "measure", "replicas", "relaxation_times", "plateau")
-REPLACED = {"sweep": ("seeds", *(f"schedule.{name}" for name in LENGTHS)), "schedule": LENGTHS}
-"""Settings that an experiment with a `target_stderr` does without."""
 
 
 def in_use() -> Path:
@@ -117,12 +114,7 @@ def _experiment(config: Mapping[str, Any], name: str, scale: str) -> dict[str, A
     settings.pop("description", None)
     for changes in (own, config["scales"][scale].get(name, {})):
         settings = fitted(changed_by(settings, changes), f"experiments.{name}")
-    return _without_lengths(settings) if "target_stderr" in settings else settings
-
-
-def _without_lengths(settings: Mapping[str, Any]) -> dict[str, Any]:
-    gone = {part: dict.fromkeys(REPLACED[part]) for part in REPLACED if part in settings}
-    return merged(settings, gone)
+    return settings
 
 
 def showcase(config: Mapping[str, Any], scale: str) -> dict[str, Any]:
@@ -179,18 +171,12 @@ def point_settings(settings: Mapping[str, Any]) -> dict[str, Any]:
     return {key: value for key, value in settings.items() if key not in NOT_OF_A_POINT}
 
 
-def pilot_settings(settings: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the settings of an experiment that shape the pilots of its points, whatever the
-    target."""
-    return merged(_without_lengths(point_settings(settings)), {"target_stderr": None})
-
-
 def kernel_settings(settings: Mapping[str, Any]) -> dict[str, Any]:
     """Return the settings of an experiment that its kernels are compiled from, third axis
     included."""
     key = third_axis(settings)
     swept = {} if key is None else {"sweep": {key: settings["sweep"][key]}}
-    return pilot_settings(settings) | swept
+    return point_settings(settings) | swept
 
 
 def sweep(settings: Mapping[str, Any]) -> Iterator[tuple[str, str, str]]:
@@ -209,7 +195,7 @@ def blocks(axes: Mapping[str, Any], config: Mapping[str, Any]) -> list[tuple[lis
     Where a job has a single beta the label is `{beta}`, which stands for any. Each block has two
     points or more: a point that is left over has a job of its own, and is in no block.
     """
-    labels = [str(number) for number in range(1, axes.get("seeds", 0) + 1)]
+    labels = [str(number) for number in range(1, axes["seeds"] + 1)]
     by_seed = _chunks(labels, config.get("seeds_per_job", SEEDS_PER_JOB))
     size = config.get("betas_per_job", 1)
     by_beta = [["{beta}"]] if size == 1 else _chunks([str(beta) for beta in axes["beta"]], size)

@@ -33,3 +33,4 @@ class Schedule(TypedDict, total=False):
     thermalise: float  #: (cooling) as smooth elastic particles, at the start
     relaxation_times: float  #: (cooling) e-folds of theory until R is on its plateau
     plateau: float  #: (cooling) length of the plateau
+    target_stderr: float  #: standard error of R that the run is prolonged to

@@ -20,7 +20,7 @@ PARTS = (settings_of.SHOWCASE, settings_of.STUDIES)
 RESERVED = (
     *PARTS,
     *("accuracy", "accuracy_limits", "catalogue", "claims", "clustering", "combined_studies"),
-    *("compile_kernel", "config", "costs", "costs_of_scale", "coverage", "crate", "document"),
+    *("compile_kernel", "config", "coverage", "crate", "document"),
     *("effective_config", "everything", "explore", "explore_extensions", "extensions", "family"),
     *("figure", "figures", "film", "finite_size", "front", "gas_of_film", "hard_cases", "living"),
     *(
@@ -31,9 +31,8 @@ RESERVED = (
         "page",
         "picture_for_talks",
         "pictures",
-        "pilot",
     ),
-    *("plan", "plan_extensions", "plan_of_scale", "plot", "point", "profiles", "reach", "reduce"),
+    *("plot", "point", "profiles", "reduce"),
     *("report", "run_times", "run_times_extensions", "runaway", "study", "study_figure"),
     *("study_table", "table", "fig1a", "fig1b", "fig2a", "fig2b", "fig3", "fig4", "fig5", "fig6"),
     *("fig7", "fig8", "hard_cases_chaos", "hard_cases_collapse", "hard_cases_cooling"),
@@ -77,17 +76,15 @@ def check_file(config: Mapping[str, Any], source: str) -> None:
     check_schema(config, source)
     known, scales = config["experiments"], config["scales"]
     settings_of.one_of(f"{source}: scale", config["scale"], scales)
-    for name, settings in known.items():
+    for name in known:
         if name in RESERVED:
             legal = "be another name: the workflow has a rule or a product of this one"
             raise InputError(f"{source}: key of experiments", name, legal)
         _check_ancestors(name, known, source)
-        _check_target(settings, f"{source}: experiments.{name}")
     changeable = [*known, *(part for part in PARTS if part in config)]
     for scale, changes in scales.items():
-        for name, settings in changes.items():
+        for name in changes:
             settings_of.one_of(f"{source}: key of scales.{scale}", name, changeable)
-            _check_target(settings, f"{source}: scales.{scale}.{name}")
 
 
 def check_one(config: Mapping[str, Any], name: str, scale: str, source: str) -> None:
@@ -137,15 +134,6 @@ def _check_distinct(labels: Iterable[Any], value_of: Callable[[Any], Any], key: 
         if value_of(label) in seen:
             raise InputError(key, shown(label), "be given once")
         seen.add(value_of(label))
-
-
-def _check_target(settings: Mapping[str, Any], where: str) -> None:
-    """Refuse a target beside what it replaces."""
-    for part, names in settings_of.REPLACED.items() if "target_stderr" in settings else ():
-        for name in names:
-            value = settings.get(part, {}).get(name)
-            if value is not None:
-                raise InputError(f"{where}.{part}.{name}", value, "not stand beside target_stderr")
 
 
 def _check_ancestors(name: str, known: Mapping[str, Any], source: str) -> None:

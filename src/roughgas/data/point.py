@@ -15,7 +15,7 @@ __all__ = ["Point", "as_dataset", "read_point", "write_point"]
 
 REQUIRED_OF_SPIN = ("R", "R_stderr", "R_dof", "R_ci95", "R_ratio_of_means", "E_rot")
 """What a point holds besides opening.KINDS where particles spin, and so has `inertia`."""
-WALL_CLOCK = ("kernel_seconds", "planned_seconds")
+WALL_CLOCK = ("kernel_seconds",)
 """The only variables that differ when the same point is run again."""
 COMPLEVEL = 1
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 GRID = ("r", "beta")
 EQUILIBRATED = 0.5
 """A point counts as being in a steady state where more than this share of its seeds is."""
-VERDICTS = {"equilibrated", "R_ci95_trusted"}
+VERDICTS = {"equilibrated", "R_ci95_trusted", "target_met"}
 SHARE, AMOUNT, VERDICT = Interval("[0, 1]"), Interval("[0, inf)"), Interval("[-1, 1]")
 UNSURE = {
     f"{name}_{quality}": Interval("[0, inf]")
@@ -127,6 +127,13 @@ REDUCED = {
     "equilibrated": _derived(
         "share of seeds that were found in a steady state; 0 for a mixture of two, -1 where most "
         "have too little to tell"
+    ),
+    "target_met": POINT["target_met"]._replace(
+        long_name="share of seeds whose R_stderr reached the target_stderr; -1 as for equilibrated",
+        dims=(OF_GRID,),
+        dtype="f8",
+        flags="",
+        over_seeds="",
     ),
     "R_stderr_over_seeds": _derived("standard error of R from the scatter over seeds alone"),
     "R_stderr_within": _derived("standard error of R from within the files, combined over seeds"),

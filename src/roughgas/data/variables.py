@@ -25,7 +25,7 @@ GRID = "grid"
 """Stands for the dimensions of a reduced dataset, which are r, beta and whatever else is swept."""
 
 SPIN, COOLING, DRIVEN = "where particles spin", "cooling gas", "driven gas"
-SHEARED, TARGET = "sheared gas", "with a `target_stderr`"
+SHEARED, TARGET = "sheared gas", "with `target_stderr`"
 CONTACT = "where the contact-time model acts"
 KEPT = "with `keep_state`"
 OF_SPEED = "whose r depends on the speed"
@@ -79,10 +79,6 @@ def _at_contacts(name: str, long_name: str) -> dict[str, Variable]:
         f"{name}_{key}": Variable(about, when=(AT_CONTACTS,), over_seeds="")
         for key, about in of_error.items()
     }
-
-
-def _of_target(long_name: str, units: str = "1") -> Variable:
-    return Variable(long_name, units, when=(TARGET,))
 
 
 NAMES = {  # in all kinds of datasets
@@ -141,11 +137,16 @@ POINT = {
     "measured_from": Variable("begin of the measured window", TIME),
     "measured_collisions": Variable("collisions of each particle in the measured window"),
     "autocorrelation_time": _of_spin("integrated autocorrelation time of R", TIME),
-    "target_stderr": _of_target("standard error of R that was asked for"),
-    "planned_seeds": _of_target("seeds that its pilot run said the point would need"),
-    "planned_stderr": _of_target("standard error of R expected from these"),
-    "planned_collisions": _of_target("collisions expected in all of them"),
-    "planned_seconds": _of_target("CPU time of the kernel expected in all of them", "s"),
+    "target_met": Variable(
+        "whether R_stderr reached the target_stderr; -1 where there is too little to tell",
+        dtype="i1",
+        when=(TARGET,),
+        flags="unknown missed met",
+    ),
+    "target_blocks": Variable(
+        "how many times the measurement, or the replicas, that the schedule gives were run",
+        when=(TARGET,),
+    ),
     "contact_time": Variable(
         "contact time t_c of the contact-time model", TIME, when=(CONTACT,), of_settings=True
     ),

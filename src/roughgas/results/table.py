@@ -1,4 +1,4 @@
-"""From reduced datasets to one table, with a row for each point."""
+"""From reduced datasets to one table, with a row for each point; and what they took."""
 
 import csv
 import math
@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 from xarray import Dataset
 
-from roughgas.base.files import whole_file
-from roughgas.base.layout import in_csv
-from roughgas.data.reduced import GRID, REDUCED, read_reduced, third_axis
+from roughgas.base.files import whole_file, write_text
+from roughgas.base.layout import in_csv, markdown
+from roughgas.data.reduced import GRID, REDUCED, particles_of, read_reduced, third_axis
 from roughgas.results.datapackage import Field, field, write_package
 from roughgas.statistics.intervals import half_width
 from roughgas.theory.prediction import predicted_ratio
@@ -37,6 +37,14 @@ TITLES = {
 FEW = 5.0
 """Degrees of freedom of an error, below which its interval is noticeably wider."""
 HEAD = (*ABOUT, *GRID, *COLUMNS, *THEORY)
+RUN_TIMES = """\
+# Run times
+
+What the simulations of each experiment took, all points and seeds together: CPU seconds in the
+kernel, without starting processes and compiling.
+
+"""
+TIMES = "experiment | particles | points | seeds | collisions | CPU seconds | collisions a second"
 
 
 def write_table(reduced_paths: Iterable[str | Path], csv_path: str | Path) -> None:
@@ -105,3 +113,19 @@ def _cell(value: Any) -> str:
     if isinstance(value, str):
         return in_csv(value)
     return "" if math.isnan(value) else format(value, ".10g")
+
+
+def write_times(reduced: Iterable[str | Path], output: str | Path) -> None:
+    """Write a Markdown table with a row for each reduced dataset, and one for their sum."""
+    rows, spent = [], []
+    for data in map(read_reduced, reduced):
+        seeds, collisions, seconds = data.n_seeds, data.collisions.sum(), data.kernel_seconds.sum()
+        spent.append((int((seeds > 0).sum()), int(seeds.sum()), int(collisions), float(seconds)))
+        rows.append([data.attrs["experiment"], particles_of(data), *_sums(*spent[-1])])
+    rows.append(["together", "", *_sums(*map(sum, zip(*spent, strict=True)))])
+    write_text(output, RUN_TIMES + markdown(TIMES.split(" | "), rows))
+
+
+def _sums(points: int, seeds: int, collisions: int, seconds: float) -> list[str]:
+    counts = [f"{count:,}" for count in (points, seeds, collisions)]
+    return [*counts, f"{seconds:,.1f}", f"{collisions / seconds:,.0f}" if seconds > 0 else ""]

@@ -49,9 +49,9 @@ def check(experiment: Mapping[str, Any]) -> Scene:
     if experiment.get("spin_temperature") and scene.effects.spin is None:
         value = experiment["spin_temperature"]
         raise InputError("spin_temperature", value, "not be given where particles do not spin")
-    if "target_stderr" in experiment and scene.effects.spin is None:
-        value = experiment["target_stderr"]
-        raise InputError("target_stderr", value, "not be given where nothing spins: R is 0")
+    target = experiment.get("schedule", {}).get("target_stderr")
+    if target and scene.effects.spin is None:
+        raise InputError("schedule.target_stderr", target, "not be given where nothing spins")
     return scene
 
 

@@ -16,8 +16,9 @@ from roughgas.simulation.ends import Initial
 from roughgas.simulation.energies import Columns, Energies, ratio, ratio_of_means, restored
 from roughgas.simulation.gas import Gas, count
 from roughgas.simulation.recorder import Recorder
+from roughgas.simulation.target import KEY, until_met
 from roughgas.statistics.errors import autocorrelation_time
-from roughgas.statistics.evidence import UNKNOWN, Evidence
+from roughgas.statistics.evidence import LEAST, UNKNOWN, Evidence
 from roughgas.statistics.intervals import Error
 from roughgas.statistics.plateau import find_plateau
 from roughgas.theory import friction_relaxation_rate, mixture_relaxation_rate, relaxation_rate
@@ -140,22 +141,37 @@ def run(
     Each starts as a smooth elastic gas, thermalised for `thermalise` collisions per particle, or in
     an `initial` state of its own, in which it begins to cool or goes on to. Then dissipation is
     switched on for the time that the rate equations say R needs to settle,
-    `relaxation_times` of its e-folds, and for `plateau` collisions per particle more.
+    `relaxation_times` of its e-folds, and for `plateau` collisions per particle more. With a target
+    there are as many replicas as it takes, numbered on from the last.
     """
     schedule = experiment["schedule"]
+    if initial and KEY in schedule:
+        legal = "not stand beside initial states, each of which begins one replica"
+        raise InputError(f"schedule.{KEY}", schedule[KEY], legal)
     transient = transient_length(scene, schedule["relaxation_times"], experiment)
     every = interval(experiment)
     samples = math.ceil((transient + schedule["plateau"]) / every)
-    streams = _streams(seed, schedule["replicas"])
-    pairs = zip(streams, initial, strict=True) if initial else ((one, None) for one in streams)
-    gases = (_replica(scene, experiment, stream, recorder, one) for stream, one in pairs)
-    ensemble = _together([_cool(gas, every, samples) for gas in gases])
-    passed = ensemble.collisions[0]  # as in all replicas
+    runs: list[Cooled] = []
+
+    def run_to(longer):
+        recorder.expect(length(scene, {**experiment, "schedule": longer}))
+        streams = _streams(seed, longer["replicas"])
+        for one in range(len(runs), len(streams)):
+            gas = _replica(scene, experiment, streams[one], recorder, *initial[one : one + 1])
+            runs.append(_cool(gas, every, samples))
+        return _found(_together(runs), scene, experiment, transient), len(runs) >= LEAST.runs
+
+    return until_met(schedule, "replicas", run_to)
+
+
+def _found(ensemble, scene, experiment, transient):
+    """Return the variables of a point from all its replicas."""
+    every, passed = interval(experiment), ensemble.collisions[0]  # as in all replicas
     exchanged = exchange(ensemble.before, ensemble.after, scene, experiment["particles"])
     if speed_of_r(scene.effects) is not None:  # how it cools depends on how fast it is
         exchanged |= _over_time(ensemble)
     if scene.effects.spin is None:
-        first = min(math.ceil(transient / every), samples) - 1
+        first = min(math.ceil(transient / every), len(passed)) - 1
         return _decay(ensemble, passed, first) | exchanged
     rate = rate_of(scene, experiment)
     return _measure(ensemble, passed, transient, rate, every) | exchanged

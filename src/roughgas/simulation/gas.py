@@ -1,4 +1,4 @@
-"""A gas under way: the one loop that points, pilots, movies, films and studies drive.
+"""A gas under way: the one loop that points, movies, films and studies drive.
 
 A Gas is a scene and a state. Whoever drives it says how far it goes and when it is sampled. Samples
 only look at the state: a run that is cut into pieces keeps its bits, if a cooling gas is refreshed
@@ -146,7 +146,7 @@ class Gas:
         parts = [self._run(Sampling(np.inf, collisions, left), left)]
         if samples > left:
             parts.append(self._run(Sampling(np.inf, collisions, refresh), samples - left))
-        return _joined(parts)
+        return joined(parts)
 
     def _late(self, collisions: int) -> int:
         """Return the collisions since the last refresh, in the first call after a run went on."""
@@ -165,7 +165,7 @@ class Gas:
             if length:
                 parts.append(advance(length))
             self.observer.look(self, length)
-        return _joined(parts)
+        return joined(parts)
 
     def look(self) -> None:
         """Take a sample of the present instant."""
@@ -212,5 +212,6 @@ class Gas:
         return columns
 
 
-def _joined(parts: Sequence[Columns]) -> Columns:
+def joined(parts: Sequence[Columns]) -> Columns:
+    """Return the samples of several pieces as those of one."""
     return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}

@@ -55,14 +55,18 @@ class Observer:
         self._stride = math.gcd(*(one.every for one in watched))
 
     def lengths(self, samples: int, first: int, unit: int) -> Iterator[int]:
-        """Yield the lengths of the pieces that so many samples are taken in.
+        """Yield the lengths of the pieces that so many more samples are taken in.
 
         Pieces end `first` samples from the start, or a multiple of `unit` later.
         """
-        self._start = first + unit * max(0, math.ceil((self._wait - first) / unit))
-        yield min(self._start, samples)
-        for done in range(self._start, samples, self._stride):
-            yield min(self._stride, samples - done)
+        end = self._taken + samples
+        if self._taken == 0:
+            self._start = first + unit * max(0, math.ceil((self._wait - first) / unit))
+            yield min(self._start, end)
+        while self._taken < end:
+            since = self._taken - self._start
+            piece = -since if since < 0 else self._stride - since % self._stride
+            yield min(piece, end - self._taken)
 
     def look(self, gas: Gas, taken: int) -> None:
         """Look at a gas that so many samples more have been taken of."""

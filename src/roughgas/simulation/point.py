@@ -165,13 +165,10 @@ def effort(experiment: Mapping[str, Any], r: float, beta: float) -> float:
     """Return about how much work a point is, in particles times collisions of each.
 
     Meant for the order of jobs: a driven gas is taken for one whose particles meet once a T, and a
-    point with a target for one that takes as long as any other.
+    point with a target for one that meets it at once.
     """
-    number = float(experiment["particles"])
-    if "target_stderr" in experiment:
-        return number
     kind = schedule.of(experiment)
-    return number * kind.length(build(experiment, r, beta), experiment)
+    return float(experiment["particles"]) * kind.length(build(experiment, r, beta), experiment)
 
 
 def compile_kernels(experiments: Iterable[Mapping[str, Any]]) -> int:

@@ -100,7 +100,7 @@ class Bar:
 
 
 class Progress(Bar):
-    """How far the simulations of one point are, all seeds and replicas together.
+    """How far the simulations of one point are, all replicas together.
 
     In T, or in collisions per particle if the gas cools.
     """
@@ -110,23 +110,25 @@ class Progress(Bar):
         name: str,
         scene: "Scene",
         experiment: Mapping[str, Any],
-        seeds: int = 1,
         stream: Any = None,
         quiet: bool = False,
     ) -> None:
-        """`experiment` must be complete: its schedule says how long it runs."""
         from roughgas.simulation import schedule
 
         self._running = name
         self._particles, self._kind = experiment["particles"], schedule.of(experiment)
         self._before = self._now = 0.0  # lengths: of the simulations that are over, of this one
-        total = round(seeds * self._kind.length(scene, experiment))
+        total = round(self._kind.length(scene, experiment))
         super().__init__(f"{name} ({PLACING})", total, self._kind.UNIT, stream, quiet)
 
     def stage(self, doing: str) -> None:
         """Say what is done before the first simulation."""
         if self._name != self._running:
             self._call(f"{self._running} ({doing})")
+
+    def expect(self, length: float) -> None:
+        """Say that there will be more than the schedule says, or less."""
+        self.reach(self._done, self._note, round(length))
 
     def _call(self, name: str, refresh: bool = True) -> None:
         self._name = name

@@ -70,6 +70,11 @@ class Recorder:
         if self._begin:
             self._begin(gas)
 
+    def expect(self, length: float) -> None:
+        """Say how long all of the run is going to be, as its kind of schedule counts it."""
+        if expect := getattr(self._tell, "expect", None):
+            expect(length)
+
     def run(
         self, state: State, scene: Scene, sampling: Sampling, samples: int, timed: bool = False
     ) -> Columns:

@@ -13,6 +13,7 @@ from roughgas.simulation.ends import Initial
 from roughgas.simulation.energies import Columns
 from roughgas.simulation.gas import Gas
 from roughgas.simulation.recorder import Recorder
+from roughgas.simulation.target import LENGTHS, MOST_SAMPLES, samples_of
 
 if TYPE_CHECKING:
     from roughgas.observables import System
@@ -60,19 +61,12 @@ class Kind(Protocol):
         """Return the variables of a point (see roughgas.data.point)."""
 
 
-MOST_SAMPLES = 10_000_000  # of all replicas together: they are kept in memory
-
 KINDS: dict[str, Kind] = {"steady": steady, "cooling": cooling}
 
 
 def of(experiment: Mapping[str, Any]) -> Kind:
     """Return the kind of an experiment's schedule."""
     return KINDS[experiment["schedule"]["kind"]]
-
-
-def measured(schedule: Mapping[str, Any]) -> float:
-    """Return how long R is measured in a run, all its replicas together."""
-    return schedule.get("replicas", 1) * schedule[KINDS[schedule["kind"]].LENGTH]
 
 
 def system_of(scene: Scene, experiment: Mapping[str, Any]) -> "System":
@@ -103,9 +97,8 @@ def check(experiment: Mapping[str, Any]) -> None:
         raise InputError("schedule.kind", kind, legal)
     if KINDS[kind].DRIVEN and not drives:
         raise InputError("schedule.kind", kind, "be cooling where no effect drives the gas")
-    if "target_stderr" not in experiment:
-        _check_samples(experiment)
-        KINDS[kind].check(built, experiment)
+    _check_samples(experiment)
+    KINDS[kind].check(built, experiment)
     if experiment.get("observables"):
         _check_observables(experiment, built)
 
@@ -113,11 +106,9 @@ def check(experiment: Mapping[str, Any]) -> None:
 def _check_samples(experiment):
     """Raise InputError for lengths that make too many samples to keep."""
     schedule = experiment["schedule"]
-    lengths = [name for name in ("equilibrate", "measure", "plateau") if name in schedule]
-    samples = sum(schedule[name] for name in lengths) / schedule["sample_every"]
-    samples *= schedule.get("replicas", 1)
+    samples = samples_of(schedule)
     if samples > MOST_SAMPLES:
-        asked = " and ".join(f"schedule.{name}" for name in lengths)
+        asked = " and ".join(f"schedule.{name}" for name in LENGTHS if name in schedule)
         legal = f"make at most {MOST_SAMPLES:.0e} samples of {asked}, not {samples:.0e}"
         raise InputError("schedule.sample_every", schedule["sample_every"], legal)
 

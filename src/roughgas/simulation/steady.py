@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -11,13 +11,14 @@ from roughgas.effects import inertia
 from roughgas.kernel.hooks import present
 from roughgas.scene import Scene, moves_along
 from roughgas.simulation import by_species
-from roughgas.simulation.books import exchange
+from roughgas.simulation.books import Books, exchange
 from roughgas.simulation.by_species import energies_of_each
 from roughgas.simulation.contacts import contact_averages
 from roughgas.simulation.ends import Initial
 from roughgas.simulation.energies import Columns, energies, ratio, ratio_of_means
-from roughgas.simulation.gas import Gas
+from roughgas.simulation.gas import Gas, joined
 from roughgas.simulation.recorder import Recorder
+from roughgas.simulation.target import KEY, until_met
 from roughgas.statistics.averages import period_means
 from roughgas.statistics.equilibration import detect_start, is_equilibrated
 from roughgas.statistics.errors import autocorrelation_time, blocking
@@ -71,6 +72,9 @@ def check(scene: Scene, experiment: Mapping[str, Any]) -> None:
     if sum(_planned(schedule)) < wait(scene, experiment) + samples_per_period(schedule):
         legal = f"hold a whole period, {period:g} T, after the whole ones of equilibrate"
         raise InputError("schedule.measure", measure, legal)
+    if KEY in schedule and phases(scene, schedule) < LEAST_PHASES:
+        legal = f"divide a period of the drive into {LEAST_PHASES} samples beside schedule.{KEY}"
+        raise InputError("schedule.sample_every", every, legal)
 
 
 def drive_periods(scene: Scene) -> dict[str, float]:
@@ -128,19 +132,41 @@ def run(
     whole multiples of which averages are formed. The measurement begins later than planned if the
     energies say that the gas is not yet stationary, and the point is flagged if half of it would be
     lost or the energies drift in what is left. R is vouched for only in a steady state, and where
-    samples show enough phases of a periodic drive.
+    samples show enough phases of a periodic drive. With a target, the measurement is prolonged.
     """
-    schedule = experiment["schedule"]
-    every, per_period = schedule["sample_every"], samples_per_period(schedule)
-    planned, length = _planned(schedule)
     gas = start(scene, experiment, seed, recorder, initial)
     if initial:
         gas.look()  # at running sums that others have begun
-    begun, sums, before, made = gas.time, gas.sample, gas.books(), gas.begun + gas.collisions
-    rows = gas.in_time(every, planned + length)
+    begun = Begun(gas.time, gas.sample, gas.books(), gas.begun + gas.collisions)
+    rows: Columns = {"time": np.empty(0)}
+
+    def run_to(schedule):
+        nonlocal rows
+        recorder.expect(length(scene, {"schedule": schedule}))
+        more = gas.in_time(schedule["sample_every"], sum(_planned(schedule)) - len(rows["time"]))
+        rows = joined([rows, more]) if len(rows["time"]) else more
+        found = _measure(gas, schedule, rows, begun)
+        return found, found.get("R_ci95_trusted") == YES
+
+    return until_met(experiment["schedule"], LENGTH, run_to)
+
+
+class Begun(NamedTuple):
+    """A gas as its time begins to count: the time, running sums, books and collisions."""
+
+    time: float
+    sums: Columns
+    books: Books
+    collisions: int
+
+
+def _measure(gas: Gas, schedule: Mapping[str, Any], rows: Columns, begun: Begun) -> dict[str, Any]:
+    """Return the variables of a run, `rows` being its samples since it began."""
+    scene, every, per_period = gas.scene, schedule["sample_every"], samples_per_period(schedule)
+    planned, length = _planned(schedule)
     series = gas.energies(rows)
     first, found = _start(series, planned, length, per_period)
-    made = rows["collisions"][-1] - (rows["collisions"][first - 1] if first else made)
+    made = rows["collisions"][-1] - (rows["collisions"][first - 1] if first else begun.collisions)
     window = series.map(lambda part: part[first:])
     translational = period_means(window.translational, per_period)
     evidence = Evidence(2 * made / gas.particles, len(translational))
@@ -151,12 +177,12 @@ def run(
         "E_trans": window.translational.mean(),
         "E_trans_stderr": blocking(translational)[0],
         **(_shared(window, per_period, every, vouched) if window.rotational is not None else {}),
-        **contact_averages(rows, first, per_period, _inertia_of_sums(scene), sums),
+        **contact_averages(rows, first, per_period, _inertia_of_sums(scene), begun.sums),
         **_unsubtracted(gas, rows, first),
         **_of_species(gas, rows, first, per_period),
-        **exchange(before, gas.books(), scene, gas.particles),
+        **exchange(begun.books, gas.books(), scene, gas.particles),
         "equilibrated": steady,
-        "measured_from": begun + first * every,
+        "measured_from": begun.time + first * every,
         "measured_collisions": evidence.collisions,
         **_series(rows["time"][first:], window, max(1, per_period // KEPT)),
     }

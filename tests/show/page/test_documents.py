@@ -9,7 +9,7 @@ from tests.entry import main
 
 from roughgas import config
 from roughgas.data.reduced import read_reduced
-from roughgas.results.costs import write_times
+from roughgas.results.table import write_times
 
 CONFIG = Path(__file__).parents[3] / "config.yaml"
 
@@ -67,7 +67,7 @@ def test_run_times_are_sums_over_points_and_seeds(points, tmp_path):
     assert read_reduced(points / "sheared.nc").kernel_seconds.sum().item() == 1.0
 
 
-@pytest.mark.parametrize("scale", ["paper", "small", "fine"])
+@pytest.mark.parametrize("scale", ["paper", "small"])
 def test_the_complete_configuration_says_the_same_and_can_be_run(scale, tmp_path):
     path = tmp_path / "config.yaml"
     changes = {"experiments": {"cooling": {"particles": 99}}, "seeds_per_job": 2}

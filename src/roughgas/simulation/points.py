@@ -8,11 +8,10 @@ from roughgas import config
 from roughgas.base.errors import InputError, shown
 from roughgas.config.provenance import provenance
 from roughgas.data.point import Point
-from roughgas.planning.reach import complete
 from roughgas.scene import build
 from roughgas.simulation.ends import Initial
 from roughgas.simulation.point import run_point
-from roughgas.simulation.progress import Bar, Progress
+from roughgas.simulation.progress import Progress
 
 
 class Place(NamedTuple):
@@ -70,9 +69,7 @@ def points(
     for labels, r, beta, seed in at:
         scene = build(settings, r, beta)
         one = name if len(at) == 1 else f"{name}, r = {labels[0]}, beta = {labels[1]}, seed {seed}"
-        with Bar(f"pilot of {one}", None, quiet=quiet or "target_stderr" not in settings):
-            settings_here = complete(scene, settings)
-        about = provenance(name, settings_here, labels, scale, "point.nc", told=told)
-        with Progress(one, scene, settings_here, quiet=quiet) as bar:
-            found = run_point(scene, settings_here, seed, bar, initial or (), functions)
+        about = provenance(name, settings, labels, scale, "point.nc", told=told)
+        with Progress(one, scene, settings, quiet=quiet) as bar:
+            found = run_point(scene, settings, seed, bar, initial or (), functions)
         yield found._replace(attributes=about | found.attributes)
