@@ -59,6 +59,12 @@ def test_nothing_is_overwritten_without_a_word(folder, capsys, line, said):
     assert contents() == before
 
 
+def test_where_nothing_can_be_written_is_seen_before_any_work(folder, capsys):
+    assert main([*ONE, "--seed", "1", "2", "-o", "a.nc", "/proc/none"]) == 1
+    assert capsys.readouterr().err == "roughgas: error: /proc/none: cannot be written\n"
+    assert not Path("a.nc").exists()
+
+
 def test_a_name_of_its_own_is_no_excuse(folder, capsys):
     Path("cooling_r0.9_beta0.5_seed1.nc").write_text("of a person")
     assert main(ONE) == 2

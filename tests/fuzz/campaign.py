@@ -27,6 +27,7 @@ from tests.fuzz.spoiling import ENOUGH
 HANGS = 60  # seconds of processor time: what else a machine does is not a command's fault
 SLEEPS = 600  # seconds by the clock
 MEMORY = 6 << 30  # bytes
+MOST = 10  # faults of one place that are printed
 FEW = 50  # tries that say nothing yet of the share that is taken
 WORST = {  # of all scenes
     "roundings of energy missing an exchange": "imbalance",
@@ -94,7 +95,7 @@ class Campaign:
         counts = ", ".join(f"{count} {what}" for what, count in sorted(self.outcomes.items()))
         print(f"{self.name}: {self.tried} tried with seed {self.first}: {counts}; {took:.0f} s")
         for where, found in self.faults.items():
-            print(f"  {len(found)} times {where}, such as\n    {found[0]}")
+            print(f"  {len(found)} times {where}", *found[:MOST], sep="\n    ")
         print(f"  faults: {sum(map(len, self.faults.values()))}", flush=True)
         hardly = self.tried >= FEW and self.outcomes["refused"] > (1 - ENOUGH) * self.tried
         if hardly:
@@ -111,6 +112,8 @@ class Campaign:
 
 
 def _watch(processor, clock):
+    for number in (signal.SIGALRM, signal.SIGPROF):
+        signal.signal(number, _hangs)
     signal.setitimer(signal.ITIMER_PROF, processor)
     signal.alarm(clock)
 
@@ -191,6 +194,7 @@ def edges(campaign, folder):
     from tests.fuzz import edges as one
 
     given = one.write_folder(folder / "files")
+    print("edges of", ", ".join(f"{number} {what}" for what, number in one.size().items()))
     with pytest.MonkeyPatch.context() as patch:
         return campaign.walk(one.cases(), lambda case: one.attempt(given, patch, case))
 
@@ -206,8 +210,6 @@ def main():
         parser.add_argument(f"--{name}", type=int, default=0, help=one.__doc__)
     parser.add_argument("--seed", type=int, default=1)
     options = vars(parser.parse_args())
-    for number in (signal.SIGALRM, signal.SIGPROF):
-        signal.signal(number, _hangs)
     for number in (signal.SIGINT, signal.SIGTERM):  # what has been tried is reported
         signal.signal(number, signal.default_int_handler)
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))

@@ -211,11 +211,24 @@ def check_environment(folder, tmp, name, command):
     return judged(done.returncode, done.stderr, {}, contents(tmp))
 
 
+VALUES = [*NUMBERS, 0.25, 1.5, 3, 4, 5, 6, 8, 10, 12, 16, 20, *WORDS[:3], *OTHERS[:4]]
+"""Of keys of schedules."""
+
+
+def size():
+    """How many of each are walked."""
+    return {
+        "commands": len(RIGHT),
+        "options": len(options()),
+        "keys of schedules": len(schedule_keys()),
+        "environments": len(ENVIRONMENTS),
+    }
+
+
 def cases():
     """All cases: a kind, and what it is about."""
     options_ = [("option", name, action, text) for name, action in options() for text in TEXTS]
-    values = [*NUMBERS, 3, 4, 5, 8, *WORDS[:3], *OTHERS[:4]]
-    schedules = [("schedule", *key, value) for key in schedule_keys() for value in values]
+    schedules = [("schedule", *key, value) for key in schedule_keys() for value in VALUES]
     around = [("environment", name, command) for name in ENVIRONMENTS for command in COMMANDS]
     return [*options_, *schedules, *around]
 

@@ -2,6 +2,7 @@
 
 import errno
 import os
+import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -44,8 +45,10 @@ def check_place(path: str | Path) -> None:
     if path.exists() and not (path.is_file() or path.is_dir()):
         raise OSError(errno.EINVAL, "exists and is not a file", str(path))
     folder = next(folder for folder in (path, *path.parents) if folder.is_dir())
-    if not os.access(folder, os.W_OK):
-        raise PermissionError(errno.EACCES, "cannot be written", str(folder))
+    try:
+        tempfile.TemporaryFile(dir=folder).close()  # for root all of /proc has permission
+    except OSError as error:
+        raise OSError(error.errno, "cannot be written", str(path)) from None
 
 
 def remove_dead_drafts(path: Path) -> None:
