@@ -12,7 +12,7 @@
 #   snakemake -j2 coverage                      whether error bars hold the truth as often as they say
 #   snakemake -j2 finite_size                   how much of R in a cooling gas is due to number and box
 #   snakemake -j2 hard_cases                    where simulations go wrong, and how far from it we are
-#   snakemake -j2 crate                         the run as one file: an RO-Crate with checksums
+#   snakemake -j2 crate                         the run as one file: an RO-Crate
 #   snakemake -j2 fig1a                         a figure by its name, or an experiment's R over its sweep
 #   snakemake -j1 results/paper/cooling/r0.87/beta-0.33/seed7.nc     any one point
 

@@ -137,13 +137,12 @@ rule table:
     input:
         data=data_of_product,
     output:
-        csv=report(
+        report(
             "results/{scale}/{product}.csv",
             caption="captions/table.rst",
             category=heading_of_product,
             labels=titled("Table: every number (CSV, to download)"),
         ),
-        package="results/{scale}/{product}.datapackage.json",
     log:
         "logs/{scale}/{product}_csv.log",
     wildcard_constraints:
@@ -151,9 +150,9 @@ rule table:
     params:
         code=code_of("results.table"),
     message:
-        "write {output.csv}"
+        "write {output}"
     shell:
-        "python -P -m roughgas.steps table {input.data:q} --output {output.csv:q} > {log:q} 2>&1"
+        "python -P -m roughgas.steps table {input.data:q} --output {output:q} > {log:q} 2>&1"
 
 
 rule claims:

@@ -109,28 +109,25 @@ def test_a_description_stays_a_text_in_the_report(text):
 
 @pytest.mark.parametrize("text", FORMULAS)
 def test_no_text_in_a_table_is_a_formula(tmp_path, monkeypatch, text):
-    """Neither in R.csv, nor in what `export` writes, nor in a crate's list of points."""
     monkeypatch.chdir(tmp_path)
     write_point("point.nc", made(scale=text, command=text, experiment=text))
     reduce_points(["point.nc"], "all.nc")
     assert main(["table", "all.nc", "-o", "R.csv"]) == 0
-    assert main(["export", "point.nc", "-o", "point.csv"]) == 0
-    for file in ("R.csv", "point.about.csv"):
-        with open(file, newline="", encoding="utf-8") as lines:
-            cells = [cell for row in csv.reader(lines) for cell in row]
-        assert f"'{text}" in cells and text not in cells
+    with open("R.csv", newline="", encoding="utf-8") as lines:
+        cells = [cell for row in csv.reader(lines) for cell in row]
+    assert f"'{text}" in cells and text not in cells
     assert in_csv(text) == f"'{text}"
 
 
 @pytest.mark.parametrize("text", [*EVIL, "a\rb", "a,b", "a\r\nb"])
 def test_a_text_in_a_table_is_one_cell(tmp_path, monkeypatch, text):
     monkeypatch.chdir(tmp_path)
-    write_point("point.nc", made(scale=text, command=text))
-    assert main(["export", "point.nc", "-o", "point.csv"]) == 0
-    with open("point.about.csv", newline="", encoding="utf-8") as lines:
-        rows = list(csv.reader(lines))
-    assert {len(row) for row in rows} == {5}
-    assert text.replace("\r", " ") in [row[2] for row in rows]
+    write_point("point.nc", made(scale=text))
+    reduce_points(["point.nc"], "all.nc")
+    assert main(["table", "all.nc", "-o", "R.csv"]) == 0
+    with open("R.csv", newline="", encoding="utf-8") as lines:
+        head, row = csv.reader(lines)
+    assert dict(zip(head, row, strict=True))["scale"] == text.replace("\r", " ")
 
 
 @pytest.mark.parametrize("value", ["-0.5", "+1e-3", "0.9", "sine", -0.5, "", "a=b"])
@@ -187,7 +184,6 @@ def test_everything_is_quoted_in_every_command_of_a_rule():
 def test_names_of_files_are_names(tmp_path, monkeypatch, capsys, name):
     monkeypatch.chdir(tmp_path)
     write_point(name, made())
-    assert main(["export", name, "-o", "table.csv"]) == 0
     assert main(["reduce", name, "-o", "all.nc"]) == 0
     assert main(["show", name, "none"]) == 1
     assert capsys.readouterr().out.startswith(f"{name}: point\n")

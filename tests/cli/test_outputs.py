@@ -45,7 +45,6 @@ def contents():
         (["reduce", POINT, "-o", POINT], "must be another file than those that are read"),
         (["reduce", "beta0.5_2.nc", "-o", POINT], "must be new, or hold a reduced dataset"),
         (["plot", REDUCED, "-o", "a.png", "a.png"], "--output = a.png: must be named once"),
-        (["export", "notes.nc"], "--output = notes.csv: must be new, or hold a table of roughgas"),
     ],
     ids=lambda value: " ".join(value[-4:]) if isinstance(value, list) else "",
 )
@@ -77,7 +76,6 @@ def test_a_name_of_its_own_is_no_excuse(folder, capsys):
         [*ONE, "-o", "a.nc"],
         ["reduce", POINT, "-o", "a.nc"],
         ["plot", REDUCED, "-o", "a.png", "a.pdf", "a.svg"],
-        ["export", POINT, "-o", "a.csv"],
         ["trajectory", *ONE[1:], "--frames=2", "-o", "a.xyz", "a.nc"],
     ],
     ids=lambda line: line[0],

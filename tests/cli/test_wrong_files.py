@@ -70,19 +70,11 @@ def test_a_page_needs_the_labels_of_points(folder, capsys):
     assert said(capsys, line) == "attribute r_label of vibrated/seed1.nc = (nothing): must be given"
 
 
-@pytest.mark.parametrize("text", ["[]", "{}", "3", "null", '{"@graph": 3}', '{"@context": 3}', "x"])
-def test_what_is_no_crate_is_refused(folder, capsys, text):
-    (folder / "crate").mkdir()
-    (folder / "crate/ro-crate-metadata.json").write_text(text)
-    wanted = "crate = crate: must be an RO-Crate that roughgas wrote, whole"
-    assert said(capsys, ["crate", "--verify", "crate"]) == wanted
-
-
 def test_a_crate_is_packed_in_the_project(folder, capsys):
     (folder / "config.yaml").write_text("scale: paper\n")
     line = ["crate", "reduced.nc", "--configuration={}", "-o", "run.zip"]
     assert said(capsys, line) == (
-        f"folder = {folder}: must be one with the workflow, such as a clone of the repository: "
+        f"folder = {folder}: must be one with the workflow, such as a clone of it: "
         "CHANGELOG.md is missing"
     )
 

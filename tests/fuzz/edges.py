@@ -48,7 +48,6 @@ RIGHT = {
     "experiments": ["--config=config.yaml"],
     "theory": ["--r=0.9", "--beta=0"],
     "bench": ["gas", "--config=config.yaml", "--runs=1"],
-    "export": ["point.nc", "--output", "out.csv"],
     "completion": ["bash"],
     "reduce": [f"{POINTS}/seed1.nc", f"{POINTS}/seed2.nc", "--output", "out.nc"],
 }

@@ -29,9 +29,8 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
 import snakemakes
+from bits import digest
 from project import Project
-
-from roughgas.results.crate import digest
 
 FILES = ("results/tiny/cooling.nc", "figures/tiny/fig2b.png")
 COMMAND = ("-j2", "--config", "scale=tiny", "--", *FILES)

@@ -34,7 +34,6 @@ JSON = ["{", "[]", "3", "null", "NaN", "{}", '{"a": 1}', '{"experiments": null}'
 MEANT = [
     "show",
     "show --json",
-    "export -o out.csv",
     "reduce -o out.nc",
     "table -o out.csv",
     "claims --json out.json --markdown out.md",
@@ -47,11 +46,9 @@ MEANT = [
     "combine -o out.nc",
     "film -o out.png",
     "crate -o out.zip",
-    "crate --verify crate",
 ]
 """Command lines without their files, which come after the command."""
 RIGHT = [
-    "export point.nc -o out.csv",
     "table reduced.nc -o out.csv",
     "document page.md -o out.html",
     "combine task.nc -o out.nc",
@@ -93,8 +90,6 @@ def write_folder(folder):
     (folder / "text.nc").write_text("text")
     (folder / "list.json").write_text("[]")
     (folder / "page.md").write_text("# Words")
-    (folder / "crate").mkdir()
-    (folder / "crate/ro-crate-metadata.json").write_text("[]")
     return folder
 
 

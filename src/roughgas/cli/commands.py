@@ -199,37 +199,19 @@ COMMANDS = {
         "this machine: the median of several runs, the slowest and the fastest. Missing kernels "
         "are compiled first, which takes 12 s for each set of effects and is not counted.",
     ),
-    "export": Command(
-        "cli.products:export",
-        "write a dataset as CSV tables",
-        value("input DATASET", "dataset of the pipeline"),
-        output("CSV file (default: DATASET with the ending .csv)", required=False),
-        writes="a table of roughgas",
-        examples=("roughgas export results/paper/vibrated.nc -o vibrated.csv",),
-        about="Write any dataset of the pipeline as CSV: the time series of a point, the grid of "
-        "a reduced dataset or the frames of a film to the file named; beside it other tables, "
-        "and FILE.about.csv with scalars, units and meanings.",
-    ),
     "crate": Command(
         "cli.products:crate",
-        "pack a finished run as an RO-Crate, or check one",
-        value("files FILE", "results and figures; with --verify, points", nargs="*"),
-        one_of(
-            output(".zip file, or a new folder", "CRATE", required=False),
-            value("--verify CRATE", "check the checksums in a crate"),
-            required=True,
-        ),
-        flag("--points", "pack the points' files too, and not only their list"),
+        "pack a finished run as an RO-Crate",
+        value("files FILE", "results and figures", nargs="+"),
+        output(".zip file", "CRATE"),
         CONFIG,
         value("--configuration JSON", "the configuration, in place of --config"),
         writes="a crate",
         examples=(
             "roughgas crate results/paper/*.nc results/paper/R.csv figures/fig*.png -o run.zip",
-            "roughgas crate --verify run.zip",
-            "roughgas crate --verify run.zip results/paper/cooling/r0.9/beta0/seed1.nc",
         ),
-        about="Pack what a run in this folder has made, with its configuration, code and "
-        "environment, as an RO-Crate with checksums; the same files give the same bytes.",
+        about="Pack results of a run in this folder, with its configuration and code, as an "
+        "RO-Crate.",
     ),
     "doctor": Command(
         "doctor:doctor",

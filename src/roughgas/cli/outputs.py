@@ -9,10 +9,10 @@ from roughgas.base.errors import InputError
 from roughgas.base.files import check_place
 
 INPUTS = ("inputs", "input", "files", "start_from", "config")
-FOLDER, CRATE, TABLE = "a folder", "a crate", "a table of roughgas"
+FOLDER = "a folder"
 DATASETS = ("POINT", "REDUCED")  # as roughgas.data.opening has them
 BEGINNINGS = {
-    CRATE: rb"PK",
+    "a crate": rb"PK",
     ".nc": rb"\x89HDF|CDF",
     ".xyz": rb"\d+\n",
     ".gsd": rb"[\s\S]",
@@ -57,7 +57,7 @@ def _paths(given: object) -> list[Path]:
 
 def _check_kind(path: Path, kind: str) -> None:
     """Raise InputError where what is at `path` is not of this kind; an empty file is of any."""
-    if path.is_dir() and kind not in (FOLDER, CRATE):
+    if path.is_dir() and kind != FOLDER:
         raise InputError("--output", path, "be a file, and is a folder")
     if not path.is_file() or not path.stat().st_size:
         return
@@ -70,8 +70,6 @@ def _check_kind(path: Path, kind: str) -> None:
         return
     with path.open("rb") as file:
         fits = bool(re.match(BEGINNINGS.get(kind, b""), file.read(LONGEST)))
-    if kind == TABLE:
-        fits = path.with_suffix(".datapackage.json").exists()  # which is written with each
     if kind == FOLDER or not fits:
         raise _another(path, kind)
 

@@ -11,8 +11,7 @@ from xarray import Dataset
 
 from roughgas.base.files import whole_file, write_text
 from roughgas.base.layout import in_csv, markdown
-from roughgas.data.reduced import GRID, REDUCED, particles_of, read_reduced, third_axis
-from roughgas.results.datapackage import Field, field, write_package
+from roughgas.data.reduced import GRID, particles_of, read_reduced, third_axis
 from roughgas.statistics.intervals import half_width
 from roughgas.theory.prediction import predicted_ratio
 
@@ -25,15 +24,6 @@ COLUMNS = (
     *("collisions", "contact_time_fraction"),
 )
 THEORY = ("theory", "R_theory", "residual")
-KINDS = dict.fromkeys(("particles", "dimension"), "i") | {"value": ""}
-KINDS |= dict.fromkeys(("inertia", "R_theory", "residual"), "f")
-TITLES = {
-    "parameter": "name of a third axis of the sweep",
-    "value": "its value: a number or a word",
-    "theory": "which equation R_theory is from",
-    "R_theory": "R of theory",
-    "residual": "R - R_theory",
-}
 FEW = 5.0
 """Degrees of freedom of an error, below which its interval is noticeably wider."""
 HEAD = (*ABOUT, *GRID, *COLUMNS, *THEORY)
@@ -48,23 +38,13 @@ TIMES = "experiment | particles | points | seeds | collisions | CPU seconds | co
 
 
 def write_table(reduced_paths: Iterable[str | Path], csv_path: str | Path) -> None:
-    """Write one tidy CSV, a row for each point of each experiment, and its data package."""
+    """Write one tidy CSV, a row for each point of each experiment."""
     with whole_file(csv_path) as draft, open(draft, "w", newline="", encoding="utf-8") as file:
         table = csv.writer(file, lineterminator="\n")
         table.writerow(HEAD)
         for path in reduced_paths:
             for row in rows(read_reduced(path)):
                 table.writerow(map(_cell, row.values()))
-    fields = [_field(name) for name in HEAD]
-    write_package(Path(csv_path), "R and more of each point", [(Path(csv_path), fields)])
-
-
-def _field(name: str) -> Field:
-    if name in REDUCED:
-        known = REDUCED[name]
-        units = "; ".join(dict.fromkeys(known.units_of(cooling) for cooling in (False, True)))
-        return field(name, known.dtype[0], known.long_name, units)
-    return field(name, KINDS.get(name, "U"), TITLES.get(name, ""))
 
 
 def rows(dataset: Dataset, head: Sequence[str] = HEAD) -> Iterator[dict[str, Any]]:
