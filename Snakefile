@@ -185,6 +185,7 @@ for name in [*catalogue.FIGURES, *config["experiments"]]:
                 drawn([name]),
 
 
+logger.addFilter(is_of_use)
 logger.addFilter(say_what_was_meant)
 
 

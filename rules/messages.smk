@@ -1,17 +1,48 @@
-# What a person reads on the terminal; src/snakemake_logger_plugin_roughgas/ shows it, and Snakemake's
-# own log keeps all of it.
+# What a person reads of a run, a line for each job that starts. `--verbose` has all of it.
 import atexit
 
-try:
-    from snakemake_logger_plugin_roughgas import POINTS
-except ModuleNotFoundError:  # not in a wheel, which has one module
-    POINTS = {}
+from snakemake_interface_logger_plugins.common import LogEvent
 
-POINTS |= {"point": 1}  # blocks of points: simulate.smk
+NOISE = (
+    *("Select jobs", "Execute ", "Touching ", "RuleException:\nCalledProcessError"),
+    "WorkflowError:\nAt least one job did not",
+)
+"""How messages begin that the lines of jobs say better."""
+REFUSED = re.compile(r"Traceback .*\n\w+: \[Errno \d+\] ([^\n]*): '([^\n]*)'", re.DOTALL)
+"""A traceback that ends in a place that cannot be read or written: what is wrong, and where."""
+STEPS = {"done": 0, "total": 0}
+
+
+def is_of_use(record):
+    """Turn what starts a job into a line; leave out what others say, and the command of a failed job,
+    which repeats all settings of its experiment in some fifty lines."""
+    shown, event = workflow.output_settings, getattr(record, "event", None)
+    if shown.verbose or shown.dryrun:
+        return True
+    if event == LogEvent.RUN_INFO:
+        STEPS.update(done=0, total=record.stats["total"])
+    elif event == LogEvent.PROGRESS:
+        STEPS.update(done=record.done)
+        return record.done == record.total
+    elif event == LogEvent.JOB_INFO:
+        told = f"{STEPS['done']} of {STEPS['total']} done. {record.rule_msg or record.rule_name}"
+        record.event, record.msg, record.args = None, told, ()
+    elif event == LogEvent.JOB_ERROR:
+        record.shellcmd = None
+        return not any(map(was_stopped, record.log))
+    return event != LogEvent.JOB_FINISHED and not record.getMessage().startswith(NOISE)
+
+
+def was_stopped(log):
+    """Whether a job says in its log that it was told to stop."""
+    return Path(log).is_file() and b"roughgas: stopped" in Path(log).read_bytes()
 
 
 def say_what_was_meant(record):
-    """Where Snakemake says that nothing makes a target, add those whose names are most like it."""
+    """Where Snakemake says that nothing makes a target, add those whose names are most like it; where
+    a place cannot be written, a line in place of the traceback."""
+    if refused := REFUSED.fullmatch(record.getMessage().strip()):
+        record.msg, record.args = "roughgas: error: {1}: {0}".format(*refused.groups()), ()
     missed = re.search(r"No rule to produce (\S+) \(", record.getMessage())
     if missed:
         known = [rule.name for rule in workflow.rules if not rule.has_wildcards()]

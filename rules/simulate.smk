@@ -96,6 +96,5 @@ for job, files, log_of_job, swept_values in jobs_of_points():
             " {params.points:q} --settings {params.settings:q} --checked --output {output:q}"
             " > {log:q} 2>&1"
 
-    POINTS[job] = len(files)
     if job != "point":
         workflow.ruleorder(job, "point")  # the statement `ruleorder:` takes no variables

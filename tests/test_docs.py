@@ -31,6 +31,8 @@ def folder(monkeypatch, tmp_path, files):
     results = tmp_path / "results" / "paper"
     results.mkdir(parents=True)
     shutil.copy(files["reduced"], results / "vibrated.nc")
+    (results / "vibrated/r0.9/beta0.5").mkdir(parents=True)
+    shutil.copy(files["point"], results / "vibrated/r0.9/beta0.5/seed1.nc")
     xarray.Dataset().to_netcdf(results / "accuracy.nc", group="statistical")
 
 

@@ -80,12 +80,9 @@ def test_every_command_works_in_an_empty_folder(installed, tmp_path):
 
 
 @pytest.mark.slow
-def test_with_a_clone_of_the_workflow_it_runs_as_config_readme_says(installed, tmp_path):
-    usage = (ROOT / "config" / "README.md").read_text()
-    assert "`--workflow-profile none`" in usage
+def test_with_a_clone_of_the_workflow_it_runs(installed, tmp_path):
     python = [installed.parent / "python", "-m", "snakemake"]
     told = [*python, "-j1", "-s", ROOT / "Snakefile", "--config", "scale=small", "--", "living"]
-    assert "roughgas" in ran(installed, told, tmp_path).stderr  # of the profile's logger
-    done = ran(installed, [*told[:-4], "--workflow-profile", "none", *told[-4:]], tmp_path)
+    done = ran(installed, told, tmp_path)
     assert done.returncode == 0, done.stderr
     assert (tmp_path / "results/small/living.html").exists()

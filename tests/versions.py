@@ -31,7 +31,7 @@ BASE = (
     "tests/test_bits.py",
 )
 """Tests that need nothing but the package; those of bits compare numbers across all versions."""
-PRIVATE = ("tests/kernel/test_compiler.py", "tests/workflow/test_logger.py")
+PRIVATE = ("tests/kernel/test_compiler.py", "tests/habits/test_stopping.py")
 """Tests of what is used though it is private."""
 QUICK = "not slow and not remedy and not browser and not slurm"
 

@@ -68,17 +68,13 @@ def test_apptainer_says_which_path_it_cannot_take(tmp_path):
     assert status == 1 and f"container = {project.folder}/roughgas.sif: must be a path" in output
 
 
-@pytest.mark.parametrize(
-    ("at", "hint"), [(".snakemake", ""), (".cache", "; XDG_CACHE_HOME may name another folder")]
-)
-def test_a_place_that_cannot_be_written_is_said_in_one_line(tmp_path, at, hint):
+def test_a_place_that_cannot_be_written_is_said_in_one_line(tmp_path):
     project = project_in(tmp_path / "project")
-    (project.folder / at).write_text("no folder")
-    around = project.environment() | {"XDG_CACHE_HOME": str(project.folder / ".cache" / "inner")}
-    status, output = snakemakes.run(project.folder, around, ("-n", "--", *REAL))
+    (project.folder / ".snakemake").write_text("no folder")
+    status, output = run(project, project.folder, "-n", "--", *REAL)
     (said,) = [line for line in output.splitlines() if "roughgas: error" in line]
     assert status == 1 and "Traceback" not in output
-    assert said.startswith(f"roughgas: error: {project.folder / at}") and said.endswith(hint)
+    assert said.startswith(f"roughgas: error: {project.folder / '.snakemake'}")
 
 
 @pytest.mark.slow
@@ -88,7 +84,7 @@ def test_a_place_that_cannot_be_written_is_said_in_one_line(tmp_path, at, hint):
         ("project", "work", ""),
         ("project", "project", "{}/.snakemake: Read-only file system"),
         ("work", "work", "{}/.snakemake: Read-only file system"),
-        ("home", "work", "{}/.cache: Read-only file system; XDG_CACHE_HOME may name another"),
+        ("home", "work", "[Errno 30] Read-only file system: '{}/.cache'"),
     ],
 )
 def test_read_only_places(tmp_path, read_only, place, told):
@@ -103,6 +99,6 @@ def test_read_only_places(tmp_path, read_only, place, told):
     done = subprocess.run(command, env=around, capture_output=True, text=True)
     if "mount" in done.stderr or "unshare" in done.stderr:
         pytest.skip(done.stderr)
-    assert "Traceback" not in done.stderr
+    assert ("Traceback" in done.stderr) == (read_only == "home")  # Snakemake's, at its start
     assert (done.returncode == 0) == (told == ""), done.stderr
     assert told.format(tmp_path / read_only) in done.stderr
