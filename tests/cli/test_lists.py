@@ -46,7 +46,7 @@ def test_a_movie_takes_the_same_lists(monkeypatch):
 
 
 @pytest.mark.parametrize(
-    "line", ["bench --scale small --scale paper", "bench --r .9 --r .8", "reduce a.nc -o a -o b"]
+    "line", ["experiments --scale small --scale paper", "reduce a.nc -o a -o b"]
 )
 def test_what_is_no_list_is_given_once(line, capsys):
     with pytest.raises(SystemExit):

@@ -1,4 +1,4 @@
-"""`roughgas run` and `bench`: what people see of them, and scripts read."""
+"""`roughgas run`: what people see of it, and scripts read."""
 
 import json
 import shlex
@@ -10,7 +10,6 @@ from roughgas.cli import main
 from roughgas.cli.show import summary
 from roughgas.data.point import read_point
 from roughgas.data.reduced import read_reduced
-from roughgas.simulation import speed
 from roughgas.simulation.point import run_point
 
 PLACE = ("--r=0.9", "--beta=-0.50", f"--settings={json.dumps(GAS)}")
@@ -87,42 +86,3 @@ def test_a_target_and_whether_it_was_met(tmp_path, monkeypatch, capsys, target, 
     assert main(["reduce", "1.nc", "2.nc", "-o", "reduced.nc"]) == 0
     data = read_reduced("reduced.nc")
     assert data.target_met.item() == share and data.target_blocks.item() == 2.0 - share
-
-
-@pytest.fixture
-def in_a_moment(monkeypatch):
-    monkeypatch.setattr(speed, "SECONDS", 0.01)
-
-
-def test_the_speed_of_this_machine(product, monkeypatch, capsys, in_a_moment):
-    monkeypatch.chdir(product)
-    command = ["bench", "cooling", "sheared", "--scale=small", "--runs=3", "--r=0.8"]
-    assert main([*command, "--json"]) == 0
-    found = json.loads(capsys.readouterr().out)
-    assert {"processor", "versions"} <= found["machine"].keys()
-    assert [one["experiment"] for one in found["speeds"]] == ["cooling", "sheared"]
-    for one in found["speeds"]:
-        assert sorted(one["rates"])[1] == one["collisions_per_second"]
-        assert [one["slowest"], one["fastest"]] == [min(one["rates"]), max(one["rates"])]
-        assert one["slowest"] > 1e4 and (one["r"], one["particles"]) == (0.8, 40)
-    assert main(command) == 0
-    rows = [line.split() for line in capsys.readouterr().out.splitlines()]
-    assert [row[:4] for row in rows[1:3]] == [
-        ["cooling", "0.8", "0", "40"],
-        ["sheared", "0.8", "0", "40"],
-    ]
-
-
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (["cooling", "--runs=0"], "--runs = 0: must be a whole number >= 1"),
-        (["cooling", "--r=2"], "restitution r = 2: must lie in [0, 1]"),
-        (["foo"], "experiment = 'foo': must be one of cooling, "),
-    ],
-)
-def test_what_cannot_be_timed_is_refused(product, monkeypatch, capsys, arguments, message):
-    monkeypatch.chdir(product)
-    assert main(["bench", *arguments]) == 2
-    said = capsys.readouterr()
-    assert said.out == "" and said.err.startswith(f"roughgas: error: {message}")

@@ -47,7 +47,6 @@ RIGHT = {
     "plot": ["gas.nc", "--output", "out.png"],
     "experiments": ["--config=config.yaml"],
     "theory": ["--r=0.9", "--beta=0"],
-    "bench": ["gas", "--config=config.yaml", "--runs=1"],
     "completion": ["bash"],
     "reduce": [f"{POINTS}/seed1.nc", f"{POINTS}/seed2.nc", "--output", "out.nc"],
 }
@@ -55,7 +54,7 @@ RIGHT = {
 LEFT_OUT = {"doctor", "crate"}
 """These have no options with values of their own, or take minutes or a whole project."""
 OUTPUTS = {"output"}
-SLOW = {"movie", "bench", "trajectory"}
+SLOW = {"movie", "trajectory"}
 
 
 def write_folder(folder):

@@ -34,9 +34,9 @@ EXAMINED = """
 import sys
 sys.modules.update(dict.fromkeys({packages!r}))
 from roughgas import doctor
-names = "packages", "extras", "figures", "movies", "Snakemake"
+names = "libraries", "extras", "Snakemake"
 doctor.CHECKS = dict((name, doctor.CHECKS[name]) for name in names)
-doctor.doctor(False, False)
+doctor.doctor(False)
 """
 
 
@@ -68,8 +68,9 @@ def test_the_doctor_says_what_is_left_out(tmp_path):
     packages = [package for brought in EXTRAS.values() for package in brought]
     done = python("-c", EXAMINED.format(packages=packages), cwd=tmp_path)
     assert done.returncode == 0, done.stdout + done.stderr
-    assert "none; not installed: workflow, figures, movies, report, crate" in done.stdout
-    assert "left out: matplotlib is not installed: pip install 'roughgas[figures]'" in done.stdout
+    assert (
+        "none; not installed: workflow, figures, movies, report, crate, trajectories" in done.stdout
+    )
 
 
 def test_the_extras_are_those_of_the_package():

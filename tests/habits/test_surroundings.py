@@ -16,7 +16,7 @@ def test_who_reads_only_the_beginning_sees_no_traceback(tmp_path):
     reader, writer = os.pipe()
     os.close(reader)
     done = subprocess.run(
-        [sys.executable, "-m", "roughgas", "doctor", "--clean"],
+        [sys.executable, "-m", "roughgas", "experiments"],
         stdout=writer,
         stderr=subprocess.PIPE,
         env=environment(ROUGHGAS_CACHE_DIR=str(tmp_path)),

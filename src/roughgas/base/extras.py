@@ -4,12 +4,11 @@
 `pip install 'roughgas[figures]'`; whoever lacks one is told so in a line.
 """
 
-import sys
-from importlib import import_module, util
+from importlib import import_module
 from types import ModuleType
 
 EXTRAS = {
-    "workflow": ("snakemake", "snakemake_interface_logger_plugins"),
+    "workflow": ("snakemake",),
     "figures": ("matplotlib",),
     "movies": ("imageio_ffmpeg",),
     "report": ("markdown_it", "plotly"),
@@ -21,18 +20,6 @@ EXTRAS = {
 
 class MissingExtra(ImportError):
     """A package that an extra would bring is not installed; the text is one line."""
-
-
-def missing() -> list[str]:
-    """Return the extras of which a package is not installed."""
-    return [name for name, brought in EXTRAS.items() if not all(map(_is_there, brought))]
-
-
-def _is_there(package: str) -> bool:
-    try:
-        return util.find_spec(package) is not None
-    except ValueError:  # of one that is imported, but has no spec
-        return sys.modules[package] is not None
 
 
 def required(module: str) -> ModuleType:

@@ -12,7 +12,6 @@ from roughgas.cli.options import (
     SCALE,
     SET,
     TAKE,
-    experiments,
 )
 from roughgas.cli.parser import Command, flag, one_of, output, value
 
@@ -145,7 +144,7 @@ COMMANDS = {
         flag("--json", "print JSON, for scripts"),
         examples=("roughgas experiments", "roughgas experiments --scale small"),
         about="Print the name, the description and the sweep of each experiment at a scale. "
-        "`roughgas run` and `bench` take these names, as do results/SCALE/NAME.nc and "
+        "`roughgas run` takes these names, as do results/SCALE/NAME.nc and "
         "figures/NAME.png.",
     ),
     "theory": Command(
@@ -182,23 +181,6 @@ COMMANDS = {
         "the translational temperature of each species, over its mean; it is driven as by the "
         "effect thermostat.",
     ),
-    "bench": Command(
-        "cli.bench:bench",
-        "measure how fast this machine simulates",
-        *experiments("default: those that extend no other"),
-        value("--r", "normal restitution, in [0, 1]", default="0.9"),
-        value("--beta", "roughness, in [-1, 1]", default="0"),
-        value("--runs", "number of runs, 0.3 s each", default="5"),
-        flag("--json", "print JSON, for scripts"),
-        examples=(
-            "roughgas bench",
-            "roughgas bench cooling vibrated --r 0.8 --beta 0.5 --runs 9",
-            "roughgas bench cooling --scale small --json",
-        ),
-        about="Measure how many collisions a second of CPU time experiments make on one core of "
-        "this machine: the median of several runs, the slowest and the fastest. Missing kernels "
-        "are compiled first, which takes 12 s for each set of effects and is not counted.",
-    ),
     "crate": Command(
         "cli.products:crate",
         "pack a finished run as an RO-Crate",
@@ -217,10 +199,9 @@ COMMANDS = {
         "doctor:doctor",
         "check the installation",
         flag("--json", "print JSON, for scripts or for asking for help"),
-        flag("--clean", "remove compiled kernels of other versions, and do nothing else"),
         examples=("roughgas doctor",),
-        about="Check libraries and their versions, compiled kernels, figures, movies and folders, "
-        "and say what to do about each problem. The exit status is 1 if there is a problem.",
+        about="Check libraries, the configuration, a compiled kernel, caches and disks, and "
+        "say what to do about each problem. The exit status is 1 if there is one.",
     ),
     "completion": Command(
         "cli.options:print_completion",

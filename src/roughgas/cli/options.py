@@ -9,7 +9,7 @@ from typing import Any
 
 from roughgas.base.errors import InputError
 from roughgas.base.legal import Interval
-from roughgas.cli.parser import Option, flag, value
+from roughgas.cli.parser import flag, value
 
 RANGE = re.compile(r"([^:]+):([^:]+):([^:]+)")
 MOST = 100_000  # values in a range
@@ -96,12 +96,6 @@ TAKE = (
 )
 """Which part of a point is shown."""
 REDUCED = value("inputs REDUCED", "reduced datasets", nargs="+")
-
-
-def experiments(help: str) -> tuple[Option, ...]:
-    """Declare the arguments that choose experiments of a configuration."""
-    names = value("experiments EXPERIMENT", help, nargs="*", completer=_experiments)
-    return names, SCALE, CONFIG
 
 
 def whole_number(key: str, text: str, low: int, high: float = math.inf, of: str = "") -> int:
