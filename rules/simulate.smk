@@ -1,7 +1,12 @@
 # From an experiment's settings to its points. Of the sweep, `seeds_per_job` seeds at `betas_per_job`
 # values of beta are made by one job (see config.yaml); any other point is a job of its own.
 SIMULATING = ("simulation.point", "data.point")
-RECORDING = ("cli.run", "config.labels", "config.provenance")  # these hand on and write down
+RECORDING = (
+    "cli.run",
+    "simulation.points",
+    "config.labels",
+    "config.provenance",
+)  # these hand on and write down
 
 
 def settings_of_points(wildcards):
@@ -34,8 +39,8 @@ def urgency(wildcards):
     on several betas counts as if they were 0."""
     from roughgas.simulation.point import effort
 
-    experiment = settings(wildcards.scale, wildcards.experiment)
-    return effort(experiment, float(wildcards.r), float(wildcards.get("beta", "0")))
+    place = place_of(wildcards)
+    return effort(settings(wildcards.scale, wildcards.experiment), place.r, place.beta)
 
 
 def one_of(labels):

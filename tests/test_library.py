@@ -115,9 +115,9 @@ def test_lists_make_the_reduced_dataset_of_their_points(tmp_path, monkeypatch):
         (
             "cooling",
             {"beta": [0, 0.5, 0]},
-            "beta = [0, 0.5, 0]: must be one value or several",
+            "beta = 0: must be given once",
         ),
-        ("cooling", {"seed": []}, "seed = []: must be one value or several, each of them once"),
+        ("cooling", {"seed": []}, "seed = []: must be one value or several"),
         ("cooling", {"r": [0.9, 1.5]}, "restitution r = 1.5: must lie in [0, 1]"),
         ("cooling", {"beta": [0], "keep_state": True}, "keep_state = given: must come with one r,"),
         (

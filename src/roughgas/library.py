@@ -14,6 +14,8 @@ from roughgas.config.arguments import Effects, Observe, Schedule, Side, Species,
 if TYPE_CHECKING:
     import xarray
 
+    from roughgas.config import Place
+
 UNNAMED = "scene"
 """What a dataset calls the experiment where it has no name."""
 
@@ -160,18 +162,19 @@ def simulate(
     from roughgas.data.point import as_dataset
     from roughgas.results.reduce import reduced_in_memory
     from roughgas.simulation.ends import initial_of
-    from roughgas.simulation.points import is_several, places, points
+    from roughgas.simulation.points import points
     from roughgas.simulation.settings import observables_of, settings_of
 
-    at, several = places(r, beta, seed), is_several(r, beta, seed)
+    at, several = _places(r, beta, seed), any(map(_is_list, (r, beta, seed)))
     if several and (keep_state or initial is not None):
         key = "keep_state" if keep_state else "initial"
         raise InputError(key, "given", "come with one r, one beta and one seed")
     name, scale = experiment or UNNAMED, scale or _scale_of(experiment, config)
     changes["observables"], functions = observables_of(observe)
     settings = settings_of(experiment, changes, scale, config, UNNAMED)
-    states = None if initial is None else initial_of(initial)
-    found = points(name, settings, at, scale, states, functions, quiet=not progress)
+    states, told = ([], []) if initial is None else (initial_of(initial), ["--from", "start.nc"])
+    outputs = ["point.nc"] * len(at)
+    found = points(name, settings, at, scale, outputs, states, functions, told, quiet=not progress)
     return reduced_in_memory(found) if several else as_dataset(next(found))
 
 
@@ -244,7 +247,7 @@ def trajectory(
         "schedule": schedule,
     }
     changes |= {"species": species, "species_pairs": species_pairs}
-    legal_r, legal_beta, number = _numbers(r, beta, seed)
+    ((legal_r, legal_beta, number, labels),) = _places(r, beta, seed)
 
     from roughgas.config.provenance import provenance
     from roughgas.data.trajectory import as_trajectory
@@ -260,10 +263,9 @@ def trajectory(
     scene = build(settings, legal_r, legal_beta)
     states = [] if initial is None else initial_of(initial)
     take = chosen(settings, scene, start, length, frames, times, states)
-    labels, told = (str(r), str(beta), str(seed)), ["--from", "start.nc"] if states else []
-    told += take.options()
+    told = (["--from", "start.nc"] if states else []) + take.options()
     about = provenance(name, settings, labels, scale, "bed.xyz", "trajectory", told)
-    filmed = snapshots(settings, legal_r, legal_beta, number, take, states)
+    filmed = snapshots(scene, settings, number, take, states)
     shots = list(watched(name, take.frames, "frames", filmed, quiet=not progress))
     return as_trajectory(variables(scene, settings, shots), about)
 
@@ -292,7 +294,22 @@ def _scale_of(experiment: str | None, path: str | Path | None) -> str:
     return PAPER if experiment is None else usual_scale(path or SHIPPED)
 
 
-def _numbers(r: Any, beta: Any, seed: Any) -> tuple[float, float, int]:
-    from roughgas import config
+def _places(r: Any, beta: Any, seed: Any) -> "list[Place]":
+    """Return the places of r, of beta and of the seed, each one or several."""
+    from roughgas.config import places
 
-    return config.restitution(r), config.roughness(beta), config.seed(seed)
+    return places(_listed("r", r), _listed("beta", beta), _listed("seed", seed))
+
+
+def _listed(name: str, given: Any) -> list[Any]:
+    if not _is_list(given):
+        return [given]
+    values = list(getattr(given, "tolist", lambda: given)())
+    if not values:
+        raise InputError(name, "[]", "be one value or several")
+    return values
+
+
+def _is_list(given: Any) -> bool:
+    """Return whether this is a list, or an array, of values."""
+    return not isinstance(given, str) and hasattr(given, "__len__")

@@ -25,10 +25,9 @@ def compile_kernels(experiment: str, *, settings: str, r: str, checked: bool = F
     """Compile what the points of an experiment run at some r: of all its variants."""
     from roughgas.simulation.point import compile_kernels
 
-    value = config.restitution(r)
     found = config.from_text(settings, "--settings", checked)
     every = config.every_variant(experiment, found).values()
-    compile_kernels([one | {"sweep": {"r": [value]}} for one in every])
+    compile_kernels(every, config.restitution(r))
 
 
 def table(inputs: list[str], *, output: str) -> None:

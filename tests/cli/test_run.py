@@ -57,7 +57,7 @@ def test_a_script_reads_a_line_for_each_seed_as_it_is_done(tmp_path, monkeypatch
         told.append(capsys.readouterr().out)
         return run_point(*arguments)
 
-    monkeypatch.setattr("roughgas.cli.run.run_point", watched)
+    monkeypatch.setattr("roughgas.simulation.points.run_point", watched)
     files = [str(tmp_path / name) for name in ("1.nc", "2.nc")]
     assert main(["run", "cooling", *PLACE, "--seed", "1", "2", "--json", "-o", *files]) == 0
     first, second = told[1], capsys.readouterr().out

@@ -219,7 +219,7 @@ MISTAKES = [
     ({"schedule.measure": ["-1"]}, "experiments.spun/measure-1.schedule.measure = -1: must be a"),
     ({"spin.inertia": []}, "sweep.spin.inertia = []: must be a list that is not empty"),
     ({"spin.inertia": "1"}, "sweep.spin.inertia = '1': must be a list that is not empty"),
-    ({"spin.inertia": ["1", "1.0"]}, "sweep.spin.inertia = '1.0': must be given once"),
+    ({"spin.inertia": ["1", "1.0"]}, "sweep.spin.inertia = 1.0: must be given once"),
     (
         {"spin.inertia": ["0.5", "2"]},
         "experiments.spun/inertia2.effects.spin.inertia = 2.0: must be a number in [1e-06, ",

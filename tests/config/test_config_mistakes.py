@@ -35,7 +35,7 @@ MISTAKES = [
     ("experiments.cooling.sweep.r", ["nan"], "sweep.r[0] = 'nan': must lie in [0, 1]"),
     ("experiments.cooling.sweep.beta", ["-1.1"], "sweep.beta[0] = '-1.1': must lie in [-1, 1]"),
     ("experiments.cooling.sweep.beta", ["abc"], "sweep.beta[0] = 'abc': must lie in [-1, 1]"),
-    ("experiments.cooling.sweep.beta", ["0.1", "0.10"], "sweep.beta = '0.10': must be given once"),
+    ("experiments.cooling.sweep.beta", ["0.1", "0.10"], "sweep.beta = 0.10: must be given once"),
     ("experiments.cooling.sweep.r", [], "sweep.r = []: must be a list that is not empty"),
     ("experiments.cooling.sweep.seeds", 0, "sweep.seeds = 0: must be a whole number >= 1"),
     (

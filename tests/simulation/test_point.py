@@ -74,4 +74,4 @@ def test_a_gas_that_comes_to_rest_on_its_floor_is_refused():
 
 
 def test_each_composition_is_compiled_once():
-    assert compile_kernels([POINTS["gas"], POINTS["gas"], POINTS["bed"]]) == 2
+    assert compile_kernels([POINTS["gas"], POINTS["gas"], POINTS["bed"]], 0.9) == 2

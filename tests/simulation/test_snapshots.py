@@ -35,7 +35,7 @@ def test_energies_of_a_driven_gas_are_those_of_its_point(name):
     point = run_point(build(experiment, R, beta), experiment, SEED).variables
     start, every = point["time"][0] - STEADY["sample_every"] / 2, STEADY["sample_every"]
     take = Take(start, 40 * every, 40)
-    shots = list(snapshots(experiment, R, beta, SEED, take))
+    shots = list(snapshots(build(experiment, R, beta), experiment, SEED, take))
     assert [shot.time for shot in shots] == pytest.approx(point["time"][:40], rel=1e-12)
     for field, series in (("R", "R_series"), ("E_trans", "E_trans_series")):
         found = [getattr(shot, field) for shot in shots]
@@ -50,7 +50,9 @@ def test_a_cooling_gas_is_the_first_replica_of_its_point():
     experiment = settings("gas", 20, [30, 30]) | {"schedule": COOLING}
     point = run_point(build(experiment, R, BETA), experiment, SEED).variables
     first, last = point["measured_from"], point["plateau_end"]
-    shots = list(snapshots(experiment, R, BETA, SEED, Take(0.0, 1.3 * last, 4000)))
+    shots = list(
+        snapshots(build(experiment, R, BETA), experiment, SEED, Take(0.0, 1.3 * last, 4000))
+    )
     passed = np.array([shot.collisions for shot in shots])
     # R changes at collisions only: the first frame after one has its value
     plateau = [
@@ -60,13 +62,13 @@ def test_a_cooling_gas_is_the_first_replica_of_its_point():
     ]
     assert len(plateau) > 10 and passed[-1] > last
     assert np.mean(plateau) == pytest.approx(point["R_replica"][0], rel=1e-12)
-    start = next(snapshots(experiment, R, BETA, SEED, Take(5.0, 1.0, 2)))
+    start = next(snapshots(build(experiment, R, BETA), experiment, SEED, Take(5.0, 1.0, 2)))
     assert start.collisions == 5.0 and start.R == shots[np.searchsorted(passed, 5.0)].R
 
 
 def test_frames_of_a_cooling_gas_are_equally_spaced_in_scaled_time():
     experiment = settings("gas", 20, [30, 30]) | {"schedule": COOLING}
-    shots = list(snapshots(experiment, R, BETA, SEED, Take(0.0, 60.0, 240)))
+    shots = list(snapshots(build(experiment, R, BETA), experiment, SEED, Take(0.0, 60.0, 240)))
     speed = np.sqrt([shot.E_trans for shot in shots])
     intervals = np.diff([shot.time for shot in shots])
     assert intervals[-1] > 4 * intervals[0]
@@ -90,7 +92,7 @@ def test_particles_are_where_brute_force_has_them_and_have_turned_as_far(name):
     scene, world = scene_of(experiment, R, BETA)
     brute = brute_force_from(world, snapshot(start_of(scene, experiment), scene))
     angle = 0.0
-    for shot in snapshots(experiment, R, BETA, SEED, Take(0.0, 1.5, 12)):
+    for shot in snapshots(build(experiment, R, BETA), experiment, SEED, Take(0.0, 1.5, 12)):
         angle += turned_until(brute, shot.time)
         apart = [np.abs(shot.position - brute.x + s).max(axis=1) for s, _ in brute.images()]
         assert np.min(apart, axis=0).max() < TINY
@@ -107,7 +109,7 @@ def test_particles_are_where_brute_force_has_them_and_have_turned_as_far(name):
 def test_many_particles_keep_their_numbers():
     """They are sorted into cells, hence anew in memory now and then, and turn none the less."""
     experiment = settings("sheared", 900, [80, 80]) | {"schedule": STEADY}
-    shots = list(snapshots(experiment, R, 1.0, SEED, Take(0.0, 20.0, 600)))
+    shots = list(snapshots(build(experiment, R, 1.0), experiment, SEED, Take(0.0, 20.0, 600)))
     risen = np.diff([shot.position[:, 1] for shot in shots], axis=0)
     assert np.abs(risen - 80 * np.round(risen / 80)).max() < 3.0
     turned = np.diff([shot.angle for shot in shots], axis=0)

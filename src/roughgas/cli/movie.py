@@ -5,12 +5,12 @@ from argparse import Namespace
 from functools import partial
 from typing import Any
 
-from roughgas import config
 from roughgas.base.legal import Interval
-from roughgas.cli.options import labels, number
+from roughgas.cli.options import number
 from roughgas.cli.run import points_of
 from roughgas.cli.trajectory import chosen_take
-from roughgas.scene import Scene
+from roughgas.config import Place
+from roughgas.scene import build
 from roughgas.show.encoding import check_kind
 from roughgas.show.movies.drawing import MovieSubject, Panel, write
 from roughgas.simulation.progress import watched
@@ -24,21 +24,19 @@ def movie(options: Namespace) -> None:
     fps = number("--fps", options.fps, RATES)
     for output in options.output:
         check_kind(output)
-    points, seeds = points_of(options), labels("--seed", options.seed, config.seed)
-    panels = [_panel(options, seed, *one) for one in points for seed in seeds]
+    at, settings = points_of(options)
+    panels = [_panel(options, place, settings) for place in at]
     for output in options.output:
         shown = partial(watched, f"{output}: drawn", len(panels[0][1]), "frames")
         write(output, panels, fps, shown)
         print(f"{output}: {len(panels[0][1])} frames", file=sys.stderr)
 
 
-def _panel(
-    options: Namespace, label: str, r: str, beta: str, scene: Scene, settings: dict[str, Any]
-) -> Panel:
+def _panel(options: Namespace, place: Place, settings: dict[str, Any]) -> Panel:
     """Simulate a point; return it with what is to be seen of it."""
-    name, seed = options.experiment, config.seed(label)
+    name, scene = options.experiment, build(settings, place.r, place.beta)
     take = chosen_take(options, settings, scene)
-    simulated = snapshots(settings, float(r), float(beta), seed, take)
+    simulated = snapshots(scene, settings, place.seed, take)
     shots = list(watched(f"{name}: simulated", take.frames, "frames", simulated))
     by_species = options.colour == "species"
-    return MovieSubject(name, settings, scene, seed, by_species), shots
+    return MovieSubject(name, settings, scene, place.seed, by_species), shots

@@ -3,7 +3,7 @@
 import math
 import re
 from argparse import Namespace
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from decimal import Decimal
 from typing import Any
 
@@ -95,7 +95,6 @@ TAKE = (
     value("--frames NUMBER", "number of frames (default: 125 or 160)"),
 )
 """Which part of a point is shown."""
-REDUCED = value("inputs REDUCED", "reduced datasets", nargs="+")
 
 
 def whole_number(key: str, text: str, low: int, high: float = math.inf, of: str = "") -> int:
@@ -115,18 +114,11 @@ def number(key: str, text: str, legal: Interval | None = None) -> float:
     return legal.check(key, found) if legal else found
 
 
-def labels(key: str, texts: Iterable[str], value_of: Callable[[str], Any]) -> list[str]:
-    """Return the labels in a list, its ranges START:STOP:STEP written out.
-
-    Raises InputError for values that `value_of` does not accept, or that are given twice.
-    """
-    found: dict[Any, str] = {}
-    for label in (one for text in texts for one in _written_out(key, text)):
-        value = value_of(label)
-        if value in found:
-            raise InputError(key, label, "be given once")
-        found[value] = label
-    return list(found.values())
+def labels(key: str, given: str | Iterable[str]) -> list[str]:
+    """Return the one label, or those of a list, its ranges START:STOP:STEP written out."""
+    if isinstance(given, str):
+        return [given]
+    return [label for text in given for label in _written_out(key, text)]
 
 
 def _written_out(key: str, text: str) -> list[str]:

@@ -42,10 +42,9 @@ def _gases(options: Namespace) -> list[GasParameters]:
 
     Raises InputError for illegal values.
     """
-    found_r = labels("--r", options.r, config.restitution)
-    found_beta = labels("--beta", options.beta, config.roughness)
-    axes = (list(map(float, axis)) for axis in (found_r, found_beta))
-    r, beta = (axis.ravel() + 0.0 for axis in np.meshgrid(*axes, indexing="ij"))
+    every_r, every_beta = labels("--r", options.r), labels("--beta", options.beta)
+    at = config.places(every_r, every_beta, ["1"], prefix="--")
+    r, beta = np.array([(one.r, one.beta) for one in at]).T
     share = SHARE.check("spin share of the drive", number("--spin-share", options.spin_share))
     mu = q = None
     if options.mu is not None:

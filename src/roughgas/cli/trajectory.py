@@ -5,13 +5,12 @@ from argparse import Namespace
 from collections.abc import Sequence
 from typing import Any
 
-from roughgas import config
 from roughgas.cli.options import number, whole_number
-from roughgas.cli.run import initial_in, point_of
+from roughgas.cli.run import initial_in, points_of
 from roughgas.config.provenance import provenance
 from roughgas.data.particle_files import check_format, write_trajectory
 from roughgas.data.trajectory import as_trajectory
-from roughgas.scene import Scene
+from roughgas.scene import Scene, build
 from roughgas.simulation.ends import Initial
 from roughgas.simulation.progress import watched
 from roughgas.simulation.snapshots import LEGAL, NUMBERS, Take, chosen, snapshots
@@ -20,19 +19,19 @@ from roughgas.simulation.trajectory import variables
 
 def trajectory(options: Namespace) -> None:
     """Simulate a point, and write its trajectory."""
-    name, seed = options.experiment, config.seed(options.seed)
-    scene, settings = point_of(options)
+    name, ((place,), settings) = options.experiment, points_of(options)
+    scene = build(settings, place.r, place.beta)
     for output in options.output:
         check_format(output)
     initial = initial_in(options)
     take = chosen_take(options, settings, scene, initial)
-    simulated = snapshots(settings, float(options.r), float(options.beta), seed, take, initial)
+    simulated = snapshots(scene, settings, place.seed, take, initial)
     shots = list(watched(name, take.frames, "frames", simulated))
-    place, told = (options.r, options.beta, options.seed), take.options()
+    told = take.options()
     if initial:
         told += ["--from", options.start_from]
     for output in options.output:
-        about = provenance(name, settings, place, options.scale, output, "trajectory", told)
+        about = provenance(name, settings, place.labels, options.scale, output, "trajectory", told)
         found = as_trajectory(variables(scene, settings, shots), about)
         write_trajectory(output, found)
         print(f"{output}: {len(shots)} frames", file=sys.stderr)

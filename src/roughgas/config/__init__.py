@@ -19,9 +19,13 @@ from roughgas.base.errors import InputError, not_one_of, shown
 from roughgas.base.layout import as_text, from_json  # noqa: F401
 from roughgas.config.axis import SPECIES, changed, scaled, value_of
 from roughgas.config.labels import (  # noqa: F401
+    PARSE,
     SWEPT,
+    Place,
     level,
+    numbers_of,
     parameter_of,
+    places,
     restitution,
     roughness,
     seed,

@@ -4,14 +4,14 @@ The schema says what each part may hold; here is what it cannot say. All functio
 InputError for the first illegal thing, with the file and the key in it.
 """
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from roughgas import config as settings_of
 from roughgas.base.errors import InputError, shown
 from roughgas.config.axis import SPECIES, names_of, species_called
-from roughgas.config.labels import level, restitution, roughness
+from roughgas.config.labels import level, numbers_of, restitution, roughness
 from roughgas.config.reading import read_yaml
 from roughgas.config.schema import check_schema
 from roughgas.config.sizes import PACKING
@@ -98,7 +98,7 @@ def check_one(config: Mapping[str, Any], name: str, scale: str, source: str) -> 
             check_schema(chosen, f"{source}: experiments.{one}{at_scale}", part)
     check_schema(settings, where, "swept")
     for key, value_of in (("r", restitution), ("beta", roughness)):
-        _check_distinct(settings["sweep"][key], value_of, f"{where}.sweep.{key}")
+        numbers_of(f"{where}.sweep.{key}", settings["sweep"][key], value_of)
 
 
 def _check_axis(settings: Mapping[str, Any], where: str) -> None:
@@ -125,15 +125,7 @@ def _check_axis(settings: Mapping[str, Any], where: str) -> None:
             raise InputError(f"{where}.sweep: key", shown(key), "not be swept beside packing")
         if not part and key not in settings and (key, "box" in settings) != (PACKING, True):
             raise InputError(f"{where}.{key}", "(nothing)", "be given, as it is swept")
-        _check_distinct(settings["sweep"][key], level, f"{where}.sweep.{key}")
-
-
-def _check_distinct(labels: Iterable[Any], value_of: Callable[[Any], Any], key: str) -> None:
-    seen = set()
-    for label in labels:
-        if value_of(label) in seen:
-            raise InputError(key, shown(label), "be given once")
-        seen.add(value_of(label))
+        numbers_of(f"{where}.sweep.{key}", settings["sweep"][key], level)
 
 
 def _check_ancestors(name: str, known: Mapping[str, Any], source: str) -> None:

@@ -1,8 +1,10 @@
 """What names a point: r, beta, seed and a swept parameter as they stand in paths and on command
 lines."""
 
+import itertools
 import re
-from typing import Any
+from collections.abc import Callable, Iterable
+from typing import Any, NamedTuple
 
 from roughgas.base.errors import InputError
 from roughgas.base.legal import RESTITUTION, ROUGHNESS, Interval
@@ -14,6 +16,42 @@ LARGEST_SEED = 2**63 - 1
 SWEPT = "swept"
 """Key, in the settings of a variant, of what its experiment sweeps, such as spin.inertia."""
 LEGAL_LEVEL = "be a number, or a word of lower-case letters, digits and _"
+
+
+class Place(NamedTuple):
+    """What names a point: numbers, and the labels of r, beta and the seed that stand for them."""
+
+    r: float
+    beta: float
+    seed: int
+    labels: tuple[str, str, str]
+
+
+def places(
+    r: Iterable[Any], beta: Iterable[Any], seed: Iterable[Any], *, prefix: str = ""
+) -> list[Place]:
+    """Return the places of each r with each beta and seed, all of them labels or numbers.
+
+    This is where text becomes numbers. Raises InputError for an illegal label, and for one that is
+    given twice; messages put `prefix` before the name of its axis.
+    """
+    by_r, by_beta, by_seed = (
+        numbers_of(f"{prefix}{name}", labels, parse)
+        for (name, parse), labels in zip(PARSE.items(), (r, beta, seed), strict=True)
+    )
+    every = itertools.product(by_r, by_beta, by_seed)
+    return [Place(by_r[a], by_beta[b], by_seed[c], (a, b, c)) for a, b, c in every]
+
+
+def numbers_of(key: str, labels: Iterable[Any], parse: Callable[[Any], Any]) -> dict[str, Any]:
+    """Return the numbers of an axis by their labels. Raises InputError as `places`."""
+    found: dict[Any, str] = {}
+    for label in labels:
+        value = parse(label)
+        if value in found:
+            raise InputError(key, label, "be given once")
+        found[value] = str(label)
+    return {label: value for value, label in found.items()}
 
 
 def restitution(label: Any, key: str = "restitution r") -> float:
@@ -31,6 +69,10 @@ def seed(label: Any, key: str = "seed") -> int:
     if not WHOLE_NUMBER.fullmatch(str(label)) or int(label) > LARGEST_SEED:
         raise InputError(key, label, "be a whole number in [0, 2^63 - 1]")
     return int(label)
+
+
+PARSE: dict[str, Callable[[Any], Any]] = {"r": restitution, "beta": roughness, "seed": seed}
+"""By axis of a place, what makes a number of its label."""
 
 
 def level(label: Any, key: str = "swept parameter") -> float | str:

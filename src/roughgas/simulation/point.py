@@ -171,24 +171,25 @@ def effort(experiment: Mapping[str, Any], r: float, beta: float) -> float:
     return float(experiment["particles"]) * kind.length(build(experiment, r, beta), experiment)
 
 
-def compile_kernels(experiments: Iterable[Mapping[str, Any]]) -> int:
-    """Compile, into numba's cache, the kernels of the experiments' sweeps; return how many."""
-    needed = kernels(experiments)
+def compile_kernels(experiments: Iterable[Mapping[str, Any]], r: float) -> int:
+    """Compile, into numba's cache, the kernels of experiments at some r; return how many."""
+    needed = kernels(experiments, r)
     for scene, experiment in needed.values():
         Gas.start(scene, experiment, np.random.default_rng(0)).in_time(1.0, 0)
     return len(needed)
 
 
-def kernels(experiments: Iterable[Mapping[str, Any]]) -> dict[Any, tuple[Scene, Mapping[str, Any]]]:
-    """Return a scene and its experiment for every kernel that the sweeps over r need.
+def kernels(
+    experiments: Iterable[Mapping[str, Any]], r: float
+) -> dict[Any, tuple[Scene, Mapping[str, Any]]]:
+    """Return a scene and its experiment for every kernel that the experiments need at some r.
 
     The keys are what decides which machine code a scene runs: the types in it.
     """
     needed: dict[Any, tuple[Scene, Mapping[str, Any]]] = {}
     for experiment in experiments:
-        for r in experiment["sweep"]["r"]:
-            scene = build(experiment, float(r), -1.0)
-            effects = tuple(None if effect is None else type(effect) for effect in scene.effects)
-            key = effects, tuple(side is None for side in scene.box)
-            needed.setdefault(key, (scene, experiment))
+        scene = build(experiment, r, -1.0)
+        effects = tuple(None if effect is None else type(effect) for effect in scene.effects)
+        key = effects, tuple(side is None for side in scene.box)
+        needed.setdefault(key, (scene, experiment))
     return needed

@@ -14,7 +14,7 @@ from roughgas.base.errors import InputError
 from roughgas.base.legal import Interval
 from roughgas.kernel.hooks import displacement
 from roughgas.kernel.state import BASE, EXPONENT, NOW, Bodies, State
-from roughgas.scene import Scene, bounds, build, has_sides, packing
+from roughgas.scene import Scene, bounds, has_sides, packing
 from roughgas.simulation import cooling, schedule
 from roughgas.simulation.ends import Initial, check_initial
 from roughgas.simulation.energies import Energies, ratio, restored
@@ -133,14 +133,13 @@ def usual_take(experiment: Mapping[str, Any], scene: Scene) -> Take:
 
 
 def snapshots(
+    scene: Scene,
     experiment: Mapping[str, Any],
-    r: float,
-    beta: float,
     seed: int,
     take: Take,
     initial: Sequence[Initial] = (),
 ) -> Iterator[Snapshot]:
-    """Yield the snapshots of a take of the point, one after the other.
+    """Yield the snapshots of a take of a point, one after the other.
 
     It begins in the first of the `initial` states, if there are any: times of a driven gas go on
     from there, those of a cooling one begin anew.
@@ -153,7 +152,7 @@ def snapshots(
 
     Raises InputError for illegal values, CollapseError where contacts accumulate without end.
     """
-    scene, kind = build(experiment, r, beta), schedule.of(experiment)
+    kind = schedule.of(experiment)
     if initial:
         check_initial(initial, experiment, scene)
     gas = kind.start(scene, experiment, seed, None, initial[:1])
