@@ -70,7 +70,7 @@ def test_where_nothing_can_be_written_is_said_at_once(tmp_path, mounts):
     (tmp_path / "disk").mkdir()
     done = roughgas(*point("disk/point.nc"), cwd=tmp_path, mount=("ro", "disk"))
     assert (done.returncode, done.stdout) == (1, "")
-    assert done.stderr == f"roughgas: error: {tmp_path / 'disk'}: cannot be written\n"
+    assert done.stderr == f"roughgas: error: {tmp_path / 'disk/point.nc'}: cannot be written\n"
 
 
 def test_a_full_disk_is_said_in_one_line(tmp_path, mounts):
