@@ -14,8 +14,7 @@ from roughgas.show.living.assemble import SCENES, scenes, settings, write_living
 from roughgas.simulation import schedule
 from roughgas.simulation.instant import in_order, whereabouts
 from roughgas.simulation.recorder import Recorder
-from roughgas.statistics.errors import blocking
-from roughgas.statistics.intervals import degrees_of_freedom, half_width
+from roughgas.statistics.errors import blocking, degrees_of_freedom, half_width
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 

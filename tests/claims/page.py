@@ -20,12 +20,12 @@ from roughgas.claims import (
     paper,
     verdicts,
 )
-from roughgas.statistics import estimate
+from roughgas.statistics import errors
 
 PAGE = Path(__file__).parents[2] / "docs" / "claims.md"
 BEGIN, END = "<!-- {}: made by tests/claims/page.py -->\n", "<!-- until here -->\n"
 SAID = {"AGREE": verdicts, "LIMIT": verdicts, "TENDENCY": verdicts, "FEW": verdicts}
-SAID |= {"NEAR": verdicts, "FAR": verdicts, "SIGNIFICANT": estimate, "INTERMEDIATE": paper}
+SAID |= {"NEAR": verdicts, "FAR": verdicts, "SIGNIFICANT": errors, "INTERMEDIATE": paper}
 SAID |= {"CONSIDERABLY": paper, "NO_ROTATION": open_questions, "MOST": averages}
 SAID |= {"CLOSE": materials, "ROUGHLY": materials}
 """What decides verdicts, and where it stands."""
@@ -54,7 +54,7 @@ def said(module):
     """The docstring of each constant of a module, as one line."""
     body = ast.parse(inspect.getsource(module)).body
     return {
-        one.targets[0].id: " ".join(text.value.value.split())
+        ast.unparse(one.targets[0]): " ".join(text.value.value.split())
         for one, text in pairwise(body)
         if isinstance(one, ast.Assign)
         and isinstance(text, ast.Expr)

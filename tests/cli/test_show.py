@@ -15,7 +15,7 @@ from roughgas.config import showcase
 from roughgas.config.reading import read_yaml
 from roughgas.data.point import read_point
 from roughgas.data.reduced import read_reduced
-from roughgas.statistics.estimate import Estimate
+from roughgas.statistics.errors import Estimate
 from roughgas.studies.files import write_task
 from roughgas.studies.tables import TABLES
 

@@ -6,7 +6,7 @@ import xarray as xr
 from roughgas import theory
 from roughgas.claims import evidence
 from roughgas.claims.averages import averaged
-from roughgas.statistics.estimate import Estimate
+from roughgas.statistics.errors import Estimate
 
 
 def measured(folder):

@@ -9,7 +9,7 @@ from schedules import COOLING, STEADY
 
 from roughgas.scene import build
 from roughgas.simulation.point import VOUCHED, _withdrawn, run_point
-from roughgas.statistics.evidence import NO, UNKNOWN, YES
+from roughgas.statistics.errors import NO, UNKNOWN, YES
 
 SHEARED = settings("sheared", 20, [20, 20]) | {"schedule": STEADY}
 GAS = settings("gas", 20, [20, 20]) | {"schedule": COOLING}

@@ -7,7 +7,7 @@ from brute_force import begin, settings
 from roughgas.base.errors import InputError
 from roughgas.simulation import schedule, target
 from roughgas.simulation.point import run_point
-from roughgas.statistics.evidence import NO, UNKNOWN, YES
+from roughgas.statistics.errors import NO, UNKNOWN, YES
 
 STEADY = {"kind": "steady", "equilibrate": 30.5, "measure": 50, "sample_every": 0.3}
 COOLING = {"kind": "cooling", "replicas": 4, "thermalise": 20, "relaxation_times": 8}

@@ -16,8 +16,7 @@ from roughgas.kernel import loop
 from roughgas.simulation import cooling, schedule, steady
 from roughgas.simulation.gas import Gas
 from roughgas.simulation.recorder import Recorder
-from roughgas.statistics.errors import gaussian_sigmas
-from roughgas.statistics.evidence import LEAST, NO, UNKNOWN, YES
+from roughgas.statistics.errors import LEAST, NO, UNKNOWN, YES, gaussian_sigmas
 
 STEADY = {"kind": "steady", "equilibrate": 20.0, "measure": 20.0, "sample_every": 1.0}
 COOLING = {

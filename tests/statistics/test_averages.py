@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from roughgas.statistics.averages import block_means, period_means
+from roughgas.statistics.errors import block_means, period_means
 
 
 def test_means_of_whole_periods_leave_out_the_incomplete_one():

@@ -1,8 +1,7 @@
 import numpy as np
 import pytest
 
-from roughgas.statistics.bimodal import is_bimodal
-from roughgas.statistics.plateau import find_plateau
+from roughgas.statistics.steady_state import find_plateau, is_bimodal
 
 LOW, NOISE = 0.27, 0.012  # replicas of 160 disks, averaged over a hundred collisions per particle
 

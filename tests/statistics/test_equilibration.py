@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from roughgas.statistics.equilibration import cut_sigmas, detect_start, drift, is_equilibrated
+from roughgas.statistics.steady_state import cut_sigmas, detect_start, drift, is_equilibrated
 
 
 def noisy(ar1, seed, tau, samples, count, amplitude=0.1):

@@ -6,7 +6,7 @@ from statistics import NormalDist
 import mpmath
 import pytest
 
-from roughgas.statistics.estimate import Estimate
+from roughgas.statistics.errors import Estimate
 
 
 @pytest.mark.parametrize(

@@ -6,8 +6,8 @@ import mpmath
 import numpy as np
 import pytest
 
-from roughgas.statistics.errors import blocking
-from roughgas.statistics.intervals import (
+from roughgas.statistics.errors import (
+    blocking,
     degrees_of_freedom,
     excess_sigmas,
     half_width,

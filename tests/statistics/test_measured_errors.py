@@ -7,17 +7,16 @@ import numpy as np
 import pytest
 
 import roughgas
-from roughgas.statistics.averages import period_means
-from roughgas.statistics.equilibration import is_equilibrated
 from roughgas.statistics.errors import (
     autocorrelation_time,
     blocking_stderr,
     gaussian_sigmas,
+    is_trusted,
+    period_means,
     stderr_over_seeds,
     student_t,
 )
-from roughgas.statistics.intervals import is_trusted
-from roughgas.statistics.plateau import find_plateau
+from roughgas.statistics.steady_state import find_plateau, is_equilibrated
 
 # Samples and integrated autocorrelation time of AR(1) series, at least 20 such times long.
 CASES = [(100, 1), (100, 5), (500, 0.5), (500, 5), (500, 25), (2000, 1), (2000, 39), (2000, 100)]

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from roughgas.statistics.plateau import find_plateau
+from roughgas.statistics.steady_state import find_plateau
 
 PLATEAU, NOISE = 0.3, 0.03
 RUNS = 60

@@ -8,7 +8,7 @@ from brute_force import settings
 from schedules import COOLING, STEADY
 from tests.data.schema_page import check_study
 
-from roughgas.statistics.estimate import Estimate
+from roughgas.statistics.errors import Estimate
 from roughgas.studies import coverage, study
 from roughgas.studies.coverage import REGROUPINGS, calibrate, one_run, several
 from roughgas.studies.figures.coverage import draw_figure

@@ -10,7 +10,7 @@ from tests.data.schema_page import check_study
 
 from roughgas import theory
 from roughgas.base.errors import InputError
-from roughgas.statistics.estimate import Estimate
+from roughgas.statistics.errors import Estimate
 from roughgas.studies import models, study
 from roughgas.studies.figures import accuracy as plotting
 from roughgas.studies.models import METHODS, error_bar, over

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from schedules import COOLING, STEADY
 from tests.data.schema_page import check_study
 
-from roughgas.statistics.estimate import Estimate
+from roughgas.statistics.errors import Estimate
 from roughgas.studies import statistical, study
 from roughgas.studies.figures.accuracy import draw_statistical as draw
 from roughgas.studies.runs.statistical import Chain, time_from_blocks

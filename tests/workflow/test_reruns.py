@@ -23,7 +23,7 @@ OF_THEIR_OWN = {"profiles", "finite_size", "runaway"}
 STUDIES = ACCURACY | COVERAGE | OF_THEIR_OWN | {"statistical", "models", "discretisation"}
 SIMULATED = COMPILED | FAMILIES | FILM | STUDIES | {"movie"}
 EDITED = {  # file of the package: what an edit of its code runs again
-    "statistics/plateau.py": SIMULATED - {"discretisation"},
+    "statistics/steady_state.py": SIMULATED - {"discretisation"},
     "data/film.py": FILM,
     "theory/prediction.py": REDUCED,
     "kernel/pairs.py": SIMULATED,
@@ -184,7 +184,7 @@ def test_a_description_concerns_no_point(finished):
 @pytest.mark.slow  # compiles a kernel
 def test_an_edit_is_not_forgotten_when_a_run_is_interrupted(finished):
     """What stands between the sources and the points is made again, the points are not yet."""
-    finished.append("src/roughgas/statistics/plateau.py")
+    finished.append("src/roughgas/statistics/steady_state.py")
     finished.succeed("-j1", "results/tiny/cooling/r0.9/compiled.txt")
     assert finished.planned("results/tiny/cooling.nc") == {"seeds": EACH, "reduce": 1}
 
@@ -192,7 +192,7 @@ def test_an_edit_is_not_forgotten_when_a_run_is_interrupted(finished):
 def test_an_edit_counts_where_what_was_compiled_has_been_deleted(finished):
     (finished.folder / "results/tiny/cooling/r0.9/compiled.txt").unlink()
     assert finished.planned() == {}
-    finished.append("src/roughgas/statistics/plateau.py")
+    finished.append("src/roughgas/statistics/steady_state.py")
     assert finished.planned("results/tiny/cooling.nc")["seeds"] == EACH
 
 

@@ -10,8 +10,7 @@ import xarray as xr
 from roughgas.data.netcdf import read_groups
 from roughgas.data.opening import REDUCED, STUDIES, kind_of, opened
 from roughgas.data.reduced import EQUILIBRATED, GRID, read_reduced
-from roughgas.statistics.estimate import Estimate
-from roughgas.statistics.intervals import sum_error
+from roughgas.statistics.errors import Estimate, sum_error
 from roughgas.theory.arguments import NET_SHARE
 from roughgas.theory.prediction import predicted_ratio
 

@@ -5,9 +5,8 @@ import xarray as xr
 
 from roughgas.claims.evidence import NotTestedError
 from roughgas.claims.verdicts import FAR, NEAR, Finding, graded, text
-from roughgas.statistics.estimate import SIGNIFICANT, Estimate
+from roughgas.statistics.errors import SIGNIFICANT, Estimate, sum_error
 from roughgas.statistics.fits import power_law
-from roughgas.statistics.intervals import sum_error
 
 METHODS = {"dsmc": "DSMC", "events": "events"}
 

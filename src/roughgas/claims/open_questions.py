@@ -29,8 +29,7 @@ from roughgas.claims.verdicts import (
     together,
     worse,
 )
-from roughgas.statistics.estimate import Estimate
-from roughgas.statistics.intervals import sum_error
+from roughgas.statistics.errors import Estimate, sum_error
 
 SMOOTH = -1.0
 """Roughness of a boundary that puts no rotation in: the bed that the others are compared with."""

@@ -30,8 +30,7 @@ from roughgas.claims.verdicts import (
     text,
     worse,
 )
-from roughgas.statistics.errors import stderr_over_seeds
-from roughgas.statistics.estimate import SIGNIFICANT, Estimate
+from roughgas.statistics.errors import SIGNIFICANT, Estimate, stderr_over_seeds
 from roughgas.theory.prediction import predicted_ratio
 
 INTERMEDIATE = 0.5

@@ -26,7 +26,7 @@ from roughgas.claims.verdicts import (
     Finding,
     text,
 )
-from roughgas.statistics.estimate import SIGNIFICANT
+from roughgas.statistics.errors import SIGNIFICANT
 
 SCHEMA_VERSION = 1
 TOLERANCES = {

@@ -14,7 +14,7 @@ from roughgas.claims.evidence import (
     written,
 )
 from roughgas.data.reduced import GRID
-from roughgas.statistics.estimate import SIGNIFICANT, Estimate
+from roughgas.statistics.errors import SIGNIFICANT, Estimate
 
 HOLDS = "holds"
 QUALIFIED = "holds with a qualification"

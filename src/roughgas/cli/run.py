@@ -18,8 +18,7 @@ from roughgas.data.point import Point, read_point, write_point
 from roughgas.simulation import schedule
 from roughgas.simulation.ends import Initial, initial_of
 from roughgas.simulation.points import points
-from roughgas.statistics.estimate import Estimate
-from roughgas.statistics.evidence import NO, UNKNOWN, YES
+from roughgas.statistics.errors import NO, UNKNOWN, YES, Estimate
 
 IDENTITY = ("experiment", "variant", "scale", "r", "beta", "seed")
 """The attributes that name a point."""

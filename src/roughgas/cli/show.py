@@ -25,8 +25,7 @@ from roughgas.data.reduced import EQUILIBRATED, particles_of, third_axis
 from roughgas.results.table import rows as rows_of
 from roughgas.results.table import why_wide
 from roughgas.scene import packing
-from roughgas.statistics.estimate import Estimate, decimals_of
-from roughgas.statistics.evidence import NO, UNKNOWN, YES
+from roughgas.statistics.errors import NO, UNKNOWN, YES, Estimate, decimals_of
 from roughgas.theory.prediction import equation_of, ratio_of_point
 
 QUOTED = {

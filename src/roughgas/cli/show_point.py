@@ -6,7 +6,7 @@ from xarray import DataArray, Dataset
 
 from roughgas.base.layout import columns
 from roughgas.data.netcdf import unit_of
-from roughgas.statistics.estimate import Estimate
+from roughgas.statistics.errors import Estimate
 from roughgas.theory.prediction import equation_of
 
 FEW = 0.01

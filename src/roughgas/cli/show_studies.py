@@ -8,7 +8,7 @@ import numpy as np
 from xarray import Dataset
 
 from roughgas.base.layout import columns
-from roughgas.statistics.evidence import NO, UNKNOWN, YES
+from roughgas.statistics.errors import NO, UNKNOWN, YES
 
 MOST_VALUES = 4  # of a variable, that are all shown
 FLAGS = {YES: True, NO: False, UNKNOWN: None}

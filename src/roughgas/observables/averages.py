@@ -13,9 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from roughgas.observables.plugin import Values
-from roughgas.statistics.averages import period_means
-from roughgas.statistics.errors import blocking
-from roughgas.statistics.intervals import degrees_of_freedom
+from roughgas.statistics.errors import blocking, degrees_of_freedom, period_means
 
 STEP = 1e-4  # of the deviations, in which the slope is taken
 

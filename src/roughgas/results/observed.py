@@ -13,7 +13,7 @@ import numpy as np
 from roughgas.base.errors import InputError
 from roughgas.data.netcdf import unit_of
 from roughgas.data.variables import Array
-from roughgas.statistics.intervals import pooled
+from roughgas.statistics.errors import pooled
 
 ERRORS = ("stderr", "dof")
 SIMPLE = ("long_name", "observable")

@@ -24,9 +24,8 @@ from roughgas.data.point import Point, write_point
 from roughgas.data.reduced import GRID, SOUND, VERDICTS, check_sound, read_reduced, third_axis
 from roughgas.data.variables import CLOCKS, POINT, Array, described
 from roughgas.results.observed import observed_in, reduced_observables
-from roughgas.statistics.bimodal import is_bimodal
-from roughgas.statistics.evidence import NO, UNKNOWN, YES
-from roughgas.statistics.intervals import pooled
+from roughgas.statistics.errors import NO, UNKNOWN, YES, pooled
+from roughgas.statistics.steady_state import is_bimodal
 from roughgas.theory.mixture_composition import SPECIES
 from roughgas.theory.prediction import equation_of
 

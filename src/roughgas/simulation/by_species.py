@@ -21,8 +21,7 @@ from roughgas.simulation.energies import (
     ratio,
     restored,
 )
-from roughgas.statistics.averages import period_means
-from roughgas.statistics.errors import blocking
+from roughgas.statistics.errors import blocking, period_means
 
 
 def names(experiment: Mapping[str, Any]) -> dict[str, Any]:

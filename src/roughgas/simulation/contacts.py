@@ -11,9 +11,7 @@ from typing import Any
 import numpy as np
 
 from roughgas.simulation.energies import Columns
-from roughgas.statistics.averages import period_means
-from roughgas.statistics.errors import blocking
-from roughgas.statistics.intervals import Error, degrees_of_freedom
+from roughgas.statistics.errors import Error, blocking, degrees_of_freedom, period_means
 
 SUMS = ("v_t^2", "v_r^2", "v_t.v_r")
 """Columns that the effect contact_averages adds."""

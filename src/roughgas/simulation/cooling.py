@@ -17,10 +17,8 @@ from roughgas.simulation.energies import Columns, Energies, ratio, ratio_of_mean
 from roughgas.simulation.gas import Gas, count
 from roughgas.simulation.recorder import Recorder
 from roughgas.simulation.target import KEY, until_met
-from roughgas.statistics.errors import autocorrelation_time
-from roughgas.statistics.evidence import LEAST, UNKNOWN, Evidence
-from roughgas.statistics.intervals import Error
-from roughgas.statistics.plateau import find_plateau
+from roughgas.statistics.errors import LEAST, UNKNOWN, Error, Evidence, autocorrelation_time
+from roughgas.statistics.steady_state import find_plateau
 from roughgas.theory import friction_relaxation_rate, mixture_relaxation_rate, relaxation_rate
 
 # see roughgas.simulation.schedule.Kind

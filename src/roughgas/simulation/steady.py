@@ -19,11 +19,19 @@ from roughgas.simulation.energies import Columns, energies, ratio, ratio_of_mean
 from roughgas.simulation.gas import Gas, joined
 from roughgas.simulation.recorder import Recorder
 from roughgas.simulation.target import KEY, until_met
-from roughgas.statistics.averages import period_means
-from roughgas.statistics.equilibration import detect_start, is_equilibrated
-from roughgas.statistics.errors import autocorrelation_time, blocking
-from roughgas.statistics.evidence import UNKNOWN, YES, Evidence, of_all
-from roughgas.statistics.intervals import Error, degrees_of_freedom, is_trusted
+from roughgas.statistics.errors import (
+    UNKNOWN,
+    YES,
+    Error,
+    Evidence,
+    autocorrelation_time,
+    blocking,
+    degrees_of_freedom,
+    is_trusted,
+    of_all,
+    period_means,
+)
+from roughgas.statistics.steady_state import detect_start, is_equilibrated
 
 # see roughgas.simulation.schedule.Kind
 DRIVEN, UNIT, LENGTH, SAMPLES_PER_REFRESH = True, "T", "measure", 1

@@ -10,7 +10,7 @@ import math
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from roughgas.statistics.evidence import LEAST, NO, UNKNOWN, YES
+from roughgas.statistics.errors import LEAST, NO, UNKNOWN, YES
 
 KEY = "target_stderr"  # of a schedule
 MOST_BLOCKS = 100  # so that the error falls by a factor of ten

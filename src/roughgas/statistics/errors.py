@@ -1,17 +1,79 @@
-"""Standard errors of means: from blocks, from the autocorrelation, from independent seeds.
+"""Means with their errors: averages, standard errors, intervals, and whether there is evidence.
 
-A point's error pools the scatter over independent seeds with the errors within its runs
-(`intervals.pooled`). Pass period means (`averages.period_means`), not raw samples of a periodically
-driven gas.
+A point's error pools the scatter over independent seeds with the errors within its runs (`pooled`).
+Pass period means (`period_means`), not raw samples of a periodically driven gas.
+
+A standard error from a few numbers is itself uncertain, by a fraction 1/sqrt(2 dof). Its degrees of
+freedom are therefore kept beside it, and decide how wide the interval is that holds the truth with
+a given probability.
 """
 
 import math
-from typing import NamedTuple
+from statistics import NormalDist
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+YES, NO, UNKNOWN = 1, 0, -1
+"""The values of a verdict; UNKNOWN stands for a lack of evidence."""
 FEWEST_BLOCKS = 4
 WINDOW = 3.0  # in autocorrelation times; longer ones add noise, and bias in a short series
+DISAGREE = 2.0  # sigma
+SHORTEST = 10.0  # autocorrelation times, in a series whose interval at 95 % holds the truth in 95 %
+DIGITS = 2  # of an error
+SIGNIFICANT = 3.0
+"""Sigma from which a difference counts as real. A convention. Fixed before any data."""
+
+
+class Evidence(NamedTuple):
+    """What a measured window rests on; every number must reach that of LEAST."""
+
+    collisions: float  # of each particle, made within it
+    samples: int  # that its mean is made of; where a drive has a period, means over periods
+    relaxations: float = math.inf  # e-folds of R, by theory, made before it
+    runs: float = math.inf  # independent ones that it is averaged over, where it is over such
+
+    def verdict(self, found: bool) -> int:
+        """Return what was found as YES or NO; UNKNOWN if this is too little to rest on."""
+        enough = all(have >= least for have, least in zip(self, LEAST, strict=True))
+        return int(found) if enough else UNKNOWN
+
+
+# Ten collisions per particle are a few e-folds of R where it relaxes fastest. Relaxations: the
+# 95 % interval of a plateau that begins after three holds the truth in 87 % only (`find_plateau`).
+# Runs: the spread of fewer is too badly known to show a drift.
+LEAST = Evidence(collisions=10, samples=12, relaxations=5, runs=5)
+
+
+def of_all(verdict: int, further: bool) -> int:
+    """Return a verdict that also needs something further, which counts where the first is YES."""
+    return (YES if further else NO) if verdict == YES else verdict
+
+
+def period_means(series: np.ndarray, samples_per_period: int) -> np.ndarray:
+    """Return means over consecutive blocks of `samples_per_period` samples, along the last axis.
+
+    A vibrated bed that is sampled a few times per period shows the same few phases of its floor
+    again and again. Its raw samples are anticorrelated, and their autocorrelation misleads, so all
+    statistics are of these means. An incomplete last block is left out. `series` has shape (...,
+    samples), the result (..., samples // samples_per_period). Raises ValueError unless there is at
+    least one whole period.
+    """
+    series = np.asarray(series)
+    periods = series.shape[-1] // samples_per_period if samples_per_period >= 1 else 0
+    if periods < 1:
+        raise ValueError(
+            f"{series.shape[-1]} samples hold no whole period of {samples_per_period} samples"
+        )
+    whole = series[..., : periods * samples_per_period]
+    return whole.reshape(*series.shape[:-1], periods, samples_per_period).mean(axis=-1)
+
+
+def block_means(values: np.ndarray, block: int) -> np.ndarray:
+    """Return the means over blocks of `block` values; the last block may be shorter."""
+    begins = np.arange(0, values.size, block)
+    return np.add.reduceat(values, begins) / np.diff(np.append(begins, values.size))
 
 
 class Blocking(NamedTuple):
@@ -135,3 +197,175 @@ def _overlapping_block_variance(series: np.ndarray, length: int) -> float:
     sums = np.concatenate([[0.0], np.cumsum(series - series.mean())])
     means = (sums[length:] - sums[:-length]) / length
     return length / ((samples - length) * (samples - length + 1)) * float(means @ means)
+
+
+class Error(NamedTuple):
+    """A standard error, and the degrees of freedom that it is known with."""
+
+    stderr: Any  # a float, or an array of them; so are the degrees of freedom
+    dof: Any
+
+    def half_width(self, level: float) -> float:
+        """Return half the width of the interval that holds the truth at `level` in (0, 1)."""
+        return half_width(self.stderr, self.dof, level)
+
+
+def half_width(stderr: float, dof: float, level: float) -> float:
+    """Return half the width of the interval at confidence `level` for this standard error.
+
+    NaN if the error is unknown (dof below 1, as for a single number).
+    """
+    if not dof >= 1:
+        return math.nan
+    return student_t(NormalDist().inv_cdf((1 + level) / 2), dof) * stderr
+
+
+def is_trusted(samples: int, autocorrelation_time: float) -> bool:
+    """Return whether a correlated series is long enough for its interval to be wide enough.
+
+    The interval is by blocking, `autocorrelation_time` in samples; where that is NaN, it is not.
+    """
+    return samples >= SHORTEST * autocorrelation_time
+
+
+def degrees_of_freedom(blocks: float) -> float:
+    """Return the degrees of freedom of a standard error by `blocking` with `blocks` blocks.
+
+    Overlapping blocks of a given length are worth 1.5 times as many degrees of freedom as disjoint
+    ones (Meketon & Schmeiser 1984). Choosing the length from the same series costs as much again:
+    on AR(1) series of 20 to 1000 autocorrelation times the squared error scatters as with 0.6 to
+    1.3 times the number of disjoint blocks, less one.
+    """
+    return max(0.0, blocks - 1.0)
+
+
+def pooled(means: np.ndarray, within: np.ndarray, dof: np.ndarray) -> Error:
+    """Return the standard error of the mean of runs, from their scatter and from their own errors.
+
+    `means`, `within` (each run's own standard error) and `dof` (its degrees of freedom) have shape
+    (runs,). Both sources estimate the variance of one run; they are averaged with their degrees of
+    freedom as weights, as in an analysis of variance. Where the scatter exceeds what the runs' own
+    errors explain by 2 sigma, these miss something (motion slower than a run), and only the scatter
+    counts. An unknown error of a run has dof 0 (or NaN) and no weight.
+    """
+    means, within = np.asarray(means, float), np.asarray(within, float)
+    weights = np.where(np.isfinite(within), np.nan_to_num(dof), 0.0)
+    runs = len(means)
+    if runs == 1:
+        return Error(float(within[0]), float(weights[0]))
+    between = float(means.var(ddof=1))
+    own = float(weights @ np.nan_to_num(within) ** 2) / max(float(weights.sum()), 1e-300)
+    scatter_dof, own_dof = runs - 1.0, float(weights.sum())
+    if own_dof == 0 or excess_sigmas(between, scatter_dof, own, own_dof) > DISAGREE:
+        return Error(math.sqrt(between / runs), scatter_dof)
+    total = scatter_dof + own_dof
+    variance = (scatter_dof * between + own_dof * own) / total
+    return Error(math.sqrt(variance / runs), total)
+
+
+def sum_error(stderr: ArrayLike, dof: ArrayLike) -> Error:
+    """Return the error of sums of independent numbers along the first axis.
+
+    The degrees of freedom are those of Welch, Biometrika 34, 28 (1947), and Satterthwaite.
+    """
+    square = np.square(np.asarray(stderr, float))
+    total = square.sum(0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        effective = total**2 / (square**2 / np.asarray(dof, float)).sum(0)
+    return Error(np.sqrt(total), np.where(total > 0, effective, math.inf))
+
+
+def excess_sigmas(first: float, first_dof: float, second: float, second_dof: float) -> float:
+    """Return by how many sigma one estimate of a variance exceeds another.
+
+    Their quotient follows an F distribution: normal approximation of Paulson, Ann. Math. Stat. 13,
+    233 (1942). -inf if the first is no estimate or zero, inf if only the second is zero.
+    """
+    if first_dof <= 0 or first == 0:
+        return -math.inf
+    if second == 0:
+        return math.inf
+    root = (first / second) ** (1 / 3)
+    one, two = 2 / (9 * first_dof), 2 / (9 * second_dof)
+    return ((1 - two) * root - (1 - one)) / math.sqrt(two * root**2 + one)
+
+
+class Estimate(NamedTuple):
+    """A value, its standard error, and the degrees of freedom that the error is known with.
+
+    `f"{estimate}"` is compact: 0.3565(30), the error in units of the last digit. A format for
+    numbers is applied to both: `f"{estimate:+.4f}"` is +0.3565 ± 0.0030. In `f"{estimate:±}"` and
+    `f"{estimate:+±}"` the error has two digits.
+    """
+
+    value: Any  # a float, in studies also an array of them; so are the others
+    stderr: Any
+    dof: Any = math.inf
+
+    @property
+    def sigma(self) -> float:
+        """How many sigma of a Gaussian the value is from 0, signed; NaN if the error is unknown."""
+        if not math.isfinite(self.stderr) or self.stderr < 0:
+            return math.nan
+        if self.stderr == 0:
+            return math.copysign(math.inf, self.value) if self.value else 0.0
+        ratio = self.value / self.stderr
+        return ratio if math.isinf(self.dof) else float(gaussian_sigmas(ratio, self.dof))
+
+    @property
+    def real(self) -> bool:
+        """Whether it differs from 0 significantly."""
+        return abs(self.sigma) >= SIGNIFICANT
+
+    def minus(self, other: "Estimate") -> "Estimate":
+        """Return the difference of two independent estimates."""
+        from roughgas.statistics.errors import sum_error
+
+        stderr, dof = sum_error([self.stderr, other.stderr], [self.dof, other.dof])
+        return Estimate(self.value - other.value, float(stderr), float(dof))
+
+    def scaled(self, factor: float) -> "Estimate":
+        """Return the estimate in other units, such as per cent."""
+        return Estimate(factor * self.value, abs(factor) * self.stderr, self.dof)
+
+    def record(self) -> dict[str, float]:
+        """Return value, error and sigma for JSON, with six significant digits."""
+        numbers = {"value": self.value, "error": self.stderr, "sigma": self.sigma}
+        return {name: float(f"{number:.6g}") for name, number in numbers.items()}
+
+    def __format__(self, how: str) -> str:
+        if not how:
+            return self._compact()
+        if how.endswith("±"):
+            how = f"{how[:-1]}.{max(0, decimals_of(self.stderr))}f"
+        if not math.isfinite(self.stderr):
+            return f"{self.value:{how}} (error unknown)"
+        return f"{self.value:{how}} ± {self.stderr:{how.lstrip('+')}}"
+
+    def _compact(self) -> str:
+        """Return such as 0.3565(30); six digits if there is no error."""
+        value, stderr, _ = self
+        if not (math.isfinite(value) and math.isfinite(stderr) and stderr > 0.0):
+            return f"{value:.6g}"
+        exponent = _exponent(max(abs(value), stderr))
+        if not -4 <= exponent < 6:
+            return f"{Estimate(value / 10.0**exponent, stderr / 10.0**exponent)}e{exponent:+03}"
+        decimals = decimals_of(stderr)
+        if decimals < 0:
+            return f"{round(value, decimals):.0f}({round(stderr, decimals):.0f})"
+        shown = f"{stderr:.{decimals}f}" if stderr >= 1.0 else str(round(stderr * 10**decimals))
+        return f"{value:.{decimals}f}({shown})"
+
+
+def decimals_of(stderr: float) -> int:
+    """Return how many decimals of a number with this error count; negative for tens and so on.
+
+    Two where the error is zero or unknown.
+    """
+    if not (math.isfinite(stderr) and stderr > 0.0):
+        return DIGITS
+    return DIGITS - 1 - _exponent(float(f"{stderr:.{DIGITS - 1}e}"))
+
+
+def _exponent(number: float) -> int:
+    return math.floor(math.log10(number))

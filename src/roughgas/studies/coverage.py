@@ -13,9 +13,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from roughgas.statistics.estimate import Estimate
-from roughgas.statistics.evidence import YES
-from roughgas.statistics.intervals import half_width, pooled
+from roughgas.statistics.errors import YES, Estimate, half_width, pooled
 from roughgas.studies.tasks import corner_name
 from roughgas.studies.variables import dataset, stacked
 

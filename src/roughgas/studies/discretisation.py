@@ -17,8 +17,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from roughgas.statistics.averages import period_means
-from roughgas.statistics.estimate import Estimate
+from roughgas.statistics.errors import Estimate, period_means
 from roughgas.statistics.fits import PowerLaw, limit_at_zero, signed_power_law
 from roughgas.studies.variables import dataset, flat, stacked
 

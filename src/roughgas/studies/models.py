@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from roughgas.statistics.estimate import Estimate
+from roughgas.statistics.errors import Estimate
 from roughgas.statistics.fits import power_law
 from roughgas.studies.variables import dataset, estimate, mean, stacked
 

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from roughgas.statistics.estimate import Estimate
+from roughgas.statistics.errors import Estimate
 from roughgas.studies.tasks import profile_name
 from roughgas.studies.variables import dataset, stacked
 from roughgas.theory.closed_forms import lun_ratio

@@ -13,7 +13,7 @@ import numpy as np
 import xarray as xr
 
 from roughgas import theory
-from roughgas.statistics.estimate import Estimate
+from roughgas.statistics.errors import Estimate
 from roughgas.studies.models import over
 from roughgas.studies.tasks import SIMULATED, runaway_name
 from roughgas.studies.variables import dataset, flat, mean, stacked

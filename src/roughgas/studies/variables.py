@@ -14,7 +14,7 @@ import yaml
 
 from roughgas.data.netcdf import read_groups
 from roughgas.data.variables import Variable, described, register
-from roughgas.statistics.estimate import Estimate
+from roughgas.statistics.errors import Estimate
 from roughgas.studies.tasks import STUDIES
 
 WORD, COUNT = "word", "count"

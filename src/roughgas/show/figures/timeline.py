@@ -10,8 +10,7 @@ from matplotlib.figure import Figure
 from roughgas.data.netcdf import unit_of
 from roughgas.data.variables import CLOCKS, ENERGY, START
 from roughgas.show.style import LOOKS, THEORY, Style
-from roughgas.statistics.averages import block_means
-from roughgas.statistics.estimate import Estimate
+from roughgas.statistics.errors import Estimate, block_means
 from roughgas.theory.prediction import equation_of
 
 SIZE = 6.0, 4.6  # inches

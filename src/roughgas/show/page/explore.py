@@ -27,7 +27,7 @@ from roughgas.data.reduced import EQUILIBRATED, particles_of, read_reduced, thir
 from roughgas.data.variables import CLOCKS
 from roughgas.show.page.policy import policy
 from roughgas.show.style import LOOKS
-from roughgas.statistics.averages import block_means
+from roughgas.statistics.errors import block_means
 from roughgas.theory.prediction import equation_of, predicted_ratio
 
 # Plotly's names of the figures' markers and lines

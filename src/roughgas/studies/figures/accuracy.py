@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, MultipleLocator
 
 from roughgas.show.style import FAINT, GREY, LOOKS, THEORY, Look
-from roughgas.statistics.estimate import Estimate
+from roughgas.statistics.errors import Estimate
 from roughgas.statistics.fits import power_law
 from roughgas.studies.figures.panels import Panel, paired_panels
 

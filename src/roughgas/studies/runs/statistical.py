@@ -12,8 +12,7 @@ from roughgas.scene import build
 from roughgas.simulation import schedule
 from roughgas.simulation.energies import ratio
 from roughgas.simulation.steady import samples_per_period
-from roughgas.statistics.averages import period_means
-from roughgas.statistics.errors import autocorrelation_time
+from roughgas.statistics.errors import autocorrelation_time, period_means
 from roughgas.studies.runs import stream, timed
 from roughgas.studies.tasks import PARTS, SCENES
 
