@@ -11,6 +11,10 @@ PARTS = {  # product -> the part of the catalogue of figures whose experiments i
 }
 
 
+OF_EXPLORE = ("base.html", "explore.html", "explore.css", "explore.js", "plots.js", "picture.js")
+OF_LIVING = ("page/base.html", "living/page.html", "living/page.css")
+
+
 DRAWN_FROM_DATA = catalogue.figures_of("paper", "beyond")
 
 
@@ -195,8 +199,7 @@ rule run_times:
 
 rule page:
     input:
-        of_project(f"{PACKAGE}/show/page/page.css", f"{PACKAGE}/show/page/page.html"),
-        of_project(*sorted(Path(PACKAGE, "show/page").glob("*.js"))),
+        of_project(*(f"{PACKAGE}/show/page/{name}" for name in OF_EXPLORE)),
         points_of_product,
         data=data_of_product,
     output:
@@ -206,7 +209,7 @@ rule page:
     wildcard_constraints:
         product="explore|explore_extensions",
     params:
-        code=code_of("show.page.explore"),
+        code=code_of("show.explore"),
         descriptions=descriptions_of_product,
         config=name_of_config,
         points=folder_of_points,
@@ -220,7 +223,7 @@ rule page:
 rule living_page:
     # at any scale: its gas is as large as the page can show
     input:
-        of_project(f"{PACKAGE}/show/living/page.css", f"{PACKAGE}/show/living/page.html"),
+        of_project(*(f"{PACKAGE}/show/{name}" for name in OF_LIVING)),
         of_project(*sorted(Path(PACKAGE, "show/living").glob("*.js"))),
         config=of_project(CONFIG),
     output:
@@ -228,7 +231,7 @@ rule living_page:
     log:
         "logs/{scale}/living.log",
     params:
-        code=code_of("show.living.assemble"),
+        code=code_of("show.living"),
     message:
         "write {output}"
     shell:

@@ -1,6 +1,9 @@
 # What `snakemake --report` shows, and under which headings: the catalogue of figures says so. Captions
 # are in captions/; those of figures add the parameters of this run.
 
+OF_DOCUMENTS = ("base.html", "document.html", "document.css")
+OF_FRONT = ("base.html", "front.html", "front.css")
+
 
 def titled(title):
     """The labels of a product in the report."""
@@ -77,7 +80,7 @@ def documents(*names):
 
 rule document:
     input:
-        of_project(f"{PACKAGE}/show/page/document.css", f"{PACKAGE}/show/page/document.html"),
+        of_project(*(f"{PACKAGE}/show/page/{name}" for name in OF_DOCUMENTS)),
         shown=source_of_document,
     output:
         report(
@@ -91,7 +94,7 @@ rule document:
     wildcard_constraints:
         document="|".join(catalogue.DOCUMENTS),
     params:
-        code=code_of("show.page.document"),
+        code=code_of("show.pages"),
         caption=caption_of_document,
     message:
         "write {output}"
@@ -107,7 +110,7 @@ def pictures_of_paper(wildcards):
 rule front:
     # stands in front of Snakemake's report, which opens on the graph of the workflow
     input:
-        of_project(f"{PACKAGE}/show/page/front.css", f"{PACKAGE}/show/page/front.html"),
+        of_project(*(f"{PACKAGE}/show/page/{name}" for name in OF_FRONT)),
         captions=of_project(
             *(SOURCE / f"rules/captions/{name}.rst" for name in catalogue.figures_of("paper"))
         ),
@@ -118,7 +121,7 @@ rule front:
     log:
         "logs/{scale}/report.log",
     params:
-        code=code_of("show.page.front"),
+        code=code_of("show.pages"),
     message:
         "write {output}"
     shell:

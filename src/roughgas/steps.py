@@ -61,28 +61,28 @@ def claims(inputs: list[str], *, json: str, markdown: str, open_questions: bool 
 
 def explore(inputs: list[str], *, points: str, output: str, config: str | None = None) -> None:
     """Write an interactive page of experiments and their points, which lie in a folder."""
-    from roughgas.show.page.explore import write_page
+    from roughgas.show.explore import write_page
 
     write_page(inputs, points, output, config)
 
 
 def front(input: str, *, figures: list[str], captions: list[str], output: str) -> None:
     """Write the report's front page: figures beside their captions, and verdicts in Markdown."""
-    from roughgas.show.page.front import write_front
+    from roughgas.show.pages import write_front
 
     write_front(input, figures, captions, output)
 
 
 def living(*, config: str, output: str) -> None:
     """Write a page that simulates a gas of disks, with sliders."""
-    from roughgas.show.living.assemble import write_living
+    from roughgas.show.living import write_living
 
     write_living(config, output)
 
 
 def document(input: str, *, output: str) -> None:
     """Write a Markdown, YAML, MP4 or GIF file as one page of HTML."""
-    from roughgas.show.page.document import write_document
+    from roughgas.show.pages import write_document
 
     write_document(input, output)
 

@@ -10,7 +10,7 @@ import pytest
 from roughgas import config, theory
 from roughgas.kernel.state import EXPONENT, LAST_FIRST, LAST_SECOND
 from roughgas.scene import build
-from roughgas.show.living.assemble import SCENES, scenes, settings, write_living
+from roughgas.show.living import SCENES, scenes, settings, write_living
 from roughgas.simulation import schedule
 from roughgas.simulation.instant import in_order, whereabouts
 from roughgas.simulation.recorder import Recorder

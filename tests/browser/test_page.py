@@ -12,7 +12,7 @@ from show.page.conftest import SAMPLES, points_in
 
 from roughgas.data.point import read_point
 from roughgas.data.reduced import read_reduced
-from roughgas.show.page.explore import write_page
+from roughgas.show.explore import write_page
 from roughgas.theory.prediction import predicted_ratio
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
@@ -23,7 +23,7 @@ POINT = re.compile(r"([\d.]+)\((\d+)\)")
 @pytest.fixture
 def page(ran, browser):
     browser.open(ran.folder / "results/tiny/explore.html")
-    browser.wait(lambda: browser.find("#ratios .main-svg") and browser.find("#over-time .main-svg"))
+    browser.wait(lambda: browser.find("#ratios canvas") and browser.find("#energies canvas"))
     yield browser
     assert browser.complaints() == []
     assert browser.requests() == []
@@ -106,14 +106,16 @@ def test_a_click_on_a_point_chooses_it(page, ran):
     page.script("location.hash = '#cooling/r0.9/beta-0.5'")
     page.wait(lambda: page.text("#title").startswith("A freely cooling gas"))
     where = """
-        const plot = document.getElementById("ratios"), { xaxis, yaxis } = plot._fullLayout;
-        const trace = plot.data.find(one => one.name === "r = 0.8" && one.mode === "markers");
-        const box = plot.getBoundingClientRect(), at = trace.x.indexOf(0.5);
-        return [box.x + xaxis._offset + xaxis.l2p(trace.x[at]),
-          box.y + yaxis._offset + yaxis.l2p(trace.y[at])].map(Math.round);"""
+        const row = drawnRows().find(one => one.label === "r = 0.8"), u = PLOTS.ratios;
+        const box = u.over.getBoundingClientRect(), place = row.places.find(one => one.x === 0.5);
+        return [box.x + u.valToPos(place.x, "x"),
+          box.y + u.valToPos(place.choice.point.R, "y")].map(Math.round);"""
     actions = ActionChains(page.driver)
     actions.w3c_actions.pointer_action.move_to_location(*page.script(where))
-    actions.pause(0.3).click().perform()
+    actions.pause(0.3).perform()
+    (said,) = [one.text for one in page.find(".tip") if one.is_displayed()]
+    assert said.startswith("r = 0.8, β = 0.5\nR = ")
+    actions.click().perform()
     page.wait(lambda: fragment(page).endswith("/r0.8/beta0.5"))
     assert shows(page, ran, "cooling", "0.8", "0.5")
 
@@ -122,10 +124,10 @@ def test_what_is_drawn_are_the_datasets(page, ran):
     select(page, "experiment", "sheared")
     data = read_reduced(ran.folder / "results/tiny/sheared.nc").sel(r=0.8)
     drawn = page.script("""
-        const [above, beneath] = document.getElementById("ratios").data
-          .filter(one => one.legendgroup === "0.8" && one.mode === "markers");
-        const over = document.getElementById("over-time").data[0];
-        return [above.x, above.y, above.error_y.array, beneath.y, over.y.length];""")
+        const { places } = drawnRows().find(one => one.label === "r = 0.8");
+        const points = places.map(one => one.choice.point);
+        return [places.map(one => one.x), points.map(one => one.R), points.map(one => one.stderr),
+          points.map(difference), PLOTS["over-time"].data[1].length];""")
     assert drawn[:3] == [
         data.beta.values.tolist(),
         data.R.values.tolist(),
@@ -149,32 +151,29 @@ def made_up(browser, tmp_path):
     names = ("cooling", "sheared")
     write_page([points / f"{name}.nc" for name in names], points, tmp_path / "e.html")
     browser.open(tmp_path / "e.html")
-    browser.wait(lambda: browser.find("#ratios .main-svg") and browser.find("#over-time .main-svg"))
+    browser.wait(lambda: browser.find("#ratios canvas") and browser.find("#energies canvas"))
     return browser
 
 
 def test_a_legend_names_the_theory_and_titles_lie_beside_their_numbers(made_up):
-    named = made_up.script("""
-        const { data } = document.getElementById("ratios");
-        return data.filter(one => one.showlegend !== false).map(one => one.name);""")
-    assert "lines: theory of free cooling" in named
+    assert made_up.text("#legend").endswith("lines: theory of free cooling")
     assert made_up.text("#theory") == "theory of free cooling"
-    found = made_up.script("""
-        const plot = document.getElementById("over-time");
-        const left = one => one.getBoundingClientRect().left;
-        const title = plot.querySelector(".y2title").getBoundingClientRect();
-        const ticks = [...plot.querySelectorAll(".y2tick")];
-        return [ticks.length, ticks.some(one => left(one) < title.right)];""")
-    assert found[0] > 2 and not found[1]
+    ticks, room, widest = made_up.script("""
+        const u = PLOTS.energies, ticks = u.axes[1]._values.filter(one => one);
+        u.ctx.font = FONT;
+        return [ticks, 62 - 5, Math.max(...ticks.map(one => u.ctx.measureText(one).width))];""")
+    assert 2 < len(ticks) < 9 and widest < room and any("10⁻" in one for one in ticks)
 
 
 def test_what_is_not_known_is_said_and_drawn(made_up):
     select(made_up, "experiment", "sheared")
     assert numbers(made_up)["steady state"].startswith("not known")
-    symbols = made_up.script("""
-        const drawn = document.getElementById("ratios").data;
-        return drawn.filter(one => one.customdata).flatMap(one => one.marker.symbol);""")
-    assert set(symbols) == {"circle-open-dot"}
+    middle, beside = made_up.script("""
+        const u = PLOTS.ratios, { x, choice } = drawnRows()[0].places.at(-1), px = uPlot.pxRatio;
+        const colour = shift => [...u.ctx.getImageData(u.valToPos(x, "x", true) + shift * px,
+          u.valToPos(choice.point.R, "y", true), 1, 1).data];
+        return [colour(0), colour(-3)];""")
+    assert beside[:3] == [255, 255, 255] != middle[:3]  # an open symbol with a dot
 
 
 def test_a_choice_can_be_shared(ran, browser):
@@ -206,9 +205,9 @@ def test_a_third_axis_is_chosen_too(browser, tmp_path):
     assert "mean over a block of 3 samples" in browser.text("#thinned")
     select(browser, "over", "friction: mu")
     drawn = browser.script("""
-        const rows = document.getElementById("ratios").data.filter(one => one.mode === "markers");
-        return rows.filter(one => one.legendgroup === "0.50").map(one => [one.x, one.y]);""")
-    assert drawn[0] == [[0.1, 1], [0.351, 0.351]]
+        const { places } = drawnRows().find(one => one.label === "β = 0.50");
+        return places.map(one => [one.x, one.choice.point.R]);""")
+    assert drawn == [[0.1, 0.351], [1, 0.351]]
     assert browser.complaints() == [] and browser.requests() == []
 
 
@@ -230,7 +229,7 @@ def test_the_scene_is_pictured(page):
 
 def test_it_is_dark_where_that_is_asked_for_and_white_on_paper(page):
     def paper():
-        return page.script("return document.getElementById('ratios')._fullLayout.paper_bgcolor")
+        return page.script("return tone('paper')")
 
     features = [{"name": "prefers-color-scheme", "value": "dark"}]
     page.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": features})
@@ -247,16 +246,17 @@ def test_it_is_dark_where_that_is_asked_for_and_white_on_paper(page):
         page.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "", "features": []})
 
 
-def test_the_camera_button_hides_no_legend(page):
-    overlap = """
-        const plot = document.getElementById("ratios"), { data, layout } = plot;
-        const box = one => plot.querySelector(one).getBoundingClientRect();
-        await Plotly.newPlot(plot, data, layout, { ...CONFIG, displayModeBar: true });
-        const [button, legend] = [".modebar", ".legend"].map(box);
-        return [button.width, Math.min(button.right, legend.right) > Math.max(button.x, legend.x)
-          && Math.min(button.bottom, legend.bottom) > Math.max(button.y, legend.y)];"""
-    width, hidden = page.script(f"return (async () => {{{overlap}}})()")
-    assert width > 0 and not hidden
+def test_what_is_dragged_over_is_zoomed_to_in_both_plots(page):
+    spans = "return [PLOTS.ratios, PLOTS.residuals].map(u => [u.scales.x.min, u.scales.x.max])"
+    (low, high), _ = page.script(spans)
+    assert (low, high) == pytest.approx((-1.1, 1.1))
+    (over,) = page.find("#ratios .u-over")
+    actions = ActionChains(page.driver).move_to_element(over).click_and_hold()
+    actions.move_by_offset(80, 80).release().perform()
+    above, beneath = page.wait(lambda: page.script(spans))
+    assert above == pytest.approx(beneath) and -0.1 < above[0] < 0.1 < above[1] < 0.7
+    ActionChains(page.driver).double_click(over).perform()
+    page.wait(lambda: page.script(spans)[0] == [low, high])
 
 
 def test_it_fits_on_a_phone(page):
@@ -266,7 +266,7 @@ def test_it_fits_on_a_phone(page):
     )
     try:
         page.wait(lambda: page.script("return innerWidth") == 360)
-        page.wait(lambda: page.find("#ratios .main-svg")[0].size["width"] <= 360)
+        page.wait(lambda: page.find("#ratios .uplot")[0].size["width"] <= 360)
         assert page.script("return document.documentElement.scrollWidth") <= 360
     finally:
         page.driver.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})

@@ -34,7 +34,7 @@ EDITED = {  # file of the package: what an edit of its code runs again
     "results/table.py": {"table", "run_times", "document"},
     "claims/paper.yaml": {"claims", "document"},
     "show/figures/fig1a.py": {"fig1a"},
-    "show/page/page.js": {"page"},
+    "show/page/explore.js": {"page"},
     "show/movies/drawing.py": {"movie"},
     "studies/tables.py": {"study_table", "document", "coverage"} | OF_THEIR_OWN,
     "studies/dsmc/gas.py": ACCURACY | {"models", "finite_size", "runaway", "claims"},
@@ -45,7 +45,7 @@ ALIKE = {  # files after whose edits much the same runs again as after others'
     "scene/composition.py",
     "simulation/clustering.py",
     "theory/prediction.py",
-    "show/page/page.js",
+    "show/page/explore.js",
     "studies/tables.py",
 }
 TOGETHER = {  # files of which hardly anything needs two: their edits are tried at once, as well
@@ -56,7 +56,7 @@ TOGETHER = {  # files of which hardly anything needs two: their edits are tried 
     "show/figures/fig1a.py",
     "show/movies/drawing.py",
 }
-UNUSED = ("steps.py", "doctor.py", "library.py", "show/catalogue.py")
+UNUSED = ("steps.py", "doctor.py", "library.py")
 
 
 @pytest.fixture(scope="module")

@@ -11,7 +11,7 @@ EXTRAS = {
     "workflow": ("snakemake",),
     "figures": ("matplotlib",),
     "movies": ("imageio_ffmpeg",),
-    "report": ("markdown_it", "plotly"),
+    "report": ("markdown_it", "jinja2"),
     "crate": ("rocrate",),
     "trajectories": ("gsd",),
 }

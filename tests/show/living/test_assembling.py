@@ -7,7 +7,7 @@ from tests.entry import main
 
 from roughgas import config
 from roughgas.base.errors import InputError
-from roughgas.show.living.assemble import scene_of, settings
+from roughgas.show.living import scene_of, settings
 
 ROOT = Path(__file__).parents[3]
 CONFIGURATION = config.load(ROOT / "config.yaml")

@@ -1,14 +1,11 @@
 """The numbers in the page are those of the datasets, its theory is that of the figures."""
 
-import base64
-import gzip
 import json
 import re
 
 import netCDF4
 import numpy as np
 import pytest
-from plotly.offline import get_plotlyjs
 from tests.entry import main
 
 from roughgas.base.errors import InputError
@@ -16,7 +13,7 @@ from roughgas.base.sources import PACKAGE
 from roughgas.data.point import read_point
 from roughgas.data.reduced import read_reduced
 from roughgas.results.reduce import reduce_points
-from roughgas.show.page.explore import (
+from roughgas.show.explore import (
     GRID,
     LONGEST,
     NUMBERS,
@@ -24,7 +21,7 @@ from roughgas.show.page.explore import (
     experiment,
     write_page,
 )
-from roughgas.show.page.policy import policy
+from roughgas.show.pages import policy, text_of
 from roughgas.theory.prediction import predicted_ratio
 from show.page.conftest import SAMPLES, write
 
@@ -112,7 +109,7 @@ def test_a_verdict_without_evidence_the_size_and_fewer_samples(points, tmp_path,
     reduce_points([made], tmp_path / "sheared.nc")
     with netCDF4.Dataset(tmp_path / "sheared.nc", "a") as file:
         file["equilibrated"][...] = -1.0
-    monkeypatch.setattr("roughgas.show.page.explore.PLACES", 50)
+    monkeypatch.setattr("roughgas.show.explore.PLACES", 50)
     write_page([tmp_path / "sheared.nc"], tmp_path, tmp_path / "e.html")
     (found,) = data_in(tmp_path / "e.html")["experiments"]
     assert (found["box"], found["packing"], found["particles"]) == ([20, "open"], 0.25, "40")
@@ -145,15 +142,14 @@ def test_experiments_are_called_as_a_configuration_describes_them(points, tmp_pa
     assert found == ["My <gas>", "cooling friction"]
 
 
-def test_plotly_is_packed_and_allowed_by_its_hash(points, tmp_path):
+def test_its_programs_are_allowed_by_their_hashes(points, tmp_path):
     page = tmp_path / "page.html"
     write_page([points / "sheared.nc"], points, page)
     text = page.read_text("utf-8")
-    (packed,) = re.findall(r'<script id="plotly" type="application/gzip">(.*?)</script>', text)
-    plotly = gzip.decompress(base64.b64decode(packed)).decode()
-    (program,) = re.findall(r"<script>(.*?)</script>", text, re.S)
-    assert plotly == get_plotlyjs() and policy(plotly, program) in text
-    assert page.stat().st_size < 2_500_000
+    programs = re.findall(r"<script>(.*?)</script>", text, re.S)
+    assert programs == [text_of(f"page/{name}") for name in PROGRAM]
+    assert policy(*programs) in text and "uPlot (v1.6.32)" in programs[0]
+    assert page.stat().st_size < 150_000
 
 
 def test_what_is_not_there_is_named_in_one_line(points, tmp_path, capsys):
@@ -178,8 +174,8 @@ def test_the_committed_page_is_the_present_one():
     """Its data are of the paper's scale; its program is that of the sources."""
     text = (PACKAGE.parents[1] / "docs/explore.html").read_text("utf-8")
     again = "write it anew: snakemake -j2 explore; copy results/paper/explore.html to docs"
-    parts = [PACKAGE / "show/page" / name for name in (*PROGRAM, "page.css")]
-    assert all(part.read_text("utf-8") in text for part in parts), again
+    parts = [text_of(f"page/{name}") for name in (*PROGRAM, "explore.css")]
+    assert all(part in text for part in parts) and len(text) < 3_000_000, again
     data = data_in(PACKAGE.parents[1] / "docs/explore.html")
     assert data["scale"] == "paper" and len(data["experiments"]) == 6
     assert {one["theory"] for one in data["experiments"]} == THEORIES, again

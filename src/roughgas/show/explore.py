@@ -4,20 +4,14 @@ Numbers of points are those of the reduced dataset, to the last bit; curves and 
 are only looked at, are rounded.
 """
 
-import base64
-import gzip
-import json
 import math
 from collections.abc import Iterable
-from html import escape
 from pathlib import Path
-from string import Template
 from typing import Any
 
 import numpy as np
 
 from roughgas.base.errors import InputError
-from roughgas.base.files import write_text
 from roughgas.base.layout import from_json
 from roughgas.base.sources import PACKAGE
 from roughgas.config.reading import read_yaml
@@ -25,14 +19,12 @@ from roughgas.data.opening import POINT, attributes_of, opened, require
 from roughgas.data.point import read_point
 from roughgas.data.reduced import EQUILIBRATED, particles_of, read_reduced, third_axis
 from roughgas.data.variables import CLOCKS
-from roughgas.show.page.policy import policy
+from roughgas.show import pages
 from roughgas.show.style import LOOKS
 from roughgas.statistics.errors import block_means
 from roughgas.theory.prediction import equation_of, predicted_ratio
 
-# Plotly's names of the figures' markers and lines
-SYMBOLS = {"o": "circle", "s": "square", "^": "triangle-up", "D": "diamond", "v": "triangle-down"}
-DASHES = {"-": "solid", "--": "dash", "-.": "dashdot", "(0, (9, 2))": "longdash"}
+DASHES: dict[Any, list[int]] = {"-": [0], "--": [6, 4], "-.": [6, 3, 1, 3]}  # in pixels
 NUMBERS = {
     "R": "R",
     "stderr": "R_stderr",
@@ -44,10 +36,10 @@ NUMBERS = {
 """What is shown of a point: its name in the page, and in the reduced dataset."""
 GRID = -np.cos(np.linspace(0.0, np.pi, 241))
 """Roughness at which theory is drawn as a curve, closest where it is steepest: at the ends."""
-PROGRAM = ("choice.js", "picture.js", "drawing.js", "page.js")
+PROGRAM = ("uplot/uPlot.iife.min.js", "picture.js", "plots.js", "explore.js")
 LONGEST, LEAST = 200, 40
 """The most values that are shown of a time series, and the fewest where there are many points."""
-PLACES = 22_000
+PLACES = 60_000
 """Values of all time series together, about: with them the page has less than 3 MB."""
 DIGITS = 5
 
@@ -64,8 +56,6 @@ def write_page(
     default the package's own) describes them. Raises InputError where a point is missing, where
     nothing spins, and for several scales at once.
     """
-    from plotly.offline import get_plotlyjs
-
     known = read_yaml(config or PACKAGE / "config.yaml")["experiments"]
     paths = list(reduced)
     number = sum(int((read_reduced(path).n_seeds > 0).sum()) for path in paths)
@@ -78,29 +68,18 @@ def write_page(
     if len(scales) != 1:
         raise InputError("scale of the datasets", " and ".join(scales) or "none", "be one")
     looks = [
-        {
-            "colour": look.colour,
-            "symbol": SYMBOLS[look.marker],
-            "dash": DASHES.get(str(look.line), "longdashdot"),
-        }
-        for look in LOOKS
+        {"colour": one.colour, "symbol": one.marker, "dash": DASHES.get(one.line) or one.line[1]}
+        for one in LOOKS
     ]
     data = {"scale": scales[0], "grid": rounded(GRID), "looks": looks, "experiments": experiments}
-    # within a script, `<` could end it, or begin a comment
-    text = json.dumps(data, separators=(",", ":"), allow_nan=False).replace("<", r"\u003c")
-    program, plotly = "".join(map(_text, PROGRAM)), get_plotlyjs()
-    parts = {"css": _text("page.css"), "program": program, "plotly": _packed(plotly)}
-    parts |= {"policy": policy(plotly, program), "scale": escape(scales[0]), "data": text}
-    write_text(output, Template(_text("page.html")).substitute(parts))
-
-
-def _text(name):
-    return Path(__file__).with_name(name).read_text("utf-8")
-
-
-def _packed(program):
-    """Return a program in 40 % of its size, which any browser unpacks."""
-    return base64.b64encode(gzip.compress(program.encode(), mtime=0)).decode("ascii")
+    pages.write_page(
+        output,
+        "page/explore.html",
+        ["page/uplot/uPlot.min.css", "page/explore.css"],
+        [pages.text_of(f"page/{name}") for name in PROGRAM],
+        scale=scales[0],
+        data=pages.markup(pages.data_of(data)),
+    )
 
 
 def experiment(reduced_path: str | Path, points: Path, longest: int = LONGEST) -> dict[str, Any]:

@@ -1,0 +1,182 @@
+"""Pages of HTML that load nothing: documents, and the report's front page.
+
+Templates (Jinja2), style sheets and programs are in page/ and living/. Whatever text gets into a
+page from a file stays text, and its content security policy lets it run no program but its own.
+"""
+
+import base64
+import hashlib
+import json
+from collections.abc import Iterable
+from html import escape
+from itertools import takewhile
+from pathlib import Path
+from typing import Any
+from urllib.parse import unquote
+
+from roughgas.base.errors import InputError, not_one_of
+from roughgas.base.files import write_text
+from roughgas.show.catalogue import FIGURES
+
+HERE = Path(__file__).parent
+POLICY = {
+    "default-src": "'none'",
+    "style-src": "'unsafe-inline'",
+    "img-src": "data: blob:",
+    "media-src": "data:",
+    "base-uri": "'none'",
+    "form-action": "'none'",
+}
+
+
+def write_page(
+    output: str | Path, template: str, css: Iterable[str], scripts: Iterable[str] = (), **parts: Any
+) -> None:
+    """Write a page: a template with the text of style sheets, programs, and other parts.
+
+    `template` and `css` are names of files. Parts that are no Markup are escaped.
+    """
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+    scripts = list(scripts)
+    environment = Environment(
+        loader=FileSystemLoader(HERE),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        keep_trailing_newline=True,
+    )
+    parts |= {"policy": markup(policy(*scripts)), "css": markup("".join(map(text_of, css)))}
+    shown = environment.get_template(template).render(scripts=list(map(markup, scripts)), **parts)
+    write_text(output, shown)
+
+
+def text_of(name: str) -> str:
+    """Return the text of a file beside this one, such as "page/front.css"."""
+    return (HERE / name).read_text("utf-8")
+
+
+def markup(text: str) -> Any:
+    """Return text that is HTML already."""
+    from markupsafe import Markup
+
+    return Markup(text)
+
+
+def policy(*scripts: str) -> str:
+    """Return the policy of a page with these inline scripts, each the text between its tags."""
+    digests = (hashlib.sha256(script.encode()).digest() for script in scripts)
+    known = " ".join(f"'sha256-{base64.b64encode(one).decode()}'" for one in digests)
+    rules = POLICY | ({"script-src": known} if known else {})
+    return "; ".join(f"{what} {whence}" for what, whence in rules.items())
+
+
+def data_of(content: Any) -> str:
+    """Return JSON for a script: `<` could end it, or begin a comment."""
+    text = json.dumps(content, separators=(",", ":"), allow_nan=False)
+    return text.replace("<", r"\u003c")
+
+
+# ---------------------------------------------------------------- documents
+
+
+def write_document(source: str | Path, output: str | Path) -> None:
+    """Write a table, a configuration or a movie as one page, which Snakemake's report shows.
+
+    Raises InputError for a kind of file that KINDS does not have, and where a text is none.
+    """
+    source = Path(source)
+    if source.suffix not in KINDS:
+        raise InputError("document", source, f"end in one of {', '.join(KINDS)}")
+    try:
+        content = source.read_bytes()
+        if source.suffix == ".md":
+            body = markdown_as_html(content, source.parent)
+        else:
+            body = KINDS[source.suffix](content)
+    except UnicodeDecodeError as error:
+        raise InputError("document", source, "be text in UTF-8") from error
+    parts = {"title": source.name, "body": markup(body)}
+    write_page(output, "page/document.html", ["page/document.css"], **parts)
+
+
+def markdown_as_html(content: bytes, folder: Path | None = None) -> str:
+    """Return Markdown as HTML; what is HTML in it stays text.
+
+    Pictures that are files in `folder`, or below it, become part of the page: it loads nothing.
+    """
+    from markdown_it import MarkdownIt
+
+    markdown = MarkdownIt("commonmark", {"html": False}).enable("table")
+    tokens = markdown.parse(content.decode("utf-8"))
+    for one in (child for token in tokens for child in token.children or ()):
+        if one.type == "image" and folder is not None:
+            one.attrSet("src", _picture(str(one.attrGet("src")), folder))
+    return markdown.renderer.render(tokens, markdown.options, {})
+
+
+def _picture(source: str, folder: Path) -> str:
+    """Return a picture as a data URI where it is a file in the folder; else its source as it is."""
+    path = Path(folder, unquote(source)).resolve()
+    kind = PICTURES.get(path.suffix)
+    if kind is None or not path.is_relative_to(folder.resolve()) or not path.is_file():
+        return source
+    return f"data:image/{kind};base64,{base64.b64encode(path.read_bytes()).decode('ascii')}"
+
+
+PICTURES = {".png": "png", ".gif": "gif", ".jpg": "jpeg", ".jpeg": "jpeg", ".svg": "svg+xml"}
+MOVIE = '<video controls loop muted autoplay src="data:video/mp4;base64,{}"></video>'
+PICTURE = '<img alt="" src="data:image/gif;base64,{}">'
+KINDS = {
+    ".md": markdown_as_html,
+    ".yaml": lambda content: f"<pre>{escape(content.decode('utf-8'))}</pre>",
+    ".mp4": lambda content: MOVIE.format(base64.b64encode(content).decode("ascii")),
+    ".gif": lambda content: PICTURE.format(base64.b64encode(content).decode("ascii")),
+}
+"""How the content (bytes) of a file becomes HTML, by its suffix."""
+
+
+# ---------------------------------------------------------------- the report's front page
+
+
+def write_front(
+    claims: str | Path,
+    figures: Iterable[str | Path],
+    captions: Iterable[str | Path],
+    output: str | Path,
+) -> None:
+    """Write one page of pictures (.png), their captions beside them, and claims (.md).
+
+    A picture's caption is the .rst file of its name; both know the catalogue's figures. Raises
+    InputError for a figure that the catalogue does not have, or that has no caption.
+    """
+    texts = {Path(one).stem: Path(one).read_text("utf-8") for one in captions}
+    shown = [_figure(Path(one), texts) for one in figures]
+    verdicts = markdown_as_html(_table_first(Path(claims).read_text("utf-8")).encode())
+    parts = {"figures": shown, "claims": markup(verdicts)}
+    write_page(output, "page/front.html", ["page/front.css"], **parts)
+
+
+def _table_first(text):
+    """Return Markdown with its first table right after its first line, the title."""
+    title, *lines = text.splitlines()
+    first = next((k for k, line in enumerate(lines) if line.startswith("|")), 0)
+    rows = list(takewhile(lambda line: line.startswith("|"), lines[first:]))
+    rest = lines[:first] + lines[first + len(rows) :]
+    return "\n".join([title, "", *rows, "", *rest])
+
+
+def _figure(path: Path, texts: dict[str, str]) -> dict[str, Any]:
+    name = path.stem
+    if name not in FIGURES:
+        raise not_one_of("figure", name, FIGURES)
+    if name not in texts:
+        raise InputError("captions", ", ".join(texts), f"have one of {name}")
+    title, text = FIGURES[name].title, texts[name]
+    return {
+        "name": name,
+        "title": title,
+        "picture": base64.b64encode(path.read_bytes()).decode("ascii"),
+        "alt": f"{title}. {' '.join(text.partition('**')[0].split())}",
+        "caption": markup(markdown_as_html(text.encode())),
+    }
