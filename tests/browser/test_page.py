@@ -236,7 +236,7 @@ def test_it_is_dark_where_that_is_asked_for_and_white_on_paper(page):
     try:
         page.wait(lambda: paper() == "#16181c")
         page.script("dispatchEvent(new Event('beforeprint'))")
-        page.wait(lambda: paper() == "#ffffff")
+        page.wait(lambda: paper() == "#fff")
         page.script("dispatchEvent(new Event('afterprint'))")
         page.wait(lambda: paper() == "#16181c")
         page.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})

@@ -44,7 +44,6 @@ function choose(choice) {
   if (decodeURIComponent(location.hash) !== hash) history.replaceState(null, "", hash);
   showSelects();
   showNumbers();
-  showCommands();
   draw();
 }
 
@@ -134,9 +133,6 @@ function showNumbers() {
     row.insertCell().textContent = value;
     return row;
   }));
-}
-
-function showCommands() {
   at("target").textContent = `snakemake -j1 --force ${chosen.point.target}`;
   at("command").textContent = chosen.point.command;
 }

@@ -1,23 +1,20 @@
 // Plots by uPlot: R and R minus theory over beta, or over the third axis of a sweep; R and energies over time.
 // uPlot has axes, curves, zoom and the values under the cursor; points with their error bars are drawn here.
 
-const TONES = { ink: ["#222222", "#e8e8e8"], grey: ["#555555", "#b0b0b0"], grid: ["#eeeeee", "#333840"],
-  paper: ["#ffffff", "#16181c"], window: ["#f0f0f0", "#2a2e36"] };
 const BRIGHTER = { "#0072B2": "#56B4E9", "#D55E00": "#ff8a4c", "#009E73": "#2bc79a" };
 const CLOCKS = { time: "time in T", collisions_per_particle: "collisions per particle" };
 const CORNERS = { s: [[-0.9, -0.9], [0.9, -0.9], [0.9, 0.9], [-0.9, 0.9]], D: [[-1.2, 0], [0, -1.2], [1.2, 0], [0, 1.2]],
   "^": [[0, -1.2], [1.1, 0.8], [-1.1, 0.8]], v: [[0, 1.2], [1.1, -0.8], [-1.1, -0.8]] };
 const SIGNS = { o: "●", s: "■", D: "◆", "^": "▲", v: "▼" };
-const FONT = "13px system-ui, DejaVu Sans, sans-serif", NARROW = 640; // px on paper
+const FONT = "13px system-ui, DejaVu Sans, sans-serif";
 const PLOTS = {};
-let over = "beta", onPaper = false;
+let over = "beta";
 
-const dark = () => !onPaper && matchMedia("(prefers-color-scheme: dark)").matches;
-const tone = name => TONES[name][Number(dark())];
+const tone = name => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`);
 
 function lookOf(index) {
   const look = DATA.looks[index % DATA.looks.length];
-  return { ...look, colour: dark() ? BRIGHTER[look.colour] ?? look.colour : look.colour };
+  return { ...look, colour: tone("paper") === "#fff" ? look.colour : BRIGHTER[look.colour] ?? look.colour };
 }
 
 function tick(value) {
@@ -33,23 +30,19 @@ function decades(u, _, low, high) {
   return Array.from({ length: Math.floor((last - first) / step) + 1 }, (_, k) => 10 ** (first + k * step));
 }
 
-function plot(id, { height, x, y, series, data, hooks = {}, legend = false, sync }) {
-  PLOTS[id]?.destroy();
+// A plot takes the place of an earlier one, and keeps its zoom if it shows the `same`.
+function plot(id, { height, x, y, series, data, hooks, legend = false, sync, same }) {
+  const before = PLOTS[id], zoomed = before?.same === same ? before.scales : {};
+  before?.destroy();
   const axis = more => ({ stroke: tone("ink"), font: FONT, labelFont: FONT, grid: { stroke: tone("grid"), width: 1 }, labelSize: 22,
     ticks: { stroke: tone("ink"), width: 1, size: 5 }, values: (u, splits) => splits.map(tick), ...more });
-  const frame = u => {
-    const { left, top, width, height: high } = u.bbox;
-    u.ctx.setLineDash([]);
-    Object.assign(u.ctx, { strokeStyle: tone("ink"), lineWidth: uPlot.pxRatio });
-    u.ctx.strokeRect(left, top, width, high);
-  };
   PLOTS[id] = new uPlot({
-    width: onPaper ? NARROW : at(id).clientWidth, height, series, padding: [8, 12, 0, 0], legend: { show: legend },
+    width: at(id).clientWidth, height, series, hooks, padding: [8, 12, 0, 0], legend: { show: legend },
     scales: { x: { time: false, ...x.scale }, y: y.scale ?? {} }, axes: [axis({ size: 30, ...x.axis }), axis({ size: 62, ...y.axis })],
     cursor: { sync: { key: sync, scales: ["x", null] }, drag: { x: true, y: true, uni: 40 }, points: { show: legend } },
-    hooks: { ...hooks, drawAxes: [frame] },
   }, data, at(id));
-  return PLOTS[id];
+  for (const name of ["x", "y"]) if (zoomed[name]) PLOTS[id].setScale(name, zoomed[name]);
+  return Object.assign(PLOTS[id], { same });
 }
 
 function draw() {
@@ -59,7 +52,7 @@ function draw() {
 
 // Paper is white, and no wider than it is.
 function turnToPaper(begins) {
-  onPaper = begins;
+  document.documentElement.classList.toggle("on-paper", begins);
   draw();
 }
 
@@ -106,7 +99,7 @@ function drawPoint(u, look, size, x, y, half, point) {
   ctx.fill(), ctx.stroke();
   ctx.fillStyle = look.colour;
   if (point.steady === null) mark(u, { symbol: "o" }, x, y, 1.5 * px), ctx.fill();
-  Object.assign(ctx, { strokeStyle: tone("grey"), lineWidth: 1.2 * px });
+  Object.assign(ctx, { strokeStyle: tone("soft"), lineWidth: 1.2 * px });
   if (point.contact_time) mark(u, { symbol: "o" }, x, y, 8 * px), ctx.stroke();
   Object.assign(ctx, { strokeStyle: tone("ink"), lineWidth: 2 * px });
   if (point === chosen.point) ctx.strokeRect(x - 10 * px, y - 10 * px, 20 * px, 20 * px);
@@ -157,15 +150,16 @@ function horizontal(rows) {
   if (over === "beta" || experiment.variants.length < 2) return { label: "roughness β", scale: { range: padded([-1, 1]) } };
   const named = experiment.variants.map(one => level(experiment, one)), words = named.some(one => Number.isNaN(Number(one)));
   const wide = !words && values.every(one => one > 0) && Math.max(...values) > 30 * Math.min(...values);
-  const scale = { distr: wide ? 3 : 1, range: wide ? (u, low, high) => [low / 1.3, high * 1.3] : padded(values) };
+  const scale = { distr: wide ? 3 : 1, range: padded(values, wide) };
   const axis = words ? { splits: named.map((_, index) => index), values: () => named } : {};
   return { label: parameterOf(experiment), scale, axis };
 }
 
 // All values and a margin; what is zoomed to as it is.
-function padded(values) {
+function padded(values, wide) {
   const [first, last] = [Math.min(...values), Math.max(...values)], margin = 0.05 * (last - first || 1);
-  return (u, low, high) => (low > first || high < last ? [low, high] : [first - margin, last + margin]);
+  const all = wide ? [first / 1.3, last * 1.3] : [first - margin, last + margin];
+  return (u, low, high) => (low > first || high < last ? [low, high] : all);
 }
 
 function drawRatios() {
@@ -177,10 +171,11 @@ function drawRatios() {
   const bounds = valueOf => rows.flatMap(row => [-1, 1].map(sign => column(row.places.map(({ x, choice: { point } }) =>
     [x, valueOf(point) === null ? null : valueOf(point) + sign * (point.stderr ?? 0)]))));
   const hidden = data => data.map(() => ({ paths: () => null, points: { show: false } }));
+  const same = `${chosen.experiment.name} ${over} ${over === "beta" ? chosen.variant.name : chosen.series.r}`;
   const curve = (stroke, dash) => ({ stroke, dash, width: 1.3, spanGaps: true, pxAlign: 0, points: { show: false } });
   const draws = (id, valueOf, lines, more) => {
     const ranges = bounds(valueOf);
-    const u = plot(id, { ...more, data: [xs, ...lines.map(line => line.data), ...ranges], sync: "ratios",
+    const u = plot(id, { ...more, same, data: [xs, ...lines.map(line => line.data), ...ranges], sync: "ratios",
       series: [{}, ...lines, ...hidden(ranges)], hooks: { draw: [u => drawPoints(u, rows, valueOf)] } });
     listenTo(u, rows, valueOf);
   };
@@ -201,7 +196,7 @@ function drawRatios() {
 // ---------------------------------------------------------------- R over time
 
 function drawOverTime() {
-  const { over_time: series, R } = chosen.point, px = uPlot.pxRatio, cooling = series.clock === "collisions_per_particle";
+  const { over_time: series, R } = chosen.point, same = pathOf(chosen), cooling = series.clock === "collisions_per_particle";
   const line = (label, index) => ({ label, stroke: lookOf(index).colour, dash: lookOf(index).dash, width: 1.3, pxAlign: 0, points: { show: false },
     value: (u, value) => (value === null || value === undefined ? "" : minus(value.toPrecision(4))) });
   const shade = u => {
@@ -211,20 +206,14 @@ function drawOverTime() {
     u.ctx.fillStyle = tone("window");
     if (right > left) u.ctx.fillRect(left, top, right - left, height);
   };
-  const mean = u => {
-    const { left, top, width, height } = u.bbox, y = u.valToPos(R, "y", true);
-    if (y < top || y > top + height) return;
-    Object.assign(u.ctx, { strokeStyle: tone("grey"), lineWidth: px });
-    u.ctx.setLineDash([2 * px, 3 * px]), u.ctx.beginPath();
-    u.ctx.moveTo(left, y), u.ctx.lineTo(left + width, y), u.ctx.stroke(), u.ctx.setLineDash([]);
-  };
-  const shared = { legend: true, sync: "over-time" }, label = CLOCKS[series.clock];
+  const mean = { ...line("R of all seeds", 0), stroke: tone("soft"), dash: [2, 3] };
+  const shared = { legend: true, sync: "over-time", same, hooks: { drawClear: [shade] } }, label = CLOCKS[series.clock];
   const clock = { label, value: (u, value) => (value === null || value === undefined ? "" : value.toPrecision(4)) };
-  plot("over-time", { ...shared, height: 190, x: {}, y: { axis: { label: "R" } }, data: [series.at, series.R],
-    series: [clock, line("R", 0)], hooks: { drawClear: [shade], draw: [mean] } });
+  plot("over-time", { ...shared, height: 190, x: {}, y: { axis: { label: "R" } }, data: [series.at, series.R, series.at.map(() => R)],
+    series: [clock, line("R", 0), mean] });
   const energies = [series.E_trans, series.E_rot].map(values => values.map(one => (cooling && !(one > 0) ? null : one)));
   const many = Math.max(...energies[0]) > 1e5 * Math.min(...energies[0].filter(one => one !== null));
-  plot("energies", { ...shared, height: 200, x: { axis: { label } }, data: [series.at, ...energies], hooks: { drawClear: [shade] },
+  plot("energies", { ...shared, height: 200, x: { axis: { label } }, data: [series.at, ...energies],
     y: { scale: cooling ? { distr: 3 } : { range: (u, low, high) => [Math.min(low, 0), 1.05 * high || 1] },
       axis: { label: "energy", ...(cooling && many ? { splits: decades, filter: (u, splits) => splits } : {}) } },
     series: [clock, line("E_trans", 1), line("E_rot", 2)] });
