@@ -186,8 +186,8 @@ def code_of(*modules, alone=(), settings=None):
     "simulation.point", and of all that they import. Of those in `alone` their imports do not count.
     Files count that settings name which the function `settings` returns as JSON.
 
-    As a param it makes Snakemake redo what an edit may change. Lists of files would rerun after an
-    edit of a comment, and at every step the scheduler looks at every input of every job.
+    As a param it makes Snakemake redo what an edit may change. With lists of files as inputs the
+    scheduler would look at every file for every job, at every step.
     """
 
     def code(wildcards):

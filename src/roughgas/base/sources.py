@@ -1,28 +1,31 @@
 """Which code a result depends on: that of the modules it uses, and of all that these import.
 
-The workflow makes a result again when the hash of this code changes. Comments, docstrings and
-layout do not count; a file of the same name, such as schema.yaml beside schema.py, does.
+The workflow makes a result again when the hash of this code changes. A file of the same name, such
+as schema.yaml beside schema.py, counts, and so do the versions of roughgas and numba.
 """
 
 import ast
 import functools
 import hashlib
 from collections.abc import Iterable, Iterator
+from importlib import metadata
 from pathlib import Path
-from typing import Any
 
+from roughgas.base.version import __version__
+
+VERSIONS = f"roughgas {__version__} numba {metadata.version('numba')}\n"
 PACKAGE = Path(__file__).resolve().parent.parent
 BLOCKS = ("body", "handlers", "orelse", "finalbody", "cases")
 """What holds the statements within a statement, imports among them."""
 
 
 def code_of(*modules: str, alone: Iterable[str] = ()) -> str:
-    """Return a hash of the code of modules, such as "simulation.point", and of all they import.
+    """Return a hash of modules as they are, such as "simulation.point", and of all they import.
 
     Of modules in `alone` the imports do not count. Raises FileNotFoundError for an unknown one.
     """
     names = sorted(closure(*modules).union(alone))
-    text = "".join(f"{name} {_read(name)[0]}\n" for name in names)
+    text = VERSIONS + "".join(f"{name} {_read(name)[0]}\n" for name in names)
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
@@ -45,10 +48,9 @@ def closure(*modules: str) -> set[str]:
 
 @functools.cache
 def _read(name: str) -> tuple[str, tuple[set[str], set[str]]]:
-    """Return a hash of what a module says, and what it imports: at once, and in all."""
+    """Return a hash of a module, and what it imports: at once, and in all."""
     file = _file(name)
-    tree = ast.parse(file.read_bytes())
-    digest = hashlib.sha256(repr(_essence(tree)).encode())
+    tree, digest = ast.parse(file.read_bytes()), hashlib.sha256(file.read_bytes())
     for beside in sorted(set(file.parent.glob(f"{file.stem}.*")) - {file}):
         digest.update(beside.read_bytes())
     return digest.hexdigest(), (set(_imports(tree, False)), set(_imports(tree, True)))
@@ -72,15 +74,3 @@ def _imports(node: ast.AST, in_functions: bool) -> Iterator[str]:
     for child in (child for block in blocks for child in getattr(node, block, ())):
         if in_functions or not isinstance(child, ast.FunctionDef):
             yield from _imports(child, in_functions)
-
-
-def _essence(node: Any) -> Any:
-    """Return a syntax tree as tuples, without docstrings, line numbers and empty fields."""
-    if isinstance(node, list):
-        bare = (one.value if isinstance(one, ast.Expr) else None for one in node)
-        texts = [isinstance(getattr(value, "value", None), str) for value in bare]
-        return [_essence(one) for one, text in zip(node, texts, strict=True) if not text]
-    if not isinstance(node, ast.AST):
-        return node
-    fields = ((name, getattr(node, name, None)) for name in node._fields)
-    return type(node).__name__, [(k, _essence(v)) for k, v in fields if v not in (None, [])]
