@@ -19,7 +19,6 @@
 
 include: "rules/common.smk"
 include: "rules/messages.smk"
-include: "rules/scheduling.smk"
 
 
 # of --sdm apptainer, which gives every rule the environment that Apptainer.def builds
@@ -51,15 +50,12 @@ wildcard_constraints:
 
 
 include: "rules/report.smk"
-include: "rules/compile.smk"
 include: "rules/simulate.smk"
-include: "rules/reduce.smk"
 include: "rules/products.smk"
 include: "rules/studies.smk"
 include: "rules/showcase.smk"
 include: "rules/movies.smk"
 include: "rules/hard_cases.smk"
-include: "rules/crate.smk"
 
 
 report: "rules/captions/workflow.rst"
@@ -185,7 +181,8 @@ for name in [*catalogue.FIGURES, *config["experiments"]]:
                 drawn([name]),
 
 
-logger.addFilter(is_of_use)
+if not IS_MODULE:
+    logger.addFilter(is_of_use)
 logger.addFilter(say_what_was_meant)
 
 

@@ -1,5 +1,9 @@
-# What a person reads of a run, a line for each job that starts. `--verbose` has all of it.
+# How Snakemake starts jobs, and what a person reads of a run, a line for each job that starts;
+# `--verbose` has all of it.
 import atexit
+import re
+import sys
+from pathlib import Path
 
 from snakemake_interface_logger_plugins.common import LogEvent
 
@@ -56,3 +60,14 @@ def say_what_was_meant(record):
 def say_how_to_go_on():
     """After all that Snakemake has to say."""
     atexit.register(print, "Stopped: the same command goes on from here.", file=sys.stderr)
+
+
+def start_jobs_at_once(workflow):
+    """Take away the limit of jobs per second, whose timers take a quarter of all CPU in a long run.
+
+    Each pass of the scheduler starts a timer that starts another pass, and these chains never end
+    (Snakemake's issue 2354, its pull request 3744); no setting turns the limit off. It is kept where
+    jobs go to a cluster, for which it was made.
+    """
+    if workflow.local_exec:
+        workflow.scheduler.job_rate_limiter = None

@@ -96,6 +96,7 @@ rule figure:
         "logs/figures/{folder}{figure}.log",
     params:
         code=code_of_figure,
+        caption=caption_of_figure,
         experiments=experiments_of_figure,
     message:
         "draw {wildcards.folder}{wildcards.figure}"

@@ -1,5 +1,6 @@
 # What `snakemake --report` shows, and under which headings: the catalogue of figures says so. Captions
 # are in captions/; those of figures add the parameters of this run.
+from roughgas.results.crate import project_files
 
 OF_DOCUMENTS = ("base.html", "document.html", "document.css")
 OF_FRONT = ("base.html", "front.html", "front.css")
@@ -45,6 +46,13 @@ def caption_of_document(wildcards, output):
     """Made from the output and therefore not recorded, like the settings below: a new caption is no
     reason to write the page again."""
     return entry_of(wildcards).caption
+
+
+def caption_of_figure(wildcards, output):
+    """The text of captions/NAME.rst, which lies beside the Snakefile, wherever that is."""
+    name = wildcards.get("figure") or wildcards.study_figure
+    with one_line():
+        return (SOURCE / f"rules/captions/{name}.rst").read_text("utf-8")
 
 
 def experiments_of_figure(wildcards, output):
@@ -150,3 +158,35 @@ rule effective_config:
     shell:
         "python -P -m roughgas.steps effective_config {input.file:q} --scale {wildcards.scale:q}"
         " --changes {params.changes:q} --output {output:q} > {log:q} 2>&1"
+
+
+def data_of_run(wildcards):
+    return reduced(SCALE, catalogue.shown_in("paper"))
+
+
+def files_of_project(wildcards):
+    """What a crate packs besides results; ends the workflow where that is in another folder."""
+    with one_line():
+        if SOURCE != Path():
+            raise InputError("folder", os.getcwd(), f"be {SOURCE.resolve()}, which a crate packs")
+    return of_project(*project_files())
+
+
+rule crate:
+    input:
+        files_of_project,
+        data=data_of_run,
+        tables=multiext(f"results/{SCALE}/", "R.csv", "claims.json", "claims.md"),
+        figures=drawn(catalogue.figures_of("paper")),
+    output:
+        f"results/{SCALE}/crate.zip",
+    log:
+        f"logs/{SCALE}/crate.log",
+    params:
+        code=code_of("results.crate"),
+        configuration=roughgas.config.as_text(config),
+    message:
+        "pack the run into {output}"
+    shell:
+        "roughgas crate {input.data:q} {input.tables:q} {input.figures:q} --output {output:q}"
+        " --configuration {params.configuration:q} > {log:q} 2>&1"

@@ -1,4 +1,5 @@
-# From an experiment's settings to its points. Of the sweep, `seeds_per_job` seeds at `betas_per_job`
+# Kernels, points, reduced datasets. The kernels of an experiment are compiled before its points are
+# run. From an experiment's settings to its points. Of the sweep, `seeds_per_job` seeds at `betas_per_job`
 # values of beta are made by one job (see config.yaml); any other point is a job of its own.
 SIMULATING = ("simulation.point", "data.point")
 RECORDING = (
@@ -7,6 +8,65 @@ RECORDING = (
     "config.labels",
     "config.provenance",
 )  # these hand on and write down
+
+
+def kernel_of_point(wildcards):
+    """The file that says that the kernel of a point is compiled; ends the workflow for an illegal
+    point."""
+    with one_line(f"results/{wildcards.scale}/{wildcards.experiment}"):
+        roughgas.config.restitution(wildcards.r)
+        if "beta" in wildcards.keys():
+            roughgas.config.roughness(wildcards.beta)
+        if "seed" in wildcards.keys():
+            roughgas.config.seed(wildcards.seed)
+        found = settings(wildcards.scale, wildcards.experiment)
+        roughgas.config.check_one_variant(wildcards.experiment, found)
+    experiment, _, _ = wildcards.experiment.partition("/")
+    return KERNEL.format(scale=wildcards.scale, experiment=experiment, r=wildcards.r)
+
+
+def kinds_of_kernels(wildcards):
+    """Which kernels the variants in the sweep of an experiment need at some r."""
+    from roughgas.simulation.point import kernels
+
+    found = settings(wildcards.scale, wildcards.experiment)
+    every = roughgas.config.every_variant(wildcards.experiment, found).values()
+    with one_line(KERNEL.format(**wildcards)):
+        r = roughgas.config.restitution(wildcards.r)
+    return sorted(map(str, kernels([one | {"sweep": {"r": [r]}} for one in every])))
+
+
+def settings_of_kernels(wildcards, output):
+    """The settings to compile, as JSON. Snakemake does not record params that are made from the
+    output: of these settings only the kinds of kernels count."""
+    found = settings(wildcards.scale, wildcards.experiment)
+    return roughgas.config.as_text(roughgas.config.kernel_settings(found))
+
+
+rule compile_kernel:
+    # Before the fan-out, and few at a time (see the profile); one job for all variants, since most of
+    # them run the same machine code. Its code is part of that of points: what compiles anew runs anew,
+    # and points that an interrupted run has left know by their own param that they are old.
+    output:
+        touch(KERNEL),
+    log:
+        "logs/{scale}/{experiment}/r{r}/compiled.log",
+    benchmark:
+        "logs/{scale}/{experiment}/r{r}/compiled.tsv"
+    wildcard_constraints:
+        experiment=EXPERIMENT,
+    priority: FIRST
+    resources:
+        compiling=1,
+    params:
+        code=code_of("simulation.point"),
+        kinds=kinds_of_kernels,
+        settings=settings_of_kernels,
+    message:
+        "compile the kernel of {wildcards.experiment} at r = {wildcards.r}"
+    shell:
+        "python -P -m roughgas.steps compile_kernels {wildcards.experiment:q} --r={wildcards.r:q}"
+        " --settings {params.settings:q} --checked > {log:q} 2>&1"
 
 
 def settings_of_points(wildcards):
@@ -103,3 +163,29 @@ for job, files, log_of_job, swept_values in jobs_of_points():
 
     if job != "point":
         workflow.ruleorder(job, "point")  # the statement `ruleorder:` takes no variables
+
+
+def points_of_experiment(wildcards):
+    return points(wildcards.scale, wildcards.experiment)
+
+
+rule reduce:
+    input:
+        points=points_of_experiment,
+    output:
+        REDUCED,
+    log:
+        "logs/{scale}/{experiment}/reduced.log",
+    benchmark:
+        "logs/{scale}/{experiment}/reduced.tsv"
+    wildcard_constraints:
+        experiment=EXPERIMENT,
+    # at once: while it waits, Snakemake asks the size of all these points before each job it starts
+    priority: FIRST
+    params:
+        code=code_of("results.reduce"),
+    message:
+        "reduce {wildcards.experiment}"
+    shell:
+        # a hundred thousand points are more than a command line holds
+        "printf '%s\\n' {input.points:q} | roughgas reduce - --output {output:q} > {log:q} 2>&1"

@@ -104,6 +104,7 @@ rule study_figure:
         "logs/figures/{folder}{study_figure}.log",
     params:
         code=code_of_study_figure,
+        caption=caption_of_figure,
         studies=studies_of_figure,
     message:
         "draw {wildcards.folder}{wildcards.study_figure}"

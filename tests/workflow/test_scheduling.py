@@ -25,7 +25,7 @@ onsuccess:
 
 def threads_at_the_end(folder, start):
     """Return how many threads Snakemake has after JOBS short jobs."""
-    rules = ROOT / "rules" / "scheduling.smk"
+    rules = ROOT / "rules" / "messages.smk"
     (folder / "Snakefile").write_text(
         "import sys\n" + WORKFLOW.format(rules=rules, jobs=JOBS, start=start)
     )
@@ -40,5 +40,5 @@ def test_timers_do_not_pile_up(tmp_path):
 
 @pytest.mark.slow
 def test_timers_pile_up_in_the_installed_snakemake(tmp_path):
-    """Once this fails, Snakemake has mended it: rules/scheduling.smk may go."""
+    """Once this fails, Snakemake has mended it: `start_jobs_at_once` may go."""
     assert threads_at_the_end(tmp_path, "pass") > JOBS / 2
