@@ -166,7 +166,7 @@ def test_unknown_names(paper, refusal):
     ("text", "message"),
     [
         ("scale: paper\nscale: small\n", "c.yaml: line 2 = 'scale': must be given once"),
-        ("a: &x 1\nb: &x 2\n", "c.yaml: line 2 = &x: must be given once"),
+        ("a: &x 1\nb: &x 2\n", "c.yaml = (not YAML): must be YAML: found duplicate anchor"),
         ("a: 1\n  b: 2\n", "c.yaml: line 2 = '  b: 2': must be YAML"),
         ("a: [1, 2\n", "c.yaml: line 2 = '': must be YAML"),
         ("- a\n", "c.yaml = ['a']: must hold the key experiments"),
