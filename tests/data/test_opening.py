@@ -9,8 +9,7 @@ import xarray as xr
 from roughgas.base.errors import InputError
 from roughgas.cli import main
 from roughgas.data.film import read_film
-from roughgas.data.netcdf import read_netcdf
-from roughgas.data.opening import DamagedError, opened
+from roughgas.data.netcdf import DamagedError, opened, read_netcdf
 from roughgas.data.point import read_point
 from roughgas.data.reduced import read_reduced
 from roughgas.studies.variables import read_studies

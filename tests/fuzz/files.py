@@ -11,7 +11,7 @@ from tests.entry import main
 from tests.files import write_all
 
 from roughgas.config import as_text
-from roughgas.data.opening import SEAL
+from roughgas.data.netcdf import SEAL
 
 VALUES = [3, -0.5, 1e300, float("nan"), "x", "", "{}", "[]", "null", "a.b", "é", "\n", [1, 2], []]
 TEXTS = [

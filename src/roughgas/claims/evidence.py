@@ -7,8 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from roughgas.data.netcdf import read_groups
-from roughgas.data.opening import REDUCED, STUDIES, kind_of, opened
+from roughgas.data.netcdf import REDUCED, STUDIES, kind_of, opened, read_groups
 from roughgas.data.reduced import EQUILIBRATED, GRID, read_reduced
 from roughgas.statistics.errors import Estimate, sum_error
 from roughgas.theory.arguments import NET_SHARE

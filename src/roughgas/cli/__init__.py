@@ -148,7 +148,7 @@ def _foreign(options: argparse.Namespace) -> Path | None:
 
     Whatever fails while it is read is due to what it holds; with one of ours, it would be a fault.
     """
-    from roughgas.data.opening import is_foreign
+    from roughgas.data.netcdf import is_foreign
 
     names = ("inputs", "input", "files", "points", "start_from")
     given = (getattr(options, name, None) for name in names)

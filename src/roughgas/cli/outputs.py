@@ -10,7 +10,7 @@ from roughgas.base.files import check_place
 
 INPUTS = ("inputs", "input", "files", "start_from", "config")
 FOLDER = "a folder"
-DATASETS = ("POINT", "REDUCED")  # as roughgas.data.opening has them
+DATASETS = ("POINT", "REDUCED")  # as roughgas.data.netcdf has them
 BEGINNINGS = {
     "a crate": rb"PK",
     ".nc": rb"\x89HDF|CDF",
@@ -62,10 +62,10 @@ def _check_kind(path: Path, kind: str) -> None:
     if not path.is_file() or not path.stat().st_size:
         return
     if kind in DATASETS:
-        from roughgas.data import opening
+        from roughgas.data import netcdf
 
-        name = getattr(opening, kind)
-        if not opening.is_of_kind(path, name):
+        name = getattr(netcdf, kind)
+        if not netcdf.is_of_kind(path, name):
             raise _another(path, name)
         return
     with path.open("rb") as file:

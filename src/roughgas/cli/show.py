@@ -19,7 +19,7 @@ from roughgas.cli.show_studies import (
     task_record,
     task_text,
 )
-from roughgas.data import opening
+from roughgas.data import netcdf
 from roughgas.data.netcdf import read_netcdf, unit_of
 from roughgas.data.reduced import EQUILIBRATED, particles_of, third_axis
 from roughgas.results.table import rows as rows_of
@@ -29,9 +29,9 @@ from roughgas.statistics.errors import NO, UNKNOWN, YES, Estimate, decimals_of
 from roughgas.theory.prediction import equation_of, ratio_of_point
 
 QUOTED = {
-    opening.POINT: ("experiment_json", "command"),
-    opening.FILM: ("settings_json", "r", "beta", "seed", "command"),
-    opening.TASK: ("settings_json",),
+    netcdf.POINT: ("experiment_json", "command"),
+    netcdf.FILM: ("settings_json", "r", "beta", "seed", "command"),
+    netcdf.TASK: ("settings_json",),
 }
 """Attributes of each kind that a summary quotes."""
 BOOKS = {"source", "motion", "energy_input", "energy_gain", "energy_imbalance"}
@@ -75,10 +75,10 @@ def _read(path: str | Path) -> tuple[str, Any]:
     """Return the kind of a file, one of KINDS, and what is in it."""
     from roughgas.studies.variables import read_studies
 
-    with opening.opened(path) as file:
-        kind = opening.kind_of(file)
-        opening.require(opening.attributes_of(file), QUOTED.get(kind or "", ()), path)
-    data = read_studies(path) if kind == opening.STUDIES else _printable(read_netcdf(path))
+    with netcdf.opened(path) as file:
+        kind = netcdf.kind_of(file)
+        netcdf.require(netcdf.attributes_of(file), QUOTED.get(kind or "", ()), path)
+    data = read_studies(path) if kind == netcdf.STUDIES else _printable(read_netcdf(path))
     return (kind or "").removeprefix("a "), data
 
 
@@ -137,7 +137,7 @@ def _film_text(film: Dataset) -> str:
 def _settings(about: Mapping[str, Any], text: str) -> list[list[str]]:
     """Return rows with what was simulated, and for how long, from attributes and settings."""
     experiment = from_json(text, "settings of the dataset")
-    opening.require(experiment, ("particles", "box", "effects"), "its settings")
+    netcdf.require(experiment, ("particles", "box", "effects"), "its settings")
     box = " x ".join(f"{side:g}" if side != "open" else "open" for side in experiment["box"])
     filled = "" if "open" in experiment["box"] else f", packing {packing(experiment):.3g}"
     effects = [f"{name} ({_listed(one)})" for name, one in experiment["effects"].items()]

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from roughgas.data import opening
+from roughgas.data import netcdf
 from roughgas.data.netcdf import Content, read_netcdf, write_netcdf
 from roughgas.data.variables import (
     ENERGY,
@@ -78,7 +78,7 @@ def read_film(path: str | Path) -> "xarray.Dataset":
 
     Raises InputError if it is something else or damaged, OSError if there is none.
     """
-    return read_netcdf(path, opening.FILM)
+    return read_netcdf(path, netcdf.FILM)
 
 
 def disks_of(film: "xarray.Dataset", frame: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

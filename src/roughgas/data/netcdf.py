@@ -1,26 +1,38 @@
 """The one writer and the one reader of netCDF files, which follow the CF conventions.
 
+A file is checked before anything is read from it: its kind, that it is whole, and that memory can
+hold it, whatever program wrote it, and whatever a disk has done to it since.
+
 Files are written with netCDF4 alone: importing xarray would double the start-up of a point's job.
 
 UDUNITS, whose units CF asks for, reads T as tesla and a as a year. A quantity in a gas's own units
 has no dimension there: its `units` are 1, and `reduced_units` says what it is a multiple of.
 """
 
-from collections.abc import Mapping, Sequence
+import errno
+import hashlib
+import math
+import os
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from roughgas.base.errors import InputError, shown
 from roughgas.base.files import whole_file
+from roughgas.base.layout import from_json
+from roughgas.base.legal import RESTITUTION, ROUGHNESS, Interval
 from roughgas.base.version import __version__
-from roughgas.data.opening import SCHEMA_VERSION, STUDIES, opened, seal
 from roughgas.data.variables import CLOCKS, Array
 
 if TYPE_CHECKING:
     import netCDF4
     import xarray
 
+SCHEMA_VERSION = 2
 COMMON_ATTRIBUTES = {
     "Conventions": "CF-1.11",
     "schema_version": SCHEMA_VERSION,
@@ -168,3 +180,184 @@ def unit_attributes(unit: str) -> dict[str, str]:
 def unit_of(attributes: Mapping[str, str]) -> str:
     """Return the unit that `unit_attributes` tell; "" for words."""
     return attributes.get("reduced_units", attributes.get("units", ""))
+
+
+SEAL = b"\nroughgas sha256 "
+LARGEST = 4e9  # bytes that a file may say it holds
+NUMBER, WHOLE, WORD, JSON = "a number", "a whole number", "text", "a JSON object"
+ATTRIBUTES = {
+    "schema_version": WHOLE,
+    **dict.fromkeys(("seed", "dimension", "particles"), WHOLE),
+    **dict.fromkeys(("r", "beta", "inertia", "spin_share", "mu", "packing", "r_at_speed"), NUMBER),
+    **dict.fromkeys(("experiment", "scale", "r_label", "beta_label", "command", "swept"), WORD),
+    **dict.fromkeys(("variant", "theory", "study", "task"), WORD),
+    **dict.fromkeys(("experiment_json", "settings_json", "species_json"), JSON),
+}
+"""What the attributes that are read must be, where they are there."""
+LEGAL = {
+    "r": RESTITUTION,
+    "beta": ROUGHNESS,
+    "seed": Interval("[0, inf)"),
+    "dimension": Interval("[2, 3]"),
+    "particles": Interval("[1, inf)"),
+    "inertia": Interval("(0, 1]"),
+    "spin_share": Interval("[0, 1]"),
+    "mu": Interval("[0, inf)"),
+    "packing": Interval("[0, 1]"),
+}
+"""Which of these numbers are legal."""
+
+
+class Kind(NamedTuple):
+    """What a file of a kind has at least."""
+
+    attributes: frozenset[str]
+    variables: frozenset[str]
+
+
+POINT, REDUCED, FILM = "a point", "a reduced dataset", "a film of a cooling gas"
+TASK, STUDIES = "a task of a study", "a dataset of studies"
+SWEPT = re.compile(r"(\w+\.)*\w+")
+KINDS = {
+    TASK: Kind(frozenset({"study", "task"}), frozenset()),
+    FILM: Kind(frozenset(), frozenset({"disks", "disk_spin", "R"})),
+    REDUCED: Kind(
+        frozenset({"experiment", "scale", "dimension", "particles"}),
+        frozenset({"r", "beta", "n_seeds", "E_trans", "equilibrated"}),
+    ),
+    POINT: Kind(
+        frozenset({"experiment", "scale", "r", "beta", "seed", "dimension", "particles"}),
+        frozenset({"E_trans", "collisions", "kernel_seconds", "equilibrated"}),
+    ),
+}
+"""The kinds of files without groups, the first one that fits being meant."""
+
+
+class DamagedError(InputError):
+    """A file that does not hold what was once written to it."""
+
+
+@contextmanager
+def opened(path: str | Path, *kinds: str) -> Iterator["netCDF4.Dataset"]:
+    """Open the netCDF file at `path`, of one of `kinds` (by default any), to read.
+
+    Raises InputError for files of other programs, of other kinds and of newer schemas, and for
+    files that claim to be larger than LARGEST; DamagedError where the checksum is not that of the
+    contents; OSError where there is no file.
+    """
+    import netCDF4
+
+    if not Path(path).exists():
+        raise FileNotFoundError(errno.ENOENT, _absence(Path(path)), str(path))
+    if not Path(path).is_file():  # a pipe would be waited for
+        raise InputError("file", path, "be a file")
+    if not is_whole(path):
+        raise DamagedError("file", path, "be what was written to it: it is damaged")
+    try:
+        file = netCDF4.Dataset(path)
+    except (OSError, RuntimeError, UnicodeError) as error:
+        legal = "be a dataset of roughgas: it is of another program, or cut off, or damaged"
+        raise DamagedError("file", path, legal) from error
+    with file:
+        _check_attributes(file, path)
+        _check_size(file, path)
+        if (found := kind_of(file)) not in (kinds or (*KINDS, STUDIES)):
+            wanted = " or ".join(kinds) or "a dataset of roughgas"
+            other = f", not {found}" if found else ""
+            raise InputError("file", path, f"be {wanted}{other}")
+        yield file
+
+
+def _absence(path: Path) -> str:
+    """Return why there is no file, and which command makes it if it is a result of the workflow."""
+    why = os.strerror(errno.ENOENT)
+    made = path.parts[:1] == ("results",) and path.suffix == ".nc"
+    return f"{why}; to make it: snakemake -j2 {path}" if made else why
+
+
+def is_of_kind(path: str | Path, kind: str) -> bool:
+    """Return whether the file at `path` is a dataset of roughgas of this kind, whole."""
+    try:
+        with opened(path, kind):
+            return True
+    except InputError:
+        return False
+
+
+def kind_of(file: "netCDF4.Dataset") -> str | None:
+    """Return the kind of an open file; None if it is of none."""
+    if file.groups:
+        return STUDIES
+    # a number of particles that is swept is a dimension
+    attributes, variables = {*file.ncattrs(), *file.dimensions}, set(file.variables)
+    fits = (k for k, one in KINDS.items() if attributes >= one[0] and variables >= one[1])
+    return next(fits, None)
+
+
+def attributes_of(file: "netCDF4.Dataset") -> dict[str, Any]:
+    """Return the global attributes of an open file."""
+    return {name: file.getncattr(name) for name in file.ncattrs()}
+
+
+def seal(path: str | Path) -> None:
+    """Append the checksum of a finished file to it.
+
+    HDF5 ignores what follows its end. What another program writes anew has no seal, and is read.
+    """
+    with Path(path).open("r+b") as file:
+        digest = hashlib.file_digest(file, "sha256").hexdigest()
+        file.write(SEAL + digest.encode())
+
+
+def is_whole(path: str | Path) -> bool:
+    """Return whether a file is what was sealed; True if it has no seal."""
+    content = Path(path).read_bytes()
+    rest, mark, stated = content.rpartition(SEAL)
+    return not mark or stated == hashlib.sha256(rest).hexdigest().encode()
+
+
+def is_foreign(path: str | Path) -> bool:
+    """Return whether a file is netCDF or JSON, but not as roughgas has written it to the end."""
+    with Path(path).open("rb") as file:
+        begins = file.read(4).startswith((b"\x89HDF", b"CDF")) or Path(path).suffix == ".json"
+        file.seek(max(0, file.seek(0, os.SEEK_END) - len(SEAL) - 64))
+        return begins and not file.read().startswith(SEAL)
+
+
+def require(attributes: Mapping[str, Any], names: Iterable[str], path: str | Path) -> None:
+    """Raise InputError for the first of the attributes `names` that the file does not have."""
+    for name in names:
+        if name not in attributes:
+            raise InputError(f"attribute {name} of {path}", "(nothing)", "be given")
+
+
+def _check_attributes(file: "netCDF4.Dataset", path: str | Path) -> None:
+    for name, value in attributes_of(file).items():
+        wanted = ATTRIBUTES.get(name)
+        if wanted and not _fits(value, wanted):
+            raise InputError(f"{name} of {path}", shown(value), f"be {wanted}")
+        if name in LEGAL:
+            LEGAL[name].check(f"{name} of {path}", value)
+        if wanted == JSON:
+            from_json(value, f"{name} of {path}")
+    swept = getattr(file, "swept", "effect.parameter")
+    if not SWEPT.fullmatch(swept):
+        raise InputError(f"swept of {path}", shown(swept), "be EFFECT.PARAMETER, or a setting")
+    version = getattr(file, "schema_version", SCHEMA_VERSION)
+    if version > SCHEMA_VERSION:
+        legal = f"be at most {SCHEMA_VERSION}: a newer roughgas has written the file"
+        raise InputError(f"schema_version of {path}", version, legal)
+
+
+def _fits(value: Any, wanted: str) -> bool:
+    if wanted in (WORD, JSON):
+        return isinstance(value, str)
+    is_number = np.ndim(value) == 0 and np.asarray(value).dtype.kind in "iuf"
+    return bool(is_number and math.isfinite(value) and (wanted == NUMBER or value == int(value)))
+
+
+def _check_size(file: "netCDF4.Dataset", path: str | Path) -> None:
+    groups = (file, *file.groups.values())
+    size = sum(8.0 * math.prod(one.shape) for group in groups for one in group.variables.values())
+    if size > LARGEST:
+        raise InputError(f"size of {path}", f"{size:.3g} bytes", f"be at most {LARGEST:.0g}")

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from roughgas.data import opening
+from roughgas.data import netcdf
 from roughgas.data.netcdf import Content, in_memory, read_netcdf, write_netcdf
 from roughgas.data.variables import CLOCKS, Variable, described, refuse
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 __all__ = ["Point", "as_dataset", "read_point", "write_point"]
 
 REQUIRED_OF_SPIN = ("R", "R_stderr", "R_dof", "R_ci95", "R_ratio_of_means", "E_rot")
-"""What a point holds besides opening.KINDS where particles spin, and so has `inertia`."""
+"""What a point holds besides netcdf.KINDS where particles spin, and so has `inertia`."""
 WALL_CLOCK = ("kernel_seconds",)
 """The only variables that differ when the same point is run again."""
 COMPLEVEL = 1
@@ -23,7 +23,7 @@ COMPLEVEL = 1
 class Point(NamedTuple):
     """One (experiment, r, beta, seed): registered variables by name, and global attributes.
 
-    Attributes are strings, ints or floats. What roughgas.data.opening.KINDS says must be there, and
+    Attributes are strings, ints or floats. What roughgas.data.netcdf.KINDS says must be there, and
     REQUIRED_OF_SPIN where particles spin.
     """
 
@@ -46,7 +46,7 @@ def read_point(path: str | Path) -> "xarray.Dataset":
 
     Raises InputError if the file is something else or damaged, OSError if there is none.
     """
-    return read_netcdf(path, opening.POINT)
+    return read_netcdf(path, netcdf.POINT)
 
 
 def as_dataset(point: Point) -> "xarray.Dataset":
@@ -58,7 +58,7 @@ def as_dataset(point: Point) -> "xarray.Dataset":
 
 
 def _content(point: Point) -> Content:
-    least = opening.KINDS[opening.POINT]
+    least = netcdf.KINDS[netcdf.POINT]
     required = least.variables | set(REQUIRED_OF_SPIN if "inertia" in point.attributes else ())
     refuse("missing variables of a point", required - set(point.variables))
     refuse("missing attributes of a point", least.attributes - set(point.attributes))

@@ -8,7 +8,7 @@ import numpy as np
 
 from roughgas.base.errors import InputError
 from roughgas.base.legal import Interval
-from roughgas.data import opening
+from roughgas.data import netcdf
 from roughgas.data.netcdf import read_netcdf
 from roughgas.data.variables import ENERGY, MIXTURE, NAMES, POINT, RATE, TIME, Variable, register
 from roughgas.data.variables import GRID as OF_GRID
@@ -42,7 +42,7 @@ def read_reduced(path: str | Path) -> "xarray.Dataset":
     Raises InputError if the file is something else or damaged, or if a number in it cannot be
     right; OSError if there is none.
     """
-    data = read_netcdf(path, opening.REDUCED)
+    data = read_netcdf(path, netcdf.REDUCED)
     for name in SOUND.keys() & data.keys():
         check_sound(path, name, data[name].where(data.n_seeds > 0, 0.0).values)
     return data

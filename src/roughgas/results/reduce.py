@@ -17,9 +17,16 @@ import netCDF4
 import numpy as np
 
 from roughgas.base.errors import InputError
-from roughgas.data.netcdf import COMMON_ATTRIBUTES, Content, write_netcdf
-from roughgas.data.opening import POINT as OF_POINT
-from roughgas.data.opening import DamagedError, attributes_of, opened, require
+from roughgas.data.netcdf import (
+    COMMON_ATTRIBUTES,
+    Content,
+    DamagedError,
+    attributes_of,
+    opened,
+    require,
+    write_netcdf,
+)
+from roughgas.data.netcdf import POINT as OF_POINT
 from roughgas.data.point import Point, write_point
 from roughgas.data.reduced import GRID, SOUND, VERDICTS, check_sound, read_reduced, third_axis
 from roughgas.data.variables import CLOCKS, POINT, Array, described

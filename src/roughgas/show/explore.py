@@ -15,7 +15,7 @@ from roughgas.base.errors import InputError
 from roughgas.base.layout import from_json
 from roughgas.base.sources import PACKAGE
 from roughgas.config.reading import read_yaml
-from roughgas.data.opening import POINT, attributes_of, opened, require
+from roughgas.data.netcdf import POINT, attributes_of, opened, require
 from roughgas.data.point import read_point
 from roughgas.data.reduced import EQUILIBRATED, particles_of, read_reduced, third_axis
 from roughgas.data.variables import CLOCKS

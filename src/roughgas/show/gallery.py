@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from roughgas.base.errors import InputError, not_one_of
-from roughgas.data.opening import POINT, REDUCED, kind_of, opened
+from roughgas.data.netcdf import POINT, REDUCED, kind_of, opened
 from roughgas.data.point import read_point
 from roughgas.data.reduced import read_reduced
 from roughgas.show import style

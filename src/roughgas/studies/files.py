@@ -9,8 +9,7 @@ from typing import Any
 import xarray as xr
 
 from roughgas.base.errors import InputError
-from roughgas.data.netcdf import Content, content_of, read_netcdf, write_netcdf
-from roughgas.data.opening import TASK
+from roughgas.data.netcdf import TASK, Content, content_of, read_netcdf, write_netcdf
 from roughgas.studies.tasks import TASKS
 
 

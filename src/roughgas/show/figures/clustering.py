@@ -17,7 +17,7 @@ from mpl_toolkits.axes_grid1.anchored_artists import AnchoredSizeBar
 from roughgas import theory
 from roughgas.base.errors import InputError
 from roughgas.data.film import disks_of, read_film
-from roughgas.data.opening import require
+from roughgas.data.netcdf import require
 from roughgas.show import circles, style
 from roughgas.show.encoding import write_movie
 
