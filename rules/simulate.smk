@@ -1,6 +1,6 @@
-# Kernels, points, reduced datasets. The kernels of an experiment are compiled before its points are
-# run. From an experiment's settings to its points. Of the sweep, `seeds_per_job` seeds at `betas_per_job`
-# values of beta are made by one job (see config.yaml); any other point is a job of its own.
+# Kernels, points, reduced datasets: the kernels of an experiment are compiled before its points are run.
+# Of the sweep, `seeds_per_job` seeds at `betas_per_job` values of beta are made by one job (see
+# config.yaml); any other point is a job of its own.
 SIMULATING = ("simulation.point", "data.point")
 RECORDING = (
     "cli.run",
@@ -10,15 +10,20 @@ RECORDING = (
 )  # these hand on and write down
 
 
+def place_of(wildcards):
+    """The numbers r, beta and seed of a point, or of what several points share."""
+    labels = (
+        [wildcards.get(name, usual)] for name, usual in (("r", "1"), ("beta", "0"), ("seed", "1"))
+    )
+    (place,) = roughgas.config.places(*labels)
+    return place
+
+
 def kernel_of_point(wildcards):
     """The file that says that the kernel of a point is compiled; ends the workflow for an illegal
     point."""
     with one_line(f"results/{wildcards.scale}/{wildcards.experiment}"):
-        roughgas.config.restitution(wildcards.r)
-        if "beta" in wildcards.keys():
-            roughgas.config.roughness(wildcards.beta)
-        if "seed" in wildcards.keys():
-            roughgas.config.seed(wildcards.seed)
+        place_of(wildcards)
         found = settings(wildcards.scale, wildcards.experiment)
         roughgas.config.check_one_variant(wildcards.experiment, found)
     experiment, _, _ = wildcards.experiment.partition("/")
@@ -32,8 +37,8 @@ def kinds_of_kernels(wildcards):
     found = settings(wildcards.scale, wildcards.experiment)
     every = roughgas.config.every_variant(wildcards.experiment, found).values()
     with one_line(KERNEL.format(**wildcards)):
-        r = roughgas.config.restitution(wildcards.r)
-    return sorted(map(str, kernels([one | {"sweep": {"r": [r]}} for one in every])))
+        r = place_of(wildcards).r
+    return sorted(map(str, kernels(every, r)))
 
 
 def settings_of_kernels(wildcards, output):
