@@ -49,10 +49,10 @@ def every_step_is_shown(monkeypatch):
 
 def test_a_bar_says_how_far_how_long_and_what_and_is_cleared():
     stream = Terminal()
-    with Bar("pilots", 4, "points", stream) as bar:
+    with Bar("points", 4, "points", stream) as bar:
         bar.reach(1, "r = 0.9")
         bar.reach(2)
-    assert stream.shown[1].startswith("pilots:  25%|") and stream.shown[1].endswith(", r = 0.9")
+    assert stream.shown[1].startswith("points:  25%|") and stream.shown[1].endswith(", r = 0.9")
     assert "| 2 of 4 points, 00:00 left" in stream.shown[2]
     assert stream.getvalue().endswith("\r") and not stream.getvalue().split("\r")[-2].strip()
 
@@ -62,6 +62,15 @@ def test_a_driven_gas_is_followed_in_time():
     with Progress("sheared", build(DRIVEN, 0.9, 0.0), DRIVEN, stream=stream) as progress:
         progress(1750.0, 98_765)
     assert stream.shown[-1].startswith("sheared:  25%|") and "1750 of 7000 T" in stream.shown[-1]
+
+
+def test_a_run_that_is_prolonged_is_followed_to_its_new_end():
+    stream = Terminal()
+    with Progress("sheared", build(DRIVEN, 0.9, 0.0), DRIVEN, stream=stream) as progress:
+        progress(7000.0, 98_765)
+        progress.expect(14_000.0)
+        progress(10_500.0, 123_456)
+    assert stream.shown[-1].startswith("sheared:  75%|") and "of 14000 T" in stream.shown[-1]
 
 
 def test_a_cooling_gas_is_followed_through_its_replicas():
@@ -122,6 +131,6 @@ def test_a_pipe_hears_now_and_then_of_what_takes_long(monkeypatch):
 def test_whoever_wants_silence_has_it(monkeypatch):
     monkeypatch.setattr("roughgas.simulation.progress.PATIENCE", -1.0)
     stream = io.StringIO()
-    with Bar("pilots", 4, "points", stream, quiet=True) as bar:
+    with Bar("points", 4, "points", stream, quiet=True) as bar:
         bar.reach(1)
     assert stream.getvalue() == ""
