@@ -7,7 +7,6 @@ from typing import NamedTuple
 import numpy as np
 
 from benchmarks.scenes import Case, advance, steady
-from roughgas.kernel.record import PATIENCE
 from roughgas.kernel.state import (
     BASE,
     BOUNDARY_HITS,
@@ -21,6 +20,7 @@ from roughgas.kernel.state import (
 
 NUMBERS = (40, 160, 1_000, 10_000, 100_000, 1_000_000)
 WARM_UP = 5.0  # collisions per particle after a large box was made of small ones
+SPANS = 1000  # that a run takes at most
 LONGEST = 20.0  # seconds, of the warm-up and, about, of what is timed
 LEAST = 1_500_000  # collisions that are timed
 RUNS = 5
@@ -82,7 +82,7 @@ def measure(case: Case, number: int, runs: int = RUNS, least: int = LEAST) -> Ti
     warm_up(scene, state)
     before = counts_of(state)
     rate = before.collisions / (state.clock[BASE] + state.clock[NOW])
-    spans = min(math.ceil(least / (rate * state.clock[SPAN])), runs * PATIENCE)
+    spans = min(math.ceil(least / (rate * state.clock[SPAN])), runs * SPANS)
     seconds, collisions = [], []
     for _ in range(runs):
         begin, made = time.process_time(), state.counts[COLLISIONS]
