@@ -20,8 +20,8 @@ from roughgas import experiments, library, simulate, trajectory
 from roughgas.base.errors import InputError
 from roughgas.cli import main
 from roughgas.config.reading import read_yaml
-from roughgas.data.particle_files import write_trajectory
 from roughgas.data.point import WALL_CLOCK, read_point
+from roughgas.data.trajectory import write_trajectory
 
 ROOT = Path(__file__).parent.parent
 POINT = {"r": 0.9, "beta": 0.5}

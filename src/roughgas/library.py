@@ -225,7 +225,7 @@ def trajectory(
         of disks ``angle`` (frame, particle), ``radius``, ``box``, ``time``, of a sheared gas
         ``image_shift`` (frame), the energies of each frame, and of a mixture ``species_of``,
         ``mass`` and ``inertia`` (particle). The function
-        `roughgas.data.particle_files.write_trajectory` makes files of it for other programs.
+        `roughgas.data.trajectory.write_trajectory` makes files of it for other programs.
 
     Raises
     ------

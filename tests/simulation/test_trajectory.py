@@ -12,9 +12,14 @@ from brute_force import kernels, settings
 from schedules import COOLING, STEADY
 
 from roughgas.base.errors import InputError
-from roughgas.data.particle_files import FORMATS, frames, lengths_and_angles, write_trajectory
 from roughgas.data.point import as_dataset
-from roughgas.data.trajectory import as_trajectory
+from roughgas.data.trajectory import (
+    FORMATS,
+    as_trajectory,
+    frames,
+    lengths_and_angles,
+    write_trajectory,
+)
 from roughgas.scene import build
 from roughgas.simulation import cooling
 from roughgas.simulation.ends import initial_of

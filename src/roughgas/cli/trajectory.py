@@ -8,8 +8,7 @@ from typing import Any
 from roughgas.cli.options import number, whole_number
 from roughgas.cli.run import initial_in, points_of
 from roughgas.config.provenance import provenance
-from roughgas.data.particle_files import check_format, write_trajectory
-from roughgas.data.trajectory import as_trajectory
+from roughgas.data.trajectory import as_trajectory, check_format, write_trajectory
 from roughgas.scene import Scene, build
 from roughgas.simulation.ends import Initial
 from roughgas.simulation.progress import watched
