@@ -21,12 +21,12 @@ from roughgas.base.version import __version__
 LIBRARIES = "numpy numba netCDF4 xarray pandas ruamel.yaml jsonschema tqdm"
 TRIAL = """
 from roughgas import simulate
-gas = simulate("cooling", r=0.9, beta=0.5, scale="small", config={config!r}, progress=False)
+from roughgas.config import SHIPPED
+gas = simulate("cooling", r=0.9, beta=0.5, scale="small", config=SHIPPED, progress=False)
 print(float(gas.R), float(gas.R_stderr))
 """
 KNOWN = 0.4453  # R of that gas
 LONGEST = 600  # seconds to compile, on a machine that is slow and busy
-ENOUGH = 2.0  # GiB
 
 
 def doctor(as_json: bool) -> None:
@@ -47,28 +47,25 @@ def doctor(as_json: bool) -> None:
 
 
 def _libraries() -> str:
-    """Import all that roughgas needs."""
-    for name in LIBRARIES.split():
-        import_module(name)
-    versions = (f"{name} {metadata.version(name)}" for name in LIBRARIES.split())
+    names = LIBRARIES.split()
+    list(map(import_module, names))
+    found = (f"{name} {metadata.version(name)}" for name in names)
     python = f"Python {platform.python_version()}, {platform.machine()}: {sys.executable}"
-    return f"roughgas {__version__}, from {Path(__file__).parent}; {python}; {', '.join(versions)}"
+    return f"roughgas {__version__}, from {Path(__file__).parent}; {python}; {', '.join(found)}"
 
 
 def _extras() -> str:
-    """Import what extras have brought."""
-    there, lacking = [], []
+    lacking = []
     for name, brought in EXTRAS.items():
         try:
             list(map(import_module, brought))
-            there.append(name)
         except ModuleNotFoundError:
             lacking.append(name)
-    return f"{', '.join(there) or 'none'}; not installed: {', '.join(lacking) or 'none'}"
+    there = ", ".join(name for name in EXTRAS if name not in lacking)
+    return f"{there or 'none'}; not installed: {', '.join(lacking) or 'none'}"
 
 
 def _configuration() -> str:
-    """Check the configuration that commands use here."""
     from roughgas import config
 
     path = config.in_use()
@@ -76,15 +73,9 @@ def _configuration() -> str:
 
 
 def _kernel() -> str:
-    """Compile, or load, a kernel in a process of its own, which may crash, and compare its R."""
-    from roughgas.config import SHIPPED
-
-    ran = subprocess.run(
-        [sys.executable, "-c", TRIAL.format(config=str(SHIPPED))],
-        capture_output=True,
-        text=True,
-        timeout=LONGEST,
-    )
+    """Run the trial in a process of its own, which may crash, and compare its R."""
+    command = [sys.executable, "-c", TRIAL]
+    ran = subprocess.run(command, capture_output=True, text=True, timeout=LONGEST)
     if ran.returncode:
         said = ran.stderr.strip().splitlines() or [f"signal {-ran.returncode}"]
         raise RuntimeError(f"a trial run crashed: {said[-1]}")
@@ -95,7 +86,6 @@ def _kernel() -> str:
 
 
 def _kernel_cache() -> str:
-    """Check that compiled kernels can be kept."""
     from roughgas.kernel.cache import cache_root, kernel_folder
 
     if (folder := kernel_folder()).parent != cache_root():
@@ -103,17 +93,16 @@ def _kernel_cache() -> str:
     return _room(folder)
 
 
-def _room(folder: str | Path) -> str:
-    """Check that a folder can be written, and has ENOUGH room."""
+def _room(folder: str | Path, enough: float = 0.2) -> str:
+    """Write to a folder, and see whether `enough` GiB are free."""
     with tempfile.TemporaryFile(dir=folder) as file:
         file.write(b"room?" * 1000)
-    if (free := shutil.disk_usage(folder).free / 2**30) < ENOUGH:
+    if (free := shutil.disk_usage(folder).free / 2**30) < enough:
         raise OSError(f"{folder}: only {free:.2g} GiB free")
     return f"{folder}, {free:.1f} GiB free"
 
 
 def _snakemake() -> str:
-    """Check that Snakemake can write its cache."""
     folder = Path(os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache"))
     check_place(folder / "snakemake")
     return f"its cache goes to {folder}"
@@ -127,6 +116,6 @@ CHECKS = {
     "kernel": (_kernel, "remove the kernels, or set ROUGHGAS_CACHE_DIR to another folder"),
     "kernel cache": (_kernel_cache, "set ROUGHGAS_CACHE_DIR to a folder with room"),
     "Snakemake": (_snakemake, "set XDG_CACHE_HOME to a folder with room"),
-    "this folder": (lambda: _room(Path.cwd()), "make room for results"),
+    "this folder": (lambda: _room(Path.cwd(), 2.0), "make room for results"),
     "temporary files": (lambda: _room(tempfile.gettempdir()), "set TMPDIR to a folder with room"),
 }
