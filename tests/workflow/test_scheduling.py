@@ -42,3 +42,13 @@ def test_timers_do_not_pile_up(tmp_path):
 def test_timers_pile_up_in_the_installed_snakemake(tmp_path):
     """Once this fails, Snakemake has mended it: `start_jobs_at_once` may go."""
     assert threads_at_the_end(tmp_path, "pass") > JOBS / 2
+
+
+def test_a_job_that_starts_is_a_line(project, tmp_path):
+    ran = project.copy_to(tmp_path / "project")
+    told = ("-c1", "--config", "scale=tiny", "--", "results/tiny/config.yaml")
+    lines = ran.succeed(*told).splitlines()
+    assert "0 of 1 done. write results/tiny/config.yaml" in lines and len(lines) < 20
+    assert "1 of 1 steps (100%) done" in lines
+    verbose = ran.succeed("-F", "--verbose", *told)
+    assert "Finished jobid: 0" in verbose and "0 of 1 done" not in verbose
