@@ -18,7 +18,7 @@ from roughgas.base import extras
 from roughgas.base.errors import EndedEarlyError, InputError, on_one_line, shown
 from roughgas.base.version import __version__
 from roughgas.cli.commands import COMMANDS
-from roughgas.cli.outputs import check_outputs
+from roughgas.cli.options import check_outputs
 from roughgas.cli.parser import BAD_INPUT, Given, Parser, add_commands, overview
 
 FAILED, INTERRUPTED, NOBODY_READS = 1, 130, 141

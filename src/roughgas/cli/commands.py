@@ -44,7 +44,7 @@ COMMANDS = {
         "changes any setting of the experiment, by its key in config.yaml.",
     ),
     "movie": Command(
-        "cli.movie:movie",
+        "cli.motion:movie",
         "show a point as it moves",
         *POINTS,
         SET,
@@ -67,7 +67,7 @@ COMMANDS = {
         "gas, in collisions per particle.",
     ),
     "trajectory": Command(
-        "cli.trajectory:trajectory",
+        "cli.motion:trajectory",
         "write the trajectories of all particles, for OVITO, ASE, freud ...",
         *POINT,
         value("--seed", "seed of the random generator", default="1"),
@@ -103,7 +103,7 @@ COMMANDS = {
         "standard error of 0.0030.",
     ),
     "plot": Command(
-        "cli.products:plot",
+        "cli.results:plot",
         "draw a point over time, or any reduced dataset beside theory",
         value("input DATASET", "a point, or a reduced dataset"),
         value("--over AXIS", "horizontal axis: r, beta, or the third axis (the default)"),
@@ -123,7 +123,7 @@ COMMANDS = {
         "and theory are lines.",
     ),
     "reduce": Command(
-        "cli.products:reduce",
+        "cli.results:reduce",
         "combine the points of an experiment into a dataset",
         value(
             "inputs POINT",
@@ -137,7 +137,7 @@ COMMANDS = {
         "that `roughgas show` and `roughgas plot` take: R with its error, beside theory.",
     ),
     "experiments": Command(
-        "cli.experiments:experiments",
+        "cli.results:experiments",
         "list the experiments of the configuration",
         SCALE,
         CONFIG,
@@ -182,7 +182,7 @@ COMMANDS = {
         "effect thermostat.",
     ),
     "crate": Command(
-        "cli.products:crate",
+        "cli.results:crate",
         "pack a finished run as an RO-Crate",
         value("files FILE", "results and figures", nargs="+"),
         output(".zip file", "CRATE"),

@@ -21,7 +21,7 @@ class Command:
 
     `calls` names a function, "room.module:function". One of `cli` is given all options (an
     argparse.Namespace); one of another room is given their values, in the order of `options`.
-    `writes` is the kind of its outputs, one of `cli.outputs.KINDS`; "" if their endings tell it.
+    `writes` is the kind of its outputs, of `cli.options.BEGINNINGS`; "" if their endings tell it.
     """
 
     def __init__(

@@ -10,8 +10,7 @@ from roughgas import config
 from roughgas.base.errors import InputError
 from roughgas.base.layout import as_json
 from roughgas.cli.changes import as_label, changed_by
-from roughgas.cli.options import labels
-from roughgas.cli.outputs import check_outputs
+from roughgas.cli.options import check_outputs, labels
 from roughgas.config.provenance import variant_attributes
 from roughgas.config.schema import check_schema
 from roughgas.data.point import Point, read_point, write_point

@@ -11,13 +11,17 @@ from xarray import Dataset
 
 from roughgas.base.errors import on_one_line
 from roughgas.base.layout import as_json, columns, from_json
-from roughgas.cli.show_point import altered, by_species, collisional, energies, theory_beside
-from roughgas.cli.show_studies import (
+from roughgas.cli.summaries import (
+    altered,
+    by_species,
+    collisional,
+    energies,
     scalars,
     studies_record,
     studies_text,
     task_record,
     task_text,
+    theory_beside,
 )
 from roughgas.data import netcdf
 from roughgas.data.netcdf import read_netcdf, unit_of

@@ -4,7 +4,7 @@ import csv
 import sys
 from argparse import Namespace
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -13,12 +13,38 @@ from roughgas.base.errors import NeedsError
 from roughgas.base.layout import as_json, columns
 from roughgas.base.legal import Interval
 from roughgas.cli.options import labels, number
-from roughgas.cli.quantities import GasParameters, Quantity
+from roughgas.config.reading import parse_yaml, read_yaml
 from roughgas.theory.arguments import FRICTION, SHARE, check, moment_of_inertia
 from roughgas.theory.prediction import equation_of, predicted_ratio
 
+
+class Quantity(NamedTuple):
+    """An array over the points, what it is, and which equation it is from."""
+
+    values: Any
+    meaning: str
+    source: str
+
+
+class GasParameters(NamedTuple):
+    """Points (r, beta), arrays of equal shape, and what they share; no friction: `mu` is None.
+
+    The species of a mixture are as in config.yaml; its `inertia` is that of species without one.
+    """
+
+    r: Any
+    beta: Any
+    dimension: int
+    inertia: float
+    spin_share: float
+    mu: float | None
+    species: Sequence[Mapping[str, Any]] | None = None
+    packing: float = 0.0  # matters for mixtures alone
+
+
 TOLERANCE = 0.01  # of R, within which it counts as settled
 PAPER = "S. McNamara, S. Luding, Phys. Rev. E 58, 2247 (1998)"
+SOURCE = "rate equations of mixtures"
 NOTES = f"Rates are per collision per particle. Equations: docs/physics.md, and\n{PAPER}."
 
 
@@ -63,16 +89,12 @@ def _mixed(options: Namespace) -> dict[str, Any]:
         if packing:
             raise NeedsError("--packing", "--species: one species has the same R at any packing")
         return {}
-    from roughgas.cli.theory_of_mixtures import species_from
-
     return {"species": species_from(options.species), "packing": packing}
 
 
 def quantities(gas: GasParameters) -> dict[str, Quantity]:
     """Return all that theory says of a gas, by name."""
     if gas.species is not None:
-        from roughgas.cli.theory_of_mixtures import quantities_of_mixture
-
         return quantities_of_mixture(gas)
     about = {"dimension": gas.dimension, "inertia": gas.inertia, "spin_share": gas.spin_share}
     if gas.mu is not None:
@@ -179,3 +201,46 @@ def _rows(tables: Tables) -> Iterator[dict[str, float]]:
         arrays = np.broadcast_arrays(*values.values())
         for row in zip(*arrays, strict=True):
             yield {"dimension": gas.dimension} | dict(zip(values, row, strict=True))
+
+
+def species_from(text: str) -> Sequence[Mapping[str, Any]]:
+    """Return species from a YAML file, or from YAML itself; a file may have them as `species`.
+
+    Raises InputError for what is neither, and as `theory.mixture`; OSError for a missing file.
+    """
+    found = parse_yaml(text, "--species") if text.lstrip().startswith("[") else read_yaml(text)
+    if isinstance(found, Mapping):
+        found = found.get("species", found)
+    theory.mixture(found, 1.0, 1.0)
+    return found
+
+
+def quantities_of_mixture(gas: GasParameters) -> dict[str, Quantity]:
+    """Return all that theory says of a mixture, by name."""
+    points = [_at_a_point(gas, *place) for place in zip(gas.r, gas.beta, strict=True)]
+    return {
+        name: Quantity(np.array([point[name].values for point in points]), *about)
+        for name, (_, *about) in points[0].items()
+    }
+
+
+def _at_a_point(gas: GasParameters, r: float, beta: float) -> dict[str, Quantity]:
+    mu = np.inf if gas.mu is None else gas.mu
+    mixed = theory.mixture(gas.species, r, beta, gas.dimension, gas.inertia, mu)
+    kicks, share = theory.kick_power(mixed), gas.spin_share
+    states = {
+        "driven": theory.mixture_driven(mixed, (1 - share) * kicks, gas.packing, share),
+        "cooling": theory.mixture_cooling(mixed, gas.packing),
+    }
+    found = {}
+    for way, state in states.items():
+        found[f"R_{way}"] = Quantity(state.overall_ratio(mixed), f"R of all, {way}", SOURCE)
+        for k, one in enumerate(gas.species or ()):
+            name = str(one.get("name", k + 1))
+            found[f"R_{way}_{name}"] = Quantity(state.R[k], f"R of {name}, {way}", SOURCE)
+            about = f"T_tr of {name} over its mean, {way}"
+            found[f"T_{way}_{name}"] = Quantity(state.T_tr[k], about, SOURCE)
+    rates = theory.mixture_relaxation_rate, theory.mixture_decay_rate
+    settles, decays = (rate(mixed, gas.packing) for rate in rates)
+    found["rate_cooling"] = Quantity(settles, "rate at which ratios settle, cooling", SOURCE)
+    return found | {"decay": Quantity(decays, "rate at which energy decays, cooling", SOURCE)}
