@@ -2,7 +2,6 @@
 docs/data.md says how to build one."""
 
 import fnmatch
-import json
 import re
 import shlex
 import subprocess
@@ -64,42 +63,3 @@ def test_the_image_holds_all_that_a_run_consists_of():
     for text in texts("COPY"):
         sources, target = copied(text)
         assert target == "./" or sources == [target]
-
-
-def test_what_links_of_the_package_lead_to_is_inside():
-    """Such as config.yaml, without which no command knows any experiment."""
-    package = ROOT / "src" / "roughgas"
-    links = [path for path in package.rglob("*") if path.is_symlink()]
-    led_to = {str(path.resolve().relative_to(ROOT)) for path in links}
-    assert led_to == {"config.yaml"}
-    assert led_to <= {source for text in texts("COPY") for source in copied(text)[0]}
-    assert led_to <= {line.split()[0] for line in apptainer("files")}
-
-
-def test_commands_use_files_that_are_there_by_then_and_both_recipes_the_same():
-    there, installs = set(), []
-    for instruction, text in steps():
-        if instruction == "COPY":
-            there |= set(copied(text)[0])
-        if instruction == "RUN" and "pip install" in text:
-            installs += [part.strip() for part in text.split("&&") if "pip install" in part]
-            assert set(re.findall(r"--requirement (\S+)", text)) <= there
-            assert "--editable" not in text or {"src", "pyproject.toml", "README.md"} <= there
-    assert len(installs) == 2 and "--require-hashes" in installs[0]
-    assert installs == [line for line in apptainer("post") if "pip install" in line]
-
-
-def test_what_runs_is_a_target_and_not_root():
-    assert texts("USER") == ["roughgas"] and steps()[-1][0] == "CMD"
-    program, jobs, target = json.loads(texts("CMD")[0])
-    assert (program, jobs) == ("snakemake", "-j2")
-    assert f"rule {target}:" in (ROOT / "Snakefile").read_text()
-    assert apptainer("runscript") == ['exec snakemake "$@"']
-
-
-def test_both_start_from_the_python_that_the_environment_is_pinned_for():
-    version = re.search(r"--python-version (\S+)", (ROOT / "Makefile").read_text())[1]
-    image = f"python:{version}-slim"
-    recipe = (ROOT / "Apptainer.def").read_text()
-    assert texts("FROM") == [image] and f"\nBootstrap: docker\nFrom: {image}\n" in recipe
-    assert "://" not in recipe + (ROOT / "Dockerfile").read_text()

@@ -5,9 +5,7 @@ import json
 import shlex
 import subprocess
 import sys
-import tarfile
 import typing
-import zipfile
 from pathlib import Path
 
 import numpy as np
@@ -19,7 +17,6 @@ import roughgas
 from roughgas import experiments, library, simulate, trajectory
 from roughgas.base.errors import InputError
 from roughgas.cli import main
-from roughgas.config.reading import read_yaml
 from roughgas.data.point import WALL_CLOCK, read_point
 from roughgas.data.trajectory import write_trajectory
 
@@ -203,13 +200,6 @@ def test_an_interrupt_leaves_nothing_behind(bars, monkeypatch, tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_the_schedule_that_is_typed_is_the_one_of_the_schema():
-    schema = read_yaml(Path(roughgas.__file__).parent / "config" / "schema.yaml")
-    assert set(typing.get_type_hints(library.Schedule)) == set(
-        schema["$defs"]["schedule"]["properties"]
-    )
-
-
 def test_the_examples_in_docstrings():
     found = doctest.testmod(library)
     assert found.attempted > 5 and not found.failed
@@ -223,16 +213,3 @@ def test_importing_the_package_imports_none_of_what_it_needs():
     assert {"simulate", "experiments", "__version__"} <= set(dir(roughgas))
     with pytest.raises(AttributeError, match="module 'roughgas' has no attribute 'simulat'"):
         roughgas.simulat  # noqa: B018
-
-
-def test_what_is_installed_elsewhere_knows_the_experiments(tmp_path, monkeypatch):
-    from flit_core.buildapi import build_sdist, build_wheel
-
-    monkeypatch.chdir(ROOT)
-    with tarfile.open(tmp_path / build_sdist(str(tmp_path))) as archive:
-        archive.extraction_filter = getattr(tarfile, "data_filter", None)  # from Python 3.11.4 on
-        archive.extractall(tmp_path)
-    monkeypatch.chdir(next(tmp_path.glob("roughgas-*/")))
-    with zipfile.ZipFile(tmp_path / build_wheel(str(tmp_path))) as wheel:
-        assert wheel.read("roughgas/config.yaml") == (ROOT / "config.yaml").read_bytes()
-        assert "roughgas/py.typed" in wheel.namelist()

@@ -2,16 +2,13 @@ import os
 import resource
 import subprocess
 import sys
-from pathlib import Path
 
-import netCDF4
 import numpy as np
 import pytest
 from files import ABOUT
 
 from roughgas.base.errors import InputError
 from roughgas.base.files import write_text
-from roughgas.data import point as dataset
 from roughgas.data.point import Point, read_point, write_point
 
 ATTRIBUTES = ABOUT | {"command": "roughgas run ..."}
@@ -36,17 +33,6 @@ def point(samples: int = 200, **others) -> Point:
         "R_series": rng.random(samples),
     }
     return Point(variables | others, dict(ATTRIBUTES))
-
-
-def same_bits(path_a: Path, path_b: Path) -> bool:
-    """Whether two points are equal to the last bit, wall-clock fields aside."""
-
-    def content(path: Path) -> tuple:
-        data = read_point(path).drop_vars(dataset.WALL_CLOCK, errors="ignore")
-        bits = {name: (v.dims, v.dtype, v.values.tobytes()) for name, v in data.variables.items()}
-        return bits, data.attrs
-
-    return content(path_a) == content(path_b)
 
 
 def test_a_point_comes_back_as_written(tmp_path):
@@ -99,22 +85,6 @@ def test_a_cooling_gas_counts_collisions_and_initial_energies(tmp_path):
     assert data.E_rot.reduced_units == "initial E_trans" and "reduced_units" not in data.R.attrs
     assert data.R_replica.dims == ("replica",)
     assert "collisions_per_particle" in data.R_series.coords
-
-
-def test_nan_stays_nan(tmp_path):
-    write_point(tmp_path / "a.nc", point(contact_time=np.nan))
-    assert np.isnan(read_point(tmp_path / "a.nc").contact_time.item())
-
-
-def test_same_point_same_bits_wall_clock_aside(tmp_path):
-    paths = [tmp_path / name for name in ("a.nc", "b.nc", "c.nc")]
-    write_point(paths[0], point())
-    turned_round = dict(reversed(point(kernel_seconds=0.7).variables.items()))
-    write_point(paths[1], Point(turned_round, dict(ATTRIBUTES)))
-    write_point(paths[2], point(R=np.nextafter(0.25, 1)))
-    assert same_bits(paths[0], paths[1])
-    assert not same_bits(paths[0], paths[2])
-    assert not [name for name in os.listdir(tmp_path) if name.endswith(".tmp")]
 
 
 @pytest.mark.parametrize(
@@ -190,21 +160,3 @@ def test_what_a_process_has_left_is_removed_before_its_parent_notes_its_end(tmp_
     write_text(tmp_path / "table.csv", "whole")
     over.wait()
     assert not left.exists()
-
-
-def test_writing_does_not_import_xarray(tmp_path):
-    code = (
-        "import sys; from roughgas.data.point import Content, write_netcdf\n"
-        "assert 'netCDF4' not in sys.modules\n"
-        f"write_netcdf({str(tmp_path / 'a.nc')!r}, Content({{}}, {{}}))\n"
-        "assert 'xarray' not in sys.modules"
-    )
-    subprocess.run([sys.executable, "-c", code], check=True)
-
-
-def test_arrays_are_compressed_and_scalars_are_not(tmp_path):
-    write_point(tmp_path / "a.nc", point())
-    with netCDF4.Dataset(tmp_path / "a.nc") as file:
-        assert file["R_series"].filters()["zlib"] and file["R_series"].filters()["shuffle"]
-        assert file["R_series"].filters()["complevel"] == 1
-        assert not file["R"].filters()["zlib"]

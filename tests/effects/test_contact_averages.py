@@ -48,19 +48,6 @@ def test_each_contact_counts_as_brute_force_has_it(kernel, species):
             assert found == pytest.approx(brute.seen, abs=rounding)
 
 
-@pytest.mark.parametrize("kernel", LOOKED_AT)
-def test_the_sums_are_the_account_of_contacts(kernel):
-    """Eq. (deltaEr) of the sums is the rotational energy that contacts have booked."""
-    scene, state = begin(settings(kernel, 40), 0.9, 0.3, 5)
-    A, B, C = sums(run(state, scene, 50, collisions=100))
-    booked = state.ledger[0, -1, 1]
-    q = scene.effects.spin.inertia
-    exchanged = theory.rotational_energy_change(A, 0.0, 0.0, 0.3, q)
-    assert theory.rotational_energy_change(A, C, B, 0.3, q) == pytest.approx(
-        booked, abs=1e-12 * exchanged
-    )
-
-
 def test_a_gas_that_cools_by_many_powers_of_two():
     """At each instant the sums are the account of contacts, in whichever unit velocities are."""
     scene, state = begin(settings("spheres", 40), 0.8, 0.2, 6)

@@ -7,7 +7,7 @@ from brute_force import begin, settings
 
 from roughgas.effects import KINDS, friction, thermostat
 from roughgas.effects.settings import Number, register
-from roughgas.kernel.hooks import Hooks, displacement, present
+from roughgas.kernel.hooks import Hooks, present
 
 
 def test_a_misspelt_hook_is_refused():
@@ -32,13 +32,3 @@ def test_every_effect_has_hooks_and_parameters():
     for name, kind in KINDS.items():
         assert isinstance(kind.hooks, Hooks) and kind.parameters is not None, name
         assert name == "spin" or any(kind.hooks), name
-
-
-def test_what_only_looks_comes_last():
-    """Accounts in the ledger are numbered without it."""
-    looks = [kind.hooks.contact_seen is not None for kind in KINDS.values()]
-    assert looks == sorted(looks) and any(looks)
-
-
-def test_what_is_absent_is_nowhere():
-    assert displacement(None, 1.0) is None

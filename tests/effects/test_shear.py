@@ -4,8 +4,6 @@ import numpy as np
 import pytest
 from brute_force import begin, run, settings, snapshot
 
-from roughgas.kernel.layout import new_state
-
 GAS = settings("sheared", 40, [25, 25])
 U, L = 2.0, 25.0
 
@@ -51,52 +49,3 @@ def test_shear_heats_by_the_flow_and_reaches_a_steady_state():
     assert energy.mean() == pytest.approx(0.20606, abs=4 * 0.0104 * np.sqrt(1 / 8 + 1 / 128))
     changed = energy[:, 1] - energy[:, 0]
     assert abs(changed.mean()) < 4 * 2 * 0.0104 / np.sqrt(8)  # halves scatter sqrt(2) more
-
-
-def moved(shot, across, along):
-    """The same state seen from other images: the particles in the upper half shifted by boxes."""
-    upper = (shot.position[:, 1] > L / 2)[:, None]
-    position = shot.position + upper * np.array([L * along, L * across])
-    velocity = shot.velocity + upper * np.array([U * across, 0.0])
-    return position, velocity
-
-
-def test_the_choice_of_images_does_not_matter():
-    """Particles given by other images, at time 0, at which the image above is not displaced."""
-    scene, state = begin(GAS, 0.9, 0.2, 3)
-    shot = snapshot(state, scene)
-    pairs = {}
-    for across, along in ((0, 0), (1, 0), (-2, 3)):
-        other = new_state(scene, *moved(shot, across, along), np.zeros((40, 1)))
-        rows = run(other, scene, 100, collisions=1)
-        pairs[across] = rows["time"], rows["ww"]
-    for across in (1, -2):
-        assert pairs[across][0][:60] == pytest.approx(pairs[0][0][:60], rel=1e-8)
-        assert pairs[across][1][:60] == pytest.approx(pairs[0][1][:60], rel=1e-6, abs=1e-9)
-
-
-def test_a_galilean_boost_does_not_matter():
-    """Along the flow, where the boundaries are invariant."""
-    scene, state = begin(GAS, 0.9, 0.2, 4)
-    shot = snapshot(state, scene)
-    times = []
-    for boost in (0.0, 3.0):
-        velocity = shot.velocity + np.array([boost, 0.0])
-        other = new_state(scene, shot.position, velocity, np.zeros((40, 1)))
-        times.append(run(other, scene, 60, collisions=1)["time"])
-    assert times[1] == pytest.approx(times[0], rel=1e-8)
-
-
-def test_a_translation_across_the_flow_does_not_matter():
-    """The box has no preferred height: y -> y + s with v_x -> v_x + Gamma s is the same gas.
-
-    What crosses the boundary differs, so that this tests its every sign.
-    """
-    scene, state = begin(GAS, 0.9, 0.2, 5)
-    shot = snapshot(state, scene)
-    times = []
-    for shift in (0.0, 7.3):
-        position, velocity = shot.position + np.array([0.0, shift]), shot.velocity
-        other = new_state(scene, position, velocity, np.zeros((40, 1)))
-        times.append(run(other, scene, 60, collisions=1)["time"])
-    assert times[1] == pytest.approx(times[0], rel=1e-8)

@@ -45,11 +45,3 @@ def test_roughness_of_a_wall(direction, side):
     kick = q * (1 + beta) / (1 + q) * slip
     assert state.trajectory[0, 3] == pytest.approx(falling - kick, rel=1e-13)
     assert state.spin[0, 0] == pytest.approx(w + (1 + beta) / (1 + q) * side * slip, rel=1e-13)
-
-
-def test_particles_stay_between_the_walls():
-    scene, state = begin(settings("walled", 40, [12.5, "open"]), 0.8, 0.2, 3)
-    for _ in range(200):
-        run(state, scene, 1, interval=0.137)
-        x = snapshot(state, scene).position[:, 0]
-        assert x.min() > 1.0 - 1e-11 and x.max() < 11.5 + 1e-11

@@ -93,7 +93,7 @@ class Without:
         self.rows: list[Remedy] = []
 
     def __call__(
-        self, remedy: str, case, file: str, old: str, new: str, limit: float = 300
+        self, remedy: str, case, file: str, old: str, new: str, limit: float = 900
     ) -> None:
         """Expect the test function `case` to fail once `old` in a file of the package is `new`.
 

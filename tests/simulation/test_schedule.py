@@ -1,7 +1,5 @@
 """Kinds of schedule, and the scenes that they suit."""
 
-from pathlib import Path
-
 import pytest
 from brute_force import KERNELS, settings
 
@@ -27,12 +25,6 @@ def test_a_drive_and_nothing_else_needs_a_steady_schedule(kernel):
         schedule.check(experiment | {"schedule": wrong})
     legal = f"steady where there is a drive: {driven[0]}" if driven else "cooling where no effect"
     assert str(caught.value).startswith(f"schedule.kind = {wrong['kind']}: must be {legal}")
-
-
-def test_nobody_else_asks_which_kind_it_is():
-    source = Path(schedule.__file__).parents[1]
-    asked = [path.name for path in source.rglob("*.py") if '["kind"]' in path.read_text()]
-    assert asked == ["schedule.py"]
 
 
 def test_all_drives_are_named():

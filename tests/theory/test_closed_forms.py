@@ -52,17 +52,6 @@ def test_cooling_ratio_at_high_precision(dimension):
         assert relative_error(R, ratio) < 1e-14, (r, beta)
 
 
-def test_goldshtein_ratio_at_high_precision():
-    for r, beta in itertools.product(RS, BETAS):
-        with mpmath.workdps(DIGITS):
-            q = mpmath.mpf(2 / 5)
-            exact_r, exact_beta = mpmath.mpf(float(r)), mpmath.mpf(float(beta))
-            a = (1 - exact_beta**2) * (1 - q) / (1 + q) - 1 + exact_r**2
-            b = 2 * q * (1 + exact_beta) ** 2 / (1 + q) ** 2
-            exact = (1 - a / (b + mpmath.sqrt(a**2 + b**2))) / 2
-        assert relative_error(theory.goldshtein_ratio(r, beta), exact) < 1e-14, (r, beta)
-
-
 def test_lun_ratio_at_high_precision():
     for beta, q in itertools.product(BETAS, [0.5, 0.4, 1.0, 1e-3]):
         with mpmath.workdps(50):

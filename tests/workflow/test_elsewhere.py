@@ -156,12 +156,3 @@ def test_the_catalogue_finds_the_workflow_where_it_looks(tmp_path):
     told = [*command, "--config", "scale=small", "--", "living"]
     done = subprocess.run(told, cwd=tmp_path, capture_output=True, text=True)
     assert done.returncode == 0 and "results/small/living.html" in done.stdout + done.stderr
-
-
-def test_the_catalogue_of_workflows_is_told_how_it_is_used():
-    usage = read_yaml(ROOT / ".snakemake-workflow-catalog.yml")["usage"]
-    assert usage["software-stack-deployment"]["apptainer"] and usage["report"]
-    assert (ROOT / "Apptainer.def").exists() and (ROOT / "config" / "README.md").exists()
-    keys = read_yaml(ROOT / "config.yaml")
-    page = (ROOT / "config" / "README.md").read_text()
-    assert [key for key in keys if f"`{key}`" not in page] == []
