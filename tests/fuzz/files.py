@@ -51,7 +51,7 @@ COMMANDS = [
     "run gas --settings SETTINGS --r=0.9 --beta=0 --from {} -o out.nc",
 ]
 """Command lines, {} being the file, and SETTINGS those of a tiny gas."""
-FITTING = ["show {}", "show --json {}"]
+FITTING = [f"show{how}{' {}' * times}" for how in ("", " --json") for times in range(1, 9)]
 """Those that take a dataset of any kind."""
 
 
