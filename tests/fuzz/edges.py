@@ -25,8 +25,9 @@ from roughgas.config.schema import keys
 LIMIT = 60
 """Seconds that a process may take."""
 LONG = "x" * 5000
-TEXTS = ["", "0", "-1", "1e300", "nan", "inf", LONG, "a b'\"äü.nc", "-x.nc", "/dev/null", "points"]
-TEXTS += ["/proc/none", "/sys/none", "gas.nc"]
+POINTS = "points/gas/r0.9/beta0"
+TEXTS = ["", "0", "0.5", "1", "2", "-1", "1e300", "nan", "inf", LONG, "a b'\"äü.nc", "-x.nc"]
+TEXTS += ["/dev/null", "points", "/proc/none", "out.nc", "gas.nc", f"{POINTS}/seed1.nc"]
 GAS = ["gas", "--r=0.9", "--beta=0", "--settings", json.dumps(TINY)]
 DRIVEN = TINY | {
     "effects": test_configurations.WHOLE["experiments"]["sheared"]["effects"],
@@ -38,7 +39,6 @@ FILM |= {"collisions": 5, "frames": 3, "cell": 4, "window": 30}
 SWEPT = TINY | {"sweep": {"r": ["0.9"], "beta": ["0"], "seeds": 2}}
 CONFIG = test_configurations.WHOLE
 CONFIG = CONFIG | {"experiments": CONFIG["experiments"] | {"gas": SWEPT}}
-POINTS = "points/gas/r0.9/beta0"
 RIGHT = {
     "run": [*GAS, "--output", "out.nc"],
     "movie": [*GAS, "--frames=3", "--length=1", "--output", "out.gif"],
