@@ -24,6 +24,11 @@ def rendered(caption, **about):
     return publish_parts(source, writer="html", settings_overrides=settings)["body"]
 
 
+def caption_of(name):
+    """The words of a figure's own caption, as the rules hand them on."""
+    return (CAPTIONS / f"{name}.rst").read_text("utf-8")
+
+
 @pytest.fixture(scope="module")
 def loaded():
     return config.load(ROOT / "config.yaml")
@@ -33,12 +38,11 @@ OF_EXPERIMENTS = figures_of("paper", "beyond")
 
 
 @pytest.mark.parametrize("figure", OF_EXPERIMENTS)
-def test_a_figure_says_what_it_shows_and_how_it_was_made(figure, loaded, monkeypatch):
-    monkeypatch.chdir(ROOT)
+def test_a_figure_says_what_it_shows_and_how_it_was_made(figure, loaded):
     experiments = {"cooling": config.experiment(loaded, "cooling", "paper")}
     experiments["waves"] = config.experiment(loaded, "waves", "small")
     wildcards = SimpleNamespace(figure=figure, folder="")
-    params = SimpleNamespace(experiments=experiments)
+    params = SimpleNamespace(experiments=experiments, caption=caption_of(figure))
     text = re.sub(r"\s+", " ", rendered("figure", wildcards=wildcards, params=params))
     assert "What to notice." in text
     assert "160 particles in a box of 100 × 100" in text
@@ -48,11 +52,11 @@ def test_a_figure_says_what_it_shows_and_how_it_was_made(figure, loaded, monkeyp
 
 
 @pytest.mark.parametrize("figure", figures_of("accuracy", "questions"))
-def test_a_study_says_how_it_was_made(figure, loaded, monkeypatch):
-    monkeypatch.chdir(ROOT)
+def test_a_study_says_how_it_was_made(figure, loaded):
     settings = {name: config.study(loaded, name, "paper")["study"] for name in studies.STUDIES}
     wildcards = SimpleNamespace(study_figure=figure, folder="")
-    text = rendered("study", wildcards=wildcards, params=SimpleNamespace(studies=settings))
+    params = SimpleNamespace(studies=settings, caption=caption_of(figure))
+    text = rendered("study", wildcards=wildcards, params=params)
     assert "What to notice." in text and "repetitions 600" in text
 
 
