@@ -28,6 +28,7 @@ LONG = "x" * 5000
 POINTS = "points/gas/r0.9/beta0"
 TEXTS = ["", "0", "0.5", "1", "2", "-1", "1e300", "nan", "inf", LONG, "a b'\"äü.nc", "-x.nc"]
 TEXTS += ["/dev/null", "points", "/proc/none", "out.nc", "gas.nc", f"{POINTS}/seed1.nc"]
+TEXTS += ["0.9", "3", "5", "10", "gas", "config.yaml", "new.nc"]
 GAS = ["gas", "--r=0.9", "--beta=0", "--settings", json.dumps(TINY)]
 DRIVEN = TINY | {
     "effects": test_configurations.WHOLE["experiments"]["sheared"]["effects"],

@@ -206,3 +206,11 @@ def test_intervals_from_two_seeds_say_why_they_are_wide():
     assert said.startswith("Wide intervals: 6 of 6, since errors from 2 seeds are uncertain")
     assert "known with 2 degrees of freedom, 95 % are 4.5 standard errors to each side" in said
     assert why_wide(reduced(beta=(0.0, 0.5))) == ""
+
+
+def test_a_file_of_another_kind_stays_where_it_is(tmp_path):
+    path = tmp_path / "config.yaml"
+    path.write_text("experiments: {}")
+    with pytest.raises(InputError, match=r"config\.yaml: must be a dataset of roughgas"):
+        reduce_points([path], tmp_path / "out.nc")
+    assert path.read_text() == "experiments: {}" and len(list(tmp_path.iterdir())) == 1
