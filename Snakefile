@@ -2,7 +2,8 @@
 #
 #   snakemake -j2 figures                       the four figures of the paper, a table, its claims
 #   snakemake -j2 figures --config scale=small  the same in a minute, with wide error bars
-#   snakemake -j2 extensions                    beyond the paper: spheres, friction, other drives ...
+#   snakemake -j2 friction                      one question beyond the paper, of a folder of studies/
+#   snakemake -j2 extensions                    all of them
 #   snakemake -j1 explore                       a page in which to look at every point
 #   snakemake -j1 living                        a page in which a gas moves, with sliders
 #   snakemake -j1 pictures                      the four figures for talks: SVG, and PDF of 16 to 9
@@ -30,6 +31,9 @@ config = own_config(config)
 CHANGES = {key: change for key, change in config.items() if key != "scale"}  # the command line's
 config = checked_config(CONFIG, config)
 SCALE = config["scale"]
+FIGURES_OF_STUDIES = [
+    figure for one in config[roughgas.config.FOLDERS].values() for figure in one["figures"]
+]
 
 
 wildcard_constraints:
@@ -39,9 +43,9 @@ wildcard_constraints:
     beta=NAME,
     seed=NAME,
     folder=f"({NAME}/)?",
-    figure="|".join(catalogue.figures_of("paper", "beyond")),
-    # those of the catalogue have their own rules
-    plotted=rf"(?!(?:{'|'.join(catalogue.FIGURES)})\.){NAME}",
+    figure="|".join(catalogue.figures_of("paper")),
+    # other figures have their own rules
+    plotted=rf"(?!(?:{one_of([*catalogue.FIGURES, *FIGURES_OF_STUDIES])})\.(?:pdf|png)$){NAME}",
     movie=NAME,
     study=NAME,
     task=NAME,
@@ -51,8 +55,9 @@ wildcard_constraints:
 
 include: "rules/report.smk"
 include: "rules/simulate.smk"
-include: "rules/products.smk"
 include: "rules/studies.smk"
+include: "rules/products.smk"
+include: "rules/accuracy.smk"
 include: "rules/showcase.smk"
 include: "rules/movies.smk"
 include: "rules/hard_cases.smk"
@@ -86,10 +91,13 @@ rule figures:
 
 rule extensions:
     input:
-        drawn(catalogue.figures_of("beyond", "questions")),
-        multiext(f"results/{SCALE}/", "extensions.csv", "open_questions.json", "open_questions.md"),
+        [products_of(name) for name in STUDIES],
+        f"results/{SCALE}/extensions.csv" if STUDIES else [],
+        documents("run_times_extensions") if STUDIES else [],
+        drawn(catalogue.figures_of("questions")),
+        multiext(f"results/{SCALE}/", "open_questions.json", "open_questions.md"),
         [f"results/{SCALE}/{name}.md" for name in catalogue.figures_of("questions")],
-        documents("open_questions", "run_times_extensions", *catalogue.figures_of("questions")),
+        documents("open_questions", *catalogue.figures_of("questions")),
 
 
 rule explore:
@@ -171,7 +179,7 @@ rule everything:
 
 
 # figures by their names, and experiments by theirs, but for names that have a rule
-for name in [*catalogue.FIGURES, *config["experiments"]]:
+for name in [*catalogue.FIGURES, *STUDY_OF, *config["experiments"]]:
     if not rules.has(name):
 
         rule:

@@ -6,6 +6,7 @@ It can be read without a network: nothing in it is loaded from elsewhere.
 import logging
 import os.path
 import re
+import shutil
 from pathlib import Path
 
 from docutils.nodes import SkipNode
@@ -63,12 +64,23 @@ napoleon_google_docstring = False
 
 
 def setup(app):
+    app.connect("builder-inited", write_studies)
     app.connect("source-read", mend_links)
     app.add_html_math_renderer("mathml", (inline_formula, None), (formula, None))
     app.connect("env-get-outdated", lambda *_: ["tutorial"])  # it runs at each build
     app.connect("autodoc-process-docstring", as_prose)
     app.connect("autodoc-skip-member", skip_fields)
     app.connect("build-finished", refuse_what_is_loaded)
+
+
+def write_studies(app):
+    """A page for each study that is there, made of its README.md."""
+    pages = DOCS / "studies"
+    shutil.rmtree(pages, ignore_errors=True)
+    pages.mkdir()
+    for readme in sorted(ROOT.glob("studies/*/README.md")):
+        text = linked(readme.read_text(encoding="utf-8"), readme.parent, pages)
+        (pages / f"{readme.parent.name}.md").write_text(text, encoding="utf-8")
 
 
 def mend_links(app, docname, source):

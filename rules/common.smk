@@ -19,6 +19,7 @@ try:
     from roughgas.base import sources
     from roughgas.base.errors import InputError, not_one_of, shown
     from roughgas.base.layout import in_rst
+    from roughgas.config.reading import read_yaml
     from roughgas.config.schema import keys
     from roughgas.show import catalogue
     from roughgas.studies.figures import DATASETS, FIGURES
@@ -173,6 +174,11 @@ def reduced(scale, experiments):
 def scale_of(folder):
     """The scale of what is drawn into a folder of figures/: `paper` where it is figures/ itself."""
     return Path(folder).name or "paper"
+
+
+def one_of(labels):
+    """The wildcard constraint for one of these labels; without any, for nothing."""
+    return "|".join(re.escape(str(label)) for label in labels) or "(?!)"
 
 
 def drawn(figures, kinds=(".pdf", ".png")):

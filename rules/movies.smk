@@ -1,14 +1,16 @@
-# One short movie a scene, for README and docs. To add one, add a line here: its name, its experiment or
-# variant, and what else `roughgas movie` is told (docs/gallery.md).
+# One short movie a scene, for README and docs: its name, its experiment or variant, and what else
+# `roughgas movie` is told. Studies have their own in their config.yaml.
 MOVIES = {
     "vibrated": ("vibrated", "--r=0.9 --beta=0.5 --length=8 --frames=160"),
     "roughness": ("vibrated", "--r=0.9 --beta -1 0 1 --length=12 --frames=180"),
-    "mixture": ("vibrated_sizes/radius2", "--r=0.9 --beta=0.5 --length=4 --frames=80"),
     "sheared": ("sheared", "--r=0.9 --beta=0.5 --frames=160"),
     "cooling": ("cooling", "--r=0.9 --beta=0.5 --length=16 --frames=160"),
     "rough_walls": ("vibrated_rough_walls", "--r=0.9 --beta=-1 --length=8 --frames=160"),
-    "shaken_walls": ("shaken_walls/roughness1", "--r=0.9 --beta=0 --length=8 --frames=160"),
-    "vibrated_spheres": ("vibrated_spheres", "--r=0.9 --beta=0.5 --length=6 --frames=120"),
+}
+MOVIES |= {
+    movie: (experiment, " ".join(options))
+    for about in STUDIES.values()
+    for movie, (experiment, *options) in about["movies"].items()
 }
 
 

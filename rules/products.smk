@@ -5,7 +5,7 @@ PARTS = {  # product -> the part of the catalogue of figures whose experiments i
     "run_times": "paper",
     "explore": "paper",
     "extensions": "beyond",
-    "open_questions": "beyond",
+    "open_questions": "questions",
     "run_times_extensions": "beyond",
     "explore_extensions": "beyond",
 }
@@ -13,9 +13,6 @@ PARTS = {  # product -> the part of the catalogue of figures whose experiments i
 
 OF_EXPLORE = ("base.html", "explore.html", "explore.css", "explore.js", "plots.js", "picture.js")
 OF_LIVING = ("page/base.html", "living/page.html", "living/page.css")
-
-
-DRAWN_FROM_DATA = catalogue.figures_of("paper", "beyond")
 
 
 def data_of_figure(wildcards):
@@ -26,7 +23,7 @@ def data_of_plot(wildcards):
     """The reduced dataset of the experiment by whose name a figure is asked for."""
     with one_line():
         if wildcards.plotted not in config["experiments"]:
-            known = {*DRAWN_FROM_DATA, *config["experiments"]}
+            known = {*catalogue.FIGURES, *STUDY_OF, *config["experiments"]}
             raise nearest("figure", wildcards.plotted, "a figure or an experiment", known)
     return reduced(scale_of(wildcards.folder), [wildcards.plotted])
 
@@ -40,10 +37,14 @@ def code_of_figure(wildcards):
 
 
 def experiments_of_product(wildcards):
-    return catalogue.shown_in(PARTS[wildcards.product])
+    part = PARTS[wildcards.product]
+    of_studies = [one for about in STUDIES.values() for one in about["experiments"]]
+    return of_studies if part == "beyond" else catalogue.shown_in(part)
 
 
 def data_of_product(wildcards):
+    if wildcards.product == "open_questions":
+        return []
     return reduced(wildcards.scale, experiments_of_product(wildcards))
 
 

@@ -55,14 +55,18 @@ def caption_of_figure(wildcards, output):
         return (SOURCE / f"rules/captions/{name}.rst").read_text("utf-8")
 
 
-def experiments_of_figure(wildcards, output):
-    """The settings of the experiments that a figure shows, for its caption."""
-    scale = scale_of(wildcards.folder)
-    found = {name: settings(scale, name) for name in entry_of(wildcards).shows}
+def described(scale, experiments):
+    """The settings of experiments, for a caption."""
+    found = {name: settings(scale, name) for name in experiments}
     return {
         name: one | {"description": in_rst(one.get("description", ""))}
         for name, one in found.items()
     }
+
+
+def experiments_of_figure(wildcards, output):
+    """The settings of the experiments that a figure shows, for its caption."""
+    return described(scale_of(wildcards.folder), entry_of(wildcards).shows)
 
 
 def studies_of_figure(wildcards, output):

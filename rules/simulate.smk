@@ -108,11 +108,6 @@ def urgency(wildcards):
     return effort(settings(wildcards.scale, wildcards.experiment), place.r, place.beta)
 
 
-def one_of(labels):
-    """The wildcard constraint for one of these labels."""
-    return "|".join(re.escape(str(label)) for label in labels)
-
-
 def jobs_of_points():
     """(name, outputs, log, wildcard constraints) of the rules that make points. A rule has a fixed
     number of outputs and the seeds of a sweep vary: so each block of points has a rule. With a job

@@ -1,128 +1,231 @@
-# Studies, for example of the cost of accuracy and the coverage of error bars: each is a few independent
-# tasks, a dataset that combines them, a figure, and a table.
-from roughgas import studies
+# Studies: folders that hold a question beyond the paper each, found by being there.
+from roughgas.show.studies import captions
 
-TASK = "results/{scale}/studies/{study}/{task}.nc"
+STUDIES = config[roughgas.config.FOLDERS]
+BROKEN = {
+    name: f"roughgas: error: {InputError(*error)}"
+    for name, error in config[roughgas.config.BROKEN].items()
+}
+OF_STUDY = "results/{scale}/{study}/"  # products, beside results/{scale}/{study}.{experiment}
+STUDY_OF = {figure: name for name, about in STUDIES.items() for figure in about["figures"]}
 
-
-def settings_of_study(wildcards):
-    """The settings of a study and of the experiments, as JSON."""
-    with one_line(TASK.format(**wildcards)):
-        found = roughgas.config.study(config, wildcards.study, wildcards.scale)
-        known = studies.study(wildcards.study).tasks(found["study"])
-        if wildcards.task not in known:
-            raise not_one_of("task", wildcards.task, known)
-    return roughgas.config.as_text(found)
-
-
-def tasks_of_figure(wildcards):
-    """The files of all tasks of the studies that a figure shows."""
-    return [
-        TASK.format(scale=wildcards.scale, study=name, task=task)
-        for name in entry_of(wildcards).shows
-        for task in tasks_of_study(name, wildcards.scale)
-    ]
+if workflow.is_main_process:
+    for line in BROKEN.values():
+        logger.warning(f"{line} (left out; all else can be made)")
 
 
-def tasks_of_study(name, scale):
-    """The names of a study's tasks, the longest first."""
-    with one_line(f"results/{scale}/studies/{name}"):
-        settings = roughgas.config.study(config, name, scale)["study"]
-        return studies.study(name).tasks(settings)
+def study_of(wildcards):
+    """The name of the study that a rule makes something of, and what is known of it."""
+    name = wildcards.get("study") or STUDY_OF[wildcards.drawn]
+    return name, STUDIES[name]
 
 
-def urgency_of_task(wildcards):
-    names = tasks_of_study(wildcards.study, wildcards.scale)
-    return len(names) - names.index(wildcards.task) if wildcards.task in names else 0
+def data_of_study_figure(wildcards):
+    _, about = study_of(wildcards)
+    return reduced(scale_of(wildcards.folder), about["figures"][wildcards.drawn])
 
 
-def code_of_study(wildcards):
-    code = sources.code_of(f"studies.runs.{wildcards.study}", alone=["studies.files"])
-    return with_files(code, settings_of_study(wildcards))
+def names_of_study_figure(wildcards):
+    _, about = study_of(wildcards)
+    return about["figures"][wildcards.drawn]
 
 
-def code_of_combining(wildcards):
-    return sources.code_of(
-        "studies.files", *(f"studies.{name}" for name in entry_of(wildcards).shows)
-    )
+def data_of_study(wildcards):
+    _, about = study_of(wildcards)
+    return reduced(wildcards.scale, about["experiments"])
+
+
+def data_of_study_claims(wildcards):
+    """The reduced datasets of all experiments that the statements of a study are on."""
+    name, about = study_of(wildcards)
+    own = {one.partition(".")[2]: one for one in about["experiments"]}
+    with one_line():
+        rows = read_yaml(Path(about["folder"], "claims.yaml"))
+    names = [own.get(one, one) for row in rows.values() for one in row["experiments"]]
+    return reduced(wildcards.scale, dict.fromkeys(names))
 
 
 def code_of_study_figure(wildcards):
-    return sources.code_of(f"studies.figures.{wildcards.study_figure}")
+    _, about = study_of(wildcards)
+    return code_beside(about["folder"], "*.py", "show.gallery", "plotting")
 
 
-def study_of_figure(wildcards):
-    dataset = DATASETS[wildcards.study_figure]
-    return f"results/{scale_of(wildcards.folder)}/{dataset}.nc"
+def code_of_study_claims(wildcards):
+    _, about = study_of(wildcards)
+    return code_beside(about["folder"], "[cj]*", "judging", "claims.report", "claims.statements")
 
 
-rule study:
-    output:
-        TASK,
-    log:
-        "logs/{scale}/studies/{study}/{task}.log",
-    benchmark:
-        "logs/{scale}/studies/{study}/{task}.tsv"
-    priority: urgency_of_task
-    params:
-        code=code_of_study,
-        settings=settings_of_study,
-    message:
-        "study {wildcards.study}: {wildcards.task}"
-    shell:
-        "python -P -m roughgas.steps study {wildcards.study:q} {wildcards.task:q} --scale {wildcards.scale:q}"
-        " --settings {params.settings:q} --output {output:q} > {log:q} 2>&1"
+def code_beside(folder, files, *modules):
+    """A hash of files in a folder and of modules that they use."""
+    texts = [path.read_bytes() for path in sorted(Path(folder).glob(files)) if path.is_file()]
+    return sources.code_of(*modules) + hashlib.sha256(b"".join(texts)).hexdigest()[:16]
 
 
-rule combined_studies:
-    input:
-        tasks=tasks_of_figure,
-    output:
-        "results/{scale}/{study_figure}.nc",
-    log:
-        "logs/{scale}/{study_figure}.log",
-    params:
-        code=code_of_combining,
-    message:
-        "combine the studies of {wildcards.study_figure}"
-    shell:
-        "python -P -m roughgas.steps combine {input.tasks:q} --output {output:q} > {log:q} 2>&1"
+# made from the output and therefore not recorded: results do not depend on where a study is, nor on
+# what a caption says
+
+
+def folder_of_study(wildcards, output):
+    _, about = study_of(wildcards)
+    return about["folder"]
+
+
+def caption_of_study_figure(wildcards, output):
+    _, about = study_of(wildcards)
+    return captions(about["folder"], [*about["figures"]]).get(wildcards.drawn, "")
+
+
+def experiments_of_study_figure(wildcards, output):
+    return described(scale_of(wildcards.folder), names_of_study_figure(wildcards))
+
+
+def title_of_study(wildcards):
+    _, about = study_of(wildcards)
+    return about["title"]
+
+
+def labels_of_study(wildcards):
+    return titled(title_of_study(wildcards))
+
+
+def figures_of_study(name, scale):
+    """The pictures of a study: those that its figure.py draws, or else one of each experiment."""
+    about = STUDIES[name]
+    folder = "" if scale == "paper" else f"{scale}/"
+    return [f"figures/{folder}{one}.png" for one in about["figures"] or about["experiments"]]
+
+
+def pictures_of_study(wildcards):
+    name, _ = study_of(wildcards)
+    return figures_of_study(name, wildcards.scale)
+
+
+def claims_of_study(wildcards):
+    _, about = study_of(wildcards)
+    there = Path(about["folder"], "claims.yaml").exists()
+    return [f"{OF_STUDY.format(**wildcards)}claims.md"] if there else []
+
+
+def readme_of_study(wildcards):
+    _, about = study_of(wildcards)
+    return of_project(*Path(about["folder"]).glob("README.md"))
+
+
+def products_of(name):
+    """The input function of a study's rule: all that there is to it."""
+
+    def products(wildcards):
+        if name in BROKEN:
+            sys.exit(BROKEN[name])
+        folder = OF_STUDY.format(scale=SCALE, study=name)
+        pictures = figures_of_study(name, SCALE)
+        pdfs = [one.removesuffix(".png") + ".pdf" for one in pictures]
+        return [*pictures, *pdfs, f"{folder}R.csv", f"{folder}page.html"]
+
+    return products
 
 
 rule study_figure:
     input:
-        data=study_of_figure,
+        data=data_of_study_figure,
     output:
-        "figures/{folder}{study_figure}.pdf",
+        "figures/{folder}{drawn}.pdf",
         report(
-            "figures/{folder}{study_figure}.png",
-            caption="captions/study.rst",
-            category=heading_of,
-            labels=labels_of,
+            "figures/{folder}{drawn}.png",
+            caption="captions/figure.rst",
+            category=catalogue.HEADINGS["beyond"],
+            labels=labels_of_study,
         ),
     log:
-        "logs/figures/{folder}{study_figure}.log",
+        "logs/figures/{folder}{drawn}.log",
+    wildcard_constraints:
+        drawn=one_of(STUDY_OF),
     params:
         code=code_of_study_figure,
-        caption=caption_of_figure,
-        studies=studies_of_figure,
+        shows=names_of_study_figure,
+        folder=folder_of_study,
+        caption=caption_of_study_figure,
+        experiments=experiments_of_study_figure,
     message:
-        "draw {wildcards.folder}{wildcards.study_figure}"
+        "draw {wildcards.folder}{wildcards.drawn}"
     shell:
-        "python -P -m roughgas.steps figure {wildcards.study_figure:q} {input.data:q}"
-        " --output {output:q} > {log:q} 2>&1"
+        "python -P -m roughgas.steps study_figure {params.folder:q} {wildcards.drawn:q} {input.data:q}"
+        " --shows {params.shows:q} --output {output:q} > {log:q} 2>&1"
 
 
 rule study_table:
     input:
-        data="results/{scale}/{study_figure}.nc",
+        data=data_of_study,
     output:
-        "results/{scale}/{study_figure}.md",
+        csv=f"{OF_STUDY}R.csv",
     log:
-        "logs/{scale}/{study_figure}_table.log",
+        "logs/{scale}/{study}_csv.log",
+    wildcard_constraints:
+        study=one_of(STUDIES),
     params:
-        code=code_of("studies.tables"),
+        code=code_of("results.table"),
+    message:
+        "write {output.csv}"
+    shell:
+        "python -P -m roughgas.steps table {input.data:q} --output {output.csv:q} > {log:q} 2>&1"
+
+
+rule study_claims:
+    input:
+        data=data_of_study_claims,
+    output:
+        json=f"{OF_STUDY}claims.json",
+        markdown=f"{OF_STUDY}claims.md",
+    log:
+        "logs/{scale}/{study}_claims.log",
+    wildcard_constraints:
+        study=one_of(STUDIES),
+    params:
+        code=code_of_study_claims,
+        folder=folder_of_study,
+        title=title_of_study,
+        experiments=lambda wildcards: study_of(wildcards)[1]["experiments"],
     message:
         "write {output}"
     shell:
-        "python -P -m roughgas.steps study_tables {input.data:q} --output {output:q} > {log:q} 2>&1"
+        "python -P -m roughgas.steps study_claims {params.folder:q} {input.data:q} --title {params.title:q}"
+        " --experiments {params.experiments:q} --json {output.json:q} --markdown {output.markdown:q}"
+        " > {log:q} 2>&1"
+
+
+rule study_page:
+    input:
+        readme_of_study,
+        table=f"{OF_STUDY}R.csv",
+        figures=pictures_of_study,
+        claims=claims_of_study,
+    output:
+        report(
+            f"{OF_STUDY}page.html",
+            caption="captions/table.rst",
+            category=catalogue.HEADINGS["beyond"],
+            labels=labels_of_study,
+        ),
+    log:
+        "logs/{scale}/{study}_page.log",
+    wildcard_constraints:
+        study=one_of(STUDIES),
+    params:
+        code=code_of("show.studies"),
+        folder=folder_of_study,
+        title=title_of_study,
+    message:
+        "write {output}"
+    shell:
+        "python -P -m roughgas.steps study_page {params.folder:q} --title {params.title:q}"
+        " --table {input.table:q} --figures {input.figures:q} --claims={input.claims:q}"
+        " --output {output:q} > {log:q} 2>&1"
+
+
+for name in [*STUDIES, *BROKEN]:
+
+    rule:
+        name:
+            name
+        input:
+            products_of(name),

@@ -15,7 +15,7 @@ from roughgas.config.reading import read_yaml
 from roughgas.results.crate import PROJECT
 
 ROOT = Path(__file__).parent.parent
-COPIED = (*PROJECT, "rules", "profiles", "src")
+COPIED = (*PROJECT, "rules", "profiles", "src", "studies")
 COPIED += tuple(f"tests/{name}" for name in ("hard_cases", "brute_force", "exact"))
 COPIED += tuple(f"tests/{name}.py" for name in ("conftest", "compiled", "schedules"))
 SWEEP = {"r": ["0.9"], "beta": ["0"], "seeds": 2}
@@ -45,36 +45,36 @@ POINTS = 6 * SWEEP["seeds"]
 JOBS = 6  # one makes both seeds of a point
 FINISHED = ("everything",)
 BEYOND = {  # the experiments beyond the paper, and the third axis of their sweeps
-    "cooling_spheres": {},
-    "sheared_spheres": {},
-    "vibrated_spheres": {},
-    "vibrated_friction": {"friction.mu": ["0.5"]},
-    "cooling_friction": {"friction.mu": ["0.5"]},
-    "heated": {"thermostat.spin_share": ["0.5"]},
-    "shaken_walls": {"shaken_walls.roughness": ["1"]},
-    "waves": {"floor.wave": ["sine"]},
-    "vibrated_inertia": {"spin.inertia": ["0.1"]},
-    "cooling_inertia": {"spin.inertia": ["0.1"]},
-    "floor_materials": {"floor.roughness": ["1"]},
-    "wall_materials": {"walls.roughness": ["1"]},
-    "vibrated_masses": {"species.heavy.mass": ["4"]},
-    "vibrated_sizes": {"species.large.radius": ["2"]},
-    "cooling_masses": {"species.heavy.mass": ["4"]},
-    "cooling_sizes": {"species.large.radius": ["2"]},
-    "vibrated_polydisperse": {"species.disks.deviation": ["0.2"]},
-    "cooling_polydisperse": {"species.disks.deviation": ["0.2"]},
-    "cooling_viscoelastic": {},
-    "couette": {},
+    "spheres.cooling_spheres": {},
+    "spheres.sheared_spheres": {},
+    "spheres.vibrated_spheres": {},
+    "friction.vibrated_friction": {"friction.mu": ["0.5"]},
+    "friction.cooling_friction": {"friction.mu": ["0.5"]},
+    "drives.heated": {"thermostat.spin_share": ["0.5"]},
+    "drives.shaken_walls": {"shaken_walls.roughness": ["1"]},
+    "waves.waves": {"floor.wave": ["sine"]},
+    "inertia.vibrated_inertia": {"spin.inertia": ["0.1"]},
+    "inertia.cooling_inertia": {"spin.inertia": ["0.1"]},
+    "drives.floor_materials": {"floor.roughness": ["1"]},
+    "drives.wall_materials": {"walls.roughness": ["1"]},
+    "mixtures.vibrated_masses": {"species.heavy.mass": ["4"]},
+    "mixtures.vibrated_sizes": {"species.large.radius": ["2"]},
+    "mixtures.cooling_masses": {"species.heavy.mass": ["4"]},
+    "mixtures.cooling_sizes": {"species.large.radius": ["2"]},
+    "mixtures.vibrated_polydisperse": {"species.disks.deviation": ["0.2"]},
+    "mixtures.cooling_polydisperse": {"species.disks.deviation": ["0.2"]},
+    "viscoelastic.cooling_viscoelastic": {},
+    "couette.couette": {},
 }
 TINY |= {name: {"sweep": SWEEP | axis} for name, axis in BEYOND.items()}
 for name, box in (
-    ("cooling_spheres", [10, 10, 10]),
-    ("sheared_spheres", [10, 10, 10]),
-    ("vibrated_spheres", [10, 10, "open"]),
-    ("heated", [20, 20]),
-    ("cooling_sizes", [20, 20]),
-    ("shaken_walls", [20, 20]),
-    ("couette", [20, 20]),
+    ("spheres.cooling_spheres", [10, 10, 10]),
+    ("spheres.sheared_spheres", [10, 10, 10]),
+    ("spheres.vibrated_spheres", [10, 10, "open"]),
+    ("drives.heated", [20, 20]),
+    ("mixtures.cooling_sizes", [20, 20]),
+    ("drives.shaken_walls", [20, 20]),
+    ("couette.couette", [20, 20]),
 ):
     TINY[name] |= {"particles": 10, "box": box}
 
@@ -156,7 +156,7 @@ def jobs_by_rule(output):
     together, as `seeds`."""
     table = output.rsplit("Job stats:", 1)[1].split("total")[0]
     found = {}
-    for rule, count in re.findall(r"^(\w+) +(\d+)$", table, re.M):
-        name = re.sub(r"\w+_block_\d+", "seeds", rule)
+    for rule, count in re.findall(r"^([\w.]+) +(\d+)$", table, re.M):
+        name = re.sub(r"[\w.]+_block_\d+", "seeds", rule)
         found[name] = found.get(name, 0) + int(count)
     return found

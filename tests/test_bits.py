@@ -10,7 +10,7 @@ from roughgas.data.point import write_point
 from roughgas.scene import build
 from roughgas.simulation.point import run_point
 
-CONFIG = Path(__file__).parents[1] / "config.yaml"
+CONFIG = Path(__file__).with_name("experiments.yaml")
 # whose kernels others compile, too
 USUAL = ("small/cooling/", "small/sheared/", "four_phases/small/vibrated/")
 POINTS = [

@@ -15,12 +15,12 @@ ROWS = [pytest.param(*row, id=shlex.split(row[2])[1]) for row in ROW.findall(PAG
 R, BETA = 0.9, 0.5
 EXPECTED = {
     "cooling": theory.cooling_ratio(R, BETA),
-    "cooling_spheres": theory.cooling_ratio(R, BETA, 3, 0.4),
+    "spheres.cooling_spheres": theory.cooling_ratio(R, BETA, 3, 0.4),
     "cooling_friction/mu1": theory.friction_ratio(R, BETA, 1.0, 2, 0.5, None),
-    "vibrated_spheres": theory.lun_ratio(BETA, 0.4),
-    "vibrated_inertia/inertia0.1": theory.lun_ratio(BETA, 0.1),
-    "vibrated_friction/mu0.3": theory.friction_ratio(R, BETA, 0.3, 2, 0.5, 0.0),
-    "heated/spin_share1": theory.stationary_ratio(R, BETA, 2, 0.5, 1.0),
+    "spheres.vibrated_spheres": theory.lun_ratio(BETA, 0.4),
+    "inertia.vibrated_inertia/inertia0.1": theory.lun_ratio(BETA, 0.1),
+    "friction.vibrated_friction/mu0.3": theory.friction_ratio(R, BETA, 0.3, 2, 0.5, 0.0),
+    "drives.heated/spin_share1": theory.stationary_ratio(R, BETA, 2, 0.5, 1.0),
 }
 LUN = theory.lun_ratio(BETA, 0.5)  # of all other disks
 

@@ -130,11 +130,15 @@ def test_lists_make_the_reduced_dataset_of_their_points(tmp_path, monkeypatch):
         ("cooling", {"effects": {"frction": {}}}, "cooling.effects: key = 'frction': must be one"),
         ("cooling", {"schedule": {"measure": 9}}, "cooling.schedule: key = 'measure': must be one"),
         ("vibrated", {"effects": {"gravity": None}}, "effects.floor needs gravity"),
-        ("vibrated_friction", {}, "vibrated_friction.effects.friction.mu = (nothing): must be"),
         (
-            "vibrated_friction/mu0.3",
+            "friction.vibrated_friction",
+            {},
+            "vibrated_friction.effects.friction.mu = (nothing): must be",
+        ),
+        (
+            "friction.vibrated_friction/mu0.3",
             {"effects": {"friction": {"mu": 0.5}}},
-            "experiment = vibrated_friction/mu0.3: must be the variant that its settings are of",
+            "friction.vibrated_friction/mu0.3: must be the variant that its settings are of",
         ),
         (None, {}, "scene.particles = (nothing): must be given"),
         (None, OWN | {"schedule": {"kind": "steady"}}, "scene.schedule.equilibrate = (nothing)"),

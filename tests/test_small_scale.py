@@ -1,4 +1,4 @@
-"""The points of the small scale, as config.yaml has them, against the paper's theory.
+"""The points of the small scale, as experiments.yaml has them, against the paper's theory.
 
 BEYOND_THEORY has what R was found to be above theory at these numbers of particles: the mean over
 seeds 101 to 228, and its standard error (`python tests/test_small_scale.py` measures it anew). Most
@@ -21,7 +21,7 @@ from roughgas.scene import build
 from roughgas.simulation.point import run_point
 from roughgas.theory.prediction import predicted_ratio
 
-CONFIG = Path(__file__).parent.parent / "config.yaml"
+CONFIG = Path(__file__).with_name("experiments.yaml")
 SIGMAS = 4
 SEEDS, LONG = range(1, 5), range(101, 229)
 BEYOND_THEORY = {

@@ -52,7 +52,7 @@ def simulate(
     ----------
     experiment
         Name of an experiment (see `experiments`), such as ``"vibrated"`` or ``"cooling"``, or of a
-        variant, such as ``"vibrated_friction/mu0.3"``.
+        variant, such as ``"STUDY.EXPERIMENT/mu0.3"`` of a study.
     r
         Normal restitution of the particles, in [0, 1]; 1 is elastic. Of r, beta and the seed each
         may be a list: then every r is combined with every beta and seed.

@@ -52,6 +52,40 @@ def figure(name: str, inputs: list[str], *, output: list[str], slide: bool = Fal
         of_studies.draw(name, inputs[0], output)
 
 
+def study_figure(
+    folder: str, figure: str, inputs: list[str], *, shows: list[str], output: list[str]
+) -> None:
+    """Draw a figure of the study in a folder from the reduced datasets that it shows, in order."""
+    from roughgas.show.gallery import draw_of_study
+
+    draw_of_study(folder, figure, shows, inputs, output)
+
+
+def study_claims(
+    folder: str,
+    inputs: list[str],
+    *,
+    title: str,
+    experiments: list[str],
+    json: str,
+    markdown: str,
+) -> None:
+    """Judge the statements in claims.yaml of the study in a folder, which has these experiments."""
+    from roughgas.claims.report import judge
+    from roughgas.claims.statements import read_study
+
+    judge(inputs, json, markdown, read_study(folder, title, experiments))
+
+
+def study_page(
+    folder: str, *, title: str, table: str, figures: list[str], output: str, claims: str = ""
+) -> None:
+    """Write the page of the study in a folder: its README.md, figures, table and verdicts."""
+    from roughgas.show.studies import write_page
+
+    write_page(folder, title, figures, table, claims, output)
+
+
 def claims(inputs: list[str], *, json: str, markdown: str, open_questions: bool = False) -> None:
     """Judge the claims of the paper, or what it leaves open."""
     from roughgas.claims import OPEN_QUESTIONS, PAPER, judge
@@ -183,7 +217,17 @@ STEPS: dict[str, Callable[..., None]] = {
     step.__name__: step
     for step in (
         *(compile_kernels, table, figure, claims, explore, front, living, document, run_times),
-        *(effective_config, clustering, film, study, combine, study_tables),
+        *(
+            study_figure,
+            study_claims,
+            study_page,
+            effective_config,
+            clustering,
+            film,
+            study,
+            combine,
+            study_tables,
+        ),
     )
 }
 

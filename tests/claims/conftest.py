@@ -1,6 +1,6 @@
 import pytest
+from tests.houses import statements
 
-from roughgas.claims import OPEN_QUESTIONS, PAPER
 from roughgas.claims.evidence import beside_theory
 from roughgas.claims.statements import examine
 
@@ -8,10 +8,10 @@ from roughgas.claims.statements import examine
 @pytest.fixture(scope="session")
 def judged():
     """A function that judges reduced datasets: the finding on the statement of a name."""
-    statements = {one.name: one for one in PAPER.statements + OPEN_QUESTIONS.statements}
+    every = statements()
 
     def finding(name, *datasets):
         known = {data.attrs["experiment"]: beside_theory(data) for data in datasets}
-        return examine(statements[name], known)
+        return examine(every[name], known)
 
     return finding

@@ -11,30 +11,22 @@ from itertools import pairwise
 from pathlib import Path
 
 from roughgas.base.layout import markdown
-from roughgas.claims import (
-    OPEN_QUESTIONS,
-    PAPER,
-    averages,
-    materials,
-    open_questions,
-    paper,
-    verdicts,
-)
+from roughgas.claims import OPEN_QUESTIONS, PAPER, averages, paper, verdicts
 from roughgas.statistics import errors
 
 PAGE = Path(__file__).parents[2] / "docs" / "claims.md"
 BEGIN, END = "<!-- {}: made by tests/claims/page.py -->\n", "<!-- until here -->\n"
 SAID = {"AGREE": verdicts, "LIMIT": verdicts, "TENDENCY": verdicts, "FEW": verdicts}
 SAID |= {"NEAR": verdicts, "FAR": verdicts, "SIGNIFICANT": errors, "INTERMEDIATE": paper}
-SAID |= {"CONSIDERABLY": paper, "NO_ROTATION": open_questions, "MOST": averages}
-SAID |= {"CLOSE": materials, "ROUGHLY": materials}
+SAID |= {"CONSIDERABLY": paper, "MOST": averages}
 """What decides verdicts, and where it stands."""
 
 
 def tables():
     """The tables that follow from the code, by name."""
     subjects = {"paper": PAPER, "open questions": OPEN_QUESTIONS}
-    return {"tolerances": tolerances()} | {name: criteria(of) for name, of in subjects.items()}
+    found = {name: criteria(of) for name, of in subjects.items()}
+    return {"tolerances": tolerances(), **found}
 
 
 def tolerances():

@@ -2,9 +2,12 @@
 
 import pytest
 from synthetic import couette, reduced, viscoelastic
+from tests.houses import part
 
-from roughgas.claims import evidence, materials
+from roughgas.claims import evidence
 from roughgas.claims.verdicts import FAILS, HOLDS, QUALIFIED
+
+materials = part("viscoelastic", "judges")
 
 
 def judged(judge, *gases):
@@ -31,7 +34,7 @@ def test_r_follows_the_present_restitution(shift, verdict):
 @pytest.mark.parametrize(("shift", "verdict"), [(0.0, HOLDS), (0.04, QUALIFIED), (0.09, FAILS)])
 def test_couette_flow_beside_sliding_images(shift, verdict):
     gases = couette(shift), reduced("sheared", r=(0.9,), error=1e-6)
-    found = judged(materials.couette_is_lees_edwards, *gases)
+    found = judged(part("couette", "judges").couette_is_lees_edwards, *gases)
     assert found.verdict == verdict and "Shear rates are from" in found.reason
 
 

@@ -3,13 +3,14 @@
 import numpy as np
 import pytest
 from synthetic import mixed
+from tests.houses import part
 
-from roughgas.claims import evidence, mixtures
+from roughgas.claims import evidence
 from roughgas.claims.verdicts import FAILS, HOLDS, QUALIFIED
 from roughgas.data.point import Point, write_point
 from roughgas.results.reduce import reduce_points
-from roughgas.show.figures import mixtures_cooling
 
+mixtures, figure = (part("mixtures", name) for name in ("judges", "figure"))
 HOW = {"r": (0.9,), "beta": (-0.5, 0.0, 0.5, 1.0)}
 MASSES = "species.second.mass", (1.0, 4.0)
 DEVIATIONS = "species.disks.deviation", (0.0, 0.2)
@@ -85,7 +86,7 @@ def test_a_decay_that_species_share_is_no_error_of_their_ratio(tmp_path):
     error = np.std(ratios, ddof=1) / 2
     first, second = mixtures._of_theory(gas, "T_tr").values.ravel()
     assert mixtures.temperature_ratio(gas).stderr == pytest.approx([error * first / second])
-    axes = mixtures_cooling.draw(gas, gas).axes[0]
+    axes = figure.draw_cooling(gas, gas).axes[0]
     (low, high) = axes.containers[0][2][0].get_segments()[0][:, 1]
     assert (low + high) / 2 == pytest.approx(np.mean(ratios))
     assert (high - low) / 2 == pytest.approx(error)

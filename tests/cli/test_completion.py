@@ -13,6 +13,7 @@ from roughgas.cli import main
 from roughgas.cli.commands import COMMANDS
 
 ROOT = Path(__file__).parents[2]
+BED = "friction.vibrated_friction"
 ASK = {  # each prints what the shell would offer, a word and perhaps its description a line
     "bash": """
 eval "$2"
@@ -65,9 +66,9 @@ def completed(line, script, shell="bash"):
     [
         ("roughgas comp", {"completion"}),
         ("roughgas theory --dim", {"--dimension"}),
-        ("roughgas run cooling_s", {"cooling_spheres", "cooling_sizes"}),
-        ("roughgas run vibrated_friction/mu0.0", {f"vibrated_friction/mu0.0{k}" for k in "13"}),
-        ("roughgas run vibrated_i", {"vibrated_inertia"}),
+        ("roughgas run spheres.c", {"spheres.cooling_spheres"}),
+        (f"roughgas run {BED}/mu0.0", {f"{BED}/mu0.0{k}" for k in "13"}),
+        ("roughgas run inertia.v", {"inertia.vibrated_inertia"}),
         ("roughgas movie cooling --scale ", {"paper", "small"}),
         ("roughgas run cooling --config config.", {"config.yaml"}),
         ("roughgas show READ", {"README.md"}),

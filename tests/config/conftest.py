@@ -9,7 +9,7 @@ from roughgas.base.errors import InputError
 @pytest.fixture(scope="session")
 def paper():
     """The project's configuration, which no test changes."""
-    return config.load(Path(__file__).parents[2] / "config.yaml")
+    return config.load(Path(__file__).parents[1] / "experiments.yaml")
 
 
 @pytest.fixture(scope="session")

@@ -20,7 +20,7 @@ from roughgas.show import catalogue
 from roughgas.studies.figures import DATASETS, FIGURES
 
 ROOT = Path(__file__).parents[2]
-CONFIG = ROOT / "config.yaml"
+CONFIG = ROOT / "tests" / "experiments.yaml"
 
 
 def test_the_paper_as_data(paper):

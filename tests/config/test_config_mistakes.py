@@ -10,7 +10,7 @@ from roughgas import config
 from roughgas.config import checking
 from roughgas.config.reading import read_yaml
 
-CONFIG = Path(__file__).parents[2] / "config.yaml"
+CONFIG = Path(__file__).parents[1] / "experiments.yaml"
 NAN, INF = float("nan"), float("inf")
 EXPERIMENTS = ", ".join(sorted(read_yaml(CONFIG)["experiments"]))
 
@@ -131,7 +131,7 @@ MISTAKES = [
     (
         "n_particles",
         5,
-        "config.yaml: key = 'n_particles': must be one of betas_per_job, experiments",
+        "config.yaml: key = 'n_particles': must be one of betas_per_job, complete, experiments",
     ),
 ]
 

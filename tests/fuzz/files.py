@@ -46,7 +46,7 @@ COMMANDS = [
     "plot {} -o out.png",
     "figure fig1a {} -o out.png",
     "figure fig2b {} -o out.png",
-    "figure fig5 {} -o out.png",
+    "study_figure studies/waves waves {} --shows waves.waves -o out.png",
     "figure coverage {} -o out.png",
     "run gas --settings SETTINGS --r=0.9 --beta=0 --from {} -o out.nc",
 ]

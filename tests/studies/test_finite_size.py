@@ -20,7 +20,7 @@ from roughgas.studies.tables import TABLES
 from .dsmc.nanbu import ratios
 
 tasks, run = study("finite_size")
-CONFIG = config.load("config.yaml")
+CONFIG = config.load("tests/experiments.yaml")
 EXPERIMENTS = {
     name: config.experiment(CONFIG, name, "paper") for name in ("cooling", "cooling_spheres")
 }

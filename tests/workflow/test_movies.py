@@ -8,12 +8,12 @@ from roughgas.simulation.snapshots import COOLING
 NAMES = (
     "vibrated",
     "roughness",
-    "mixture",
     "sheared",
     "cooling",
     "rough_walls",
-    "shaken_walls",
-    "vibrated_spheres",
+    "drives",
+    "mixtures",
+    "spheres",
 )
 TINY = ("--config", "scale=tiny", "--")
 

@@ -5,20 +5,25 @@ import re
 import pytest
 from project import FINISHED, JOBS, Project, jobs_by_rule
 
+from roughgas import config
+
 EACH = JOBS // 6
 AFTER_POINTS = {"claims": 1, "table": 1, "run_times": 1, "document": 2, "figures": 1}
 CONFIGURED = {"effective_config": 1, "document": 1, "figures": 1}
 AFTER_BOTH = AFTER_POINTS | CONFIGURED | {"document": 3}
 
-FIGURES = {"fig1a", "fig1b", "fig2a", "fig2b", "fig3", "fig4", "fig5", "fig6", "fig7", "fig8"}
-FIGURES |= {"mixtures_vibrated", "mixtures_cooling", "polydispersity", "viscoelastic", "couette"}
-REDUCED = FIGURES | {"reduce", "table", "claims", "run_times", "page", "document"}
+STUDIED = {
+    figure for one in config.load("config.yaml")["folders"].values() for figure in one["figures"]
+}
+OF_STUDIES = STUDIED | {"study_table", "study_claims", "study_page"}
+FIGURES = {"fig1a", "fig1b", "fig2a", "fig2b"}
+REDUCED = FIGURES | OF_STUDIES | {"reduce", "table", "claims", "run_times", "page", "document"}
 POINTS = REDUCED | {"seeds"}
 COMPILED = POINTS | {"compile_kernel"}
 FAMILIES = {"family", "catalogue", "document"}
 FILM = {"gas_of_film", "film", "document"}
-ACCURACY = {"accuracy", "accuracy_limits", "combined_studies", "study_table", "document"}
-COVERAGE = {"coverage", "combined_studies", "study_table", "document"}
+ACCURACY = {"accuracy", "accuracy_limits", "combined_tasks", "accuracy_table", "document"}
+COVERAGE = {"coverage", "combined_tasks", "accuracy_table", "document"}
 OF_THEIR_OWN = {"profiles", "finite_size", "runaway"}
 STUDIES = ACCURACY | COVERAGE | OF_THEIR_OWN | {"statistical", "models", "discretisation"}
 SIMULATED = COMPILED | FAMILIES | FILM | STUDIES | {"movie"}
@@ -31,12 +36,12 @@ EDITED = {  # file of the package: what an edit of its code runs again
     "scene/composition.py": SIMULATED | {"living_page"},
     "config/checking.py": {"effective_config", "document", "living_page"},
     "simulation/clustering.py": FILM,
-    "results/table.py": {"table", "run_times", "document"},
+    "results/table.py": {"table", "run_times", "document", "study_table", "study_page"},
     "claims/paper.yaml": {"claims", "document"},
     "show/figures/fig1a.py": {"fig1a"},
     "show/page/explore.js": {"page"},
     "show/movies/drawing.py": {"movie"},
-    "studies/tables.py": {"study_table", "document", "coverage"} | OF_THEIR_OWN,
+    "studies/tables.py": {"accuracy_table", "document", "coverage"} | OF_THEIR_OWN,
     "studies/dsmc/gas.py": ACCURACY | {"models", "finite_size", "runaway", "claims"},
     "cli/run.py": POINTS | FAMILIES,
 }
@@ -129,7 +134,7 @@ def rerun(made, edit):
     if "Nothing to be done" in output:
         return set()
     named = re.findall(r"Job \d+: (?:draw tiny/|study )(\w+)", output)
-    targets = {"figure", "study_figure", "study", *FINISHED}
+    targets = {"figure", "study_figure", "accuracy_figure", "task", *FINISHED}
     return {*jobs_by_rule(output), *named} - targets
 
 

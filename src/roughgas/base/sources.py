@@ -7,10 +7,15 @@ as schema.yaml beside schema.py, counts, and so do the versions of roughgas and 
 import ast
 import functools
 import hashlib
+import importlib
+import re
+import sys
+import types
 from collections.abc import Iterable, Iterator
 from importlib import metadata
 from pathlib import Path
 
+from roughgas.base.errors import InputError
 from roughgas.base.version import __version__
 
 VERSIONS = f"roughgas {__version__} numba {metadata.version('numba')}\n"
@@ -74,3 +79,22 @@ def _imports(node: ast.AST, in_functions: bool) -> Iterator[str]:
     for child in (child for block in blocks for child in getattr(node, block, ())):
         if in_functions or not isinstance(child, ast.FunctionDef):
             yield from _imports(child, in_functions)
+
+
+def module_of(folder: str | Path, name: str) -> types.ModuleType:
+    """Return the module `name`, such as figure, of the study in `folder`; it may import those
+    beside it. Raises InputError where there is none, or where it is no Python."""
+    folder = Path(folder).resolve()
+    package = "roughgas_study_" + re.sub(r"\W", "_", folder.name)
+    if getattr(sys.modules.get(package), "__path__", None) != [str(folder)]:
+        for known in [one for one in sys.modules if one.partition(".")[0] == package]:
+            del sys.modules[known]
+        sys.modules[package] = types.ModuleType(package)
+        sys.modules[package].__path__ = [str(folder)]
+    if not (folder / f"{name}.py").exists():
+        raise InputError(f"studies/{folder.name}/{name}.py", "(nothing)", "be there for this")
+    try:
+        return importlib.import_module(f"{package}.{name}")
+    except (ImportError, SyntaxError) as error:
+        said = f"{type(error).__name__}: {error}"
+        raise InputError(f"studies/{folder.name}/{name}.py", said, "be Python") from error

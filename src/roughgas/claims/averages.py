@@ -10,6 +10,7 @@ from roughgas.claims.evidence import (
     deviation,
     deviation_at_shares,
     sample,
+    spin_shares,
 )
 from roughgas.claims.paper import INTERMEDIATE
 from roughgas.claims.verdicts import (
@@ -17,8 +18,8 @@ from roughgas.claims.verdicts import (
     agreement,
     agreement_in_proportion,
     graded,
+    points,
     text,
-    together,
     worse,
 )
 
@@ -56,19 +57,13 @@ def excess_is_of_averaging(bed: xr.Dataset) -> Finding:
     return Finding(verdict, reason + beyond.reason, numbers + beyond.numbers)
 
 
-def one_curve_for_all_drives(*gases: xr.Dataset) -> Finding:
-    """R averaged over collisions - the rate equations, at the measured share of rotation, is
-    compatible with zero, whatever drives the gas."""
-    return together(
-        (
-            gas.attrs["experiment"],
-            agreement(
-                deviation_at_shares(averaged(gas, "R_collisional")),
-                "the rate equations at the measured share",
-            ),
-        )
-        for gas in gases
-    )
+def follows_its_share(driven: xr.Dataset) -> Finding:
+    """R - the rate equations, at the measured share of rotation, is compatible with zero."""
+    found = agreement(deviation_at_shares(driven), "the rate equations at the measured share")
+    shares = spin_shares(driven)
+    low, high, taken = float(shares.min()), float(shares.max()), int((shares < 0).sum())
+    found = found.noting(f"The share is from {low:.3f} to {high:.3f}.")
+    return found.noting(f"At {points(taken)} rotation is taken out.") if taken else found
 
 
 def averaged(gas: xr.Dataset, name: str) -> xr.Dataset:

@@ -1,22 +1,16 @@
 """Tables of statements, read from YAML: quotations, the data that they are on, and their judges."""
 
-import inspect
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
-from typing import NamedTuple
+from types import ModuleType
+from typing import Any, NamedTuple
 
 import xarray as xr
 import yaml
 
-from roughgas.claims import (
-    averages,
-    evidence,
-    materials,
-    mixtures,
-    of_studies,
-    open_questions,
-    paper,
-)
+from roughgas.base.errors import InputError
+from roughgas.base.sources import module_of
+from roughgas.claims import averages, evidence, of_studies, paper
 from roughgas.claims.evidence import NotTestedError
 from roughgas.claims.verdicts import (
     NOT_TESTED,
@@ -26,12 +20,15 @@ from roughgas.claims.verdicts import (
     points,
 )
 
-ROOM = (evidence, averages, materials, mixtures, of_studies, open_questions, paper)
-FUNCTIONS = {name: one for module in ROOM for name, one in vars(module).items()}
-"""The samples and judges that the tables name."""
+OWN = (evidence, averages, of_studies, paper)
+"""The modules whose samples and judges every table may name."""
 REFERENCE = """\
 S. McNamara and S. Luding, *Energy nonequipartition in systems of inelastic, rough spheres*,
 Phys. Rev. E 58, 2247 (1998)"""
+ON_STUDY = {
+    "about": "The statements of studies/{name}, computed from its datasets.",
+    "quotes": "Statement",
+}
 
 
 class Statement(NamedTuple):
@@ -57,42 +54,52 @@ class Subject(NamedTuple):
 
 def read_subject(name: str) -> Subject:
     """Return the table of statements in the file `name`.yaml of this room."""
-    table = yaml.safe_load(Path(__file__).with_name(f"{name}.yaml").read_text(encoding="utf-8"))
+    table = _read(Path(__file__).with_name(f"{name}.yaml"))
     table["about"] = table["about"].format(reference=REFERENCE)
-    table["statements"] = tuple(
-        _statement(name, **row) for name, row in table["statements"].items()
-    )
+    rows = table["statements"].items()
+    table["statements"] = tuple(_statement(one, row, OWN) for one, row in rows)
     return Subject(**table)
 
 
-def _statement(
-    name: str,
-    quote: str,
-    experiments: list[str],
-    fixed: str,
-    judge: str = "",
-    agrees_with: str = "",
-    sample: str = "deviation",
-    in_proportion: bool = False,
-) -> Statement:
-    def agrees(*datasets: xr.Dataset) -> Finding:
-        if in_proportion:
-            (gas,) = datasets
-            return agreement_in_proportion(gas, agrees_with)
-        return agreement(FUNCTIONS[sample](*datasets), agrees_with)
+def read_study(folder: str | Path, title: str, experiments: Iterable[str]) -> Subject:
+    """Return the table of statements in claims.yaml of the study in `folder`, already checked.
 
-    criterion = _said_of(FUNCTIONS[judge or sample])
-    if not judge:
-        value = criterion.removeprefix("Return ").rstrip(".")
-        criterion = f"{value} is compatible with zero: agreement with {agrees_with}"
-        criterion += ", also relative to theory." if in_proportion else "."
-    decide = FUNCTIONS[judge] if judge else agrees
-    return Statement(name, quote, tuple(experiments), decide, criterion, fixed)
+    Its judges are those of judges.py beside it, and the general ones. `experiments` are those of
+    the study, called NAME.KEY. Raises InputError for a judge that is not there.
+    """
+    folder = Path(folder)
+    own = {name.partition(".")[2]: name for name in experiments}
+    judges = (module_of(folder, "judges"),) if (folder / "judges.py").exists() else ()
+    statements = []
+    for name, row in _read(folder / "claims.yaml").items():
+        row |= {"experiments": [own.get(one, one) for one in row["experiments"]]}
+        try:
+            statements.append(_statement(name, row, (*OWN, *judges)))
+        except KeyError as error:
+            key = f"studies/{folder.name}/claims.yaml: {name}: judge"
+            legal = "be a function of roughgas.judging or judges.py"
+            raise InputError(key, error, legal) from error
+    about = {key: text.format(name=folder.name) for key, text in ON_STUDY.items()}
+    return Subject(f"{title}: the verdicts", statements=tuple(statements), **about)
 
 
-def _said_of(function: Callable) -> str:
-    """Return the first paragraph of a docstring, as one line."""
-    return " ".join((inspect.getdoc(function) or "").split("\n\n")[0].split())
+def _read(path: Path) -> Any:
+    return yaml.safe_load(path.read_text(encoding="utf-8"))
+
+
+def _statement(name: str, row: Mapping[str, Any], modules: tuple[ModuleType, ...]) -> Statement:
+    functions = {key: one for module in modules for key, one in vars(module).items()}
+    judge = functions[row["judge"]] if "judge" in row else _agrees(row, functions)
+    texts = row["quote"], tuple(row["experiments"]), judge, row["criterion"], row["fixed"]
+    return Statement(name, *texts)
+
+
+def _agrees(row: Mapping[str, Any], functions: Mapping[str, Any]) -> Callable[..., Finding]:
+    """Return the judge of agreement with what `agrees_with` names."""
+    of, other = functions[row.get("sample", "deviation")], row["agrees_with"]
+    if row.get("in_proportion"):
+        return lambda gas: agreement_in_proportion(gas, other)
+    return lambda *datasets: agreement(of(*datasets), other)
 
 
 def _size(data: xr.Dataset) -> str:

@@ -33,7 +33,7 @@ COMMANDS = {
             "roughgas run cooling --r 0.9 --beta 0 .5 1 --seed 1 2 3 --scale small",
             "roughgas run vibrated --r 0.9 --beta 0 --set particles=80 effects.friction.mu=0.3",
             "roughgas run vibrated --r 0.87 --beta 0.5 --seed 1 2 3 --scale small --json",
-            "roughgas run vibrated_inertia/inertia0.3 --r 0.9 --beta 1 -o hollow.nc",
+            "roughgas run vibrated --set effects.spin.inertia=0.3 --r 0.9 --beta 1 -o hollow.nc",
             "roughgas run sheared --r 0.9 --beta 0 --keep-state -o first.nc",
             "roughgas run sheared --r 0.9 --beta 0 --from first.nc -o second.nc",
             "roughgas run sheared --r 0.9 --beta 0 --observe stress profiles -o stress.nc",
@@ -113,8 +113,8 @@ COMMANDS = {
         examples=(
             "roughgas plot cooling_r0.9_beta0.5_seed1.nc -o over_time.png",
             "roughgas plot results/paper/sheared.nc -o my.png",
-            "roughgas plot results/paper/vibrated_inertia.nc --beta 0 1 -o my.png my.pdf",
-            "roughgas plot results/paper/waves.nc --over beta --r 0.9 -o waves.png",
+            "roughgas plot results/paper/sheared.nc --beta 0 1 --over r -o my.png my.pdf",
+            "roughgas plot results/paper/vibrated.nc --over beta --r 0.9 -o bed.png",
         ),
         about="Draw R of a sweep with error bars and theory, and R minus theory. The horizontal "
         "axis is the third axis of the sweep, else beta. Of many series an evenly spaced selection "

@@ -6,7 +6,7 @@ such as `spin.inertia: ["1", "0.1"]`; one quantity of one species, as species.NA
 `particles`; the width of the `box`, whose other sides keep their proportion to it; or the
 `packing`. Each label
 makes a variant of the experiment, named EXPERIMENT/PARAMETERLABEL, such as
-vibrated_inertia/inertia0.1: an experiment like any other, whose settings have that value.
+mine/inertia0.1: an experiment like any other, whose settings have that value.
 
 All functions raise InputError, with a text of one line, for unknown names and illegal values.
 """
@@ -38,6 +38,8 @@ SHIPPED = Path(__file__).parents[1] / "config.yaml"
 """The experiments that come with the package; in a clone of the repository, its config.yaml."""
 SHOWCASE, STUDIES = "showcase", "studies"
 """Parts that scales change under these names; a configuration may be without them."""
+FOLDERS, BROKEN = "folders", "broken"
+"""Keys of a configuration that studies have joined (`config.study_folders.joined`)."""
 PAPER = "paper"
 """The scale of a configuration that names none."""
 SEEDS_PER_JOB = 4
@@ -65,14 +67,17 @@ def usual_scale(path: str | Path) -> str:
 
 
 def load(path: str | Path, overrides: Mapping[str, Any] | None = None) -> dict[str, Any]:
-    """Return the configuration at `path`, with `overrides` merged into it, all of it checked.
+    """Return the configuration at `path`, with `overrides` merged into it and all studies, checked.
 
     Raises OSError where the file cannot be read.
     """
-    from roughgas.config.checking import check, read
+    from roughgas.config.checking import check_file, check_merged, read
+    from roughgas.config.study_folders import joined
 
     config, source = read(path, overrides)
-    check(config, source)
+    check_file(config, source)
+    config = joined(config, path, source)
+    check_merged(config, source)
     return config
 
 
@@ -82,12 +87,17 @@ def load_experiment(path: str | Path, name: str, scale: str) -> dict[str, Any]:
     Other experiments and scales are checked against the schema only. Raises OSError where the file
     cannot be read.
     """
-    from roughgas.config.checking import check_file, check_one, read
+    from roughgas.config.checking import check_ancestors, check_file, check_one, read
+    from roughgas.config.study_folders import joined
 
     config, source = read(path)
     check_file(config, source)
+    base = name.partition("/")[0]
+    config = joined(config, path, source, only=base.rpartition(".")[0])
+    if base in config["experiments"]:
+        check_ancestors(base, config["experiments"], source)
     found = experiment(config, name, scale)
-    check_one(config, name.partition("/")[0], scale, source)
+    check_one(config, base, scale, source)
     return found
 
 
@@ -110,6 +120,8 @@ def experiment(config: Mapping[str, Any], name: str, scale: str) -> dict[str, An
 
 
 def _experiment(config: Mapping[str, Any], name: str, scale: str) -> dict[str, Any]:
+    if "." in name and name.partition(".")[0] in config.get(BROKEN, {}):
+        raise InputError(*config[BROKEN][name.partition(".")[0]])
     one_of("experiment", name, config["experiments"])
     one_of("scale", scale, config["scales"])
     own = dict(config["experiments"][name])
@@ -133,11 +145,13 @@ def studies(config: Mapping[str, Any], scale: str) -> dict[str, Any]:
 
 def study(config: Mapping[str, Any], name: str, scale: str) -> dict[str, Any]:
     """Return the settings of a study at `scale`, as `study`, and those of the
-    experiments that it may run, as `experiments`."""
+    experiments that it may run, as `experiments`, those of other studies by their own names."""
     settings = studies(config, scale)
     one_of("study", name, settings)
     known = config["experiments"]
-    experiments = {one: point_settings(experiment(config, one, scale)) for one in known}
+    experiments = {
+        one.rpartition(".")[2]: point_settings(experiment(config, one, scale)) for one in known
+    }
     return {"study": settings[name], "experiments": experiments}
 
 

@@ -19,24 +19,15 @@ from roughgas.config.sizes import PACKING
 PARTS = (settings_of.SHOWCASE, settings_of.STUDIES)
 RESERVED = (
     *PARTS,
-    *("accuracy", "accuracy_limits", "catalogue", "claims", "clustering", "combined_studies"),
-    *("compile_kernel", "config", "coverage", "crate", "document"),
-    *("effective_config", "everything", "explore", "explore_extensions", "extensions", "family"),
-    *("figure", "figures", "film", "finite_size", "front", "gas_of_film", "hard_cases", "living"),
-    *(
-        "living_page",
-        "movie",
-        "movies",
-        "open_questions",
-        "page",
-        "picture_for_talks",
-        "pictures",
-    ),
-    *("plot", "point", "profiles", "reduce"),
-    *("report", "run_times", "run_times_extensions", "runaway", "study", "study_figure"),
-    *("study_table", "table", "fig1a", "fig1b", "fig2a", "fig2b", "fig3", "fig4", "fig5", "fig6"),
-    *("fig7", "fig8", "hard_cases_chaos", "hard_cases_collapse", "hard_cases_cooling"),
-    *("mixtures_cooling", "mixtures_vibrated", "polydispersity", "viscoelastic"),
+    *("accuracy", "accuracy_figure", "accuracy_limits", "accuracy_table", "catalogue"),
+    *("claims", "clustering", "combined_tasks", "compile_kernel", "config", "coverage"),
+    *("crate", "document", "effective_config", "everything", "explore", "explore_extensions"),
+    *("extensions", "family", "fig1a", "fig1b", "fig2a", "fig2b", "figure", "figures", "film"),
+    *("finite_size", "front", "gas_of_film", "hard_cases", "hard_cases_chaos"),
+    *("hard_cases_collapse", "hard_cases_cooling", "living", "living_page", "movie", "movies"),
+    *("open_questions", "page", "picture_for_talks", "pictures", "plot", "point", "profiles"),
+    *("reduce", "report", "run_times", "run_times_extensions", "runaway", "showcase"),
+    *("study_claims", "study_figure", "study_page", "study_table", "table", "task"),
 )
 """Names that no experiment may have, those of rules and products of the workflow."""
 
@@ -60,6 +51,13 @@ def read(
 def check(config: Mapping[str, Any], source: str = "config.yaml") -> None:
     """Check a configuration: its form, and every experiment, variant and study at every scale."""
     check_file(config, source)
+    check_merged(config, source)
+
+
+def check_merged(config: Mapping[str, Any], source: str) -> None:
+    """Check what the form cannot say; experiments of studies have been checked as they joined."""
+    for name in config["experiments"]:
+        check_ancestors(name, config["experiments"], source)
     for scale in config["scales"]:
         for part, whole, of in (
             (settings_of.SHOWCASE, "filmed", settings_of.showcase),
@@ -68,23 +66,25 @@ def check(config: Mapping[str, Any], source: str = "config.yaml") -> None:
             if part in config:
                 check_schema(of(config, scale), f"{source}: {part} at scale {scale}", whole)
         for name in config["experiments"]:
-            check_one(config, name, scale, source)
+            if "." not in name or config.get("complete"):
+                check_one(config, name, scale, source)
 
 
 def check_file(config: Mapping[str, Any], source: str) -> None:
     """Check the form of a configuration: what can be said without merging anything."""
-    check_schema(config, source)
+    added = (settings_of.FOLDERS, settings_of.BROKEN)  # by studies that have joined
+    check_schema({key: part for key, part in config.items() if key not in added}, source)
     known, scales = config["experiments"], config["scales"]
     settings_of.one_of(f"{source}: scale", config["scale"], scales)
     for name in known:
         if name in RESERVED:
             legal = "be another name: the workflow has a rule or a product of this one"
             raise InputError(f"{source}: key of experiments", name, legal)
-        _check_ancestors(name, known, source)
     changeable = [*known, *(part for part in PARTS if part in config)]
     for scale, changes in scales.items():
         for name in changes:
-            settings_of.one_of(f"{source}: key of scales.{scale}", name, changeable)
+            if "." not in name or config.get("complete"):
+                settings_of.one_of(f"{source}: key of scales.{scale}", name, changeable)
 
 
 def check_one(config: Mapping[str, Any], name: str, scale: str, source: str) -> None:
@@ -128,7 +128,7 @@ def _check_axis(settings: Mapping[str, Any], where: str) -> None:
         numbers_of(f"{where}.sweep.{key}", settings["sweep"][key], level)
 
 
-def _check_ancestors(name: str, known: Mapping[str, Any], source: str) -> None:
+def check_ancestors(name: str, known: Mapping[str, Any], source: str) -> None:
     """Refuse a chain of `extends` that breaks or runs in a circle."""
     seen = [name]
     while parent := known[seen[-1]].get("extends"):

@@ -24,6 +24,7 @@ def write_effective(config: Mapping[str, Any], scale: str, output: str | Path) -
 
     names = config["experiments"]
     effective = {
+        "complete": True,
         "scale": scale,
         "seeds_per_job": config.get("seeds_per_job", settings.SEEDS_PER_JOB),
         "betas_per_job": config.get("betas_per_job", 1),

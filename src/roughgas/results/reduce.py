@@ -2,7 +2,7 @@
 
 A reduced dataset has the dimensions (r, beta, seed), preceded by the parameter that the experiment
 sweeps besides, if there is one (`third_axis`). The error bar pools the scatter over independent
-seeds with the errors within them (statistics/intervals.py), since a scatter over few seeds alone is
+seeds with the errors within them (statistics/errors.py), since a scatter over few seeds alone is
 badly known; each of the two is kept beside it.
 """
 

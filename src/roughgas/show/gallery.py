@@ -1,11 +1,12 @@
 """Figures of experiments: by name, and of any reduced dataset, beside theory."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from importlib import import_module
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from roughgas.base.errors import InputError, not_one_of
+from roughgas.base.sources import module_of
 from roughgas.data.netcdf import POINT, REDUCED, kind_of, opened
 from roughgas.data.point import read_point
 from roughgas.data.reduced import read_reduced
@@ -13,30 +14,61 @@ from roughgas.show import style
 from roughgas.show.catalogue import FIGURES, figures_of
 from roughgas.theory.prediction import ratio_of_point
 
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
 
 def draw(
-    name: str,
-    inputs: Iterable[str | Path],
-    outputs: Iterable[str | Path],
-    slide: bool = False,
+    name: str, inputs: Iterable[str | Path], outputs: Iterable[str | Path], slide: bool = False
 ) -> None:
-    """Draw the figure `name` from the reduced datasets at `inputs`, in any order, into `outputs`.
+    """Draw the figure `name` of the paper from the reduced datasets at `inputs`, in any order, into
+    `outputs`.
 
     Each output is a .pdf, .png or .svg, of 16 to 9 for a `slide`. Raises InputError for an unknown
     figure, another kind of file, experiments other than those that the figure shows, and those
     that were swept otherwise.
     """
-    if name not in (known := figures_of("paper", "beyond")):
+    if name not in (known := figures_of("paper")):
         raise not_one_of("figure", name, known)
-    needed = FIGURES[name].shows
+    module = import_module(f"roughgas.show.figures.{name}")
+    _draw(name, module.draw, FIGURES[name].shows, inputs, outputs, slide)
+
+
+def draw_of_study(
+    folder: str | Path,
+    name: str,
+    shows: Sequence[str],
+    inputs: Iterable[str | Path],
+    outputs: Iterable[str | Path],
+) -> None:
+    """Draw the figure `name` of the study in `folder`, which `shows` these experiments.
+
+    Its figure.py has `draw` for the figure that has the study's name, and draw_X for NAME_X, which
+    take the reduced datasets in the order of `shows`. Raises InputError as `draw`, and where
+    figure.py has no such function.
+    """
+    part = name.removeprefix(Path(folder).name)
+    function = getattr(module_of(folder, "figure"), f"draw{part}", None)
+    if function is None:
+        raise InputError(f"studies/{Path(folder).name}/figure.py", "it", f"have draw{part}()")
+    _draw(name, function, shows, inputs, outputs)
+
+
+def _draw(
+    name: str,
+    function: Callable[..., "Figure"],
+    shows: Sequence[str],
+    inputs: Iterable[str | Path],
+    outputs: Iterable[str | Path],
+    slide: bool = False,
+) -> None:
     datasets = {data.attrs["experiment"]: data for data in map(read_reduced, inputs)}
-    if set(datasets) != set(needed):
-        raise InputError(f"data of {name}", ", ".join(datasets), f"be {', '.join(needed)}")
-    figure = import_module(f"roughgas.show.figures.{name}")
+    if set(datasets) != set(shows):
+        raise InputError(f"data of {name}", ", ".join(datasets), f"be {', '.join(shows)}")
     try:
-        style.draw(lambda: figure.draw(*(datasets[one] for one in needed)), outputs, slide)
+        style.draw(lambda: function(*(datasets[one] for one in shows)), outputs, slide)
     except KeyError as error:
-        swept = "; ".join(f"{one} over {', '.join(datasets[one].R.dims)}" for one in needed)
+        swept = "; ".join(f"{one} over {', '.join(datasets[one].R.dims)}" for one in shows)
         raise InputError(f"data of {name}", swept, f"have all that it shows: {error}") from error
 
 

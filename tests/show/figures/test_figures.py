@@ -6,25 +6,14 @@ from matplotlib.figure import Figure
 from matplotlib.image import imread
 from matplotlib.markers import TICKLEFT, TICKRIGHT
 from synthetic import BETA, couette, mixed, reduced, viscoelastic
+from tests.houses import ROOT, part
 from tests.show.figures.legibility import faults
 
 from roughgas.base.errors import InputError
 from roughgas.base.sources import closure
-from roughgas.show.catalogue import FIGURES, figures_of
-from roughgas.show.figures import (
-    fig1a,
-    fig1b,
-    fig2a,
-    fig2b,
-    fig4,
-    fig5,
-    fig6,
-    fig8,
-    mixtures_vibrated,
-    polydispersity,
-    sweep,
-)
-from roughgas.show.gallery import draw
+from roughgas.show.catalogue import figures_of
+from roughgas.show.figures import fig1a, fig1b, fig2a, fig2b, sweep
+from roughgas.show.gallery import draw, draw_of_study
 from roughgas.show.style import LOOKS
 from roughgas.show.style import draw as draw_in_style
 from roughgas.theory.prediction import predicted_ratio
@@ -84,32 +73,34 @@ def spread(scene):
 
 
 SCENES = ("cooling", "sheared", "vibrated")
+DRIVEN_AND_NOT = ("vibrated", "cooling")
 WAVES = ("reversed_sawtooth", "sawtooth", "sine", "triangle")
 DATA = {
     "fig1a": lambda: (of_the_paper("vibrated", 0.23),),
     "fig1b": walls,
     "fig2a": lambda: (sheared(),),
     "fig2b": lambda: (of_the_paper("cooling", -0.1),),
-    "fig3": lambda: tuple(reduced(f"{scene}_spheres") for scene in SCENES),
-    "fig4": lambda: tuple(
-        over(name, "friction.mu", (0.0, 0.1, 1.0)) for name in FIGURES["fig4"].shows
+    "spheres": lambda: tuple(reduced(f"{scene}_spheres") for scene in SCENES),
+    "friction": lambda: tuple(
+        over(name, "friction.mu", (0.0, 0.1, 1.0))
+        for name in ("vibrated_friction", "cooling_friction")
     ),
-    "fig5": lambda: (
+    "drives": lambda: (
         over("heated", "thermostat.spin_share", (0.0, 0.5, 1.0)),
         boundaries("floor_materials"),
         boundaries("wall_materials"),
         boundaries("shaken_walls"),
     ),
-    "fig6": lambda: (over("waves", "floor.wave", WAVES, r=(0.8, 0.9)),),
-    "fig7": lambda: tuple(
-        over(name, "spin.inertia", (0.01, 1.0)) for name in FIGURES["fig7"].shows
+    "waves": lambda: (over("waves", "floor.wave", WAVES, r=(0.8, 0.9)),),
+    "inertia": lambda: tuple(
+        over(f"{scene}_inertia", "spin.inertia", (0.01, 1.0)) for scene in DRIVEN_AND_NOT
     ),
-    "fig8": lambda: tuple(boundaries(one) for one in FIGURES["fig8"].shows),
+    "drives_boundaries": lambda: tuple(map(boundaries, ("floor_materials", "wall_materials"))),
     "mixtures_vibrated": lambda: mixtures("vibrated"),
     "mixtures_cooling": lambda: mixtures("cooling"),
     "viscoelastic": lambda: (viscoelastic(),),
     "couette": lambda: (couette(), sheared()),
-    "polydispersity": lambda: tuple(spread(one) for one in ("vibrated", "cooling")),
+    "mixtures_polydisperse": lambda: tuple(spread(one) for one in ("vibrated", "cooling")),
 }
 
 
@@ -131,24 +122,34 @@ def words(axes):
     return [text.get_text() for legend in legends if legend for text in legend.get_texts()]
 
 
-@pytest.mark.parametrize("name", figures_of("paper", "beyond"))
+@pytest.mark.parametrize("name", DATA)
 def test_a_figure_is_drawn(name, tmp_path):
     output = tmp_path / "figures" / f"{name}.png"
-    draw(name, inputs(name, tmp_path), [output])
+    paths = inputs(name, tmp_path)
+    if name in figures_of("paper"):
+        draw(name, paths, [output])
+    else:
+        folder = ROOT / "studies" / name.partition("_")[0]
+        draw_of_study(folder, name, [path.stem for path in paths], paths, [output])
     image = imread(output)
     assert image.shape[0] > 600 and image.shape[1] > 800 and image.std() > 0.05
 
 
 def drawn(name):
-    return import_module(f"roughgas.show.figures.{name}").draw(*DATA[name]())
+    if name in figures_of("paper"):
+        return import_module(f"roughgas.show.figures.{name}").draw(*DATA[name]())
+    study, line, suffix = name.partition("_")
+    return getattr(part(study, "figure"), f"draw{line}{suffix}")(*DATA[name]())
 
 
-@pytest.mark.parametrize("name", figures_of("paper", "beyond"))
+@pytest.mark.parametrize("name", DATA)
 def test_a_figure_can_be_read(name):
     assert faults(lambda: drawn(name)) == []
 
 
-@pytest.mark.parametrize("name", [f"fig{k}" for k in ("1a", "1b", "2a", "2b", *range(3, 9))])
+@pytest.mark.parametrize(
+    "name", [one for one in DATA if not one.startswith(("mix", "visco", "couette"))]
+)
 def test_every_point_stands_where_it_was_measured(name):
     measured = [data.get("input_spin_share", data.R) for data in DATA[name]()]
     axes = [data[axis] for data in DATA[name]() for axis in data.R.dims if axis != "wave"]
@@ -159,10 +160,10 @@ def test_every_point_stands_where_it_was_measured(name):
 
 
 def test_the_same_data_in_any_order_give_the_same_bytes(tmp_path):
-    paths, content = inputs("fig7", tmp_path), []
+    paths, content = inputs("fig1b", tmp_path), []
     for order in (paths, paths[::-1]):
         outputs = [tmp_path / "out" / "a.pdf", tmp_path / "out" / "a.png"]
-        draw("fig7", order, outputs)
+        draw("fig1b", order, outputs)
         content.append([output.read_bytes() for output in outputs])
     assert content[0] == content[1]
     assert content[0][0].startswith(b"%PDF") and b"CreationDate" not in content[0][0]
@@ -170,7 +171,7 @@ def test_the_same_data_in_any_order_give_the_same_bytes(tmp_path):
 
 
 def test_each_figure_of_the_catalogue_is_drawn_by_code_of_its_own():
-    modules = {f"show.figures.{name}" for name in figures_of("paper", "beyond")}
+    modules = {f"show.figures.{name}" for name in figures_of("paper")}
     for module in modules:
         code = closure(module)
         assert code & modules == {module}
@@ -305,7 +306,7 @@ def test_what_cannot_be_drawn_is_refused_and_leaves_no_file(tmp_path):
 
 
 def test_friction_of_zero_is_left_out_of_a_logarithmic_axis():
-    main = fig4.draw(*DATA["fig4"]()).axes[0]
+    main = drawn("friction").axes[0]
     assert main.get_xscale() == "log"
     assert all(np.all(column[:, 0] > 0.0) for column in bars(main) if len(column))
 
@@ -336,9 +337,9 @@ def test_contacts_of_a_sheared_gas_see_its_mean_flow_so_their_average_is_not_sho
 
 
 def test_boundary_drives_stand_at_their_measured_shares():
-    heated, *beds, walls = DATA["fig5"]()
+    heated, *beds, walls = DATA["drives"]()
     beds[0]["input_spin_share"][0] = -0.4  # which is within the axis
-    main, residual = fig5.draw(heated, *beds, walls).axes
+    main, residual = part("drives", "figure").draw(heated, *beds, walls).axes
     assert main.get_xlim()[0] < -0.4
     points = [column for column in bars(main) if len(column)]
     assert len(points) == 4 * heated.beta.size
@@ -351,8 +352,8 @@ def test_boundary_drives_stand_at_their_measured_shares():
 
 def test_wave_forms_are_compared_with_the_sawtooth():
     """At each r with the sawtooth at that r."""
-    (waves,) = DATA["fig6"]()
-    *_, left, right = fig6.draw(waves).axes
+    (waves,) = DATA["waves"]()
+    *_, left, right = part("waves", "figure").draw(waves).axes
     for residual, r in ((left, 0.9), (right, 0.8)):
         first, second, *_ = (column for column in bars(residual) if len(column))
         assert np.all(first[:, 1] == 0.0)
@@ -361,8 +362,8 @@ def test_wave_forms_are_compared_with_the_sawtooth():
 
 
 def test_shifts_are_from_the_smooth_boundary_beside_those_of_the_measured_share():
-    floor, walls = DATA["fig8"]()
-    left, _ = fig8.draw(floor, walls).axes
+    floor, walls = DATA["drives_boundaries"]()
+    left, _ = part("drives", "figure").draw_boundaries(floor, walls).axes
     shifts = [column for column in bars(left) if len(column)]
     along = floor.R.sel(r=0.9, beta=-0.5)
     np.testing.assert_allclose(shifts[0][:, 1], along - along.sel(roughness=-1.0))
@@ -372,15 +373,15 @@ def test_shifts_are_from_the_smooth_boundary_beside_those_of_the_measured_share(
 
 
 def test_shifts_need_a_smooth_boundary():
-    floor, walls = DATA["fig8"]()
+    floor, walls = DATA["drives_boundaries"]()
     with pytest.raises(InputError, match="roughness of floor_materials"):
-        fig8.draw(floor.sel(roughness=[0.0, 1.0]), walls)
+        part("drives", "figure").draw_boundaries(floor.sel(roughness=[0.0, 1.0]), walls)
 
 
 def test_points_of_mixtures_that_are_not_steady_are_open_in_both_rows():
     masses, sizes = DATA["mixtures_vibrated"]()
     masses["equilibrated"][:, :, 1] = 0.5
-    every = mixtures_vibrated.draw(masses, sizes).axes
+    every = part("mixtures", "figure").draw_vibrated(masses, sizes).axes
     for axes, expected in ((every[0], 2), (every[2], 4), (every[1], 0), (every[3], 0)):
         empty = [box[0] for box in axes.containers if box[0].get_markerfacecolor() == "white"]
         assert sum(len(line.get_xdata()) for line in empty) == expected
@@ -389,15 +390,15 @@ def test_points_of_mixtures_that_are_not_steady_are_open_in_both_rows():
 
 def test_theory_of_a_bed_of_two_species_is_drawn_at_its_points_alone():
     masses, sizes = DATA["mixtures_vibrated"]()
-    *_, lower, _ = mixtures_vibrated.draw(masses, sizes).axes
+    *_, lower, _ = part("mixtures", "figure").draw_vibrated(masses, sizes).axes
     dashes = [line for line in lower.lines if line.get_marker() in (TICKLEFT, TICKRIGHT)]
     assert len(dashes) == 4 and {line.get_linestyle() for line in dashes} == {"None"}
 
 
 def test_spread_radii_are_compared_with_equal_disks_where_they_were_simulated():
-    bed, cooling = DATA["polydispersity"]()
+    bed, cooling = DATA["mixtures_polydisperse"]()
     cooling["R"] = cooling.R + 0.2 * (cooling.deviation > 0)
-    *_, below_bed, shift = polydispersity.draw(bed, cooling).axes
+    *_, below_bed, shift = part("mixtures", "figure").draw_polydisperse(bed, cooling).axes
     (points,) = (column for column in bars(shift) if len(column))
     change = cooling.R.sel(deviation=0.2, r=0.9) - cooling.R.sel(deviation=0.0, r=0.9)
     np.testing.assert_allclose(points, np.column_stack([cooling.beta, change]))

@@ -92,5 +92,5 @@ def test_experiments_are_listed(capsys):
     assert "vibrated_rough_walls\n  The vibrated bed between" in text
     assert "5 points: 1 r, 5 beta; extends vibrated" in text
     assert main(["experiments", "--json"]) == 0
-    waves = json.loads(capsys.readouterr().out)["waves"]
+    waves = json.loads(capsys.readouterr().out)["waves.waves"]
     assert waves["points"] == 72 and waves["sweep"]["floor.wave"][0] == "sawtooth"

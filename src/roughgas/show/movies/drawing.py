@@ -198,7 +198,7 @@ def _title(subject: MovieSubject, view: View) -> str:
         about.append(rf"seen up to ${'xyz'[view.vertical]} = {view.top:g}\,a$")
     name, _, variant = subject.name.partition("/")
     name = name.replace("_", " ")
-    if variant:  # `waves, wave = sine`
+    if variant:  # `bed, wave = sine`
         parameter = third_axis(subject.settings) or ""
         name += f", {parameter.replace('_', ' ')} = {variant.removeprefix(parameter)}"
     return f"{name}\n{', '.join(about)}"

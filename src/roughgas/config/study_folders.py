@@ -1,0 +1,197 @@
+"""Studies: folders that hold a question beyond the paper each, found by being there.
+
+A folder studies/NAME with a config.yaml is one. It has experiments, which may extend the paper's,
+and what scales change in them; from outside its experiment KEY is NAME.KEY. A study that is broken
+is left out, with the error that says why: the paper's experiments and other studies stand without
+it.
+"""
+
+import re
+from collections.abc import Mapping
+from graphlib import CycleError, TopologicalSorter
+from pathlib import Path
+from typing import Any
+
+from roughgas import config as settings_of
+from roughgas.base.errors import InputError, shown
+from roughgas.config.checking import RESERVED, check_ancestors, check_one
+from roughgas.config.reading import read_yaml
+from roughgas.config.schema import check_schema
+
+FOLDER = "studies"
+USUAL_SCALES = ("paper", "small")
+"""Scales for which a study may have changes though the configuration does not have the scale."""
+
+
+def folders(path: str | Path) -> dict[str, Path]:
+    """Return the folders of studies by name, of the present folder and of that of the configuration
+    at `path`; the former counts where both have one of a name."""
+    places = Path(path).resolve().parent / FOLDER, Path(FOLDER)
+    every = [file.parent for place in places for file in sorted(place.glob("*/config.yaml"))]
+    return {folder.name: folder for folder in every}
+
+
+def joined(
+    config: Mapping[str, Any], path: str | Path, source: str, only: str | None = None
+) -> dict[str, Any]:
+    """Return a configuration with all studies, each checked at every scale.
+
+    Their experiments and scales join those of `config`, where NAME.KEY changes an experiment of
+    the study NAME. The key FOLDERS has what else there is to each study: `folder`, `title`,
+    `experiments`, `figures` (the experiments that each shows) and `movies`; the key BROKEN has the
+    arguments of the InputError of each that is broken. With `only` one study joins, and those that
+    it extends. Raises InputError where `config` changes an experiment that no study has.
+    """
+    whole = {**config, settings_of.FOLDERS: {}, settings_of.BROKEN: {}}
+    if config.get("complete"):
+        return whole
+    found, broken = _read_all(config, folders(path), only)
+    whole |= {settings_of.BROKEN: broken, "experiments": _of_root(config["experiments"])}
+    whole["scales"] = {scale: _of_root(one) for scale, one in config["scales"].items()}
+    for name in _in_order(found, broken):
+        try:
+            whole = _with_study(whole, config, name, found[name])
+        except InputError as error:
+            broken[name] = error.args
+    for part in (config["experiments"], *config["scales"].values()):
+        for key in part:
+            lacks = key not in whole["experiments"] and key.partition(".")[0] not in broken
+            if "." in key and lacks and only is None:
+                legal = "be STUDY.EXPERIMENT of a folder of studies/"
+                raise InputError(f"{source}: key", shown(key), legal)
+    return whole
+
+
+def _of_root(part: Mapping[str, Any]) -> dict[str, Any]:
+    return {key: value for key, value in part.items() if "." not in key}
+
+
+def _source(name: str) -> str:
+    return f"{FOLDER}/{name}/config.yaml"
+
+
+def _read_all(
+    config: Mapping[str, Any], known: Mapping[str, Path], only: str | None
+) -> tuple[dict[str, dict[str, Any]], dict[str, tuple]]:
+    """Return studies as they stand in their folders, names qualified, and errors of the others."""
+    found: dict[str, dict[str, Any]] = {}
+    broken: dict[str, tuple] = {}
+    asked = list(known) if only is None else [only]
+    for name in asked:
+        if name in known and name not in found and name not in broken:
+            try:
+                found[name] = _read(name, known[name], config)
+                asked += _needs(name, found[name])
+            except InputError as error:
+                broken[name] = error.args
+            except OSError as error:
+                broken[name] = _source(name), error.strerror, "be a file to read"
+    return found, broken
+
+
+def _read(name: str, folder: Path, config: Mapping[str, Any]) -> dict[str, Any]:
+    source, root = _source(name), _of_root(config["experiments"])
+    check_schema(name, f"{FOLDER}: folder", "name")
+    if name in RESERVED or name in root:
+        legal = "have another name: the workflow has a rule, a product or an experiment of this one"
+        raise InputError(f"{FOLDER}: folder", name, legal)
+    study = read_yaml(folder / "config.yaml")
+    check_schema(study, source, "study_folder")
+    if (folder / "claims.yaml").exists():
+        check_schema(read_yaml(folder / "claims.yaml"), f"{FOLDER}/{name}/claims.yaml", "claims")
+    own = study["experiments"]
+    for key in own.keys() & root.keys():
+        raise InputError(f"{source}: key of experiments", key, "be no name of config.yaml's own")
+
+    def qualified(key: str, where: str) -> str:
+        base, slash, variant = key.partition("/")
+        if "." not in base:
+            settings_of.one_of(f"{source}: {where}", base, {**own, **root})
+        return f"{name}.{base}{slash}{variant}" if base in own else key
+
+    experiments, scales = {}, {}
+    for key, one in own.items():
+        parent = {"extends": one["extends"]} if "extends" in one else {}
+        parent = {k: qualified(v, f"experiments.{key}.extends") for k, v in parent.items()}
+        experiments[f"{name}.{key}"] = one | parent
+    for scale, changes in study.get("scales", {}).items():
+        settings_of.one_of(f"{source}: scale", scale, {*config["scales"], *USUAL_SCALES})
+        for key in changes:
+            settings_of.one_of(f"{source}: key of scales.{scale}", key, own)
+        scales[scale] = {f"{name}.{key}": one for key, one in changes.items()}
+    usual = {name: list(own)} if (folder / "figure.py").exists() else {}
+    figures = {
+        figure: [qualified(one, f"figures.{figure}") for one in shows]
+        for figure, shows in study.get("figures", usual).items()
+    }
+    movies = {
+        movie: [qualified(shows.split()[0], f"movies.{movie}"), *shows.split()[1:]]
+        for movie, shows in study.get("movies", {}).items()
+    }
+    for part, named in (("figures", [*figures]), ("movies", [*movies])):
+        for key in named:
+            if key != name and not key.startswith(f"{name}_"):
+                raise InputError(
+                    f"{source}: key of {part}", key, f"be {name} or begin with {name}_"
+                )
+    about: dict[str, Any] = {"folder": str(folder), "title": _title(folder)}
+    about |= {"experiments": list(experiments), "figures": figures, "movies": movies}
+    return {"experiments": experiments, "scales": scales, "about": about}
+
+
+def _title(folder: Path) -> str:
+    """Return the heading of its README.md; its name without one."""
+    readme = folder / "README.md"
+    text = readme.read_text(encoding="utf-8") if readme.exists() else ""
+    heading = re.match(r"# (.+)", text)
+    return heading[1].strip() if heading else folder.name.replace("_", " ").capitalize()
+
+
+def _needs(name: str, study: Mapping[str, Any]) -> set[str]:
+    """Return the other studies whose experiments this one extends or shows."""
+    about = study["about"]
+    named = [one.get("extends", "") for one in study["experiments"].values()]
+    named += [key for shows in about["figures"].values() for key in shows]
+    named += [shows[0] for shows in about["movies"].values()]
+    return {key.partition(".")[0] for key in named if "." in key} - {name}
+
+
+def _in_order(found: Mapping[str, dict[str, Any]], broken: dict[str, tuple]) -> list[str]:
+    """Return names of studies, each after those that it needs; circles are broken."""
+    left = dict(found)
+    while True:
+        needs = {name: _needs(name, study) & left.keys() for name, study in left.items()}
+        try:
+            return [*TopologicalSorter(needs).static_order()]
+        except CycleError as error:
+            for name in set(error.args[1]):
+                legal = "not extend a study that itself extends this one"
+                broken[name] = _source(name), " -> ".join(error.args[1]), legal
+                del left[name]
+
+
+def _with_study(
+    whole: Mapping[str, Any], config: Mapping[str, Any], name: str, study: Mapping[str, Any]
+) -> dict[str, Any]:
+    """Return the configuration with one more study; raise InputError where that is illegal."""
+    changes = config["experiments"]
+    experiments = {
+        key: settings_of.merged(one, changes.get(key, {}))
+        for key, one in study["experiments"].items()
+    }
+    scales = {}
+    for scale, known in whole["scales"].items():
+        own, changes = study["scales"].get(scale, {}), config["scales"][scale]
+        keys = [key for key in experiments if key in own or key in changes]
+        of_study = {key: settings_of.merged(own.get(key, {}), changes.get(key, {})) for key in keys}
+        scales[scale] = {**known, **of_study}
+    joined = {**whole, "experiments": whole["experiments"] | experiments, "scales": scales}
+    source = _source(name)
+    for key in experiments:
+        check_ancestors(key, joined["experiments"], source)
+        for scale in scales:
+            check_one(joined, key, scale, source)
+    for shows in study["about"]["figures"].values():
+        for key in shows:
+            settings_of.one_of(f"{source}: figures", key, joined["experiments"])
+    return joined | {settings_of.FOLDERS: whole[settings_of.FOLDERS] | {name: study["about"]}}

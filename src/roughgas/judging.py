@@ -1,0 +1,94 @@
+"""What judges of statements are made of: samples of numbers beside theory, and rules for verdicts.
+
+A judge takes reduced datasets beside theory (`theory`, like R) and returns a `Finding`, or raises
+`NotTestedError` where the data cannot decide. `agreement` judges whether a sample of differences is
+compatible with zero; `graded`, `worse` and `together` combine verdicts.
+"""
+
+from roughgas.claims.averages import (
+    averaged,
+    follows_its_share,
+    follows_over_collisions,
+)
+from roughgas.claims.evidence import (
+    NotTestedError,
+    Sample,
+    deviation,
+    deviation_at_shares,
+    difference,
+    of_ratio,
+    over_seeds,
+    sample,
+    spin_shares,
+)
+from roughgas.claims.verdicts import (
+    AGREE,
+    FAILS,
+    FAR,
+    FEW,
+    HOLDS,
+    LIMIT,
+    NEAR,
+    QUALIFIED,
+    Finding,
+    agreement,
+    agreement_in_proportion,
+    graded,
+    points,
+    tendency,
+    text,
+    together,
+    worse,
+)
+from roughgas.data.reduced import (
+    third_axis,
+)
+from roughgas.statistics.errors import (
+    SIGNIFICANT,
+    Estimate,
+    sum_error,
+)
+from roughgas.statistics.fits import (
+    power_law,
+)
+from roughgas.theory.prediction_of_mixtures import (
+    species_at,
+)
+
+__all__ = [
+    "AGREE",
+    "FAILS",
+    "FAR",
+    "FEW",
+    "HOLDS",
+    "LIMIT",
+    "NEAR",
+    "QUALIFIED",
+    "SIGNIFICANT",
+    "Estimate",
+    "Finding",
+    "NotTestedError",
+    "Sample",
+    "agreement",
+    "agreement_in_proportion",
+    "averaged",
+    "deviation",
+    "deviation_at_shares",
+    "difference",
+    "follows_its_share",
+    "follows_over_collisions",
+    "graded",
+    "of_ratio",
+    "over_seeds",
+    "points",
+    "power_law",
+    "sample",
+    "species_at",
+    "spin_shares",
+    "sum_error",
+    "tendency",
+    "text",
+    "third_axis",
+    "together",
+    "worse",
+]

@@ -1,0 +1,83 @@
+"""What figures of studies are drawn with: R along one axis beside theory, as in all figures.
+
+`ratio_figure` draws panels (`PanelContent`) of series of points, theory over them, and residuals
+beneath; `series` takes them from a reduced dataset. Figures of another form use the parts.
+"""
+
+from roughgas.base.errors import InputError
+from roughgas.data.reduced import particles_of
+from roughgas.show.figures.panel import (
+    ANY_R,
+    BETA,
+    DOTS,
+    ENERGY_RATIO,
+    FRICTION,
+    HALF,
+    INERTIA,
+    ROUGHNESS,
+    SPIN_SHARE,
+    Axis,
+    Panel,
+    PanelContent,
+    add_legend,
+    add_notes,
+    add_title,
+    averages_of,
+    content_for_each_beta,
+    content_for_each_r,
+    draw_points,
+    draw_series,
+    draw_theory,
+    frame_rows,
+    keys_of_steadiness,
+    ratio_figure,
+    ratio_panels,
+)
+from roughgas.show.figures.series import RESTITUTION, Series, series, series_for_each
+from roughgas.show.style import FAINT, GREY, LOOKS, THEORY, TWO_WIDE, WIDTH, Look, Style
+from roughgas.theory.prediction import predicted_ratio
+from roughgas.theory.prediction_of_mixtures import species_at
+
+__all__ = [
+    "ANY_R",
+    "BETA",
+    "DOTS",
+    "ENERGY_RATIO",
+    "FAINT",
+    "FRICTION",
+    "GREY",
+    "HALF",
+    "INERTIA",
+    "LOOKS",
+    "RESTITUTION",
+    "ROUGHNESS",
+    "SPIN_SHARE",
+    "THEORY",
+    "TWO_WIDE",
+    "WIDTH",
+    "Axis",
+    "InputError",
+    "Look",
+    "Panel",
+    "PanelContent",
+    "Series",
+    "Style",
+    "add_legend",
+    "add_notes",
+    "add_title",
+    "averages_of",
+    "content_for_each_beta",
+    "content_for_each_r",
+    "draw_points",
+    "draw_series",
+    "draw_theory",
+    "frame_rows",
+    "keys_of_steadiness",
+    "particles_of",
+    "predicted_ratio",
+    "ratio_figure",
+    "ratio_panels",
+    "series",
+    "series_for_each",
+    "species_at",
+]

@@ -1,0 +1,22 @@
+"""Judge of the statement on wave forms."""
+
+import xarray as xr
+
+from roughgas.judging import Finding, NotTestedError, agreement, difference, together
+
+REFERENCE = "sawtooth"
+
+
+def wave_form_changes_nothing(waves: xr.Dataset) -> Finding:
+    """R over a floor that moves in any other wave - R over the sawtooth is compatible with zero.
+
+    Waves are compared one by one, since the errors of the sawtooth are common to them.
+    """
+    others = [str(wave) for wave in waves.wave.values if wave != REFERENCE]
+    if not others or REFERENCE not in waves.wave:
+        raise NotTestedError(f"the sweep does not hold the wave {REFERENCE} and another")
+    sawtooth = waves.sel(wave=REFERENCE)
+    return together(
+        (wave, agreement(difference(waves.sel(wave=wave), sawtooth), "R over the sawtooth"))
+        for wave in others
+    )
