@@ -16,7 +16,7 @@ R, BETA = 0.9, 0.5
 EXPECTED = {
     "cooling": theory.cooling_ratio(R, BETA),
     "spheres.cooling_spheres": theory.cooling_ratio(R, BETA, 3, 0.4),
-    "cooling_friction/mu1": theory.friction_ratio(R, BETA, 1.0, 2, 0.5, None),
+    "friction.cooling_friction/mu1": theory.friction_ratio(R, BETA, 1.0, 2, 0.5, None),
     "spheres.vibrated_spheres": theory.lun_ratio(BETA, 0.4),
     "inertia.vibrated_inertia/inertia0.1": theory.lun_ratio(BETA, 0.1),
     "friction.vibrated_friction/mu0.3": theory.friction_ratio(R, BETA, 0.3, 2, 0.5, 0.0),
@@ -39,7 +39,14 @@ def test_numbers_are_those_of_theory(number, within, command):
 
 
 def test_every_kind_of_scene_has_one():
-    assert len(ROWS) > 9 and len({row.id.split("_")[0] for row in ROWS}) == 4
+    assert len(ROWS) > 9 and {
+        row.id.split("/")[0].split(".")[-1].split("_")[0] for row in ROWS
+    } == {
+        "cooling",
+        "heated",
+        "sheared",
+        "vibrated",
+    }
 
 
 @pytest.mark.slow

@@ -35,7 +35,7 @@ POINTS = {
     "as it is": ("cooling", {"scale": "small"}),
     "changed": ("vibrated", CHANGED | {"seed": 3, "effects": {"contact_time": None}}),
     "with an effect more": ("cooling", FEW | {"effects": {"friction": {"mu": 0.3}}}),
-    "a variant": ("cooling_friction/mu0.3", FEW),
+    "a variant": ("friction.cooling_friction/mu0.3", FEW),
     "of numpy's numbers": ("cooling", {"box": np.array([30, 30]), "particles": np.int64(20)}),
     "of one's own": (None, OWN),
 }
@@ -106,7 +106,7 @@ def test_lists_make_the_reduced_dataset_of_their_points(tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     ("name", "changes", "message"),
     [
-        ("colling", {}, "experiment = 'colling': must be one of cooling, cooling_friction, "),
+        ("colling", {}, "experiment = 'colling': must be one of cooling, sheared, "),
         ("cooling", {"r": 1.5}, "restitution r = 1.5: must lie in [0, 1]"),
         ("cooling", {"beta": np.nan}, "roughness beta = nan: must lie in [-1, 1]"),
         (
@@ -133,12 +133,12 @@ def test_lists_make_the_reduced_dataset_of_their_points(tmp_path, monkeypatch):
         (
             "friction.vibrated_friction",
             {},
-            "vibrated_friction.effects.friction.mu = (nothing): must be",
+            "friction.vibrated_friction.effects.friction.mu = (nothing)",
         ),
         (
             "friction.vibrated_friction/mu0.3",
             {"effects": {"friction": {"mu": 0.5}}},
-            "friction.vibrated_friction/mu0.3: must be the variant that its settings are of",
+            "experiment = friction.vibrated_friction/mu0.3: must be the variant",
         ),
         (None, {}, "scene.particles = (nothing): must be given"),
         (None, OWN | {"schedule": {"kind": "steady"}}, "scene.schedule.equilibrate = (nothing)"),

@@ -4,6 +4,7 @@ import json
 import os
 import re
 import shlex
+import shutil
 import signal
 import socket
 import subprocess
@@ -13,14 +14,15 @@ from urllib.request import urlopen
 
 import pytest
 
+from roughgas import config
 from roughgas.cli import parser_of
-from roughgas.config.reading import read_yaml
+from roughgas.config.reading import parse_yaml, read_yaml
 
 ROOT = Path(__file__).parent.parent
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 CLONE = "git clone ADDRESS roughgas"
 MADE = (
-    *("cooling_r0.9_beta0.5_seed1.nc", "bed.mp4", "figures/hollow.png"),
+    *("cooling_r0.9_beta0.5_seed1.nc", "bed.mp4", "figures/small/mine.png"),
     *(f"results/small/{page}.html" for page in ("report", "explore", "living")),
 )
 
@@ -63,28 +65,34 @@ def test_its_commands_are_commands():
     assert {line[-1] for line in told if line[0] == "make"} <= set(targets)
 
 
-def with_snippet(text):
-    """A configuration with README's snippet pasted where it says."""
+def test_its_snippet_is_a_study(tmp_path, monkeypatch):
     (snippet,) = blocks("yaml")
-    return text.replace("\nexperiments:\n", f"\nexperiments:\n{snippet}\n", 1)
+    shutil.copy(ROOT / "config.yaml", tmp_path)
+    (tmp_path / "studies" / "mine").mkdir(parents=True)
+    (tmp_path / "studies" / "mine" / "config.yaml").write_text(snippet)
+    monkeypatch.chdir(tmp_path)
+    found = config.load("config.yaml")
+    assert found["broken"] == {} and "mine.hollow" in found["experiments"]
 
 
-def test_its_snippet_belongs_where_it_says(tmp_path):
-    path = tmp_path / "config.yaml"
-    path.write_text(with_snippet((ROOT / "config.yaml").read_text()))
-    assert "hollow" in read_yaml(path)["experiments"]
+def test_its_three_lines_change_a_study():
+    text = (ROOT / "studies" / "friction" / "config.yaml").read_text()
+    (line,) = (line for line in commands() if line.startswith("sed"))
+    done = subprocess.run(
+        ["sed", shlex.split(line)[2]], input=text, capture_output=True, text=True, check=True
+    )
+    old, new = text.splitlines(), done.stdout.splitlines()
+    assert sum(one != other for one, other in zip(old, new, strict=True)) >= 3
+    assert read_yaml(ROOT / "studies" / "friction" / "config.yaml") != parse_yaml(done.stdout, "")
 
 
 @pytest.fixture(scope="module")
 def typed(tmp_path_factory):
     """All that is printed where every command is typed, in its order, and the clone."""
     folder = tmp_path_factory.mktemp("typed")
-    (first, *rest), (snippet,) = commands(), blocks("yaml")
+    first, *rest = commands()
     assert first.startswith(CLONE)
-    place = next(k for k, line in enumerate(rest) if line.startswith("snakemake"))
-    paste = "sed -i '/^experiments:$/r snippet.yaml' config.yaml && rm snippet.yaml"
-    script = [first.replace("ADDRESS", shlex.quote(str(ROOT)), 1), *rest[:place]]
-    script += [f"cat > snippet.yaml <<'END'\n{snippet}END", paste, *rest[place:]]
+    script = [first.replace("ADDRESS", shlex.quote(str(ROOT)), 1), *rest]
     command, around = ["bash", "-e", "-c", "\n".join(script)], environment(folder)
     ran = subprocess.run(command, cwd=folder, capture_output=True, text=True, env=around)
     said = ran.stdout + ran.stderr
@@ -102,7 +110,7 @@ def test_all_of_it_typed_in_a_fresh_clone(typed):
     status = subprocess.run(
         ["git", "status", "--porcelain"], cwd=clone, capture_output=True, text=True, check=True
     )
-    assert status.stdout.split() == ["M", "config.yaml"]
+    assert status.stdout.split() == ["??", "studies/mine/"]
 
 
 @pytest.mark.slow

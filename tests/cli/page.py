@@ -90,6 +90,7 @@ def folder():
     """A folder with the configuration, entered."""
     with tempfile.TemporaryDirectory() as path, contextlib.chdir(path):
         shutil.copy(ROOT / "config.yaml", path)
+        shutil.copytree(ROOT / "studies", Path(path, "studies"))
         yield Path(path)
 
 

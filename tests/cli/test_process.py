@@ -34,7 +34,7 @@ def run(output, experiment="cooling", r="0.9", beta="0", seed="1", **others):
         ({"beta": "-2"}, "roughness beta = -2: must lie in [-1, 1]"),
         ({"beta": "rough"}, "roughness beta = rough: must lie in [-1, 1]"),
         ({"seed": "-1"}, "seed = -1: must be a whole number in [0, 2^63 - 1]"),
-        ({"experiment": "foo"}, "experiment = 'foo': must be one of cooling, cooling_friction, "),
+        ({"experiment": "foo"}, "experiment = 'foo': must be one of cooling, sheared, "),
         ({"scale": "large"}, "scale = 'large': must be one of paper, small"),
         ({"config": "no.yaml"}, "no.yaml: No such file or directory"),
         ({"settings": "{"}, "--settings = '{': must be JSON"),

@@ -22,16 +22,16 @@ BROKEN = {
     "no_yaml": ("experiments: [", "must be YAML"),
     "no_mapping": ("7", "must be a mapping"),
     "unknown_key": ("experimets: {}", "key = 'experimets'"),
-    "unknown_parent": ("experiments: {x: {extends: bed}}", "x.extends = bed: must be one of"),
+    "unknown_parent": ("experiments: {x: {extends: bed}}", "x.extends = 'bed': must be one of"),
     "papers_name": ("experiments: {cooling: {extends: vibrated}}", "= cooling: must be no name"),
-    "of_no_scale": (LEAST + "scales: {smal: {bed: {particles: 3}}}", "scale = smal: must be one"),
-    "of_another": ("experiments: {x: {extends: absent.y}}", "extends = absent.y: must be one of"),
+    "of_no_scale": (LEAST + "scales: {smal: {bed: {particles: 3}}}", "scale = 'smal': must be one"),
+    "of_another": ("experiments: {x: {extends: absent.y}}", "extends = 'absent.y': must be one of"),
     "circle": ("experiments: {x: {extends: other.y}}", "must not extend a study that itself"),
     "other": ("experiments: {y: {extends: circle.x}}", "must not extend a study that itself"),
     "figures": (LEAST, "figures: must have another name: the workflow has a rule"),
     "cooling": (LEAST, "cooling: must have another name"),
     "named": (LEAST + "figures: {mine: [bed]}", "= mine: must be named or begin with named_"),
-    "claiming": (LEAST, "claims.yaml.x.quote = (nothing): must be given"),
+    "claiming": (LEAST, "claims.yaml: x.quote = (nothing): must be given"),
 }
 
 

@@ -37,7 +37,7 @@ EDITED = {  # file of the package: what an edit of its code runs again
     "config/checking.py": {"effective_config", "document", "living_page"},
     "simulation/clustering.py": FILM,
     "results/table.py": {"table", "run_times", "document", "study_table", "study_page"},
-    "claims/paper.yaml": {"claims", "document"},
+    "claims/paper.yaml": {"claims", "document", "study_claims", "study_page"},
     "show/figures/fig1a.py": {"fig1a"},
     "show/page/explore.js": {"page"},
     "show/movies/drawing.py": {"movie"},

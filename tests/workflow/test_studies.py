@@ -60,7 +60,7 @@ def test_a_broken_study_ends_in_one_line_and_keeps_nothing_else_from_being_made(
     (own.folder / "studies" / "unread" / "figure.py").write_text("def draw(:\n")
     assert own.planned("figures")["figure"] == 4
     status, output = own.snakemake("-n", *TINY, "broken")
-    line = "roughgas: error: studies/broken/config.yaml.experiments.x.particles = -3: must be"
+    line = "roughgas: error: studies/broken/config.yaml: experiments.x.particles = -3: must be"
     assert status == 1 and line in output and "Traceback" not in output
 
 

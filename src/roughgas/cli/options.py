@@ -36,11 +36,10 @@ def _scales(parsed_args: Namespace, **_: Any) -> list[str]:
 
 
 def _configuration(options: Namespace) -> Any:
-    """Return the configuration unchecked; errors make argcomplete offer nothing."""
-    from roughgas.config import in_use
-    from roughgas.config.checking import read
+    """Return the configuration with studies; errors make argcomplete offer nothing."""
+    from roughgas.config import in_use, load
 
-    return read(options.config or in_use())[0]
+    return load(options.config or in_use())
 
 
 SCALE = value(

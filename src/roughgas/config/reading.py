@@ -26,13 +26,13 @@ class Constructor(SafeConstructor):
 Constructor.add_constructor("tag:yaml.org,2002:timestamp", SafeConstructor.construct_yaml_str)
 
 
-def read_yaml(path: str | Path) -> Any:
-    """Return what the YAML file at `path` holds.
+def read_yaml(path: str | Path, name: str = "") -> Any:
+    """Return what the YAML file at `path` holds; messages call it `name`, by default its own.
 
     Raises InputError where it is not YAML or not allowed (see above), OSError where it cannot be
     read.
     """
-    name = Path(path).name
+    name = name or Path(path).name
     try:
         content = Path(path).read_bytes()
         if len(content) > LARGEST:

@@ -31,7 +31,8 @@ def check_schema(instance: Any, source: str, part: str | None = None) -> None:
     errors = list(_validator(part).iter_errors(instance))
     if errors:
         first = min(errors, key=lambda error: _position(error.absolute_path, instance))
-        raise _input_error(first, source, ": " if part is None else ".")
+        is_file = part is None or source.endswith(".yaml")
+        raise _input_error(first, source, ": " if is_file else ".")
 
 
 @functools.cache

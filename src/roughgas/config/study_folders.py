@@ -95,10 +95,11 @@ def _read(name: str, folder: Path, config: Mapping[str, Any]) -> dict[str, Any]:
     if name in RESERVED or name in root:
         legal = "have another name: the workflow has a rule, a product or an experiment of this one"
         raise InputError(f"{FOLDER}: folder", name, legal)
-    study = read_yaml(folder / "config.yaml")
+    study = read_yaml(folder / "config.yaml", source)
     check_schema(study, source, "study_folder")
     if (folder / "claims.yaml").exists():
-        check_schema(read_yaml(folder / "claims.yaml"), f"{FOLDER}/{name}/claims.yaml", "claims")
+        claims = f"{FOLDER}/{name}/claims.yaml"
+        check_schema(read_yaml(folder / "claims.yaml", claims), claims, "claims")
     own = study["experiments"]
     for key in own.keys() & root.keys():
         raise InputError(f"{source}: key of experiments", key, "be no name of config.yaml's own")
