@@ -56,7 +56,11 @@ def initial_in(options: Namespace) -> list[Initial]:
     if isinstance(options.seed, list) and len(options.seed) > 1:
         legal = "be one with --from, which has the random numbers of its own run"
         raise InputError("--seed", " ".join(options.seed), legal)
-    return initial_of(read_point(options.start_from))
+    point = read_point(options.start_from)
+    if "last_position" not in point:
+        legal = "be a point that has kept its last state, by --keep-state"
+        raise InputError("--from", options.start_from, legal)
+    return initial_of(point)
 
 
 def points_of(options: Namespace) -> tuple[list[config.Place], dict[str, Any]]:
