@@ -39,7 +39,10 @@ def test_a_run_goes_on_from_the_file_of_another(tmp_path, monkeypatch, capsys):
     assert main([*again[:-1], "again.nc"]) == 0 and read_point("again.nc").R == second.R
     capsys.readouterr()
     for arguments, message in (
-        (["--from", "second.nc"], "--from = second.nc: must be a point that has kept its last state"),
+        (
+            ["--from", "second.nc"],
+            "--from = second.nc: must be a point that has kept its last state",
+        ),
         (["--from", "first.nc", "--seed", "1", "2"], "--seed = 1 2: must be one with --from"),
         (["--from", "none.nc"], "none.nc: No such file"),
     ):

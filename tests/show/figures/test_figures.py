@@ -305,6 +305,12 @@ def test_what_cannot_be_drawn_is_refused_and_leaves_no_file(tmp_path):
     assert {path.name for path in tmp_path.iterdir()} == {"vibrated.nc"}
 
 
+def test_a_figure_of_one_restitution_takes_another_where_the_data_have_no_other():
+    gases = [data.assign_coords(r=[0.8]) for data in DATA["friction"]()]
+    titles = [axes.get_title(loc="left") for axes in part("friction", "figure").draw(*gases).axes]
+    assert "r = 0.8" in titles[0] and "r = 0.8" in titles[1]
+
+
 def test_friction_of_zero_is_left_out_of_a_logarithmic_axis():
     main = drawn("friction").axes[0]
     assert main.get_xscale() == "log"

@@ -11,10 +11,16 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator, MultipleLocator
 
 from roughgas.data.reduced import particles_of
-from roughgas.show.figures.series import RESTITUTION, Series, series, series_for_each
+from roughgas.show.figures.series import (
+    RESTITUTION,
+    Series,
+    restitution_of,
+    series,
+    series_for_each,
+)
 from roughgas.show.style import FAINT, GREY, HEIGHT, THEORY, WIDTH, Style
 
-__all__ = ["RESTITUTION", "Series", "series", "series_for_each"]
+__all__ = ["RESTITUTION", "Series", "restitution_of", "series", "series_for_each"]
 ENERGY_RATIO = r"$R = E_\mathrm{rot}/(E_\mathrm{rot} + E_\mathrm{trans})$"
 AVERAGES = {"R": "mean of $R(t)$", "R_collisional": "averaged over collisions"}
 """The ways in which R is averaged, by the names of variables; the first is the paper's."""
@@ -98,9 +104,9 @@ def content_for_each_r(title: str, data: xr.Dataset, **how: Any) -> PanelContent
 def content_for_each_beta(
     title: str, data: xr.Dataset, symbol: str = r"\beta", **how: Any
 ) -> PanelContent:
-    """Return a part with one series for each beta, all at RESTITUTION."""
+    """Return a part with one series for each beta, all at one r (`restitution_of`)."""
     drawn = series_for_each(data, "beta", symbol)
-    return PanelContent(rf"{title}, $r = {RESTITUTION:g}$", [data], drawn, **how)
+    return PanelContent(rf"{title}, $r = {restitution_of(data):g}$", [data], drawn, **how)
 
 
 def ratio_figure(

@@ -12,7 +12,7 @@ from roughgas.show.style import LOOKS, Look
 from roughgas.theory.prediction import predicted_ratio
 
 RESTITUTION = 0.9
-"""The r of figures that show only one."""
+"""The r of figures that show only one, where it is in the data."""
 
 
 class Series(NamedTuple):
@@ -73,12 +73,17 @@ def series(data: xr.Dataset, label: str, look: Look, **place: Any) -> Series:
     return Series(label, look, row, at, predict(**{axis: at}), predict)
 
 
+def restitution_of(data: xr.Dataset) -> float:
+    """Return the r that figures of only one show: RESTITUTION, or else the largest."""
+    return RESTITUTION if RESTITUTION in data.r else float(data.r.max())
+
+
 def series_for_each(
     data: xr.Dataset, name: str, symbol: str = r"\beta", looks: Sequence[Look] = LOOKS
 ) -> list[Series]:
     """Return one series for each r, from nearly elastic downwards; or for each other value of the
-    coordinate `name` at RESTITUTION, the smallest first."""
-    place = {} if name == "r" else {"r": RESTITUTION}
+    coordinate `name` at one r (`restitution_of`), the smallest first."""
+    place = {} if name == "r" else {"r": restitution_of(data)}
     values = sorted(data[name].values, reverse=name == "r")
     return [
         series(data, f"${symbol} = {value:g}$", looks[i % len(looks)], **{name: value}, **place)
