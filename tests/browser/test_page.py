@@ -9,6 +9,7 @@ from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.select import Select
 from show.page.conftest import SAMPLES, points_in
+from tests.houses import EXPERIMENTS
 
 from roughgas.data.point import read_point
 from roughgas.data.reduced import read_reduced
@@ -191,6 +192,7 @@ def test_a_third_axis_is_chosen_too(browser, tmp_path):
         [points / f"{name}.nc" for name in ("sheared", "cooling_friction")],
         points,
         tmp_path / "e.html",
+        EXPERIMENTS,
     )
     browser.open(tmp_path / "e.html")
     assert not browser.find("#variant")[0].is_displayed()

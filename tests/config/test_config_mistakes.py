@@ -173,6 +173,7 @@ def test_unknown_names(paper, refusal):
         ("", "c.yaml = None: must hold the key experiments"),
         ("a: \0\n", "c.yaml = (not text): must be YAML in UTF-8"),
         ("a: !!python/object:os.system {}\n", "c.yaml: line 1"),
+        ("a: !!bool 3\n", "c.yaml = (not YAML): must be YAML"),
     ],
 )
 def test_what_is_no_configuration(tmp_path, text, message, refusal):

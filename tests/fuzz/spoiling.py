@@ -85,11 +85,13 @@ def spoiled_trees(draw, tree):
         if what == "take away":
             del inner[last]
         elif what == "change":
-            inner[last] = draw(VALUES)
+            inner[last] = copy.deepcopy(draw(VALUES))  # which may be changed in its turn
         elif isinstance(inner, dict):
-            inner[draw(st.sampled_from(["x", "spin", "friction", "r", "", "a b"]))] = draw(VALUES)
+            inner[draw(st.sampled_from(["x", "spin", "friction", "r", "", "a b"]))] = copy.deepcopy(
+                draw(VALUES)
+            )
         else:
-            inner.append(draw(VALUES))
+            inner.append(copy.deepcopy(draw(VALUES)))
     return tree
 
 

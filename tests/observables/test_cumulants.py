@@ -22,7 +22,7 @@ def by_dsmc(r, beta, dimension, names):
     ("experiment", "box", "names"),
     [
         ("cooling", (400, 400), NAMES),
-        ("cooling_spheres", (75, 75, 75), (*NAMES, "alignment")),
+        ("spheres.cooling_spheres", (75, 75, 75), (*NAMES, "alignment")),
     ],
 )
 def test_cumulants_are_those_of_dsmc(experiment, box, names):

@@ -64,7 +64,8 @@ def parse_yaml(text: str, name: str) -> Any:
         _refuse(name, mark, repr(line[:LONGEST]), legal)
     except YAMLError as error:
         raise InputError(name, "(not text)", "be YAML in UTF-8") from error
-    except (ValueError, ReusedAnchorWarning) as error:  # as of the number 0o9
+    except (ValueError, LookupError, TypeError, AttributeError, ReusedAnchorWarning) as error:
+        # as of the number 0o9, and of `!!bool 3`
         if isinstance(error, InputError):
             raise
         raise InputError(name, "(not YAML)", f"be YAML: {' '.join(str(error).split())}") from error
