@@ -181,9 +181,14 @@ def one_of(labels):
     return "|".join(re.escape(str(label)) for label in labels) or "(?!)"
 
 
-def drawn(figures, kinds=(".pdf", ".png")):
-    """The files of figures at the scale of this run: in figures/, or in a folder below it."""
-    folder = "" if SCALE == "paper" else f"{SCALE}/"
+def folder_of(scale):
+    """The folder of figures/ for what is drawn at a scale: figures/ itself for `paper`."""
+    return "" if scale == "paper" else f"{scale}/"
+
+
+def drawn(figures, kinds=(".pdf", ".png"), scale=None):
+    """The files of figures at a scale, by default that of this run."""
+    folder = folder_of(scale or SCALE)
     return [f"figures/{folder}{figure}{kind}" for figure in figures for kind in kinds]
 
 

@@ -38,8 +38,7 @@ def labels_of(wildcards):
 
 def source_of_document(wildcards):
     shown = entry_of(wildcards).source
-    folder = "" if wildcards.scale == "paper" else f"{wildcards.scale}/"
-    return shown.format(scale=wildcards.scale, folder=folder)
+    return shown.format(scale=wildcards.scale, folder=folder_of(wildcards.scale))
 
 
 def caption_of_document(wildcards, output):
@@ -115,8 +114,7 @@ rule document:
 
 
 def pictures_of_paper(wildcards):
-    folder = "" if wildcards.scale == "paper" else f"{wildcards.scale}/"
-    return [f"figures/{folder}{name}.png" for name in catalogue.figures_of("paper")]
+    return drawn(catalogue.figures_of("paper"), [".png"], wildcards.scale)
 
 
 rule front:

@@ -15,29 +15,25 @@ if workflow.is_main_process:
 
 
 def study_of(wildcards):
-    """The name of the study that a rule makes something of, and what is known of it."""
-    name = wildcards.get("study") or STUDY_OF[wildcards.drawn]
-    return name, STUDIES[name]
+    """What is known of the study that a rule makes something of."""
+    return STUDIES[wildcards.get("study") or STUDY_OF[wildcards.drawn]]
 
 
 def data_of_study_figure(wildcards):
-    _, about = study_of(wildcards)
-    return reduced(scale_of(wildcards.folder), about["figures"][wildcards.drawn])
+    return reduced(scale_of(wildcards.folder), names_of_study_figure(wildcards))
 
 
 def names_of_study_figure(wildcards):
-    _, about = study_of(wildcards)
-    return about["figures"][wildcards.drawn]
+    return study_of(wildcards)["figures"][wildcards.drawn]
 
 
 def data_of_study(wildcards):
-    _, about = study_of(wildcards)
-    return reduced(wildcards.scale, about["experiments"])
+    return reduced(wildcards.scale, study_of(wildcards)["experiments"])
 
 
 def data_of_study_claims(wildcards):
     """The reduced datasets of all experiments that the statements of a study are on."""
-    name, about = study_of(wildcards)
+    about = study_of(wildcards)
     own = {one.partition(".")[2]: one for one in about["experiments"]}
     with one_line():
         rows = read_yaml(Path(about["folder"], "claims.yaml"))
@@ -46,19 +42,18 @@ def data_of_study_claims(wildcards):
 
 
 def code_of_study_figure(wildcards):
-    _, about = study_of(wildcards)
-    return code_beside(about["folder"], "*.py", "show.gallery", "plotting")
+    return code_beside(study_of(wildcards), ["*.py"], "show.gallery", "plotting")
 
 
 def code_of_study_claims(wildcards):
-    _, about = study_of(wildcards)
-    return code_beside(about["folder"], "[cj]*", "judging", "claims.report", "claims.statements")
+    modules = "judging", "claims.report", "claims.statements"
+    return code_beside(study_of(wildcards), ["*.py", "claims.yaml"], *modules)
 
 
-def code_beside(folder, files, *modules):
-    """A hash of files in a folder and of modules that they use."""
-    texts = [path.read_bytes() for path in sorted(Path(folder).glob(files)) if path.is_file()]
-    return sources.code_of(*modules) + hashlib.sha256(b"".join(texts)).hexdigest()[:16]
+def code_beside(about, patterns, *modules):
+    """A hash of the files of a study that match any of these patterns, and of modules that they use."""
+    files = [path for one in patterns for path in sorted(Path(about["folder"]).glob(one))]
+    return " ".join([sources.code_of(*modules), *map(hash_of_file, files)])
 
 
 # made from the output and therefore not recorded: results do not depend on where a study is, nor on
@@ -66,12 +61,11 @@ def code_beside(folder, files, *modules):
 
 
 def folder_of_study(wildcards, output):
-    _, about = study_of(wildcards)
-    return about["folder"]
+    return study_of(wildcards)["folder"]
 
 
 def caption_of_study_figure(wildcards, output):
-    _, about = study_of(wildcards)
+    about = study_of(wildcards)
     return captions(about["folder"], [*about["figures"]]).get(wildcards.drawn, "")
 
 
@@ -80,34 +74,31 @@ def experiments_of_study_figure(wildcards, output):
 
 
 def title_of_study(wildcards):
-    _, about = study_of(wildcards)
-    return about["title"]
+    return study_of(wildcards)["title"]
 
 
 def labels_of_study(wildcards):
     return titled(title_of_study(wildcards))
 
 
-def figures_of_study(name, scale):
-    """The pictures of a study: those that its figure.py draws, or else one of each experiment."""
+def figures_of_study(name, kinds, scale):
+    """The figures of a study: those that its figure.py draws, or else one of each experiment."""
     about = STUDIES[name]
-    folder = "" if scale == "paper" else f"{scale}/"
-    return [f"figures/{folder}{one}.png" for one in about["figures"] or about["experiments"]]
+    return drawn(about["figures"] or about["experiments"], kinds, scale)
 
 
 def pictures_of_study(wildcards):
-    name, _ = study_of(wildcards)
-    return figures_of_study(name, wildcards.scale)
+    return figures_of_study(wildcards.study, [".png"], wildcards.scale)
 
 
 def claims_of_study(wildcards):
-    _, about = study_of(wildcards)
+    about = study_of(wildcards)
     there = Path(about["folder"], "claims.yaml").exists()
     return [f"{OF_STUDY.format(**wildcards)}claims.md"] if there else []
 
 
 def readme_of_study(wildcards):
-    _, about = study_of(wildcards)
+    about = study_of(wildcards)
     return of_project(*Path(about["folder"]).glob("README.md"))
 
 
@@ -118,9 +109,8 @@ def products_of(name):
         if name in BROKEN:
             sys.exit(BROKEN[name])
         folder = OF_STUDY.format(scale=SCALE, study=name)
-        pictures = figures_of_study(name, SCALE)
-        pdfs = [one.removesuffix(".png") + ".pdf" for one in pictures]
-        return [*pictures, *pdfs, f"{folder}R.csv", f"{folder}page.html"]
+        figures = figures_of_study(name, [".pdf", ".png"], SCALE)
+        return [*figures, f"{folder}R.csv", f"{folder}page.html"]
 
     return products
 
@@ -184,7 +174,7 @@ rule study_claims:
         code=code_of_study_claims,
         folder=folder_of_study,
         title=title_of_study,
-        experiments=lambda wildcards: study_of(wildcards)[1]["experiments"],
+        experiments=lambda wildcards: study_of(wildcards)["experiments"],
     message:
         "write {output}"
     shell:

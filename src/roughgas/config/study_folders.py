@@ -112,9 +112,9 @@ def _read(name: str, folder: Path, config: Mapping[str, Any]) -> dict[str, Any]:
 
     experiments, scales = {}, {}
     for key, one in own.items():
-        parent = {"extends": one["extends"]} if "extends" in one else {}
-        parent = {k: qualified(v, f"experiments.{key}.extends") for k, v in parent.items()}
-        experiments[f"{name}.{key}"] = one | parent
+        if "extends" in one:
+            one = one | {"extends": qualified(one["extends"], f"experiments.{key}.extends")}
+        experiments[f"{name}.{key}"] = one
     for scale, changes in study.get("scales", {}).items():
         settings_of.one_of(f"{source}: scale", scale, {*config["scales"], *USUAL_SCALES})
         for key in changes:
@@ -129,12 +129,10 @@ def _read(name: str, folder: Path, config: Mapping[str, Any]) -> dict[str, Any]:
         movie: [qualified(shows.split()[0], f"movies.{movie}"), *shows.split()[1:]]
         for movie, shows in study.get("movies", {}).items()
     }
-    for part, named in (("figures", [*figures]), ("movies", [*movies])):
-        for key in named:
-            if key != name and not key.startswith(f"{name}_"):
-                raise InputError(
-                    f"{source}: key of {part}", key, f"be {name} or begin with {name}_"
-                )
+    for part, key in [*(("figures", one) for one in figures), *(("movies", one) for one in movies)]:
+        if key != name and not key.startswith(f"{name}_"):
+            legal = f"be {name} or begin with {name}_"
+            raise InputError(f"{source}: key of {part}", key, legal)
     about: dict[str, Any] = {"folder": str(folder), "title": _title(folder)}
     about |= {"experiments": list(experiments), "figures": figures, "movies": movies}
     return {"experiments": experiments, "scales": scales, "about": about}
