@@ -15,7 +15,7 @@ from roughgas.base.errors import InputError
 from roughgas.base.sources import module_of
 from roughgas.config import study_folders
 
-PUBLIC = {"roughgas.plotting", "roughgas.judging", "roughgas.theory"}
+PUBLIC = {"roughgas.gas", "roughgas.plotting", "roughgas.judging", "roughgas.theory"}
 LEAST = "experiments:\n  bed: {extends: vibrated, particles: 80}\n"
 BROKEN = {
     "out_of_range": ("experiments: {x: {extends: vibrated, particles: -3}}", "particles = -3"),

@@ -7,22 +7,25 @@ after the same collisions.
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from pathlib import Path
 from typing import Any, Protocol, Self
 
 import numpy as np
 
+from roughgas.base.errors import NeedsError
+from roughgas.data import checkpoint
 from roughgas.kernel.record import Sampling
-from roughgas.kernel.state import (
-    COLLISIONS,
-    EXPONENT,
-    State,
-)
+from roughgas.kernel.state import COLLISIONS, EXPONENT, LAST_FIRST, LAST_SECOND, State
 from roughgas.scene import Scene, elastic, initial_state
 from roughgas.simulation.books import Books, books
 from roughgas.simulation.by_species import energies_of
+from roughgas.simulation.contacts import SUMS
 from roughgas.simulation.ends import Initial, state_from
 from roughgas.simulation.energies import Columns, Energies
+from roughgas.simulation.instant import whereabouts
 from roughgas.simulation.recorder import Recorder, most_in, now
+
+COSTS = "seconds", "collisions", "touched"  # what a Recorder sums up
 
 
 def count(particles: int, per_particle: float) -> int:
@@ -199,6 +202,63 @@ class Gas:
         A gas between walls that move along themselves is one, too.
         """
         return energies_of(columns, self.scene, self.state)
+
+    def positions_and_velocities(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return positions in a, folded into the box, and velocities of the present: copies.
+
+        Shape (N, D) each. Velocities are in 2^exponent a/T, as those of the sample are. The order
+        is that of `spins`; a run of many particles changes it now and then.
+        """
+        return whereabouts(self.state, self.scene, self.time)
+
+    def spins(self) -> np.ndarray:
+        """Return a copy of the spins, in 2^exponent/T: (N, 1) of disks, (N, 3) of spheres.
+
+        Raises NeedsError where particles do not spin.
+        """
+        if self.state.spin is None:
+            raise NeedsError("spins", "effects.spin")
+        return self.state.spin.copy()
+
+    def contact_sums(self) -> np.ndarray:
+        """Return the sums of v_t^2, v_r^2 and v_t.v_r over all contacts up to the last sample.
+
+        v_t and v_r are the tangential velocity of the contact due to translation and to spin, in
+        a/T. Raises NeedsError without the effect contact_averages.
+        """
+        if not set(SUMS) <= set(self.sample):
+            raise NeedsError("contact sums", "effects.contact_averages, and a sample")
+        return np.array([self.sample[name][0] for name in SUMS])
+
+    def last_contact(self) -> tuple[int, int, np.ndarray]:
+        """Return the partners i < j of the last contact, and where they are now: (2, D), in a.
+
+        i and j count in the order of `spins`. Right after a `step` of one collision, that is where
+        they touch, not folded into the box.
+        """
+        numbers = self.state.counts[[LAST_FIRST, LAST_SECOND]]
+        i, j = np.flatnonzero(np.isin(self.state.label, numbers))
+        return int(i), int(j), self.state.trajectory[[i, j], : len(self.scene.box)]
+
+    def save(self, path: str | Path, owner: str, record: Mapping[str, np.ndarray]) -> None:
+        """Write the gas, what it has cost, and arrays of a run's own, `record`, to `path`.
+
+        `owner` says which run this is: only the same one may `restore` it. The file is there whole
+        or not at all. Raises OSError.
+        """
+        costs = {f"costs.{name}": np.array(getattr(self.recorder, name)) for name in COSTS}
+        checkpoint.save(path, owner, self.state, {**record, **costs})
+
+    def restore(self, path: str | Path, owner: str) -> dict[str, np.ndarray]:
+        """Bring a gas that has just started to where it was saved, and return the record.
+
+        Call `cool` again where it cools. Raises FileNotFoundError if there is no such file, and
+        UnusableCheckpoint if it is damaged or of another run; the gas is then as it was.
+        """
+        record = checkpoint.restore(path, owner, self.state)
+        for name in COSTS:
+            setattr(self.recorder, name, record.pop(f"costs.{name}").item())
+        return record
 
     def books(self) -> Books:
         """Return the books of energy at the present instant."""
