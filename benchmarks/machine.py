@@ -7,7 +7,7 @@ import subprocess
 from importlib import metadata
 from pathlib import Path
 
-from roughgas.base.version import __version__
+from roughgas.base import __version__
 
 CACHES = Path("/sys/devices/system/cpu/cpu0/cache")
 PACKAGES = ("numba", "llvmlite", "numpy")

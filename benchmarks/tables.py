@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 
-from roughgas.base.layout import markdown
+from roughgas.base.formatting import markdown
 
 
 def table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from roughgas.base.sources import module_of
+from roughgas.base.files import module_of
 from roughgas.claims import OPEN_QUESTIONS, PAPER
 from roughgas.claims.statements import read_study
 

@@ -15,8 +15,8 @@ from show.page.conftest import write
 from tests.entry import main
 from tests.files import point
 
-from roughgas.base.errors import InputError
-from roughgas.base.layout import in_csv, in_rst, markdown
+from roughgas.base import InputError
+from roughgas.base.formatting import in_csv, in_rst, markdown
 from roughgas.config import checking
 from roughgas.config.provenance import provenance
 from roughgas.data.point import write_point

@@ -15,7 +15,7 @@ from schedules import STEADY
 
 import roughgas
 from roughgas import experiments, library, simulate, trajectory
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.cli import main
 from roughgas.data.point import WALL_CLOCK, read_point
 from roughgas.data.trajectory import write_trajectory

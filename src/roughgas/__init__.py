@@ -1,6 +1,6 @@
 """Event-driven simulation of gases of rough, inelastic disks and spheres."""
 
-from roughgas.base.version import __version__
+from roughgas.base import __version__
 
 __all__ = ["__version__", "experiments", "simulate", "trajectory"]
 TYPE_CHECKING = False  # but for type checkers; importing typing would take ten times as long

@@ -14,9 +14,8 @@ import tempfile
 from importlib import import_module, metadata
 from pathlib import Path
 
-from roughgas.base.extras import EXTRAS
+from roughgas.base import EXTRAS, __version__
 from roughgas.base.files import check_place
-from roughgas.base.version import __version__
 
 LIBRARIES = "numpy numba netCDF4 xarray pandas ruamel.yaml jsonschema tqdm"
 TRIAL = """

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.config.arguments import Effects, Observe, Schedule, Side, Species, Values
 
 if TYPE_CHECKING:
@@ -112,11 +112,11 @@ def simulate(
 
     Raises
     ------
-    roughgas.base.errors.InputError
+    roughgas.base.InputError
         For values that are illegal or contradict each other; its text is one line.
-    roughgas.base.errors.CollapseError
+    roughgas.base.CollapseError
         If contacts accumulate without end, as in a bed of r = 0.6 without ``contact_time``.
-    roughgas.base.errors.SilentError
+    roughgas.base.SilentError
         If particles are so few that the collisions of a cooling gas do not come.
     OSError
         If `config` cannot be read.
@@ -229,7 +229,7 @@ def trajectory(
 
     Raises
     ------
-    roughgas.base.errors.InputError
+    roughgas.base.InputError
         For times that do not rise; otherwise as `simulate`.
 
     Examples

@@ -4,7 +4,7 @@
 beneath; `series` takes them from a reduced dataset. Figures of another form use the parts.
 """
 
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.data.reduced import particles_of
 from roughgas.show.figures.panel import (
     ANY_R,

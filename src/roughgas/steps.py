@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from roughgas import cli, config
-from roughgas.base.errors import InputError, not_one_of
+from roughgas.base import InputError, not_one_of
 from roughgas.cli.options import whole_number
 from roughgas.cli.parser import Parser
 

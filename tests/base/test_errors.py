@@ -2,7 +2,7 @@
 
 import pytest
 
-from roughgas.base.errors import not_one_of
+from roughgas.base import not_one_of
 
 
 @pytest.mark.parametrize(

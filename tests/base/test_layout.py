@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 
-from roughgas.base.layout import as_json, columns, markdown
+from roughgas.base.formatting import as_json, columns, markdown
 
 
 def test_columns_are_aligned():

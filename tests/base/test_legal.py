@@ -3,8 +3,7 @@ import math
 import numpy as np
 import pytest
 
-from roughgas.base.errors import InputError
-from roughgas.base.legal import Interval
+from roughgas.base import InputError, Interval
 
 
 @pytest.mark.parametrize(

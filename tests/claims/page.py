@@ -10,7 +10,7 @@ import inspect
 from itertools import pairwise
 from pathlib import Path
 
-from roughgas.base.layout import markdown
+from roughgas.base.formatting import markdown
 from roughgas.claims import OPEN_QUESTIONS, PAPER, averages, paper, verdicts
 from roughgas.statistics import errors
 

@@ -5,7 +5,7 @@ from synthetic import BETA, averaged, reduced
 from tests.entry import main
 from tests.houses import statements
 
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.claims import PAPER, judge
 from roughgas.claims.verdicts import NOT_TESTED
 

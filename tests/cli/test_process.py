@@ -11,8 +11,7 @@ import pytest
 from schedules import TINY
 
 from cli.conftest import ROOT
-from roughgas.base.errors import CollapseError
-from roughgas.base.version import __version__
+from roughgas.base import CollapseError, __version__
 from roughgas.cli import main
 from roughgas.data.point import WALL_CLOCK, read_point
 from roughgas.simulation.point import run_point

@@ -3,7 +3,7 @@ from pathlib import Path
 import pytest
 
 from roughgas import config
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 
 
 @pytest.fixture(scope="session")

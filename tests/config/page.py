@@ -7,7 +7,7 @@ writes it anew.
 
 from pathlib import Path
 
-from roughgas.base.layout import markdown
+from roughgas.base.formatting import markdown
 from roughgas.config.schema import SAID, _legal, _schema
 
 PAGE = Path(__file__).parents[2] / "docs" / "config.md"

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from roughgas import config, simulate
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.cli import main
 from roughgas.config import checking
 from roughgas.config.effective import write_effective

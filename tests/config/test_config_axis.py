@@ -6,7 +6,7 @@ import math
 import pytest
 
 from roughgas import config
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.config import checking, schema
 from roughgas.config.provenance import variant_attributes
 from roughgas.data.reduced import REDUCED

@@ -11,8 +11,8 @@ import yaml
 from tests.houses import EXPERIMENTS, FOLDERS, ROOT
 
 from roughgas import config
-from roughgas.base.errors import InputError
-from roughgas.base.sources import module_of
+from roughgas.base import InputError
+from roughgas.base.files import module_of
 from roughgas.config import study_folders
 
 PUBLIC = {"roughgas.gas", "roughgas.plotting", "roughgas.judging", "roughgas.theory"}

@@ -8,7 +8,7 @@ writes them anew.
 import re
 from pathlib import Path
 
-from roughgas.base.layout import markdown
+from roughgas.base.formatting import markdown
 from roughgas.data.film import FILM
 from roughgas.data.reduced import REDUCED
 from roughgas.data.trajectory import TRAJECTORY

@@ -6,7 +6,7 @@ import netCDF4
 import pytest
 import xarray as xr
 
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.cli import main
 from roughgas.data.film import read_film
 from roughgas.data.netcdf import DamagedError, opened, read_netcdf

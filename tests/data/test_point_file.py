@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from files import ABOUT
 
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.base.files import write_text
 from roughgas.data.point import Point, read_point, write_point
 

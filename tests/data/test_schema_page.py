@@ -11,7 +11,7 @@ import xarray as xr
 from tests.data import schema_page as page
 from tests.files import frames, point
 
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.data.film import read_film, write_film
 from roughgas.data.netcdf import COMMON_ATTRIBUTES, read_netcdf, unit_attributes, unit_of
 from roughgas.data.point import read_point, write_point

@@ -9,7 +9,7 @@ import math
 import re
 from pathlib import Path
 
-from roughgas.base.layout import markdown
+from roughgas.base.formatting import markdown
 from roughgas.effects import KINDS
 from roughgas.effects.settings import Numbers, OfParticles, Word
 

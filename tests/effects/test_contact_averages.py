@@ -7,7 +7,7 @@ from brute_force.beside import brute_force_from
 from schedules import STEADY
 
 from roughgas import theory
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.kernel.state import EXPONENT
 from roughgas.scene import build
 from roughgas.simulation.books import books

@@ -5,7 +5,7 @@ import yaml
 
 from effects import page
 from roughgas import config
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.effects import KINDS
 from roughgas.scene import build
 

@@ -9,7 +9,7 @@ from brute_force import Beside, begin, run, scene_of, settings
 from compiled import from_python
 from hard_cases.waves import DIGITS, exact, sine, triangle
 
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.effects import Floor, sine_floor, triangular_floor
 from roughgas.effects.settings import Surroundings, make
 from roughgas.effects.sine_floor import SineFloor

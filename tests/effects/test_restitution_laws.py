@@ -9,7 +9,7 @@ import pytest
 from brute_force import KERNELS, begin, run, settings
 
 from roughgas import theory
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.effects.viscoelastic import ABOVE, B_1, B_2, B_3, B_4, fifth_root, pade, x_of
 from roughgas.kernel.layout import new_state
 from roughgas.kernel.state import EXPONENT

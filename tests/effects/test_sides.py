@@ -7,7 +7,7 @@ import pytest
 from brute_force import KERNELS, Beside, begin, run, scene_of, settings
 from brute_force.sides import ALIKE, Side
 
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.effects import floor, piston, sine_floor, thermal_wall, triangular_floor
 from roughgas.scene import build
 from roughgas.scene.initial import check_places

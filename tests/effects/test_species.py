@@ -5,7 +5,7 @@ import pytest
 from brute_force import Beside, begin, run, scene_of, settings, snapshot
 
 from roughgas import simulate
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.kernel import layout
 from roughgas.kernel.state import LAST_FIRST, LAST_SECOND
 from roughgas.simulation.books import imbalance

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from brute_force import begin, settings
 
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.config.schema import check_schema
 from roughgas.effects.species import mixture_of
 from roughgas.scene import build, packing

@@ -16,7 +16,7 @@ from tests.fuzz.spoiling import (
 )
 
 from roughgas import config
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.config.reading import read_yaml
 from roughgas.simulation import schedule
 

@@ -5,7 +5,7 @@ import tomllib
 import pytest
 from tests.habits.conftest import ROOT, python
 
-from roughgas.base.extras import EXTRAS
+from roughgas.base import EXTRAS
 
 POINT = "cooling --scale small --r 0.9 --beta 0.5"
 WITHOUT_ANY = {

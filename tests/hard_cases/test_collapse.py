@@ -9,7 +9,7 @@ from brute_force import begin, run, settings, snapshot
 from brute_force.scenes import UNLIMITED
 
 from hard_cases.catalogue import hard_case
-from roughgas.base.errors import CollapseError
+from roughgas.base import CollapseError
 from roughgas.kernel.layout import new_state
 from roughgas.kernel.loop import COLLAPSED
 from roughgas.kernel.record import Sampling, columns, record

@@ -11,7 +11,7 @@ from brute_force import Beside, begin, largest_overlap, run, scene_of, settings
 from schedules import COOLING, STEADY
 
 from hard_cases.catalogue import hard_case
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.scene import build, check
 from roughgas.simulation.point import run_point
 

@@ -22,7 +22,7 @@ from hard_cases.compositions import (
     with_needs,
 )
 from hard_cases.watched import Worst, worst_of
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.effects import KINDS
 from roughgas.scene import build, check
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from tests.observables.frames import frame_of, system_of
 
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.observables import KINDS
 from roughgas.observables.pair_correlation import squares
 

@@ -11,7 +11,7 @@ from schedules import BRIEF, COOLING, STEADY
 from tests.observables import page
 
 from roughgas import simulate
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.cli import main
 from roughgas.data.point import WALL_CLOCK, read_point
 from roughgas.data.reduced import read_reduced

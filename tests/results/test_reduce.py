@@ -8,7 +8,7 @@ import pytest
 from tests.synthetic import reduced
 
 from roughgas import theory
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.data.point import Point, write_point
 from roughgas.data.reduced import read_reduced
 from roughgas.results.reduce import reduce_points

@@ -7,7 +7,7 @@ import pytest
 from test_reduce import write
 
 from roughgas import theory
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.cli import main
 from roughgas.data.reduced import read_reduced
 from roughgas.results.reduce import reduce_points

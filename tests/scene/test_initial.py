@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from brute_force import KERNELS, begin, largest_overlap, scene_of, settings
 
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 
 CASES = {
     **{name: settings(name) for name in KERNELS},

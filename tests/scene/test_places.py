@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from brute_force import begin, settings
 
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.scene import check_places
 from roughgas.scene.places import places_for
 

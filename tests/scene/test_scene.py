@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.scene import build, check
 
 SPIN = {"spin": {"inertia": 0.5}}

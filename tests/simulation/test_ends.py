@@ -6,7 +6,7 @@ import xarray as xr
 from brute_force import KERNELS, kernels, settings
 from schedules import COOLING
 
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.data.point import as_dataset
 from roughgas.kernel import layout
 from roughgas.scene import build

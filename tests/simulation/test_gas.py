@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from brute_force import begin, run, settings
 
-from roughgas.base.errors import JammedError
+from roughgas.base import JammedError
 from roughgas.kernel.state import EXPONENT
 from roughgas.scene import build, elastic
 from roughgas.simulation.energies import restored

@@ -5,7 +5,7 @@ import pytest
 from brute_force import settings
 from schedules import COOLING, STEADY
 
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.scene import build
 from roughgas.simulation.point import compile_kernels, run_point
 

@@ -3,7 +3,7 @@
 import pytest
 from brute_force import KERNELS, settings
 
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.simulation import cooling, schedule, steady
 
 STEADY = {"kind": "steady", "equilibrate": 0, "measure": 30, "sample_every": 0.5, "period": 2}

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from brute_force import begin, settings
 
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.simulation import schedule, target
 from roughgas.simulation.point import run_point
 from roughgas.statistics.errors import NO, UNKNOWN, YES

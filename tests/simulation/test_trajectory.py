@@ -11,7 +11,7 @@ import pytest
 from brute_force import kernels, settings
 from schedules import COOLING, STEADY
 
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.data.point import as_dataset
 from roughgas.data.trajectory import (
     FORMATS,

@@ -11,7 +11,7 @@ from hypothesis import HealthCheck, Phase, given, seed
 from hypothesis import settings as profile
 from hypothesis import strategies as st
 
-from roughgas.base.errors import InputError, SilentError
+from roughgas.base import InputError, SilentError
 from roughgas.kernel import loop
 from roughgas.simulation import cooling, schedule, steady
 from roughgas.simulation.gas import Gas

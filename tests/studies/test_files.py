@@ -8,7 +8,7 @@ from tests.entry import main
 from tests.studies.test_coverage import EXPERIMENTS, SETTINGS
 
 from roughgas import config, studies
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.studies.files import combine
 from roughgas.studies.tables import write_tables
 from roughgas.studies.variables import read_studies

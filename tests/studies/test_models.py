@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from tests.data.schema_page import check_study
 
 from roughgas import theory
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.statistics.errors import Estimate
 from roughgas.studies import models, study
 from roughgas.studies.figures import accuracy as plotting

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from roughgas import theory
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 
 PAIRS = 400_000
 SIGMAS = 5

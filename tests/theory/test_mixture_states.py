@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from tests.theory.collisions import Dsmc
 
 from roughgas import theory
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 
 dimensions = pytest.mark.parametrize("dimension", [2, 3])
 UNLIKE = [

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from roughgas import theory
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 
 dimensions = pytest.mark.parametrize("dimension", [2, 3])
 packings = pytest.mark.parametrize("packing", [0.0, 0.1, 0.5])

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from tests.theory.collisions import after_contact, directions, drawn, drawn_spins, energies
 
 from roughgas import theory
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 
 SAMPLES = 60_000
 UNLIKE = [

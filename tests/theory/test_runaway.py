@@ -7,7 +7,7 @@ import pytest
 from tests.theory.tracers import spin_in_the_end
 
 from roughgas import theory
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 
 GASES = [(0.9, 0.0, 0.1, 2), (0.9, 0.0, 0.3, 2), (0.99, 0.5, 0.05, 2), (0.9, 0.0, 0.3, 3)]
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from roughgas import theory
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 
 TAKES_R_AND_BETA = [
     theory.goldshtein_ratio,

@@ -5,7 +5,7 @@ import pytest
 from integration import integrate
 
 from roughgas import theory
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.effects.viscoelastic import pade, x_of
 
 SPEEDS = np.geomspace(1e-4, 1e4, 9)

@@ -1,11 +1,26 @@
-"""Files get their final names only when they are whole."""
+"""Files that are whole or not there; the hash of the code on which a result depends.
 
+The workflow makes a result again when the hash of its code changes: of the modules it uses, and of
+all that these import. A file of the same name, such as schema.yaml beside schema.py, counts, and so
+do the versions of roughgas and numba.
+"""
+
+import ast
 import errno
+import functools
+import hashlib
+import importlib
 import os
+import re
+import sys
 import tempfile
-from collections.abc import Iterator
+import types
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
+from importlib import metadata
 from pathlib import Path
+
+from roughgas.base import InputError, __version__
 
 
 @contextmanager
@@ -75,3 +90,85 @@ def write_text(path: str | Path, text: str) -> None:
     """Write `text` (UTF-8, line ends as given) to `path`, whole or not at all."""
     with whole_file(path) as draft:
         draft.write_text(text, encoding="utf-8", newline="")
+
+
+VERSIONS = f"roughgas {__version__} numba {metadata.version('numba')}\n"
+PACKAGE = Path(__file__).resolve().parent.parent
+BLOCKS = ("body", "handlers", "orelse", "finalbody", "cases")
+"""What holds the statements within a statement, imports among them."""
+
+
+def code_of(*modules: str, alone: Iterable[str] = ()) -> str:
+    """Return a hash of modules as they are, such as "simulation.point", and of all they import.
+
+    Of modules in `alone` the imports do not count. Raises FileNotFoundError for an unknown one.
+    """
+    names = sorted(closure(*modules).union(alone))
+    text = VERSIONS + "".join(f"{name} {_read(name)[0]}\n" for name in names)
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def closure(*modules: str) -> set[str]:
+    """Return the names of modules, of all that they import anywhere, and of their packages.
+
+    Of a package that is only around a module, imports inside functions do not count; nowhere those
+    that only type checkers see. The facade, `roughgas` itself, is not among them.
+    """
+    todo = [(name, True) for name in modules]
+    found: dict[str, bool] = {}
+    while todo:
+        name, whole = todo.pop()
+        if name and whole > found.get(name, -1):
+            found[name] = whole
+            _, imported = _read(name)
+            todo += [(name.rpartition(".")[0], False), *((one, True) for one in imported[whole])]
+    return set(found)
+
+
+@functools.cache
+def _read(name: str) -> tuple[str, tuple[set[str], set[str]]]:
+    """Return a hash of a module, and what it imports: at once, and in all."""
+    file = _file(name)
+    tree, digest = ast.parse(file.read_bytes()), hashlib.sha256(file.read_bytes())
+    for beside in sorted(set(file.parent.glob(f"{file.stem}.*")) - {file}):
+        digest.update(beside.read_bytes())
+    return digest.hexdigest(), (set(_imports(tree, False)), set(_imports(tree, True)))
+
+
+def _file(name: str) -> Path:
+    path = PACKAGE.joinpath(*name.split("."))
+    return path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
+
+
+def _imports(node: ast.AST, in_functions: bool) -> Iterator[str]:
+    """Generate the modules of the package that a syntax tree imports."""
+    if isinstance(node, ast.Import | ast.ImportFrom):
+        package = f"{node.module}." if isinstance(node, ast.ImportFrom) else ""
+        for alias in node.names:
+            name = (package + alias.name).removeprefix("roughgas.")
+            if (package + alias.name).startswith("roughgas."):
+                yield name if _file(name).exists() else name.rpartition(".")[0]
+    for_types = isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test)
+    blocks = ("orelse",) if for_types else BLOCKS
+    for child in (child for block in blocks for child in getattr(node, block, ())):
+        if in_functions or not isinstance(child, ast.FunctionDef):
+            yield from _imports(child, in_functions)
+
+
+def module_of(folder: str | Path, name: str) -> types.ModuleType:
+    """Return the module `name`, such as figure, of the study in `folder`; it may import those
+    beside it. Raises InputError where there is none, or where it is no Python."""
+    folder = Path(folder).resolve()
+    package = "roughgas_study_" + re.sub(r"\W", "_", folder.name)
+    if getattr(sys.modules.get(package), "__path__", None) != [str(folder)]:
+        for known in [one for one in sys.modules if one.partition(".")[0] == package]:
+            del sys.modules[known]
+        sys.modules[package] = types.ModuleType(package)
+        sys.modules[package].__path__ = [str(folder)]
+    if not (folder / f"{name}.py").exists():
+        raise InputError(f"studies/{folder.name}/{name}.py", "(nothing)", "be there for this")
+    try:
+        return importlib.import_module(f"{package}.{name}")
+    except (ImportError, SyntaxError) as error:
+        said = f"{type(error).__name__}: {error}"
+        raise InputError(f"studies/{folder.name}/{name}.py", said, "be Python") from error

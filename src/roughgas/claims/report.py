@@ -7,8 +7,7 @@ from typing import Any
 
 import xarray as xr
 
-from roughgas.base import layout
-from roughgas.base.errors import InputError
+from roughgas.base import InputError, formatting
 from roughgas.base.files import write_text
 from roughgas.claims.evidence import load_all
 from roughgas.claims.statements import Statement, Subject, examine
@@ -84,7 +83,7 @@ def as_json(
         "data": {name: _data(data) for name, data in sorted(datasets.items())},
         "claims": list(map(_claim, subject.statements, findings)),
     }
-    return layout.as_json(content, indent=1) + "\n"
+    return formatting.as_json(content, indent=1) + "\n"
 
 
 def _data(data: xr.Dataset) -> dict[str, Any]:
@@ -126,7 +125,7 @@ def as_markdown(subject: Subject, findings: list[Finding], scale: str) -> str:
         HOW_TO_READ.format(**TOLERANCES),
         f"Sizes and run lengths: those of the scale `{scale}` in config.yaml.",
         f"Of {len(rows)} statements: {summary}.",
-        layout.markdown(head, [_cells(*row) for row in rows]).rstrip(),
+        formatting.markdown(head, [_cells(*row) for row in rows]).rstrip(),
         *([subject.after] if subject.after else []),
         "## Reasons and numbers",
         *(_details(*row) for row in rows),

@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 import xarray as xr
 import yaml
 
-from roughgas.base.errors import InputError
-from roughgas.base.sources import module_of
+from roughgas.base import InputError
+from roughgas.base.files import module_of
 from roughgas.claims import averages, evidence, of_studies, paper
 from roughgas.claims.evidence import NotTestedError
 from roughgas.claims.verdicts import (

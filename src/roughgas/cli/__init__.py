@@ -14,9 +14,8 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import NoReturn
 
-from roughgas.base import extras
-from roughgas.base.errors import EndedEarlyError, InputError, on_one_line, shown
-from roughgas.base.version import __version__
+from roughgas import base
+from roughgas.base import EndedEarlyError, InputError, __version__, on_one_line, shown
 from roughgas.cli.commands import COMMANDS
 from roughgas.cli.options import check_outputs
 from roughgas.cli.parser import BAD_INPUT, Given, Parser, add_commands, overview
@@ -113,7 +112,7 @@ def status_of(
         wrong = f"hold what roughgas writes, as it wrote it: {type(error).__name__}: {error}"
         return _fail(BAD_INPUT, str(InputError("file", path, wrong)))
     except ImportError as error:
-        lacks = extras.remedy(error)
+        lacks = base.remedy(error)
         return _fail(FAILED, lacks or f"{error}: `roughgas doctor` says what is wrong")
     except KeyboardInterrupt as stop:
         print(f"roughgas: stopped: {stop if stop.args else GO_ON}", file=sys.stderr)

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from roughgas import config
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.config.axis import SPECIES, names_of, species_called
 
 NOT_TO_SET = (*config.NOT_OF_A_POINT, config.SWEPT, "extends")

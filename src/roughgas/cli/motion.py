@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from roughgas.base.legal import Interval
+from roughgas.base import Interval
 from roughgas.cli.options import number, whole_number
 from roughgas.cli.run import initial_in, points_of
 from roughgas.config import Place

@@ -9,9 +9,8 @@ from decimal import Decimal
 from pathlib import Path
 from typing import Any
 
-from roughgas.base.errors import InputError
+from roughgas.base import InputError, Interval
 from roughgas.base.files import check_place
-from roughgas.base.legal import Interval
 from roughgas.cli.parser import flag, value
 
 RANGE = re.compile(r"([^:]+):([^:]+):([^:]+)")

@@ -8,7 +8,7 @@ from importlib import import_module
 from textwrap import fill
 from typing import Any, NoReturn
 
-from roughgas.base.errors import on_one_line
+from roughgas.base import on_one_line
 
 BAD_INPUT = 2
 WIDTH = 78

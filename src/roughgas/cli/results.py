@@ -6,8 +6,8 @@ from math import prod
 from textwrap import fill
 
 from roughgas import config
-from roughgas.base.errors import InputError, on_one_line
-from roughgas.base.layout import as_json, from_json
+from roughgas.base import InputError, on_one_line
+from roughgas.base.formatting import as_json, from_json
 from roughgas.cli.options import number
 from roughgas.cli.parser import WIDTH
 

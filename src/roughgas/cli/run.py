@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from roughgas import config
-from roughgas.base.errors import InputError
-from roughgas.base.layout import as_json
+from roughgas.base import InputError
+from roughgas.base.formatting import as_json
 from roughgas.cli.changes import as_label, changed_by
 from roughgas.cli.options import check_outputs, labels
 from roughgas.config.provenance import variant_attributes

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from xarray import Dataset
 
-from roughgas.base.errors import on_one_line
-from roughgas.base.layout import as_json, columns, from_json
+from roughgas.base import on_one_line
+from roughgas.base.formatting import as_json, columns, from_json
 from roughgas.cli.summaries import (
     altered,
     by_species,

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from xarray import DataArray, Dataset
 
-from roughgas.base.layout import columns
+from roughgas.base.formatting import columns
 from roughgas.data.netcdf import unit_of
 from roughgas.statistics.errors import NO, UNKNOWN, YES, Estimate
 from roughgas.theory.prediction import equation_of

@@ -15,8 +15,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from roughgas.base.errors import InputError, not_one_of, shown
-from roughgas.base.layout import as_text, from_json  # noqa: F401
+from roughgas.base import InputError, not_one_of, shown
+from roughgas.base.formatting import as_text, from_json  # noqa: F401
 from roughgas.config.axis import SPECIES, changed, scaled, value_of
 from roughgas.config.labels import (  # noqa: F401
     PARSE,

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from roughgas import config as settings_of
-from roughgas.base.errors import InputError, shown
+from roughgas.base import InputError, shown
 from roughgas.config.axis import SPECIES, names_of, species_called
 from roughgas.config.labels import level, numbers_of, restitution, roughness
 from roughgas.config.reading import read_yaml

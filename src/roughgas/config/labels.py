@@ -6,8 +6,7 @@ import re
 from collections.abc import Callable, Iterable
 from typing import Any, NamedTuple
 
-from roughgas.base.errors import InputError
-from roughgas.base.legal import RESTITUTION, ROUGHNESS, Interval
+from roughgas.base import RESTITUTION, ROUGHNESS, InputError, Interval
 
 NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 WORD = re.compile(r"[a-z][a-z0-9_]*")

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from roughgas import config
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 
 
 def provenance(

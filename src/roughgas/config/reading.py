@@ -12,7 +12,7 @@ from ruamel.yaml import YAML
 from ruamel.yaml.constructor import DuplicateKeyError, SafeConstructor
 from ruamel.yaml.error import MarkedYAMLError, ReusedAnchorWarning, YAMLError
 
-from roughgas.base.errors import LONGEST, InputError, shown
+from roughgas.base import LONGEST, InputError, shown
 
 LARGEST = 1_000_000  # bytes
 DEEPEST = 40

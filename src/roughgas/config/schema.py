@@ -7,8 +7,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from roughgas.base.errors import InputError, not_one_of, shown
-from roughgas.base.legal import RESTITUTION, ROUGHNESS
+from roughgas.base import RESTITUTION, ROUGHNESS, InputError, not_one_of, shown
 from roughgas.config.labels import LEGAL_LEVEL, level, restitution, roughness
 
 if TYPE_CHECKING:

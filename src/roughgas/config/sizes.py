@@ -7,7 +7,7 @@ import math
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 
 PACKING = "packing"
 SQUARE = [1, 1]

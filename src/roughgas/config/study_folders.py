@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from roughgas import config as settings_of
-from roughgas.base.errors import InputError, shown
+from roughgas.base import InputError, shown
 from roughgas.config.checking import RESERVED, check_ancestors, check_one
 from roughgas.config.reading import read_yaml
 from roughgas.config.schema import check_schema

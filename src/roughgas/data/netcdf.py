@@ -21,11 +21,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from roughgas.base.errors import InputError, shown
+from roughgas.base import RESTITUTION, ROUGHNESS, InputError, Interval, __version__, shown
 from roughgas.base.files import whole_file
-from roughgas.base.layout import from_json
-from roughgas.base.legal import RESTITUTION, ROUGHNESS, Interval
-from roughgas.base.version import __version__
+from roughgas.base.formatting import from_json
 from roughgas.data.variables import CLOCKS, Array
 
 if TYPE_CHECKING:

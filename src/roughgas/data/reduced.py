@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from roughgas.base.errors import InputError
-from roughgas.base.legal import Interval
+from roughgas.base import InputError, Interval
 from roughgas.data import netcdf
 from roughgas.data.netcdf import read_netcdf
 from roughgas.data.variables import ENERGY, MIXTURE, NAMES, POINT, RATE, TIME, Variable, register

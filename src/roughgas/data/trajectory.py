@@ -19,10 +19,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from roughgas.base.errors import InputError
-from roughgas.base.extras import required
+from roughgas.base import InputError, __version__, required
 from roughgas.base.files import whole_file
-from roughgas.base.version import __version__
 from roughgas.data.netcdf import Content, in_memory
 from roughgas.data.variables import (
     ENERGY,

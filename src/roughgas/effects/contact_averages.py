@@ -13,7 +13,7 @@ rotation, the mean squares would be 2 (D-1) times these. Then q = 1 belongs to t
 import math
 from typing import NamedTuple
 
-from roughgas.base.errors import NeedsError
+from roughgas.base import NeedsError
 from roughgas.effects.settings import register
 from roughgas.kernel.bodies import pair_of
 from roughgas.kernel.hooks import either

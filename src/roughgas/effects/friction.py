@@ -13,7 +13,7 @@ over what one along the normal moves the centres by; and mu is that of the pair.
 import math
 from typing import NamedTuple
 
-from roughgas.base.errors import NeedsError
+from roughgas.base import NeedsError
 from roughgas.effects.settings import Number, register
 from roughgas.kernel.hooks import either
 from roughgas.kernel.jit import jit

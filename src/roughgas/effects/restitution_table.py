@@ -9,7 +9,7 @@ import math
 from itertools import pairwise
 from typing import NamedTuple
 
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.effects.settings import Number, Numbers, register
 from roughgas.kernel.jit import jit
 from roughgas.kernel.state import EXPONENT

@@ -7,8 +7,7 @@ messages quote, is made from the parameters.
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from roughgas.base.errors import InputError
-from roughgas.base.legal import RESTITUTION, ROUGHNESS, Interval
+from roughgas.base import RESTITUTION, ROUGHNESS, InputError, Interval
 from roughgas.kernel.hooks import Hooks
 
 SPEED = "[0, 10000]"

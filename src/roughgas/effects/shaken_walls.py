@@ -7,7 +7,7 @@ stays where it is: only the velocity that particles meet there changes.
 import math
 from typing import NamedTuple
 
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.effects import walls
 from roughgas.effects.settings import LENGTH, MATERIAL, TIME, Number, check_speed, register
 from roughgas.kernel.contact import collide_with_wall

@@ -9,7 +9,7 @@ it, where the impulses on the two partners are opposite but the velocities at wh
 
 from typing import NamedTuple
 
-from roughgas.base.errors import NeedsError
+from roughgas.base import NeedsError
 from roughgas.effects.settings import Number, register
 from roughgas.kernel.jit import jit
 

@@ -8,7 +8,7 @@ is follows from its parameters: `SideWall.from_settings` makes it.
 import math
 from typing import NamedTuple
 
-from roughgas.base.errors import InputError, NeedsError
+from roughgas.base import InputError, NeedsError
 from roughgas.effects import piston, thermal_wall
 from roughgas.effects.floor import WAVES
 from roughgas.effects.plane import Place, bounce, closed_axis, predict

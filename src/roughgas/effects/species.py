@@ -18,8 +18,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from roughgas.base.errors import InputError, NeedsError, shown
-from roughgas.base.legal import RESTITUTION, ROUGHNESS, Interval
+from roughgas.base import RESTITUTION, ROUGHNESS, InputError, Interval, NeedsError, shown
 from roughgas.effects.settings import register
 from roughgas.theory.frequencies import packing_fraction
 

@@ -16,7 +16,7 @@ same energy whichever they are, of which the lighter one gets the more, m_j/(m_i
 import math
 from typing import NamedTuple
 
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.effects.settings import Number, register
 from roughgas.kernel.bodies import (
     change_of_velocity,

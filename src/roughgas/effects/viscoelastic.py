@@ -13,7 +13,7 @@ products and quotients alone, so that they have the same bits on every machine.
 import math
 from typing import NamedTuple
 
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.effects.settings import Number, register
 from roughgas.kernel.jit import jit
 from roughgas.kernel.state import EXPONENT

@@ -37,7 +37,7 @@ from numba.core.registry import cpu_target
 from numba.core.runtime import rtsys
 from numba.extending import overload
 
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.kernel import operations
 from roughgas.kernel.cache import folder_of, is_own
 

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Mapping
 from functools import partial
 from typing import Any, NamedTuple
 
-from roughgas.base.errors import InputError, NeedsError, not_one_of
+from roughgas.base import InputError, NeedsError, not_one_of
 from roughgas.effects.settings import schema_of_kinds
 from roughgas.observables.cumulants import Cumulants
 from roughgas.observables.frame import Frame, System

@@ -14,7 +14,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.data.variables import LENGTH, Variable
 from roughgas.effects.settings import Number
 from roughgas.observables.frame import Frame, System

@@ -9,7 +9,7 @@ from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.data.variables import Variable
 from roughgas.effects.settings import Number
 from roughgas.observables.frame import Frame, System

@@ -12,7 +12,7 @@ As in a bed in J. J. Brey, M. J. Ruiz-Montero & F. Moreno, Phys. Rev. E 63, 0613
 
 import numpy as np
 
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.data.variables import ENERGY, LENGTH, SPEED, Variable
 from roughgas.effects.settings import Number
 from roughgas.observables.frame import Frame, System

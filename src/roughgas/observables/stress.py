@@ -16,7 +16,7 @@ import math
 
 import numpy as np
 
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.data.variables import ENERGY, SHEARED, Variable
 from roughgas.effects import contact_stress
 from roughgas.observables.frame import Frame, System

@@ -6,9 +6,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from roughgas.base.errors import InputError
+from roughgas.base import InputError, __version__
 from roughgas.base.files import whole_file
-from roughgas.base.version import __version__
 from roughgas.config.reading import read_yaml
 
 PROJECT = (

@@ -10,7 +10,7 @@ from typing import Any, Protocol
 import netCDF4
 import numpy as np
 
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.data.netcdf import unit_of
 from roughgas.data.variables import Array
 from roughgas.statistics.errors import pooled

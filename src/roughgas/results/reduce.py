@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import netCDF4
 import numpy as np
 
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.data.netcdf import (
     COMMON_ATTRIBUTES,
     Content,

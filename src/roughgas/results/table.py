@@ -10,7 +10,7 @@ import numpy as np
 from xarray import Dataset
 
 from roughgas.base.files import whole_file, write_text
-from roughgas.base.layout import in_csv, markdown
+from roughgas.base.formatting import in_csv, markdown
 from roughgas.data.reduced import GRID, particles_of, read_reduced, third_axis
 from roughgas.statistics.errors import half_width
 from roughgas.theory.prediction import predicted_ratio

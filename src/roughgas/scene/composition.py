@@ -8,8 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from roughgas.base.errors import InputError, NeedsError
-from roughgas.base.legal import RESTITUTION, ROUGHNESS
+from roughgas.base import RESTITUTION, ROUGHNESS, InputError, NeedsError
 from roughgas.effects import KINDS, Effects
 from roughgas.effects.settings import Surroundings, make
 from roughgas.effects.species import mixture_of

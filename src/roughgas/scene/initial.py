@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.effects import Effects, inertia_of_spin
 from roughgas.kernel import hooks
 from roughgas.kernel.hooks import displacement

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from roughgas import theory
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.effects.species import Mixture, mixture_of
 from roughgas.kernel.state import Bodies
 from roughgas.scene.composition import Scene, check_box

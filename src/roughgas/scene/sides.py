@@ -1,6 +1,6 @@
 """The walls of a scene: which go together, and what they mean for its gas."""
 
-from roughgas.base.errors import InputError, NeedsError
+from roughgas.base import InputError, NeedsError
 from roughgas.effects import Effects
 from roughgas.kernel import hooks
 

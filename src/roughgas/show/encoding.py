@@ -9,7 +9,7 @@ from matplotlib import rc_context
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.base.files import whole_file
 from roughgas.show import style
 

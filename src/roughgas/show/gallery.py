@@ -5,8 +5,8 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from roughgas.base.errors import InputError, not_one_of
-from roughgas.base.sources import module_of
+from roughgas.base import InputError, not_one_of
+from roughgas.base.files import module_of
 from roughgas.data.netcdf import POINT, REDUCED, kind_of, opened
 from roughgas.data.point import read_point
 from roughgas.data.reduced import read_reduced

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import unquote
 
-from roughgas.base.errors import InputError, not_one_of
+from roughgas.base import InputError, not_one_of
 from roughgas.base.files import write_text
 from roughgas.show.catalogue import FIGURES
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from roughgas.base.layout import markdown
+from roughgas.base.formatting import markdown
 from roughgas.show import pages
 
 PICTURE = re.compile(r"!\[[^]]*\]\([^)]*?([\w.]+)\.png\)")

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 from matplotlib import rc_context, rcParamsDefault
 from matplotlib.figure import Figure
 
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.base.files import whole_file
 
 SLIDE = 10.0, 5.625  # inches: 16 to 9

@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from roughgas.base.layout import as_text
-from roughgas.base.sources import code_of
-from roughgas.base.version import __version__
+from roughgas.base import __version__
+from roughgas.base.files import code_of
+from roughgas.base.formatting import as_text
 from roughgas.data import checkpoint
 from roughgas.kernel.cache import source_hash
 from roughgas.scene import DIAMETER, build

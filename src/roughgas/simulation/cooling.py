@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.effects import inertia, speed_of_r
 from roughgas.scene import Scene, for_theory, packing
 from roughgas.simulation import by_species

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
 
-from roughgas.base.errors import InputError, shown
+from roughgas.base import InputError, shown
 from roughgas.kernel.cache import source_hash
 from roughgas.kernel.layout import new_state
 from roughgas.kernel.state import BASE, EXPONENT, NOW, State

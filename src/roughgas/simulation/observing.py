@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.data.variables import ENERGY, POINT, SPEED, TIME, Variable
 from roughgas.kernel.hooks import displacement, present
 from roughgas.kernel.state import EXPONENT

@@ -7,8 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from roughgas.base.errors import InputError
-from roughgas.base.version import __version__
+from roughgas.base import InputError, __version__
 from roughgas.data.point import Point
 from roughgas.data.variables import Variable
 from roughgas.effects import speed_of_r

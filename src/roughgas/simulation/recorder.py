@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from roughgas.base.errors import CollapseError, EndedEarlyError, JammedError, SilentError
+from roughgas.base import CollapseError, EndedEarlyError, JammedError, SilentError
 from roughgas.kernel import hooks
 from roughgas.kernel.clock import INSTANT
 from roughgas.kernel.loop import COLLAPSED, REACHED

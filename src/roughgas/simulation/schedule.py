@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Protocol
 
 from roughgas import scene
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.effects import inertia
 from roughgas.kernel import hooks
 from roughgas.scene import Scene, shear_rate

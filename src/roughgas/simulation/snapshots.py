@@ -10,8 +10,7 @@ from typing import Any, NamedTuple, Self
 
 import numpy as np
 
-from roughgas.base.errors import InputError
-from roughgas.base.legal import Interval
+from roughgas.base import InputError, Interval
 from roughgas.kernel.hooks import displacement
 from roughgas.kernel.state import BASE, EXPONENT, NOW, Bodies, State
 from roughgas.scene import Scene, bounds, has_sides, packing

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.effects import inertia
 from roughgas.kernel.hooks import present
 from roughgas.scene import Scene, moves_along

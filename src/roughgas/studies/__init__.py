@@ -11,7 +11,7 @@ from functools import partial
 from importlib import import_module
 from typing import Any, NamedTuple
 
-from roughgas.base.errors import not_one_of
+from roughgas.base import not_one_of
 from roughgas.studies.tasks import PANELS, STUDIES, TASKS
 
 __all__ = ["PANELS", "STUDIES", "Study", "study"]

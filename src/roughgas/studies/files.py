@@ -8,7 +8,7 @@ from typing import Any
 
 import xarray as xr
 
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.data.netcdf import TASK, Content, content_of, read_netcdf, write_netcdf
 from roughgas.studies.tasks import TASKS
 

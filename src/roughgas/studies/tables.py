@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from roughgas.base.files import write_text
-from roughgas.base.layout import markdown
+from roughgas.base.formatting import markdown
 from roughgas.studies.tasks import SCENES, STUDIES
 from roughgas.studies.variables import estimate, read_studies
 from roughgas.theory import moment_of_inertia

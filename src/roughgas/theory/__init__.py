@@ -2,7 +2,7 @@
 
 Everything is a function of plain numbers or numpy arrays that broadcast against each other, in
 double precision; plain numbers give a numpy float back. Arguments are checked: an illegal one, or
-NaN, raises `roughgas.base.errors.InputError`. The same everywhere are `r` in [0, 1] and `beta` in
+NaN, raises `roughgas.base.InputError`. The same everywhere are `r` in [0, 1] and `beta` in
 [-1, 1], the normal and tangential restitution; `dimension` D, an int, 2 or 3; and `inertia`
 q = I/(m a^2) > 0, by default that of uniform disks or spheres.
 

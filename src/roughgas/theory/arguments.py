@@ -8,8 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roughgas.base.errors import InputError
-from roughgas.base.legal import RESTITUTION, ROUGHNESS, Interval
+from roughgas.base import RESTITUTION, ROUGHNESS, InputError, Interval
 
 POSITIVE, NOT_NEGATIVE = Interval("(0, inf)"), Interval("[0, inf)")
 SHARE = Interval("[0, 1]")

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from roughgas.base.legal import Interval
+from roughgas.base import Interval
 from roughgas.theory.arguments import check, check_dimension
 from roughgas.theory.shares import quotient
 

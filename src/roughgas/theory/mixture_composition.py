@@ -5,8 +5,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from roughgas.base.errors import InputError, not_one_of, shown
-from roughgas.base.legal import Interval
+from roughgas.base import InputError, Interval, not_one_of, shown
 from roughgas.theory.arguments import (
     POSITIVE,
     check,

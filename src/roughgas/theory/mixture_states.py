@@ -9,8 +9,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from roughgas.base.errors import InputError
-from roughgas.base.legal import Interval
+from roughgas.base import InputError, Interval
 from roughgas.theory.arguments import check, check_dimension
 from roughgas.theory.mixture_composition import Mixture, mixture
 from roughgas.theory.mixture_structure import mixture_contact_values

@@ -6,7 +6,7 @@ M_k is the mean of a^k over the particles.
 
 import numpy as np
 
-from roughgas.base.legal import Interval
+from roughgas.base import Interval
 from roughgas.theory.arguments import check
 from roughgas.theory.frequencies import CLOSE_PACKING, VOLUME
 from roughgas.theory.mixture_composition import Mixture

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roughgas.base.legal import Interval
+from roughgas.base import Interval
 from roughgas.theory.arguments import check, material
 from roughgas.theory.rate_equations import collision_rates, stationary_shares
 from roughgas.theory.shares import quotient

@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roughgas.base.legal import Interval
+from roughgas.base import Interval
 from roughgas.theory.arguments import POSITIVE, check, check_dimension, material
 from roughgas.theory.closed_forms import cooling_ratio
 from roughgas.theory.rate_equations import collision_rates

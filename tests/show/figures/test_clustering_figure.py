@@ -8,7 +8,7 @@ from tests.entry import main
 from tests.show.figures.legibility import faults
 
 from roughgas import theory
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.data.film import FILM, read_film, write_film
 from roughgas.show.figures import clustering
 

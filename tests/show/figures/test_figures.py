@@ -9,8 +9,8 @@ from synthetic import BETA, couette, mixed, reduced, viscoelastic
 from tests.houses import ROOT, part
 from tests.show.figures.legibility import faults
 
-from roughgas.base.errors import InputError
-from roughgas.base.sources import closure
+from roughgas.base import InputError
+from roughgas.base.files import closure
 from roughgas.show.catalogue import figures_of
 from roughgas.show.figures import fig1a, fig1b, fig2a, fig2b, sweep
 from roughgas.show.gallery import draw, draw_of_study

@@ -7,7 +7,7 @@ import pytest
 from matplotlib.image import imread
 from synthetic import reduced
 
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.cli import main
 from roughgas.show.figures import sweep
 

@@ -6,7 +6,7 @@ import pytest
 from tests.entry import main
 
 from roughgas import config
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.show.living import scene_of, settings
 
 ROOT = Path(__file__).parents[3]

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from tests.entry import main
 
-from roughgas.base.errors import InputError
-from roughgas.base.sources import PACKAGE
+from roughgas.base import InputError
+from roughgas.base.files import PACKAGE
 from roughgas.data.point import read_point
 from roughgas.data.reduced import read_reduced
 from roughgas.results.reduce import reduce_points

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from roughgas import theory
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.studies import dsmc
 from roughgas.studies.dsmc import collisions
 

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.studies.soft_spheres import new_gas, springs
 from studies.soft_spheres.pair import INERTIA, angular_momentum, collide, energy, momentum, shot
 

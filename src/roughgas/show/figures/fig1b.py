@@ -3,7 +3,7 @@
 import xarray as xr
 from matplotlib.figure import Figure
 
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.show.figures.panel import RESTITUTION, PanelContent, ratio_figure, series
 from roughgas.show.style import LOOKS
 

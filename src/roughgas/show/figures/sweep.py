@@ -8,7 +8,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from roughgas.base.errors import InputError, not_one_of
+from roughgas.base import InputError, not_one_of
 from roughgas.data.reduced import GRID, third_axis
 from roughgas.show.figures import panel
 from roughgas.show.figures.series import series

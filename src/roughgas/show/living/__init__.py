@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from roughgas import config
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.scene import check
 from roughgas.show import pages
 

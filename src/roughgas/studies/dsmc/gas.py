@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 from roughgas.effects import Effects
 from roughgas.effects.friction import Friction
 from roughgas.effects.spin import Spin

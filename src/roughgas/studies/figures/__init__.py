@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from importlib import import_module
 from pathlib import Path
 
-from roughgas.base.errors import InputError
+from roughgas.base import InputError
 
 FIGURES = ("accuracy", "accuracy_limits", "coverage", "profiles", "finite_size", "runaway")
 DATASETS = {name: "accuracy" if name == "accuracy_limits" else name for name in FIGURES}

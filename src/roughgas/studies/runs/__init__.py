@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from roughgas.base.errors import InputError, shown
+from roughgas.base import InputError, shown
 
 
 def timed(function: Callable[..., Any], *arguments: Any) -> tuple[Any, float]:

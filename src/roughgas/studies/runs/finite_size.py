@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from roughgas import theory
-from roughgas.base.errors import CollapseError
+from roughgas.base import CollapseError
 from roughgas.simulation.energies import ratio
 from roughgas.simulation.gas import Gas
 from roughgas.simulation.instant import whereabouts

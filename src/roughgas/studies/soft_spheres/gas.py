@@ -6,8 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roughgas.base.errors import InputError
-from roughgas.base.legal import ROUGHNESS, Interval
+from roughgas.base import ROUGHNESS, InputError, Interval
 
 DIAMETER = 2.0
 # Entries of SoftGas.reach

@@ -9,7 +9,7 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NoReturn
 
-from roughgas.base.errors import InputError, on_one_line, shown
+from roughgas.base import InputError, on_one_line, shown
 
 DIGITS = 19  # of a whole number: what 64 bits can hold
 UNPRINTABLE = re.compile("[\x7f-\x9f\u200b-\u200f\u2028-\u202e\u2066-\u2069]")
