@@ -8,8 +8,7 @@ import xarray as xr
 
 from roughgas import theory
 from roughgas.data.reduced import third_axis
-from roughgas.theory.prediction import predicted_ratio
-from roughgas.theory.prediction_of_mixtures import species_at
+from roughgas.theory.prediction import predicted_ratio, species_at
 
 BETA = (-0.95, *(round(-0.9 + 0.1 * step, 1) for step in range(20)))
 

@@ -51,7 +51,7 @@ from roughgas.statistics.errors import (
 from roughgas.statistics.fits import (
     power_law,
 )
-from roughgas.theory.prediction_of_mixtures import (
+from roughgas.theory.prediction import (
     species_at,
 )
 

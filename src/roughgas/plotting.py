@@ -35,8 +35,7 @@ from roughgas.show.figures.panel import (
 )
 from roughgas.show.figures.series import RESTITUTION, Series, series, series_for_each
 from roughgas.show.style import FAINT, GREY, LOOKS, THEORY, TWO_WIDE, WIDTH, Look, Style
-from roughgas.theory.prediction import predicted_ratio
-from roughgas.theory.prediction_of_mixtures import species_at
+from roughgas.theory.prediction import predicted_ratio, species_at
 
 __all__ = [
     "ANY_R",

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from roughgas import theory
-from roughgas.theory.prediction import equation_of, predicted_ratio
-from roughgas.theory.prediction_of_mixtures import species_at
+from roughgas.theory.prediction import equation_of, predicted_ratio, species_at
 
 ALIKE = [{"fraction": 0.3}, {"fraction": 0.7, "name": "rest"}]
 SPECIES = [{"fraction": 0.5}, {"fraction": 0.5, "radius": 2, "mass": 4, "name": "heavy"}]

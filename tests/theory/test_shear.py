@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from roughgas import theory
-from roughgas.theory.shear import shear_factor, sheared_ratio
+from roughgas.theory.transport import shear_factor, sheared_ratio
 
 DIRECTIONS = 720
 

@@ -13,7 +13,7 @@ METHODS = {"dsmc": "DSMC", "events": "events"}
 
 def shear_gives_the_excess(profiles: xr.Dataset) -> Finding:
     """The excess of E_rot/E_trans over Lun's formula, summed over all sheared gases, is within NEAR
-    of what their measured shear rate and stress make it by `theory.shear`."""
+    of what their measured shear rate and stress make it by `theory.transport`."""
     gases = profiles.isel(point=np.isfinite(profiles.theta.values))
     if not gases.sizes["point"]:
         raise NotTestedError("the study holds no sheared gas")

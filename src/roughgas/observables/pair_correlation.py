@@ -19,7 +19,7 @@ from roughgas.data.variables import LENGTH, Variable
 from roughgas.effects.settings import Number
 from roughgas.observables.frame import Frame, System
 from roughgas.observables.plugin import Observable, Setting, Values, Whole
-from roughgas.theory.frequencies import VOLUME
+from roughgas.theory.transport import VOLUME
 
 DIAMETER = 2.0
 GRAZE = 1e-9  # of a: contacts that roundings have pushed together count as contacts

@@ -17,7 +17,7 @@ from roughgas.data.variables import ENERGY, LENGTH, SPEED, Variable
 from roughgas.effects.settings import Number
 from roughgas.observables.frame import Frame, System
 from roughgas.observables.plugin import Observable, Setting, Values, Whole
-from roughgas.theory.frequencies import VOLUME
+from roughgas.theory.transport import VOLUME
 
 WIDTH = 2.0  # of a layer in a, in an open box
 ALONG = ("height",)

@@ -33,7 +33,7 @@ from roughgas.data.variables import CLOCKS, POINT, Array, described
 from roughgas.results.observed import observed_in, reduced_observables
 from roughgas.statistics.errors import NO, UNKNOWN, YES, pooled
 from roughgas.statistics.steady_state import is_bimodal
-from roughgas.theory.mixture_composition import SPECIES
+from roughgas.theory.mixtures import SPECIES
 from roughgas.theory.prediction import equation_of
 
 if TYPE_CHECKING:

@@ -20,7 +20,7 @@ from roughgas.simulation.ends import Initial, check_initial, is_memory_of, last_
 from roughgas.simulation.gas import Gas
 from roughgas.simulation.recorder import Recorder
 from roughgas.statistics.errors import UNKNOWN, YES
-from roughgas.theory.mixture_composition import SPECIES
+from roughgas.theory.mixtures import SPECIES
 
 ENERGIES = ("E_trans", "E_rot", "R", "R_ratio_of_means")
 VOUCHED = {

@@ -19,7 +19,7 @@ from roughgas.simulation.ends import Initial, check_initial
 from roughgas.simulation.energies import Energies, ratio, restored
 from roughgas.simulation.gas import Gas
 from roughgas.simulation.instant import in_order, whereabouts
-from roughgas.theory.frequencies import collision_frequency
+from roughgas.theory.transport import collision_frequency
 
 STRIDES = 200  # steps are of one collision in the gas for each so many particles
 PATIENCE = 1_000_000  # particles times T that a movie waits for its gas to be stationary, at most

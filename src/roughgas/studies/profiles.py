@@ -3,7 +3,7 @@
 Over the slices of a vibrated bed, and the phases of its floor: density, temperatures, R, and how
 often particles meet. Lun's formula is about averages over collisions; temperatures of slices,
 weighted by the collisions there, should therefore be closer to it than the mean of R(t) is. Of a
-sheared gas: whether the flow is linear, and what theory.shear needs to know.
+sheared gas: whether the flow is linear, and what theory.transport needs to know.
 
 A temperature is m times the mean square velocity along an axis, or q times that of the spin. The
 mean velocity along the axis of the slices is taken from it, slice by slice and phase by phase; in a
@@ -21,7 +21,7 @@ from roughgas.statistics.errors import Estimate
 from roughgas.studies.tasks import profile_name
 from roughgas.studies.variables import dataset, stacked
 from roughgas.theory.closed_forms import lun_ratio
-from roughgas.theory.shear import shear_factor
+from roughgas.theory.transport import shear_factor
 
 QUARTERS = 4
 """Phases of the floor that the paper samples."""
@@ -121,7 +121,7 @@ def _by_pairs(run):
 
 
 def _shear(run) -> dict[str, float]:
-    """Return what a sheared gas is like, over all slices: see theory.shear.
+    """Return what a sheared gas is like, over all slices: see theory.transport.
 
     `theta` is that of E_rot and E_trans, without the mean spin of each instant; `flow_deviation`
     the root mean square velocity of slices, beyond the linear mean flow, over that of a particle.

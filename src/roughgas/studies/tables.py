@@ -31,7 +31,7 @@ BED = {
 }
 SHEARED = {
     "theta": "θ",
-    "factor": "theory.shear's factor",
+    "factor": "theory.transport's factor",
     "rate": "g",
     "stress": "p",
     "difference": "d",

@@ -23,20 +23,6 @@ from roughgas.theory.closed_forms import (
     goldshtein_ratio,
     lun_ratio,
 )
-from roughgas.theory.collision_energies import (
-    mean_normal_squared,
-    mean_spin_squared,
-    mean_tangential_squared,
-    rotational_energy_change,
-    translational_energy_change,
-)
-from roughgas.theory.frequencies import (
-    collision_frequency,
-    contact_value,
-    mean_free_path,
-    number_density,
-    packing_fraction,
-)
 from roughgas.theory.friction import (
     critical_friction,
     friction_changes,
@@ -44,45 +30,39 @@ from roughgas.theory.friction import (
     friction_relaxation_rate,
     sliding_fraction,
 )
-from roughgas.theory.heat_flux import (
-    fourier_flux,
-    free_molecular_flux,
-    heat_flux,
-    thermal_conductivity,
-)
-from roughgas.theory.mixture_composition import Mixture, mixture
 from roughgas.theory.mixture_states import (
+    compressibility,
     kick_power,
     mimicry_masses,
+    mixture_contact_values,
     mixture_cooling,
     mixture_decay_rate,
+    mixture_density,
     mixture_driven,
+    mixture_frequency,
     mixture_relaxation_rate,
     mixture_rotation,
 )
-from roughgas.theory.mixture_structure import (
-    compressibility,
-    mixture_contact_values,
-    mixture_density,
-    mixture_frequency,
-)
-from roughgas.theory.mixtures import Temperatures, mixture_changes
+from roughgas.theory.mixtures import Mixture, Temperatures, mixture, mixture_changes
 from roughgas.theory.rate_equations import (
     Rates,
+    Relaxation,
     collision_rates,
+    collisions_to_relax,
+    decay_rate,
     drive_changes,
+    haff_temperature,
+    haff_time,
+    mean_normal_squared,
+    mean_spin_squared,
+    mean_tangential_squared,
+    relax,
+    relaxation_rate,
+    rotational_energy_change,
     stationary_ratio,
     stationary_theta,
     temperature_changes,
-)
-from roughgas.theory.relaxation import (
-    Relaxation,
-    collisions_to_relax,
-    decay_rate,
-    haff_temperature,
-    haff_time,
-    relax,
-    relaxation_rate,
+    translational_energy_change,
 )
 from roughgas.theory.runaway import (
     cooling_rate,
@@ -92,6 +72,17 @@ from roughgas.theory.runaway import (
     runaway_spin,
     runaway_time,
     spinner_temperature,
+)
+from roughgas.theory.transport import (
+    collision_frequency,
+    contact_value,
+    fourier_flux,
+    free_molecular_flux,
+    heat_flux,
+    mean_free_path,
+    number_density,
+    packing_fraction,
+    thermal_conductivity,
 )
 from roughgas.theory.viscoelastic import (
     maxwellian_restitution,

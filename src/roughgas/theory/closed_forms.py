@@ -5,8 +5,7 @@ Source: McNamara & Luding (1998). docs/references.md says who has published them
 
 import numpy as np
 
-from roughgas.theory.arguments import check, material
-from roughgas.theory.shares import positive_root, quotient, shares
+from roughgas.theory.arguments import check, material, positive_root, quotient, shares
 
 
 def lun_ratio(beta, inertia) -> np.ndarray:

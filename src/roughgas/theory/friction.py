@@ -23,9 +23,8 @@ R < 1 when it cools: `runaway` says when.
 
 import numpy as np
 
-from roughgas.theory.arguments import Material, check, material
+from roughgas.theory.arguments import Material, check, material, quotient, shares
 from roughgas.theory.rate_equations import Rates, collision_rates, stationary_ratio
-from roughgas.theory.shares import quotient, shares
 
 # Halvings of a bracket within [0, 1], and thirds taken off one, that leave a rounding of R
 HALVINGS = 60

@@ -1,12 +1,29 @@
-"""Which equation a dataset obeys, and what it says of R."""
+"""What theory predicts for a dataset, of one species or of a mixture.
 
+Which equation a dataset obeys, and what it says of R.
+
+What theory says of R of a mixture, from the attributes of its dataset.
+
+`species_json` among them holds `species` and `species_pairs`, as in config.yaml, and the `volume`
+of a periodic box. Where a quantity of a species is swept, its values stand among the attributes
+under its name.
+"""
+
+import json
 import math
 from collections.abc import Container, Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from roughgas.theory.mixture_composition import SPECIES
+from roughgas.theory.mixture_states import (
+    kick_power,
+    mixture_cooling,
+    mixture_driven,
+    mixture_rotation,
+)
+from roughgas.theory.mixtures import SPECIES, Mixture, Temperatures, mixture
+from roughgas.theory.transport import VOLUME
 
 
 class Equation(NamedTuple):
@@ -25,8 +42,6 @@ def equation_of(attributes: Mapping[str, Any], variables: Container[Any] = ()) -
     kind = attributes.get("theory", "K" if "plateau_end" in variables else "lun")
     swept = attributes.get("swept", "").rpartition(".")[2]
     if SPECIES in attributes:
-        from roughgas.theory.prediction_of_mixtures import name_of_mixture
-
         return Equation(kind, name_of_mixture(attributes, kind))
     if "mu" in attributes or swept == "mu":
         return Equation(kind, "rate equations with Coulomb friction")
@@ -49,8 +64,6 @@ def predicted_ratio(attributes: Mapping[str, Any], r: Any, beta: Any) -> np.ndar
     `species_json`, and a theory of their own.
     """
     if SPECIES in attributes:
-        from roughgas.theory.prediction_of_mixtures import ratio_of_mixture
-
         return ratio_of_mixture(attributes, r, beta)
     from roughgas import theory
 
@@ -77,3 +90,98 @@ def ratio_of_point(point: Any) -> float:
     if not isinstance(value := about.get("swept_value", ""), str):
         about[about["swept"].rpartition(".")[2]] = value
     return float(predicted_ratio(about, about["r"], about["beta"]))
+
+
+OF_RADII = "mean", "deviation"
+SMOOTH = -1 + 1e-7
+"""Roughness that stands for the limit beta -> -1 of a cooling gas: see `cooling_ratio`."""
+FINE = 121
+"""Values along a line from which on theory is computed at some, and interpolated between them."""
+
+
+def name_of_mixture(attributes: Mapping[str, Any], kind: str) -> str:
+    """Return the name of the equation that a mixture obeys."""
+    if kind == "K":
+        return "theory of free cooling of mixtures"
+    kicked = "rate equations of mixtures"
+    return kicked if "spin_share" in attributes else "Lun's formula for mixtures, equal T_trans"
+
+
+def ratio_of_mixture(attributes: Mapping[str, Any], r: Any, beta: Any) -> np.ndarray:
+    """Return R of all particles over the broadcast shape of the arguments, as `predicted_ratio`.
+
+    Without a drive it is that of `mixture_cooling`, with the thermostat that of `mixture_driven`.
+    Another drive leaves open how species share the energy of translation: then it is that of
+    `mixture_rotation` with equal temperatures.
+    """
+    swept = attributes.get("swept", "").rpartition(".")[2]
+    names = {"inertia": math.nan, "spin_share": 0.0, "mu": math.inf} | {swept: math.nan}
+    given = [np.asarray(attributes.get(name, value), float) for name, value in names.items()]
+    places = np.broadcast_arrays(r, beta, *given)
+    columns = [np.asarray(place, float).ravel() for place in places]
+    moving = [column for column in columns if len(set(column.tolist())) > 1]
+
+    def at(index: int) -> float:
+        place = dict(zip(("r", "beta", *names), (column[index] for column in columns), strict=True))
+        return _ratio(attributes, place, swept)
+
+    size = columns[0].size
+    if size <= FINE or len(moving) > 1:
+        return np.reshape([at(k) for k in range(size)], places[0].shape)
+    some = np.unique(np.linspace(0, size - 1, FINE).round().astype(int))
+    found = np.interp(np.arange(size), some, [at(k) for k in some])
+    return np.reshape(found, places[0].shape)
+
+
+def species_at(
+    attributes: Mapping[str, Any], place: Mapping[str, float], T_tr=None
+) -> Temperatures:
+    """Return what theory says of the species of a dataset at one place (see `mixture_at`).
+
+    Of a cooling gas, their temperatures. Of a driven one, T_rot by `mixture_rotation` from their
+    measured `T_tr`, (species,).
+    """
+    gas, packing = mixture_at(attributes, place)
+    if attributes["theory"] == "K":
+        return mixture_cooling(gas, packing).as_given(gas)
+    measured = np.asarray(T_tr)[gas.part_of]
+    return Temperatures(measured, mixture_rotation(gas, measured, packing)).as_given(gas)
+
+
+def mixture_at(attributes: Mapping[str, Any], place: Mapping[str, float]) -> tuple[Mixture, float]:
+    """Return the mixture of a dataset, and its packing (0 where the box is open), at one place: r,
+    beta, and what is swept, by name."""
+    known = json.loads(attributes[SPECIES])
+    part, _, key = attributes.get("swept", "").rpartition(".")
+    if part.startswith("species."):
+        _put(known["species"], part.removeprefix("species."), key, place[key])
+    q, mu = (place.get(name, attributes.get(name)) for name in ("inertia", "mu"))
+    q = None if q is None or math.isnan(q) else q
+    about = int(attributes["dimension"]), q, math.inf if mu is None else mu
+    gas = mixture(known["species"], place["r"], place["beta"], *about, known["species_pairs"])
+    if not known["volume"]:
+        return gas, 0.0
+    filled = VOLUME[gas.dimension] * float(gas.fraction @ gas.radius**gas.dimension)
+    return gas, int(attributes["particles"]) * filled / known["volume"]
+
+
+def _put(species, name: str, key: str, value: float) -> None:
+    for k, one in enumerate(species):
+        if name == str(one.get("name", k)):
+            radius = one.get("radius")
+            spread = key in OF_RADII and isinstance(radius, dict)
+            (radius if spread else one)[key] = float(value)
+
+
+def _ratio(attributes: Mapping[str, Any], place: Mapping[str, float], swept: str) -> float:
+    cools = attributes["theory"] == "K"
+    rough = {"beta": max(place["beta"], SMOOTH)} if cools else {}
+    gas, packing = mixture_at(attributes, {**place, **rough})
+    if cools:
+        return mixture_cooling(gas, packing).overall_ratio(gas)
+    if "spin_share" in attributes or swept == "spin_share":
+        share = place["spin_share"]
+        power = (1 - share) * kick_power(gas)
+        return mixture_driven(gas, power, packing, share).overall_ratio(gas)
+    even = np.ones(len(gas.mass))
+    return Temperatures(even, mixture_rotation(gas, even, packing)).overall_ratio(gas)

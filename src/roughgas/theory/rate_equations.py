@@ -1,4 +1,12 @@
-"""Rate equations for the two granular temperatures, and where they are stationary.
+"""Energies that contacts exchange, the rate equations of the two temperatures, and relaxation.
+
+Energies that a collision moves between translation and rotation, and averages for them.
+
+v_n and v_t are the normal and tangential parts of v1 - v2 and v_r = -a (omega1 + omega2) x n is the
+tangential velocity due to rotation, n pointing from particle 2 to particle 1. Squared velocities
+are in a^2/T^2, energies in m a^2/T^2. Source: McNamara & Luding (1998).
+
+Rate equations for the two granular temperatures, and where they are stationary.
 
 They are McNamara & Luding (1998), Eqs. (deltaEt) and (deltaEr), averaged over the collisions of a
 Maxwellian gas with eta = q (1 + beta)/[2 (1 + q)], nu collisions per particle per time:
@@ -13,14 +21,93 @@ A drive is described by `spin_share`, the share s in [0, 1] of its power that go
 translational, 1 rotational driving (R. Cafiero, S. Luding & H. J. Herrmann, Europhys. Lett. 60,
 854, 2002), and None no drive: free cooling. A. Megias & A. Santos, Front. Phys. 10, 971671 (2022)
 drive disks so with any share.
+
+How the two temperatures approach their stationary ratio, and decay from there on: Haff's law.
+
+The rate equations are linear in (T_tr, T_rot) when time is counted in collisions per particle, n,
+so their solution is exact: the part of the initial state off the stationary ratio fades as
+exp(-Gamma n), Gamma the difference of the two eigenvalues. `spin_share` describes the drive as in
+rate_equations. A drive is taken to replace at each moment the energy that collisions dissipate.
+With one of constant power the energy may settle more slowly than theta, at the same stationary R.
 """
 
 from typing import NamedTuple
 
 import numpy as np
 
-from roughgas.theory.arguments import check, check_dimension, material
-from roughgas.theory.shares import positive_root, quotient, shares
+from roughgas.base import Interval
+from roughgas.theory.arguments import (
+    check,
+    check_dimension,
+    material,
+    positive_root,
+    quotient,
+    shares,
+)
+
+
+def translational_energy_change(
+    normal_squared, tangential_squared, tangential_dot_spin, spin_squared, r, beta, inertia
+) -> np.ndarray:
+    """Return the change of the pair's translational energy, N D Delta E_tr: Eq. (deltaEt).
+
+    The first four arguments are v_n^2, v_t^2, v_t.v_r and v_r^2 before the collision, of one
+    collision or averaged over collisions.
+    """
+    r, beta, q = (
+        check("restitution r", r),
+        check("roughness beta", beta),
+        check("inertia q", inertia),
+    )
+    exchanged = (
+        -(2 + q * (1 - beta)) * np.asarray(tangential_squared)
+        - (2 - 2 * q * beta) * np.asarray(tangential_dot_spin)
+        + q * (1 + beta) * np.asarray(spin_squared)
+    )
+    return -(1 - r) * (1 + r) / 4 * np.asarray(normal_squared) + _prefactor(beta, q) * exchanged
+
+
+def rotational_energy_change(
+    tangential_squared, tangential_dot_spin, spin_squared, beta, inertia
+) -> np.ndarray:
+    """Return the change of the pair's rotational energy, N (2D-3) Delta E_rot: Eq. (deltaEr).
+
+    Arguments as in `translational_energy_change`; v_n does not matter.
+    """
+    beta, q = check("roughness beta", beta), check("inertia q", inertia)
+    return _prefactor(beta, q) * (
+        (1 + beta) * np.asarray(tangential_squared)
+        - 2 * (q - beta) * np.asarray(tangential_dot_spin)
+        - (2 * q + 1 - beta) * np.asarray(spin_squared)
+    )
+
+
+def mean_normal_squared(E_tr) -> np.ndarray:
+    """Return <v_n^2> = 8 E_tr/m over the collisions of a Maxwellian gas, in 2D and 3D.
+
+    E_tr is the translational energy per degree of freedom, >= 0. Below Eq. (Energybalance), as are
+    the two averages that follow; <v_t.v_r> = 0, translation and spin being uncorrelated.
+    """
+    return 8 * check("energy E_tr", E_tr)
+
+
+def mean_tangential_squared(E_tr, dimension=2) -> np.ndarray:
+    """Return <v_t^2> = 4 (D-1) E_tr/m over the collisions of a Maxwellian gas."""
+    return 4 * (check_dimension(dimension) - 1) * check("energy E_tr", E_tr)
+
+
+def mean_spin_squared(E_rot, dimension, inertia) -> np.ndarray:
+    """Return <v_r^2> = 4 (D-1) E_rot/(q m), for any isotropic, uncorrelated spins.
+
+    E_rot is the rotational energy per degree of freedom, >= 0.
+    """
+    dimension, q = check_dimension(dimension), check("inertia q", inertia)
+    return 4 * (dimension - 1) * check("energy E_rot", E_rot) / q
+
+
+def _prefactor(beta, q) -> np.ndarray:
+    """Return S = m q (1 + beta)/[4 (1 + q)^2], below Eq. (deltaEt)."""
+    return q * (1 + beta) / (4 * (1 + q) ** 2)
 
 
 class Rates(NamedTuple):
@@ -116,3 +203,119 @@ def stationary_shares(
     )
     limit = np.clip(s * q / (s * q + 1 - s), 0, 1)
     return shares(np.maximum(translational, 0), np.maximum(rotational, 0), neither=limit)
+
+
+class Relaxation(NamedTuple):
+    """Temperatures in units of the initial T_tr, and theta = T_rot/T_tr."""
+
+    theta: np.ndarray
+    T_tr: np.ndarray
+    T_rot: np.ndarray
+
+
+def relaxation_rate(r, beta, dimension=2, inertia=None, spin_share=None) -> np.ndarray:
+    """Return Gamma, the rate at which theta relaxes, per collision per particle.
+
+    From the linear stability of theta, and positive, except at beta = -1 (spin decoupled) where
+    r = 1 or the drive is translational: theta then stays as it is and Gamma = 0.
+    """
+    rates = collision_rates(r, beta, dimension, inertia)
+    if spin_share is None:
+        difference = rates.translational_loss - rates.rotational_loss
+        return np.sqrt(difference**2 + 4 * rates.translational_gain * rates.rotational_gain)
+    s = check("spin share of the drive", spin_share)
+    return s * (rates.translational_loss + rates.rotational_gain) + (1 - s) * (
+        rates.rotational_loss + rates.translational_gain
+    )
+
+
+def relax(theta0, r, beta, collisions, dimension=2, inertia=None, spin_share=None) -> Relaxation:
+    """Return the temperatures after `collisions` (>= 0) per particle, from theta0 (>= 0) on.
+
+    Exact solution of the rate equations: a mixture of the initial and the stationary state, of
+    positive terms only.
+    """
+    theta0, n = check("theta0", theta0), check("collisions", collisions)
+    translational, rotational = stationary_shares(r, beta, dimension, inertia, spin_share)
+    weight = _stationary_weight(theta0, translational, rotational, dimension, spin_share)
+    passed = relaxation_rate(r, beta, dimension, inertia, spin_share) * n
+    old, new = np.exp(-passed), -np.expm1(-passed) * weight
+    T_tr, T_rot = old + new * translational, theta0 * old + new * rotational
+    decay = slow_decay(r, beta, dimension, inertia) if spin_share is None else 0.0
+    scale = np.exp(-decay * n)
+    return Relaxation(quotient(T_rot, T_tr), scale * T_tr, scale * T_rot)
+
+
+def collisions_to_relax(
+    r, beta, tolerance=0.01, dimension=2, inertia=None, spin_share=None, theta0=0.0
+) -> np.ndarray:
+    """Return collisions per particle until R is within a fraction `tolerance` of its limit.
+
+    The limit is the stationary R; at first T_rot/T_tr = theta0. Infinite if R never gets there, as
+    in a cooling gas without spin at beta = -1.
+    """
+    tolerance, theta0 = check("tolerance", tolerance, Interval("(0, 1)")), check("theta0", theta0)
+    translational, rotational = stationary_shares(r, beta, dimension, inertia, spin_share)
+    weight = _stationary_weight(theta0, translational, rotational, dimension, spin_share)
+    distance = np.abs(theta0 * translational - rotational)
+    near = tolerance * rotational
+    gamma = relaxation_rate(r, beta, dimension, inertia, spin_share)
+    with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
+        needed = np.log1p((distance - near * (1 + theta0)) / (near * weight)) / gamma
+    return np.where(distance > near * (1 + theta0), needed, 0.0)[()]
+
+
+def _stationary_weight(theta0, translational, rotational, dimension, spin_share):
+    """Return the weight c of the stationary state in (1, theta0) = c (tr, rot) + c' (fast mode).
+
+    The fast mode is (-rot, alpha tr) in a cooling gas, the product of the two theta that stay as
+    they are being -alpha = -D/(2D-3); with a drive it is (-1, alpha), which carries no energy.
+    """
+    alpha = dimension / (2 * dimension - 3)
+    fast = (rotational, translational) if spin_share is None else (1.0, 1.0)
+    return (alpha * fast[1] + theta0 * fast[0]) / (
+        alpha * fast[1] * translational + fast[0] * rotational
+    )
+
+
+def haff_temperature(time, T0, r, beta, frequency, dimension=2, inertia=None) -> np.ndarray:
+    """Return T_tr = T0/(1 + t/t_h)^2 at `time` >= 0, from T_tr = T0 and the stationary R on.
+
+    `frequency`: collisions per particle per time at T0, e.g. `collision_frequency(T0, packing)`.
+    T_rot decays by the same factor.
+    """
+    time, T0 = check("time", time), check("temperature T0", T0)
+    return T0 / (1 + time / haff_time(r, beta, frequency, dimension, inertia)) ** 2
+
+
+def haff_time(r, beta, frequency, dimension=2, inertia=None) -> np.ndarray:
+    """Return t_h = 2/(frequency * decay_rate), nu being ~ sqrt(T_tr); inf if nothing decays.
+
+    `frequency` (> 0, 1/T) is that at the initial temperature.
+    """
+    decay = decay_rate(r, beta, dimension, inertia)
+    return quotient(2.0, check("frequency", frequency) * decay)
+
+
+def decay_rate(r, beta, dimension=2, inertia=None) -> np.ndarray:
+    """Return -d ln T_tr/dn at the stationary R of a cooling gas, n in collisions per particle.
+
+    At beta = -1 it is that of the smooth gas, (1 - r^2)/D, whose spin has no effect. The limit
+    beta -> -1 would be 0, since spin, which hardly decays there, feeds translation.
+    """
+    r, beta, dimension, q = material(r, beta, dimension, inertia)
+    smooth = (1 - r) * (1 + r) / dimension
+    return np.where(beta == -1, smooth, slow_decay(r, beta, dimension, q))[()]
+
+
+def slow_decay(r, beta, dimension=2, inertia=None) -> np.ndarray:
+    """Return the decay rate of the slower mode of a cooling gas, per collision per particle.
+
+    The product of both rates is a sum of positive terms, so nothing cancels.
+    """
+    r, beta, dimension, q = material(r, beta, dimension, inertia)
+    rates = collision_rates(r, beta, dimension, q)
+    spin_loss, spin_gain = rates.rotational_loss, rates.rotational_gain
+    product = (1 - r) * (1 + r) * spin_loss + (dimension - 1) * (1 - beta) * spin_gain
+    both = rates.translational_loss + spin_loss
+    return quotient(2 * (product / dimension), both + relaxation_rate(r, beta, dimension, q))

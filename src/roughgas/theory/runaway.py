@@ -26,9 +26,8 @@ from functools import cache
 
 import numpy as np
 
-from roughgas.theory.arguments import check, material
+from roughgas.theory.arguments import check, material, quotient
 from roughgas.theory.friction import NEARLY, friction_changes, friction_ratio
-from roughgas.theory.shares import quotient
 
 HALVINGS = 100
 ROUNDING = 1e-14  # of the cooling rate of a gas that keeps its energy

@@ -18,10 +18,9 @@ from typing import NamedTuple
 import numpy as np
 
 from roughgas.base import Interval
-from roughgas.theory.arguments import POSITIVE, check, check_dimension, material
+from roughgas.theory.arguments import POSITIVE, check, check_dimension, material, quotient
 from roughgas.theory.closed_forms import cooling_ratio
 from roughgas.theory.rate_equations import collision_rates
-from roughgas.theory.shares import quotient
 
 ABOVE = 1.0, 2.583
 """Coefficients of powers of x above, and below, in the Pade approximation."""

@@ -107,7 +107,7 @@ def draw_averages(axes: Axes, beds: Sequence[xr.Dataset]) -> None:
 
 
 def draw_sheared(axes: Axes, gases: Sequence[xr.Dataset]) -> None:
-    """Draw theta of sheared gases over that of Lun's formula against theory.shear's factor."""
+    """Draw theta of sheared gases over that of Lun's formula against theory.transport's factor."""
     top = 1.0
     for one, look in zip(gases, LOOKS, strict=False):
         lun = float(lun_ratio(float(str(one.beta.values)), float(one.inertia)))

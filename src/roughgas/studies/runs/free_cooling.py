@@ -20,7 +20,7 @@ from roughgas.simulation.gas import Gas
 from roughgas.statistics.errors import blocking_stderr
 from roughgas.studies import dsmc
 from roughgas.studies.runs import check_alike, timed
-from roughgas.theory.shares import positive_root, shares
+from roughgas.theory.arguments import positive_root, shares
 
 E_FOLDS = 10.0  # of theory's relaxation before R is measured
 SHORTEST_TRANSIENT = 10.0  # collisions per particle, in which velocities forget to be Maxwellian
