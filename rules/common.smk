@@ -15,7 +15,7 @@ from snakemake.settings.types import DeploymentMethod
 
 try:
     import roughgas.config
-    from roughgas.config import checking
+    from roughgas.config import schema
     from roughgas.base import files
     from roughgas.base import InputError, not_one_of, shown
     from roughgas.base.formatting import in_rst
@@ -49,7 +49,7 @@ REDUCED = "results/{scale}/{experiment}.nc"
 FIRST = 10**12  # priority: more urgent than any point
 # An experiment as a whole, or one of its variants: as wildcards, not what has rules of its own, nor
 # the folders of points.
-STUDY_FIGURE, RESERVED = "|".join(FIGURES), "|".join(checking.RESERVED)
+STUDY_FIGURE, RESERVED = "|".join(FIGURES), "|".join(schema.RESERVED)
 NAME = r"[\w+.-]+"  # nothing that means something to a shell: wildcards become parts of commands
 EXPERIMENT = rf"(?!(?:{RESERVED})[./]){NAME}"
 VARIANT = rf"(?:/(?!(?:r|beta|seed)[-+.\d]){NAME})?"

@@ -17,7 +17,7 @@ from tests.files import point
 
 from roughgas.base import InputError
 from roughgas.base.formatting import in_csv, in_rst, markdown
-from roughgas.config import checking
+from roughgas.config import schema
 from roughgas.config.provenance import provenance
 from roughgas.data.point import write_point
 from roughgas.results.reduce import reduce_points
@@ -139,7 +139,7 @@ def test_names_that_become_parts_of_commands_are_words(name):
     settings = {"scale": "paper", "experiments": {name: {}}, "scales": {"paper": {}}}
     settings |= {"showcase": {}, "studies": {}}
     with pytest.raises(InputError, match="must consist of lower-case letters"):
-        checking.check(settings)
+        schema.check(settings)
 
 
 def test_wildcards_hold_nothing_that_means_something_to_a_shell():

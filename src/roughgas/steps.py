@@ -130,7 +130,7 @@ def run_times(inputs: list[str], *, output: str) -> None:
 
 def effective_config(input: str, *, scale: str, output: str, changes: str = "{}") -> None:
     """Write the complete configuration of a scale, with changes to it in JSON."""
-    from roughgas.config.effective import write_effective
+    from roughgas.config.provenance import write_effective
 
     changed = config.from_text(changes, "--changes", checked=True)
     write_effective(config.load(input, changed), scale, output)

@@ -13,8 +13,8 @@ import pytest
 from roughgas import config, simulate
 from roughgas.base import InputError
 from roughgas.cli import main
-from roughgas.config import checking
-from roughgas.config.effective import write_effective
+from roughgas.config import schema
+from roughgas.config.provenance import write_effective
 from roughgas.config.reading import read_yaml
 from roughgas.show import catalogue
 from roughgas.studies.figures import DATASETS, FIGURES
@@ -102,7 +102,7 @@ def test_settings_of_a_point_survive_the_way_through_text(paper):
 def test_numbers_may_stand_in_a_sweep_without_quotes(paper):
     whole = copy.deepcopy(paper)
     whole["experiments"]["cooling"]["sweep"]["r"] = [0.9, 1]
-    checking.check(whole)
+    schema.check(whole)
     points = set(config.sweep(config.experiment(whole, "cooling", "paper")))
     assert ("0.9", "0", "1") in points and ("1", "0", "4") in points
 
@@ -151,7 +151,7 @@ def test_no_experiment_is_called_as_a_rule_or_a_product(paper):
     products = re.findall(r"product=\"(.*)\"", text)
     names |= {one for some in products for one in some.split("|")} - {"R"}
     names |= catalogue.FIGURES.keys() - paper["experiments"].keys()
-    assert len(names) > 50 and names - {*checking.RESERVED} == set()
+    assert len(names) > 50 and names - {*schema.RESERVED} == set()
 
 
 def test_experiments_alone_are_a_configuration(tmp_path, paper, refusal):

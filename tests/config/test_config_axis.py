@@ -7,7 +7,7 @@ import pytest
 
 from roughgas import config
 from roughgas.base import InputError
-from roughgas.config import checking, schema
+from roughgas.config import schema
 from roughgas.config.provenance import variant_attributes
 from roughgas.data.reduced import REDUCED
 from roughgas.data.variables import POINT
@@ -35,7 +35,7 @@ def whole(with_experiments):
     still = {"extends": "spun", "sweep": {"spin.inertia": None}}
     found = with_experiments(spun=INERTIA, walls=walls, child=child, still=still)
     found["scales"]["small"]["spun"] = {"sweep": {"spin.inertia": ["0.2"]}}
-    checking.check(found)
+    schema.check(found)
     return found
 
 
@@ -85,7 +85,7 @@ def test_a_scale_has_its_own_values(whole):
 def test_the_effect_need_not_give_a_value_beside_the_sweep(with_experiments):
     bare = {"extends": "vibrated", "effects": {"walls": {"restitution": 1}}}
     whole = with_experiments(bare=bare | {"sweep": {"walls.roughness": ["0"]}})
-    checking.check(whole)
+    schema.check(whole)
     walls = config.experiment(whole, "bare/roughness1", "paper")["effects"]["walls"]
     assert walls == {"restitution": 1, "roughness": 1}
 
@@ -100,7 +100,7 @@ def test_the_effect_need_not_give_a_value_beside_the_sweep(with_experiments):
 )
 def test_any_number_of_the_settings_is_swept(with_experiments, key, label, part, value):
     whole = with_experiments(sized={"extends": "vibrated", "sweep": {key: [label, "1e2"]}})
-    checking.check(whole)
+    schema.check(whole)
     name = f"sized/{config.parameter_of(key)}{label}"
     settings = config.experiment(whole, name, "paper")
     found = settings[part]
@@ -137,7 +137,7 @@ def test_a_key_in_the_wrong_place_is_told_its_place(
     for name in place:
         part = part[name]
     part[key] = value
-    assert refusal(checking.check, whole).endswith(f"; did you mean it under `{where}`?")
+    assert refusal(schema.check, whole).endswith(f"; did you mean it under `{where}`?")
 
 
 def test_a_quantity_of_a_species_is_a_variant(with_experiments):
@@ -149,7 +149,7 @@ def test_a_quantity_of_a_species_is_a_variant(with_experiments):
     wide = {"extends": "cooling", "species": species, "sweep": {"species.1.deviation": ["0.2"]}}
     grown = {"extends": "cooling", "species": species, "sweep": {"species.light.radius": ["3"]}}
     found = with_experiments(heavy=heavy, wide=wide, grown=grown)
-    checking.check(found)
+    schema.check(found)
     (one, four) = config.variants("heavy", config.experiment(found, "heavy", "paper"))
     assert (one, four) == ("heavy/mass1", "heavy/mass4")
     settings = config.experiment(found, four, "paper")
@@ -259,7 +259,7 @@ def test_a_packing_is_the_size_of_the_box(with_experiments):
     )
     whole["experiments"]["wide"]["packing"] = 0.1
     whole["scales"]["small"]["dense"] = {"particles": 90}
-    checking.check(whole)
+    schema.check(whole)
     for name, packing, volume in (
         ("dense", 0.2, math.pi),
         ("wide", 0.1, math.pi),
@@ -296,13 +296,13 @@ def test_a_packing_is_the_size_of_the_box(with_experiments):
 )
 def test_a_packing_that_makes_no_box(settings, message, refusal, with_experiments):
     whole = with_experiments(dense={"extends": "cooling"} | settings)
-    assert message in refusal(checking.check, whole)
+    assert message in refusal(schema.check, whole)
 
 
 @pytest.mark.parametrize(("sweep", "message"), MISTAKES)
 def test_a_mistake_is_named_in_one_line(sweep, message, refusal, with_experiments):
     whole = with_experiments(spun={"extends": "sheared", "sweep": sweep})
-    said = refusal(checking.check, whole)
+    said = refusal(schema.check, whole)
     assert said.startswith("config.yaml: ") and message in said
 
 
@@ -310,14 +310,14 @@ def test_a_mistake_at_a_scale_is_named(refusal, with_experiments):
     whole = with_experiments(spun=INERTIA)
     whole["scales"]["small"]["spun"] = {"sweep": {"spin.inertia": ["3"]}}
     assert "experiments.spun/inertia3 at scale small.effects.spin.inertia = 3.0" in refusal(
-        checking.check, whole
+        schema.check, whole
     )
 
 
 def test_swept_is_not_for_people(refusal, with_experiments):
     whole = with_experiments(spun=INERTIA | {"swept": "spin.inertia"})
     assert "experiments.spun.swept = 'spin.inertia': must not be given here" in refusal(
-        checking.check, whole
+        schema.check, whole
     )
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from roughgas import config
-from roughgas.config import checking
+from roughgas.config import schema
 from roughgas.config.reading import read_yaml
 
 CONFIG = Path(__file__).parents[1] / "experiments.yaml"
@@ -138,7 +138,7 @@ MISTAKES = [
 
 @pytest.mark.parametrize(("path", "value", "message"), MISTAKES)
 def test_a_mistake_is_named_in_one_line(paper, path, value, message, refusal):
-    said = refusal(checking.check, changed(paper, path, value))
+    said = refusal(schema.check, changed(paper, path, value))
     assert said.startswith("config.yaml: ")
     assert message in said
     assert path.split(".")[0] in said
@@ -147,12 +147,12 @@ def test_a_mistake_is_named_in_one_line(paper, path, value, message, refusal):
 def test_the_first_mistake_in_the_file_is_named(paper, refusal):
     whole = changed(paper, "experiments.sheared.particles", 0)
     whole = changed(whole, "experiments.vibrated.particles", "x")
-    assert "experiments.vibrated.particles = 'x'" in refusal(checking.check, whole)
+    assert "experiments.vibrated.particles = 'x'" in refusal(schema.check, whole)
 
 
 def test_a_long_value_is_shortened(paper, refusal):
     whole = changed(paper, "experiments.cooling.particles", list(range(1000)))
-    assert len(refusal(checking.check, whole)) < 150
+    assert len(refusal(schema.check, whole)) < 150
 
 
 def test_unknown_names(paper, refusal):

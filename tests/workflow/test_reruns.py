@@ -34,7 +34,7 @@ EDITED = {  # file of the package: what an edit of its code runs again
     "kernel/pairs.py": SIMULATED,
     "effects/walls.py": SIMULATED | {"effective_config", "living_page"},
     "scene/composition.py": SIMULATED | {"living_page"},
-    "config/checking.py": {"effective_config", "document", "living_page"},
+    "config/schema.py": {"effective_config", "document", "living_page"},
     "simulation/clustering.py": FILM,
     "results/table.py": {"table", "run_times", "document", "study_table", "study_page"},
     "claims/paper.yaml": {"claims", "document", "study_claims", "study_page"},
@@ -55,7 +55,7 @@ ALIKE = {  # files after whose edits much the same runs again as after others'
 }
 TOGETHER = {  # files of which hardly anything needs two: their edits are tried at once, as well
     "data/film.py",
-    "config/checking.py",
+    "config/schema.py",
     "results/table.py",
     "claims/paper.yaml",
     "show/figures/fig1a.py",

@@ -6,7 +6,7 @@ from typing import Any
 
 from roughgas import config
 from roughgas.base import InputError
-from roughgas.config.axis import SPECIES, names_of, species_called
+from roughgas.config.labels import SPECIES, names_of, species_called
 
 NOT_TO_SET = (*config.NOT_OF_A_POINT, config.SWEPT, "extends")
 

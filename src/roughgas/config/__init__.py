@@ -11,28 +11,30 @@ mine/inertia0.1: an experiment like any other, whose settings have that value.
 All functions raise InputError, with a text of one line, for unknown names and illegal values.
 """
 
+import math
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
 from roughgas.base import InputError, not_one_of, shown
 from roughgas.base.formatting import as_text, from_json  # noqa: F401
-from roughgas.config.axis import SPECIES, changed, scaled, value_of
 from roughgas.config.labels import (  # noqa: F401
     PARSE,
+    SPECIES,
     SWEPT,
     Place,
     level,
-    numbers_of,
     parameter_of,
     places,
     restitution,
     roughness,
+    scaled,
     seed,
+    value_of,
+    with_species_changed,
 )
-from roughgas.config.sizes import fitted, layered
 
-# checking and YAML are imported where they are used: a job of checked settings needs neither
+# the schema and YAML are imported where they are used: a job of checked settings needs neither
 
 SHIPPED = Path(__file__).parents[1] / "config.yaml"
 """The experiments that come with the package; in a clone of the repository, its config.yaml."""
@@ -47,6 +49,10 @@ GRID = ("r", "beta", "seeds")
 """The axes of every sweep; any other key of a sweep is its third axis."""
 NOT_OF_A_POINT = ("description", "sweep")
 """Settings of an experiment that do not concern any single point of it."""
+PACKING = "packing"
+"""In place of lengths; `box` then has its proportions."""
+ROUNDING = 1e-9  # relative difference of a box from its packing
+LONGEST = 1e9  # a
 
 
 def in_use() -> Path:
@@ -61,7 +67,7 @@ def usual_scale(path: str | Path) -> str:
 
     Raises OSError where the file cannot be read.
     """
-    from roughgas.config.checking import read
+    from roughgas.config.schema import read
 
     return read(path)[0]["scale"]
 
@@ -71,7 +77,7 @@ def load(path: str | Path, overrides: Mapping[str, Any] | None = None) -> dict[s
 
     Raises OSError where the file cannot be read.
     """
-    from roughgas.config.checking import check_file, check_merged, read
+    from roughgas.config.schema import check_file, check_merged, read
     from roughgas.config.study_folders import joined
 
     config, source = read(path, overrides)
@@ -87,7 +93,7 @@ def load_experiment(path: str | Path, name: str, scale: str) -> dict[str, Any]:
     Other experiments and scales are checked against the schema only. Raises OSError where the file
     cannot be read.
     """
-    from roughgas.config.checking import check_ancestors, check_file, check_one, read
+    from roughgas.config.schema import check_ancestors, check_file, check_one, read
     from roughgas.config.study_folders import joined
 
     config, source = read(path)
@@ -181,7 +187,40 @@ def changed_by(settings: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[
 
     Of a box and a packing the later one counts; beside a packing an earlier box is a shape.
     """
-    return layered(merged, settings, changes)
+    found = merged(settings, changes)
+    if "box" in changes and PACKING not in changes:
+        found.pop(PACKING, None)
+    elif PACKING in found and "box" not in changes and "open" not in settings.get("box", ["open"]):
+        found["box"] = [side / min(settings["box"]) for side in settings["box"]]
+    return found
+
+
+def fitted(settings: Mapping[str, Any], where: str) -> dict[str, Any]:
+    """Return settings whose box has the `packing` asked for, if any: lengths in a.
+
+    Values that the schema refuses are left to it. Raises InputError, whose key begins with `where`,
+    for an open box, for a box of another packing, and for one that would be too large.
+    """
+    found, asked = dict(settings), settings.get(PACKING)
+    number = settings.get("particles")
+    if not isinstance(asked, int | float) or not asked > 0 or not isinstance(number, int):
+        return found
+    from roughgas.effects.species import packing  # needs numpy
+
+    box = found.setdefault("box", [1, 1])
+    if "open" in box:
+        raise InputError(f"{where}.{PACKING}", asked, "not be given for a box that is open above")
+    there = packing({"effects": {}} | found)
+    if abs(there - asked) <= ROUNDING * asked:
+        return found
+    if min(box) != 1:
+        legal = f"not stand beside packing = {asked}; or be proportions, the least 1: [1, 2]"
+        raise InputError(f"{where}.box", box, legal)
+    length = (there / asked) ** (1.0 / len(box))
+    if not math.isfinite(length) or length * max(box) > LONGEST:
+        legal = f"be so large that no side of the box is longer than {LONGEST:g} a"
+        raise InputError(f"{where}.{PACKING}", asked, legal)
+    return found | {"box": [length * side for side in box]}
 
 
 def point_settings(settings: Mapping[str, Any]) -> dict[str, Any]:
@@ -296,7 +335,7 @@ def swept_to(settings: Mapping[str, Any], key: str, value: float | str) -> dict[
     """Return the change to an experiment's settings that gives its third axis `key` this value."""
     part, _, parameter = key.rpartition(".")
     if part.startswith(SPECIES):
-        return {"species": changed(settings["species"], part, parameter, value)}
+        return {"species": with_species_changed(settings["species"], part, parameter, value)}
     if part and part != "schedule":
         return {"effects": {part: {parameter: value}}}
     if isinstance(value, float) and value.is_integer():

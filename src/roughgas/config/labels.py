@@ -1,9 +1,9 @@
 """What names a point: r, beta, seed and a swept parameter as they stand in paths and on command
-lines."""
+lines; and what a third axis changes of a species or of a box."""
 
 import itertools
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any, NamedTuple
 
 from roughgas.base import RESTITUTION, ROUGHNESS, InputError, Interval
@@ -14,6 +14,9 @@ WHOLE_NUMBER = re.compile(r"\d{1,19}", re.ASCII)
 LARGEST_SEED = 2**63 - 1
 SWEPT = "swept"
 """Key, in the settings of a variant, of what its experiment sweeps, such as spin.inertia."""
+SPECIES = "species."
+OF_RADII = "mean", "deviation"
+"""Keys of a distribution of radii."""
 LEGAL_LEVEL = "be a number, or a word of lower-case letters, digits and _"
 
 
@@ -95,3 +98,47 @@ def _number_in(interval: Interval, key: str, label: Any) -> float:
     if not NUMBER.fullmatch(str(label)) or not interval.holds(float(label)):
         raise interval.error(key, label)
     return float(label) + 0.0  # turns -0 into 0
+
+
+def species_called(settings: Mapping[str, Any], part: str) -> dict[str, Any] | None:
+    """Return the species that `part`, such as species.heavy, names by name or by index; or None."""
+    named = dict(zip(names_of(settings), settings.get("species") or [], strict=True))
+    return named.get(part.removeprefix(SPECIES))
+
+
+def names_of(settings: Mapping[str, Any]) -> list[str]:
+    """Return what the species are called: by their index where they have no name."""
+    return [str(one.get("name", k)) for k, one in enumerate(settings.get("species") or [])]
+
+
+def with_species_changed(
+    species: Iterable[Mapping[str, Any]], part: str, key: str, value: Any
+) -> list[Any]:
+    """Return a list of species in which one quantity of one of them has another value."""
+    changed = [dict(one) for one in species]
+    mine = species_called({"species": changed}, part)
+    if mine is not None:
+        if isinstance(mine.get("radius"), Mapping):
+            mine["radius"] = dict(mine["radius"])
+        _holder(mine, key)[key] = value
+    return changed
+
+
+def _holder(one: dict[str, Any], key: str) -> dict[str, Any]:
+    """Return what of a species has this key: its distribution of radii, or itself."""
+    radius = one.get("radius")
+    return radius if key in OF_RADII and isinstance(radius, dict) else one
+
+
+def value_of(settings: Mapping[str, Any], part: str, key: str) -> Any:
+    """Return what the settings of a variant have under this key of this species; or None."""
+    one = species_called(settings, part)
+    return None if one is None else _holder(one, key).get(key)
+
+
+def scaled(box: Iterable[float | str], width: Any) -> Any:
+    """Return a box of another width and of the same proportions; no width: what was given."""
+    if isinstance(width, str):
+        return width
+    sides = list(box)
+    return [width, *(x if x == "open" else x * width / sides[0] for x in sides[1:])]

@@ -1,11 +1,21 @@
-"""The attributes of a dataset that say where it comes from, enough to make it again by itself."""
+"""Where results come from: attributes of a dataset, enough to make it again by itself, and the
+complete configuration of a scale."""
 
+import json
 import shlex
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 from roughgas import config
 from roughgas.base import InputError
+from roughgas.base.files import write_text
+
+HEAD = """\
+# The complete configuration of the scale `{scale}`: what experiments inherit from each other, and
+# what the scale and the command line change, is written out. Used in place of config.yaml, it gives
+# the same results.
+"""
 
 
 def provenance(
@@ -55,3 +65,26 @@ def variant_attributes(name: str, settings: Mapping[str, Any]) -> dict[str, Any]
     if value is None or label == variant or config.level(label) != value:
         raise InputError("experiment", name, "be the variant that its settings are of")
     return {"experiment": base, "variant": variant, "swept": key, "swept_value": value}
+
+
+def write_effective(whole: Mapping[str, Any], scale: str, output: str | Path) -> None:
+    """Write a configuration whose only scale is `scale`, which changes nothing, as YAML.
+
+    Raises InputError for an unknown scale.
+    """
+    import yaml
+
+    names = whole["experiments"]
+    effective = {
+        "complete": True,
+        "scale": scale,
+        "seeds_per_job": whole.get("seeds_per_job", config.SEEDS_PER_JOB),
+        "betas_per_job": whole.get("betas_per_job", 1),
+        "experiments": {name: config.experiment(whole, name, scale) for name in names},
+    }
+    parts = {config.SHOWCASE: config.showcase, config.STUDIES: config.studies}
+    effective |= {part: of(whole, scale) for part, of in parts.items() if part in whole}
+    effective["scales"] = {scale: {}}
+    plain = json.loads(json.dumps(effective))  # without anchors
+    text = yaml.safe_dump(plain, sort_keys=False, width=100, default_flow_style=None)
+    write_text(output, HEAD.format(scale=scale) + text)

@@ -14,9 +14,8 @@ from typing import Any
 
 from roughgas import config as settings_of
 from roughgas.base import InputError, shown
-from roughgas.config.checking import RESERVED, check_ancestors, check_one
 from roughgas.config.reading import read_yaml
-from roughgas.config.schema import check_schema
+from roughgas.config.schema import RESERVED, check_ancestors, check_one, check_schema
 
 FOLDER = "studies"
 USUAL_SCALES = ("paper", "small")

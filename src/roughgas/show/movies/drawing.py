@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from roughgas.config.axis import names_of
+from roughgas.config.labels import names_of
 from roughgas.data.reduced import third_axis
 from roughgas.scene import Scene
 from roughgas.show import style
