@@ -13,7 +13,7 @@ same bits.
     R = ratio(gas.energies(gas.in_collisions(gas.count(1), samples=100)))
 """
 
-from roughgas.base.errors import CollapseError, InputError
+from roughgas.base import CollapseError, InputError
 from roughgas.data.checkpoint import UnusableCheckpoint
 from roughgas.effects import inertia
 from roughgas.scene import DIAMETER, Scene, build, shear_rate

@@ -16,12 +16,11 @@ from roughgas.data.variables import (
     COOLING,
     GRID,
     POINT,
-    REGISTRY,
     SPIN,
 )
-from roughgas.studies import STUDIES, variables
-
-assert variables, "which registers those of the studies"
+from roughgas.studies import STUDIES
+from roughgas.studies.tasks import VARIABLES
+from roughgas.tasks import variables
 
 DOCS = Path(__file__).parents[2] / "docs"
 BEGIN, END = "<!-- {}: made by tests/data/schema_page.py -->\n", "<!-- until here -->\n"
@@ -30,7 +29,7 @@ ALWAYS = "always"
 
 def tables():
     """The tables that follow from the code, by kind of file."""
-    studies = {name: _study(REGISTRY[name]) for name in STUDIES}
+    studies = {name: _study(variables(VARIABLES, name)) for name in STUDIES}
     others = {"film": _film(), "trajectory": _trajectory()}
     return {"point": _point(), "reduced": _reduced()} | others | studies
 

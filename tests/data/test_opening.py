@@ -12,7 +12,7 @@ from roughgas.data.film import read_film
 from roughgas.data.netcdf import DamagedError, opened, read_netcdf
 from roughgas.data.point import read_point
 from roughgas.data.reduced import read_reduced
-from roughgas.studies.variables import read_studies
+from roughgas.studies.files import read_studies
 
 READERS = {
     "point": read_point,

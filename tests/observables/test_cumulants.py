@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from roughgas import simulate
-from roughgas.studies import dsmc
+from roughgas.tasks import dsmc
 
 NAMES = ("a20", "a02", "a11")
 

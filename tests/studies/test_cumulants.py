@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from roughgas import theory
-from roughgas.studies.runs.free_cooling import corrected_ratio
+from roughgas.tasks.free_cooling import corrected_ratio
 
 R_BETA = [(0.9, 0.5), (0.6, -0.2), (0.8, 0.0)]
 

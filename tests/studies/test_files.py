@@ -9,9 +9,8 @@ from tests.studies.test_coverage import EXPERIMENTS, SETTINGS
 
 from roughgas import config, studies
 from roughgas.base import InputError
-from roughgas.studies.files import combine
+from roughgas.studies.files import combine, read_studies
 from roughgas.studies.tables import write_tables
-from roughgas.studies.variables import read_studies
 
 
 @pytest.fixture(scope="module")

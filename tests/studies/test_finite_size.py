@@ -11,11 +11,12 @@ from roughgas import config, theory
 from roughgas.scene import build
 from roughgas.simulation.gas import Gas
 from roughgas.statistics.errors import blocking_stderr
-from roughgas.studies import dsmc, finite_size, study
+from roughgas.studies import finite_size, study
 from roughgas.studies.figures.finite_size import draw_figure
 from roughgas.studies.runs import finite_size as runs
-from roughgas.studies.runs.free_cooling import FreeCooling
 from roughgas.studies.tables import TABLES
+from roughgas.tasks import dsmc
+from roughgas.tasks.free_cooling import FreeCooling
 
 from .dsmc.nanbu import ratios
 

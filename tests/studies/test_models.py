@@ -13,14 +13,15 @@ from roughgas.base import InputError
 from roughgas.statistics.errors import Estimate
 from roughgas.studies import models, study
 from roughgas.studies.figures import accuracy as plotting
-from roughgas.studies.models import METHODS, error_bar, over
-from roughgas.studies.runs.free_cooling import (
+from roughgas.studies.models import METHODS, error_bar
+from roughgas.studies.runs.models import DSMC, MAP
+from roughgas.tasks import over, stream
+from roughgas.tasks.free_cooling import (
     FreeCooling,
     event_driven,
     few_particles,
     integrate,
 )
-from roughgas.studies.runs.models import DSMC, MAP, stream
 
 tasks, run = study("models")
 EXPERIMENT = {

@@ -12,10 +12,10 @@ from roughgas import config, theory
 from roughgas.studies import runaway, study
 from roughgas.studies.figures.runaway import draw_figure
 from roughgas.studies.runs import runaway as runs
-from roughgas.studies.runs import stream
-from roughgas.studies.runs.free_cooling import FreeCooling
 from roughgas.studies.tables import TABLES
 from roughgas.studies.tasks import runaway_gases
+from roughgas.tasks import stream
+from roughgas.tasks.free_cooling import FreeCooling
 
 tasks, run = study("runaway")
 EXPERIMENTS = {"cooling": config.experiment(config.load("config.yaml"), "cooling", "paper")}

@@ -77,7 +77,7 @@ def summary(path: str | Path) -> str:
 
 def _read(path: str | Path) -> tuple[str, Any]:
     """Return the kind of a file, one of KINDS, and what is in it."""
-    from roughgas.studies.variables import read_studies
+    from roughgas.studies.files import read_studies
 
     with netcdf.opened(path) as file:
         kind = netcdf.kind_of(file)

@@ -212,7 +212,7 @@ POINT = {
 }
 
 REGISTRY: dict[str, Mapping[str, Variable]] = {"point": POINT}
-"""All variables by name, for each kind of dataset; each study is a kind, too."""
+"""All variables by name, for each kind of dataset."""
 
 
 def register(kind: str, variables: Mapping[str, Variable]) -> Mapping[str, Variable]:
@@ -222,20 +222,23 @@ def register(kind: str, variables: Mapping[str, Variable]) -> Mapping[str, Varia
 
 
 def described(
-    kind: str,
+    kind: str | Mapping[str, Variable],
     values: Mapping[str, Any],
     cooling: bool = False,
     grid: tuple[str, ...] = (GRID,),
     observed: Mapping[str, Variable] | None = None,
 ) -> dict[str, Array]:
-    """Return `values` with dimensions and attributes, in the order in which they are registered.
+    """Return `values` with dimensions and attributes, in the order in which they are registered as
+    those of a `kind` of dataset, or given.
 
     Attributes are `long_name`, `units`, and those of flags. `grid` are the dimensions that GRID
     stands for; `observed` describes variables of observables, which come last. Raises ValueError
     for unregistered variables, and for shapes that disagree.
     """
-    known = {**REGISTRY[kind], **(observed or {})}
-    refuse(f"unknown variables of a {kind}", set(values) - set(known))
+    registered = REGISTRY[kind] if isinstance(kind, str) else kind
+    known = {**registered, **(observed or {})}
+    what = kind if isinstance(kind, str) else "dataset"
+    refuse(f"unknown variables of a {what}", set(values) - set(known))
     found = {
         name: _array(about, values[name], cooling, grid)
         for name, about in known.items()

@@ -12,7 +12,7 @@ from typing import Any, Protocol, Self
 
 import numpy as np
 
-from roughgas.base.errors import NeedsError
+from roughgas.base import NeedsError
 from roughgas.data import checkpoint
 from roughgas.kernel.record import Sampling
 from roughgas.kernel.state import COLLISIONS, EXPONENT, LAST_FIRST, LAST_SECOND, State

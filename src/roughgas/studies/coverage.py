@@ -14,8 +14,8 @@ import numpy as np
 import xarray as xr
 
 from roughgas.statistics.errors import YES, Estimate, half_width, pooled
-from roughgas.studies.tasks import corner_name
-from roughgas.studies.variables import dataset, stacked
+from roughgas.studies.tasks import VARIABLES, corner_name
+from roughgas.tasks import dataset, stacked, variables
 
 LEVELS = (0.68, 0.95)
 WAYS = ("one run", "pooled seeds")
@@ -30,7 +30,9 @@ def combine(parts: Mapping[str, xr.Dataset], settings: Mapping[str, Any]) -> xr.
     found = stacked([_corner(parts[name], settings) for name in names])
     found |= {key: [corner[key] for corner in corners] for key in ("experiment", "r", "beta")}
     found |= {"corner": names, "way": list(WAYS), "level": list(LEVELS)}
-    return dataset("coverage", found, seed=settings["seed"], unit_of_length=UNIT)
+    return dataset(
+        variables(VARIABLES, "coverage"), found, seed=settings["seed"], unit_of_length=UNIT
+    )
 
 
 def calibrate(

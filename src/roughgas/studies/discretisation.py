@@ -19,7 +19,8 @@ import xarray as xr
 
 from roughgas.statistics.errors import Estimate, period_means
 from roughgas.statistics.fits import PowerLaw, limit_at_zero, signed_power_law
-from roughgas.studies.variables import dataset, flat, stacked
+from roughgas.studies.tasks import VARIABLES
+from roughgas.tasks import dataset, flat, stacked, variables
 
 TARGETS = 0.03, 0.01, 0.003  # relative errors of R
 EARLY = 0.05  # t_c nu up to which orders and limits are fitted: above, R is no power of it
@@ -65,7 +66,8 @@ def combine(parts: Mapping[str, xr.Dataset], settings: Mapping[str, Any]) -> xr.
     axes = {"steps": steps, "contact_time": t, "target": list(TARGETS)}
     axes["model_contact_time"] = settings["model_contact_times"]
     about = {key: settings[key] for key in ("r", "beta", "packing", "seed")}
-    return dataset("discretisation", found | axes, **about)
+    known = variables(VARIABLES, "discretisation")
+    return dataset(known, found | axes, **about)
 
 
 def statistical_error(series, truth) -> tuple[np.ndarray, Estimate]:

@@ -9,8 +9,8 @@ from typing import Any
 import xarray as xr
 
 from roughgas.base import InputError
-from roughgas.data.netcdf import TASK, Content, content_of, read_netcdf, write_netcdf
-from roughgas.studies.tasks import TASKS
+from roughgas.data.netcdf import TASK, Content, content_of, read_groups, read_netcdf, write_netcdf
+from roughgas.studies.tasks import STUDIES, TASKS
 
 
 def write_task(path: str | Path, data: xr.Dataset, about: Mapping[str, Any]) -> None:
@@ -42,3 +42,9 @@ def _combined(name: str, parts: Mapping[str, xr.Dataset]) -> xr.Dataset:
     scales = {data.attrs["scale"] for data in parts.values()}
     data = import_module(f"roughgas.studies.{name}").combine(parts, settings)
     return data.assign_attrs(title=name, scale=", ".join(sorted(scales)))
+
+
+def read_studies(path: str | Path) -> dict[str, xr.Dataset]:
+    """Return the groups of all studies in the combined file at `path`, by name."""
+    groups = read_groups(path)
+    return {name: groups[name] for name in STUDIES if name in groups}

@@ -14,9 +14,8 @@ import xarray as xr
 
 from roughgas import theory
 from roughgas.statistics.errors import Estimate
-from roughgas.studies.models import over
-from roughgas.studies.tasks import point_names
-from roughgas.studies.variables import dataset, estimate, flat, mean, stacked
+from roughgas.studies.tasks import VARIABLES, point_names
+from roughgas.tasks import dataset, estimate, flat, mean, over, stacked, variables
 
 
 def combine(parts: Mapping[str, xr.Dataset], settings: Mapping[str, Any]) -> xr.Dataset:
@@ -35,7 +34,8 @@ def combine(parts: Mapping[str, xr.Dataset], settings: Mapping[str, Any]) -> xr.
     found |= {"point": list(names), "particles": numbers, "part": ends}
     found |= {"packing": np.array(packings, float)}
     about = {"seed": settings["seed"], "precision": settings["precision"]}
-    return dataset("finite_size", found, **about).set_coords(["experiment", "r", "beta"])
+    known = variables(VARIABLES, "finite_size")
+    return dataset(known, found, **about).set_coords(["experiment", "r", "beta"])
 
 
 def _gas(part: xr.Dataset, number: int, packings) -> dict[str, Any]:

@@ -13,7 +13,8 @@ import xarray as xr
 
 from roughgas.statistics.errors import Estimate
 from roughgas.statistics.fits import power_law
-from roughgas.studies.variables import dataset, estimate, mean, stacked
+from roughgas.studies.tasks import VARIABLES
+from roughgas.tasks import dataset, estimate, mean, over, stacked, variables
 
 METHODS = ("rate_equations", "dsmc", "event_driven")
 
@@ -44,14 +45,8 @@ def combine(parts: Mapping[str, xr.Dataset], settings: Mapping[str, Any]) -> xr.
     }
     found["density_r"], found["density_beta"] = np.array(density["points"], float).T
     about = {"r": float(settings["r"]), "beta": float(settings["beta"]), "seed": settings["seed"]}
-    return dataset("models", found, **about).set_coords(["density_r", "density_beta"])
-
-
-def over(one: Estimate, other: Estimate) -> Estimate:
-    """Return the quotient of two independent estimates."""
-    quotient = one.value / other.value
-    error = np.hypot(one.stderr / one.value, other.stderr / other.value)
-    return Estimate(quotient, abs(quotient) * error)
+    known = variables(VARIABLES, "models")
+    return dataset(known, found, **about).set_coords(["density_r", "density_beta"])
 
 
 def error_bar(errors: np.ndarray, reference_stderr: float) -> np.ndarray:

@@ -18,8 +18,8 @@ import numpy as np
 import xarray as xr
 
 from roughgas.statistics.errors import Estimate
-from roughgas.studies.tasks import profile_name
-from roughgas.studies.variables import dataset, stacked
+from roughgas.studies.tasks import VARIABLES, profile_name
+from roughgas.tasks import dataset, stacked, variables
 from roughgas.theory.closed_forms import lun_ratio
 from roughgas.theory.transport import shear_factor
 
@@ -45,7 +45,9 @@ def combine(parts: Mapping[str, xr.Dataset], settings: Mapping[str, Any]) -> xr.
     }
     about["phase"] = np.arange(settings["phases"]) / settings["phases"]
     every = stacked(rows) | about
-    return dataset("profiles", every, seed=settings["seed"], runs=settings["runs"])
+    return dataset(
+        variables(VARIABLES, "profiles"), every, seed=settings["seed"], runs=settings["runs"]
+    )
 
 
 def fields(run: xr.Dataset, width: float) -> xr.Dataset:

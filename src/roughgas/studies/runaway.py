@@ -14,9 +14,8 @@ import xarray as xr
 
 from roughgas import theory
 from roughgas.statistics.errors import Estimate
-from roughgas.studies.models import over
-from roughgas.studies.tasks import SIMULATED, runaway_name
-from roughgas.studies.variables import dataset, flat, mean, stacked
+from roughgas.studies.tasks import SIMULATED, VARIABLES, runaway_name
+from roughgas.tasks import dataset, flat, mean, over, stacked, variables
 
 EXCLUDED = -math.log(0.05)
 """Mean number of escapes that is excluded at 95 % where none was seen."""
@@ -48,7 +47,8 @@ def combine(parts: Mapping[str, xr.Dataset], settings: Mapping[str, Any]) -> xr.
     found["maxwellian_share"] = theory.maxwellian_share(r, beta, mu)
     found |= _example(parts, settings["example"])
     about = {"r": r, "beta": beta, "packing": settings["packing"], "seed": settings["seed"]}
-    return dataset("runaway", found, **about)
+    known = variables(VARIABLES, "runaway")
+    return dataset(known, found, **about)
 
 
 def time_of_escape(time: np.ndarray, observed: np.ndarray) -> tuple[Estimate, float]:

@@ -16,8 +16,8 @@ import xarray as xr
 
 from roughgas.statistics.errors import Estimate
 from roughgas.statistics.fits import power_law
-from roughgas.studies.tasks import PARTS, SCENES, WAYS
-from roughgas.studies.variables import dataset, mean, stacked
+from roughgas.studies.tasks import PARTS, SCENES, VARIABLES, WAYS
+from roughgas.tasks import dataset, mean, stacked, variables
 
 RELATIVE_ERRORS = (0.01, 0.003, 0.001)
 LENGTH_UNITS = {"vibrated": "T", "sheared": "T", "cooling": "collisions per particle"}
@@ -31,7 +31,11 @@ def combine(parts: Mapping[str, xr.Dataset], settings: Mapping[str, Any]) -> xr.
         "way": list(WAYS),
         "relative_error": list(RELATIVE_ERRORS),
     }
-    return dataset("statistical", found, **{key: settings[key] for key in ("r", "beta", "seed")})
+    return dataset(
+        variables(VARIABLES, "statistical"),
+        found,
+        **{key: settings[key] for key in ("r", "beta", "seed")},
+    )
 
 
 def observed(R: np.ndarray, seconds: np.ndarray, truth: float) -> dict[str, Any]:

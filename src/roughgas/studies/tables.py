@@ -7,9 +7,9 @@ import numpy as np
 import xarray as xr
 
 from roughgas.base.files import write_text
-from roughgas.base.formatting import markdown
+from roughgas.studies.files import read_studies
 from roughgas.studies.tasks import SCENES, STUDIES
-from roughgas.studies.variables import estimate, read_studies
+from roughgas.tasks import along, cell, estimate, label, markdown
 from roughgas.theory import moment_of_inertia
 
 SHARES = {
@@ -31,7 +31,7 @@ BED = {
 }
 SHEARED = {
     "theta": "θ",
-    "factor": "theory.transport's factor",
+    "factor": "theory.shear's factor",
     "rate": "g",
     "stress": "p",
     "difference": "d",
@@ -54,14 +54,14 @@ def statistical(data: xr.Dataset) -> str:
     rows, prices = [], []
     for one in along(data, "scene"):
         scene, unit = one.scene.item(), one.length_unit.item()
-        slopes = [_shown(way, "slope", ".3f") for way in along(one, "way")]
-        time = f"{_shown(one, 'autocorrelation_time', '.2f')} {unit}"
-        rows.append([scene, _shown(one, "R", ".5f"), *slopes, time])
+        slopes = [cell(way, "slope", ".3f") for way in along(one, "way")]
+        time = f"{cell(one, 'autocorrelation_time', '.2f')} {unit}"
+        rows.append([scene, cell(one, "R", ".5f"), *slopes, time])
         unit = "T" if unit == "T" else "c.p.p."
         cells = [
-            f"{cell.seconds_needed:.2g} ± {cell.seconds_needed_stderr:.1g} s"
-            f" ({cell.length_needed:.3g} {unit})"
-            for cell in along(one, "relative_error")
+            f"{cost.seconds_needed:.2g} ± {cost.seconds_needed_stderr:.1g} s"
+            f" ({cost.length_needed:.3g} {unit})"
+            for cost in along(one, "relative_error")
         ]
         prices.append([scene, f"{one.equilibration_seconds:.2g} s", *cells])
     return (
@@ -78,9 +78,9 @@ def discretisation(data: xr.Dataset) -> str:
     rows = []
     for k, t in enumerate(data.contact_time.values):
         at = (one.isel(contact_time=k) for one in soft)
-        rows.append([f"{t:g}", *(_shown(one, "soft_deviation", "+.2f", 100) for one in at)])
-    rows.append(["order in t_c", *(_shown(one, "order", ".2f") for one in soft)])
-    rows.append(["R at t_c → 0", *(_shown(one, "limit_R", ".4f") for one in soft)])
+        rows.append([f"{t:g}", *(cell(one, "soft_deviation", "+.2f", 100) for one in at)])
+    rows.append(["order in t_c", *(cell(one, "order", ".2f") for one in soft)])
+    rows.append(["R at t_c → 0", *(cell(one, "limit_R", ".4f") for one in soft)])
     for target in data.target.values:
         slower = data.slowdown.sel(target=target).values
         cells = ("–" if np.isnan(x) else f"{x:.0f} times" for x in slower)
@@ -89,7 +89,7 @@ def discretisation(data: xr.Dataset) -> str:
     model = [
         [
             f"{one.model_contact_time:g}",
-            _shown(one, "model_deviation", "+.2f", 100),
+            cell(one, "model_deviation", "+.2f", 100),
             f"{one.model_touched:.2%}",
         ]
         for one in along(data, "model_contact_time")
@@ -97,10 +97,10 @@ def discretisation(data: xr.Dataset) -> str:
     speed = data.elastic_speed_single / data.elastic_speed_double
     return (
         f"## Discretisation error ({_about(data)}, packing {data.attrs['packing']})\n\n"
-        f"Deviation of R in % from events, R = {_shown(data, 'reference_R', '.5f')}:\n\n"
+        f"Deviation of R in % from events, R = {cell(data, 'reference_R', '.5f')}:\n\n"
         f"{markdown(head, rows)}\nThe contact-time model:\n\n{markdown(model_head, model)}\n"
         "Trajectories kept in single precision: deviation of R"
-        f" {_shown(data, 'single_deviation', '+.2f', 100)} %, an"
+        f" {cell(data, 'single_deviation', '+.2f', 100)} %, an"
         f" elastic gas's energy drifts by {data.elastic_drift_single:.1e} ±"
         f" {data.elastic_drift_stderr_single:.0e} of itself a collision"
         f" ({data.elastic_drift_double:.0e} in double precision), {speed:.2f} times as fast.\n"
@@ -109,7 +109,7 @@ def discretisation(data: xr.Dataset) -> str:
 
 def models(data: xr.Dataset) -> str:
     """Return what each model of a cooling gas tends to, and what the Maxwellian theory misses."""
-    closed, floor = (f"{_shown(data, x, '±', 100)} %" for x in ("closed_form_error", "dsmc_floor"))
+    closed, floor = (f"{cell(data, x, '±', 100)} %" for x in ("closed_form_error", "dsmc_floor"))
     until = (0.01 / float(data.event_driven_prefactor)) ** (1 / float(data.event_driven_slope))
     # the shortest run of DSMC whose noise is down to its floor, within a third
     near = data.dsmc_seconds.values[data.dsmc_error.values < 4 / 3 * float(data.dsmc_floor)]
@@ -119,15 +119,15 @@ def models(data: xr.Dataset) -> str:
         ["DSMC", floor, f"{near[0] if len(near) else math.nan:.2g} s"],
         ["event-driven", "none", f"{until:.2g} s for 1 %"],
     ]
-    parts = [[what, f"{_shown(data, name, '±', 100)} %"] for name, what in SHARES.items()]
+    parts = [[what, f"{cell(data, name, '±', 100)} %"] for name, what in SHARES.items()]
     head = ["β", *(f"r = {r:g}" for r in data.map_r.values)]
     gaps = [
-        [f"{row.map_beta:g}", *(_shown(one, "map_gap", "±", 100) for one in along(row, "map_r"))]
+        [f"{row.map_beta:g}", *(cell(one, "map_gap", "±", 100) for one in along(row, "map_r"))]
         for row in along(data, "map_beta")
     ]
     return (
         f"## Model error (r = {data.attrs['r']:g}, β = {data.attrs['beta']:g})\n\n"
-        f"Against events, R = {_shown(data, 'R_reference', '.5f')}:\n\n"
+        f"Against events, R = {cell(data, 'R_reference', '.5f')}:\n\n"
         f"{markdown(['model', 'tends to an error of R of', 'CPU time'], rows)}\n"
         f"What the error of the closed form is made of:\n\n"
         f"{markdown(['assumption', 'changes R by'], parts)}\n"
@@ -143,8 +143,8 @@ def coverage(data: xr.Dataset) -> str:
     rows = []
     for one in along(in_order(data), "corner"):
         shares = [share for way in along(one, "way") for share in along(way, "level")]
-        cells = [_shown(share, "coverage", "±", 100) for share in shares]
-        cells += [_shown(one, name, "±") for name in ("bias", "stated_over_true")]
+        cells = [cell(share, "coverage", "±", 100) for share in shares]
+        cells += [cell(one, name, "±") for name in ("bias", "stated_over_true")]
         window = f"{float(one.window / one.autocorrelation_time):.0f}"
         rows.append([label(one), f"{int(one.repetitions)}", *cells, window])
     return f"## Coverage of the stated intervals\n\n{markdown(head, rows)}"
@@ -185,9 +185,9 @@ def finite_size(data: xr.Dataset) -> str:
         gases = along(one, "particles")
         gap = estimate(gases[-1], "dsmc_R").scaled(100 / float(one.theory))
         missing = f"{gap._replace(value=gap.value - 100):+±} %"
-        cells = [_shown(gas, "dsmc_R", ".4f") for gas in gases]
+        cells = [cell(gas, "dsmc_R", ".4f") for gas in gases]
         rows.append([label(one), f"{float(one.theory):.4f}", *cells, missing])
-        tails.append([label(one), *(_shown(gas, "dsmc_a02", "±") for gas in gases)])
+        tails.append([label(one), *(cell(gas, "dsmc_a02", "±") for gas in gases)])
     head = ["point", "theory of free cooling", *numbers, "the last over the theory of free cooling"]
     return (
         f"## Number and box of a cooling gas\n\nR of the homogeneous gas (DSMC):\n\n"
@@ -200,11 +200,11 @@ def finite_size(data: xr.Dataset) -> str:
 def _in_boxes(data, numbers):
     """Return what events find at one packing, over DSMC of as many particles."""
     rows = [
-        [label(one), *(_shown(gas, "over_dsmc", "+±", 100) for gas in along(one, "particles"))]
+        [label(one), *(cell(gas, "over_dsmc", "+±", 100) for gas in along(one, "particles"))]
         for one in along(data, "point")
     ]
     waves = [
-        [label(one), *(_shown(gas, "flow", "±", 100) for gas in along(one, "particles"))]
+        [label(one), *(cell(gas, "flow", "±", 100) for gas in along(one, "particles"))]
         for one in along(data, "point")
     ]
     return (
@@ -241,7 +241,7 @@ def _escapes(data, kind, about):
     for one in along(data, "mu"):
         row = [f"{one.mu:g}"]
         for place in along(one, f"{kind}_particles"):
-            time, bound = _shown(place, f"{kind}_time", "±"), float(place[f"{kind}_bound"])
+            time, bound = cell(place, f"{kind}_time", "±"), float(place[f"{kind}_bound"])
             shown = f"> {bound:.0f}" if np.isfinite(bound) else time
             count = f"{int(place[f'{kind}_escapes'])}/{int(place[f'{kind}_runs'])}"
             share = float(place[f"{kind}_largest_share"])
@@ -265,28 +265,12 @@ def in_order(data: xr.Dataset) -> xr.Dataset:
     return data.isel(corner=np.lexsort((-beta, -r, scene)))
 
 
-def along(data: xr.Dataset, dim: str) -> list[xr.Dataset]:
-    """Return the parts of a dataset along a dimension."""
-    return [data.isel({dim: k}) for k in range(data.sizes[dim])]
-
-
-def label(corner: xr.Dataset) -> str:
-    """Return what a corner is called."""
-    beta = str(np.asarray(corner.beta)).replace("-", "−")
-    return f"{corner.experiment.values}, r = {corner.r.values}, β = {beta}"
-
-
 def _written(data, name):
     """Return a value with its error if it has one."""
     if f"{name}_stderr" not in data:
         return f"{float(data[name]):.4f}"
-    return _shown(data, name, "")
+    return cell(data, name, "")
 
 
 def _about(data):
     return f"r = {data.attrs['r']}, β = {data.attrs['beta']}"
-
-
-def _shown(data, name, how, factor=1.0):
-    """Return a value with its error in a format of Estimate."""
-    return f"{estimate(data, name).scaled(factor):{how}}"

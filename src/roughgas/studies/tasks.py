@@ -1,10 +1,13 @@
 """The studies by name, and their tasks: independent jobs, each a file. Loads in no time."""
 
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 PANELS = ("statistical", "models", "discretisation")
 """The studies that the work-precision figure shows, one a panel."""
+VARIABLES = Path(__file__).with_name("variables.yaml")
+"""What the combined datasets hold."""
 STUDIES = (*PANELS, "coverage", "profiles", "finite_size", "runaway")
 SCENES = ("vibrated", "sheared", "cooling")
 SIMULATED = ("dsmc", "events")

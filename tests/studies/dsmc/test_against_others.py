@@ -5,8 +5,8 @@ import pytest
 
 from roughgas import theory
 from roughgas.statistics.errors import blocking_stderr
-from roughgas.studies import dsmc
-from roughgas.studies.runs.free_cooling import FreeCooling, event_driven
+from roughgas.tasks import dsmc
+from roughgas.tasks.free_cooling import FreeCooling, event_driven
 
 from .nanbu import ratios
 

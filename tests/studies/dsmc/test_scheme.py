@@ -6,8 +6,7 @@ import pytest
 
 from roughgas import theory
 from roughgas.base import InputError
-from roughgas.studies import dsmc
-from roughgas.studies.dsmc import collisions
+from roughgas.tasks import dsmc
 
 PACKING = 0.2
 MATERIALS = [(0.0, -0.4), (0.5, 1.0), (0.8, 0.0), (1.0, -1.0), (1.0, 1.0)]
@@ -42,7 +41,7 @@ def test_a_collision_has_the_restitutions_of_the_material(dimension, r, beta):
         v = gas.velocity[0] - gas.velocity[1]
         n *= -np.sign(n @ v) / np.linalg.norm(n)
         before = contact_velocity(gas, n)
-        collisions.collide(gas, material, 0, 1, tuple(n), tuple(v))
+        dsmc.collide(gas, material, 0, 1, tuple(n), tuple(v))
         after = contact_velocity(gas, n)
         assert after @ n == pytest.approx(-r * (before @ n), abs=1e-13)
         tangential = before - (before @ n) * n
@@ -53,12 +52,12 @@ def test_a_collision_has_the_restitutions_of_the_material(dimension, r, beta):
 def test_elastic_particles_collide_as_often_as_theory_says(dimension):
     """Within 4 standard errors: by chance once in 16 000 times. A collision takes a geometric
     number of draws, of a fixed time each: so n of them have the relative error sqrt((1 - p)/n),
-    p being the share of draws that are collisions. 1/N from the number of particles is 2e-4."""
+    p being the share of draws that are dsmc. 1/N from the number of particles is 2e-4."""
     crowding = theory.number_density(PACKING, dimension) * theory.contact_value(PACKING, dimension)
     gas, rng = gas_and_generator(5000, 0.0, dimension, 1)
     samples = dsmc.run(gas, dsmc.material(1, -1, dimension, crowding=crowding), rng, 100, 5)
-    drawn = gas.counts[collisions.COLLISIONS] / gas.counts[collisions.DRAWS]
-    error = np.sqrt((1 - drawn) / gas.counts[collisions.COLLISIONS])
+    drawn = gas.counts[dsmc.COLLISIONS] / gas.counts[dsmc.DRAWS]
+    error = np.sqrt((1 - drawn) / gas.counts[dsmc.COLLISIONS])
     frequency = samples.collisions_per_particle[-1] / samples.time[-1]
     expected = theory.collision_frequency(1.0, PACKING, dimension)
     assert error < 1e-3
@@ -72,7 +71,7 @@ def test_elastic_particles_keep_energy_and_momentum(dimension, beta):
     gas, rng = gas_and_generator(500, 0.3, dimension, 2)
     before = energy(gas)
     samples = dsmc.run(gas, dsmc.material(1, beta, dimension), rng, 1, 200)
-    unit = np.exp(gas.clock[collisions.LOG_UNIT])
+    unit = np.exp(gas.clock[dsmc.LOG_UNIT])
     assert energy(gas) * unit**2 == pytest.approx(before, rel=1e-12)
     assert np.abs(gas.velocity.sum(axis=0)).max() < 1e-11
     if beta == -1.0:
@@ -86,8 +85,8 @@ def test_dissipation_keeps_the_momentum(dimension):
     before = gas.velocity.sum(axis=0)
     material = dsmc.material(0.5, 0.2, dimension)
     for _ in range(5000):
-        collisions.draw(gas, material, rng)
-    assert gas.counts[collisions.COLLISIONS] > 300
+        dsmc.draw(gas, material, rng)
+    assert gas.counts[dsmc.COLLISIONS] > 300
     assert gas.velocity.sum(axis=0) == pytest.approx(before, rel=1e-12)
 
 
@@ -121,7 +120,7 @@ def test_a_sliding_collision_has_the_impulse_of_friction(mu):
         v = gas.velocity[0] - gas.velocity[1]
         n *= -np.sign(n @ v) / np.linalg.norm(n)
         g, velocity = contact_velocity(gas, n), gas.velocity[0].copy()
-        collisions.collide(gas, material, 0, 1, tuple(n), tuple(v))
+        dsmc.collide(gas, material, 0, 1, tuple(n), tuple(v))
         after, impulse = contact_velocity(gas, n), gas.velocity[0] - velocity
         across = np.array([-n[1], n[0]])
         assert after @ n == pytest.approx(-0.8 * (g @ n), abs=1e-13)
@@ -212,7 +211,7 @@ def test_seldom_samples_waste_no_draws():
         gas, rng = gas_and_generator(4000, 0.5, 2, 7)
         end = dsmc.run(gas, dsmc.material(0.5, 0.0), rng, every, samples)
         assert end.collisions_per_particle[-1] == 60.0
-        assert gas.counts[collisions.COLLISIONS] > 0.08 * gas.counts[collisions.DRAWS]
+        assert gas.counts[dsmc.COLLISIONS] > 0.08 * gas.counts[dsmc.DRAWS]
         rates.append(-end.log_T_tr[-1] / 60.0)
     assert rates[0] == pytest.approx(rates[1], rel=0.02)
 

@@ -18,7 +18,7 @@ def draw(name: str, data: str | Path, outputs: Iterable[str | Path]) -> None:
     the figure shows.
     """
     from roughgas.show import catalogue, style
-    from roughgas.studies.variables import read_studies
+    from roughgas.studies.files import read_studies
 
     studies, shown = read_studies(data), catalogue.FIGURES[name].shows
     for study in shown:

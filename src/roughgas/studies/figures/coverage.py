@@ -8,7 +8,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from roughgas.show.style import FAINT, GREY, LOOKS
-from roughgas.studies.tables import along, in_order, label
+from roughgas.studies.tables import in_order
+from roughgas.tasks import along, label
 
 LEGAL = (0.92, 0.98)
 """What share of the 95 % intervals has to hold the truth."""

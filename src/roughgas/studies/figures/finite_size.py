@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 
 from roughgas.show.style import GREY, LOOKS, THEORY, Look
-from roughgas.studies.tables import along
+from roughgas.tasks import along
 
 SIZE = (7.0, 7.6)  # inches
 THIN: dict[str, Any] = {"ls": "none", "elinewidth": 0.8}

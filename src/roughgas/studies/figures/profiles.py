@@ -11,7 +11,8 @@ from matplotlib.lines import Line2D
 
 from roughgas.show.style import FAINT, GREY, LOOKS, THEORY
 from roughgas.studies.profiles import QUARTERS
-from roughgas.studies.tables import along, point_label
+from roughgas.studies.tables import point_label
+from roughgas.tasks import along
 from roughgas.theory.closed_forms import lun_ratio
 
 SIZE = (7.0, 7.0)  # inches

@@ -10,7 +10,7 @@ from matplotlib.ticker import NullLocator
 
 from roughgas.show.style import FAINT, GREY, LOOKS, THEORY, Look
 from roughgas.studies.figures.panels import paired_panels
-from roughgas.studies.tables import along
+from roughgas.tasks import along
 
 SIZE = (7.0, 6.6)  # inches
 BLACK = Look("#222222", "P", "-")

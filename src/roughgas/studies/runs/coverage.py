@@ -9,8 +9,8 @@ import xarray as xr
 from roughgas.scene import build
 from roughgas.simulation import schedule
 from roughgas.simulation.point import run_point
-from roughgas.studies.runs import stream, timed
 from roughgas.studies.tasks import corner_name
+from roughgas.tasks import stream, timed
 
 MEASURED = ("R", "R_stderr", "R_dof", "equilibrated", "autocorrelation_time", "measured_from")
 

@@ -17,10 +17,10 @@ from roughgas.scene import build, initial_state
 from roughgas.simulation.energies import Energies, ratio
 from roughgas.simulation.gas import Gas
 from roughgas.statistics.errors import blocking_stderr, stderr_over_seeds
-from roughgas.studies.runs import stream, timed
 from roughgas.studies.soft_spheres import new_gas, springs
 from roughgas.studies.soft_spheres.gas import CONTACTS
 from roughgas.studies.soft_spheres.stepping import COLUMNS, step
+from roughgas.tasks import stream, timed
 from roughgas.theory import collision_frequency, stationary_theta
 
 SETTLING = 100.0  # collisions per particle, before anything is measured

@@ -12,9 +12,9 @@ from roughgas.base import CollapseError
 from roughgas.simulation.energies import ratio
 from roughgas.simulation.gas import Gas
 from roughgas.simulation.instant import whereabouts
-from roughgas.studies.runs import stream, timed
-from roughgas.studies.runs.free_cooling import FreeCooling, homogeneous, thermalised
 from roughgas.studies.tasks import point_names
+from roughgas.tasks import stream, timed
+from roughgas.tasks.free_cooling import FreeCooling, homogeneous, thermalised
 
 PARTS = 16  # of a run; the first half of them is waited for
 REFRESHED = 4  # collisions per particle: a part has a multiple of so many

@@ -7,8 +7,8 @@ from functools import partial
 import numpy as np
 import xarray as xr
 
-from roughgas.studies.runs import stream, timed
-from roughgas.studies.runs.free_cooling import (
+from roughgas.tasks import stream, timed
+from roughgas.tasks.free_cooling import (
     FreeCooling,
     corrected_ratio,
     event_driven,

@@ -20,8 +20,8 @@ from roughgas.scene import build, shear_rate
 from roughgas.simulation import schedule
 from roughgas.simulation.gas import Gas
 from roughgas.simulation.instant import whereabouts
-from roughgas.studies.runs import check_alike, stream, timed
 from roughgas.studies.tasks import profile_name
+from roughgas.tasks import check_alike, stream, timed
 
 SUMS = ("particles", "u", "v", "uu", "vv", "uv", "w", "ww")
 """Over particles: u is the velocity along the first axis without the mean flow, v that along the

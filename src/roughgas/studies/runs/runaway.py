@@ -13,10 +13,9 @@ import xarray as xr
 from roughgas.scene import build
 from roughgas.simulation.energies import ratio
 from roughgas.simulation.gas import Gas
-from roughgas.studies import dsmc
-from roughgas.studies.runs import stream, timed
-from roughgas.studies.runs.free_cooling import FreeCooling
 from roughgas.studies.tasks import runaway_gases
+from roughgas.tasks import dsmc, stream, timed
+from roughgas.tasks.free_cooling import FreeCooling
 from roughgas.theory.runaway import ESCAPED
 
 STRIDE = 4  # collisions per particle between two looks at single particles

@@ -13,8 +13,8 @@ from roughgas.simulation import schedule
 from roughgas.simulation.energies import ratio
 from roughgas.simulation.steady import samples_per_period
 from roughgas.statistics.errors import autocorrelation_time, period_means
-from roughgas.studies.runs import stream, timed
 from roughgas.studies.tasks import PARTS, SCENES
+from roughgas.tasks import stream, timed
 
 BLOCK = 50  # autocorrelation times: beyond ten of them no tail is left
 GENEROSITY = 4

@@ -18,8 +18,7 @@ from roughgas.simulation.cooling import SAMPLES_PER_REFRESH
 from roughgas.simulation.energies import ratio
 from roughgas.simulation.gas import Gas
 from roughgas.statistics.errors import blocking_stderr
-from roughgas.studies import dsmc
-from roughgas.studies.runs import check_alike, timed
+from roughgas.tasks import check_alike, dsmc, timed
 from roughgas.theory.arguments import positive_root, shares
 
 E_FOLDS = 10.0  # of theory's relaxation before R is measured

@@ -1,0 +1,263 @@
+"""Direct simulation Monte Carlo: a homogeneous gas of rough, inelastic disks or spheres.
+
+Its particles have no positions. By Bird's no-time-counter scheme pairs are drawn at random, each
+with a random normal n, and collide with the probability |g.n|/majorant, g being the relative
+velocity: as often as if they were anywhere in the volume with equal probability. Each draw takes
+the mean time between two draws. G. A. Bird, Molecular Gas Dynamics and the Direct Simulation of Gas
+Flows (Oxford, 1994), section 11.1.
+
+Units: particle radius a = particle mass m = time unit T = 1; temperatures as in roughgas.theory.
+All compiled code of the solver is in this file and in kernel/, whose edits numba's cache notices.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from roughgas.base import InputError
+from roughgas.effects import Effects
+from roughgas.effects.friction import Friction
+from roughgas.effects.spin import Spin
+from roughgas.kernel.contact import response
+from roughgas.kernel.jit import compiled, entry
+from roughgas.kernel.spins import spin_of, spin_sum, turn_spin
+from roughgas.kernel.unroll import unrolled
+from roughgas.kernel.vectors import add_scaled, dot, read, scale, subtract, write
+from roughgas.theory import arguments, moment_of_inertia
+
+FIRST_MAJORANT = 5.0  # standard deviations of the relative normal velocity; it rises where exceeded
+# Entries of HomogeneousGas.clock
+TIME, WAITED, LOG_UNIT, MAJORANT = range(4)
+# Entries of HomogeneousGas.counts
+COLLISIONS, DRAWS = range(2)
+COLUMNS = ("time", "collisions", "log_unit", "vv", "ww", "vvvv", "wwww", "vvww", "vwvw")
+
+
+class Colliding(NamedTuple):
+    """What the particles are, and how close to each other."""
+
+    restitution: float
+    roughness: float
+    effects: Effects  # only those that a contact's velocities decide on: spin and friction
+    crowding: float  # number density times Enskog's factor chi, in a^-D
+
+
+class HomogeneousGas(NamedTuple):
+    """Everything that a simulation changes; velocities in units of exp(clock[LOG_UNIT]) a/T."""
+
+    velocity: np.ndarray  # (N, D)
+    spin: np.ndarray  # (N, 2 D - 3) surface velocity a w
+    clock: np.ndarray  # time, time since then, the logarithm of the unit of velocity, majorant
+    counts: np.ndarray  # collisions, pairs drawn
+    axes: tuple[float, ...]  # D zeros: their number is the dimension that is compiled for
+
+
+class Samples(NamedTuple):
+    """A gas over time, arrays (samples,). The cumulants vanish where velocities are Maxwellian.
+
+    a20 = D <v^4>/[(D + 2) <v^2>^2] - 1, a02 the same of the spins and their n = 2 D - 3 components,
+    a11 = <v^2 w^2>/(<v^2> <w^2>) - 1, alignment = 3 <(v.w)^2>/<v^2 w^2> - 1 (spheres; 0 for disks).
+    Of rough spheres A. Santos, G. M. Kremer & M. dos Santos (Phys. Fluids 23, 030604, 2011) give
+    such cumulants, and N. V. Brilliantov et al. (Phys. Rev. Lett. 98, 128001, 2007) the alignment.
+    """
+
+    time: np.ndarray  # T
+    collisions_per_particle: np.ndarray
+    log_T_tr: np.ndarray  # natural logarithm: a cooling gas falls below the smallest number
+    theta: np.ndarray  # T_rot/T_tr
+    a20: np.ndarray
+    a02: np.ndarray
+    a11: np.ndarray
+    alignment: np.ndarray
+
+    @property
+    def R(self) -> np.ndarray:
+        """Share of rotation in the energy, E_rot/(E_rot + E_tr)."""
+        return self.theta / (1.0 + self.theta)
+
+
+def material(r, beta, dimension=2, inertia=None, crowding=1.0, mu=None) -> Colliding:
+    """Return particles of restitution r, roughness beta and `inertia` q, by default uniform ones.
+
+    Contacts slide where they would exceed the coefficient of friction `mu`; None: they always
+    stick. `crowding`, number density times chi, sets the unit of time only. Raises InputError.
+    """
+    r, beta, _, q = (float(one) for one in arguments.material(r, beta, dimension, inertia))
+    crowding = float(arguments.check("crowding", crowding))
+    friction = None if mu is None else Friction(float(arguments.check("friction mu", mu)), q)
+    return Colliding(r, beta, Effects(spin=Spin(q), friction=friction), crowding)
+
+
+def new_gas(
+    particles, theta, rng: np.random.Generator, dimension=2, inertia=None
+) -> HomogeneousGas:
+    """Return particles of Maxwellian velocities without total momentum, T_tr = 1, T_rot = theta.
+
+    Both temperatures are exact. Raises InputError for fewer than two particles or theta < 0.
+    """
+    if particles < 2:
+        raise InputError("particles", particles, "be at least 2")
+    q = moment_of_inertia(dimension) if inertia is None else inertia
+    velocity = rng.standard_normal((particles, dimension))
+    velocity -= velocity.mean(axis=0)
+    velocity /= math.sqrt(np.mean(velocity**2))
+    spin = rng.standard_normal((particles, 2 * dimension - 3))
+    spin *= math.sqrt(arguments.check("theta", theta) / (q * np.mean(spin**2)))
+    clock = np.array([0.0, 0.0, 0.0, FIRST_MAJORANT * math.sqrt(2.0)])
+    return HomogeneousGas(velocity, spin, clock, np.zeros(2, np.int64), (0.0,) * dimension)
+
+
+def run(
+    gas: HomogeneousGas, material: Colliding, rng: np.random.Generator, every: float, samples: int
+):
+    """Return the `Samples` of a gas, one every `every` collisions per particle; change the gas.
+
+    The same generator in the same state gives the same bits.
+    """
+    (number, dimension), spins = gas.velocity.shape, gas.spin.shape[1]
+    spin = material.effects.spin
+    assert spin is not None  # see `material`
+    rows = np.empty((samples, len(COLUMNS)))
+    record(gas, material, rng, max(1, round(every * number / 2)), rows)
+    time, collisions, log_unit, vv, ww, vvvv, wwww, vvww, vwvw = rows.T
+    T_tr, T_rot = vv / (number * dimension), spin.inertia * ww / (number * spins)
+    return Samples(
+        time=time,
+        collisions_per_particle=2.0 * collisions / number,
+        log_T_tr=np.log(T_tr) + 2.0 * log_unit,
+        theta=T_rot / T_tr,
+        a20=_quotient(number * dimension * vvvv, (dimension + 2) * vv**2) - 1.0,
+        a02=_quotient(number * spins * wwww, (spins + 2) * ww**2) - 1.0,
+        a11=_quotient(number * vvww, vv * ww) - 1.0,
+        alignment=_quotient(3.0 * vwvw, vvww) - 1.0 if dimension == 3 else np.zeros(samples),
+    )
+
+
+def _quotient(a, b):
+    """Return a/b; 1 where nothing spins."""
+    return np.divide(a, b, out=np.ones(len(a)), where=b > 0.0)
+
+
+@entry(cache=True)
+def record(gas, material, rng, collisions, rows):
+    """Let the gas make `collisions` before each of the `rows`, shape (samples, COLUMNS).
+
+    After each sample, and in between after as many collisions as there are particles, the total
+    momentum is removed and T_tr scaled to 1: otherwise the majorant would become too large for a
+    gas that has cooled.
+    """
+    number = len(gas.velocity)
+    for k in range(len(rows)):
+        target = gas.counts[COLLISIONS] + collisions
+        while gas.counts[COLLISIONS] + number < target:
+            collide_until(gas, material, rng, gas.counts[COLLISIONS] + number)
+            rescale(gas)
+        collide_until(gas, material, rng, target)
+        take_sample(gas, rows[k])
+        rescale(gas)
+
+
+@compiled
+def collide_until(gas, material, rng, target):
+    """Draw pairs until there have been `target` collisions, and let the time of the draws pass."""
+    while gas.counts[COLLISIONS] < target:
+        draw(gas, material, rng)
+    clock, number = gas.clock, len(gas.velocity)
+    pairs = 0.5 * (number - 1)  # over the volume, with the density in `crowding`
+    # half the surface of the sphere of contact, of two radii: a pair meets on half of it
+    cross_section = 2.0 * math.pi if len(gas.axes) == 2 else 8.0 * math.pi
+    draws = pairs * material.crowding * cross_section
+    clock[TIME] += clock[WAITED] * math.exp(-clock[LOG_UNIT]) / draws
+    clock[WAITED] = 0.0
+
+
+@compiled
+def draw(gas, material, rng):
+    """Draw two particles and the normal of their contact, and let them collide or not."""
+    number, clock = len(gas.velocity), gas.clock
+    drawn = number * rng.random()
+    i = int(drawn)
+    # what is left of it has 53 bits less those of the number of particles: enough for another one
+    j = int((drawn - i) * (number - 1))
+    j += j >= i
+    v = subtract(read(gas.velocity, i, 0, gas.axes), read(gas.velocity, j, 0, gas.axes))
+    gas.counts[DRAWS] += 1
+    clock[WAITED] += 1.0 / clock[MAJORANT]
+    threshold = clock[MAJORANT] * rng.random()
+    if dot(v, v) <= threshold * threshold:
+        return  # whatever the normal
+    n = random_direction(gas.axes, rng)
+    speed = dot(v, n)
+    clock[MAJORANT] = max(clock[MAJORANT], abs(speed))
+    if abs(speed) > threshold:
+        # from particle j to i, while they approach each other
+        collide(gas, material, i, j, scale(n, -math.copysign(1.0, speed)), v)
+
+
+@compiled
+def collide(gas, material, i, j, n, v):
+    """The contact of particles i and j, by the rule of the event-driven simulation."""
+    axes, effects = gas.axes, material.effects
+    w_i, w_j = spin_of(gas.spin, axes, i), spin_of(gas.spin, axes, j)
+    both = material.restitution, material.roughness
+    push, turn = response(effects.spin, effects, both, n, v, spin_sum(w_i, w_j), 0.5, None)
+    write(gas.velocity, i, 0, subtract(read(gas.velocity, i, 0, axes), push))
+    write(gas.velocity, j, 0, add_scaled(read(gas.velocity, j, 0, axes), push, 1.0))
+    turn_spin(gas.spin, i, w_i, turn)
+    turn_spin(gas.spin, j, w_j, turn)
+    gas.counts[COLLISIONS] += 1
+
+
+@compiled
+def random_direction(axes, rng):
+    """Return a unit vector, all directions being equally probable."""
+    while True:
+        x = _in_cube(axes, rng)
+        square = dot(x, x)
+        if 0.0 < square <= 1.0:
+            return scale(x, 1.0 / math.sqrt(square))
+
+
+@unrolled
+def _in_cube(axes, rng):
+    return tuple(2.0 * rng.random() - 1.0 for k in range(len(axes)))
+
+
+@compiled
+def take_sample(gas, row):
+    """Sum over the particles; nothing is moved."""
+    row[:] = 0.0
+    row[0], row[1], row[2] = gas.clock[TIME], gas.counts[COLLISIONS], gas.clock[LOG_UNIT]
+    for i in range(len(gas.velocity)):
+        v, w = read(gas.velocity, i, 0, gas.axes), spin_of(gas.spin, gas.axes, i)
+        vv, ww, vw = dot(v, v), dot(w, w), _along(v, w)
+        row[3] += vv
+        row[4] += ww
+        row[5] += vv * vv
+        row[6] += ww * ww
+        row[7] += vv * ww
+        row[8] += vw * vw
+
+
+@unrolled
+def _along(v, w):
+    """Return v.w, which in the plane is 0."""
+    if len(w) == 1:
+        return 0.0
+    else:
+        return dot(v, w)
+
+
+@compiled
+def rescale(gas):
+    """Remove the total momentum, which roundings leave, and undo the cooling: T_tr = 1."""
+    square = 0.0
+    for component in gas.velocity.T:
+        component -= component.mean()
+        for speed in component:
+            square += speed**2
+    factor = math.sqrt(gas.velocity.size / square)
+    for scaled in (gas.velocity, gas.spin):
+        scaled *= factor
+    gas.clock[LOG_UNIT] -= math.log(factor)
