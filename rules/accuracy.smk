@@ -37,18 +37,18 @@ def urgency_of_task(wildcards):
 
 
 def code_of_study(wildcards):
-    code = sources.code_of(f"studies.runs.{wildcards.study}", alone=["studies.files"])
+    code = files.code_of(f"studies.runs.{wildcards.study}", alone=["studies.files"])
     return with_files(code, settings_of_study(wildcards))
 
 
 def code_of_combining(wildcards):
-    return sources.code_of(
+    return files.code_of(
         "studies.files", *(f"studies.{name}" for name in entry_of(wildcards).shows)
     )
 
 
 def code_of_accuracy_figure(wildcards):
-    return sources.code_of(f"studies.figures.{wildcards.study_figure}")
+    return files.code_of(f"studies.figures.{wildcards.study_figure}")
 
 
 def study_of_figure(wildcards):
