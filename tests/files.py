@@ -95,4 +95,4 @@ def write_studies(path, folder):
     text = as_text({"study": settings, "experiments": {}})
     about = {"study": "coverage", "task": task, "scale": "small", "settings_json": text}
     write_task(folder / "task.nc", data, about)
-    combine([folder / "task.nc"], path)
+    combine([folder / "task.nc"], output=path)

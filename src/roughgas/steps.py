@@ -1,19 +1,20 @@
 """The steps of the workflow that only its rules give: `python -m roughgas.steps NAME ...`.
 
 Each function in STEPS is a step: its positional parameters are arguments, those after `*` options;
-a list takes several values, a bool none, and what has a default may be left out. Settings are JSON,
-as the rules hand them on; `checked` says that they need no check. Errors are one line, and exit
-statuses those of `roughgas`.
+what is iterable takes several values, a bool none, and what has a default may be left out. Settings
+are JSON, as the rules hand them on; `checked` says that they need no check. Errors are one line,
+and exit statuses those of `roughgas`.
 """
 
 import argparse
 import inspect
 import shlex
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from functools import partial
+from importlib import import_module
 from pathlib import Path
-from typing import Any
+from typing import Any, get_origin
 
 from roughgas import cli, config
 from roughgas.base import InputError, not_one_of
@@ -30,13 +31,6 @@ def compile_kernels(experiment: str, *, settings: str, r: str, checked: bool = F
     compile_kernels(every, config.restitution(r))
 
 
-def table(inputs: list[str], *, output: str) -> None:
-    """Write reduced datasets as one CSV table."""
-    from roughgas.results.table import write_table
-
-    write_table(inputs, output)
-
-
 def figure(name: str, inputs: list[str], *, output: list[str], slide: bool = False) -> None:
     """Draw a figure from reduced datasets, or from one of studies."""
     from roughgas.show import gallery
@@ -50,15 +44,6 @@ def figure(name: str, inputs: list[str], *, output: list[str], slide: bool = Fal
         raise InputError("number of datasets", len(inputs), "be 1, with all studies")
     else:
         of_studies.draw(name, inputs[0], output)
-
-
-def study_figure(
-    folder: str, figure: str, inputs: list[str], *, shows: list[str], output: list[str]
-) -> None:
-    """Draw a figure of the study in a folder from the reduced datasets that it shows, in order."""
-    from roughgas.show.gallery import draw_of_study
-
-    draw_of_study(folder, figure, shows, inputs, output)
 
 
 def study_claims(
@@ -77,55 +62,11 @@ def study_claims(
     judge(inputs, json, markdown, read_study(folder, title, experiments))
 
 
-def study_page(
-    folder: str, *, title: str, table: str, figures: list[str], output: str, claims: str = ""
-) -> None:
-    """Write the page of the study in a folder: its README.md, figures, table and verdicts."""
-    from roughgas.show.studies import write_page
-
-    write_page(folder, title, figures, table, claims, output)
-
-
 def claims(inputs: list[str], *, json: str, markdown: str, open_questions: bool = False) -> None:
     """Judge the claims of the paper, or what it leaves open."""
     from roughgas.claims import OPEN_QUESTIONS, PAPER, judge
 
     judge(inputs, json, markdown, OPEN_QUESTIONS if open_questions else PAPER)
-
-
-def explore(inputs: list[str], *, points: str, output: str, config: str | None = None) -> None:
-    """Write an interactive page of experiments and their points, which lie in a folder."""
-    from roughgas.show.explore import write_page
-
-    write_page(inputs, points, output, config)
-
-
-def front(input: str, *, figures: list[str], captions: list[str], output: str) -> None:
-    """Write the report's front page: figures beside their captions, and verdicts in Markdown."""
-    from roughgas.show.pages import write_front
-
-    write_front(input, figures, captions, output)
-
-
-def living(*, config: str, output: str) -> None:
-    """Write a page that simulates a gas of disks, with sliders."""
-    from roughgas.show.living import write_living
-
-    write_living(config, output)
-
-
-def document(input: str, *, output: str) -> None:
-    """Write a Markdown, YAML, MP4 or GIF file as one page of HTML."""
-    from roughgas.show.pages import write_document
-
-    write_document(input, output)
-
-
-def run_times(inputs: list[str], *, output: str) -> None:
-    """Write how long experiments took, in CPU seconds, as Markdown."""
-    from roughgas.results.table import write_times
-
-    write_times(inputs, output)
 
 
 def effective_config(input: str, *, scale: str, output: str, changes: str = "{}") -> None:
@@ -170,13 +111,6 @@ def clustering(
     print(f"{output}: {found['frames']} frames, {took}", file=sys.stderr)
 
 
-def film(input: str, *, output: list[str]) -> None:
-    """Draw the film of a cooling gas as a picture or as a movie."""
-    from roughgas.show.figures.clustering import draw
-
-    draw(input, output)
-
-
 def study(study: str, task: str, *, scale: str = config.PAPER, settings: str, output: str) -> None:
     """Run one of the independent tasks of a study."""
     from roughgas import studies
@@ -199,36 +133,32 @@ def study(study: str, task: str, *, scale: str = config.PAPER, settings: str, ou
     write_task(output, data, about | {"settings_json": settings})
 
 
-def combine(inputs: list[str], *, output: str) -> None:
-    """Combine the tasks of studies into one dataset."""
-    from roughgas.studies.files import combine
+def film(input: str, *, output: list[str]) -> None:
+    """Draw the film of a cooling gas as a picture or as a movie."""
+    from roughgas.show.figures.clustering import draw
 
-    combine(inputs, output)
-
-
-def study_tables(input: str, *, output: str) -> None:
-    """Write the results of studies as tables in Markdown."""
-    from roughgas.studies.tables import write_tables
-
-    write_tables(input, output)
+    draw(input, output)
 
 
-STEPS: dict[str, Callable[..., None]] = {
-    step.__name__: step
-    for step in (
-        *(compile_kernels, table, figure, claims, explore, front, living, document, run_times),
-        *(
-            study_figure,
-            study_claims,
-            study_page,
-            effective_config,
-            clustering,
-            film,
-            study,
-            combine,
-            study_tables,
-        ),
-    )
+STEPS: dict[str, str | Callable[..., None]] = {
+    "clustering": clustering,
+    "combine": "studies.files:combine",
+    "compile_kernels": compile_kernels,
+    "claims": claims,
+    "document": "show.pages:write_document",
+    "effective_config": effective_config,
+    "explore": "show.explore:write_page",
+    "figure": figure,
+    "film": film,
+    "front": "show.pages:write_front",
+    "living": "show.living:write_living",
+    "run_times": "results.table:write_times",
+    "study": study,
+    "study_claims": study_claims,
+    "study_figure": "show.gallery:draw_of_study",
+    "study_page": "show.studies:write_page",
+    "study_tables": "studies.tables:write_tables",
+    "table": "results.table:write_table",
 }
 
 
@@ -238,32 +168,39 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _options(arguments: Sequence[str]) -> argparse.Namespace:
-    parser = Parser(prog="python -m roughgas.steps", description=__doc__)
+    epilog = f"steps: {' '.join(STEPS)}; `STEP --help` explains one"
+    parser = Parser(prog="python -m roughgas.steps", description=__doc__, epilog=epilog)
     parsers = parser.add_subparsers(metavar="STEP", required=True)
     for name, step in STEPS.items():
-        one = parsers.add_parser(name, help=(step.__doc__ or "").partition("\n")[0])
-        for parameter in inspect.signature(step).parameters.values():
-            _add(one, parameter)
-        one.set_defaults(command=partial(_call, step))
+        one = parsers.add_parser(name)
+        if arguments[:1] == [name]:
+            if isinstance(step, str):
+                module, _, function = step.partition(":")
+                step = getattr(import_module(f"roughgas.{module}"), function)
+            one.description = inspect.getdoc(step)
+            for parameter in inspect.signature(step).parameters.values():
+                _add(one, parameter)
+            one.set_defaults(command=partial(_call, step))
     return parser.parse_args(arguments)
 
 
 def _add(parser: argparse.ArgumentParser, parameter: inspect.Parameter) -> None:
     """Add a parameter of a step to its parser."""
     name, kind, default = parameter.name, parameter.annotation, parameter.default
+    many = "+" if get_origin(kind) in (list, Iterable, Sequence) else None
     if parameter.kind is not parameter.KEYWORD_ONLY:
-        parser.add_argument(name, nargs="+" if kind == list[str] else None)
+        parser.add_argument(name, nargs=many)
         return
     names = [*(["-o"] if name == "output" else []), f"--{name.replace('_', '-')}"]
     if kind is bool:
         parser.add_argument(*names, action="store_true")
+    elif default is parameter.empty:
+        parser.add_argument(*names, nargs=many, required=True)
     else:
-        settings: dict[str, Any] = {"required": default is parameter.empty}
-        settings |= {} if settings["required"] else {"default": default}
-        parser.add_argument(*names, nargs="+" if kind == list[str] else None, **settings)
+        parser.add_argument(*names, nargs=many, default=default)
 
 
-def _call(step: Callable[..., None], options: argparse.Namespace) -> None:
+def _call(step: Callable[..., Any], options: argparse.Namespace) -> None:
     step(**{name: one for name, one in vars(options).items() if name != "command"})
 
 

@@ -100,7 +100,7 @@ GO_ON = """
 @pytest.fixture(scope="module")
 def file(tmp_path_factory):
     path = tmp_path_factory.mktemp("living") / "living.html"
-    write_living("config.yaml", path)
+    write_living(config="config.yaml", output=path)
     return path
 
 

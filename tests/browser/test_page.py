@@ -150,7 +150,7 @@ def made_up(browser, tmp_path):
     with netCDF4.Dataset(points / "sheared.nc", "a") as file:
         file["equilibrated"][...] = -1.0
     names = ("cooling", "sheared")
-    write_page([points / f"{name}.nc" for name in names], points, tmp_path / "e.html")
+    write_page([points / f"{name}.nc" for name in names], points=points, output=tmp_path / "e.html")
     browser.open(tmp_path / "e.html")
     browser.wait(lambda: browser.find("#ratios canvas") and browser.find("#energies canvas"))
     return browser
@@ -190,9 +190,9 @@ def test_a_third_axis_is_chosen_too(browser, tmp_path):
     points = points_in(tmp_path / "small")
     write_page(
         [points / f"{name}.nc" for name in ("sheared", "cooling_friction")],
-        points,
-        tmp_path / "e.html",
-        EXPERIMENTS,
+        points=points,
+        output=tmp_path / "e.html",
+        config=EXPERIMENTS,
     )
     browser.open(tmp_path / "e.html")
     assert not browser.find("#variant")[0].is_displayed()

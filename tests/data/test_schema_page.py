@@ -108,7 +108,7 @@ def test_numbers_that_miss_are_masked_for_those_who_read_masks(files):
         ("reduced", read_reduced),
         ("film", read_film),
         ("studies", lambda path: read_netcdf(path, group="coverage")),
-        ("task", lambda path: combine([path], path.with_name("studies.nc"))),
+        ("task", lambda path: combine([path], output=path.with_name("studies.nc"))),
     ],
 )
 def test_every_reader_refuses_a_newer_schema_in_one_line(files, tmp_path, kind, read):

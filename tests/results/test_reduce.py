@@ -184,7 +184,7 @@ def test_the_table_has_one_row_for_each_place_with_data(paths, tmp_path):
     reduce_points(paths, tmp_path / "sheared.nc")
     cooling = [write(tmp_path, 0.7, 0.0, 1, 0.3, True, {"experiment": "cooling"}, plateau_end=9.0)]
     reduce_points(cooling, tmp_path / "cooling.nc")
-    write_table([tmp_path / "sheared.nc", tmp_path / "cooling.nc"], tmp_path / "R.csv")
+    write_table([tmp_path / "sheared.nc", tmp_path / "cooling.nc"], output=tmp_path / "R.csv")
     rows = list(csv.DictReader(open(tmp_path / "R.csv", encoding="utf-8")))
     places = [(row["experiment"], row["r"], row["beta"]) for row in rows]
     assert places == [

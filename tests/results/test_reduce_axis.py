@@ -120,7 +120,7 @@ def test_points_of_another_axis_or_of_none_are_refused(tmp_path):
 def test_the_table_has_a_row_for_each_value(inertia, tmp_path):
     reduce_points([write(tmp_path, 0.9, 0.0, 1, 0.3)], tmp_path / "plain.nc")
     reduce_points([variant(tmp_path, "floor.wave", "sine")], tmp_path / "waves.nc")
-    write_table([tmp_path / "plain.nc", inertia, tmp_path / "waves.nc"], tmp_path / "R.csv")
+    write_table([tmp_path / "plain.nc", inertia, tmp_path / "waves.nc"], output=tmp_path / "R.csv")
     rows = list(csv.DictReader(open(tmp_path / "R.csv", encoding="utf-8")))
     assert list(rows[0])[4:9] == ["inertia", "parameter", "value", "r", "beta"]
     assert [(row["parameter"], row["value"], row["inertia"], row["beta"]) for row in rows] == [

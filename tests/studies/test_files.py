@@ -36,7 +36,7 @@ def test_tasks_become_one_file_with_a_table_and_a_figure(tasks, tmp_path):
     for name in data.data_vars:
         words = data[name].dtype.kind in "OU"
         assert "long_name" in data[name].attrs and words != ("units" in data[name].attrs), name
-    write_tables(combined, table)
+    write_tables(combined, output=table)
     assert table.read_text().startswith("## Coverage of the stated intervals\n")
     assert main(["figure", "coverage", str(combined), "-o", str(figure)]) == 0
     assert figure.stat().st_size > 10_000
@@ -44,7 +44,7 @@ def test_tasks_become_one_file_with_a_table_and_a_figure(tasks, tmp_path):
 
 def test_a_missing_task_is_named(tasks, tmp_path):
     with pytest.raises(InputError, match=r"tasks of coverage = without gas_r0\.9_beta0: must be"):
-        combine(tasks[:1], tmp_path / "all.nc")
+        combine(tasks[:1], output=tmp_path / "all.nc")
 
 
 def test_tasks_of_different_settings_are_refused(tasks, tmp_path):
@@ -52,7 +52,7 @@ def test_tasks_of_different_settings_are_refused(tasks, tmp_path):
     other.attrs["settings_json"] = settings(repetitions=9)
     other.to_netcdf(tmp_path / "other.nc")
     with pytest.raises(InputError, match="settings of coverage = 2 different ones: must be the s"):
-        combine([tmp_path / "other.nc", tasks[1]], tmp_path / "all.nc")
+        combine([tmp_path / "other.nc", tasks[1]], output=tmp_path / "all.nc")
 
 
 @pytest.mark.parametrize(

@@ -37,12 +37,12 @@ kernel, without starting processes and compiling.
 TIMES = "experiment | particles | points | seeds | collisions | CPU seconds | collisions a second"
 
 
-def write_table(reduced_paths: Iterable[str | Path], csv_path: str | Path) -> None:
+def write_table(inputs: Iterable[str | Path], *, output: str | Path) -> None:
     """Write one tidy CSV, a row for each point of each experiment."""
-    with whole_file(csv_path) as draft, open(draft, "w", newline="", encoding="utf-8") as file:
+    with whole_file(output) as draft, open(draft, "w", newline="", encoding="utf-8") as file:
         table = csv.writer(file, lineterminator="\n")
         table.writerow(HEAD)
-        for path in reduced_paths:
+        for path in inputs:
             for row in rows(read_reduced(path)):
                 table.writerow(map(_cell, row.values()))
 
@@ -95,10 +95,10 @@ def _cell(value: Any) -> str:
     return "" if math.isnan(value) else format(value, ".10g")
 
 
-def write_times(reduced: Iterable[str | Path], output: str | Path) -> None:
+def write_times(inputs: Iterable[str | Path], *, output: str | Path) -> None:
     """Write a Markdown table with a row for each reduced dataset, and one for their sum."""
     rows, spent = [], []
-    for data in map(read_reduced, reduced):
+    for data in map(read_reduced, inputs):
         seeds, collisions, seconds = data.n_seeds, data.collisions.sum(), data.kernel_seconds.sum()
         spent.append((int((seeds > 0).sum()), int(seeds.sum()), int(collisions), float(seconds)))
         rows.append([data.attrs["experiment"], particles_of(data), *_sums(*spent[-1])])

@@ -45,19 +45,20 @@ DIGITS = 5
 
 
 def write_page(
-    reduced: Iterable[str | Path],
+    inputs: Iterable[str | Path],
+    *,
     points: str | Path,
     output: str | Path,
     config: str | Path | None = None,
 ) -> None:
-    """Write the page of the experiments whose reduced datasets are at `reduced`, in this order.
+    """Write the page of the experiments whose reduced datasets are `inputs`, in this order.
 
     The folder `points` has seed 1 of each of their points, as the pipeline leaves it; `config` (by
     default the package's own) describes them. Raises InputError where a point is missing, where
     nothing spins, and for several scales at once.
     """
     known = read_yaml(config or PACKAGE / "config.yaml")["experiments"]
-    paths = list(reduced)
+    paths = list(inputs)
     number = sum(int((read_reduced(path).n_seeds > 0).sum()) for path in paths)
     longest = min(LONGEST, max(LEAST, PLACES // max(number, 1)))
     experiments = [experiment(path, Path(points), longest) for path in paths]

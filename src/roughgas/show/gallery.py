@@ -36,22 +36,23 @@ def draw(
 
 def draw_of_study(
     folder: str | Path,
-    name: str,
-    shows: Sequence[str],
+    figure: str,
     inputs: Iterable[str | Path],
-    outputs: Iterable[str | Path],
+    *,
+    shows: Sequence[str],
+    output: Iterable[str | Path],
 ) -> None:
-    """Draw the figure `name` of the study in `folder`, which `shows` these experiments.
+    """Draw a figure of the study in `folder`, which `shows` these experiments.
 
     Its figure.py has `draw` for the figure that has the study's name, and draw_X for NAME_X, which
     take the reduced datasets in the order of `shows`. Raises InputError as `draw`, and where
     figure.py has no such function.
     """
-    part = name.removeprefix(Path(folder).name)
+    part = figure.removeprefix(Path(folder).name)
     function = getattr(module_of(folder, "figure"), f"draw{part}", None)
     if function is None:
         raise InputError(f"studies/{Path(folder).name}/figure.py", "it", f"have draw{part}()")
-    _draw(name, function, shows, inputs, outputs)
+    _draw(figure, function, shows, inputs, output)
 
 
 def _draw(

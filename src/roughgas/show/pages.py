@@ -80,12 +80,12 @@ def data_of(content: Any) -> str:
 # ---------------------------------------------------------------- documents
 
 
-def write_document(source: str | Path, output: str | Path) -> None:
+def write_document(input: str | Path, *, output: str | Path) -> None:
     """Write a table, a configuration or a movie as one page, which Snakemake's report shows.
 
     Raises InputError for a kind of file that KINDS does not have, and where a text is none.
     """
-    source = Path(source)
+    source = Path(input)
     if source.suffix not in KINDS:
         raise InputError("document", source, f"end in one of {', '.join(KINDS)}")
     try:
@@ -140,19 +140,20 @@ KINDS = {
 
 
 def write_front(
-    claims: str | Path,
+    input: str | Path,
+    *,
     figures: Iterable[str | Path],
     captions: Iterable[str | Path],
     output: str | Path,
 ) -> None:
-    """Write one page of pictures (.png), their captions beside them, and claims (.md).
+    """Write one page of pictures (.png) with their captions, and of the claims in `input` (.md).
 
     A picture's caption is the .rst file of its name; both know the catalogue's figures. Raises
     InputError for a figure that the catalogue does not have, or that has no caption.
     """
     texts = {Path(one).stem: Path(one).read_text("utf-8") for one in captions}
     shown = [_figure(Path(one), texts) for one in figures]
-    verdicts = markdown_as_html(_table_first(Path(claims).read_text("utf-8")).encode())
+    verdicts = markdown_as_html(_table_first(Path(input).read_text("utf-8")).encode())
     parts = {"figures": shown, "claims": markup(verdicts)}
     write_page(output, "page/front.html", ["page/front.css"], **parts)
 

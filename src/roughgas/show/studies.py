@@ -29,11 +29,12 @@ def captions(folder: str | Path, figures: Sequence[str]) -> dict[str, str]:
 
 def write_page(
     folder: str | Path,
+    *,
     title: str,
     figures: Sequence[str],
     table: str | Path,
-    claims: str | Path,
     output: str | Path,
+    claims: str | Path = "",
 ) -> None:
     """Write a page of HTML that loads nothing: README.md with the pictures `figures` in it, those
     that it does not show after it, verdicts, and the table of R."""

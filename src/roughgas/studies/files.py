@@ -18,13 +18,13 @@ def write_task(path: str | Path, data: xr.Dataset, about: Mapping[str, Any]) -> 
     write_netcdf(path, content_of(data.assign_attrs(about)))
 
 
-def combine(paths: Iterable[str | Path], output: str | Path) -> None:
+def combine(inputs: Iterable[str | Path], *, output: str | Path) -> None:
     """Combine the files of tasks into one file, with a group for each study among them.
 
     Raises InputError where tasks of a study are missing or come from different settings.
     """
     found: dict[str, dict[str, xr.Dataset]] = {}
-    for path in paths:
+    for path in inputs:
         data = read_netcdf(path, TASK)
         found.setdefault(data.attrs["study"], {})[data.attrs["task"]] = data
     groups = {name: content_of(_combined(name, parts)) for name, parts in found.items()}

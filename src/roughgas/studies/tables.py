@@ -41,9 +41,9 @@ SHEARED = {
 }
 
 
-def write_tables(path: str | Path, output: str | Path) -> None:
+def write_tables(input: str | Path, *, output: str | Path) -> None:
     """Write the tables of all studies in a combined file as Markdown."""
-    found = read_studies(path).items()
+    found = read_studies(input).items()
     write_text(output, "\n".join(TABLES[name](data) for name, data in found))
 
 

@@ -130,7 +130,7 @@ def test_a_figure_is_drawn(name, tmp_path):
         draw(name, paths, [output])
     else:
         folder = ROOT / "studies" / name.partition("_")[0]
-        draw_of_study(folder, name, [path.stem for path in paths], paths, [output])
+        draw_of_study(folder, name, paths, shows=[path.stem for path in paths], output=[output])
     image = imread(output)
     assert image.shape[0] > 600 and image.shape[1] > 800 and image.std() > 0.05
 

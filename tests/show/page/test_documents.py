@@ -57,7 +57,7 @@ def test_an_unknown_kind_is_refused(tmp_path, capsys):
 
 
 def test_run_times_are_sums_over_points_and_seeds(points, tmp_path):
-    write_times([points / "sheared.nc", points / "cooling.nc"], tmp_path / "times.md")
+    write_times([points / "sheared.nc", points / "cooling.nc"], output=tmp_path / "times.md")
     rows = [line for line in (tmp_path / "times.md").read_text().splitlines() if line[:1] == "|"]
     assert rows[2:] == [
         "| sheared | 40 | 2 | 4 | 4,936 | 1.0 | 4,936 |",

@@ -110,7 +110,7 @@ def test_a_verdict_without_evidence_the_size_and_fewer_samples(points, tmp_path,
     with netCDF4.Dataset(tmp_path / "sheared.nc", "a") as file:
         file["equilibrated"][...] = -1.0
     monkeypatch.setattr("roughgas.show.explore.PLACES", 50)
-    write_page([tmp_path / "sheared.nc"], tmp_path, tmp_path / "e.html")
+    write_page([tmp_path / "sheared.nc"], points=tmp_path, output=tmp_path / "e.html")
     (found,) = data_in(tmp_path / "e.html")["experiments"]
     assert (found["box"], found["packing"], found["particles"]) == ([20, "open"], 0.25, "40")
     (shown,) = found["variants"][0]["series"][0]["points"]
@@ -137,14 +137,15 @@ def test_the_page_holds_its_data_and_asks_for_nothing(points, tmp_path):
 def test_experiments_are_called_as_a_configuration_describes_them(points, tmp_path):
     (tmp_path / "own.yaml").write_text("experiments: {sheared: {description: My <gas>.}}\n")
     reduced = [points / f"{name}.nc" for name in ("sheared", "cooling_friction")]
-    write_page(reduced, points, tmp_path / "page.html", tmp_path / "own.yaml")
+    own = tmp_path / "own.yaml"
+    write_page(reduced, points=points, output=tmp_path / "page.html", config=own)
     found = [one["description"] for one in data_in(tmp_path / "page.html")["experiments"]]
     assert found == ["My <gas>", "cooling friction"]
 
 
 def test_its_programs_are_allowed_by_their_hashes(points, tmp_path):
     page = tmp_path / "page.html"
-    write_page([points / "sheared.nc"], points, page)
+    write_page([points / "sheared.nc"], points=points, output=page)
     text = page.read_text("utf-8")
     programs = re.findall(r"<script>(.*?)</script>", text, re.S)
     assert programs == [text_of(f"page/{name}") for name in PROGRAM]
@@ -167,7 +168,11 @@ def test_several_scales_do_not_mix(points, tmp_path):
     other = read_reduced(points / "sheared.nc").assign_attrs(scale="paper")
     other.to_netcdf(tmp_path / "other.nc")
     with pytest.raises(InputError, match="scale of the datasets = paper and small: must be one"):
-        write_page([points / "cooling.nc", tmp_path / "other.nc"], points, tmp_path / "page.html")
+        write_page(
+            [points / "cooling.nc", tmp_path / "other.nc"],
+            points=points,
+            output=tmp_path / "page.html",
+        )
 
 
 def test_the_committed_page_is_the_present_one():

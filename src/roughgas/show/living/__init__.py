@@ -4,8 +4,8 @@ import json
 from pathlib import Path
 from typing import Any
 
-from roughgas import config
 from roughgas.base import InputError
+from roughgas.config import PAPER, experiment, load
 from roughgas.scene import check
 from roughgas.show import pages
 
@@ -24,12 +24,12 @@ PROGRAM = """paths.js gas.js start.js theory.js record.js run.js
 drawing.js panel.js questions.js view.js""".split()
 
 
-def write_living(config_path: str | Path, output: str | Path) -> None:
+def write_living(*, config: str | Path, output: str | Path) -> None:
     """Write the living page of the experiments in SCENES, as the configuration has them.
 
     Raises InputError for a configuration without them, or with what the page cannot simulate.
     """
-    found = scenes(config.load(config_path))
+    found = scenes(load(config))
     program = "".join(pages.text_of(f"living/{name}") for name in PROGRAM)
     parts = {"scenes": pages.markup(json.dumps(found)), "particles": found["cooling"]["particles"]}
     pages.write_page(output, "living/page.html", ["living/page.css"], [program], **parts)
@@ -43,22 +43,21 @@ def scenes(configuration: Any) -> dict[str, dict[str, Any]]:
 def settings(configuration: Any, name: str) -> dict[str, Any]:
     """Return the settings of an experiment at the paper's scale, or else at the usual one, with the
     page's changes."""
-    paper = config.PAPER in configuration["scales"]
-    scale = config.PAPER if paper else configuration["scale"]
-    return config.experiment(configuration, name, scale) | SCENES[name]
+    scale = PAPER if PAPER in configuration["scales"] else configuration["scale"]
+    return experiment(configuration, name, scale) | SCENES[name]
 
 
-def scene_of(name: str, experiment: dict[str, Any]) -> dict[str, Any]:
+def scene_of(name: str, settings: dict[str, Any]) -> dict[str, Any]:
     """Return a scene in the units of all scenes: lengths in a, times in T."""
-    check(experiment)
-    effects, (width, height) = experiment["effects"], experiment["box"]
+    check(settings)
+    effects, (width, height) = settings["effects"], settings["box"]
     floor, model = effects.get("floor"), effects.get("contact_time", {})
     for other in set(effects) - KNOWN:
         raise InputError(f"effects of {name}", other, f"be among {', '.join(sorted(KNOWN))}")
     if floor and (floor.get("wave", WAVE) != WAVE or "particles" in floor.values()):
         raise InputError(f"floor of {name}", floor, "be a sawtooth of a material of its own")
     return {
-        "particles": experiment["particles"],
+        "particles": settings["particles"],
         "box": [width, None if height == "open" else height],
         "inertia": effects["spin"]["inertia"],
         "gravity": effects.get("gravity", {}).get("acceleration", 0),
