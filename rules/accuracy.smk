@@ -37,18 +37,18 @@ def urgency_of_task(wildcards):
 
 
 def code_of_study(wildcards):
-    code = files.code_of(f"studies.runs.{wildcards.study}", alone=["studies.files"])
+    code = hash_of_code(f"studies.runs.{wildcards.study}", alone=["studies.files"])
     return with_files(code, settings_of_study(wildcards))
 
 
 def code_of_combining(wildcards):
-    return files.code_of(
+    return hash_of_code(
         "studies.files", *(f"studies.{name}" for name in entry_of(wildcards).shows)
     )
 
 
 def code_of_accuracy_figure(wildcards):
-    return files.code_of(f"studies.figures.{wildcards.study_figure}")
+    return hash_of_code(f"studies.figures.{wildcards.study_figure}")
 
 
 def study_of_figure(wildcards):

@@ -16,7 +16,7 @@ from snakemake.settings.types import DeploymentMethod
 try:
     import roughgas.config
     from roughgas.config import schema
-    from roughgas.base import files
+    from roughgas.base.files import PACKAGE as PACKAGE_FOLDER, code_of as hash_of_code
     from roughgas.base import InputError, not_one_of, shown
     from roughgas.base.formatting import in_rst
     from roughgas.config.reading import read_yaml
@@ -29,7 +29,7 @@ except ModuleNotFoundError as error:
 # where the Snakefile is: this folder, or another one, or, of a module, a site from which Snakemake
 # fetches what it needs
 SOURCE = Path(os.path.relpath(Path(workflow.current_basedir.get_path_or_uri(True)).parent))
-PACKAGE = os.path.relpath(files.PACKAGE)  # so that a folder may be moved with its results
+PACKAGE = os.path.relpath(PACKAGE_FOLDER)  # so that a folder may be moved with its results
 # a module leaves the configuration of this folder to its host; so does what includes the Snakefile
 IS_MODULE = workflow.modifier.namespace is not None
 # the configuration of this folder, or else the one beside the Snakefile
@@ -202,7 +202,7 @@ def code_of(*modules, alone=(), settings=None):
     """
 
     def code(wildcards):
-        found = files.code_of(*modules, alone=alone)
+        found = hash_of_code(*modules, alone=alone)
         return with_files(found, settings(wildcards)) if settings else found
 
     return code

@@ -33,7 +33,7 @@ def data_of_talk(wildcards):
 
 
 def code_of_figure(wildcards):
-    return files.code_of(f"show.figures.{wildcards.figure}", "show.style")
+    return hash_of_code(f"show.figures.{wildcards.figure}", "show.style")
 
 
 def experiments_of_product(wildcards):

@@ -86,7 +86,7 @@ def text_of_points(scale, experiment):
 
 def code_of_points(wildcards):
     """The code that points depend on."""
-    code = files.code_of(*SIMULATING, alone=RECORDING)
+    code = hash_of_code(*SIMULATING, alone=RECORDING)
     return with_files(code, settings_of_points(wildcards))
 
 

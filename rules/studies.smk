@@ -53,7 +53,7 @@ def code_of_study_claims(wildcards):
 def code_beside(about, patterns, *modules):
     """A hash of the files of a study that match any of these patterns, and of modules that they use."""
     found = [path for one in patterns for path in sorted(Path(about["folder"]).glob(one))]
-    return " ".join([files.code_of(*modules), *map(hash_of_file, found)])
+    return " ".join([hash_of_code(*modules), *map(hash_of_file, found)])
 
 
 # made from the output and therefore not recorded: results do not depend on where a study is, nor on
