@@ -9,14 +9,12 @@ from html import unescape
 from pathlib import Path
 
 import pytest
-from docutils.core import publish_parts
-from markdown_it import MarkdownIt
 from show.page.conftest import write
 from tests.entry import main
 from tests.files import point
 
 from roughgas.base import InputError
-from roughgas.base.formatting import in_csv, in_rst, markdown
+from roughgas.base.formatting import in_csv, markdown
 from roughgas.config import schema
 from roughgas.config.provenance import provenance
 from roughgas.data.point import write_point
@@ -82,29 +80,6 @@ def test_documents_run_nothing_and_load_nothing(tmp_path, text):
         assert "<script" not in page and 'href="javascript' not in page
 
 
-@pytest.mark.parametrize("text", [*EVIL, "a | b"])
-def test_a_cell_of_a_markdown_table_is_one_cell(text):
-    shown = (
-        MarkdownIt("commonmark", {"html": False})
-        .enable("table")
-        .render(markdown(["name", "next"], [[text, "1"]]))
-    )
-    assert shown.count("<td>") == 2 and "<td>1</td>" in shown
-
-
-@pytest.mark.parametrize(
-    "text", [*EVIL, "x\n\n.. raw:: html\n\n   <b>", "`a <javascript:x>`_", "*"]
-)
-def test_a_description_stays_a_text_in_the_report(text):
-    """Captions are reStructuredText, which could include files and raw HTML."""
-    settings = {"halt_level": 2, "report_level": 5}
-    caption = f"- ``gas``: {in_rst(text)} 160 particles."
-    shown = publish_parts(caption, writer="html", settings_overrides=settings)["body"]
-    found = " ".join(unescape(re.sub("<.*?>", "", shown)).split())
-    assert found == f"gas: {' '.join(text.split())} 160 particles."
-    assert "href" not in shown and "<script" not in shown
-
-
 @pytest.mark.parametrize("text", FORMULAS)
 def test_no_text_in_a_table_is_a_formula(tmp_path, monkeypatch, text):
     monkeypatch.chdir(tmp_path)
@@ -117,22 +92,6 @@ def test_no_text_in_a_table_is_a_formula(tmp_path, monkeypatch, text):
     assert in_csv(text) == f"'{text}"
 
 
-@pytest.mark.parametrize("text", [*EVIL, "a\rb", "a,b", "a\r\nb"])
-def test_a_text_in_a_table_is_one_cell(tmp_path, monkeypatch, text):
-    monkeypatch.chdir(tmp_path)
-    write_point("point.nc", made(scale=text))
-    reduce_points(["point.nc"], "all.nc")
-    assert main(["table", "all.nc", "-o", "R.csv"]) == 0
-    with open("R.csv", newline="", encoding="utf-8") as lines:
-        head, row = csv.reader(lines)
-    assert dict(zip(head, row, strict=True))["scale"] == text.replace("\r", " ")
-
-
-@pytest.mark.parametrize("value", ["-0.5", "+1e-3", "0.9", "sine", -0.5, "", "a=b"])
-def test_numbers_and_words_in_a_table_are_as_they_were(value):
-    assert in_csv(value) == value
-
-
 @pytest.mark.parametrize("name", ["a b", "$(x)", "a;b", "a'b", "a\n", "a/b", "../x", "-x", ""])
 def test_names_that_become_parts_of_commands_are_words(name):
     """Scales and experiments, which stand in rules' commands as they are."""
@@ -140,17 +99,6 @@ def test_names_that_become_parts_of_commands_are_words(name):
     settings |= {"showcase": {}, "studies": {}}
     with pytest.raises(InputError, match="must consist of lower-case letters"):
         schema.check(settings)
-
-
-def test_wildcards_hold_nothing_that_means_something_to_a_shell():
-    common = (RULES[0].parent / "common.smk").read_text("utf-8")
-    allowed = re.compile(re.search('^NAME = r"(.*?)"', common, re.M).group(1))
-    for text in (*EVIL, "a b", "*", "a&b", "a>b", "~", "#", "!", "\\", "%"):
-        assert not allowed.fullmatch(text)
-    for text in ("small", "r0.90", "-1e-3", "+1", "cooling-reference", "seed1"):
-        assert allowed.fullmatch(text)
-    constraints = Path(RULES[0].parents[1], "Snakefile").read_text("utf-8")
-    assert "[^/]" not in constraints
 
 
 @pytest.mark.parametrize("text", EVIL)
@@ -176,13 +124,3 @@ def test_everything_is_quoted_in_every_command_of_a_rule():
     placeholders = [re.findall(r"\{.*?\}", command) for command in commands]
     assert len(commands) == len(re.findall("^ +shell:", text, re.M)) > 20 and all(placeholders)
     assert [one for some in placeholders for one in some if not one.endswith(":q}")] == []
-
-
-@pytest.mark.parametrize("name", ["a b.nc", "$(touch owned).nc", "a'b\".nc", "<b>.nc", "=1+1.nc"])
-def test_names_of_files_are_names(tmp_path, monkeypatch, capsys, name):
-    monkeypatch.chdir(tmp_path)
-    write_point(name, made())
-    assert main(["reduce", name, "-o", "all.nc"]) == 0
-    assert main(["show", name, "none"]) == 1
-    assert capsys.readouterr().out.startswith(f"{name}: point\n")
-    assert not Path("owned").exists()

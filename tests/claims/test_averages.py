@@ -19,30 +19,12 @@ def test_lun_over_collisions(judged, left, verdict):
     assert judged("lun_over_collisions", bed(left=left)).verdict == verdict
 
 
-def test_lun_over_collisions_whatever_the_mean_of_R(judged):
-    spheres = bed(excess=0.2, experiment="vibrated_spheres")
-    assert judged("vibrated_spheres_over_collisions", spheres).verdict == HOLDS
-
-
 def test_an_excess_that_is_all_of_averaging(judged):
     found = judged("excess_is_of_averaging", bed())
     numbers = dict(found.numbers)
     assert found.verdict == HOLDS
     assert numbers["R - Lun's formula for the mean of R(t)"].value > 0.03
     assert abs(numbers["R - Lun's formula averaged over collisions"].value) < 3e-4  # 3 sigma
-
-
-def test_an_excess_that_is_half_of_correlation(judged):
-    """It lowers R over collisions where it is positive; the correlation explains that."""
-    found = judged("excess_is_of_averaging", bed(correlation=lambda beta: -0.3 * (1 - beta**2)))
-    numbers = dict(found.numbers)
-    assert found.verdict == QUALIFIED
-    assert numbers["R - Lun's formula averaged over collisions"].value > 0.02
-    assert abs(numbers["mean difference"].value) < 2e-4
-
-
-def test_an_excess_that_no_average_takes_away(judged):
-    assert judged("excess_is_of_averaging", bed(left=0.4)).verdict == FAILS
 
 
 def test_data_without_contacts(judged):

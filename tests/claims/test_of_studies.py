@@ -1,6 +1,5 @@
 """Statements that studies decide, on studies of which the answer is known."""
 
-import json
 import math
 
 import numpy as np
@@ -9,12 +8,9 @@ import xarray as xr
 from tests.claims.gases import KICKS, boundaries, constant, swept
 from tests.houses import statements
 
-from roughgas.claims import OPEN_QUESTIONS
 from roughgas.claims.evidence import beside_theory
-from roughgas.claims.report import judge
 from roughgas.claims.statements import examine
 from roughgas.claims.verdicts import FAILS, HOLDS, NOT_TESTED, QUALIFIED
-from roughgas.data.netcdf import Content, content_of, write_netcdf
 
 STATEMENTS = statements()
 DRIVES = ("floor_materials", "wall_materials", "shaken_walls")
@@ -51,19 +47,6 @@ def test_the_excess_of_a_sheared_gas(share, verdict):
     assert dict(found.numbers)["expected"].value == pytest.approx(0.155)
 
 
-@pytest.mark.parametrize(
-    ("study", "why"),
-    [
-        (sheared(1.0, error=0.1), "errors are too large"),
-        (sheared(1.0).isel(point=[3]), "no sheared gas"),
-        (sheared(1.0, runs=None).drop_attrs(), "of how many runs"),
-    ],
-)
-def test_an_excess_that_cannot_be_told(study, why):
-    found = judged("shear_gives_the_excess", profiles=study)
-    assert found.verdict == NOT_TESTED and why in found.reason
-
-
 def escapes(*exponents, error=0.1):
     """Times of escape that go as such powers of N, at a mu each; of the last N nothing is known."""
     numbers, mu = np.array([100, 1000, 10000]), np.arange(1, len(exponents) + 1) / 10
@@ -91,32 +74,6 @@ def test_the_larger_the_gas_the_sooner(exponents, verdict):
     label, flattest = found.numbers[0]
     assert "mu = 0.1" in label and flattest.value == pytest.approx(exponents[0])
     assert flattest.stderr == pytest.approx(0.1 * math.sqrt(2) / math.log(10))
-
-
-def test_one_number_of_particles_says_nothing_of_others():
-    study = escapes(-1.0).isel(dsmc_particles=[0, 2], events_particles=[1])
-    assert judged("sooner_the_larger", runaway=study).verdict == NOT_TESTED
-
-
-def test_uncertain_times_tell_no_direction():
-    alone = escapes(-1.0)
-    for kind in ("dsmc", "events"):  # one escape at each number: nothing is known of its error
-        alone[f"{kind}_escapes"] = alone[f"{kind}_escapes"].clip(max=1)
-    assert judged("sooner_the_larger", runaway=alone).verdict == NOT_TESTED
-    found = judged("sooner_the_larger", runaway=escapes(-0.1, error=0.5))
-    assert found.verdict == NOT_TESTED and "errors are too large" in found.reason
-
-
-def test_files_of_studies_are_judged_beside_reduced_datasets(tmp_path):
-    paths = [tmp_path / "runaway.nc", tmp_path / "heated.nc"]
-    groups = {"runaway": content_of(escapes(-0.3, -1.0))}
-    write_netcdf(paths[0], Content({}, {"title": "Studies"}), groups)
-    swept("heated", KICKS).to_netcdf(paths[1])
-    judge(paths, tmp_path / "c.json", tmp_path / "c.md", OPEN_QUESTIONS)
-    content = json.loads((tmp_path / "c.json").read_text())
-    verdicts = {claim["id"]: claim["verdict"] for claim in content["claims"]}
-    assert verdicts["sooner_the_larger"] == HOLDS
-    assert content["data"]["runaway"] == {"study": "runaway"} and content["scale"] == "small"
 
 
 def collisional(data, shift=0.0):

@@ -95,15 +95,6 @@ def test_spheres_are_not_judged_as_disks(judged):
     assert judged("cooling_spheres_follow_goldshtein", data).verdict != HOLDS
 
 
-def test_the_third_parameter_of_the_largest_difference_is_named(judged):
-    data = swept("vibrated_inertia", INERTIA, lambda r, b, q: 0.03 * (q == 0.5))
-    found = judged("vibrated_inertia_follows_lun", data)
-    assert found.verdict == QUALIFIED and "inertia = 0.5, the mean" in found.reason
-    labels, numbers = zip(*found.numbers[2:5], strict=True)
-    assert labels == tuple(f"largest at inertia = {q:g}" for q in INERTIA[1])
-    assert [abs(number.value) > 0.02 for number in numbers] == [False, True, False]
-
-
 @pytest.mark.parametrize(
     ("factor", "error", "expected"),
     [(1.05, 1e-5, HOLDS), (0.7, 1e-5, QUALIFIED), (0.4, 1e-5, FAILS), (1.0, 2e-3, QUALIFIED)],
@@ -130,13 +121,6 @@ def test_a_drive_with_rotation_alone_may_differ_from_eq_lun(judged):
     assert judged(name, spun).verdict == HOLDS
     without = swept("heated", ("thermostat.spin_share", (0.3, 1.0)))
     assert judged(name, without).verdict == NOT_TESTED
-
-
-def test_shares_outside_of_their_range_are_counted(judged):
-    shares = np.array([-0.1, 0.0, 0.4, 1.2])[:, None, None]
-    found = judged("rough_floor_follows_rates", boundaries("floor_materials", shares=shares))
-    assert found.verdict == HOLDS and "At 3 points rotation is taken out." in found.reason
-    assert "The share is from -0.100 to 1.200." in found.reason
 
 
 def test_an_uncertain_share_makes_its_prediction_uncertain(judged):
@@ -182,12 +166,6 @@ def test_only_rotation_matters(judged, kind, shift, expected):
         assert "shifted by more than 0.02 at 6 of 6 points" in found.reason
         rise = theory.stationary_ratio(0.9, -0.5, 2, 0.5, 0.3) - theory.lun_ratio(-0.5, 0.5)
         assert found.numbers[0][1].value == pytest.approx(rise, abs=0.005)
-
-
-def test_boundaries_that_all_put_in_rotation_qualify(judged):
-    shares = np.array([0.0, 0.1, 0.2, 0.3])[:, None, None]
-    found = judged("only_spinning_walls_matter", boundaries("wall_materials", shares=shares))
-    assert found.verdict == QUALIFIED and "All rough boundaries" in found.reason
 
 
 def test_gases_of_smooth_particles_say_nothing_of_shares(judged):
@@ -237,13 +215,6 @@ def test_what_a_sweep_does_not_hold_is_not_tested(judged, name, data, reason):
     assert found.verdict == NOT_TESTED and reason in found.reason
 
 
-def test_waves_are_told_apart(judged):
-    data = swept("waves", ("floor.wave", WAVES), lambda r, b, wave: 0.04 + 0.03 * (wave == "sine"))
-    found = judged("wave_form_changes_nothing", data)
-    assert found.numbers[0][0] == "sine: largest difference"
-    assert abs(dict(found.numbers)["triangle: mean difference"].value) < 0.003
-
-
 def test_the_friction_from_which_a_gas_is_rough(judged):
     def shift(r, beta, mu):
         return np.where(mu == 1.0, 0.1 * (beta == 0), 0.0)
@@ -269,16 +240,6 @@ def test_weak_friction_keeps_spin(judged):
     assert f"in theory by {expected:.4f}" in found.reason
 
 
-def test_without_a_jump_spin_is_not_said_to_dominate(judged):
-    """R = 1 beyond the mu at which theory has it fall, as where single particles run away."""
-
-    def all_spin(r, beta, mu):
-        return 1 - theory.friction_ratio(r, beta, mu, 2, 0.5)
-
-    data = swept("cooling_friction", FRICTION, all_spin)
-    assert judged("weak_friction_keeps_spin", data).verdict == FAILS
-
-
 def test_weak_friction_is_not_left_out(judged):
     """A gas that spin has left where the rate equations have R = 0.3 does not follow them; mixtures
     of replicas are set aside, and counted."""
@@ -288,11 +249,3 @@ def test_weak_friction_is_not_left_out(judged):
 
     data = swept("cooling_friction", FRICTION, gone)
     assert judged("cooling_friction_follows_rates", data).verdict == FAILS
-
-
-@pytest.mark.parametrize(
-    ("left", "expected"), [(0.97, QUALIFIED), (0.5, FAILS)], ids=["nearly", "not"]
-)
-def test_spin_that_does_not_outlive_translation(judged, left, expected):
-    data = swept("cooling_friction", FRICTION, lambda r, b, mu: (left - 1) * (mu < 0.1))
-    assert judged("weak_friction_keeps_spin", data).verdict == expected

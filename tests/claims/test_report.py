@@ -1,9 +1,7 @@
 import json
 
 import pytest
-from synthetic import BETA, averaged, reduced
-from tests.entry import main
-from tests.houses import statements
+from synthetic import reduced
 
 from roughgas.base import InputError
 from roughgas.claims import PAPER, judge
@@ -60,36 +58,3 @@ def test_datasets_of_several_scales_are_refused(paths, tmp_path):
     with pytest.raises(InputError, match="none"):
         judge([], tmp_path / "c.json", tmp_path / "c.md", PAPER)
     assert not (tmp_path / "c.md").exists()
-
-
-def test_statements_have_names_of_their_own():
-    both = statements().values()
-    assert len({statement.name for statement in both}) == len(both)
-
-
-def test_the_papers_own_experiments_leave_nothing_untested(tmp_path):
-    kinds = [f"vibrated_{kind}_walls" for kind in ("rough", "particle", "smooth")]
-    sheared = reduced("sheared", error=0.004)
-    sheared["R_unsubtracted"], sheared["R_unsubtracted_stderr"] = sheared.R - 0.1, sheared.R_stderr
-    walls = [reduced(kind, r=(0.9,), beta=(-1.0, *BETA)) for kind in kinds]
-    paths = []
-    for data in (averaged(reduced()), reduced("cooling"), sheared, *walls):
-        paths.append(tmp_path / f"{data.attrs['experiment']}.nc")
-        data.to_netcdf(paths[-1])
-    findings = judge(paths, tmp_path / "claims.json", tmp_path / "claims.md", PAPER)
-    assert len(findings) == 19
-    assert NOT_TESTED not in {finding.verdict for finding in findings}
-
-
-def test_each_table_says_what_it_is_about(tmp_path):
-    reduced("cooling_spheres").to_netcdf(tmp_path / "spheres.nc")
-    tables = []
-    for option in ([], ["--open-questions"]):
-        out = [f"--json={tmp_path / 'c.json'}", f"--markdown={tmp_path / 'c.md'}"]
-        assert main(["claims", str(tmp_path / "spheres.nc"), *option, *out]) == 0
-        tables.append((tmp_path / "c.md").read_text())
-        title = json.loads((tmp_path / "c.json").read_text())["title"]
-        assert tables[-1].startswith(f"# {title}\n\nS. McNamara")
-    assert "19 statements: holds 0," in tables[0] and "`open_questions.md`" in tables[0]
-    assert "2 statements: holds 0," in tables[1] and "`open_questions.md`" not in tables[1]
-    assert all("{" not in table and "Significance and size" in table for table in tables)

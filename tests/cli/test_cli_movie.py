@@ -32,13 +32,6 @@ def test_every_file_that_is_asked_for_is_made(tmp_path, capsys):
     assert said.out == "" and said.err.splitlines() == [f"{path}: 3 frames" for path in outputs]
 
 
-def test_the_same_seed_gives_the_same_bytes(tmp_path):
-    for name, seed in (("a", "1"), ("b", "1"), ("c", "2")):
-        assert make(tmp_path / f"{name}.gif", seed=seed) == 0
-    one, same, other = ((tmp_path / f"{name}.gif").read_bytes() for name in "abc")
-    assert one == same != other
-
-
 @pytest.mark.parametrize(
     ("choice", "message"),
     [

@@ -3,7 +3,6 @@
 import pytest
 
 from cli import page
-from roughgas import cli
 
 BLOCKS = page.blocks()
 
@@ -21,8 +20,3 @@ def test_a_block_is_what_its_commands_print(folder, block):
     assert page.without_machine(found) == page.without_machine(block), (
         "write it anew: python tests/cli/page.py"
     )
-
-
-def test_every_command_for_people_is_on_the_page():
-    text = page.PAGE.read_text(encoding="utf-8")
-    assert [name for name in cli.COMMANDS if f"roughgas {name}" not in text] == []

@@ -73,13 +73,6 @@ def test_bad_arguments_are_refused_in_one_line(capsys, arguments, message):
     assert said.err.count("\n") == 1
 
 
-def test_a_dataset_that_does_not_exist(tmp_path, capsys):
-    assert main(["reduce", str(tmp_path / "no.nc"), "--output", str(tmp_path / "x.nc")]) == 1
-    said = capsys.readouterr().err
-    assert said.startswith("roughgas: error: ") and said.count("\n") == 1
-    assert list(tmp_path.iterdir()) == []
-
-
 def test_the_version(capsys):
     with pytest.raises(SystemExit):
         main(["--version"])
@@ -159,19 +152,6 @@ def test_several_seeds_are_the_same_as_each_alone(tmp_path, capsys):
         assert one.drop_vars(WALL_CLOCK, errors="ignore").identical(
             other.drop_vars(WALL_CLOCK, errors="ignore")
         )
-
-
-def test_several_betas_each_with_each_seed(tmp_path):
-    names = [f"{beta}_{seed}.nc" for beta in ("-1e-1", "0.5") for seed in "12"]
-    arguments = ["run", "cooling", "--r=0.9", "--beta=-1e-1", "--beta=0.5", "--seed", "1", "2"]
-    arguments += ["--settings", json.dumps(TINY), "--output"]
-    assert main([*arguments, *(str(tmp_path / name) for name in names)]) == 0
-    for name in names:
-        command = shlex.split(read_point(tmp_path / name).attrs["command"])
-        beta, _, seed = name.removesuffix(".nc").partition("_")
-        assert f"--beta={beta}" in command and f"--seed={seed}" in command
-        assert main([*command[1:-1], str(tmp_path / "alone.nc")]) == 0
-        assert read_point(tmp_path / name).R == read_point(tmp_path / "alone.nc").R
 
 
 def test_points_to_reduce_are_read_from_standard_input(point, tmp_path, monkeypatch):

@@ -10,7 +10,6 @@ from roughgas.cli import main
 from roughgas.cli.show import summary
 from roughgas.data.point import read_point
 from roughgas.data.reduced import read_reduced
-from roughgas.simulation.point import run_point
 
 PLACE = ("--r=0.9", "--beta=-0.50", f"--settings={json.dumps(GAS)}")
 
@@ -51,27 +50,6 @@ def test_a_run_goes_on_from_the_file_of_another(tmp_path, monkeypatch, capsys):
         assert said.startswith(f"roughgas: error: {message}") and said.count("\n") == 1
     assert len(list(tmp_path.iterdir())) == 3
     assert main(["show", "first.nc"]) == 0
-
-
-def test_a_script_reads_a_line_for_each_seed_as_it_is_done(tmp_path, monkeypatch, capsys):
-    told = []
-
-    def watched(*arguments):
-        told.append(capsys.readouterr().out)
-        return run_point(*arguments)
-
-    monkeypatch.setattr("roughgas.simulation.points.run_point", watched)
-    files = [str(tmp_path / name) for name in ("1.nc", "2.nc")]
-    assert main(["run", "cooling", *PLACE, "--seed", "1", "2", "--json", "-o", *files]) == 0
-    first, second = told[1], capsys.readouterr().out
-    for number, path, line in zip((1, 2), files, (first, second), strict=True):
-        found, point = json.loads(line), read_point(path)
-        assert (found["file"], found["seed"], found["experiment"]) == (path, number, "cooling")
-        assert (found["r"], found["beta"]) == (0.9, -0.5)
-        names = {name for name, one in point.data_vars.items() if not one.dims}
-        assert names <= found.keys()
-        for name in ("R", "R_stderr", "collisions", "kernel_seconds"):
-            assert found[name] == float(point[name])
 
 
 @pytest.mark.parametrize(

@@ -1,7 +1,5 @@
 """`roughgas theory`: the numbers are theory's, on any road."""
 
-import csv
-import io
 import json
 
 import numpy as np
@@ -41,19 +39,6 @@ def test_a_curve_is_as_exact_as_its_range_is_written(capsys):
     driven = [one["R_driven"] for one in found[:21]]
     np.testing.assert_allclose(driven, theory.lun_ratio(np.array(betas), 0.5), rtol=1e-14)
     assert found[0]["settled_cooling"] is None  # never, as spin is decoupled there
-
-
-def test_table_csv_and_json_are_the_same_curve(capsys):
-    where = ("--r", "0.9", "--beta", "0:1:0.5")
-    rows = list(csv.DictReader(io.StringIO(asked(capsys, *where, "--csv"))))
-    exact = points(capsys, *where)
-    lines = [line.split() for line in asked(capsys, *where).splitlines()]
-    assert lines[0] == ["D", *list(rows[0])[1:-1]]
-    for row, point, line in zip(rows, exact, lines[1:], strict=False):
-        for name, shown in zip(point, line, strict=True):
-            assert float(row[name]) == pytest.approx(point[name], rel=1e-9)
-            assert float(shown) == pytest.approx(point[name], rel=1e-4)
-    assert "R_driven: Lun's formula; R_cooling: theory of free cooling" in rows[-1]["sources"]
 
 
 def test_what_a_drive_and_friction_change(capsys):

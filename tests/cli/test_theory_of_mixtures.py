@@ -1,7 +1,5 @@
 """`roughgas theory --species`: a mixture, given as in config.yaml."""
 
-import csv
-import io
 import json
 
 import pytest
@@ -43,21 +41,6 @@ def test_a_file_of_species_and_a_curve(capsys, tmp_path):
     assert len(curve) == 6  # of disks and of spheres
     (one,) = points(capsys, *PLACE, "--species", GIVEN)
     assert curve[1] == one
-
-
-def test_a_share_of_the_kicks_into_spin(capsys):
-    (found,) = points(capsys, *PLACE, "--species", GIVEN, "--spin-share=0.3", "--mu=0.5")
-    gas = theory.mixture(SPECIES, 0.9, 0.0, mu=0.5)
-    driven = theory.mixture_driven(gas, 0.7 * theory.kick_power(gas), spin_power=0.3)
-    assert found["R_driven_light"] == pytest.approx(driven.R[0], rel=1e-12)
-
-
-def test_table_and_csv(capsys):
-    text = asked(capsys, *PLACE, "--species", GIVEN)
-    (row,) = csv.DictReader(io.StringIO(asked(capsys, *PLACE, "--species", GIVEN, "--csv")))
-    line = next(line for line in text.splitlines() if line.startswith("R of light, cooling"))
-    assert f"{float(row['R_cooling_light']):.5g}" in line
-    assert "rate equations of mixtures" in line
 
 
 @pytest.mark.parametrize(

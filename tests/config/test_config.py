@@ -8,10 +8,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-import pytest
-
 from roughgas import config, simulate
-from roughgas.base import InputError
 from roughgas.cli import main
 from roughgas.config import schema
 from roughgas.config.provenance import write_effective
@@ -54,25 +51,6 @@ def test_what_is_extended_is_taken_at_the_same_scale(paper):
     vibrated = config.experiment(paper, "vibrated", "small")
     for key in ("particles", "box", "schedule"):
         assert walls[key] == vibrated[key] != config.experiment(paper, "vibrated", "paper")[key]
-
-
-@pytest.mark.parametrize("name", ["vibrated", "sheared", "cooling"])
-def test_small_has_the_density_of_paper(paper, name):
-    def density(scale):
-        settings = config.experiment(paper, name, scale)
-        area = [1 if side == "open" else side for side in settings["box"]]
-        return settings["particles"] / (area[0] * area[1])
-
-    assert density("small") == density("paper")
-
-
-def test_a_study_has_its_settings_and_those_of_the_experiments(paper):
-    found = config.study(paper, "statistical", "small")
-    assert found["experiments"]["sheared"]["particles"] == 40
-    assert set(found["experiments"]) == set(paper["experiments"])
-    assert found["study"] != config.study(paper, "statistical", "paper")["study"]
-    with pytest.raises(InputError, match="study = 'none': must be one of"):
-        config.study(paper, "none", "small")
 
 
 def test_null_removes_an_effect():

@@ -4,7 +4,6 @@ import shutil
 
 import netCDF4
 import pytest
-import xarray as xr
 
 from roughgas.base import InputError
 from roughgas.cli import main
@@ -43,11 +42,6 @@ def test_every_flipped_byte_and_every_cut_is_noticed(files, kind, tmp_path):
         path.write_bytes(content[:at])
         with pytest.raises(DamagedError), opened(path):
             pass
-
-
-def test_what_another_program_writes_anew_is_read(files, tmp_path):
-    xr.load_dataset(files["point"]).to_netcdf(tmp_path / "again.nc")
-    assert read_point(tmp_path / "again.nc").R == read_point(files["point"]).R
 
 
 @pytest.mark.parametrize(

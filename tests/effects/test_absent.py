@@ -14,11 +14,11 @@ from schedules import COOLING, STEADY
 
 from roughgas.data.point import read_point, write_point
 from roughgas.data.variables import POINT
-from roughgas.effects import KINDS, contact_stress
+from roughgas.effects import KINDS
 from roughgas.effects.side import SIDES
 from roughgas.kernel import random
 from roughgas.kernel.contact import SPLIT
-from roughgas.kernel.record import columns, record
+from roughgas.kernel.record import record
 from roughgas.kernel.state import BOUNDARY, BOUNDARY_HITS
 from roughgas.scene import build
 from roughgas.simulation.point import run_point
@@ -42,10 +42,6 @@ def small(kernel):
     number, lengths = SMALL[len(box)]
     top = "open" if box[-1] == "open" else lengths[-1]
     return settings(kernel, number, [*lengths[:-1], top])
-
-
-def spinning(kernel):
-    return "spin" in KERNELS[kernel]["effects"]
 
 
 # ---------------------------------------------------------------------- code
@@ -135,47 +131,6 @@ def arrays(part, name=""):
     return {key: array for found in inner for key, array in found.items()}
 
 
-EVERYWHERE = (
-    {"trajectory", "changes", "label", "ledger", "clock", "counts"}
-    | {f"agenda.{name}" for name in ("key", "kind", "complete_until")}
-    | {f"agenda.slot_{name}" for name in ("time", "partner", "change")}
-    | {"queue.keys", "queue.least", "shortlist.found", "shortlist.when", "sweep.lines"}
-)
-
-
-@pytest.mark.parametrize("kernel", KERNELS)
-def test_a_state_holds_what_its_effects_need(kernel):
-    """Every array by name; nothing else is allocated for a particle or an effect."""
-    scene, state = begin(small(kernel), 0.9, -1.0)
-    there = set(KERNELS[kernel]["effects"])
-    found = arrays(state)
-    needed = {f"moments.{name}" for name in there & MOMENTS}
-    needed |= {"spin"} if "spin" in there else set()
-    needed |= {"agenda.boundary_time", "agenda.boundary_code"} if there & EVENTS else set()
-    needed |= {"phase"} if there & PHASES else set()
-    needed |= {"random"} if there & RANDOM else set()
-    needed |= {f"sums.{name}" for name in there & SUMS.keys()}
-    assert set(found) == EVERYWHERE | needed
-    assert found["ledger"].shape == (2, len(there - SUMS.keys()) + 1, 2)
-    for name in needed & {"moments.contact_time", "moments.thermostat", "agenda.boundary_time"}:
-        assert found[name].shape == (16,)
-    if "spin" in there:
-        assert found["spin"].shape == (16, 2 * len(scene.box) - 3)
-
-
-@pytest.mark.parametrize("kernel", ["smooth", "walled", "spheres"])
-def test_what_particles_are_is_kept_where_they_differ(kernel):
-    """Three numbers and a species each, their radii for the sweep, and a table of pairs."""
-    alike, unlike = (
-        arrays(begin(small(kernel) | more, 0.9, -1.0)[1]) for more in ({}, {"species": TWO})
-    )
-    added = set(unlike) - set(alike)
-    of_each = {"bodies.radius", "bodies.mass", "bodies.inertia", "bodies.species"}
-    assert added == of_each | {"bodies.largest", "bodies.pairs", "sweep.sizes"}
-    size = sum(unlike[name].nbytes for name in added)
-    assert size == 16 * (3 * 8 + 4 + 4) + 8 + 2 * 3 * 3 * 8
-
-
 @pytest.mark.parametrize("kernel", ["gas", "heated", "spheres", "walled"])
 def test_what_an_effect_needs_is_what_it_adds(kernel):
     """In bytes, beside the barest gas of as many particles: a spin of one component or three, a
@@ -211,21 +166,6 @@ def test_no_events_of_absent_effects_are_foreseen(kernel):
         assert kicks > 0
         rank = 1  # the second of the effects that are there
         assert set(state.agenda.boundary_code) == {8 * rank}
-
-
-def test_columns_without_spin():
-    scene, state = begin(small("smooth"), 0.9, -1.0, 1)
-    rows = run(state, scene, 5, collisions=10)
-    assert rows["collisions"][-1] == 50
-    assert not {"ww", "w"} & set(rows)
-    summed = ["v_t^2", "v_r^2", "v_t.v_r"]
-    ends = {
-        "gas": ["yv_x", "ww", "w"],
-        "bed": ["ww", "w", *summed],
-        "spheres": ["ww", "w_x", "w_y", "w_z", *summed, *contact_stress.SUMS],
-    }
-    for name, end in ends.items():
-        assert columns(begin(small(name), 0.9, -1.0)[0])[-len(end) :] == end
 
 
 def test_smooth_disks_move_as_rough_ones_at_beta_minus_1():

@@ -10,7 +10,7 @@ from brute_force import KERNELS, begin, run, settings
 
 from roughgas import theory
 from roughgas.base import InputError
-from roughgas.effects.viscoelastic import ABOVE, B_1, B_2, B_3, B_4, fifth_root, pade, x_of
+from roughgas.effects.viscoelastic import ABOVE, B_1, B_2, B_3, B_4, fifth_root
 from roughgas.kernel.layout import new_state
 from roughgas.kernel.state import EXPONENT
 from roughgas.scene import build
@@ -53,18 +53,6 @@ def test_the_series_is_that_of_the_literature():
     assert series[1:] == pytest.approx(expected, abs=1.5e-3)
 
 
-def test_the_pade_approximation_falls_from_one_to_zero():
-    at = np.geomspace(1e-6, 1e6, 2000)
-    values = np.array([pade(x) for x in at])
-    assert pade(0.0) == 1.0 and np.all(np.diff(values) < 0.0) and 0.0 < values[-1] < 1e-15
-
-
-@pytest.mark.parametrize("r", [1e-9, 1e-3, 0.3, 0.72, 0.9, 0.999, 1.0 - 1e-12])
-def test_x_is_where_the_law_has_r(r):
-    assert pade(x_of(r)) == pytest.approx(r, rel=1e-14)
-    assert 1.0 - pade(x_of(r)) == pytest.approx(1.0 - r, abs=4e-16)
-
-
 def test_fifth_roots():
     """At once and by way of powers of two, far beyond what a number can hold."""
     rng = np.random.default_rng(1)
@@ -74,22 +62,6 @@ def test_fifth_roots():
         assert fifth_root(float(x), -35) == math.ldexp(fifth_root(float(x), 0), -7)
     assert fifth_root(1.0, -5000) == pytest.approx(math.ldexp(1.0, -1000), rel=1e-15)
     assert fifth_root(0.0, 12) == 0.0
-
-
-@pytest.mark.parametrize("r", [0.3, 0.9])
-def test_contacts_have_their_r_at_the_reference_and_less_of_a_loss_below(r):
-    """At 2^-5 of the speed x is half as large."""
-    experiment = gas(viscoelastic={"speed": 4.0}, threshold={"speed": 1e-9})
-    assert measured(experiment, r, 4.0) == pytest.approx(r, rel=1e-13)
-    assert measured(experiment, r, 4.0 / 32.0) == pytest.approx(pade(x_of(r) / 2.0), rel=1e-13)
-    assert measured(experiment, r, 4.0 * 32.0) == pytest.approx(pade(x_of(r) * 2.0), rel=1e-13)
-
-
-@pytest.mark.parametrize("r", [0.0, 1.0])
-def test_at_the_ends_restitution_is_the_same_at_all_speeds(r):
-    experiment = gas(viscoelastic={"speed": 4.0}, threshold={"speed": 1e-9})
-    for speed in (0.01, 4.0, 100.0):
-        assert measured(experiment, r, speed) == pytest.approx(r, abs=1e-9)
 
 
 def test_elastic_viscoelastic_particles_are_the_elastic_gas():
@@ -102,22 +74,7 @@ def test_elastic_viscoelastic_particles_are_the_elastic_gas():
     assert ends[0] == ends[1]
 
 
-def test_walls_have_a_law_of_their_own():
-    """The x that a wall's r stands for, not that of the particles."""
-    law = KERNELS["viscoelastic"]["effects"]["viscoelastic"]
-    scene = build(gas(viscoelastic=law), 0.9, 0.0)
-    hook = type(scene.effects.viscoelastic).hooks.restitution
-    for r in (0.5, 0.9):
-        found = hook(scene.effects.viscoelastic, 0, r, at_exponent(0), 0, -1, 0.0, -0.2)
-        assert found == pytest.approx(pade(x_of(r) * 0.2**0.2), rel=1e-14)
-
-
 # ---------------------------------------------------------------------- tables, thresholds
-
-TABULATED = {
-    "particles": 2,
-    "effects": {"spin": {"inertia": 0.5}, "restitution_table": TABLE},
-}
 
 
 def hook_of(r, **table):

@@ -1,9 +1,7 @@
 """Without an extra roughgas simulates all the same, and says in a line what to install."""
 
-import tomllib
-
 import pytest
-from tests.habits.conftest import ROOT, python
+from tests.habits.conftest import python
 
 from roughgas.base import EXTRAS
 
@@ -71,13 +69,3 @@ def test_the_doctor_says_what_is_left_out(tmp_path):
     assert (
         "none; not installed: workflow, figures, movies, report, crate, trajectories" in done.stdout
     )
-
-
-def test_the_extras_are_those_of_the_package():
-    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
-    extras = project["optional-dependencies"]
-    assert extras["all"] == [f"roughgas[{','.join(EXTRAS)}]"] and set(EXTRAS) < set(extras)
-    lock = (ROOT / "requirements.lock").read_text()
-    for brought in EXTRAS.values():
-        for package in brought:  # `make` installs them all
-            assert f"\n{package.replace('_', '-')}" in lock or f"\n{package}" in lock, package

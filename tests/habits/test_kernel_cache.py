@@ -100,14 +100,6 @@ def test_without_a_home_or_a_compiler_kernels_go_to_temporary_files(program, tmp
     assert list(tmp_path.glob(f"roughgas-{os.getuid()}/kernels-*/*/*.nbc"))
 
 
-def test_a_read_only_cache_is_left_alone(program, tmp_path, mounts):
-    folder = tmp_path / "kernels"
-    folder.mkdir()
-    others = {"ROUGHGAS_CACHE_DIR": str(folder), "TMPDIR": str(tmp_path)}
-    assert run(program, mount=("ro", folder), **others) == ("compiled", "")
-    assert list(tmp_path.glob(f"roughgas-{os.getuid()}/kernels-*/*/*.nbc"))
-
-
 def test_a_folder_of_somebody_else_is_not_trusted(program):
     if os.getuid():
         pytest.skip("only root can give files away")

@@ -33,13 +33,6 @@ def test_closed_streams(tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["point.nc"]
 
 
-def test_names_that_the_terminal_cannot_show(tmp_path):
-    plain = {"PYTHONIOENCODING": "ascii", "LC_ALL": "C", "PYTHONUTF8": "1"}
-    done = roughgas(*point("β = 0.nc"), cwd=tmp_path, **plain)
-    assert done.returncode == 0 and done.stderr.startswith("? = 0.nc: R = ")
-    assert [path.name for path in tmp_path.iterdir()] == ["β = 0.nc"]
-
-
 def test_no_setting_of_the_users_changes_a_figure(tmp_path):
     data = reduced("sheared")
     data.assign(R_unsubtracted=data.R - 0.1).to_netcdf(tmp_path / "sheared.nc", engine="netcdf4")

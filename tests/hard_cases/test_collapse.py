@@ -9,7 +9,6 @@ from brute_force import begin, run, settings, snapshot
 from brute_force.scenes import UNLIMITED
 
 from hard_cases.catalogue import hard_case
-from roughgas.base import CollapseError
 from roughgas.kernel.layout import new_state
 from roughgas.kernel.loop import COLLAPSED
 from roughgas.kernel.record import Sampling, columns, record
@@ -69,23 +68,6 @@ def test_without_a_watch_on_spent_contacts(without):
         "return (counts[SPENT] < COLLAPSE) & (counts[AT_ONCE] < many)",
         "return counts[AT_ONCE] < many",
     )
-
-
-def test_the_error_names_time_particles_and_remedy():
-    for seed in range(1, 20):
-        scene, state = begin(BED, 0.6, 0.0, seed)
-        try:
-            Gas(scene, state).in_time(0.25, 240)
-        except CollapseError as error:
-            text = str(error)
-            break
-    assert text.startswith(
-        f"inelastic collapse at t = {state.clock[BASE] + state.clock[NOW]:.6g} T"
-    )
-    names = text.split("particles ")[1].split(":")[0].replace(" and ", ", ").split(", ")
-    assert len(names) >= 3 and all(0 <= int(name.split()[0]) < 160 for name in names)
-    assert text.endswith("add the contact_time effect to the experiment, or raise r")
-    assert "\n" not in text
 
 
 @hard_case(

@@ -1,6 +1,5 @@
 """What kernel/compiler.py takes of numba's private parts does what it is there for."""
 
-import gc
 import os
 import subprocess
 import sys
@@ -9,20 +8,12 @@ from pathlib import Path
 import numba
 import numpy as np
 import pytest
-from llvmlite import binding
-from numba.core import event
 
 import roughgas
 from roughgas.kernel import compiler
-from roughgas.kernel.jit import Compiled, compiled, entry, jit
+from roughgas.kernel.jit import Compiled, compiled, entry
 
 PACKAGE = Path(roughgas.__file__).parent
-
-
-def code_of(dispatcher):
-    """The code of a function of a float, as numba gives it to LLVM, and how it was compiled."""
-    dispatcher.compile((numba.float64,))
-    return dispatcher.overloads[(numba.float64,)].library.get_llvm_str()
 
 
 def double(x):
@@ -34,18 +25,6 @@ def test_the_kernel_has_no_reference_counts():
     with pytest.raises(numba.TypingError, match="NRT required"):
         entry(lambda: np.zeros(3))()
     assert numba.njit(lambda: np.zeros(3))().size == 3
-
-
-def test_only_entries_have_a_way_in_from_python():
-    ways = ("7cpython", "cfunc.")
-    assert all(way in code_of(numba.njit(double)) for way in ways), "no longer needed"
-    assert not any(way in code_of(compiled(double).dispatcher) for way in ways)
-    assert entry(double)(3.0) == compiled(double)(3.0) == 6.0
-
-
-def test_what_runs_once_an_event_is_inlined():
-    assert "alwaysinline" in code_of(jit(double).dispatcher)
-    assert "alwaysinline" not in code_of(compiled(double).dispatcher)
 
 
 def test_numba_takes_compiled_functions_for_its_own():
@@ -72,39 +51,6 @@ def test_only_what_is_called_from_python_is_finished():
     (outer,) = four_times.dispatcher.overloads.values()
     assert not engine.is_symbol_defined(inner.fndesc.llvm_func_name)
     assert engine.is_symbol_defined(outer.fndesc.llvm_cpython_wrapper_name)
-
-
-def test_after_compiling_memory_is_collected_again_and_events_are_told():
-    told = []
-
-    class Listener(event.Listener):
-        on_start = on_end = told.append
-
-    with event.install_listener("numba:compiler_lock", Listener()):
-        entry(lambda x: x + 1.0)(1.0)
-        assert not told
-        numba.njit(double)(1.0)
-    assert told, "no longer needed"
-    assert gc.isenabled()
-
-
-def test_functions_are_optimised_by_passes_of_numba():
-    """With a manager of passes for each function, as numba has, it would take longer."""
-    text = "define i64 @f(i64 %x) { %y = alloca i64 store i64 %x, ptr %y"
-    text += " %z = load i64, ptr %y ret i64 %z }"
-    library = compiler.cpu_target.target_context.codegen().create_library("passes")
-    module = binding.parse_assembly(text + " declare i64 @g(i64)")
-    library._optimize_functions(module)
-    assert "alloca" not in str(module)
-
-
-@pytest.mark.parametrize("own", [compiler.Folder, compiler.Sealed, compiler.Kept])
-def test_the_cache_has_the_parts_that_are_replaced(own):
-    """What they do is tested in tests/habits/test_kernel_cache.py."""
-    (numbas,) = own.__bases__
-    added = {"__module__", "__init__", "__doc__", "__abstractmethods__", "_abc_impl"}
-    assert all(hasattr(numbas, name) for name in vars(own).keys() - added)
-    assert compiler.InFolder._locator_classes and numba.core.caching.CacheImpl._locator_classes
 
 
 COPY = """from roughgas.kernel.jit import entry

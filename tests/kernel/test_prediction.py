@@ -1,29 +1,11 @@
 """When two particles meet, to the last digits, and that nobody's meeting is overlooked."""
 
-import mpmath
 import numpy as np
 import pytest
-from brute_force import BruteForce, begin, largest_overlap, run, scene_of, settings, snapshot
-from compiled import from_python
+from brute_force import BruteForce, begin, run, scene_of, settings, snapshot
 
-from roughgas.kernel import pairs
 from roughgas.kernel.layout import new_state
 from roughgas.kernel.state import LAST_FIRST, LAST_SECOND, LONGEST_HORIZON
-
-EPSILON = 2.0**-52
-time_to_contact = from_python(pairs.time_to_contact)
-
-
-def exact_time(x, u):
-    """The smaller root of |x + u t| = 2 in 50 digits, or None where the paths do not meet."""
-    with mpmath.workdps(50):
-        x, u = ([mpmath.mpf(float(c)) for c in vector] for vector in (x, u))
-        b, uu = mpmath.fdot(x, u), mpmath.fdot(u, u)
-        discriminant = b * b - uu * (mpmath.fdot(x, x) - 4)
-        if b >= 0 or discriminant < 0:
-            return None, None
-        root = mpmath.sqrt(discriminant)
-        return (-b - root) / uu, root / uu
 
 
 def meeting(dimension, gap, impact, speed, rng):
@@ -31,36 +13,6 @@ def meeting(dimension, gap, impact, speed, rng):
     direction, across = np.linalg.qr(rng.standard_normal((dimension, 2)))[0].T
     along = gap + 2.0 * np.sqrt(1.0 - impact**2)
     return 2.0 * impact * across - along * direction, speed * direction
-
-
-@pytest.mark.parametrize("dimension", [2, 3])
-@pytest.mark.parametrize("gap", [1e-12, 1e-9, 1e-6, 1e-3, 1.0, 30.0, 1e4])
-def test_time_to_contact_against_fifty_digits(dimension, gap):
-    """To a few roundings of the separation; a grazing path turns them into more, as it must."""
-    rng = np.random.default_rng(dimension)
-    for impact in (0.0, 0.3, 0.9, 0.99, 0.999999):
-        for speed in (1e-8, 1.0, 1e8):
-            x, u = meeting(dimension, gap, impact, speed, rng)
-            time = time_to_contact(tuple(x), tuple(u), None)
-            exact, half_chord = exact_time(x, u)
-            # a rounding of |x| - 2a moves the contact by that, over the normal speed
-            normal_speed = float(half_chord) * speed**2 / 2.0
-            rounding = EPSILON * (4.0 / normal_speed + float(exact) * speed / normal_speed)
-            assert abs(time - float(exact)) <= 4.0 * rounding + 4.0 * EPSILON * time
-
-
-def test_grazing_paths_are_decided_within_rounding():
-    for excess, meets in ((-1e-13, True), (1e-13, False)):
-        x = (-5.0, 2.0 * (1.0 + excess))
-        assert (time_to_contact(x, (1.0, 0.0), None) < np.inf) == meets
-
-
-def test_touching_pairs_meet_now_if_they_approach_and_never_if_they_recede():
-    for distance in (2.0, 2.0 - 1e-15, 2.0 - 1e-12, 1.9):
-        assert time_to_contact((distance, 0.0), (-1e-9, 3.0), None) == 0.0
-        assert time_to_contact((distance, 0.0), (1e-9, 3.0), None) == np.inf
-    assert time_to_contact((2.0, 0.0, 0.0), (0.0, 1.0, 0.0), None) == np.inf
-    assert time_to_contact((3.0, 0.0), (0.0, 0.0), None) == np.inf
 
 
 # ---------------------------------------------------------------------- the search for partners
@@ -193,12 +145,3 @@ def test_how_far_ahead_contacts_are_foreseen_does_not_matter(name):
         assert other.time == pytest.approx(ends[0].time, rel=1e-9)
         assert other.velocity == pytest.approx(ends[0].velocity, abs=1e-7)
         assert other.spin == pytest.approx(ends[0].spin, abs=1e-7)
-
-
-@pytest.mark.parametrize("name", POINTS)
-def test_particles_never_overlap(name):
-    scene, state = begin(*POINTS[name], 7)
-    _, world = scene_of(*POINTS[name])
-    for _ in range(100):
-        run(state, scene, 1, interval=0.7)
-        assert largest_overlap(state, scene, world) < 1e-11

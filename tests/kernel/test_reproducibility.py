@@ -105,31 +105,6 @@ def test_the_hash_covers_the_sources_of_the_kernel_and_no_others(tmp_path, monke
     assert len(hashes) == len(sources) + 2
 
 
-def test_a_study_that_compiles_code_has_a_folder_for_its_own_sources(tmp_path, monkeypatch):
-    copy = tmp_path / "roughgas"
-    shutil.copytree(PACKAGE, copy, ignore=shutil.ignore_patterns("__pycache__"))
-    monkeypatch.setattr(cache, "PACKAGE", copy)
-    monkeypatch.setenv("ROUGHGAS_CACHE_DIR", str(tmp_path / "kept"))
-    study = copy / "studies" / "dsmc"
-    folders = [cache.folder_of(study / "collisions.py")]
-    for name in ("collisions.py", "nanbu.py"):
-        (study / name).write_text("")
-        folders.append(cache.folder_of(study / "collisions.py"))
-    assert len(set(folders)) == 3
-    assert {folder.parent for folder in folders} == {cache.kernel_folder()}
-    assert cache.folder_of(copy / "kernel" / "record.py") == cache.kernel_folder() / "record"
-
-
-def test_a_program_that_compiles_code_has_a_folder_for_its_own_source(tmp_path, monkeypatch):
-    monkeypatch.setenv("ROUGHGAS_CACHE_DIR", str(tmp_path / "kept"))
-    program, folders = tmp_path / "program.py", set()
-    for text in ("one", "another"):
-        program.write_text(text)
-        folders.add(cache.folder_of(program))
-    assert len(folders) == 2
-    assert {folder.parent for folder in folders} == {cache.kernel_folder()}
-
-
 def test_every_compiled_function_lies_in_a_hashed_room():
     """In the kernel's, or in that of the entry which calls it: no source escapes the hash."""
     marks = ["@jit\n", "@compiled\n", "@unrolled\n", "@entry", "njit"]

@@ -99,17 +99,6 @@ def test_spins_along_and_across_the_velocity():
     assert found["alignment"] == pytest.approx(-1.0) and abs(found["cos2_angle"]) < 1e-12
 
 
-def test_a_gaussian_has_the_histogram_of_a_gaussian():
-    frame = frame_of(system_of((30, 30), particles=NUMBER))
-    frame = frame._replace(velocity=5.0 * frame.velocity)
-    observable, found = results("histograms", [frame], bins=24)
-    c, width = observable.coordinates["reduced_velocity"], 0.5
-    expected = np.exp(-(c**2) / 2) / math.sqrt(2 * math.pi)
-    for histogram in (*found["velocity_histogram"].T, found["spin_histogram"]):
-        assert np.sum(histogram) * width == pytest.approx(1.0)
-        assert histogram == pytest.approx(expected, abs=0.015)
-
-
 def test_profiles_of_a_gas_that_is_hotter_and_denser_below():
     """Two layers: the lower one has two thirds of the particles, moves, and is hotter."""
     rng = np.random.default_rng(2)
@@ -171,14 +160,6 @@ def test_free_particles_get_as_far_as_they_fly(speed):
     assert lag.tolist() == [0.5, 1.0, 2.0, 4.0]
     expected = np.outer(lag**2, (velocity**2).mean(axis=0))
     assert found["mean_square_displacement"] == pytest.approx(expected, rel=1e-9)
-
-
-def test_along_a_sheared_flow_no_displacement_is_told():
-    system = system_of((20, 15), particles=50, shear_rate=0.1)
-    frames = list(flight(system, frame_of(system).velocity, range(5)))
-    observable, found = results("mean_square_displacement", frames, lags=2)
-    assert observable.coordinates["moving"] == ["y"]
-    assert found["mean_square_displacement"].shape == (2, 1)
 
 
 @pytest.mark.parametrize(

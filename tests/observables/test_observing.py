@@ -1,8 +1,6 @@
 """Observables of a run: they change no bit, land in the dataset, and refuse what makes no sense."""
 
 import shlex
-import subprocess
-import sys
 
 import numpy as np
 import pytest
@@ -16,7 +14,6 @@ from roughgas.cli import main
 from roughgas.data.point import WALL_CLOCK, read_point
 from roughgas.data.reduced import read_reduced
 from roughgas.observables import KINDS
-from roughgas.observables.spin_correlation import SPHERES
 from roughgas.results.reduce import reduce_points
 
 SHEARED = {
@@ -52,12 +49,6 @@ def test_watching_changes_no_other_number(scene):
         assert {name, f"{name}_stderr", f"{name}_dof"} <= more
 
 
-def test_a_point_without_observables_does_not_even_import_them():
-    code = "import sys, roughgas.simulation.point; print('roughgas.observables' in sys.modules)"
-    found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert found.stdout == "False\n"
-
-
 def test_a_run_that_goes_on_is_watched_and_keeps_its_bits():
     """A cooling gas is refreshed where it would have been, wherever the first part has ended."""
     longer = COOLED["schedule"] | {"plateau": 41.0}
@@ -69,20 +60,6 @@ def test_a_run_that_goes_on_is_watched_and_keeps_its_bits():
     assert watched.initial_exact == 1
     assert watched.last_position.identical(plain.last_position)
     assert watched.R_series.identical(plain.R_series)
-
-
-def test_every_variable_is_described():
-    found = point(SHEARED, ONLY_LOOK)
-    every = dict(item for name in ONLY_LOOK for item in KINDS[name].variables.items())
-    expected = {k: (v.dims, v.long_name) for k, v in every.items() if SPHERES not in v.when}
-    assert len(expected) == len(every) - 2
-    assert {name: (found[name].dims, found[name].long_name) for name in expected} == expected
-    assert found.temperature_profile.reduced_units == "m a^2 T^-2"
-    assert found.temperature_profile.observable == "profiles"
-    cooled = point(COOLED, ["profiles", "mean_square_displacement"])
-    assert cooled.temperature_profile.reduced_units == "present E_trans"
-    assert cooled.lag.reduced_units == "collisions per particle"
-    assert cooled.lag.values[:2].tolist() == [2.0, 4.0]  # looks are four samples apart
 
 
 def test_the_page_lists_all_observables():
@@ -128,10 +105,6 @@ def test_a_function_may_return_arrays_with_or_without_names():
     assert found.labelled.dims == ("rank",) and found["rank"].values.tolist() == [1, 2, 3]
     assert found.labelled.long_name == "lowest" and found.labelled_stderr.dims == ("rank",)
     assert found.momentum.shape == (2,) and 40 < found.now < 60
-
-
-def test_names_may_be_one_text():
-    assert "a20" in point(SHEARED, "cumulants")
 
 
 # ---------------------------------------------------------------------- refusals

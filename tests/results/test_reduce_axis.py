@@ -12,7 +12,6 @@ from roughgas.cli import main
 from roughgas.data.reduced import read_reduced
 from roughgas.results.reduce import reduce_points
 from roughgas.results.table import write_table
-from roughgas.theory.prediction import predicted_ratio
 
 
 def variant(folder, key, value, seed=1, ratio=0.2, beta=0.0, **attributes):
@@ -67,30 +66,6 @@ def test_a_number_of_the_settings_is_a_dimension_too(tmp_path, key, capsys):
     assert main(["show", str(tmp_path / "swept.nc")]) == 0
     shown = capsys.readouterr().out
     assert ("20 to 40 disks" in shown) == (key == "particles") and f"over {parameter}, r" in shown
-
-
-def test_what_is_a_coordinate_is_no_attribute(inertia):
-    data = read_reduced(inertia)
-    assert data.attrs["swept"] == "spin.inertia"
-    assert data.inertia.attrs["long_name"] == "swept setting: spin.inertia"
-    assert not {"inertia", "variant", "swept_value"} & set(data.attrs)
-    assert data.attrs["experiment"] == "sheared" and data.attrs["particles"] == 40
-    assert data.attrs["title"] == "sheared: R over inertia, r and beta"
-    predicted = predicted_ratio(data.attrs | {"inertia": 0.02}, 0.9, 0.5)
-    assert predicted == pytest.approx(theory.lun_ratio(0.5, 0.02))
-
-
-def test_one_value_is_an_axis_nevertheless(tmp_path):
-    reduce_points([spun(tmp_path, 0.1)], tmp_path / "spun.nc")
-    data = read_reduced(tmp_path / "spun.nc")
-    assert data.sizes["inertia"] == 1 and "inertia" not in data.attrs
-
-
-def test_an_attribute_that_is_not_the_axis_stays(tmp_path):
-    paths = [variant(tmp_path, "walls.roughness", value) for value in (1.0, -1.0)]
-    reduce_points(paths, tmp_path / "walls.nc")
-    data = read_reduced(tmp_path / "walls.nc")
-    assert list(data.roughness) == [-1, 1] and data.attrs["inertia"] == 0.5
 
 
 def test_words_come_in_alphabetical_order_after_numbers(tmp_path):

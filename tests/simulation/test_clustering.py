@@ -12,7 +12,7 @@ import pytest
 from tests.entry import main
 
 from roughgas.data import checkpoint
-from roughgas.data.film import disks_of, read_film
+from roughgas.data.film import read_film
 from roughgas.simulation import clustering
 
 SETTINGS = {
@@ -72,14 +72,6 @@ def test_the_frames_are_evenly_spaced_in_collisions(undisturbed):
     assert np.all(np.diff(np.diff(undisturbed["time"])) > 0.0)  # it slows down
 
 
-def test_the_gas_cools_and_begins_to_spin(undisturbed):
-    E_trans, E_rot = undisturbed["E_trans"], undisturbed["E_rot"]
-    assert E_trans[0] == 1.0 and E_rot[0] == 0.0
-    assert np.all(np.diff(E_trans + E_rot / 2) < 0.0)  # two degrees of freedom to one
-    assert undisturbed["R"] == pytest.approx(E_rot / (E_rot + E_trans))
-    assert undisturbed["E_trans_start"] == pytest.approx(0.5, rel=0.3)
-
-
 def test_every_particle_is_on_the_map(undisturbed):
     count = undisturbed["count"]
     assert count.shape == (13, 10, 8)
@@ -105,14 +97,6 @@ def test_disks_are_in_the_window_and_do_not_overlap(undisturbed):
         assert np.all(abs(x - 20) < 16) and np.all(abs(y - 25) < 16)
         distance = np.hypot(x[:, None] - x, y[:, None] - y) + 9.0 * np.eye(len(x))
         assert distance.min() > 2.0 - 1e-5
-
-
-def test_a_window_as_large_as_the_box_shows_every_disk(tmp_path):
-    film = filmed(tmp_path / "c.npz", window=60, frames=2, collisions=4)
-    assert list(film["disks"]) == [100, 100, 100]
-    spins = film["disk_spin"].reshape(3, 100)
-    assert np.all(spins[0] == 0.0)
-    assert np.mean(spins[1:] ** 2, axis=1) == pytest.approx(1.0)
 
 
 @pytest.mark.parametrize("every", [1, 5])
@@ -216,22 +200,6 @@ def test_a_damaged_checkpoint_is_named_in_one_line(tmp_path, capsys):
     said = capsys.readouterr().err.splitlines()
     assert said[0] == f"clustering: {saved} is damaged: starting afresh"
     assert len(said) == 2 and not saved.exists()
-
-
-def test_a_film_says_what_it_shows_and_how_to_make_it_again(tmp_path):
-    assert main(arguments(tmp_path / "a.nc", frames=3)) == 0
-    film = read_film(tmp_path / "a.nc")
-    assert film.attrs["particles"] == 100 and film.attrs["packing"] == pytest.approx(np.pi / 20)
-    assert json.loads(film.attrs["settings_json"]) == SETTINGS | {"frames": 3}
-    assert all(
-        about.attrs["long_name"] and about.attrs["units"] for about in film.variables.values()
-    )
-    x, y, spin = disks_of(film, 2)
-    assert len(x) == len(y) == len(spin) == film.disks[2]
-    assert x[-1] == film.disk_x[film.disks[:3].sum().item() - 1]
-    assert film.attrs["command"].startswith(
-        "python -m roughgas.steps clustering --scale paper --settings '{"
-    )
 
 
 @pytest.mark.parametrize(

@@ -73,14 +73,6 @@ def test_a_cooling_gas_goes_on_wherever_it_was_last_refreshed(name, first):
     assert_same_end(whole, run(experiment, cooling(50 - first - 10), half))
 
 
-def test_it_can_stop_more_than_once():
-    experiment = scene_of("sheared")
-    whole, part = run(experiment, steady(60)), None
-    for _ in range(3):
-        part = run(experiment, steady(20), part)
-    assert_same_end(whole, part)
-
-
 @pytest.mark.parametrize(
     "name", [pytest.param("gas", marks=pytest.mark.slow), "sheared", "walled", "spheres"]
 )
@@ -157,12 +149,6 @@ def test_what_could_not_be_is_refused(kernel, position, message):
     with pytest.raises(InputError) as error:
         check_initial([one], experiment, build(experiment, R, BETA))
     assert message in str(error.value)
-
-
-def test_what_touches_is_legal_and_so_is_what_is_next_to_the_wall():
-    experiment = settings("shaken", 2, [12, 12]) | {"schedule": steady(1)}
-    one = PAIR._replace(position=np.array([[1.0, 5.0], [3.0, 5.0]]))
-    check_initial([one], experiment, build(experiment, R, BETA))
 
 
 def test_datasets_that_hold_no_state_are_refused():

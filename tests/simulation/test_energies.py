@@ -60,15 +60,6 @@ def test_fluctuation_energies_are_those_about_the_mean_flow_and_the_mean_spin(ga
     np.testing.assert_allclose(result.rotational, (q * spin.var(axis=1) / 2).mean(axis=1))
 
 
-def test_fluctuation_energies_do_not_feel_shear_or_spin_of_the_whole(gas):
-    v, spin, y, q = gas
-    still = energies(columns_of(v, spin, y), PARTICLES, q, 0.0)
-    flow = np.zeros_like(v)
-    flow[:, :, 0] = SHEAR_RATE * y
-    sheared = energies(columns_of(v + flow, spin - 0.7, y), PARTICLES, q, SHEAR_RATE)
-    np.testing.assert_allclose(sheared, still, rtol=1e-12)
-
-
 def test_no_bias_of_order_one_over_n_when_momentum_and_mean_spin_are_removed():
     """Equipartition reads R = 1/2 even for N = 8, where one spin in eight is taken away."""
     rng = np.random.default_rng(1)
@@ -88,11 +79,6 @@ def test_ratio_of_each_sample_and_of_the_means():
     some = Energies(np.array([1.0, 3.0]), np.array([1.0, 1.0]))
     np.testing.assert_allclose(ratio(some), [1 / 2, 1 / 4])
     assert ratio_of_means(some) == pytest.approx(1 / 3)
-
-
-def test_ratio_of_means_over_replicas_keeps_the_samples():
-    some = Energies(np.array([[1.0, 3.0], [3.0, 3.0]]), np.array([[1.0, 1.0], [1.0, 5.0]]))
-    np.testing.assert_allclose(ratio_of_means(some, axis=0), [1 / 3, 1 / 2])
 
 
 def test_ratio_without_any_energy_is_undefined_and_silent(recwarn):

@@ -1,7 +1,6 @@
 """Progress: bars on a terminal, elsewhere a line now and then, and a film's lines in a log."""
 
 import io
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -9,7 +8,7 @@ import pytest
 from roughgas.kernel.record import Sampling
 from roughgas.scene import build
 from roughgas.simulation.gas import Gas
-from roughgas.simulation.progress import Bar, FilmProgress, Progress
+from roughgas.simulation.progress import Bar, Progress
 from roughgas.simulation.recorder import Recorder
 
 DRIVEN = {
@@ -45,16 +44,6 @@ class Terminal(io.StringIO):
 @pytest.fixture(autouse=True)
 def every_step_is_shown(monkeypatch):
     monkeypatch.setattr("roughgas.simulation.progress.SECONDS_BETWEEN", 0.0)
-
-
-def test_a_bar_says_how_far_how_long_and_what_and_is_cleared():
-    stream = Terminal()
-    with Bar("points", 4, "points", stream) as bar:
-        bar.reach(1, "r = 0.9")
-        bar.reach(2)
-    assert stream.shown[1].startswith("points:  25%|") and stream.shown[1].endswith(", r = 0.9")
-    assert "| 2 of 4 points, 00:00 left" in stream.shown[2]
-    assert stream.getvalue().endswith("\r") and not stream.getvalue().split("\r")[-2].strip()
 
 
 def test_a_driven_gas_is_followed_in_time():
@@ -105,16 +94,6 @@ def test_progress_is_silent_elsewhere_of_what_is_soon_over():
     assert stream.getvalue() == ""
 
 
-def test_a_film_that_goes_on_counts_from_where_it_was(capsys):
-    stream = Terminal()
-    with FilmProgress(Path("c.npz"), 100, stream) as progress:
-        progress.reached(20, 5_000, False)
-        progress.reached(21, 6_000, True)
-    assert capsys.readouterr().err == "clustering: going on from c.npz\n"
-    assert "| 21 of 100 frames, " in stream.shown[-1] and "6,000 collisions" in stream.shown[-1]
-    assert progress.how_to_go_on() == "the same command goes on from frame 21 of 100"
-
-
 def test_a_pipe_hears_now_and_then_of_what_takes_long(monkeypatch):
     clock = iter([0, 5, 11, 60, 72])
     monkeypatch.setattr("roughgas.simulation.progress.time.monotonic", lambda: next(clock))
@@ -126,11 +105,3 @@ def test_a_pipe_hears_now_and_then_of_what_takes_long(monkeypatch):
         "task: 2 of 9 points (r = 0.9), 11 s so far",
         "task: 4 of 9 points (r = 0.9), 72 s so far",
     ]
-
-
-def test_whoever_wants_silence_has_it(monkeypatch):
-    monkeypatch.setattr("roughgas.simulation.progress.PATIENCE", -1.0)
-    stream = io.StringIO()
-    with Bar("points", 4, "points", stream, quiet=True) as bar:
-        bar.reach(1)
-    assert stream.getvalue() == ""

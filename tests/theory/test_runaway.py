@@ -59,17 +59,6 @@ def test_pushes_balance_the_cooling_of_a_spinner(dimension):
     assert frequency * gained / dimension + rate * tau == pytest.approx(np.zeros(len(mu)), abs=1e-9)
 
 
-def test_at_the_critical_friction_pushes_heat_a_spinner_to_the_gas_s_temperature():
-    """If the gas cools slowly. There k (1 + mu^2) = 1, and tau = k (1+mu^2)/[2 - k (1+mu^2)]."""
-    tau, rates = [], []
-    for r in (0.999, 0.9999):
-        gas = r, 0.0, theory.critical_friction(r)
-        tau.append(theory.spinner_temperature(*gas))
-        rates.append(theory.cooling_rate(*gas))
-    # to first order in gamma tau exceeds 1 by gamma/2k (disks): f [2 k (tau - 1)]/2 ... = gamma
-    assert (np.array(tau) - 1) / rates == pytest.approx([1.0, 1.0], rel=0.05)
-
-
 def test_the_threshold_of_slow_weak_friction_has_a_closed_form():
     """tau = 1, disks: a w* = sqrt(pi) mu (1+r)/(q gamma) sqrt(T_tr/m), if gamma << 1."""
     gas = 0.9999, 0.0, 2e-3

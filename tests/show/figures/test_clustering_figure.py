@@ -94,13 +94,6 @@ def test_the_square_lies_where_the_gas_is_densest_within_the_window(path):
     assert clustering.closeup(film) == (0.0, 0.0, 120.0)
 
 
-def test_a_small_square_is_centred_on_the_densest_spot(path, monkeypatch):
-    monkeypatch.setattr(clustering, "CLOSEUP", 40.0)
-    left, bottom, side = clustering.closeup(read_film(path))
-    middle = [(cell + 0.5) * SIDE / CELLS for cell in BLOB]
-    assert [left + side / 2, bottom + side / 2] == pytest.approx(middle)
-
-
 def test_a_gas_that_stays_homogeneous_lies_on_the_line_of_theory(path):
     drawn = panels(clustering.picture(read_film(path)))
     assert set("abcdefg") <= set(drawn)
@@ -108,24 +101,6 @@ def test_a_gas_that_stays_homogeneous_lies_on_the_line_of_theory(path):
         x, y = drawn[letter].lines[data].get_data()
         theory_x, theory_y = drawn[letter].lines[line].get_data()
         assert np.interp(x, theory_x, theory_y) == pytest.approx(y, rel=1e-3), letter
-
-
-def test_the_instants_of_the_maps_are_told(path):
-    drawn = panels(clustering.picture(read_film(path)))
-    titles = [drawn[letter].get_title(loc="left") for letter in "abc"]
-    passed = [0, 10, 40]
-    assert titles == [
-        f"{letter}   {n} collisions per particle" for letter, n in zip("abc", passed, strict=True)
-    ]
-    for letter in "efg":
-        marks = [line.get_xdata()[0] for line in drawn[letter].lines if len(line.get_xdata()) == 2]
-        assert marks[-3:] == passed
-
-
-def test_disks_are_as_large_as_they_are(path):
-    (disks,) = panels(clustering.picture(read_film(path)))["d"].collections
-    assert np.all(disks.get_widths() == 2.0) and len(disks.get_offsets()) == 7
-    assert disks.get_rasterized()
 
 
 def test_the_picture_can_be_read_and_says_how_long_lengths_are(path):

@@ -2,7 +2,6 @@ from importlib import import_module
 
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
 from matplotlib.image import imread
 from matplotlib.markers import TICKLEFT, TICKRIGHT
 from synthetic import BETA, couette, mixed, reduced, viscoelastic
@@ -10,12 +9,9 @@ from tests.houses import ROOT, part
 from tests.show.figures.legibility import faults
 
 from roughgas.base import InputError
-from roughgas.base.files import closure
 from roughgas.show.catalogue import figures_of
 from roughgas.show.figures import fig1a, fig1b, fig2a, fig2b, sweep
 from roughgas.show.gallery import draw, draw_of_study
-from roughgas.show.style import LOOKS
-from roughgas.show.style import draw as draw_in_style
 from roughgas.theory.prediction import predicted_ratio
 
 
@@ -170,14 +166,6 @@ def test_the_same_data_in_any_order_give_the_same_bytes(tmp_path):
     assert sorted((tmp_path / "out").iterdir()) == outputs
 
 
-def test_each_figure_of_the_catalogue_is_drawn_by_code_of_its_own():
-    modules = {f"show.figures.{name}" for name in figures_of("paper")}
-    for module in modules:
-        code = closure(module)
-        assert code & modules == {module}
-        assert not any(one.startswith(("kernel", "simulation", "show.cat")) for one in code)
-
-
 def test_points_are_the_data_and_residuals_are_data_minus_theory():
     data = reduced("vibrated", lambda r, beta: 0.03 + 0 * r * beta)
     main, residual = fig1a.draw(data).axes
@@ -198,43 +186,6 @@ def test_theory_of_forced_gases_is_one_smooth_line():
     beta, ratio = lines[0].get_data()
     assert beta[0] == -1 and beta[-1] == 1
     assert np.interp([0, 1], beta, ratio) == pytest.approx([0.2, 0.5])
-
-
-def test_theory_of_cooling_gases_has_a_line_for_each_r_in_the_look_of_its_points():
-    main, _ = fig2b.draw(reduced("cooling")).axes
-    lines = [line for line in main.lines if len(line.get_xdata()) > 200]
-    assert [line.get_color() for line in lines] == [look.colour for look in LOOKS[:3]]
-    assert len({line.get_linestyle() for line in lines}) == 3
-    np.testing.assert_allclose(np.interp(0.0, *lines[1].get_data()), 0.32, atol=0.005)
-
-
-def test_series_differ_in_more_than_colour():
-    assert len({look.marker for look in LOOKS}) == len(LOOKS)
-    assert len({look.colour for look in LOOKS}) == len(LOOKS)
-
-
-def test_captions_say_what_how_large_and_which_error_bars():
-    data = reduced("vibrated")
-    main, _ = fig1a.draw(data).axes
-    title = main.get_title(loc="left")
-    assert "N = 160" in title and "Scale: small" in title
-    assert "Scale" not in fig1a.draw(data.assign_attrs(scale="paper")).axes[0].get_title(loc="left")
-    assert "standard error, 4 seeds" in title
-    data["n_seeds"][0, 0] = 2
-    assert "2 to 4 seeds" in fig1a.draw(data).axes[0].get_title(loc="left")
-    alone = fig1a.draw(reduced("vibrated", seeds=1)).axes[0]
-    assert "standard error within the run" in alone.get_title(loc="left")
-
-
-def test_points_without_a_steady_state_are_open_and_explained():
-    data = reduced("vibrated")
-    assert not any("open" in word for word in words(fig1a.draw(data).axes[0]))
-    data["equilibrated"][0, :3] = 0.25
-    main, _ = fig1a.draw(data).axes
-    assert "open: not steady" in words(main)
-    assert not any("not known" in word for word in words(main))
-    empty = [box[0] for box in main.containers if box[0].get_markerfacecolor() == "white"]
-    assert sum(len(line.get_xdata()) for line in empty) == 3
 
 
 def test_points_whose_steadiness_is_not_known_are_half_filled_and_explained():
@@ -277,15 +228,6 @@ def test_fig1b_needs_its_restitution():
         fig1b.draw(bed.sel(r=[0.8]), *others)
 
 
-def test_unsubtracted_ratio_is_shown_small_where_there_is_one():
-    main, _ = fig2a.draw(sheared()).axes
-    small = [line for line in main.lines if line.get_alpha() == 0.5 and len(line.get_xdata())]
-    assert len(small) == 4
-    assert any("left in" in text.get_text() for text in main.texts)
-    main, _ = fig2a.draw(reduced("sheared")).axes
-    assert not any("left in" in text.get_text() for text in main.texts)
-
-
 def test_places_without_data_are_left_out():
     data = reduced("cooling")
     data["R"][:, :4] = np.nan
@@ -309,12 +251,6 @@ def test_a_figure_of_one_restitution_takes_another_where_the_data_have_no_other(
     gases = [data.assign_coords(r=[0.8]) for data in DATA["friction"]()]
     titles = [axes.get_title(loc="left") for axes in part("friction", "figure").draw(*gases).axes]
     assert "r = 0.8" in titles[0] and "r = 0.8" in titles[1]
-
-
-def test_friction_of_zero_is_left_out_of_a_logarithmic_axis():
-    main = drawn("friction").axes[0]
-    assert main.get_xscale() == "log"
-    assert all(np.all(column[:, 0] > 0.0) for column in bars(main) if len(column))
 
 
 def test_the_average_over_collisions_has_a_row_of_residuals():
@@ -409,11 +345,3 @@ def test_spread_radii_are_compared_with_equal_disks_where_they_were_simulated():
     change = cooling.R.sel(deviation=0.2, r=0.9) - cooling.R.sel(deviation=0.0, r=0.9)
     np.testing.assert_allclose(points, np.column_stack([cooling.beta, change]))
     assert below_bed.get_ylim()[1] < 0.1  # which the other gas does not flatten
-
-
-def test_a_slide_is_16_to_9(tmp_path):
-    outputs = [tmp_path / "slide.png", tmp_path / "slide.svg"]
-    draw_in_style(lambda: Figure((4.8, 5.0)), outputs, slide=True)
-    height, width, _ = imread(outputs[0]).shape
-    assert width * 9 == height * 16
-    assert "<svg" in outputs[1].read_text("utf-8")

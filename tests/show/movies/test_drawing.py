@@ -11,7 +11,7 @@ from roughgas.kernel.state import Bodies
 from roughgas.scene import build
 from roughgas.show import encoding as movie
 from roughgas.show.movies import particles
-from roughgas.show.movies.drawing import MovieSubject, picture, spin_scales, view_of, write
+from roughgas.show.movies.drawing import MovieSubject, picture, spin_scales, write
 from roughgas.simulation.snapshots import Snapshot
 
 SIDE = 12.0
@@ -91,28 +91,6 @@ def test_the_floor_is_a_bar_that_moves():
         assert axes.get_ylim()[1] == pytest.approx(12.7)  # that of the highest disk's top
 
 
-def test_shaken_walls_stand_at_the_sides_and_their_scratches_move():
-    about = subject("shaken", [SIDE, 2 * SIDE])
-    frames = [STILL._replace(walls=0.0), STILL._replace(walls=0.3)]
-    axes, _, (_, scratches) = drawn(about, frames)
-    edges = [(bar.get_x(), bar.get_x() + bar.get_width()) for bar in axes.patches]
-    assert edges[0][1] == pytest.approx(0.0) and edges[1][0] == pytest.approx(SIDE)
-    moved = drawn(about, frames, 1)[2][1]
-    shift = np.subtract(moved.get_segments(), scratches.get_segments())
-    assert shift[..., 0] == pytest.approx(0.0) and shift[..., 1] == pytest.approx(0.3)
-    assert axes.get_ylim() == (0.0, 1.5 * SIDE)  # no more of a tall box
-
-
-def test_without_spin_there_are_neither_marks_nor_a_colour_bar_and_the_energy_is_shown():
-    bare = {"spin": None, "angle": None, "E_rot": None, "R": None}
-    about = subject("smooth", [SIDE, SIDE], -1.0, COOLING)
-    figure, _ = picture([(about, shots(**bare))])
-    above, below = figure.axes
-    assert not any(line.get_segments() for line in above.collections[1:])
-    assert below.get_ylabel().startswith(r"$E_\mathrm{trans}$") and below.get_yscale() == "log"
-    assert np.isnan(spin_scales(about, shots(**bare))).all()
-
-
 @pytest.mark.parametrize("top", [SIDE, "open"])
 def test_of_spheres_the_nearest_is_drawn_last(top):
     """A bed is seen along the second axis, a gas along the third, from above."""
@@ -132,57 +110,6 @@ def test_colours_are_relative_to_the_thermal_spin():
     assert spin_scales(cooling, frames) == pytest.approx(thermal)
     driven = np.sqrt(2 * np.full(3, 6.0) / 0.5)
     assert spin_scales(subject("sheared", [SIDE, SIDE]), frames) == pytest.approx(driven)
-
-
-def test_time_runs_beneath():
-    figure, show = picture([(subject("gas", [SIDE, SIDE]), shots(R=0.3))])
-    below = figure.axes[1]
-    for frame in range(3):
-        show(frame)
-        _, _, past, present = below.lines
-        assert past.get_xdata() == pytest.approx([0.1 * k for k in range(frame + 1)])
-        assert present.get_ydata() == pytest.approx([0.3])
-    assert below.get_xlabel() == "time in $T$, after the first 10"
-
-
-def test_time_under_a_shaken_gas_counts_shakes():
-    about = subject("bed", [SIDE, "open"])
-    floor = about.scene.effects.floor._replace(period=0.1)
-    effects = about.scene.effects._replace(floor=floor)
-    about = about._replace(scene=about.scene._replace(effects=effects))
-    figure, show = picture([(about, shots(floor=0.0))])
-    show(2)
-    assert figure.axes[1].get_xlabel() == "shakes, after the first 100"
-    assert figure.axes[1].lines[2].get_xdata() == pytest.approx([0.0, 1.0, 2.0])
-
-
-def test_several_points_are_seen_side_by_side_at_one_scale():
-    high = shots(floor=0.0, R=0.9)
-    high = [shot._replace(position=shot.position + 3.0) for shot in high]
-    panels = [
-        (subject("bed", [SIDE, "open"], beta), one)
-        for beta, one in ((-1.0, shots(floor=0.0)), (1.0, high))
-    ]
-    figure, show = picture(panels)
-    show(1)
-    parts = figure.subfigs
-    titles = [part.get_suptitle() for part in parts]
-    assert r"\beta = -1$" in titles[0] and r"\beta = 1$" in titles[1]
-    above, below = zip(*(part.axes[:2] for part in parts), strict=True)
-    assert above[0].get_ylim() == above[1].get_ylim() == pytest.approx((-0.6, 15.7))
-    assert below[0].get_ylim() == below[1].get_ylim()
-    assert [axes.lines[3].get_ydata()[0] for axes in below] == [0.5, 0.9]
-
-
-def test_the_title_tells_what_is_seen():
-    about = subject("gas", [SIDE, 3 * SIDE])
-    about = about._replace(name="waves/wavesine", settings=about.settings | {"swept": "floor.wave"})
-    figure, _ = picture([(about, shots())])
-    first, second = figure.get_suptitle().split("\n")
-    assert first == "waves, wave = sine"
-    for part in ("r = 0.9", r"\beta = 0.5", "N = 3", "seed 7", "up to $y = 18"):
-        assert part in second
-    assert view_of(about, shots()).cropped
 
 
 def test_a_gif_has_every_frame_and_goes_round(tmp_path):
@@ -240,11 +167,3 @@ def test_particles_that_differ_are_drawn_at_their_size():
     assert spin_scales(about, shots(bodies=UNLIKE))[0] == pytest.approx(
         spin_scales(about, shots())[0] / np.array([1.0, 2.0, 1.0])
     )
-
-
-def test_colours_may_tell_the_species():
-    about = subject("gas", [SIDE, SIDE], species=TWO)._replace(by_species=True)
-    above, disks, _ = drawn(about, shots(bodies=UNLIKE))
-    one, other, third = disks.get_facecolor()[:3]
-    assert np.all(one == third) and not np.all(one == other)
-    assert [text.get_text() for text in above.get_legend().get_texts()] == ["small", "large"]

@@ -10,7 +10,7 @@ from jinja2 import Environment
 from tests.houses import FOLDERS
 
 from roughgas import config, studies
-from roughgas.show.catalogue import DOCUMENTS, FIGURES, figures_of
+from roughgas.show.catalogue import DOCUMENTS, figures_of
 from roughgas.show.studies import captions
 
 ROOT = Path(__file__).parents[3]
@@ -62,24 +62,6 @@ def test_a_study_says_how_it_was_made(figure, loaded):
 @pytest.mark.parametrize("document", DOCUMENTS.values(), ids=DOCUMENTS)
 def test_a_document_says_what_it_is(document):
     assert "<p>" in rendered("document", params=SimpleNamespace(caption=document.caption))
-
-
-def test_pictures_of_hard_cases_have_captions():
-    names = figures_of("hard_cases")
-    assert names
-    for name in names:
-        assert "What to notice." in rendered(name, params=SimpleNamespace(size="--full"))
-
-
-def test_the_showcase_says_how_it_was_made(loaded):
-    settings = config.showcase(loaded, "paper")
-    text = rendered("clustering", params=SimpleNamespace(showcase=settings))
-    assert "particles 200000" in text
-
-
-def test_each_caption_is_used():
-    shared = {"workflow", "figure", "study", "document", "config", "table"}
-    assert {path.stem for path in CAPTIONS.glob("*.rst")} == shared | set(FIGURES)
 
 
 @pytest.mark.parametrize("folder", FOLDERS, ids=lambda one: one.name)

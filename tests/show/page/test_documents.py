@@ -41,14 +41,6 @@ def test_pictures_beside_a_text_are_part_of_its_page(tmp_path):
     assert "img-src data:" in text
 
 
-def test_other_files_are_shown_as_what_they_are(tmp_path):
-    (tmp_path / "config.yaml").write_text("box: [1, <2>]\n")
-    assert "<pre>box: [1, &lt;2&gt;]\n</pre>" in html(tmp_path / "config.yaml", tmp_path)
-    (tmp_path / "bed.mp4").write_bytes(b"\0movie")
-    data = base64.b64encode(b"\0movie").decode()
-    assert f'src="data:video/mp4;base64,{data}"' in html(tmp_path / "bed.mp4", tmp_path)
-
-
 def test_an_unknown_kind_is_refused(tmp_path, capsys):
     (tmp_path / "a.txt").write_text("text")
     assert main(["document", str(tmp_path / "a.txt"), "-o", str(tmp_path / "a.html")]) == 2

@@ -9,7 +9,6 @@ import pytest
 from tests.entry import main
 
 from roughgas.base import InputError
-from roughgas.base.files import PACKAGE
 from roughgas.data.point import read_point
 from roughgas.data.reduced import read_reduced
 from roughgas.results.reduce import reduce_points
@@ -25,7 +24,6 @@ from roughgas.show.pages import policy, text_of
 from roughgas.theory.prediction import predicted_ratio
 from show.page.conftest import SAMPLES, write
 
-THEORIES = {"Lun's formula", "theory of free cooling"}
 EXPERIMENTS = ("sheared", "cooling", "cooling_friction")
 
 
@@ -77,18 +75,6 @@ def test_a_point_is_found_by_its_labels_and_says_how_to_run_it_again(points):
     assert point["command"] == read_point(path).attrs["command"]
 
 
-def test_where_a_target_is_set_its_folder_is_what_to_ask_for(points):
-    for place in ("beta-0.5", "beta0.50"):
-        folder = points / "sheared/r0.9" / place
-        (folder / "seeds").mkdir()
-        for seed in (1, 2):
-            (folder / f"seed{seed}.nc").rename(folder / "seeds" / f"seed{seed}.nc")
-    (variant,) = experiment(points / "sheared.nc", points)["variants"]
-    assert variant["series"][0]["points"][0]["target"] == str(
-        points / "sheared/r0.9/beta-0.5/seeds"
-    )
-
-
 def test_time_series_are_means_over_blocks(points):
     (variant,) = experiment(points / "cooling.nc", points)["variants"]
     shown = variant["series"][0]["points"][0]["over_time"]
@@ -134,15 +120,6 @@ def test_the_page_holds_its_data_and_asks_for_nothing(points, tmp_path):
     assert not re.search(r'<(script|link|img|iframe)[^>]*(src|href)="(?!data:)', text)
 
 
-def test_experiments_are_called_as_a_configuration_describes_them(points, tmp_path):
-    (tmp_path / "own.yaml").write_text("experiments: {sheared: {description: My <gas>.}}\n")
-    reduced = [points / f"{name}.nc" for name in ("sheared", "cooling_friction")]
-    own = tmp_path / "own.yaml"
-    write_page(reduced, points=points, output=tmp_path / "page.html", config=own)
-    found = [one["description"] for one in data_in(tmp_path / "page.html")["experiments"]]
-    assert found == ["My <gas>", "cooling friction"]
-
-
 def test_its_programs_are_allowed_by_their_hashes(points, tmp_path):
     page = tmp_path / "page.html"
     write_page([points / "sheared.nc"], points=points, output=page)
@@ -173,14 +150,3 @@ def test_several_scales_do_not_mix(points, tmp_path):
             points=points,
             output=tmp_path / "page.html",
         )
-
-
-def test_the_committed_page_is_the_present_one():
-    """Its data are of the paper's scale; its program is that of the sources."""
-    text = (PACKAGE.parents[1] / "docs/explore.html").read_text("utf-8")
-    again = "write it anew: snakemake -j2 explore; copy results/paper/explore.html to docs"
-    parts = [text_of(f"page/{name}") for name in (*PROGRAM, "explore.css")]
-    assert all(part in text for part in parts) and len(text) < 3_000_000, again
-    data = data_in(PACKAGE.parents[1] / "docs/explore.html")
-    assert data["scale"] == "paper" and len(data["experiments"]) == 6
-    assert {one["theory"] for one in data["experiments"]} == THEORIES, again
