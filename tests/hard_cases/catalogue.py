@@ -1,24 +1,13 @@
-"""What a hard case is made of: its marker, the margins that it measures, and the remedies.
+"""What a hard case is made of: its marker, and the margins that it measures.
 
-A test of this catalogue is marked by `hard_case` and measures through the fixture `margins`; where
-a remedy in the source keeps it from failing, a second test takes that remedy out (fixture
-`without`) and expects the case to fail.
+A test of this catalogue is marked by `hard_case` and measures through the fixture `margins`.
 """
 
-import os
-import shutil
-import subprocess
-import sys
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 import pytest
 
-import roughgas
-
-PACKAGE = Path(roughgas.__file__).parent
-ROOT = Path(__file__).parents[2]
 BEYOND = "beyond its limit"
 
 
@@ -83,41 +72,3 @@ class Margins:
     def _note(self, row: Margin) -> None:
         self.rows.append(row)
         print(f"{row.what}: {row.measured:.4g}, {row.sense} {row.limit:g}; {row.tried} {row.unit}")
-
-
-class Without:
-    """Runs a case in a process of its own, with a part of the source replaced."""
-
-    def __init__(self, folder: Path, family: str):
-        self.folder, self.family = folder, family
-        self.rows: list[Remedy] = []
-
-    def __call__(
-        self, remedy: str, case, file: str, old: str, new: str, limit: float = 900
-    ) -> None:
-        """Expect the test function `case` to fail once `old` in a file of the package is `new`.
-
-        It must do so because a margin is beyond its limit, within `limit` seconds.
-        """
-        copy = self.folder / "roughgas"
-        shutil.copytree(PACKAGE, copy, ignore=shutil.ignore_patterns("__pycache__"))
-        source = copy / file
-        text = source.read_text(encoding="utf-8")
-        assert text.count(old) == 1, f"{file} has this remedy {text.count(old)} times: {old}"
-        source.write_text(text.replace(old, new), encoding="utf-8")
-        result = self._run(f"{sys.modules[case.__module__].__file__}::{case.__name__}", limit)
-        assert result.returncode == pytest.ExitCode.TESTS_FAILED, result.stdout
-        assert BEYOND in result.stdout, result.stdout
-        mark = next(mark for mark in case.pytestmark if mark.name == "hard_case")
-        self.rows.append(Remedy(self.family, mark.kwargs["title"], remedy))
-
-    def _run(self, test: str, limit: float) -> subprocess.CompletedProcess:
-        environment = os.environ | {
-            "PYTHONPATH": str(self.folder),
-            "ROUGHGAS_CACHE_DIR": str(self.folder / "cache"),
-        }
-        environment.pop("PYTEST_ADDOPTS", None)
-        command = [sys.executable, "-m", "pytest", "-x", "-n0", "-p", "no:cacheprovider", test]
-        return subprocess.run(
-            command, cwd=ROOT, env=environment, capture_output=True, text=True, timeout=limit
-        )

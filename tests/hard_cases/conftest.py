@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from hard_cases.catalogue import Margins, Without
+from hard_cases.catalogue import Margins
 
 FOUND = pytest.StashKey[dict]()
 
@@ -19,37 +19,24 @@ def pytest_configure(config):
     config.stash[FOUND] = {"margins": [], "remedies": [], "series": {}}
 
 
-def pytest_collection_modifyitems(items):
-    for item in items:
-        if "without" in getattr(item, "fixturenames", ()):
-            item.add_marker(pytest.mark.remedy)
-
-
 def pytest_sessionfinish(session):
     target = session.config.getoption("--margins", None)
     if target:
         Path(target).write_text(json.dumps(session.config.stash[FOUND], indent=1) + "\n")
 
 
-def family_of(request):
+def family_of(module):
     """The first line of a module's docstring, without its full stop."""
-    return request.module.__doc__.splitlines()[0].rstrip(".")
+    return module.__doc__.splitlines()[0].rstrip(".")
 
 
 @pytest.fixture
 def margins(request):
     mark = request.node.get_closest_marker("hard_case")
     full = bool(request.config.getoption("--full", False))
-    measured = Margins(family_of(request), mark.kwargs["title"], mark.kwargs["danger"], full)
+    measured = Margins(family_of(request.module), mark.kwargs["title"], mark.kwargs["danger"], full)
     yield measured
     assert measured.rows, "this case measured nothing"
     found = request.config.stash[FOUND]
     found["margins"] += [row._asdict() for row in measured.rows]
     found["series"] |= measured.series
-
-
-@pytest.fixture
-def without(request, tmp_path):
-    removed = Without(tmp_path, family_of(request))
-    yield removed
-    request.config.stash[FOUND]["remedies"] += [row._asdict() for row in removed.rows]

@@ -60,16 +60,6 @@ def collapse(seed):
     return {"collapsed": collapsed, "contacts": contacts, "x": x % 50.0, "y": y, "last": last}
 
 
-def test_without_a_watch_on_spent_contacts(without):
-    without(
-        "noticing contacts that have no speed left",
-        test_a_bed_that_collapses_is_stopped,
-        "kernel/clock.py",
-        "return (counts[SPENT] < COLLAPSE) & (counts[AT_ONCE] < many)",
-        "return counts[AT_ONCE] < many",
-    )
-
-
 @hard_case(
     "a bed that does not collapse, r = 0.8 and 0.7",
     "what is merely dense is taken for a collapse, and a good run is stopped",

@@ -98,16 +98,6 @@ def test_normal(margins, dimension):
     )
 
 
-def test_without_the_normal_that_is_right_on_average(without):
-    without(
-        "a normal from what half of x lacks in length, not from 1/|x|",
-        test_normal,
-        "kernel/contact.py",
-        "add_scaled(half, half, (4.0 - square) / (length * (2.0 + length)))",
-        "scale(x, 1.0 / length)",
-    )
-
-
 @hard_case(
     "the angular momentum of a pair",
     "what the tangential push takes from the orbital part is not what the spins get",
@@ -212,13 +202,3 @@ def test_parting(margins, dimension):
         record(state, scene, Sampling(1.0, 100, 0), row)
         most = max(most, state.counts[COLLISIONS])
     margins.at_most(f"contacts of a pair, D = {dimension}", most, 1, pairs_tried, "pairs")
-
-
-def test_without_parting(without):
-    without(
-        "particles part at 1e-10 of the typical speed at least",
-        test_parting,
-        "kernel/contact.py",
-        "    push = _parted(push, n, v, 0.5 * mass_in(pair), least)\n",
-        "",
-    )

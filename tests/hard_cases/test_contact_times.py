@@ -97,16 +97,6 @@ def test_grazing(margins):
     margins.at_most("gap of an invented contact, over the distance", invented, 4e-16, **tried)
 
 
-def test_without_the_cross_product(without):
-    without(
-        "a discriminant from the cross product",
-        test_grazing,
-        "kernel/pairs.py",
-        "discriminant = diameter * diameter * uu - cross_squared(x, u)",
-        "discriminant = b * b - uu * c",
-    )
-
-
 @hard_case(
     "contacts of close pairs",
     "two terms of a root cancel: a contact comes too early or too late, or before the present",
@@ -127,16 +117,6 @@ def test_close_pairs(margins):
     tried = {"tried": pairs_tried // 2, "unit": "pairs"}
     margins.at_most("gap at the predicted time, in the plane [a]", error[0], 2.3e-16, **tried)
     margins.at_most("gap at the predicted time, in space [a]", error[1], 3.4e-16, **tried)
-
-
-def test_without_the_division(without):
-    without(
-        "the smaller root by division, c / (root - b)",
-        test_close_pairs,
-        "kernel/pairs.py",
-        "time = max(c, 0.0) / (math.sqrt(max(discriminant, 0.0)) - b)",
-        "time = max(-b - math.sqrt(max(discriminant, 0.0)), 0.0) / uu",
-    )
 
 
 @hard_case(
@@ -200,33 +180,3 @@ def test_overlapping_pairs(margins):
     margins.at_most(f"normal velocity of a contact that is lost, {speed}", lost, 4e-16, **tried)
     margins.at_most(f"normal velocity of one that is repeated, {speed}", again, 4e-16, **tried)
     margins.at_most("gap at the contact, or change of the overlap [a]", moved, 7e-16, **tried)
-
-
-def test_without_what_is_done_for_overlaps(without):
-    without(
-        "where particles overlap, the sign of x.u alone decides",
-        test_overlapping_pairs,
-        "kernel/pairs.py",
-        "((discriminant >= 0.0) | (c <= 0.0))",
-        "(discriminant >= 0.0)",
-    )
-
-
-def test_without_the_present_as_a_bound(without):
-    without(
-        "no contact lies in the past",
-        test_overlapping_pairs,
-        "kernel/pairs.py",
-        "max(c, 0.0)",
-        "c",
-    )
-
-
-def test_without_the_closest_approach_as_a_bound(without):
-    without(
-        "no contact lies beyond the closest approach",
-        test_overlapping_pairs,
-        "kernel/pairs.py",
-        "min(time, -b / uu)",
-        "time",
-    )

@@ -85,16 +85,6 @@ def curves(restitutions, runs, samples):
     return columns
 
 
-def test_without_removing_the_momentum(without):
-    without(
-        "removing the momentum that roundings leave",
-        test_a_gas_cools_for_ever,
-        "kernel/record.py",
-        "            state.trajectory[i, k] -= mean\n",
-        "",
-    )
-
-
 @hard_case(
     "a gas in other units of time",
     "rescaling a gas that has become slow changes its collisions",

@@ -235,13 +235,3 @@ def _by_command(experiment, output):
     command += ["--beta=0.2", "--seed=1", "--output", str(output)]
     done = subprocess.run(command, capture_output=True, text=True)
     return done.returncode, done.stderr
-
-
-def test_without_the_centred_lattice(without):
-    without(
-        "a centred lattice for a start that is denser than a square one",
-        test_densities,
-        "scene/initial.py",
-        "if len(sites) < number and None not in scene.box:",
-        "if False:",
-    )

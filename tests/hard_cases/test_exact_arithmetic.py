@@ -96,13 +96,3 @@ def test_an_old_gas_is_as_close_to_exact_arithmetic(name, margins):
     while state.counts[0] < age:
         run(state, scene, 1, collisions=age - int(state.counts[0]))
     compare(margins, name, state, scene, world, margins.size(quick=100, full=1000))
-
-
-def test_without_a_clock_that_moves_along(without):
-    without(
-        "times count from a base that moves along",
-        test_an_old_gas_is_as_close_to_exact_arithmetic,
-        "kernel/clock.py",
-        "step = math.floor(clock[NOW] / clock[SPAN]) * clock[SPAN]",
-        "step = 0.0",
-    )

@@ -128,16 +128,6 @@ def test_the_gas_is_the_same_however_it_is_seen(name, scheme, margins):
     measure(margins, f"{name}, {scheme}", segments)
 
 
-def test_without_taking_whole_boxes_off_the_slide(without):
-    without(
-        "whole boxes are taken off the slide",
-        test_the_gas_is_the_same_however_it_is_seen,
-        "effects/shear.py",
-        "shear.velocity * (base % (shear.length / abs(shear.velocity)))",
-        "shear.velocity * base",
-    )
-
-
 @hard_case(
     "the place of the images after a long time",
     "the offset of the image above, U t, is a large number of which only the part beyond whole "
@@ -197,16 +187,6 @@ def test_contacts_coincide_with_crossings(box, margins):
     measure(margins, f"two particles in a box of {box[0]:g} by {box[1]:g}", segments)
 
 
-def test_without_less_velocity_below(without):
-    without(
-        "what crosses the boundary has U less",
-        test_contacts_coincide_with_crossings,
-        "kernel/images.py",
-        "(multiply_add(-numbers[1], slide[1], u[0]),) + u[1:],",
-        "u,",
-    )
-
-
 # ---------------------------------------------------------------------- images that rush past
 
 
@@ -230,13 +210,3 @@ def test_fast_shear_makes_the_same_collisions(scheme, margins):
         speeds[:, 0] += k % 2 * velocity * (position[:, 1] / 25 - 0.5)
         segments.append(segment(started(scene, position, speeds), scene, world, most=3))
     measure(margins, scheme, segments)
-
-
-def test_without_looking_at_every_image(without):
-    without(
-        "flights are cut until within each piece the nearest image decides",
-        test_fast_shear_makes_the_same_collisions,
-        "kernel/pairs.py",
-        "return time, exceeds(dot(u, u), limit)",
-        "return time, exceeds(dot(u, u), math.inf)",
-    )

@@ -114,13 +114,3 @@ def _agreement(beside):
     """
     differences = np.array([beside.segment(SEGMENT) for _ in range(SEGMENTS)])
     return np.median(differences[:, 0] / differences[:, 1])
-
-
-def test_without_moving_the_base(without):
-    without(
-        "a clock whose base moves along",
-        test_a_billion_collisions_wear_nothing_out,
-        "kernel/clock.py",
-        "step = math.floor(clock[NOW] / clock[SPAN]) * clock[SPAN]",
-        "step = 0.0",
-    )

@@ -34,16 +34,6 @@ def test_pairs_collide_where_they_touch(margins):
     margins.at_most("largest gap at a contact, in a", gaps[:, 1].max(), 1e-11, **tried)
 
 
-def test_without_dropping_contacts_of_paths_that_have_changed(without):
-    without(
-        "dropping a contact once its partner's path has changed",
-        test_pairs_collide_where_they_touch,
-        "kernel/loop.py",
-        "if agenda.slot_change[i, kind] != state.changes[partner]:",
-        "if agenda.slot_change[i, kind] < 0:",
-    )
-
-
 @hard_case(
     "pairs that overlap by rounding",
     "a pair that overlaps and approaches is overlooked, one that recedes collides over and over",

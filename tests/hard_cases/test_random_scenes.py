@@ -232,13 +232,3 @@ def test_roundings_of_energy_that_has_gone_are_not_missing():
     worst = Worst()
     assert worst.see(experiment, 0.901071948700902, -0.11080577233027777, 7187) == "run"
     assert 0.0 < worst.imbalance < 0.2
-
-
-def test_without_the_work_of_contacts_across_the_boundary(without):
-    without(
-        "booking what contacts across a sliding boundary gain",
-        test_invariants_of_random_scenes,
-        "kernel/contact.py",
-        "    hooks.transfer(effects, None, state, dot(push, subtract(v, between)))\n",
-        "",
-    )

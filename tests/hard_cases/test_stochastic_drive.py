@@ -51,16 +51,6 @@ def test_R_converges_as_kicks_shrink(margins):
     margins.at_most(what, max(differences), 0.02, **tried)
 
 
-def test_without_kicks_spread_over_time(without):
-    without(
-        "kicks that are spread over the interval, one particle after the other",
-        test_R_converges_as_kicks_shrink,
-        "effects/thermostat.py",
-        "thermostat.interval * (1.0 + rng.permutation(number)) / number",
-        "0.0 * rng.permutation(number) + thermostat.interval",
-    )
-
-
 @hard_case(
     "the trap: all kicks at once, and sampled right after",
     "the bias that spreading the kicks avoids is not there in the first place, and the case above "

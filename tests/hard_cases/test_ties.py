@@ -87,13 +87,3 @@ def outcome(position, velocity, r, rng):
     shot = snapshot(state, scene)
     parts = (part[back].tobytes() for part in (shot.position, shot.velocity, shot.spin))
     return b"".join(parts), int(state.counts[COLLISIONS])
-
-
-def test_without_an_order_of_their_own(without):
-    without(
-        "particles kept in the order of their positions",
-        test_ties_do_not_depend_on_the_numbering,
-        "kernel/layout.py",
-        "order = np.lexsort(position.T[::-1])",
-        "order = np.arange(number)",
-    )

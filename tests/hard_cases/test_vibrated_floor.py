@@ -228,33 +228,3 @@ def test_no_particle_falls_through_the_floor(margins):
     tried = {"tried": 3 * instants, "unit": "instants"}
     # heights of some ten, and times of some ten since the base, each rounded a few times
     margins.at_most("depth below the floor, in a", deepest, 1e-13, **tried)
-
-
-def test_without_the_quotient_in_free_fall(without):
-    without(
-        "the time of a fall without cancellation",
-        test_hits_around_the_return_of_the_floor,
-        "effects/surface.py",
-        "return 2.0 * gap / (root - speed) if speed < 0.0 else (speed + root) / gravity",
-        "return (speed + root) / gravity",
-    )
-
-
-def test_without_the_hop_of_those_on_the_floor(without):
-    without(
-        "one on the floor that leaves it meets it only after its hop",
-        test_take_off_at_hardly_any_speed,
-        "effects/surface.py",
-        "return 0.0 if speed < 0.0 else 2.0 * speed / gravity",
-        "return 0.0",
-    )
-
-
-def test_without_the_least_speed_of_departure(without):
-    without(
-        "a least speed at which the floor is left",
-        test_bounces_that_accumulate_come_to_an_end,
-        "effects/surface.py",
-        "LEAST_DEPARTURE = 1e-3",
-        "LEAST_DEPARTURE = 0.0",
-    )

@@ -173,33 +173,3 @@ def test_no_particle_falls_through_the_floor(margins, form):
                 deepest = max(deepest, 1.0 + level(scene.effects.floor, phase % period) - y)
     tried = {"tried": 3 * instants, "unit": f"instants, {form.replace('_', ' ')}"}
     margins.at_most("depth below the floor, in a", deepest, 1e-12, **tried)
-
-
-def test_without_the_acceleration_of_the_floor(without):
-    without(
-        "steps towards a sine that take the most into account by which it may accelerate",
-        test_falls_from_anywhere,
-        "effects/sine_floor.py",
-        "bend = gravity + min(",
-        "bend = gravity + 0.0 * min(",
-    )
-
-
-def test_without_the_jerk_of_the_floor(without):
-    without(
-        "steps towards a sine that take into account how its acceleration changes on the way",
-        test_falls_from_anywhere,
-        "effects/sine_floor.py",
-        "acceleration + sharpest * rate * reach / 3.0",
-        "acceleration",
-    )
-
-
-def test_without_the_piece_that_comes_next(without):
-    without(
-        "a triangle's pieces one after the other",
-        test_falls_from_anywhere,
-        "effects/triangular_floor.py",
-        "if meeting <= end:",
-        "if meeting >= 0.0:",
-    )
