@@ -11,6 +11,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from argparse import Namespace
 from importlib import import_module, metadata
 from pathlib import Path
 
@@ -28,7 +29,7 @@ KNOWN = 0.4453  # R of that gas
 LONGEST = 600  # seconds to compile, on a machine that is slow and busy
 
 
-def doctor(as_json: bool) -> None:
+def doctor(options: Namespace) -> None:
     """Print what is wrong with the installation; exit with status 1 if there is a problem."""
     found = {}
     for name, (check, remedy) in CHECKS.items():
@@ -37,9 +38,9 @@ def doctor(as_json: bool) -> None:
         except Exception as error:  # whatever a broken library raises
             said = " ".join(f"{type(error).__name__}: {error}".split())
             found[name] = {"ok": False, "said": f"{said} -> {remedy}"}
-        if not as_json:
+        if not options.json:
             print(f"{'ok' if found[name]['ok'] else 'problem':8} {name:14} {found[name]['said']}")
-    if as_json:
+    if options.json:
         print(json.dumps(found, indent=2))
     if not all(one["ok"] for one in found.values()):
         raise SystemExit(1)

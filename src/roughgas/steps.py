@@ -18,8 +18,7 @@ from typing import Any, get_origin
 
 from roughgas import cli, config
 from roughgas.base import InputError, not_one_of
-from roughgas.cli.options import whole_number
-from roughgas.cli.parser import Parser
+from roughgas.cli.parser import Parser, whole_number
 
 
 def compile_kernels(experiment: str, *, settings: str, r: str, checked: bool = False) -> None:

@@ -80,6 +80,22 @@ def test_what_is_offered(line, offered, capsys):
     assert completed(line, lines_for("bash", capsys)) == offered
 
 
+def test_names_are_read_unchecked_which_is_fast(tmp_path, monkeypatch):
+    """Nor do a mistake, and a study that cannot be read, keep other names from being offered."""
+    (tmp_path / "config.yaml").write_text("experiments: {mine: {particles: -1}}")
+    for name, text in (("sound", "experiments: {one: {}}"), ("broken", "experiments: [")):
+        (tmp_path / "studies" / name).mkdir(parents=True)
+        (tmp_path / "studies" / name / "config.yaml").write_text(text)
+    monkeypatch.chdir(tmp_path)
+    code = (
+        "import sys, argparse\nfrom roughgas.cli import parser\n"
+        "print(parser._experiments('', argparse.Namespace(config=None, scale=None)))\n"
+        "sys.exit('jsonschema' in sys.modules)"
+    )
+    said = subprocess.run([sys.executable, "-c", code], check=True, stdout=subprocess.PIPE).stdout
+    assert said.decode().strip() == "['mine', 'sound.one']"
+
+
 @pytest.mark.parametrize("shell", SHELLS)
 def test_every_shell_takes_its_lines(shell, capsys):
     assert completed("roughgas theory --dimension ", lines_for(shell, capsys), shell) == {"2", "3"}

@@ -17,8 +17,7 @@ from typing import NoReturn
 from roughgas import base
 from roughgas.base import EndedEarlyError, InputError, __version__, on_one_line, shown
 from roughgas.cli.commands import COMMANDS
-from roughgas.cli.options import check_outputs
-from roughgas.cli.parser import BAD_INPUT, Given, Parser, add_commands, overview
+from roughgas.cli.parser import BAD_INPUT, Given, Parser, add_commands, check_outputs, overview
 
 FAILED, INTERRUPTED, NOBODY_READS = 1, 130, 141
 GO_ON = "nothing is half-written; the same command begins anew"

@@ -2,7 +2,7 @@
 
 import os
 
-from roughgas.cli.options import (
+from roughgas.cli.parser import (
     CONFIG,
     FROM,
     POINT,
@@ -12,8 +12,12 @@ from roughgas.cli.options import (
     SCALE,
     SET,
     TAKE,
+    Command,
+    flag,
+    one_of,
+    output,
+    value,
 )
-from roughgas.cli.parser import Command, flag, one_of, output, value
 
 CORES = str(os.cpu_count())
 COMMANDS = {
@@ -44,7 +48,7 @@ COMMANDS = {
         "changes any setting of the experiment, by its key in config.yaml.",
     ),
     "movie": Command(
-        "cli.motion:movie",
+        "cli.products:movie",
         "show a point as it moves",
         *POINTS,
         SET,
@@ -67,7 +71,7 @@ COMMANDS = {
         "gas, in collisions per particle.",
     ),
     "trajectory": Command(
-        "cli.motion:trajectory",
+        "cli.products:trajectory",
         "write the trajectories of all particles, for OVITO, ASE, freud ...",
         *POINT,
         value("--seed", "seed of the random generator", default="1"),
@@ -103,7 +107,7 @@ COMMANDS = {
         "standard error of 0.0030.",
     ),
     "plot": Command(
-        "cli.results:plot",
+        "cli.products:plot",
         "draw a point over time, or any reduced dataset beside theory",
         value("input DATASET", "a point, or a reduced dataset"),
         value("--over AXIS", "horizontal axis: r, beta, or the third axis (the default)"),
@@ -123,7 +127,7 @@ COMMANDS = {
         "and theory are lines.",
     ),
     "reduce": Command(
-        "cli.results:reduce",
+        "cli.products:reduce",
         "combine the points of an experiment into a dataset",
         value(
             "inputs POINT",
@@ -137,7 +141,7 @@ COMMANDS = {
         "that `roughgas show` and `roughgas plot` take: R with its error, beside theory.",
     ),
     "experiments": Command(
-        "cli.results:experiments",
+        "cli.products:experiments",
         "list the experiments of the configuration",
         SCALE,
         CONFIG,
@@ -182,7 +186,7 @@ COMMANDS = {
         "effect thermostat.",
     ),
     "crate": Command(
-        "cli.results:crate",
+        "cli.products:crate",
         "pack a finished run as an RO-Crate",
         value("files FILE", "results and figures", nargs="+"),
         output(".zip file", "CRATE"),
@@ -204,7 +208,7 @@ COMMANDS = {
         "say what to do about each problem. The exit status is 1 if there is one.",
     ),
     "completion": Command(
-        "cli.options:print_completion",
+        "cli.parser:print_completion",
         "complete commands, options and experiments in your shell",
         value("shell", "bash, zsh or fish", choices=("bash", "zsh", "fish")),
         examples=(

@@ -1,15 +1,18 @@
-"""`roughgas movie` and `roughgas trajectory`: particles of a point as they move."""
+"""What `roughgas` makes beside points: movies, trajectories, reduced datasets, plots, crates."""
 
 import sys
 from argparse import Namespace
 from collections.abc import Sequence
 from functools import partial
+from math import prod
+from textwrap import fill
 from typing import TYPE_CHECKING, Any
 
-from roughgas.base import Interval
-from roughgas.cli.options import number, whole_number
+from roughgas import config
+from roughgas.base import InputError, Interval, on_one_line
+from roughgas.base.formatting import as_json, from_json
+from roughgas.cli.parser import WIDTH, number, whole_number
 from roughgas.cli.run import initial_in, points_of
-from roughgas.config import Place
 from roughgas.config.provenance import provenance
 from roughgas.data.trajectory import as_trajectory, check_format, write_trajectory
 from roughgas.scene import Scene, build
@@ -75,7 +78,7 @@ def movie(options: Namespace) -> None:
         print(f"{output}: {len(panels[0][1])} frames", file=sys.stderr)
 
 
-def _panel(options: Namespace, place: Place, settings: dict[str, Any]) -> "Panel":
+def _panel(options: Namespace, place: config.Place, settings: dict[str, Any]) -> "Panel":
     """Simulate a point; return it with what is to be seen of it."""
     from roughgas.show.movies.drawing import MovieSubject
 
@@ -85,3 +88,62 @@ def _panel(options: Namespace, place: Place, settings: dict[str, Any]) -> "Panel
     shots = list(watched(f"{name}: simulated", take.frames, "frames", simulated))
     by_species = options.colour == "species"
     return MovieSubject(name, settings, scene, place.seed, by_species), shots
+
+
+def reduce(options: Namespace) -> None:
+    """Combine points into a reduced dataset."""
+    from roughgas.results.reduce import reduce_points
+
+    piped = options.inputs == ["-"]
+    reduce_points(sys.stdin.read().splitlines() if piped else options.inputs, options.output)
+
+
+def plot(options: Namespace) -> None:
+    """Draw any reduced dataset."""
+    from roughgas.show import gallery
+
+    names = ("r", "beta")
+    chosen = {n: [number(f"--{n}", one) for one in getattr(options, n) or ()] for n in names}
+    for line in gallery.plot(options.input, options.output, options.over, **chosen):
+        print(line, file=sys.stderr)
+
+
+def crate(options: Namespace) -> None:
+    """Write a crate."""
+    from roughgas.results.crate import write_crate
+
+    if not options.output.endswith(".zip"):
+        raise InputError("--output", options.output, "end in .zip")
+    text = options.configuration
+    settings = config.load(options.config) if text is None else from_json(text, "--configuration")
+    write_crate(options.files, options.output, settings)
+
+
+def experiments(options: Namespace) -> None:
+    """Print each experiment with its sweep at a scale."""
+    loaded = config.load(options.config)
+    found = {}
+    for name, written in loaded["experiments"].items():
+        settings = config.experiment(loaded, name, options.scale)
+        sweep = {key: settings["sweep"][key] for key in _axes(settings)}
+        points = prod(map(len, sweep.values()))
+        about = {"description": written.get("description", ""), "extends": written.get("extends")}
+        found[name] = about | {"points": points, "sweep": sweep}
+    if options.json:
+        print(as_json(found))
+    else:
+        print("\n\n".join(_text(name, about) for name, about in found.items()))
+
+
+def _axes(settings):
+    """Return the axes of a sweep, the third one first."""
+    third = config.third_axis(settings)
+    return [*([third] if third else []), "r", "beta"]
+
+
+def _text(name, about):
+    counts = ", ".join(f"{len(labels)} {key}" for key, labels in about["sweep"].items())
+    extends = f"; extends {about['extends']}" if about["extends"] else ""
+    description = on_one_line(" ".join(about["description"].split()))
+    lines = [name, fill(description, WIDTH, initial_indent="  ", subsequent_indent="  ")]
+    return "\n".join([*lines, f"  {about['points']} points: {counts}{extends}"])
