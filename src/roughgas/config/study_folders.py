@@ -89,19 +89,10 @@ def _read_all(
 
 
 def _read(name: str, folder: Path, config: Mapping[str, Any]) -> dict[str, Any]:
-    source, root = _source(name), _of_root(config["experiments"])
-    check_schema(name, f"{FOLDER}: folder", "name")
-    if name in RESERVED or name in root:
-        legal = "have another name: the workflow has a rule, a product or an experiment of this one"
-        raise InputError(f"{FOLDER}: folder", name, legal)
-    study = read_yaml(folder / "config.yaml", source)
-    check_schema(study, source, "study_folder")
-    if (folder / "claims.yaml").exists():
-        claims = f"{FOLDER}/{name}/claims.yaml"
-        check_schema(read_yaml(folder / "claims.yaml", claims), claims, "claims")
+    """Return `experiments` and `scales` of a study, names qualified, and what FOLDERS has of it."""
+    root, source = _of_root(config["experiments"]), _source(name)
+    study = _checked(name, folder, root)
     own = study["experiments"]
-    for key in own.keys() & root.keys():
-        raise InputError(f"{source}: key of experiments", key, "be no name of config.yaml's own")
 
     def qualified(key: str, where: str) -> str:
         base, slash, variant = key.partition("/")
@@ -119,29 +110,48 @@ def _read(name: str, folder: Path, config: Mapping[str, Any]) -> dict[str, Any]:
         for key in changes:
             settings_of.one_of(f"{source}: key of scales.{scale}", key, own)
         scales[scale] = {f"{name}.{key}": one for key, one in changes.items()}
-    usual = {name: list(own)} if (folder / "figure.py").exists() else {}
-    figures = {
-        figure: [qualified(one, f"figures.{figure}") for one in shows]
-        for figure, shows in study.get("figures", usual).items()
-    }
-    movies = {
-        movie: [qualified(shows.split()[0], f"movies.{movie}"), *shows.split()[1:]]
-        for movie, shows in study.get("movies", {}).items()
-    }
-    for part, key in [*(("figures", one) for one in figures), *(("movies", one) for one in movies)]:
-        if key != name and not key.startswith(f"{name}_"):
-            legal = f"be {name} or begin with {name}_"
-            raise InputError(f"{source}: key of {part}", key, legal)
     about: dict[str, Any] = {"folder": str(folder), "title": _title(folder)}
-    about |= {"experiments": list(experiments), "figures": figures, "movies": movies}
+    about |= {"experiments": list(experiments), "figures": {}, "movies": {}}
+    usual = {name: list(own)} if (folder / "figure.py").exists() else {}
+    for figure, shows in study.get("figures", usual).items():
+        about["figures"][figure] = [qualified(one, f"figures.{figure}") for one in shows]
+    for movie, shows in study.get("movies", {}).items():
+        what, *options = shows.split() or [""]
+        about["movies"][movie] = [qualified(what, f"movies.{movie}"), *options]
     return {"experiments": experiments, "scales": scales, "about": about}
+
+
+def _checked(name: str, folder: Path, root: Mapping[str, Any]) -> dict[str, Any]:
+    """Return config.yaml of a study, checked by itself and for names that others have."""
+    source = _source(name)
+    check_schema(name, f"{FOLDER}: folder", "name")
+    if name in RESERVED or name in root:
+        legal = "have another name: the workflow has a rule, a product or an experiment of this one"
+        raise InputError(f"{FOLDER}: folder", name, legal)
+    study = read_yaml(folder / "config.yaml", source)
+    check_schema(study, source, "study_folder")
+    if (folder / "claims.yaml").exists():
+        claims = f"{FOLDER}/{name}/claims.yaml"
+        check_schema(read_yaml(folder / "claims.yaml", claims), claims, "claims")
+    for key in study["experiments"].keys() & root.keys():
+        raise InputError(f"{source}: key of experiments", key, "be no name of config.yaml's own")
+    for part in ("figures", "movies"):
+        for key in study.get(part, ()):
+            if key != name and not key.startswith(f"{name}_"):
+                legal = f"be {name} or begin with {name}_"
+                raise InputError(f"{source}: key of {part}", key, legal)
+    return study
+
+
+def readme(folder: str | Path) -> str:
+    """Return README.md of the study in `folder`; nothing without one."""
+    file = Path(folder, "README.md")
+    return file.read_text(encoding="utf-8") if file.exists() else ""
 
 
 def _title(folder: Path) -> str:
     """Return the heading of its README.md; its name without one."""
-    readme = folder / "README.md"
-    text = readme.read_text(encoding="utf-8") if readme.exists() else ""
-    heading = re.match(r"# (.+)", text)
+    heading = re.match(r"# (.+)", readme(folder))
     return heading[1].strip() if heading else folder.name.replace("_", " ").capitalize()
 
 

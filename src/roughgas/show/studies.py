@@ -7,6 +7,7 @@ from pathlib import Path
 import pandas as pd
 
 from roughgas.base.formatting import markdown
+from roughgas.config.study_folders import readme
 from roughgas.show import pages
 
 PICTURE = re.compile(r"!\[[^]]*\]\([^)]*?([\w.]+)\.png\)")
@@ -20,7 +21,7 @@ STEADY = {1: "yes", 0: "no", -1: "not known"}
 def captions(folder: str | Path, figures: Sequence[str]) -> dict[str, str]:
     """Return what stands after each picture in README.md of the study in `folder`, up to the next
     picture or heading, by the figure; plain text, which may be bold."""
-    text = _readme(folder)
+    text = readme(folder)
     parts = PICTURE.split(text)
     names = _in_place(parts[1::2], figures)
     pairs = zip(names, parts[2::2], strict=True)
@@ -38,7 +39,7 @@ def write_page(
 ) -> None:
     """Write a page of HTML that loads nothing: README.md with the pictures `figures` in it, those
     that it does not show after it, verdicts, and the table of R."""
-    text = _readme(folder) or f"# {title}\n"
+    text = readme(folder) or f"# {title}\n"
     pictures = {Path(one).stem: f"![{Path(one).stem}](<{one}>)" for one in figures}
     text = LINK.sub(r"\1", text)  # of the project, which is not beside the page
     parts = PICTURE.split(text)
@@ -50,11 +51,6 @@ def write_page(
     body = pages.markup(pages.markdown_as_html("\n\n".join(whole).encode(), Path()))
     shown = {"title": title, "body": body}
     pages.write_page(output, "page/document.html", ["page/document.css"], **shown)
-
-
-def _readme(folder: str | Path) -> str:
-    readme = Path(folder, "README.md")
-    return readme.read_text(encoding="utf-8") if readme.exists() else ""
 
 
 def _in_place(named: Sequence[str], figures: Sequence[str]) -> list[str]:
