@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 from benchmarks.kernel import Timing
 from benchmarks.yardstick import Rate
-from roughgas.kernel.layout import FEW
+from roughgas.kernel.memory import FEW
 from roughgas.show.style import FAINT, LOOKS, PARAMETERS, THEORY, WIDTH, save
 
 

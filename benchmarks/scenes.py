@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from roughgas import config
-from roughgas.kernel.layout import new_state
+from roughgas.kernel.memory import new_state
 from roughgas.kernel.record import Sampling, columns, record
 from roughgas.kernel.state import NOW
 from roughgas.scene import build

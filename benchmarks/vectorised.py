@@ -14,7 +14,7 @@ import numpy as np
 
 from benchmarks.scenes import CASES, settings
 from roughgas.kernel.jit import entry
-from roughgas.kernel.shortlist import decide
+from roughgas.kernel.prediction import decide
 from roughgas.kernel.sweep import line_of, list_candidates, single
 from roughgas.scene import Scene, build
 from roughgas.scene.initial import initial_state

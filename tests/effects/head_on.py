@@ -8,7 +8,7 @@ import sys
 import numpy as np
 from brute_force import run
 
-from roughgas.kernel.layout import new_state
+from roughgas.kernel.memory import new_state
 from roughgas.scene import build
 
 EFFECTS = {"spin": {"inertia": 0.5}, "plasticity": {"yield_speed": 1.0}}

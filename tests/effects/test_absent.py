@@ -16,7 +16,7 @@ from roughgas.data.point import read_point, write_point
 from roughgas.data.variables import POINT
 from roughgas.effects import KINDS
 from roughgas.effects.side import SIDES
-from roughgas.kernel import random
+from roughgas.kernel import mathematics
 from roughgas.kernel.contact import SPLIT
 from roughgas.kernel.record import record
 from roughgas.kernel.state import BOUNDARY, BOUNDARY_HITS
@@ -106,7 +106,7 @@ def test_the_multipliers_of_random_numbers_are_where_they_are_drawn(kernel):
     """SplitMix64's constants, which are in nothing else."""
     code = b"".join(sections(kernel).values())
     heated = "thermostat" in KERNELS[kernel]["effects"]
-    for number in (random.STEP, random.FIRST, random.SECOND):
+    for number in (mathematics.STEP, mathematics.FIRST, mathematics.SECOND):
         assert (np.uint64(number).tobytes() in code) == heated
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from brute_force import begin, run, settings
 
-from roughgas.kernel.layout import new_state
+from roughgas.kernel.memory import new_state
 from roughgas.kernel.record import Sampling, columns, record
 from roughgas.kernel.state import COLLISIONS, TOUCHED
 

@@ -8,7 +8,7 @@ from compiled import from_python
 
 from roughgas.effects import floor as floors
 from roughgas.effects.floor import Floor
-from roughgas.kernel.layout import new_state
+from roughgas.kernel.memory import new_state
 from roughgas.kernel.state import BOUNDARY_HITS
 
 time_to_floor = from_python(floors.time_to_floor)

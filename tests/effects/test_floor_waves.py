@@ -15,7 +15,7 @@ from roughgas.effects.settings import Surroundings, make
 from roughgas.effects.sine_floor import SineFloor
 from roughgas.effects.triangular_floor import FALLING, RISING, TriangularFloor
 from roughgas.kernel.hooks import CODES
-from roughgas.kernel.layout import new_state
+from roughgas.kernel.memory import new_state
 from roughgas.kernel.state import BASE, BOUNDARY_HITS, NOW
 
 time_to_sine = from_python(sine_floor.time_to_floor)

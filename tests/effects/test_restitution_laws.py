@@ -11,7 +11,7 @@ from brute_force import KERNELS, begin, run, settings
 from roughgas import theory
 from roughgas.base import InputError
 from roughgas.effects.viscoelastic import ABOVE, B_1, B_2, B_3, B_4, fifth_root
-from roughgas.kernel.layout import new_state
+from roughgas.kernel.memory import new_state
 from roughgas.kernel.state import EXPONENT
 from roughgas.scene import build
 from roughgas.simulation.point import run_point

@@ -6,7 +6,7 @@ from brute_force import Beside, begin, run, scene_of, settings, snapshot
 
 from roughgas import simulate
 from roughgas.base import InputError
-from roughgas.kernel import layout
+from roughgas.kernel import memory
 from roughgas.kernel.state import LAST_FIRST, LAST_SECOND
 from roughgas.simulation.books import imbalance
 from roughgas.simulation.by_species import energies_of_each
@@ -114,8 +114,8 @@ def test_neither_scheme_shows_in_the_results(kernel, monkeypatch):
     """Among few particles, swept all at once or in cells for the largest."""
     experiment = of_species(kernel, 120, [45, 45])
     states = []
-    for most in (layout.FEW, 60):
-        monkeypatch.setattr(layout, "FEW", most)
+    for most in (memory.FEW, 60):
+        monkeypatch.setattr(memory, "FEW", most)
         scene, state = begin(experiment, 0.9, 0.3, 1)
         states.append(state)
     assert [state.cells is None for state in states] == [True, False]

@@ -8,8 +8,8 @@ from brute_force import begin, run
 
 from roughgas import theory
 from roughgas.effects import thermal_wall
-from roughgas.kernel.layout import new_state
-from roughgas.kernel.turns import logarithm
+from roughgas.kernel.mathematics import logarithm
+from roughgas.kernel.memory import new_state
 from roughgas.scene import build
 from roughgas.simulation.books import books
 

@@ -5,7 +5,7 @@ import pytest
 from brute_force import Beside, begin, kernels, run, scene_of, settings, snapshot
 
 from roughgas import theory
-from roughgas.kernel.random import STEP
+from roughgas.kernel.mathematics import STEP
 from roughgas.kernel.state import BASE, COLLISIONS, NOW
 from roughgas.simulation.books import books, imbalance
 from roughgas.simulation.energies import energies, ratio

@@ -13,10 +13,9 @@ import numpy as np
 from roughgas.effects import Effects
 from roughgas.effects.settings import register
 from roughgas.kernel import hooks
-from roughgas.kernel.flight import arrive
-from roughgas.kernel.images import image_numbers, shifted, slid
 from roughgas.kernel.jit import entry, jit
 from roughgas.kernel.loop import REACHED
+from roughgas.kernel.particles import arrive, image_numbers, shifted, slid
 from roughgas.kernel.record import Sampling, columns, record
 from roughgas.kernel.vectors import dot, subtract
 from roughgas.scene import Scene, build

@@ -9,8 +9,8 @@ from brute_force import begin, run, settings, snapshot
 from brute_force.scenes import UNLIMITED
 
 from hard_cases.catalogue import hard_case
-from roughgas.kernel.layout import new_state
 from roughgas.kernel.loop import COLLAPSED
+from roughgas.kernel.memory import new_state
 from roughgas.kernel.record import Sampling, columns, record
 from roughgas.kernel.state import BASE, COLLISIONS, NOW, TOUCHED
 from roughgas.simulation.energies import ratio

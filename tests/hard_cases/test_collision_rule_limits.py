@@ -10,7 +10,7 @@ from roughgas import theory
 from roughgas.effects import Effects
 from roughgas.effects.spin import Spin
 from roughgas.kernel import contact
-from roughgas.kernel.layout import new_state
+from roughgas.kernel.memory import new_state
 from roughgas.kernel.record import Sampling, columns, record
 from roughgas.kernel.state import COLLISIONS
 

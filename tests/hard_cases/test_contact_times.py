@@ -8,9 +8,9 @@ import numpy as np
 from compiled import from_python
 
 from hard_cases.catalogue import hard_case
-from roughgas.kernel import pairs
+from roughgas.kernel import prediction
 
-time_to_contact = from_python(pairs.time_to_contact)
+time_to_contact = from_python(prediction.time_to_contact)
 
 
 def exact(*vectors):

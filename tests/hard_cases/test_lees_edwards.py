@@ -12,8 +12,8 @@ from exact import exactly, segment
 from hard_cases.catalogue import hard_case
 from roughgas.effects import shear
 from roughgas.effects.shear import Shear
-from roughgas.kernel import layout
-from roughgas.kernel.layout import new_state
+from roughgas.kernel import memory
+from roughgas.kernel.memory import new_state
 from roughgas.kernel.state import BASE
 
 # As in test_exact_arithmetic.py, where these limits come from
@@ -24,8 +24,8 @@ phase = from_python(shear.phase)
 @pytest.fixture(params=["swept", "in cells"])
 def scheme(request, monkeypatch):
     """By which of the two schemes contacts are found, however few the particles are."""
-    monkeypatch.setattr(layout, "FEW", 0 if request.param == "in cells" else 700)
-    monkeypatch.setattr(layout, "PER_CELL", 0.0)
+    monkeypatch.setattr(memory, "FEW", 0 if request.param == "in cells" else 700)
+    monkeypatch.setattr(memory, "PER_CELL", 0.0)
     return request.param
 
 

@@ -7,7 +7,7 @@ from brute_force import begin, largest_overlap, run, scene_of, settings
 
 from hard_cases.catalogue import hard_case
 from roughgas.effects.species import UNIFORM
-from roughgas.kernel import layout
+from roughgas.kernel import memory
 from roughgas.kernel.state import COLLISIONS
 from roughgas.simulation.books import books
 
@@ -77,9 +77,9 @@ def test_a_lone_large_one(margins, monkeypatch):
     """Full: among a million, of which each then looks at a thousand others."""
     number = margins.size(1500, 1_000_000)
     side = 4.0 * math.sqrt(number)
-    radius = min(side / (2.1 * layout.FEWEST), 20.0)
+    radius = min(side / (2.1 * memory.FEWEST), 20.0)
     species = [{"number": 1, "radius": radius}, {"number": number}]
-    monkeypatch.setattr(layout, "FEW", 160)
+    monkeypatch.setattr(memory, "FEW", 160)
     state = check(margins, number + 1, [side, side], species, 2000)
     assert state.cells is not None
     found = np.bincount(state.cells.home, minlength=len(state.cells.first)).max()

@@ -6,7 +6,7 @@ from brute_force import run, scene_of, settings
 
 from hard_cases.catalogue import hard_case
 from hard_cases.probe import gaps_at_contacts
-from roughgas.kernel.layout import new_state
+from roughgas.kernel.memory import new_state
 from roughgas.kernel.state import COLLISIONS
 
 DENSE = settings("gas", 160, [27, 27])  # 0.69 of the area

@@ -4,7 +4,7 @@ import numpy as np
 from brute_force import begin, run, scene_of, settings, snapshot
 
 from hard_cases.catalogue import hard_case
-from roughgas.kernel.layout import new_state
+from roughgas.kernel.memory import new_state
 from roughgas.kernel.state import COLLISIONS
 
 ROOT_3 = np.sqrt(3.0)

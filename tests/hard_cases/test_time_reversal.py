@@ -13,7 +13,7 @@ import numpy as np
 from brute_force import begin, run, settings, snapshot
 
 from hard_cases.catalogue import hard_case
-from roughgas.kernel.layout import new_state
+from roughgas.kernel.memory import new_state
 from roughgas.kernel.state import COLLISIONS
 
 SEPARATION = 1e-10  # of the two paths whose parting tells the exponent

@@ -11,7 +11,7 @@ from compiled import from_python
 from hard_cases.catalogue import hard_case
 from hard_cases.falls import Exact, dyadic, general, nearly_at_rest
 from roughgas.effects import floor as floors
-from roughgas.kernel.layout import new_state
+from roughgas.kernel.memory import new_state
 from roughgas.kernel.state import BASE, BOUNDARY_HITS, NOW
 
 time_to_floor = from_python(floors.time_to_floor)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from brute_force import Beside, begin, run, scene_of, settings, snapshot
 
-from roughgas.kernel import layout
+from roughgas.kernel import memory
 from roughgas.kernel.state import LAST_FIRST, LAST_SECOND
 
 CASES = {
@@ -35,16 +35,16 @@ def sheared_or_slow(cases):
 @pytest.fixture
 def cells(monkeypatch):
     """However few they are, the particles are sorted into cells, as small as these may be."""
-    monkeypatch.setattr(layout, "FEW", 0)
-    monkeypatch.setattr(layout, "PER_CELL", 0.0)
+    monkeypatch.setattr(memory, "FEW", 0)
+    monkeypatch.setattr(memory, "PER_CELL", 0.0)
 
 
-@pytest.mark.parametrize("room", [layout.ROOM, layout.TOGETHER])
+@pytest.mark.parametrize("room", [memory.ROOM, memory.TOGETHER])
 @pytest.mark.parametrize("case", sheared_or_slow(CASES))
 def test_the_kernel_makes_the_same_collisions(case, room, cells, monkeypatch):
     """As brute force does, from the same state every ten collisions; also if the candidates around
     a particle do not fit on its shortlist."""
-    monkeypatch.setattr(layout, "ROOM", room)
+    monkeypatch.setattr(memory, "ROOM", room)
     *point, seed = CASES[case]
     scene, world = scene_of(*point)
     _, state = begin(*point, seed)
@@ -65,7 +65,7 @@ def test_both_schemes_make_the_same_collisions(name, monkeypatch):
     """The same 2,000 pairs in the same order; later, chaos shows the roundings of the clock."""
     states = []
     for few in (0, 10_000):
-        monkeypatch.setattr(layout, "FEW", few)
+        monkeypatch.setattr(memory, "FEW", few)
         scene, state = begin(*MANY[name], 3)
         states.append(state)
     assert states[0].cells is not None and states[1].cells is None
@@ -83,7 +83,7 @@ def test_both_schemes_make_the_same_collisions(name, monkeypatch):
 
 @pytest.fixture
 def many(monkeypatch):
-    monkeypatch.setattr(layout, "FEW", 0)
+    monkeypatch.setattr(memory, "FEW", 0)
 
 
 def test_particles_are_put_into_the_order_of_their_cells(many):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from brute_force import begin, run, settings, snapshot
 
-from roughgas.kernel.layout import new_state
+from roughgas.kernel.memory import new_state
 from roughgas.kernel.state import BOUNDARY_HITS, COLLISIONS, EXPONENT
 
 GAS = settings("gas", 40, [25, 25])

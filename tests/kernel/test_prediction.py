@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from brute_force import BruteForce, begin, run, scene_of, settings, snapshot
 
-from roughgas.kernel.layout import new_state
+from roughgas.kernel.memory import new_state
 from roughgas.kernel.state import LAST_FIRST, LAST_SECOND, LONGEST_HORIZON
 
 

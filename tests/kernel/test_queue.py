@@ -5,11 +5,11 @@ import pytest
 from brute_force import begin, settings
 from compiled import from_python
 
-from roughgas.kernel import layout, queue
+from roughgas.kernel import event_lists, memory
 from roughgas.kernel.state import NOW, TYPICAL_SPEED
 
 earliest, enter_in_queue, clear_calendar = map(
-    from_python, (queue.earliest, queue.enter_in_queue, queue.clear_calendar)
+    from_python, (event_lists.earliest, event_lists.enter_in_queue, event_lists.clear_calendar)
 )
 
 
@@ -18,7 +18,7 @@ earliest, enter_in_queue, clear_calendar = map(
 def test_the_earliest_event(few, spread, monkeypatch):
     """Times within a day, over a year and over many of them; some at the same instant, some
     never."""
-    monkeypatch.setattr(layout, "FEW", few)
+    monkeypatch.setattr(memory, "FEW", few)
     scene, state = begin(settings("gas", 300, [60, 60]), 0.9, 0.2)
     rng = np.random.default_rng(0)
     state.clock[TYPICAL_SPEED] = 1.0
@@ -40,6 +40,6 @@ def test_the_earliest_event(few, spread, monkeypatch):
 
 @pytest.mark.parametrize("few", [0, 10_000])
 def test_nothing_is_ever_going_to_happen(few, monkeypatch):
-    monkeypatch.setattr(layout, "FEW", few)
+    monkeypatch.setattr(memory, "FEW", few)
     _, state = begin(settings("gas", 300, [60, 60]), 0.9, 0.2)
     assert state.agenda.key[earliest(state.cells, state)] == np.inf

@@ -5,10 +5,10 @@ import pytest
 from brute_force.kicks import SplitMix
 from compiled import from_python
 
-from roughgas.kernel import random
+from roughgas.kernel import mathematics
 
-uniform = from_python(random.uniform)
-random_vector = from_python(random.random_vector)
+uniform = from_python(mathematics.uniform)
+random_vector = from_python(mathematics.random_vector)
 
 
 def word(seed):

@@ -5,13 +5,24 @@ import math
 import numpy as np
 import pytest
 
-from roughgas.kernel import lanes
-from roughgas.kernel.arithmetic import choose, multiply_add
 from roughgas.kernel.jit import entry
+from roughgas.kernel.mathematics import (
+    REGISTER,
+    append,
+    bits,
+    choose,
+    gather,
+    index,
+    lanes_of,
+    least,
+    load,
+    multiply_add,
+    order,
+    store,
+    trailing_zeros,
+)
 
-load, store, gather, order = lanes.load, lanes.store, lanes.gather, lanes.order
-append, bits, least, index = lanes.append, lanes.bits, lanes.least, lanes.index
-EIGHT, REGISTER = 8, lanes.REGISTER
+EIGHT = 8
 SPECIAL = np.array([0.0, -0.0, 1.5, -2.0, np.inf, -np.inf, np.nan, 1e-300])
 OTHER = np.array([1.0, 0.0, -1.5, np.nan, np.inf, 3.0, 2.0, 1e300])
 
@@ -58,7 +69,7 @@ def test_arithmetic_of_lanes_is_that_of_numbers():
 @entry
 def _least_and_gather(a, rows, places, out):
     store(out, 0, 0, gather(rows, 1, places, 0, EIGHT))
-    return least(load(a, 0, 0, EIGHT)), lanes.trailing_zeros(np.uint64(40)), index(3)
+    return least(load(a, 0, 0, EIGHT)), trailing_zeros(np.uint64(40)), index(3)
 
 
 @pytest.mark.parametrize("kind", [np.float64, np.float32])
@@ -73,7 +84,7 @@ def test_least_of_lanes_and_lanes_from_rows(kind):
 @entry
 def _append_those_below(numbers, limit, places):
     taken = 0
-    for first in range(0, numbers.shape[1], lanes.lanes_of(numbers)):
+    for first in range(0, numbers.shape[1], lanes_of(numbers)):
         below = load(numbers, 0, first, REGISTER) < limit
         taken = append(places, taken, below, first)
     return taken
@@ -90,7 +101,7 @@ def test_lanes_that_hold_are_listed_in_order():
 
 @entry
 def _number_of_lanes(double, single):
-    return lanes.lanes_of(double), lanes.lanes_of(single)
+    return lanes_of(double), lanes_of(single)
 
 
 def test_a_register_has_half_as_many_doubles():

@@ -11,14 +11,14 @@ import pytest
 from brute_force import begin, run, settings
 
 import roughgas
-from roughgas.kernel import cache
+from roughgas.kernel import compiler
 
 PACKAGE = Path(roughgas.__file__).parent
 TESTS = Path(__file__).parent.parent
 PROGRAM = """
 import json
 from brute_force import begin, run, settings
-from roughgas.kernel import cache
+from roughgas.kernel import compiler
 
 scene, state = begin(settings("smooth", 20, [20, 20]), 0.9, -1.0, 11)
 rows = run(state, scene, 10, collisions=100)
@@ -76,15 +76,15 @@ def test_the_same_bits_without_a_cache_and_others_after_an_edit(tmp_path):
     scene, state = begin(settings("smooth", 20, [20, 20]), 0.9, -1.0, 11)
     rows = run(state, scene, 10, collisions=100)  # now the session's cache holds it
     here = {name: [x.hex() for x in column] for name, column in rows.items()}
-    session = cache.kernel_folder().parent
+    session = compiler.kernel_folder().parent
     processes = (
         start_elsewhere(PACKAGE.parent, tmp_path / "fresh"),
         start_elsewhere(edited, session),
     )
     fresh, other = map(answer, processes)
-    assert fresh == {"hash": cache.source_hash(), "rows": here}
-    assert list((tmp_path / "fresh").glob(f"kernels-{cache.source_hash()}/**/*.nbc"))
-    assert other["hash"] != cache.source_hash()
+    assert fresh == {"hash": compiler.source_hash(), "rows": here}
+    assert list((tmp_path / "fresh").glob(f"kernels-{compiler.source_hash()}/**/*.nbc"))
+    assert other["hash"] != compiler.source_hash()
     assert other["rows"]["time"] != here["time"]
     shutil.rmtree(Path(session) / f"kernels-{other['hash']}")
 
@@ -92,23 +92,23 @@ def test_the_same_bits_without_a_cache_and_others_after_an_edit(tmp_path):
 def test_the_hash_covers_the_sources_of_the_kernel_and_no_others(tmp_path, monkeypatch):
     copy = tmp_path / "roughgas"
     shutil.copytree(PACKAGE, copy, ignore=shutil.ignore_patterns("__pycache__"))
-    monkeypatch.setattr(cache, "PACKAGE", copy)
-    hashes = {cache.source_hash()}
+    monkeypatch.setattr(compiler, "PACKAGE", copy)
+    hashes = {compiler.source_hash()}
     (copy / "studies" / "dsmc" / "collisions.py").write_text("")
-    assert hashes == {cache.source_hash()}
-    sources = [source for room in cache.ROOMS for source in sorted((copy / room).glob("*.py"))]
+    assert hashes == {compiler.source_hash()}
+    sources = [source for room in compiler.ROOMS for source in sorted((copy / room).glob("*.py"))]
     for source in sources:
         source.write_bytes(source.read_bytes() + b"\n")
-        hashes.add(cache.source_hash())
+        hashes.add(compiler.source_hash())
     (copy / "effects" / "another.py").write_text("")
-    hashes.add(cache.source_hash())
+    hashes.add(compiler.source_hash())
     assert len(hashes) == len(sources) + 2
 
 
 def test_every_compiled_function_lies_in_a_hashed_room():
     """In the kernel's, or in that of the entry which calls it: no source escapes the hash."""
     marks = ["@jit\n", "@compiled\n", "@unrolled\n", "@entry", "njit"]
-    outside = [one for one in PACKAGE.rglob("*.py") if one.parent.name not in cache.ROOMS]
+    outside = [one for one in PACKAGE.rglob("*.py") if one.parent.name not in compiler.ROOMS]
     compiled = [one for one in outside if any(mark in one.read_text() for mark in marks)]
     assert {"dsmc", "soft_spheres"} <= {source.parent.name for source in compiled}
     for source in compiled:
@@ -120,5 +120,5 @@ def test_an_unwritable_cache_is_replaced_by_a_temporary_one(tmp_path, monkeypatc
     (tmp_path / "a file").write_text("")
     monkeypatch.setenv("ROUGHGAS_CACHE_DIR", str(tmp_path / "a file" / "below"))
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
-    folder = cache.kernel_folder()
-    assert folder.is_relative_to(tmp_path) and folder.name.endswith(cache.source_hash())
+    folder = compiler.kernel_folder()
+    assert folder.is_relative_to(tmp_path) and folder.name.endswith(compiler.source_hash())

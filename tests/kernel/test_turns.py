@@ -6,8 +6,7 @@ import mpmath
 import numpy as np
 from compiled import from_python
 
-from roughgas.kernel import turns
-from roughgas.kernel.turns import sine_and_cosine
+from roughgas.kernel.mathematics import COSINE, REMAINDER, SINE, TURN, sine_and_cosine
 
 
 def angles():
@@ -39,11 +38,11 @@ def test_within_a_rounding_and_a_half_of_forty_digits():
 def test_coefficients_are_those_of_the_series_rounded_once():
     with mpmath.workdps(40):
         turn = 2 * mpmath.pi
-        assert turns.TURN == float(turn) and turns.REMAINDER == float(turn - float(turn))
+        assert TURN == float(turn) and REMAINDER == float(turn - float(turn))
         for k in range(1, 9):
             even = (-1) ** k * turn ** (2 * k) / math.factorial(2 * k)
-            assert turns.COSINE[k - 1] == float(even)
-            assert turns.SINE[k - 1] == float(even * turn / (2 * k + 1))
+            assert COSINE[k - 1] == float(even)
+            assert SINE[k - 1] == float(even * turn / (2 * k + 1))
 
 
 def test_symmetries():

@@ -5,7 +5,7 @@ import pytest
 from compiled import from_python
 
 from roughgas.kernel import vectors
-from roughgas.kernel.unroll import unrolled
+from roughgas.kernel.jit import unrolled
 
 
 @unrolled

@@ -8,7 +8,7 @@ from schedules import COOLING
 
 from roughgas.base import InputError
 from roughgas.data.point import as_dataset
-from roughgas.kernel import layout
+from roughgas.kernel import memory
 from roughgas.scene import build
 from roughgas.simulation.ends import Initial, check_initial, initial_of
 from roughgas.simulation.point import run_point
@@ -78,8 +78,8 @@ def test_a_cooling_gas_goes_on_wherever_it_was_last_refreshed(name, first):
 )
 def test_many_particles_go_on_in_their_cells(name, monkeypatch):
     """However few they are; the cells of a bed stay those of the gas that it was at the start."""
-    monkeypatch.setattr(layout, "FEW", 0)
-    monkeypatch.setattr(layout, "PER_CELL", 0.0)
+    monkeypatch.setattr(memory, "FEW", 0)
+    monkeypatch.setattr(memory, "PER_CELL", 0.0)
     box = {"walled": [20, "open"], "spheres": [17, 17, 17]}.get(name, [17, 19])
     experiment = settings(name, 40, box) | {"keep_state": True}
     length = cooling if name in ("gas", "spheres") else steady

@@ -31,7 +31,7 @@ EDITED = {  # file of the package: what an edit of its code runs again
     "statistics/steady_state.py": SIMULATED - {"discretisation"},
     "data/film.py": FILM,
     "theory/prediction.py": REDUCED,
-    "kernel/pairs.py": SIMULATED,
+    "kernel/prediction.py": SIMULATED,
     "effects/walls.py": SIMULATED | {"effective_config", "living_page"},
     "scene/composition.py": SIMULATED | {"living_page"},
     "config/schema.py": {"effective_config", "document", "living_page"},
@@ -46,7 +46,7 @@ EDITED = {  # file of the package: what an edit of its code runs again
     "cli/run.py": POINTS | FAMILIES,
 }
 ALIKE = {  # files after whose edits much the same runs again as after others'
-    "kernel/pairs.py",
+    "kernel/prediction.py",
     "scene/composition.py",
     "simulation/clustering.py",
     "theory/prediction.py",

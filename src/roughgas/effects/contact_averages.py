@@ -15,9 +15,9 @@ from typing import NamedTuple
 
 from roughgas.base import NeedsError
 from roughgas.effects.settings import register
-from roughgas.kernel.bodies import pair_of
 from roughgas.kernel.hooks import either
 from roughgas.kernel.jit import jit
+from roughgas.kernel.particles import pair_of
 from roughgas.kernel.vectors import add_scaled, dot, spin_cross
 
 SUMS = {"v_t^2": 2, "v_r^2": 2, "v_t.v_r": 2}

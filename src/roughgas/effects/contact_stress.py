@@ -10,8 +10,8 @@ from itertools import product
 from typing import NamedTuple
 
 from roughgas.effects.settings import register
-from roughgas.kernel.bodies import radius_of
 from roughgas.kernel.jit import jit
+from roughgas.kernel.particles import radius_of
 
 AXES = "xyz"
 SUMS = {f"J_{k} s_{along}": 1 for k, along in product(AXES, AXES)}

@@ -4,10 +4,10 @@ from typing import NamedTuple
 
 from roughgas.effects.surface import fall
 from roughgas.kernel import hooks
-from roughgas.kernel.bodies import radius_of
 from roughgas.kernel.contact import collide_with_wall
 from roughgas.kernel.hooks import either
 from roughgas.kernel.jit import jit
+from roughgas.kernel.particles import radius_of
 from roughgas.kernel.vectors import along_axis
 
 

@@ -11,9 +11,8 @@ from typing import NamedTuple
 
 from roughgas.base import InputError
 from roughgas.effects.settings import Number, Numbers, register
-from roughgas.kernel.jit import jit
+from roughgas.kernel.jit import jit, unrolled
 from roughgas.kernel.state import EXPONENT
-from roughgas.kernel.unroll import unrolled
 
 MOST = 32  # entries: a table that is shorter is filled up, so that all have the same machine code
 SETTINGS = {

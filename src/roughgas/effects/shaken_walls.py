@@ -12,7 +12,7 @@ from roughgas.effects import walls
 from roughgas.effects.settings import LENGTH, MATERIAL, TIME, Number, check_speed, register
 from roughgas.kernel.contact import collide_with_wall
 from roughgas.kernel.jit import jit
-from roughgas.kernel.turns import TURN, sine_and_cosine
+from roughgas.kernel.mathematics import TURN, sine_and_cosine
 from roughgas.kernel.vectors import along_first, along_last
 
 SETTINGS = {

@@ -24,7 +24,7 @@ from roughgas.effects.settings import (
 )
 from roughgas.effects.triangular_floor import REVERSED_RISE
 from roughgas.kernel.jit import jit
-from roughgas.kernel.turns import TURN, sine_and_cosine
+from roughgas.kernel.mathematics import TURN, sine_and_cosine
 
 SIDES = {  # name -> (axis, the end of it: 0 or 1); -1 is the last axis
     "left_wall": (0, 0),

@@ -11,8 +11,8 @@ from typing import NamedTuple
 from roughgas.effects.settings import register
 from roughgas.effects.surface import bounce, fall, flight, phase, until_back
 from roughgas.kernel.jit import jit
+from roughgas.kernel.mathematics import TURN, sine_and_cosine
 from roughgas.kernel.state import NOBODY, NOW
-from roughgas.kernel.turns import TURN, sine_and_cosine
 
 ROUNDING = 2.0**-52
 MEET, LOOK = range(2)  # what comes next: the floor, or the search for when it does

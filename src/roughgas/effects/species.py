@@ -1,8 +1,8 @@
 """Species: particles of several sizes, masses, moments of inertia and materials.
 
 A scene has this effect if its experiment has the key `species`. What the kernel makes of particles
-that differ is in kernel/bodies.py; here is what the settings mean. Units: a is the radius and m the
-mass of a particle that is not of a species.
+that differ is in kernel/particles.py; here is what the settings mean. Units: a is the radius and m
+the mass of a particle that is not of a species.
 
 Contacts of two species have the arithmetic mean of their restitutions, of their roughnesses and of
 their coefficients of friction, unless the experiment has others for them under `species_pairs`. A

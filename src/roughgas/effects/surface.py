@@ -3,9 +3,9 @@
 import math
 
 from roughgas.kernel import hooks
-from roughgas.kernel.bodies import radius_of
 from roughgas.kernel.contact import collide_with_wall
 from roughgas.kernel.jit import jit
+from roughgas.kernel.particles import radius_of
 from roughgas.kernel.vectors import along_last
 
 # Relative to the floor, a/T: any less, and a particle could hit it infinitely often in finite time

@@ -12,15 +12,19 @@ from typing import NamedTuple
 from roughgas.effects.plane import Place, closed_axis, predict
 from roughgas.effects.settings import register
 from roughgas.kernel import hooks
-from roughgas.kernel.bodies import mass_of, spin_mass_of
-from roughgas.kernel.flight import come_in, put
 from roughgas.kernel.hooks import unless_absent
-from roughgas.kernel.jit import jit
-from roughgas.kernel.random import gaussian_vector, uniform
-from roughgas.kernel.spins import book_spin, spin_of, turn_spin
+from roughgas.kernel.jit import jit, unrolled
+from roughgas.kernel.mathematics import gaussian_vector, logarithm, uniform
+from roughgas.kernel.particles import (
+    book_spin,
+    come_in,
+    mass_of,
+    put,
+    spin_mass_of,
+    spin_of,
+    turn_spin,
+)
 from roughgas.kernel.state import BOUNDARY_HITS, NOBODY
-from roughgas.kernel.turns import logarithm
-from roughgas.kernel.unroll import unrolled
 from roughgas.kernel.vectors import add_scaled, along_axis, dot, subtract
 
 

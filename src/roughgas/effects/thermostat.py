@@ -18,18 +18,21 @@ from typing import NamedTuple
 
 from roughgas.base import InputError
 from roughgas.effects.settings import Number, register
-from roughgas.kernel.bodies import (
+from roughgas.kernel.hooks import either, unless_absent
+from roughgas.kernel.jit import jit
+from roughgas.kernel.mathematics import random_vector, uniform
+from roughgas.kernel.particles import (
+    book_spin,
     change_of_velocity,
+    come_in,
     mass_in,
     mass_of,
     pair_of,
+    put,
     spin_mass_of,
+    spin_of,
+    turn_spin,
 )
-from roughgas.kernel.flight import come_in, put
-from roughgas.kernel.hooks import either, unless_absent
-from roughgas.kernel.jit import jit
-from roughgas.kernel.random import random_vector, uniform
-from roughgas.kernel.spins import book_spin, spin_of, turn_spin
 from roughgas.kernel.vectors import add_scaled, dot, scale, subtract
 
 SETTINGS = {

@@ -4,10 +4,9 @@ import math
 from typing import NamedTuple
 
 from roughgas.effects.settings import MATERIAL, register
-from roughgas.kernel.bodies import radius_of
 from roughgas.kernel.contact import collide_with_wall
-from roughgas.kernel.flight import whereabouts
 from roughgas.kernel.jit import jit
+from roughgas.kernel.particles import radius_of, whereabouts
 from roughgas.kernel.vectors import along_first
 
 LEFT, RIGHT = 0, 1

@@ -4,7 +4,7 @@ import math
 
 from roughgas.kernel import hooks
 from roughgas.kernel.hooks import either
-from roughgas.kernel.jit import jit
+from roughgas.kernel.jit import jit, unrolled
 from roughgas.kernel.state import (
     AT_ONCE,
     BASE,
@@ -16,7 +16,6 @@ from roughgas.kernel.state import (
     SPENT,
     TYPICAL_SPEED,
 )
-from roughgas.kernel.unroll import unrolled
 from roughgas.kernel.vectors import dot, read
 
 FLIGHTS = 2.5  # mean free flights to foresee

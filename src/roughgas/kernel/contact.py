@@ -13,22 +13,28 @@ particles that differ share the impulse and the turning is in bodies.py.
 import math
 
 from roughgas.kernel import hooks
-from roughgas.kernel.bodies import (
+from roughgas.kernel.hooks import either
+from roughgas.kernel.jit import jit, unrolled
+from roughgas.kernel.particles import (
+    book_spin,
     bulk_in,
     change_of_velocity,
+    come_in,
+    image_numbers,
     inertia_in,
     mass_in,
     material_of,
     pair_of,
     pair_with_wall,
+    put,
     reach_of,
+    shifted,
+    slid,
+    spin_of,
+    spin_sum,
     turn_of,
+    turn_spin,
 )
-from roughgas.kernel.flight import come_in, put
-from roughgas.kernel.hooks import either
-from roughgas.kernel.images import image_numbers, shifted, slid
-from roughgas.kernel.jit import jit
-from roughgas.kernel.spins import book_spin, spin_of, spin_sum, turn_spin
 from roughgas.kernel.state import (
     BOUNDARY_HITS,
     COLLISIONS,
@@ -39,7 +45,6 @@ from roughgas.kernel.state import (
     TOUCHED,
     TYPICAL_SPEED,
 )
-from roughgas.kernel.unroll import unrolled
 from roughgas.kernel.vectors import (
     add_scaled,
     cross_to_spin,

@@ -3,15 +3,19 @@
 import math
 
 from roughgas.kernel import hooks
-from roughgas.kernel.agenda import choose_next, drop_contact
-from roughgas.kernel.cells import find_around
+from roughgas.kernel.cells import arrange, find_around
 from roughgas.kernel.clock import moves_on, rebase
 from roughgas.kernel.contact import collide
+from roughgas.kernel.event_lists import (
+    choose_next,
+    clear_calendar,
+    drop_contact,
+    earliest,
+    enter_in_queue,
+)
 from roughgas.kernel.hooks import either
 from roughgas.kernel.jit import compiled, jit
-from roughgas.kernel.lanes import index
-from roughgas.kernel.order import arrange
-from roughgas.kernel.queue import clear_calendar, earliest, enter_in_queue
+from roughgas.kernel.mathematics import index
 from roughgas.kernel.state import (
     BASE,
     BOUNDARY,

@@ -3,12 +3,18 @@
 import math
 from typing import NamedTuple
 
-from roughgas.kernel.bodies import mass_of, radius_of, spin_mass_of
-from roughgas.kernel.flight import arrive, come_in, put
 from roughgas.kernel.hooks import either, present, unless_absent
-from roughgas.kernel.jit import compiled, entry, jit
+from roughgas.kernel.jit import compiled, entry, jit, unrolled
 from roughgas.kernel.loop import REACHED, advance, start
-from roughgas.kernel.spins import spin_of
+from roughgas.kernel.particles import (
+    arrive,
+    come_in,
+    mass_of,
+    put,
+    radius_of,
+    spin_mass_of,
+    spin_of,
+)
 from roughgas.kernel.state import (
     BASE,
     COLLISIONS,
@@ -18,7 +24,6 @@ from roughgas.kernel.state import (
     ORIGIN,
     STARTED,
 )
-from roughgas.kernel.unroll import unrolled
 
 
 class Sampling(NamedTuple):

@@ -14,18 +14,21 @@ import math
 import numpy as np
 
 from roughgas.kernel import hooks
-from roughgas.kernel.agenda import clear_contacts
-from roughgas.kernel.arithmetic import multiply_add
-from roughgas.kernel.bodies import widest_of
-from roughgas.kernel.flight import whereabouts
+from roughgas.kernel.event_lists import clear_contacts
 from roughgas.kernel.hooks import either, unless_absent
-from roughgas.kernel.images import exceeds, image_numbers, shifted, slid, speed_limit
-from roughgas.kernel.jit import jit
-from roughgas.kernel.lanes import REGISTER, append, lanes_of, load
-from roughgas.kernel.pairs import DIAMETER
-from roughgas.kernel.shortlist import decide
+from roughgas.kernel.jit import jit, unrolled
+from roughgas.kernel.mathematics import REGISTER, append, lanes_of, load, multiply_add
+from roughgas.kernel.particles import (
+    exceeds,
+    image_numbers,
+    shifted,
+    slid,
+    speed_limit,
+    whereabouts,
+    widest_of,
+)
+from roughgas.kernel.prediction import DIAMETER, decide
 from roughgas.kernel.state import EXTENT, LONGEST_HORIZON, SPAN, TYPICAL_SPEED
-from roughgas.kernel.unroll import unrolled
 from roughgas.kernel.vectors import add_scaled, cross_squared, dot, read, subtract
 
 ROUNDING = 2.0**-24  # half the spacing of single precision just above 1

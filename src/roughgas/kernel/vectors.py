@@ -1,7 +1,7 @@
 """Vectors of one to three components as tuples."""
 
-from roughgas.kernel.arithmetic import multiply_add
-from roughgas.kernel.unroll import unrolled
+from roughgas.kernel.jit import unrolled
+from roughgas.kernel.mathematics import multiply_add
 
 
 @unrolled

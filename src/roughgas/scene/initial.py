@@ -10,7 +10,7 @@ from roughgas.base import InputError
 from roughgas.effects import Effects, inertia_of_spin
 from roughgas.kernel import hooks
 from roughgas.kernel.hooks import displacement
-from roughgas.kernel.layout import new_state
+from roughgas.kernel.memory import new_state
 from roughgas.kernel.state import State
 from roughgas.scene.composition import (
     DIAMETER,

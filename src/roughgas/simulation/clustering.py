@@ -15,7 +15,7 @@ from roughgas.base import __version__
 from roughgas.base.files import code_of
 from roughgas.base.formatting import as_text
 from roughgas.data import checkpoint
-from roughgas.kernel.cache import source_hash
+from roughgas.kernel.compiler import source_hash
 from roughgas.scene import DIAMETER, build
 from roughgas.simulation.energies import restored
 from roughgas.simulation.gas import Gas

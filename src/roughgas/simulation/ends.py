@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 import numpy as np
 
 from roughgas.base import InputError, shown
-from roughgas.kernel.cache import source_hash
-from roughgas.kernel.layout import new_state
+from roughgas.kernel.compiler import source_hash
+from roughgas.kernel.memory import new_state
 from roughgas.kernel.state import BASE, EXPONENT, NOW, State
 from roughgas.scene import Scene, check_places, given_bodies
 from roughgas.simulation.instant import in_order, whereabouts

@@ -13,7 +13,7 @@ from roughgas.data.variables import Variable
 from roughgas.effects import speed_of_r
 from roughgas.effects.surface import LEAST_DEPARTURE
 from roughgas.kernel import hooks
-from roughgas.kernel.cache import source_hash
+from roughgas.kernel.compiler import source_hash
 from roughgas.scene import Scene, build, packing
 from roughgas.simulation import by_species, schedule
 from roughgas.simulation.ends import Initial, check_initial, is_memory_of, last_states, owner

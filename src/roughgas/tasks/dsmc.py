@@ -20,9 +20,8 @@ from roughgas.effects import Effects
 from roughgas.effects.friction import Friction
 from roughgas.effects.spin import Spin
 from roughgas.kernel.contact import response
-from roughgas.kernel.jit import compiled, entry
-from roughgas.kernel.spins import spin_of, spin_sum, turn_spin
-from roughgas.kernel.unroll import unrolled
+from roughgas.kernel.jit import compiled, entry, unrolled
+from roughgas.kernel.particles import spin_of, spin_sum, turn_spin
 from roughgas.kernel.vectors import add_scaled, dot, read, scale, subtract, write
 from roughgas.theory import arguments, moment_of_inertia
 

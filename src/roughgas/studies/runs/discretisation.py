@@ -11,7 +11,7 @@ from collections.abc import Callable
 import numpy as np
 import xarray as xr
 
-from roughgas.kernel.layout import new_state
+from roughgas.kernel.memory import new_state
 from roughgas.kernel.state import EXPONENT, STARTED
 from roughgas.scene import build, initial_state
 from roughgas.simulation.energies import Energies, ratio

@@ -11,7 +11,7 @@ force. Within tau the damping and the springs are integrated exactly, whatever t
 import math
 
 from roughgas.kernel.jit import jit
-from roughgas.kernel.spins import spin_of, turn_spin
+from roughgas.kernel.particles import spin_of, turn_spin
 from roughgas.kernel.vectors import (
     add_scaled,
     cross_to_spin,

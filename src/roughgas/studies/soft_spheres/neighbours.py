@@ -5,8 +5,8 @@ It holds until a particle may have travelled half the skin.
 
 import math
 
-from roughgas.kernel.images import periods
 from roughgas.kernel.jit import compiled, jit
+from roughgas.kernel.particles import periods
 from roughgas.kernel.vectors import read, write
 from roughgas.studies.soft_spheres.contacts import part
 from roughgas.studies.soft_spheres.gas import BUILDS, DIAMETER, FASTEST, NOBODY, PAIRS, TRAVELLED

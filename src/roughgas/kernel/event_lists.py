@@ -1,0 +1,302 @@
+"""Lists of events: linked lists, the calendar queue, and each particle's next event.
+
+Among many particles, ask the memory ahead for what the events of the calendar's next days need.
+
+A read that the caches cannot answer takes as long as a hundred additions, and an event has some
+twenty of them. Nothing here has an effect on any result.
+
+Lists of particles, one per cell or per day, as links from each particle to the next ones.
+
+Which particle's event comes first: blocks of keys for few particles, a calendar for many.
+
+Upcoming events of each particle: a short list of contacts, a boundary, the end of foresight.
+"""
+
+import math
+
+from roughgas.kernel.clock import FLIGHTS
+from roughgas.kernel.hooks import either
+from roughgas.kernel.jit import jit
+from roughgas.kernel.mathematics import (
+    bits,
+    choose,
+    least,
+    load,
+    order,
+    prefetch,
+    store,
+    trailing_zeros,
+)
+from roughgas.kernel.memory import BLOCK, SLOTS_OF_FEW
+from roughgas.kernel.state import (
+    BOUNDARY,
+    HORIZON,
+    LONGEST_HORIZON,
+    NOBODY,
+    NOTHING,
+    NOW,
+    TYPICAL_SPEED,
+)
+
+
+@jit
+def fetch_ahead(state, day):
+    """Ask the memory for what the events after `day` need, so that they need not wait for it.
+
+    Only what has arrived can tell what is needed next: first the particles that come first and
+    second on a day's list, a day later their partners and the cells around them. Particle 0 stands
+    for one that is not there, since the processor could not foresee a branch.
+    """
+    queue = state.queue
+    _fetch(state, _first_of(queue, day + 4))
+    first = _first_of(queue, day + 3)
+    _fetch(state, _or_zero(queue.later[first]))
+    _fetch(state, _partner(state.agenda, first))
+    first = _first_of(queue, day + 2)
+    second = _or_zero(queue.later[first])
+    _fetch(state, _partner(state.agenda, second))
+    _fetch_around(state, first)
+    _fetch_around(state, _or_zero(queue.later[_first_of(queue, day + 1)]))
+
+
+@jit
+def _first_of(queue, day):
+    return _or_zero(queue.first[day & (queue.first.size - 1)])
+
+
+@jit
+def _or_zero(i):
+    return max(int(i), 0)
+
+
+@jit
+def _partner(agenda, i):
+    return _or_zero(agenda.slot_partner[i, _or_zero(agenda.kind[i])])
+
+
+@jit
+def _fetch(state, i):
+    prefetch(state.agenda.key, i)
+    prefetch(state.trajectory, i)
+
+
+@jit
+def _fetch_around(state, i):
+    """Ask for those in the cells before and behind; those beside i are near it in memory, too."""
+    cells = state.cells
+    for step in (-1, 1):
+        cell = cells.home[i] + step * cells.counts[0]
+        cell = max(0, min(cell, cells.first.size - 1))
+        prefetch(state.trajectory, _or_zero(cells.first[cell]))
+
+
+@jit
+def enter(first, following, previous, place, i):
+    """Put particle i first on the list of a place."""
+    head = first[place]
+    following[i] = head
+    previous[i] = NOBODY
+    if head != NOBODY:
+        previous[head] = i
+    first[place] = i
+
+
+@jit
+def strike_out(first, following, previous, place, i):
+    """Take particle i off the list of a place."""
+    after, before = following[i], previous[i]
+    if before == NOBODY:
+        first[place] = after
+    else:
+        following[before] = after
+    if after != NOBODY:
+        previous[after] = before
+
+
+LAST_DAY = 2.0**62
+EVENTS_A_DAY = 2.0  # this many make a day's list short and empty days rare
+
+
+def _enter_in_blocks(cells, state, i, time):
+    queue, block = state.queue, i // BLOCK
+    keys = _with(queue.keys, block, i % BLOCK, time)
+    _with(queue.least, block // BLOCK, block % BLOCK, least(keys))
+
+
+@jit
+def _with(blocks, block, place, time):
+    """Put a time in its place in a block, and return the block.
+
+    It is stored as a whole, as it is read: a read of several stores at once has to wait for them.
+    """
+    times = choose(order(BLOCK) == place, time, load(blocks, block, 0, BLOCK))
+    store(blocks, block, 0, times)
+    return times
+
+
+def _earliest_in_blocks(cells, state):
+    queue = state.queue
+    first, block = math.inf, 0
+    for k in range(len(queue.least)):
+        candidates = load(queue.least, k, 0, BLOCK)
+        if least(candidates) < first:
+            first = least(candidates)
+            block = BLOCK * k + trailing_zeros(bits(candidates == first))
+    keys = load(queue.keys, block, 0, BLOCK)
+    return BLOCK * block + trailing_zeros(bits(keys == first))
+
+
+def _enter_in_calendar(cells, state, i, time):
+    """A day shares its list with the same day of other years. An entry costs the same among a
+    thousand particles as among a million."""
+    queue, key = state.queue, state.agenda.key
+    if key[i] < math.inf:
+        place = day_of(queue, key[i]) & (queue.first.size - 1)
+        strike_out(queue.first, queue.later, queue.sooner, place, i)
+    key[i] = time
+    if time < math.inf:
+        day = day_of(queue, time)
+        enter(queue.first, queue.later, queue.sooner, day & (queue.first.size - 1), i)
+        queue.today[0] = min(queue.today[0], day)
+
+
+@jit
+def day_of(queue, time):
+    """Return the day of a time; far ones share the last day."""
+    return int(min(time * queue.pace[0], LAST_DAY))
+
+
+def _earliest_in_calendar(cells, state):
+    queue, key = state.queue, state.agenda.key
+    day = queue.today[0]
+    for _ in range(queue.first.size):
+        least, place = math.inf, NOBODY
+        i = queue.first[day & (queue.first.size - 1)]
+        while i != NOBODY and least > state.clock[NOW]:  # nothing comes before now
+            if key[i] < least and day_of(queue, key[i]) <= day:
+                least, place = key[i], i
+            i = queue.later[i]
+        if place != NOBODY:
+            queue.today[0] = day
+            return place
+        day += 1
+        fetch_ahead(state, day)
+    return _earliest_of_all(state)
+
+
+@jit
+def _earliest_of_all(state):
+    """Return whose event is the earliest when nothing happens for a year."""
+    key = state.agenda.key
+    place = 0
+    for i in range(key.size):
+        if key[i] < key[place]:
+            place = i
+    if key[place] < math.inf:
+        state.queue.today[0] = day_of(state.queue, key[place])
+    return place
+
+
+@jit
+def clear_calendar(state, cells, scene):
+    """Empty the calendar, and set its days to hold about EVENTS_A_DAY each."""
+    queue = state.queue
+    for place in range(queue.first.size):
+        queue.first[place] = NOBODY
+    for i in range(len(state.changes)):
+        state.agenda.key[i] = math.inf
+    clock = state.clock
+    crossings = 2.0 * clock[TYPICAL_SPEED] / max(cells.widths)
+    contacts = 4.0 * FLIGHTS / clock[LONGEST_HORIZON]  # none where nothing is known yet
+    pace = len(state.changes) * (crossings + contacts) / EVENTS_A_DAY
+    queue.pace[0] = pace if pace > 0.0 else 1.0
+    queue.today[0] = day_of(queue, clock[NOW])
+
+
+enter_in_queue = either(_enter_in_calendar, _enter_in_blocks)
+earliest = either(_earliest_in_calendar, _earliest_in_blocks)
+
+
+@jit
+def clear_contacts(agenda, i, complete_until):
+    """Forget particle i's contacts; those added next are complete until the given time."""
+    for k in range(agenda.slot_time.shape[1]):
+        agenda.slot_time[i, k] = math.inf
+    agenda.complete_until[i] = complete_until
+
+
+@jit
+def set_contacts(agenda, i, first, times, partners, changes):
+    """Fill particle i's list from slot `first` on with lanes, one to a slot; inf is no contact."""
+    store(agenda.slot_time, i, first, times)
+    store(agenda.slot_partner, i, first, partners)
+    store(agenda.slot_change, i, first, changes)
+
+
+@jit
+def add_contact(agenda, i, time, partner, change):
+    """Put a contact in the place of the latest on particle i's list; of the two the earlier stays.
+
+    A time of inf is no contact, and a slot that holds it is free.
+    """
+    times = agenda.slot_time
+    latest = 0
+    for k in range(1, times.shape[1]):
+        if times[i, k] > times[i, latest]:
+            latest = k
+    agenda.complete_until[i] = min(agenda.complete_until[i], max(time, times[i, latest]))
+    if time < times[i, latest]:
+        times[i, latest] = time
+        agenda.slot_partner[i, latest] = partner
+        agenda.slot_change[i, latest] = change
+
+
+@jit
+def drop_contact(agenda, i, slot):
+    """Take a contact off particle i's list."""
+    agenda.slot_time[i, slot] = math.inf
+
+
+@jit
+def choose_next(state, i):
+    """Make the earliest event of particle i its entry in the queue."""
+    agenda = state.agenda
+    time, kind = _with_contact(state.cells, agenda, i, _foresight(state.cells, agenda, i))
+    time, kind = _with_boundary(agenda.boundary_time, i, time, kind)
+    if time == math.inf:
+        kind = NOTHING
+    agenda.kind[i] = kind
+    enter_in_queue(state.cells, state, i, time)
+
+
+def _of_two(cells, agenda, i, time):
+    kind = HORIZON
+    for k in range(agenda.slot_time.shape[1]):
+        earlier = agenda.slot_time[i, k] <= time
+        time = agenda.slot_time[i, k] if earlier else time
+        kind = k if earlier else kind
+    return time, kind
+
+
+def _of_eight(cells, agenda, i, time):
+    times = load(agenda.slot_time, i, 0, SLOTS_OF_FEW)
+    first = least(times)
+    slot = trailing_zeros(bits(times == first))
+    return (first, slot) if first <= time else (time, HORIZON)
+
+
+_with_contact = either(_of_two, _of_eight)
+
+_foresight = either(
+    lambda cells, agenda, i: min(agenda.complete_until[i], cells.leave[i]),
+    lambda cells, agenda, i: agenda.complete_until[i],
+)
+
+
+def _sooner_of(boundary_time, i, time, kind):
+    if boundary_time[i] < time:
+        return boundary_time[i], BOUNDARY
+    return time, kind
+
+
+_with_boundary = either(_sooner_of, lambda boundary_time, i, time, kind: (time, kind))
