@@ -24,11 +24,11 @@ QUICK = "not (slow or remedy or browser or slurm)"
 ELSEWHERE = {  # tests of a room that are not in its own folder
     "base": ["data", "cli/test_process.py", "habits/test_surroundings.py"],
     "cli": ["habits/test_surroundings.py"],
-    "doctor": ["habits/test_doctor.py"],
+    "doctor": ["habits/test_surroundings.py"],
     "effects": ["hard_cases"],
     "kernel": ["hard_cases"],
     "library": ["test_library.py"],
-    "scene": ["simulation/test_schedule.py"],
+    "scene": ["simulation/test_protocols.py"],
 }
 
 

@@ -1,15 +1,27 @@
-"""What the documentation says in Python is true: its examples run, and its reference is whole."""
+"""Documentation, README, Makefile, recipes of containers: their links, examples and versions."""
 
+import fnmatch
+import json
+import os
 import re
+import shlex
 import shutil
+import signal
+import socket
+import subprocess
+import time
 from pathlib import Path
+from urllib.request import urlopen
 
 import matplotlib
 import pytest
 import xarray
 
 import roughgas
-from roughgas import theory
+from roughgas import config, theory
+from roughgas.cli import parser_of
+from roughgas.config.reading import parse_yaml, read_yaml
+from roughgas.results.crate import project_files
 
 ROOT = Path(__file__).parent.parent
 EXAMPLE = re.compile(r"^```python\n(.*?)^```$(?:\n+```text\n(.*?)^```$)?", re.M | re.S)
@@ -61,3 +73,216 @@ def test_the_reference_is_whole(page, module):
     told = re.findall(r"^\.\. auto(?:function|class):: (\w+)$", text, re.M)
     public = [name for name in module.__all__ if not name.startswith("__")]
     assert sorted(told) == sorted(public)
+
+
+PAGES = ("CONTRIBUTING.md", "CODE_OF_CONDUCT.md", "docs/compared.md", "docs/development.md")
+PAGES += ("config/README.md",)
+LINK = re.compile(r"\]\(([^)#\s]+)(?:#[^)]*)?\)")
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_links_lead_somewhere(page):
+    path = ROOT / page
+    links = [link for link in LINK.findall(path.read_text()) if "://" not in link]
+    assert [link for link in links if link != r"RAW/\1" and not (path.parent / link).exists()] == []
+
+
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+CLONE = "git clone ADDRESS roughgas"
+MADE = (
+    *("cooling_r0.9_beta0.5_seed1.nc", "bed.mp4", "figures/small/mine.png"),
+    *(f"results/small/{page}.html" for page in ("report", "explore", "living")),
+)
+
+JUPYTER = ("JUPYTER_CONFIG_DIR", "JUPYTER_DATA_DIR", "IPYTHONDIR")
+SERVER = """
+c.ServerApp.allow_root, c.ServerApp.open_browser, c.ServerApp.port = True, False, {port}
+c.IdentityProvider.token = ""
+"""
+
+
+def blocks(language):
+    """The text of each fenced block of a language."""
+    return re.findall(rf"^```{language}\n(.*?)^```", README, re.M | re.S)
+
+
+def commands():
+    """What is typed, without remarks, line by line."""
+    lines = [line for block in blocks("console") for line in block.splitlines()]
+    return [re.sub(r"\s{2,}# .*", "", line[2:]) for line in lines if line.startswith("$ ")]
+
+
+def answers():
+    """What is printed, line by line."""
+    lines = [line for block in blocks("console") for line in block.splitlines()]
+    return [line for line in lines if not line.startswith("$ ") and line != "..."]
+
+
+def test_its_links_lead_to_files():
+    linked = re.findall(r"\]\(([^)#\s]+)", README)
+    assert len(linked) > 20 and not [path for path in linked if not (ROOT / path).exists()]
+
+
+def test_its_commands_are_commands():
+    told = [shlex.split(line) for line in commands()]
+    asked = [line[1:] for line in told if line[0] == "roughgas"]
+    assert len(asked) == 3
+    for arguments in asked:
+        parser_of(arguments[0]).parse_args(arguments)
+    targets = re.findall(r"^([a-z]+):", (ROOT / "Makefile").read_text(), re.M)
+    assert {line[-1] for line in told if line[0] == "make"} <= set(targets)
+
+
+def test_its_snippet_is_a_study(tmp_path, monkeypatch):
+    (snippet,) = blocks("yaml")
+    shutil.copy(ROOT / "config.yaml", tmp_path)
+    (tmp_path / "studies" / "mine").mkdir(parents=True)
+    (tmp_path / "studies" / "mine" / "config.yaml").write_text(snippet)
+    monkeypatch.chdir(tmp_path)
+    found = config.load("config.yaml")
+    assert found["broken"] == {} and "mine.hollow" in found["experiments"]
+
+
+def test_its_three_lines_change_a_study():
+    text = (ROOT / "studies" / "friction" / "config.yaml").read_text()
+    (line,) = (line for line in commands() if line.startswith("sed"))
+    done = subprocess.run(
+        ["sed", shlex.split(line)[2]], input=text, capture_output=True, text=True, check=True
+    )
+    old, new = text.splitlines(), done.stdout.splitlines()
+    assert sum(one != other for one, other in zip(old, new, strict=True)) >= 3
+    assert read_yaml(ROOT / "studies" / "friction" / "config.yaml") != parse_yaml(done.stdout, "")
+
+
+@pytest.fixture(scope="module")
+def typed(tmp_path_factory):
+    """All that is printed where every command is typed, in its order, and the clone."""
+    folder = tmp_path_factory.mktemp("typed")
+    first, *rest = commands()
+    assert first.startswith(CLONE)
+    script = [first.replace("ADDRESS", shlex.quote(str(ROOT)), 1), *rest]
+    command, around = ["bash", "-e", "-c", "\n".join(script)], environment(folder)
+    ran = subprocess.run(command, cwd=folder, capture_output=True, text=True, env=around)
+    said = ran.stdout + ran.stderr
+    assert ran.returncode == 0, said[-3000:]
+    return [line.rstrip() for line in said.splitlines()], folder / "roughgas"
+
+
+@pytest.mark.slow
+def test_all_of_it_typed_in_a_fresh_clone(typed):
+    """It prints what is said, and git sees no file that was not there."""
+    lines, clone = typed
+    assert not [line for line in answers() if line.rstrip() not in lines]
+    assert any(re.fullmatch(r"  50 of \d+ packages", line) for line in lines)
+    assert all((clone / path).stat().st_size > 1000 for path in MADE)
+    status = subprocess.run(
+        ["git", "status", "--porcelain"], cwd=clone, capture_output=True, text=True, check=True
+    )
+    assert status.stdout.split() == ["??", "studies/mine/"]
+
+
+@pytest.mark.slow
+def test_make_notebook_serves_the_tutorial(typed, tmp_path):
+    """It installs Jupyter by itself; a browser is not opened here."""
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    (tmp_path / "jupyter_server_config.py").write_text(SERVER.format(port=port))
+    around = environment(tmp_path) | dict.fromkeys(JUPYTER, str(tmp_path))
+    serving = subprocess.Popen(["make", "notebook"], cwd=typed[1], env=around, process_group=0)
+    address = f"http://127.0.0.1:{port}/api/contents/tutorial.ipynb?content=0"
+    try:
+        while not (found := asked(address)):
+            assert serving.poll() is None
+            time.sleep(0.5)
+    finally:
+        os.killpg(serving.pid, signal.SIGTERM)
+        serving.wait()
+    assert found["type"] == "notebook" and found["size"] > 5000
+
+
+def asked(address):
+    """What a server answers; None as long as there is none."""
+    try:
+        with urlopen(address, timeout=10) as answer:
+            return json.load(answer)
+    except OSError:
+        return None
+
+
+def environment(folder):
+    """That of somebody who has never used the program: no caches, no paths of this process."""
+    own = ("PYTHONPATH", "VIRTUAL_ENV", "ROUGHGAS_CACHE_DIR")
+    kept = {key: value for key, value in os.environ.items() if key not in own}
+    return kept | {"XDG_CACHE_HOME": str(folder / "cache")}
+
+
+MAKE = ["make", "--no-print-directory"]  # which is said within `make test`
+
+
+def planned(*arguments):
+    """The lines that make would carry out."""
+    command = [*MAKE, "-n", *arguments]
+    ran = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
+    return ran.stdout.splitlines()
+
+
+@pytest.mark.parametrize("target", ["figures", "report"])
+def test_what_simulates_obeys_the_scale(target):
+    said = "\n".join(planned("SCALE=small", target))
+    assert "--config scale=small" in said and "results/small/" in said
+    assert "scale=paper" not in said and "results/paper" not in said
+
+
+CONTAINERS_ROOT = Path(__file__).parents[1]
+
+
+def steps():
+    """The (instruction, text) of the Dockerfile, in order."""
+    text = (CONTAINERS_ROOT / "Dockerfile").read_text()
+    lines = re.sub(r"^#.*\n", "", text, flags=re.MULTILINE).replace("\\\n", " ").splitlines()
+    return [tuple(line.split(None, 1)) for line in lines if line.strip()]
+
+
+def texts(instruction):
+    return [text for name, text in steps() if name == instruction]
+
+
+def copied(text):
+    """Sources and target of a COPY."""
+    *sources, target = [word for word in shlex.split(text) if not word.startswith("--")]
+    return sources, target
+
+
+def apptainer(section):
+    text = (CONTAINERS_ROOT / "Apptainer.def").read_text()
+    found = re.search(rf"^%{section}\n((?:    .*\n|\n)+)", text, re.MULTILINE)[1]
+    return [line.strip() for line in found.splitlines() if line.strip()]
+
+
+def tracked():
+    command = ["git", "-C", CONTAINERS_ROOT, "ls-files"]
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, check=True)
+    except (OSError, subprocess.CalledProcessError):
+        pytest.skip("no git checkout")
+    return done.stdout.splitlines()
+
+
+def test_everything_copied_is_in_the_repository_and_sent_to_the_builder():
+    files = tracked()
+    ignored = (CONTAINERS_ROOT / ".dockerignore").read_text().splitlines()[1:]
+    sources = [source for text in texts("COPY") for source in copied(text)[0]]
+    sources += [line.split()[0] for line in apptainer("files")]
+    for source in sources:
+        assert any(file == source or file.startswith(f"{source}/") for file in files), source
+        assert not any(fnmatch.fnmatch(source, pattern) for pattern in ignored), source
+
+
+def test_the_image_holds_all_that_a_run_consists_of():
+    inside = [source for text in texts("COPY") for source in copied(text)[0]]
+    for name in project_files(CONTAINERS_ROOT):
+        assert name in inside or name.split("/")[0] in inside, name
+    for text in texts("COPY"):
+        sources, target = copied(text)
+        assert target == "./" or sources == [target]

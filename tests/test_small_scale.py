@@ -1,22 +1,16 @@
-"""The points of the small scale, as experiments.yaml has them, against the paper's theory.
-
-BEYOND_THEORY has what R was found to be above theory at these numbers of particles: the mean over
-seeds 101 to 228, and its standard error (`python tests/test_small_scale.py` measures it anew). Most
-of it is physics that theory leaves out; R (1 - R)/N of it, .004 to .006, is the momentum that few
-particles lack. The mean of R over seeds 1 to 4 may be four standard errors from that. The errors
-are those of the scatter between the 128 seeds, not those that the runs say: by chance fails one
-point in 16 000. Seeds are fixed, so a run that passes passes always. The least that is seen so is
-an error of .004 to .012 in R; 15 % of eta are .03 to .06, and of q .01 to .02.
-"""
+"""Physics of small runs, and of those that are compared with another code."""
 
 import math
+import re
+import shlex
 from pathlib import Path
 
 import numpy as np
 import pytest
 from brute_force.scenes import NEVER
 
-from roughgas import config
+from roughgas import config, simulate, theory
+from roughgas.cli import parser_of
 from roughgas.scene import build
 from roughgas.simulation.point import run_point
 from roughgas.theory.prediction import predicted_ratio
@@ -107,3 +101,48 @@ if __name__ == "__main__":
         above = beyond_theory(points_of(*place, LONG), *place[1:])
         error = above.std(ddof=1) / math.sqrt(len(LONG))
         print(f"    {place}: ({above.mean():.4f}, {error:.5f}),", flush=True)
+
+
+PAGE = (Path(__file__).parent.parent / "docs" / "compared.md").read_text(encoding="utf-8")
+ROW = re.compile(r"^\| .+? \| R = ([\d.]+) \| .+? \| ([\d.]+) % \| `roughgas (.+?)` \|$", re.M)
+ROWS = [pytest.param(*row, id=shlex.split(row[2])[1]) for row in ROW.findall(PAGE)]
+R, BETA = 0.9, 0.5
+EXPECTED = {
+    "cooling": theory.cooling_ratio(R, BETA),
+    "spheres.cooling_spheres": theory.cooling_ratio(R, BETA, 3, 0.4),
+    "friction.cooling_friction/mu1": theory.friction_ratio(R, BETA, 1.0, 2, 0.5, None),
+    "spheres.vibrated_spheres": theory.lun_ratio(BETA, 0.4),
+    "inertia.vibrated_inertia/inertia0.1": theory.lun_ratio(BETA, 0.1),
+    "friction.vibrated_friction/mu0.3": theory.friction_ratio(R, BETA, 0.3, 2, 0.5, 0.0),
+    "drives.heated/spin_share1": theory.stationary_ratio(R, BETA, 2, 0.5, 1.0),
+}
+LUN = theory.lun_ratio(BETA, 0.5)  # of all other disks
+
+
+def told(command):
+    """What a command of the page says."""
+    words = shlex.split(command)
+    return parser_of(words[0]).parse_args(words)
+
+
+@pytest.mark.parametrize(("number", "within", "command"), ROWS)
+def test_numbers_are_those_of_theory(number, within, command):
+    options = told(command)
+    assert (options.r, options.beta) == ([str(R)], [str(BETA)])
+    assert number == f"{EXPECTED.get(options.experiment, LUN):.4f}"
+
+
+def test_every_kind_of_scene_has_one():
+    assert len(ROWS) > 9 and {
+        row.id.split("/")[0].split(".")[-1].split("_")[0] for row in ROWS
+    } == {"cooling", "heated", "sheared", "vibrated"}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("number", "within", "command"), ROWS)
+def test_they_are_found(number, within, command):
+    """At the paper's scale, within what the page says."""
+    gas = simulate(told(command).experiment, r=R, beta=BETA, progress=False)
+    name = "R_collisional" if "R_collisional" in gas else "R"
+    off, error = gas[name].item() - float(number), gas[f"{name}_stderr"].item()
+    assert abs(off) < float(within) / 100 * float(number) and error < 0.01

@@ -52,10 +52,7 @@ def test_each_step_is_what_a_rule_gives():
 
 @pytest.mark.parametrize(
     ("name", "sweep", "inertia"),
-    [
-        ("spun", {"spin.inertia": ["1", "0.1"]}, [1, 0.1]),
-        ("plain", {}, [0.5]),
-    ],
+    [("spun", {"spin.inertia": ["1", "0.1"]}, [1, 0.1]), ("plain", {}, [0.5])],
 )
 def test_all_variants_are_compiled_at_once(monkeypatch, name, sweep, inertia):
     told = []

@@ -24,7 +24,7 @@ BASE = (
     "tests/data/test_point_file.py",
     "tests/kernel/test_collision_rule.py",
     "tests/kernel/test_compiler.py",
-    "tests/observables/test_averages.py",
+    "tests/observables/test_each.py",
     "tests/observables/test_each.py",
     "tests/simulation/test_gas.py",
     "tests/statistics",

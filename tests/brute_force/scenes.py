@@ -42,10 +42,7 @@ KERNELS = {
         "particles": 160,
         "box": [50, "open"],
         "effects": _BED
-        | {
-            "walls": {"restitution": 1.0, "roughness": 1.0},
-            "contact_time": {"duration": NEVER},
-        },
+        | {"walls": {"restitution": 1.0, "roughness": 1.0}, "contact_time": {"duration": NEVER}},
     },
     "spheres": {
         "particles": 64,

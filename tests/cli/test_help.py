@@ -1,4 +1,4 @@
-"""What help says: of every command, and with examples that work."""
+"""Help, and the page of commands."""
 
 import argparse
 import inspect
@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from cli import page
 from cli.parsers import commands, examples
 from roughgas import cli
 from roughgas.cli import main
@@ -74,3 +75,21 @@ def test_examples_run(folder, monkeypatch, capsys, line):
     assert main(line.split()) == 0
     said = capsys.readouterr().out
     assert re.search(REALLY_RUN[line], said)
+
+
+BLOCKS = page.blocks()
+
+
+@pytest.fixture(scope="module")
+def page_folder():
+    """Where all blocks are run: later ones show what earlier ones have made."""
+    with page.folder() as path:
+        yield path
+
+
+@pytest.mark.parametrize("block", BLOCKS, ids=lambda block: block.splitlines()[0])
+def test_a_block_is_what_its_commands_print(page_folder, block):
+    found = page.written(block, page.in_this_process)
+    assert page.without_machine(found) == page.without_machine(block), (
+        "write it anew: python tests/cli/page.py"
+    )

@@ -12,12 +12,7 @@ from roughgas.base.formatting import markdown
 from roughgas.data.film import FILM
 from roughgas.data.reduced import REDUCED
 from roughgas.data.trajectory import TRAJECTORY
-from roughgas.data.variables import (
-    COOLING,
-    GRID,
-    POINT,
-    SPIN,
-)
+from roughgas.data.variables import COOLING, GRID, POINT, SPIN
 from roughgas.studies import STUDIES
 from roughgas.studies.tasks import VARIABLES
 from roughgas.tasks import variables

@@ -5,6 +5,7 @@ import os
 import subprocess
 import sys
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -14,10 +15,12 @@ from schedules import COOLING, STEADY
 
 from roughgas.data.point import read_point, write_point
 from roughgas.data.variables import POINT
-from roughgas.effects import KINDS
+from roughgas.effects import KINDS, friction, thermostat
+from roughgas.effects.settings import Number, register
 from roughgas.effects.side import SIDES
 from roughgas.kernel import mathematics
 from roughgas.kernel.contact import SPLIT
+from roughgas.kernel.hooks import Hooks, present
 from roughgas.kernel.record import record
 from roughgas.kernel.state import BOUNDARY, BOUNDARY_HITS
 from roughgas.scene import build
@@ -219,3 +222,27 @@ def test_a_point_holds_nothing_of_absent_effects(kernel, tmp_path):
     assert set(data.variables) == found
     if "spin" not in there:
         assert np.all(data.energy_input.sel(motion="rotation") == 0.0)
+
+
+def test_a_misspelt_hook_is_refused():
+    class Drag(NamedTuple):
+        strength: float
+
+    with pytest.raises(TypeError, match="unexpected keyword argument 'resolv'"):
+        register(Drag, {"strength": Number("Strength.")}, resolv=thermostat.resolve)
+    assert not hasattr(Drag, "hooks")
+
+
+def test_a_name_that_is_only_in_the_file_is_no_hook(monkeypatch):
+    monkeypatch.setattr(friction, "resolve", thermostat.resolve, raising=False)
+    monkeypatch.setattr(friction, "drives", True, raising=False)
+    scene, _ = begin(settings("friction"), 0.9, -1.0)
+    assert not present(scene.effects, "resolve") and not present(scene.effects, "drives")
+    ((place, rank, own),) = present(scene.effects, "roughness")
+    assert (scene.effects._fields[place], rank, own) == ("friction", 1, friction.roughness)
+
+
+def test_every_effect_has_hooks_and_parameters():
+    for name, kind in KINDS.items():
+        assert isinstance(kind.hooks, Hooks) and kind.parameters is not None, name
+        assert name == "spin" or any(kind.hooks), name

@@ -1,15 +1,24 @@
-"""The vibrated floor, and free fall above it."""
+"""Floors that move as a sawtooth, a sine and a triangle; walls."""
+
+import math
 
 import mpmath
 import numpy as np
 import pytest
-from brute_force import begin, run, settings
+from brute_force import Beside, begin, run, scene_of, settings, snapshot
 from compiled import from_python
+from hard_cases.waves import DIGITS, exact, triangle
 
+from roughgas.base import InputError
 from roughgas.effects import floor as floors
+from roughgas.effects import sine_floor, triangular_floor
 from roughgas.effects.floor import Floor
+from roughgas.effects.settings import Surroundings, make
+from roughgas.effects.sine_floor import SineFloor
+from roughgas.effects.triangular_floor import FALLING, RISING, TriangularFloor
+from roughgas.kernel.hooks import CODES
 from roughgas.kernel.memory import new_state
-from roughgas.kernel.state import BOUNDARY_HITS
+from roughgas.kernel.state import BASE, BOUNDARY_HITS, NOW
 
 time_to_floor = from_python(floors.time_to_floor)
 
@@ -83,3 +92,178 @@ def exact_time_from(floor, height, speed, time):
         if max(stroke - time, mpmath.mpf(10) ** -30) <= root <= stroke + 1 - time:
             return root
         stroke += 1
+
+
+time_to_sine = from_python(sine_floor.time_to_floor)
+time_to_triangle = from_python(triangular_floor.time_to_floor)
+WAVES = ["reversed_sawtooth", "triangle", "sine"]
+
+
+SPIN = {"spin": {"inertia": 0.5}}
+
+
+def from_settings(**chosen):
+    stated = {"amplitude": 5, "period": 2, "restitution": "particles", "roughness": 0.5}
+    around = Surroundings((50.0, None), 0.9, 0.2, SPIN)
+    return make(Floor, "floor", stated | chosen, around)
+
+
+def test_the_wave_is_chosen_by_name():
+    assert (
+        from_settings()
+        == from_settings(wave=None)
+        == from_settings(wave="sawtooth")
+        == (5.0, 2.0, 0.9, 0.5)
+    )
+    assert isinstance(from_settings(), Floor)
+    triangle, reverse, harmonic = (
+        from_settings(wave=wave) for wave in ("triangle", "reversed_sawtooth", "sine")
+    )
+    assert isinstance(triangle, TriangularFloor) and isinstance(reverse, TriangularFloor)
+    assert (triangle.rise, reverse.rise) == (0.5, 0.1)
+    assert isinstance(harmonic, SineFloor)
+    for floor in (triangle, reverse, harmonic):
+        chosen = floor.amplitude, floor.period, floor.restitution, floor.roughness
+        assert chosen == from_settings()
+
+
+@pytest.mark.parametrize("wave", ["square", "Sine", 1, ["sine"]])
+def test_an_unknown_wave_is_an_error_that_names_the_known_ones(wave):
+    with pytest.raises(InputError, match=r"effects\.floor\.wave .*sawtooth.*triangle, sine"):
+        from_settings(wave=wave)
+
+
+def test_the_roots_of_a_triangle_by_hand():
+    """Amplitude 4 and period 4: up at 2 a/T until t = 2, then down; g = 1."""
+    floor = triangle(4.0, 4.0)
+
+    def meeting(height, speed, phase):
+        return time_to_triangle(floor, 1.0, height, speed, phase)
+
+    # from rest at 5: 5 - t^2/2 = 2 t
+    assert meeting(5.0, 0.0, 0.0) == (pytest.approx(-2.0 + math.sqrt(14.0), rel=1e-15), RISING)
+    # above the crest through the next stroke, then down after the floor: it overtakes it where
+    # 5 + 2 t - t^2/2 = 4 - 2 (t - 4)
+    assert meeting(5.0, 2.0, 2.0) == (pytest.approx(4.0 + math.sqrt(2.0), rel=1e-15), FALLING)
+    # thrown down after the falling floor: 5 - 5 t - t^2/2 = 4 - 2 t
+    assert meeting(5.0, -5.0, 2.0) == (pytest.approx(-3.0 + math.sqrt(11.0), rel=1e-14), FALLING)
+    # left behind by the falling floor, it is met by the next rise: 3.5 - t^2/2 = 2 (t - 1.5)
+    assert meeting(3.5, 0.0, 2.5) == (pytest.approx(-2.0 + math.sqrt(17.0), rel=1e-15), RISING)
+    # off from the crest, over one stroke and a half: 4 + 2.5 t - t^2/2 = 2 (t - 6)
+    over = (1.0 + math.sqrt(129.0)) / 2.0
+    assert meeting(4.0, 2.5, 2.0) == (pytest.approx(over, rel=1e-15), RISING)
+
+
+def test_a_contact_at_a_turning_point_is_with_the_piece_that_is_approached():
+    """A triangle of amplitude 4 and period 4, with g = 1."""
+    floor = triangle(4.0, 4.0)
+    # on the floor at its lowest point
+    assert time_to_triangle(floor, 1.0, 0.0, 0.0, 4.0) == (0.0, RISING)
+    # half a T before that, on to a contact just after it, and right at it
+    time, piece = time_to_triangle(floor, 1.0, 2.0, -3.0, 3.5)
+    assert (time, piece) == (pytest.approx(-5.0 + math.sqrt(31.0), rel=1e-14), RISING)
+    assert time_to_triangle(floor, 1.0, 1.625, -3.0, 3.5) == (0.5, FALLING)
+    # from rest on to the crest: 6 - t^2/2 = 2 t
+    assert time_to_triangle(floor, 1.0, 6.0, 0.0, 0.0) == (2.0, RISING)
+
+
+@pytest.mark.parametrize("wave", WAVES)
+def test_an_elastic_floor_reverses_the_velocity_relative_to_its_surface(wave):
+    """Of twenty bounces, each in 40 digits; and the books hold what it gains."""
+    scene, state = one_particle(21.3, (0.3, 0.0), wave=wave)
+    floor = scene.effects.floor
+    gained = 0.0
+    run(state, scene, 1, interval=1e-9)  # has the first meeting foreseen
+    with mpmath.workdps(DIGITS):
+        for bounce in range(1, 21):
+            _, y, _, v, time = map(float, state.trajectory[0])
+            start = state.clock[BASE] + time
+            while state.counts[BOUNDARY_HITS] < bounce:
+                ahead = state.agenda.boundary_time[0] - state.clock[NOW]
+                run(state, scene, 1, interval=ahead + 1e-6)
+            assert state.counts[BOUNDARY_HITS] == bounce
+            _, _, _, leaving, time = map(float, state.trajectory[0])
+            truth = exact(floor, 1.0, y - 1.0, v, start % floor.period)
+            wait = mpmath.mpf(state.clock[BASE] + time - start)
+            assert abs(truth.gap(wait)) < 1e-14 * truth.lengths(wait)
+            opens = leaving - truth.surface(wait)[1]
+            assert opens == pytest.approx(float(-truth.speed(wait)), rel=1e-9)
+            gained += 0.5 * float(leaving**2 - (v - wait) ** 2)
+    there = [name for name, one in scene.effects._asdict().items() if one is not None]
+    index = there.index("floor")
+    assert state.ledger.sum(axis=0)[index] == pytest.approx([gained, 0.0], rel=1e-9)
+    assert abs(gained) > 1.0
+
+
+def test_a_particle_above_a_sine_looks_again_when_it_is_back():
+    """What is foreseen then is the same meeting that a search from the start of its path finds."""
+    scene, state = one_particle(21.3, (0.3, 0.0), wave="sine")
+    floor, lowest = scene.effects.floor, 20.3
+    run(state, scene, 1, interval=1e-9)
+    back, code = state.agenda.boundary_time[0], state.agenda.boundary_code[0]
+    assert back == pytest.approx(math.sqrt(2.0 * (lowest - floor.amplitude)), rel=1e-14)
+    assert code % CODES == sine_floor.LOOK
+    run(state, scene, 1, interval=back)
+    assert state.agenda.boundary_code[0] % CODES == sine_floor.MEET
+    meeting = state.clock[BASE] + state.agenda.boundary_time[0]
+    assert meeting == pytest.approx(time_to_sine(floor, 1.0, lowest, 0.0, 0.0), rel=1e-14)
+    assert state.counts[BOUNDARY_HITS] == 0 and state.changes[0] == 0
+
+
+CASES = {
+    "elastic": ({}, 0.8, 0.2),
+    "inelastic and rough": ({"restitution": 0.8, "roughness": 0.5}, 0.9, -0.5),
+    "small strokes": ({"amplitude": 0.3, "period": 0.2}, 0.7, 0.2),
+}
+
+
+@pytest.mark.parametrize("wave", WAVES)
+@pytest.mark.parametrize("case", CASES)
+def test_the_kernel_makes_the_same_collisions(wave, case):
+    """The same 200 pairs, and hits of the floor between them, as the brute force."""
+    floor, r, beta = CASES[case]
+    experiment = settings("bed", 16, [10, "open"], floor={"wave": wave} | floor)
+    _, world = scene_of(experiment, r, beta)
+    scene, state = begin(experiment, r, beta, 9)
+    beside = Beside(state, scene, world)
+    beside.assert_same(20, 10)
+    assert beside.events["floor"] > 10
+
+
+def thrown(velocity, spin=0.0, **walls):
+    """One particle 100 a above the floor of a bed 12 a wide."""
+    scene, _ = begin(settings("walled", 1, [12, "open"], walls=walls), 0.9, 0.0)
+    position = np.array([[6.0, 100.0]])
+    return scene, new_state(scene, position, np.array([velocity]), np.array([[spin]]))
+
+
+def test_a_smooth_elastic_wall_reflects():
+    scene, state = thrown((3.0, 0.0), 0.8, restitution=1.0, roughness=-1.0)
+    for k in range(1, 100):
+        run(state, scene, 1, interval=0.1)
+        shot = snapshot(state, scene)
+        folded = (5.0 + 0.3 * k) % 20.0  # the particle's room is 10 a wide: x - 1 unfolds to that
+        assert shot.position[0, 0] - 1.0 == pytest.approx(min(folded, 20.0 - folded), abs=1e-12)
+        assert abs(shot.velocity[0, 0]) == pytest.approx(3.0, rel=1e-14)
+        assert shot.spin[0, 0] == 0.8
+
+
+def test_restitution_of_a_wall():
+    scene, state = thrown((-8.0, 0.0), restitution=0.5, roughness=-1.0)
+    run(state, scene, 1, interval=0.7)
+    assert state.trajectory[0, 2] == 4.0 and state.counts[BOUNDARY_HITS] == 1
+
+
+@pytest.mark.parametrize(("direction", "side"), [(-1.0, 1.0), (1.0, -1.0)])
+def test_roughness_of_a_wall(direction, side):
+    """A particle that rolls along neither side: g_y = v_y + (n_x = +-1) (-a w) is reflected."""
+    q, beta = 0.5, 0.6
+    v_y, w = 2.0, 0.7
+    scene, state = thrown((5.0 * direction, v_y), w, restitution=1.0, roughness=beta)
+    run(state, scene, 1, interval=1.5)
+    time = state.trajectory[0, 4] + state.clock[0]
+    falling = v_y - time  # at the moment of the contact
+    slip = falling - w * side  # (w x n)_y = w n_x
+    kick = q * (1 + beta) / (1 + q) * slip
+    assert state.trajectory[0, 3] == pytest.approx(falling - kick, rel=1e-13)
+    assert state.spin[0, 0] == pytest.approx(w + (1 + beta) / (1 + q) * side * slip, rel=1e-13)

@@ -105,10 +105,7 @@ def test_radii_come_from_text_files_of_an_end(tmp_path, kind):
 
 SPREAD = {"distribution": "uniform"}
 WRONG = [
-    (
-        [{"fraction": 0.5}, {"fraction": 0.4}],
-        "sum of species.fraction = 0.9: must be 1 within",
-    ),
+    ([{"fraction": 0.5}, {"fraction": 0.4}], "sum of species.fraction = 0.9: must be 1 within"),
     ([{"number": 20}, {"number": 19}], "sum of species.number = 39: must be particles, 40"),
     ([{"fraction": 0.5}, {"number": 20}], "species[1].number = 20: must be a fraction"),
     ([{"radius": 2}], "species[0].fraction = (nothing): must be given, or number"),

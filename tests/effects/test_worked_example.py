@@ -25,12 +25,7 @@ PACKAGE = Path(roughgas.__file__).parent
 TESTS = Path(__file__).parents[1]
 NEW, LISTED = Path("effects/plasticity.py"), Path("effects/__init__.py")
 EXAMPLE = page.section("A worked example")
-GAS = {
-    "particles": 40,
-    "box": [40, 40],
-    "effects": {"spin": {"inertia": 0.5}},
-    "schedule": COOLING,
-}
+GAS = {"particles": 40, "box": [40, 40], "effects": {"spin": {"inertia": 0.5}}, "schedule": COOLING}
 R, BETA, SEED = 0.8, -0.8, 1
 
 

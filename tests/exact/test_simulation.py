@@ -32,11 +32,7 @@ CASES = {
     "two species": (settings("gas", 8, [14, 13]) | {"species": TWO}, 0.98, 0.2),
     "bed of two species": (settings("bed", 8, [12, "open"]) | {"species": TWO}, 0.8, 0.2),
     "viscoelastic": (settings("viscoelastic", 8, [12, 11], threshold={"speed": 0.2}), 0.8, 0.2),
-    "sliding walls": (
-        {"particles": 8, "box": [9, 10], "effects": SLIDING},
-        0.9,
-        0.2,
-    ),
+    "sliding walls": ({"particles": 8, "box": [9, 10], "effects": SLIDING}, 0.9, 0.2),
     "sliding walls, two species": (
         {"particles": 8, "box": [12, 13], "effects": SLIDING, "species": TWO},
         0.9,

@@ -185,12 +185,7 @@ ENVIRONMENTS = {
     "folder like an option": ({}, "", "-x"),
 }
 """Changes of the environment, what a shell does first, and the folder that a command is run in."""
-COMMANDS = (
-    ["run", *GAS],
-    ["show", "INPUT"],
-    ["experiments"],
-    ["theory", "--r=0.9", "--beta=0"],
-)
+COMMANDS = (["run", *GAS], ["show", "INPUT"], ["experiments"], ["theory", "--r=0.9", "--beta=0"])
 
 
 def check_environment(folder, tmp, name, command):

@@ -1,13 +1,17 @@
-"""Streams, disks, locales and settings of the user's that are not as expected."""
+"""An installation and its surroundings: the doctor, extras, folders, a reader that leaves."""
 
+import json
 import os
 import subprocess
 import sys
 
+import pytest
 from schedules import TINY
 from synthetic import reduced
+from tests.habits.conftest import ROOT, environment, point, python, roughgas
 
-from habits.conftest import environment, point, python, roughgas
+from roughgas import doctor
+from roughgas.base import EXTRAS
 
 HOSTILE_STYLE = "lines.linewidth: 9\naxes.facecolor: red\naxes.grid: True\nfont.size: 30\n"
 
@@ -98,3 +102,156 @@ def test_memory_that_runs_out(tmp_path):
     said = [line for line in done.stderr.splitlines() if " so far" not in line]  # where it is slow
     assert len(said) == 1 and list(tmp_path.iterdir()) == []
     assert said[0].startswith("roughgas: error: out of memory. Unable to allocate")
+
+
+ALONE = """
+import json, sys
+from roughgas import doctor
+doctor.CHECKS = {sys.argv[1]: doctor.CHECKS[sys.argv[1]]}
+doctor.doctor(as_json=True)
+"""
+
+
+def check(name, monkeypatch, capsys):
+    """What one check says, and whether it is content."""
+    monkeypatch.setattr(doctor, "CHECKS", {name: doctor.CHECKS[name]})
+    try:
+        doctor.doctor(as_json=True)
+        status = 0
+    except SystemExit as stop:
+        status = stop.code
+    found = json.loads(capsys.readouterr().out)[name]
+    assert found["ok"] == (status == 0)
+    return found["said"], found["ok"]
+
+
+def check_alone(name, cwd, program=ALONE, **others):
+    return json.loads(python("-c", program, name, cwd=cwd, **others).stdout)[name]
+
+
+def test_an_installation_as_it_should_be():
+    done = roughgas("doctor", "--json", cwd=ROOT)
+    found = json.loads(done.stdout)
+    assert list(found) == list(doctor.CHECKS)
+    problems = {name: about for name, about in found.items() if not about["ok"]}
+    assert (done.returncode, problems, done.stderr) == (0, {}, "")
+    assert sys.executable in found["libraries"]["said"]
+    assert str(ROOT / "config.yaml") in found["configuration"]["said"]
+
+
+def test_a_problem_is_told_in_words_and_by_the_exit_status(monkeypatch, capsys):
+    monkeypatch.setattr(doctor, "CHECKS", {name: doctor.CHECKS[name] for name in ("extras",)})
+    monkeypatch.setitem(sys.modules, "gsd", None)
+    doctor.doctor(as_json=False)
+    assert capsys.readouterr().out.endswith("crate; not installed: trajectories\n")
+    monkeypatch.setattr(doctor, "LIBRARIES", "tqdm gsd")
+    monkeypatch.setattr(doctor, "CHECKS", {"libraries": (doctor._libraries, "mend it")})
+    with pytest.raises(SystemExit) as stop:
+        doctor.doctor(as_json=False)
+    said = capsys.readouterr().out
+    assert stop.value.code == 1 and said.startswith("problem  libraries ")
+    assert "gsd" in said and said.endswith("-> mend it\n")
+
+
+@pytest.mark.parametrize(
+    ("name", "changes", "said", "remedy"),
+    [
+        ("kernel", {"NUMBA_DISABLE_JIT": "1"}, "NUMBA_DISABLE_JIT", "remove the kernels"),
+        ("kernel cache", {"ROUGHGAS_CACHE_DIR": "/proc/x"}, "/proc/x", "ROUGHGAS_CACHE"),
+        ("Snakemake", {"XDG_CACHE_HOME": "/proc/sys"}, "be written", "XDG_CACHE_HOME"),
+    ],
+)
+def test_what_the_environment_breaks(monkeypatch, capsys, name, changes, said, remedy):
+    for variable, value in changes.items():
+        monkeypatch.setenv(variable, value)
+    told, fine = check(name, monkeypatch, capsys)
+    assert not fine and said in told and remedy in told.partition(" -> ")[2], told
+
+
+@pytest.mark.parametrize(
+    ("broken", "said"),
+    [
+        ({"KNOWN": 0.3}, "a trial run has R = 0.4453"),
+        ({"TRIAL": "import os; os.kill(os.getpid(), 11)"}, "a trial run crashed: signal 11"),
+    ],
+)
+def test_a_kernel_that_is_wrong_or_crashes(monkeypatch, capsys, broken, said):
+    for name, value in broken.items():
+        monkeypatch.setattr(doctor, name, value)
+    told, fine = check("kernel", monkeypatch, capsys)
+    assert not fine and said in told
+
+
+def test_disks_that_cannot_be_written_or_are_full(tmp_path, mounts):
+    (tmp_path / "disk").mkdir()
+    inside = f"import os; os.chdir('disk')\n{ALONE}"
+    found = check_alone("this folder", tmp_path, inside, mount=("ro", "disk"))
+    assert not found["ok"] and "Read-only" in found["said"]
+    found = check_alone("this folder", tmp_path, inside, mount=("size=1m", "disk"))
+    assert not found["ok"] and "make room" in found["said"]
+
+
+POINT = "cooling --scale small --r 0.9 --beta 0.5"
+WITHOUT_ANY = {
+    "run": f"run {POINT} -o point.nc",
+    "summary": f"run {POINT} --seed 2",
+    "trajectory": f"trajectory {POINT} --times 0 1 -o gas.xyz",
+    "show": "show point.nc",
+    "reduce": "reduce point.nc -o cooling.nc",
+    "theory": "theory --r 0.9 --beta 0.5",
+    "completion": "completion bash",
+}
+WITH_ONE = {
+    "figures": f"movie {POINT} -o gas.gif",
+    "report": "document text.md -o text.html",
+    "trajectories": f"trajectory {POINT} -o gas.gsd",
+}
+BLOCKED = """
+import sys
+sys.modules.update(dict.fromkeys({packages!r}))
+from roughgas import cli, steps
+main = (steps if sys.argv[1] in steps.STEPS else cli).main
+sys.exit(main(sys.argv[1:]))
+"""
+
+EXAMINED = """
+import sys
+sys.modules.update(dict.fromkeys({packages!r}))
+from roughgas import doctor
+names = "libraries", "extras", "Snakemake"
+doctor.CHECKS = dict((name, doctor.CHECKS[name]) for name in names)
+doctor.doctor(False)
+"""
+
+
+def told(line, folder):
+    """A finished process of `roughgas`, in an environment without the packages of any extra."""
+    packages = [package for brought in EXTRAS.values() for package in brought]
+    return python("-c", BLOCKED.format(packages=packages), *line.split(), cwd=folder)
+
+
+def test_what_simulates_needs_no_extra(tmp_path):
+    for name, line in WITHOUT_ANY.items():
+        done = told(line, tmp_path)
+        assert done.returncode == 0, (name, done.stderr)
+    assert (tmp_path / "gas.xyz").exists()
+
+
+@pytest.mark.parametrize("extra", WITH_ONE)
+def test_an_extra_that_lacks_is_named_in_a_line(extra, tmp_path):
+    (tmp_path / "text.md").write_text("# A text\n")
+    done = told(WITH_ONE[extra], tmp_path)
+    package = EXTRAS[extra][0]
+    said = f"{package} is not installed: pip install 'roughgas[{extra}]'"
+    assert (done.returncode, done.stdout) == (1, "")
+    assert done.stderr == f"roughgas: error: {said}\n"
+    assert [path.name for path in tmp_path.iterdir()] == ["text.md"]
+
+
+def test_the_doctor_says_what_is_left_out(tmp_path):
+    packages = [package for brought in EXTRAS.values() for package in brought]
+    done = python("-c", EXAMINED.format(packages=packages), cwd=tmp_path)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert (
+        "none; not installed: workflow, figures, movies, report, crate, trajectories" in done.stdout
+    )

@@ -140,8 +140,7 @@ def angular_momentum(shot, q):
 
 
 @hard_case(
-    "the rule undone",
-    "small coefficients leave so little of a velocity that it cannot be got back",
+    "the rule undone", "small coefficients leave so little of a velocity that it cannot be got back"
 )
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_inverse(margins, dimension):

@@ -86,8 +86,7 @@ def curves(restitutions, runs, samples):
 
 
 @hard_case(
-    "a gas in other units of time",
-    "rescaling a gas that has become slow changes its collisions",
+    "a gas in other units of time", "rescaling a gas that has become slow changes its collisions"
 )
 def test_rescaling_changes_no_digit(margins):
     """Velocities doubled or halved so and so often: the same pairs, at the same places."""

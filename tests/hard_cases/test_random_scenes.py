@@ -176,11 +176,7 @@ def drawn(kinds, number):
     found = []
 
     @settings(
-        max_examples=number,
-        phases=[Phase.generate],
-        derandomize=True,
-        database=None,
-        deadline=None,
+        max_examples=number, phases=[Phase.generate], derandomize=True, database=None, deadline=None
     )
     @given(kinds)
     def draw(scene):

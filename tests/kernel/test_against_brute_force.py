@@ -1,15 +1,7 @@
 """Every scene, collision by collision, against a slow simulation written from the paper."""
 
 import pytest
-from brute_force import (
-    Beside,
-    BruteForce,
-    begin,
-    compare,
-    scene_of,
-    settings,
-    snapshot,
-)
+from brute_force import Beside, BruteForce, begin, compare, scene_of, settings, snapshot
 from brute_force import run as run_kernel
 
 CASES = {

@@ -1,6 +1,8 @@
-"""What kernel/compiler.py takes of numba's private parts does what it is there for."""
+"""The parts of numba that kernel/compiler.py replaces, and the same bits from what is compiled."""
 
+import json
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -8,6 +10,7 @@ from pathlib import Path
 import numba
 import numpy as np
 import pytest
+from brute_force import begin, run, settings
 
 import roughgas
 from roughgas.kernel import compiler
@@ -95,3 +98,113 @@ def test_called_from_python_all_but_entries_are_plain_python():
     noted = Compiled(lambda x: calls.append(x))
     noted([])
     assert calls == [[]]
+
+
+TESTS = Path(__file__).parent.parent
+PROGRAM = """
+import json
+from brute_force import begin, run, settings
+from roughgas.kernel import compiler
+
+scene, state = begin(settings("smooth", 20, [20, 20]), 0.9, -1.0, 11)
+rows = run(state, scene, 10, collisions=100)
+numbers = {name: [x.hex() for x in column] for name, column in rows.items()}
+print(json.dumps({"hash": cache.source_hash(), "rows": numbers}))
+"""
+
+
+def start_elsewhere(package_parent, cache_folder):
+    """The program above in a process of its own, with the package found in the given folder."""
+    environment = os.environ | {
+        "PYTHONPATH": os.pathsep.join([str(package_parent), str(TESTS)]),
+        "ROUGHGAS_CACHE_DIR": str(cache_folder),
+    }
+    command = [sys.executable, "-c", PROGRAM]
+    return subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, text=True)
+
+
+def answer(process):
+    out, _ = process.communicate(timeout=600)
+    assert process.returncode == 0
+    return json.loads(out)
+
+
+@pytest.mark.parametrize(
+    "experiment",
+    [
+        settings("gas", 40, [25, 25]),
+        settings("sheared", 40, [25, 25]),
+        settings("bed", 40, [12.5, "open"]),
+        settings("walled", 40, [12.5, "open"]),
+        settings("spheres"),
+    ],
+    ids=["gas", "sheared", "bed", "walled", "spheres"],
+)
+def test_the_same_seed_gives_the_same_bits(experiment):
+    ends = []
+    for seed in (4, 4, 5):
+        scene, state = begin(experiment, 0.9, 0.3, seed)
+        rows = run(state, scene, 5, collisions=400)
+        ends.append((state.trajectory.tobytes(), state.spin.tobytes(), rows["time"].tobytes()))
+    assert ends[0] == ends[1] != ends[2]
+
+
+@pytest.mark.slow
+def test_the_same_bits_without_a_cache_and_others_after_an_edit(tmp_path):
+    """An edited collision rule is compiled anew, although the old one is in the cache."""
+    edited = tmp_path / "edited"
+    shutil.copytree(PACKAGE, edited / "roughgas", ignore=shutil.ignore_patterns("__pycache__"))
+    rule = edited / "roughgas" / "kernel" / "contact.py"
+    text = rule.read_text(encoding="utf-8")
+    assert "(1.0 + material[0])" in text
+    rule.write_text(text.replace("(1.0 + material[0])", "(1.01 + material[0])"), encoding="utf-8")
+
+    scene, state = begin(settings("smooth", 20, [20, 20]), 0.9, -1.0, 11)
+    rows = run(state, scene, 10, collisions=100)  # now the session's cache holds it
+    here = {name: [x.hex() for x in column] for name, column in rows.items()}
+    session = compiler.kernel_folder().parent
+    processes = (
+        start_elsewhere(PACKAGE.parent, tmp_path / "fresh"),
+        start_elsewhere(edited, session),
+    )
+    fresh, other = map(answer, processes)
+    assert fresh == {"hash": compiler.source_hash(), "rows": here}
+    assert list((tmp_path / "fresh").glob(f"kernels-{compiler.source_hash()}/**/*.nbc"))
+    assert other["hash"] != compiler.source_hash()
+    assert other["rows"]["time"] != here["time"]
+    shutil.rmtree(Path(session) / f"kernels-{other['hash']}")
+
+
+def test_the_hash_covers_the_sources_of_the_kernel_and_no_others(tmp_path, monkeypatch):
+    copy = tmp_path / "roughgas"
+    shutil.copytree(PACKAGE, copy, ignore=shutil.ignore_patterns("__pycache__"))
+    monkeypatch.setattr(compiler, "PACKAGE", copy)
+    hashes = {compiler.source_hash()}
+    (copy / "studies" / "dsmc" / "collisions.py").write_text("")
+    assert hashes == {compiler.source_hash()}
+    sources = [source for room in compiler.ROOMS for source in sorted((copy / room).glob("*.py"))]
+    for source in sources:
+        source.write_bytes(source.read_bytes() + b"\n")
+        hashes.add(compiler.source_hash())
+    (copy / "effects" / "another.py").write_text("")
+    hashes.add(compiler.source_hash())
+    assert len(hashes) == len(sources) + 2
+
+
+def test_every_compiled_function_lies_in_a_hashed_room():
+    """In the kernel's, or in that of the entry which calls it: no source escapes the hash."""
+    marks = ["@jit\n", "@compiled\n", "@unrolled\n", "@entry", "njit"]
+    outside = [one for one in PACKAGE.rglob("*.py") if one.parent.name not in compiler.ROOMS]
+    compiled = [one for one in outside if any(mark in one.read_text() for mark in marks)]
+    assert {"dsmc", "soft_spheres"} <= {source.parent.name for source in compiled}
+    for source in compiled:
+        beside = [other.read_text() for other in source.parent.glob("*.py")]
+        assert any("@entry(cache=True)" in text for text in beside), source
+
+
+def test_an_unwritable_cache_is_replaced_by_a_temporary_one(tmp_path, monkeypatch):
+    (tmp_path / "a file").write_text("")
+    monkeypatch.setenv("ROUGHGAS_CACHE_DIR", str(tmp_path / "a file" / "below"))
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    folder = compiler.kernel_folder()
+    assert folder.is_relative_to(tmp_path) and folder.name.endswith(compiler.source_hash())

@@ -169,13 +169,7 @@ MISMATCHES = {
         {},
         "effects = walls and shear: must not close the axis that is sheared along",
     ),
-    "a floor without gravity": (
-        (50, "open"),
-        SPIN | FLOOR,
-        0.0,
-        {},
-        "effects.floor needs gravity",
-    ),
+    "a floor without gravity": ((50, "open"), SPIN | FLOOR, 0.0, {}, "effects.floor needs gravity"),
     "gravity without a floor": (
         (50, "open"),
         SPIN | GRAVITY,
@@ -183,13 +177,7 @@ MISMATCHES = {
         {},
         "effects.gravity needs a floor",
     ),
-    "friction without spin": (
-        (50, 50),
-        FRICTION,
-        -1.0,
-        {},
-        "effects.friction needs spin",
-    ),
+    "friction without spin": ((50, 50), FRICTION, -1.0, {}, "effects.friction needs spin"),
     "heat for spins that are not there": (
         (50, 50),
         HEAT,

@@ -1,9 +1,10 @@
-"""Fits of power laws, on data of known law: exact ones to rounding, noisy ones as errors say."""
+"""Fits: power laws, and two peaks."""
 
 import numpy as np
 import pytest
 
 from roughgas.statistics.fits import limit_at_zero, power_law, signed_power_law
+from roughgas.statistics.steady_state import find_plateau, is_bimodal
 
 X = np.geomspace(1, 100, 6)
 T = np.array([0.05, 0.02, 0.01, 0.005])
@@ -55,3 +56,71 @@ def test_the_limit_of_a_parabola():
     found = [limit_at_zero(T, values + stderr * rng.standard_normal(4), stderr) for _ in range(400)]
     spread, error = np.std([value for value, _ in found]), found[0][1]
     assert spread == pytest.approx(error, rel=3.5 / np.sqrt(800))
+
+
+LOW, NOISE = 0.27, 0.012  # replicas of 160 disks, averaged over a hundred collisions per particle
+
+
+def found(ensembles):
+    return np.array([is_bimodal(values) for values in ensembles])
+
+
+@pytest.mark.parametrize("replicas", [10, 20, 40, 60, 160])
+def test_no_false_alarm_among_gaussian_ensembles(replicas):
+    """Whatever the scatter: up to 6 in 100 000 reach 5 sigma, so 4 of 3000 are 1 in 20 000."""
+    rng = np.random.default_rng(41)
+    for scatter in (NOISE, 0.25 * LOW):
+        ensembles = np.abs(LOW + scatter * rng.standard_normal((3000, replicas)))
+        assert found(ensembles).sum() <= 3
+
+
+@pytest.mark.parametrize("shape", ["gamma", "student"])
+def test_skewed_ensembles_are_no_mixtures_while_they_scatter_little(shape):
+    """Of those that reach 5 sigma hardly any are a quarter of R apart."""
+    rng = np.random.default_rng(42)
+    draw = {
+        "gamma": rng.gamma(4.0, 0.5, (3000, 40)) - 2,
+        "student": rng.standard_t(5, (3000, 40)) * np.sqrt(3 / 5),
+    }
+    assert found(LOW * (1 + 0.03 * draw[shape])).mean() <= 0.01
+
+
+@pytest.mark.parametrize("replicas", [10, 40, 160])
+@pytest.mark.parametrize("share", [0.0, 0.25, 0.5, 0.9])
+def test_replicas_that_have_run_away_are_found(replicas, share):
+    """One of them or many, most of them or few: all of 300 mixtures."""
+    rng = np.random.default_rng(43)
+    ensembles = LOW + NOISE * rng.standard_normal((300, replicas))
+    ensembles[:, : max(1, round(share * replicas))] = 1 - rng.exponential(1e-3, (300, 1))
+    assert found(rng.permuted(ensembles, axis=1)).all()
+
+
+def test_replicas_on_their_way_do_not_hide_the_others():
+    """mu = 0.15: 29 replicas of 40 from 0.24 to 0.29, five above 0.99, the rest in between."""
+    values = np.concatenate([np.linspace(0.24, 0.29, 29), np.linspace(0.35, 0.95, 6), 5 * [0.995]])
+    assert is_bimodal(values)
+
+
+@pytest.mark.parametrize("values", [[0.2, 1.0], [0.2, 0.2, 1.0], np.zeros(10), np.full(10, 0.3)])
+def test_few_or_equal_replicas_are_no_mixture(values, recwarn):
+    assert not is_bimodal(values) and not recwarn.list
+
+
+def test_rounding_and_what_lacks_to_one_are_no_mixture():
+    """All replicas have run away, some of them further: 1 - R scatters over decades."""
+    rng = np.random.default_rng(44)
+    lack = 10 ** rng.uniform(-12, -2, (300, 40))
+    assert not found(1 - lack).any()
+    assert not is_bimodal(0.3 + 1e-16 * rng.integers(-3, 4, 40))
+
+
+@pytest.mark.parametrize("runaways", [0, 1, 5])
+def test_the_plateau_of_a_mixture_does_not_count(runaways):
+    """They run away before the window begins, so that each replica rests where it is."""
+    rng = np.random.default_rng(45)
+    R = LOW + NOISE * rng.standard_normal((40, 200))
+    R[:runaways] = 0.999
+    plateau = find_plateau(np.arange(1.0, 201), R)
+    assert plateau.found == (runaways == 0)
+    assert (plateau.start, plateau.stop) == (1, 200)
+    assert plateau.mean == pytest.approx(R.mean())

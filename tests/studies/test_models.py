@@ -16,12 +16,7 @@ from roughgas.studies.figures import accuracy as plotting
 from roughgas.studies.models import METHODS, error_bar
 from roughgas.studies.runs.models import DSMC, MAP
 from roughgas.tasks import over, stream
-from roughgas.tasks.free_cooling import (
-    FreeCooling,
-    event_driven,
-    few_particles,
-    integrate,
-)
+from roughgas.tasks.free_cooling import FreeCooling, event_driven, few_particles, integrate
 
 tasks, run = study("models")
 EXPERIMENT = {

@@ -1,15 +1,18 @@
-"""The closed forms against each other, against the equations at high precision, and in limits."""
+"""Closed forms of R, cooling and frequencies, beside high precision and limits."""
 
 import itertools
 import math
+import pickle
 
 import mpmath
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from integration import integrate
 
 from roughgas import theory
+from roughgas.base import InputError
 
 DIGITS = 110  # the textbook root loses up to 50 of them
 BETAS = [-1 + 1e-12, -1 + 1e-9, -1 + 1e-6, -0.9999, -0.99, -0.95, -0.8, -0.5, 0, 0.5, 0.9]
@@ -129,3 +132,197 @@ def test_a_correlation_at_contacts_leaves_rotation_as_it_is(beta, q, c):
         change = theory.rotational_energy_change(1.0, c * math.sqrt(square), square, beta, q)
         size = theory.rotational_energy_change(1.0, 0.0, 0.0, beta, q)
         assert abs(change) <= 1e-9 * (size + abs(c) * math.sqrt(square) + square)
+
+
+def test_dilute_limits():
+    """nu = 2 n sigma sqrt(pi T) and 4 n sigma^2 sqrt(pi T), with the diameter sigma = 2."""
+    phi = 1e-9
+    n2, n3 = theory.number_density(phi, 2), theory.number_density(phi, 3)
+    nu2, nu3 = theory.collision_frequency(4.0, phi, 2), theory.collision_frequency(4.0, phi, 3)
+    assert nu2 == pytest.approx(2 * n2 * 2 * np.sqrt(4 * np.pi), rel=1e-8)
+    assert nu3 == pytest.approx(4 * n3 * 4 * np.sqrt(4 * np.pi), rel=1e-8)
+    free2, free3 = theory.mean_free_path(phi, 2), theory.mean_free_path(phi, 3)
+    assert free2 == pytest.approx(1 / (2 * np.sqrt(2) * n2 * 2), rel=1e-8)
+    assert free3 == pytest.approx(1 / (np.sqrt(2) * np.pi * n3 * 4), rel=1e-8)
+
+
+def test_contact_values_follow_the_virial_series():
+    """chi = 1 + b phi + ..., b = 25/16 for Henderson's disks (exact: 1.564) and 5/2 for spheres."""
+    assert theory.contact_value(0, 2) == theory.contact_value(0, 3) == 1
+    assert (theory.contact_value(1e-7, 2) - 1) / 1e-7 == pytest.approx(25 / 16, rel=1e-5)
+    assert (theory.contact_value(1e-7, 3) - 1) / 1e-7 == pytest.approx(5 / 2, rel=1e-5)
+
+
+def test_box_of_the_cooling_experiment():
+    """160 disks in a box of (100 a)^2."""
+    phi = 160 * np.pi / 100**2
+    assert theory.number_density(phi) == pytest.approx(0.016, rel=1e-14)
+    chi = (1 - 7 * phi / 16) / (1 - phi) ** 2
+    expected = 4 * 0.016 * chi * np.sqrt(np.pi)
+    assert theory.collision_frequency(1.0, phi) == pytest.approx(expected, rel=1e-14)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_frequency_grows_with_packing_and_root_of_temperature(dimension):
+    nu = theory.collision_frequency([[1.0], [4.0]], np.linspace(0, 0.7, 8), dimension)
+    assert nu.shape == (2, 8)
+    assert (nu[:, 0] == 0).all()
+    assert (np.diff(nu[0]) > 0).all()
+    assert nu[1] == pytest.approx(2 * nu[0], rel=1e-15)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_no_collisions_in_empty_space(dimension):
+    assert np.isinf(theory.mean_free_path(0, dimension))
+
+
+def test_a_box_is_as_full_as_its_particles_are_dense():
+    for box in ([10.0, 30.0], [8.0, 9.0, 10.0]):
+        phi = theory.packing_fraction(12, box)
+        assert theory.number_density(phi, len(box)) == pytest.approx(12 / np.prod(box))
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_haff_temperature_solves_the_rate_equations_in_time(dimension):
+    r, beta, T0, packing = np.array([0.9, 0.8, 0.99]), np.array([-0.5, 0.3, 1.0]), 1.7, 0.05
+    start = (np.full(3, T0), T0 * theory.stationary_theta(r, beta, dimension))
+    nu = theory.collision_frequency(T0, packing, dimension)
+    units = theory.haff_time(r, beta, nu, dimension)
+    times = np.arange(6.0)
+
+    def slope(temperatures):
+        T_tr, T_rot = temperatures
+        now = theory.collision_frequency(T_tr, packing, dimension)
+        changes = theory.temperature_changes(T_tr, T_rot, r, beta, dimension, frequency=now)
+        return units * np.array(changes)
+
+    T_tr, _ = integrate(slope, start, times, pieces=50)
+    haff = theory.haff_temperature(
+        units[:, None] * times, T0, r[:, None], beta[:, None], nu, dimension
+    )
+    assert haff == pytest.approx(T_tr, rel=1e-7)
+    assert haff[:, 1] == pytest.approx(T0 / 4, rel=1e-12)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_decay_rate_is_the_loss_at_the_stationary_state(dimension):
+    r, beta = np.array([[0], [0.5], [0.9], [1]]), np.linspace(-0.9, 1, 8)
+    theta = theory.stationary_theta(r, beta, dimension)
+    rate_tr, rate_rot = theory.temperature_changes(1, theta, r, beta, dimension)
+    decay = theory.decay_rate(r, beta, dimension)
+    assert decay == pytest.approx(-rate_tr, abs=1e-14)
+    assert decay == pytest.approx(-rate_rot / theta, abs=1e-14)
+
+
+def test_relaxed_gas_decays_at_the_decay_rate():
+    gas = theory.relax(0, 0.9, 0.5, np.array([60, 61]))
+    assert np.log(gas.T_tr[0] / gas.T_tr[1]) == pytest.approx(theory.decay_rate(0.9, 0.5))
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_smooth_gas(dimension):
+    """Haff (1983) for smooth particles: t_h = 2 D/[nu (1 - r^2)]."""
+    expected = 2 * dimension / (0.3 * (1 - 0.8**2))
+    assert theory.haff_time(0.8, -1, 0.3, dimension) == pytest.approx(expected, rel=1e-14)
+    assert theory.decay_rate(0.8, -1 + 1e-9, dimension) < 1e-8
+
+
+@pytest.mark.parametrize("beta", [-1, 1])
+def test_elastic_gas_does_not_cool(beta):
+    assert np.isinf(theory.haff_time(1, beta, 0.5))
+    assert (theory.haff_temperature([0, 1e6], 2, 1, beta, 0.5) == 2).all()
+
+
+TAKES_R_AND_BETA = [
+    theory.goldshtein_ratio,
+    theory.cooling_ratio,
+    theory.cooling_K,
+    theory.collision_rates,
+    theory.stationary_ratio,
+    theory.stationary_theta,
+    theory.relaxation_rate,
+    theory.collisions_to_relax,
+    theory.decay_rate,
+    lambda r, beta: theory.a_G(r, beta, 0.5),
+    lambda r, beta: theory.translational_energy_change(1, 1, 0, 1, r, beta, 0.5),
+    lambda r, beta: theory.temperature_changes(1, 1, r, beta),
+    lambda r, beta: theory.relax(0, r, beta, 1),
+    lambda r, beta: theory.haff_time(r, beta, 1),
+    lambda r, beta: theory.haff_temperature(1, 1, r, beta, 1),
+]
+TAKES_DIMENSION = [
+    theory.moment_of_inertia,
+    lambda dimension: theory.cooling_ratio(0.9, 0, dimension),
+    lambda dimension: theory.collision_rates(0.9, 0, dimension),
+    lambda dimension: theory.relax(0, 0.9, 0, 1, dimension),
+    lambda dimension: theory.collision_frequency(1, 0.1, dimension),
+    lambda dimension: theory.mean_spin_squared(1, dimension, 0.5),
+]
+TAKES_INERTIA = [
+    lambda q: theory.lun_ratio(0, q),
+    lambda q: theory.correlated_ratio(0, q, 0),
+    lambda q: theory.goldshtein_ratio(0.9, 0, q),
+    lambda q: theory.cooling_ratio(0.9, 0, 2, q),
+    lambda q: theory.stationary_theta(0.9, 0, 2, q),
+    lambda q: theory.rotational_energy_change(1, 0, 1, 0, q),
+]
+OTHERS = [
+    (lambda: theory.relax(-1, 0.9, 0, 1), "theta0 = -1.0: must be a number >= 0"),
+    (lambda: theory.relax(1, 0.9, 0, [1, -2]), "collisions = -2.0: must be a number >= 0"),
+    (lambda: theory.collisions_to_relax(0.9, 0, 1), "tolerance = 1.0: must lie in (0, 1)"),
+    (
+        lambda: theory.correlated_ratio(0, 0.5, 1.1),
+        "correlation at contacts = 1.1: must lie in [-1, 1]",
+    ),
+    (lambda: theory.haff_time(0.9, 0, np.inf), "frequency = inf: must be a number >= 0"),
+    (lambda: theory.collision_frequency(1, 0.8, 3), "packing = 0.8: must lie in [0, 0.7405]"),
+    (
+        lambda: theory.stationary_ratio(0.9, 0, spin_share=2.1),
+        "net spin share of the drive = 2.1: must lie in [-1, 2]",
+    ),
+]
+
+
+@pytest.mark.parametrize("bad", [1.5, -0.1, np.nan, np.inf, "0.5", None, True, 1j])
+@pytest.mark.parametrize("function", TAKES_R_AND_BETA)
+def test_restitution_outside_its_range(function, bad):
+    with pytest.raises(InputError) as caught:
+        function(bad, 0)
+    assert str(caught.value) == f"restitution r = {bad}: must lie in [0, 1]"
+
+
+@pytest.mark.parametrize("bad", [1.5, -1.1, np.nan])
+@pytest.mark.parametrize("function", TAKES_R_AND_BETA)
+def test_roughness_outside_its_range(function, bad):
+    with pytest.raises(InputError) as caught:
+        function(0.9, np.array([0, bad, 1]))
+    assert str(caught.value) == f"roughness beta = {bad}: must lie in [-1, 1]"
+
+
+@pytest.mark.parametrize("bad", [0, 1, 4, 2.5, np.nan, "2", None])
+@pytest.mark.parametrize("function", TAKES_DIMENSION)
+def test_dimension_other_than_2_and_3(function, bad):
+    with pytest.raises(InputError, match="must be 2 or 3"):
+        function(bad)
+
+
+@pytest.mark.parametrize("bad", [0.0, -0.5, np.nan, np.inf])
+@pytest.mark.parametrize("function", TAKES_INERTIA)
+def test_inertia_not_positive(function, bad):
+    with pytest.raises(InputError) as caught:
+        function(bad)
+    assert str(caught.value) == f"inertia q = {bad}: must be a positive number"
+
+
+@pytest.mark.parametrize(("call", "text"), OTHERS)
+def test_other_arguments(call, text):
+    with pytest.raises(InputError) as caught:
+        call()
+    assert str(caught.value) == text
+
+
+def test_error_is_a_value_error_that_survives_a_process_boundary():
+    error = pickle.loads(pickle.dumps(InputError("restitution r", 1.5, "lie in [0, 1]")))
+    assert isinstance(error, ValueError)
+    assert (error.key, error.value, error.legal) == ("restitution r", 1.5, "lie in [0, 1]")
+    assert str(error) == "restitution r = 1.5: must lie in [0, 1]"

@@ -1,4 +1,4 @@
-"""The workflow as it is really run: twice, in another order, and killed in between."""
+"""The workflow as it is really run: twice, in another order, killed, and a large sweep."""
 
 import json
 import os
@@ -7,6 +7,7 @@ import subprocess
 import sys
 import time
 import zipfile
+from pathlib import Path
 
 import pytest
 from bits import digest
@@ -99,3 +100,32 @@ def test_after_a_kill_the_same_command_ends_with_the_same_numbers(project, undis
         remade = killed.folder / path.relative_to(undisturbed.folder)
         assert same_numbers(path, remade), path
     assert "Nothing to be done" in killed.succeed("-j2", *TARGET)
+
+
+ROOT = Path(__file__).parent.parent.parent
+POINTS_sweeps = 10_000
+MEMORY = (
+    0.15 + 4 * POINTS_sweeps / 100_000
+)  # GiB: what Snakemake takes, and 4 for a hundred thousand
+
+PROGRAM = """
+import json
+from benchmarks.sweep import dry_run
+print(json.dumps(dry_run({points}, betas_per_job={betas})))
+"""
+
+
+def planned(points, betas):
+    """Jobs by rule, and peak memory, told by a small process: what a large one starts counts the
+    memory of that one, too."""
+    command = [sys.executable, "-c", PROGRAM.format(points=points, betas=betas)]
+    jobs, *_, memory = json.loads(subprocess.check_output(command, cwd=ROOT))
+    return jobs, memory
+
+
+def test_batches_of_betas():
+    jobs, memory = planned(POINTS_sweeps, betas=25)
+    blocks = {rule: count for rule, count in jobs.items() if "block" in rule}
+    assert jobs == blocks | {"compile_kernel": 10, "reduce": 1}
+    assert len(blocks) == 10 and set(blocks.values()) == {10}  # each r is a job of the block
+    assert memory < MEMORY

@@ -23,10 +23,7 @@ ILLEGAL = [
     ("results/paper/cooling/r0.9/beta-2/seed1.nc", "roughness beta = -2: must lie in [-1, 1]"),
     ("results/paper/cooling/r0.9/beta0/seedx.nc", "seed = x: must be a whole number in [0,"),
     ("results/paper/heating/r0.9/beta0/seed1.nc", "experiment = 'heating': must be one of cooling"),
-    (
-        "results/large/cooling/r0.9/beta0/seed1.nc",
-        "scale = 'large': must be one of paper, small",
-    ),
+    ("results/large/cooling/r0.9/beta0/seed1.nc", "scale = 'large': must be one of paper, small"),
     ("figures/large/fig1a.pdf", "scale = 'large': must be one of paper, small"),
     (
         "figures/fig9.png",

@@ -12,14 +12,7 @@ from roughgas.base import InputError
 from roughgas.data.point import read_point
 from roughgas.data.reduced import read_reduced
 from roughgas.results.reduce import reduce_points
-from roughgas.show.explore import (
-    GRID,
-    LONGEST,
-    NUMBERS,
-    PROGRAM,
-    experiment,
-    write_page,
-)
+from roughgas.show.explore import GRID, LONGEST, NUMBERS, PROGRAM, experiment, write_page
 from roughgas.show.pages import policy, text_of
 from roughgas.theory.prediction import predicted_ratio
 from show.page.conftest import SAMPLES, write

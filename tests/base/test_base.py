@@ -1,11 +1,25 @@
-"""Which code a result depends on."""
+"""Sources, errors, formats and legal values."""
 
+import json
+import math
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 
-from roughgas.base import files
+from roughgas.base import InputError, Interval, files, not_one_of
+from roughgas.base.formatting import as_json, columns, markdown
+
+
+@pytest.mark.parametrize(
+    ("name", "guess"),
+    [("'coolng'", "cooling"), ("'schedul'", "schedule"), ("fig9", None), (7, None)],
+)
+def test_a_guess_is_made_where_a_name_is_close(name, guess):
+    text = str(not_one_of("key", name, ["cooling", "schedule", "fig8"]))
+    assert text.startswith(f"key = {name}: must be one of cooling, schedule, fig8")
+    assert text.endswith(f"; did you mean {guess}?" if guess else "fig8")
 
 
 @pytest.fixture
@@ -59,3 +73,46 @@ def test_every_module_that_a_point_imports_counts():
     names = {name.removeprefix("roughgas.") for name in imported}
     assert len(names) > 10
     assert names <= files.closure("simulation.point", "data.point", "simulation.clustering")
+
+
+def test_columns_are_aligned():
+    rows = [["r", "R"], ["0.99", "1"], ["1", "0.25"]]
+    assert columns(rows) == "r     R\n0.99  1\n1     0.25"
+    assert columns(rows, numbers=True) == "r        R\n0.99     1\n1     0.25"
+
+
+def test_markdown_has_a_rule_below_its_head():
+    head, rows = ["scene", "N"], [["bed", 160], ["shear", 10240]]
+    plain = "| scene | N |\n| --- | ---: |\n| bed | 160 |\n| shear | 10240 |\n"
+    assert markdown(head, rows, "<>") == plain
+    padded = "| scene |     N |\n| ----- | ----: |\n| bed   |   160 |\n| shear | 10240 |\n"
+    assert markdown(head, rows, "<>", padded=True) == padded
+
+
+def test_json_is_strict():
+    answer = {
+        "a": np.float64(math.inf),
+        "b": [math.nan, np.int8(1)],
+        3: np.array([[True]]),
+        "c": "β",
+    }
+    assert json.loads(as_json(answer)) == {"a": None, "b": [None, 1], "3": [[True]], "c": "β"}
+
+
+@pytest.mark.parametrize(
+    "interval, inside, outside",
+    [
+        ("[0, 1]", (0, 0.5, 1), (-1e-9, 1.5, math.nan, math.inf)),
+        ("(0, 1]", (1e-9, 1), (0, -0.0)),
+        ("(0, inf)", (1e-9, 1e300), (0, math.inf)),
+        ("[0, inf]", (0, math.inf), (-1, math.nan)),
+    ],
+)
+def test_interval(interval, inside, outside):
+    checked = Interval(interval)
+    assert [checked.check("key", value) for value in inside] == list(inside)
+    for value in outside:
+        with pytest.raises(InputError) as refused:
+            checked.check("key", value)
+        assert str(refused.value).endswith(f"must lie in {interval}")
+    assert checked.holds(np.array([*inside, *outside])).sum() == len(inside)

@@ -1,0 +1,233 @@
+"""Averages over contacts, the contact-time model, and contacts of a sheared gas."""
+
+import numpy as np
+import pytest
+from brute_force import begin, run, scene_of, settings, snapshot
+from brute_force.beside import brute_force_from
+from schedules import STEADY
+
+from roughgas import theory
+from roughgas.base import InputError
+from roughgas.kernel.memory import new_state
+from roughgas.kernel.record import Sampling, columns, record
+from roughgas.kernel.state import COLLISIONS, EXPONENT, TOUCHED
+from roughgas.scene import build
+from roughgas.simulation.books import books
+from roughgas.simulation.contacts import SUMS, contact_averages
+from roughgas.simulation.point import run_point
+
+ENDS = ("", "_stderr", "_dof", "_ci95")
+LOOKED_AT = ("bed", "sheared", "shaken", "heated", "spheres")
+
+TWO = [{"fraction": 0.5}, {"fraction": 0.5, "radius": 1.5, "inertia": 0.3}]
+
+
+def sums(rows):
+    """The last running sums of v_t^2, v_r^2 and v_t.v_r."""
+    return np.array([rows[name][-1] for name in SUMS])
+
+
+@pytest.mark.parametrize(
+    ("kernel", "species"), [*((kernel, {}) for kernel in LOOKED_AT), ("heated", {"species": TWO})]
+)
+def test_each_contact_counts_as_brute_force_has_it(kernel, species):
+    """Collision by collision, to roundings; each piece starts where the kernel stands."""
+    experiment = settings(kernel, 40) | species
+    scene, world = scene_of(experiment, 0.9, 0.3)
+    _, state = begin(experiment, 0.9, 0.3, 4)
+    run(state, scene, 1, collisions=200)
+    for _ in range(10):
+        before = sums(run(state, scene, 1, collisions=0))
+        brute = brute_force_from(world, snapshot(state, scene))
+        for _ in range(5):
+            brute.run(1)
+            found = sums(run(state, scene, 1, collisions=1)) - before
+            rounding = 1e-11 * (brute.seen[:2].max() + before.max())
+            assert found == pytest.approx(brute.seen, abs=rounding)
+
+
+def test_a_gas_that_cools_by_many_powers_of_two():
+    """At each instant the sums are the account of contacts, in whichever unit velocities are."""
+    scene, state = begin(settings("spheres", 40), 0.8, 0.2, 6)
+    q, before = scene.effects.spin.inertia, np.zeros(2)
+    for _ in range(100):
+        A, B, C = sums(run(state, scene, 1, collisions=40, refresh=1))
+        booked = books(state, scene).ledger[-1, 1]
+        assert theory.rotational_energy_change(A, C, B, 0.2, q) == pytest.approx(booked, rel=1e-9)
+        assert A >= before[0] and B >= before[1]
+        before = A, B
+    assert state.counts[EXPONENT] < -8
+    assert np.all(state.sums.contact_averages[:2, 0] == [0.0, A])
+
+
+@pytest.mark.slow  # two kernels more; tests/test_bits.py has bits from before there was the effect
+@pytest.mark.parametrize("kernel", ["bed", "heated"])
+def test_looking_changes_no_bit(kernel):
+    seen, plain = settings(kernel, 40), settings(kernel, 40)
+    del plain["effects"]["contact_averages"]
+    points = []
+    for experiment in (seen, plain):
+        settled = experiment | {"schedule": STEADY}
+        points.append(run_point(build(settled, 0.9, 0.2), settled, 7).variables)
+    with_it, without = points
+    added = {f"{name}{end}" for name in ("R_collisional", "contact_correlation") for end in ENDS}
+    assert set(with_it) - set(without) == added and set(without) <= set(with_it)
+    for name in set(without) - {"kernel_seconds"}:
+        assert np.array_equal(with_it[name], without[name]), name
+
+
+def test_without_spin_it_is_refused():
+    with pytest.raises(InputError, match="contact_averages needs spin"):
+        build(settings("smooth") | {"effects": {"contact_averages": {}}}, 0.9, -1.0)
+
+
+def test_averages_of_made_up_contacts():
+    """Two periods of two samples after one that does not count; an odd sample is left out."""
+    steps = {"v_t^2": [9, 9, 2, 2, 3, 5, 7], "v_r^2": [9, 9, 1, 2, 3, 2, 7]}
+    steps["v_t.v_r"] = [9, 9, -1, 0, 1, -2, 7]
+    rows = {name: np.cumsum(values, dtype=float) for name, values in steps.items()}
+    found = contact_averages(rows, 2, 2, 0.5)
+    assert found["R_collisional"] == pytest.approx(4.0 / (12.0 + 4.0), rel=1e-14)
+    assert found["contact_correlation"] == pytest.approx(-2.0 / np.sqrt(12.0 * 8.0), rel=1e-14)
+    assert contact_averages({}, 2, 2, 0.5) == {}
+
+
+def test_a_gas_without_spin_energy_has_no_average():
+    rows = {"v_t^2": np.arange(9.0), "v_r^2": np.zeros(9), "v_t.v_r": np.zeros(9)}
+    found = contact_averages(rows, 1, 1, 0.5)
+    assert all(np.isnan(value) for name, value in found.items() if not name.endswith("_dof"))
+
+
+def test_errors_are_those_of_independent_repetitions():
+    """The scatter of 400 made-up series is within 10 % (2.8 sigma) of the errors they state."""
+    rng, found = np.random.default_rng(8), []
+    for _ in range(400):
+        v_t = rng.gamma(2.0, 1.0, 500)
+        v_r = 0.5 * v_t + rng.gamma(1.0, 0.5, 500)
+        both = -0.2 * v_t + 0.1 * rng.standard_normal(500)
+        steps = zip(SUMS, (v_t, v_r, both), strict=True)
+        found.append(contact_averages({n: np.cumsum(x) for n, x in steps}, 0, 1, 0.5))
+    for name in ("R_collisional", "contact_correlation"):
+        scatter = np.std([one[name] for one in found], ddof=1)
+        stated = np.sqrt(np.mean([one[f"{name}_stderr"] ** 2 for one in found]))
+        assert stated == pytest.approx(scatter, rel=0.1), name
+
+
+BED = settings(
+    "walled", 40, [12.5, "open"], walls={"roughness": -1.0}, contact_time={"duration": 1e-5}
+)
+
+
+def test_it_keeps_a_bed_from_collapsing():
+    """r = 0.6, beta = 0: the bed of the issue at a quarter of its size, 60 T."""
+    scene, state = begin(BED, 0.6, 0.0, 1)
+    run(state, scene, 240, interval=0.25)
+    touched, collisions = state.counts[TOUCHED], state.counts[COLLISIONS]
+    assert 0 < touched < 0.9 * collisions
+    assert collisions < 1e7
+
+
+def in_a_row(spacing, number=3):
+    """Spheres on a line at rest; the first comes flying at speed 1."""
+    position = np.full((number, 3), 6.0)
+    position[:, 0] = 2.0 + (2.0 + spacing) * np.arange(number)
+    velocity = np.zeros((number, 3))
+    velocity[0, 0] = 1.0
+    return position, velocity, np.zeros((number, 3))
+
+
+@pytest.mark.parametrize(("duration", "second"), [(0.4, 0.5), (0.6, 1.0)])
+def test_a_contact_soon_after_another_is_elastic(duration, second):
+    """The middle sphere is hit at speed 1 and moves on at (1 + r)/2 = 0.75 over a gap of 0.375.
+
+    0.5 T later it hits the third, which is elastic if t_c is longer than that.
+    """
+    experiment = settings("spheres", 3, [40, 12, 12], contact_time={"duration": duration})
+    scene, _ = begin(experiment, 0.5, 0.0)
+    position, velocity, spin = in_a_row(0.375)
+    state = new_state(scene, position, velocity, spin)
+    run(state, scene, 2, collisions=1)
+    restitution = 2.0 * state.trajectory[2, 3] / 0.75 - 1.0
+    assert restitution == pytest.approx(second, rel=1e-12)
+    assert state.counts[TOUCHED] == (second == 1.0)
+
+
+def test_roughness_is_left_as_it_is():
+    """Two oblique contacts of a pair in quick succession, by beta = 0.4 both."""
+    experiment = settings("spheres", 3, [40, 12, 12], contact_time={"duration": 10.0})
+    scene, _ = begin(experiment, 0.5, 0.4)
+    position, velocity, spin = in_a_row(0.375)
+    spin[2] = [0.0, 0.0, 1.0]
+    state = new_state(scene, position, velocity, spin)
+    run(state, scene, 2, collisions=1)
+    assert state.counts[TOUCHED] == 1
+    # g_t = -(w x n): turned by (1 + beta)/(2 + 2q) n x g_t, q = 2/5
+    assert state.spin[2, 2] == pytest.approx(1.0 - 1.4 / 2.8, rel=1e-12)
+
+
+def test_t_c_is_a_time_however_slow_the_gas_has_become():
+    """A cooling gas is refreshed: its velocities are doubled, its clock is not the user's.
+
+    The contact that follows the previous one by 0.5 T is beyond t_c = 0.4 T and within 0.6 T,
+    whatever power of two the velocities have been divided by. Here the gas is 2^-20 as fast, after
+    which the contacts are 2^20 T/2 apart: t_c touches none of them.
+    """
+    slow = 2.0**-20
+    for duration, touched in ((0.4, 0), (0.6, 0), (0.4 / slow, 0), (0.6 / slow, 1)):
+        experiment = settings("spheres", 4, [40, 12, 12], contact_time={"duration": duration})
+        scene, _ = begin(experiment, 0.5, 0.0)
+        position, velocity, spin = in_a_row(0.375, 4)
+        # the fourth, far off, keeps the total momentum zero
+        position[3], velocity[3] = [30.0, 2.0, 2.0], -velocity[0]
+        state = new_state(scene, position, slow * velocity, spin)
+        run(state, scene, 1, interval=2.0**-10, refresh=1)
+        rows = np.empty((2, len(columns(scene))))
+        record(state, scene, Sampling(np.inf, 1, 0), rows)
+        assert state.counts[TOUCHED] == touched, duration
+
+
+GAS = settings("sheared", 40, [25, 25])
+U, L = 2.0, 25.0
+
+
+def test_the_mean_flow_is_linear():
+    """Velocities in ten layers over 1000 T: each within 5 standard errors of the straight line.
+
+    The layers are averages over 2000 samples 0.5 T apart; errors are from 20 blocks. Chance of a
+    failure for any one seed: about 1e-4 (10 layers, t distribution of 19 degrees of freedom).
+    """
+    scene, state = begin(GAS, 0.9, 0.2, 1)
+    run(state, scene, 1, interval=200.0)
+    profile = np.empty((2000, 10))
+    for k in range(len(profile)):
+        run(state, scene, 1, interval=0.5)
+        shot = snapshot(state, scene)
+        crossings = np.floor(shot.position[:, 1] / L)
+        y, v = shot.position[:, 1] - crossings * L, shot.velocity[:, 0] - crossings * U
+        layer = np.minimum((10 * y / L).astype(int), 9)
+        excess = v - U / L * (y - L / 2)
+        number = np.bincount(layer, minlength=10)
+        total = np.bincount(layer, excess, minlength=10)
+        profile[k] = np.divide(total, number, out=np.zeros(10), where=number > 0)
+    blocks = profile.reshape(20, 100, 10).mean(axis=1)
+    error = blocks.std(axis=0, ddof=1) / np.sqrt(20)
+    assert np.all(np.abs(blocks.mean(axis=0)) < 5.0 * error)
+    assert np.all(error < 0.1 * U)
+
+
+def test_shear_heats_by_the_flow_and_reaches_a_steady_state():
+    """The mean of m <v^2> from 500 T to 1500 T over seeds 1 to 8, to 7 %.
+
+    128 other seeds found .20606, and a scatter of .0104 between them. That makes four standard
+    errors .015, which chance alone surpasses once in 16 000; both parts of a run are as steady.
+    """
+    energy = np.empty((8, 2))
+    for seed in range(8):
+        scene, state = begin(GAS, 0.9, 0.2, seed + 1)
+        row = run(state, scene, 3000, interval=0.5)
+        rate = U / L
+        every = (row["vv_x"] + row["vv_y"] - 2 * rate * row["yv_x"] + rate**2 * row["yy"]) / 40
+        energy[seed] = every[1000:].reshape(2, 1000).mean(axis=1)
+    assert energy.mean() == pytest.approx(0.20606, abs=4 * 0.0104 * np.sqrt(1 / 8 + 1 / 128))
+    changed = energy[:, 1] - energy[:, 0]
+    assert abs(changed.mean()) < 4 * 2 * 0.0104 / np.sqrt(8)  # halves scatter sqrt(2) more

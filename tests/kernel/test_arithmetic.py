@@ -1,0 +1,335 @@
+"""Random numbers, angles, registers, single precision, and code that is unrolled."""
+
+import math
+
+import mpmath
+import numpy as np
+import pytest
+from brute_force import largest_overlap, run, scene_of, settings
+from brute_force.kicks import SplitMix
+from compiled import from_python
+
+from roughgas.kernel import mathematics, vectors
+from roughgas.kernel.jit import entry, unrolled
+from roughgas.kernel.mathematics import (
+    COSINE,
+    REGISTER,
+    REMAINDER,
+    SINE,
+    TURN,
+    append,
+    bits,
+    choose,
+    gather,
+    index,
+    lanes_of,
+    least,
+    load,
+    multiply_add,
+    order,
+    sine_and_cosine,
+    store,
+    trailing_zeros,
+)
+from roughgas.scene.initial import initial_state
+
+uniform = from_python(mathematics.uniform)
+random_vector = from_python(mathematics.random_vector)
+
+
+def word(seed):
+    return np.array([seed], np.uint64)
+
+
+def test_the_plain_generator_is_splitmix64():
+    """The first numbers of the reference implementation (S. Vigna, splitmix64.c) for one seed."""
+    plain = SplitMix(1234567)
+    assert [plain.next() for _ in range(5)] == [
+        6457827717110365317,
+        3203168211198807973,
+        9817491932198370423,
+        4593380528125082431,
+        16408922859458223821,
+    ]
+
+
+@pytest.mark.parametrize("seed", [0, 1234567, 2**63, 2**64 - 1])
+def test_numbers_are_those_of_plain_integers(seed):
+    state, plain = word(seed), SplitMix(seed)
+    for _ in range(1000):
+        assert uniform(state) == plain.uniform()
+        assert int(state[0]) == plain.word
+
+
+@pytest.mark.parametrize("like", [(0.0,), (0.0, 0.0), (0.0, 0.0, 0.0)])
+def test_vectors_take_their_components_in_order(like):
+    state, plain = word(7), SplitMix(7)
+    for size in (0.0, 1.0, 1e-300, 1e10):
+        expected = tuple(size * (2.0 * plain.uniform() - 1.0) for _ in like)
+        assert random_vector(state, like, size) == expected
+
+
+def test_numbers_are_uniform_and_independent():
+    """Mean, variance and the next one's correlation within 4 sigma (chance of failure 2e-4)."""
+    state, count = word(11), 100_000
+    x = np.array([uniform(state) for _ in range(count)])
+    assert x.min() >= 0.0 and x.max() < 1.0
+    assert abs(x.mean() - 1 / 2) < 4.0 * np.sqrt(1 / 12 / count)
+    assert abs(x.var() - 1 / 12) < 4.0 * np.sqrt(1 / 180 / count)
+    assert abs(np.corrcoef(x[1:], x[:-1])[0, 1]) < 4.0 / np.sqrt(count)
+
+
+def test_the_largest_number_names_no_particle_that_is_not_there():
+    """A partner is drawn as int(uniform * others): the product must not be rounded up to `others`.
+
+    2^53 - 1 times 2^-53 is the largest number that there is.
+    """
+    largest = 1.0 - 2.0**-53
+    for others in (*range(1, 5000), *(2**k + d for k in range(13, 31) for d in (-1, 0, 1))):
+        assert int(largest * others) == others - 1
+
+
+def angles():
+    """From within a turn and far beyond, quarters of quarters, and their neighbours."""
+    rng = np.random.default_rng(0)
+    edges = np.arange(-32, 33) / 16.0
+    return np.concatenate(
+        [
+            rng.uniform(-1.0, 1.0, 3000),
+            rng.uniform(-1e6, 1e6, 500),
+            10.0 ** rng.uniform(-300, 0, 300),
+            edges,
+            np.nextafter(edges, 9.0),
+            np.nextafter(edges, -9.0),
+        ]
+    )
+
+
+def test_within_a_rounding_and_a_half_of_forty_digits():
+    with mpmath.workdps(40):
+        for x in angles():
+            sine, cosine = sine_and_cosine(float(x))
+            assert abs(sine - mpmath.sinpi(2 * mpmath.mpf(x))) < 1.5e-16
+            assert abs(cosine - mpmath.cospi(2 * mpmath.mpf(x))) < 1.5e-16
+            if abs(x) < 0.125:
+                assert math.isclose(sine, mpmath.sinpi(2 * mpmath.mpf(x)), rel_tol=2.5e-16)
+
+
+def test_coefficients_are_those_of_the_series_rounded_once():
+    with mpmath.workdps(40):
+        turn = 2 * mpmath.pi
+        assert TURN == float(turn) and REMAINDER == float(turn - float(turn))
+        for k in range(1, 9):
+            even = (-1) ** k * turn ** (2 * k) / math.factorial(2 * k)
+            assert COSINE[k - 1] == float(even)
+            assert SINE[k - 1] == float(even * turn / (2 * k + 1))
+
+
+def test_symmetries():
+    for x in map(float, angles()):
+        sine, cosine = sine_and_cosine(x)
+        assert abs(sine * sine + cosine * cosine - 1.0) < 4e-16
+        quarter, mirrored = sine_and_cosine(x + 0.25), sine_and_cosine(-x)
+        # midway between two quarters either polynomial serves
+        if abs(8.0 * x % 2.0 - 1.0) > 1e-9:
+            assert mirrored == (-sine, cosine)
+        assert max(abs(mirrored[0] + sine), abs(mirrored[1] - cosine)) < 2e-16
+        assert abs(quarter[0] - cosine) < 4e-16 + 7.0 * math.ulp(x + 0.25)
+        assert abs(quarter[1] + sine) < 4e-16 + 7.0 * math.ulp(x + 0.25)
+
+
+def test_quarters_are_exact():
+    for k in range(-8, 9):
+        expected = [(0.0, 1.0), (1.0, 0.0), (0.0, -1.0), (-1.0, 0.0)][k % 4]
+        assert sine_and_cosine(0.25 * k) == expected
+
+
+def test_compiled_code_gives_the_same_bits():
+    compiled = from_python(sine_and_cosine)
+    for x in map(float, angles()):
+        assert compiled(x) == sine_and_cosine(x)
+
+
+EIGHT = 8
+SPECIAL = np.array([0.0, -0.0, 1.5, -2.0, np.inf, -np.inf, np.nan, 1e-300])
+OTHER = np.array([1.0, 0.0, -1.5, np.nan, np.inf, 3.0, 2.0, 1e300])
+
+
+@entry
+def _calculate(a, b, out):
+    x, y = load(a, 0, 0, EIGHT), load(b, 0, 0, EIGHT)
+    store(out, 0, 0, x + y)
+    store(out, 1, 0, 2.0 - x)
+    store(out, 2, 0, x * y)
+    store(out, 3, 0, x / 3.0)
+    store(out, 4, 0, -x)
+    store(out, 5, 0, abs(x))
+    store(out, 6, 0, math.sqrt(abs(y)))
+    store(out, 7, 0, multiply_add(x, 2.0, y))
+    store(out, 8, 0, max(x, y))
+    store(out, 9, 0, min(x, 0.0))
+    store(out, 10, 0, choose((x <= y) & (x > -2.0), x, 7.0))
+    return bits((x < y) | (y == 3.0)), bits(order(EIGHT) >= 3)
+
+
+@entry
+def _greater_and_less(a, b, out):
+    for k in range(EIGHT):
+        out[8, k] = max(a[0, k], b[0, k])
+        out[9, k] = min(a[0, k], 0.0)
+
+
+def test_arithmetic_of_lanes_is_that_of_numbers():
+    out, expected = np.empty((11, EIGHT)), np.empty((11, EIGHT))
+    a, b = SPECIAL[None], OTHER[None]
+    found, last = _calculate(a, b, out)
+    x, y = SPECIAL, OTHER
+    with np.errstate(all="ignore"):
+        expected[:8] = x + y, 2 - x, x * y, x / 3, -x, abs(x), np.sqrt(abs(y)), x * 2 + y
+        expected[10] = np.where((x <= y) & (x > -2.0), x, 7.0)
+        _greater_and_less(a, b, expected)
+        np.testing.assert_array_equal(out, expected)
+        np.testing.assert_array_equal(np.signbit(out), np.signbit(expected))
+        assert found == np.packbits((x < y) | (y == 3.0), bitorder="little")[0]
+    assert last == 0b11111000
+
+
+@entry
+def _least_and_gather(a, rows, places, out):
+    store(out, 0, 0, gather(rows, 1, places, 0, EIGHT))
+    return least(load(a, 0, 0, EIGHT)), trailing_zeros(np.uint64(40)), index(3)
+
+
+@pytest.mark.parametrize("kind", [np.float64, np.float32])
+def test_least_of_lanes_and_lanes_from_rows(kind):
+    rng = np.random.default_rng(1)
+    a, rows = rng.normal(size=(1, EIGHT)), rng.normal(size=(20, 3)).astype(kind)
+    places, out = rng.integers(20, size=EIGHT).astype(np.int32), np.empty((1, EIGHT))
+    assert _least_and_gather(a, rows, places, out) == (a.min(), 3, 3)
+    np.testing.assert_array_equal(out[0], rows[places, 1])
+
+
+@entry
+def _append_those_below(numbers, limit, places):
+    taken = 0
+    for first in range(0, numbers.shape[1], lanes_of(numbers)):
+        below = load(numbers, 0, first, REGISTER) < limit
+        taken = append(places, taken, below, first)
+    return taken
+
+
+def test_lanes_that_hold_are_listed_in_order():
+    """Every pattern of eight comes up, in whatever registers the machine has."""
+    patterns = (np.arange(256)[:, None] >> np.arange(8)) & 1 == 1
+    numbers = np.where(patterns, 0, 2).astype(np.float32).reshape(1, -1)
+    places = np.full(numbers.size + 16, -1, np.int32)
+    taken = _append_those_below(numbers, np.float32(1.0), places)
+    np.testing.assert_array_equal(places[:taken], np.flatnonzero(numbers[0] < 1.0))
+
+
+@entry
+def _number_of_lanes(double, single):
+    return lanes_of(double), lanes_of(single)
+
+
+def test_a_register_has_half_as_many_doubles():
+    doubles, singles = _number_of_lanes(np.zeros(1), np.zeros(1, np.float32))
+    assert singles == 2 * doubles and doubles in (4, 8)
+
+
+SINGLE = 2.0**-24  # half the spacing of single precision just above 1
+
+
+@pytest.mark.parametrize(
+    "number", [160, pytest.param(1000, marks=pytest.mark.slow)], ids=["swept", "in cells"]
+)
+def test_an_elastic_gas(number):
+    """As in double precision: the frequency of collisions within 4 %, some 4 standard errors.
+
+    Positions are off by roundings of the box's side, and so may be the places of contact; energy
+    makes a random walk of such roundings.
+    """
+    side = np.sqrt(10.0 * np.pi * number)
+    experiment = settings("gas", number, [side, side])
+    scene, world = scene_of(experiment, 1.0, 1.0)
+    elapsed = []
+    for precision in (np.float32, np.float64):
+        state = initial_state(scene, experiment, np.random.default_rng(1), precision)
+        assert state.trajectory.dtype == state.spin.dtype == precision
+        assert (state.cells is None) == (number == 160)
+        rows = run(state, scene, 10, collisions=10 * number)
+        energy = sum(rows[name] for name in ("vv_x", "vv_y")) + 0.5 * rows["ww"]
+        rounding = SINGLE if precision is np.float32 else 2.0**-53
+        assert np.ptp(energy) / energy[0] < 100.0 * rounding
+        assert largest_overlap(state, scene, world) < 8.0 * side * rounding
+        elapsed.append(rows["time"][-1] - rows["time"][0])
+    assert elapsed[0] == pytest.approx(elapsed[1], rel=0.04)
+    assert elapsed[0] != elapsed[1]
+
+
+@unrolled
+def pairs(box, x):
+    """Nested loops, and parts that are left out."""
+    total = 0.0
+    for k in range(len(x)):
+        if box[k] is not None:
+            for j in range(k + 1, len(x)):
+                total += (k - 3 * j) * x[k] * x[j]
+    return total, tuple(2.0 * x[k] for k in range(len(x)) if box[k] is None)
+
+
+@unrolled
+def undecidable(x, y):
+    if x > y:
+        return x
+    else:
+        return y
+
+
+@unrolled
+def nothing(box, x):
+    for k in range(len(box)):
+        if box[k] is not None:
+            x[k] += box[k]
+
+
+@pytest.mark.parametrize("box", [(None, 5.0), (5.0, None, 7.0), (5.0, 6.0, 7.0), (None, None)])
+def test_what_is_written_out_is_what_plain_python_does(box):
+    x = (1.5, -2.0, 0.25)[: len(box)]
+    assert from_python(pairs)(box, x) == pairs(box, x)
+    ends = np.zeros((2, 3))
+    for function, end in zip((nothing, from_python(nothing)), ends, strict=True):
+        function(box, end)
+    assert np.array_equal(*ends)
+
+
+def test_a_branch_that_types_do_not_decide_is_refused():
+    with pytest.raises(Exception, match="name 'x' is not defined"):
+        from_python(undecidable)(1.0, 2.0)
+    assert undecidable(1.0, 2.0) == 2.0
+
+
+VECTORS = {
+    "dot": "ab",
+    "subtract": "ab",
+    "scale": "as",
+    "add_scaled": "abs",
+    "cross_squared": "ab",
+    "cross_to_spin": "ab",
+    "along_first": "as",
+    "along_last": "as",
+}
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_vectors_are_compiled_to_the_same_bits(dimension):
+    a, b = map(tuple, np.random.default_rng(1).standard_normal((2, dimension)).tolist())
+    values = {"a": a, "b": b, "s": 0.7}
+    for name, arguments in VECTORS.items():
+        function = getattr(vectors, name)
+        given = [values[one] for one in arguments]
+        assert from_python(function)(*given) == function(*given), name
+    array = np.arange(12.0).reshape(2, 6)
+    for function in (vectors.read, vectors.column):
+        given = array, 1, 0, (0.0, 0.0)
+        assert from_python(function)(*given) == function(*given)

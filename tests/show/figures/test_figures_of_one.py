@@ -1,0 +1,159 @@
+"""Figures of one dataset: over time, over any sweep."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+from matplotlib.colors import to_hex
+from matplotlib.image import imread
+from synthetic import reduced
+from tests.show.figures.legibility import faults
+
+from roughgas.base import InputError
+from roughgas.cli import main
+from roughgas.data.point import read_point
+from roughgas.show.figures import sweep, timeline
+from roughgas.theory.prediction import ratio_of_point
+from show.page.conftest import write
+
+
+@pytest.fixture(scope="module")
+def points(tmp_path_factory):
+    """A cooling gas, one without spin, and a driven one with an average over collisions."""
+    folder = tmp_path_factory.mktemp("points")
+    cooling = read_point(write(folder, "cooling", "0.9", "0.5", cooling=True))
+    sheared = read_point(write(folder, "sheared", "0.9", "0.5"))
+    smooth = cooling.drop_vars([name for name in cooling if name[:2] == "R_" or name == "R"])
+    collided = sheared.assign(R_collisional=0.34, R_collisional_stderr=0.002)
+    return {"cooling": cooling, "sheared": collided, "smooth": smooth.drop_vars("E_rot_series")}
+
+
+def drawn(axes):
+    return {line.get_label().partition(":")[0]: line for line in axes.get_lines()}
+
+
+@pytest.mark.parametrize("name", ["cooling", "sheared", "smooth"])
+def test_what_is_drawn_is_the_point(points, name):
+    point = points[name]
+    theory = ratio_of_point(point) if "R" in point else math.nan
+    assert faults(lambda: timeline.draw(point, theory)) == []
+    *ratio, energies = timeline.draw(point, theory).axes
+    cools = "plateau_end" in point
+    clock = point.collisions_per_particle if cools else point.time
+    assert energies.get_yscale() == ("log" if cools else "linear")
+    assert energies.get_xlabel() == ("collisions per particle" if cools else "time / $T$")
+    end = float(point.plateau_end) if cools else float(clock[-1])
+    (shaded,) = [one for one in energies.patches if to_hex(one.get_facecolor()) == timeline.WINDOW]
+    span = shaded.get_x(), shaded.get_x() + shaded.get_width()
+    assert span == pytest.approx((float(point.measured_from), end))
+    (E_trans,) = [one for one in energies.get_lines() if "trans" in one.get_label()]
+    block = math.ceil(clock.size / timeline.MOST)
+    assert block == 2
+    assert E_trans.get_ydata()[0] == pytest.approx(point.E_trans_series.values[:block].mean())
+    assert len(ratio) == ("R" in point)
+    for axes in ratio:
+        lines = drawn(axes)
+        assert set(lines["mean of $R(t)$"].get_ydata()) == {float(point.R)}
+        assert ("over collisions" in lines) == (name == "sheared")
+        band = axes.collections[-1].get_paths()[0].get_extents()
+        R, half = float(point.R), float(point.R_ci95)
+        assert (band.y0, band.y1) == pytest.approx((R - half, R + half))
+        (found,) = [line for label, line in lines.items() if "theory" in label or "Lun" in label]
+        assert np.unique(found.get_ydata()) == [theory]
+
+
+def test_a_verdict_without_evidence_is_said(points):
+    unknown = points["cooling"].assign(R_ci95_trusted=-1)
+    (band,) = timeline.draw(unknown, math.nan).axes[0].collections
+    assert band.get_label() == "95 % interval, whether to trust it is not known"
+
+
+def test_the_command_draws_points_too(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    write(tmp_path, "sheared", "0.9", "0.5").rename("p.nc")
+    assert main(["plot", "p.nc", "-o", "p.svg"]) == 0
+    assert main(["plot", "p.nc", "--beta", "0.5", "-o", "q.svg"]) == 2
+    said = "dataset = p.nc: must be a reduced one for --over, --r and --beta"
+    assert said in capsys.readouterr().err
+
+
+WAVES = ("reversed_sawtooth", "sawtooth", "sine", "triangle")
+BETA = (-0.5, 0.0, 0.5, 1.0)
+DATA = {
+    "r and beta": (reduced("sheared"), 1, r"roughness $\beta$"),
+    "particles": (
+        reduced("more", r=(0.8, 0.9), beta=BETA, third=("particles", (40.0, 160.0, 2560.0))),
+        2,
+        "number of particles $N$",
+    ),
+    "a length": (
+        reduced("longer", beta=BETA, r=(0.9,), third=("schedule.measure", (10.0, 20.0))),
+        1,
+        "measure",
+    ),
+    "words": (reduced("waves", beta=BETA, r=(0.9,), third=("floor.wave", WAVES)), 1, "wave"),
+}
+
+
+@pytest.mark.parametrize("kind", DATA)
+def test_any_sweep_is_drawn_beside_theory(kind):
+    data, panels, label = DATA[kind]
+    figure = sweep.draw(data)
+    above, below = figure.axes[:panels], figure.axes[panels:]
+    assert len(below) == panels and {axes.get_xlabel() for axes in below} == {label}
+    assert all(axes.get_legend() is None for axes in above[:-1])
+    drawn = [line for line in above[0].lines if line.get_marker() not in ("None", None, "")]
+    series = 3 if kind == "r and beta" else len(BETA)
+    markers = {line.get_marker() for line in drawn} - {"_", "|"}
+    assert len(markers) >= min(series, 4)
+    if kind == "words":
+        assert [tick.get_text() for tick in below[0].get_xticklabels()][:2] == [
+            "reversed\nsawtooth",
+            "sawtooth",
+        ]
+    if kind == "particles":
+        assert "$N = 40$ to $2560$" in above[0].get_title("left")
+        assert below[0].get_xscale() == "log"
+
+
+def test_of_many_series_some_are_shown_and_the_rest_named(tmp_path, capsys):
+    path = tmp_path / "inertia.nc"
+    reduced("inertia", r=(0.9,), third=("spin.inertia", (0.1, 1.0))).to_netcdf(path)
+    assert main(["plot", str(path), "-o", str(tmp_path / "my.png"), str(tmp_path / "my.svg")]) == 0
+    assert "5 of 21 values of beta are shown: -0.95, " in capsys.readouterr().err
+    assert imread(tmp_path / "my.png").std() > 0.05 and "<svg" in (tmp_path / "my.svg").read_text()
+    chosen = ["plot", str(path), "--beta", "0", "1", "--over", "inertia", "-o"]
+    assert main([*chosen, str(tmp_path / "two.png")]) == 0
+    assert "2 of 21 values of beta are shown: 0, 1" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("asked", "message"),
+    [
+        ({"over": "mu"}, "axis = mu: must be one of r, beta"),
+        ({"beta": [0.05]}, "beta = 0.05: must be one of -0.95, -0.9"),
+    ],
+)
+def test_what_the_data_lack_is_refused(asked, message):
+    with pytest.raises(InputError, match=message):
+        sweep.draw(reduced("sheared"), **asked)
+
+
+def test_where_nothing_spins_energy_is_drawn():
+    data = reduced("smooth", beta=(-1.0,), r=(0.8, 0.9))
+    data = data.drop_vars([name for name in data if name.startswith("R")])
+    data["E_trans"] = data.E_trans + np.array([[1.0], [2.0]])
+    (axes,) = sweep.draw(data, over="r").axes
+    assert axes.get_ylabel().startswith(r"$E_\mathrm{trans}$")
+    assert list(axes.containers[0][0].get_ydata()) == [2.0, 3.0]
+
+
+def test_experiments_are_listed(capsys):
+    assert main(["experiments", "--scale", "small"]) == 0
+    text = capsys.readouterr().out
+    assert "vibrated_rough_walls\n  The vibrated bed between" in text
+    assert "5 points: 1 r, 5 beta; extends vibrated" in text
+    assert main(["experiments", "--json"]) == 0
+    waves = json.loads(capsys.readouterr().out)["waves.waves"]
+    assert waves["points"] == 72 and waves["sweep"]["floor.wave"][0] == "sawtooth"

@@ -1,0 +1,207 @@
+"""The report: captions, its front page, tables and configurations as HTML."""
+
+import base64
+import json
+import re
+from html import unescape
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+from docutils.core import publish_parts
+from jinja2 import Environment
+from tests.entry import main
+from tests.houses import FOLDERS
+
+from roughgas import config, studies
+from roughgas.data.reduced import read_reduced
+from roughgas.results.table import write_times
+from roughgas.show.catalogue import DOCUMENTS, FIGURES, figures_of
+from roughgas.show.studies import captions
+
+ROOT = Path(__file__).parents[3]
+CAPTIONS = ROOT / "rules" / "captions"
+
+
+def rendered(caption, **about):
+    """A caption as Snakemake renders it; a warning is an error."""
+    environment = Environment(trim_blocks=True, lstrip_blocks=True)
+    text = environment.from_string((CAPTIONS / f"{caption}.rst").read_text("utf-8"))
+    settings = {"halt_level": 2, "report_level": 5}
+    source = text.render(snakemake=SimpleNamespace(**about))
+    return publish_parts(source, writer="html", settings_overrides=settings)["body"]
+
+
+def caption_of(name):
+    """The words of a figure's own caption, as the rules hand them on."""
+    return (CAPTIONS / f"{name}.rst").read_text("utf-8")
+
+
+@pytest.fixture(scope="module")
+def loaded():
+    return config.load(ROOT / "tests" / "experiments.yaml")
+
+
+@pytest.mark.parametrize("figure", figures_of("paper"))
+def test_a_figure_says_what_it_shows_and_how_it_was_made(figure, loaded):
+    experiments = {"cooling": config.experiment(loaded, "cooling", "paper")}
+    experiments["waves"] = config.experiment(loaded, "waves", "small")
+    wildcards = SimpleNamespace(figure=figure, folder="")
+    params = SimpleNamespace(experiments=experiments, caption=caption_of(figure))
+    text = re.sub(r"\s+", " ", rendered("figure", wildcards=wildcards, params=params))
+    assert "What to notice." in text
+    assert "160 particles in a box of 100 × 100" in text
+    assert "21 values from -0.95 to 1" in text
+    assert "4 seeds of each point" in text
+    assert "sawtooth, reversed_sawtooth, triangle, sine" in text
+
+
+@pytest.mark.parametrize("figure", figures_of("accuracy", "questions"))
+def test_a_study_says_how_it_was_made(figure, loaded):
+    settings = {name: config.study(loaded, name, "paper")["study"] for name in studies.STUDIES}
+    wildcards = SimpleNamespace(study_figure=figure, folder="")
+    params = SimpleNamespace(studies=settings, caption=caption_of(figure))
+    text = rendered("study", wildcards=wildcards, params=params)
+    assert "What to notice." in text and "repetitions 600" in text
+
+
+@pytest.mark.parametrize("document", DOCUMENTS.values(), ids=DOCUMENTS)
+def test_a_document_says_what_it_is(document):
+    assert "<p>" in rendered("document", params=SimpleNamespace(caption=document.caption))
+
+
+@pytest.mark.parametrize("folder", FOLDERS, ids=lambda one: one.name)
+def test_a_figure_of_a_study_says_what_it_shows(folder, loaded):
+    """README.md has each of its figures, and what follows it is a caption."""
+    figures = config.load(ROOT / "config.yaml")["folders"][folder.name]["figures"]
+    found = captions(folder, [*figures])
+    assert found.keys() == figures.keys()
+    for caption in found.values():
+        experiments = {"cooling": config.experiment(loaded, "cooling", "paper")}
+        params = SimpleNamespace(caption=caption, experiments=experiments)
+        text = rendered("figure", wildcards=SimpleNamespace(folder=""), params=params)
+        assert "What to notice." in text and "21 values from -0.95 to 1" in text
+
+
+NAMES = figures_of("paper")
+TABLE = "| R | verdict |\n| --- | --- |\n| 1 | **holds** |"
+CLAIMS = f"# The verdict\n\nHow to <read> it.\n\n{TABLE}\n\nEnd.\n"
+CAPTION = "What {name}\nshows.\n\n**What to notice.** x < y.\n"
+
+
+@pytest.fixture
+def files(tmp_path):
+    """Pictures, captions and verdicts, with known content."""
+    (tmp_path / "claims.md").write_text(CLAIMS)
+    for name in NAMES:
+        (tmp_path / f"{name}.png").write_bytes(name.encode())
+        (tmp_path / f"{name}.rst").write_text(
+            f"What {name}\nshows.\n\n**What to notice.** x < y.\n"
+        )
+    return tmp_path
+
+
+def front(folder, figures=NAMES, captions=NAMES):
+    """The exit status of the step `front`, which writes report.html."""
+    parts = ["--figures", *(str(folder / f"{name}.png") for name in figures)]
+    parts += ["--captions", *(str(folder / f"{name}.rst") for name in captions)]
+    return main(["front", str(folder / "claims.md"), *parts, "-o", str(folder / "report.html")])
+
+
+def test_it_opens_on_the_figures_each_with_its_caption_and_words_for_who_cannot_see_it(files):
+    assert front(files) == 0
+    text = (files / "report.html").read_text("utf-8")
+    places = []
+    for name in NAMES:
+        places.append(text.index(base64.b64encode(name.encode()).decode()))
+        assert f'alt="{FIGURES[name].title}. What {name} shows."' in unescape(text)
+        assert f"<h2>{FIGURES[name].title}</h2>\n<p>What {name}\nshows.</p>" in text
+    assert places == sorted(places) and places[-1] < text.index("<h1>The verdict</h1>")
+    assert "<strong>What to notice.</strong> x &lt; y." in text
+
+
+def test_verdicts_come_before_how_to_read_them(files):
+    assert front(files) == 0
+    text = (files / "report.html").read_text("utf-8")
+    table, reading = text.index("<td><strong>holds"), text.index("How to &lt;read&gt; it.")
+    assert text.index("<h1>The verdict</h1>") < table < reading < text.index("<p>End.</p>")
+
+
+def test_a_figure_without_a_caption_or_a_place_is_refused(files, capsys):
+    assert front(files, captions=NAMES[:1]) == 2
+    assert "captions = fig1a: must have one of fig1b" in capsys.readouterr().err
+    (files / "mine.png").write_bytes(b"")
+    assert front(files, figures=["mine"]) == 2
+    assert "figure = mine: must be one of" in capsys.readouterr().err
+    assert not (files / "report.html").exists()
+
+
+CONFIG = Path(__file__).parents[3] / "config.yaml"
+
+
+def html(source, tmp_path):
+    assert main(["document", str(source), "--output", str(tmp_path / "shown.html")]) == 0
+    return (tmp_path / "shown.html").read_text("utf-8")
+
+
+def test_markdown_becomes_tables_and_stays_text(tmp_path):
+    source = tmp_path / "claims.md"
+    source.write_text("# Verdict\n\n| R | β |\n| --- | --- |\n| a < b | **holds** |\n\n<b>$x</b>\n")
+    text = html(source, tmp_path)
+    assert "<h1>Verdict</h1>" in text and "<th>R</th>" in text
+    assert "<td>a &lt; b</td>" in text and "<td><strong>holds</strong></td>" in text
+    assert "&lt;b&gt;$x&lt;/b&gt;" in text
+
+
+def test_pictures_beside_a_text_are_part_of_its_page(tmp_path):
+    for name in ("secret.png", "a/pictures/fig 1.png", "a/key.txt"):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_bytes(name.encode())
+    named = ["pictures/fig%201.png", "../secret.png", "key.txt", "none.png", "http://x.org/a.png"]
+    table = "| ![t](pictures/fig%201.png) |\n| --- |\n"
+    (tmp_path / "a/page.md").write_text("\n\n".join([f"![p]({one})" for one in named] + [table]))
+    text = html(tmp_path / "a/page.md", tmp_path)
+    data = base64.b64encode(b"a/pictures/fig 1.png").decode()
+    assert text.count(f'src="data:image/png;base64,{data}"') == 2 and text.count("base64,") == 2
+    assert "img-src data:" in text
+
+
+def test_an_unknown_kind_is_refused(tmp_path, capsys):
+    (tmp_path / "a.txt").write_text("text")
+    assert main(["document", str(tmp_path / "a.txt"), "-o", str(tmp_path / "a.html")]) == 2
+    assert "must end in one of .md, .yaml, .mp4, .gif" in capsys.readouterr().err
+    assert not (tmp_path / "a.html").exists()
+
+
+def test_run_times_are_sums_over_points_and_seeds(points, tmp_path):
+    write_times([points / "sheared.nc", points / "cooling.nc"], output=tmp_path / "times.md")
+    rows = [line for line in (tmp_path / "times.md").read_text().splitlines() if line[:1] == "|"]
+    assert rows[2:] == [
+        "| sheared | 40 | 2 | 4 | 4,936 | 1.0 | 4,936 |",
+        "| cooling | 40 | 4 | 4 | 4,936 | 1.0 | 4,936 |",
+        "| together |  | 6 | 8 | 9,872 | 2.0 | 4,936 |",
+    ]
+    assert read_reduced(points / "sheared.nc").kernel_seconds.sum().item() == 1.0
+
+
+@pytest.mark.parametrize("scale", ["paper", "small"])
+def test_the_complete_configuration_says_the_same_and_can_be_run(scale, tmp_path):
+    path = tmp_path / "config.yaml"
+    changes = {"experiments": {"cooling": {"particles": 99}}, "seeds_per_job": 2}
+    arguments = [str(CONFIG), f"--scale={scale}", f"--changes={json.dumps(changes)}"]
+    assert main(["effective_config", *arguments, "--output", str(path)]) == 0
+    given, found = config.load(CONFIG, changes), config.load(path)
+    assert found["scale"] == scale and list(found["scales"]) == [scale]
+    assert found["seeds_per_job"] == 2
+    for name in given["experiments"]:
+        assert config.experiment(found, name, scale) == config.experiment(given, name, scale)
+    assert config.showcase(found, scale) == config.showcase(given, scale)
+    for study in found["studies"]:
+        assert config.study(found, study, scale) == config.study(given, study, scale)
+
+
+def test_the_configuration_of_no_scale_is_refused(tmp_path, capsys):
+    path = tmp_path / "config.yaml"
+    assert main(["effective_config", str(CONFIG), "--scale=large", f"-o={path}"]) == 2
+    assert "scale = 'large': must be one of" in capsys.readouterr().err
+    assert not path.exists()

@@ -1,0 +1,254 @@
+"""What theory predicts of a dataset; sheared and viscoelastic gases."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+from integration import integrate
+
+from roughgas import theory
+from roughgas.base import InputError
+from roughgas.effects.viscoelastic import pade, x_of
+from roughgas.theory.prediction import Equation, equation_of, predicted_ratio, species_at
+from roughgas.theory.transport import shear_factor, sheared_ratio
+
+DISKS, SPHERES = {"dimension": 2}, {"dimension": 3}
+FRICTION = "rate equations with Coulomb friction"
+
+
+@pytest.mark.parametrize(
+    ("attributes", "variables", "equation"),
+    [
+        (DISKS, ("R",), ("lun", "Lun's formula")),
+        (SPHERES, ("R",), ("lun", "Lun's formula")),
+        (DISKS, ("R", "plateau_end"), ("K", "theory of free cooling")),
+        (SPHERES | {"theory": "K"}, (), ("K", "theory of free cooling")),
+        (DISKS | {"theory": "lun"}, ("plateau_end",), ("lun", "Lun's formula")),
+        (DISKS | {"theory": "K", "mu": 0.0}, (), ("K", FRICTION)),
+        (DISKS | {"theory": "lun", "swept": "friction.mu"}, (), ("lun", FRICTION)),
+        (DISKS | {"theory": "K", "swept": "spin.inertia"}, (), ("K", "theory of free cooling")),
+        (DISKS | {"spin_share": 0.0}, (), ("lun", "Lun's formula")),
+        (DISKS | {"spin_share": 0.4}, (), ("lun", "rate equations, spin share 0.4")),
+        (DISKS | {"swept": "thermostat.spin_share"}, (), ("lun", "rate equations")),
+        (
+            DISKS | {"swept": "thermostat.spin_share", "spin_share": 1.0},
+            (),
+            ("lun", "rate equations, spin share 1"),
+        ),
+    ],
+)
+def test_the_equation_follows_from_what_a_dataset_says(attributes, variables, equation):
+    assert equation_of(attributes, variables) == Equation(*equation)
+
+
+ALIKE = [{"fraction": 0.3}, {"fraction": 0.7, "name": "rest"}]
+SPECIES = [{"fraction": 0.5}, {"fraction": 0.5, "radius": 2, "mass": 4, "name": "heavy"}]
+
+
+def attributes(species=SPECIES, kind="K", **others):
+    known = {"species": species, "species_pairs": [], "volume": 1e4}
+    about = {"dimension": 2, "inertia": 0.5, "particles": 160, "theory": kind}
+    return about | {"species_json": json.dumps(known)} | others
+
+
+@pytest.mark.parametrize("others", [{}, {"mu": 0.4}, {"spin_share": 0.3}])
+@pytest.mark.parametrize("kind", ["K", "lun"])
+def test_equal_species_are_predicted_as_one(kind, others):
+    r, beta = np.meshgrid([0.8, 0.9], [-0.5, 0.0, 1.0])
+    found = predicted_ratio(attributes(ALIKE, kind, **others), r, beta)
+    one = {"dimension": 2, "inertia": 0.5, "theory": kind} | others
+    assert found == pytest.approx(predicted_ratio(one, r, beta), rel=1e-8)
+
+
+def test_a_cooling_mixture_has_its_packing():
+    gas = theory.mixture(SPECIES, 0.9, 0.2)
+    expected = theory.mixture_cooling(gas, 160 * np.pi * 2.5 / 1e4).overall_ratio(gas)
+    assert predicted_ratio(attributes(), 0.9, 0.2) == pytest.approx(expected, rel=1e-12)
+
+
+def test_what_is_swept_is_put_in_its_place():
+    swept = attributes(swept="species.heavy.mass", mass=np.array([1.0, 9.0]))
+    found = predicted_ratio(swept, 0.9, 0.2)
+    heavier = [SPECIES[0], SPECIES[1] | {"mass": 9.0}]
+    assert found[1] == pytest.approx(predicted_ratio(attributes(heavier), 0.9, 0.2), rel=1e-12)
+    spread = [{"fraction": 1, "radius": {"distribution": "uniform", "deviation": 0.1}}]
+    swept = attributes(spread, swept="species.0.deviation", deviation=np.array([0.0, 0.2]))
+    alike, apart = predicted_ratio(swept, 0.8, -0.5)
+    assert alike == pytest.approx(theory.cooling_ratio(0.8, -0.5), rel=1e-9)
+    assert apart - alike > 0.03
+
+
+def test_a_line_of_many_values_is_interpolated():
+    beta = np.linspace(-0.3, 1, 801)
+    line = predicted_ratio(attributes(), 0.9, beta)
+    for k in (1, 333, 799):
+        assert line[k] == pytest.approx(predicted_ratio(attributes(), 0.9, beta[k]), abs=1e-4)
+
+
+def test_smooth_limit_is_that_of_one_species():
+    assert predicted_ratio(attributes(), 0.9, -1.0) == pytest.approx(1.0, abs=1e-6)
+    assert predicted_ratio(attributes(kind="lun"), 0.9, -1.0) == 0.0
+
+
+def test_spins_of_a_driven_mixture_follow_its_temperatures():
+    state = species_at(attributes(kind="lun"), {"r": 0.9, "beta": 0.0}, [1.0, 3.0])
+    gas = theory.mixture(SPECIES, 0.9, 0.0)
+    expected = theory.mixture_rotation(gas, np.array([1.0, 3.0]), 160 * np.pi * 2.5 / 1e4)
+    assert state.T_rot == pytest.approx(expected, rel=1e-12)
+    assert state.T_tr == pytest.approx([1, 3])
+
+
+def test_equations_have_names():
+    assert equation_of(attributes()).name == "theory of free cooling of mixtures"
+    assert equation_of(attributes(kind="lun")).name.startswith("Lun's formula for mixtures")
+    driven = attributes(kind="lun", spin_share=0.0)
+    assert equation_of(driven).name == "rate equations of mixtures"
+
+
+DIRECTIONS = 720
+
+
+def flux_moments(mean, sigma):
+    """(mean, mean square) of x ~ N(mean, sigma^2), weighted by x where it is positive."""
+    z = mean / sigma
+    below = 0.5 * (1.0 + np.vectorize(math.erf)(z / math.sqrt(2.0)))
+    density = np.exp(-z * z / 2.0) / math.sqrt(2.0 * math.pi)
+    one = mean * below + sigma * density
+    two = (mean**2 + sigma**2) * below + mean * sigma * density
+    three = (mean**3 + 3.0 * mean * sigma**2) * below + (mean**2 + 2 * sigma**2) * sigma * density
+    return one, two / one, three / one
+
+
+def theta(beta, q, rate, stress, difference):
+    """T_rot/T_tr from the balance of spin at contacts, all orders, by a sum over directions.
+
+    Relative velocities are Gaussian with twice the tensor of temperatures, about the mean flow.
+    """
+    angle = (np.arange(DIRECTIONS) + 0.5) * 2.0 * math.pi / DIRECTIONS
+    n = np.stack([np.cos(angle), np.sin(angle)])
+    t = np.stack([-n[1], n[0]])
+    tensor = 2.0 * np.array([[1.0 + difference, -stress], [-stress, 1.0 - difference]])
+    nn, nt, tt = (
+        np.einsum("ik,ij,jk->k", one, tensor, two) for one, two in ((n, n), (n, t), (t, t))
+    )
+    flow_n, flow_t = 2.0 * rate * n[1] * n[0], -2.0 * rate * n[1] ** 2
+    weight, approach, square = flux_moments(-flow_n, np.sqrt(nn))
+    weight /= weight.sum()
+    own = -approach - flow_n  # mean of the normal velocity without the flow
+    own_square = square + 2.0 * flow_n * approach + flow_n**2
+    slope = nt / nn
+    along = slope * own + flow_t
+    v_t2 = slope**2 * own_square + tt - nt**2 / nn + 2.0 * slope * own * flow_t + flow_t**2
+    spin = rate  # v_r due to the mean spin, -rate/2 of each partner
+    c1, c2, c3 = 1.0 + beta, 2.0 * (q - beta), 1.0 + 2.0 * q - beta
+    v_r2 = (c1 * (weight * v_t2).sum() - c2 * spin * (weight * along).sum()) / c3
+    return (v_r2 - spin**2) * q / 2.0
+
+
+def test_without_flow_and_stress_it_is_eq_lun():
+    beta = np.linspace(-0.99, 1, 9)
+    assert np.all(shear_factor(0, 0, 0) == 1)
+    assert sheared_ratio(beta, 0.5, 0, 0, 0) == pytest.approx(theory.lun_ratio(beta, 0.5))
+    lun = theory.lun_ratio(0.3, 0.4)
+    assert theta(0.3, 0.4, 0, 0, 0) == pytest.approx(lun / (1 - lun), rel=1e-12)
+
+
+@pytest.mark.parametrize("beta", [-0.7, 0.0, 1.0])
+@pytest.mark.parametrize("q", [0.1, 0.5, 1.0])
+@pytest.mark.parametrize("of", [(1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 0), (0.7, 1, -0.6)])
+def test_it_is_the_second_order_of_the_integral(beta, q, of):
+    """What is left over falls at least as the third power of g, p and d."""
+    lun = theory.lun_ratio(beta, q)
+    rests = []
+    for size in (0.08, 0.04):
+        g, p, d = size * np.array(of)
+        exact = theta(beta, q, g, p, d) * (1 - lun) / lun
+        rests.append(abs(exact - shear_factor(g, p, d)))
+        assert rests[-1] < 0.5 * size**3
+    assert rests[1] < rests[0] / 7 + 1e-12
+
+
+def test_it_is_close_at_the_stress_of_a_dissipative_gas():
+    """r = 0.8, beta = 1 of Fig. 2a: what higher orders add is a tenth of what the second does."""
+    measured = 0.207, 0.414, 0.163
+    assert theta(1.0, 0.5, *measured) - 1 == pytest.approx(shear_factor(*measured) - 1, rel=0.1)
+
+
+SPEEDS = np.geomspace(1e-4, 1e4, 9)
+
+
+@pytest.mark.parametrize("r", [0.05, 0.5, 0.9, 0.9999])
+def test_restitution_is_that_of_the_kernel(r):
+    found = theory.viscoelastic_restitution(SPEEDS, r, 3.0)
+    expected = [pade(x_of(r) * (g / 3.0) ** 0.2) for g in SPEEDS]
+    assert found == pytest.approx(expected, rel=1e-12)
+    assert theory.viscoelastic_restitution(3.0, r, 3.0) == pytest.approx(r, rel=1e-13)
+
+
+def test_elastic_particles_stay_elastic():
+    assert np.all(theory.viscoelastic_restitution(SPEEDS, 1.0) == 1.0)
+    assert theory.maxwellian_restitution(2.0, 1.0) == 1.0
+    assert np.isinf(theory.viscoelastic_time(1.0, 1.0, 0.3))
+    assert np.all(theory.viscoelastic_temperature(SPEEDS, 1.5, 1.0, 0.3) == 1.5)
+
+
+def test_maxwellian_restitution_is_an_average_over_contacts():
+    """Of a million normal speeds, whose squares over 4 T_tr are exponential."""
+    T, r, speed = 2.3, 0.7, 0.5
+    g = np.sqrt(4.0 * T * np.random.default_rng(1).exponential(size=10**6))
+    lost = (1.0 - theory.viscoelastic_restitution(g, r, speed) ** 2) * g**2 / (4.0 * T)
+    error = lost.std() / 1e3
+    found = 1.0 - theory.maxwellian_restitution(T, r, speed) ** 2
+    assert abs(found - lost.mean()) < 4.0 * error < 0.01 * found
+
+
+def test_nearly_elastic_particles_lose_what_the_closed_form_says():
+    """To first order in x: 1 - r_T^2 = 2 x_0 (4 T)^(1/10) Gamma(21/10)."""
+    for T in (0.1, 1.0, 7.0):
+        tau = theory.viscoelastic_time(T, 1.0 - 1e-6, 0.3, dimension=2)
+        lost = 1.0 - theory.maxwellian_restitution(T, 1.0 - 1e-6) ** 2
+        assert 1.0 / tau == pytest.approx(3 / 5 * 0.3 * lost / 2, rel=1e-5)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_the_closed_form_solves_the_rate_equations_of_a_smooth_gas(dimension):
+    T0, r, nu = 1.7, 1.0 - 1e-5, 0.4
+    tau = theory.viscoelastic_time(T0, r, nu, dimension=dimension)
+    gas = theory.viscoelastic_cooling(8e5, T0, r, -1.0, nu, dimension=dimension)[1:3]
+    time, T_tr = (column[:: len(gas[0]) // 20] for column in gas)
+    assert time[-1] > 10.0 * tau
+    expected = theory.viscoelastic_temperature(time, T0, r, nu, dimension=dimension)
+    assert T_tr == pytest.approx(expected, rel=2e-5)
+
+
+@pytest.mark.parametrize("beta", [0.0, 1.0])
+def test_cooling_is_integrated_to_many_digits(beta):
+    gas = theory.viscoelastic_cooling(20.0, 1.0, 0.6, beta, 0.3, 2.0)
+
+    def slope(state):
+        r = theory.maxwellian_restitution(state[1], 0.6, 2.0)
+        changes = theory.temperature_changes(*state[1:], r, beta)
+        return np.array([1.0 / (0.3 * np.sqrt(state[1])), *changes])
+
+    expected = integrate(slope, np.array([0.0, 1.0, 0.0]), [20.0], pieces=100)
+    assert [column[-1] for column in gas[1:]] == pytest.approx(expected[:, 0], rel=1e-8)
+
+
+def test_perfectly_rough_particles_cool_as_smooth_ones_but_more_slowly():
+    """T ~ t^(-5/3), tau longer by the degrees of freedom: (D + n_r)/D = 3/2."""
+    nu, r, speed = 0.3, 0.9, 100.0
+    tau = 1.5 * theory.viscoelastic_time(1.0, r, nu, speed)
+    gas = theory.viscoelastic_cooling(300.0, 1.0, r, 1.0, nu, speed)
+    assert gas.T_rot[-1] / gas.T_tr[-1] == pytest.approx(1.0, rel=0.05)
+    late = gas.time > 2.0 * tau
+    slope = np.polyfit(np.log(gas.time[late] + tau), np.log(gas.T_tr[late]), 1)[0]
+    assert slope == pytest.approx(-5.0 / 3.0, abs=0.05)
+
+
+def test_mistakes():
+    for r in (0.0, 1.1, -0.2):
+        with pytest.raises(InputError, match=r"restitution r = .*: must lie in"):
+            theory.viscoelastic_restitution(1.0, r)
+    with pytest.raises(InputError, match=r"speed = 0\.0: must be a positive number"):
+        theory.maxwellian_restitution(1.0, 0.9, 0.0)
