@@ -161,9 +161,8 @@ def simulate(
 
     from roughgas.data.point import as_dataset
     from roughgas.results.reduce import reduced_in_memory
-    from roughgas.simulation.ends import initial_of
-    from roughgas.simulation.points import points
-    from roughgas.simulation.settings import observables_of, settings_of
+    from roughgas.simulation.point import observables_of, points, settings_of
+    from roughgas.simulation.restart import initial_of
 
     at, several = _places(r, beta, seed), any(map(_is_list, (r, beta, seed)))
     if several and (keep_state or initial is not None):
@@ -252,11 +251,10 @@ def trajectory(
     from roughgas.config.provenance import provenance
     from roughgas.data.trajectory import as_trajectory
     from roughgas.scene import build
-    from roughgas.simulation.ends import initial_of
+    from roughgas.simulation.point import settings_of
     from roughgas.simulation.progress import watched
-    from roughgas.simulation.settings import settings_of
-    from roughgas.simulation.snapshots import chosen, snapshots
-    from roughgas.simulation.trajectory import variables
+    from roughgas.simulation.restart import initial_of
+    from roughgas.simulation.trajectory import chosen, snapshots, variables
 
     name, scale = experiment or UNNAMED, scale or _scale_of(experiment, config)
     settings = settings_of(experiment, changes, scale, config, UNNAMED)

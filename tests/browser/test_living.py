@@ -12,8 +12,8 @@ from roughgas.kernel.state import EXPONENT, LAST_FIRST, LAST_SECOND
 from roughgas.scene import build
 from roughgas.show.living import SCENES, scenes, settings, write_living
 from roughgas.simulation import schedule
-from roughgas.simulation.instant import in_order, whereabouts
 from roughgas.simulation.recorder import Recorder
+from roughgas.simulation.restart import in_order, positions_and_velocities
 from roughgas.statistics.errors import blocking, degrees_of_freedom, half_width
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
@@ -126,7 +126,7 @@ def kernel_gas(name, r, beta, **others):
     gas = schedule.of(experiment).start(scene, experiment, 1)
     if name in PERIODS:
         gas.in_time(PERIODS[name], 1)
-    position, velocity = whereabouts(gas.state, scene, gas.time)
+    position, velocity = positions_and_velocities(gas.state, scene, gas.time)
     spin = gas.state.spin[:, 0]
     columns = [*position.T, *velocity.T, spin]
     columns = [in_order(gas.state, one).tolist() for one in columns]

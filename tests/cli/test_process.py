@@ -108,7 +108,7 @@ def test_an_interrupt_ends_in_one_line(tmp_path, capsys, monkeypatch):
     def interrupted(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("roughgas.simulation.points.run_point", interrupted)
+    monkeypatch.setattr("roughgas.simulation.point.run_point", interrupted)
     assert run(tmp_path / "point.nc", config=CONFIG) == 130
     said = "roughgas: stopped: nothing is half-written; the same command begins anew\n"
     assert capsys.readouterr().err == said
@@ -183,7 +183,7 @@ def test_what_is_done_stays_when_a_later_seed_fails(tmp_path, monkeypatch):
             raise CollapseError("inelastic collapse")
         return run_point(scene, experiment, seed, *others)
 
-    monkeypatch.setattr("roughgas.simulation.points.run_point", second_collapses)
+    monkeypatch.setattr("roughgas.simulation.point.run_point", second_collapses)
     assert run_seeds(tmp_path, "123", ["1.nc", "2.nc", "3.nc"]) == 1
     assert [path.name for path in tmp_path.iterdir()] == ["1.nc"]
 
@@ -270,7 +270,7 @@ def test_a_run_goes_on_from_the_file_of_another(tmp_path, monkeypatch, capsys):
 )
 def test_a_target_and_whether_it_was_met(tmp_path, monkeypatch, capsys, target, said, share):
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("roughgas.simulation.target.MOST_BLOCKS", 2)
+    monkeypatch.setattr("roughgas.simulation.recorder.MOST_BLOCKS", 2)
     lengths = {"replicas": 40, "relaxation_times": 8, "target_stderr": target}
     changes = ["--set", *(f"schedule.{key}={value}" for key, value in lengths.items())]
     assert main(["run", "cooling", *PLACE, *changes, "--seed", "1", "2", "-o", "1.nc", "2.nc"]) == 0

@@ -12,8 +12,8 @@ from roughgas.kernel.memory import new_state
 from roughgas.kernel.record import Sampling, columns, record
 from roughgas.kernel.state import COLLISIONS, EXPONENT, TOUCHED
 from roughgas.scene import build
-from roughgas.simulation.books import books
-from roughgas.simulation.contacts import SUMS, contact_averages
+from roughgas.simulation.energies import SUMS, contact_averages
+from roughgas.simulation.energy_balance import balance
 from roughgas.simulation.point import run_point
 
 ENDS = ("", "_stderr", "_dof", "_ci95")
@@ -52,7 +52,7 @@ def test_a_gas_that_cools_by_many_powers_of_two():
     q, before = scene.effects.spin.inertia, np.zeros(2)
     for _ in range(100):
         A, B, C = sums(run(state, scene, 1, collisions=40, refresh=1))
-        booked = books(state, scene).ledger[-1, 1]
+        booked = balance(state, scene).ledger[-1, 1]
         assert theory.rotational_energy_change(A, C, B, 0.2, q) == pytest.approx(booked, rel=1e-9)
         assert A >= before[0] and B >= before[1]
         before = A, B

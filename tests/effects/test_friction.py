@@ -12,7 +12,7 @@ from roughgas.effects import Effects
 from roughgas.effects.friction import Friction
 from roughgas.effects.spin import Spin
 from roughgas.kernel.contact import response as compiled_response
-from roughgas.simulation.books import books
+from roughgas.simulation.energy_balance import balance
 
 PAIR, WALL = 0.5, 1.0
 response = from_python(compiled_response)
@@ -138,10 +138,10 @@ def test_no_friction_is_the_smooth_gas(beta):
 def test_contacts_of_a_gas_take_energy_and_give_none():
     """Collision by collision: what the contacts have booked."""
     scene, state = begin(settings("friction", 40, [25, 25]), 0.95, 0.5, 3)
-    last = books(state, scene)
+    last = balance(state, scene)
     for _ in range(500):
         run(state, scene, 1, collisions=1)
-        now = books(state, scene)
+        now = balance(state, scene)
         assert (now.ledger[-1] - last.ledger[-1]).sum() < 1e-13
         last = now
     assert now.energy[1] > 0.0  # and some of it went into the spins

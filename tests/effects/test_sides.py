@@ -11,7 +11,7 @@ from roughgas.base import InputError
 from roughgas.effects import floor, piston, sine_floor, thermal_wall, triangular_floor
 from roughgas.scene import build
 from roughgas.scene.initial import check_places
-from roughgas.simulation.books import books
+from roughgas.simulation.energy_balance import balance
 
 DISKS = {"spin": {"inertia": 0.5}}
 BED = DISKS | {
@@ -113,9 +113,9 @@ def test_strokes_are_met_as_brute_force_finds_them(wave, weight):
 def test_the_books_close_wall_by_wall():
     """What each wall has put in is all that was gained, to rounding."""
     scene, state = begin(settings("container", 40, [25, 25]), 0.9, 0.3, 2)
-    begun = books(state, scene)
+    begun = balance(state, scene)
     run(state, scene, 1, collisions=3000)
-    now = books(state, scene)
+    now = balance(state, scene)
     booked, gain = now.ledger - begun.ledger, now.energy - begun.energy
     assert booked.sum(axis=0) == pytest.approx(gain, abs=1e-11 * np.abs(booked).sum())
     assert np.all(np.abs(booked[1:]).sum(axis=1) > 1.0)  # four walls and the contacts

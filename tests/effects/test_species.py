@@ -8,8 +8,8 @@ from roughgas import simulate
 from roughgas.base import InputError
 from roughgas.kernel import memory
 from roughgas.kernel.state import LAST_FIRST, LAST_SECOND
-from roughgas.simulation.books import imbalance
-from roughgas.simulation.by_species import energies_of_each
+from roughgas.simulation.energies import energies_of_each
+from roughgas.simulation.energy_balance import imbalance
 from roughgas.simulation.gas import Gas
 from roughgas.statistics.errors import blocking
 
@@ -137,9 +137,9 @@ HEAVY = [{"fraction": 0.5, "mass": 1}, {"fraction": 0.5, "radius": 1.7, "mass": 
 def test_the_books_are_right_at_a_mass_ratio_of_a_million(r):
     gas = Gas(*begin(settings("gas", 100, [60, 60]) | {"species": HEAVY}, r, 0.3, 1))
     gas.look()
-    before = gas.books()
+    before = gas.balance()
     columns = gas.in_collisions(5000, 10)
-    after = gas.books()
+    after = gas.balance()
     booked, gain = after.ledger - before.ledger, after.energy - before.energy
     assert imbalance(booked, gain, before.energy.sum()) < 1e-11
     thermal = np.sqrt(columns["vv_x"] * gas.state.bodies.mass.sum())

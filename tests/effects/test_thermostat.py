@@ -12,8 +12,8 @@ from roughgas.kernel.mathematics import STEP, logarithm
 from roughgas.kernel.memory import new_state
 from roughgas.kernel.state import BASE, COLLISIONS, NOW
 from roughgas.scene import build
-from roughgas.simulation.books import books, imbalance
 from roughgas.simulation.energies import energies, ratio
+from roughgas.simulation.energy_balance import balance, imbalance
 from roughgas.statistics.errors import blocking_stderr
 
 INTERVAL = 0.5
@@ -70,9 +70,9 @@ def test_a_particle_starts_one_kick_an_interval(kernel):
 def test_momentum_is_kept_and_the_books_explain_the_energy(kernel):
     box = (12, 12, 12) if "spheres" in kernel else (25, 25)
     scene, state = begin(heated(kernel, 40, box), 0.9, -1.0 if "smooth" in kernel else 0.3, 2)
-    before = books(state, scene)
+    before = balance(state, scene)
     run(state, scene, 100, interval=1.0)
-    after = books(state, scene)
+    after = balance(state, scene)
     booked = after.ledger - before.ledger
     assert imbalance(booked, after.energy - before.energy) < 1e-13
     drive = sum(effect is not None for effect in scene.effects[:5])  # its row: after the spin's
@@ -91,9 +91,9 @@ def test_the_power_and_its_share_are_what_was_asked_for(share, interval):
     number, time, power, q = 40, 500.0, 2.0, 0.5
     scene, state = begin(heated(power=power, spin_share=share, interval=interval), 0.9, 0.2, 3)
     run(state, scene, 1, interval=20.0)
-    before = books(state, scene)
+    before = balance(state, scene)
     E = energies(run(state, scene, 1000, interval=time / 1000), number, q)
-    put_in = (books(state, scene).ledger - before.ledger)[1]
+    put_in = (balance(state, scene).ledger - before.ledger)[1]
     kicks = number * time / interval
     T_tr, T_rot = 2.0 * E.translational.mean(), 2.0 * E.rotational.mean()
     k, turn = scene.effects.thermostat[:2]
@@ -113,9 +113,9 @@ def test_kicks_do_not_depend_on_how_particles_are_found():
     """1000 particles are sorted into cells, and anew now and then: momentum, books and kicks."""
     scene, state = begin(heated(particles=1000, box=(150, 150), interval=INTERVAL), 0.9, 0.2, 5)
     assert state.cells is not None
-    before, due = books(state, scene), np.sort(state.moments.thermostat)
+    before, due = balance(state, scene), np.sort(state.moments.thermostat)
     run(state, scene, 20, interval=INTERVAL)
-    after = books(state, scene)
+    after = balance(state, scene)
     assert imbalance(after.ledger - before.ledger, after.energy - before.energy) < 1e-12
     assert np.abs(snapshot(state, scene).velocity.sum(axis=0)).max() < 1e-10
     assert np.sort(state.clock[BASE] + state.moments.thermostat) == pytest.approx(
@@ -197,10 +197,10 @@ def flux(experiment, r, beta, seed, warm, measured):
     scene, state = begin(experiment, r, beta, seed)
     time = run(state, scene, 1, interval=warm)["time"][0]
     pieces = 40
-    before, seen = books(state, scene).ledger, []
+    before, seen = balance(state, scene).ledger, []
     for _ in range(pieces):  # in steps that are short: a sample waits for a limited time only
         until = run(state, scene, 20, interval=measured / pieces / 20)["time"][-1]
-        now = books(state, scene).ledger
+        now = balance(state, scene).ledger
         seen.append((now - before).sum(axis=1) / (until - time))
         before, time = now, until
     accounts = [name for name in ("spin", "left_wall", "right_wall") if name in names(scene)]

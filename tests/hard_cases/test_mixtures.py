@@ -9,7 +9,7 @@ from hard_cases.catalogue import hard_case
 from roughgas.effects.species import UNIFORM
 from roughgas.kernel import memory
 from roughgas.kernel.state import COLLISIONS
-from roughgas.simulation.books import books
+from roughgas.simulation.energy_balance import balance
 
 ROUNDING = 2.0**-53
 # The reduced mass of two species is rounded once and for all, and so to the same side each time;
@@ -24,9 +24,9 @@ def check(margins, particles, box, species, collisions, r=1.0, beta=-1.0):
     scene, world = scene_of(experiment, r, beta)
     _, state = begin(experiment, r, beta, 1)
     run(state, scene, 0)
-    before = books(state, scene)
+    before = balance(state, scene)
     columns = run(state, scene, 10, collisions=collisions // 10)
-    after, made = books(state, scene), int(state.counts[COLLISIONS])
+    after, made = balance(state, scene), int(state.counts[COLLISIONS])
     tried = {"tried": made, "unit": "collisions"}
     largest = state.bodies.radius.max()
     if particles <= 2000:  # the brute force tries every pair

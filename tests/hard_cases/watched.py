@@ -21,12 +21,12 @@ class Account:
     """The books of a gas from now on, and the most energy that any look at them has found."""
 
     def __init__(self, gas):
-        self.gas, self.before, self.most = gas, gas.books(), 0.0
+        self.gas, self.before, self.most = gas, gas.balance(), 0.0
         self.look()
 
     def look(self):
         """Note what has been put in since, and what is there."""
-        now = self.gas.books()
+        now = self.gas.balance()
         self.booked, self.gain = now.ledger - self.before.ledger, now.energy - self.before.energy
         self.most = max(self.most, np.abs(self.booked).sum() + np.abs(now.energy).sum())
 

@@ -10,7 +10,7 @@ from brute_force.beside import brute_force_from
 from roughgas import simulate, theory
 from roughgas.effects.contact_stress import SUMS
 from roughgas.kernel.state import NOW
-from roughgas.simulation.instant import whereabouts
+from roughgas.simulation.restart import positions_and_velocities
 from roughgas.tasks import dsmc
 
 SHEARED = settings("sheared", 40, [20, 20])
@@ -68,7 +68,7 @@ def test_stress_times_shear_rate_is_the_account_of_the_shear():
     def seen():
         rows = run(state, scene, 1, interval=0.0)
         time = rows["time"][0]
-        position, velocity = whereabouts(state, scene, time)
+        position, velocity = positions_and_velocities(state, scene, time)
         G = np.sum(velocity[:, 0] * (position[:, 1] - L / 2))
         return time, position, velocity, G, carried(rows)[0, 1], booked(state)
 

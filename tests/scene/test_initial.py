@@ -6,7 +6,7 @@ from brute_force import KERNELS, begin, largest_overlap, scene_of, settings
 
 from roughgas.base import InputError
 from roughgas.scene import check_places
-from roughgas.scene.places import places_for
+from roughgas.scene.random_packing import places_for
 
 CASES = {
     **{name: settings(name) for name in KERNELS},

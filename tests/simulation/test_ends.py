@@ -10,8 +10,8 @@ from roughgas.base import InputError
 from roughgas.data.point import as_dataset
 from roughgas.kernel import memory
 from roughgas.scene import build
-from roughgas.simulation.ends import Initial, check_initial, initial_of
 from roughgas.simulation.point import run_point
+from roughgas.simulation.restart import Initial, check_initial, initial_of
 
 R, BETA, SEED = 0.9, 0.3, 3
 DRIVEN = ("sheared", "bed", "walled", "rubbed bed", "shaken", "heated")

@@ -12,7 +12,7 @@ from roughgas.kernel.hooks import displacement
 from roughgas.scene import build
 from roughgas.scene.initial import initial_state
 from roughgas.simulation.point import run_point
-from roughgas.simulation.snapshots import Take, snapshots, usual_take
+from roughgas.simulation.trajectory import Take, snapshots, usual_take
 
 R, BETA, SEED = 0.9, 0.3, 7
 TINY = 1e-9

@@ -9,7 +9,7 @@ from brute_force import begin, settings
 from roughgas.base import InputError
 from roughgas.kernel.record import Sampling
 from roughgas.scene import build
-from roughgas.simulation import schedule, target
+from roughgas.simulation import recorder, schedule
 from roughgas.simulation.gas import Gas
 from roughgas.simulation.point import run_point
 from roughgas.simulation.progress import Bar, Progress
@@ -58,14 +58,14 @@ def test_a_target_that_is_met_at_once_changes_nothing(experiment):
 
 @pytest.mark.parametrize("experiment", [SHEARED, FREE])
 def test_what_is_not_reached_is_said(experiment, monkeypatch):
-    monkeypatch.setattr(target, "MOST_BLOCKS", 3)
+    monkeypatch.setattr(recorder, "MOST_BLOCKS", 3)
     aimed = found(experiment, target_stderr=1e-5)
     assert aimed["target_met"] == NO and aimed["target_blocks"] == 3
     assert aimed["R_stderr"] > 1e-5
 
 
 def test_a_run_keeps_no_more_samples_than_any_other(monkeypatch):
-    monkeypatch.setattr(target, "MOST_SAMPLES", 700)  # one block has some 268
+    monkeypatch.setattr(recorder, "MOST_SAMPLES", 700)  # one block has some 268
     assert found(SHEARED, target_stderr=1e-5)["target_blocks"] == 2
 
 
@@ -88,7 +88,7 @@ def test_two_replicas_are_too_few_to_know_their_error():
 )
 def test_how_far_it_goes_on(blocks, excess, wanted):
     """As far as the error says, by one block at least, to twice the length at most."""
-    assert target._wanted(blocks, excess) == wanted
+    assert recorder._wanted(blocks, excess) == wanted
 
 
 def test_a_drive_must_be_seen_in_enough_phases():

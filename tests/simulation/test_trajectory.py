@@ -22,11 +22,10 @@ from roughgas.data.trajectory import (
 )
 from roughgas.scene import build
 from roughgas.simulation import cooling
-from roughgas.simulation.ends import initial_of
 from roughgas.simulation.energies import restored
 from roughgas.simulation.point import run_point
-from roughgas.simulation.snapshots import Take, chosen, snapshots
-from roughgas.simulation.trajectory import variables
+from roughgas.simulation.restart import initial_of
+from roughgas.simulation.trajectory import Take, chosen, snapshots, variables
 
 R, BETA, SEED = 0.9, 0.3, 7
 DRIVEN = {

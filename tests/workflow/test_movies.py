@@ -8,7 +8,7 @@ import pytest
 from PIL import Image
 
 from roughgas.data.film import read_film
-from roughgas.simulation.snapshots import COOLING
+from roughgas.simulation.trajectory import COOLING
 
 NAMES = (
     "vibrated",

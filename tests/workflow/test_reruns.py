@@ -33,7 +33,7 @@ EDITED = {  # file of the package: what an edit of its code runs again
     "theory/prediction.py": REDUCED,
     "kernel/prediction.py": SIMULATED,
     "effects/walls.py": SIMULATED | {"effective_config", "living_page"},
-    "scene/composition.py": SIMULATED | {"living_page"},
+    "scene/scene.py": SIMULATED | {"living_page"},
     "config/schema.py": {"effective_config", "document", "living_page"},
     "simulation/clustering.py": FILM,
     "results/table.py": {"table", "run_times", "document", "study_table", "study_page"},
@@ -47,7 +47,7 @@ EDITED = {  # file of the package: what an edit of its code runs again
 }
 ALIKE = {  # files after whose edits much the same runs again as after others'
     "kernel/prediction.py",
-    "scene/composition.py",
+    "scene/scene.py",
     "simulation/clustering.py",
     "theory/prediction.py",
     "show/page/explore.js",

@@ -16,10 +16,9 @@ from roughgas.cli.run import initial_in, points_of
 from roughgas.config.provenance import provenance
 from roughgas.data.trajectory import as_trajectory, check_format, write_trajectory
 from roughgas.scene import Scene, build
-from roughgas.simulation.ends import Initial
 from roughgas.simulation.progress import watched
-from roughgas.simulation.snapshots import LEGAL, NUMBERS, Take, chosen, snapshots
-from roughgas.simulation.trajectory import variables
+from roughgas.simulation.restart import Initial
+from roughgas.simulation.trajectory import LEGAL, NUMBERS, Take, chosen, snapshots, variables
 
 if TYPE_CHECKING:
     from roughgas.show.movies.drawing import Panel

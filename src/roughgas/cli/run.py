@@ -17,8 +17,8 @@ from roughgas.config.provenance import variant_attributes
 from roughgas.config.schema import check_schema
 from roughgas.data.point import Point, read_point, write_point
 from roughgas.simulation import schedule
-from roughgas.simulation.ends import Initial, initial_of
-from roughgas.simulation.points import points
+from roughgas.simulation.point import points
+from roughgas.simulation.restart import Initial, initial_of
 from roughgas.statistics.errors import NO, UNKNOWN, YES, Estimate
 
 IDENTITY = ("experiment", "variant", "scale", "r", "beta", "seed")

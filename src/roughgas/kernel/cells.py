@@ -24,7 +24,13 @@ from roughgas.kernel import hooks
 from roughgas.kernel.event_lists import clear_contacts, enter, strike_out
 from roughgas.kernel.hooks import either, unless_absent
 from roughgas.kernel.jit import jit, unrolled
-from roughgas.kernel.particles import fold_into_box, image_numbers, shifted, slid, whereabouts
+from roughgas.kernel.particles import (
+    fold_into_box,
+    image_numbers,
+    positions_and_velocities,
+    shifted,
+    slid,
+)
 from roughgas.kernel.prediction import decide
 from roughgas.kernel.state import NOBODY, SPAN
 from roughgas.kernel.vectors import subtract
@@ -61,7 +67,7 @@ def find_around(cells, state, scene, i, time):
 def settle(state, scene, i, time):
     """Put particle i on the list of the cell that it is in at `time`."""
     cells = state.cells
-    position, velocity = whereabouts(state, scene, i, time)
+    position, velocity = positions_and_velocities(state, scene, i, time)
     slide = slid(hooks.sliding(scene.effects, None, state), time)
     position, velocity = fold_into_box(position, velocity, cells.periods, slide)
     home = 0
@@ -84,7 +90,7 @@ def _enter(cells, i, home):
 def _in_cell(state, scene, i, time):
     """Return particle i's position relative to the middle of its cell, and its velocity there."""
     cells = state.cells
-    position, velocity = whereabouts(state, scene, i, time)
+    position, velocity = positions_and_velocities(state, scene, i, time)
     slide = slid(hooks.sliding(scene.effects, None, state), time)
     position, velocity = _beside_row(slide, cells, cells.home[i], position, velocity)
     d = subtract(position, middle_of(cells.widths, places(cells.counts, cells.home[i])))

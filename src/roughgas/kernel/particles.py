@@ -307,7 +307,7 @@ def along(path, time, gravity):
 
 
 @jit
-def whereabouts(state, scene, i, time):
+def positions_and_velocities(state, scene, i, time):
     """Return position and velocity of particle i at `time`, on the continuation of its path."""
     path = path_of(state.trajectory, i, scene.box)
     return along(path, time, hooks.acceleration(scene.effects, None))
@@ -316,7 +316,7 @@ def whereabouts(state, scene, i, time):
 @jit
 def arrive(state, scene, i, time):
     """Return position and velocity of particle i's image in the box at `time`."""
-    position, velocity = whereabouts(state, scene, i, time)
+    position, velocity = positions_and_velocities(state, scene, i, time)
     slide = hooks.sliding(scene.effects, None, state)
     return fold_into_box(position, velocity, scene.box, slid(slide, time))
 
@@ -324,7 +324,7 @@ def arrive(state, scene, i, time):
 @jit
 def come_in(state, scene, i, time):
     """Do as `arrive`, and book the energy that particle i gains by becoming another image."""
-    _, before = whereabouts(state, scene, i, time)
+    _, before = positions_and_velocities(state, scene, i, time)
     position, velocity = arrive(state, scene, i, time)
     gained = subtract(velocity, before)
     work = dot(gained, add_scaled(before, gained, 0.5))

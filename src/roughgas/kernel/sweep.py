@@ -21,10 +21,10 @@ from roughgas.kernel.mathematics import REGISTER, append, lanes_of, load, multip
 from roughgas.kernel.particles import (
     exceeds,
     image_numbers,
+    positions_and_velocities,
     shifted,
     slid,
     speed_limit,
-    whereabouts,
     widest_of,
 )
 from roughgas.kernel.prediction import DIAMETER, decide
@@ -77,7 +77,7 @@ def line_of(state, scene, i):
     Under gravity the lines are those seen from a frame that falls with it from the clock's base:
     r(t) = r0 + v0 t - g t^2/2 with the same last term for all, so that pairs never see gravity.
     """
-    start, velocity = whereabouts(state, scene, i, 0.0)
+    start, velocity = positions_and_velocities(state, scene, i, 0.0)
     extent = 0.0
     for k in range(len(start)):
         extent += abs(start[k]) + 3.0 * state.clock[SPAN] * abs(velocity[k])

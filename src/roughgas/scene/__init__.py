@@ -1,10 +1,18 @@
 """What is simulated: box, material and effects, and the state that it starts from."""
 
 from roughgas.effects.species import packing
-from roughgas.scene.composition import DIAMETER, Scene, build, closed_axes, elastic, shear_rate
 from roughgas.scene.initial import bounds, check, check_places, initial_state
-from roughgas.scene.mixture import draw_bodies, for_theory, given_bodies
-from roughgas.scene.sides import has_sides, moves_along
+from roughgas.scene.scene import (
+    DIAMETER,
+    Scene,
+    build,
+    closed_axes,
+    elastic,
+    has_sides,
+    moves_along,
+    shear_rate,
+)
+from roughgas.scene.species import draw_bodies, for_theory, given_bodies
 
 __all__ = [
     "DIAMETER",

@@ -12,7 +12,8 @@ from roughgas.kernel import hooks
 from roughgas.kernel.hooks import displacement
 from roughgas.kernel.memory import new_state
 from roughgas.kernel.state import State
-from roughgas.scene.composition import (
+from roughgas.scene.random_packing import places_for
+from roughgas.scene.scene import (
     DIAMETER,
     NARROWEST_CHANNEL,
     Scene,
@@ -20,8 +21,7 @@ from roughgas.scene.composition import (
     shear_rate,
     strokes,
 )
-from roughgas.scene.mixture import draw_bodies
-from roughgas.scene.places import places_for
+from roughgas.scene.species import draw_bodies
 
 TEMPERATURE = 1.0  # m a^2/T^2
 GRAZE = 1e-6  # a: overlaps as small as this are roundings, such as those of single precision

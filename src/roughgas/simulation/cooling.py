@@ -9,14 +9,19 @@ import numpy as np
 from roughgas.base import InputError
 from roughgas.effects import inertia, speed_of_r
 from roughgas.scene import Scene, for_theory, packing
-from roughgas.simulation import by_species
-from roughgas.simulation.books import Books, exchange
-from roughgas.simulation.by_species import energies_of_each
-from roughgas.simulation.ends import Initial
-from roughgas.simulation.energies import Columns, Energies, ratio, ratio_of_means, restored
+from roughgas.simulation.energies import (
+    Columns,
+    Energies,
+    cooling_species,
+    energies_of_each,
+    ratio,
+    ratio_of_means,
+    restored,
+)
+from roughgas.simulation.energy_balance import EnergyBalance, energy_exchange
 from roughgas.simulation.gas import Gas, count
-from roughgas.simulation.recorder import Recorder
-from roughgas.simulation.target import KEY, until_met
+from roughgas.simulation.recorder import KEY, Recorder, until_met
+from roughgas.simulation.restart import Initial
 from roughgas.statistics.errors import LEAST, UNKNOWN, Error, Evidence, autocorrelation_time
 from roughgas.statistics.steady_state import find_plateau
 from roughgas.theory import friction_relaxation_rate, mixture_relaxation_rate, relaxation_rate
@@ -39,8 +44,8 @@ class Cooled(NamedTuple):
     exponent: np.ndarray
     collisions: np.ndarray  # of each particle since the samples began
     time: np.ndarray  # of each sample, in T since dissipation was switched on
-    before: Books
-    after: Books
+    before: EnergyBalance
+    after: EnergyBalance
     species: list[Energies]  # as `energies`, of each species
 
 
@@ -165,7 +170,7 @@ def run(
 def _found(ensemble, scene, experiment, transient):
     """Return the variables of a point from all its replicas."""
     every, passed = interval(experiment), ensemble.collisions[0]  # as in all replicas
-    exchanged = exchange(ensemble.before, ensemble.after, scene, experiment["particles"])
+    exchanged = energy_exchange(ensemble.before, ensemble.after, scene, experiment["particles"])
     if speed_of_r(scene.effects) is not None:  # how it cools depends on how fast it is
         exchanged |= _over_time(ensemble)
     if scene.effects.spin is None:
@@ -193,11 +198,11 @@ def _replica(scene, experiment, stream, recorder, initial=None):
 def _cool(gas, every, samples):
     """Return what one replica does from when dissipation is switched on."""
     unit, exponent = gas.energies(gas.sample).translational[0], int(gas.sample["exponent"][0])
-    before, begun, made = gas.books(), gas.time, gas.sample["collisions"]
+    before, begun, made = gas.balance(), gas.time, gas.sample["collisions"]
     rows = sample(gas, every, samples)
     present = gas.energies(rows).map(lambda part: part / unit)
     energy = math.ldexp(unit, 2 * exponent)
-    before, after = (Books(*(part / energy for part in b)) for b in (before, gas.books()))
+    before, after = (EnergyBalance(*(part / energy for part in b)) for b in (before, gas.balance()))
     parts = energies_of_each(rows, gas.scene, gas.state)
     parts = [one.map(lambda part: part / unit) for one in parts]
     exponents = rows["exponent"].astype(int) - exponent
@@ -216,10 +221,13 @@ def _over_time(ensemble):
 
 
 def _together(runs):
-    """Return all replicas as one: energies stacked, books averaged."""
-    present, exponent, passed, time, *books, species = zip(*runs, strict=True)
+    """Return all replicas as one: energies stacked, energy balances averaged."""
+    present, exponent, passed, time, *balances, species = zip(*runs, strict=True)
     stacked, parts = _stacked(present), [_stacked(one) for one in zip(*species, strict=True)]
-    means = (Books(*(np.mean(part, axis=0) for part in zip(*one, strict=True))) for one in books)
+    means = (
+        EnergyBalance(*(np.mean(part, axis=0) for part in zip(*one, strict=True)))
+        for one in balances
+    )
     return Cooled(stacked, *map(np.array, (exponent, passed, time)), *means, parts)
 
 
@@ -279,7 +287,7 @@ def _decay(ensemble, passed, first):
 
 
 def _of_species(ensemble, inside):
-    return by_species.cooling(ensemble.species, ensemble.energies, ensemble.exponent, inside)
+    return cooling_species(ensemble.species, ensemble.energies, ensemble.exponent, inside)
 
 
 def _scatter(values):

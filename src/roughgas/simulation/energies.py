@@ -1,4 +1,6 @@
-"""Energies per degree of freedom and their ratio R, from the kernel's sums over particles.
+"""Energies of samples: of all particles, of each species, and sums over contacts.
+
+Energies per degree of freedom and their ratio R, from the kernel's sums over particles.
 
 The kernel hands over, for each sample, sums over all particles at that instant; here they are a
 dict of arrays of shape (samples,), named `vv_x` (sum of v_x^2), `ww` (sum of (a w)^2), `w` (sum of
@@ -6,12 +8,29 @@ a w; in three dimensions `w_x`, `w_y`, `w_z`), and for the sheared gas `yy` (sum
 and `yv_x` (sum of (y - L/2) v_x). Where particles differ they weigh with their masses (see
 roughgas.kernel.record.columns). Units: particle radius a = mass m = time unit T = 1, so energies
 are in m a^2/T^2.
+
+Energies and R of each species of a mixture, as variables of a point (see roughgas.data.point).
+
+All arrays have the species first. Where particles are alike there are no such variables.
+
+R and the correlation of translation and rotation, averaged over the collisions of pairs.
+
+McNamara & Luding (1998) derive Lun's formula from averages over collisions: <v_t^2> = 4 (D-1)
+E_tr/m and <v_r^2> = 4 (D-1) E_rot/(q m) in a Maxwellian gas. Read backwards, these say what E_tr
+and E_rot are where collisions happen.
 """
 
-from collections.abc import Callable, Mapping
-from typing import NamedTuple
+import math
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
+
+from roughgas.effects import inertia
+from roughgas.effects.species import mixture_of
+from roughgas.kernel.state import State
+from roughgas.scene import Scene, moves_along, shear_rate
+from roughgas.statistics.errors import Error, blocking, degrees_of_freedom, period_means
 
 Columns = Mapping[str, np.ndarray]
 
@@ -117,3 +136,155 @@ def _components(columns: Columns, quantity: str) -> list[str]:
     """Names of the columns of a vector: `vv_x`, `vv_y`, ...; a spin in the plane has one, `w`."""
     names = [f"{quantity}_{axis}" for axis in "xyz"]
     return [name for name in [quantity, *names] if name in columns]
+
+
+def species_names(experiment: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what the species are called, and how many particles each has."""
+    mixture = mixture_of(experiment)
+    if mixture is None:
+        return {}
+    return {
+        "species": [kind.name for kind in mixture.kinds],
+        "species_particles": [kind.number for kind in mixture.kinds],
+    }
+
+
+def energies_of(
+    columns: Columns, scene: Scene, state: State, species: int | None = None
+) -> Energies:
+    """Return the energies of samples, of all particles or of one species; of a sheared gas without
+    mean flow and mean spin."""
+    q, bodies = inertia(scene.effects), state.bodies
+    rate = None if scene.effects.shear is None else shear_rate(scene)
+    flows = moves_along(scene.effects)
+    if bodies is None:
+        number = len(state.changes)
+        return energies(columns, number, q, rate, mass=float(number) if flows else None)
+    which = np.full(len(bodies.mass), True) if species is None else bodies.species == species
+    columns = columns if species is None else of_species(columns, species)
+    moments = (bodies.mass * bodies.inertia * bodies.radius**2)[which]
+    spins, mass = float(np.sum(moments / (q or 1.0))), float(np.sum(bodies.mass[which]))
+    return energies(columns, int(which.sum()), q, rate, spins, mass if flows else None)
+
+
+def shear_rates(columns: Columns, state: State) -> np.ndarray:
+    """Return the gradient of the mean flow of samples between walls that move, in 1/T."""
+    mass = len(state.changes) if state.bodies is None else np.sum(state.bodies.mass)
+    return fitted_flow(columns, float(mass))[0]
+
+
+def energies_of_each(columns: Columns, scene: Scene, state: State) -> list[Energies]:
+    """Return the energies of the particles of each species; none where all particles are alike."""
+    number = 0 if scene.effects.species is None else scene.effects.species.kinds
+    return [energies_of(columns, scene, state, species) for species in range(number)]
+
+
+def driven_species(parts: Sequence[Energies], per_period: int, together: int) -> dict[str, Any]:
+    """Return averages over time, with errors by blocking over periods.
+
+    `parts` are the energies (samples,) of each species in the measured window; of so many samples
+    each, `together`, the stored series have the means.
+    """
+    if not parts:
+        return {}
+    found = _averages(
+        parts,
+        lambda part: part.translational,
+        lambda part: part.rotational,
+        np.mean,
+        lambda values: blocking(period_means(values, per_period))[0],
+    )
+    series = _of_each(parts, lambda values: period_means(values, together))
+    return found | {f"{name}_series": values for name, values in series.items()}
+
+
+def cooling_species(
+    parts: Sequence[Energies], total: Energies, exponent: np.ndarray, inside: np.ndarray
+) -> dict[str, Any]:
+    """Return averages over replicas and over the samples that are `inside` the measured window.
+
+    `parts` are the energies (replicas, samples) of each species and `total` those of all particles,
+    in the same units. Since all decay together, the shares E_species/E_trans are averaged, and
+    given in units of E_trans when the measurement begins.
+    """
+    if not parts:
+        return {}
+    whole = restored(total, exponent).translational
+    begun = whole.mean(axis=0)[np.argmax(inside)]
+
+    def share(values):
+        return begun * (values / total.translational)[:, inside].mean(axis=1)
+
+    found = _averages(
+        parts,
+        lambda part: share(part.translational),
+        lambda part: share(part.rotational),
+        np.mean,
+        lambda values: values.std(ddof=1) / np.sqrt(len(values)),
+        lambda part: ratio(part)[:, inside].mean(axis=1),
+    )
+    means = [restored(part, exponent).map(lambda values: values.mean(axis=0)) for part in parts]
+    series = _of_each(means, np.asarray)
+    return found | {f"{name}_series": values for name, values in series.items()}
+
+
+def _averages(parts, translational, rotational, mean, error, share=ratio):
+    """Return the mean and the error of both energies and of R, of each species."""
+    quantities = {"E_trans_species": translational}
+    if parts[0].rotational is not None:
+        quantities |= {"E_rot_species": rotational, "R_species": share}
+    found = {}
+    for name, quantity in quantities.items():
+        values = [quantity(part) for part in parts]
+        found[name] = [mean(one) for one in values]
+        found[f"{name}_stderr"] = [error(one) for one in values]
+    return found
+
+
+def _of_each(parts, function):
+    """Return a function of both energies of each species, by name."""
+    stacked = {"E_trans_species": [function(part.translational) for part in parts]}
+    if parts[0].rotational is not None:
+        stacked["E_rot_species"] = [function(part.rotational) for part in parts]
+    return stacked
+
+
+SUMS = ("v_t^2", "v_r^2", "v_t.v_r")
+"""Columns that the effect contact_averages adds."""
+
+
+def contact_averages(
+    rows: Columns, first: int, per_period: int, inertia: float, begun: Columns | None = None
+) -> dict[str, Any]:
+    """Return variables of a point (see roughgas.data.point) from running sums over collisions.
+
+    Collisions before the sample number `first` do not count, nor those of an incomplete last
+    period. R_collisional = q B/(A + q B) and contact_correlation = C/sqrt(A B), where A, B and C
+    are the means of v_t^2, v_r^2 and v_t.v_r over collisions, and q is `inertia`. Errors are those
+    of the linearised ratios, by blocking over periods. All are NaN where nothing collides or spins,
+    and none is there where nothing was summed. The sums were zero at the start, or as in the sample
+    `begun`.
+    """
+    if not set(SUMS) <= set(rows):
+        return {}
+    running = np.array([rows[name] for name in SUMS])
+    before = np.array([begun[name] for name in SUMS]) if begun else np.zeros((len(SUMS), 1))
+    periods = period_means(np.diff(running, axis=1, prepend=before)[:, first:], per_period)
+    A, B, C = np.where(periods.any(axis=1), periods.mean(axis=1), math.nan).tolist()
+    R, correlation = inertia * B / (A + inertia * B), C / math.sqrt(A * B)
+    slopes = np.array([-1.0 / A, 1.0 / B, 0.0]) * R * (1.0 - R)
+    tilts = np.array([-0.5 * correlation / A, -0.5 * correlation / B, 1.0 / math.sqrt(A * B)])
+    shared = _variables("R_collisional", R, slopes, periods)
+    return shared | _variables("contact_correlation", correlation, tilts, periods)
+
+
+def _variables(name, value, gradient, periods):
+    """Return a function of means with its error, from its gradient and the means (3, periods)."""
+    stderr, blocks = blocking(np.dot(gradient, periods))
+    error = Error(stderr, degrees_of_freedom(blocks))
+    return {
+        name: value,
+        f"{name}_stderr": error.stderr,
+        f"{name}_dof": error.dof,
+        f"{name}_ci95": error.half_width(0.95),
+    }

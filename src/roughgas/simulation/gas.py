@@ -17,13 +17,10 @@ from roughgas.data import checkpoint
 from roughgas.kernel.record import Sampling
 from roughgas.kernel.state import COLLISIONS, EXPONENT, LAST_FIRST, LAST_SECOND, State
 from roughgas.scene import Scene, elastic, initial_state
-from roughgas.simulation.books import Books, books
-from roughgas.simulation.by_species import energies_of
-from roughgas.simulation.contacts import SUMS
-from roughgas.simulation.ends import Initial, state_from
-from roughgas.simulation.energies import Columns, Energies
-from roughgas.simulation.instant import whereabouts
+from roughgas.simulation.energies import SUMS, Columns, Energies, energies_of
+from roughgas.simulation.energy_balance import EnergyBalance, balance
 from roughgas.simulation.recorder import Recorder, most_in, now
+from roughgas.simulation.restart import Initial, positions_and_velocities, state_from
 
 COSTS = "seconds", "collisions", "touched"  # what a Recorder sums up
 
@@ -209,7 +206,7 @@ class Gas:
         Shape (N, D) each. Velocities are in 2^exponent a/T, as those of the sample are. The order
         is that of `spins`; a run of many particles changes it now and then.
         """
-        return whereabouts(self.state, self.scene, self.time)
+        return positions_and_velocities(self.state, self.scene, self.time)
 
     def spins(self) -> np.ndarray:
         """Return a copy of the spins, in 2^exponent/T: (N, 1) of disks, (N, 3) of spheres.
@@ -260,9 +257,9 @@ class Gas:
             setattr(self.recorder, name, record.pop(f"costs.{name}").item())
         return record
 
-    def books(self) -> Books:
-        """Return the books of energy at the present instant."""
-        return books(self.state, self.scene)
+    def balance(self) -> EnergyBalance:
+        """Return the energy balance now."""
+        return balance(self.state, self.scene)
 
     def _run(
         self, sampling: Sampling, samples: int, scene: Scene | None = None, timed: bool = False

@@ -19,7 +19,7 @@ from roughgas.observables.plugin import Observable, Values
 from roughgas.scene import Scene
 from roughgas.simulation import schedule
 from roughgas.simulation.gas import Gas
-from roughgas.simulation.instant import in_order, whereabouts
+from roughgas.simulation.restart import in_order, positions_and_velocities
 
 Functions = Mapping[str, Callable[[Frame], Any]]
 PRESENT = {
@@ -171,7 +171,7 @@ class Watching:
 def frame_of(gas: Gas, system: System) -> Frame:
     """Return a frame of the present instant, without `rates`."""
     state, time = gas.state, gas.time
-    position, velocity = whereabouts(state, gas.scene, time)
+    position, velocity = positions_and_velocities(state, gas.scene, time)
     scale = unit = 2.0 ** int(state.counts[EXPONENT])
     radius, mass, inertia = _bodies(state, system)
     if system.cooling:

@@ -9,11 +9,10 @@ from roughgas.effects import inertia
 from roughgas.kernel import hooks
 from roughgas.scene import Scene, shear_rate
 from roughgas.simulation import cooling, steady
-from roughgas.simulation.ends import Initial
 from roughgas.simulation.energies import Columns
 from roughgas.simulation.gas import Gas
-from roughgas.simulation.recorder import Recorder
-from roughgas.simulation.target import LENGTHS, MOST_SAMPLES, samples_of
+from roughgas.simulation.recorder import LENGTHS, MOST_SAMPLES, Recorder, samples_of
+from roughgas.simulation.restart import Initial
 
 if TYPE_CHECKING:
     from roughgas.observables import System

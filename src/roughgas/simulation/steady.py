@@ -10,15 +10,20 @@ from roughgas.base import InputError
 from roughgas.effects import inertia
 from roughgas.kernel.hooks import present
 from roughgas.scene import Scene, moves_along
-from roughgas.simulation import by_species
-from roughgas.simulation.books import Books, exchange
-from roughgas.simulation.by_species import energies_of_each
-from roughgas.simulation.contacts import contact_averages
-from roughgas.simulation.ends import Initial
-from roughgas.simulation.energies import Columns, energies, ratio, ratio_of_means
+from roughgas.simulation.energies import (
+    Columns,
+    contact_averages,
+    driven_species,
+    energies,
+    energies_of_each,
+    ratio,
+    ratio_of_means,
+    shear_rates,
+)
+from roughgas.simulation.energy_balance import EnergyBalance, energy_exchange
 from roughgas.simulation.gas import Gas, joined
-from roughgas.simulation.recorder import Recorder
-from roughgas.simulation.target import KEY, until_met
+from roughgas.simulation.recorder import KEY, Recorder, until_met
+from roughgas.simulation.restart import Initial
 from roughgas.statistics.errors import (
     UNKNOWN,
     YES,
@@ -145,7 +150,7 @@ def run(
     gas = start(scene, experiment, seed, recorder, initial)
     if initial:
         gas.look()  # at running sums that others have begun
-    begun = Begun(gas.time, gas.sample, gas.books(), gas.begun + gas.collisions)
+    begun = Begun(gas.time, gas.sample, gas.balance(), gas.begun + gas.collisions)
     rows: Columns = {"time": np.empty(0)}
 
     def run_to(schedule):
@@ -160,11 +165,11 @@ def run(
 
 
 class Begun(NamedTuple):
-    """A gas as its time begins to count: the time, running sums, books and collisions."""
+    """A gas as its time begins to count: the time, running sums, energy balance and collisions."""
 
     time: float
     sums: Columns
-    books: Books
+    balance: EnergyBalance
     collisions: int
 
 
@@ -188,7 +193,7 @@ def _measure(gas: Gas, schedule: Mapping[str, Any], rows: Columns, begun: Begun)
         **contact_averages(rows, first, per_period, _inertia_of_sums(scene), begun.sums),
         **_unsubtracted(gas, rows, first),
         **_of_species(gas, rows, first, per_period),
-        **exchange(begun.books, gas.books(), scene, gas.particles),
+        **energy_exchange(begun.balance, gas.balance(), scene, gas.particles),
         "equilibrated": steady,
         "measured_from": begun.time + first * every,
         "measured_collisions": evidence.collisions,
@@ -242,7 +247,7 @@ def _of_species(gas, rows, first, per_period):
     """Return the energies and R of each species."""
     parts = energies_of_each(rows, gas.scene, gas.state)
     parts = [part.map(lambda values: values[first:]) for part in parts]
-    return by_species.driven(parts, per_period, max(1, per_period // KEPT))
+    return driven_species(parts, per_period, max(1, per_period // KEPT))
 
 
 def _unsubtracted(gas, rows, first):
@@ -251,7 +256,7 @@ def _unsubtracted(gas, rows, first):
     if effects.shear is None and not moves_along(effects):
         return {}
     if effects.shear is None:
-        found["shear_rate"] = by_species.shear_rates(rows, gas.state)[first:].mean()
+        found["shear_rate"] = shear_rates(rows, gas.state)[first:].mean()
     series = energies(rows, gas.particles, inertia(effects))
     window = series.map(lambda part: part[first:])
     found["E_trans_unsubtracted"] = window.translational.mean()

@@ -1,13 +1,287 @@
-"""The trajectory of a point as variables of a dataset: all particles at chosen times."""
+"""Snapshots of a gas, and the trajectory that they make.
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+A point's trajectory, frame by frame: where its particles are, and how far they have turned.
+
+It is that of run_point with the same settings and seed; of a cooling gas, that of the first
+replica. Units: particle radius a = mass m = time unit T = 1.
+
+The trajectory of a point as variables of a dataset: all particles at chosen times.
+"""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 
-from roughgas.scene import Scene
-from roughgas.simulation.by_species import names
-from roughgas.simulation.snapshots import Snapshot
+from roughgas.base import InputError, Interval
+from roughgas.kernel.hooks import displacement
+from roughgas.kernel.state import BASE, EXPONENT, NOW, Bodies, State
+from roughgas.scene import Scene, bounds, has_sides, packing
+from roughgas.simulation import cooling, schedule
+from roughgas.simulation.energies import Energies, ratio, restored, species_names
+from roughgas.simulation.gas import Gas
+from roughgas.simulation.restart import Initial, check_initial, in_order, positions_and_velocities
+from roughgas.theory.transport import collision_frequency
+
+STRIDES = 200  # steps are of one collision in the gas for each so many particles
+PATIENCE = 1_000_000  # particles times T that a movie waits for its gas to be stationary, at most
+UNKNOWN_TRANSIENT = 1000.0  # T, where the schedule does not say how long to wait
+PERIODS, FRAMES = 5, 125  # of a drive, and of a movie of a driven gas
+TIME = 25.0  # T shown of a gas whose drive has no period
+
+NUMBERS = range(2, 10_001)  # of frames
+LEGAL = {"start": Interval("[0, 1e9]"), "length": Interval("(0, 1e9]")}
+
+
+class Take(NamedTuple):
+    """What is filmed: in T, or in collisions per particle of a cooling gas."""
+
+    start: float  # since the beginning, or since the gas began to cool
+    length: float
+    frames: int
+    times: tuple[float, ...] = ()  # instants in rising order, in place of equal intervals
+
+    @classmethod
+    def at(cls, times: Sequence[float]) -> Self:
+        """Return the take of these instants."""
+        return cls(times[0], times[-1] - times[0], len(times), tuple(times))
+
+    def options(self) -> list[str]:
+        """Return the options of a command that mean this take."""
+        if self.times:
+            return ["--times", *map(repr, self.times)]
+        return [f"--start={self.start}", f"--length={self.length}", f"--frames={self.frames}"]
+
+
+COOLING = Take(0.0, 16.0, 160)
+
+
+class Snapshot(NamedTuple):
+    """The particles at an instant, in the order of the start, and what moves around them."""
+
+    time: float  # T
+    collisions: float  # per particle, since the beginning, or since the gas began to cool
+    position: np.ndarray  # (N, D) in a, folded into the box
+    velocity: np.ndarray  # (N, D) in a/T, of the images in the box
+    spin: np.ndarray | None  # (N, 2 D - 3) surface velocities in a/T; None without spin
+    angle: np.ndarray | None  # (N,) by which disks have turned; None in space
+    E_trans: float  # m a^2/T^2 per degree of freedom; in a sheared gas without the mean flow
+    E_rot: float | None
+    R: float | None
+    floor: float | None  # its height in a; None without one
+    slide: float | None  # displacement of the image above a sheared gas, from 0 to L
+    walls: float | None  # displacement of shaken walls
+    bodies: Bodies | None = None  # what each particle is; None where all are alike
+    # (low, high) of each axis, in a: the surfaces of walls on single sides; inf where there is none
+    planes: Sequence[tuple[float, float]] = ()
+
+    def radius(self) -> np.ndarray:
+        """Return the radii of the particles, (N,) in a."""
+        return np.ones(len(self.position)) if self.bodies is None else self.bodies.radius
+
+
+def chosen(
+    experiment: Mapping[str, Any],
+    scene: Scene,
+    start: float | None = None,
+    length: float | None = None,
+    frames: int | None = None,
+    times: Sequence[float] | None = None,
+    initial: Sequence[Initial] = (),
+) -> Take:
+    """Return the take that is asked for; what is None is as usual, but that it begins where an
+    `initial` state is. Raises InputError."""
+    given = {"start": start, "length": length, "frames": frames}
+    asked: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
+    for name, legal in LEGAL.items():
+        if name in asked:
+            asked[name] = legal.check(name, asked[name])
+    if frames is not None and not (frames == int(frames) and frames in NUMBERS):
+        raise InputError("frames", frames, f"be a whole number in [{NUMBERS[0]}, {NUMBERS[-1]}]")
+    begun = initial[0].time if initial and schedule.of(experiment).DRIVEN else 0.0
+    if times is None:
+        usual = usual_take(experiment, scene)
+        take = (usual._replace(start=begun) if initial else usual)._replace(**asked)
+        _check_start("start", take.start, begun)
+        return take
+    times = [LEGAL["start"].check("times", float(time)) for time in times]
+    if times:
+        _check_start("times", times[0], begun)
+    if asked or not times or times != sorted(set(times)):
+        raise InputError("times", times, "rise, and stand without start, length and frames")
+    return Take.at(times)
+
+
+def _check_start(key: str, start: float, begun: float) -> None:
+    if start < begun:
+        raise InputError(key, start, f"be {begun:g} or more, where the initial state is")
+
+
+def usual_take(experiment: Mapping[str, Any], scene: Scene) -> Take:
+    """Return what is worth filming.
+
+    That is a driven gas once it should be stationary, for some periods of its drive or until its
+    images have slid by a whole period; or a cooling gas while R settles.
+    """
+    if schedule.of(experiment) is cooling:
+        return COOLING
+    wait = experiment["schedule"].get("equilibrate", UNKNOWN_TRANSIENT)
+    shear, drive = scene.effects.shear, scene.effects.floor or scene.effects.shaken_walls
+    length = PERIODS * drive.period if drive else TIME
+    if shear is not None:
+        length = shear.length / shear.velocity
+    return Take(min(wait, PATIENCE / experiment["particles"]), length, FRAMES)
+
+
+def snapshots(
+    scene: Scene,
+    experiment: Mapping[str, Any],
+    seed: int,
+    take: Take,
+    initial: Sequence[Initial] = (),
+) -> Iterator[Snapshot]:
+    """Yield the snapshots of a take of a point, one after the other.
+
+    It begins in the first of the `initial` states, if there are any: times of a driven gas go on
+    from there, those of a cooling one begin anew.
+
+    Where the take names no times, those of a driven gas are equally spaced, each in the middle of
+    its interval, away from the instants at which a sawtooth falls back. Those of a cooling gas are
+    equally spaced in scaled time: their interval is a fixed share of the mean free time (Enskog's,
+    at the present E_trans), so that the take is about as long as asked for. Angles are exact unless
+    a particle has two contacts within one step, of one collision in the gas for each 200 particles.
+
+    Raises InputError for illegal values, CollapseError where contacts accumulate without end.
+    """
+    kind = schedule.of(experiment)
+    if initial:
+        check_initial(initial, experiment, scene)
+    gas = kind.start(scene, experiment, seed, None, initial[:1])
+    stride, before = max(1, gas.particles // STRIDES), gas.collisions
+    if kind is not cooling and take.start > gas.time:
+        wait = take.start - gas.time
+        samples = math.ceil(wait / experiment["schedule"]["sample_every"])
+        gas.in_time(wait / samples, samples)
+    if scene.effects.spin is not None and len(scene.box) == 2:
+        gas.watcher = Turning(gas.particles)
+    gas.look()
+    if kind is cooling:
+        _make_collisions(gas, take.start, stride, before)
+    if take.times:
+        for time in take.times:
+            if kind is cooling:
+                _make_collisions(gas, time, stride, before)
+            else:
+                _let_pass(gas, time, stride)
+            yield _snapshot(gas, before)
+        return
+    if kind is cooling:
+        yield _snapshot(gas, before)
+    interval = take.length / take.frames
+    for frame in range(1 if kind is cooling else 0, take.frames):
+        until = take.start + (frame + 0.5) * interval
+        if kind is cooling:
+            until = gas.time + interval / _collision_frequency(gas, experiment)
+        _let_pass(gas, until, stride)
+        yield _snapshot(gas, before)
+
+
+def _let_pass(gas: Gas, until: float, stride: int) -> None:
+    """Advance a gas to an instant (T), so many collisions at a time."""
+    while gas.time < until and gas.step(until, stride):
+        pass
+
+
+def _make_collisions(gas: Gas, per_particle: float, stride: int, before: int) -> None:
+    """Advance a gas to so many collisions per particle, rounded to whole ones in the gas, more than
+    there were before."""
+    wanted = before + round(gas.particles / 2 * per_particle)
+    while gas.collisions < wanted:
+        gas.step(math.inf, min(stride, wanted - gas.collisions))
+
+
+class Turning:
+    """Watches a gas of disks: the angles (N,) by which they have turned, in the order of the start.
+
+    A Watcher of roughgas.simulation.gas.
+    """
+
+    def __init__(self, particles: int) -> None:
+        self.angle = np.zeros(particles)
+
+    def before(self, state: State) -> None:
+        """Note the instant, and the spins at it."""
+        self._begun, self._spin = _now(state), _turning(state)
+
+    def after(self, state: State) -> None:
+        """Add what was turned since then: with the old spin up to a contact, the new one after."""
+        now = _now(state)
+        path = in_order(state, state.clock[BASE] + state.trajectory[:, -1])
+        contact = np.clip(path, self._begun, now)  # the last one, if there was one in this step
+        spin = _turning(state)
+        self.angle += self._spin * (contact - self._begun) + spin * (now - contact)
+
+
+def _turning(state):
+    return in_order(state, state.spin)[:, 0]
+
+
+def _collision_frequency(gas, experiment):
+    """Return Enskog's; of a mixture about what it would be, from means of radii and masses."""
+    T, dimension, bodies = (
+        2.0 * _energies(gas).translational,
+        len(experiment["box"]),
+        gas.state.bodies,
+    )
+    found = float(collision_frequency(T, packing(experiment), dimension))
+    if bodies is None:
+        return found
+    wide = np.mean(bodies.radius) ** (dimension - 1) / np.mean(bodies.radius**dimension)
+    return found * float(wide * np.sqrt(np.mean(1.0 / bodies.mass)))
+
+
+def _snapshot(gas: Gas, before: int) -> Snapshot:
+    """Return what there is to be seen at the present instant; so many collisions do not count."""
+    state, effects, present, time = gas.state, gas.scene.effects, _energies(gas), gas.time
+    unit, spin = 2.0 ** int(state.counts[EXPONENT]), state.spin
+    position, velocity = positions_and_velocities(state, gas.scene, time)
+    if spin is not None:
+        spin = in_order(state, spin * unit)
+    return Snapshot(
+        time=time,
+        collisions=2.0 * (gas.collisions - before) / gas.particles,
+        position=in_order(state, position),
+        velocity=in_order(state, velocity * unit),
+        spin=spin,
+        angle=gas.watcher.angle.copy() if isinstance(gas.watcher, Turning) else None,
+        E_trans=float(present.translational),
+        E_rot=None if present.rotational is None else float(present.rotational),
+        R=None if spin is None else float(ratio(present)),
+        floor=displacement(effects.floor, time),
+        slide=displacement(effects.shear, time),
+        walls=displacement(effects.shaken_walls, time),
+        bodies=_bodies(state),
+        planes=bounds(effects, position.shape[1], time) if has_sides(effects) else (),
+    )
+
+
+def _bodies(state):
+    if state.bodies is None:
+        return None
+    *of_each, largest, pairs = state.bodies
+    return Bodies(*(in_order(state, values) for values in of_each), largest, pairs)
+
+
+def _energies(gas: Gas) -> Energies:
+    """Return the energies of the last sample, in m a^2/T^2."""
+    present = restored(gas.energies(gas.sample), gas.sample["exponent"])
+    return present.map(lambda part: part[0])
+
+
+def _now(state):
+    return state.clock[BASE] + state.clock[NOW]
+
 
 MOVED = {"image_shift": "slide", "floor_height": "floor", "wall_displacement": "walls"}
 """Variables of a trajectory that have other names in a Snapshot."""
@@ -26,17 +300,17 @@ def variables(
     return {name: np.array(part) for name, part in parts.items() if part[0] is not None} | {
         "axis": list("xyz"[:dimension]),
         "radius": shots[0].radius(),
-        **_bodies(shots[0], experiment),
+        **_particles_of(shots[0], experiment),
         "box": np.array(lengths),
         "periodic": np.array([length is not None for length in scene.box], "i1"),
     }
 
 
-def _bodies(shot: Snapshot, experiment: Mapping[str, Any]) -> dict[str, Any]:
+def _particles_of(shot: Snapshot, experiment: Mapping[str, Any]) -> dict[str, Any]:
     """Return what else each particle is, where they differ."""
     if shot.bodies is None:
         return {}
-    return names(experiment) | {
+    return species_names(experiment) | {
         "mass": shot.bodies.mass,
         "inertia": shot.bodies.inertia,
         "species_of": shot.bodies.species,

@@ -12,7 +12,7 @@ from roughgas.scene import build
 from roughgas.show import encoding as movie
 from roughgas.show.movies import particles
 from roughgas.show.movies.drawing import MovieSubject, picture, spin_scales, write
-from roughgas.simulation.snapshots import Snapshot
+from roughgas.simulation.trajectory import Snapshot
 
 SIDE = 12.0
 SPIN, ANGLE = [[0.5], [-0.5], [0.0]], [0.0, np.pi / 2, 3.0]

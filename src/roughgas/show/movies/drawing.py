@@ -18,7 +18,7 @@ from roughgas.show import style
 from roughgas.show.encoding import write_movie
 from roughgas.show.movies.particles import OF_SPECIES, Boundaries, Disks, Spheres, View
 from roughgas.simulation import schedule
-from roughgas.simulation.snapshots import Snapshot
+from roughgas.simulation.trajectory import Snapshot
 
 WIDTH = 4.8  # inches
 DPI = {".gif": 100, ".mp4": 200}

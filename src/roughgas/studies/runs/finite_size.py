@@ -11,7 +11,7 @@ from roughgas import theory
 from roughgas.base import CollapseError
 from roughgas.simulation.energies import ratio
 from roughgas.simulation.gas import Gas
-from roughgas.simulation.instant import whereabouts
+from roughgas.simulation.restart import positions_and_velocities
 from roughgas.studies.tasks import point_names
 from roughgas.tasks import stream, timed
 from roughgas.tasks.free_cooling import FreeCooling, homogeneous, thermalised
@@ -94,7 +94,7 @@ def look(gas: Gas) -> tuple[float, float]:
 
     Without correlations these are 2 (D - 1) of the D N degrees of freedom.
     """
-    position, velocity = whereabouts(gas.state, gas.scene, gas.time)
+    position, velocity = positions_and_velocities(gas.state, gas.scene, gas.time)
     (number, dimension), box = position.shape, np.array(gas.scene.box)
     waves = np.exp(2j * np.pi * position / box).T @ velocity  # (direction, component)
     across = np.abs(waves[~np.eye(dimension, dtype=bool)]) ** 2

@@ -19,7 +19,7 @@ from roughgas.kernel.state import LAST_FIRST, LAST_SECOND
 from roughgas.scene import build, shear_rate
 from roughgas.simulation import schedule
 from roughgas.simulation.gas import Gas
-from roughgas.simulation.instant import whereabouts
+from roughgas.simulation.restart import positions_and_velocities
 from roughgas.studies.tasks import profile_name
 from roughgas.tasks import check_alike, stream, timed
 
@@ -61,7 +61,7 @@ class Profile:
         E_trans, E_rot = (float(x[0]) for x in self.gas.energies(self.gas.sample).there())
         R = E_rot / (E_rot + E_trans)
         self.whole[:, phase] += E_trans, E_rot, R
-        position, velocity = whereabouts(self.gas.state, self.gas.scene, self.gas.time)
+        position, velocity = positions_and_velocities(self.gas.state, self.gas.scene, self.gas.time)
         for row, values in zip(self.sums, self._particles(position, velocity), strict=True):
             row[phase] += values
         if self.gas.scene.box[-1] is None:

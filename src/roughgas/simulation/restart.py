@@ -1,4 +1,8 @@
-"""Where a run begins, if not on a lattice, and the state that it leaves for another one to go on.
+"""The particles at a time, and the states from which a run starts again.
+
+Where the particles of a gas are at the present instant, between the kernel's events.
+
+Where a run begins, if not on a lattice, and the state that it leaves for another one to go on.
 
 A state is what physics knows: positions, velocities and spins at an instant. From these a run goes
 on to rounding, in this version of the kernel or another, also with another r, beta or drive.
@@ -18,13 +22,45 @@ import numpy as np
 
 from roughgas.base import InputError, shown
 from roughgas.kernel.compiler import source_hash
+from roughgas.kernel.hooks import displacement
 from roughgas.kernel.memory import new_state
 from roughgas.kernel.state import BASE, EXPONENT, NOW, State
 from roughgas.scene import Scene, check_places, given_bodies
-from roughgas.simulation.instant import in_order, whereabouts
 
 if TYPE_CHECKING:
     import xarray
+
+
+def in_order(state: State, values: np.ndarray) -> np.ndarray:
+    """Return a copy of `values` (N, ...), one of each particle, in the order of the start."""
+    ordered = np.empty_like(values)
+    ordered[state.label] = values
+    return ordered
+
+
+def positions_and_velocities(
+    state: State, scene: Scene, time: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return positions in a, folded into the box, and velocities now, (N, D) each.
+
+    `time` is the present in T. Velocities are those of the images in the box, in the kernel's unit:
+    2^exponent a/T. The order is that of the state's arrays.
+    """
+    dimension, gravity, shear = len(scene.box), scene.effects.gravity, scene.effects.shear
+    elapsed = state.clock[NOW] - state.trajectory[:, -1]
+    velocity = state.trajectory[:, dimension:-1].copy()
+    position = state.trajectory[:, :dimension] + velocity * elapsed[:, None]
+    if gravity is not None:
+        position[:, -1] -= 0.5 * gravity.acceleration * elapsed**2
+        velocity[:, -1] -= gravity.acceleration * elapsed
+    if shear is not None:
+        images = np.floor(position[:, 1] / scene.box[1])
+        position[:, 0] -= displacement(shear, time) * images
+        velocity[:, 0] -= shear.velocity * images
+    for axis, length in enumerate(scene.box):
+        if length is not None:
+            position[:, axis] %= length
+    return position, velocity
 
 
 OF_BODIES = {"radius": "radius", "species": "species_of"}
@@ -195,7 +231,7 @@ def state_from(
     return state, None, np.ptp(initial.position, axis=0)
 
 
-def last_states(gases: Iterable[Run]) -> dict[str, Any]:
+def final_states(gases: Iterable[Run]) -> dict[str, Any]:
     """Return variables of a point (see roughgas.data.point): the states that its runs end in."""
     states = [_last(gas) for gas in gases]
     found = {
@@ -214,7 +250,7 @@ def last_states(gases: Iterable[Run]) -> dict[str, Any]:
 def _last(gas: Run) -> Initial:
     state, scene = gas.state, gas.scene
     unit = 2.0 ** int(state.counts[EXPONENT])
-    position, velocity = whereabouts(state, scene, gas.time)
+    position, velocity = positions_and_velocities(state, scene, gas.time)
     found = Initial(
         position=in_order(state, position),
         velocity=in_order(state, velocity * unit),

@@ -14,7 +14,7 @@ from roughgas import theory
 from roughgas.base import InputError
 from roughgas.effects.species import Mixture, mixture_of
 from roughgas.kernel.state import Bodies
-from roughgas.scene.composition import Scene, check_box
+from roughgas.scene.scene import Scene, check_box
 
 
 def draw_bodies(

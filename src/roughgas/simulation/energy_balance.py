@@ -1,4 +1,4 @@
-"""The books of a simulation's energy: how much each source has put in, and each sink taken out.
+"""The energy balance of a simulation: how much each source has put in, and each sink taken out.
 
 Effects that do work, and the contacts, each have an account in the kernel's ledger. All that they
 have booked is the change of the energy, to rounding. Gravity has no account: its potential counts
@@ -21,17 +21,17 @@ LEAST = (
 )
 
 
-class Books(NamedTuple):
+class EnergyBalance(NamedTuple):
     """The energies of all particles, in m a^2/T^2."""
 
     energy: np.ndarray  # (2,) of translation and rotation
     ledger: np.ndarray  # (accounts, 2) what each effect, and last the contacts, have put into them
 
 
-def books(state: State, scene: Scene) -> Books:
-    """Return the books at the present instant."""
+def balance(state: State, scene: Scene) -> EnergyBalance:
+    """Return the energy balance now."""
     unit = np.ldexp(1.0, 2 * int(state.counts[EXPONENT]))
-    return Books(_energy(state, scene) * unit, state.ledger[0] * unit + state.ledger[1])
+    return EnergyBalance(_energy(state, scene) * unit, state.ledger[0] * unit + state.ledger[1])
 
 
 def _energy(state, scene):
@@ -54,7 +54,9 @@ def _energy(state, scene):
     return np.array([translational, rotational])
 
 
-def exchange(before: Books, after: Books, scene: Scene, particles: int) -> dict[str, Any]:
+def energy_exchange(
+    before: EnergyBalance, after: EnergyBalance, scene: Scene, particles: int
+) -> dict[str, Any]:
     """Return variables of a point (see roughgas.data.point): what was put in between two instants.
 
     With drives and spin, these say how the drives' input is shared between the two motions.
@@ -78,7 +80,7 @@ def exchange(before: Books, after: Books, scene: Scene, particles: int) -> dict[
 
 
 def imbalance(booked: np.ndarray, gain: np.ndarray, energy: float = 0.0) -> float:
-    """Return the largest energy of a motion that the books do not explain, over all exchanged.
+    """Return the largest energy of a motion that the balance does not explain, over all exchanged.
 
     Where hardly anything is exchanged, as by particles that are nearly elastic and smooth, it is
     over a thousandth of the `energy` that was there, whose roundings are missing.
