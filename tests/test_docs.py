@@ -6,10 +6,7 @@ import os
 import re
 import shlex
 import shutil
-import signal
-import socket
 import subprocess
-import time
 from pathlib import Path
 from urllib.request import urlopen
 
@@ -94,12 +91,6 @@ MADE = (
     *(f"results/small/{page}.html" for page in ("report", "explore", "living")),
 )
 
-JUPYTER = ("JUPYTER_CONFIG_DIR", "JUPYTER_DATA_DIR", "IPYTHONDIR")
-SERVER = """
-c.ServerApp.allow_root, c.ServerApp.open_browser, c.ServerApp.port = True, False, {port}
-c.IdentityProvider.token = ""
-"""
-
 
 def blocks(language):
     """The text of each fenced block of a language."""
@@ -181,26 +172,6 @@ def test_all_of_it_typed_in_a_fresh_clone(typed):
     assert status.stdout.split() == ["??", "studies/mine/"]
 
 
-@pytest.mark.slow
-def test_make_notebook_serves_the_tutorial(typed, tmp_path):
-    """It installs Jupyter by itself; a browser is not opened here."""
-    with socket.socket() as free:
-        free.bind(("127.0.0.1", 0))
-        port = free.getsockname()[1]
-    (tmp_path / "jupyter_server_config.py").write_text(SERVER.format(port=port))
-    around = environment(tmp_path) | dict.fromkeys(JUPYTER, str(tmp_path))
-    serving = subprocess.Popen(["make", "notebook"], cwd=typed[1], env=around, process_group=0)
-    address = f"http://127.0.0.1:{port}/api/contents/tutorial.ipynb?content=0"
-    try:
-        while not (found := asked(address)):
-            assert serving.poll() is None
-            time.sleep(0.5)
-    finally:
-        os.killpg(serving.pid, signal.SIGTERM)
-        serving.wait()
-    assert found["type"] == "notebook" and found["size"] > 5000
-
-
 def asked(address):
     """What a server answers; None as long as there is none."""
     try:
@@ -215,23 +186,6 @@ def environment(folder):
     own = ("PYTHONPATH", "VIRTUAL_ENV", "ROUGHGAS_CACHE_DIR")
     kept = {key: value for key, value in os.environ.items() if key not in own}
     return kept | {"XDG_CACHE_HOME": str(folder / "cache")}
-
-
-MAKE = ["make", "--no-print-directory"]  # which is said within `make test`
-
-
-def planned(*arguments):
-    """The lines that make would carry out."""
-    command = [*MAKE, "-n", *arguments]
-    ran = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
-    return ran.stdout.splitlines()
-
-
-@pytest.mark.parametrize("target", ["figures", "report"])
-def test_what_simulates_obeys_the_scale(target):
-    said = "\n".join(planned("SCALE=small", target))
-    assert "--config scale=small" in said and "results/small/" in said
-    assert "scale=paper" not in said and "results/paper" not in said
 
 
 CONTAINERS_ROOT = Path(__file__).parents[1]

@@ -96,13 +96,6 @@ def test_it_begins_with_a_point_and_shows_any_other(page, ran):
     assert shows(page, ran, "vibrated_smooth_walls", "0.9", "0")
 
 
-def test_the_keyboard_is_enough(page, ran):
-    page.find("#experiment")[0].send_keys("A gas u", Keys.TAB)
-    page.driver.switch_to.active_element.send_keys(Keys.DOWN, Keys.TAB)
-    page.driver.switch_to.active_element.send_keys(Keys.DOWN)
-    assert shows(page, ran, "sheared", "0.8", "0")
-
-
 def test_a_click_on_a_point_chooses_it(page, ran):
     page.script("location.hash = '#cooling/r0.9/beta-0.5'")
     page.wait(lambda: page.text("#title").startswith("A freely cooling gas"))
@@ -154,16 +147,6 @@ def made_up(browser, tmp_path):
     browser.open(tmp_path / "e.html")
     browser.wait(lambda: browser.find("#ratios canvas") and browser.find("#energies canvas"))
     return browser
-
-
-def test_a_legend_names_the_theory_and_titles_lie_beside_their_numbers(made_up):
-    assert made_up.text("#legend").endswith("lines: theory of free cooling")
-    assert made_up.text("#theory") == "theory of free cooling"
-    ticks, room, widest = made_up.script("""
-        const u = PLOTS.energies, ticks = u.axes[1]._values.filter(one => one);
-        u.ctx.font = FONT;
-        return [ticks, 62 - 5, Math.max(...ticks.map(one => u.ctx.measureText(one).width))];""")
-    assert 2 < len(ticks) < 9 and widest < room and any("10⁻" in one for one in ticks)
 
 
 def test_what_is_not_known_is_said_and_drawn(made_up):
@@ -222,32 +205,6 @@ def test_the_command_is_copied(page):
     assert field.get_attribute("value") == page.text("#target")
 
 
-def test_the_scene_is_pictured(page):
-    assert page.find("#scene svg .bar") and page.find("#scene svg .disk")
-    select(page, "experiment", "cooling")
-    assert not page.find("#scene svg .bar")
-    assert "freely cooling" in page.find("#scene svg")[0].get_attribute("aria-label")
-
-
-def test_it_is_dark_where_that_is_asked_for_and_white_on_paper(page):
-    def paper():
-        return page.script("return tone('paper')")
-
-    features = [{"name": "prefers-color-scheme", "value": "dark"}]
-    page.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": features})
-    try:
-        page.wait(lambda: paper() == "#16181c")
-        page.script("dispatchEvent(new Event('beforeprint'))")
-        page.wait(lambda: paper() == "#fff")
-        page.script("dispatchEvent(new Event('afterprint'))")
-        page.wait(lambda: paper() == "#16181c")
-        page.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})
-        position = page.script("return getComputedStyle(document.querySelector('form')).position")
-        assert position == "static"
-    finally:
-        page.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "", "features": []})
-
-
 def test_what_is_dragged_over_is_zoomed_to_in_both_plots(page):
     spans = "return [PLOTS.ratios, PLOTS.residuals].map(u => [u.scales.x.min, u.scales.x.max])"
     (low, high), _ = page.script(spans)
@@ -259,16 +216,3 @@ def test_what_is_dragged_over_is_zoomed_to_in_both_plots(page):
     assert above == pytest.approx(beneath) and -0.1 < above[0] < 0.1 < above[1] < 0.7
     ActionChains(page.driver).double_click(over).perform()
     page.wait(lambda: page.script(spans)[0] == [low, high])
-
-
-def test_it_fits_on_a_phone(page):
-    page.driver.execute_cdp_cmd(
-        "Emulation.setDeviceMetricsOverride",
-        {"width": 360, "height": 740, "deviceScaleFactor": 2, "mobile": True},
-    )
-    try:
-        page.wait(lambda: page.script("return innerWidth") == 360)
-        page.wait(lambda: page.find("#ratios .uplot")[0].size["width"] <= 360)
-        assert page.script("return document.documentElement.scrollWidth") <= 360
-    finally:
-        page.driver.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})

@@ -2,7 +2,6 @@
 
 import os
 import re
-import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -35,10 +34,6 @@ complete -C $argv[1]
 """,
 }
 NAMED = {"bash": ["bash"], "zsh": ["zsh"], "fish": []}  # the first argument of a script, its name
-SHELLS = [
-    pytest.param(name, marks=pytest.mark.skipif(not shutil.which(name), reason=f"no {name}"))
-    for name in ASK
-]
 
 
 def lines_for(shell, capsys):
@@ -94,11 +89,6 @@ def test_names_are_read_unchecked_which_is_fast(tmp_path, monkeypatch):
     )
     said = subprocess.run([sys.executable, "-c", code], check=True, stdout=subprocess.PIPE).stdout
     assert said.decode().strip() == "['mine', 'sound.one']"
-
-
-@pytest.mark.parametrize("shell", SHELLS)
-def test_every_shell_takes_its_lines(shell, capsys):
-    assert completed("roughgas theory --dimension ", lines_for(shell, capsys), shell) == {"2", "3"}
 
 
 def test_zsh_describes_each_command_by_its_summary(tmp_path):

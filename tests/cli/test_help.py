@@ -53,14 +53,6 @@ def test_a_command_calls_a_function_of_its_options(name):
     inspect.signature(getattr(import_module(f"roughgas.{module}"), function)).bind("options")
 
 
-def test_summaries_stand_below_each_other():
-    lines = cli.parser_of().epilog.splitlines()[1 : 1 + len(cli.COMMANDS)]
-    begins = {
-        line.index(one.summary) for line, one in zip(lines, cli.COMMANDS.values(), strict=True)
-    }
-    assert len(begins) == 1
-
-
 @pytest.fixture
 def folder(tmp_path):
     """A folder with a configuration, as a person has it."""

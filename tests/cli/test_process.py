@@ -11,7 +11,7 @@ import pytest
 from schedules import TINY
 
 from cli.conftest import GAS, ROOT
-from roughgas.base import CollapseError, __version__
+from roughgas.base import CollapseError
 from roughgas.cli import main
 from roughgas.cli.show import summary
 from roughgas.data.point import WALL_CLOCK, read_point
@@ -73,26 +73,6 @@ def test_bad_arguments_are_refused_in_one_line(capsys, arguments, message):
     assert stop.value.code == 2
     assert said.err.startswith(f"roughgas: error: {message}")
     assert said.err.count("\n") == 1
-
-
-def test_the_version(capsys):
-    with pytest.raises(SystemExit):
-        main(["--version"])
-    assert capsys.readouterr().out == f"roughgas {__version__}\n"
-
-
-def test_help_imports_nothing_heavy():
-    script = (
-        "import sys\nfrom roughgas.cli import main\n"
-        "try: main(['--help'])\n"
-        "except SystemExit: print(*sys.modules)\n"
-    )
-    done = subprocess.run(
-        [sys.executable, "-c", script], capture_output=True, text=True, check=True
-    )
-    loaded = set(done.stdout.split())
-    heavy = {"numpy", "numba", "xarray", "netCDF4", "matplotlib", "jsonschema", "yaml"}
-    assert loaded.isdisjoint(heavy | {"tqdm", "argcomplete"})
 
 
 def test_a_process_has_one_thread_for_linear_algebra(monkeypatch):

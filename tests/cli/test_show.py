@@ -11,13 +11,11 @@ from tests.cli.conftest import GAS, ROOT
 from tests.entry import main
 
 from roughgas import theory
-from roughgas.config import showcase
 from roughgas.config.reading import read_yaml
 from roughgas.data.point import read_point
 from roughgas.data.reduced import read_reduced
 from roughgas.statistics.errors import Estimate
 from roughgas.studies.files import write_task
-from roughgas.studies.tables import TABLES
 
 
 def shown(capsys, *arguments):
@@ -140,16 +138,6 @@ def test_a_task_of_a_study(tmp_path, capsys):
     assert found["sizes"] == {"chain": 11} and found["variables"] == {"seconds": 1.5}
 
 
-def test_studies(tmp_path, capsys, monkeypatch):
-    group = xarray.Dataset({"bias": ("corner", [0.1])}, attrs={"scale": "small"})
-    groups = {"/coverage": group}
-    xarray.DataTree.from_dict(groups).to_netcdf(tmp_path / "all.nc", engine="netcdf4")
-    monkeypatch.setitem(TABLES, "coverage", lambda data: f"{data.bias.values}\n")
-    assert shown(capsys, tmp_path / "all.nc").endswith("scale small\n\n[0.1]\n")
-    found = json.loads(shown(capsys, tmp_path / "all.nc", "--json"))
-    assert found["studies"]["coverage"]["sizes"] == {"corner": 1}
-
-
 def test_descriptions_cannot_move_the_cursor(tmp_path, capsys):
     config = read_yaml(ROOT / "config.yaml")
     config["experiments"]["cooling"]["description"] = "a \x1b[2Jgas\x9b1A\nthat \u202ecools"
@@ -158,25 +146,6 @@ def test_descriptions_cannot_move_the_cursor(tmp_path, capsys):
         assert main(["experiments", "--config", str(tmp_path / "c.yaml"), *more]) == 0
         text = capsys.readouterr().out
         assert "1b[2Jgas" in text and all(one.isprintable() for one in text.replace("\n", ""))
-
-
-def test_a_film(tmp_path, capsys):
-    settings = showcase(read_yaml(ROOT / "config.yaml"), "small")
-    settings["particles"] = 100  # too few for cells: one kernel less
-    film = tmp_path / "film.nc"
-    told = ["--scale=small", f"--settings={json.dumps(settings)}", f"--output={film}"]
-    assert main(["clustering", *told]) == 0
-    text = shown(capsys, film)
-    assert f"{film}: film of a cooling gas" in text and "61, of 31 x 31 cells" in text
-    assert "\n60 " in text and "roughgas.steps clustering --scale small" in text
-    assert json.loads(shown(capsys, film, "--json"))["frames"] == 61
-
-
-def test_several_files(product, capsys):
-    text = shown(capsys, product / "beta0.5_1.nc", product / "beta0.5_2.nc")
-    assert text.count(": point\n") == 2
-    lines = shown(capsys, product / "beta0.5_1.nc", product / "reduced.nc", "--json").splitlines()
-    assert [json.loads(line)["kind"] for line in lines] == ["point", "reduced dataset"]
 
 
 @pytest.mark.parametrize(
@@ -198,9 +167,3 @@ def test_what_is_none_of_them_is_refused_in_one_line(
     said = capsys.readouterr()
     assert said.out == "" and said.err.startswith("roughgas: error: ")
     assert message in said.err and said.err.count("\n") == 1
-
-
-def test_a_foreign_netcdf_file_is_refused(tmp_path, capsys):
-    xarray.Dataset({"R": 1.0}).to_netcdf(tmp_path / "other.nc")
-    assert main(["show", str(tmp_path / "other.nc")]) == 2
-    assert "must be a dataset of roughgas" in capsys.readouterr().err

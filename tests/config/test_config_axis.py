@@ -58,17 +58,6 @@ def test_a_variant_is_an_experiment_like_others(whole):
     config.check_one_variant("spun/inertia1", found)
 
 
-def test_any_value_makes_a_variant_in_the_sweep_or_not(whole):
-    found = config.experiment(whole, "spun/inertia0.33", "paper")
-    assert found["effects"]["spin"]["inertia"] == 0.33
-
-
-def test_values_are_words_or_numbers(whole):
-    for label, value in (("particles", "particles"), ("0.5", 0.5), ("-1", -1.0)):
-        found = config.experiment(whole, f"walls/roughness{label}", "paper")
-        assert found["effects"]["walls"] == {"restitution": 1, "roughness": value}
-
-
 def test_the_axis_is_inherited_and_null_removes_it(whole):
     child, still = (config.experiment(whole, name, "paper") for name in ("child", "still"))
     assert config.variants("child", child)[0] == "child/inertia1"
@@ -161,12 +150,6 @@ def test_a_quantity_of_a_species_is_a_variant(with_experiments):
     settings = config.experiment(found, "grown/radius2", "paper")
     assert settings["species"][0] == {"fraction": 0.5, "name": "light", "radius": 2.0}
     assert species[1]["radius"]["deviation"] == 0.1  # what is written stays as it is
-
-
-def test_settings_of_a_variant_survive_the_way_through_text(whole):
-    settings = config.point_settings(config.experiment(whole, "spun/inertia1", "paper"))
-    assert settings["swept"] == "spin.inertia" and "sweep" not in settings
-    assert config.from_text(config.as_text(settings), "--settings") == settings
 
 
 def test_kernels_depend_on_the_values_of_all_variants(whole):
@@ -310,13 +293,6 @@ def test_a_mistake_at_a_scale_is_named(refusal, with_experiments):
     whole = with_experiments(spun=INERTIA)
     whole["scales"]["small"]["spun"] = {"sweep": {"spin.inertia": ["3"]}}
     assert "experiments.spun/inertia3 at scale small.effects.spin.inertia = 3.0" in refusal(
-        schema.check, whole
-    )
-
-
-def test_swept_is_not_for_people(refusal, with_experiments):
-    whole = with_experiments(spun=INERTIA | {"swept": "spin.inertia"})
-    assert "experiments.spun.swept = 'spin.inertia': must not be given here" in refusal(
         schema.check, whole
     )
 

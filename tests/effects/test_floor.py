@@ -7,15 +7,15 @@ import numpy as np
 import pytest
 from brute_force import Beside, begin, run, scene_of, settings, snapshot
 from compiled import from_python
-from hard_cases.waves import DIGITS, exact, triangle
+from hard_cases.waves import DIGITS, exact
 
 from roughgas.base import InputError
 from roughgas.effects import floor as floors
-from roughgas.effects import sine_floor, triangular_floor
+from roughgas.effects import sine_floor
 from roughgas.effects.floor import Floor
 from roughgas.effects.settings import Surroundings, make
 from roughgas.effects.sine_floor import SineFloor
-from roughgas.effects.triangular_floor import FALLING, RISING, TriangularFloor
+from roughgas.effects.triangular_floor import TriangularFloor
 from roughgas.kernel.hooks import CODES
 from roughgas.kernel.memory import new_state
 from roughgas.kernel.state import BASE, BOUNDARY_HITS, NOW
@@ -45,15 +45,6 @@ def one_particle(height, velocity, **floor):
     scene, _ = begin(experiment, 1.0, 0.0)
     position = np.array([[3.0, height]])
     return scene, new_state(scene, position, np.array([velocity]), np.zeros((1, 1)))
-
-
-def test_a_parabola():
-    scene, state = one_particle(50.0, (0.7, 12.0))
-    for time in 0.25 * np.arange(1, 60):
-        row = run(state, scene, 1, interval=0.25)
-        assert row["y"] == pytest.approx(50.0 + 12.0 * time - time**2 / 2, abs=1e-12)
-        assert row["vv_y"] == pytest.approx((12.0 - time) ** 2, abs=1e-11)
-        assert row["vv_x"] == 0.7**2
 
 
 @pytest.mark.parametrize("restitution", [1.0, 0.9])
@@ -95,7 +86,6 @@ def exact_time_from(floor, height, speed, time):
 
 
 time_to_sine = from_python(sine_floor.time_to_floor)
-time_to_triangle = from_python(triangular_floor.time_to_floor)
 WAVES = ["reversed_sawtooth", "triangle", "sine"]
 
 
@@ -131,40 +121,6 @@ def test_the_wave_is_chosen_by_name():
 def test_an_unknown_wave_is_an_error_that_names_the_known_ones(wave):
     with pytest.raises(InputError, match=r"effects\.floor\.wave .*sawtooth.*triangle, sine"):
         from_settings(wave=wave)
-
-
-def test_the_roots_of_a_triangle_by_hand():
-    """Amplitude 4 and period 4: up at 2 a/T until t = 2, then down; g = 1."""
-    floor = triangle(4.0, 4.0)
-
-    def meeting(height, speed, phase):
-        return time_to_triangle(floor, 1.0, height, speed, phase)
-
-    # from rest at 5: 5 - t^2/2 = 2 t
-    assert meeting(5.0, 0.0, 0.0) == (pytest.approx(-2.0 + math.sqrt(14.0), rel=1e-15), RISING)
-    # above the crest through the next stroke, then down after the floor: it overtakes it where
-    # 5 + 2 t - t^2/2 = 4 - 2 (t - 4)
-    assert meeting(5.0, 2.0, 2.0) == (pytest.approx(4.0 + math.sqrt(2.0), rel=1e-15), FALLING)
-    # thrown down after the falling floor: 5 - 5 t - t^2/2 = 4 - 2 t
-    assert meeting(5.0, -5.0, 2.0) == (pytest.approx(-3.0 + math.sqrt(11.0), rel=1e-14), FALLING)
-    # left behind by the falling floor, it is met by the next rise: 3.5 - t^2/2 = 2 (t - 1.5)
-    assert meeting(3.5, 0.0, 2.5) == (pytest.approx(-2.0 + math.sqrt(17.0), rel=1e-15), RISING)
-    # off from the crest, over one stroke and a half: 4 + 2.5 t - t^2/2 = 2 (t - 6)
-    over = (1.0 + math.sqrt(129.0)) / 2.0
-    assert meeting(4.0, 2.5, 2.0) == (pytest.approx(over, rel=1e-15), RISING)
-
-
-def test_a_contact_at_a_turning_point_is_with_the_piece_that_is_approached():
-    """A triangle of amplitude 4 and period 4, with g = 1."""
-    floor = triangle(4.0, 4.0)
-    # on the floor at its lowest point
-    assert time_to_triangle(floor, 1.0, 0.0, 0.0, 4.0) == (0.0, RISING)
-    # half a T before that, on to a contact just after it, and right at it
-    time, piece = time_to_triangle(floor, 1.0, 2.0, -3.0, 3.5)
-    assert (time, piece) == (pytest.approx(-5.0 + math.sqrt(31.0), rel=1e-14), RISING)
-    assert time_to_triangle(floor, 1.0, 1.625, -3.0, 3.5) == (0.5, FALLING)
-    # from rest on to the crest: 6 - t^2/2 = 2 t
-    assert time_to_triangle(floor, 1.0, 6.0, 0.0, 0.0) == (2.0, RISING)
 
 
 @pytest.mark.parametrize("wave", WAVES)
@@ -246,24 +202,3 @@ def test_a_smooth_elastic_wall_reflects():
         assert shot.position[0, 0] - 1.0 == pytest.approx(min(folded, 20.0 - folded), abs=1e-12)
         assert abs(shot.velocity[0, 0]) == pytest.approx(3.0, rel=1e-14)
         assert shot.spin[0, 0] == 0.8
-
-
-def test_restitution_of_a_wall():
-    scene, state = thrown((-8.0, 0.0), restitution=0.5, roughness=-1.0)
-    run(state, scene, 1, interval=0.7)
-    assert state.trajectory[0, 2] == 4.0 and state.counts[BOUNDARY_HITS] == 1
-
-
-@pytest.mark.parametrize(("direction", "side"), [(-1.0, 1.0), (1.0, -1.0)])
-def test_roughness_of_a_wall(direction, side):
-    """A particle that rolls along neither side: g_y = v_y + (n_x = +-1) (-a w) is reflected."""
-    q, beta = 0.5, 0.6
-    v_y, w = 2.0, 0.7
-    scene, state = thrown((5.0 * direction, v_y), w, restitution=1.0, roughness=beta)
-    run(state, scene, 1, interval=1.5)
-    time = state.trajectory[0, 4] + state.clock[0]
-    falling = v_y - time  # at the moment of the contact
-    slip = falling - w * side  # (w x n)_y = w n_x
-    kick = q * (1 + beta) / (1 + q) * slip
-    assert state.trajectory[0, 3] == pytest.approx(falling - kick, rel=1e-13)
-    assert state.spin[0, 0] == pytest.approx(w + (1 + beta) / (1 + q) * side * slip, rel=1e-13)

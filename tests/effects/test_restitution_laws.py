@@ -64,16 +64,6 @@ def test_fifth_roots():
     assert fifth_root(0.0, 12) == 0.0
 
 
-def test_elastic_viscoelastic_particles_are_the_elastic_gas():
-    """The same bits after 1000 collisions; the threshold has nothing to do, either."""
-    ends = []
-    for kernel in ("gas", "viscoelastic"):
-        scene, state = begin(settings(kernel, 40, [25, 25]), 1.0, 0.3, 1)
-        run(state, scene, 5, collisions=200)
-        ends.append((state.trajectory.tobytes(), state.spin.tobytes()))
-    assert ends[0] == ends[1]
-
-
 # ---------------------------------------------------------------------- tables, thresholds
 
 

@@ -104,14 +104,6 @@ def test_memory_that_runs_out(tmp_path):
     assert said[0].startswith("roughgas: error: out of memory. Unable to allocate")
 
 
-ALONE = """
-import json, sys
-from roughgas import doctor
-doctor.CHECKS = {sys.argv[1]: doctor.CHECKS[sys.argv[1]]}
-doctor.doctor(as_json=True)
-"""
-
-
 def check(name, monkeypatch, capsys):
     """What one check says, and whether it is content."""
     monkeypatch.setattr(doctor, "CHECKS", {name: doctor.CHECKS[name]})
@@ -123,10 +115,6 @@ def check(name, monkeypatch, capsys):
     found = json.loads(capsys.readouterr().out)[name]
     assert found["ok"] == (status == 0)
     return found["said"], found["ok"]
-
-
-def check_alone(name, cwd, program=ALONE, **others):
-    return json.loads(python("-c", program, name, cwd=cwd, **others).stdout)[name]
 
 
 def test_an_installation_as_it_should_be():
@@ -154,21 +142,6 @@ def test_a_problem_is_told_in_words_and_by_the_exit_status(monkeypatch, capsys):
 
 
 @pytest.mark.parametrize(
-    ("name", "changes", "said", "remedy"),
-    [
-        ("kernel", {"NUMBA_DISABLE_JIT": "1"}, "NUMBA_DISABLE_JIT", "remove the kernels"),
-        ("kernel cache", {"ROUGHGAS_CACHE_DIR": "/proc/x"}, "/proc/x", "ROUGHGAS_CACHE"),
-        ("Snakemake", {"XDG_CACHE_HOME": "/proc/sys"}, "be written", "XDG_CACHE_HOME"),
-    ],
-)
-def test_what_the_environment_breaks(monkeypatch, capsys, name, changes, said, remedy):
-    for variable, value in changes.items():
-        monkeypatch.setenv(variable, value)
-    told, fine = check(name, monkeypatch, capsys)
-    assert not fine and said in told and remedy in told.partition(" -> ")[2], told
-
-
-@pytest.mark.parametrize(
     ("broken", "said"),
     [
         ({"KNOWN": 0.3}, "a trial run has R = 0.4453"),
@@ -180,15 +153,6 @@ def test_a_kernel_that_is_wrong_or_crashes(monkeypatch, capsys, broken, said):
         monkeypatch.setattr(doctor, name, value)
     told, fine = check("kernel", monkeypatch, capsys)
     assert not fine and said in told
-
-
-def test_disks_that_cannot_be_written_or_are_full(tmp_path, mounts):
-    (tmp_path / "disk").mkdir()
-    inside = f"import os; os.chdir('disk')\n{ALONE}"
-    found = check_alone("this folder", tmp_path, inside, mount=("ro", "disk"))
-    assert not found["ok"] and "Read-only" in found["said"]
-    found = check_alone("this folder", tmp_path, inside, mount=("size=1m", "disk"))
-    assert not found["ok"] and "make room" in found["said"]
 
 
 POINT = "cooling --scale small --r 0.9 --beta 0.5"

@@ -12,11 +12,7 @@ from compiled import from_python
 from roughgas.kernel import mathematics, vectors
 from roughgas.kernel.jit import entry, unrolled
 from roughgas.kernel.mathematics import (
-    COSINE,
     REGISTER,
-    REMAINDER,
-    SINE,
-    TURN,
     append,
     bits,
     choose,
@@ -115,35 +111,6 @@ def test_within_a_rounding_and_a_half_of_forty_digits():
                 assert math.isclose(sine, mpmath.sinpi(2 * mpmath.mpf(x)), rel_tol=2.5e-16)
 
 
-def test_coefficients_are_those_of_the_series_rounded_once():
-    with mpmath.workdps(40):
-        turn = 2 * mpmath.pi
-        assert TURN == float(turn) and REMAINDER == float(turn - float(turn))
-        for k in range(1, 9):
-            even = (-1) ** k * turn ** (2 * k) / math.factorial(2 * k)
-            assert COSINE[k - 1] == float(even)
-            assert SINE[k - 1] == float(even * turn / (2 * k + 1))
-
-
-def test_symmetries():
-    for x in map(float, angles()):
-        sine, cosine = sine_and_cosine(x)
-        assert abs(sine * sine + cosine * cosine - 1.0) < 4e-16
-        quarter, mirrored = sine_and_cosine(x + 0.25), sine_and_cosine(-x)
-        # midway between two quarters either polynomial serves
-        if abs(8.0 * x % 2.0 - 1.0) > 1e-9:
-            assert mirrored == (-sine, cosine)
-        assert max(abs(mirrored[0] + sine), abs(mirrored[1] - cosine)) < 2e-16
-        assert abs(quarter[0] - cosine) < 4e-16 + 7.0 * math.ulp(x + 0.25)
-        assert abs(quarter[1] + sine) < 4e-16 + 7.0 * math.ulp(x + 0.25)
-
-
-def test_quarters_are_exact():
-    for k in range(-8, 9):
-        expected = [(0.0, 1.0), (1.0, 0.0), (0.0, -1.0), (-1.0, 0.0)][k % 4]
-        assert sine_and_cosine(0.25 * k) == expected
-
-
 def test_compiled_code_gives_the_same_bits():
     compiled = from_python(sine_and_cosine)
     for x in map(float, angles()):
@@ -225,16 +192,6 @@ def test_lanes_that_hold_are_listed_in_order():
     places = np.full(numbers.size + 16, -1, np.int32)
     taken = _append_those_below(numbers, np.float32(1.0), places)
     np.testing.assert_array_equal(places[:taken], np.flatnonzero(numbers[0] < 1.0))
-
-
-@entry
-def _number_of_lanes(double, single):
-    return lanes_of(double), lanes_of(single)
-
-
-def test_a_register_has_half_as_many_doubles():
-    doubles, singles = _number_of_lanes(np.zeros(1), np.zeros(1, np.float32))
-    assert singles == 2 * doubles and doubles in (4, 8)
 
 
 SINGLE = 2.0**-24  # half the spacing of single precision just above 1

@@ -30,12 +30,6 @@ def test_the_kernel_has_no_reference_counts():
     assert numba.njit(lambda: np.zeros(3))().size == 3
 
 
-def test_numba_takes_compiled_functions_for_its_own():
-    inner = compiled(double)
-    assert numba.typeof(inner) == numba.typeof(inner.dispatcher)
-    assert entry(lambda x: inner(x))(3.0) == 6.0
-
-
 @compiled
 def twice(x):
     return 2.0 * x

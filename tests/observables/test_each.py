@@ -62,15 +62,6 @@ def test_g_is_1_where_particles_do_not_know_of_each_other(box):
     assert np.all(abs(counted - expected) < 5 * np.sqrt(expected))
 
 
-def test_a_pair_in_contact_counts_outside_the_diameter():
-    """Though roundings have pushed it together."""
-    system = system_of((20, 20), particles=2)
-    position = np.array([[1.0, 1.0], [1.0, 3.0 - 1e-14]])
-    observable, found = results("pair_correlation", [frame_of(system, position)], bins=20)
-    (place,) = np.flatnonzero(found["pair_correlation"])
-    assert observable.coordinates["distance"][place] == pytest.approx(2.05)
-
-
 @pytest.mark.parametrize("box", [(30, 30), (14, 14, 14)])
 def test_gaussian_velocities_and_spins_have_no_cumulants(box):
     frame = frame_of(system_of(box, particles=NUMBER))
@@ -89,16 +80,6 @@ def test_cumulants_of_a_distribution_that_is_known():
     frame = frame_of(system_of((30, 30), particles=NUMBER), velocity=velocity, spin=spin)
     _, found = results("cumulants", [frame])
     assert found["a20"] == pytest.approx(-0.5) and found["a02"] == pytest.approx(-2 / 3)
-
-
-def test_spins_along_and_across_the_velocity():
-    system = system_of((14, 14, 14), particles=NUMBER)
-    frame = frame_of(system)
-    _, along = results("spin_correlation", [frame._replace(spin=2.0 * frame.velocity)])
-    across = np.cross(frame.velocity, [0.0, 0.0, 1.0])
-    _, found = results("spin_correlation", [frame._replace(spin=across)])
-    assert along["alignment"] == pytest.approx(2.0) and along["cos2_angle"] == pytest.approx(1.0)
-    assert found["alignment"] == pytest.approx(-1.0) and abs(found["cos2_angle"]) < 1e-12
 
 
 def test_profiles_of_a_gas_that_is_hotter_and_denser_below():

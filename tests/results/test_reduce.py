@@ -16,7 +16,6 @@ from roughgas.data.point import Point, write_point
 from roughgas.data.reduced import read_reduced
 from roughgas.results.reduce import reduce_points
 from roughgas.results.table import why_wide, write_table
-from roughgas.theory.prediction import predicted_ratio
 
 ABOUT = {"experiment": "sheared", "scale": "small", "dimension": 2, "inertia": 0.5, "particles": 40}
 
@@ -130,14 +129,6 @@ def test_the_order_of_the_points_does_not_matter(paths, tmp_path):
     assert (tmp_path / "a.nc").read_bytes() == (tmp_path / "b.nc").read_bytes()
 
 
-def test_attributes_shared_by_all_points_are_kept(paths, tmp_path):
-    reduce_points(paths, tmp_path / "a.nc")
-    about = read_reduced(tmp_path / "a.nc").attrs
-    assert {name: about[name] for name in ABOUT} == ABOUT
-    assert about["theory"] == "lun" and about["kernel_source_hash"] == "k"
-    assert not {"r", "beta", "seed"} & set(about)
-
-
 def test_points_of_several_kernels_say_so(paths, tmp_path):
     paths.append(write(tmp_path, 0.8, -0.5, 1, 0.2, attributes={"kernel_source_hash": "j"}))
     reduce_points(paths, tmp_path / "a.nc")
@@ -173,14 +164,6 @@ def test_a_full_disk_leaves_no_reduced_dataset(paths, tmp_path, monkeypatch):
     with pytest.raises(OSError, match="No space left"):
         reduce_points(paths, tmp_path / "out" / "a.nc")
     assert not list((tmp_path / "out").iterdir())
-
-
-def test_theory_of_forced_and_cooling_gases():
-    forced = {"theory": "lun", "inertia": 0.5, "dimension": 2}
-    np.testing.assert_allclose(predicted_ratio(forced, 0.9, [0.0, 1.0]), [0.2, 0.5])
-    cooling = predicted_ratio(forced | {"theory": "K"}, [[0.8], [0.9]], [0.0, 0.5])
-    assert cooling.shape == (2, 2)
-    assert cooling[1, 0] == pytest.approx(theory.cooling_ratio(0.9, 0.0, 2, 0.5))
 
 
 def test_the_table_has_one_row_for_each_place_with_data(paths, tmp_path):

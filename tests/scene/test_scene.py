@@ -36,11 +36,6 @@ def test_a_bed_between_walls():
     assert scene.effects.floor[:4] == (5.0, 1.0, 1.0, -1.0)
 
 
-def test_a_floor_at_rest():
-    at_rest = BED | {"floor": FLOOR["floor"] | {"amplitude": 0}}
-    assert build(experiment((50, "open"), **at_rest), 0.9, -0.5).effects.floor.amplitude == 0.0
-
-
 def test_the_particles_own_material_at_a_boundary():
     own = {"restitution": "particles", "roughness": "particles"}
     effects = BED | {"floor": FLOOR["floor"] | own, "walls": own}
@@ -52,24 +47,6 @@ def test_the_particles_own_material_at_a_boundary():
 def test_the_contact_time_model_acts_below_an_r(r, present):
     model = {"contact_time": {"duration": 1e-5, "below_r": 0.75}}
     assert (build(experiment(**SPIN, **model), r, 0.0).effects.contact_time is not None) == present
-
-
-@pytest.mark.parametrize(
-    ("r", "beta", "key"),
-    [
-        (-0.01, 0.0, "restitution r"),
-        (1.01, 0.0, "restitution r"),
-        (math.nan, 0.0, "restitution r"),
-        (math.inf, 0.0, "restitution r"),
-        (0.9, -1.01, "roughness beta"),
-        (0.9, 1.01, "roughness beta"),
-        (0.9, math.nan, "roughness beta"),
-    ],
-)
-def test_illegal_materials(r, beta, key):
-    with pytest.raises(InputError) as caught:
-        build(experiment(**SPIN), r, beta)
-    assert caught.value.key == key and "\n" not in str(caught.value)
 
 
 ILLEGAL = {
@@ -261,9 +238,3 @@ def test_one_particle_has_nobody_to_be_kicked_with():
     check(experiment((50, "open"), 2, **BED, **HEAT))
     with pytest.raises(InputError, match="at least 2 where a thermostat kicks pairs"):
         check(experiment((50, "open"), 1, **BED, **HEAT))
-
-
-def test_the_narrowest_boxes():
-    assert build(experiment((4.01, 4.01), 2, **SPIN), 0.9, 0.0).extent == 4.01
-    scene = build(experiment((2.01, "open"), 2, **BED, **WALLS), 0.9, 0.0)
-    assert scene.effects.walls.width == 2.01 and scene.extent == 8.0

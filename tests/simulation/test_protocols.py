@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from brute_force import KERNELS, begin, settings
+from brute_force import begin, settings
 
 from roughgas import config, simulate, theory
 from roughgas.base import InputError
@@ -110,26 +110,6 @@ def test_a_steady_heated_gas():
     assert put_in == pytest.approx(1.0, abs=4.0 * 0.021)  # the scatter of 40 seeds
 
 
-@pytest.mark.slow  # a kernel of its own
-def test_a_heated_gas_without_spin_has_a_temperature_only():
-    """Stationary where collisions take what the thermostat puts in: nu (1 - r^2) T_tr/2 = power.
-
-    That is the rate equation of T_tr; nu of dilute disks is Enskog's. Within 5 %.
-    """
-    experiment = heated("heated, smooth")
-    scene, _ = begin(experiment, 0.9, -1.0)
-    measured = steady.run(scene, experiment, 1, Recorder())
-    assert not [name for name in measured if name.startswith("R")]
-    assert not {"E_rot", "E_rot_series", "autocorrelation_time"} & set(measured)
-    assert measured["equilibrated"] and measured["E_trans_stderr"] > 0.0
-    T_tr = 2.0 * measured["E_trans"]
-    frequency = theory.collision_frequency(T_tr, 40 * np.pi / 50**2, 2)
-    lost = frequency * (1.0 - 0.9**2) * T_tr / 2.0
-    error = 1.5 * measured["E_trans_stderr"] / measured["E_trans"]  # of T_tr^(3/2)
-    assert abs(lost - 1.0) < 0.05 + 4.0 * error
-    assert error < 0.05
-
-
 def test_a_cooling_gas_without_spin_follows_haff():
     """In collisions per particle its energy decays exponentially, by (1 - r^2)/2 of it each."""
     experiment = COOLING | settings("smooth", 40, [50, 50])
@@ -147,11 +127,6 @@ STEADY = {"kind": "steady", "equilibrate": 0, "measure": 30, "sample_every": 0.5
 SCHEDULE_COOLING = {"kind": "cooling", "plateau": 8, "sample_every": 1}
 
 
-def test_each_kind_is_a_module():
-    assert schedule.of({"schedule": SCHEDULE_COOLING}) is cooling and not cooling.DRIVEN
-    assert schedule.of({"schedule": STEADY}) is steady and steady.DRIVEN
-
-
 @pytest.mark.parametrize("kernel", ["gas", "sheared", "bed", "heated", "shaken"])
 def test_a_drive_and_nothing_else_needs_a_steady_schedule(kernel):
     experiment = settings(kernel, 20)
@@ -162,13 +137,6 @@ def test_a_drive_and_nothing_else_needs_a_steady_schedule(kernel):
         schedule.check(experiment | {"schedule": wrong})
     legal = f"steady where there is a drive: {driven[0]}" if driven else "cooling where no effect"
     assert str(caught.value).startswith(f"schedule.kind = {wrong['kind']}: must be {legal}")
-
-
-def test_all_drives_are_named():
-    experiment = settings("sheared", 20)
-    experiment["effects"] |= KERNELS["heated"]["effects"]
-    with pytest.raises(InputError, match="where there is a drive: shear, thermostat"):
-        schedule.check(experiment | {"schedule": SCHEDULE_COOLING})
 
 
 CONFIG = Path(__file__).parents[2] / "config.yaml"

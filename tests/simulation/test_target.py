@@ -7,13 +7,10 @@ import pytest
 from brute_force import begin, settings
 
 from roughgas.base import InputError
-from roughgas.kernel.record import Sampling
 from roughgas.scene import build
 from roughgas.simulation import recorder, schedule
-from roughgas.simulation.gas import Gas
 from roughgas.simulation.point import run_point
 from roughgas.simulation.progress import Bar, Progress
-from roughgas.simulation.recorder import Recorder
 from roughgas.statistics.errors import NO, UNKNOWN, YES
 
 STEADY = {"kind": "steady", "equilibrate": 30.5, "measure": 50, "sample_every": 0.3}
@@ -160,13 +157,6 @@ def every_step_is_shown(monkeypatch):
     monkeypatch.setattr("roughgas.simulation.progress.SECONDS_BETWEEN", 0.0)
 
 
-def test_a_driven_gas_is_followed_in_time():
-    stream = Terminal()
-    with Progress("sheared", build(DRIVEN, 0.9, 0.0), DRIVEN, stream=stream) as progress:
-        progress(1750.0, 98_765)
-    assert stream.shown[-1].startswith("sheared:  25%|") and "1750 of 7000 T" in stream.shown[-1]
-
-
 def test_a_run_that_is_prolonged_is_followed_to_its_new_end():
     stream = Terminal()
     with Progress("sheared", build(DRIVEN, 0.9, 0.0), DRIVEN, stream=stream) as progress:
@@ -190,17 +180,6 @@ def test_a_cooling_gas_is_followed_through_its_replicas():
     shown = [int(one.split("| ")[1].split()[0]) for one in stream.shown[1:]]
     assert shown == pytest.approx([total * part / 8 for part in range(1, 9)], abs=1)
     assert stream.shown[-1].startswith("cooling: 100%|")
-
-
-def test_the_text_says_what_is_going_on():
-    """Placing, then compiling, then neither, long before the first sample is there."""
-    stream, scene = Terminal(), build(PROGRESS_COOLING, 0.9, 0.0)
-    with Progress("cooling", scene, PROGRESS_COOLING, stream=stream) as progress:
-        gas = Gas.start(scene, PROGRESS_COOLING, np.random.default_rng(1), Recorder(progress))
-        asked = [line.split(":")[0] for line in stream.shown]
-        gas.recorder.run(gas.state, scene, Sampling(np.inf, 1, 0), 0)
-    assert asked == ["cooling (placing particles)", "cooling (compiling)"]
-    assert stream.shown[2].startswith("cooling:   0%|")
 
 
 def test_progress_is_silent_elsewhere_of_what_is_soon_over():

@@ -252,11 +252,6 @@ def test_a_small_deviation_fades_at_this_rate(r, beta, dimension, mu):
         assert left == pytest.approx(np.exp(-1.0), abs=0.01)
 
 
-def test_decoupled_spin_does_not_relax():
-    assert theory.friction_relaxation_rate(0.9, 0.0, 0.0) == 0.0
-    assert theory.friction_relaxation_rate(0.9, -1.0, 0.5) == 0.0
-
-
 @pytest.mark.parametrize(("r", "beta", "dimension"), GASES)
 def test_spins_that_dominate_are_kept_up_to_the_critical_friction(r, beta, dimension):
     """d ln theta/dn at theta = 1e8, a little below mu_c and a little above."""
@@ -321,17 +316,6 @@ def test_the_threshold_of_slow_weak_friction_has_a_closed_form():
     gas = 0.9999, 0.0, 2e-3
     expected = math.sqrt(math.pi) * gas[2] * (1 + gas[0]) / (0.5 * theory.cooling_rate(*gas))
     assert theory.runaway_spin(*gas) == pytest.approx(expected, rel=0.01)
-
-
-def test_the_gas_cools_at_the_rate_of_the_rate_equations():
-    """Both temperatures fall alike at the stationary R."""
-    gas = 0.9, 0.3, np.array([0.15, 0.3, 1.0, np.inf])
-    R = theory.friction_ratio(*gas)
-    changes = theory.friction_changes(1 - R, R, *gas)
-    assert -changes[0] / (1 - R) == pytest.approx(theory.cooling_rate(*gas), rel=1e-12)
-    assert -changes[1] / R == pytest.approx(theory.cooling_rate(*gas), rel=1e-8)
-    smooth = theory.temperature_changes(1 - R[-1], R[-1], 0.9, 0.3)[0] / (1 - R[-1])
-    assert theory.cooling_rate(0.9, 0.3, np.inf) == pytest.approx(-smooth)
 
 
 def test_limits_of_the_threshold():

@@ -86,20 +86,6 @@ def test_equal_species_have_the_rates_of_one(r, beta, q, dimension, size, mu):
 
 
 @dimensions
-def test_equal_species_collide_as_often_as_one(dimension):
-    gas = theory.mixture(alike(4), 0.9, 0, dimension)
-    nu = theory.mixture_frequency(gas, 1.7, 0.2).sum(axis=1)
-    assert nu == pytest.approx(theory.collision_frequency(1.7, 0.2, dimension), rel=1e-14)
-
-
-@dimensions
-def test_contacts_are_counted_by_both(dimension):
-    gas = theory.mixture(UNLIKE, 0.9, 0, dimension)
-    met = gas.fraction[:, None] * theory.mixture_frequency(gas, T_TR, 0.3)
-    assert met == pytest.approx(met.T, rel=1e-14)
-
-
-@dimensions
 @pytest.mark.parametrize("beta", [-1, 1])
 def test_elastic_mixtures_keep_their_energy_and_share_it_equally(dimension, beta):
     elastic = [one | {"restitution": 1.0} for one in UNLIKE]
@@ -112,25 +98,11 @@ def test_elastic_mixtures_keep_their_energy_and_share_it_equally(dimension, beta
     assert changes == pytest.approx(0, abs=1e-12)
 
 
-@dimensions
-def test_inelastic_mixtures_lose_energy(dimension):
-    gas = theory.mixture(UNLIKE, 0.9, 0.3, dimension)
-    tr, rot = theory.mixture_changes(gas, T_TR, T_ROT)
-    assert gas.fraction @ (dimension * tr + (2 * dimension - 3) * rot) < -0.1
-
-
 def test_fractions_and_numbers_say_the_same():
     numbers = [{"number": 30}, {"number": 90, "radius": 2}]
     gas = theory.mixture(numbers, 0.9, 0)
     assert gas.fraction == pytest.approx([0.25, 0.75])
     assert gas.inertia == pytest.approx([0.5, 0.5])
-
-
-@dimensions
-def test_what_is_not_said_is_of_one_material(dimension):
-    """Masses are those of one density: the volume's."""
-    gas = theory.mixture([{"number": 1}, {"number": 1, "radius": 3}], 0.9, 0, dimension)
-    assert gas.mass == pytest.approx([1, 3**dimension])
 
 
 @pytest.mark.parametrize("kind", ["uniform", "lognormal"])
@@ -288,17 +260,6 @@ def test_third_virial_coefficient_of_points_and_disks_is_exact(dimension):
     error = expected.std() / np.sqrt(size)
     # disks: 9/16 stands for 4/3 - sqrt(3)/pi - ..., right to a per cent
     assert slope == pytest.approx(expected.mean(), abs=4 * error + 0.02 * expected.mean())
-
-
-@dimensions
-def test_a_hotter_species_presses_more(dimension):
-    """At equal temperatures Z does not depend on them; what is lost at contacts lowers it."""
-    gas = elastic(dimension)
-    z = theory.compressibility(gas, 0.3)
-    assert theory.compressibility(gas, 0.3, 5.0) == pytest.approx(z, rel=1e-14)
-    assert theory.compressibility(gas, 0.3, [1, 1, 4]) > z
-    sticky = theory.mixture(SPECIES, 0, 1, dimension)
-    assert theory.compressibility(sticky, 0.3) - 1 == pytest.approx((z - 1) / 2, rel=1e-14)
 
 
 def test_a_full_box_is_refused():

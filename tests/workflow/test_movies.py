@@ -49,19 +49,12 @@ FILM = "results/tiny/showcase/clustering.nc"
 CHECKPOINT = f"{FILM}.checkpoint.npz"
 PRODUCTS = {f"figures/tiny/clustering.{kind}" for kind in ("pdf", "png", "mp4")}
 PAGE = "results/tiny/clustering.html"
-DRAWN = {"film": 1, "document": 1, "showcase": 1}
-
-
-def test_the_showcase_needs_no_point(project):
-    assert project.planned("showcase") == {"gas_of_film": 1} | DRAWN
 
 
 @pytest.mark.parametrize(
     ("target", "change", "message"),
     [
         ("results/large/showcase/clustering.nc", {}, "scale = 'large': must be one of paper"),
-        ("figures/large/clustering.mp4", {}, "scale = 'large': must be one of paper"),
-        (FILM, {"particles": 10_000}, "showcase at scale tiny: particles = 10000: must be at"),
         (FILM, {"box": [3, 3]}, "showcase at scale tiny: box[0] = 3"),
     ],
 )

@@ -5,7 +5,7 @@ import subprocess
 import sys
 
 import pytest
-from project import BEYOND, JOBS, Project
+from project import Project
 from test_targets import refusal
 
 from roughgas.data.point import read_point
@@ -33,18 +33,9 @@ ILLEGAL = [
         "experiment = 'spun': must be followed by a variant, such as spun/inertia1",
     ),
     (
-        "results/tiny/sheared/inertia1/r0.9/beta0/seed1.nc",
-        "experiment = 'sheared/inertia1': must be sheared alone, which has no third axis",
-    ),
-    (
-        f"{SPUN}/mass1/r0.9/beta0/seed1.nc",
-        "experiment = 'spun/mass1': must name a value of inertia, such as spun/inertia1",
-    ),
-    (
         f"{SPUN}/inertia2/r0.9/beta0/seed1.nc",
         "spun/inertia2.effects.spin.inertia = 2.0: must be a number in [1e-06, 1]",
     ),
-    (f"{SPUN}/inertia1/r2/beta0/seed1.nc", "restitution r = 2: must lie in [0, 1]"),
 ]
 
 
@@ -80,12 +71,6 @@ def test_all_variants_are_run_and_compiled_together(project):
     assert planned == {"compile_kernel": 1, "point": 2, "reduce": 1}
 
 
-def test_everything_has_them(project):
-    planned = project.planned("everything")
-    assert planned["seeds"] == JOBS + len(BEYOND) + 2 + 3
-    assert planned["point"] == 2
-
-
 def test_any_legal_value_can_be_asked_for(project):
     assert project.planned(*LEGAL) == {"compile_kernel": len(LEGAL), "point": len(LEGAL)}
 
@@ -98,10 +83,7 @@ def test_an_illegal_target_is_refused_in_one_line(project, target, message):
 @pytest.mark.parametrize(
     "target",
     [
-        "results/tiny/sheared/r0.9/r0.9/beta0/seed1.nc",
         "results/tiny/studies/inertia1/r0.9/beta0/seed1.nc",
-        "results/tiny/showcase/inertia1/r0.9/beta0/seed1.nc",
-        "results/tiny/hard_cases/inertia1/r0.9/beta0/seed1.nc",
         f"{SPUN}/inertia1.nc",
         f"{SPUN}/inertia1/r0.9/compiled.txt",
     ],
@@ -149,23 +131,11 @@ def test_the_reduced_dataset_has_the_axis(ran):
 
 
 @pytest.mark.slow
-def test_a_second_run_does_nothing(ran):
-    assert ran.planned(f"{SPUN}.nc") == {}
-
-
-@pytest.mark.slow
 @pytest.mark.parametrize("labels", [("1", "0.1", "0.05"), ("0.05", "1", "0.1")])
 def test_one_more_value_concerns_no_point_that_is_there(ran, tmp_path, labels):
     changed = ran.copy_to(tmp_path / "copy")
     changed.configure(sweep_inertia(*labels))
     assert changed.planned(f"{SPUN}.nc") == {"seeds": 1, "reduce": 1}
-
-
-@pytest.mark.slow
-def test_an_edit_of_what_variants_share_concerns_them_all(ran, tmp_path):
-    changed = ran.copy_to(tmp_path / "copy")
-    changed.configure(lambda config: config["experiments"]["spun"].update(particles=12))
-    assert changed.planned(f"{SPUN}.nc") == {"seeds": 2, "reduce": 1}
 
 
 @pytest.mark.slow

@@ -3,14 +3,13 @@ from importlib import import_module
 import numpy as np
 import pytest
 from matplotlib.image import imread
-from matplotlib.markers import TICKLEFT, TICKRIGHT
 from synthetic import BETA, couette, mixed, reduced, viscoelastic
 from tests.houses import ROOT, part
 from tests.show.figures.legibility import faults
 
 from roughgas.base import InputError
 from roughgas.show.catalogue import figures_of
-from roughgas.show.figures import fig1a, fig1b, fig2a, fig2b, sweep
+from roughgas.show.figures import fig1a, fig1b, fig2b
 from roughgas.show.gallery import draw, draw_of_study
 from roughgas.theory.prediction import predicted_ratio
 
@@ -222,12 +221,6 @@ def test_words_say_how_many_residuals_lie_beyond_the_scale():
     assert residual.get_title(loc="right") == "1 point above, 2 points below this scale"
 
 
-def test_fig1b_needs_its_restitution():
-    bed, *others = walls()
-    with pytest.raises(InputError, match=r"r of vibrated = .* must include 0\.9"):
-        fig1b.draw(bed.sel(r=[0.8]), *others)
-
-
 def test_places_without_data_are_left_out():
     data = reduced("cooling")
     data["R"][:, :4] = np.nan
@@ -273,11 +266,6 @@ def test_the_average_over_collisions_has_a_row_of_residuals():
     assert top < 0.5
 
 
-def test_contacts_of_a_sheared_gas_see_its_mean_flow_so_their_average_is_not_shown():
-    data = sheared().assign(R_collisional=sheared().R)
-    assert len(fig2a.draw(data).axes) == len(sweep.draw(data).axes) == 2
-
-
 def test_boundary_drives_stand_at_their_measured_shares():
     heated, *beds, walls = DATA["drives"]()
     beds[0]["input_spin_share"][0] = -0.4  # which is within the axis
@@ -314,12 +302,6 @@ def test_shifts_are_from_the_smooth_boundary_beside_those_of_the_measured_share(
     assert line[0] < 0.0 < line[2]
 
 
-def test_shifts_need_a_smooth_boundary():
-    floor, walls = DATA["drives_boundaries"]()
-    with pytest.raises(InputError, match="roughness of floor_materials"):
-        part("drives", "figure").draw_boundaries(floor.sel(roughness=[0.0, 1.0]), walls)
-
-
 def test_points_of_mixtures_that_are_not_steady_are_open_in_both_rows():
     masses, sizes = DATA["mixtures_vibrated"]()
     masses["equilibrated"][:, :, 1] = 0.5
@@ -328,13 +310,6 @@ def test_points_of_mixtures_that_are_not_steady_are_open_in_both_rows():
         empty = [box[0] for box in axes.containers if box[0].get_markerfacecolor() == "white"]
         assert sum(len(line.get_xdata()) for line in empty) == expected
     assert "open: not steady" in words(every[0])
-
-
-def test_theory_of_a_bed_of_two_species_is_drawn_at_its_points_alone():
-    masses, sizes = DATA["mixtures_vibrated"]()
-    *_, lower, _ = part("mixtures", "figure").draw_vibrated(masses, sizes).axes
-    dashes = [line for line in lower.lines if line.get_marker() in (TICKLEFT, TICKRIGHT)]
-    assert len(dashes) == 4 and {line.get_linestyle() for line in dashes} == {"None"}
 
 
 def test_spread_radii_are_compared_with_equal_disks_where_they_were_simulated():

@@ -1,6 +1,5 @@
 """Figures of one dataset: over time, over any sweep."""
 
-import json
 import math
 
 import numpy as np
@@ -147,13 +146,3 @@ def test_where_nothing_spins_energy_is_drawn():
     (axes,) = sweep.draw(data, over="r").axes
     assert axes.get_ylabel().startswith(r"$E_\mathrm{trans}$")
     assert list(axes.containers[0][0].get_ydata()) == [2.0, 3.0]
-
-
-def test_experiments_are_listed(capsys):
-    assert main(["experiments", "--scale", "small"]) == 0
-    text = capsys.readouterr().out
-    assert "vibrated_rough_walls\n  The vibrated bed between" in text
-    assert "5 points: 1 r, 5 beta; extends vibrated" in text
-    assert main(["experiments", "--json"]) == 0
-    waves = json.loads(capsys.readouterr().out)["waves.waves"]
-    assert waves["points"] == 72 and waves["sweep"]["floor.wave"][0] == "sawtooth"
