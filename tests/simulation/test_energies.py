@@ -10,7 +10,7 @@ from schedules import COOLING, STEADY
 from roughgas.data.point import read_point, write_point
 from roughgas.scene import build
 from roughgas.simulation.energies import Energies, energies, fitted_flow, ratio, ratio_of_means
-from roughgas.simulation.energy_balance import balance, exchange, imbalance
+from roughgas.simulation.energy_balance import balance, energy_exchange, imbalance
 from roughgas.simulation.point import VOUCHED, _withdrawn, run_point
 from roughgas.statistics.errors import NO, UNKNOWN, YES
 
@@ -148,7 +148,7 @@ def test_the_books_of_a_refreshed_gas_are_in_the_units_of_the_start():
     scene, state = begin(settings("gas", 40, [25, 25]), 0.6, 0.2, 9)
     before = balance(state, scene)
     run(state, scene, 100, collisions=40, refresh=4)
-    found = exchange(before, balance(state, scene), scene, 40)
+    found = energy_exchange(before, balance(state, scene), scene, 40)
     assert found["energy_input"].sum() == pytest.approx(-before.energy.sum() / 40, rel=1e-6)
     assert found["energy_imbalance"] < 1e-13
 
