@@ -19,7 +19,8 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
 COPIED = ("config.yaml", "docs", "pyproject.toml", "README.md", "requirements.lock", "rules", "src")
-COPIED += ("CHANGELOG.md", "CITATION.cff", "LICENSE", "Makefile", "Snakefile", "profiles", "tests")
+COPIED += ("CHANGELOG.md", "CITATION.cff", "LICENSE", "Makefile", "Snakefile", "profiles")
+COPIED += ("studies", "tests")
 QUICK = "not (slow or remedy or browser or slurm)"
 ELSEWHERE = {  # tests of a room that are not in its own folder
     "base": ["data", "cli/test_process.py", "habits/test_surroundings.py"],

@@ -58,7 +58,7 @@ def test_pages_have_the_examples_that_they_should_have():
 def test_examples_run_and_print_what_the_page_says(page, folder, capsys):
     names = {}  # a later example goes on from the others
     for text, said in examples()[page]:
-        if "\nregister(" not in text:  # effects/test_worked_example.py runs that one
+        if "\nregister(" not in text:  # test_pages.py runs that one
             exec(compile(text, page, "exec"), names)
         printed = capsys.readouterr().out
         assert not said or printed == said

@@ -1,4 +1,4 @@
-"""docs/data.md tells what the files hold, which plain netCDF4 opens."""
+"""Versions of the schema, and what files hold besides variables."""
 
 import shutil
 import time
@@ -6,7 +6,6 @@ import time
 import netCDF4
 import pytest
 import xarray as xr
-from tests.data import schema_page as page
 from tests.files import frames, point
 
 from roughgas.base import InputError
@@ -16,12 +15,6 @@ from roughgas.data.point import read_point, write_point
 from roughgas.data.reduced import read_reduced
 from roughgas.results.reduce import reduce_points
 from roughgas.studies.files import combine
-
-
-@pytest.mark.parametrize("kind", page.tables())
-def test_the_tables_of_the_page_are_those_of_the_code(kind):
-    table = page.tables()[kind]
-    assert page.written(kind) == table, "write it anew: python -m tests.data.schema_page"
 
 
 def test_a_file_holds_no_date(tmp_path):

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 import xarray
 from schedules import BRIEF, COOLING, STEADY
-from tests.observables import page
 
 from roughgas import simulate
 from roughgas.base import InputError
@@ -60,10 +59,6 @@ def test_a_run_that_goes_on_is_watched_and_keeps_its_bits():
     assert watched.initial_exact == 1
     assert watched.last_position.identical(plain.last_position)
     assert watched.R_series.identical(plain.R_series)
-
-
-def test_the_page_lists_all_observables():
-    assert page.written() == page.table(), "write it anew: python -m tests.observables.page"
 
 
 def test_in_a_cooling_gas_the_energy_stays_1():

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from brute_force import settings
 from schedules import COOLING, STEADY
-from tests.data.schema_page import check_study
+from tests.pages import check_study
 
 from roughgas.statistics.errors import Estimate
 from roughgas.studies import coverage, study

@@ -7,7 +7,7 @@ import sys
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
-from tests.data.schema_page import check_study
+from tests.pages import check_study
 
 from roughgas.statistics.fits import PowerLaw
 from roughgas.studies import discretisation, study

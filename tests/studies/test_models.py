@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from matplotlib.figure import Figure
-from tests.data.schema_page import check_study
+from tests.pages import check_study
 
 from roughgas import theory
 from roughgas.base import InputError

@@ -6,7 +6,7 @@ import xarray as xr
 from brute_force import scene_of, settings, snapshot
 from brute_force.beside import brute_force_from
 from schedules import STEADY
-from tests.data.schema_page import check_study
+from tests.pages import check_study
 from tests.show.figures.legibility import faults
 
 from roughgas.scene.initial import initial_state

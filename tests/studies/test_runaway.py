@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
-from tests.data.schema_page import check_study
+from tests.pages import check_study
 from tests.show.figures.legibility import faults
 
 from roughgas import config, theory

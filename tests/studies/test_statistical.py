@@ -7,7 +7,7 @@ import pytest
 from brute_force import settings
 from matplotlib.figure import Figure
 from schedules import COOLING, STEADY
-from tests.data.schema_page import check_study
+from tests.pages import check_study
 
 from roughgas.statistics.errors import Estimate
 from roughgas.studies import statistical, study
