@@ -42,9 +42,7 @@ def code_of_study(wildcards):
 
 
 def code_of_combining(wildcards):
-    return hash_of_code(
-        "studies.files", *(f"studies.{name}" for name in entry_of(wildcards).shows)
-    )
+    return hash_of_code("studies.files", *(f"studies.{name}" for name in entry_of(wildcards).shows))
 
 
 def code_of_accuracy_figure(wildcards):
