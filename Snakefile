@@ -38,7 +38,8 @@ FIGURES_OF_STUDIES = [
 
 wildcard_constraints:
     scale=NAME,
-    experiment=EXPERIMENT + VARIANT,
+    # a folder of products has the name of its study
+    experiment=rf"(?!(?:{one_of(config[roughgas.config.FOLDERS])})/){EXPERIMENT}{VARIANT}",
     r=NAME,
     beta=NAME,
     seed=NAME,
@@ -91,9 +92,9 @@ rule figures:
 
 rule extensions:
     input:
-        [products_of(name) for name in STUDIES],
-        f"results/{SCALE}/extensions.csv" if STUDIES else [],
-        documents("run_times_extensions") if STUDIES else [],
+        products_of_each,
+        f"results/{SCALE}/extensions.csv" if SWEPT_IN_STUDIES else [],
+        documents("run_times_extensions") if SWEPT_IN_STUDIES else [],
         drawn(catalogue.figures_of("questions")),
         multiext(f"results/{SCALE}/", "open_questions.json", "open_questions.md"),
         [f"results/{SCALE}/{name}.md" for name in catalogue.figures_of("questions")],
@@ -166,7 +167,8 @@ rule everything:
     input:
         rules.figures.input,
         rules.extensions.input,
-        reduced(SCALE, config["experiments"]),
+        reduced(SCALE, [one for one in config["experiments"] if "." not in one]),
+        reduced(SCALE, SWEPT_IN_STUDIES),
         rules.showcase.input,
         rules.movies.input,
         rules.hard_cases.input,

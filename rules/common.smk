@@ -16,7 +16,7 @@ from snakemake.settings.types import DeploymentMethod
 try:
     import roughgas.config
     from roughgas.config import schema
-    from roughgas.base.files import PACKAGE as PACKAGE_FOLDER, code_of as hash_of_code
+    from roughgas.base.files import PACKAGE as PACKAGE_FOLDER, code_in, code_of as hash_of_code
     from roughgas.base import InputError, not_one_of, shown
     from roughgas.base.formatting import in_rst
     from roughgas.config.reading import read_yaml

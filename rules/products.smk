@@ -38,8 +38,7 @@ def code_of_figure(wildcards):
 
 def experiments_of_product(wildcards):
     part = PARTS[wildcards.product]
-    of_studies = [one for about in STUDIES.values() for one in about["experiments"]]
-    return of_studies if part == "beyond" else catalogue.shown_in(part)
+    return SWEPT_IN_STUDIES if part == "beyond" else catalogue.shown_in(part)
 
 
 def data_of_product(wildcards):

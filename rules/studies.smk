@@ -1,4 +1,6 @@
-# Studies: folders that hold a question beyond the paper each, found by being there.
+# Studies: folders that hold a question beyond the paper each, found by being there. What no sweep of an
+# experiment answers has tasks of its own, independent jobs, and a dataset that combines them.
+from roughgas.config import study_folders
 from roughgas.show.studies import captions
 
 STUDIES = config[roughgas.config.FOLDERS]
@@ -7,6 +9,9 @@ BROKEN = {
     for name, error in config[roughgas.config.BROKEN].items()
 }
 OF_STUDY = "results/{scale}/{study}/"  # products, beside results/{scale}/{study}.{experiment}
+TASK_OF_STUDY = f"{OF_STUDY}tasks/{{task}}.nc"
+WITH_TASKS = [name for name, about in STUDIES.items() if "tasks" in about]
+SWEPT_IN_STUDIES = [one for about in STUDIES.values() for one in about["experiments"]]
 STUDY_OF = {figure: name for name, about in STUDIES.items() for figure in about["figures"]}
 
 if workflow.is_main_process:
@@ -19,8 +24,15 @@ def study_of(wildcards):
     return STUDIES[wildcards.get("study") or STUDY_OF[wildcards.drawn]]
 
 
+def datasets_of(study, scale, names):
+    """The reduced datasets of experiments; `tasks` stands for what the tasks of a study have found."""
+    found = [OF_STUDY.format(scale=scale, study=study) + "data.nc"] if "tasks" in names else []
+    return reduced(scale, [one for one in names if one != "tasks"]) + found
+
+
 def data_of_study_figure(wildcards):
-    return reduced(scale_of(wildcards.folder), names_of_study_figure(wildcards))
+    study = STUDY_OF[wildcards.drawn]
+    return datasets_of(study, scale_of(wildcards.folder), names_of_study_figure(wildcards))
 
 
 def names_of_study_figure(wildcards):
@@ -38,7 +50,7 @@ def data_of_study_claims(wildcards):
     with one_line():
         rows = read_yaml(Path(about["folder"], "claims.yaml"))
     names = [own.get(one, one) for row in rows.values() for one in row["experiments"]]
-    return reduced(wildcards.scale, dict.fromkeys(names))
+    return datasets_of(wildcards.study, wildcards.scale, dict.fromkeys(names))
 
 
 def code_of_study_figure(wildcards):
@@ -56,6 +68,50 @@ def code_beside(about, patterns, *modules):
     return " ".join([hash_of_code(*modules), *map(hash_of_file, found)])
 
 
+@functools.cache
+def tasks_of_study_folder(name, scale):
+    """The names of a study's tasks, the longest first."""
+    from roughgas.tasks.running import names  # loads xarray
+
+    settings = study_folders.tasks(config, name, scale)["study"]
+    return names(STUDIES[name]["folder"], settings)
+
+
+def settings_of_study_task(wildcards):
+    """The settings of a study's tasks and of the experiments that they may run, as JSON."""
+    with one_line(TASK_OF_STUDY.format(**wildcards)):
+        known = tasks_of_study_folder(wildcards.study, wildcards.scale)
+        if wildcards.task not in known:
+            raise not_one_of("task", wildcards.task, known)
+        found = study_folders.tasks(config, wildcards.study, wildcards.scale)
+    return roughgas.config.as_text(found)
+
+
+def code_of_study_task(wildcards):
+    with one_line():
+        code = code_in(study_of(wildcards)["folder"], "tasks", alone=["tasks.running"])
+    return with_files(code, settings_of_study_task(wildcards))
+
+
+def code_of_study_data(wildcards):
+    folder = Path(study_of(wildcards)["folder"])
+    beside = [path.name for path in folder.glob("variables.yaml")]
+    with one_line():
+        return code_in(folder, "results", beside, alone=["tasks.running"])
+
+
+def urgency_of_study_task(wildcards):
+    with one_line():
+        names = tasks_of_study_folder(wildcards.study, wildcards.scale)
+    return len(names) - names.index(wildcards.task) if wildcards.task in names else 0
+
+
+def tasks_of_study_data(wildcards):
+    with one_line():
+        names = tasks_of_study_folder(wildcards.study, wildcards.scale)
+    return [TASK_OF_STUDY.format(**wildcards, task=task) for task in names]
+
+
 # made from the output and therefore not recorded: results do not depend on where a study is, nor on
 # what a caption says
 
@@ -70,7 +126,16 @@ def caption_of_study_figure(wildcards, output):
 
 
 def experiments_of_study_figure(wildcards, output):
-    return described(scale_of(wildcards.folder), names_of_study_figure(wildcards))
+    names = [one for one in names_of_study_figure(wildcards) if one != "tasks"]
+    return described(scale_of(wildcards.folder), names)
+
+
+def tasks_of_study_figure(wildcards, output):
+    """The settings of tasks by the study, for the caption of a figure that shows what these found."""
+    if "tasks" not in names_of_study_figure(wildcards):
+        return {}
+    scale, name = scale_of(wildcards.folder), STUDY_OF[wildcards.drawn]
+    return {name: study_folders.tasks(config, name, scale)["study"]}
 
 
 def title_of_study(wildcards):
@@ -85,6 +150,21 @@ def figures_of_study(name, kinds, scale):
     """The figures of a study: those that its figure.py draws, or else one of each experiment."""
     about = STUDIES[name]
     return drawn(about["figures"] or about["experiments"], kinds, scale)
+
+
+def tables_of_study(name, scale):
+    """The tables of a study by what they are of: R of its experiments, and what its tasks found."""
+    folder, about = OF_STUDY.format(scale=scale, study=name), STUDIES[name]
+    tables = {"table": [f"{folder}R.csv"]} if about["experiments"] else {}
+    return tables | ({"found": [f"{folder}data.md"]} if "tasks" in about else {})
+
+
+def inputs_of_study_page(wildcards):
+    return tables_of_study(wildcards.study, wildcards.scale)
+
+
+def options_of_study_page(wildcards, input):
+    return [f"--{key}={input[key]}" for key in ("table", "found", "claims") if input.get(key)]
 
 
 def pictures_of_study(wildcards):
@@ -108,11 +188,24 @@ def products_of(name):
     def products(wildcards):
         if name in BROKEN:
             sys.exit(BROKEN[name])
-        folder = OF_STUDY.format(scale=SCALE, study=name)
         figures = figures_of_study(name, [".pdf", ".png"], SCALE)
-        return [*figures, f"{folder}R.csv", f"{folder}page.html"]
+        tables = [path for paths in tables_of_study(name, SCALE).values() for path in paths]
+        return [*figures, *tables, f"{OF_STUDY.format(scale=SCALE, study=name)}page.html"]
 
     return products
+
+
+def products_of_each(wildcards):
+    """All that there is to all studies, but for those whose tasks cannot be named."""
+    found = []
+    for name in STUDIES:
+        try:
+            if name in WITH_TASKS:
+                tasks_of_study_folder(name, SCALE)
+            found += products_of(name)(wildcards)
+        except InputError as error:
+            logger.warning(f"roughgas: error: {error} (left out; all else can be made)")
+    return found
 
 
 rule study_figure:
@@ -136,11 +229,54 @@ rule study_figure:
         folder=folder_of_study,
         caption=caption_of_study_figure,
         experiments=experiments_of_study_figure,
+        studies=tasks_of_study_figure,
     message:
         "draw {wildcards.folder}{wildcards.drawn}"
     shell:
         "python -P -m roughgas.steps study_figure {params.folder:q} {wildcards.drawn:q} {input.data:q}"
         " --shows {params.shows:q} --output {output:q} > {log:q} 2>&1"
+
+
+rule study_task:
+    # what a task that is killed leaves beside its output is no output, which Snakemake would delete
+    output:
+        TASK_OF_STUDY,
+    log:
+        "logs/{scale}/{study}/tasks/{task}.log",
+    benchmark:
+        "logs/{scale}/{study}/tasks/{task}.tsv"
+    wildcard_constraints:
+        study=one_of(WITH_TASKS),
+    priority: urgency_of_study_task
+    params:
+        code=code_of_study_task,
+        settings=settings_of_study_task,
+        folder=folder_of_study,
+    message:
+        "study {wildcards.study}: {wildcards.task}"
+    shell:
+        "python -P -m roughgas.steps study_task {params.folder:q} {wildcards.task:q} --scale {wildcards.scale:q}"
+        " --settings {params.settings:q} --output {output:q} > {log:q} 2>&1"
+
+
+rule study_data:
+    input:
+        tasks=tasks_of_study_data,
+    output:
+        data=f"{OF_STUDY}data.nc",
+        table=f"{OF_STUDY}data.md",
+    log:
+        "logs/{scale}/{study}_data.log",
+    wildcard_constraints:
+        study=one_of(WITH_TASKS),
+    params:
+        code=code_of_study_data,
+        folder=folder_of_study,
+    message:
+        "combine the tasks of {wildcards.study}"
+    shell:
+        "python -P -m roughgas.steps study_data {params.folder:q} {input.tasks:q} --output {output.data:q}"
+        " --table {output.table:q} > {log:q} 2>&1"
 
 
 rule study_table:
@@ -186,7 +322,7 @@ rule study_claims:
 rule study_page:
     input:
         readme_of_study,
-        table=f"{OF_STUDY}R.csv",
+        unpack(inputs_of_study_page),
         figures=pictures_of_study,
         claims=claims_of_study,
     output:
@@ -204,12 +340,12 @@ rule study_page:
         code=code_of("show.studies"),
         folder=folder_of_study,
         title=title_of_study,
+        options=options_of_study_page,
     message:
         "write {output}"
     shell:
         "python -P -m roughgas.steps study_page {params.folder:q} --title {params.title:q}"
-        " --table {input.table:q} --figures {input.figures:q} --claims={input.claims:q}"
-        " --output {output:q} > {log:q} 2>&1"
+        " --figures {input.figures:q} {params.options:q} --output {output:q} > {log:q} 2>&1"
 
 
 for name in [*STUDIES, *BROKEN]:

@@ -154,8 +154,10 @@ STEPS: dict[str, str | Callable[..., None]] = {
     "run_times": "results.table:write_times",
     "study": study,
     "study_claims": study_claims,
+    "study_data": "tasks.running:combine",
     "study_figure": "show.gallery:draw_of_study",
     "study_page": "show.studies:write_page",
+    "study_task": "tasks.running:run_task",
     "study_tables": "studies.tables:write_tables",
     "table": "results.table:write_table",
 }

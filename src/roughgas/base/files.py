@@ -108,6 +108,47 @@ def code_of(*modules: str, alone: Iterable[str] = ()) -> str:
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
+def code_in(
+    folder: str | Path, name: str, beside: Iterable[str] = (), alone: Iterable[str] = ()
+) -> str:
+    """Return a hash of the module `name` in the folder of a study, of those there that it imports,
+    and of all that these import of the package; and of other files `beside` it.
+
+    Of the package's modules in `alone` the imports do not count. Raises InputError for a file that
+    is not there or is no Python.
+    """
+    folder, todo, package, digests = Path(folder), [name], set[str](), {}
+    while todo:
+        file = f"{todo.pop()}.py"
+        if file not in digests:
+            tree = _parsed(folder / file)
+            digests[file] = hashlib.sha256((folder / file).read_bytes()).hexdigest()
+            package |= set(_imports(tree, True))
+            todo += [one for one in _siblings(tree) if (folder / f"{one}.py").exists()]
+    for file in beside:
+        digests[file] = hashlib.sha256((folder / file).read_bytes()).hexdigest()
+    text = code_of(*package, alone=alone) + "".join(map(str, sorted(digests.items())))
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def _parsed(path: Path) -> ast.Module:
+    called = f"studies/{path.parent.name}/{path.name}"
+    if not path.exists():
+        raise InputError(called, "(nothing)", "be there for this")
+    try:
+        return ast.parse(path.read_bytes())
+    except SyntaxError as error:
+        raise InputError(called, f"SyntaxError: {error}", "be Python") from error
+
+
+def _siblings(tree: ast.Module) -> Iterator[str]:
+    """Generate the modules beside it that a module imports."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom) and node.level == 1:
+            names = [one.name for one in node.names]
+            yield from [node.module.partition(".")[0]] if node.module else names
+
+
 def closure(*modules: str) -> set[str]:
     """Return the names of modules, of all that they import anywhere, and of their packages.
 
@@ -169,6 +210,6 @@ def module_of(folder: str | Path, name: str) -> types.ModuleType:
         raise InputError(f"studies/{folder.name}/{name}.py", "(nothing)", "be there for this")
     try:
         return importlib.import_module(f"{package}.{name}")
-    except (ImportError, SyntaxError) as error:
+    except Exception as error:
         said = f"{type(error).__name__}: {error}"
         raise InputError(f"studies/{folder.name}/{name}.py", said, "be Python") from error

@@ -68,7 +68,7 @@ def read_study(folder: str | Path, title: str, experiments: Iterable[str]) -> Su
     the study, called NAME.KEY. Raises InputError for a judge that is not there.
     """
     folder = Path(folder)
-    own = {name.partition(".")[2]: name for name in experiments}
+    own = {name.partition(".")[2]: name for name in experiments} | {"tasks": folder.name}
     judges = (module_of(folder, "judges"),) if (folder / "judges.py").exists() else ()
     statements = []
     for name, row in _read(folder / "claims.yaml").items():

@@ -40,7 +40,8 @@ RESERVED = (
     *("hard_cases_collapse", "hard_cases_cooling", "living", "living_page", "movie", "movies"),
     *("open_questions", "page", "picture_for_talks", "pictures", "plot", "point", "profiles"),
     *("reduce", "report", "run_times", "run_times_extensions", "runaway", "showcase"),
-    *("study_claims", "study_figure", "study_page", "study_table", "table", "task"),
+    *("study_claims", "study_data", "study_figure", "study_page", "study_table", "study_task"),
+    *("table", "task"),
 )
 """Names that no experiment may have, those of rules and products of the workflow."""
 FORMATS = {
@@ -57,22 +58,45 @@ def check_schema(instance: Any, source: str, part: str | None = None) -> None:
     `part` names the definition of the schema that is meant, by default its whole. `source` goes
     before the key, such as "config.yaml: experiments".
     """
-    errors = list(_validator(part).iter_errors(instance))
+    is_file = part is None or source.endswith(".yaml")
+    _refuse(_validator(part), instance, source, ": " if is_file else ".")
+
+
+def check_by(schema: Any, instance: Any, source: str, called: str) -> None:
+    """Raise an InputError for the first place where `instance` is not what a schema of its own
+    says, which is `called` so; it may refer to $defs of the schema of config.yaml."""
+    from jsonschema import Draft202012Validator, SchemaError
+    from referencing.exceptions import Unresolvable
+
+    legal = "be a JSON schema, with references to $defs of its own or of config.yaml's schema"
+    try:
+        Draft202012Validator.check_schema(schema)
+        whole = {**schema, "$defs": _schema()["$defs"] | schema.get("$defs", {})}
+        _refuse(_validator_of(whole), instance, source, ".")
+    except (SchemaError, Unresolvable, TypeError) as error:
+        raise InputError(called, str(error).partition("\n")[0], legal) from error
+
+
+def _refuse(validator: "Draft202012Validator", instance: Any, source: str, separator: str) -> None:
+    errors = list(validator.iter_errors(instance))
     if errors:
         first = min(errors, key=lambda error: _position(error.absolute_path, instance))
-        is_file = part is None or source.endswith(".yaml")
-        raise _input_error(first, source, ": " if is_file else ".")
+        raise _input_error(first, source, separator)
 
 
 @functools.cache
 def _validator(part: str | None) -> "Draft202012Validator":
+    schema = _schema()
+    if part is not None:
+        schema = {"$ref": f"#/$defs/{part}", "$defs": schema["$defs"]}
+    return _validator_of(schema)
+
+
+def _validator_of(schema: dict[str, Any]) -> "Draft202012Validator":
     # imported here, since a job whose settings have been checked can do without
     from jsonschema import Draft202012Validator, FormatChecker
     from jsonschema.validators import extend
 
-    schema = _schema()
-    if part is not None:
-        schema = {"$ref": f"#/$defs/{part}", "$defs": schema["$defs"]}
     formats = FormatChecker(formats=())
     for name, (value_of, _) in FORMATS.items():
         formats.checks(name, raises=InputError)(lambda label, f=value_of: f(label) is not None)
@@ -158,7 +182,8 @@ def _place_of(name: str, value: Any, known: Mapping[str, Any]) -> str:
 
 def _legal(schema: Mapping[str, Any]) -> str:
     """Return what `schema` allows, as the end of a sentence that begins "it must"."""
-    return next(say(schema) for keyword, say in SAID.items() if keyword in schema)
+    said = (say(schema) for keyword, say in SAID.items() if keyword in schema)
+    return next(said, "be what its schema says")
 
 
 def _legal_type(schema: Mapping[str, Any]) -> str:
@@ -166,11 +191,13 @@ def _legal_type(schema: Mapping[str, Any]) -> str:
     if kind in NOT_A_NUMBER:
         return NOT_A_NUMBER[kind]
     if kind == "array":
-        few, many = schema["minItems"], schema.get("maxItems")
+        few, many = schema.get("minItems", 0), schema.get("maxItems")
         least = "a list that is not empty" if few == 1 else f"a list of at least {few} entries"
         return f"be a list of {few} to {many} entries" if many else f"be {least}"
     noun = "a whole number" if kind == "integer" else "a number"
     low, closed = schema.get("minimum", schema.get("exclusiveMinimum")), "minimum" in schema
+    if low is None:
+        return f"be {noun}"
     if "maximum" in schema:
         return f"be {noun} in {'[' if closed else '('}{low}, {schema['maximum']}]"
     return f"be {noun} {'>=' if closed else '>'} {low}"

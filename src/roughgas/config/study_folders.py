@@ -7,17 +7,18 @@ it.
 """
 
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 from typing import Any
 
 from roughgas import config as settings_of
 from roughgas.base import InputError, shown
+from roughgas.base.formatting import from_json
 from roughgas.config.reading import read_yaml
-from roughgas.config.schema import RESERVED, check_ancestors, check_one, check_schema
+from roughgas.config.schema import RESERVED, check_ancestors, check_by, check_one, check_schema
 
-FOLDER = "studies"
+FOLDER, TASKS = "studies", "tasks"
 USUAL_SCALES = ("paper", "small")
 """Scales for which a study may have changes though the configuration does not have the scale."""
 
@@ -37,7 +38,8 @@ def joined(
 
     Their experiments and scales join those of `config`, where NAME.KEY changes an experiment of
     the study NAME. The key FOLDERS has what else there is to each study: `folder`, `title`,
-    `experiments`, `figures` (the experiments that each shows) and `movies`; the key BROKEN has the
+    `experiments` that are swept, `figures` (the experiments that each shows), `movies`, and `tasks`
+    (their `settings` by scale, and their `experiments`), where it has any; the key BROKEN has the
     arguments of the InputError of each that is broken. With `only` one study joins, and those that
     it extends. Raises InputError where `config` changes an experiment that no study has.
     """
@@ -54,7 +56,9 @@ def joined(
             broken[name] = error.args
     for part in (config["experiments"], *config["scales"].values()):
         for key in part:
-            lacks = key not in whole["experiments"] and key.partition(".")[0] not in broken
+            study, _, own = key.partition(".")
+            lacks = key not in whole["experiments"] and study not in broken
+            lacks = lacks and not (own == TASKS in whole[settings_of.FOLDERS].get(study, {}))
             if "." in key and lacks and only is None:
                 legal = "be STUDY.EXPERIMENT of a folder of studies/"
                 raise InputError(f"{source}: key", shown(key), legal)
@@ -89,10 +93,10 @@ def _read_all(
 
 
 def _read(name: str, folder: Path, config: Mapping[str, Any]) -> dict[str, Any]:
-    """Return `experiments` and `scales` of a study, names qualified, and what FOLDERS has of it."""
-    root, source = _of_root(config["experiments"]), _source(name)
+    """Return the experiments of a study, names qualified, its changes by scale, and all else."""
+    source, root = _source(name), _of_root(config["experiments"])
     study = _checked(name, folder, root)
-    own = study["experiments"]
+    own = study.get("experiments", {})
 
     def qualified(key: str, where: str) -> str:
         base, slash, variant = key.partition("/")
@@ -105,20 +109,53 @@ def _read(name: str, folder: Path, config: Mapping[str, Any]) -> dict[str, Any]:
         if "extends" in one:
             one = one | {"extends": qualified(one["extends"], f"experiments.{key}.extends")}
         experiments[f"{name}.{key}"] = one
+    changeable = [*own, *([TASKS] if TASKS in study else [])]
     for scale, changes in study.get("scales", {}).items():
         settings_of.one_of(f"{source}: scale", scale, {*config["scales"], *USUAL_SCALES})
         for key in changes:
-            settings_of.one_of(f"{source}: key of scales.{scale}", key, own)
+            settings_of.one_of(f"{source}: key of scales.{scale}", key, changeable)
         scales[scale] = {f"{name}.{key}": one for key, one in changes.items()}
     about: dict[str, Any] = {"folder": str(folder), "title": _title(folder)}
-    about |= {"experiments": list(experiments), "figures": {}, "movies": {}}
-    usual = {name: list(own)} if (folder / "figure.py").exists() else {}
-    for figure, shows in study.get("figures", usual).items():
-        about["figures"][figure] = [qualified(one, f"figures.{figure}") for one in shows]
-    for movie, shows in study.get("movies", {}).items():
-        what, *options = shows.split() or [""]
-        about["movies"][movie] = [qualified(what, f"movies.{movie}"), *options]
+    about |= _tasks(name, study, qualified)
+    of_tasks = about[TASKS]["experiments"].values() if TASKS in about else ()
+    about["experiments"] = [key for key in experiments if key not in of_tasks]
+    about |= _shown(name, study, about, qualified)
     return {"experiments": experiments, "scales": scales, "about": about}
+
+
+def _tasks(
+    name: str, study: Mapping[str, Any], qualified: Callable[[str, str], str]
+) -> dict[str, Any]:
+    """Return the settings of a study's tasks, and the names of their experiments."""
+    if TASKS not in study:
+        return {}
+    settings = dict(study[TASKS])
+    names = settings.pop("experiments")
+    experiments = {one: qualified(one, "tasks.experiments") for one in names}
+    return {TASKS: {"settings": settings, "experiments": experiments}}
+
+
+def _shown(
+    name: str,
+    study: Mapping[str, Any],
+    about: Mapping[str, Any],
+    qualified: Callable[[str, str], str],
+) -> dict[str, Any]:
+    """Return which experiments the figures and movies of a study show."""
+    every = [key.partition(".")[2] for key in about["experiments"]] + [TASKS] * (TASKS in about)
+    usual = {name: every} if Path(about["folder"], "figure.py").exists() else {}
+    figures = {
+        figure: [
+            one if one == TASKS and TASKS in about else qualified(one, f"figures.{figure}")
+            for one in shows
+        ]
+        for figure, shows in study.get("figures", usual).items()
+    }
+    movies = {
+        movie: [qualified((shows.split() or [""])[0], f"movies.{movie}"), *shows.split()[1:]]
+        for movie, shows in study.get("movies", {}).items()
+    }
+    return {"figures": figures, "movies": movies}
 
 
 def _checked(name: str, folder: Path, root: Mapping[str, Any]) -> dict[str, Any]:
@@ -128,12 +165,20 @@ def _checked(name: str, folder: Path, root: Mapping[str, Any]) -> dict[str, Any]
     if name in RESERVED or name in root:
         legal = "have another name: the workflow has a rule, a product or an experiment of this one"
         raise InputError(f"{FOLDER}: folder", name, legal)
-    study = read_yaml(folder / "config.yaml", source)
+    study: dict[str, Any] = read_yaml(folder / "config.yaml", source)
     check_schema(study, source, "study_folder")
     if (folder / "claims.yaml").exists():
         claims = f"{FOLDER}/{name}/claims.yaml"
         check_schema(read_yaml(folder / "claims.yaml", claims), claims, "claims")
-    for key in study["experiments"].keys() & root.keys():
+    if TASKS not in study and "experiments" not in study:
+        raise InputError(f"{source}: experiments", "(nothing)", "be given")
+    if (folder / "tasks.py").exists() and TASKS not in study:
+        raise InputError(f"{source}: tasks", "(nothing)", "be given beside tasks.py")
+    for file in ("tasks.py", "results.py"):
+        if TASKS in study and not (folder / file).exists():
+            legal = "be there, as config.yaml has tasks"
+            raise InputError(f"{FOLDER}/{name}/{file}", "(nothing)", legal)
+    for key in study.get("experiments", {}).keys() & {*root, TASKS}:
         raise InputError(f"{source}: key of experiments", key, "be no name of config.yaml's own")
     for part in ("figures", "movies"):
         for key in study.get(part, ()):
@@ -194,12 +239,60 @@ def _with_study(
         of_study = {key: settings_of.merged(own.get(key, {}), changes.get(key, {})) for key in keys}
         scales[scale] = {**known, **of_study}
     joined = {**whole, "experiments": whole["experiments"] | experiments, "scales": scales}
-    source = _source(name)
+    source, about = _source(name), study["about"]
     for key in experiments:
         check_ancestors(key, joined["experiments"], source)
         for scale in scales:
             check_one(joined, key, scale, source)
-    for shows in study["about"]["figures"].values():
+    for shows in about["figures"].values():
         for key in shows:
-            settings_of.one_of(f"{source}: figures", key, joined["experiments"])
-    return joined | {settings_of.FOLDERS: whole[settings_of.FOLDERS] | {name: study["about"]}}
+            settings_of.one_of(f"{source}: figures", key, {TASKS, *joined["experiments"]})
+    if TASKS in about:
+        about = about | {TASKS: about[TASKS] | {"settings": _at_scales(config, name, study)}}
+    return joined | {settings_of.FOLDERS: whole[settings_of.FOLDERS] | {name: about}}
+
+
+def _at_scales(config: Mapping[str, Any], name: str, study: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the settings of a study's tasks by scale, checked."""
+    found, key, about = {}, f"{name}.{TASKS}", study["about"]
+    for scale, root in config["scales"].items():
+        settings = about[TASKS]["settings"]
+        for changes in (study["scales"].get(scale, {}), root):
+            settings = settings_of.merged(settings, changes.get(key, {}))
+        at_scale = "" if scale == config["scale"] else f" at scale {scale}"
+        check_tasks(settings, about["folder"], f"{_source(name)}: tasks{at_scale}")
+        found[scale] = settings
+    return found
+
+
+def check_tasks(settings: Mapping[str, Any], folder: str | Path, source: str) -> None:
+    """Check the settings of tasks by schema.yaml of the study in `folder`, where there is one.
+
+    It may use the definitions and formats of the schema of config.yaml. Raises InputError.
+    """
+    path = Path(folder, "schema.yaml")
+    if path.exists():
+        called = f"{FOLDER}/{path.parent.name}/{path.name}"
+        check_by(read_yaml(path, called), settings, source, called)
+
+
+def tasks(config: Mapping[str, Any], name: str, scale: str) -> dict[str, Any]:
+    """Return the settings of a study's tasks at `scale`, as `study`, and those of the experiments
+    that they may run, as `experiments`."""
+    about = config[settings_of.FOLDERS][name][TASKS]
+    settings_of.one_of("scale", scale, about["settings"])
+    experiments = {
+        local: settings_of.point_settings(settings_of.experiment(config, one, scale))
+        for local, one in about["experiments"].items()
+    }
+    return {"study": about["settings"][scale], "experiments": experiments}
+
+
+def tasks_from_text(folder: str | Path, text: str) -> dict[str, Any]:
+    """Return the settings of the tasks of the study in `folder` from their JSON, checked."""
+    settings = from_json(text, "--settings")
+    check_schema(settings, "--settings", "study_task")
+    check_tasks(settings["study"], folder, "--settings: study")
+    for one, experiment in settings["experiments"].items():
+        check_schema(experiment, f"--settings: experiments.{one}", "experiment")
+    return settings

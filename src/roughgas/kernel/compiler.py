@@ -95,17 +95,13 @@ def kernel_folder():
 def folder_of(file):
     """Return the folder for the compiled functions of `file`, as `kernel_folder` does.
 
-    Other rooms, and files outside the package, call the kernel's functions: they have folders in
-    the kernel's, named by a hash of their own sources.
+    Other rooms, and files outside the package, call the kernel's functions, and those of files
+    beside them: they have folders in the kernel's, named by a hash of all sources beside them.
     """
     file = Path(file).resolve()
-    if PACKAGE not in file.parents:
-        own = hashlib.sha256(file.read_bytes()).hexdigest()[:16]
-    elif file.parent.name in ROOMS:
+    if PACKAGE in file.parents and file.parent.name in ROOMS:
         return kernel_folder() / file.stem
-    else:
-        own = source_hash(file.parent)
-    return kernel_folder() / f"{file.stem}-{own}"
+    return kernel_folder() / f"{file.stem}-{source_hash(file.parent)}"
 
 
 def cache_root():

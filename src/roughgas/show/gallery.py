@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from roughgas.base import InputError, not_one_of
 from roughgas.base.files import module_of
-from roughgas.data.netcdf import POINT, REDUCED, kind_of, opened
+from roughgas.data.netcdf import POINT, REDUCED, STUDIES, kind_of, opened, read_groups
 from roughgas.data.point import read_point
 from roughgas.data.reduced import read_reduced
 from roughgas.show import style
@@ -15,6 +15,7 @@ from roughgas.show.catalogue import FIGURES, figures_of
 from roughgas.theory.prediction import ratio_of_point
 
 if TYPE_CHECKING:
+    import xarray as xr
     from matplotlib.figure import Figure
 
 
@@ -42,17 +43,19 @@ def draw_of_study(
     shows: Sequence[str],
     output: Iterable[str | Path],
 ) -> None:
-    """Draw a figure of the study in `folder`, which `shows` these experiments.
+    """Draw a figure of the study in `folder`, which `shows` these experiments, and `tasks`, what
+    its tasks have found.
 
     Its figure.py has `draw` for the figure that has the study's name, and draw_X for NAME_X, which
-    take the reduced datasets in the order of `shows`. Raises InputError as `draw`, and where
-    figure.py has no such function.
+    take the datasets in the order of `shows`. Raises InputError as `draw`, and where figure.py has
+    no such function.
     """
     part = figure.removeprefix(Path(folder).name)
     function = getattr(module_of(folder, "figure"), f"draw{part}", None)
     if function is None:
         raise InputError(f"studies/{Path(folder).name}/figure.py", "it", f"have draw{part}()")
-    _draw(figure, function, shows, inputs, output)
+    names = [Path(folder).name if one == "tasks" else one for one in shows]
+    _draw(figure, function, names, inputs, output)
 
 
 def _draw(
@@ -63,14 +66,24 @@ def _draw(
     outputs: Iterable[str | Path],
     slide: bool = False,
 ) -> None:
-    datasets = {data.attrs["experiment"]: data for data in map(read_reduced, inputs)}
+    datasets = {name: data for path in inputs for name, data in _datasets(path).items()}
     if set(datasets) != set(shows):
         raise InputError(f"data of {name}", ", ".join(datasets), f"be {', '.join(shows)}")
     try:
         style.draw(lambda: function(*(datasets[one] for one in shows)), outputs, slide)
     except KeyError as error:
-        swept = "; ".join(f"{one} over {', '.join(datasets[one].R.dims)}" for one in shows)
+        swept = "; ".join(f"{one} over {', '.join(map(str, datasets[one].sizes))}" for one in shows)
         raise InputError(f"data of {name}", swept, f"have all that it shows: {error}") from error
+
+
+def _datasets(path: str | Path) -> dict[str, "xr.Dataset"]:
+    """Return a reduced dataset by its experiment, or what tasks have found by their study."""
+    with opened(path, REDUCED, STUDIES) as file:
+        is_reduced = kind_of(file) == REDUCED
+    if not is_reduced:
+        return read_groups(path)
+    data = read_reduced(path)
+    return {data.attrs["experiment"]: data}
 
 
 def plot(

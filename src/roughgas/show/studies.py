@@ -33,21 +33,25 @@ def write_page(
     *,
     title: str,
     figures: Sequence[str],
-    table: str | Path,
     output: str | Path,
+    table: str | Path = "",
+    found: str | Path = "",
     claims: str | Path = "",
 ) -> None:
     """Write a page of HTML that loads nothing: README.md with the pictures `figures` in it, those
-    that it does not show after it, verdicts, and the table of R."""
+    that it does not show after it, verdicts, the table that its tasks have `found`, and that of R.
+    """
     text = readme(folder) or f"# {title}\n"
     pictures = {Path(one).stem: f"![{Path(one).stem}](<{one}>)" for one in figures}
     text = LINK.sub(r"\1", text)  # of the project, which is not beside the page
     parts = PICTURE.split(text)
     parts[1::2] = [pictures.pop(one, "") for one in _in_place(parts[1::2], [*pictures])]
     whole = ["".join(parts), *pictures.values()]
-    if claims:
-        whole.append(re.sub(r"^#", "##", Path(claims).read_text(encoding="utf-8"), flags=re.M))
-    whole.append(_table(Path(table)))
+    for path in (claims, found):
+        if path:
+            whole.append(re.sub(r"^#", "##", Path(path).read_text("utf-8"), flags=re.M))
+    if table:
+        whole.append(_table(Path(table)))
     body = pages.markup(pages.markdown_as_html("\n\n".join(whole).encode(), Path()))
     shown = {"title": title, "body": body}
     pages.write_page(output, "page/document.html", ["page/document.css"], **shown)
