@@ -4,6 +4,7 @@ import copy
 import math
 
 import pytest
+from tests.tables import rows
 
 from roughgas import config
 from roughgas.base import InputError
@@ -169,58 +170,35 @@ def test_no_parameter_has_a_name_that_datasets_need():
     assert parameters & taken == {"inertia", "mu", "spin_share", "particles"}
 
 
-SWEPT = "experiments.spun.sweep"
-MISTAKES = [
-    (
-        {"spn.inertia": ["1"]},
-        f"{SWEPT}: key = 'spn.inertia': must begin with an effect of this experiment: "
-        "contact_averages, contact_time, shear, spin",
-    ),
-    (
-        {"species.heavy.mass": ["1"]},
-        f"{SWEPT}: key = 'species.heavy.mass': must name one of species: there are none",
-    ),
-    ({"floor.roughness": ["1"]}, "key = 'floor.roughness': must begin with an effect of this exp"),
-    (
-        {"spin.mass": ["1"]},
-        "experiments.spun/mass1.effects.spin: key = 'mass': must be one of inertia",
-    ),
-    (
-        {"inertia": ["1"]},
-        "sweep: key = 'inertia': must be one of beta, box, packing, particles, r, seeds, "
-        "species.NAME.KEY, EFFECT.PARAMETER, schedule.KEY; did you mean it under `effects: spin:`?",
-    ),
-    (
-        {"particles": ["1.5"]},
-        "experiments.spun/particles1.5.particles = 1.5: must be a whole number",
-    ),
-    ({"packing": ["1"]}, "experiments.spun/packing1.packing = 1: must be a number in (0, 0.95]"),
-    ({"packing": ["much"]}, "experiments.spun/packingmuch.packing = 'much': must be a number in"),
-    ({"packing": ["0.1"], "box": ["9"]}, f"{SWEPT}: key = 'box': must not stand beside packing"),
-    ({"box": ["wide"]}, "experiments.spun/boxwide.box = 'wide': must be a list of 2 to 3 entries"),
-    ({"schedule.lenght": ["1"]}, "key = 'schedule.lenght': must name a length of this schedule: "),
-    ({"schedule.measure": ["-1"]}, "experiments.spun/measure-1.schedule.measure = -1: must be a"),
-    ({"spin.inertia": []}, "sweep.spin.inertia = []: must be a list that is not empty"),
-    ({"spin.inertia": "1"}, "sweep.spin.inertia = '1': must be a list that is not empty"),
-    ({"spin.inertia": ["1", "1.0"]}, "sweep.spin.inertia = 1.0: must be given once"),
-    (
-        {"spin.inertia": ["0.5", "2"]},
-        "experiments.spun/inertia2.effects.spin.inertia = 2.0: must be a number in [1e-06, ",
-    ),
-    (
-        {"spin.inertia": ["sine"]},
-        "experiments.spun/inertiasine.effects.spin.inertia = 'sine': must be a number in [1e-06, ",
-    ),
-    (
-        {"spin.inertia": ["0.5/1"]},
-        "sweep.spin.inertia[0] = '0.5/1': must be a number, or a word of lower-case letters",
-    ),
-    ({"spin.inertia": [True]}, "sweep.spin.inertia[0] = True: must be a number, or a word"),
-    (
-        {"spin.inertia": ["1"], "shear.velocity": ["2"]},
-        f"{SWEPT}: key = 'shear.velocity': must not stand beside spin.inertia",
-    ),
-]
+MISTAKES = """
+{spn.inertia: ['1']} | experiments.spun.sweep: key = 'spn.inertia': must begin with an effect of
+    this experiment: contact_averages, contact_time, shear, spin
+{species.heavy.mass: ['1']} | experiments.spun.sweep: key = 'species.heavy.mass': must name one of
+    species: there are none
+{floor.roughness: ['1']} | key = 'floor.roughness': must begin with an effect of this exp
+{spin.mass: ['1']} | experiments.spun/mass1.effects.spin: key = 'mass': must be one of inertia
+{inertia: ['1']} | sweep: key = 'inertia': must be one of beta, box, packing, particles, r, seeds,
+    species.NAME.KEY, EFFECT.PARAMETER, schedule.KEY; did you mean it under `effects: spin:`?
+{particles: ['1.5']} | experiments.spun/particles1.5.particles = 1.5: must be a whole number
+{packing: ['1']} | experiments.spun/packing1.packing = 1: must be a number in (0, 0.95]
+{packing: ['much']} | experiments.spun/packingmuch.packing = 'much': must be a number in
+{packing: ['0.1'], box: ['9']} | experiments.spun.sweep: key = 'box': must not stand beside packing
+{box: ['wide']} | experiments.spun/boxwide.box = 'wide': must be a list of 2 to 3 entries
+{schedule.lenght: ['1']} | key = 'schedule.lenght': must name a length of this schedule:
+{schedule.measure: ['-1']} | experiments.spun/measure-1.schedule.measure = -1: must be a
+{spin.inertia: []} | sweep.spin.inertia = []: must be a list that is not empty
+{spin.inertia: '1'} | sweep.spin.inertia = '1': must be a list that is not empty
+{spin.inertia: ['1', '1.0']} | sweep.spin.inertia = 1.0: must be given once
+{spin.inertia: ['0.5', '2']} | experiments.spun/inertia2.effects.spin.inertia = 2.0: must be a
+    number in [1e-06,
+{spin.inertia: ['sine']} | experiments.spun/inertiasine.effects.spin.inertia = 'sine': must be a
+    number in [1e-06,
+{spin.inertia: ['0.5/1']} | sweep.spin.inertia[0] = '0.5/1': must be a number, or a word of
+    lower-case letters
+{spin.inertia: [true]} | sweep.spin.inertia[0] = True: must be a number, or a word
+{spin.inertia: ['1'], shear.velocity: ['2']} | experiments.spun.sweep: key = 'shear.velocity': must
+    not stand beside spin.inertia
+"""
 
 
 def sides(whole, name):
@@ -282,7 +260,7 @@ def test_a_packing_that_makes_no_box(settings, message, refusal, with_experiment
     assert message in refusal(schema.check, whole)
 
 
-@pytest.mark.parametrize(("sweep", "message"), MISTAKES)
+@pytest.mark.parametrize(("sweep", "message"), rows(MISTAKES))
 def test_a_mistake_is_named_in_one_line(sweep, message, refusal, with_experiments):
     whole = with_experiments(spun={"extends": "sheared", "sweep": sweep})
     said = refusal(schema.check, whole)

@@ -5,153 +5,106 @@ import json
 from pathlib import Path
 
 import pytest
+from tests.tables import rows
 
 from roughgas import config
 from roughgas.config import schema
 from roughgas.config.reading import read_yaml
 
 CONFIG = Path(__file__).parents[1] / "experiments.yaml"
-NAN, INF = float("nan"), float("inf")
 EXPERIMENTS = ", ".join(sorted(read_yaml(CONFIG)["experiments"]))
 
 
 def changed(whole, path, value):
-    """A copy of the configuration with another value at `path`, such as a.b.0"""
+    """A copy of the configuration with another value at `path`, such as a.b.0, of an experiment, or
+    such as /scale."""
     whole = copy.deepcopy(whole)
+    path = path[1:] if path.startswith("/") else f"experiments.{path}"
     *parents, last = (int(key) if key.isdigit() else key for key in path.split("."))
     inner = whole
     for key in parents:
         inner = inner[key]
-    if value is KeyError:
+    if value == "(absent)":
         del inner[last]
     else:
         inner[last] = value
     return whole
 
 
-MISTAKES = [
-    ("experiments.cooling.sweep.r", ["0.9", "1.5"], "sweep.r[1] = '1.5': must lie in [0, 1]"),
-    ("experiments.cooling.sweep.r", [NAN], "sweep.r[0] = nan: must lie in [0, 1]"),
-    ("experiments.cooling.sweep.r", ["nan"], "sweep.r[0] = 'nan': must lie in [0, 1]"),
-    ("experiments.cooling.sweep.beta", ["-1.1"], "sweep.beta[0] = '-1.1': must lie in [-1, 1]"),
-    ("experiments.cooling.sweep.beta", ["abc"], "sweep.beta[0] = 'abc': must lie in [-1, 1]"),
-    ("experiments.cooling.sweep.beta", ["0.1", "0.10"], "sweep.beta = 0.10: must be given once"),
-    ("experiments.cooling.sweep.r", [], "sweep.r = []: must be a list that is not empty"),
-    ("experiments.cooling.sweep.seeds", 0, "sweep.seeds = 0: must be a whole number >= 1"),
-    (
-        "experiments.cooling.schedule.target_stderr",
-        0,
-        "schedule.target_stderr = 0: must be a number in (0, 0.1]",
-    ),
-    *(
-        (f"experiments.{name}", {}, f"key of experiments = {name}: must be another name: the work")
-        for name in ("studies", "accuracy", "coverage", "hard_cases", "reduce")
-    ),
-    ("experiments.cooling.particles", 0, "particles = 0: must be a whole number in [1, 1"),
-    (
-        "experiments.cooling.particles",
-        "many",
-        "particles = 'many': must be a whole number in [1, 1",
-    ),
-    ("experiments.cooling.particles", 1.5, "particles = 1.5: must be a whole number in [1, 1"),
-    ("experiments.cooling.particles", True, "particles = True: must be a whole number in [1, 1"),
-    ("experiments.cooling.particles", NAN, "particles = nan: must be a whole number in [1, 1"),
-    ("experiments.cooling.box.0", -1, "box[0] = -1: must be a number in (0, 10000"),
-    ("experiments.cooling.box.1", INF, "box[1] = inf: must be a number in (0, 10000"),
-    ("experiments.cooling.box", [50], "box = [50]: must be a list of 2 to 3 entries"),
-    (
-        "experiments.cooling.effects.spin.inertia",
-        0,
-        "effects.spin.inertia = 0: must be a number in [1e-06, ",
-    ),
-    (
-        "experiments.vibrated.effects.floor.roughness",
-        "rough",
-        "effects.floor.roughness = 'rough': must be a number in [-1, 1] or be particles",
-    ),
-    (
-        "experiments.cooling.effects.gravty",
-        {"acceleration": 1},
-        "effects: key = 'gravty': must be one of back_wall, bottom_wall, contact_averages, ",
-    ),
-    (
-        "experiments.vibrated.effects.floor.height",
-        1,
-        "effects.floor: key = 'height': must be one of amplitude, period, restitution, roughness",
-    ),
-    (
-        "experiments.vibrated.effects.floor.period",
-        KeyError,
-        "effects.floor.period = (nothing): must be given",
-    ),
-    (
-        "experiments.vibrated.schedule.measure",
-        -1,
-        "schedule.measure = -1: must be a number in (0, 1000000000]",
-    ),
-    (
-        "experiments.cooling.schedule.measure",
-        1,
-        "schedule: key = 'measure': must be one of kind, replicas, thermalise, "
-        "relaxation_times, plateau, sample_every",
-    ),
-    (
-        "experiments.cooling.schedule.kind",
-        "heating",
-        "schedule.kind = 'heating': must be one of steady, cooling",
-    ),
-    ("experiments.cooling.schedule", KeyError, "schedule = (nothing): must be given"),
-    ("experiments.cooling.sweep", KeyError, "sweep = (nothing): must be given"),
-    ("experiments.cooling", None, "cooling = None: must be a mapping of keys to values"),
-    ("experiments.vibrated_smooth_walls.extends", "foo", f"must be one of {EXPERIMENTS}"),
-    ("experiments.cooling.extends", "cooling", "that does not itself build on this one"),
-    (
-        "experiments.cooling.extends",
-        "cooling_spheres",
-        "experiments.cooling_spheres.extends = cooling: must be an experiment that does not itself",
-    ),
-    ("experiments.No Name", {}, "must consist of lower-case letters, digits and _, a letter first"),
-    (
-        "scales.small.foo",
-        {},
-        "key of scales.small = 'foo': must be one of cooling, cooling_friction, cooling_i",
-    ),
-    ("scales.small.showcase.frames", 0, "scales.small.showcase.frames = 0: must be a whole number"),
-    ("showcase.beta", "2", "showcase.beta = '2': must lie in [-1, 1]"),
-    ("showcase.box", [10, "open"], "showcase.box[1] = 'open': must be a number > 0"),
-    (
-        "showcase.effects.spin",
-        None,
-        "showcase at scale paper.effects.spin = None: must be a mapping",
-    ),
-    ("showcase.window", KeyError, "showcase at scale paper.window = (nothing): must be given"),
-    ("scales.small.cooling.extends", "vibrated", "must not be given here"),
-    ("scales.small.cooling.particles", 0, "particles = 0: must be a whole number in [1, 1"),
-    ("scale", "large", "config.yaml: scale = 'large': must be one of paper, small"),
-    (
-        "n_particles",
-        5,
-        "config.yaml: key = 'n_particles': must be one of betas_per_job, complete, experiments",
-    ),
-]
+MISTAKES = """
+cooling.sweep.r | ['0.9', '1.5'] | sweep.r[1] = '1.5': must lie in [0, 1]
+cooling.sweep.r | [.nan] | sweep.r[0] = nan: must lie in [0, 1]
+cooling.sweep.r | ['nan'] | sweep.r[0] = 'nan': must lie in [0, 1]
+cooling.sweep.beta | ['-1.1'] | sweep.beta[0] = '-1.1': must lie in [-1, 1]
+cooling.sweep.beta | ['abc'] | sweep.beta[0] = 'abc': must lie in [-1, 1]
+cooling.sweep.beta | ['0.1', '0.10'] | sweep.beta = 0.10: must be given once
+cooling.sweep.r | [] | sweep.r = []: must be a list that is not empty
+cooling.sweep.seeds | 0 | sweep.seeds = 0: must be a whole number >= 1
+cooling.schedule.target_stderr | 0 | schedule.target_stderr = 0: must be a number in (0, 0.1]
+studies | {} | key of experiments = studies: must be another name: the work
+accuracy | {} | key of experiments = accuracy: must be another name: the work
+coverage | {} | key of experiments = coverage: must be another name: the work
+hard_cases | {} | key of experiments = hard_cases: must be another name: the work
+reduce | {} | key of experiments = reduce: must be another name: the work
+cooling.particles | 0 | particles = 0: must be a whole number in [1, 1
+cooling.particles | 'many' | particles = 'many': must be a whole number in [1, 1
+cooling.particles | 1.5 | particles = 1.5: must be a whole number in [1, 1
+cooling.particles | true | particles = True: must be a whole number in [1, 1
+cooling.particles | .nan | particles = nan: must be a whole number in [1, 1
+cooling.box.0 | -1 | box[0] = -1: must be a number in (0, 10000
+cooling.box.1 | .inf | box[1] = inf: must be a number in (0, 10000
+cooling.box | [50] | box = [50]: must be a list of 2 to 3 entries
+cooling.effects.spin.inertia | 0 | effects.spin.inertia = 0: must be a number in [1e-06,
+vibrated.effects.floor.roughness | 'rough' | effects.floor.roughness = 'rough': must be a number in
+    [-1, 1] or be particles
+cooling.effects.gravty | {acceleration: 1} | effects: key = 'gravty': must be one of back_wall,
+    bottom_wall, contact_averages,
+vibrated.effects.floor.height | 1 | effects.floor: key = 'height': must be one of amplitude, period,
+    restitution, roughness
+vibrated.effects.floor.period | (absent) | effects.floor.period = (nothing): must be given
+vibrated.schedule.measure | -1 | schedule.measure = -1: must be a number in (0, 1000000000]
+cooling.schedule.measure | 1 | schedule: key = 'measure': must be one of kind, replicas, thermalise,
+    relaxation_times, plateau, sample_every
+cooling.schedule.kind | 'heating' | schedule.kind = 'heating': must be one of steady, cooling
+cooling.schedule | (absent) | schedule = (nothing): must be given
+cooling.sweep | (absent) | sweep = (nothing): must be given
+cooling | null | cooling = None: must be a mapping of keys to values
+vibrated_smooth_walls.extends | 'foo' | must be one of cooling,
+cooling.extends | 'cooling' | that does not itself build on this one
+cooling.extends | 'cooling_spheres' | experiments.cooling_spheres.extends = cooling: must be an
+    experiment that does not itself
+No Name | {} | must consist of lower-case letters, digits and _, a letter first
+/scales.small.foo | {} | key of scales.small = 'foo': must be one of cooling, cooling_friction,
+    cooling_i
+/scales.small.showcase.frames | 0 | scales.small.showcase.frames = 0: must be a whole number
+/showcase.beta | '2' | showcase.beta = '2': must lie in [-1, 1]
+/showcase.box | [10, 'open'] | showcase.box[1] = 'open': must be a number > 0
+/showcase.effects.spin | null | showcase at scale paper.effects.spin = None: must be a mapping
+/showcase.window | (absent) | showcase at scale paper.window = (nothing): must be given
+/scales.small.cooling.extends | 'vibrated' | must not be given here
+/scales.small.cooling.particles | 0 | particles = 0: must be a whole number in [1, 1
+/scale | 'large' | config.yaml: scale = 'large': must be one of paper, small
+/n_particles | 5 | config.yaml: key = 'n_particles': must be one of betas_per_job, complete,
+    experiments
+"""
 
 
-@pytest.mark.parametrize(("path", "value", "message"), MISTAKES)
+@pytest.mark.parametrize(("path", "value", "message"), rows(MISTAKES))
 def test_a_mistake_is_named_in_one_line(paper, path, value, message, refusal):
     said = refusal(schema.check, changed(paper, path, value))
     assert said.startswith("config.yaml: ")
     assert message in said
-    assert path.split(".")[0] in said
+    assert path.removeprefix("/").split(".")[0] in said
 
 
 def test_the_first_mistake_in_the_file_is_named(paper, refusal):
-    whole = changed(paper, "experiments.sheared.particles", 0)
-    whole = changed(whole, "experiments.vibrated.particles", "x")
+    whole = changed(paper, "sheared.particles", 0)
+    whole = changed(whole, "vibrated.particles", "x")
     assert "experiments.vibrated.particles = 'x'" in refusal(schema.check, whole)
 
 
 def test_a_long_value_is_shortened(paper, refusal):
-    whole = changed(paper, "experiments.cooling.particles", list(range(1000)))
+    whole = changed(paper, "cooling.particles", list(range(1000)))
     assert len(refusal(schema.check, whole)) < 150
 
 
