@@ -116,19 +116,19 @@ def run(gas, collisions):
         if time == math.inf:
             break
         clock[NOW] = time
-        affected = carry_out(gas, i, int(gas.kind[i]), time)
+        affected = execute_event(gas, i, int(gas.kind[i]), time)
         for k in range(2):
             if affected[k] >= 0:
-                foresee(gas, affected[k], time)
+                predict_events(gas, affected[k], time)
         if time >= clock[SPAN]:
             renew(gas)
-        elif not moves_on(clock, counts, time, gas.spin.size):
+        elif not check_collapse(clock, counts, time, gas.spin.size):
             return False
     return True
 
 
 @jit
-def carry_out(gas, i, kind, time):
+def execute_event(gas, i, kind, time):
     """One event; whose future is to be foreseen anew, or -1."""
     if kind == HORIZON:
         return i, -1
@@ -151,7 +151,7 @@ def carry_out(gas, i, kind, time):
 
 
 @jit
-def moves_on(clock, counts, time, number):
+def check_collapse(clock, counts, time, number):
     """False where events accumulate as if time stood still."""
     if time > clock[INSTANT_END]:
         clock[INSTANT_END] = time + 2.0**-30 * clock[SPAN]
@@ -162,7 +162,7 @@ def moves_on(clock, counts, time, number):
 
 
 @jit
-def foresee(gas, i, time):
+def predict_events(gas, i, time):
     """All contacts of disk i up to its horizon."""
     clock, path = gas.clock, gas.path
     redraw_line(path, gas.lines, gas.extent, clock[SPAN], i)

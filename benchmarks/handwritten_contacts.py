@@ -152,7 +152,7 @@ def meeting_of_any_image(path, i, j, width, height, start, end):
 
 
 @jit
-def come_in(path, i, time, width, height):
+def enter_box(path, i, time, width, height):
     """Where disk i is at `time`, as the image of it that is in the box."""
     x = path[i, 2] * (time - path[i, 4]) + path[i, 0]
     y = path[i, 3] * (time - path[i, 4]) + path[i, 1]
@@ -165,8 +165,8 @@ def come_in(path, i, time, width, height):
 def collide(gas, i, j, time, least):
     """The contact of disks i and j; whether they hardly approached. They part at `least`."""
     path, spin, width, height = gas.path, gas.spin, gas.width, gas.height
-    x_i, y_i = come_in(path, i, time, width, height)
-    x_j, y_j = come_in(path, j, time, width, height)
+    x_i, y_i = enter_box(path, i, time, width, height)
+    x_j, y_j = enter_box(path, j, time, width, height)
     x, y = x_i - x_j, y_i - y_j
     x, y = x - periods(x, width) * width, y - periods(y, height) * height
     u, v = path[i, 2] - path[j, 2], path[i, 3] - path[j, 3]

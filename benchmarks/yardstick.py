@@ -65,7 +65,7 @@ def run(x, v, w, length, r, beta, collisions):
     number, now = len(x), 0.0
     next_time, partner = np.full(number, np.inf), np.zeros(number, np.int64)
     for i in range(number):
-        foresee(x, v, i, length, now, next_time, partner)
+        predict_events(x, v, i, length, now, next_time, partner)
     for _ in range(collisions):
         i = 0
         for k in range(number):
@@ -79,12 +79,12 @@ def run(x, v, w, length, r, beta, collisions):
         collide(x, v, w, i, j, length, r, beta)
         for k in range(number):
             if k == i or k == j or partner[k] == i or partner[k] == j:
-                foresee(x, v, k, length, now, next_time, partner)
+                predict_events(x, v, k, length, now, next_time, partner)
     return now
 
 
 @numba.njit
-def foresee(x, v, i, length, now, next_time, partner):
+def predict_events(x, v, i, length, now, next_time, partner):
     """The earliest contact of disk i with the nearest image of any other disk.
 
     Another image may come first after a flight of half the box; such a contact is found late.

@@ -2,7 +2,7 @@
 
 A judge takes reduced datasets beside theory (`theory`, like R) and returns a `Finding`, or raises
 `NotTestedError` where the data cannot decide. `agreement` judges whether a sample of differences is
-compatible with zero; `graded`, `worse` and `together` combine verdicts.
+compatible with zero; `grade`, `worse` and `together` combine verdicts.
 """
 
 from roughgas.claims.averages import (
@@ -33,7 +33,7 @@ from roughgas.claims.verdicts import (
     Finding,
     agreement,
     agreement_in_proportion,
-    graded,
+    grade,
     points,
     tendency,
     text,
@@ -77,7 +77,7 @@ __all__ = [
     "difference",
     "follows_its_share",
     "follows_over_collisions",
-    "graded",
+    "grade",
     "of_ratio",
     "over_seeds",
     "points",

@@ -17,4 +17,4 @@ def couette_is_lees_edwards(couette: xr.Dataset, sheared: xr.Dataset) -> Finding
         return found
     rate = couette.shear_rate / np.sqrt(2 * couette.E_trans)
     low, high = float(rate.min()), float(rate.max())
-    return found.noting(f"Shear rates are from {low:.3f} to {high:.3f} sqrt(T_tr/m)/a.")
+    return found.with_note(f"Shear rates are from {low:.3f} to {high:.3f} sqrt(T_tr/m)/a.")

@@ -30,7 +30,7 @@ def follows_rates(gas: xr.Dataset) -> Finding:
         f"beta = {beta:g}: {measured[beta]} (rate equations {expected[beta]})" for beta in measured
     )
     largest = held.mu.values[-1]
-    return found.noting(
+    return found.with_note(
         f"Smallest mu from which R stays within {AGREE:g} of R at the largest, mu = {largest:g}: "
         f"{at}."
     )

@@ -12,7 +12,7 @@ from roughgas.judging import (
     Sample,
     agreement,
     difference,
-    graded,
+    grade,
     sample,
     species_at,
     text,
@@ -70,13 +70,13 @@ def _cooling(gas: xr.Dataset) -> Finding:
     )
     off, vague = relative.off(NEAR), relative.vague(NEAR)
     far = relative.off(FAR)
-    verdict = graded(off.mean() <= FEW and vague.mean() <= FEW, far.mean() <= FEW)
+    verdict = grade(off.mean() <= FEW and vague.mean() <= FEW, far.mean() <= FEW)
     largest, place = relative.largest()
     reason = (
         f"T_2/T_1 is within {NEAR:.0%} of theory at {int((~off).sum())} of {relative.size} points; "
         f"the largest difference is {text(largest)} of it at {place}."
     )
-    found = ratios.noting(reason)
+    found = ratios.with_note(reason)
     numbers = (*found.numbers, ("largest difference of T_2/T_1 over theory", largest))
     return Finding(worse(found.verdict, verdict), found.reason, numbers)
 

@@ -8,7 +8,7 @@ from roughgas.judging import (
     NotTestedError,
     Sample,
     agreement,
-    graded,
+    grade,
     of_ratio,
     over_seeds,
     text,
@@ -35,7 +35,7 @@ def viscoelastic_exponent(gas: xr.Dataset) -> Finding:
         f"The exponent is from {found.value.min() + FIVE_THIRDS:.3f} to "
         f"{found.value.max() + FIVE_THIRDS:.3f}; farthest from 5/3, by {text(largest)}, at {place}."
     )
-    verdict = graded(not found.off(CLOSE).any(), not found.off(ROUGHLY).any())
+    verdict = grade(not found.off(CLOSE).any(), not found.off(ROUGHLY).any())
     return Finding(verdict, reason, (("largest deviation from 5/3", largest),))
 
 

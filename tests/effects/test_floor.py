@@ -13,7 +13,7 @@ from roughgas.base import InputError
 from roughgas.effects import floor as floors
 from roughgas.effects import sine_floor
 from roughgas.effects.floor import Floor
-from roughgas.effects.settings import Surroundings, make
+from roughgas.effects.settings import SceneContext, make
 from roughgas.effects.sine_floor import SineFloor
 from roughgas.effects.triangular_floor import TriangularFloor
 from roughgas.kernel.hooks import CODES
@@ -94,7 +94,7 @@ SPIN = {"spin": {"inertia": 0.5}}
 
 def from_settings(**chosen):
     stated = {"amplitude": 5, "period": 2, "restitution": "particles", "roughness": 0.5}
-    around = Surroundings((50.0, None), 0.9, 0.2, SPIN)
+    around = SceneContext((50.0, None), 0.9, 0.2, SPIN)
     return make(Floor, "floor", stated | chosen, around)
 
 

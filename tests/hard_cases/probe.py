@@ -15,7 +15,7 @@ from roughgas.effects.settings import register
 from roughgas.kernel import hooks
 from roughgas.kernel.jit import entry, jit
 from roughgas.kernel.loop import REACHED
-from roughgas.kernel.particles import arrive, image_numbers, shifted, slid
+from roughgas.kernel.particles import image_numbers, position_in_box, shifted, slid
 from roughgas.kernel.record import Sampling, columns, record
 from roughgas.kernel.vectors import dot, subtract
 from roughgas.scene import Scene, build
@@ -37,8 +37,8 @@ class Probe(NamedTuple):
 def restitution(probe, index, r, state, i, j, time, speed):
     if j >= 0:
         scene = probe.scene
-        position_i, velocity_i = arrive(state, scene, i, time)
-        position_j, velocity_j = arrive(state, scene, j, time)
+        position_i, velocity_i = position_in_box(state, scene, i, time)
+        position_j, velocity_j = position_in_box(state, scene, j, time)
         slide = slid(hooks.sliding(scene.effects, None, state), time)
         x, v = subtract(position_i, position_j), subtract(velocity_i, velocity_j)
         x, v = shifted(x, v, image_numbers(x, scene.box, slide), scene.box, slide)

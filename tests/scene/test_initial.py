@@ -6,7 +6,7 @@ from brute_force import KERNELS, begin, largest_overlap, scene_of, settings
 
 from roughgas.base import InputError
 from roughgas.scene import check_places
-from roughgas.scene.random_packing import places_for
+from roughgas.scene.random_packing import random_positions
 
 CASES = {
     **{name: settings(name) for name in KERNELS},
@@ -121,15 +121,15 @@ def test_nothing_overlaps(case):
 def test_particles_end_where_they_are_pushed_on_the_side_that_is_free():
     """One axis repeats, the other does not."""
     radius, rng = np.full(6, 1.0), np.random.default_rng(0)
-    found = places_for(radius, [11.5, 3.5], [True, False], rng)  # a lattice has five sites
+    found = random_positions(radius, [11.5, 3.5], [True, False], rng)  # a lattice has five sites
     assert found[:, 1].min() >= 1.0 and found[:, 1].max() <= 2.5
-    assert places_for(radius, [11.5, 1.6], [True, False], rng) is None
+    assert random_positions(radius, [11.5, 1.6], [True, False], rng) is None
 
 
 def test_a_giant_among_dwarfs_takes_no_lattice_of_dwarfs():
     """Its sites would be 2.5e9."""
     radius = np.array([10.0, *[0.001] * 99])
-    found = places_for(radius, [100.0, 100.0], [True, True], np.random.default_rng(1))
+    found = random_positions(radius, [100.0, 100.0], [True, True], np.random.default_rng(1))
     apart = found[1:] - found[0]
     apart -= 100.0 * np.round(apart / 100.0)
     assert len(found) == 100 and np.hypot(*apart.T).min() > 10.001

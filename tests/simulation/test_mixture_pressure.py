@@ -18,7 +18,7 @@ from roughgas.scene import build, packing
 from roughgas.scene.initial import initial_state
 
 _NAMES = [*Effects._fields, "virial"]
-Watched = namedtuple("Watched", _NAMES, defaults=[None] * len(_NAMES))
+Registered = namedtuple("Registered", _NAMES, defaults=[None] * len(_NAMES))
 _record = entry(record.py_func)  # not that of the product, whose cache must not know of this effect
 COLLISIONS = 100_000
 
@@ -30,21 +30,21 @@ class Virial(NamedTuple):
 
 
 @jit
-def contact_seen(virial, index, none, state, i, j, n, v, w, push):
+def observe_contact(virial, index, none, state, i, j, n, v, w, push):
     bodies = state.bodies
     k, other = bodies.species[i], bodies.species[j]
     virial.sums[k, other, 0] += 1.0
     virial.sums[k, other, 1] += abs(dot(push, n)) * (bodies.radius[i] + bodies.radius[j])
 
 
-register(Virial, {}, contact_seen=contact_seen)
+register(Virial, {}, observe_contact=observe_contact)
 
 
 def watched(experiment, seed=1):
     """The sums over COLLISIONS contacts, the time (T) that they took, and the kinetic energy."""
     plain = build(experiment, 1.0, -1.0)
     virial = Virial(np.zeros((2, 2, 2)))
-    scene = plain._replace(effects=Watched(*plain.effects, virial))
+    scene = plain._replace(effects=Registered(*plain.effects, virial))
     state = initial_state(scene, experiment, np.random.default_rng(seed))
     names = columns(scene)
     rows = np.empty((1, len(names)))

@@ -12,7 +12,7 @@ from roughgas.kernel.hooks import displacement
 from roughgas.scene import build
 from roughgas.scene.initial import initial_state
 from roughgas.simulation.point import run_point
-from roughgas.simulation.trajectory import Take, snapshots, usual_take
+from roughgas.simulation.trajectory import Frames, snapshots, usual_take
 
 R, BETA, SEED = 0.9, 0.3, 7
 TINY = 1e-9
@@ -34,7 +34,7 @@ def test_energies_of_a_driven_gas_are_those_of_its_point(name):
     beta = BETA if "spin" in experiment["effects"] else -1.0
     point = run_point(build(experiment, R, beta), experiment, SEED).variables
     start, every = point["time"][0] - STEADY["sample_every"] / 2, STEADY["sample_every"]
-    take = Take(start, 40 * every, 40)
+    take = Frames(start, 40 * every, 40)
     shots = list(snapshots(build(experiment, R, beta), experiment, SEED, take))
     assert [shot.time for shot in shots] == pytest.approx(point["time"][:40], rel=1e-12)
     for field, series in (("R", "R_series"), ("E_trans", "E_trans_series")):
@@ -51,7 +51,7 @@ def test_a_cooling_gas_is_the_first_replica_of_its_point():
     point = run_point(build(experiment, R, BETA), experiment, SEED).variables
     first, last = point["measured_from"], point["plateau_end"]
     shots = list(
-        snapshots(build(experiment, R, BETA), experiment, SEED, Take(0.0, 1.3 * last, 4000))
+        snapshots(build(experiment, R, BETA), experiment, SEED, Frames(0.0, 1.3 * last, 4000))
     )
     passed = np.array([shot.collisions for shot in shots])
     # R changes at collisions only: the first frame after one has its value
@@ -62,13 +62,13 @@ def test_a_cooling_gas_is_the_first_replica_of_its_point():
     ]
     assert len(plateau) > 10 and passed[-1] > last
     assert np.mean(plateau) == pytest.approx(point["R_replica"][0], rel=1e-12)
-    start = next(snapshots(build(experiment, R, BETA), experiment, SEED, Take(5.0, 1.0, 2)))
+    start = next(snapshots(build(experiment, R, BETA), experiment, SEED, Frames(5.0, 1.0, 2)))
     assert start.collisions == 5.0 and start.R == shots[np.searchsorted(passed, 5.0)].R
 
 
 def test_frames_of_a_cooling_gas_are_equally_spaced_in_scaled_time():
     experiment = settings("gas", 20, [30, 30]) | {"schedule": COOLING}
-    shots = list(snapshots(build(experiment, R, BETA), experiment, SEED, Take(0.0, 60.0, 240)))
+    shots = list(snapshots(build(experiment, R, BETA), experiment, SEED, Frames(0.0, 60.0, 240)))
     speed = np.sqrt([shot.E_trans for shot in shots])
     intervals = np.diff([shot.time for shot in shots])
     assert intervals[-1] > 4 * intervals[0]
@@ -92,7 +92,7 @@ def test_particles_are_where_brute_force_has_them_and_have_turned_as_far(name):
     scene, world = scene_of(experiment, R, BETA)
     brute = brute_force_from(world, snapshot(start_of(scene, experiment), scene))
     angle = 0.0
-    for shot in snapshots(build(experiment, R, BETA), experiment, SEED, Take(0.0, 1.5, 12)):
+    for shot in snapshots(build(experiment, R, BETA), experiment, SEED, Frames(0.0, 1.5, 12)):
         angle += turned_until(brute, shot.time)
         apart = [np.abs(shot.position - brute.x + s).max(axis=1) for s, _ in brute.images()]
         assert np.min(apart, axis=0).max() < TINY
@@ -109,7 +109,7 @@ def test_particles_are_where_brute_force_has_them_and_have_turned_as_far(name):
 def test_many_particles_keep_their_numbers():
     """They are sorted into cells, hence anew in memory now and then, and turn none the less."""
     experiment = settings("sheared", 900, [80, 80]) | {"schedule": STEADY}
-    shots = list(snapshots(build(experiment, R, 1.0), experiment, SEED, Take(0.0, 20.0, 600)))
+    shots = list(snapshots(build(experiment, R, 1.0), experiment, SEED, Frames(0.0, 20.0, 600)))
     risen = np.diff([shot.position[:, 1] for shot in shots], axis=0)
     assert np.abs(risen - 80 * np.round(risen / 80)).max() < 3.0
     turned = np.diff([shot.angle for shot in shots], axis=0)
@@ -146,11 +146,11 @@ def test_what_is_shown_unless_told_otherwise():
         experiment = settings(name) | {"schedule": schedule} | others
         return usual_take(experiment, build(experiment, R, -1.0))
 
-    assert usual("bed") == Take(20, 5.0, 125)
-    assert usual("shaken") == Take(20, 10.0, 125)
-    assert usual("sheared") == Take(20, 25.0, 125)
-    assert usual("heated") == Take(20, 25.0, 125)
-    assert usual("gas", COOLING) == Take(0.0, 16.0, 160)
+    assert usual("bed") == Frames(20, 5.0, 125)
+    assert usual("shaken") == Frames(20, 10.0, 125)
+    assert usual("sheared") == Frames(20, 25.0, 125)
+    assert usual("heated") == Frames(20, 25.0, 125)
+    assert usual("gas", COOLING) == Frames(0.0, 16.0, 160)
     without = {"kind": "steady", "sample_every": 1}
     assert usual("bed", without).start == 1000
     assert usual("bed", particles=10**6).start == 1

@@ -25,7 +25,7 @@ from roughgas.simulation import cooling
 from roughgas.simulation.energies import restored
 from roughgas.simulation.point import run_point
 from roughgas.simulation.restart import initial_of
-from roughgas.simulation.trajectory import Take, chosen, snapshots, variables
+from roughgas.simulation.trajectory import Frames, chosen, snapshots, variables
 
 R, BETA, SEED = 0.9, 0.3, 7
 DRIVEN = {
@@ -45,7 +45,7 @@ def experiment_of(name):
 def taken(name, times):
     experiment = experiment_of(name)
     scene = build(experiment, R, BETA)
-    shots = list(snapshots(scene, experiment, SEED, Take.at(times)))
+    shots = list(snapshots(scene, experiment, SEED, Frames.at(times)))
     return scene, as_trajectory(variables(scene, experiment, shots), {"title": name})
 
 
@@ -77,7 +77,7 @@ def test_a_cooling_gas_is_seen_after_the_collisions_asked_for():
     gas = cooling.start(build(experiment, R, BETA), experiment, SEED)
     rows = cooling.sample(gas, 1, 25)
     known = restored(gas.energies(rows), rows["exponent"]).translational
-    shots = snapshots(build(experiment, R, BETA), experiment, SEED, Take.at([0.0, *range(1, 26)]))
+    shots = snapshots(build(experiment, R, BETA), experiment, SEED, Frames.at([0.0, *range(1, 26)]))
     assert [shot.E_trans for shot in shots][1:] == pytest.approx(known, rel=1e-12)
 
 
@@ -89,7 +89,7 @@ def test_it_goes_on_from_the_state_of_a_run(name):
     about = {"experiment": "x", "scale": "small"} | point.attributes
     states = initial_of(as_dataset(point._replace(attributes=about)))
     at = [60.0, 61.0, 63.0]
-    whole = list(snapshots(scene, experiment, SEED, Take.at(at)))
+    whole = list(snapshots(scene, experiment, SEED, Frames.at(at)))
     take = chosen(experiment, scene, times=at, initial=states)
     for one, other in zip(whole, snapshots(scene, experiment, 99, take, states), strict=True):
         assert other.time == pytest.approx(one.time, rel=1e-12)
@@ -105,8 +105,10 @@ def test_a_cooling_gas_counts_anew_from_the_state_of_a_run():
     point = run_point(build(experiment, R, BETA), experiment, SEED)
     about = {"experiment": "x", "scale": "small"} | point.attributes
     states = initial_of(as_dataset(point._replace(attributes=about)))
-    whole = list(snapshots(build(experiment, R, BETA), experiment, SEED, Take.at([30.0, 35.0])))
-    shots = list(snapshots(build(experiment, R, BETA), experiment, 99, Take.at([0.0, 5.0]), states))
+    whole = list(snapshots(build(experiment, R, BETA), experiment, SEED, Frames.at([30.0, 35.0])))
+    shots = list(
+        snapshots(build(experiment, R, BETA), experiment, 99, Frames.at([0.0, 5.0]), states)
+    )
     assert [shot.collisions for shot in shots] == [0.0, 5.0]
     for one, other in zip(whole, shots, strict=True):
         assert np.array_equal(one.spin, other.spin) and one.E_trans == other.E_trans

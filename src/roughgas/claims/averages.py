@@ -17,7 +17,7 @@ from roughgas.claims.verdicts import (
     Finding,
     agreement,
     agreement_in_proportion,
-    graded,
+    grade,
     points,
     text,
     worse,
@@ -53,7 +53,7 @@ def excess_is_of_averaging(bed: xr.Dataset) -> Finding:
     words = ", ".join(f"{text(means[name])} {way}" for name, way in WAYS.items())
     reason = f"At |beta| <= {INTERMEDIATE:g} and r = {low:g}, R - Lun's formula is {words}. There, "
     numbers = tuple((f"R - Lun's formula {way}", means[name]) for name, way in WAYS.items())
-    verdict = worse(graded(bool(most), left.value < whole.value), beyond.verdict)
+    verdict = worse(grade(bool(most), left.value < whole.value), beyond.verdict)
     return Finding(verdict, reason + beyond.reason, numbers + beyond.numbers)
 
 
@@ -62,8 +62,8 @@ def follows_its_share(driven: xr.Dataset) -> Finding:
     found = agreement(deviation_at_shares(driven), "the rate equations at the measured share")
     shares = spin_shares(driven)
     low, high, taken = float(shares.min()), float(shares.max()), int((shares < 0).sum())
-    found = found.noting(f"The share is from {low:.3f} to {high:.3f}.")
-    return found.noting(f"At {points(taken)} rotation is taken out.") if taken else found
+    found = found.with_note(f"The share is from {low:.3f} to {high:.3f}.")
+    return found.with_note(f"At {points(taken)} rotation is taken out.") if taken else found
 
 
 def averaged(gas: xr.Dataset, name: str) -> xr.Dataset:

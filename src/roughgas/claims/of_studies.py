@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 
 from roughgas.claims.evidence import NotTestedError
-from roughgas.claims.verdicts import FAR, NEAR, Finding, graded, text
+from roughgas.claims.verdicts import FAR, NEAR, Finding, grade, text
 from roughgas.statistics.errors import SIGNIFICANT, Estimate, sum_error
 from roughgas.statistics.fits import power_law
 
@@ -30,7 +30,7 @@ def shear_gives_the_excess(profiles: xr.Dataset) -> Finding:
     off = Estimate(ratio - 1, *map(float, sum_error(parts, [found.dof, expected.dof])))
     if SIGNIFICANT * off.stderr > FAR:
         raise NotTestedError(f"the errors are too large: found over expected - 1 is {text(off)}")
-    verdict = graded(abs(off.value) <= NEAR, abs(off.value) <= FAR or not off.real)
+    verdict = grade(abs(off.value) <= NEAR, abs(off.value) <= FAR or not off.real)
     reason = (
         f"Over {gases.sizes['point']} gases the relative excess of E_rot/E_trans over Lun's "
         f"formula is {text(found)} in sum, expected {text(expected)}: found over expected - 1 is "
@@ -67,7 +67,7 @@ def sooner_the_larger(runaway: xr.Dataset) -> Finding:
         f" ({steepest})."
     )
     numbers = tuple((f"exponent of N, {where}", one) for where, one in found)
-    return Finding(graded(all(falls), not any(rises)), reason, numbers)
+    return Finding(grade(all(falls), not any(rises)), reason, numbers)
 
 
 def _exponent(gases: xr.Dataset, kind: str) -> Estimate | None:

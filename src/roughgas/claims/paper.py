@@ -25,7 +25,7 @@ from roughgas.claims.verdicts import (
     QUALIFIED,
     Finding,
     agreement,
-    graded,
+    grade,
     tendency,
     text,
     worse,
@@ -193,7 +193,7 @@ def follows_k(cooling: xr.Dataset) -> Finding:
     relative = deviation_in_proportion(cooling)
     near = int((np.abs(relative.value) <= NEAR).sum())
     largest, place = relative.largest()
-    return found.noting(
+    return found.with_note(
         f"Relative to the theory of free cooling, {near} of {relative.size} points are within "
         f"{NEAR:.0%}; the largest difference is {100 * largest.value:+.1f} % at {place}."
     )
@@ -209,7 +209,7 @@ def reaches_a_constant(cooling: xr.Dataset) -> Finding:
     plateaus = total - cooling.attrs["set_aside"]
     share = 1 - plateaus / total
     reason = f"A plateau was found at {plateaus} of {total} points. There, {found.reason}"
-    verdict = worse(found.verdict, graded(share <= FEW, share <= 0.5))
+    verdict = worse(found.verdict, grade(share <= FEW, share <= 0.5))
     return found._replace(verdict=verdict, reason=reason)
 
 
@@ -226,7 +226,7 @@ def depends_on_restitution(cooling: xr.Dataset) -> Finding:
         f"beta = {beta:g}, where the theory of free cooling expects {at_low - at_high:+.4f}."
     )
     numbers = (("largest difference", largest), ("mean difference", effect.mean()))
-    return Finding(graded(size > LIMIT, size > AGREE), reason, numbers)
+    return Finding(grade(size > LIMIT, size > AGREE), reason, numbers)
 
 
 def forcing_decides(cooling: xr.Dataset, bed: xr.Dataset) -> Finding:
@@ -263,4 +263,4 @@ def restitution_matters_when_cooling(cooling: xr.Dataset, bed: xr.Dataset) -> Fi
         f"to {text(forced)} when vibrated; the rms change, noise removed, is {times}."
     )
     numbers = (("largest effect of r, cooling", largest), ("largest effect, vibrated", forced))
-    return Finding(graded(matters and ratio >= 3, matters and ratio > 1.5), reason, numbers)
+    return Finding(grade(matters and ratio >= 3, matters and ratio > 1.5), reason, numbers)

@@ -123,8 +123,8 @@ def examine(statement: Statement, datasets: dict[str, xr.Dataset]) -> Finding:
         reason = str(lack)
         return Finding(NOT_TESTED, f"{reason[0].upper()}{reason[1:]}.")
     for sentence in filter(None, map(_size, used)):
-        finding = finding.noting(sentence)
+        finding = finding.with_note(sentence)
     aside = sum(data.attrs.get("set_aside", 0) for data in used)
     if not aside:
         return finding
-    return finding.noting(f"{points(aside)} not known to be in a steady state set aside.")
+    return finding.with_note(f"{points(aside)} not known to be in a steady state set aside.")

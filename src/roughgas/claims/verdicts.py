@@ -50,7 +50,7 @@ class Finding(NamedTuple):
     reason: str
     numbers: tuple[tuple[str, Estimate], ...] = ()
 
-    def noting(self, sentence: str) -> "Finding":
+    def with_note(self, sentence: str) -> "Finding":
         """Return the finding with one more sentence to its reason."""
         return self._replace(reason=f"{self.reason} {sentence}")
 
@@ -64,7 +64,7 @@ def agreement(sample: Sample, other: str) -> Finding:
     off, far, vague = sample.off(AGREE), sample.off(LIMIT), sample.vague(AGREE)
     if vague.mean() > 0.5:
         raise NotTestedError(f"the errors are too large at {vague.sum()} of {sample.size} points")
-    verdict = graded(not off.any() and vague.mean() <= FEW, far.mean() <= FEW)
+    verdict = grade(not off.any() and vague.mean() <= FEW, far.mean() <= FEW)
     (largest, place), mean = sample.largest(), sample.mean()
     reason = (
         f"{int((np.abs(sample.value) <= AGREE).sum())} of {sample.size} points within {AGREE:g} of "
@@ -91,7 +91,7 @@ def agreement_in_proportion(gas: xr.Dataset, theory: str) -> Finding:
     few points: where R spans decades, a small R must follow theory, too."""
     found, relative = agreement(deviation(gas), theory), deviation_in_proportion(gas)
     off, far, vague = relative.off(NEAR), relative.off(FAR), relative.vague(NEAR)
-    verdict = graded(off.mean() <= FEW and vague.mean() <= FEW, far.mean() <= FEW)
+    verdict = grade(off.mean() <= FEW and vague.mean() <= FEW, far.mean() <= FEW)
     near = int((np.abs(relative.value) <= NEAR).sum())
     reason = f"Relative to theory, {near} of {relative.size} points are within {NEAR:.0%}"
     numbers: tuple[tuple[str, Estimate], ...] = ()
@@ -127,7 +127,7 @@ def tendency(value: Estimate) -> str:
     return QUALIFIED if value.real and value.value > 0 else FAILS
 
 
-def graded(full: bool, partly: bool) -> str:
+def grade(full: bool, partly: bool) -> str:
     """Return the verdict on a statement that holds in full, with a qualification, or not."""
     return HOLDS if full else QUALIFIED if partly else FAILS
 

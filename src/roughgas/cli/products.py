@@ -18,7 +18,7 @@ from roughgas.data.trajectory import as_trajectory, check_format, write_trajecto
 from roughgas.scene import Scene, build
 from roughgas.simulation.progress import watched
 from roughgas.simulation.restart import Initial
-from roughgas.simulation.trajectory import LEGAL, NUMBERS, Take, chosen, snapshots, variables
+from roughgas.simulation.trajectory import LEGAL, NUMBERS, Frames, chosen, snapshots, variables
 
 if TYPE_CHECKING:
     from roughgas.show.movies.drawing import Panel
@@ -48,7 +48,7 @@ def trajectory(options: Namespace) -> None:
 
 def chosen_take(
     options: Namespace, settings: dict[str, Any], scene: Scene, initial: Sequence[Initial] = ()
-) -> Take:
+) -> Frames:
     """Return what is shown: by default, what suits the experiment."""
     asked: dict[str, Any] = {}
     for name in ("start", "length"):

@@ -35,7 +35,7 @@ class ContactAverages(NamedTuple):
 
 
 @jit
-def contact_seen(averages, index, none, state, i, j, n, v, w, push):
+def observe_contact(averages, index, none, state, i, j, n, v, w, push):
     sums = state.sums.contact_averages
     v_t = add_scaled(v, n, -dot(v, n))
     minus_v_r = spin_cross(w, n)
@@ -53,4 +53,4 @@ def _of_pair(bodies, i, j):
 _weights = either(_of_pair, lambda bodies, i, j: (1.0, 1.0))
 
 
-register(ContactAverages, {}, contact_seen=contact_seen, sums=SUMS)
+register(ContactAverages, {}, observe_contact=observe_contact, sums=SUMS)

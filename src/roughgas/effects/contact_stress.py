@@ -23,7 +23,7 @@ class ContactStress(NamedTuple):
 
 
 @jit
-def contact_seen(stress, index, none, state, i, j, n, v, w, push):
+def observe_contact(stress, index, none, state, i, j, n, v, w, push):
     sums, bodies = state.sums.contact_stress, state.bodies
     far = radius_of(bodies, i) + radius_of(bodies, j)
     for k in range(len(n)):
@@ -31,4 +31,4 @@ def contact_seen(stress, index, none, state, i, j, n, v, w, push):
             sums[0, 3 * k + along] -= push[k] * far * n[along]
 
 
-register(ContactStress, {}, contact_seen=contact_seen, sums=SUMS)
+register(ContactStress, {}, observe_contact=observe_contact, sums=SUMS)

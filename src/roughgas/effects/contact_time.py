@@ -50,8 +50,8 @@ def restitution(model, index, r, state, i, j, time, speed):
 
 
 @jit
-def contact_made(model, index, none, state, i, time):
+def after_contact(model, index, none, state, i, time):
     state.moments.contact_time[i] = time
 
 
-register(ContactTime, SETTINGS, restitution=restitution, contact_made=contact_made, moment=moment)
+register(ContactTime, SETTINGS, restitution=restitution, after_contact=after_contact, moment=moment)

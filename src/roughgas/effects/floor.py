@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from roughgas.effects.settings import LENGTH, MATERIAL, TIME, Number, Word, check_speed, register
 from roughgas.effects.sine_floor import SineFloor
-from roughgas.effects.surface import bounce, fall, flight, phase, until_back
+from roughgas.effects.surface import bounce, fall, flight, phase, time_below
 from roughgas.effects.triangular_floor import REVERSED_RISE, TriangularFloor
 from roughgas.kernel.jit import jit
 
@@ -60,7 +60,7 @@ def time_to_floor(floor, gravity, height, speed, phase):
     """
     stroke = math.floor(phase / floor.period)
     floor_speed = floor.amplitude / floor.period
-    back = until_back(floor.amplitude, gravity, height, speed, 0.0)
+    back = time_below(floor.amplitude, gravity, height, speed, 0.0)
     while back < math.inf:
         stroke = max(stroke, math.floor((phase + back) / floor.period))
         begin = max(0.0, stroke * floor.period - phase)
@@ -72,7 +72,7 @@ def time_to_floor(floor, gravity, height, speed, phase):
         if meeting <= end:
             return meeting
         stroke += 1
-        back = until_back(floor.amplitude, gravity, height, speed, end)
+        back = time_below(floor.amplitude, gravity, height, speed, end)
     return math.inf
 
 

@@ -7,7 +7,7 @@ gravity pulls particles away from a lid; along the others nothing pulls.
 from typing import NamedTuple
 
 from roughgas.effects import floor, sine_floor, triangular_floor
-from roughgas.effects.plane import Place, approach, bounce, closed_axis
+from roughgas.effects.plane import Place, approach, bounce, normal_axis
 from roughgas.effects.settings import register
 from roughgas.effects.surface import LEAST_DEPARTURE
 from roughgas.kernel.jit import compiled, jit
@@ -21,7 +21,7 @@ class Piston(NamedTuple):
     roughness: float
     motion: floor.Floor
 
-    axis = closed_axis
+    axis = normal_axis
     period = property(lambda wall: wall.motion.period)
 
 
@@ -33,7 +33,7 @@ class TriangularPiston(NamedTuple):
     roughness: float
     motion: triangular_floor.TriangularFloor
 
-    axis = closed_axis
+    axis = normal_axis
     period = property(lambda wall: wall.motion.period)
 
 
@@ -45,7 +45,7 @@ class SinePiston(NamedTuple):
     roughness: float
     motion: sine_floor.SineFloor
 
-    axis = closed_axis
+    axis = normal_axis
     period = property(lambda wall: wall.motion.period)
 
 

@@ -20,7 +20,7 @@ class Place(NamedTuple):
     along: int  # axis along which it moves
 
 
-closed_axis = property(lambda wall: wall.place.axis, doc="The axis that a wall closes.")
+normal_axis = property(lambda wall: wall.place.axis, doc="The axis that a wall closes.")
 
 
 @jit

@@ -17,7 +17,7 @@ TEMPERATURE = "(0, 1e+08]"
 LENGTH, TIME = "[0, 1e+06]", "[1e-09, 1e+09]"
 
 
-class Surroundings(NamedTuple):
+class SceneContext(NamedTuple):
     """What an effect may need to know of the scene that it is part of."""
 
     box: tuple[float | None, ...]  # lengths in a; None is open
@@ -36,7 +36,7 @@ class Number(NamedTuple):
     interval: str = "(0, inf)"
     default: float | None = None
 
-    def read(self, key: str, value: Any, around: Surroundings | None = None) -> float:
+    def read(self, key: str, value: Any, around: SceneContext | None = None) -> float:
         """Return the number as a float; raise InputError unless it is one in the interval."""
         if value is None and self.default is not None:
             return self.default
@@ -59,7 +59,7 @@ class Numbers(NamedTuple):
     most: int
     default: None = None
 
-    def read(self, key: str, value: Any, around: Surroundings) -> tuple[float, ...]:
+    def read(self, key: str, value: Any, around: SceneContext) -> tuple[float, ...]:
         """Return the numbers as floats; raise InputError unless they are as many as is legal."""
         if not isinstance(value, list | tuple) or not self.fewest <= len(value) <= self.most:
             raise InputError(key, value, f"be a list of {self.fewest} to {self.most} numbers")
@@ -84,7 +84,7 @@ class Word(NamedTuple):
         """The word that is taken if none is given."""
         return self.words[0]
 
-    def read(self, key: str, value: Any, around: Surroundings) -> str:
+    def read(self, key: str, value: Any, around: SceneContext) -> str:
         """Return the word; raise InputError for any other."""
         value = self.default if value is None else value
         if value not in self.words:
@@ -103,7 +103,7 @@ class OfParticles(NamedTuple):
     own: str  # the name of theirs in Surroundings
     default: float | None = None
 
-    def read(self, key: str, value: Any, around: Surroundings) -> float:
+    def read(self, key: str, value: Any, around: SceneContext) -> float:
         """Return the number; raise InputError if it is illegal, or a roughness without spins."""
         value = self.default if value is None else value
         if value == "particles" and getattr(around, f"{self.own}_of_species"):
@@ -166,14 +166,14 @@ def register(kind: Any, parameters: Mapping[str, Any] | None = None, **hooks: An
         kind.from_settings = lambda settings, around: kind(**settings)
 
 
-def check_speed(around: Surroundings, amplitude: float, period: float) -> None:
+def check_speed(around: SceneContext, amplitude: float, period: float) -> None:
     """Raise InputError where what is shaken moves faster than a drive may."""
     if not Interval(SPEED).holds(amplitude / period):
         key = f"effects.{around.name}: amplitude/period"
         raise InputError(key, amplitude / period, f"lie in {SPEED} a/T")
 
 
-def make(kind: Any, name: str, settings: Mapping[str, Any], around: Surroundings) -> Any:
+def make(kind: Any, name: str, settings: Mapping[str, Any], around: SceneContext) -> Any:
     """Return the effect called `name` from its settings, None where it has nothing to do.
 
     Raises InputError for parameters that are illegal, unknown, or contradict their surroundings.

@@ -11,7 +11,7 @@ from typing import NamedTuple
 from roughgas.base import InputError, NeedsError
 from roughgas.effects import piston, thermal_wall
 from roughgas.effects.floor import WAVES
-from roughgas.effects.plane import Place, bounce, closed_axis, predict
+from roughgas.effects.plane import Place, bounce, normal_axis, predict
 from roughgas.effects.settings import (
     LENGTH,
     MATERIAL,
@@ -65,7 +65,7 @@ class SideWall(NamedTuple):
     restitution: float
     roughness: float
 
-    axis = closed_axis
+    axis = normal_axis
 
     @classmethod
     def from_settings(cls, settings, around):
@@ -96,7 +96,7 @@ class MovingWall(NamedTuple):
     period: float  # T
     rise: float  # share of the period in which it goes forwards; 0 stands for a sine
 
-    axis = closed_axis
+    axis = normal_axis
 
 
 def _place(around):

@@ -9,7 +9,7 @@ import math
 from typing import NamedTuple
 
 from roughgas.effects.settings import register
-from roughgas.effects.surface import bounce, fall, flight, phase, until_back
+from roughgas.effects.surface import bounce, fall, flight, phase, time_below
 from roughgas.kernel.jit import jit
 from roughgas.kernel.mathematics import TURN, sine_and_cosine
 from roughgas.kernel.state import NOBODY, NOW
@@ -32,7 +32,7 @@ def predict(floor, index, state, scene, i):
     """A particle above all strokes looks again when it is back from there: most collide before."""
     falling, time = flight(floor, index, state, scene, i)
     gravity, height, speed, _ = falling
-    back = time + until_back(floor.amplitude, gravity, height, speed, 0.0)
+    back = time + time_below(floor.amplitude, gravity, height, speed, 0.0)
     if back > state.clock[NOW]:
         return back, LOOK
     return time + time_to_floor(floor, *falling), MEET
@@ -71,7 +71,7 @@ def time_to_floor(floor, gravity, height, speed, phase):
             step = max(step, slack)
         elif step <= ROUNDING * (floor.period + abs(phase) + time):
             return time + max(0.0, step)
-        back = until_back(floor.amplitude, gravity, height, speed, time)
+        back = time_below(floor.amplitude, gravity, height, speed, time)
         step = max(step, back - time)
         reach = 2.0 * step
         time += step

@@ -54,7 +54,7 @@ def _drift(gap, speed, lift):
 
 
 @jit
-def until_back(amplitude, gravity, height, speed, time):
+def time_below(amplitude, gravity, height, speed, time):
     """Return when a particle that is above all strokes at `time` is back from there, else `time`.
 
     A long flight passes over millions of strokes. Height and speed are those at time 0. What never

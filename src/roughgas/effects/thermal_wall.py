@@ -9,7 +9,7 @@ itself; that is then the mean velocity of what leaves.
 import math
 from typing import NamedTuple
 
-from roughgas.effects.plane import Place, closed_axis, predict
+from roughgas.effects.plane import Place, normal_axis, predict
 from roughgas.effects.settings import register
 from roughgas.kernel import hooks
 from roughgas.kernel.hooks import unless_absent
@@ -17,9 +17,9 @@ from roughgas.kernel.jit import jit, unrolled
 from roughgas.kernel.mathematics import gaussian_vector, logarithm, uniform
 from roughgas.kernel.particles import (
     book_spin,
-    come_in,
+    enter_box,
     mass_of,
-    put,
+    set_path,
     spin_mass_of,
     spin_of,
     turn_spin,
@@ -35,7 +35,7 @@ class ThermalWall(NamedTuple):
     temperature: float  # m a^2/T^2
     velocity: float  # along itself, in a/T
 
-    axis = closed_axis
+    axis = normal_axis
 
 
 def make(place, settings, around):
@@ -46,18 +46,18 @@ def make(place, settings, around):
 @jit
 def resolve(wall, index, what, state, scene, i, time):
     place, mass = wall.place, mass_of(state.bodies, i)
-    position, before = come_in(state, scene, i, time)
+    position, before = enter_box(state, scene, i, time)
     thermal = math.sqrt(wall.temperature / mass)
     outwards = place.inwards * thermal * math.sqrt(-2.0 * logarithm(1.0 - uniform(state.random)))
     random = gaussian_vector(state.random, before, thermal)
     after = _with_normal(random, place.axis, outwards)
     after = add_scaled(after, along_axis(scene.box, place.along, wall.velocity), 1.0)
-    put(state, scene, i, position, after, time)
+    set_path(state, scene, i, position, after, time)
     gained = 0.5 * dot(subtract(after, before), add_scaled(before, after, 1.0))
     state.ledger[0, index, 0] += mass * gained
     _spin_anew(state.spin, wall, index, state, scene, i)
     state.changes[i] += 1
-    hooks.contact_made(scene.effects, None, state, i, time)
+    hooks.after_contact(scene.effects, None, state, i, time)
     state.counts[BOUNDARY_HITS] += 1
     return NOBODY
 

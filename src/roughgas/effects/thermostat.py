@@ -24,11 +24,11 @@ from roughgas.kernel.mathematics import random_vector, uniform
 from roughgas.kernel.particles import (
     book_spin,
     change_of_velocity,
-    come_in,
+    enter_box,
     mass_in,
     mass_of,
     pair_of,
-    put,
+    set_path,
     spin_mass_of,
     spin_of,
     turn_spin,
@@ -91,9 +91,9 @@ def resolve(thermostat, index, what, state, scene, i, time):
 
 @jit
 def _push(state, scene, index, i, kick, sign, time):
-    position, before = come_in(state, scene, i, time)
+    position, before = enter_box(state, scene, i, time)
     after = add_scaled(before, change_of_velocity(state.bodies, i, kick), sign)
-    put(state, scene, i, position, after, time)
+    set_path(state, scene, i, position, after, time)
     work = 0.5 * dot(subtract(after, before), add_scaled(before, after, 1.0))
     state.ledger[0, index, 0] += mass_of(state.bodies, i) * work
     state.changes[i] += 1

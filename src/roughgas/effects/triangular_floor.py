@@ -12,7 +12,7 @@ import math
 from typing import NamedTuple
 
 from roughgas.effects.settings import register
-from roughgas.effects.surface import bounce, fall, flight, phase, until_back
+from roughgas.effects.surface import bounce, fall, flight, phase, time_below
 from roughgas.kernel.jit import jit
 
 REVERSED_RISE = 0.1  # of the reversed sawtooth's period
@@ -45,7 +45,7 @@ def time_to_floor(floor, gravity, height, speed, phase):
     At a turning point it is the earlier piece on which the particle approaches the floor.
     """
     number = _piece_at(floor, phase)
-    back = until_back(floor.amplitude, gravity, height, speed, 0.0)
+    back = time_below(floor.amplitude, gravity, height, speed, 0.0)
     while back < math.inf:
         number = max(number, _piece_at(floor, phase + back))
         piece = number & 1
@@ -60,7 +60,7 @@ def time_to_floor(floor, gravity, height, speed, phase):
         if meeting <= end:
             return meeting, piece
         number += 1
-        back = until_back(floor.amplitude, gravity, height, speed, end)
+        back = time_below(floor.amplitude, gravity, height, speed, end)
     return math.inf, RISING
 
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 from roughgas.effects.settings import MATERIAL, register
 from roughgas.kernel.contact import collide_with_wall
 from roughgas.kernel.jit import jit
-from roughgas.kernel.particles import positions_and_velocities, radius_of
+from roughgas.kernel.particles import position_and_velocity, radius_of
 from roughgas.kernel.vectors import along_first
 
 LEFT, RIGHT = 0, 1
@@ -28,7 +28,7 @@ class Walls(NamedTuple):
 @jit
 def predict(walls, index, state, scene, i):
     time = state.trajectory[i, 2 * len(scene.box)]
-    position, velocity = positions_and_velocities(state, scene, i, time)
+    position, velocity = position_and_velocity(state, scene, i, time)
     speed, radius = velocity[0], radius_of(state.bodies, i)
     if speed < 0.0:
         return time + max(0.0, (position[0] - radius) / -speed), LEFT

@@ -21,13 +21,13 @@ import math
 import sys
 
 from roughgas.kernel import hooks
-from roughgas.kernel.event_lists import clear_contacts, enter, strike_out
+from roughgas.kernel.event_lists import clear_contacts, enter, unlink
 from roughgas.kernel.hooks import either, unless_absent
 from roughgas.kernel.jit import jit, unrolled
 from roughgas.kernel.particles import (
     fold_into_box,
     image_numbers,
-    positions_and_velocities,
+    position_and_velocity,
     shifted,
     slid,
 )
@@ -67,7 +67,7 @@ def find_around(cells, state, scene, i, time):
 def settle(state, scene, i, time):
     """Put particle i on the list of the cell that it is in at `time`."""
     cells = state.cells
-    position, velocity = positions_and_velocities(state, scene, i, time)
+    position, velocity = position_and_velocity(state, scene, i, time)
     slide = slid(hooks.sliding(scene.effects, None, state), time)
     position, velocity = fold_into_box(position, velocity, cells.periods, slide)
     home = 0
@@ -90,7 +90,7 @@ def _enter(cells, i, home):
 def _in_cell(state, scene, i, time):
     """Return particle i's position relative to the middle of its cell, and its velocity there."""
     cells = state.cells
-    position, velocity = positions_and_velocities(state, scene, i, time)
+    position, velocity = position_and_velocity(state, scene, i, time)
     slide = slid(hooks.sliding(scene.effects, None, state), time)
     position, velocity = _beside_row(slide, cells, cells.home[i], position, velocity)
     d = subtract(position, middle_of(cells.widths, places(cells.counts, cells.home[i])))
@@ -166,7 +166,7 @@ def _move_on(state, scene, i, time):
     cells = state.cells
     d, u = _in_cell(state, scene, i, time)
     _, axis, step = _exit(d, u, cells.widths, hooks.acceleration(scene.effects, None))
-    strike_out(cells.first, cells.following, cells.previous, cells.home[i], i)
+    unlink(cells.first, cells.following, cells.previous, cells.home[i], i)
     cells.home[i] = _next_to(cells.counts, cells.home[i], axis, step)
     if axis == 1:
         _find_column(hooks.sliding(scene.effects, None, state), state, scene, i, time)

@@ -26,7 +26,7 @@ STANDSTILL = 100_000, 10  # simultaneous events, and as many more for each parti
 
 
 @jit
-def moves_on(state, time):
+def check_collapse(state, time):
     """Note an event at `time`; return False where events accumulate as if time stood still.
 
     In an inelastic collapse infinitely many contacts of a few particles are made in a finite time,

@@ -19,15 +19,15 @@ from roughgas.kernel.particles import (
     book_spin,
     bulk_in,
     change_of_velocity,
-    come_in,
+    enter_box,
     image_numbers,
     inertia_in,
     mass_in,
     material_of,
     pair_of,
     pair_with_wall,
-    put,
     reach_of,
+    set_path,
     shifted,
     slid,
     spin_of,
@@ -65,8 +65,8 @@ SPLIT = 134217729.0  # 2^27 + 1: cuts the digits of a double in two
 def collide(state, scene, i, j, time):
     """Carry out the contact of particles i and j at `time`."""
     box = scene.box
-    position_i, velocity_i = come_in(state, scene, i, time)
-    position_j, velocity_j = come_in(state, scene, j, time)
+    position_i, velocity_i = enter_box(state, scene, i, time)
+    position_j, velocity_j = enter_box(state, scene, j, time)
     slide = slid(hooks.sliding(scene.effects, None, state), time)
     x = subtract(position_i, position_j)
     between = subtract(velocity_i, velocity_j)
@@ -85,8 +85,8 @@ def collide(state, scene, i, j, time):
     push = _parted(push, n, v, 0.5 * mass_in(pair), least)
     state.counts[SPENT] += -dot(v, n) < least
     slowed, hastened = change_of_velocity(bodies, i, push), change_of_velocity(bodies, j, push)
-    put(state, scene, i, position_i, subtract(velocity_i, slowed), time)
-    put(state, scene, j, position_j, add_scaled(velocity_j, hastened, 1.0), time)
+    set_path(state, scene, i, position_i, subtract(velocity_i, slowed), time)
+    set_path(state, scene, j, position_j, add_scaled(velocity_j, hastened, 1.0), time)
     turn_i, turn_j = turn_of(turn, pair, 0), turn_of(turn, pair, 1)
     turn_spin(state.spin, i, w_i, turn_i)
     turn_spin(state.spin, j, w_j, turn_j)
@@ -96,7 +96,7 @@ def collide(state, scene, i, j, time):
     book_spin(w_i, turn_i, effects.spin, bodies, i, account)
     book_spin(w_j, turn_j, effects.spin, bodies, j, account)
     hooks.transfer(effects, None, state, dot(push, subtract(v, between)))
-    hooks.contact_seen(effects, None, state, i, j, n, v, w, push)
+    hooks.observe_contact(effects, None, state, i, j, n, v, w, push)
     _note_contact(state, effects, i, time)
     _note_contact(state, effects, j, time)
     state.counts[COLLISIONS] += 1
@@ -112,7 +112,7 @@ def collide_with_wall(state, scene, index, i, time, material, n, wall_velocity, 
     gas; the wall's velocity; least_departure: the particle leaves at no less than this normal
     speed, so that a bouncing particle makes finitely many bounces in a finite time.
     """
-    position, velocity = come_in(state, scene, i, time)
+    position, velocity = enter_box(state, scene, i, time)
     w = spin_of(state.spin, scene.box, i)
     v = subtract(velocity, wall_velocity)
     effects = scene.effects
@@ -121,7 +121,7 @@ def collide_with_wall(state, scene, index, i, time, material, n, wall_velocity, 
     push, turn = response(effects.spin, effects, material, n, v, w, 1.0, pair)
     push = _parted(push, n, v, mass_in(pair), least_departure)
     slowed = change_of_velocity(state.bodies, i, push)
-    put(state, scene, i, position, subtract(velocity, slowed), time)
+    set_path(state, scene, i, position, subtract(velocity, slowed), time)
     turn_spin(state.spin, i, w, turn)
     account = state.ledger[0, index]
     account[0] += 0.5 * dot(push, slowed) - dot(velocity, push)
@@ -211,4 +211,4 @@ def _material(effects, r, beta, state, i, j, time, speed):
 @jit
 def _note_contact(state, effects, i, time):
     state.changes[i] += 1
-    hooks.contact_made(effects, None, state, i, time)
+    hooks.after_contact(effects, None, state, i, time)

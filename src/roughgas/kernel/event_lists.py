@@ -40,7 +40,7 @@ from roughgas.kernel.state import (
 
 
 @jit
-def fetch_ahead(state, day):
+def prefetch_calendar(state, day):
     """Ask the memory for what the events after `day` need, so that they need not wait for it.
 
     Only what has arrived can tell what is needed next: first the particles that come first and
@@ -102,7 +102,7 @@ def enter(first, following, previous, place, i):
 
 
 @jit
-def strike_out(first, following, previous, place, i):
+def unlink(first, following, previous, place, i):
     """Take particle i off the list of a place."""
     after, before = following[i], previous[i]
     if before == NOBODY:
@@ -152,7 +152,7 @@ def _enter_in_calendar(cells, state, i, time):
     queue, key = state.queue, state.agenda.key
     if key[i] < math.inf:
         place = day_of(queue, key[i]) & (queue.first.size - 1)
-        strike_out(queue.first, queue.later, queue.sooner, place, i)
+        unlink(queue.first, queue.later, queue.sooner, place, i)
     key[i] = time
     if time < math.inf:
         day = day_of(queue, time)
@@ -180,7 +180,7 @@ def _earliest_in_calendar(cells, state):
             queue.today[0] = day
             return place
         day += 1
-        fetch_ahead(state, day)
+        prefetch_calendar(state, day)
     return _earliest_of_all(state)
 
 

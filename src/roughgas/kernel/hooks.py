@@ -41,9 +41,9 @@ class Hooks(NamedTuple):
     particles that spin, from the value so far, r and speed as above, the tangential relative
     velocity of the surfaces, a vector, and what is special about the two (bodies.Pair; None where
     all particles are alike); without the state, it can depend on ratios of velocities only"""
-    contact_made: Callable | None = None
+    after_contact: Callable | None = None
     """(effect, index, none, state, i, time): note that particle i has had a contact"""
-    contact_seen: Callable | None = None
+    observe_contact: Callable | None = None
     """(effect, index, none, state, i, j, n, v, w, push): look at the contact of a pair, and change
     nothing but State.sums; n is the unit vector from j to i, v the relative velocity before the
     contact, w the sum of the spins (None without spin), push the momentum that passes from i to j
@@ -102,7 +102,7 @@ def accounts(effects):
 
     It is listed last in Effects, so that the numbers of the others' accounts are their ranks.
     """
-    return sum(effect is not None for effect in effects) - len(present(effects, "contact_seen"))
+    return sum(effect is not None for effect in effects) - len(present(effects, "observe_contact"))
 
 
 def displacement(effect, time):
@@ -197,8 +197,8 @@ acceleration = _hook("acceleration", _thread)
 sliding = _hook("sliding", _thread)
 restitution = _hook("restitution", _thread)
 roughness = _hook("roughness", _thread)
-contact_made = _hook("contact_made", _thread)
-contact_seen = _hook("contact_seen", _thread)
+after_contact = _hook("after_contact", _thread)
+observe_contact = _hook("observe_contact", _thread)
 next_boundary = _hook("predict", _earliest)
 resolve_boundary = _hook("resolve", _addressed)
 transfer = _hook("transfer", _thread)

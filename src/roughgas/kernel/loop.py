@@ -4,7 +4,7 @@ import math
 
 from roughgas.kernel import hooks
 from roughgas.kernel.cells import arrange, find_around
-from roughgas.kernel.clock import moves_on, rebase
+from roughgas.kernel.clock import check_collapse, rebase
 from roughgas.kernel.contact import collide
 from roughgas.kernel.event_lists import (
     choose_next,
@@ -55,22 +55,22 @@ def advance(state, scene, until, collisions):
             clock[NOW] = until - clock[BASE]
             break
         clock[NOW] = time
-        affected = carry_out(state, scene, i, int(agenda.kind[i]), time)
+        affected = execute_event(state, scene, i, int(agenda.kind[i]), time)
         for k in range(2):
             if affected[k] >= 0:
-                foresee(state, scene, index(affected[k]), time)
+                predict_events(state, scene, index(affected[k]), time)
         if time >= clock[SPAN]:
             silent = 0 if counts[SINCE_REBASE] > 0 else silent + 1
             renew(state, scene)
             if until == math.inf and silent > patience:
                 return SILENT
-        elif not moves_on(state, time):
+        elif not check_collapse(state, time):
             return COLLAPSED
     return REACHED
 
 
 @jit
-def carry_out(state, scene, i, kind, time):
+def execute_event(state, scene, i, kind, time):
     """Carry out an event of particle i; return whose future must be foreseen anew, or NOBODY."""
     agenda = state.agenda
     if kind == HORIZON:
@@ -97,7 +97,7 @@ _resolve_boundary = either(_resolve, lambda boundary_code, state, scene, i, time
 
 
 @jit
-def foresee(state, scene, i, time):
+def predict_events(state, scene, i, time):
     """Predict all events of particle i: its next meeting with a boundary, and its contacts."""
     state.counts[PREDICTIONS] += 1
     _foresee_boundary(state.agenda.boundary_time, state, scene, i)

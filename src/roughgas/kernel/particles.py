@@ -307,25 +307,25 @@ def along(path, time, gravity):
 
 
 @jit
-def positions_and_velocities(state, scene, i, time):
+def position_and_velocity(state, scene, i, time):
     """Return position and velocity of particle i at `time`, on the continuation of its path."""
     path = path_of(state.trajectory, i, scene.box)
     return along(path, time, hooks.acceleration(scene.effects, None))
 
 
 @jit
-def arrive(state, scene, i, time):
+def position_in_box(state, scene, i, time):
     """Return position and velocity of particle i's image in the box at `time`."""
-    position, velocity = positions_and_velocities(state, scene, i, time)
+    position, velocity = position_and_velocity(state, scene, i, time)
     slide = hooks.sliding(scene.effects, None, state)
     return fold_into_box(position, velocity, scene.box, slid(slide, time))
 
 
 @jit
-def come_in(state, scene, i, time):
-    """Do as `arrive`, and book the energy that particle i gains by becoming another image."""
-    _, before = positions_and_velocities(state, scene, i, time)
-    position, velocity = arrive(state, scene, i, time)
+def enter_box(state, scene, i, time):
+    """Do as `position_in_box`, and book the energy that particle i gains as another image."""
+    _, before = position_and_velocity(state, scene, i, time)
+    position, velocity = position_in_box(state, scene, i, time)
     gained = subtract(velocity, before)
     work = dot(gained, add_scaled(before, gained, 0.5))
     hooks.transfer(scene.effects, None, state, mass_of(state.bodies, i) * work)
@@ -333,7 +333,7 @@ def come_in(state, scene, i, time):
 
 
 @jit
-def put(state, scene, i, position, velocity, time):
+def set_path(state, scene, i, position, velocity, time):
     """Store particle i's trajectory."""
     write(state.trajectory, i, 0, position)
     write(state.trajectory, i, len(scene.box), velocity)

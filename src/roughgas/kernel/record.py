@@ -7,11 +7,11 @@ from roughgas.kernel.hooks import either, present, unless_absent
 from roughgas.kernel.jit import compiled, entry, jit, unrolled
 from roughgas.kernel.loop import REACHED, advance, start
 from roughgas.kernel.particles import (
-    arrive,
-    come_in,
+    enter_box,
     mass_of,
-    put,
+    position_in_box,
     radius_of,
+    set_path,
     spin_mass_of,
     spin_of,
 )
@@ -91,7 +91,7 @@ def take_sample(state, scene, row):
     row[1] = state.counts[COLLISIONS]
     row[2] = state.counts[EXPONENT]
     for i in range(len(state.changes)):
-        position, velocity = arrive(state, scene, i, time)
+        position, velocity = position_in_box(state, scene, i, time)
         _add(state, scene, i, position, velocity, row, 3)
         _add_to_species(state.bodies, state, scene, i, position, velocity, row)
     _enter_sums(state.sums, state.counts[EXPONENT], row, len(row))
@@ -170,8 +170,8 @@ def refresh(state, scene):
     number, dimension = len(state.changes), len(scene.box)
     time = state.clock[NOW]
     for i in range(number):
-        position, velocity = come_in(state, scene, i, time)
-        put(state, scene, i, position, velocity, time)
+        position, velocity = enter_box(state, scene, i, time)
+        set_path(state, scene, i, position, velocity, time)
     square = 0.0
     for k in range(dimension, 2 * dimension):
         mean = _conserved_mean(state.agenda.boundary_time, state, k)

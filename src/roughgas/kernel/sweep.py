@@ -21,7 +21,7 @@ from roughgas.kernel.mathematics import REGISTER, append, lanes_of, load, multip
 from roughgas.kernel.particles import (
     exceeds,
     image_numbers,
-    positions_and_velocities,
+    position_and_velocity,
     shifted,
     slid,
     speed_limit,
@@ -77,7 +77,7 @@ def line_of(state, scene, i):
     Under gravity the lines are those seen from a frame that falls with it from the clock's base:
     r(t) = r0 + v0 t - g t^2/2 with the same last term for all, so that pairs never see gravity.
     """
-    start, velocity = positions_and_velocities(state, scene, i, 0.0)
+    start, velocity = position_and_velocity(state, scene, i, 0.0)
     extent = 0.0
     for k in range(len(start)):
         extent += abs(start[k]) + 3.0 * state.clock[SPAN] * abs(velocity[k])

@@ -12,7 +12,7 @@ from roughgas.kernel import hooks
 from roughgas.kernel.hooks import displacement
 from roughgas.kernel.memory import new_state
 from roughgas.kernel.state import State
-from roughgas.scene.random_packing import places_for
+from roughgas.scene.random_packing import random_positions
 from roughgas.scene.scene import (
     DIAMETER,
     NARROWEST_CHANNEL,
@@ -96,7 +96,7 @@ def _places(scene, experiment, bodies, rng):
         scene, experiment, largest, float(np.sum(bodies.radius ** len(scene.box)))
     )
     periodic = [side is not None for side in scene.box]
-    while (found := places_for(bodies.radius, lengths, periodic, rng)) is None:
+    while (found := random_positions(bodies.radius, lengths, periodic, rng)) is None:
         if experiment["box"][-1] != "open":
             legal = "be fewer or smaller: no positions without overlap were found"
             raise InputError("particles", number, legal)

@@ -24,7 +24,7 @@ GROWN = (
 )  # radii while particles push each other: so that they part in finitely many steps
 
 
-def places_for(
+def random_positions(
     radius: np.ndarray, lengths: Sequence[float], periodic: Sequence[bool], rng: np.random.Generator
 ) -> np.ndarray | None:
     """Return places (N, D) for particles of these radii (N,) in a box from 0 to these lengths.

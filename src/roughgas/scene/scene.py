@@ -14,7 +14,7 @@ import numpy as np
 
 from roughgas.base import RESTITUTION, ROUGHNESS, InputError, NeedsError
 from roughgas.effects import KINDS, Effects
-from roughgas.effects.settings import Surroundings, make
+from roughgas.effects.settings import SceneContext, make
 from roughgas.effects.species import mixture_of
 from roughgas.kernel import hooks
 
@@ -191,7 +191,7 @@ def _asked_for(experiment):
 
 def _effects(settings, lengths, r, beta, mixture):
     own = () if mixture is None else (mixture.own("restitution"), mixture.own("roughness"))
-    around = Surroundings(lengths, r, beta, settings, *own)
+    around = SceneContext(lengths, r, beta, settings, *own)
     for name in settings:
         if name not in KINDS:
             raise InputError("effect", name, f"be one of {', '.join(KINDS)}")

@@ -41,7 +41,7 @@ def run(
     gas = Gas.start(scene, settings, np.random.default_rng(settings["seed"]))
     leg = gas.count(settings["collisions"] / settings["frames"])
     owner = belongs_to(settings)
-    film = _resumed(path, owner, gas, progress)
+    film = _just_restarted(path, owner, gas, progress)
     if not film:
         gas.thermalise(settings["thermalise"])
         gas.refresh()
@@ -66,7 +66,7 @@ def belongs_to(settings: Mapping[str, Any]) -> str:
     return as_text({"settings": settings, "numpy": np.__version__} | about)
 
 
-def _resumed(path, owner, gas, progress) -> Film:
+def _just_restarted(path, owner, gas, progress) -> Film:
     """Return the film so far, and bring `gas` to its end; an empty one without a checkpoint."""
     try:
         saved = checkpoint.restore(path, owner, gas.state)

@@ -63,7 +63,7 @@ class Gas:
         self.observer: Observer | None = None
         self.sample: Columns = {}
         self.refresh_every = self.begun = 0
-        self._resumed = False  # with its memory, just now
+        self._just_restarted = False  # with its memory, just now
         self.extents = np.ptp(state.trajectory[:, : len(scene.box)], axis=0)
 
     @classmethod
@@ -86,7 +86,7 @@ class Gas:
             gas = cls(scene, state, recorder)
             gas.extents = extents
             if begun is not None:
-                gas.begun, gas._resumed = begun, True
+                gas.begun, gas._just_restarted = begun, True
         gas.recorder.begin(gas)
         return gas
 
@@ -118,7 +118,7 @@ class Gas:
         """Count collisions anew, unless a run goes on, and refresh the gas after each
         `refresh_every` of them."""
         self.refresh_every = refresh_every
-        if not self._resumed:
+        if not self._just_restarted:
             self.begun = int(self.state.counts[COLLISIONS])
 
     def in_time(self, interval: float, samples: int) -> Columns:
@@ -134,12 +134,12 @@ class Gas:
         roughgas.simulation.energies.restored.
         """
         unit = max(1, self.refresh_every // collisions)
-        first = unit - self._late(collisions) // collisions
+        first = unit - self._since_refresh(collisions) // collisions
         return self._observed(lambda n: self._in_collisions(collisions, n), samples, first, unit)
 
     def _in_collisions(self, collisions: int, samples: int) -> Columns:
-        refresh, late = self.refresh_every // collisions, self._late(collisions)
-        self._resumed = False
+        refresh, late = self.refresh_every // collisions, self._since_refresh(collisions)
+        self._just_restarted = False
         left = (self.refresh_every - late) // collisions
         if not late or samples < left:
             return self._run(Sampling(np.inf, collisions, 0 if late else refresh), samples)
@@ -148,9 +148,9 @@ class Gas:
             parts.append(self._run(Sampling(np.inf, collisions, refresh), samples - left))
         return joined(parts)
 
-    def _late(self, collisions: int) -> int:
+    def _since_refresh(self, collisions: int) -> int:
         """Return the collisions since the last refresh, in the first call after a run went on."""
-        refreshed = self._resumed and self.refresh_every >= collisions
+        refreshed = self._just_restarted and self.refresh_every >= collisions
         late = self.collisions % self.refresh_every if refreshed else 0
         return 0 if late % collisions else late
 

@@ -37,7 +37,7 @@ class Look(NamedTuple):
     values: Values
 
 
-class Watched(NamedTuple):
+class Registered(NamedTuple):
     """An observable of one gas, and what it has seen."""
 
     observable: Observable
@@ -49,7 +49,7 @@ class Watched(NamedTuple):
 class Observer:
     """Looks at one gas; it is a Gas's `observer`."""
 
-    def __init__(self, gas: Gas, watched: Sequence[Watched], wait: int) -> None:
+    def __init__(self, gas: Gas, watched: Sequence[Registered], wait: int) -> None:
         self.begun, self.watched = gas.time, watched
         self._wait, self._start, self._taken = wait, 0, 0
         self._stride = math.gcd(*(one.every for one in watched))
@@ -88,7 +88,7 @@ class Observer:
             one.before.update(now)
 
 
-class Watching:
+class Observers:
     """The observables of a run: looks at each of its gases, and averages what was seen."""
 
     def __init__(
@@ -101,13 +101,13 @@ class Watching:
         self._observers: list[Observer] = []
         self._make()
 
-    def _make(self) -> list[Watched]:
+    def _make(self) -> list[Registered]:
         unit = self._kind.SAMPLES_PER_REFRESH
         found = []
         for one in self._wanted:
             every = unit * math.ceil(one.every / unit)
             system = self._system._replace(interval=every * self._system.interval)
-            found.append(Watched(one.make(system), every, [], {}))
+            found.append(Registered(one.make(system), every, [], {}))
         return found
 
     def begin(self, gas: Gas) -> None:
@@ -133,7 +133,7 @@ class Watching:
             about |= self._described(one.name, kind.variables, found)
         return values, about
 
-    def _averaged(self, watched: Sequence[Watched], start: float, stop: float) -> dict[str, Any]:
+    def _averaged(self, watched: Sequence[Registered], start: float, stop: float) -> dict[str, Any]:
         every = self._system.interval
         runs = []
         for one, observer in zip(watched, self._observers, strict=True):

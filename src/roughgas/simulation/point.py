@@ -179,9 +179,9 @@ def _watching(scene, experiment, functions):
     """Return the observables that are asked for; None if there are none."""
     if not functions and not experiment.get("observables"):
         return None
-    from roughgas.simulation.observing import Watching  # imported where it is wanted
+    from roughgas.simulation.observing import Observers  # imported where it is wanted
 
-    return Watching(scene, experiment, functions)
+    return Observers(scene, experiment, functions)
 
 
 def _withdrawn(found):

@@ -34,7 +34,7 @@ NUMBERS = range(2, 10_001)  # of frames
 LEGAL = {"start": Interval("[0, 1e9]"), "length": Interval("(0, 1e9]")}
 
 
-class Take(NamedTuple):
+class Frames(NamedTuple):
     """What is filmed: in T, or in collisions per particle of a cooling gas."""
 
     start: float  # since the beginning, or since the gas began to cool
@@ -54,7 +54,7 @@ class Take(NamedTuple):
         return [f"--start={self.start}", f"--length={self.length}", f"--frames={self.frames}"]
 
 
-COOLING = Take(0.0, 16.0, 160)
+COOLING = Frames(0.0, 16.0, 160)
 
 
 class Snapshot(NamedTuple):
@@ -89,7 +89,7 @@ def chosen(
     frames: int | None = None,
     times: Sequence[float] | None = None,
     initial: Sequence[Initial] = (),
-) -> Take:
+) -> Frames:
     """Return the take that is asked for; what is None is as usual, but that it begins where an
     `initial` state is. Raises InputError."""
     given = {"start": start, "length": length, "frames": frames}
@@ -110,7 +110,7 @@ def chosen(
         _check_start("times", times[0], begun)
     if asked or not times or times != sorted(set(times)):
         raise InputError("times", times, "rise, and stand without start, length and frames")
-    return Take.at(times)
+    return Frames.at(times)
 
 
 def _check_start(key: str, start: float, begun: float) -> None:
@@ -118,7 +118,7 @@ def _check_start(key: str, start: float, begun: float) -> None:
         raise InputError(key, start, f"be {begun:g} or more, where the initial state is")
 
 
-def usual_take(experiment: Mapping[str, Any], scene: Scene) -> Take:
+def usual_take(experiment: Mapping[str, Any], scene: Scene) -> Frames:
     """Return what is worth filming.
 
     That is a driven gas once it should be stationary, for some periods of its drive or until its
@@ -131,14 +131,14 @@ def usual_take(experiment: Mapping[str, Any], scene: Scene) -> Take:
     length = PERIODS * drive.period if drive else TIME
     if shear is not None:
         length = shear.length / shear.velocity
-    return Take(min(wait, PATIENCE / experiment["particles"]), length, FRAMES)
+    return Frames(min(wait, PATIENCE / experiment["particles"]), length, FRAMES)
 
 
 def snapshots(
     scene: Scene,
     experiment: Mapping[str, Any],
     seed: int,
-    take: Take,
+    take: Frames,
     initial: Sequence[Initial] = (),
 ) -> Iterator[Snapshot]:
     """Yield the snapshots of a take of a point, one after the other.
@@ -164,7 +164,7 @@ def snapshots(
         samples = math.ceil(wait / experiment["schedule"]["sample_every"])
         gas.in_time(wait / samples, samples)
     if scene.effects.spin is not None and len(scene.box) == 2:
-        gas.watcher = Turning(gas.particles)
+        gas.watcher = AngleTracker(gas.particles)
     gas.look()
     if kind is cooling:
         _make_collisions(gas, take.start, stride, before)
@@ -201,7 +201,7 @@ def _make_collisions(gas: Gas, per_particle: float, stride: int, before: int) ->
         gas.step(math.inf, min(stride, wanted - gas.collisions))
 
 
-class Turning:
+class AngleTracker:
     """Watches a gas of disks: the angles (N,) by which they have turned, in the order of the start.
 
     A Watcher of roughgas.simulation.gas.
@@ -254,7 +254,7 @@ def _snapshot(gas: Gas, before: int) -> Snapshot:
         position=in_order(state, position),
         velocity=in_order(state, velocity * unit),
         spin=spin,
-        angle=gas.watcher.angle.copy() if isinstance(gas.watcher, Turning) else None,
+        angle=gas.watcher.angle.copy() if isinstance(gas.watcher, AngleTracker) else None,
         E_trans=float(present.translational),
         E_rot=None if present.rotational is None else float(present.rotational),
         R=None if spin is None else float(ratio(present)),
