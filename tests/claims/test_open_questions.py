@@ -133,6 +133,18 @@ def test_an_uncertain_share_makes_its_prediction_uncertain(judged):
     assert found.verdict == HOLDS and "error unknown" in found.reason
 
 
+@pytest.mark.parametrize("share", [-1.5, 2.5])
+def test_a_share_that_theory_does_not_know_is_not_judged_as_the_nearest(judged, share):
+    """Nor is an error that reaches beyond what theory knows."""
+    beyond = boundaries("floor_materials")
+    beyond["input_spin_share"] *= share / 0.3
+    found = judged("rough_floor_follows_rates", beyond)
+    assert found.verdict == NOT_TESTED and f"share of rotation is {share}" in found.reason
+    near = np.where(SHARES == 0.3, np.clip(share, -0.99, 1.99), SHARES)
+    uncertain = boundaries("floor_materials", shares=near, input_spin_share_stderr=0.02)
+    assert "error unknown" in judged("rough_floor_follows_rates", uncertain).reason
+
+
 def still_floor(size):
     """A shift by a floor that puts in no rotation."""
     return lambda r, beta, roughness: size * (roughness == -0.5)

@@ -163,18 +163,19 @@ def deviation_at_shares(data: xr.Dataset) -> Sample:
     """Return R - the rate equations for a drive with the measured share of rotation.
 
     The share, from the energy books, lies outside of [0, 1] where sources take energy out of one
-    motion.
+    motion. Raises NotTestedError where theory knows none such.
     """
     share = spin_shares(data)
     measured = np.nan_to_num(share.values)
     step = np.nan_to_num(data.input_spin_share_stderr.values)
-    ends = (
-        np.clip(end, NET_SHARE.low, NET_SHARE.high)
-        for end in (measured - step, measured, measured + step)
-    )
-    low, expected, high = (theory_of(data, spin_share=end) for end in ends)
-    spread = np.fmax(high - expected, expected - low)
-    spread = np.where(np.isfinite(data.input_spin_share_stderr), spread, np.nan)
+    ends = np.array([measured - step, measured, measured + step])
+    if (wrong := measured[~NET_SHARE.holds(measured)]).size:
+        said = f"a measured share of rotation is {wrong[0]:.3g}"
+        raise NotTestedError(f"{said}, and theory takes those in {NET_SHARE}")
+    taken = np.clip(ends, NET_SHARE.low, NET_SHARE.high)
+    low, expected, high = (theory_of(data, spin_share=end) for end in taken)
+    known = np.isfinite(data.input_spin_share_stderr) & (ends == taken).all(0)
+    spread = np.where(known, np.fmax(high - expected, expected - low), np.nan)
     errors = sum_error([data.R_stderr, spread], [data.R_dof, data.n_seeds - 1.0])
     return sample((data.R - expected).where(np.isfinite(share)), *errors)
 
