@@ -54,7 +54,13 @@ def test_pages_have_the_examples_that_they_should_have():
     assert sum("simulate(" in text for text, _ in found["library"]) > 4
 
 
-@pytest.mark.parametrize("page", sorted(WITH_EXAMPLES))
+# what observables show is compiled anew
+SLOW = {"observables": [pytest.mark.slow]}
+
+
+@pytest.mark.parametrize(
+    "page", [pytest.param(page, marks=SLOW.get(page, [])) for page in sorted(WITH_EXAMPLES)]
+)
 def test_examples_run_and_print_what_the_page_says(page, folder, capsys):
     names = {}  # a later example goes on from the others
     for text, said in examples()[page]:

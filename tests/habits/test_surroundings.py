@@ -37,6 +37,7 @@ def test_closed_streams(tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["point.nc"]
 
 
+@pytest.mark.slow  # what is around it, not the code
 def test_no_setting_of_the_users_changes_a_figure(tmp_path):
     data = reduced("sheared")
     data.assign(R_unsubtracted=data.R - 0.1).to_netcdf(tmp_path / "sheared.nc", engine="netcdf4")
@@ -87,6 +88,7 @@ def test_what_is_no_file_is_not_replaced(tmp_path):
     assert (tmp_path / "pipe").is_fifo()
 
 
+@pytest.mark.slow  # what is around it, not the code
 def test_memory_that_runs_out(tmp_path):
     script = 'ulimit -v 2000000; exec "$@"'
     many = {"particles": 10**8, "box": [10**5, 10**5]}
@@ -117,6 +119,7 @@ def check(name, monkeypatch, capsys):
     return found["said"], found["ok"]
 
 
+@pytest.mark.slow  # what is around it, not the code
 def test_an_installation_as_it_should_be():
     done = roughgas("doctor", "--json", cwd=ROOT)
     found = json.loads(done.stdout)
@@ -194,6 +197,7 @@ def told(line, folder):
     return python("-c", BLOCKED.format(packages=packages), *line.split(), cwd=folder)
 
 
+@pytest.mark.slow  # what is around it, not the code
 def test_what_simulates_needs_no_extra(tmp_path):
     for name, line in WITHOUT_ANY.items():
         done = told(line, tmp_path)

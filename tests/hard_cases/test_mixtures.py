@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+import pytest
 from brute_force import begin, largest_overlap, run, scene_of, settings
 
 from hard_cases.catalogue import hard_case
@@ -73,6 +74,7 @@ def test_mass_ratio_1e9(margins):
     "a lone large particle among many small ones, in cells as wide as it",
     "cells hold more particles than fit on a shortlist, and some are never met",
 )
+@pytest.mark.slow  # a kernel that no other test compiles
 def test_a_lone_large_one(margins, monkeypatch):
     """Full: among a million, of which each then looks at a thousand others."""
     number = margins.size(1500, 1_000_000)

@@ -14,7 +14,6 @@ from roughgas.scene import build, elastic
 from roughgas.simulation.energies import restored
 from roughgas.simulation.gas import Gas
 from roughgas.simulation.point import compile_kernels, run_point
-from roughgas.simulation.recorder import Recorder
 
 GAS = settings("gas", 20, [25, 25])
 
@@ -108,15 +107,6 @@ def test_thermalising_conserves_the_energy():
     assert (walls.restitution, walls.roughness) == (1.0, -1.0)
 
 
-def test_a_recorder_sums_up_over_gases():
-    recorder = Recorder()
-    for seed in (1, 2):
-        gas = gas_of(0.9, 0.2, seed, recorder=recorder)
-        gas.in_collisions(10, 7)
-        gas.in_collisions(5, 4)
-    assert recorder.collisions == 2 * (70 + 20) and recorder.seconds > 0.0
-
-
 def test_a_gas_in_which_time_hardly_goes_on_is_given_up(monkeypatch):
     """As in a box so dense that it jams: here the limit is low instead."""
     gas = gas_of(0.9, 0.2, 1)
@@ -199,33 +189,6 @@ def test_the_same_point_twice_and_another_seed(name):
     assert one.attributes["inertia"] == 0.5 and one.attributes["dimension"] == 2
     filled = {"sheared": 20 * np.pi / 18**2, "gas": 20 * np.pi / 25**2}  # the bed is open above
     assert one.attributes.get("packing") == (filled.get(name) and pytest.approx(filled[name]))
-
-
-@pytest.mark.parametrize("name", POINTS)
-def test_what_a_point_holds(name):
-    found = point(POINTS[name], 0.9, 0.2, 3)
-    for key in ("R", "R_stderr", "R_ratio_of_means", "E_trans", "E_rot", "autocorrelation_time"):
-        assert np.isfinite(found.variables[key]), key
-    assert 0.0 < found.variables["R"] < 0.5
-    assert found.variables["collisions"] > 100
-    assert not {"contact_time", "contact_time_fraction"} & set(found.variables)
-    assert ("R_unsubtracted" in found.variables) == (name == "sheared")
-    assert ("R_replica" in found.variables) == (name == "gas")
-    assert ("collisions_per_particle" if name == "gas" else "time") in found.variables
-
-
-def test_progress_is_told():
-    told = []
-    point(POINTS["bed"], 0.9, 0.2, 3, lambda *progress: told.append(progress))
-    times, collisions = zip(*told, strict=True)
-    assert 20 <= len(told) <= 60 and times[-1] == pytest.approx(60.0)
-    assert list(times) == sorted(times) and list(collisions) == sorted(collisions)
-
-
-@pytest.mark.parametrize(("r", "beta"), [(1.5, 0.0), (0.9, -2.0), (np.nan, 0.0)])
-def test_illegal_points(r, beta):
-    with pytest.raises(InputError):
-        point(POINTS["gas"], r, beta, 1)
 
 
 def test_a_gas_that_comes_to_rest_on_its_floor_is_refused():

@@ -79,6 +79,7 @@ def test_what_is_swept_is_put_in_its_place():
     assert apart - alike > 0.03
 
 
+@pytest.mark.slow
 def test_a_line_of_many_values_is_interpolated():
     beta = np.linspace(-0.3, 1, 801)
     line = predicted_ratio(attributes(), 0.9, beta)
