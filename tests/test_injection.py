@@ -22,14 +22,8 @@ from roughgas.results.reduce import reduce_points
 from roughgas.show.pages import policy
 
 SCRIPT = "<script>alert(1)</script>"
-EVIL = [
-    SCRIPT,
-    "<!--<script>",
-    "\"'`",
-    "$(touch owned) `touch owned` ; touch owned",
-    "a\nb",
-    "{}|%s",
-]
+EVIL = [SCRIPT, "<!--<script>", "\"'`", "$(touch owned) `touch owned` ; touch owned", "a\nb"]
+EVIL += ["{}|%s"]
 FORMULAS = ["=1+1", "+cmd", "-2+3", "@SUM(A1)", "\t=1"]
 RULES = sorted((Path(__file__).parents[1] / "rules").glob("*.smk"))
 

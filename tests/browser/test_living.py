@@ -27,25 +27,15 @@ SHORT = {
     "sheared": {"equilibrate": 600, "measure": 4000},
     "cooling": {"replicas": 16, "relaxation_times": 8, "plateau": 60},
 }
-POINTS = [
-    ("vibrated", 0.9, 0.5),
-    ("vibrated", 0.8, -0.5),
-    ("sheared", 0.9, 0.0),
-    ("sheared", 0.8, 0.8),
-    ("cooling", 0.9, 0.5),
-    ("cooling", 0.8, -0.5),
-]
+POINTS = [("vibrated", 0.9, 0.5), ("vibrated", 0.8, -0.5), ("sheared", 0.9, 0.0)]
+POINTS += [("sheared", 0.8, 0.8), ("cooling", 0.9, 0.5), ("cooling", 0.8, -0.5)]
 CHANGED = [("cooling", {"q": 1}), ("cooling", {"mu": 0.3}), ("vibrated", {"q": 0.1, "mu": 0.05})]
 """Other moments of inertia, and Coulomb friction so weak that contacts slide."""
-LONG = [
-    ("cooling", {"r": 0.9, "beta": 0.5}, 2000),
-    ("cooling", {"r": 0.8, "beta": -0.8}, 2000),
-    ("sheared", {"r": 0.9, "beta": 0.5}, 2000),
-    ("vibrated", {"r": 0.9, "beta": 0.0}, 2000),
-    ("cooling", {"r": 0.95, "beta": 0.0, "mu": 0.5}, 300),
-    ("sheared", {"r": 0.9, "beta": -0.5, "q": 1, "mu": 0.2}, 300),
-    ("vibrated", {"r": 0.6, "beta": 1.0, "q": 0.1}, 300),
-]
+LONG = [("cooling", {"r": 0.9, "beta": 0.5}, 2000), ("cooling", {"r": 0.8, "beta": -0.8}, 2000)]
+LONG += [("sheared", {"r": 0.9, "beta": 0.5}, 2000), ("vibrated", {"r": 0.9, "beta": 0.0}, 2000)]
+LONG += [("cooling", {"r": 0.95, "beta": 0.0, "mu": 0.5}, 300)]
+LONG += [("sheared", {"r": 0.9, "beta": -0.5, "q": 1, "mu": 0.2}, 300)]
+LONG += [("vibrated", {"r": 0.6, "beta": 1.0, "q": 0.1}, 300)]
 """Scenes, materials, and collisions per disk."""
 PARTS = 20
 FIRST_COLLISIONS = """
@@ -509,15 +499,10 @@ def test_a_question_sets_the_scene_and_answers(page):
     assert now(page)[2:] == [0.9, 1, "vibrated"]
 
 
-SAID = [
-    ("cooling", {"r": 0.8, "beta": -0.8}, 0.975),
-    ("cooling", {"r": 0.99, "beta": -0.8}, 0.05),
-    ("vibrated", {"r": 0.9, "beta": 1.0}, 0.50),
-    ("vibrated", {"r": 0.95, "beta": 0.0}, 0.215),
-    ("vibrated", {"r": 0.7, "beta": 0.0}, 0.277),
-    ("vibrated", {"r": 0.9, "beta": 0.0}, 0.225),
-    ("vibrated", {"r": 0.9, "beta": 0.0, "q": 1}, 0.30),
-]
+SAID = [("cooling", {"r": 0.8, "beta": -0.8}, 0.975), ("cooling", {"r": 0.99, "beta": -0.8}, 0.05)]
+SAID += [("vibrated", {"r": 0.9, "beta": 1.0}, 0.50), ("vibrated", {"r": 0.95, "beta": 0.0}, 0.215)]
+SAID += [("vibrated", {"r": 0.7, "beta": 0.0}, 0.277), ("vibrated", {"r": 0.9, "beta": 0.0}, 0.225)]
+SAID += [("vibrated", {"r": 0.9, "beta": 0.0, "q": 1}, 0.30)]
 
 
 @pytest.mark.parametrize(("name", "material", "R"), SAID)

@@ -5,19 +5,5 @@ from brute_force.scenes import KERNELS, begin, kernels, run, scene_of, settings
 from brute_force.simulation import BruteForce
 from brute_force.world import Event, Snapshot, World
 
-__all__ = [
-    "KERNELS",
-    "Beside",
-    "BruteForce",
-    "Event",
-    "Snapshot",
-    "World",
-    "begin",
-    "compare",
-    "kernels",
-    "largest_overlap",
-    "run",
-    "scene_of",
-    "settings",
-    "snapshot",
-]
+__all__ = ["KERNELS", "Beside", "BruteForce", "Event", "Snapshot", "World", "begin", "compare"]
+__all__ += ["kernels", "largest_overlap", "run", "scene_of", "settings", "snapshot"]

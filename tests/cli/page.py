@@ -21,16 +21,12 @@ BLOCK = re.compile(r"^```console\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 PROGRESS = re.compile(r"^.* s so far\n", re.MULTILINE)  # which a slow machine makes
 WIDEST = 140
 NUMBER = r"[\d.]+(?:e\+\d+)?"
-MACHINE = [
-    (rf"{NUMBER} s of CPU time, [\d,]+ a second", "some time"),
-    (r'"kernel_seconds": [^,}]+', "some time"),
-    (rf" in {NUMBER} s\b", " in some time"),
-    (rf"\| +{NUMBER} (s|min|h) +", "| some time "),
-    (rf"[Ww]ith {NUMBER} s", "with some time"),
-    (r"(roughgas|numpy|Python|numba|llvmlite) [\d.]+", "a version"),
-    (r"[\d.]+e-1\d", "rounding"),
-    (r"-+", "-"),
-]
+MACHINE = [(rf"{NUMBER} s of CPU time, [\d,]+ a second", "some time")]
+MACHINE += [(r'"kernel_seconds": [^,}]+', "some time"), (rf" in {NUMBER} s\b", " in some time")]
+MACHINE += [(rf"\| +{NUMBER} (s|min|h) +", "| some time ")]
+MACHINE += [(rf"[Ww]ith {NUMBER} s", "with some time")]
+MACHINE += [(r"(roughgas|numpy|Python|numba|llvmlite) [\d.]+", "a version")]
+MACHINE += [(r"[\d.]+e-1\d", "rounding"), (r"-+", "-")]
 """What another machine prints in another way, and in place of it."""
 
 

@@ -14,42 +14,23 @@ from roughgas.config import as_text
 from roughgas.data.netcdf import SEAL
 
 VALUES = [3, -0.5, 1e300, float("nan"), "x", "", "{}", "[]", "null", "a.b", "é", "\n", [1, 2], []]
-TEXTS = [
-    "",
-    "text",
-    "[]",
-    "{}",
-    "null",
-    '{"@graph": 3}',
-    '{"@graph": [3]}',
-    "CDF\x01",
-    "\x89HDF\r\n",
-]
+TEXTS = ["", "text", "[]", "{}", "null", '{"@graph": 3}', '{"@graph": [3]}', "CDF\x01"]
+TEXTS += ["\x89HDF\r\n"]
 SPIN = {"spin": {"inertia": 0.5}}
 SETTINGS = as_text({"particles": 5, "box": [20, 20], "effects": SPIN, "schedule": BRIEF})
 NUMBERS = [np.nan, np.inf, -np.inf, -1.0, 1.5, 1e300, 0.0]
 NAMES = ["file.nc", "file.json", "file", "-file.nc", "a b.nc", "é.nc", "$(x).nc", "=1.nc"]
-COMMANDS = [
-    "show {}",
-    "show --json {}",
-    "reduce {} -o out.nc",
-    "table {} -o out.csv",
-    "claims {} --json out.json --markdown out.md",
-    "claims --open-questions {} --json out.json --markdown out.md",
-    "explore {} --points . -o out.html",
-    "document {} -o out.html",
-    "run_times {} -o out.md",
-    'costs --fixed {{"vibrated":{{"equilibrate":1,"measure":1}}}} {} -o out.md',
-    "study_tables {} -o out.md",
-    "combine {} -o out.nc",
-    "film {} -o out.png",
-    "plot {} -o out.png",
-    "figure fig1a {} -o out.png",
-    "figure fig2b {} -o out.png",
-    "study_figure studies/waves waves {} --shows waves.waves -o out.png",
-    "figure coverage {} -o out.png",
-    "run gas --settings SETTINGS --r=0.9 --beta=0 --from {} -o out.nc",
-]
+COMMANDS = ["show {}", "show --json {}", "reduce {} -o out.nc", "table {} -o out.csv"]
+COMMANDS += ["claims {} --json out.json --markdown out.md"]
+COMMANDS += ["claims --open-questions {} --json out.json --markdown out.md"]
+COMMANDS += ["explore {} --points . -o out.html", "document {} -o out.html"]
+COMMANDS += ["run_times {} -o out.md"]
+COMMANDS += ['costs --fixed {{"vibrated":{{"equilibrate":1,"measure":1}}}} {} -o out.md']
+COMMANDS += ["study_tables {} -o out.md", "combine {} -o out.nc", "film {} -o out.png"]
+COMMANDS += ["plot {} -o out.png", "figure fig1a {} -o out.png", "figure fig2b {} -o out.png"]
+COMMANDS += ["study_figure studies/waves waves {} --shows waves.waves -o out.png"]
+COMMANDS += ["figure coverage {} -o out.png"]
+COMMANDS += ["run gas --settings SETTINGS --r=0.9 --beta=0 --from {} -o out.nc"]
 """Command lines, {} being the file, and SETTINGS those of a tiny gas."""
 FITTING = [f"show{how}{' {}' * times}" for how in ("", " --json") for times in range(1, 9)]
 """Those that take a dataset of any kind."""

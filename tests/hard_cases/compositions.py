@@ -53,23 +53,14 @@ PARAMETERS = {
     "contact_stress": {},
 }
 OPPOSITE = [("left_wall", "right_wall"), ("front_wall", "back_wall")]
-NEEDS = [
-    ("gravity", "floor"),
-    ("floor", "gravity"),
-    ("friction", "spin"),
-    ("contact_averages", "spin"),
-    *((name, other) for pair in OPPOSITE for name, other in (pair, pair[::-1])),
-    ("bottom_wall", "lid"),
-]
-EXCLUDES = [
-    ("walls", "shear"),
-    ("shaken_walls", "shear"),
-    ("walls", "shaken_walls"),
-    ("viscoelastic", "restitution_table"),
-    ("bottom_wall", "gravity"),
-    *itertools.product(("walls", "shaken_walls", "shear"), OPPOSITE[0]),
-    *(("shear", name) for name in OPPOSITE[1]),
-]
+NEEDS = [("gravity", "floor"), ("floor", "gravity"), ("friction", "spin")]
+NEEDS += [("contact_averages", "spin")]
+NEEDS += [*((name, other) for pair in OPPOSITE for name, other in (pair, pair[::-1]))]
+NEEDS += [("bottom_wall", "lid")]
+EXCLUDES = [("walls", "shear"), ("shaken_walls", "shear"), ("walls", "shaken_walls")]
+EXCLUDES += [("viscoelastic", "restitution_table"), ("bottom_wall", "gravity")]
+EXCLUDES += [*itertools.product(("walls", "shaken_walls", "shear"), OPPOSITE[0])]
+EXCLUDES += [*(("shear", name) for name in OPPOSITE[1])]
 # A bed in space that is sheared between its sides heats up without end: flights grow long while
 # images slide past by thousands, and a scene may take minutes
 ENDLESS = {"gravity", "shear"}

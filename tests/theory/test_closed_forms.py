@@ -179,23 +179,15 @@ def test_smooth_gas(dimension):
     assert theory.decay_rate(0.8, -1 + 1e-9, dimension) < 1e-8
 
 
-TAKES_R_AND_BETA = [
-    theory.goldshtein_ratio,
-    theory.cooling_ratio,
-    theory.cooling_K,
-    theory.collision_rates,
-    theory.stationary_ratio,
-    theory.stationary_theta,
-    theory.relaxation_rate,
-    theory.collisions_to_relax,
-    theory.decay_rate,
-    lambda r, beta: theory.a_G(r, beta, 0.5),
-    lambda r, beta: theory.translational_energy_change(1, 1, 0, 1, r, beta, 0.5),
-    lambda r, beta: theory.temperature_changes(1, 1, r, beta),
-    lambda r, beta: theory.relax(0, r, beta, 1),
-    lambda r, beta: theory.haff_time(r, beta, 1),
-    lambda r, beta: theory.haff_temperature(1, 1, r, beta, 1),
-]
+TAKES_R_AND_BETA = [theory.goldshtein_ratio, theory.cooling_ratio, theory.cooling_K]
+TAKES_R_AND_BETA += [theory.collision_rates, theory.stationary_ratio, theory.stationary_theta]
+TAKES_R_AND_BETA += [theory.relaxation_rate, theory.collisions_to_relax, theory.decay_rate]
+TAKES_R_AND_BETA += [lambda r, beta: theory.a_G(r, beta, 0.5)]
+TAKES_R_AND_BETA += [lambda r, beta: theory.translational_energy_change(1, 1, 0, 1, r, beta, 0.5)]
+TAKES_R_AND_BETA += [lambda r, beta: theory.temperature_changes(1, 1, r, beta)]
+TAKES_R_AND_BETA += [lambda r, beta: theory.relax(0, r, beta, 1)]
+TAKES_R_AND_BETA += [lambda r, beta: theory.haff_time(r, beta, 1)]
+TAKES_R_AND_BETA += [lambda r, beta: theory.haff_temperature(1, 1, r, beta, 1)]
 TAKES_DIMENSION = [
     theory.moment_of_inertia,
     lambda dimension: theory.cooling_ratio(0.9, 0, dimension),
@@ -204,14 +196,11 @@ TAKES_DIMENSION = [
     lambda dimension: theory.collision_frequency(1, 0.1, dimension),
     lambda dimension: theory.mean_spin_squared(1, dimension, 0.5),
 ]
-TAKES_INERTIA = [
-    lambda q: theory.lun_ratio(0, q),
-    lambda q: theory.correlated_ratio(0, q, 0),
-    lambda q: theory.goldshtein_ratio(0.9, 0, q),
-    lambda q: theory.cooling_ratio(0.9, 0, 2, q),
-    lambda q: theory.stationary_theta(0.9, 0, 2, q),
-    lambda q: theory.rotational_energy_change(1, 0, 1, 0, q),
-]
+TAKES_INERTIA = [lambda q: theory.lun_ratio(0, q), lambda q: theory.correlated_ratio(0, q, 0)]
+TAKES_INERTIA += [lambda q: theory.goldshtein_ratio(0.9, 0, q)]
+TAKES_INERTIA += [lambda q: theory.cooling_ratio(0.9, 0, 2, q)]
+TAKES_INERTIA += [lambda q: theory.stationary_theta(0.9, 0, 2, q)]
+TAKES_INERTIA += [lambda q: theory.rotational_energy_change(1, 0, 1, 0, q)]
 OTHERS = [
     (lambda: theory.relax(-1, 0.9, 0, 1), "theta0 = -1.0: must be a number >= 0"),
     (lambda: theory.relax(1, 0.9, 0, [1, -2]), "collisions = -2.0: must be a number >= 0"),
