@@ -40,15 +40,6 @@ def caption(report, product):
     return report.wait(lambda: report.find("nav .prose"))[0].text
 
 
-def frame(report, selector):
-    """The text of what is shown in the report's frame."""
-    (shown,) = report.wait(lambda: report.find("iframe"))
-    report.driver.switch_to.frame(shown)
-    found = [element.text for element in report.wait(lambda: report.find(selector))]
-    report.driver.switch_to.default_content()
-    return found
-
-
 def test_it_opens_on_what_it_is_about(report):
     assert "scale tiny" in report.wait(lambda: report.find("#app .prose"))[0].text
     headings = [one.text for one in report.find("nav li a") if one.text]
@@ -73,25 +64,6 @@ def test_every_figure_is_shown_with_the_parameters_of_this_run(report):
         assert "10 particles in a box of" in text and "2 seeds of each point" in text
     assert "cooling: A freely cooling gas" in text and "beta: -0.5, 0, 0.5" in text
     assert "replicas 3" in text and "plateau 20" in text
-
-
-def test_the_tables_are_read_in_place(report):
-    follow(report, "1 The paper")
-    buttons(report, "Table: the paper's claims")[0].click()
-    assert frame(report, "h1") == ["The verdict on the paper"]
-    follow(report, "7 This run")
-    buttons(report, "Run times: the paper")[0].click()
-    report.wait(lambda: frame(report, "h1") == ["Run times"])
-    assert "cooling" in frame(report, "td")
-    follow(report, "7 This run")
-    buttons(report, "Configuration")[0].click()
-    (text,) = report.wait(lambda: frame(report, "pre"))
-    assert "scale: tiny" in text and "particles: 10" in text
-
-
-def test_run_times_are_there(report):
-    follow(report, "Statistics")
-    assert report.wait(lambda: report.find("#runtimes canvas, #runtimes svg"))
 
 
 def test_its_front_page_shows_the_figures_beside_their_captions(ran, browser):

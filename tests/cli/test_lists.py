@@ -45,16 +45,6 @@ def test_a_movie_takes_the_same_lists(monkeypatch):
         assert title == rf"$r = {r}$, $\beta = 0.5$, $N = 10$, seed {seed}"
 
 
-@pytest.mark.parametrize(
-    "line", ["experiments --scale small --scale paper", "reduce a.nc -o a -o b"]
-)
-def test_what_is_no_list_is_given_once(line, capsys):
-    with pytest.raises(SystemExit):
-        main(line.split())
-    said = capsys.readouterr().err
-    assert said.startswith("roughgas: error: ") and "given twice" in said
-
-
 def test_settings_that_are_changed_are_those_of_the_dataset(capsys):
     changes = ["particles=10", "schedule.plateau=4", "effects.friction.mu=.3", "box=18"]
     line = [*RUN, "--r=.9", "--beta=.5", "--set", *changes[:2], "--set", *changes[2:], "--json"]

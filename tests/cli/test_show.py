@@ -7,11 +7,10 @@ import netCDF4
 import numpy as np
 import pytest
 import xarray
-from tests.cli.conftest import GAS, ROOT
+from tests.cli.conftest import GAS
 from tests.entry import main
 
 from roughgas import theory
-from roughgas.config.reading import read_yaml
 from roughgas.data.point import read_point
 from roughgas.data.reduced import read_reduced
 from roughgas.statistics.errors import Estimate
@@ -136,16 +135,6 @@ def test_a_task_of_a_study(tmp_path, capsys):
     assert text.rstrip().endswith("snakemake -j1 results/small/studies/models/dsmc.nc")
     found = json.loads(shown(capsys, tmp_path / "task.nc", "--json"))
     assert found["sizes"] == {"chain": 11} and found["variables"] == {"seconds": 1.5}
-
-
-def test_descriptions_cannot_move_the_cursor(tmp_path, capsys):
-    config = read_yaml(ROOT / "config.yaml")
-    config["experiments"]["cooling"]["description"] = "a \x1b[2Jgas\x9b1A\nthat \u202ecools"
-    (tmp_path / "c.yaml").write_text(json.dumps(config))
-    for more in ((), ("--json",)):
-        assert main(["experiments", "--config", str(tmp_path / "c.yaml"), *more]) == 0
-        text = capsys.readouterr().out
-        assert "1b[2Jgas" in text and all(one.isprintable() for one in text.replace("\n", ""))
 
 
 @pytest.mark.parametrize(

@@ -47,11 +47,6 @@ def at_collision(name, samples):
     return scene, state
 
 
-def test_every_array_has_a_name():
-    names = [name for name, _ in arrays_of(nested(1.0))]
-    assert names == ["plain", "strided", "inner.key", "inner.bits"]
-
-
 def test_every_array_comes_back_and_shares_memory_as_before(tmp_path):
     state = nested(2.0)
     state.inner.key[3] = -0.0
@@ -105,11 +100,6 @@ def test_another_kind_of_state_is_refused_and_changes_nothing(tmp_path):
         with pytest.raises(UnusableCheckpoint, match="another kind of state"):
             restore(tmp_path / "c.npz", "me", other)
         assert content(other) == before
-
-
-def test_no_checkpoint_is_another_thing_than_a_bad_one(tmp_path):
-    with pytest.raises(FileNotFoundError):
-        restore(tmp_path / "c.npz", "me", nested(1.0))
 
 
 @pytest.mark.parametrize("share", [0.0, 0.01, 0.5, 0.99])

@@ -7,13 +7,10 @@ import sys
 
 import pytest
 from schedules import TINY
-from synthetic import reduced
 from tests.habits.conftest import ROOT, environment, point, python, roughgas
 
 from roughgas import doctor
 from roughgas.base import EXTRAS
-
-HOSTILE_STYLE = "lines.linewidth: 9\naxes.facecolor: red\naxes.grid: True\nfont.size: 30\n"
 
 
 def test_who_reads_only_the_beginning_sees_no_traceback(tmp_path):
@@ -35,31 +32,6 @@ def test_closed_streams(tmp_path):
     done = subprocess.run(["sh", "-c", script, "sh", *command], cwd=tmp_path, env=environment())
     assert done.returncode == 0
     assert [path.name for path in tmp_path.iterdir()] == ["point.nc"]
-
-
-@pytest.mark.slow  # what is around it, not the code
-def test_no_setting_of_the_users_changes_a_figure(tmp_path):
-    data = reduced("sheared")
-    data.assign(R_unsubtracted=data.R - 0.1).to_netcdf(tmp_path / "sheared.nc", engine="netcdf4")
-    (tmp_path / "home").mkdir()
-    (tmp_path / "home" / "matplotlibrc").write_text(HOSTILE_STYLE)
-    hostile = {
-        "MPLBACKEND": "none such",
-        "MPLCONFIGDIR": "/proc/none",
-        "DISPLAY": ":99",
-        "FONTCONFIG_FILE": "/nonexistent",
-        "PATH": "/nonexistent",
-        "LC_ALL": "tr_TR.UTF-8",
-        "HOME": "/proc/none",
-    }
-    drawn = []
-    for folder, changes in ((tmp_path, {}), (tmp_path / "home", hostile)):
-        files = [folder / "fig2a.png", folder / "fig2a.pdf"]
-        arguments = ["figure", "fig2a", tmp_path / "sheared.nc", "--output", *files]
-        done = python("-m", "roughgas.steps", *arguments, cwd=folder, **changes)
-        assert (done.returncode, done.stderr) == (0, "")
-        drawn.append([file.read_bytes() for file in files])
-    assert drawn[0] == drawn[1]
 
 
 def test_where_nothing_can_be_written_is_said_at_once(tmp_path, mounts):

@@ -98,13 +98,6 @@ def test_elastic_mixtures_keep_their_energy_and_share_it_equally(dimension, beta
     assert changes == pytest.approx(0, abs=1e-12)
 
 
-def test_fractions_and_numbers_say_the_same():
-    numbers = [{"number": 30}, {"number": 90, "radius": 2}]
-    gas = theory.mixture(numbers, 0.9, 0)
-    assert gas.fraction == pytest.approx([0.25, 0.75])
-    assert gas.inertia == pytest.approx([0.5, 0.5])
-
-
 @pytest.mark.parametrize("kind", ["uniform", "lognormal"])
 def test_a_distribution_has_its_moments(kind):
     """As radii that are drawn have them; masses are those of one density, unless given."""
@@ -184,11 +177,6 @@ def test_bad_species_are_one_line(species, text):
     with pytest.raises(InputError) as caught:
         theory.mixture(species, 0.9, 0)
     assert str(caught.value) == text
-
-
-def test_a_misspelt_key_is_answered_with_the_right_one():
-    with pytest.raises(InputError, match=r"species = raduis: .*did you mean radius\?"):
-        theory.mixture([{"fraction": 1, "raduis": 2}], 0.9, 0)
 
 
 packings = pytest.mark.parametrize("packing", [0.0, 0.1, 0.5])

@@ -23,14 +23,6 @@ NAMES = (
 TINY = ("--config", "scale=tiny", "--")
 
 
-def test_movies_need_no_point(project):
-    assert project.planned("movies") == {"movie": len(NAMES), "movies": 1}
-    assert project.planned(*(f"figures/movies/{name}.gif" for name in NAMES)) == {
-        "movie": len(NAMES)
-    }
-    assert "movie" not in project.planned("figures")
-
-
 def test_an_unknown_movie_is_refused_in_one_line(project):
     status, output = project.snakemake("-j1", "figures/movies/flow.gif")
     assert status != 0

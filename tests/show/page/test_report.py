@@ -16,7 +16,7 @@ from tests.houses import FOLDERS
 from roughgas import config, studies
 from roughgas.data.reduced import read_reduced
 from roughgas.results.table import write_times
-from roughgas.show.catalogue import DOCUMENTS, FIGURES, figures_of
+from roughgas.show.catalogue import FIGURES, figures_of
 from roughgas.show.studies import captions
 
 ROOT = Path(__file__).parents[3]
@@ -65,11 +65,6 @@ def test_a_study_says_how_it_was_made(figure, loaded):
     assert "What to notice." in text and "repetitions 600" in text
 
 
-@pytest.mark.parametrize("document", DOCUMENTS.values(), ids=DOCUMENTS)
-def test_a_document_says_what_it_is(document):
-    assert "<p>" in rendered("document", params=SimpleNamespace(caption=document.caption))
-
-
 @pytest.mark.parametrize("folder", FOLDERS, ids=lambda one: one.name)
 def test_a_figure_of_a_study_says_what_it_shows(folder, loaded):
     """README.md has each of its figures, and what follows it is a caption."""
@@ -86,7 +81,6 @@ def test_a_figure_of_a_study_says_what_it_shows(folder, loaded):
 NAMES = figures_of("paper")
 TABLE = "| R | verdict |\n| --- | --- |\n| 1 | **holds** |"
 CLAIMS = f"# The verdict\n\nHow to <read> it.\n\n{TABLE}\n\nEnd.\n"
-CAPTION = "What {name}\nshows.\n\n**What to notice.** x < y.\n"
 
 
 @pytest.fixture
@@ -166,13 +160,6 @@ def test_pictures_beside_a_text_are_part_of_its_page(tmp_path):
     assert "img-src data:" in text
 
 
-def test_an_unknown_kind_is_refused(tmp_path, capsys):
-    (tmp_path / "a.txt").write_text("text")
-    assert main(["document", str(tmp_path / "a.txt"), "-o", str(tmp_path / "a.html")]) == 2
-    assert "must end in one of .md, .yaml, .mp4, .gif" in capsys.readouterr().err
-    assert not (tmp_path / "a.html").exists()
-
-
 def test_run_times_are_sums_over_points_and_seeds(points, tmp_path):
     write_times([points / "sheared.nc", points / "cooling.nc"], output=tmp_path / "times.md")
     rows = [line for line in (tmp_path / "times.md").read_text().splitlines() if line[:1] == "|"]
@@ -198,10 +185,3 @@ def test_the_complete_configuration_says_the_same_and_can_be_run(scale, tmp_path
     assert config.showcase(found, scale) == config.showcase(given, scale)
     for study in found["studies"]:
         assert config.study(found, study, scale) == config.study(given, study, scale)
-
-
-def test_the_configuration_of_no_scale_is_refused(tmp_path, capsys):
-    path = tmp_path / "config.yaml"
-    assert main(["effective_config", str(CONFIG), "--scale=large", f"-o={path}"]) == 2
-    assert "scale = 'large': must be one of" in capsys.readouterr().err
-    assert not path.exists()
