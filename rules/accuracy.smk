@@ -1,95 +1,100 @@
-# What accuracy costs, whether error bars are true, and questions with runs of their own: each is a few
-# independent tasks, a dataset that combines them, a figure, and a table.
-from roughgas import studies
+# What accuracy costs, and whether error bars are true: independent tasks, datasets that combine them,
+# figures and tables.
+from roughgas import accuracy
 
-TASK = "results/{scale}/studies/{study}/{task}.nc"
+OF_ACCURACY = "results/{scale}/accuracy/{study}/{task}.nc"
 
 
-def settings_of_study(wildcards):
+def settings_of_accuracy(wildcards):
     """The settings of a study and of the experiments, as JSON."""
-    with one_line(TASK.format(**wildcards)):
-        found = roughgas.config.study(config, wildcards.study, wildcards.scale)
-        known = studies.study(wildcards.study).tasks(found["study"])
+    with one_line(OF_ACCURACY.format(**wildcards)):
+        found = roughgas.config.study(config, wildcards.study, wildcards.scale, "accuracy")
+        known = tasks_of_accuracy(wildcards.study, wildcards.scale)
         if wildcards.task not in known:
             raise not_one_of("task", wildcards.task, known)
     return roughgas.config.as_text(found)
 
 
-def tasks_of_figure(wildcards):
-    """The files of all tasks of the studies that a figure shows."""
-    return [
-        TASK.format(scale=wildcards.scale, study=name, task=task)
-        for name in entry_of(wildcards).shows
-        for task in tasks_of_study(name, wildcards.scale)
-    ]
-
-
-def tasks_of_study(name, scale):
+def tasks_of_accuracy(study, scale):
     """The names of a study's tasks, the longest first."""
-    with one_line(f"results/{scale}/studies/{name}"):
-        settings = roughgas.config.study(config, name, scale)["study"]
-        return studies.study(name).tasks(settings)
+    with one_line(f"results/{scale}/accuracy/{study}"):
+        settings = roughgas.config.accuracy(config, scale)[study]
+        return accuracy.study(study).tasks(settings)
 
 
-def urgency_of_task(wildcards):
-    names = tasks_of_study(wildcards.study, wildcards.scale)
+def urgency_of_accuracy(wildcards):
+    names = tasks_of_accuracy(wildcards.study, wildcards.scale)
     return len(names) - names.index(wildcards.task) if wildcards.task in names else 0
 
 
-def code_of_study(wildcards):
-    code = hash_of_code(f"studies.runs.{wildcards.study}", alone=["studies.files"])
-    return with_files(code, settings_of_study(wildcards))
+def parts_of_accuracy(wildcards):
+    """The files of all tasks that a dataset combines."""
+    return [
+        OF_ACCURACY.format(scale=wildcards.scale, study=study, task=task)
+        for study in accuracy.DATASETS[wildcards.dataset]
+        for task in tasks_of_accuracy(study, wildcards.scale)
+    ]
 
 
-def code_of_combining(wildcards):
-    return hash_of_code("studies.files", *(f"studies.{name}" for name in entry_of(wildcards).shows))
+def code_of_accuracy(wildcards):
+    """A hash of the studies that are run, or combined in a dataset."""
+    known = accuracy.DATASETS
+    names = known[wildcards.dataset] if "dataset" in wildcards.keys() else [wildcards.study]
+    return hash_of_code("accuracy", *(f"accuracy.{name}" for name in names))
 
 
-def code_of_accuracy_figure(wildcards):
-    return hash_of_code(f"studies.figures.{wildcards.study_figure}")
-
-
-def study_of_figure(wildcards):
-    dataset = DATASETS[wildcards.study_figure]
+def data_of_accuracy_figure(wildcards):
+    dataset = wildcards.study_figure.partition("_")[0]
     return f"results/{scale_of(wildcards.folder)}/{dataset}.nc"
 
 
-rule task:
+def settings_of_accuracy_figure(wildcards, output):
+    """The settings of the studies that a figure shows, for its caption."""
+    with one_line(f"figures/{wildcards.folder}{wildcards.study_figure}"):
+        every = roughgas.config.accuracy(config, scale_of(wildcards.folder))
+    return {name: every[name] for name in entry_of(wildcards).shows}
+
+
+rule accuracy_task:
     output:
-        TASK,
+        OF_ACCURACY,
     log:
-        "logs/{scale}/studies/{study}/{task}.log",
+        "logs/{scale}/accuracy/{study}/{task}.log",
     benchmark:
-        "logs/{scale}/studies/{study}/{task}.tsv"
-    priority: urgency_of_task
+        "logs/{scale}/accuracy/{study}/{task}.tsv"
+    wildcard_constraints:
+        study=one_of(accuracy.STUDIES),
+    priority: urgency_of_accuracy
     params:
-        code=code_of_study,
-        settings=settings_of_study,
+        code=code_of_accuracy,
+        settings=settings_of_accuracy,
     message:
         "study {wildcards.study}: {wildcards.task}"
     shell:
-        "python -P -m roughgas.steps study {wildcards.study:q} {wildcards.task:q} --scale {wildcards.scale:q}"
-        " --settings {params.settings:q} --output {output:q} > {log:q} 2>&1"
+        "python -P -m roughgas.steps accuracy_task {wildcards.study:q} {wildcards.task:q}"
+        " --scale {wildcards.scale:q} --settings {params.settings:q} --output {output:q} > {log:q} 2>&1"
 
 
-rule combined_tasks:
+rule accuracy_data:
     input:
-        tasks=tasks_of_figure,
+        tasks=parts_of_accuracy,
     output:
-        "results/{scale}/{study_figure}.nc",
+        "results/{scale}/{dataset}.nc",
     log:
-        "logs/{scale}/{study_figure}.log",
+        "logs/{scale}/{dataset}.log",
+    wildcard_constraints:
+        dataset=one_of(accuracy.DATASETS),
     params:
-        code=code_of_combining,
+        code=code_of_accuracy,
     message:
-        "combine the studies of {wildcards.study_figure}"
+        "combine the tasks of {wildcards.dataset}"
     shell:
-        "python -P -m roughgas.steps combine {input.tasks:q} --output {output:q} > {log:q} 2>&1"
+        "python -P -m roughgas.steps accuracy_data {input.tasks:q} --output {output:q} > {log:q} 2>&1"
 
 
 rule accuracy_figure:
     input:
-        data=study_of_figure,
+        data=data_of_accuracy_figure,
     output:
         "figures/{folder}{study_figure}.pdf",
         report(
@@ -100,27 +105,31 @@ rule accuracy_figure:
         ),
     log:
         "logs/figures/{folder}{study_figure}.log",
+    wildcard_constraints:
+        study_figure=one_of(accuracy.FIGURES),
     params:
-        code=code_of_accuracy_figure,
+        code=code_of("accuracy", "accuracy.figures"),
         caption=caption_of_figure,
-        studies=studies_of_figure,
+        studies=settings_of_accuracy_figure,
     message:
         "draw {wildcards.folder}{wildcards.study_figure}"
     shell:
-        "python -P -m roughgas.steps figure {wildcards.study_figure:q} {input.data:q}"
+        "python -P -m roughgas.steps accuracy_figure {wildcards.study_figure:q} {input.data:q}"
         " --output {output:q} > {log:q} 2>&1"
 
 
 rule accuracy_table:
     input:
-        data="results/{scale}/{study_figure}.nc",
+        data="results/{scale}/{dataset}.nc",
     output:
-        "results/{scale}/{study_figure}.md",
+        "results/{scale}/{dataset}.md",
     log:
-        "logs/{scale}/{study_figure}_table.log",
+        "logs/{scale}/{dataset}_table.log",
+    wildcard_constraints:
+        dataset=one_of(accuracy.DATASETS),
     params:
-        code=code_of("studies.tables"),
+        code=code_of_accuracy,
     message:
         "write {output}"
     shell:
-        "python -P -m roughgas.steps study_tables {input.data:q} --output {output:q} > {log:q} 2>&1"
+        "python -P -m roughgas.steps accuracy_table {input.data:q} --output {output:q} > {log:q} 2>&1"

@@ -3,13 +3,13 @@
 import numpy as np
 import xarray as xr
 
-from roughgas import studies
+from roughgas.accuracy import combine, coverage
+from roughgas.accuracy.coverage import MEASURED
 from roughgas.config import as_text
 from roughgas.data.film import FILM, write_film
+from roughgas.data.netcdf import content_of, write_netcdf
 from roughgas.data.point import Point, write_point
 from roughgas.results.reduce import reduce_points
-from roughgas.studies.files import combine, write_task
-from roughgas.studies.runs.coverage import MEASURED
 
 ABOUT = {
     "experiment": "vibrated",
@@ -84,15 +84,14 @@ def write_studies(path, folder):
     """A study of coverage whose repetitions are random numbers."""
     corners = [{"experiment": "gas", "r": "0.9", "beta": "0"}]
     settings = {"seed": 1, "repetitions": 8, "pooled": 2, "corners": corners}
-    study = studies.study("coverage")
     rng = np.random.default_rng(3)
     parts = [
         {prefix + name: (dim, rng.random(count)) for name in MEASURED}
         for prefix, dim, count in (("", "run", 8), ("truth_", "long_run", 4))
     ]
     data = xr.Dataset(parts[0] | parts[1] | {"cpu_seconds": 1.0, "window": 1.0})
-    (task,) = study.tasks(settings)
+    (task,) = coverage.tasks(settings)
     text = as_text({"study": settings, "experiments": {}})
     about = {"study": "coverage", "task": task, "scale": "small", "settings_json": text}
-    write_task(folder / "task.nc", data, about)
+    write_netcdf(folder / "task.nc", content_of(data.assign_attrs(about)))
     combine([folder / "task.nc"], output=path)

@@ -11,7 +11,7 @@ from itertools import pairwise
 from operator import attrgetter
 from pathlib import Path
 
-from roughgas import effects, observables
+from roughgas import accuracy, effects, observables, studies
 from roughgas.base.formatting import markdown
 from roughgas.claims import OPEN_QUESTIONS, PAPER, averages, paper, verdicts
 from roughgas.config.schema import SAID, _legal, _schema
@@ -21,7 +21,6 @@ from roughgas.data.trajectory import TRAJECTORY
 from roughgas.data.variables import COOLING, GRID, POINT, SPIN
 from roughgas.effects.settings import Numbers, OfParticles, Word
 from roughgas.statistics import errors
-from roughgas.studies import STUDIES
 from roughgas.studies.tasks import VARIABLES
 from roughgas.tasks import variables
 
@@ -43,15 +42,18 @@ def tables():
     found["config", "file"] = _keys_of(_schema())
     for name in ("experiment", "sweep", "schedule", "showcase"):
         found["config", name] = _keys_of(parts[name])
-    found["config", "studies"] = _keys_of(parts["studies"], depth=4)
+    for name in ("studies", "accuracy"):
+        found["config", name] = _keys_of(parts[name], depth=4)
     found["effects", "effects"] = _effects()
     found["observables", "observables"] = _observables()
     found["data", "point"] = _variables("type units when", POINT, _units)
     found["data", "reduced"] = _variables("units how", REDUCED, _units)
     found["data", "film"] = _variables("type units", FILM)
     found["trajectories", "trajectory"] = _variables("units when", TRAJECTORY)
-    studies = {name: variables(VARIABLES, name) for name in STUDIES}
-    return found | {("data", name): _variables("units", studies[name]) for name in STUDIES}
+    known = {name: accuracy.VARIABLES for name in accuracy.STUDIES}
+    known |= {name: VARIABLES for name in studies.STUDIES}
+    tables = {("data", name): variables(path, name) for name, path in known.items()}
+    return found | {place: _variables("units", one) for place, one in tables.items()}
 
 
 def written(page, name):

@@ -140,6 +140,10 @@ def film(input: str, *, output: list[str]) -> None:
 
 
 STEPS: dict[str, str | Callable[..., None]] = {
+    "accuracy_data": "accuracy:combine",
+    "accuracy_figure": "accuracy:draw",
+    "accuracy_table": "accuracy:write_tables",
+    "accuracy_task": "accuracy:run_task",
     "clustering": clustering,
     "combine": "studies.files:combine",
     "compile_kernels": compile_kernels,

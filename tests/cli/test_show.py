@@ -11,10 +11,10 @@ from tests.cli.conftest import GAS
 from tests.entry import main
 
 from roughgas import theory
+from roughgas.data.netcdf import content_of, write_netcdf
 from roughgas.data.point import read_point
 from roughgas.data.reduced import read_reduced
 from roughgas.statistics.errors import Estimate
-from roughgas.studies.files import write_task
 
 
 def shown(capsys, *arguments):
@@ -128,11 +128,12 @@ def test_a_task_of_a_study(tmp_path, capsys):
     data = xarray.Dataset({"R": ("chain", np.linspace(0.1, 0.2, 11)), "seconds": 1.5})
     about = {"study": "models", "task": "dsmc", "scale": "small"}
     settings = json.dumps({"study": {"groups": 3, "dsmc": [1, 2]}, "experiments": {}})
-    write_task(tmp_path / "task.nc", data, about | {"settings_json": settings})
+    about |= {"settings_json": settings}
+    write_netcdf(tmp_path / "task.nc", content_of(data.assign_attrs(about)))
     text = shown(capsys, tmp_path / "task.nc")
     assert "dsmc of the study models, scale small" in text and "groups  3\n" in text
     assert "R         chain (11)  0.1 to 0.2, 0.15 on average\n" in text
-    assert text.rstrip().endswith("snakemake -j1 results/small/studies/models/dsmc.nc")
+    assert text.rstrip().endswith("snakemake -j1 results/small/accuracy/models/dsmc.nc")
     found = json.loads(shown(capsys, tmp_path / "task.nc", "--json"))
     assert found["sizes"] == {"chain": 11} and found["variables"] == {"seconds": 1.5}
 

@@ -13,8 +13,8 @@ TAKEN = {
     "run_times {} -o out.md": "reduced",
     "explore {} --points points -o out.html": "reduced",
     "figure fig1a {} -o out.png": "reduced",
-    "study_tables {} -o out.md": "studies",
-    "figure coverage {} -o out.png": "studies",
+    "accuracy_table {} -o out.md": "studies",
+    "accuracy_figure coverage {} -o out.png": "studies",
     "combine {} -o out.nc": "task",
     "film {} -o out.png": "film",
 }

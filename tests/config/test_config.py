@@ -6,9 +6,10 @@ import os
 import re
 import subprocess
 import sys
+from functools import partial
 from pathlib import Path
 
-from roughgas import config, simulate
+from roughgas import accuracy, config, simulate
 from roughgas.cli import main
 from roughgas.config import schema
 from roughgas.config.provenance import write_effective
@@ -141,9 +142,9 @@ def test_experiments_alone_are_a_configuration(tmp_path, paper, refusal):
     assert "scale = 'small': must be one of paper" in refusal(config.load, path, {"scale": "small"})
     message = "in the configuration = (nothing): must be given for this"
     assert refusal(config.showcase, whole, "paper") == f"showcase {message}"
-    assert refusal(config.study, whole, "coverage", "paper") == f"studies {message}"
-    path.write_text(json.dumps({"experiments": {"mine": own}, "studies": {}}))
-    assert "study = 'coverage'" in refusal(config.study, config.load(path), "coverage", "paper")
+    settings = config.as_text(config.study(whole, "models", "paper", "accuracy"))
+    run = partial(accuracy.run_task, "models", "theory", settings=settings, output=path)
+    assert refusal(run) == "experiment = cooling: must be one of mine"
 
 
 def test_the_effective_configuration_stands_in_place_of_the_whole(tmp_path, paper, monkeypatch):
@@ -152,7 +153,7 @@ def test_the_effective_configuration_stands_in_place_of_the_whole(tmp_path, pape
     found = config.load("config.yaml")
     for name in paper["experiments"]:
         assert config.experiment(found, name, "small") == config.experiment(paper, name, "small")
-    assert config.study(found, "coverage", "small") == config.study(paper, "coverage", "small")
+    assert config.accuracy(found, "small") == config.accuracy(paper, "small")
     tiny = {"r": 0.9, "beta": 0, "schedule": {"replicas": 2, "plateau": 10}, "progress": False}
     here = simulate("cooling", **tiny, config="config.yaml")
     there = simulate("cooling", **tiny, config=CONFIG, scale="small")

@@ -9,12 +9,12 @@ from synthetic import reduced
 from tests.entry import main
 from tests.files import point
 
+from roughgas.accuracy import read_studies
 from roughgas.base import InputError
 from roughgas.data.film import read_film
 from roughgas.data.netcdf import DamagedError, opened, read_netcdf
 from roughgas.data.point import read_point, write_point
 from roughgas.data.reduced import read_reduced
-from roughgas.studies.files import read_studies
 
 READERS = {"point": read_point, "reduced": read_reduced, "film": read_film, "studies": read_studies}
 

@@ -8,13 +8,13 @@ import pytest
 import xarray as xr
 from tests.files import frames, point
 
+from roughgas.accuracy import combine
 from roughgas.base import InputError
 from roughgas.data.film import read_film, write_film
 from roughgas.data.netcdf import read_netcdf
 from roughgas.data.point import read_point, write_point
 from roughgas.data.reduced import read_reduced
 from roughgas.results.reduce import reduce_points
-from roughgas.studies.files import combine
 
 
 def test_a_file_holds_no_date(tmp_path):

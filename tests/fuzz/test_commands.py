@@ -27,7 +27,7 @@ RIGHT = [
     "table reduced.nc -o out.csv",
     "document page.md -o out.html",
     "combine task.nc -o out.nc",
-    "study_tables studies.nc -o out.md",
+    "accuracy_table studies.nc -o out.md",
     "run_times reduced.nc -o out.md",
 ]
 """Command lines that are right."""

@@ -174,7 +174,7 @@ def test_the_hash_covers_the_sources_of_the_kernel_and_no_others(tmp_path, monke
     shutil.copytree(PACKAGE, copy, ignore=shutil.ignore_patterns("__pycache__"))
     monkeypatch.setattr(compiler, "PACKAGE", copy)
     hashes = {compiler.source_hash()}
-    (copy / "studies" / "dsmc" / "collisions.py").write_text("")
+    (copy / "tasks" / "dsmc.py").write_text("")
     assert hashes == {compiler.source_hash()}
     sources = [source for room in compiler.ROOMS for source in sorted((copy / room).glob("*.py"))]
     for source in sources:
@@ -190,7 +190,7 @@ def test_every_compiled_function_lies_in_a_hashed_room():
     marks = ["@jit\n", "@compiled\n", "@unrolled\n", "@entry", "njit"]
     outside = [one for one in PACKAGE.rglob("*.py") if one.parent.name not in compiler.ROOMS]
     compiled = [one for one in outside if any(mark in one.read_text() for mark in marks)]
-    assert {"dsmc", "soft_spheres"} <= {source.parent.name for source in compiled}
+    assert {"tasks", "soft_spheres"} <= {source.parent.name for source in compiled}
     for source in compiled:
         beside = [other.read_text() for other in source.parent.glob("*.py")]
         assert any("@entry(cache=True)" in text for text in beside), source

@@ -22,10 +22,11 @@ POINTS = REDUCED | {"seeds"}
 COMPILED = POINTS | {"compile_kernel"}
 FAMILIES = {"family", "catalogue", "document"}
 FILM = {"gas_of_film", "film", "document"}
-ACCURACY = {"accuracy", "accuracy_limits", "combined_tasks", "accuracy_table", "document"}
-COVERAGE = {"coverage", "combined_tasks", "accuracy_table", "document"}
+ACCURACY = {"accuracy", "accuracy_limits", "accuracy_data", "accuracy_table", "document"}
+COVERAGE = {"coverage", "accuracy_data", "accuracy_table", "document"}
 OF_THEIR_OWN = {"profiles", "finite_size", "runaway"}
-STUDIES = ACCURACY | COVERAGE | OF_THEIR_OWN | {"statistical", "models", "discretisation"}
+COMBINED = OF_THEIR_OWN | {"combined_tasks", "question_table", "document"}
+STUDIES = ACCURACY | COVERAGE | COMBINED | {"statistical", "models", "discretisation"}
 SIMULATED = COMPILED | FAMILIES | FILM | STUDIES | {"movie"}
 EDITED = {  # file of the package: what an edit of its code runs again
     "statistics/steady_state.py": SIMULATED - {"discretisation"},
@@ -41,8 +42,8 @@ EDITED = {  # file of the package: what an edit of its code runs again
     "show/figures/fig1a.py": {"fig1a"},
     "show/page/explore.js": {"page"},
     "show/movies/drawing.py": {"movie"},
-    "studies/tables.py": {"accuracy_table", "document", "coverage"} | OF_THEIR_OWN,
-    "studies/dsmc/gas.py": ACCURACY | {"models", "finite_size", "runaway", "claims"},
+    "studies/tables.py": {"question_table", "document"} | OF_THEIR_OWN,
+    "tasks/dsmc.py": (ACCURACY | COMBINED | {"models", "claims"}) - {"profiles"},
     "cli/run.py": POINTS | FAMILIES,
 }
 ALIKE = {  # files after whose edits much the same runs again as after others'
@@ -134,7 +135,8 @@ def rerun(made, edit):
     if "Nothing to be done" in output:
         return set()
     named = re.findall(r"Job \d+: (?:draw tiny/|study )(\w+)", output)
-    targets = {"figure", "study_figure", "accuracy_figure", "task", *FINISHED}
+    drawn = {"figure", "study_figure", "accuracy_figure", "question_figure"}
+    targets = {*drawn, "accuracy_task", "task", *FINISHED}
     return {*jobs_by_rule(output), *named} - targets
 
 

@@ -4,7 +4,7 @@ import pytest
 from project import BEYOND, JOBS, POINTS, Project
 
 import roughgas.config
-from roughgas import studies
+from roughgas import accuracy, studies
 from roughgas.show import catalogue
 
 SHOWN = len(BEYOND) + 1  # couette is drawn beside the paper's sheared gas
@@ -91,6 +91,9 @@ def test_one_job_makes_points_at_several_betas(tmp_path):
 def tasks_of(project, name):
     """The number of tasks of a study."""
     config = roughgas.config.load(project.folder / "config.yaml")
+    if name in accuracy.STUDIES:
+        settings = roughgas.config.accuracy(config, "tiny")[name]
+        return len(accuracy.study(name).tasks(settings))
     return len(studies.study(name).tasks(roughgas.config.study(config, name, "tiny")["study"]))
 
 
@@ -113,8 +116,8 @@ def test_what_lies_beyond_the_paper_is_a_target_of_its_own(project):
         "run_times": 1,
         "task": sum(tasks_of(project, name) for name in shown),
         "combined_tasks": len(questions),
-        "accuracy_figure": len(questions),
-        "accuracy_table": len(questions),
+        "question_figure": len(questions),
+        "question_table": len(questions),
         "document": 2 + len(questions),
         "extensions": 1,
     }
@@ -132,6 +135,13 @@ def test_everything_has_films_and_the_experiments_that_were_added(tmp_path):
     found = {rule: planned[rule] for rule in ("seeds", "point", "film", "movie")}
     assert found == {"seeds": JOBS + len(BEYOND), "point": 1, "film": 1, "movie": 8}
     assert "point" not in project.planned("figures")
+
+
+@pytest.mark.parametrize(("dataset", "figures"), [("accuracy", 2), ("coverage", 1)])
+def test_accuracy_is_a_job_for_each_task(project, dataset, figures):
+    tasks = sum(tasks_of(project, name) for name in accuracy.DATASETS[dataset])
+    drawn = {"accuracy_figure": figures, "accuracy_table": 1, "document": 1, dataset: 1}
+    assert project.planned(dataset) == {"accuracy_task": tasks, "accuracy_data": 1} | drawn
 
 
 def test_any_legal_point_can_be_asked_for(project):

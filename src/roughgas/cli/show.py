@@ -71,12 +71,10 @@ def summary(path: str | Path) -> str:
 
 def _read(path: str | Path) -> tuple[str, Any]:
     """Return the kind of a file, one of KINDS, and what is in it."""
-    from roughgas.studies.files import read_studies
-
     with netcdf.opened(path) as file:
         kind = netcdf.kind_of(file)
         netcdf.require(netcdf.attributes_of(file), QUOTED.get(kind or "", ()), path)
-    data = read_studies(path) if kind == netcdf.STUDIES else _printable(read_netcdf(path))
+    data = netcdf.read_groups(path) if kind == netcdf.STUDIES else _printable(read_netcdf(path))
     return (kind or "").removeprefix("a "), data
 
 
@@ -315,6 +313,8 @@ def scalars(data: Dataset) -> dict[str, Any]:
 
 def task_text(data: Dataset) -> str:
     """Return a table of the variables of a task."""
+    from roughgas import accuracy
+
     about = data.attrs
     chosen = json.loads(about["settings_json"])["study"]
     head = [["task", f"{about['task']} of the study {about['study']}, scale {about['scale']}"]]
@@ -323,7 +323,8 @@ def task_text(data: Dataset) -> str:
     for name, one in data.variables.items():
         over = ", ".join(f"{dim} ({data.sizes[dim]})" for dim in one.dims)
         table.append([str(name), over, _values(one.values)])
-    file = f"results/{about['scale']}/studies/{about['study']}/{about['task']}.nc"
+    folder = "accuracy" if about["study"] in accuracy.STUDIES else "studies"
+    file = f"results/{about['scale']}/{folder}/{about['study']}/{about['task']}.nc"
     return "\n\n".join([columns(head), columns(table), f"To make it again: snakemake -j1 {file}"])
 
 
@@ -351,10 +352,12 @@ def studies_record(studies: Mapping[str, Dataset]) -> dict[str, Any]:
 
 def studies_text(studies: Mapping[str, Dataset]) -> str:
     """Return the tables of all studies."""
+    from roughgas import accuracy
     from roughgas.studies.tables import TABLES
 
     scales = {data.attrs["scale"] for data in studies.values()}
-    parts = [TABLES[name](data).strip() for name, data in studies.items()]
+    tables = {**TABLES, **{name: accuracy.study(name).table for name in accuracy.STUDIES}}
+    parts = [tables[name](data).strip() for name, data in studies.items()]
     return "\n\n".join([f"scale {', '.join(sorted(scales))}", *parts])
 
 

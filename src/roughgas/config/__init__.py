@@ -38,8 +38,10 @@ from roughgas.config.labels import (  # noqa: F401
 
 SHIPPED = Path(__file__).parents[1] / "config.yaml"
 """The experiments that come with the package; in a clone of the repository, its config.yaml."""
-SHOWCASE, STUDIES = "showcase", "studies"
+SHOWCASE, STUDIES, ACCURACY = "showcase", "studies", "accuracy"
 """Parts that scales change under these names; a configuration may be without them."""
+OF_ACCURACY = SHIPPED.parent / ACCURACY
+"""The folder of what accuracy costs, with settings of its own, which a configuration may change."""
 FOLDERS, BROKEN = "folders", "broken"
 """Keys of a configuration that studies have joined (`config.study_folders.joined`)."""
 PAPER = "paper"
@@ -82,9 +84,24 @@ def load(path: str | Path, overrides: Mapping[str, Any] | None = None) -> dict[s
 
     config, source = read(path, overrides)
     check_file(config, source)
-    config = joined(config, path, source)
+    config = joined(with_accuracy(config), path, source)
     check_merged(config, source)
     return config
+
+
+def with_accuracy(config: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a configuration with the settings of accuracy, and what it changes in them."""
+    from roughgas.config.reading import read_yaml
+
+    if config.get("complete") and ACCURACY in config:
+        return dict(config)
+    own = read_yaml(OF_ACCURACY / "config.yaml")
+    changes = own.pop("scales")
+    scales = {
+        scale: part | {ACCURACY: merged(changes.get(scale, {}), part.get(ACCURACY, {}))}
+        for scale, part in config["scales"].items()
+    }
+    return {**config, ACCURACY: merged(own, config.get(ACCURACY, {})), "scales": scales}
 
 
 def load_experiment(path: str | Path, name: str, scale: str) -> dict[str, Any]:
@@ -149,10 +166,15 @@ def studies(config: Mapping[str, Any], scale: str) -> dict[str, Any]:
     return _at_scale(config, STUDIES, scale)
 
 
-def study(config: Mapping[str, Any], name: str, scale: str) -> dict[str, Any]:
+def accuracy(config: Mapping[str, Any], scale: str) -> dict[str, Any]:
+    """Return the settings of the studies of accuracy at `scale`, by name."""
+    return _at_scale(config, ACCURACY, scale)
+
+
+def study(config: Mapping[str, Any], name: str, scale: str, part: str = STUDIES) -> dict[str, Any]:
     """Return the settings of a study at `scale`, as `study`, and those of the
     experiments that it may run, as `experiments`, those of other studies by their own names."""
-    settings = studies(config, scale)
+    settings = _at_scale(config, part, scale)
     one_of("study", name, settings)
     known = config["experiments"]
     experiments = {
@@ -284,11 +306,13 @@ def from_text(
 
 def study_from_text(text: str, name: str, source: str) -> dict[str, Any]:
     """Return the settings of a study and of the experiments that it may run, from their JSON."""
-    from roughgas.config.schema import check_schema
+    from roughgas.config.schema import check_schema, keys
 
     settings = from_json(text, source)
     check_schema(settings, source, "study_task")
-    for part in (name, f"studied/properties/{name}"):
+    of_accuracy = name in keys(ACCURACY)
+    whole = "accuracy_in_full" if of_accuracy else "studied"
+    for part in (name, f"{whole}/properties/{name}"):
         check_schema(settings["study"], f"{source}: study", part)
     for one, experiment in settings["experiments"].items():
         check_schema(experiment, f"{source}: experiments.{one}", "experiment")

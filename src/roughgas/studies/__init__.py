@@ -12,9 +12,9 @@ from importlib import import_module
 from typing import Any, NamedTuple
 
 from roughgas.base import not_one_of
-from roughgas.studies.tasks import PANELS, STUDIES, TASKS
+from roughgas.studies.tasks import STUDIES, TASKS
 
-__all__ = ["PANELS", "STUDIES", "Study", "study"]
+__all__ = ["STUDIES", "Study", "study"]
 
 
 class Study(NamedTuple):

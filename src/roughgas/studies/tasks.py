@@ -4,16 +4,11 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-PANELS = ("statistical", "models", "discretisation")
-"""The studies that the work-precision figure shows, one a panel."""
 VARIABLES = Path(__file__).with_name("variables.yaml")
 """What the combined datasets hold."""
-STUDIES = (*PANELS, "coverage", "profiles", "finite_size", "runaway")
-SCENES = ("vibrated", "sheared", "cooling")
+STUDIES = ("profiles", "finite_size", "runaway")
 SIMULATED = ("dsmc", "events")
 """How the study of runaway spins simulates a gas."""
-WAYS = ("length", "seeds")
-PARTS = ("reference", *WAYS)
 
 
 def corner_name(corner: Mapping[str, Any]) -> str:
@@ -59,34 +54,7 @@ def _finite_size(settings):
     return [f"{name}-n{n}" for n in sorted(settings["particles"], reverse=True) for name in names]
 
 
-def _models(settings):
-    return [
-        *(f"reference-{k}" for k in range(settings["reference"]["jobs"])),
-        *(f"map-r{r}" for r in settings["map"]["r"]),
-        *(f"density-r{r}-beta{beta}" for r, beta in settings["density"]["points"]),
-        "event_driven",
-        "dsmc",
-        "theory",
-    ]
-
-
-def _discretisation(settings):
-    times = settings["contact_times"]
-    soft = {f"soft-{n}-{k}": n / t for n in settings["steps"] for k, t in enumerate(times)}
-    return [
-        *sorted(soft, key=lambda name: -soft[name]),  # by steps per collision
-        *(f"reference-{k}" for k in range(settings["reference_runs"])),
-        "event",
-        "single",
-        *(f"model-{k}" for k in range(len(settings["model_contact_times"]))),
-    ]
-
-
 TASKS = {
-    "statistical": lambda _: [f"{scene}-{part}" for part in PARTS for scene in SCENES],
-    "models": _models,
-    "discretisation": _discretisation,
-    "coverage": lambda settings: [corner_name(one) for one in settings["corners"]],
     "profiles": lambda settings: [
         f"{profile_name(one)}-{k}" for one in settings["points"] for k in range(settings["runs"])
     ],

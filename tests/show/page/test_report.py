@@ -13,7 +13,7 @@ from jinja2 import Environment
 from tests.entry import main
 from tests.houses import FOLDERS
 
-from roughgas import config, studies
+from roughgas import config
 from roughgas.data.reduced import read_reduced
 from roughgas.results.table import write_times
 from roughgas.show.catalogue import FIGURES, figures_of
@@ -58,7 +58,7 @@ def test_a_figure_says_what_it_shows_and_how_it_was_made(figure, loaded):
 
 @pytest.mark.parametrize("figure", figures_of("accuracy", "questions"))
 def test_a_study_says_how_it_was_made(figure, loaded):
-    settings = {name: config.study(loaded, name, "paper")["study"] for name in studies.STUDIES}
+    settings = config.studies(loaded, "paper") | config.accuracy(loaded, "paper")
     wildcards = SimpleNamespace(study_figure=figure, folder="")
     params = SimpleNamespace(studies=settings, caption=caption_of(figure))
     text = rendered("study", wildcards=wildcards, params=params)
@@ -183,5 +183,5 @@ def test_the_complete_configuration_says_the_same_and_can_be_run(scale, tmp_path
     for name in given["experiments"]:
         assert config.experiment(found, name, scale) == config.experiment(given, name, scale)
     assert config.showcase(found, scale) == config.showcase(given, scale)
-    for study in found["studies"]:
-        assert config.study(found, study, scale) == config.study(given, study, scale)
+    for part in (config.studies, config.accuracy):
+        assert part(found, scale) == part(given, scale)

@@ -6,8 +6,8 @@ from pathlib import Path
 
 from roughgas.base import InputError
 
-FIGURES = ("accuracy", "accuracy_limits", "coverage", "profiles", "finite_size", "runaway")
-DATASETS = {name: "accuracy" if name == "accuracy_limits" else name for name in FIGURES}
+FIGURES = ("profiles", "finite_size", "runaway")
+DATASETS = {name: name for name in FIGURES}
 """The combined dataset that each is drawn from."""
 
 

@@ -9,16 +9,21 @@ from matplotlib.figure import Figure
 from tests.pages import check_study
 
 from roughgas import theory
+from roughgas.accuracy import figures as plotting
+from roughgas.accuracy import models
+from roughgas.accuracy.models import DSMC, MAP, METHODS, error_bar
 from roughgas.base import InputError
 from roughgas.statistics.errors import Estimate
-from roughgas.studies import models, study
-from roughgas.studies.figures import accuracy as plotting
-from roughgas.studies.models import METHODS, error_bar
-from roughgas.studies.runs.models import DSMC, MAP
 from roughgas.tasks import over, stream
 from roughgas.tasks.free_cooling import FreeCooling, event_driven, few_particles, integrate
 
-tasks, run = study("models")
+tasks = models.tasks
+
+
+def run(task, settings, experiments, progress=lambda done, total: None):
+    return models.run(task, settings, experiments, progress)
+
+
 EXPERIMENT = {
     "particles": 40,
     "box": [50, 50],

@@ -4,10 +4,9 @@ import numpy as np
 import pytest
 from brute_force import begin, settings
 
+from roughgas.accuracy.soft_spheres import BUILDS, PAIRS, new_gas, springs
+from roughgas.accuracy.soft_spheres.stepping import COLUMNS, step
 from roughgas.statistics.errors import blocking_stderr
-from roughgas.studies.soft_spheres import new_gas, springs
-from roughgas.studies.soft_spheres.gas import BUILDS, PAIRS
-from roughgas.studies.soft_spheres.stepping import COLUMNS, step
 from roughgas.theory import collision_frequency
 
 PACKING = 0.1

@@ -8,13 +8,18 @@ from brute_force import settings
 from schedules import COOLING, STEADY
 from tests.pages import check_study
 
+from roughgas.accuracy import coverage
+from roughgas.accuracy.coverage import REGROUPINGS, calibrate, one_run, several, table
+from roughgas.accuracy.figures import coverage as draw_figure
 from roughgas.statistics.errors import Estimate
-from roughgas.studies import coverage, study
-from roughgas.studies.coverage import REGROUPINGS, calibrate, one_run, several
-from roughgas.studies.figures.coverage import draw_figure
-from roughgas.studies.tables import coverage as table
 
-tasks, run = study("coverage")
+tasks = coverage.tasks
+
+
+def run(task, settings, experiments, progress=lambda done, total: None):
+    return coverage.run(task, settings, experiments, progress)
+
+
 DOF = 8
 EXPERIMENTS = {
     "bed": settings("bed", 10, [10, "open"]) | {"schedule": STEADY},

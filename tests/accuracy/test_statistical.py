@@ -9,14 +9,18 @@ from matplotlib.figure import Figure
 from schedules import COOLING, STEADY
 from tests.pages import check_study
 
+from roughgas.accuracy import statistical
+from roughgas.accuracy.figures import draw_statistical as draw
+from roughgas.accuracy.statistical import SCENES, WAYS, Chain, noise, observed, time_from_blocks
 from roughgas.statistics.errors import Estimate
-from roughgas.studies import statistical, study
-from roughgas.studies.figures.accuracy import draw_statistical as draw
-from roughgas.studies.runs.statistical import Chain, time_from_blocks
-from roughgas.studies.statistical import noise, observed
-from roughgas.studies.tasks import SCENES, WAYS
 
-tasks, run = study("statistical")
+tasks = statistical.tasks
+
+
+def run(task, settings, experiments, progress=lambda done, total: None):
+    return statistical.run(task, settings, experiments, progress)
+
+
 SETTINGS = {
     "seed": 1,
     "r": "0.9",

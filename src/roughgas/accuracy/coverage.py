@@ -7,20 +7,67 @@ repetitions: that of one run, and that of several seeds pooled.
 """
 
 import math
-from collections.abc import Mapping, Sequence
+import zlib
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
+from roughgas.accuracy import VARIABLES, in_order
+from roughgas.scene import build
+from roughgas.simulation import schedule
+from roughgas.simulation.point import run_point
 from roughgas.statistics.errors import YES, Estimate, half_width, pooled
-from roughgas.studies.tasks import VARIABLES, corner_name
-from roughgas.tasks import dataset, stacked, variables
+from roughgas.tasks import along, cell, dataset, label, markdown, stacked, stream, timed, variables
 
 LEVELS = (0.68, 0.95)
 WAYS = ("one run", "pooled seeds")
 UNIT = "T; in a cooling gas a collision per particle"
 REGROUPINGS = 100
+MEASURED = ("R", "R_stderr", "R_dof", "equilibrated", "autocorrelation_time", "measured_from")
+
+
+def tasks(settings: Mapping[str, Any]) -> list[str]:
+    """Return the names of the tasks, one a corner, in the order of the settings."""
+    return [corner_name(one) for one in settings["corners"]]
+
+
+def corner_name(corner: Mapping[str, Any]) -> str:
+    """Return the name of the task for a corner."""
+    return f"{corner['experiment']}_r{corner['r']}_beta{corner['beta']}"
+
+
+def run(task: str, settings, experiments, progress: Callable[[int, int], None]) -> xr.Dataset:
+    """Return what each repetition at a corner states, and each run of its reference (`truth_...`).
+
+    A run of the reference goes by the experiment's own schedule, but is longer.
+    """
+    corner = next(one for one in settings["corners"] if corner_name(one) == task)
+    experiment, reference = experiments[corner["experiment"]], settings["reference"]
+    short, length = experiment["schedule"] | corner["schedule"], schedule.of(experiment).LENGTH
+    long = experiment["schedule"] | {length: reference["length"] * short[length]}
+    work = [short] * settings["repetitions"] + [long] * reference["seeds"]
+    drawn = stream(settings, zlib.crc32(task.encode())).generate_state(len(work), "u8") >> 1
+    _point(experiment, short, corner, 0)  # compiles
+    rows, seconds = [], 0.0
+    for one, seed in zip(work, drawn.tolist(), strict=True):
+        row, passed = timed(_point, experiment, one, corner, seed)
+        rows.append(row)
+        seconds += passed
+        progress(len(rows), len(work))
+    parts = np.split(np.array(rows, float), [settings["repetitions"]])
+    found = {"cpu_seconds": seconds, "window": short[length] * short.get("replicas", 1)}
+    for prefix, dim, part in zip(("", "truth_"), ("run", "long_run"), parts, strict=True):
+        found |= {prefix + name: (dim, x) for name, x in zip(MEASURED, part.T, strict=True)}
+    return xr.Dataset(found)
+
+
+def _point(experiment, own_schedule, corner, seed) -> list[float]:
+    settings = experiment | {"schedule": own_schedule}
+    scene = build(settings, float(corner["r"]), float(corner["beta"]))
+    measured = run_point(scene, settings, seed).variables
+    return [measured[name] for name in MEASURED]
 
 
 def combine(parts: Mapping[str, xr.Dataset], settings: Mapping[str, Any]) -> xr.Dataset:
@@ -124,3 +171,17 @@ def _corner(part: xr.Dataset, settings: Mapping[str, Any]) -> dict[str, Any]:
         "window": float(part.window),
         "cpu_seconds": float(part.cpu_seconds),
     }
+
+
+def table(data: xr.Dataset) -> str:
+    """Return how often intervals hold the truth, a corner a row, with standard errors."""
+    head = ["corner", "runs", "68 %, one run", "95 %, one run", "68 %, pooled", "95 %, pooled"]
+    head += ["bias / scatter", "stated / true error", "window / τ"]
+    rows = []
+    for one in along(in_order(data), "corner"):
+        shares = [share for way in along(one, "way") for share in along(way, "level")]
+        cells = [cell(share, "coverage", "±", 100) for share in shares]
+        cells += [cell(one, name, "±") for name in ("bias", "stated_over_true")]
+        window = f"{float(one.window / one.autocorrelation_time):.0f}"
+        rows.append([label(one), f"{int(one.repetitions)}", *cells, window])
+    return f"## Coverage of the stated intervals\n\n{markdown(head, rows)}"

@@ -1,7 +1,9 @@
-"""The work-precision figures: error of R against CPU seconds, of noise and of models; and in
-accuracy_limits.py of springs and time steps, with the map of what the Maxwellian theory misses."""
+"""The figures of accuracy: errors of R against CPU seconds, and how often intervals hold the truth.
 
-from collections.abc import Sequence
+A function a figure, by its name, of the datasets of the studies that it shows.
+"""
+
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -10,11 +12,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, MultipleLocator
 
+from roughgas.accuracy import in_order
 from roughgas.show.style import FAINT, GREY, LOOKS, THEORY, Look
 from roughgas.statistics.errors import Estimate
 from roughgas.statistics.fits import power_law
-from roughgas.studies.figures.panels import Panel, paired_panels
+from roughgas.tasks import along, label
 
+Panel = tuple[Callable[[Axes, xr.Dataset], None], str]
 SIZE = (7.0, 4.2)  # inches, of two panels
 WAYS = {"length": "-", "seeds": "--"}
 METHODS = {
@@ -30,17 +34,52 @@ BOTH = np.sqrt(2.0)  # statistical error and deviation being equal
 RESOLVED = 2.0  # standard errors: deviations below are not told from zero
 BARS: dict[str, Any] = {"elinewidth": 0.8, "capsize": 1.5}
 THIN: dict[str, Any] = {"ls": "none", "elinewidth": 0.9}
+LEGAL = (0.92, 0.98)
+"""What share of the 95 % intervals has to hold the truth."""
+
+COVERAGE_WIDTH = 7.4  # inches
+COLOURS = {"vibrated": LOOKS[0], "sheared": LOOKS[1], "cooling": LOOKS[2]}
+CORNER_BARS: dict[str, Any] = {"ls": "none", "capsize": 1.5, "elinewidth": 0.8, "mew": 0.9}
+SHIFT = 0.17  # of the two ways off their corner's row
 
 
-def draw_figure(statistical: xr.Dataset, models: xr.Dataset, discretisation: xr.Dataset) -> Figure:
-    """Return the figure of noise and of models, from the datasets of the three studies."""
-    return draw_panels(PANELS[:2], statistical, models)
+def accuracy(statistical: xr.Dataset, models: xr.Dataset) -> Figure:
+    """Return the figure of noise and of models."""
+    return _in_panels(PANELS[:2], statistical, models)
 
 
-def draw_panels(panels: Sequence[Panel], *data: xr.Dataset) -> Figure:
-    """Return a figure of these panels, r and beta in their titles."""
-    titled = [(panel, _of(one, title)) for (panel, title), one in zip(panels, data, strict=True)]
-    return paired_panels(titled, SIZE, *data)
+def accuracy_limits(discretisation: xr.Dataset, models: xr.Dataset) -> Figure:
+    """Return the figure of springs and time steps, and of what Maxwellian theory misses."""
+    return _in_panels(PANELS[2:], discretisation, models)
+
+
+def coverage(data: xr.Dataset) -> Figure:
+    """Return coverage at each corner, of intervals at 68 and 95 %."""
+    corners = along(in_order(data), "corner")
+    rows = len(corners)
+    figure = Figure(figsize=(COVERAGE_WIDTH, 1.2 + 0.3 * rows), layout="constrained")
+    left, right = figure.subplots(1, 2, sharey=True)
+    for axes, level in ((left, 0.68), (right, 0.95)):
+        _corners(axes, corners, level)
+        axes.tick_params(axis="y", which="both", left=False, right=False)
+    right.axvspan(*LEGAL, color=FAINT, alpha=0.15, lw=0)
+    left.set_yticks(range(rows), map(label, corners))
+    left.set_ylim(rows - 0.5, -0.5)
+    for way, fill in zip(data.way.values, (GREY, "white"), strict=True):
+        left.plot([], [], "o", color=GREY, mfc=fill, label=str(way))
+    figure.legend(loc="outside upper center", ncols=2)
+    figure.supxlabel("share of intervals that hold the truth", fontsize="medium")
+    return figure
+
+
+def _in_panels(panels: Sequence[Panel], *data: xr.Dataset) -> Figure:
+    """Return a figure of two panels, each of its dataset, with r and beta in their titles."""
+    figure = Figure(figsize=SIZE, layout="constrained")
+    every = figure.subplots(1, len(panels))
+    for axes, (panel, title), one in zip(every, panels, data, strict=True):
+        panel(axes, one)
+        axes.set_title(_of(one, title), loc="left", fontsize=8.5)
+    return figure
 
 
 def _of(data, title):
@@ -86,11 +125,11 @@ def draw_models(axes: Axes, data: xr.Dataset) -> None:
     There is no line through symbols, since no run was made between two lengths.
     """
     _logarithmic(axes, "CPU time of one run / s", r"relative error of $R$")
-    for method, (label, look) in METHODS.items():
+    for method, (text, look) in METHODS.items():
         x, (y, bar) = data[f"{method}_seconds"].values, _with_error(data, f"{method}_error")
         size: dict[str, Any] = {"markersize": 10} if look.marker == "*" else {}
         colours: dict[str, Any] = {"color": look.colour, "marker": look.marker}
-        axes.errorbar(x, y, bar, label=label, zorder=3, **colours, **size, **THIN)
+        axes.errorbar(x, y, bar, label=text, zorder=3, **colours, **size, **THIN)
     seconds = data.event_driven_seconds.values
     fit = data.event_driven_prefactor.values * seconds**data.event_driven_slope.values
     axes.plot(seconds, fit, color=LOOKS[0].colour, linewidth=0.8, zorder=1)
@@ -140,7 +179,7 @@ def draw_discretisation(axes: Axes, data: xr.Dataset) -> None:
     axes.legend(loc="lower left")
 
 
-PANELS = (
+PANELS: tuple[Panel, ...] = (
     (draw_statistical, "(a) noise, {}"),
     (draw_models, "(b) models of a cooling gas, {}"),
     (draw_discretisation, "(c) springs and time steps, {}"),
@@ -226,3 +265,15 @@ def _name_contact_times(axes, data):
         axes.annotate(f"{share:g}", place, (5, 4), textcoords="offset points", **small)
     about = {"transform": axes.transAxes, "ha": "right", "va": "top"}
     axes.text(0.98, 0.97, r"numbers: $t_c\nu$ of soft spheres", **about, **small)
+
+
+def _corners(axes: Axes, corners: Sequence[xr.Dataset], level: float) -> None:
+    """Draw coverage of the intervals at `level`, a row a corner: of one run, of seeds pooled."""
+    axes.axvline(level, color=GREY, lw=0.8, ls="--", zorder=0)
+    for row, corner in enumerate(one.sel(level=level) for one in corners):
+        look = COLOURS.get(str(corner.experiment.values), LOOKS[3])
+        about: dict[str, Any] = CORNER_BARS | {"color": look.colour, "marker": look.marker}
+        for way, (shift, fill) in enumerate(((-SHIFT, look.colour), (SHIFT, "white"))):
+            share, stderr = corner.coverage[way], corner.coverage_stderr[way]
+            axes.errorbar(share, row + shift, xerr=stderr, mfc=fill, **about)
+    axes.set_xlabel(f"{100 * level:.0f} % intervals")

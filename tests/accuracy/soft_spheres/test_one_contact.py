@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
+from accuracy.soft_spheres.pair import INERTIA, angular_momentum, collide, energy, momentum, shot
+from roughgas.accuracy.soft_spheres import new_gas, springs
 from roughgas.base import InputError
-from roughgas.studies.soft_spheres import new_gas, springs
-from studies.soft_spheres.pair import INERTIA, angular_momentum, collide, energy, momentum, shot
 
 PHASES = np.linspace(0.03, 1.03, 12, endpoint=False)  # in steps: where in a step a contact begins
 BETAS = [-1.0, -0.5, 0.0, 0.5, 1.0]
@@ -87,7 +87,7 @@ def test_nothing_happens_to_spheres_that_pass():
     pair = shot(1.999)._replace(velocity=np.array([[-1.0, 0.0], [0.0, 0.0]]))
     forces = springs(0.9, 0.0, 0.5, 0.01)
     gas, spheres = new_gas(*pair, (8.0, 8.0), forces)
-    from roughgas.studies.soft_spheres.stepping import step
+    from roughgas.accuracy.soft_spheres.stepping import step
 
     step(gas, spheres, 0.001, 500, 0.0, np.empty((1, 3)))
     assert np.array_equal(gas.velocity, pair.velocity) and gas.counts[1] == 0

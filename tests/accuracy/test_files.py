@@ -4,23 +4,22 @@ import json
 
 import pytest
 import xarray as xr
+from tests.accuracy.test_coverage import EXPERIMENTS, SETTINGS
 from tests.entry import main
-from tests.studies.test_coverage import EXPERIMENTS, SETTINGS
 
-from roughgas import config, studies
+from roughgas import config
+from roughgas.accuracy import combine, coverage, read_studies, write_tables
 from roughgas.base import InputError
-from roughgas.studies.files import combine, read_studies
-from roughgas.studies.tables import write_tables
 
 
 @pytest.fixture(scope="module")
 def tasks(tmp_path_factory):
     """The files of a study's tasks, made by the command."""
     folder, text = tmp_path_factory.mktemp("tasks"), settings()
-    names = studies.study("coverage").tasks(SETTINGS)
+    names = coverage.tasks(SETTINGS)
     for name in names:
-        command = ["study", "coverage", name, "--settings", text, "-o", str(folder / f"{name}.nc")]
-        assert main(command) == 0
+        command = ["accuracy_task", "coverage", name, "--settings", text]
+        assert main([*command, "-o", str(folder / f"{name}.nc")]) == 0
     return [folder / f"{name}.nc" for name in names]
 
 
@@ -30,7 +29,7 @@ def settings(**others):
 
 def test_tasks_become_one_file_with_a_table_and_a_figure(tasks, tmp_path):
     combined, table, figure = (tmp_path / name for name in ("all.nc", "all.md", "all.png"))
-    assert main(["combine", *map(str, tasks), "-o", str(combined)]) == 0
+    assert main(["accuracy_data", *map(str, tasks), "-o", str(combined)]) == 0
     data = read_studies(combined)["coverage"]
     assert data.sizes["corner"] == len(tasks) and data.attrs["scale"] == "paper"
     for name in data.data_vars:
@@ -38,7 +37,7 @@ def test_tasks_become_one_file_with_a_table_and_a_figure(tasks, tmp_path):
         assert "long_name" in data[name].attrs and words != ("units" in data[name].attrs), name
     write_tables(combined, output=table)
     assert table.read_text().startswith("## Coverage of the stated intervals\n")
-    assert main(["figure", "coverage", str(combined), "-o", str(figure)]) == 0
+    assert main(["accuracy_figure", "coverage", str(combined), "-o", str(figure)]) == 0
     assert figure.stat().st_size > 10_000
 
 
@@ -63,6 +62,7 @@ def test_tasks_of_different_settings_are_refused(tasks, tmp_path):
     ],
 )
 def test_an_unknown_study_or_task_is_refused(arguments, message, tmp_path, capsys):
-    assert main(["study", *arguments, "--settings", settings(), "-o", str(tmp_path / "x.nc")]) == 2
+    command = ["accuracy_task", *arguments, "--settings", settings()]
+    assert main([*command, "-o", str(tmp_path / "x.nc")]) == 2
     assert message in capsys.readouterr().err
     assert json.dumps(list(tmp_path.iterdir())) == "[]"

@@ -9,10 +9,10 @@ import pytest
 from matplotlib.figure import Figure
 from tests.pages import check_study
 
+from roughgas.accuracy import discretisation
+from roughgas.accuracy.discretisation import slowdown, statistical_error
+from roughgas.accuracy.figures import draw_discretisation as draw
 from roughgas.statistics.fits import PowerLaw
-from roughgas.studies import discretisation, study
-from roughgas.studies.discretisation import slowdown, statistical_error
-from roughgas.studies.figures.accuracy import draw_discretisation as draw
 
 SETTINGS = {
     "seed": 3,
@@ -34,16 +34,14 @@ T = np.array([0.05, 0.02, 0.01, 0.005])
 
 def run(task, settings=SETTINGS):
     calls = []
-    found = study("discretisation").run(
-        task, settings, {"cooling": COOLING}, lambda *a: calls.append(a)
-    )
+    found = discretisation.run(task, settings, {"cooling": COOLING}, lambda *a: calls.append(a))
     assert calls and all(0 <= done < total for done, total in calls)
     return found
 
 
 @pytest.fixture(scope="module")
 def parts():
-    return {task: run(task) for task in study("discretisation").tasks(SETTINGS)}
+    return {task: run(task) for task in discretisation.tasks(SETTINGS)}
 
 
 @pytest.fixture(scope="module")
@@ -52,16 +50,16 @@ def group(parts):
 
 
 def test_names_of_the_jobs():
-    names = study("discretisation").tasks(SETTINGS)
+    names = discretisation.tasks(SETTINGS)
     assert len(set(names)) == len(names) == 4 + 2 + 1 + 1 + 2
     assert all(re.fullmatch("[a-z0-9_.-]+", name) for name in names)
     assert names[0] == "soft-10-1"  # the longest
 
 
-def test_naming_them_needs_neither_compiler_nor_xarray():
+def test_naming_them_needs_no_compiler():
     program = (
-        "import sys; from roughgas import studies; studies.study('models'); "
-        "sys.exit(any(name in sys.modules for name in ('numba', 'xarray', 'numpy')))"
+        "import sys; from roughgas import accuracy; accuracy.study('discretisation'); "
+        "sys.exit(any(name in sys.modules for name in ('numba', 'matplotlib')))"
     )
     assert subprocess.run([sys.executable, "-c", program]).returncode == 0
 

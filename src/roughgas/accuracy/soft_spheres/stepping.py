@@ -1,0 +1,320 @@
+"""Soft spheres stepped through time, and sampled; all that is compiled.
+
+A step is a flight of half its length, the action of the springs, and another half flight. A pair
+overlaps during a part of the step, tau, found on the straight line on which it flies; the springs
+act for just so long, at the middle of that part. So a contact begins and ends within a step to
+second order. If the springs were on or off for whole steps, a contact's change of velocity would be
+off by its share of a step, since neither dashpot nor tangential spring starts or ends at zero
+force. Within tau the damping and the springs are integrated exactly, whatever tau is.
+
+Pairs that may touch soon are in a list (Verlet, Phys. Rev. 159, 98 (1967)) made from cells. It
+holds until a particle may have travelled half the skin.
+"""
+
+import math
+
+from roughgas.accuracy.soft_spheres import (
+    BUILDS,
+    CONTACTS,
+    DIAMETER,
+    FASTEST,
+    NOBODY,
+    PAIRS,
+    TRAVELLED,
+)
+from roughgas.kernel.jit import compiled, entry, jit
+from roughgas.kernel.particles import periods, spin_of, turn_spin
+from roughgas.kernel.vectors import (
+    add_scaled,
+    cross_to_spin,
+    dot,
+    read,
+    scale,
+    spin_cross,
+    subtract,
+    write,
+)
+
+COLUMNS = ("vv", "ww", "contacts")
+"""What `step` fills in: sums of v^2 and (a w)^2 over the particles, and contacts begun so far."""
+
+
+@entry(cache=True)
+def step(gas, spheres, dt, steps, temperature, rows):
+    """Make `steps` steps of dt (T) for each of the rows, and fill these (see COLUMNS).
+
+    After each row momentum is removed and all velocities are scaled so that m <v^2>/D is
+    `temperature` (m a^2/T^2); 0 leaves the gas as it is. Returns the number of rows filled: fewer
+    if the particles were so crowded that the list of neighbours was full.
+    """
+    for k in range(len(rows)):
+        if not _advance(gas, spheres, dt, steps):
+            return k
+        rows[k, 0], rows[k, 1] = squares(gas.velocity), squares(gas.spin)
+        rows[k, 2] = gas.counts[CONTACTS]
+        if temperature > 0.0:
+            _rescale(gas, temperature)
+    return len(rows)
+
+
+@jit
+def _advance(gas, spheres, dt, steps):
+    """Flights and the springs' action in turn; half a flight first and last. Second order."""
+    half = 0.5 * dt
+    for k in range(steps):
+        _fly(gas, dt if k > 0 else half)
+        if not keep_list(gas, spheres, half):
+            return False
+        _act_all(gas, spheres, half)
+    _fly(gas, half)
+    return True
+
+
+@jit
+def _fly(gas, time):
+    position, velocity = gas.position.reshape(-1), gas.velocity.reshape(-1)
+    for k in range(len(position)):
+        position[k] += velocity[k] * time
+    gas.reach[TRAVELLED] += gas.reach[FASTEST] * time
+
+
+@jit
+def _act_all(gas, spheres, half):
+    """The springs of all pairs that may overlap within +-half."""
+    box = spheres.box
+    near = (DIAMETER + 2.0 * gas.reach[FASTEST] * half) ** 2
+    for p in range(gas.counts[PAIRS]):
+        x = subtract(
+            read(gas.position, gas.pair[p, 0], 0, box), read(gas.position, gas.pair[p, 1], 0, box)
+        )
+        x = subtract(x, read(gas.image, p, 0, box))
+        if dot(x, x) < near or gas.touching[p]:
+            act(gas, spheres, p, x, half)
+
+
+@compiled
+def _rescale(gas, temperature):
+    """Contacts under way are scaled with the rest, but for their overlap."""
+    for component in gas.velocity.T:
+        component -= component.mean()
+    factor = math.sqrt(gas.velocity.size * temperature / squares(gas.velocity))
+    for scaled in (gas.velocity, gas.spin, gas.stretch[: gas.counts[PAIRS]]):
+        scaled *= factor
+    survey(gas)
+
+
+@jit
+def keep_list(gas, spheres, half):
+    """Make the list anew if a pair that overlaps within +-half of now could be missing.
+
+    Returns False if there is no room for it.
+    """
+    if gas.reach[TRAVELLED] + gas.reach[FASTEST] * half <= 0.5 * spheres.skin:
+        return True
+    return _list_pairs(gas, spheres)
+
+
+@jit
+def survey(gas):
+    """Note how fast the fastest particle is."""
+    fastest = 0.0
+    for velocity in gas.velocity:
+        fastest = max(fastest, squares(velocity))
+    gas.reach[FASTEST] = math.sqrt(fastest)
+
+
+@jit
+def squares(array):
+    """Return the sum of the squares of all elements, in their order."""
+    total = 0.0
+    for x in array.flat:
+        total += x**2
+    return total
+
+
+@compiled
+def _list_pairs(gas, spheres):
+    kept = _set_aside(gas, spheres)
+    _sort_into_cells(gas, spheres)
+    survey(gas)
+    gas.reach[TRAVELLED] = 0.0
+    gas.counts[BUILDS] += 1
+    gas.counts[PAIRS] = 0
+    for i in range(len(gas.following)):
+        if not _list_of(gas, spheres, i):
+            return False
+    for p in range(gas.counts[PAIRS]):
+        for k in range(kept):
+            if gas.pair[p, 0] == gas.old_pair[k, 0] and gas.pair[p, 1] == gas.old_pair[k, 1]:
+                gas.touching[p] = True
+                write(gas.stretch, p, 0, read(gas.old_stretch, k, 0, spheres.box))
+    return True
+
+
+@jit
+def _set_aside(gas, spheres):
+    """Copy the contacts under way, which are few, and return their number."""
+    kept = 0
+    for p in range(gas.counts[PAIRS]):
+        if gas.touching[p]:
+            write(gas.old_pair, kept, 0, (gas.pair[p, 0], gas.pair[p, 1]))
+            write(gas.old_stretch, kept, 0, read(gas.stretch, p, 0, spheres.box))
+            kept += 1
+    return kept
+
+
+@jit
+def _sort_into_cells(gas, spheres):
+    """Put particles back into the box, and onto the list of their cell."""
+    gas.first[:] = NOBODY
+    for i in range(len(gas.following)):
+        cell = 0
+        for k in range(len(spheres.box)):
+            length, count = spheres.box[k], spheres.cells[k]
+            inside = gas.position[i, k] - length * math.floor(gas.position[i, k] / length)
+            gas.position[i, k] = inside
+            cell = cell * count + min(int(inside / length * count), count - 1)
+        gas.home[i] = cell
+        gas.following[i] = gas.first[cell]
+        gas.first[cell] = i
+
+
+@jit
+def _list_of(gas, spheres, i):
+    """Add the neighbours of particle i with greater numbers; return False if the list is full."""
+    near = (DIAMETER + spheres.skin) ** 2
+    home = gas.home[i]
+    for place in range(gas.beside.shape[1]):
+        j = gas.first[gas.beside[home, place]]
+        while j != NOBODY:
+            p = gas.counts[PAIRS]
+            if j > i and _separation(gas, spheres, i, j, p) <= near:
+                if p + 1 >= len(gas.touching):
+                    return False
+                write(gas.pair, p, 0, (i, j))
+                part(gas, spheres.box, p)
+                gas.counts[PAIRS] += 1
+            j = gas.following[j]
+    return True
+
+
+@jit
+def _separation(gas, spheres, i, j, p):
+    """Return the square of the distance of the nearest images; note in gas.image[p] which."""
+    square = 0.0
+    for k in range(len(spheres.box)):
+        x = gas.position[i, k] - gas.position[j, k]
+        gas.image[p, k] = periods(x, spheres.box[k]) * spheres.box[k]
+        square += (x - gas.image[p, k]) ** 2
+    return square
+
+
+@jit
+def act(gas, spheres, p, x, half):
+    """Let the springs of pair p act, at separation x in the middle of a step of twice `half`."""
+    box = spheres.box
+    i, j = gas.pair[p, 0], gas.pair[p, 1]
+    v_i, v_j = read(gas.velocity, i, 0, box), read(gas.velocity, j, 0, box)
+    u = subtract(v_i, v_j)
+    begin, end = overlapping(x, u, half)
+    if end <= begin:
+        if gas.touching[p]:
+            part(gas, box, p)
+        return
+    if not gas.touching[p]:
+        gas.touching[p] = True
+        gas.counts[CONTACTS] += 1
+    middle = 0.5 * (begin + end)
+    w_i, w_j = spin_of(gas.spin, box, i), spin_of(gas.spin, box, j)
+    spins = add_scaled(w_i, w_j, 1.0)
+    x = add_scaled(x, u, middle)
+    stretch = read(gas.stretch, p, 0, box)
+    push, turn, stretch = respond(spheres.springs, x, u, spins, stretch, end - begin)
+    write(gas.stretch, p, 0, stretch)
+    # as if the velocities had changed at `middle`: so angular momentum is conserved
+    _change(gas, box, i, v_i, push, middle)
+    _change(gas, box, j, v_j, scale(push, -1.0), middle)
+    turn_spin(gas.spin, i, w_i, turn)
+    turn_spin(gas.spin, j, w_j, turn)
+
+
+@jit
+def overlapping(x, u, half):
+    """Return when, within +-half, a pair at separation x and relative velocity u overlaps."""
+    b, uu = dot(x, u), dot(u, u)
+    square = b * b - uu * (dot(x, x) - DIAMETER * DIAMETER)
+    if square <= 0.0:
+        return 0.0, 0.0
+    root = math.sqrt(square)
+    return max(-half, (-b - root) / uu), min(half, (-b + root) / uu)
+
+
+@jit
+def respond(springs, x, u, spins, stretch, time):
+    """Return the change of the first velocity and of both spins a w, and the stretch at the end.
+
+    x and u are separation and relative velocity in the middle of `time`, during which the springs
+    act. Both arms reach to the middle between the centres, and the forces on the two are opposite:
+    momentum and angular momentum are conserved.
+    """
+    distance = math.sqrt(dot(x, x))
+    n = scale(x, 1.0 / distance)
+    arm = 0.5 * distance
+    speed = dot(u, n)
+    slip = subtract(add_scaled(u, n, -speed), scale(spin_cross(spins, n), arm))
+    part = 0.5 * _parting(springs, DIAMETER - distance, speed, time)
+    slowed, stretch = _turned(springs, slip, _along(stretch, n), time)
+    q = springs.inertia
+    sheared = scale(subtract(slowed, slip), 0.5 * q / (1.0 + q))
+    turn = scale(cross_to_spin(n, sheared), -arm / q)
+    return add_scaled(sheared, n, part), turn, stretch
+
+
+@jit
+def _parting(springs, overlap, speed, time):
+    """Return the change of the normal velocity, halfway through a flight of `time`.
+
+    The linear map flight-change-flight is given the eigenvalues exp(-gamma t +- i w t) of the
+    damped oscillator itself, so that neither its frequency nor its damping depends on the step.
+    """
+    damped = springs.damping * time
+    sine = math.sin(0.5 * springs.frequency * time)
+    rigid = (math.expm1(-damped) ** 2 + 4.0 * math.exp(-damped) * sine * sine) / time
+    return rigid * overlap + math.expm1(-2.0 * damped) * speed
+
+
+@jit
+def _turned(springs, slip, stretch, time):
+    """Return tangential velocity and stretch after `time` on an undamped spring, exactly."""
+    angle = springs.turning * time
+    cosine, sine = math.cos(angle), math.sin(angle)
+    per_turning = time if angle == 0.0 else sine / springs.turning
+    return (
+        add_scaled(scale(slip, cosine), stretch, -springs.turning * sine),
+        add_scaled(scale(stretch, cosine), slip, per_turning),
+    )
+
+
+@jit
+def _along(stretch, n):
+    """Return the stretch turned into the plane normal to n, as long as it was."""
+    flat = add_scaled(stretch, n, -dot(stretch, n))
+    square = dot(flat, flat)
+    if square == 0.0:
+        return flat
+    return scale(flat, math.sqrt(dot(stretch, stretch) / square))
+
+
+@jit
+def _change(gas, box, i, velocity, push, when):
+    velocity = add_scaled(velocity, push, 1.0)
+    write(gas.velocity, i, 0, velocity)
+    write(gas.position, i, 0, add_scaled(read(gas.position, i, 0, box), push, -when))
+    gas.reach[FASTEST] = max(gas.reach[FASTEST], math.sqrt(dot(velocity, velocity)))
+
+
+@jit
+def part(gas, box, p):
+    """Note that pair p does not touch, and that its spring is relaxed."""
+    gas.touching[p] = False
+    write(gas.stretch, p, 0, scale(box, 0.0))
