@@ -4,12 +4,11 @@ The names of this module are there as `roughgas.simulate`, `roughgas.trajectory`
 `roughgas.experiments`.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal, TypedDict
 
 from roughgas.base import InputError
-from roughgas.config.arguments import Effects, Observe, Schedule, Side, Species, Values
 
 if TYPE_CHECKING:
     import xarray
@@ -18,6 +17,37 @@ if TYPE_CHECKING:
 
 UNNAMED = "scene"
 """What a dataset calls the experiment where it has no name."""
+Values = float | Sequence[float]
+"""One value of r, of beta or of the seed, or several."""
+Side = float | Literal["open"]
+"""Length of a box along one axis in a; the last axis may be open above."""
+Effects = Mapping[str, Mapping[str, float | str] | None]
+"""Parameters of effects by the effects' names; None takes away one that the experiment has."""
+
+Species = Sequence[Mapping[str, Any]]
+"""Species, or pairs of them, each a mapping of keys to values."""
+Observe = Sequence[str] | Mapping[str, Mapping[str, float] | Callable[[Any], Any] | None]
+"""Observables by name, each with settings, with None for the usual ones, or a function of frames
+(`roughgas.observables.Frame`)."""
+
+
+class Schedule(TypedDict, total=False):
+    """How long to simulate and what to measure, as `schedule` in config.yaml.
+
+    A driven gas has the kind `steady`, and its lengths in T; one that nothing drives has the kind
+    `cooling`, and its lengths in collisions per particle.
+    """
+
+    kind: Literal["steady", "cooling"]  #: driven, or not
+    sample_every: float  #: between samples
+    equilibrate: float  #: (steady) before the measurement
+    measure: float  #: (steady) length of the measurement
+    period: float  #: (steady) of the drive; averages are over whole periods
+    replicas: int  #: (cooling) independent runs
+    thermalise: float  #: (cooling) as smooth elastic particles, at the start
+    relaxation_times: float  #: (cooling) e-folds of theory until R is on its plateau
+    plateau: float  #: (cooling) length of the plateau
+    target_stderr: float  #: standard error of R that the run is prolonged to
 
 
 def simulate(
@@ -149,22 +179,16 @@ def simulate(
     >>> bool(second.measured_from == first.last_time)
     True
     """
-    changes: dict[str, Any] = {
-        "particles": particles,
-        "box": box,
-        "packing": packing,
-        "effects": effects,
-        "schedule": schedule,
-    }
-    changes |= {"species": species, "species_pairs": species_pairs}
-    changes |= {"spin_temperature": spin_temperature, "keep_state": keep_state}
+    changes: dict[str, Any] = dict(particles=particles, box=box, packing=packing, effects=effects)
+    changes |= dict(species=species, species_pairs=species_pairs, schedule=schedule)
+    changes |= dict(spin_temperature=spin_temperature, keep_state=keep_state)
 
     from roughgas.data.point import as_dataset
     from roughgas.results.reduce import reduced_in_memory
     from roughgas.simulation.point import observables_of, points, settings_of
     from roughgas.simulation.restart import initial_of
 
-    at, several = _places(r, beta, seed), any(map(_is_list, (r, beta, seed)))
+    at, several = _places(r, beta, seed)
     if several and (keep_state or initial is not None):
         key = "keep_state" if keep_state else "initial"
         raise InputError(key, "given", "come with one r, one beta and one seed")
@@ -238,15 +262,9 @@ def trajectory(
     >>> gas.position.shape
     (2, 40, 2)
     """
-    changes: dict[str, Any] = {
-        "particles": particles,
-        "box": box,
-        "packing": packing,
-        "effects": effects,
-        "schedule": schedule,
-    }
-    changes |= {"species": species, "species_pairs": species_pairs}
-    ((legal_r, legal_beta, number, labels),) = _places(r, beta, seed)
+    changes: dict[str, Any] = dict(particles=particles, box=box, packing=packing, effects=effects)
+    changes |= dict(species=species, species_pairs=species_pairs, schedule=schedule)
+    ((legal_r, legal_beta, number, labels),), _ = _places(r, beta, seed)
 
     from roughgas.config.provenance import provenance
     from roughgas.data.trajectory import as_trajectory
@@ -292,22 +310,17 @@ def _scale_of(experiment: str | None, path: str | Path | None) -> str:
     return PAPER if experiment is None else usual_scale(path or SHIPPED)
 
 
-def _places(r: Any, beta: Any, seed: Any) -> "list[Place]":
-    """Return the places of r, of beta and of the seed, each one or several."""
+def _places(r: Any, beta: Any, seed: Any) -> "tuple[list[Place], bool]":
+    """Return the places of r, of beta and of the seed, and whether any of these is a list."""
     from roughgas.config import places
 
-    return places(_listed("r", r), _listed("beta", beta), _listed("seed", seed))
-
-
-def _listed(name: str, given: Any) -> list[Any]:
-    if not _is_list(given):
-        return [given]
-    values = list(getattr(given, "tolist", lambda: given)())
-    if not values:
-        raise InputError(name, "[]", "be one value or several")
-    return values
-
-
-def _is_list(given: Any) -> bool:
-    """Return whether this is a list, or an array, of values."""
-    return not isinstance(given, str) and hasattr(given, "__len__")
+    several, values = False, []
+    for name, given in (("r", r), ("beta", beta), ("seed", seed)):
+        if isinstance(given, str) or not hasattr(given, "__len__"):
+            values.append([given])
+            continue
+        several = True
+        values.append(list(getattr(given, "tolist", lambda g=given: g)()))
+        if not values[-1]:
+            raise InputError(name, "[]", "be one value or several")
+    return places(*values), several

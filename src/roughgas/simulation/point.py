@@ -18,7 +18,6 @@ import numpy as np
 from roughgas import config
 from roughgas.base import InputError, __version__
 from roughgas.config import Place
-from roughgas.config.arguments import Observe
 from roughgas.config.provenance import provenance
 from roughgas.config.schema import check_schema
 from roughgas.data.point import Point
@@ -62,7 +61,7 @@ def settings_of(
 
 
 def observables_of(
-    observe: Observe | None,
+    observe: Sequence[str] | Mapping[str, Any] | None,
 ) -> tuple[dict[str, Any] | None, dict[str, Callable[[Any], Any]]]:
     """Return the observables that settings name, and those that are functions."""
     if observe is None:
