@@ -3,7 +3,8 @@
 A reduced dataset has the dimensions (r, beta, seed), preceded by the parameter that the experiment
 sweeps besides, if there is one (`third_axis`). The error bar pools the scatter over independent
 seeds with the errors within them (statistics/errors.py), since a scatter over few seeds alone is
-badly known; each of the two is kept beside it.
+badly known; each of the two is kept beside it. What observables have watched is combined alike: a
+point's file says itself what its observables are, by the attribute `observable`.
 """
 
 import math
@@ -17,20 +18,11 @@ import netCDF4
 import numpy as np
 
 from roughgas.base import InputError
-from roughgas.data.netcdf import (
-    COMMON_ATTRIBUTES,
-    Content,
-    DamagedError,
-    attributes_of,
-    opened,
-    require,
-    write_netcdf,
-)
-from roughgas.data.netcdf import POINT as OF_POINT
+from roughgas.data import netcdf
+from roughgas.data.netcdf import Content, DamagedError, opened, require, unit_of
 from roughgas.data.point import Point, write_point
 from roughgas.data.reduced import GRID, SOUND, VERDICTS, check_sound, read_reduced, third_axis
 from roughgas.data.variables import CLOCKS, POINT, Array, described
-from roughgas.results.observed import observed_in, reduced_observables
 from roughgas.statistics.errors import NO, UNKNOWN, YES, pooled
 from roughgas.statistics.steady_state import is_bimodal
 from roughgas.theory.mixtures import SPECIES
@@ -77,7 +69,7 @@ def reduce_points(paths: Iterable[str | Path], output: str | Path) -> None:
     points = [_checked(file) for files in folders for file in sorted(files)]
     if not points:
         raise InputError("number of points to reduce", 0, "be at least 1")
-    write_netcdf(output, _combined(points))
+    netcdf.write_netcdf(output, _combined(points))
 
 
 def reduced_in_memory(points: Iterable[Point]) -> "xarray.Dataset":
@@ -106,9 +98,9 @@ def _checked(path: Path) -> Summary:
 
 
 def _summary(path: Path) -> Summary:
-    with opened(path, OF_POINT) as file:
+    with opened(path, netcdf.POINT) as file:
         file.set_auto_mask(False)
-        attributes = attributes_of(file)
+        attributes = netcdf.attributes_of(file)
         require(attributes, ("swept_value",) if "swept" in attributes else (), path)
         found = [name for name, about in POINT.items() if not about.dims]
         scalars = {name: file[name][...].item() for name in found if name in file.variables}
@@ -121,7 +113,7 @@ def _summary(path: Path) -> Summary:
         for name in scalars.keys() & SOUND:
             check_sound(path, name, scalars[name])
         scalars["measured_for"], scalars["R_drift"] = _window(file, scalars)
-        observed = observed_in(file)
+        observed = _observed(file)
         replicas = file["R_replica"][...] if "R_replica" in file.variables else np.empty(0)
     swept = (attributes["swept_value"],) if "swept" in attributes else ()
     r, beta, seed = (attributes[name] for name in (*GRID, "seed"))
@@ -134,6 +126,18 @@ def _series(file: netCDF4.Dataset) -> dict[str, np.ndarray]:
     if "time_series" not in file.variables:
         return {}
     return {name: file[name][...] for name in SERIES if name in file.variables}
+
+
+def _observed(file: netCDF4.Dataset) -> dict[str, Array]:
+    """Return the variables of observables in the file of a point."""
+    found = {}
+    for name, variable in file.variables.items():
+        about = {key: variable.getncattr(key) for key in variable.ncattrs()}
+        if "observable" in about:
+            kept = {key: about[key] for key in ("long_name", "observable")}
+            values = np.asarray(variable[...])
+            found[name] = Array(variable.dimensions, values, kept | {"units": unit_of(about)})
+    return found
 
 
 def _window(file: netCDF4.Dataset, scalars: Mapping[str, float]) -> tuple[float, float]:
@@ -170,7 +174,7 @@ def _combined(points: Sequence[Summary]) -> Content:
     for name in VERDICTS & values.keys():
         values[name] = np.where(mixed & (values[name] > NO), float(NO), values[name])
     reduced = described("reduced", values, "plateau_end" in stacks, grid)
-    seen = reduced_observables(points, axes, grid)
+    seen = _observables(points, axes, grid)
     return Content(third | reduced | seen, attributes)
 
 
@@ -253,17 +257,55 @@ def _over_seeds(stacks: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
     return reduced | _kinds_of_error(stacks) if "R" in stacks else reduced
 
 
-def _errors(name: str, stacks: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """Return the pooled error of a mean over seeds, with its interval."""
+def _errors(
+    name: str, stacks: Mapping[str, np.ndarray], interval: bool = True
+) -> dict[str, np.ndarray]:
+    """Return the pooled error of a mean over seeds, its degrees of freedom, and its interval."""
     there = np.isfinite(stacks[name])
     given = [stacks[one] for one in (name, f"{name}_stderr", f"{name}_dof")]
-    names = [f"{name}_{end}" for end in ("stderr", "dof", "ci95")]
+    names = [f"{name}_{end}" for end in ("stderr", "dof", *["ci95"] * interval)]
     found = {one: np.full(there.shape[:-1], math.nan) for one in names}
     for place in zip(*np.nonzero(there.any(-1)), strict=True):
         error = pooled(*(values[place][there[place]] for values in given))
-        for one, value in zip(names, (*error, error.half_width(0.95)), strict=True):
+        half = [error.half_width(0.95)] if interval else []
+        for one, value in zip(names, (*error, *half), strict=True):
             found[one][place] = value
     return found
+
+
+def _observables(
+    points: Sequence[Summary], axes: Sequence[Sequence[Any]], grid: tuple[str, ...]
+) -> dict[str, Array]:
+    """Return what observables have watched: means over seeds, with pooled errors, and coordinates.
+
+    Raises InputError where points have watched along different coordinates.
+    """
+    first = {name: one for point in reversed(points) for name, one in point.observed.items()}
+    means = [name for name in first if f"{name}_stderr" in first]
+    several = {f"{name}{end}" for name in means for end in ("", "_stderr", "_dof")}
+    found = {name: one for name, one in first.items() if name not in several}
+    for name, one in ((name, one) for point in points for name, one in point.observed.items()):
+        if one.values.shape != first[name].values.shape:
+            legal = "have the same shape at all points"
+            raise InputError(f"{name} of the points", one.values.shape, legal)
+        if name in found and not np.array_equal(one.values, first[name].values):
+            raise InputError(f"{name} of the points", "not the same", "be the same at all points")
+    watched = [{n: one.values for n, one in p.observed.items() if n in several} for p in points]
+    seen = [p._replace(scalars=one) for p, one in zip(points, watched, strict=True)]
+    stacks = _stacks(seen, axes)
+    for name in means:
+        dims, about = (*grid, *first[name].dims), first[name].attrs
+        values, there = stacks[name], np.isfinite(stacks[name])
+        mean = np.full(there.shape[:-1], math.nan)
+        for place in zip(*np.nonzero(there.any(-1)), strict=True):
+            mean[place] = values[place][there[place]].mean()
+        stderr, dof = _errors(name, stacks, interval=False).values()
+        said = f"standard error of {name}: scatter over seeds and error within them, pooled"
+        freedom = f"degrees of freedom that {name}_stderr is known with"
+        found[name] = Array(dims, mean, about)
+        found[f"{name}_stderr"] = Array(dims, stderr, about | {"long_name": said})
+        found[f"{name}_dof"] = Array(dims, dof, about | {"long_name": freedom, "units": "1"})
+    return {name: found[name] for name in first}
 
 
 def _kinds_of_error(stacks: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
@@ -311,4 +353,4 @@ def _common_attributes(points: Sequence[Summary]) -> dict[str, Any]:
         elif (len(values) > 1 and name != SPECIES) or name in OF_A_POINT or name == swept:
             del shared[name]
     over = "r and beta" if swept is None else f"{swept}, r and beta"
-    return shared | COMMON_ATTRIBUTES | {"title": f"{shared['experiment']}: R over {over}"}
+    return shared | netcdf.COMMON_ATTRIBUTES | {"title": f"{shared['experiment']}: R over {over}"}
