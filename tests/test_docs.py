@@ -194,12 +194,9 @@ def environment(folder):
     return kept | {"XDG_CACHE_HOME": str(folder / "cache")}
 
 
-CONTAINERS_ROOT = Path(__file__).parents[1]
-
-
 def steps():
     """The (instruction, text) of the Dockerfile, in order."""
-    text = (CONTAINERS_ROOT / "Dockerfile").read_text()
+    text = (ROOT / "Dockerfile").read_text()
     lines = re.sub(r"^#.*\n", "", text, flags=re.MULTILINE).replace("\\\n", " ").splitlines()
     return [tuple(line.split(None, 1)) for line in lines if line.strip()]
 
@@ -215,13 +212,13 @@ def copied(text):
 
 
 def apptainer(section):
-    text = (CONTAINERS_ROOT / "Apptainer.def").read_text()
+    text = (ROOT / "Apptainer.def").read_text()
     found = re.search(rf"^%{section}\n((?:    .*\n|\n)+)", text, re.MULTILINE)[1]
     return [line.strip() for line in found.splitlines() if line.strip()]
 
 
 def tracked():
-    command = ["git", "-C", CONTAINERS_ROOT, "ls-files"]
+    command = ["git", "-C", ROOT, "ls-files"]
     try:
         done = subprocess.run(command, capture_output=True, text=True, check=True)
     except (OSError, subprocess.CalledProcessError):
@@ -231,7 +228,7 @@ def tracked():
 
 def test_everything_copied_is_in_the_repository_and_sent_to_the_builder():
     files = tracked()
-    ignored = (CONTAINERS_ROOT / ".dockerignore").read_text().splitlines()[1:]
+    ignored = (ROOT / ".dockerignore").read_text().splitlines()[1:]
     sources = [source for text in texts("COPY") for source in copied(text)[0]]
     sources += [line.split()[0] for line in apptainer("files")]
     for source in sources:
@@ -241,7 +238,7 @@ def test_everything_copied_is_in_the_repository_and_sent_to_the_builder():
 
 def test_the_image_holds_all_that_a_run_consists_of():
     inside = [source for text in texts("COPY") for source in copied(text)[0]]
-    for name in project_files(CONTAINERS_ROOT):
+    for name in project_files(ROOT):
         assert name in inside or name.split("/")[0] in inside, name
     for text in texts("COPY"):
         sources, target = copied(text)

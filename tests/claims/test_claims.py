@@ -190,7 +190,7 @@ STATEMENTS = statements()
 DRIVES = ("floor_materials", "wall_materials", "shaken_walls")
 
 
-def judged_of_of_studies(name, **studies):
+def judged_study(name, **studies):
     return examine(STATEMENTS[name], studies)
 
 
@@ -215,7 +215,7 @@ def sheared(share, error=0.001, runs=4):
     [(1.0, HOLDS), (0.93, HOLDS), (0.75, QUALIFIED), (1.3, QUALIFIED), (0.4, FAILS), (2.0, FAILS)],
 )
 def test_the_excess_of_a_sheared_gas(share, verdict):
-    found = judged_of_of_studies("shear_gives_the_excess", profiles=sheared(share))
+    found = judged_study("shear_gives_the_excess", profiles=sheared(share))
     assert found.verdict == verdict and "Over 3 gases" in found.reason
     assert found.numbers[0][1].value == pytest.approx(share - 1)
     assert dict(found.numbers)["expected"].value == pytest.approx(0.155)
@@ -243,7 +243,7 @@ def escapes(*exponents, error=0.1):
     ids=["falls", "in part", "rises"],
 )
 def test_the_larger_the_gas_the_sooner(exponents, verdict):
-    found = judged_of_of_studies("sooner_the_larger", runaway=escapes(*exponents))
+    found = judged_study("sooner_the_larger", runaway=escapes(*exponents))
     assert found.verdict == verdict and "of 4 cases" in found.reason
     label, flattest = found.numbers[0]
     assert "mu = 0.1" in label and flattest.value == pytest.approx(exponents[0])
@@ -263,9 +263,9 @@ def test_one_curve_for_all_drives_is_judged_by_the_worst(size, verdict):
     kicked = swept("heated", KICKS, constant(0.0), input_spin_share=shares)
     gases["heated"] = collisional(kicked.assign(input_spin_share_stderr=kicked.R_stderr))
     known = {name: beside_theory(data) for name, data in gases.items()}
-    found = judged_of_of_studies("one_curve_for_all_drives", **known)
+    found = judged_study("one_curve_for_all_drives", **known)
     assert found.verdict == verdict
     if size:
         assert found.numbers[0][0] == "wall_materials: largest difference"
     without = known | {"heated": known["heated"].drop_vars("R_collisional")}
-    assert judged_of_of_studies("one_curve_for_all_drives", **without).verdict == NOT_TESTED
+    assert judged_study("one_curve_for_all_drives", **without).verdict == NOT_TESTED

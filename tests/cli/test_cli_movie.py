@@ -90,7 +90,7 @@ def test_an_interruption_leaves_nothing(tmp_path, capsys, monkeypatch):
     assert list(tmp_path.iterdir()) == []
 
 
-def make_of_cli_trajectory(*outputs, times=("0", "2"), **others):
+def make_trajectory(*outputs, times=("0", "2"), **others):
     told = {"r": "0.9", "beta": "0.5", "settings": json.dumps(SMALL | {"schedule": COOLING})}
     arguments = [f"--{key}={value}" for key, value in (told | others).items()]
     chosen = ["--times", *times] if times else []
@@ -99,13 +99,11 @@ def make_of_cli_trajectory(*outputs, times=("0", "2"), **others):
 
 def test_every_file_that_is_asked_for_is_made_and_the_same_each_time(tmp_path, capsys):
     outputs = [tmp_path / "gas.xyz", tmp_path / "gas.nc"]
-    assert make_of_cli_trajectory(*outputs) == 0
+    assert make_trajectory(*outputs) == 0
     said = capsys.readouterr()
     assert said.out == "" and said.err.splitlines() == [f"{path}: 2 frames" for path in outputs]
     before = [path.read_bytes() for path in outputs]
-    assert (
-        make_of_cli_trajectory(*outputs) == 0 and [path.read_bytes() for path in outputs] == before
-    )
+    assert make_trajectory(*outputs) == 0 and [path.read_bytes() for path in outputs] == before
     assert before[0].count(b"Lattice=") == 2
 
 
@@ -121,8 +119,8 @@ def test_every_file_that_is_asked_for_is_made_and_the_same_each_time(tmp_path, c
         ({"beta": "2"}, "roughness beta = 2: must lie in [-1, 1]"),
     ],
 )
-def test_bad_input_is_refused_in_one_line_of_cli_trajectory(tmp_path, capsys, choice, message):
-    assert make_of_cli_trajectory(tmp_path / "gas.xyz", **choice) == 2
+def test_frames_that_make_no_sense_are_refused_in_one_line(tmp_path, capsys, choice, message):
+    assert make_trajectory(tmp_path / "gas.xyz", **choice) == 2
     said = capsys.readouterr()
     assert said.err.startswith(f"roughgas: error: {message}") and said.err.count("\n") == 1
     assert said.out == "" and list(tmp_path.iterdir()) == []
@@ -131,7 +129,7 @@ def test_bad_input_is_refused_in_one_line_of_cli_trajectory(tmp_path, capsys, ch
 def test_an_extra_that_lacks_is_named_before_anything_is_simulated(tmp_path, capsys, monkeypatch):
     monkeypatch.setitem(sys.modules, "gsd", None)
     monkeypatch.setitem(sys.modules, "gsd.hoomd", None)
-    assert make_of_cli_trajectory(tmp_path / "gas.xyz", tmp_path / "gas.gsd") == 1
+    assert make_trajectory(tmp_path / "gas.xyz", tmp_path / "gas.gsd") == 1
     said = "gsd is not installed: pip install 'roughgas[trajectories]'"
     assert capsys.readouterr().err == f"roughgas: error: {said}\n"
     assert list(tmp_path.iterdir()) == []
@@ -178,7 +176,7 @@ SETTINGS = json.dumps(TINY | {"swept": "spin.inertia"})
         ("spun", json.dumps(TINY | {"sweep": SWEEP}), "experiment = 'spun': must be followed by"),
     ],
 )
-def test_bad_input_is_refused_in_one_line_of_cli_axis(
+def test_what_is_no_variant_is_refused_in_one_line(
     configuration, tmp_path, capsys, name, settings, message
 ):
     source = configuration if settings is None else f"--settings={settings}"

@@ -73,14 +73,14 @@ BLOCKS = page.blocks()
 
 
 @pytest.fixture(scope="module")
-def page_folder():
+def in_folder():
     """Where all blocks are run: later ones show what earlier ones have made."""
     with page.folder() as path:
         yield path
 
 
 @pytest.mark.parametrize("block", BLOCKS, ids=lambda block: block.splitlines()[0])
-def test_a_block_is_what_its_commands_print(page_folder, block):
+def test_a_block_is_what_its_commands_print(in_folder, block):
     found = page.written(block, page.in_this_process)
     assert page.without_machine(found) == page.without_machine(block), (
         "write it anew: python tests/cli/page.py"

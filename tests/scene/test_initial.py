@@ -92,7 +92,7 @@ def test_more_than_fit_are_refused(most):
 
 SPREAD = {"distribution": "uniform", "deviation": 0.2}
 WALLS = {"walls": {"restitution": 1.0, "roughness": -1.0}}
-PLACES_CASES = {
+CROWDED = {
     "ratio 100": ([{"number": 1, "radius": 100}, {"number": 500}], [450, 450], {}),
     "packed": ([{"number": 200, "radius": SPREAD}], [30, 30], {}),  # 0.7 of the box
     "two sizes, packed": ([{"fraction": 0.5}, {"fraction": 0.5, "radius": 2}], [70, 70], {}),
@@ -102,9 +102,9 @@ PLACES_CASES = {
 }
 
 
-@pytest.mark.parametrize("case", PLACES_CASES)
+@pytest.mark.parametrize("case", CROWDED)
 def test_nothing_overlaps(case):
-    species, box, effects = PLACES_CASES[case]
+    species, box, effects = CROWDED[case]
     number = sum(one.get("number", 200) for one in species)
     effects = settings("bed")["effects"] if effects is None else effects
     experiment = {"particles": number, "box": box, "effects": effects, "species": species}

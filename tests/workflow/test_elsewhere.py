@@ -175,14 +175,14 @@ def project_in(folder):
     return Project(folder)
 
 
-def run_of_hostile_folders(project, folder, *arguments):
+def run_here(project, folder, *arguments):
     """Exit status and output of Snakemake in a folder, with the project's Snakefile."""
     options = ("-c1", f"--snakefile={project.folder / 'Snakefile'}", "--config", "scale=tiny")
     return snakemakes.run(folder, project.environment(), (*options, *arguments))
 
 
 def assert_runs(project, folder):
-    status, output = run_of_hostile_folders(project, folder, "--", *REAL)
+    status, output = run_here(project, folder, "--", *REAL)
     assert status == 0, output
     assert all((folder / made).exists() for made in REAL)
 
@@ -191,7 +191,7 @@ def assert_runs(project, folder):
 def test_the_project_is_in_it_and_one_works_elsewhere(tmp_path, name):
     project = project_in(tmp_path / name)
     assert_runs(project, tmp_path)
-    status, output = run_of_hostile_folders(project, tmp_path, "-n", "--", *DRY)
+    status, output = run_here(project, tmp_path, "-n", "--", *DRY)
     assert status == 0, output
     assert not list(tmp_path.rglob("pwned"))
 
@@ -208,7 +208,7 @@ def test_one_works_in_it(tmp_path, name):
 
 def test_what_snakemake_cannot_read_is_said_in_one_line(tmp_path):
     project = project_in(tmp_path / BRACES)
-    status, output = run_of_hostile_folders(project, tmp_path, "-n", "--", *REAL)
+    status, output = run_here(project, tmp_path, "-n", "--", *REAL)
     (said,) = [line for line in output.splitlines() if "error" in line.lower()]
     assert status == 1 and said.startswith(
         f"roughgas: error: folder = {project.folder}: must have no "
@@ -217,16 +217,14 @@ def test_what_snakemake_cannot_read_is_said_in_one_line(tmp_path):
 
 def test_apptainer_says_which_path_it_cannot_take(tmp_path):
     project = project_in(tmp_path / "a b")
-    status, output = run_of_hostile_folders(
-        project, tmp_path, "-n", "--sdm", "apptainer", "--", *REAL
-    )
+    status, output = run_here(project, tmp_path, "-n", "--sdm", "apptainer", "--", *REAL)
     assert status == 1 and f"container = {project.folder}/roughgas.sif: must be a path" in output
 
 
 def test_a_place_that_cannot_be_written_is_said_in_one_line(tmp_path):
     project = project_in(tmp_path / "project")
     (project.folder / ".snakemake").write_text("no folder")
-    status, output = run_of_hostile_folders(project, project.folder, "-n", "--", *REAL)
+    status, output = run_here(project, project.folder, "-n", "--", *REAL)
     (said,) = [line for line in output.splitlines() if "roughgas: error" in line]
     assert status == 1 and "Traceback" not in output
     assert said.startswith(f"roughgas: error: {project.folder / '.snakemake'}")

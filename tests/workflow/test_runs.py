@@ -103,10 +103,8 @@ def test_after_a_kill_the_same_command_ends_with_the_same_numbers(project, undis
 
 
 ROOT = Path(__file__).parent.parent.parent
-POINTS_sweeps = 10_000
-MEMORY = (
-    0.15 + 4 * POINTS_sweeps / 100_000
-)  # GiB: what Snakemake takes, and 4 for a hundred thousand
+MANY = 10_000
+MEMORY = 0.15 + 4 * MANY / 100_000  # GiB: what Snakemake takes, and 4 for a hundred thousand
 
 PROGRAM = """
 import json
@@ -124,7 +122,7 @@ def planned(points, betas):
 
 
 def test_batches_of_betas():
-    jobs, memory = planned(POINTS_sweeps, betas=25)
+    jobs, memory = planned(MANY, betas=25)
     blocks = {rule: count for rule, count in jobs.items() if "block" in rule}
     assert jobs == blocks | {"compile_kernel": 10, "reduce": 1}
     assert len(blocks) == 10 and set(blocks.values()) == {10}  # each r is a job of the block
