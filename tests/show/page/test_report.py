@@ -10,6 +10,7 @@ from types import SimpleNamespace
 import pytest
 from docutils.core import publish_parts
 from jinja2 import Environment
+from snakemake.io import Params
 from tests.entry import main
 from tests.houses import FOLDERS
 
@@ -21,6 +22,10 @@ from roughgas.show.studies import captions
 
 ROOT = Path(__file__).parents[3]
 CAPTIONS = ROOT / "rules" / "captions"
+
+
+def params_of(**values):
+    return Params(fromdict=values)
 
 
 def rendered(caption, **about):
@@ -47,7 +52,7 @@ def test_a_figure_says_what_it_shows_and_how_it_was_made(figure, loaded):
     experiments = {"cooling": config.experiment(loaded, "cooling", "paper")}
     experiments["waves"] = config.experiment(loaded, "waves", "small")
     wildcards = SimpleNamespace(figure=figure, folder="")
-    params = SimpleNamespace(experiments=experiments, caption=caption_of(figure))
+    params = params_of(experiments=experiments, caption=caption_of(figure))
     text = re.sub(r"\s+", " ", rendered("figure", wildcards=wildcards, params=params))
     assert "What to notice." in text
     assert "160 particles in a box of 100 × 100" in text
@@ -60,7 +65,7 @@ def test_a_figure_says_what_it_shows_and_how_it_was_made(figure, loaded):
 def test_a_study_says_how_it_was_made(figure, loaded):
     settings = config.studies(loaded, "paper") | config.accuracy(loaded, "paper")
     wildcards = SimpleNamespace(study_figure=figure, folder="")
-    params = SimpleNamespace(studies=settings, caption=caption_of(figure))
+    params = params_of(studies=settings, caption=caption_of(figure))
     text = rendered("study", wildcards=wildcards, params=params)
     assert "What to notice." in text and "repetitions 600" in text
 
@@ -73,7 +78,7 @@ def test_a_figure_of_a_study_says_what_it_shows(folder, loaded):
     assert found.keys() == figures.keys()
     for caption in found.values():
         experiments = {"cooling": config.experiment(loaded, "cooling", "paper")}
-        params = SimpleNamespace(caption=caption, experiments=experiments)
+        params = params_of(caption=caption, experiments=experiments)
         text = rendered("figure", wildcards=SimpleNamespace(folder=""), params=params)
         assert "What to notice." in text and "21 values from -0.95 to 1" in text
 
