@@ -10,7 +10,7 @@ from types import SimpleNamespace
 import pytest
 from docutils.core import publish_parts
 from jinja2 import Environment
-from snakemake.io import Params
+from snakemake.iocontainers import Params
 from tests.entry import main
 from tests.houses import FOLDERS
 
