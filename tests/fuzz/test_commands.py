@@ -20,18 +20,18 @@ MEANT = ["show", "show --json", "reduce -o out.nc", "table -o out.csv"]
 MEANT += ["claims --json out.json --markdown out.md"]
 MEANT += ["claims --open-questions --json out.json --markdown out.md"]
 MEANT += ["explore --points . -o out.html", "document -o out.html", "run_times -o out.md"]
-MEANT += ["costs --fixed {} -o out.md", "study_tables -o out.md", "combine -o out.nc"]
+MEANT += ["accuracy_table -o out.md", "accuracy_data -o out.nc"]
 MEANT += ["film -o out.png", "crate -o out.zip"]
 """Command lines without their files, which come after the command."""
 RIGHT = [
     "table reduced.nc -o out.csv",
     "document page.md -o out.html",
-    "combine task.nc -o out.nc",
+    "accuracy_data task.nc -o out.nc",
     "accuracy_table studies.nc -o out.md",
     "run_times reduced.nc -o out.md",
 ]
 """Command lines that are right."""
-OPTIONS = ["--json", "-o", "--output", "--points", "--verify", "--fixed", "--markdown", "--help"]
+OPTIONS = ["--json", "-o", "--output", "--points", "--verify", "--markdown", "--help"]
 OPTIONS += ["--open-questions", "--configuration", "--x"]
 OUTPUTS = ["out.csv", "out.nc", "out.md", "out.html", "out.png", "out.zip", "no/out.json", "out"]
 
@@ -118,8 +118,7 @@ def test_command_lines(folder, monkeypatch, often):
     [
         ["run", "cooling", "--r=0.9", "--beta=0", "-o", "out.nc", "--settings"],
         ["effective_config", "config.yaml", "--scale=paper", "-o", "out", "--changes"],
-        ["study", "statistical", "cooling-reference", "-o", "out.nc", "--settings"],
-        ["costs", "reduced.nc", "-o", "out.md", "--fixed"],
+        ["accuracy_task", "statistical", "cooling-reference", "-o", "out.nc", "--settings"],
         ["crate", "page.md", "-o", "out.zip", "--configuration"],
     ],
 )

@@ -4,6 +4,7 @@ import json
 import os
 import subprocess
 import sys
+from argparse import Namespace
 
 import pytest
 from schedules import TINY
@@ -82,7 +83,7 @@ def check(name, monkeypatch, capsys):
     """What one check says, and whether it is content."""
     monkeypatch.setattr(doctor, "CHECKS", {name: doctor.CHECKS[name]})
     try:
-        doctor.doctor(as_json=True)
+        doctor.doctor(Namespace(json=True))
         status = 0
     except SystemExit as stop:
         status = stop.code
@@ -105,12 +106,12 @@ def test_an_installation_as_it_should_be():
 def test_a_problem_is_told_in_words_and_by_the_exit_status(monkeypatch, capsys):
     monkeypatch.setattr(doctor, "CHECKS", {name: doctor.CHECKS[name] for name in ("extras",)})
     monkeypatch.setitem(sys.modules, "gsd", None)
-    doctor.doctor(as_json=False)
+    doctor.doctor(Namespace(json=False))
     assert capsys.readouterr().out.endswith("crate; not installed: trajectories\n")
     monkeypatch.setattr(doctor, "LIBRARIES", "tqdm gsd")
     monkeypatch.setattr(doctor, "CHECKS", {"libraries": (doctor._libraries, "mend it")})
     with pytest.raises(SystemExit) as stop:
-        doctor.doctor(as_json=False)
+        doctor.doctor(Namespace(json=False))
     said = capsys.readouterr().out
     assert stop.value.code == 1 and said.startswith("problem  libraries ")
     assert "gsd" in said and said.endswith("-> mend it\n")
@@ -156,10 +157,11 @@ sys.exit(main(sys.argv[1:]))
 EXAMINED = """
 import sys
 sys.modules.update(dict.fromkeys({packages!r}))
+from argparse import Namespace
 from roughgas import doctor
 names = "libraries", "extras", "Snakemake"
 doctor.CHECKS = dict((name, doctor.CHECKS[name]) for name in names)
-doctor.doctor(False)
+doctor.doctor(Namespace(json=False))
 """
 
 
