@@ -11,7 +11,6 @@
 #   snakemake -j1 showcase                      a large cooling gas forms clusters: a movie
 #   snakemake -j2 accuracy                      what the next digit costs, in CPU seconds
 #   snakemake -j2 coverage                      whether error bars hold the truth as often as they say
-#   snakemake -j2 finite_size                   how much of R in a cooling gas is due to number and box
 #   snakemake -j2 hard_cases                    where simulations go wrong, and how far from it we are
 #   snakemake -j2 crate                         the run as one file: an RO-Crate
 #   snakemake -j2 fig1a                         a figure by its name, or an experiment's R over its sweep
@@ -50,7 +49,6 @@ wildcard_constraints:
     movie=NAME,
     study=NAME,
     task=NAME,
-    study_figure=STUDY_FIGURE,
     family=NAME,
 
 
@@ -59,7 +57,6 @@ include: "rules/simulate.smk"
 include: "rules/studies.smk"
 include: "rules/products.smk"
 include: "rules/accuracy.smk"
-include: "rules/questions.smk"
 include: "rules/showcase.smk"
 include: "rules/movies.smk"
 include: "rules/hard_cases.smk"
@@ -96,10 +93,6 @@ rule extensions:
         products_of_each,
         f"results/{SCALE}/extensions.csv" if SWEPT_IN_STUDIES else [],
         documents("run_times_extensions") if SWEPT_IN_STUDIES else [],
-        drawn(catalogue.figures_of("questions")),
-        multiext(f"results/{SCALE}/", "open_questions.json", "open_questions.md"),
-        [f"results/{SCALE}/{name}.md" for name in catalogue.figures_of("questions")],
-        documents("open_questions", *catalogue.figures_of("questions")),
 
 
 rule explore:
@@ -151,13 +144,6 @@ rule coverage:
         documents("coverage"),
 
 
-rule finite_size:
-    input:
-        drawn(["finite_size"]),
-        f"results/{SCALE}/finite_size.md",
-        documents("finite_size"),
-
-
 rule hard_cases:
     input:
         f"results/{'' if SCALE == 'paper' else SCALE + '/'}hard_cases.md",
@@ -175,7 +161,6 @@ rule everything:
         rules.hard_cases.input,
         rules.accuracy.input,
         rules.coverage.input,
-        rules.finite_size.input,
         rules.explore.input,
         rules.explore_extensions.input,
         rules.living.input,

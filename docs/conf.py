@@ -112,8 +112,8 @@ def mathml(node, display):
 def linked(text, base, folder):
     """Links in `text` that are relative to `base`, made relative to `folder`.
 
-    Those to README.md become links to the first page, those to HTML addresses; those to folders,
-    and to pages that are not part of the site, mere text.
+    Those to README.md become links to the first page, or to that of a study, those to HTML
+    addresses; those to folders, and to pages that are not part of the site, mere text.
     """
 
     def here(link):
@@ -121,6 +121,8 @@ def linked(text, base, folder):
         target = Path(os.path.normpath(base / path))
         if not target.exists():  # an address, or nothing: Sphinx will say so
             return link[0]
+        if target.name == README.name and target.parent.parent == ROOT / "studies":
+            target = DOCS / "studies" / f"{target.parent.name}.md"
         if target.is_dir() or (target.suffix == ".md" and not target.is_relative_to(DOCS)):
             return label if target != README else f"[{label}]({os.path.relpath(INDEX, folder)})"
         if target.suffix == ".html":

@@ -8,7 +8,7 @@ OF_ACCURACY = "results/{scale}/accuracy/{study}/{task}.nc"
 def settings_of_accuracy(wildcards):
     """The settings of a study and of the experiments, as JSON."""
     with one_line(OF_ACCURACY.format(**wildcards)):
-        found = roughgas.config.study(config, wildcards.study, wildcards.scale, "accuracy")
+        found = roughgas.config.study(config, wildcards.study, wildcards.scale)
         known = tasks_of_accuracy(wildcards.study, wildcards.scale)
         if wildcards.task not in known:
             raise not_one_of("task", wildcards.task, known)

@@ -22,7 +22,6 @@ try:
     from roughgas.config.reading import read_yaml
     from roughgas.config.schema import keys
     from roughgas.show import catalogue
-    from roughgas.studies.figures import DATASETS, FIGURES
 except ModuleNotFoundError as error:
     sys.exit(f"roughgas: error: no module {error.name}: `make setup`, then .venv/bin/snakemake")
 
@@ -49,7 +48,7 @@ REDUCED = "results/{scale}/{experiment}.nc"
 FIRST = 10**12  # priority: more urgent than any point
 # An experiment as a whole, or one of its variants: as wildcards, not what has rules of its own, nor
 # the folders of points.
-STUDY_FIGURE, RESERVED = "|".join(FIGURES), "|".join(schema.RESERVED)
+RESERVED = "|".join(schema.RESERVED)
 NAME = r"[\w+.-]+"  # nothing that means something to a shell: wildcards become parts of commands
 EXPERIMENT = rf"(?!(?:{RESERVED})[./]){NAME}"
 VARIANT = rf"(?:/(?!(?:r|beta|seed)[-+.\d]){NAME})?"

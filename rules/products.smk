@@ -5,7 +5,6 @@ PARTS = {  # product -> the part of the catalogue of figures whose experiments i
     "run_times": "paper",
     "explore": "paper",
     "extensions": "beyond",
-    "open_questions": "questions",
     "run_times_extensions": "beyond",
     "explore_extensions": "beyond",
 }
@@ -42,8 +41,6 @@ def experiments_of_product(wildcards):
 
 
 def data_of_product(wildcards):
-    if wildcards.product == "open_questions":
-        return []
     return reduced(wildcards.scale, experiments_of_product(wildcards))
 
 
@@ -61,11 +58,6 @@ def heading_of_product(wildcards):
     return catalogue.HEADINGS[PARTS[wildcards.product]]
 
 
-def studies_of_claims(wildcards):
-    names = catalogue.figures_of("questions") if wildcards.product == "open_questions" else []
-    return [f"results/{wildcards.scale}/{name}.nc" for name in names]
-
-
 def name_of_config(wildcards, output):
     """Made from the output and therefore not recorded: results do not depend on where it is."""
     return of_project(CONFIG)
@@ -74,10 +66,6 @@ def name_of_config(wildcards, output):
 def folder_of_points(wildcards, output):
     """That of the page, too; in a module with a prefix it lies below that."""
     return Path(output[0]).parent
-
-
-def which_claims(wildcards):
-    return "--open-questions" if wildcards.product == "open_questions" else ""
 
 
 rule figure:
@@ -163,21 +151,19 @@ rule table:
 rule claims:
     input:
         data=data_of_product,
-        studies=studies_of_claims,
     output:
         json="results/{scale}/{product}.json",
         markdown="results/{scale}/{product}.md",
     log:
         "logs/{scale}/{product}.log",
     wildcard_constraints:
-        product="claims|open_questions",
+        product="claims",
     params:
         code=code_of("claims"),
-        which=which_claims,
     message:
         "write {output}"
     shell:
-        "python -P -m roughgas.steps claims {params.which:q} {input:q} --json {output.json:q}"
+        "python -P -m roughgas.steps claims {input:q} --json {output.json:q}"
         " --markdown {output.markdown:q} > {log:q} 2>&1"
 
 

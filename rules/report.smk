@@ -68,16 +68,6 @@ def experiments_of_figure(wildcards, output):
     return described(scale_of(wildcards.folder), entry_of(wildcards).shows)
 
 
-def studies_of_figure(wildcards, output):
-    """The settings of the studies that a figure shows, for its caption."""
-    scale = scale_of(wildcards.folder)
-    with one_line(f"figures/{wildcards.folder}{wildcards.study_figure}"):
-        return {
-            name: roughgas.config.study(config, name, scale)["study"]
-            for name in entry_of(wildcards).shows
-        }
-
-
 def showcase_of_figure(wildcards, output):
     """The settings of the showcase, for its caption."""
     with one_line(f"figures/{wildcards.folder}clustering"):

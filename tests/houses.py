@@ -3,8 +3,9 @@
 from pathlib import Path
 
 from roughgas.base.files import module_of
-from roughgas.claims import OPEN_QUESTIONS, PAPER
+from roughgas.claims import PAPER
 from roughgas.claims.statements import read_study
+from roughgas.tasks import variables
 
 ROOT = Path(__file__).parent.parent
 EXPERIMENTS = ROOT / "tests" / "experiments.yaml"
@@ -17,7 +18,21 @@ def part(study, module):
     return module_of(ROOT / "studies" / study, module)
 
 
+def quietly(done, total):
+    """Report no progress of a task."""
+
+
+def check_variables(study, data):
+    """Whether the data of a study's tasks hold all that its variables.yaml describes, and nothing
+    else."""
+    known = variables(ROOT / "studies" / study / "variables.yaml")
+    expected = {name: (one.dims, one.long_name) for name, one in known.items()}
+    found = {name: (one.dims, one.attrs["long_name"]) for name, one in data.variables.items()}
+    assert found == expected
+
+
 def statements():
     """Every statement by its name, on experiments by their own names."""
-    subjects = [read_study(folder, folder.name, ()) for folder in FOLDERS]
-    return {one.name: one for of in (PAPER, OPEN_QUESTIONS, *subjects) for one in of.statements}
+    judged = [folder for folder in FOLDERS if (folder / "claims.yaml").exists()]
+    subjects = [read_study(folder, folder.name, ()) for folder in judged]
+    return {one.name: one for of in (PAPER, *subjects) for one in of.statements}

@@ -11,9 +11,9 @@ from itertools import pairwise
 from operator import attrgetter
 from pathlib import Path
 
-from roughgas import accuracy, effects, observables, studies
+from roughgas import accuracy, effects, observables
 from roughgas.base.formatting import markdown
-from roughgas.claims import OPEN_QUESTIONS, PAPER, averages, paper, verdicts
+from roughgas.claims import PAPER, averages, paper, verdicts
 from roughgas.config.schema import SAID, _legal, _schema
 from roughgas.data.film import FILM
 from roughgas.data.reduced import REDUCED
@@ -21,7 +21,6 @@ from roughgas.data.trajectory import TRAJECTORY
 from roughgas.data.variables import COOLING, GRID, POINT, SPIN
 from roughgas.effects.settings import Numbers, OfParticles, Word
 from roughgas.statistics import errors
-from roughgas.studies.tasks import VARIABLES
 from roughgas.tasks import variables
 
 DOCS = Path(__file__).parents[1] / "docs"
@@ -35,25 +34,21 @@ DECIDES |= {"SIGNIFICANT": errors, "INTERMEDIATE": paper, "CONSIDERABLY": paper,
 def tables():
     """Each table by its page and its name."""
     found = {("claims", "tolerances"): _tolerances()}
-    for name, subject in (("paper", PAPER), ("open questions", OPEN_QUESTIONS)):
-        rows = ((f"`{one.name}`", one.criterion, one.fixed) for one in subject.statements)
-        found["claims", name] = markdown(("statement", "criterion", "fixed"), rows)
+    rows = ((f"`{one.name}`", one.criterion, one.fixed) for one in PAPER.statements)
+    found["claims", "paper"] = markdown(("statement", "criterion", "fixed"), rows)
     parts = _schema()["$defs"]
     found["config", "file"] = _keys_of(_schema())
     for name in ("experiment", "sweep", "schedule", "showcase"):
         found["config", name] = _keys_of(parts[name])
-    for name in ("studies", "accuracy"):
-        found["config", name] = _keys_of(parts[name], depth=4)
+    found["config", "accuracy"] = _keys_of(parts["accuracy"], depth=4)
     found["effects", "effects"] = _effects()
     found["observables", "observables"] = _observables()
     found["data", "point"] = _variables("type units when", POINT, _units)
     found["data", "reduced"] = _variables("units how", REDUCED, _units)
     found["data", "film"] = _variables("type units", FILM)
     found["trajectories", "trajectory"] = _variables("units when", TRAJECTORY)
-    known = {name: accuracy.VARIABLES for name in accuracy.STUDIES}
-    known |= {name: VARIABLES for name in studies.STUDIES}
-    tables = {("data", name): variables(path, name) for name, path in known.items()}
-    return found | {place: _variables("units", one) for place, one in tables.items()}
+    known = {name: variables(accuracy.VARIABLES, name) for name in accuracy.STUDIES}
+    return found | {("data", name): _variables("units", one) for name, one in known.items()}
 
 
 def written(page, name):

@@ -17,7 +17,6 @@ from pathlib import Path
 from typing import Any, get_origin
 
 from roughgas import cli, config
-from roughgas.base import InputError, not_one_of
 from roughgas.cli.parser import Parser, whole_number
 
 
@@ -28,21 +27,6 @@ def compile_kernels(experiment: str, *, settings: str, r: str, checked: bool = F
     found = config.from_text(settings, "--settings", checked)
     every = config.every_variant(experiment, found).values()
     compile_kernels(every, config.restitution(r))
-
-
-def figure(name: str, inputs: list[str], *, output: list[str], slide: bool = False) -> None:
-    """Draw a figure from reduced datasets, or from one of studies."""
-    from roughgas.show import gallery
-    from roughgas.studies import figures as of_studies
-
-    if name not in of_studies.FIGURES:
-        gallery.draw(name, inputs, output, slide)
-    elif slide:
-        raise InputError("--slide", name, "be given for figures of experiments")
-    elif len(inputs) > 1:
-        raise InputError("number of datasets", len(inputs), "be 1, with all studies")
-    else:
-        of_studies.draw(name, inputs[0], output)
 
 
 def study_claims(
@@ -61,11 +45,11 @@ def study_claims(
     judge(inputs, json, markdown, read_study(folder, title, experiments))
 
 
-def claims(inputs: list[str], *, json: str, markdown: str, open_questions: bool = False) -> None:
-    """Judge the claims of the paper, or what it leaves open."""
-    from roughgas.claims import OPEN_QUESTIONS, PAPER, judge
+def claims(inputs: list[str], *, json: str, markdown: str) -> None:
+    """Judge the claims of the paper."""
+    from roughgas.claims import PAPER, judge
 
-    judge(inputs, json, markdown, OPEN_QUESTIONS if open_questions else PAPER)
+    judge(inputs, json, markdown, PAPER)
 
 
 def effective_config(input: str, *, scale: str, output: str, changes: str = "{}") -> None:
@@ -110,28 +94,6 @@ def clustering(
     print(f"{output}: {found['frames']} frames, {took}", file=sys.stderr)
 
 
-def study(study: str, task: str, *, scale: str = config.PAPER, settings: str, output: str) -> None:
-    """Run one of the independent tasks of a study."""
-    from roughgas import studies
-    from roughgas.simulation.progress import Bar
-    from roughgas.studies.files import write_task
-
-    module = studies.study(study)
-    found = config.study_from_text(settings, study, "--settings")
-    tasks = module.tasks(found["study"])
-    if task not in tasks:
-        raise not_one_of("task", task, tasks)
-    with Bar(task, None) as bar:
-        data = module.run(
-            task,
-            found["study"],
-            found["experiments"],
-            lambda done, total: bar.reach(done, total=total),
-        )
-    about = {"study": study, "task": task, "scale": scale}
-    write_task(output, data, about | {"settings_json": settings})
-
-
 def film(input: str, *, output: list[str]) -> None:
     """Draw the film of a cooling gas as a picture or as a movie."""
     from roughgas.show.figures.clustering import draw
@@ -145,24 +107,21 @@ STEPS: dict[str, str | Callable[..., None]] = {
     "accuracy_table": "accuracy:write_tables",
     "accuracy_task": "accuracy:run_task",
     "clustering": clustering,
-    "combine": "studies.files:combine",
     "compile_kernels": compile_kernels,
     "claims": claims,
     "document": "show.pages:write_document",
     "effective_config": effective_config,
     "explore": "show.explore:write_page",
-    "figure": figure,
+    "figure": "show.gallery:draw",
     "film": film,
     "front": "show.pages:write_front",
     "living": "show.living:write_living",
     "run_times": "results.table:write_times",
-    "study": study,
     "study_claims": study_claims,
     "study_data": "tasks.running:combine",
     "study_figure": "show.gallery:draw_of_study",
     "study_page": "show.studies:write_page",
     "study_task": "tasks.running:run_task",
-    "study_tables": "studies.tables:write_tables",
     "table": "results.table:write_table",
 }
 

@@ -15,7 +15,6 @@ from roughgas.config import schema
 from roughgas.config.provenance import write_effective
 from roughgas.config.reading import read_yaml
 from roughgas.show import catalogue
-from roughgas.studies.figures import DATASETS, FIGURES
 
 ROOT = Path(__file__).parents[2]
 CONFIG = ROOT / "tests" / "experiments.yaml"
@@ -125,7 +124,12 @@ def test_no_experiment_is_called_as_a_rule_or_a_product(paper):
     """Of a name that stands for something else `snakemake NAME` would make that."""
     files = [ROOT / "Snakefile", *(ROOT / "rules").glob("*.smk")]
     text = "".join(file.read_text() for file in files)
-    names = {*re.findall(r"^ *rule (\w+):", text, re.M), *DATASETS, *FIGURES, "point"}
+    names = {
+        *re.findall(r"^ *rule (\w+):", text, re.M),
+        *accuracy.DATASETS,
+        *accuracy.FIGURES,
+        "point",
+    }
     names |= {*catalogue.DOCUMENTS, *re.findall(r"results/\{(?:scale|SCALE)\}/([a-z]\w*)", text)}
     products = re.findall(r"product=\"(.*)\"", text)
     names |= {one for some in products for one in some.split("|")} - {"R"}

@@ -4,6 +4,7 @@ from being made."""
 import ast
 import re
 import shutil
+import sys
 from pathlib import Path
 
 import pytest
@@ -15,7 +16,8 @@ from roughgas.base import InputError
 from roughgas.base.files import module_of
 from roughgas.config import study_folders
 
-PUBLIC = {"roughgas.gas", "roughgas.plotting", "roughgas.judging", "roughgas.theory"}
+ROOMS = ("gas", "plotting", "judging", "tasks", "tasks.dsmc", "tasks.free_cooling", "theory")
+PUBLIC = {f"roughgas.{one}" for one in ROOMS}
 LEAST = "experiments:\n  bed: {extends: vibrated, particles: 80}\n"
 BROKEN = {
     "out_of_range": ("experiments: {x: {extends: vibrated, particles: -3}}", "particles = -3"),
@@ -101,6 +103,15 @@ def test_without_studies_the_paper_stands(here):
     assert len(whole["experiments"]) == 6 and whole["folders"] == whole["broken"] == {}
 
 
+@pytest.mark.parametrize("folder", FOLDERS, ids=lambda one: one.name)
+def test_without_a_study_all_others_stand(here, folder):
+    for one in FOLDERS:
+        if one != folder:
+            shutil.copytree(one, Path("studies", one.name))
+    whole = config.load("config.yaml")
+    assert whole["broken"] == {} and len(whole["folders"]) == len(FOLDERS) - 1
+
+
 def test_modules_of_a_study_import_each_other_and_are_read_anew(here, tmp_path):
     here("mine", LEAST)
     folder = tmp_path / "studies" / "mine"
@@ -114,24 +125,30 @@ def test_modules_of_a_study_import_each_other_and_are_read_anew(here, tmp_path):
         module_of(folder, "tasks")
 
 
+def is_module(name):
+    path = ROOT / "src" / name.replace(".", "/")
+    return path.is_dir() or path.with_suffix(".py").exists()
+
+
 @pytest.mark.parametrize("folder", FOLDERS, ids=lambda one: one.name)
 def test_a_study_uses_the_public_modules_alone(folder):
     for path in folder.glob("*.py"):
         for node in ast.walk(ast.parse(path.read_text())):
             if isinstance(node, ast.ImportFrom) and node.level == 0:
-                names = [f"{node.module}.{one.name}" for one in node.names]
-                modules = [node.module, *names] if node.module == "roughgas" else [node.module]
+                named = [f"{node.module}.{one.name}" for one in node.names]
+                modules = [node.module, *filter(is_module, named)]
             elif isinstance(node, ast.Import):
                 modules = [one.name for one in node.names]
             else:
                 continue
             used = {one for one in modules if one.startswith("roughgas.")}
             assert used <= PUBLIC, path
+            others = {one.partition(".")[0] for one in modules} - sys.stdlib_module_names
+            assert others <= {"roughgas", "numpy", "xarray", "matplotlib"}, path
 
 
 def test_nothing_of_a_study_is_named_outside_its_folder():
-    every = config.load(ROOT / "config.yaml")["folders"].values()
-    names = {name for about in every for name in about["experiments"]}
+    names = {name for name in config.load(ROOT / "config.yaml")["experiments"] if "." in name}
     for folder in FOLDERS:
         names.add(f"studies/{folder.name}")
         claims = folder / "claims.yaml"

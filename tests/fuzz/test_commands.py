@@ -18,7 +18,6 @@ WORDS += ["a\nb"]
 JSON = ["{", "[]", "3", "null", "NaN", "{}", '{"a": 1}', '{"experiments": null}', '{"scale": "x"}']
 MEANT = ["show", "show --json", "reduce -o out.nc", "table -o out.csv"]
 MEANT += ["claims --json out.json --markdown out.md"]
-MEANT += ["claims --open-questions --json out.json --markdown out.md"]
 MEANT += ["explore --points . -o out.html", "document -o out.html", "run_times -o out.md"]
 MEANT += ["accuracy_table -o out.md", "accuracy_data -o out.nc"]
 MEANT += ["film -o out.png", "crate -o out.zip"]
@@ -32,7 +31,7 @@ RIGHT = [
 ]
 """Command lines that are right."""
 OPTIONS = ["--json", "-o", "--output", "--points", "--verify", "--markdown", "--help"]
-OPTIONS += ["--open-questions", "--configuration", "--x"]
+OPTIONS += ["--configuration", "--x"]
 OUTPUTS = ["out.csv", "out.nc", "out.md", "out.html", "out.png", "out.zip", "no/out.json", "out"]
 
 

@@ -4,23 +4,20 @@ import numpy as np
 import pytest
 from brute_force import KERNELS
 from matplotlib.figure import Figure
-from tests.pages import check_study
+from tests.houses import check_variables, part, quietly
 from tests.show.figures.legibility import faults
 
 from roughgas import config, theory
 from roughgas.scene import build
 from roughgas.simulation.gas import Gas
 from roughgas.statistics.errors import blocking_stderr
-from roughgas.studies import finite_size, study
-from roughgas.studies.figures.finite_size import draw_figure
-from roughgas.studies.runs import finite_size as runs
-from roughgas.studies.tables import TABLES
 from roughgas.tasks import dsmc
 from roughgas.tasks.free_cooling import FreeCooling
 
 from .dsmc.nanbu import ratios
 
-tasks, run = study("finite_size")
+runs, results = part("finite_size", "tasks"), part("finite_size", "results")
+draw = part("finite_size", "figure").draw
 CONFIG = config.load("tests/experiments.yaml")
 EXPERIMENTS = {
     name: config.experiment(CONFIG, name, "paper") for name in ("cooling", "cooling_spheres")
@@ -37,12 +34,12 @@ SETTINGS = {
 
 @pytest.fixture(scope="module")
 def parts():
-    return {task: run(task, SETTINGS, EXPERIMENTS) for task in tasks(SETTINGS)}
+    return {task: runs.run(task, SETTINGS, EXPERIMENTS, quietly) for task in runs.tasks(SETTINGS)}
 
 
 @pytest.fixture(scope="module")
 def data(parts):
-    return finite_size.combine(parts, SETTINGS)
+    return results.combine(parts, SETTINGS)
 
 
 def gas_of(sides, dimension):
@@ -85,8 +82,8 @@ def test_noise_has_its_share_and_no_cumulant():
 
 def test_what_waves_hold_is_taken_out_of_translation():
     """E_rot = 2, E_trans = 6, a third of it in waves, of which a quarter of 6 is thermal."""
-    assert finite_size.without_flow(2 / 8, 1 / 3, 1 / 4) == pytest.approx(2 / (2 + 6 - 2 + 1.5))
-    assert finite_size.without_flow(0.3, 0.1, 0.1) == pytest.approx(0.3)
+    assert results.without_flow(2 / 8, 1 / 3, 1 / 4) == pytest.approx(2 / (2 + 6 - 2 + 1.5))
+    assert results.without_flow(0.3, 0.1, 0.1) == pytest.approx(0.3)
 
 
 def test_names_of_tasks(parts):
@@ -119,15 +116,15 @@ def test_results_are_what_they_are_made_of(parts, data):
 
 
 def test_it_is_documented_tabulated_and_drawn(data):
-    check_study("finite_size", data)
-    table = TABLES["finite_size"](data)
+    check_variables("finite_size", data)
+    table = results.table(data)
     assert table.count("\n| cooling, r = 0.8, β = −0.3 |") == 6
     assert table.count("\n## ") + table.startswith("## ") == 1
-    figure = draw_figure(data)
+    figure = draw(data)
     assert isinstance(figure, Figure) and len(figure.axes) == 4
     number, _, box, _ = figure.axes
     assert len(number.get_yticklabels()) == data.sizes["point"] and box.get_yscale() == "linear"
-    assert not any("printed at" in fault for fault in faults(lambda: draw_figure(data)))
+    assert not any("printed at" in fault for fault in faults(lambda: draw(data)))
 
 
 def test_a_run_that_collapses_is_unknown_from_there_on():
@@ -198,5 +195,5 @@ def test_in_a_larger_box_shear_waves_hold_energy():
     own = late[:, 0].std(ddof=1) / np.sqrt(40)
     assert R - late[:, 0].mean() > 4 * np.hypot(own, error)
     assert late[:, 3].mean() > 5 * noise
-    still = finite_size.without_flow(seen[:, 12:, 1], seen[:, 12:, 3], noise).mean()
+    still = results.without_flow(seen[:, 12:, 1], seen[:, 12:, 3], noise).mean()
     assert abs(still - R) < 0.4 * (R - late[:, 0].mean())

@@ -6,17 +6,15 @@ import xarray as xr
 from brute_force import scene_of, settings, snapshot
 from brute_force.beside import brute_force_from
 from schedules import STEADY
-from tests.pages import check_study
+from tests.houses import check_variables, part, quietly
 from tests.show.figures.legibility import faults
 
 from roughgas.scene.initial import initial_state
 from roughgas.simulation.gas import Gas
-from roughgas.studies import profiles, study
-from roughgas.studies.figures.profiles import draw_figure
-from roughgas.studies.runs.profiles import CONTACTS, LEVEL, NEAR, SUMS, Profile
-from roughgas.studies.tables import profiles as table
 
-tasks, run = study("profiles")
+runs, results = part("profiles", "tasks"), part("profiles", "results")
+draw = part("profiles", "figure").draw
+CONTACTS, LEVEL, NEAR, SUMS = runs.CONTACTS, runs.LEVEL, runs.NEAR, runs.SUMS
 EXPERIMENTS = {
     "bed": settings("bed", 16, [10, "open"]) | {"schedule": STEADY},
     "gas": settings("sheared", 16, [12, 12]) | {"schedule": STEADY},
@@ -63,7 +61,7 @@ def test_sums_are_those_that_brute_force_counts(name):
     gas, world = gas_of(EXPERIMENTS[name])
     brute = brute_force_from(world, snapshot(gas.state, gas.scene))
     phases, periods, width, slices = 4, 2, 1.5, 12
-    profile = Profile(gas, {"slice": width, "period": 1}, phases, slices)
+    profile = runs.Profile(gas, {"slice": width, "period": 1}, phases, slices)
     for number in range(phases * periods):
         profile.go_on(number)
     sums, contacts = counted_plainly(world, brute, phases, periods, width, slices)
@@ -77,7 +75,7 @@ def test_sums_are_those_that_brute_force_counts(name):
 
 def test_pairs_are_all_that_are_level_and_those_that_meet():
     gas, world = gas_of(EXPERIMENTS["bed"])
-    profile = Profile(gas, BED, 1, 4)
+    profile = runs.Profile(gas, BED, 1, 4)
     profile.go_on(0)
     brute = brute_force_from(world, snapshot(gas.state, gas.scene))
     found = np.zeros((6, 2))
@@ -102,13 +100,13 @@ def test_maxwellian_pairs_need_no_correction():
         rng = np.random.default_rng(seed)
         gas.state.trajectory[:, 2:4] = rng.standard_normal((400, 2))
         gas.state.spin[:] = rng.standard_normal((400, 1))  # T_rot = T/2 at q = 1/2: R = 1/3
-        profile = Profile(gas, BED, 1, 4)
+        profile = runs.Profile(gas, BED, 1, 4)
         moving = gas.state.trajectory
         sums = profile._pairs(moving[:, :2], moving[:, 2:4])
         names = ("pairs", "g", "g^2", "g^3", "s^2", "g s^2")
         data = {name: ("company", row) for name, row in zip(names, sums, strict=True)}
         about = {"inertia": 0.5, "dimension": 2}
-        found = profiles._by_pairs(xr.Dataset(data | about, {"company": ["level", "meeting"]}))
+        found = results._by_pairs(xr.Dataset(data | about, {"company": ["level", "meeting"]}))
         factors.append(float(found["speed_factor"]))
         ratios.append(float(found["R_level"]))
     for values, expected in ((factors, 1.0), (ratios, 1 / 3)):
@@ -131,8 +129,8 @@ def test_an_elastic_gas_at_rest_is_barometric():
     point = BED | {"r": "1", "beta": "-1", "slice": 2.0, "period": 8, "equilibrate": 2000}
     point |= {"measure": 3200}
     own = SETTINGS | {"runs": 8, "phases": 2, "slices": 40, "points": [point]}
-    parts = {task: run(task, own, {"bed": experiment}) for task in tasks(own)}
-    data = profiles.combine(parts, own).isel(point=0)
+    parts = {task: runs.run(task, own, {"bed": experiment}, quietly) for task in runs.tasks(own)}
+    data = results.combine(parts, own).isel(point=0)
     kinetic = 2 * number * float(data.E_trans_phase.mean())
     energy = kinetic * (2 * number - 0.5) / (number - 0.5)
     edges = g * (2.0 * np.arange(41) - 1.0).clip(0.0) / energy  # the floor is met at height 1
@@ -150,19 +148,19 @@ def test_an_elastic_gas_at_rest_is_barometric():
 
 @pytest.fixture(scope="module")
 def parts():
-    return {task: run(task, SETTINGS, EXPERIMENTS) for task in tasks(SETTINGS)}
+    return {task: runs.run(task, SETTINGS, EXPERIMENTS, quietly) for task in runs.tasks(SETTINGS)}
 
 
 def test_slices_have_the_energy_of_the_gas_and_every_collision(parts):
-    for part in parts.values():
-        assert profiles.imbalance(part) < 1e-12
-        assert np.all(part.particles.sum("slice") == 16 * part.samples)
-        assert set(CONTACTS) <= set(part) and part.contacts.sum() == part.collisions > 10
+    for one in parts.values():
+        assert results.imbalance(one) < 1e-12
+        assert np.all(one.particles.sum("slice") == 16 * one.samples)
+        assert set(CONTACTS) <= set(one) and one.contacts.sum() == one.collisions > 10
 
 
 def test_every_point_has_its_profiles(parts):
-    data = profiles.combine(parts, SETTINGS)
-    check_study("profiles", data)
+    data = results.combine(parts, SETTINGS)
+    check_variables("profiles", data)
     assert list(data.point.values) == ["bed_r0.9_beta0.3", "gas_r0.8_beta1"]
     assert list(np.isfinite(data.theta.values)) == [False, True]
     bed = data.isel(point=0)
@@ -175,16 +173,16 @@ def test_every_point_has_its_profiles(parts):
 
 
 def test_the_same_settings_give_the_same_runs(parts):
-    for task, part in parts.items():
-        again = run(task, SETTINGS, EXPERIMENTS).drop_vars("cpu_seconds")
-        assert again.equals(part.drop_vars("cpu_seconds"))
+    for task, one in parts.items():
+        again = runs.run(task, SETTINGS, EXPERIMENTS, quietly).drop_vars("cpu_seconds")
+        assert again.equals(one.drop_vars("cpu_seconds"))
 
 
 def test_figure_and_table_show_every_point(parts):
-    data = profiles.combine(parts, SETTINGS)
-    figure = draw_figure(data)
+    data = results.combine(parts, SETTINGS)
+    figure = draw(data)
     _, _, averages, sheared = figure.axes
-    assert not any("printed at" in fault for fault in faults(lambda: draw_figure(data)))
+    assert not any("printed at" in fault for fault in faults(lambda: draw(data)))
     assert len(averages.containers) == len(sheared.containers) == 1
-    assert "disks, r = 0.9, β = 0.3" in table(data)
-    assert "disks, r = 0.8, β = 1 |" in table(data)
+    assert "disks, r = 0.9, β = 0.3" in results.table(data)
+    assert "disks, r = 0.8, β = 1 |" in results.table(data)

@@ -5,19 +5,15 @@ import math
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
-from tests.pages import check_study
+from tests.houses import check_variables, part, quietly
 from tests.show.figures.legibility import faults
 
 from roughgas import config, theory
-from roughgas.studies import runaway, study
-from roughgas.studies.figures.runaway import draw_figure
-from roughgas.studies.runs import runaway as runs
-from roughgas.studies.tables import TABLES
-from roughgas.studies.tasks import runaway_gases
 from roughgas.tasks import stream
 from roughgas.tasks.free_cooling import FreeCooling
 
-tasks, run = study("runaway")
+runs, results = part("runaway", "tasks"), part("runaway", "results")
+draw = part("runaway", "figure").draw
 EXPERIMENTS = {"cooling": config.experiment(config.load("config.yaml"), "cooling", "paper")}
 COOLING = FreeCooling(EXPERIMENTS["cooling"], 0.9, 0.0)
 SETTINGS = {
@@ -37,17 +33,17 @@ SETTINGS = {
 
 @pytest.fixture(scope="module")
 def parts():
-    return {task: run(task, SETTINGS, EXPERIMENTS) for task in tasks(SETTINGS)}
+    return {task: runs.run(task, SETTINGS, EXPERIMENTS, quietly) for task in runs.tasks(SETTINGS)}
 
 
 @pytest.fixture(scope="module")
 def data(parts):
-    return runaway.combine(parts, SETTINGS)
+    return results.combine(parts, SETTINGS)
 
 
 def test_the_longest_task_is_the_first():
-    gases = runaway_gases(SETTINGS)
-    assert list(gases) == tasks(SETTINGS) and len(gases) == 10
+    gases = runs.gases_of(SETTINGS)
+    assert list(gases) == runs.tasks(SETTINGS) and len(gases) == 10
     first, *_, last = gases
     assert first.startswith("dsmc-n400") and last == "example-n400-mu0.1"
 
@@ -81,7 +77,7 @@ def test_an_escape_is_dated_by_the_collision():
 
 def test_times_of_all_escapes_are_averaged():
     time = np.array([100.0, 120.0, 140.0])
-    value, bound = runaway.time_of_escape(time, time)
+    value, bound = results.time_of_escape(time, time)
     assert value[:2] == pytest.approx((120, 20 / math.sqrt(3))) and math.isnan(bound)
 
 
@@ -92,7 +88,7 @@ def test_times_are_unbiased_where_runs_are_given_up():
     time = rng.exponential(1000, (2000, 30))
     observed = np.minimum(time, 800)
     found = [
-        runaway.time_of_escape(np.where(one <= 800, one, np.nan), seen)[0]
+        results.time_of_escape(np.where(one <= 800, one, np.nan), seen)[0]
         for one, seen in zip(time, observed, strict=True)
     ]
     values, errors = np.array([one[:2] for one in found]).T
@@ -101,7 +97,7 @@ def test_times_are_unbiased_where_runs_are_given_up():
 
 
 def test_a_bound_holds_in_19_of_20_cases_where_no_run_escapes():
-    value, bound = runaway.time_of_escape(np.full(4, np.nan), np.full(4, 500.0))
+    value, bound = results.time_of_escape(np.full(4, np.nan), np.full(4, 500.0))
     assert math.isnan(value.value)
     assert math.exp(-2000 / bound) == pytest.approx(0.05)
 
@@ -126,18 +122,18 @@ def test_what_is_combined(data, parts):
 
 
 def test_it_is_documented_tabulated_and_drawn(data):
-    check_study("runaway", data)
-    table = TABLES["runaway"](data)
+    check_variables("runaway", data)
+    table = results.table(data)
     assert table.startswith("## Runaway spins (r = 0.9, β = 0.0, packing 0.001)")
     assert table.count("\n| 0.1 |") == 3 and "(0/5)" in table
-    figure = draw_figure(data)
+    figure = draw(data)
     assert isinstance(figure, Figure) and len(figure.axes) == 4
-    assert not any("printed at" in fault for fault in faults(lambda: draw_figure(data)))
+    assert not any("printed at" in fault for fault in faults(lambda: draw(data)))
 
 
 def test_arrows_at_one_place_are_one(data):
     twice = data.isel(mu=[0, 1, 2, 2]).assign_coords(mu=[0.05, 0.1, 0.5, 1.0])
-    times = draw_figure(twice).axes[1]
+    times = draw(twice).axes[1]
     arrows = [line for line in times.lines if line.get_marker() == r"$\uparrow$"]
     assert [line.get_label() for line in arrows] == [r"$\mu = 0.5, 1$: later than (95 %)"]
 
@@ -151,7 +147,7 @@ def test_the_more_particles_the_sooner():
         steps = (runs.without_positions(COOLING, SETTINGS, 0.15, particles, s) for s in seeds)
         time = np.array([runs.escape(step, 20000)[0] for step in steps])
         assert np.all(np.isfinite(time))
-        found.append(runaway.time_of_escape(time, time)[0])
+        found.append(results.time_of_escape(time, time)[0])
     few, many = found
     assert few.value - many.value > 4 * math.hypot(few.stderr, many.stderr)
     assert many.value > theory.runaway_growth(2000, 0.9, 0.0, 0.15)
@@ -166,7 +162,7 @@ def test_events_and_dsmc_agree_where_the_gas_is_dilute(particles, mu):
         seeds = stream(SETTINGS, 100 + key, particles).spawn(24)
         steps = (start(COOLING, SETTINGS, mu, particles, seed) for seed in seeds)
         time = np.array([runs.escape(step, 20000)[0] for step in steps])
-        found.append(runaway.time_of_escape(time, time)[0])
+        found.append(results.time_of_escape(time, time)[0])
     one, other = found
     assert one.value - other.value == pytest.approx(0, abs=4 * math.hypot(one.stderr, other.stderr))
     assert math.hypot(one.stderr, other.stderr) < 0.35 * one.value

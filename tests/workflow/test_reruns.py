@@ -24,9 +24,9 @@ FAMILIES = {"family", "catalogue", "document"}
 FILM = {"gas_of_film", "film", "document"}
 ACCURACY = {"accuracy", "accuracy_limits", "accuracy_data", "accuracy_table", "document"}
 COVERAGE = {"coverage", "accuracy_data", "accuracy_table", "document"}
-OF_THEIR_OWN = {"profiles", "finite_size", "runaway"}
-COMBINED = OF_THEIR_OWN | {"combined_tasks", "question_table", "document"}
-STUDIES = ACCURACY | COVERAGE | COMBINED | {"statistical", "models", "discretisation"}
+OF_TASKS = {"study_data", "profiles", "finite_size", "runaway"}
+OF_DSMC = {"finite_size", "runaway", "study_data", "study_claims", "study_page"}
+STUDIES = ACCURACY | COVERAGE | OF_TASKS | {"statistical", "models", "discretisation"}
 SIMULATED = COMPILED | FAMILIES | FILM | STUDIES | {"movie"}
 EDITED = {  # file of the package: what an edit of its code runs again
     "statistics/steady_state.py": SIMULATED - {"discretisation"},
@@ -42,8 +42,7 @@ EDITED = {  # file of the package: what an edit of its code runs again
     "show/figures/fig1a.py": {"fig1a"},
     "show/page/explore.js": {"page"},
     "show/movies/drawing.py": {"movie"},
-    "studies/tables.py": {"question_table", "document"} | OF_THEIR_OWN,
-    "tasks/dsmc.py": (ACCURACY | COMBINED | {"models", "claims"}) - {"profiles"},
+    "tasks/dsmc.py": ACCURACY | {"models"} | OF_DSMC,
     "cli/run.py": POINTS | FAMILIES,
 }
 ALIKE = {  # files after whose edits much the same runs again as after others'
@@ -52,7 +51,6 @@ ALIKE = {  # files after whose edits much the same runs again as after others'
     "simulation/clustering.py",
     "theory/prediction.py",
     "show/page/explore.js",
-    "studies/tables.py",
 }
 TOGETHER = {  # files of which hardly anything needs two: their edits are tried at once, as well
     "data/film.py",
@@ -135,8 +133,8 @@ def rerun(made, edit):
     if "Nothing to be done" in output:
         return set()
     named = re.findall(r"Job \d+: (?:draw tiny/|study )(\w+)", output)
-    drawn = {"figure", "study_figure", "accuracy_figure", "question_figure"}
-    targets = {*drawn, "accuracy_task", "task", *FINISHED}
+    drawn = {"figure", "study_figure", "accuracy_figure"}
+    targets = {*drawn, "accuracy_task", "study_task", *FINISHED}
     return {*jobs_by_rule(output), *named} - targets
 
 
@@ -193,6 +191,12 @@ def test_an_edit_counts_where_what_was_compiled_has_been_deleted(finished):
     assert finished.planned() == {}
     finished.append("src/roughgas/statistics/steady_state.py")
     assert finished.planned("results/tiny/cooling.nc")["seeds"] == EACH
+
+
+def test_an_edit_of_what_combines_the_tasks_of_a_study_runs_none_of_them_again(finished):
+    finished.append("studies/runaway/results.py")
+    expected = {"study_data": 1, "study_figure": 1, "study_claims": 1, "study_page": 1}
+    assert finished.planned("runaway") == expected | {"runaway": 1}
 
 
 def test_an_edit_of_a_family_of_hard_cases_concerns_it_alone(finished):

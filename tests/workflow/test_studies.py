@@ -3,6 +3,7 @@
 import shutil
 
 import pytest
+from tests.houses import FOLDERS
 
 LEAST = """\
 experiments:
@@ -40,24 +41,35 @@ def test_a_copy_of_a_study_is_another(own):
     assert planned["reduce"] == 2 and planned["mine"] == 1
 
 
-def test_without_a_study_all_else_is_there(own):
-    for name in ("spheres", "drives"):
-        shutil.rmtree(own.folder / "studies" / name)
+@pytest.mark.slow  # plans as often as there are studies
+@pytest.mark.parametrize("folder", FOLDERS, ids=lambda one: one.name)
+def test_without_a_study_all_else_is_there(own, folder):
+    shutil.rmtree(own.folder / "studies" / folder.name)
     own.configure(
         lambda config: [
             config["scales"]["tiny"].pop(name)
             for name in [*config["scales"]["tiny"]]
-            if name.startswith(("spheres.", "drives."))
+            if name.startswith(f"{folder.name}.")
         ]
     )
-    assert own.planned("figures")["figure"] == 4
-    assert own.planned("mixtures")["study_figure"] == 3
+    planned = own.planned("figures", "extensions")
+    assert planned["figure"] == 4 and planned["study_page"] == len(FOLDERS) - 1
 
 
 def test_a_broken_study_ends_in_one_line_and_keeps_nothing_else_from_being_made(own):
     own.add("broken", "experiments: {x: {extends: vibrated, particles: -3}}")
     own.add("unread", LEAST)
     (own.folder / "studies" / "unread" / "figure.py").write_text("def draw(:\n")
+    own.add("unnamed", "tasks: {experiments: [cooling]}")
+    for name in ("tasks", "results"):
+        (own.folder / "studies" / "unnamed" / f"{name}.py").write_text("import absent\n")
+    status, output = own.snakemake("-n", *TINY, "extensions")
+    line = (
+        "studies/unnamed/tasks.py = ModuleNotFoundError: No module named 'absent': must be Python"
+    )
+    assert status == 0 and f"{line} (left out; all else can be made)" in output
+    status, output = own.snakemake("-n", *TINY, "unnamed")
+    assert status == 1 and line in output and "Traceback" not in output
     assert own.planned("figures")["figure"] == 4
     status, output = own.snakemake("-n", *TINY, "broken")
     line = "roughgas: error: studies/broken/config.yaml: experiments.x.particles = -3: must be"

@@ -1,11 +1,14 @@
 """What can be asked for, and how the rest is refused."""
 
+from pathlib import Path
+
 import pytest
 from project import BEYOND, JOBS, POINTS, Project
 
 import roughgas.config
-from roughgas import accuracy, studies
-from roughgas.show import catalogue
+from roughgas import accuracy
+from roughgas.config import study_folders
+from roughgas.tasks.running import names
 
 SHOWN = len(BEYOND) + 1  # couette is drawn beside the paper's sheared gas
 """Experiments that figures beyond the paper show: some are the paper's, too."""
@@ -88,37 +91,26 @@ def test_one_job_makes_points_at_several_betas(tmp_path):
     assert project.planned("results/tiny/cooling/r0.8/beta0.1/seed1.nc")["point"] == 1
 
 
-def tasks_of(project, name):
-    """The number of tasks of a study."""
-    config = roughgas.config.load(project.folder / "config.yaml")
-    if name in accuracy.STUDIES:
-        settings = roughgas.config.accuracy(config, "tiny")[name]
-        return len(accuracy.study(name).tasks(settings))
-    return len(studies.study(name).tasks(roughgas.config.study(config, name, "tiny")["study"]))
-
-
 def test_what_lies_beyond_the_paper_is_a_target_of_its_own(project):
     planned = project.planned("extensions")
-    questions = catalogue.figures_of("questions")
-    found = roughgas.config.load(project.folder / "config.yaml")["folders"]
-    figures = [figure for one in found.values() for figure in one["figures"]]
-    shown = catalogue.shown_in("questions")
+    config = roughgas.config.load(project.folder / "config.yaml")
+    found = config["folders"]
+    with_tasks = {name: about["folder"] for name, about in found.items() if "tasks" in about}
+    settings = {name: study_folders.tasks(config, name, "tiny")["study"] for name in with_tasks}
+    judged = [one for one in found.values() if Path(one["folder"], "claims.yaml").exists()]
     assert planned == {
         "compile_kernel": SHOWN,
         "seeds": SHOWN,
         "reduce": SHOWN,
-        "study_figure": len(figures),
-        "study_table": len(found),
-        "study_claims": len(found),
+        "study_task": sum(len(names(with_tasks[one], settings[one])) for one in with_tasks),
+        "study_data": len(with_tasks),
+        "study_figure": sum(len(one["figures"]) for one in found.values()),
+        "study_table": len([one for one in found.values() if one["experiments"]]),
+        "study_claims": len(judged),
         "study_page": len(found),
         "table": 1,
-        "claims": 1,
         "run_times": 1,
-        "task": sum(tasks_of(project, name) for name in shown),
-        "combined_tasks": len(questions),
-        "question_figure": len(questions),
-        "question_table": len(questions),
-        "document": 2 + len(questions),
+        "document": 1,
         "extensions": 1,
     }
     assert project.planned("figures")["seeds"] == JOBS
@@ -139,7 +131,12 @@ def test_everything_has_films_and_the_experiments_that_were_added(tmp_path):
 
 @pytest.mark.parametrize(("dataset", "figures"), [("accuracy", 2), ("coverage", 1)])
 def test_accuracy_is_a_job_for_each_task(project, dataset, figures):
-    tasks = sum(tasks_of(project, name) for name in accuracy.DATASETS[dataset])
+    settings = roughgas.config.accuracy(
+        roughgas.config.load(project.folder / "config.yaml"), "tiny"
+    )
+    tasks = sum(
+        len(accuracy.study(name).tasks(settings[name])) for name in accuracy.DATASETS[dataset]
+    )
     drawn = {"accuracy_figure": figures, "accuracy_table": 1, "document": 1, dataset: 1}
     assert project.planned(dataset) == {"accuracy_task": tasks, "accuracy_data": 1} | drawn
 

@@ -1,9 +1,9 @@
 """The verdict on McNamara & Luding (1998), from the datasets: statement by statement on the paper's
-own experiments, and on the questions that it leaves open."""
+own experiments. Statements beyond them are in folders of studies."""
 
 from roughgas.claims.report import judge
 from roughgas.claims.statements import read_subject
 
-PAPER, OPEN_QUESTIONS = read_subject("paper"), read_subject("open_questions")
+PAPER = read_subject("paper")
 
-__all__ = ["OPEN_QUESTIONS", "PAPER", "judge"]
+__all__ = ["PAPER", "judge"]

@@ -10,7 +10,9 @@ from typing import Any
 import numpy as np
 from xarray import DataArray, Dataset
 
+from roughgas import config
 from roughgas.base import on_one_line
+from roughgas.base.files import module_of
 from roughgas.base.formatting import as_json, columns, from_json
 from roughgas.data import netcdf
 from roughgas.data.netcdf import read_netcdf, unit_of
@@ -319,13 +321,19 @@ def task_text(data: Dataset) -> str:
     chosen = json.loads(about["settings_json"])["study"]
     head = [["task", f"{about['task']} of the study {about['study']}, scale {about['scale']}"]]
     head += [[key, str(one)] for key, one in chosen.items() if not isinstance(one, dict | list)]
+    place = "accuracy/{study}" if about["study"] in accuracy.STUDIES else "{study}/tasks"
+    file = f"results/{about['scale']}/{place.format(**about)}/{about['task']}.nc"
+    again = f"To make it again: snakemake -j1 {file}"
+    return "\n\n".join([columns(head), variables_text(data), again])
+
+
+def variables_text(data: Dataset) -> str:
+    """Return a table of the variables of a dataset."""
     table = [["variable", "over", "value"]]
     for name, one in data.variables.items():
         over = ", ".join(f"{dim} ({data.sizes[dim]})" for dim in one.dims)
         table.append([str(name), over, _values(one.values)])
-    folder = "accuracy" if about["study"] in accuracy.STUDIES else "studies"
-    file = f"results/{about['scale']}/{folder}/{about['study']}/{about['task']}.nc"
-    return "\n\n".join([columns(head), columns(table), f"To make it again: snakemake -j1 {file}"])
+    return columns(table)
 
 
 def _values(values: np.ndarray) -> str:
@@ -352,13 +360,25 @@ def studies_record(studies: Mapping[str, Dataset]) -> dict[str, Any]:
 
 def studies_text(studies: Mapping[str, Dataset]) -> str:
     """Return the tables of all studies."""
-    from roughgas import accuracy
-    from roughgas.studies.tables import TABLES
-
     scales = {data.attrs["scale"] for data in studies.values()}
-    tables = {**TABLES, **{name: accuracy.study(name).table for name in accuracy.STUDIES}}
-    parts = [tables[name](data).strip() for name, data in studies.items()]
+    parts = [_table_of(name)(data).strip() for name, data in studies.items()]
     return "\n\n".join([f"scale {', '.join(sorted(scales))}", *parts])
+
+
+def _table_of(study: str) -> Callable[[Dataset], str]:
+    """Return what shows the data of a study: of accuracy, or of a folder if that is there."""
+    from roughgas import accuracy
+    from roughgas.config.study_folders import folders
+
+    if study in accuracy.STUDIES:
+        module = accuracy.study(study)
+    else:
+        folder = folders(config.in_use()).get(study)
+        if folder is None or not (folder / "results.py").exists():
+            return variables_text
+        module = module_of(folder, "results")
+    function: Callable[[Dataset], str] = module.table
+    return function
 
 
 KINDS: dict[str, tuple[Callable[[Any], str], Callable[[Any], dict[str, Any]]]] = {

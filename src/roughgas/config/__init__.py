@@ -38,7 +38,7 @@ from roughgas.config.labels import (  # noqa: F401
 
 SHIPPED = Path(__file__).parents[1] / "config.yaml"
 """The experiments that come with the package; in a clone of the repository, its config.yaml."""
-SHOWCASE, STUDIES, ACCURACY = "showcase", "studies", "accuracy"
+SHOWCASE, ACCURACY = "showcase", "accuracy"
 """Parts that scales change under these names; a configuration may be without them."""
 OF_ACCURACY = SHIPPED.parent / ACCURACY
 """The folder of what accuracy costs, with settings of its own, which a configuration may change."""
@@ -161,20 +161,15 @@ def showcase(config: Mapping[str, Any], scale: str) -> dict[str, Any]:
     return point_settings(_at_scale(config, SHOWCASE, scale))
 
 
-def studies(config: Mapping[str, Any], scale: str) -> dict[str, Any]:
-    """Return the settings of the studies at `scale`, by name."""
-    return _at_scale(config, STUDIES, scale)
-
-
 def accuracy(config: Mapping[str, Any], scale: str) -> dict[str, Any]:
     """Return the settings of the studies of accuracy at `scale`, by name."""
     return _at_scale(config, ACCURACY, scale)
 
 
-def study(config: Mapping[str, Any], name: str, scale: str, part: str = STUDIES) -> dict[str, Any]:
-    """Return the settings of a study at `scale`, as `study`, and those of the
-    experiments that it may run, as `experiments`, those of other studies by their own names."""
-    settings = _at_scale(config, part, scale)
+def study(config: Mapping[str, Any], name: str, scale: str) -> dict[str, Any]:
+    """Return the settings of a study of accuracy at `scale`, as `study`, and those of the
+    experiments that it may run, as `experiments`, those of folders by their own names."""
+    settings = accuracy(config, scale)
     one_of("study", name, settings)
     known = config["experiments"]
     experiments = {
@@ -305,14 +300,13 @@ def from_text(
 
 
 def study_from_text(text: str, name: str, source: str) -> dict[str, Any]:
-    """Return the settings of a study and of the experiments that it may run, from their JSON."""
-    from roughgas.config.schema import check_schema, keys
+    """Return the settings of a study of accuracy and of the experiments that it may run, from their
+    JSON."""
+    from roughgas.config.schema import check_schema
 
     settings = from_json(text, source)
     check_schema(settings, source, "study_task")
-    of_accuracy = name in keys(ACCURACY)
-    whole = "accuracy_in_full" if of_accuracy else "studied"
-    for part in (name, f"{whole}/properties/{name}"):
+    for part in (name, f"accuracy_in_full/properties/{name}"):
         check_schema(settings["study"], f"{source}: study", part)
     for one, experiment in settings["experiments"].items():
         check_schema(experiment, f"{source}: experiments.{one}", "experiment")

@@ -82,8 +82,7 @@ def write_effective(whole: Mapping[str, Any], scale: str, output: str | Path) ->
         "betas_per_job": whole.get("betas_per_job", 1),
         "experiments": {name: config.experiment(whole, name, scale) for name in names},
     }
-    parts = {config.SHOWCASE: config.showcase, config.STUDIES: config.studies}
-    parts |= {config.ACCURACY: config.accuracy}
+    parts = {config.SHOWCASE: config.showcase, config.ACCURACY: config.accuracy}
     effective |= {part: of(whole, scale) for part, of in parts.items() if part in whole}
     effective["scales"] = {scale: {}}
     plain = json.loads(json.dumps(effective))  # without anchors

@@ -29,19 +29,18 @@ from roughgas.config.reading import read_yaml
 if TYPE_CHECKING:
     from jsonschema import Draft202012Validator, ValidationError
 
-PARTS = (settings_of.SHOWCASE, settings_of.STUDIES, settings_of.ACCURACY)
+PARTS = (settings_of.SHOWCASE, settings_of.ACCURACY)
 RESERVED = (
     *PARTS,
     *("accuracy_data", "accuracy_figure", "accuracy_limits", "accuracy_table", "accuracy_task"),
-    *("catalogue", "claims", "clustering", "combined_tasks", "compile_kernel", "config"),
-    *("coverage", "crate", "document", "effective_config", "everything", "explore"),
-    *("explore_extensions", "extensions", "family", "fig1a", "fig1b", "fig2a", "fig2b", "figure"),
-    *("figures", "film", "finite_size", "front", "gas_of_film", "hard_cases", "hard_cases_chaos"),
-    *("hard_cases_collapse", "hard_cases_cooling", "living", "living_page", "movie", "movies"),
-    *("open_questions", "page", "picture_for_talks", "pictures", "plot", "point", "profiles"),
-    *("question_figure", "question_table", "reduce", "report", "run_times"),
-    *("run_times_extensions", "runaway", "showcase", "study_claims", "study_data", "study_figure"),
-    *("study_page", "study_table", "study_task", "table", "task"),
+    *("catalogue", "claims", "clustering", "compile_kernel", "config", "coverage", "crate"),
+    *("document", "effective_config", "everything", "explore", "explore_extensions"),
+    *("extensions", "family", "fig1a", "fig1b", "fig2a", "fig2b", "figure", "figures", "film"),
+    *("front", "gas_of_film", "hard_cases", "hard_cases_chaos", "hard_cases_collapse"),
+    *("hard_cases_cooling", "living", "living_page", "movie", "movies", "page"),
+    *("picture_for_talks", "pictures", "plot", "point", "reduce", "report", "run_times"),
+    *("run_times_extensions", "showcase", "study_claims", "study_data", "study_figure"),
+    *("study_page", "study_table", "study_task", "table"),
 )
 """Names that no experiment may have, those of rules and products of the workflow."""
 FORMATS = {
@@ -112,14 +111,12 @@ def keys(part: str | None = None) -> list[str]:
 
 @functools.cache
 def _schema() -> dict[str, Any]:
-    """Return the whole schema: of config.yaml, its studies, the effects, and the observables."""
+    """Return the whole schema: of config.yaml, accuracy, the effects, and the observables."""
     from roughgas import effects, observables
 
-    schema, studies = (
-        read_yaml(Path(__file__).with_name(name)) for name in ("schema.yaml", "studies.yaml")
-    )
+    schema = read_yaml(Path(__file__).with_name("schema.yaml"))
     accuracy = read_yaml(settings_of.OF_ACCURACY / "schema.yaml")
-    schema["$defs"] |= studies["$defs"] | accuracy["$defs"]
+    schema["$defs"] |= accuracy["$defs"]
     schema["$defs"] |= {"effects": effects.schema(), "effects_in_full": effects.required()}
     schema["$defs"]["observables"] = observables.schema()
     return schema
@@ -252,7 +249,6 @@ def check_merged(config: Mapping[str, Any], source: str) -> None:
     for scale in config["scales"]:
         for part, whole, of in (
             (settings_of.SHOWCASE, "filmed", settings_of.showcase),
-            (settings_of.STUDIES, "studied", settings_of.studies),
             (settings_of.ACCURACY, "accuracy_in_full", settings_of.accuracy),
         ):
             if part in config:

@@ -65,6 +65,7 @@ from roughgas.theory.rate_equations import (
     translational_energy_change,
 )
 from roughgas.theory.runaway import (
+    ESCAPED,
     cooling_rate,
     maxwellian_share,
     runaway_growth,
@@ -82,6 +83,7 @@ from roughgas.theory.transport import (
     mean_free_path,
     number_density,
     packing_fraction,
+    shear_factor,
     thermal_conductivity,
 )
 from roughgas.theory.viscoelastic import (

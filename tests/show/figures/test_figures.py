@@ -122,7 +122,7 @@ def test_a_figure_is_drawn(name, tmp_path):
     output = tmp_path / "figures" / f"{name}.png"
     paths = inputs(name, tmp_path)
     if name in figures_of("paper"):
-        draw(name, paths, [output])
+        draw(name, paths, output=[output])
     else:
         folder = ROOT / "studies" / name.partition("_")[0]
         draw_of_study(folder, name, paths, shows=[path.stem for path in paths], output=[output])
@@ -158,7 +158,7 @@ def test_the_same_data_in_any_order_give_the_same_bytes(tmp_path):
     paths, content = inputs("fig1b", tmp_path), []
     for order in (paths, paths[::-1]):
         outputs = [tmp_path / "out" / "a.pdf", tmp_path / "out" / "a.png"]
-        draw("fig1b", order, outputs)
+        draw("fig1b", order, output=outputs)
         content.append([output.read_bytes() for output in outputs])
     assert content[0] == content[1]
     assert content[0][0].startswith(b"%PDF") and b"CreationDate" not in content[0][0]
@@ -232,11 +232,11 @@ def test_places_without_data_are_left_out():
 def test_what_cannot_be_drawn_is_refused_and_leaves_no_file(tmp_path):
     paths = inputs("fig1a", tmp_path)
     with pytest.raises(InputError, match=r"figure = fig9: must be one of fig1a"):
-        draw("fig9", paths, [tmp_path / "a.pdf"])
+        draw("fig9", paths, output=[tmp_path / "a.pdf"])
     with pytest.raises(InputError, match=r"must end in \.pdf or \.png or \.svg"):
-        draw("fig1a", paths, [tmp_path / "a.eps"])
+        draw("fig1a", paths, output=[tmp_path / "a.eps"])
     with pytest.raises(InputError, match=r"data of fig2b = vibrated: must be cooling"):
-        draw("fig2b", paths, [tmp_path / "a.pdf"])
+        draw("fig2b", paths, output=[tmp_path / "a.pdf"])
     assert {path.name for path in tmp_path.iterdir()} == {"vibrated.nc"}
 
 

@@ -5,19 +5,19 @@ particle.
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from roughgas.scene import build
-from roughgas.simulation.energies import ratio
-from roughgas.simulation.gas import Gas
-from roughgas.studies.tasks import runaway_gases
+from roughgas.gas import Gas, build, ratio
 from roughgas.tasks import dsmc, stream, timed
 from roughgas.tasks.free_cooling import FreeCooling
-from roughgas.theory.runaway import ESCAPED
+from roughgas.theory import ESCAPED
 
+SIMULATED = ("dsmc", "events")
+"""How a gas is simulated."""
 STRIDE = 4  # collisions per particle between two looks at single particles
 WHOLLY = 0.999  # R up to which the example is followed
 SERIES = ("R", "largest_share", "participation")
@@ -26,9 +26,38 @@ Step = Callable[[], tuple[np.ndarray, np.ndarray]]
 """Lets a gas make STRIDE collisions per particle: R after each, and the spins in the end."""
 
 
+def tasks(settings: Mapping[str, Any]) -> list[str]:
+    """Return the names of all gases, the longest first."""
+    return list(gases_of(settings))
+
+
+def gas_name(kind: str, particles: int, mu: float) -> str:
+    """Return the name of a task."""
+    return f"{kind}-n{particles}-mu{mu:g}"
+
+
+def gases_of(settings: Mapping[str, Any]) -> dict[str, tuple[str, float, Mapping[str, Any]]]:
+    """Return (kind, mu, particles and lengths) of each gas by name, the longest first.
+
+    The random numbers of a gas are of its place in this list.
+    """
+    gases = [
+        (kind, mu, one) for kind in SIMULATED for one in settings[kind] for mu in settings["mu"]
+    ]
+    gases += [("example", mu, settings["example"]) for mu in settings["example"]["mu"]]
+    gases.sort(key=_collisions, reverse=True)
+    return {gas_name(kind, one["particles"], mu): (kind, mu, one) for kind, mu, one in gases}
+
+
+def _collisions(gas):
+    """Return how many a gas makes at most, one by events counting as much as it takes longer."""
+    kind, _, one = gas
+    return (20 if kind == "events" else 1) * one["particles"] * one["limit"] * one.get("runs", 1)
+
+
 def run(task: str, settings, experiments, progress: Callable[[int, int], None]) -> xr.Dataset:
-    """Return what one task finds, as roughgas.studies.runaway combines it."""
-    gases = runaway_gases(settings)
+    """Return what one task finds, as results.combine takes it."""
+    gases = gases_of(settings)
     kind, mu, about = gases[task]
     cooling = FreeCooling(experiments["cooling"], float(settings["r"]), float(settings["beta"]))
     start = {"events": by_events, "dsmc": without_positions, "example": without_positions}[kind]
@@ -71,7 +100,7 @@ def by_events(cooling: FreeCooling, settings, mu, particles, seed) -> Step:
 
     def step():
         rows = gas.in_collisions(gas.count(1.0), STRIDE)
-        return ratio(gas.energies(rows)), gas.state.spin
+        return ratio(gas.energies(rows)), gas.spins()
 
     return step
 

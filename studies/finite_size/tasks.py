@@ -1,18 +1,14 @@
 """A cooling gas of so many particles: without positions, and by events in several boxes."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from roughgas import theory
-from roughgas.base import CollapseError
-from roughgas.simulation.energies import ratio
-from roughgas.simulation.gas import Gas
-from roughgas.simulation.restart import positions_and_velocities
-from roughgas.studies.tasks import point_names
+from roughgas.gas import CollapseError, Gas, ratio
 from roughgas.tasks import stream, timed
 from roughgas.tasks.free_cooling import FreeCooling, homogeneous, thermalised
 
@@ -24,8 +20,23 @@ SHARPER = 1 / 3  # error without positions, over that by events: it costs little
 SEEN = ("R", "R_now", "a02", "flow")
 
 
+def tasks(settings: Mapping[str, Any]) -> list[str]:
+    """Return the names of all tasks, a point and a number of particles each, the longest first."""
+    names = point_names(settings)
+    return [f"{name}-n{n}" for n in sorted(settings["particles"], reverse=True) for name in names]
+
+
+def point_names(settings: Mapping[str, Any]) -> dict[str, tuple[str, str, str]]:
+    """Return experiment, r and beta of the points by their names.
+
+    The random numbers of a gas are of its place in this list, and in that of numbers of particles.
+    """
+    places = [(name, *one) for name, points in settings["points"].items() for one in points]
+    return {f"{name}_r{r}_beta{beta}": (name, r, beta) for name, r, beta in places}
+
+
 def run(task: str, settings, experiments, progress: Callable[[int, int], None]) -> xr.Dataset:
-    """Return what one task finds, as roughgas.studies.finite_size combines it."""
+    """Return what one task finds, as results.combine takes it."""
     names, (point, _, label) = point_names(settings), task.rpartition("-n")
     experiment, r, beta = names[point]
     cooling = FreeCooling(experiments[experiment], float(r), float(beta))
@@ -94,11 +105,11 @@ def look(gas: Gas) -> tuple[float, float]:
 
     Without correlations these are 2 (D - 1) of the D N degrees of freedom.
     """
-    position, velocity = positions_and_velocities(gas.state, gas.scene, gas.time)
+    position, velocity = gas.positions_and_velocities()
     (number, dimension), box = position.shape, np.array(gas.scene.box)
     waves = np.exp(2j * np.pi * position / box).T @ velocity  # (direction, component)
     across = np.abs(waves[~np.eye(dimension, dtype=bool)]) ** 2
-    spin = np.asarray(gas.state.spin)
+    spin = gas.spins()
     ww, spins = np.sum(spin**2, axis=1), spin.shape[1]
     a02 = spins * np.mean(ww**2) / ((spins + 2) * np.mean(ww) ** 2) - 1.0
     return float(a02), float(2.0 * np.sum(across) / (number * np.sum(velocity**2)))

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 
-from roughgas.show.style import GREY, LOOKS, THEORY, Look
+from roughgas.plotting import GREY, LOOKS, THEORY, Look
 from roughgas.tasks import along
 
 SIZE = (7.0, 7.6)  # inches
@@ -24,8 +24,8 @@ TITLES = (
 )
 
 
-def draw_figure(data: xr.Dataset) -> Figure:
-    """Return the figure, from the study's dataset."""
+def draw(data: xr.Dataset) -> Figure:
+    """Return the figure, of what all tasks have found."""
     figure = Figure(figsize=SIZE, layout="constrained")
     rows, graphs = np.asarray(figure.subfigures(2, 1, height_ratios=(1.15, 1)))
     every = [*rows.subplots(1, 2, sharey=True), *graphs.subplots(1, 2)]

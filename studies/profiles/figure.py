@@ -9,11 +9,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from roughgas.show.style import FAINT, GREY, LOOKS, THEORY
-from roughgas.studies.profiles import QUARTERS
-from roughgas.studies.tables import point_label
+from roughgas.plotting import FAINT, GREY, LOOKS, THEORY
 from roughgas.tasks import along
-from roughgas.theory.closed_forms import lun_ratio
+from roughgas.theory import lun_ratio
+
+from .results import QUARTERS, point_label
 
 SIZE = (7.0, 7.0)  # inches
 LEAST = 5e-4
@@ -39,8 +39,8 @@ TITLES = (
 )
 
 
-def draw_figure(data: xr.Dataset) -> Figure:
-    """Return R over height and phase, averages of R, and sheared gases, from group `profiles`."""
+def draw(data: xr.Dataset) -> Figure:
+    """Return R over height and phase, averages of R, and sheared gases, of all tasks."""
     beds = [one for one in along(data, "point") if np.isnan(one.theta)]
     sheared = [one for one in along(data, "point") if np.isfinite(one.theta)]
     figure = Figure(figsize=SIZE, layout="constrained")

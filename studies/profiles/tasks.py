@@ -14,13 +14,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from roughgas.effects import inertia
-from roughgas.kernel.state import LAST_FIRST, LAST_SECOND
-from roughgas.scene import build, shear_rate
-from roughgas.simulation import schedule
-from roughgas.simulation.gas import Gas
-from roughgas.simulation.restart import positions_and_velocities
-from roughgas.studies.tasks import profile_name
+from roughgas.gas import Gas, build, inertia, shear_rate
 from roughgas.tasks import check_alike, stream, timed
 
 SUMS = ("particles", "u", "v", "uu", "vv", "uv", "w", "ww")
@@ -61,7 +55,7 @@ class Profile:
         E_trans, E_rot = (float(x[0]) for x in self.gas.energies(self.gas.sample).there())
         R = E_rot / (E_rot + E_trans)
         self.whole[:, phase] += E_trans, E_rot, R
-        position, velocity = positions_and_velocities(self.gas.state, self.gas.scene, self.gas.time)
+        position, velocity = self.gas.positions_and_velocities()
         for row, values in zip(self.sums, self._particles(position, velocity), strict=True):
             row[phase] += values
         if self.gas.scene.box[-1] is None:
@@ -69,13 +63,13 @@ class Profile:
 
     def _particles(self, position, velocity):
         """Yield SUMS over the particles in each slice, (slices,) each."""
-        state, scene = self.gas.state, self.gas.scene
-        if scene.effects.shear is not None:
+        scene, spin = self.gas.scene, self.gas.spins()
+        if shear_rate(scene) > 0.0:
             flow = shear_rate(scene) * (position[:, 1] - scene.middle)
             velocity = velocity - np.stack([flow, np.zeros(len(flow))], axis=1)
-        u, v, w = velocity[:, 0], velocity[:, -1], state.spin[:, 0]
+        u, v, w = velocity[:, 0], velocity[:, -1], spin[:, 0]
         across = (velocity[:, :-1] ** 2).mean(axis=1)
-        ones, spins = np.ones(len(u)), (state.spin**2).sum(axis=1)
+        ones, spins = np.ones(len(u)), (spin**2).sum(axis=1)
         slices = self._slices(position[:, -1])
         for values in (ones, u, v, across, v * v, u * v, w, spins):
             yield np.bincount(slices, values, self.sums.shape[-1])
@@ -90,7 +84,7 @@ class Profile:
             apart[:, axis] -= length * np.round(apart[:, axis] / length)
         meeting = (apart**2).sum(axis=1) < NEAR**2
         meeting &= (apart * between).sum(axis=1) < 0.0
-        spin = self.gas.state.spin
+        spin = self.gas.spins()
         square = ((spin[one] + spin[two]) ** 2).sum(axis=1) * (2 / 3 if spin.shape[1] > 1 else 1)
         g = np.sqrt((between**2).sum(axis=1))
         values = np.array([np.ones(len(g)), g, g**2, g**3, square, g * square])
@@ -101,15 +95,15 @@ class Profile:
         slices."""
         if self.gas.scene.box[-1] is None:
             return self._go_on_by_contacts(until)
-        before, collisions = self._contact_sums(), self.gas.collisions
+        before, collisions = self.gas.contact_sums(), self.gas.collisions
         self.gas.in_time(until - self.gas.time, 1)
-        made = 1.0 * (self.gas.collisions - collisions), *(self._contact_sums() - before)
+        made = 1.0 * (self.gas.collisions - collisions), *(self.gas.contact_sums() - before)
         self.contacts[:, self._phase()] += np.array(made)[:, None] / self.contacts.shape[-1]
 
     def _go_on_by_contacts(self, until):
-        before = self._contact_sums()
+        before = self.gas.contact_sums()
         while self.gas.step(until, 1):
-            now = self._contact_sums()
+            now = self.gas.contact_sums()
             self.contacts[:, self._phase(), self._slice_of_contact()] += 1.0, *(now - before)
             before = now
 
@@ -117,17 +111,24 @@ class Profile:
         """Return the number of the nearest phase."""
         return round((self.gas.time - self.begun) / self.period * self.phases) % self.phases
 
-    def _contact_sums(self):
-        return np.array([self.gas.sample[name][0] for name in CONTACTS])
-
     def _slice_of_contact(self):
         """Return the slice of the contact that is just over; its partners are still there."""
-        state, numbers = self.gas.state, self.gas.state.counts[[LAST_FIRST, LAST_SECOND]]
-        partners = np.isin(state.label, numbers)
-        return self._slices(state.trajectory[partners, len(self.gas.scene.box) - 1].mean())
+        *_, positions = self.gas.last_contact()
+        return self._slices(positions[:, -1].mean())
 
     def _slices(self, heights):
         return np.minimum(heights / self.width, self.sums.shape[-1] - 1).astype(int)
+
+
+def tasks(settings: Mapping[str, Any]) -> list[str]:
+    """Return the names of all runs."""
+    return [f"{point_name(one)}-{k}" for one in settings["points"] for k in range(settings["runs"])]
+
+
+def point_name(point: Mapping[str, Any]) -> str:
+    """Return the name of a point; its runs add `-0`, `-1` ... Random numbers hang on it."""
+    name = f"{point['experiment']}_r{point['r']}_beta{point['beta']}"
+    return name + (f"_{point['name']}" if "name" in point else "")
 
 
 def run(task: str, settings, experiments, progress: Callable[[int, int], None]) -> xr.Dataset:
@@ -135,9 +136,9 @@ def run(task: str, settings, experiments, progress: Callable[[int, int], None]) 
 
     `samples` is the number of samples at each phase, `measured` the T that these cover.
     """
-    point = next(one for one in settings["points"] if task.startswith(profile_name(one) + "-"))
-    number = int(task.removeprefix(profile_name(point) + "-"))
-    seed = stream(settings, zlib.crc32(profile_name(point).encode()), number)
+    point = next(one for one in settings["points"] if task.startswith(point_name(one) + "-"))
+    number = int(task.removeprefix(point_name(point) + "-"))
+    seed = stream(settings, zlib.crc32(point_name(point).encode()), number)
     check_alike(experiments[point["experiment"]])
     profile = _equilibrated(point, experiments[point["experiment"]], settings, seed)
     periods = round(point["measure"] / point["period"])
@@ -173,6 +174,6 @@ def _equilibrated(point, experiment, settings, seed):
     effects = experiment["effects"] | point.get("effects", {}) | {"contact_averages": {}}
     experiment = experiment | {"effects": effects}
     scene = build(experiment, float(point["r"]), float(point["beta"]))
-    gas = schedule.of(experiment).start(scene, experiment, np.random.default_rng(seed))
+    gas = Gas.start(scene, experiment, np.random.default_rng(seed))
     gas.in_time(1.0, round(point["equilibrate"]))
     return Profile(gas, point, settings["phases"], settings["slices"])

@@ -7,15 +7,31 @@ particles has a box of few mean free paths, and neither.
 """
 
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from roughgas import theory
-from roughgas.statistics.errors import Estimate
-from roughgas.studies.tasks import VARIABLES, point_names
-from roughgas.tasks import dataset, estimate, flat, mean, over, stacked, variables
+from roughgas.tasks import (
+    Estimate,
+    along,
+    cell,
+    dataset,
+    estimate,
+    flat,
+    label,
+    markdown,
+    mean,
+    over,
+    stacked,
+    variables,
+)
+
+from .tasks import point_names
+
+VARIABLES = Path(__file__).with_name("variables.yaml")
 
 
 def combine(parts: Mapping[str, xr.Dataset], settings: Mapping[str, Any]) -> xr.Dataset:
@@ -34,8 +50,7 @@ def combine(parts: Mapping[str, xr.Dataset], settings: Mapping[str, Any]) -> xr.
     found |= {"point": list(names), "particles": numbers, "part": ends}
     found |= {"packing": np.array(packings, float)}
     about = {"seed": settings["seed"], "precision": settings["precision"]}
-    known = variables(VARIABLES, "finite_size")
-    return dataset(known, found, **about).set_coords(["experiment", "r", "beta"])
+    return dataset(variables(VARIABLES), found, **about).set_coords(["experiment", "r", "beta"])
 
 
 def _gas(part: xr.Dataset, number: int, packings) -> dict[str, Any]:
@@ -82,3 +97,40 @@ def without_flow(R: np.ndarray, flow: np.ndarray, noise: float) -> np.ndarray:
     share `noise`, that of as many degrees of freedom in equilibrium."""
     theta = R / (1.0 - R)
     return theta / (theta + 1.0 - flow + noise)
+
+
+def table(data: xr.Dataset) -> str:
+    """Return R of a cooling gas by number of particles, and what a box adds at each packing."""
+    numbers = [f"N = {n}" for n in data.particles.values]
+    rows, tails = [], []
+    for one in along(data, "point"):
+        gases = along(one, "particles")
+        gap = estimate(gases[-1], "dsmc_R").scaled(100 / float(one.theory))
+        missing = f"{gap._replace(value=gap.value - 100):+±} %"
+        cells = [cell(gas, "dsmc_R", ".4f") for gas in gases]
+        rows.append([label(one), f"{float(one.theory):.4f}", *cells, missing])
+        tails.append([label(one), *(cell(gas, "dsmc_a02", "±") for gas in gases)])
+    head = ["point", "theory of free cooling", *numbers, "the last over the theory of free cooling"]
+    return (
+        f"## Number and box of a cooling gas\n\nR of the homogeneous gas (DSMC):\n\n"
+        f"{markdown(head, rows)}\nThe fourth cumulant a02 of its spins:\n\n"
+        f"{markdown(['point', *numbers], tails)}"
+        + "".join(_in_boxes(place, numbers) for place in along(data, "packing"))
+    )
+
+
+def _in_boxes(data, numbers):
+    """Return what events find at one packing, over DSMC of as many particles."""
+    rows = [
+        [label(one), *(cell(gas, "over_dsmc", "+±", 100) for gas in along(one, "particles"))]
+        for one in along(data, "point")
+    ]
+    waves = [
+        [label(one), *(cell(gas, "flow", "±", 100) for gas in along(one, "particles"))]
+        for one in along(data, "point")
+    ]
+    return (
+        f"\nR by events at packing {float(data.packing):g} over that by DSMC, minus 1, in %:\n\n"
+        f"{markdown(['point', *numbers], rows)}\nThere, the share of E_trans in the longest shear"
+        f" waves, in % (uncorrelated: 2/N, spheres 4/N):\n\n{markdown(['point', *numbers], waves)}"
+    )

@@ -8,8 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
-from roughgas.show.style import FAINT, GREY, LOOKS, THEORY, Look
-from roughgas.studies.figures.panels import paired_panels
+from roughgas.plotting import FAINT, GREY, LOOKS, THEORY, Look
 from roughgas.tasks import along
 
 SIZE = (7.0, 6.6)  # inches
@@ -19,9 +18,12 @@ BY_FRICTION = (*LOOKS, SKY, BLACK)
 THIN: dict[str, Any] = {"ls": "none", "elinewidth": 0.8, "capsize": 1.5}
 
 
-def draw_figure(data: xr.Dataset) -> Figure:
-    """Return the figure, from the study's dataset."""
-    figure = paired_panels(PANELS, SIZE, *[data] * len(PANELS))
+def draw(data: xr.Dataset) -> Figure:
+    """Return the figure, of what all tasks have found."""
+    figure = Figure(figsize=SIZE, layout="constrained")
+    for axes, (panel, title) in zip(figure.subplots(2, 2).flat, PANELS, strict=True):
+        panel(axes, data)
+        axes.set_title(title, loc="left", fontsize=8.5)
     figure.legend(*figure.axes[1].get_legend_handles_labels(), loc="outside lower center", ncols=5)
     return figure
 

@@ -12,17 +12,39 @@ sheared gas the mean flow and the mean spin are.
 
 import math
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from roughgas.statistics.errors import Estimate
-from roughgas.studies.tasks import VARIABLES, profile_name
-from roughgas.tasks import dataset, stacked, variables
-from roughgas.theory.closed_forms import lun_ratio
-from roughgas.theory.transport import shear_factor
+from roughgas.tasks import Estimate, along, cell, dataset, markdown, stacked, variables
+from roughgas.theory import lun_ratio, moment_of_inertia, shear_factor
 
+from .tasks import point_name
+
+VARIABLES = Path(__file__).with_name("variables.yaml")
+BED = {
+    "R": "mean of R(t)",
+    "R_quarters": "at the paper's four phases",
+    "R_ratio_of_means": "ratio of means",
+    "R_weighted": "slices and phases, by their contacts",
+    "R_level": "pairs at one height, by relative speed",
+    "R_meeting": "those near that approach",
+    "R_collisional": "at contacts",
+    "R_lun": "Lun's formula",
+    "speed_factor": "{g³}/{g}, over Maxwellian",
+}
+SHEARED = {
+    "theta": "θ",
+    "factor": "theory.shear's factor",
+    "rate": "g",
+    "stress": "p",
+    "difference": "d",
+    "spin_over_vorticity": "spin over half the vorticity",
+    "flow_deviation": "flow beyond linear, over thermal",
+    "R_collisional": "R at contacts, flow included",
+}
 QUARTERS = 4
 """Phases of the floor that the paper samples."""
 GRID = ("phase", "slice")
@@ -32,7 +54,7 @@ def combine(parts: Mapping[str, xr.Dataset], settings: Mapping[str, Any]) -> xr.
     """Return profiles and averages at every point, from all tasks; errors are those over runs."""
     points, rows = settings["points"], []
     for point in points:
-        runs = [parts[f"{profile_name(point)}-{k}"] for k in range(settings["runs"])]
+        runs = [parts[f"{point_name(point)}-{k}"] for k in range(settings["runs"])]
         sheared = float(runs[0].shear_rate) > 0.0
         found = [_found(run, point) | (_shear(run) if sheared else NO_SHEAR) for run in runs]
         rows.append(_estimates(found) | _exact(runs, point))
@@ -40,14 +62,12 @@ def combine(parts: Mapping[str, xr.Dataset], settings: Mapping[str, Any]) -> xr.
         key: [point[key] for point in points] for key in ("experiment", "r", "beta")
     }
     about |= {
-        "point": [profile_name(point) for point in points],
+        "point": [point_name(point) for point in points],
         "slice": range(settings["slices"]),
     }
     about["phase"] = np.arange(settings["phases"]) / settings["phases"]
     every = stacked(rows) | about
-    return dataset(
-        variables(VARIABLES, "profiles"), every, seed=settings["seed"], runs=settings["runs"]
-    )
+    return dataset(variables(VARIABLES), every, seed=settings["seed"], runs=settings["runs"])
 
 
 def fields(run: xr.Dataset, width: float) -> xr.Dataset:
@@ -207,3 +227,37 @@ def _mean_spin(run):
 
 def _ratio(rotational, trans):
     return rotational / (rotational + trans)
+
+
+def table(data: xr.Dataset) -> str:
+    """Return R of beds by each average, and what makes R of sheared gases what it is."""
+    points = along(data, "point")
+    beds = [one for one in points if np.isnan(one.theta)]
+    head = ["bed", *(text for text in BED.values())]
+    rows = [[point_label(one), *(_written(one, name) for name in BED)] for one in beds]
+    sheared = ["sheared gas", *(text for text in SHEARED.values())]
+    gases = [
+        [point_label(one), *(_written(one, name) for name in SHEARED)]
+        for one in points
+        if np.isfinite(one.theta)
+    ]
+    return (
+        f"## Averages of R in a bed\n\n{markdown(head, rows)}\n"
+        f"## Sheared gases\n\n{markdown(sheared, gases)}"
+    )
+
+
+def point_label(point: xr.Dataset) -> str:
+    """Return what a point of the study of profiles is called."""
+    what = "spheres" if int(point.dimension) == 3 else "disks"
+    usual = moment_of_inertia(int(point.dimension))
+    q = "" if float(point.inertia) == usual else f", q = {float(point.inertia):g}"
+    beta = str(point.beta.values).replace("-", "−")
+    return f"{what}, r = {point.r.values}, β = {beta}{q}"
+
+
+def _written(data, name):
+    """Return a value with its error if it has one."""
+    if f"{name}_stderr" not in data:
+        return f"{float(data[name]):.4f}"
+    return cell(data, name, "")

@@ -7,16 +7,29 @@ more particles, the sooner. Runs end at R > ESCAPED, or at a limit, which bounds
 
 import math
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from roughgas import theory
-from roughgas.statistics.errors import Estimate
-from roughgas.studies.tasks import SIMULATED, VARIABLES, runaway_name
-from roughgas.tasks import dataset, flat, mean, over, stacked, variables
+from roughgas.tasks import (
+    Estimate,
+    along,
+    cell,
+    dataset,
+    flat,
+    markdown,
+    mean,
+    over,
+    stacked,
+    variables,
+)
 
+from .tasks import SIMULATED, gas_name
+
+VARIABLES = Path(__file__).with_name("variables.yaml")
 EXCLUDED = -math.log(0.05)
 """Mean number of escapes that is excluded at 95 % where none was seen."""
 WAITING = 10.0
@@ -31,8 +44,7 @@ def combine(parts: Mapping[str, xr.Dataset], settings: Mapping[str, Any]) -> xr.
     for kind in SIMULATED:
         particles = [one["particles"] for one in settings[kind]]
         cells = [
-            stacked([_escapes(parts[runaway_name(kind, n, mu)]) for n in particles])
-            for mu in friction
+            stacked([_escapes(parts[gas_name(kind, n, mu)]) for n in particles]) for mu in friction
         ]
         found |= {f"{kind}_{name}": x for name, x in stacked(cells).items()}
         found[f"{kind}_particles"] = particles
@@ -47,8 +59,7 @@ def combine(parts: Mapping[str, xr.Dataset], settings: Mapping[str, Any]) -> xr.
     found["maxwellian_share"] = theory.maxwellian_share(r, beta, mu)
     found |= _example(parts, settings["example"])
     about = {"r": r, "beta": beta, "packing": settings["packing"], "seed": settings["seed"]}
-    known = variables(VARIABLES, "runaway")
-    return dataset(known, found, **about)
+    return dataset(variables(VARIABLES), found, **about)
 
 
 def time_of_escape(time: np.ndarray, observed: np.ndarray) -> tuple[Estimate, float]:
@@ -108,7 +119,7 @@ def _rate(parts, numbers, mu, gas) -> dict[str, Any]:
     escapes, exposed = 0, 0.0
     growth = np.asarray(theory.runaway_growth(numbers, *gas))
     for number, grown in zip(numbers, growth, strict=True):
-        part = parts[runaway_name("dsmc", number, mu)]
+        part = parts[gas_name("dsmc", number, mu)]
         gone, observed = int(np.isfinite(part.time).sum()), part.observed.values
         if observed.sum() > WAITING * grown * max(gone, 1):
             escapes += gone
@@ -124,7 +135,7 @@ def _rate(parts, numbers, mu, gas) -> dict[str, Any]:
 
 def _example(parts, about) -> dict[str, Any]:
     """Return R and participation over time, of one gas at each mu."""
-    runs = [parts[runaway_name("example", about["particles"], mu)] for mu in about["mu"]]
+    runs = [parts[gas_name("example", about["particles"], mu)] for mu in about["mu"]]
     found = {
         f"example_{name}": np.array([one[name].values for one in runs])
         for name in ("R", "largest_share", "participation")
@@ -136,3 +147,44 @@ def _example(parts, about) -> dict[str, Any]:
         "passed": passed,
         "example_particles": about["particles"],
     }
+
+
+def table(data: xr.Dataset) -> str:
+    """Return times of escape and the largest shares over mu and N, and the rates behind them."""
+    kinds = {"dsmc": "homogeneous gases (DSMC)", "events": "event-driven gases"}
+    parts = [_table_of_escapes(data, kind, about) for kind, about in kinds.items()]
+    rows = []
+    for one in along(data, "mu"):
+        bound = f"< {one.rate_bound:.1e}" if np.isfinite(one.rate_bound) else "–"
+        rate = f"{one.rate:.1e} ± {one.rate_stderr:.0e}" if np.isfinite(one.rate) else bound
+        theory = f"{one.predicted_rate:.1e}" if np.isfinite(one.predicted_rate) else "–"
+        share = f"{one.maxwellian_share:.0e}"
+        rows.append([f"{one.mu:g}", f"{one.threshold:.3g}", rate, theory, share])
+    head = ["μ", "threshold a w / √(T_tr/m)", "crossings", "large deviations", "Maxwellian share"]
+    return (
+        f"## Runaway spins (r = {data.attrs['r']}, β = {data.attrs['beta']}, packing"
+        f" {data.attrs['packing']:g})\n\n"
+        + "".join(parts)
+        + f"Crossings of the threshold per particle and collision of a particle:\n\n"
+        f"{markdown(head, rows)}"
+    )
+
+
+def _table_of_escapes(data, kind, about):
+    """Return times of escape by one method, with escapes/runs and the largest share."""
+    numbers = data[f"{kind}_particles"].values
+    rows = []
+    for one in along(data, "mu"):
+        row = [f"{one.mu:g}"]
+        for place in along(one, f"{kind}_particles"):
+            time, bound = cell(place, f"{kind}_time", "±"), float(place[f"{kind}_bound"])
+            shown = f"> {bound:.0f}" if np.isfinite(bound) else time
+            count = f"{int(place[f'{kind}_escapes'])}/{int(place[f'{kind}_runs'])}"
+            share = float(place[f"{kind}_largest_share"])
+            row.append(f"{shown} ({count}{'' if np.isnan(share) else f'; {share:.2f}'})")
+        rows.append(row)
+    head = ["μ", *(f"N = {n}" for n in numbers)]
+    return (
+        f"Collisions per particle until R > 0.9 in {about} (runs that escaped of all; largest"
+        f" share of a particle in the energy of spins then):\n\n{markdown(head, rows)}\n"
+    )
