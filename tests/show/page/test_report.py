@@ -63,7 +63,7 @@ def test_a_figure_says_what_it_shows_and_how_it_was_made(figure, loaded):
 
 @pytest.mark.parametrize("figure", figures_of("accuracy"))
 def test_a_study_says_how_it_was_made(figure, loaded):
-    settings = config.studies(loaded, "paper") | config.accuracy(loaded, "paper")
+    settings = config.accuracy(loaded, "paper")
     wildcards = SimpleNamespace(study_figure=figure, folder="")
     params = params_of(studies=settings, caption=caption_of(figure))
     text = rendered("study", wildcards=wildcards, params=params)
