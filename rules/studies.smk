@@ -62,6 +62,11 @@ def code_of_study_claims(wildcards):
     return code_beside(study_of(wildcards), ["*.py", "claims.yaml"], *modules)
 
 
+def option_of_experiments(wildcards):
+    names = study_of(wildcards)["experiments"]
+    return ["--experiments", *names] if names else []
+
+
 def code_beside(about, patterns, *modules):
     """A hash of the files of a study that match any of these patterns, and of modules that they use."""
     found = [path for one in patterns for path in sorted(Path(about["folder"]).glob(one))]
@@ -310,12 +315,12 @@ rule study_claims:
         code=code_of_study_claims,
         folder=folder_of_study,
         title=title_of_study,
-        experiments=lambda wildcards: study_of(wildcards)["experiments"],
+        experiments=option_of_experiments,
     message:
         "write {output}"
     shell:
         "python -P -m roughgas.steps study_claims {params.folder:q} {input.data:q} --title {params.title:q}"
-        " --experiments {params.experiments:q} --json {output.json:q} --markdown {output.markdown:q}"
+        " {params.experiments:q} --json {output.json:q} --markdown {output.markdown:q}"
         " > {log:q} 2>&1"
 
 

@@ -34,9 +34,9 @@ def study_claims(
     inputs: list[str],
     *,
     title: str,
-    experiments: list[str],
     json: str,
     markdown: str,
+    experiments: Sequence[str] = (),
 ) -> None:
     """Judge the statements in claims.yaml of the study in a folder, which has these experiments."""
     from roughgas.claims.report import judge

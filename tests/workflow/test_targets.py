@@ -165,7 +165,7 @@ def test_an_illegal_target_is_refused_in_one_line(project, target, message):
         ("scale=large", "scale = 'large': must be one of paper, small"),
         (
             "n_particles=5",
-            "key = 'n_particles': must be one of betas_per_job, complete, experiments, scale,",
+            "key = 'n_particles': must be one of accuracy, betas_per_job, complete,",
         ),
     ],
 )
