@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-TIMES = ("kernel_seconds",)
-"""Variables that no two runs share."""
+TIMES = ("seconds",)
+"""Endings of variables that no two runs share."""
 
 
 def differences(first: Path, second: Path) -> list[str]:
