@@ -48,7 +48,7 @@ def overview(margins: list[Margin]) -> Figure:
     axes.grid(axis="x", color=FAINT, linewidth=0.3)
     axes.axvline(1.0, color=THEORY)
     axes.set_xlabel("factor by which a measured number could be worse", fontsize=9)
-    note = "each symbol is one measured number; right: how many are further off, or without error"
+    note = "each symbol is one measured number; right: how many lie beyond the axis, or are exact"
     axes.set_title(note, fontsize=8, color=GREY, loc="right", pad=5)
     return figure
 

@@ -115,7 +115,7 @@ def draw_statistical(axes: Axes, data: xr.Dataset) -> None:
         axes.axhline(accuracy, color=FAINT, lw=0.6, ls=":", zorder=0)
         place: dict[str, Any] = {"xy": (0.0, accuracy), "xycoords": ("axes fraction", "data")}
         axes.annotate(f"{100 * accuracy:g} %", **place, **beside, **grey)
-    title = "slope of longer runs (filled), of more (open)"
+    title = "slope: longer runs (filled), more seeds (open)"
     axes.legend(loc="lower left", title=title, alignment="left")
 
 
