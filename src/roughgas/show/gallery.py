@@ -20,10 +20,13 @@ if TYPE_CHECKING:
 
 
 def draw(
-    name: str, inputs: Iterable[str | Path], outputs: Iterable[str | Path], slide: bool = False
+    name: str,
+    inputs: Iterable[str | Path],
+    *,
+    output: Iterable[str | Path],
+    slide: bool = False,
 ) -> None:
-    """Draw the figure `name` of the paper from the reduced datasets at `inputs`, in any order, into
-    `outputs`.
+    """Draw the figure `name` of the paper from the reduced datasets at `inputs`, in any order.
 
     Each output is a .pdf, .png or .svg, of 16 to 9 for a `slide`. Raises InputError for an unknown
     figure, another kind of file, experiments other than those that the figure shows, and those
@@ -32,7 +35,7 @@ def draw(
     if name not in (known := figures_of("paper")):
         raise not_one_of("figure", name, known)
     module = import_module(f"roughgas.show.figures.{name}")
-    _draw(name, module.draw, FIGURES[name].shows, inputs, outputs, slide)
+    _draw(name, module.draw, FIGURES[name].shows, inputs, output, slide)
 
 
 def draw_of_study(
