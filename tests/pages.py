@@ -13,7 +13,7 @@ from pathlib import Path
 
 from roughgas import accuracy, effects, observables
 from roughgas.base.formatting import markdown
-from roughgas.claims import PAPER, averages, paper, verdicts
+from roughgas.claims import PAPER, paper, verdicts
 from roughgas.config.schema import SAID, _legal, _schema
 from roughgas.data.film import FILM
 from roughgas.data.reduced import REDUCED
@@ -27,7 +27,7 @@ DOCS = Path(__file__).parents[1] / "docs"
 BEGIN, END = "<!-- {}: made by tests/pages.py -->\n", "<!-- until here -->\n"
 REMOVED = ("swept",)  # a key of experiments that only roughgas writes
 DECIDES = dict.fromkeys(("AGREE", "LIMIT", "TENDENCY", "FEW", "NEAR", "FAR"), verdicts)
-DECIDES |= {"SIGNIFICANT": errors, "INTERMEDIATE": paper, "CONSIDERABLY": paper, "MOST": averages}
+DECIDES |= {"SIGNIFICANT": errors, "INTERMEDIATE": paper, "CONSIDERABLY": paper, "MOST": paper}
 """Tolerances of verdicts, and the module of each."""
 
 

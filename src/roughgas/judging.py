@@ -5,11 +5,6 @@ A judge takes reduced datasets beside theory (`theory`, like R) and returns a `F
 compatible with zero; `grade`, `worse` and `together` combine verdicts.
 """
 
-from roughgas.claims.averages import (
-    averaged,
-    follows_its_share,
-    follows_over_collisions,
-)
 from roughgas.claims.evidence import (
     NotTestedError,
     Sample,
@@ -20,6 +15,11 @@ from roughgas.claims.evidence import (
     over_seeds,
     sample,
     spin_shares,
+)
+from roughgas.claims.paper import (
+    averaged,
+    follows_its_share,
+    follows_over_collisions,
 )
 from roughgas.claims.verdicts import (
     AGREE,

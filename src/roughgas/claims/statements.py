@@ -10,7 +10,7 @@ import yaml
 
 from roughgas.base import InputError
 from roughgas.base.files import module_of
-from roughgas.claims import averages, evidence, paper
+from roughgas.claims import evidence, paper
 from roughgas.claims.evidence import NotTestedError
 from roughgas.claims.verdicts import (
     NOT_TESTED,
@@ -20,7 +20,7 @@ from roughgas.claims.verdicts import (
     points,
 )
 
-OWN = (evidence, averages, paper)
+OWN = (evidence, paper)
 """The modules whose samples and judges every table may name."""
 REFERENCE = """\
 S. McNamara and S. Luding, *Energy nonequipartition in systems of inelastic, rough spheres*,

@@ -2,13 +2,18 @@
 
 The same data give the same bytes. There is no pyplot, hence no display, and no state that figures
 share.
+
+Many circles that move, drawn as one collection.
 """
 
 from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import numpy as np
 from matplotlib import rc_context, rcParamsDefault
+from matplotlib.axes import Axes
+from matplotlib.collections import EllipseCollection
 from matplotlib.figure import Figure
 
 from roughgas.base import InputError
@@ -101,3 +106,18 @@ def save(figure: Figure, outputs: Iterable[str | Path]) -> None:
         with whole_file(output) as draft:
             kind = output.suffix
             figure.savefig(draft, format=kind.removeprefix("."), metadata=METADATA[kind])
+
+
+def add_circles(axes: Axes, **look: Any) -> EllipseCollection:
+    """Add a collection of circles, none as yet, whose sizes are in the units of the axes."""
+    circles = EllipseCollection([], [], [], units="xy", offsets=[], transOffset=axes.transData)
+    circles.set(**look)
+    axes.add_collection(circles)
+    return circles
+
+
+def move(circles: EllipseCollection, x: np.ndarray, y: np.ndarray, diameter: Any = 2.0) -> None:
+    """Bring circles to these centres (N,), with one diameter or (N,) of them."""
+    size = np.full(len(x), 1.0) * diameter
+    circles.set(widths=size, heights=size, angles=0.0 * size)
+    circles.set_offsets(np.column_stack([x, y]))

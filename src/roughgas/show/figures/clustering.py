@@ -18,7 +18,7 @@ from roughgas import theory
 from roughgas.base import InputError
 from roughgas.data.film import disks_of, read_film
 from roughgas.data.netcdf import require
-from roughgas.show import circles, style
+from roughgas.show import style
 from roughgas.show.encoding import write_movie
 
 KINDS = (*style.METADATA, ".mp4")
@@ -141,7 +141,7 @@ def _draw_disks(axes: Axes, film: xr.Dataset, frame: int, square: tuple) -> Elli
     axes.set(xlim=(left, left + side), ylim=(bottom, bottom + side), aspect="equal")
     axes.set(facecolor=VOID)
     _add_scale_bar(axes)
-    disks = circles.add_circles(axes, edgecolor=VOID, linewidth=0.2, rasterized=True, **SPIN)
+    disks = style.add_circles(axes, edgecolor=VOID, linewidth=0.2, rasterized=True, **SPIN)
     _move(disks, film, frame)
     return disks
 
@@ -151,7 +151,7 @@ def _move(disks: EllipseCollection, film: xr.Dataset, frame: int) -> None:
     axes: Any = disks.axes
     (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
     seen = (x > left - 1) & (x < right + 1) & (y > bottom - 1) & (y < top + 1)
-    circles.move(disks, x[seen], y[seen])
+    style.move(disks, x[seen], y[seen])
     disks.set_array(spin[seen])
 
 

@@ -13,7 +13,7 @@ from matplotlib.patches import Rectangle
 
 from roughgas.effects import Effects
 from roughgas.show import style
-from roughgas.show.circles import add_circles, move
+from roughgas.show.style import add_circles, move
 from roughgas.simulation.trajectory import Snapshot
 
 PLAIN = to_rgba_array("#9ecae1")  # of particles that do not spin
