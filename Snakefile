@@ -8,7 +8,6 @@
 #   snakemake -j1 living                        a page in which a gas moves, with sliders
 #   snakemake -j1 pictures                      the four figures for talks: SVG, and PDF of 16 to 9
 #   snakemake -j2 movies                        the scenes as they move, one GIF each
-#   snakemake -j1 showcase                      a large cooling gas forms clusters: a movie
 #   snakemake -j2 accuracy                      what the next digit costs, in CPU seconds
 #   snakemake -j2 coverage                      whether error bars hold the truth as often as they say
 #   snakemake -j2 hard_cases                    where simulations go wrong, and how far from it we are
@@ -57,7 +56,6 @@ include: "rules/simulate.smk"
 include: "rules/studies.smk"
 include: "rules/products.smk"
 include: "rules/accuracy.smk"
-include: "rules/showcase.smk"
 include: "rules/movies.smk"
 include: "rules/hard_cases.smk"
 
@@ -124,12 +122,6 @@ rule movies:
         drawn([f"movies/{movie}" for movie in MOVIES], [".gif"]),
 
 
-rule showcase:
-    input:
-        drawn(["clustering"], (".pdf", ".png", ".mp4")),
-        documents("clustering"),
-
-
 rule accuracy:
     input:
         drawn(["accuracy", "accuracy_limits"]),
@@ -156,7 +148,6 @@ rule everything:
         rules.extensions.input,
         reduced(SCALE, [one for one in config["experiments"] if "." not in one]),
         reduced(SCALE, SWEPT_IN_STUDIES),
-        rules.showcase.input,
         rules.movies.input,
         rules.hard_cases.input,
         rules.accuracy.input,

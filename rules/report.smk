@@ -68,12 +68,6 @@ def experiments_of_figure(wildcards, output):
     return described(scale_of(wildcards.folder), entry_of(wildcards).shows)
 
 
-def showcase_of_figure(wildcards, output):
-    """The settings of the showcase, for its caption."""
-    with one_line(f"figures/{wildcards.folder}clustering"):
-        return roughgas.config.showcase(config, scale_of(wildcards.folder))
-
-
 def documents(*names):
     """The documents of these names at the scale of this run."""
     return [f"results/{SCALE}/{name}.html" for name in names]

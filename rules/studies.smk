@@ -11,6 +11,7 @@ BROKEN = {
 OF_STUDY = "results/{scale}/{study}/"  # products, beside results/{scale}/{study}.{experiment}
 TASK_OF_STUDY = f"{OF_STUDY}tasks/{{task}}.nc"
 WITH_TASKS = [name for name, about in STUDIES.items() if "tasks" in about]
+WITH_MOVIE = [name for name in WITH_TASKS if Path(STUDIES[name]["folder"], "movie.py").exists()]
 SWEPT_IN_STUDIES = [one for about in STUDIES.values() for one in about["experiments"]]
 STUDY_OF = {figure: name for name, about in STUDIES.items() for figure in about["figures"]}
 
@@ -194,6 +195,8 @@ def products_of(name):
         if name in BROKEN:
             sys.exit(BROKEN[name])
         figures = figures_of_study(name, [".pdf", ".png"], SCALE)
+        if name in WITH_MOVIE:
+            figures += drawn([name], [".mp4"])
         tables = [path for paths in tables_of_study(name, SCALE).values() for path in paths]
         return [*figures, *tables, f"{OF_STUDY.format(scale=SCALE, study=name)}page.html"]
 
@@ -240,6 +243,29 @@ rule study_figure:
     shell:
         "python -P -m roughgas.steps study_figure {params.folder:q} {wildcards.drawn:q} {input.data:q}"
         " --shows {params.shows:q} --output {output:q} > {log:q} 2>&1"
+
+
+rule study_movie:
+    # of what tasks have found, which its movie.py draws
+    input:
+        data=lambda wildcards: OF_STUDY.format(
+            scale=scale_of(wildcards.folder), study=wildcards.study
+        )
+        + "data.nc",
+    output:
+        "figures/{folder}{study}.mp4",
+    log:
+        "logs/figures/{folder}{study}_movie.log",
+    wildcard_constraints:
+        study=one_of(WITH_MOVIE),
+    params:
+        code=code_of_study_figure,
+        folder=folder_of_study,
+    message:
+        "draw the movie {output}"
+    shell:
+        "python -P -m roughgas.steps study_movie {params.folder:q} {input.data:q} --output {output:q}"
+        " > {log:q} 2>&1"
 
 
 rule study_task:

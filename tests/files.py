@@ -6,7 +6,6 @@ import xarray as xr
 from roughgas.accuracy import combine, coverage
 from roughgas.accuracy.coverage import MEASURED
 from roughgas.config import as_text
-from roughgas.data.film import FILM, write_film
 from roughgas.data.netcdf import content_of, write_netcdf
 from roughgas.data.point import Point, write_point
 from roughgas.results.reduce import reduce_points
@@ -25,10 +24,9 @@ ABOUT = {
 
 def write_all(folder):
     """The paths of the files, by kind."""
-    paths = {kind: folder / f"{kind}.nc" for kind in ("point", "reduced", "film", "studies")}
+    paths = {kind: folder / f"{kind}.nc" for kind in ("point", "reduced", "studies")}
     write_point(paths["point"], point())
     reduce_points(_points(folder), paths["reduced"])
-    write_film(paths["film"], frames(), {"title": "made up", "box": [8.0, 8.0]})
     write_studies(paths["studies"], folder)
     return paths
 
@@ -70,14 +68,6 @@ def point(seed=1):
         },
         ABOUT | {"title": "made up"},
     )
-
-
-def frames():
-    rng = np.random.default_rng(2)
-    shapes = {"frame": 3, "x": 4, "y": 4, "disk": 6}
-    kinds = FILM.items()
-    values = {name: rng.random([shapes[dim] for dim in kind.dims]) * 9 for name, kind in kinds}
-    return values | {"disks": [1, 2, 3], "contact_time": np.nan}
 
 
 def write_studies(path, folder):

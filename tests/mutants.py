@@ -30,6 +30,7 @@ ELSEWHERE = {  # tests of a room that are not in its own folder
     "kernel": ["hard_cases"],
     "library": ["test_library.py"],
     "scene": ["simulation/test_protocols.py"],
+    "tasks": ["accuracy", "studies"],
 }
 
 
@@ -39,9 +40,10 @@ def tests_of(room):
     return [f"tests/{name}" for name in own + ELSEWHERE.get(room, [])]
 
 
-def place(source, old):
-    """The only file that holds a text, which it holds once."""
-    found = [path for path in source.rglob("*.py") if old in path.read_text()]
+def place(copy, old):
+    """The only file of the source and of studies that holds a text, which it holds once."""
+    every = [path for part in ("src", "studies") for path in (copy / part).rglob("*.py")]
+    found = [path for path in every if old in path.read_text()]
     if len(found) != 1 or found[0].read_text().count(old) != 1:
         raise SystemExit(f"must stand once in the source: {old!r}")
     return found[0]
@@ -49,7 +51,7 @@ def place(source, old):
 
 def killer(copy, mutant):
     """The first test that fails with a fault, or None."""
-    path = place(copy / "src", mutant["old"])
+    path = place(copy, mutant["old"])
     text = path.read_text()
     path.write_text(text.replace(mutant["old"], mutant["new"]))
     last = mutant["after"].partition("[")[0]

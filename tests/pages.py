@@ -15,7 +15,6 @@ from roughgas import accuracy, effects, observables
 from roughgas.base.formatting import markdown
 from roughgas.claims import PAPER, paper, verdicts
 from roughgas.config.schema import SAID, _legal, _schema
-from roughgas.data.film import FILM
 from roughgas.data.reduced import REDUCED
 from roughgas.data.trajectory import TRAJECTORY
 from roughgas.data.variables import COOLING, GRID, POINT, SPIN
@@ -38,14 +37,13 @@ def tables():
     found["claims", "paper"] = markdown(("statement", "criterion", "fixed"), rows)
     parts = _schema()["$defs"]
     found["config", "file"] = _keys_of(_schema())
-    for name in ("experiment", "sweep", "schedule", "showcase"):
+    for name in ("experiment", "sweep", "schedule"):
         found["config", name] = _keys_of(parts[name])
     found["config", "accuracy"] = _keys_of(parts["accuracy"], depth=4)
     found["effects", "effects"] = _effects()
     found["observables", "observables"] = _observables()
     found["data", "point"] = _variables("type units when", POINT, _units)
     found["data", "reduced"] = _variables("units how", REDUCED, _units)
-    found["data", "film"] = _variables("type units", FILM)
     found["trajectories", "trajectory"] = _variables("units when", TRAJECTORY)
     known = {name: variables(accuracy.VARIABLES, name) for name in accuracy.STUDIES}
     return found | {("data", name): _variables("units", one) for name, one in known.items()}

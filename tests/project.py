@@ -32,14 +32,8 @@ TINY = {
         "sweep": SWEEP,
         "schedule": {"replicas": 3, "plateau": 20},
     },
-    "showcase": {
-        "particles": 40,
-        "box": [40, 40],
-        "effects": {"contact_time": None},
-        "collisions": 20,
-        "frames": 10,
-        "window": 30,
-    },
+    "clustering.gas": {"particles": 40, "box": [40, 40]},
+    "clustering.tasks": {"collisions": 20, "frames": 10, "window": 30},
 }
 POINTS = 6 * SWEEP["seeds"]
 JOBS = 6  # one makes both seeds of a point

@@ -25,7 +25,7 @@ ROOT, PACKAGE = Path(__file__).parents[1], Path(roughgas.__file__).parent
 TABLES = pages.tables()
 FIXED = re.compile(r"Fixed (before (any|its|the) data|as NEAR was|when R of four points at)")
 EFFECTS = (ROOT / "docs/effects.md").read_text(encoding="utf-8")
-AFTER_EXPERIMENTS = "\nshowcase:\n"  # in config.yaml
+BEFORE_EXPERIMENTS = "\nexperiments:\n"  # in config.yaml
 
 
 @pytest.mark.parametrize("name", TABLES, ids="-".join)
@@ -71,8 +71,8 @@ def rows(text):
 def config_with(experiment, folder):
     """A copy of config.yaml in a folder, with one experiment more; its path."""
     text = (ROOT / "config.yaml").read_text(encoding="utf-8")
-    assert text.count(AFTER_EXPERIMENTS) == 1
-    changed = text.replace(AFTER_EXPERIMENTS, f"\n{experiment}{AFTER_EXPERIMENTS}")
+    assert text.count(BEFORE_EXPERIMENTS) == 1
+    changed = text.replace(BEFORE_EXPERIMENTS, f"{BEFORE_EXPERIMENTS}{experiment}\n")
     (folder / "config.yaml").write_text(changed, encoding="utf-8")
     return folder / "config.yaml"
 

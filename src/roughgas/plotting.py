@@ -6,6 +6,7 @@ beneath; `series` takes them from a reduced dataset. Figures of another form use
 
 from roughgas.base import InputError
 from roughgas.data.reduced import particles_of
+from roughgas.show.encoding import write_movie
 from roughgas.show.figures.panel import (
     ANY_R,
     BETA,
@@ -34,7 +35,18 @@ from roughgas.show.figures.panel import (
     ratio_panels,
 )
 from roughgas.show.figures.series import RESTITUTION, Series, series, series_for_each
-from roughgas.show.style import FAINT, GREY, LOOKS, THEORY, TWO_WIDE, WIDTH, Look, Style
+from roughgas.show.style import (
+    FAINT,
+    GREY,
+    LOOKS,
+    THEORY,
+    TWO_WIDE,
+    WIDTH,
+    Look,
+    Style,
+    add_circles,
+)
+from roughgas.show.style import move as move_circles
 from roughgas.theory.prediction import predicted_ratio, species_at
 
 __all__ = [
@@ -61,6 +73,7 @@ __all__ = [
     "PanelContent",
     "Series",
     "Style",
+    "add_circles",
     "add_legend",
     "add_notes",
     "add_title",
@@ -72,6 +85,7 @@ __all__ = [
     "draw_theory",
     "frame_rows",
     "keys_of_steadiness",
+    "move_circles",
     "particles_of",
     "predicted_ratio",
     "ratio_figure",
@@ -79,4 +93,5 @@ __all__ = [
     "series",
     "series_for_each",
     "species_at",
+    "write_movie",
 ]

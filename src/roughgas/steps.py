@@ -8,16 +8,13 @@ and exit statuses those of `roughgas`.
 
 import argparse
 import inspect
-import shlex
-import sys
 from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from importlib import import_module
-from pathlib import Path
 from typing import Any, get_origin
 
 from roughgas import cli, config
-from roughgas.cli.parser import Parser, whole_number
+from roughgas.cli.parser import Parser
 
 
 def compile_kernels(experiment: str, *, settings: str, r: str, checked: bool = False) -> None:
@@ -60,66 +57,24 @@ def effective_config(input: str, *, scale: str, output: str, changes: str = "{}"
     write_effective(config.load(input, changed), scale, output)
 
 
-def clustering(
-    *,
-    scale: str = config.PAPER,
-    settings: str,
-    output: str,
-    checkpoint_every: str = "10",
-    checked: bool = False,
-) -> None:
-    """Film a large cooling gas until it forms clusters, from the last checkpoint if there is one.
-
-    The same command goes on after a kill, with the same bits; a checkpoint follows so many frames.
-    """
-    from roughgas.data.checkpoint import discard
-    from roughgas.data.film import write_film
-    from roughgas.simulation.clustering import run
-    from roughgas.simulation.progress import FilmProgress
-
-    found = config.from_text(settings, "--settings", checked, ("showcase", "filmed"))
-    every = whole_number("--checkpoint-every", checkpoint_every, 1, of="of frames ")
-    checkpoint = Path(f"{output}.checkpoint.npz")
-    with FilmProgress(checkpoint, found["frames"]) as progress:
-        try:
-            variables, attributes = run(found, checkpoint, every, progress)
-        except KeyboardInterrupt:
-            raise KeyboardInterrupt(progress.how_to_go_on()) from None
-    again = ["python", "-m", "roughgas.steps", "clustering", "--scale", scale]
-    again += ["--settings", config.as_text(found), "--output", output]
-    about = {"title": f"A cooling gas of {found['particles']} disks", "scale": scale}
-    write_film(output, variables, about | {"command": shlex.join(again)} | attributes)
-    discard(checkpoint)
-    took = f"{variables['collisions']:,} collisions in {variables['kernel_seconds']:.1f} s"
-    print(f"{output}: {found['frames']} frames, {took}", file=sys.stderr)
-
-
-def film(input: str, *, output: list[str]) -> None:
-    """Draw the film of a cooling gas as a picture or as a movie."""
-    from roughgas.show.figures.clustering import draw
-
-    draw(input, output)
-
-
 STEPS: dict[str, str | Callable[..., None]] = {
     "accuracy_data": "accuracy:combine",
     "accuracy_figure": "accuracy:draw",
     "accuracy_table": "accuracy:write_tables",
     "accuracy_task": "accuracy:run_task",
-    "clustering": clustering,
     "compile_kernels": compile_kernels,
     "claims": claims,
     "document": "show.pages:write_document",
     "effective_config": effective_config,
     "explore": "show.explore:write_page",
     "figure": "show.gallery:draw",
-    "film": film,
     "front": "show.pages:write_front",
     "living": "show.living:write_living",
     "run_times": "results.table:write_times",
     "study_claims": study_claims,
     "study_data": "tasks.running:combine",
     "study_figure": "show.gallery:draw_of_study",
+    "study_movie": "show.gallery:movie_of_study",
     "study_page": "show.studies:write_page",
     "study_task": "tasks.running:run_task",
     "table": "results.table:write_table",

@@ -64,7 +64,7 @@ def test_what_a_module_says_and_the_versions_count(package, monkeypatch):
 
 def test_every_module_that_a_point_imports_counts():
     """Found out by importing, where `closure` reads the sources."""
-    modules = ("roughgas.simulation.point", "roughgas.data.point", "roughgas.simulation.clustering")
+    modules = ("roughgas.simulation.point", "roughgas.data.point")
     script = f"import sys, {', '.join(modules)}; print(*sys.modules)"
     done = subprocess.run(
         [sys.executable, "-c", script], capture_output=True, text=True, check=True
@@ -72,7 +72,7 @@ def test_every_module_that_a_point_imports_counts():
     imported = {name for name in done.stdout.split() if name.startswith("roughgas.")}
     names = {name.removeprefix("roughgas.") for name in imported}
     assert len(names) > 10
-    assert names <= files.closure("simulation.point", "data.point", "simulation.clustering")
+    assert names <= files.closure("simulation.point", "data.point")
 
 
 def test_columns_are_aligned():

@@ -15,14 +15,12 @@ TAKEN = {
     "figure fig1a {} -o out.png": "reduced",
     "accuracy_table {} -o out.md": "studies",
     "accuracy_figure coverage {} -o out.png": "studies",
-    "combine {} -o out.nc": "task",
-    "film {} -o out.png": "film",
+    "accuracy_data {} -o out.nc": "task",
 }
 NO_FILE = "must be a file"
 NAMED = {
     "point": "a point",
     "reduced": "a reduced dataset",
-    "film": "a film of a cooling gas",
     "studies": "a dataset of studies",
     "task": "a task of a study",
 }

@@ -144,8 +144,6 @@ def test_experiments_alone_are_a_configuration(tmp_path, paper, refusal):
     whole = config.load(path)
     assert config.experiment(whole, "mine", "paper") == own and config.usual_scale(path) == "paper"
     assert "scale = 'small': must be one of paper" in refusal(config.load, path, {"scale": "small"})
-    message = "in the configuration = (nothing): must be given for this"
-    assert refusal(config.showcase, whole, "paper") == f"showcase {message}"
     settings = config.as_text(config.study(whole, "models", "paper"))
     run = partial(accuracy.run_task, "models", "theory", settings=settings, output=path)
     assert refusal(run) == "experiment = cooling: must be one of mine"

@@ -41,7 +41,7 @@ cooling.sweep.beta | ['0.1', '0.10'] | sweep.beta = 0.10: must be given once
 cooling.sweep.r | [] | sweep.r = []: must be a list that is not empty
 cooling.sweep.seeds | 0 | sweep.seeds = 0: must be a whole number >= 1
 cooling.schedule.target_stderr | 0 | schedule.target_stderr = 0: must be a number in (0, 0.1]
-studies | {} | key of experiments = studies: must be another name: the work
+crate | {} | key of experiments = crate: must be another name: the work
 accuracy | {} | key of experiments = accuracy: must be another name: the work
 coverage | {} | key of experiments = coverage: must be another name: the work
 hard_cases | {} | key of experiments = hard_cases: must be another name: the work
@@ -74,18 +74,13 @@ cooling.extends | 'cooling' | that does not itself build on this one
 cooling.extends | 'cooling_spheres' | experiments.cooling_spheres.extends = cooling: must be an
     experiment that does not itself
 No Name | {} | must consist of lower-case letters, digits and _, a letter first
-/scales.small.foo | {} | key of scales.small = 'foo': must be one of cooling, cooling_friction,
-    cooling_i
-/scales.small.showcase.frames | 0 | scales.small.showcase.frames = 0: must be a whole number
-/showcase.beta | '2' | showcase.beta = '2': must lie in [-1, 1]
-/showcase.box | [10, 'open'] | showcase.box[1] = 'open': must be a number > 0
-/showcase.effects.spin | null | showcase at scale paper.effects.spin = None: must be a mapping
-/showcase.window | (absent) | showcase at scale paper.window = (nothing): must be given
+/scales.small.foo | {} | key of scales.small = 'foo': must be one of accuracy, cooling,
+    cooling_friction
 /scales.small.cooling.extends | 'vibrated' | must not be given here
 /scales.small.cooling.particles | 0 | particles = 0: must be a whole number in [1, 1
 /scale | 'large' | config.yaml: scale = 'large': must be one of paper, small
-/n_particles | 5 | config.yaml: key = 'n_particles': must be one of betas_per_job, complete,
-    experiments
+/n_particles | 5 | config.yaml: key = 'n_particles': must be one of accuracy, betas_per_job,
+    complete
 """
 
 

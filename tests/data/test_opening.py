@@ -11,12 +11,11 @@ from tests.files import point
 
 from roughgas.accuracy import read_studies
 from roughgas.base import InputError
-from roughgas.data.film import read_film
 from roughgas.data.netcdf import DamagedError, opened, read_netcdf
 from roughgas.data.point import read_point, write_point
 from roughgas.data.reduced import read_reduced
 
-READERS = {"point": read_point, "reduced": read_reduced, "film": read_film, "studies": read_studies}
+READERS = {"point": read_point, "reduced": read_reduced, "studies": read_studies}
 
 
 @pytest.mark.parametrize("wanted", READERS)
@@ -82,8 +81,12 @@ def test_a_damaged_point_is_put_aside_and_named(files, tmp_path, capsys):
     assert sorted(one.name for one in tmp_path.iterdir()) == ["seed1.nc.damaged"]
 
 
-def test_a_dataset_without_what_a_summary_quotes_is_refused(files, capsys):
-    assert main(["show", str(files["film"])]) == 2
+def test_a_dataset_without_what_a_summary_quotes_is_refused(files, tmp_path, capsys):
+    unquoted = tmp_path / "task.nc"
+    shutil.copyfile(files["point"].with_name("task.nc"), unquoted)
+    with netCDF4.Dataset(unquoted, "a") as file:
+        file.delncattr("settings_json")
+    assert main(["show", str(unquoted)]) == 2
     (line,) = capsys.readouterr().err.splitlines()
     assert "attribute settings_json of" in line and line.endswith("must be given")
 

@@ -6,11 +6,10 @@ import time
 import netCDF4
 import pytest
 import xarray as xr
-from tests.files import frames, point
+from tests.files import point
 
 from roughgas.accuracy import combine
 from roughgas.base import InputError
-from roughgas.data.film import read_film, write_film
 from roughgas.data.netcdf import read_netcdf
 from roughgas.data.point import read_point, write_point
 from roughgas.data.reduced import read_reduced
@@ -24,22 +23,12 @@ def test_a_file_holds_no_date(tmp_path):
     assert (tmp_path / "a.nc").read_bytes() == (tmp_path / "b.nc").read_bytes()
 
 
-def test_a_film_says_how_disks_belong_to_frames_and_lacks_nothing(files, tmp_path):
-    with netCDF4.Dataset(files["film"]) as file:
-        assert file["disks"].sample_dimension == "disk"
-        assert file["count"].filters()["complevel"] == 4
-    incomplete = {name: values for name, values in frames().items() if name != "disk_x"}
-    with pytest.raises(ValueError, match="missing variables of a film: disk_x"):
-        write_film(tmp_path / "film.nc", incomplete, {})
-
-
 @pytest.mark.parametrize(
     ("kind", "read"),
     [
         ("point", read_point),
         ("point", lambda path: reduce_points([path], path.with_name("reduced.nc"))),
         ("reduced", read_reduced),
-        ("film", read_film),
         ("studies", lambda path: read_netcdf(path, group="coverage")),
         ("task", lambda path: combine([path], output=path.with_name("studies.nc"))),
     ],

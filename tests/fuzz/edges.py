@@ -34,9 +34,6 @@ DRIVEN = TINY | {
     "effects": test_configurations.WHOLE["experiments"]["sheared"]["effects"],
     "schedule": STEADY | {"equilibrate": 1, "measure": 4},
 }
-FILM = {key: value for key, value in TINY.items() if key != "schedule"}
-FILM |= {"particles": 40, "box": [40, 40], "r": "0.9", "beta": "0", "seed": 1, "thermalise": 1}
-FILM |= {"collisions": 5, "frames": 3, "cell": 4, "window": 30}
 SWEPT = TINY | {"sweep": {"r": ["0.9"], "beta": ["0"], "seeds": 2}}
 CONFIG = test_configurations.WHOLE
 CONFIG = CONFIG | {"experiments": CONFIG["experiments"] | {"gas": SWEPT}}
@@ -69,7 +66,6 @@ def write_folder(folder):
     for line in (
         ["run", *GAS, "--seed", "1", "2", "--output", *points],
         ["reduce", *points, "--output", str(folder / "gas.nc")],
-        ["clustering", "--settings", json.dumps(FILM), "--output", str(folder / "clustering.nc")],
     ):
         assert outcome(line)[0] == 0, outcome(line)
     return folder

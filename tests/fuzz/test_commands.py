@@ -20,7 +20,7 @@ MEANT = ["show", "show --json", "reduce -o out.nc", "table -o out.csv"]
 MEANT += ["claims --json out.json --markdown out.md"]
 MEANT += ["explore --points . -o out.html", "document -o out.html", "run_times -o out.md"]
 MEANT += ["accuracy_table -o out.md", "accuracy_data -o out.nc"]
-MEANT += ["film -o out.png", "crate -o out.zip"]
+MEANT += ["crate -o out.zip"]
 """Command lines without their files, which come after the command."""
 RIGHT = [
     "table reduced.nc -o out.csv",

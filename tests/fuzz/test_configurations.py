@@ -21,7 +21,7 @@ from roughgas.config.reading import read_yaml
 from roughgas.simulation import schedule
 
 WHOLE = read_yaml(Path(__file__).parents[1] / "experiments.yaml")
-KEPT = {"vibrated", "vibrated_rough_walls", "cooling", "heated", "showcase", "studies"}
+KEPT = {"vibrated", "vibrated_rough_walls", "cooling", "heated", "studies"}
 BRIEF = WHOLE | {
     "experiments": {name: one for name, one in WHOLE["experiments"].items() if name in KEPT},
     "scales": {

@@ -21,7 +21,7 @@ REDUCED = FIGURES | OF_STUDIES | {"reduce", "table", "claims", "run_times", "pag
 POINTS = REDUCED | {"seeds"}
 COMPILED = POINTS | {"compile_kernel"}
 FAMILIES = {"family", "catalogue", "document"}
-FILM = {"gas_of_film", "film", "document"}
+FILM = {"clustering", "study_data", "study_movie", "study_page"}
 ACCURACY = {"accuracy", "accuracy_limits", "accuracy_data", "accuracy_table", "document"}
 COVERAGE = {"coverage", "accuracy_data", "accuracy_table", "document"}
 OF_TASKS = {"study_data", "profiles", "finite_size", "runaway"}
@@ -30,13 +30,11 @@ STUDIES = ACCURACY | COVERAGE | OF_TASKS | {"statistical", "models", "discretisa
 SIMULATED = COMPILED | FAMILIES | FILM | STUDIES | {"movie"}
 EDITED = {  # file of the package: what an edit of its code runs again
     "statistics/steady_state.py": SIMULATED - {"discretisation"},
-    "data/film.py": FILM,
     "theory/prediction.py": REDUCED,
     "kernel/prediction.py": SIMULATED,
     "effects/walls.py": SIMULATED | {"effective_config", "living_page"},
     "scene/scene.py": SIMULATED | {"living_page"},
     "config/schema.py": {"effective_config", "document", "living_page"},
-    "simulation/clustering.py": FILM,
     "results/table.py": {"table", "run_times", "document", "study_table", "study_page"},
     "claims/paper.yaml": {"claims", "document", "study_claims", "study_page"},
     "show/figures/fig1a.py": {"fig1a"},
@@ -48,12 +46,10 @@ EDITED = {  # file of the package: what an edit of its code runs again
 ALIKE = {  # files after whose edits much the same runs again as after others'
     "kernel/prediction.py",
     "scene/scene.py",
-    "simulation/clustering.py",
     "theory/prediction.py",
     "show/page/explore.js",
 }
 TOGETHER = {  # files of which hardly anything needs two: their edits are tried at once, as well
-    "data/film.py",
     "config/schema.py",
     "results/table.py",
     "claims/paper.yaml",
@@ -206,10 +202,8 @@ def test_an_edit_of_a_family_of_hard_cases_concerns_it_alone(finished):
     assert finished.planned("hard_cases") == expected
 
 
-FILMED = {"gas_of_film": 1, "film": 1, "document": 1, "showcase": 1}
-
-
-def test_an_edit_of_the_settings_of_the_showcase(finished):
-    finished.configure(lambda config: config["scales"]["tiny"]["showcase"].update(beta="0.5"))
-    assert finished.planned("showcase") == FILMED
+def test_an_edit_of_the_settings_of_tasks(finished):
+    finished.configure(lambda config: config["scales"]["tiny"]["clustering.tasks"].update(seed=2))
+    expected = {"study_task": 1, "study_data": 1, "study_figure": 1, "study_movie": 1}
+    assert finished.planned("clustering") == expected | {"study_page": 1, "clustering": 1}
     assert set(finished.planned("figures")) == {"effective_config", "document", "figures"}

@@ -22,7 +22,7 @@ LEGAL = [
 ]
 ILLEGAL = [
     ("results/paper/cooling/r1.5/beta0/seed1.nc", "restitution r = 1.5: must lie in [0, 1]"),
-    ("results/paper/heating/r0.9/beta0/seed1.nc", "experiment = 'heating': must be one of cooling"),
+    ("results/paper/heating/r0.9/beta0/seed1.nc", "experiment = 'heating': must be one of clu"),
     ("figures/large/fig1a.pdf", "scale = 'large': must be one of paper, small"),
     (
         "figures/fig9.png",
@@ -104,6 +104,7 @@ def test_what_lies_beyond_the_paper_is_a_target_of_its_own(project):
         "reduce": SHOWN,
         "study_task": sum(len(names(with_tasks[one], settings[one])) for one in with_tasks),
         "study_data": len(with_tasks),
+        "study_movie": 1,
         "study_figure": sum(len(one["figures"]) for one in found.values()),
         "study_table": len([one for one in found.values() if one["experiments"]]),
         "study_claims": len(judged),
@@ -124,8 +125,8 @@ def test_everything_has_films_and_the_experiments_that_were_added(tmp_path):
         )
     )
     planned = project.planned("everything")
-    found = {rule: planned[rule] for rule in ("seeds", "point", "film", "movie")}
-    assert found == {"seeds": JOBS + len(BEYOND), "point": 1, "film": 1, "movie": 8}
+    found = {rule: planned[rule] for rule in ("seeds", "point", "study_movie", "movie")}
+    assert found == {"seeds": JOBS + len(BEYOND), "point": 1, "study_movie": 1, "movie": 8}
     assert "point" not in project.planned("figures")
 
 

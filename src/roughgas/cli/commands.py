@@ -102,7 +102,7 @@ COMMANDS = {
             "roughgas show results/paper/sheared.nc --json",
         ),
         about="Print what a dataset holds: what was simulated, R with its error, theory, "
-        "energies, cost, and how to make it again. It may be a point, a reduced dataset, a film, "
+        "energies, cost, and how to make it again. It may be a point, a reduced dataset, "
         "a dataset of studies or a task of one. 0.3565(30) is 0.3565 with a "
         "standard error of 0.0030.",
     ),

@@ -30,15 +30,12 @@ MOST_VALUES = 4  # of a variable, that are all shown
 FLAGS = {YES: True, NO: False, UNKNOWN: None}
 QUOTED = {
     netcdf.POINT: ("experiment_json", "command"),
-    netcdf.FILM: ("settings_json", "r", "beta", "seed", "command"),
     netcdf.TASK: ("settings_json",),
 }
 """Attributes of each kind that a summary quotes."""
 BOOKS = {"source", "motion", "energy_input", "energy_gain", "energy_imbalance"}
 SHAPES = {2: "disks", 3: "spheres"}
 BLOCKS, WIDTH = "▁▂▃▄▅▆▇█", 48
-FRAMES = 8  # of a film, that are shown
-FILMED = ("collisions_per_particle", "time", "E_trans", "R")
 TRUST = {
     YES: "",
     NO: " (not to be trusted: no steady state, or too short a run)",
@@ -118,20 +115,6 @@ def _point_text(point: Dataset) -> str:
     return "\n\n".join([*parts, f"To make it again:\n{about['command']}"])
 
 
-def _film_text(film: Dataset) -> str:
-    about, last = film.attrs, film.sizes["frame"] - 1
-    head = [
-        *_settings(about, about["settings_json"]),
-        ["frames", f"{last + 1}, of {film.sizes['x']} x {film.sizes['y']} cells"],
-        _cost(film),
-    ]
-    table = [["frame", "collisions per particle", "time / T", "E_trans / initial", "R"]]
-    for k in sorted({round(k * last / (FRAMES - 1)) for k in range(FRAMES)}):
-        table.append([str(k), *(f"{float(film[name][k]):.5g}" for name in FILMED)])
-    again = f"To make it again:\n{about['command']}"
-    return "\n\n".join([columns(head), columns(table, numbers=True), again])
-
-
 def _settings(about: Mapping[str, Any], text: str) -> list[list[str]]:
     """Return rows with what was simulated, and for how long, from attributes and settings."""
     experiment = from_json(text, "settings of the dataset")
@@ -144,7 +127,7 @@ def _settings(about: Mapping[str, Any], text: str) -> list[list[str]]:
         ["gas", f"{experiment['particles']} {SHAPES[len(experiment['box'])]}, box {box} a{filled}"],
         *(["" if k else "effects", one] for k, one in enumerate(effects)),
     ]
-    schedule = experiment.get("schedule")  # a film has none
+    schedule = experiment.get("schedule")
     return [*rows, ["schedule", _listed(schedule)]] if schedule else rows
 
 
@@ -383,10 +366,6 @@ def _table_of(study: str) -> Callable[[Dataset], str]:
 
 KINDS: dict[str, tuple[Callable[[Any], str], Callable[[Any], dict[str, Any]]]] = {
     "point": (_point_text, _point_record),
-    "film of a cooling gas": (
-        _film_text,
-        lambda film: {"frames": film.sizes["frame"], "variables": scalars(film)},
-    ),
     "reduced dataset": (_reduced_text, _reduced_record),
     "task of a study": (task_text, task_record),
     "dataset of studies": (studies_text, studies_record),

@@ -38,8 +38,8 @@ from roughgas.config.labels import (  # noqa: F401
 
 SHIPPED = Path(__file__).parents[1] / "config.yaml"
 """The experiments that come with the package; in a clone of the repository, its config.yaml."""
-SHOWCASE, ACCURACY = "showcase", "accuracy"
-"""Parts that scales change under these names; a configuration may be without them."""
+ACCURACY = "accuracy"
+"""The part of a configuration that changes the settings of accuracy."""
 OF_ACCURACY = SHIPPED.parent / ACCURACY
 """The folder of what accuracy costs, with settings of its own, which a configuration may change."""
 FOLDERS, BROKEN = "folders", "broken"
@@ -154,11 +154,6 @@ def _experiment(config: Mapping[str, Any], name: str, scale: str) -> dict[str, A
     for changes in (own, config["scales"][scale].get(name, {})):
         settings = fitted(changed_by(settings, changes), f"experiments.{name}")
     return settings
-
-
-def showcase(config: Mapping[str, Any], scale: str) -> dict[str, Any]:
-    """Return the settings of the showcase at `scale`."""
-    return point_settings(_at_scale(config, SHOWCASE, scale))
 
 
 def accuracy(config: Mapping[str, Any], scale: str) -> dict[str, Any]:

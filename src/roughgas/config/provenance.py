@@ -82,8 +82,8 @@ def write_effective(whole: Mapping[str, Any], scale: str, output: str | Path) ->
         "betas_per_job": whole.get("betas_per_job", 1),
         "experiments": {name: config.experiment(whole, name, scale) for name in names},
     }
-    parts = {config.SHOWCASE: config.showcase, config.ACCURACY: config.accuracy}
-    effective |= {part: of(whole, scale) for part, of in parts.items() if part in whole}
+    if config.ACCURACY in whole:
+        effective[config.ACCURACY] = config.accuracy(whole, scale)
     effective["scales"] = {scale: {}}
     plain = json.loads(json.dumps(effective))  # without anchors
     text = yaml.safe_dump(plain, sort_keys=False, width=100, default_flow_style=None)

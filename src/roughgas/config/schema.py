@@ -29,17 +29,22 @@ from roughgas.config.reading import read_yaml
 if TYPE_CHECKING:
     from jsonschema import Draft202012Validator, ValidationError
 
-PARTS = (settings_of.SHOWCASE, settings_of.ACCURACY)
 RESERVED = (
-    *PARTS,
-    *("accuracy_data", "accuracy_figure", "accuracy_limits", "accuracy_table", "accuracy_task"),
-    *("catalogue", "claims", "clustering", "compile_kernel", "config", "coverage", "crate"),
+    *(
+        "accuracy",
+        "accuracy_data",
+        "accuracy_figure",
+        "accuracy_limits",
+        "accuracy_table",
+        "accuracy_task",
+    ),
+    *("catalogue", "claims", "compile_kernel", "config", "coverage", "crate"),
     *("document", "effective_config", "everything", "explore", "explore_extensions"),
-    *("extensions", "family", "fig1a", "fig1b", "fig2a", "fig2b", "figure", "figures", "film"),
-    *("front", "gas_of_film", "hard_cases", "hard_cases_chaos", "hard_cases_collapse"),
+    *("extensions", "family", "fig1a", "fig1b", "fig2a", "fig2b", "figure", "figures"),
+    *("front", "hard_cases", "hard_cases_chaos", "hard_cases_collapse"),
     *("hard_cases_cooling", "living", "living_page", "movie", "movies", "page"),
     *("picture_for_talks", "pictures", "plot", "point", "reduce", "report", "run_times"),
-    *("run_times_extensions", "showcase", "study_claims", "study_data", "study_figure"),
+    *("run_times_extensions", "study_claims", "study_data", "study_figure", "study_movie"),
     *("study_page", "study_table", "study_task", "table"),
 )
 """Names that no experiment may have, those of rules and products of the workflow."""
@@ -247,12 +252,9 @@ def check_merged(config: Mapping[str, Any], source: str) -> None:
     for name in config["experiments"]:
         check_ancestors(name, config["experiments"], source)
     for scale in config["scales"]:
-        for part, whole, of in (
-            (settings_of.SHOWCASE, "filmed", settings_of.showcase),
-            (settings_of.ACCURACY, "accuracy_in_full", settings_of.accuracy),
-        ):
-            if part in config:
-                check_schema(of(config, scale), f"{source}: {part} at scale {scale}", whole)
+        if settings_of.ACCURACY in config:
+            where = f"{source}: accuracy at scale {scale}"
+            check_schema(settings_of.accuracy(config, scale), where, "accuracy_in_full")
         for name in config["experiments"]:
             if "." not in name or config.get("complete"):
                 check_one(config, name, scale, source)
@@ -268,7 +270,7 @@ def check_file(config: Mapping[str, Any], source: str) -> None:
         if name in RESERVED:
             legal = "be another name: the workflow has a rule or a product of this one"
             raise InputError(f"{source}: key of experiments", name, legal)
-    changeable = [*known, *(part for part in PARTS if part in config)]
+    changeable = [*known, settings_of.ACCURACY]
     for scale, changes in scales.items():
         for name in changes:
             if "." not in name or config.get("complete"):

@@ -213,12 +213,11 @@ class Kind(NamedTuple):
     variables: frozenset[str]
 
 
-POINT, REDUCED, FILM = "a point", "a reduced dataset", "a film of a cooling gas"
+POINT, REDUCED = "a point", "a reduced dataset"
 TASK, STUDIES = "a task of a study", "a dataset of studies"
 SWEPT = re.compile(r"(\w+\.)*\w+")
 KINDS = {
     TASK: Kind(frozenset({"study", "task"}), frozenset()),
-    FILM: Kind(frozenset(), frozenset({"disks", "disk_spin", "R"})),
     REDUCED: Kind(
         frozenset({"experiment", "scale", "dimension", "particles"}),
         frozenset({"r", "beta", "n_seeds", "E_trans", "equilibrated"}),

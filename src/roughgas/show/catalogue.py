@@ -14,7 +14,7 @@ class FigureEntry(NamedTuple):
     """A figure, and where the report shows it."""
 
     name: str
-    part: str  # of the catalogue: paper, beyond, hard_cases, accuracy, large_gas
+    part: str  # of the catalogue: paper, beyond, hard_cases, accuracy
     heading: str
     title: str
     shows: tuple[str, ...] = ()  # experiments or studies

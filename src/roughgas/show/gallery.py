@@ -1,6 +1,6 @@
 """Figures of experiments: by name, and of any reduced dataset, beside theory."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -35,7 +35,8 @@ def draw(
     if name not in (known := figures_of("paper")):
         raise not_one_of("figure", name, known)
     module = import_module(f"roughgas.show.figures.{name}")
-    _draw(name, module.draw, FIGURES[name].shows, inputs, output, slide)
+    datasets = {data.attrs["experiment"]: data for data in map(read_reduced, inputs)}
+    _draw(name, module.draw, FIGURES[name].shows, datasets, output, slide)
 
 
 def draw_of_study(
@@ -58,18 +59,25 @@ def draw_of_study(
     if function is None:
         raise InputError(f"studies/{Path(folder).name}/figure.py", "it", f"have draw{part}()")
     names = [Path(folder).name if one == "tasks" else one for one in shows]
-    _draw(figure, function, names, inputs, output)
+    datasets = {name: data for path in inputs for name, data in _datasets(path).items()}
+    _draw(figure, function, names, datasets, output)
+
+
+def movie_of_study(folder: str, input: str | Path, *, output: str | Path) -> None:
+    """Write the movie of what the tasks of the study in `folder` have found: its movie.py has
+    `draw(data, path)`."""
+    (data,) = read_groups(input).values()
+    module_of(folder, "movie").draw(data, Path(output))
 
 
 def _draw(
     name: str,
     function: Callable[..., "Figure"],
     shows: Sequence[str],
-    inputs: Iterable[str | Path],
+    datasets: "Mapping[str, xr.Dataset]",
     outputs: Iterable[str | Path],
     slide: bool = False,
 ) -> None:
-    datasets = {name: data for path in inputs for name, data in _datasets(path).items()}
     if set(datasets) != set(shows):
         raise InputError(f"data of {name}", ", ".join(datasets), f"be {', '.join(shows)}")
     try:

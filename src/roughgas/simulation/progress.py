@@ -10,7 +10,6 @@ import time
 import warnings
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self, TypeVar
 
 if TYPE_CHECKING:
@@ -118,36 +117,6 @@ class Progress(Bar):
             self._before += self._now
         self._now = now
         self.reach(round(self._before + now))
-
-
-class FilmProgress(Bar):
-    """How far a film is, and from which frame on it resumes."""
-
-    def __init__(self, checkpoint: Path, frames: int, stream: Any = None) -> None:
-        super().__init__("clustering", frames, "frames", stream)
-        self._checkpoint, self._frames, self._saved = checkpoint, frames, 0
-        self._began = False
-
-    def fresh(self, why: str) -> None:
-        """Say why the checkpoint cannot be resumed."""
-        print(f"clustering: {why}: starting afresh", file=sys.stderr)
-
-    def reached(self, frame: int, collisions: int, saved: bool) -> None:
-        """Report frames and collisions so far; `saved`: a checkpoint now holds them."""
-        if frame and not self._began:
-            print(f"clustering: going on from {self._checkpoint}", file=sys.stderr)
-            self._saved = frame
-            if self._bar is not None:  # frames made earlier say nothing of the speed
-                self._bar.n = self._bar.initial = self._bar.last_print_n = frame
-        self._began = True
-        self._saved = frame if saved else self._saved
-        self.reach(frame, f"{collisions:,} collisions")
-
-    def how_to_go_on(self) -> str:
-        """Return what to tell a user who interrupts the run."""
-        if self._saved:
-            return f"the same command goes on from frame {self._saved} of {self._frames}"
-        return "no checkpoint written yet: the same command begins anew"
 
 
 def watched(

@@ -1,7 +1,5 @@
-"""The showcase: a picture of a cooling gas that forms clusters, and the movie of it."""
+"""A picture of a cooling gas that forms clusters."""
 
-from collections.abc import Callable, Iterable
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -15,13 +13,8 @@ from matplotlib.ticker import MaxNLocator
 from mpl_toolkits.axes_grid1.anchored_artists import AnchoredSizeBar
 
 from roughgas import theory
-from roughgas.base import InputError
-from roughgas.data.film import disks_of, read_film
-from roughgas.data.netcdf import require
-from roughgas.show import style
-from roughgas.show.encoding import write_movie
+from roughgas.plotting import LOOKS, THEORY, add_circles, move_circles
 
-KINDS = (*style.METADATA, ".mp4")
 SHOWN = 0.05, 0.25, 1.0  # instants in the picture, as shares of the film
 SMOOTHING = 6.0  # in a: standard deviation of the Gaussian that packing is averaged with
 PACKING: dict[str, Any] = {"cmap": "cividis", "vmin": 0.0, "vmax": 0.8, "interpolation": "bilinear"}
@@ -29,57 +22,36 @@ SPIN = {"cmap": "RdBu_r", "clim": (-2.0, 2.0)}
 SPIN_LABEL, PACKING_LABEL = "spin / its r.m.s.", "packing fraction"
 VOID = "#222222"
 CLOSEUP = 160.0  # side in a of the square in which single disks are shown
-TRANSLATION, ROTATION, UNEVENNESS = (look.colour for look in style.LOOKS[:3])
-DOTTED: dict[str, Any] = {"color": style.THEORY, "linestyle": ":"}
-FRAMES_PER_SECOND, LAST_FRAME = 12, 1.5  # seconds that the movie rests on its last frame
+TRANSLATION, ROTATION, UNEVENNESS = (look.colour for look in LOOKS[:3])
+DOTTED: dict[str, Any] = {"color": THEORY, "linestyle": ":"}
 LETTERS, TITLE = "abc", 8
 SIZE = (7.0, 5.0)  # inches, of the picture
 PER_PARTICLE = "collisions per particle"
 
 
-def draw(path: str | Path, outputs: Iterable[str | Path]) -> None:
-    """Draw the film at `path` into each of `outputs`: .pdf or .png a picture, .mp4 a movie.
-
-    Raises InputError for another kind of file, or one without what is drawn, OSError where one
-    cannot be read or written.
-    """
-    paths = [Path(output) for output in outputs]
-    for output in paths:
-        if output.suffix not in KINDS:
-            raise InputError("file", output, f"end in {', '.join(KINDS)}")
-    film = read_film(path)
-    require(film.attrs, ("box", "window", "packing", "r", "beta"), path)
-    style.draw(lambda: picture(film), [one for one in paths if one.suffix != ".mp4"])
-    frames = list(range(film.sizes["frame"]))
-    frames += frames[-1:] * round(LAST_FRAME * FRAMES_PER_SECOND)
-    for output in paths:
-        if output.suffix == ".mp4":
-            write_movie(output, lambda: moving_picture(film), frames, FRAMES_PER_SECOND)
-
-
-def picture(film: xr.Dataset) -> Figure:
+def draw(film: xr.Dataset) -> Figure:
     """Return maps of packing at three instants, single disks, and how the gas cooled meanwhile."""
     figure = Figure(figsize=SIZE, layout="constrained")
     above, below = np.asarray(figure.subfigures(2, 1, height_ratios=(1, 1.02)))
     frames = [round(share * (film.sizes["frame"] - 1)) for share in SHOWN]
     maps = above.subplots(1, 3, sharey=True)
     for axes, frame, letter in zip(maps, frames, LETTERS, strict=True):
-        image = _draw_map(axes, film, frame)
-        axes.set_title(f"{letter}   {_passed(film, frame)}", loc="left", fontsize=TITLE)
+        image = draw_map(axes, film, frame)
+        axes.set_title(f"{letter}   {passed(film, frame)}", loc="left", fontsize=TITLE)
         axes.label_outer()
     above.colorbar(image, ax=maps, label=PACKING_LABEL, pad=0.01)
-    square = _outline(maps[-1], film)
-    above.suptitle(_caption(film), fontsize=TITLE)
+    square = outline(maps[-1], film)
+    above.suptitle(caption(film), fontsize=TITLE)
     zoom, cooling, others = below.subfigures(1, 3, width_ratios=(1.15, 1, 1))
-    disks = _draw_disks(axes := zoom.subplots(), film, frames[-1], square)
+    disks = draw_disks(axes := zoom.subplots(), film, frames[-1], square)
     axes.set_title("d   the square in c", loc="left", fontsize=TITLE)
     zoom.colorbar(disks, ax=axes, label=SPIN_LABEL, shrink=0.62, pad=0.02)
     graphs = [cooling.subplots(), *others.subplots(2, 1, sharex=True)]
-    for axes, draw_graph in zip(graphs, (_energies, _ratio, _unevenness), strict=True):
+    for axes, draw_graph in zip(graphs, (energies, share, _unevenness), strict=True):
         draw_graph(axes, film)
         axes.xaxis.set_major_locator(MaxNLocator(5, prune="upper"))  # the last number would be cut
-        for at in _at(film)[frames]:
-            axes.axvline(at, ymax=0.05, color=style.THEORY, linewidth=0.8)
+        for at in passed_at(film)[frames]:
+            axes.axvline(at, ymax=0.05, color=THEORY, linewidth=0.8)
         axes.label_outer()
     return figure
 
@@ -111,7 +83,7 @@ def closeup(film: xr.Dataset) -> tuple[float, float, float]:
     return float(middle[0] - side / 2), float(middle[1] - side / 2), float(side)
 
 
-def _draw_map(axes: Axes, film: xr.Dataset, frame: int) -> AxesImage:
+def draw_map(axes: Axes, film: xr.Dataset, frame: int) -> AxesImage:
     width, height = film.attrs["box"]
     shown = packing(film, frame)
     image = axes.imshow(shown, origin="lower", extent=(0, width, 0, height), **PACKING)
@@ -129,44 +101,44 @@ def _add_scale_bar(axes: Axes) -> None:
     axes.set(xticks=[], yticks=[])
 
 
-def _outline(axes: Axes, film: xr.Dataset) -> tuple[float, float, float]:
+def outline(axes: Axes, film: xr.Dataset) -> tuple[float, float, float]:
     """Outline the square on a map, and return it."""
     left, bottom, side = square = closeup(film)
     axes.add_patch(Rectangle((left, bottom), side, side, fill=False, edgecolor="white"))
     return square
 
 
-def _draw_disks(axes: Axes, film: xr.Dataset, frame: int, square: tuple) -> EllipseCollection:
+def draw_disks(axes: Axes, film: xr.Dataset, frame: int, square: tuple) -> EllipseCollection:
     left, bottom, side = square
     axes.set(xlim=(left, left + side), ylim=(bottom, bottom + side), aspect="equal")
     axes.set(facecolor=VOID)
     _add_scale_bar(axes)
-    disks = style.add_circles(axes, edgecolor=VOID, linewidth=0.2, rasterized=True, **SPIN)
-    _move(disks, film, frame)
+    disks = add_circles(axes, edgecolor=VOID, linewidth=0.2, rasterized=True, **SPIN)
+    move_disks(disks, film, frame)
     return disks
 
 
-def _move(disks: EllipseCollection, film: xr.Dataset, frame: int) -> None:
-    x, y, spin = disks_of(film, frame)
+def move_disks(disks: EllipseCollection, film: xr.Dataset, frame: int) -> None:
+    x, y, spin = _disks(film, frame)
     axes: Any = disks.axes
     (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
     seen = (x > left - 1) & (x < right + 1) & (y > bottom - 1) & (y < top + 1)
-    style.move(disks, x[seen], y[seen])
+    move_circles(disks, x[seen], y[seen])
     disks.set_array(spin[seen])
 
 
-def _at(film: xr.Dataset) -> np.ndarray:
+def passed_at(film: xr.Dataset) -> np.ndarray:
     return film.collisions_per_particle.values
 
 
 def _homogeneous(film: xr.Dataset) -> tuple[np.ndarray, theory.Relaxation]:
     """Return collisions per particle, and the temperatures of a gas that stays homogeneous."""
-    n, about = np.linspace(0, _at(film)[-1], 1000), film.attrs
+    n, about = np.linspace(0, passed_at(film)[-1], 1000), film.attrs
     return n, theory.relax(0.0, about["r"], about["beta"], n, 2, about["inertia"])
 
 
-def _energies(axes: Axes, film: xr.Dataset) -> None:
-    n, (smooth, haff) = _at(film), _homogeneous(film)
+def energies(axes: Axes, film: xr.Dataset) -> None:
+    n, (smooth, haff) = passed_at(film), _homogeneous(film)
     axes.plot(n, film.E_trans, color=TRANSLATION, label="translation")
     axes.plot(n[1:], film.E_rot[1:], color=ROTATION, linestyle="--", label="rotation")
     axes.plot(smooth, haff.T_tr, label="homogeneous", **DOTTED)
@@ -178,27 +150,27 @@ def _energies(axes: Axes, film: xr.Dataset) -> None:
     axes.legend()
 
 
-def _ratio(axes: Axes, film: xr.Dataset) -> None:
+def share(axes: Axes, film: xr.Dataset) -> None:
     smooth, haff = _homogeneous(film)
-    axes.plot(_at(film), film.R, color=ROTATION)
+    axes.plot(passed_at(film), film.R, color=ROTATION)
     axes.plot(smooth, haff.theta / (1 + haff.theta), label="homogeneous", **DOTTED)
-    axes.set(ylabel=r"$R$", xlabel=PER_PARTICLE, xlim=(0, _at(film)[-1]), ylim=(0, None))
+    axes.set(ylabel=r"$R$", xlabel=PER_PARTICLE, xlim=(0, passed_at(film)[-1]), ylim=(0, None))
     axes.set_title("f   share of rotation", loc="left", fontsize=TITLE)
     axes.legend(loc="best")
 
 
 def _unevenness(axes: Axes, film: xr.Dataset) -> None:
     maps = [packing(film, frame) for frame in range(film.sizes["frame"])]
-    axes.plot(_at(film), [one.std() / one.mean() for one in maps], color=UNEVENNESS)
+    axes.plot(passed_at(film), [one.std() / one.mean() for one in maps], color=UNEVENNESS)
     axes.set(xlabel=PER_PARTICLE, ylabel=r"$\delta\phi/\phi$", ylim=(0, None))
     axes.set_title("g   uneven packing", loc="left", fontsize=TITLE)
 
 
-def _passed(film: xr.Dataset, frame: int) -> str:
-    return f"{_at(film)[frame]:.0f} {PER_PARTICLE}"
+def passed(film: xr.Dataset, frame: int) -> str:
+    return f"{passed_at(film)[frame]:.0f} {PER_PARTICLE}"
 
 
-def _caption(film: xr.Dataset) -> str:
+def caption(film: xr.Dataset) -> str:
     about = film.attrs
     return (
         f"Cooling gas of $N = {about['particles']:,}$ rough disks, "
@@ -206,32 +178,8 @@ def _caption(film: xr.Dataset) -> str:
     )
 
 
-def moving_picture(film: xr.Dataset) -> tuple[Figure, Callable[[int], None]]:
-    """Return a figure of the gas, and a function that brings it to a frame."""
-    figure = Figure(figsize=(8.4, 4.1), dpi=160, layout="constrained")
-    squares, graphs = np.asarray(figure.subfigures(1, 2, width_ratios=(2.5, 1)))
-    whole, zoom = squares.subplots(1, 2)
-    image = _draw_map(whole, film, 0)
-    disks = _draw_disks(zoom, film, 0, _outline(whole, film))
-    for mappable, axes, label in ((image, whole, PACKING_LABEL), (disks, zoom, SPIN_LABEL)):
-        squares.colorbar(mappable, ax=axes, label=label, location="bottom", shrink=0.8)
-    zoom.set_title("the square", fontsize=TITLE)
-    squares.suptitle(_caption(film), fontsize=TITLE)
-    marks = []
-    above, below = graphs.subplots(2, 1, sharex=True)
-    for axes, draw_graph in ((above, _energies), (below, _ratio)):
-        draw_graph(axes, film)
-        axes.set_title("", loc="left")
-        axes.legend(fontsize=7)
-        axes.label_outer()
-        marks.append(axes.axvline(0, color=style.FAINT, zorder=0))
-
-    def show(frame: int) -> None:
-        image.set_data(packing(film, frame))
-        _move(disks, film, frame)
-        whole.set_title(_passed(film, frame), fontsize=TITLE)
-        for mark in marks:
-            mark.set_xdata([_at(film)[frame]] * 2)
-
-    show(0)
-    return figure, show
+def _disks(film: xr.Dataset, frame: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return x and y (a) and spin (in units of its root mean square) of the disks in the window."""
+    ends = np.cumsum(film.disks.values)
+    one = slice(ends[frame] - film.disks.values[frame], ends[frame])
+    return film.disk_x.values[one], film.disk_y.values[one], film.disk_spin.values[one]
