@@ -204,12 +204,13 @@ def products_of(name):
 
 
 def products_of_each(wildcards):
-    """All that there is to all studies, but for those whose tasks cannot be named."""
+    """All that there is to all studies, but for those whose code cannot be read."""
     found = []
     for name in STUDIES:
         try:
             if name in WITH_TASKS:
                 tasks_of_study_folder(name, SCALE)
+                code_in(STUDIES[name]["folder"], "results")
             found += products_of(name)(wildcards)
         except InputError as error:
             logger.warning(f"roughgas: error: {error} (left out; all else can be made)")

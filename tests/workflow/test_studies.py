@@ -61,6 +61,11 @@ def test_a_broken_study_ends_in_one_line_and_keeps_nothing_else_from_being_made(
     own.add("unread", LEAST)
     (own.folder / "studies" / "unread" / "figure.py").write_text("def draw(:\n")
     own.add("unnamed", "tasks: {experiments: [cooling]}")
+    own.add("uncombined", "tasks: {experiments: [cooling]}")
+    (own.folder / "studies" / "uncombined" / "tasks.py").write_text(
+        "tasks = lambda settings: ['a']\n"
+    )
+    (own.folder / "studies" / "uncombined" / "results.py").write_text("def combine(:\n")
     for name in ("tasks", "results"):
         (own.folder / "studies" / "unnamed" / f"{name}.py").write_text("import absent\n")
     status, output = own.snakemake("-n", *TINY, "extensions")
@@ -68,6 +73,7 @@ def test_a_broken_study_ends_in_one_line_and_keeps_nothing_else_from_being_made(
         "studies/unnamed/tasks.py = ModuleNotFoundError: No module named 'absent': must be Python"
     )
     assert status == 0 and f"{line} (left out; all else can be made)" in output
+    assert "studies/uncombined/results.py = SyntaxError: " in output
     status, output = own.snakemake("-n", *TINY, "unnamed")
     assert status == 1 and line in output and "Traceback" not in output
     assert own.planned("figures")["figure"] == 4
