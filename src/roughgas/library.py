@@ -15,8 +15,6 @@ if TYPE_CHECKING:
 
     from roughgas.config import Place
 
-UNNAMED = "scene"
-"""What a dataset calls the experiment where it has no name."""
 Values = float | Sequence[float]
 """One value of r, of beta or of the seed, or several."""
 Side = float | Literal["open"]
@@ -185,7 +183,7 @@ def simulate(
 
     from roughgas.data.point import as_dataset
     from roughgas.results.reduce import reduced_in_memory
-    from roughgas.simulation.point import observables_of, points, settings_of
+    from roughgas.simulation.point import UNNAMED, observables_of, points, settings_of
     from roughgas.simulation.restart import initial_of
 
     at, several = _places(r, beta, seed)
@@ -194,7 +192,7 @@ def simulate(
         raise InputError(key, "given", "come with one r, one beta and one seed")
     name, scale = experiment or UNNAMED, scale or _scale_of(experiment, config)
     changes["observables"], functions = observables_of(observe)
-    settings = settings_of(experiment, changes, scale, config, UNNAMED)
+    settings = settings_of(experiment, changes, scale, config)
     states, told = ([], []) if initial is None else (initial_of(initial), ["--from", "start.nc"])
     outputs = ["point.nc"] * len(at)
     found = points(name, settings, at, scale, outputs, states, functions, told, quiet=not progress)
@@ -269,13 +267,13 @@ def trajectory(
     from roughgas.config.provenance import provenance
     from roughgas.data.trajectory import as_trajectory
     from roughgas.scene import build
-    from roughgas.simulation.point import settings_of
+    from roughgas.simulation.point import UNNAMED, settings_of
     from roughgas.simulation.progress import watched
     from roughgas.simulation.restart import initial_of
     from roughgas.simulation.trajectory import chosen, snapshots, variables
 
     name, scale = experiment or UNNAMED, scale or _scale_of(experiment, config)
-    settings = settings_of(experiment, changes, scale, config, UNNAMED)
+    settings = settings_of(experiment, changes, scale, config)
     scene = build(settings, legal_r, legal_beta)
     states = [] if initial is None else initial_of(initial)
     take = chosen(settings, scene, start, length, frames, times, states)

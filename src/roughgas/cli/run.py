@@ -14,7 +14,6 @@ from roughgas.base.formatting import as_json
 from roughgas.cli.parser import check_outputs, labels
 from roughgas.config.labels import SPECIES, names_of, species_called
 from roughgas.config.provenance import variant_attributes
-from roughgas.config.schema import check_schema
 from roughgas.data.point import Point, read_point, write_point
 from roughgas.simulation import schedule
 from roughgas.simulation.point import points
@@ -89,10 +88,7 @@ def _settings(options: Namespace) -> dict[str, Any]:
     if watched:
         found = config.merged(found, {"observables": {name: {} for name in watched}})
     if told or watched:
-        found = changed_by(found, told)
-        check_schema(config.point_settings(found), options.experiment, "experiment")
-        found = config.fitted(found, options.experiment)
-        check_schema(config.point_settings(found), options.experiment, "point")
+        found = config.validated(changed_by(found, told), options.experiment)
     if told or watched or not options.checked:
         schedule.check(found)
     return found

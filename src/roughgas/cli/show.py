@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from xarray import DataArray, Dataset
+from xarray import Dataset
 
 from roughgas import config
 from roughgas.base import on_one_line
@@ -230,26 +230,29 @@ def theory_beside(point: Dataset, R: float, expected: float) -> list[list[str]]:
     if math.isnan(expected):
         spins = "contacts change no spin, and spins that are 0 stay so"
         return [["theory", f"none ({name}): at beta = -1 {spins}"]]
-    return [["theory", f"{expected:.4f}, {name}: R is {_off(R, expected)} it"]]
+    side = "below" if R < expected else "above"
+    return [["theory", f"{expected:.4f}, {name}: R is {abs(R - expected):.4f} {side} it"]]
 
 
 def collisional(point: Dataset) -> list[list[str]]:
     """Return R averaged over collisions, as the theory of a driven gas is."""
     if "R_collisional" not in point:
         return []
-    found = Estimate(float(point.R_collisional), float(point.R_collisional_stderr))
     like = equation_of(point.attrs, point).name
     said = f"averaged over collisions, as {like}"
     if "R_unsubtracted" in point:
         said = f"averaged over collisions, mean flow and mean spin included, unlike {like}"
-    return [["R_collisional", f"{found}, {said}"]]
+    return [["R_collisional", f"{_estimate(point, 'R_collisional')}, {said}"]]
 
 
 def energies(point: Dataset) -> list[list[str]]:
     """Return the energies of a point, with their errors where they are known."""
     when = ", as the measurement begins" if "plateau_end" in point else ""
     return [
-        [name, f"{_estimate(point, name)} {_unit(point[name])}, per degree of freedom{when}"]
+        [
+            name,
+            f"{_estimate(point, name)} {unit_of(point[name].attrs)}, per degree of freedom{when}",
+        ]
         for name in ("E_trans", "E_rot")
         if name in point
     ]
@@ -277,14 +280,6 @@ def by_species(point: Dataset) -> str:
 
 def _estimate(point: Dataset, name: str) -> str:
     return f"{Estimate(float(point[name]), float(point.get(f'{name}_stderr', math.nan)))}"
-
-
-def _unit(array: DataArray) -> str:
-    return unit_of(array.attrs)
-
-
-def _off(value: float, expected: float) -> str:
-    return f"{abs(value - expected):.4f} {'below' if value < expected else 'above'}"
 
 
 def scalars(data: Dataset) -> dict[str, Any]:

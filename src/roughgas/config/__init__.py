@@ -11,6 +11,7 @@ mine/inertia0.1: an experiment like any other, whose settings have that value.
 All functions raise InputError, with a text of one line, for unknown names and illegal values.
 """
 
+import itertools
 import math
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
@@ -250,11 +251,8 @@ def kernel_settings(settings: Mapping[str, Any]) -> dict[str, Any]:
 
 def sweep(settings: Mapping[str, Any]) -> Iterator[tuple[str, str, str]]:
     """Yield the labels (r, beta, seed) of every point of an experiment, or of each variant."""
-    axes = settings["sweep"]
-    for r in axes["r"]:
-        for beta in axes["beta"]:
-            for number in range(1, axes["seeds"] + 1):
-                yield str(r), str(beta), str(number)
+    r, beta, seeds = (settings["sweep"][key] for key in GRID)
+    yield from itertools.product(map(str, r), map(str, beta), map(str, range(1, seeds + 1)))
 
 
 def blocks(axes: Mapping[str, Any], config: Mapping[str, Any]) -> list[tuple[list[str], list[str]]]:
@@ -279,18 +277,20 @@ def _chunks(labels: list[str], size: int) -> list[list[str]]:
 def from_text(
     text: str, source: str, checked: bool = False, parts: Iterable[str] = ("experiment", "point")
 ) -> dict[str, Any]:
-    """Return the settings of a point from their JSON; `checked` says that they are known to be
-    legal.
-
-    Otherwise they must fulfil `parts`, definitions of the schema.
-    """
+    """Return the settings of a point from their JSON; `checked`: they are known to be legal."""
     settings = from_json(text, source)
-    if not checked:
-        from roughgas.config.schema import check_schema
+    return settings if checked else validated(settings, source, parts)
 
-        for part in parts:
-            settings = fitted(settings, source) if part == "point" else settings
-            check_schema(settings, source, part)
+
+def validated(
+    settings: dict[str, Any], source: str, parts: Iterable[str] = ("experiment", "point")
+) -> dict[str, Any]:
+    """Return settings, of a point `fitted`, that fulfil `parts`, definitions of the schema."""
+    from roughgas.config.schema import check_schema
+
+    for part in parts:
+        settings = fitted(settings, source) if part == "point" else settings
+        check_schema(settings, source, part)
     return settings
 
 

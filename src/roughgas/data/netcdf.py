@@ -244,11 +244,16 @@ def opened(path: str | Path, *kinds: str) -> Iterator["netCDF4.Dataset"]:
     """
     import netCDF4
 
-    if not Path(path).exists():
-        raise FileNotFoundError(errno.ENOENT, _absence(Path(path)), str(path))
-    if not Path(path).is_file():  # a pipe would be waited for
+    place = Path(path)
+    if not place.exists():
+        why = os.strerror(errno.ENOENT)
+        made = place.parts[:1] == ("results",) and place.suffix == ".nc"
+        hint = f"{why}; to make it: snakemake -j2 {path}" if made else why
+        raise FileNotFoundError(errno.ENOENT, hint, str(path))
+    if not place.is_file():  # a pipe would be waited for
         raise InputError("file", path, "be a file")
-    if not is_whole(path):
+    rest, mark, stated = place.read_bytes().rpartition(SEAL)
+    if mark and stated != hashlib.sha256(rest).hexdigest().encode():
         raise DamagedError("file", path, "be what was written to it: it is damaged")
     try:
         file = netCDF4.Dataset(path)
@@ -257,19 +262,14 @@ def opened(path: str | Path, *kinds: str) -> Iterator["netCDF4.Dataset"]:
         raise DamagedError("file", path, legal) from error
     with file:
         _check_attributes(file, path)
-        _check_size(file, path)
+        variables = [v for g in (file, *file.groups.values()) for v in g.variables.values()]
+        if (size := sum(8.0 * math.prod(one.shape) for one in variables)) > LARGEST:
+            raise InputError(f"size of {path}", f"{size:.3g} bytes", f"be at most {LARGEST:.0g}")
         if (found := kind_of(file)) not in (kinds or (*KINDS, STUDIES)):
             wanted = " or ".join(kinds) or "a dataset of roughgas"
             other = f", not {found}" if found else ""
             raise InputError("file", path, f"be {wanted}{other}")
         yield file
-
-
-def _absence(path: Path) -> str:
-    """Return why there is no file, and which command makes it if it is a result of the workflow."""
-    why = os.strerror(errno.ENOENT)
-    made = path.parts[:1] == ("results",) and path.suffix == ".nc"
-    return f"{why}; to make it: snakemake -j2 {path}" if made else why
 
 
 def is_of_kind(path: str | Path, kind: str) -> bool:
@@ -304,13 +304,6 @@ def seal(path: str | Path) -> None:
     with Path(path).open("r+b") as file:
         digest = hashlib.file_digest(file, "sha256").hexdigest()
         file.write(SEAL + digest.encode())
-
-
-def is_whole(path: str | Path) -> bool:
-    """Return whether a file is what was sealed; True if it has no seal."""
-    content = Path(path).read_bytes()
-    rest, mark, stated = content.rpartition(SEAL)
-    return not mark or stated == hashlib.sha256(rest).hexdigest().encode()
 
 
 def is_foreign(path: str | Path) -> bool:
@@ -351,10 +344,3 @@ def _fits(value: Any, wanted: str) -> bool:
         return isinstance(value, str)
     is_number = np.ndim(value) == 0 and np.asarray(value).dtype.kind in "iuf"
     return bool(is_number and math.isfinite(value) and (wanted == NUMBER or value == int(value)))
-
-
-def _check_size(file: "netCDF4.Dataset", path: str | Path) -> None:
-    groups = (file, *file.groups.values())
-    size = sum(8.0 * math.prod(one.shape) for group in groups for one in group.variables.values())
-    if size > LARGEST:
-        raise InputError(f"size of {path}", f"{size:.3g} bytes", f"be at most {LARGEST:.0g}")

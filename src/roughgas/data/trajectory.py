@@ -150,38 +150,25 @@ def write_trajectory(path: str | Path, trajectory: "xarray.Dataset") -> None:
 
 
 def frames(trajectory: "xarray.Dataset") -> Iterator[Frame]:
-    """Yield the frames of a trajectory as files have them."""
-    heights = _heights(trajectory)
+    """Yield the frames of a trajectory as files have them: an open axis such that all fit."""
+    reach = trajectory.position.values + trajectory.radius.values[:, None]
+    lengths = trajectory.box.values
+    heights = np.where(np.isnan(lengths), reach.max(axis=(0, 1)), lengths)
+    depth, flat = DEPTH * float(trajectory.radius.max()), ((0, 0), (0, 3 - len(lengths)))
     for number in range(trajectory.sizes["frame"]):
         one = trajectory.isel(frame=number)
-        depth = DEPTH * float(trajectory.radius.max())
         cell = np.diag(np.append(heights, depth)[:3])
         cell[1, 0] = float(one.image_shift) if "image_shift" in one else 0.0
+        spin = one.spin.values if "spin" in one else None
         yield Frame(
             time=float(one.time),
             cell=cell,
-            position=_in_space(one.position.values),
-            velocity=_in_space(one.velocity.values),
-            spin=_axial(one.spin.values) if "spin" in one else None,
+            position=np.pad(one.position.values, flat),
+            velocity=np.pad(one.velocity.values, flat),
+            # that of a disk points along z
+            spin=spin if spin is None else np.pad(spin, ((0, 0), (3 - spin.shape[1], 0))),
             angle=one.angle.values if "angle" in one else None,
         )
-
-
-def _heights(trajectory):
-    """Return the lengths of the box, (D,), those of open axes such that all particles fit."""
-    lengths = trajectory.box.values.copy()
-    reach = trajectory.position.values + trajectory.radius.values[:, None]
-    tops = reach.max(axis=(0, 1))
-    return np.where(np.isnan(lengths), tops, lengths)
-
-
-def _in_space(vectors):
-    return np.pad(vectors, ((0, 0), (0, 3 - vectors.shape[1])))
-
-
-def _axial(spin):
-    """Return spins as vectors; that of a disk points along z."""
-    return np.pad(spin, ((0, 0), (3 - spin.shape[1], 0)))
 
 
 def _write_xyz(path: Path, trajectory: "xarray.Dataset") -> None:
@@ -234,10 +221,9 @@ def _write_amber(path: Path, trajectory: "xarray.Dataset") -> None:
             }
             for name, (values, dims) in rows.items():
                 if values is not None:
-                    found = file.variables.get(name)
-                    (file.createVariable(name, "f8", dims) if found is None else found)[number] = (
-                        values
-                    )
+                    if name not in file.variables:
+                        file.createVariable(name, "f8", dims)
+                    file[name][number] = values
         file["cell_angles"].units = "degree"
 
 

@@ -98,31 +98,20 @@ def experiment(reduced_path: str | Path, points: Path, longest: int = LONGEST) -
     if swept is not None:
         values = data[swept].values.tolist()
         variants = [(one, data.sel({swept: one}).assign_attrs({swept: one})) for one in values]
+    about: dict[str, Any] = next((about for _, about in runs.values()), {})
+    settings = from_json(about.get("experiment_json", "{}"), "settings")
+    size = {"box": settings.get("box"), "packing": about.get("packing")}
     return {
         "name": name,
         "scale": data.attrs["scale"],
         "particles": particles_of(data),
-        **_size(runs, swept),
+        **(dict.fromkeys(size) if swept in ("box", "packing", "particles") else size),
         "dimension": int(data.attrs["dimension"]),
         "swept": data.attrs.get("swept"),
         "theory": equation_of(data.attrs).name,
-        "effects": _effects(runs),
+        "effects": list(settings.get("effects", {})),
         "variants": [_variant(one, value, runs, longest) for value, one in variants],
     }
-
-
-def _effects(runs):
-    """Return the names of the effects that act on an experiment's gas, for its picture."""
-    _, about = next(iter(runs.values()), (None, {}))
-    return list(from_json(about.get("experiment_json", "{}"), "settings").get("effects", {}))
-
-
-def _size(runs, swept):
-    """Return the box and the packing of an experiment; None for what is swept, or not there."""
-    _, about = next(iter(runs.values()), (None, {}))
-    box = from_json(about.get("experiment_json", "{}"), "settings").get("box")
-    known = {"box": box, "packing": about.get("packing")}
-    return known if swept not in ("box", "packing", "particles") else dict.fromkeys(known)
 
 
 def _variant(data, value, runs, longest):

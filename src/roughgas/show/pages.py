@@ -111,17 +111,15 @@ def markdown_as_html(content: bytes, folder: Path | None = None) -> str:
     tokens = markdown.parse(content.decode("utf-8"))
     for one in (child for token in tokens for child in token.children or ()):
         if one.type == "image" and folder is not None:
-            one.attrSet("src", _picture(str(one.attrGet("src")), folder))
+            path = Path(folder, unquote(str(one.attrGet("src")))).resolve()
+            kind = PICTURES.get(path.suffix)
+            if kind and path.is_relative_to(folder.resolve()) and path.is_file():
+                one.attrSet("src", f"data:image/{kind};base64,{_base64(path.read_bytes())}")
     return markdown.renderer.render(tokens, markdown.options, {})
 
 
-def _picture(source: str, folder: Path) -> str:
-    """Return a picture as a data URI where it is a file in the folder; else its source as it is."""
-    path = Path(folder, unquote(source)).resolve()
-    kind = PICTURES.get(path.suffix)
-    if kind is None or not path.is_relative_to(folder.resolve()) or not path.is_file():
-        return source
-    return f"data:image/{kind};base64,{base64.b64encode(path.read_bytes()).decode('ascii')}"
+def _base64(content: bytes) -> str:
+    return base64.b64encode(content).decode("ascii")
 
 
 PICTURES = {".png": "png", ".gif": "gif", ".jpg": "jpeg", ".jpeg": "jpeg", ".svg": "svg+xml"}
@@ -130,8 +128,8 @@ PICTURE = '<img alt="" src="data:image/gif;base64,{}">'
 KINDS = {
     ".md": markdown_as_html,
     ".yaml": lambda content: f"<pre>{escape(content.decode('utf-8'))}</pre>",
-    ".mp4": lambda content: MOVIE.format(base64.b64encode(content).decode("ascii")),
-    ".gif": lambda content: PICTURE.format(base64.b64encode(content).decode("ascii")),
+    ".mp4": lambda content: MOVIE.format(_base64(content)),
+    ".gif": lambda content: PICTURE.format(_base64(content)),
 }
 """How the content (bytes) of a file becomes HTML, by its suffix."""
 
@@ -177,7 +175,7 @@ def _figure(path: Path, texts: dict[str, str]) -> dict[str, Any]:
     return {
         "name": name,
         "title": title,
-        "picture": base64.b64encode(path.read_bytes()).decode("ascii"),
+        "picture": _base64(path.read_bytes()),
         "alt": f"{title}. {' '.join(text.partition('**')[0].split())}",
         "caption": markup(markdown_as_html(text.encode())),
     }

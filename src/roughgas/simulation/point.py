@@ -19,7 +19,6 @@ from roughgas import config
 from roughgas.base import InputError, __version__
 from roughgas.config import Place
 from roughgas.config.provenance import provenance
-from roughgas.config.schema import check_schema
 from roughgas.data.point import Point
 from roughgas.data.variables import Variable
 from roughgas.effects import speed_of_r
@@ -36,26 +35,22 @@ from roughgas.simulation.restart import Initial, check_initial, final_states, is
 from roughgas.statistics.errors import UNKNOWN, YES
 from roughgas.theory.mixtures import SPECIES
 
+UNNAMED = "scene"
+"""What messages and datasets call an experiment that has no name."""
+
 
 def settings_of(
-    name: str | None,
-    changes: Mapping[str, Any],
-    scale: str,
-    path: str | Path | None,
-    unnamed: str,
+    name: str | None, changes: Mapping[str, Any], scale: str, path: str | Path | None
 ) -> dict[str, Any]:
     """Return the settings of a point, checked as those of the pipeline are.
 
-    `changes` that are None change nothing. Without a name they are all that there is, and messages
-    call it `unnamed`. Raises InputError.
+    `changes` that are None change nothing. Without a name they are all that there is. Raises
+    InputError.
     """
     given = {key: _plain(value) for key, value in changes.items() if value is not None}
     known = {} if name is None else config.load_experiment(path or config.SHIPPED, name, scale)
-    where = name or unnamed
     settings = config.changed_by(config.point_settings(known), given)
-    check_schema(settings, where, "experiment")
-    settings = config.fitted(settings, where)
-    check_schema(settings, where, "point")
+    settings = config.validated(settings, name or UNNAMED)
     schedule.check(settings)
     return settings
 
