@@ -12,7 +12,7 @@ from roughgas import config
 from roughgas.base import InputError
 from roughgas.base.formatting import as_json
 from roughgas.cli.parser import check_outputs, labels
-from roughgas.config.labels import SPECIES, names_of, species_called
+from roughgas.config.labels import SPECIES, holder, names_of
 from roughgas.config.provenance import variant_attributes
 from roughgas.data.point import Point, read_point, write_point
 from roughgas.simulation import schedule
@@ -152,7 +152,7 @@ def _change(settings: Mapping[str, Any], key: str, value: Any) -> dict[str, Any]
 
     part = key.rpartition(".")[0]
     if part.startswith(SPECIES):
-        if species_called(settings, part) is None:
+        if holder(settings, part) is None:
             known = ", ".join(names_of(settings)) or "there are none"
             raise InputError("--set", key, f"name one of species: {known}")
         return config.swept_to(settings, key, value)

@@ -11,6 +11,7 @@ mine/inertia0.1: an experiment like any other, whose settings have that value.
 All functions raise InputError, with a text of one line, for unknown names and illegal values.
 """
 
+import copy
 import itertools
 import math
 from collections.abc import Iterable, Iterator, Mapping
@@ -24,15 +25,13 @@ from roughgas.config.labels import (  # noqa: F401
     SPECIES,
     SWEPT,
     Place,
+    holder,
     level,
     parameter_of,
     places,
     restitution,
     roughness,
-    scaled,
     seed,
-    value_of,
-    with_species_changed,
 )
 
 # the schema and YAML are imported where they are used: a job of checked settings needs neither
@@ -344,25 +343,31 @@ def variant(name: str, settings: Mapping[str, Any]) -> dict[str, Any]:
     return fitted(changed_by(settings, changes), f"experiments.{name}")
 
 
-def swept_to(settings: Mapping[str, Any], key: str, value: float | str) -> dict[str, Any]:
+def swept_to(settings: Mapping[str, Any], key: str, value: Any) -> dict[str, Any]:
     """Return the change to an experiment's settings that gives its third axis `key` this value."""
     part, _, parameter = key.rpartition(".")
     if part.startswith(SPECIES):
-        return {"species": with_species_changed(settings["species"], part, parameter, value)}
+        species = copy.deepcopy(settings["species"])
+        if (changed := holder({"species": species}, part, parameter)) is not None:
+            changed[parameter] = value
+        return {"species": species}
     if part and part != "schedule":
         return {"effects": {part: {parameter: value}}}
     if isinstance(value, float) and value.is_integer():
         value = int(value)  # as config.yaml would have it
     if part:
         return {part: {parameter: value}}
-    return {key: scaled(settings[key], value) if key == "box" else value}
+    if key == "box" and not isinstance(value, str):  # of the same proportions
+        width, *others = settings[key]
+        value = [value, *(x if x == "open" else x * value / width for x in others)]
+    return {key: value}
 
 
 def swept_value(settings: Mapping[str, Any], key: str) -> Any:
     """Return the value that the settings of a variant have on its third axis; None without it."""
     part, _, parameter = key.rpartition(".")
     if part.startswith(SPECIES):
-        return value_of(settings, part, parameter)
+        return (holder(settings, part, parameter) or {}).get(parameter)
     if part:
         chosen = settings if part == "schedule" else settings["effects"]
         return chosen.get(part, {}).get(parameter)

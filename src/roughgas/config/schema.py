@@ -17,12 +17,12 @@ from roughgas.base import RESTITUTION, ROUGHNESS, InputError, not_one_of, shown
 from roughgas.config.labels import (
     LEGAL_LEVEL,
     SPECIES,
+    holder,
     level,
     names_of,
     numbers_of,
     restitution,
     roughness,
-    species_called,
 )
 from roughgas.config.reading import read_yaml
 
@@ -305,7 +305,7 @@ def _check_axis(settings: Mapping[str, Any], where: str) -> None:
             legal = f"name a length of this schedule: {', '.join(sorted(timed))}"
             raise InputError(f"{where}.sweep: key", shown(key), legal)
         if part.startswith(SPECIES):
-            if species_called(settings, part) is None:
+            if holder(settings, part) is None:
                 legal = f"name one of species: {', '.join(names_of(settings)) or 'there are none'}"
                 raise InputError(f"{where}.sweep: key", shown(key), legal)
         elif part not in ("", "schedule", *listed):
