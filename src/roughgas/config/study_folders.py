@@ -254,26 +254,29 @@ def _with_study(
 
 def _at_scales(config: Mapping[str, Any], name: str, study: Mapping[str, Any]) -> dict[str, Any]:
     """Return the settings of a study's tasks by scale, checked."""
-    found, key, about = {}, f"{name}.{TASKS}", study["about"]
+    found, sources, key, about = {}, {}, f"{name}.{TASKS}", study["about"]
     for scale, root in config["scales"].items():
         settings = about[TASKS]["settings"]
         for changes in (study["scales"].get(scale, {}), root):
             settings = settings_of.merged(settings, changes.get(key, {}))
         at_scale = "" if scale == config["scale"] else f" at scale {scale}"
-        check_tasks(settings, about["folder"], f"{_source(name)}: tasks{at_scale}")
-        found[scale] = settings
+        found[scale] = sources[f"{_source(name)}: tasks{at_scale}"] = settings
+    check_tasks(sources, about["folder"])
     return found
 
 
-def check_tasks(settings: Mapping[str, Any], folder: str | Path, source: str) -> None:
-    """Check the settings of tasks by schema.yaml of the study in `folder`, where there is one.
+def check_tasks(sources: Mapping[str, Mapping[str, Any]], folder: str | Path) -> None:
+    """Check settings of tasks, by what messages call them, by schema.yaml of the study in `folder`,
+    where there is one.
 
     It may use the definitions and formats of the schema of config.yaml. Raises InputError.
     """
     path = Path(folder, "schema.yaml")
     if path.exists():
         called = f"{FOLDER}/{path.parent.name}/{path.name}"
-        check_by(read_yaml(path, called), settings, source, called)
+        schema = read_yaml(path, called)
+        for source, settings in sources.items():
+            check_by(schema, settings, source, called)
 
 
 def tasks(config: Mapping[str, Any], name: str, scale: str) -> dict[str, Any]:
@@ -292,7 +295,7 @@ def tasks_from_text(folder: str | Path, text: str) -> dict[str, Any]:
     """Return the settings of the tasks of the study in `folder` from their JSON, checked."""
     settings = from_json(text, "--settings")
     check_schema(settings, "--settings", "study_task")
-    check_tasks(settings["study"], folder, "--settings: study")
+    check_tasks({"--settings: study": settings["study"]}, folder)
     for one, experiment in settings["experiments"].items():
         check_schema(experiment, f"--settings: experiments.{one}", "experiment")
     return settings
