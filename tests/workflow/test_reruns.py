@@ -12,9 +12,15 @@ AFTER_POINTS = {"claims": 1, "table": 1, "run_times": 1, "document": 2, "figures
 CONFIGURED = {"effective_config": 1, "document": 1, "figures": 1}
 AFTER_BOTH = AFTER_POINTS | CONFIGURED | {"document": 3}
 
-STUDIED = {
-    figure for one in config.load("config.yaml")["folders"].values() for figure in one["figures"]
-}
+STUDIED, OF_TASKS_ALONE = (
+    {
+        figure
+        for one in config.load("config.yaml")["folders"].values()
+        for figure, shows in one["figures"].items()
+        if (shows == ["tasks"]) == alone
+    }
+    for alone in (False, True)
+)
 OF_STUDIES = STUDIED | {"study_table", "study_claims", "study_page"}
 FIGURES = {"fig1a", "fig1b", "fig2a", "fig2b"}
 REDUCED = FIGURES | OF_STUDIES | {"reduce", "table", "claims", "run_times", "page", "document"}
@@ -29,8 +35,8 @@ OF_DSMC = {"finite_size", "runaway", "study_data", "study_claims", "study_page"}
 STUDIES = ACCURACY | COVERAGE | OF_TASKS | {"statistical", "models", "discretisation"}
 SIMULATED = COMPILED | FAMILIES | FILM | STUDIES | {"movie"}
 EDITED = {  # file of the package: what an edit of its code runs again
-    "statistics/steady_state.py": SIMULATED - {"discretisation"},
-    "theory/prediction.py": REDUCED,
+    "statistics/steady_state.py": SIMULATED - {"clustering", "profiles", "study_movie"},
+    "theory/prediction.py": REDUCED | OF_TASKS_ALONE | {"study_movie"},
     "kernel/prediction.py": SIMULATED,
     "effects/walls.py": SIMULATED | {"effective_config", "living_page"},
     "scene/scene.py": SIMULATED | {"living_page"},
