@@ -6,7 +6,6 @@ beneath; `series` takes them from a reduced dataset. Figures of another form use
 
 from roughgas.base import InputError
 from roughgas.data.reduced import particles_of
-from roughgas.show.encoding import write_movie
 from roughgas.show.figures.panel import (
     ANY_R,
     BETA,
@@ -35,6 +34,7 @@ from roughgas.show.figures.panel import (
     ratio_panels,
 )
 from roughgas.show.figures.series import RESTITUTION, Series, series, series_for_each
+from roughgas.show.movies import write_movie
 from roughgas.show.style import (
     FAINT,
     GREY,

@@ -3,7 +3,6 @@ are written. Options that commands share, what a shell completes them to, their 
 they write: nothing is replaced but an earlier file of the same kind."""
 
 import argparse
-import math
 import re
 from argparse import Namespace
 from collections.abc import Callable, Iterable, Mapping
@@ -238,12 +237,11 @@ TAKE = (
 """Which part of a point is shown."""
 
 
-def whole_number(key: str, text: str, low: int, high: float = math.inf, of: str = "") -> int:
+def whole_number(key: str, text: str, low: int, high: int) -> int:
     """Return the number that the option `key` was given. Raises InputError outside [low, high]."""
     if text.isdecimal() and low <= int(text) <= high:
         return int(text)
-    legal = f"in [{low}, {high}]" if high < math.inf else f">= {low}"
-    raise InputError(key, text, f"be a whole number {of}{legal}")
+    raise InputError(key, text, f"be a whole number in [{low}, {high}]")
 
 
 def number(key: str, text: str, legal: Interval | None = None) -> float:

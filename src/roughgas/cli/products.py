@@ -63,7 +63,7 @@ def chosen_take(
 
 def movie(options: Namespace) -> None:
     """Simulate a point, or several, and write their movie, side by side."""
-    from roughgas.show.encoding import check_kind
+    from roughgas.show.movies import check_kind
     from roughgas.show.movies.drawing import write
 
     fps = number("--fps", options.fps, RATES)

@@ -273,23 +273,19 @@ def _chunks(labels: list[str], size: int) -> list[list[str]]:
     return [labels[first : first + size] for first in range(0, len(labels), size)]
 
 
-def from_text(
-    text: str, source: str, checked: bool = False, parts: Iterable[str] = ("experiment", "point")
-) -> dict[str, Any]:
+def from_text(text: str, source: str, checked: bool = False) -> dict[str, Any]:
     """Return the settings of a point from their JSON; `checked`: they are known to be legal."""
     settings = from_json(text, source)
-    return settings if checked else validated(settings, source, parts)
+    return settings if checked else validated(settings, source)
 
 
-def validated(
-    settings: dict[str, Any], source: str, parts: Iterable[str] = ("experiment", "point")
-) -> dict[str, Any]:
-    """Return settings, of a point `fitted`, that fulfil `parts`, definitions of the schema."""
+def validated(settings: Mapping[str, Any], source: str) -> dict[str, Any]:
+    """Return the settings of a point, `fitted`; raise InputError where they are not legal."""
     from roughgas.config.schema import check_schema
 
-    for part in parts:
-        settings = fitted(settings, source) if part == "point" else settings
-        check_schema(settings, source, part)
+    check_schema(settings, source, "experiment")
+    settings = fitted(settings, source)
+    check_schema(settings, source, "point")
     return settings
 
 

@@ -9,7 +9,7 @@ from schedules import COOLING, STEADY
 
 from roughgas.kernel.state import Bodies
 from roughgas.scene import build
-from roughgas.show import encoding as movie
+from roughgas.show import movies as movie
 from roughgas.show.movies import particles
 from roughgas.show.movies.drawing import MovieSubject, picture, spin_scales, write
 from roughgas.simulation.trajectory import Snapshot

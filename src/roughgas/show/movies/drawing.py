@@ -15,7 +15,7 @@ from roughgas.config.labels import names_of
 from roughgas.data.reduced import third_axis
 from roughgas.scene import Scene
 from roughgas.show import style
-from roughgas.show.encoding import write_movie
+from roughgas.show.movies import write_movie
 from roughgas.show.movies.particles import OF_SPECIES, Boundaries, Disks, Spheres, View
 from roughgas.simulation import schedule
 from roughgas.simulation.trajectory import Snapshot
