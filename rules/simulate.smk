@@ -4,6 +4,7 @@
 SIMULATING = ("simulation.point", "data.point")
 RECORDING = (
     "cli.run",
+    "simulation.points",
     "config.labels",
     "config.provenance",
 )  # these hand on and write down

@@ -183,7 +183,7 @@ def simulate(
 
     from roughgas.data.point import as_dataset
     from roughgas.results.reduce import reduced_in_memory
-    from roughgas.simulation.point import UNNAMED, observables_of, points, settings_of
+    from roughgas.simulation.points import UNNAMED, observables_of, points, settings_of
     from roughgas.simulation.restart import initial_of
 
     at, several = _places(r, beta, seed)
@@ -267,7 +267,7 @@ def trajectory(
     from roughgas.config.provenance import provenance
     from roughgas.data.trajectory import as_trajectory
     from roughgas.scene import build
-    from roughgas.simulation.point import UNNAMED, settings_of
+    from roughgas.simulation.points import UNNAMED, settings_of
     from roughgas.simulation.progress import watched
     from roughgas.simulation.restart import initial_of
     from roughgas.simulation.trajectory import chosen, snapshots, variables

@@ -88,7 +88,7 @@ def test_an_interrupt_ends_in_one_line(tmp_path, capsys, monkeypatch):
     def interrupted(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("roughgas.simulation.point.run_point", interrupted)
+    monkeypatch.setattr("roughgas.simulation.points.run_point", interrupted)
     assert run(tmp_path / "point.nc", config=CONFIG) == 130
     said = "roughgas: stopped: nothing is half-written; the same command begins anew\n"
     assert capsys.readouterr().err == said
@@ -163,7 +163,7 @@ def test_what_is_done_stays_when_a_later_seed_fails(tmp_path, monkeypatch):
             raise CollapseError("inelastic collapse")
         return run_point(scene, experiment, seed, *others)
 
-    monkeypatch.setattr("roughgas.simulation.point.run_point", second_collapses)
+    monkeypatch.setattr("roughgas.simulation.points.run_point", second_collapses)
     assert run_seeds(tmp_path, "123", ["1.nc", "2.nc", "3.nc"]) == 1
     assert [path.name for path in tmp_path.iterdir()] == ["1.nc"]
 

@@ -103,7 +103,7 @@ def code_of(*modules: str, alone: Iterable[str] = ()) -> str:
 
     Of modules in `alone` the imports do not count. Raises FileNotFoundError for an unknown one.
     """
-    names = sorted(closure(*modules).union(alone))
+    names = sorted(closure(*modules, alone=alone).union(alone))
     text = VERSIONS + "".join(f"{name} {_read(name)[0]}\n" for name in names)
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
@@ -149,12 +149,14 @@ def _siblings(tree: ast.Module) -> Iterator[str]:
             yield from [node.module.partition(".")[0]] if node.module else names
 
 
-def closure(*modules: str) -> set[str]:
+def closure(*modules: str, alone: Iterable[str] = ()) -> set[str]:
     """Return the names of modules, of all that they import anywhere, and of their packages.
 
     Of a package that is only around a module, imports inside functions do not count; nowhere those
-    that only type checkers see. The facade, `roughgas` itself, is not among them.
+    that only type checkers see, nor any of modules in `alone`. The facade, `roughgas` itself, is
+    not among them.
     """
+    alone = {*alone}
     todo = [(name, True) for name in modules]
     found: dict[str, bool] = {}
     while todo:
@@ -162,7 +164,8 @@ def closure(*modules: str) -> set[str]:
         if name and whole > found.get(name, -1):
             found[name] = whole
             _, imported = _read(name)
-            todo += [(name.rpartition(".")[0], False), *((one, True) for one in imported[whole])]
+            followed = set() if name in alone else imported[whole]
+            todo += [(name.rpartition(".")[0], False), *((one, True) for one in followed)]
     return set(found)
 
 

@@ -1,24 +1,13 @@
-"""One point: settings merged and run, and several points at once.
-
-Settings of a point from keyword arguments, merged over an experiment's and checked.
-
-One point of an experiment: from its settings to the dataset's variables.
-
-Several points of an experiment, one after the other.
-"""
+"""One point of an experiment: from its settings to the dataset's variables."""
 
 import json
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from pathlib import Path
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
-from roughgas import config
 from roughgas.base import InputError, __version__
-from roughgas.config import Place
-from roughgas.config.provenance import provenance
 from roughgas.data.point import Point
 from roughgas.data.variables import Variable
 from roughgas.effects import speed_of_r
@@ -29,54 +18,10 @@ from roughgas.scene import Scene, build, packing
 from roughgas.simulation import schedule
 from roughgas.simulation.energies import species_names
 from roughgas.simulation.gas import Gas
-from roughgas.simulation.progress import Progress
 from roughgas.simulation.recorder import Recorder
 from roughgas.simulation.restart import Initial, check_initial, final_states, is_memory_of, owner
 from roughgas.statistics.errors import UNKNOWN, YES
 from roughgas.theory.mixtures import SPECIES
-
-UNNAMED = "scene"
-"""What messages and datasets call an experiment that has no name."""
-
-
-def settings_of(
-    name: str | None, changes: Mapping[str, Any], scale: str, path: str | Path | None
-) -> dict[str, Any]:
-    """Return the settings of a point, checked as those of the pipeline are.
-
-    `changes` that are None change nothing. Without a name they are all that there is. Raises
-    InputError.
-    """
-    given = {key: _plain(value) for key, value in changes.items() if value is not None}
-    known = {} if name is None else config.load_experiment(path or config.SHIPPED, name, scale)
-    settings = config.changed_by(config.point_settings(known), given)
-    settings = config.validated(settings, name or UNNAMED)
-    schedule.check(settings)
-    return settings
-
-
-def observables_of(
-    observe: Sequence[str] | Mapping[str, Any] | None,
-) -> tuple[dict[str, Any] | None, dict[str, Callable[[Any], Any]]]:
-    """Return the observables that settings name, and those that are functions."""
-    if observe is None:
-        return None, {}
-    named = [observe] if isinstance(observe, str) else observe
-    given = named if isinstance(named, Mapping) else dict.fromkeys(named)
-    functions = {name: one for name, one in given.items() if callable(one)}
-    return {name: one or {} for name, one in given.items() if not callable(one)}, functions
-
-
-def _plain(value: Any) -> Any:
-    """Return a value as JSON would have it: no numpy, no tuples."""
-    if isinstance(value, Mapping):
-        return {str(key): _plain(inner) for key, inner in value.items()}
-    if hasattr(value, "tolist"):
-        return value.tolist()
-    if isinstance(value, Sequence) and not isinstance(value, str):
-        return [_plain(inner) for inner in value]
-    return value
-
 
 ENERGIES = ("E_trans", "E_rot", "R", "R_ratio_of_means")
 VOUCHED = {
@@ -248,30 +193,3 @@ def kernels(
         key = effects, tuple(side is None for side in scene.box)
         needed.setdefault(key, (scene, experiment))
     return needed
-
-
-def points(
-    name: str,
-    settings: Mapping[str, Any],
-    at: Sequence[Place],
-    scale: str,
-    outputs: Sequence[str],
-    initial: Sequence[Initial] = (),
-    functions: Mapping[str, Callable[[Any], Any]] | None = None,
-    told: Sequence[str] = (),
-    quiet: bool = False,
-) -> Iterator[Point]:
-    """Simulate the points of an experiment, and yield each with its attributes.
-
-    Messages and attributes call it `name`, and attributes say that a command which is `told` more
-    writes it to one of `outputs`. Raises InputError and CollapseError as `run_point`, those of an
-    illegal scene before anything is simulated.
-    """
-    scenes = {(r, beta): build(settings, r, beta) for r, beta, *_ in at}
-    for place, output in zip(at, outputs, strict=True):
-        r, beta, seed, labels = place
-        one = name if len(at) == 1 else f"{name}, r = {labels[0]}, beta = {labels[1]}, seed {seed}"
-        about = provenance(name, settings, labels, scale, output, told=told)
-        with Progress(one, scenes[r, beta], settings, quiet=quiet) as bar:
-            found = run_point(scenes[r, beta], settings, seed, bar, initial, functions)
-        yield found._replace(attributes=about | found.attributes)
