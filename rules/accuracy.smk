@@ -40,7 +40,7 @@ def code_of_accuracy(wildcards):
     """A hash of the studies that are run, or combined in a dataset."""
     known = accuracy.DATASETS
     names = known[wildcards.dataset] if "dataset" in wildcards.keys() else [wildcards.study]
-    return hash_of_code(*(f"accuracy.{name}" for name in names), alone=["accuracy"])
+    return hash_of_code(*(f"accuracy.{name}" for name in names), alone=["accuracy.running"])
 
 
 def data_of_accuracy_figure(wildcards):
@@ -108,7 +108,7 @@ rule accuracy_figure:
     wildcard_constraints:
         study_figure=one_of(accuracy.FIGURES),
     params:
-        code=code_of("accuracy.figures", alone=["accuracy"]),
+        code=code_of("accuracy.figures", alone=["accuracy.running"]),
         caption=caption_of_figure,
         studies=settings_of_accuracy_figure,
     message:

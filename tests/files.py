@@ -3,8 +3,9 @@
 import numpy as np
 import xarray as xr
 
-from roughgas.accuracy import combine, coverage
+from roughgas.accuracy import coverage
 from roughgas.accuracy.coverage import MEASURED
+from roughgas.accuracy.running import combine
 from roughgas.config import as_text
 from roughgas.data.netcdf import content_of, write_netcdf
 from roughgas.data.point import Point, write_point

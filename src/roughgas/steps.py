@@ -58,10 +58,10 @@ def effective_config(input: str, *, scale: str, output: str, changes: str = "{}"
 
 
 STEPS: dict[str, str | Callable[..., None]] = {
-    "accuracy_data": "accuracy:combine",
-    "accuracy_figure": "accuracy:draw",
-    "accuracy_table": "accuracy:write_tables",
-    "accuracy_task": "accuracy:run_task",
+    "accuracy_data": "accuracy.running:combine",
+    "accuracy_figure": "accuracy.running:draw",
+    "accuracy_table": "accuracy.running:write_tables",
+    "accuracy_task": "accuracy.running:run_task",
     "compile_kernels": compile_kernels,
     "claims": claims,
     "document": "show.pages:write_document",

@@ -8,7 +8,8 @@ from tests.accuracy.test_coverage import EXPERIMENTS, SETTINGS
 from tests.entry import main
 
 from roughgas import config
-from roughgas.accuracy import combine, coverage, read_studies, write_tables
+from roughgas.accuracy import coverage
+from roughgas.accuracy.running import combine, read_studies, write_tables
 from roughgas.base import InputError
 
 

@@ -10,6 +10,7 @@ from functools import partial
 from pathlib import Path
 
 from roughgas import accuracy, config, simulate
+from roughgas.accuracy.running import run_task
 from roughgas.cli import main
 from roughgas.config import schema
 from roughgas.config.provenance import write_effective
@@ -145,7 +146,7 @@ def test_experiments_alone_are_a_configuration(tmp_path, paper, refusal):
     assert config.experiment(whole, "mine", "paper") == own and config.usual_scale(path) == "paper"
     assert "scale = 'small': must be one of paper" in refusal(config.load, path, {"scale": "small"})
     settings = config.as_text(config.study(whole, "models", "paper"))
-    run = partial(accuracy.run_task, "models", "theory", settings=settings, output=path)
+    run = partial(run_task, "models", "theory", settings=settings, output=path)
     assert refusal(run) == "experiment = cooling: must be one of mine"
 
 

@@ -9,7 +9,7 @@ from synthetic import reduced
 from tests.entry import main
 from tests.files import point
 
-from roughgas.accuracy import read_studies
+from roughgas.accuracy.running import read_studies
 from roughgas.base import InputError
 from roughgas.data.netcdf import DamagedError, opened, read_netcdf
 from roughgas.data.point import read_point, write_point

@@ -8,7 +8,7 @@ import pytest
 import xarray as xr
 from tests.files import point
 
-from roughgas.accuracy import combine
+from roughgas.accuracy.running import combine
 from roughgas.base import InputError
 from roughgas.data.netcdf import read_netcdf
 from roughgas.data.point import read_point, write_point

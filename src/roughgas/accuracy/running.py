@@ -1,0 +1,104 @@
+"""The tasks of accuracy, run one at a time and combined; tables and figures of what they find."""
+
+import json
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from roughgas import config
+from roughgas.accuracy import FIGURES, STUDIES, study
+from roughgas.base import InputError, not_one_of
+from roughgas.base.files import write_text
+from roughgas.data.netcdf import TASK, Content, content_of, read_groups, read_netcdf, write_netcdf
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+class Experiments(dict):
+    """Settings of experiments by name; raises InputError for one that the configuration lacks."""
+
+    def __missing__(self, name: str) -> None:
+        raise not_one_of("experiment", name, self)
+
+
+def run_task(
+    name: str, task: str, *, scale: str = config.PAPER, settings: str, output: str | Path
+) -> None:
+    """Run one of the independent tasks of a study of accuracy, and write what it finds.
+
+    `settings` are those of the `study` and of `experiments`, as JSON. Raises InputError for an
+    unknown study or task and for illegal settings, CollapseError as a simulation does, OSError.
+    """
+    from roughgas.simulation.progress import Bar
+
+    module = study(name)
+    found = config.study_from_text(settings, name, "--settings")
+    if task not in (known := module.tasks(found["study"])):
+        raise not_one_of("task", task, known)
+    with Bar(task, None) as bar:
+
+        def progress(done: int, total: int) -> None:
+            bar.reach(done, total=total)
+
+        data = module.run(task, found["study"], Experiments(found["experiments"]), progress)
+    about = {"study": name, "task": task, "scale": scale, "settings_json": settings}
+    write_netcdf(output, content_of(data.assign_attrs(about)))
+
+
+def combine(inputs: Iterable[str | Path], *, output: str | Path) -> None:
+    """Combine the files of tasks into one file, with a group for each study among them.
+
+    Raises InputError where tasks of a study are missing or come from different settings.
+    """
+    found: dict[str, dict[str, xr.Dataset]] = {}
+    for path in inputs:
+        data = read_netcdf(path, TASK)
+        found.setdefault(data.attrs["study"], {})[data.attrs["task"]] = data
+    groups = {name: content_of(_combined(name, parts)) for name, parts in found.items()}
+    write_netcdf(output, Content({}, {"title": "Studies"}), groups)
+
+
+def _combined(name: str, parts: "Mapping[str, xr.Dataset]") -> "xr.Dataset":
+    texts = {data.attrs["settings_json"] for data in parts.values()}
+    if len(texts) > 1:
+        raise InputError(f"settings of {name}", f"{len(texts)} different ones", "be the same")
+    settings = json.loads(texts.pop())["study"]
+    missing = set(study(name).tasks(settings)) - set(parts)
+    if missing:
+        raise InputError(f"tasks of {name}", f"without {sorted(missing)[0]}", "be complete")
+    scales = {data.attrs["scale"] for data in parts.values()}
+    data = study(name).combine(parts, settings)
+    return data.assign_attrs(title=name, scale=", ".join(sorted(scales)))
+
+
+def read_studies(path: str | Path) -> "dict[str, xr.Dataset]":
+    """Return the groups of all studies in the combined file at `path`, by name."""
+    groups = read_groups(path)
+    return {name: groups[name] for name in STUDIES if name in groups}
+
+
+def write_tables(input: str | Path, *, output: str | Path) -> None:
+    """Write the tables of all studies in a combined file as Markdown."""
+    found = read_studies(input).items()
+    write_text(output, "\n".join(study(name).table(data) for name, data in found))
+
+
+def draw(name: str, input: str | Path, *, output: Iterable[str | Path]) -> None:
+    """Draw a figure of FIGURES from the combined dataset at `input`.
+
+    Raises InputError for another figure, other files than .pdf and .png, and where the dataset
+    lacks a study that the figure shows.
+    """
+    from roughgas.accuracy import figures
+    from roughgas.show import catalogue, style
+
+    if name not in FIGURES:
+        raise not_one_of("figure", name, FIGURES)
+    studies, shows = read_studies(input), catalogue.FIGURES[name].shows
+    for one in shows:
+        if one not in studies:
+            legal = "have all that the figure shows"
+            raise InputError(f"studies in {input}", f"without {one}", legal)
+    function = getattr(figures, name)
+    style.draw(lambda: function(*(studies[one] for one in shows)), output)
