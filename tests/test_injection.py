@@ -90,7 +90,6 @@ def test_no_text_in_a_table_is_a_formula(tmp_path, monkeypatch, text):
 def test_names_that_become_parts_of_commands_are_words(name):
     """Scales and experiments, which stand in rules' commands as they are."""
     settings = {"scale": "paper", "experiments": {name: {}}, "scales": {"paper": {}}}
-    settings |= {"studies": {}}
     with pytest.raises(InputError, match="must consist of lower-case letters"):
         schema.check(settings)
 

@@ -200,6 +200,5 @@ experiments:
     observables: {{profiles: {{bins: 5}}}}
     sweep: {{r: ["0.9"], beta: ["0"], seeds: 1}}
     schedule: {BRIEF | {"sample_every": 0.5}}
-studies: {{}}
 scales: {{paper: {{}}}}
 """

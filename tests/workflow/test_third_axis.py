@@ -83,7 +83,7 @@ def test_an_illegal_target_is_refused_in_one_line(project, target, message):
 @pytest.mark.parametrize(
     "target",
     [
-        "results/tiny/studies/inertia1/r0.9/beta0/seed1.nc",
+        "results/tiny/accuracy/inertia1/r0.9/beta0/seed1.nc",
         f"{SPUN}/inertia1.nc",
         f"{SPUN}/inertia1/r0.9/compiled.txt",
     ],

@@ -121,7 +121,7 @@ def _plain(number: float) -> int | float:
 RESTITUTION = Interval("[0, 1]")
 """Normal restitution r."""
 ROUGHNESS = Interval("[-1, 1]")
-"""Roughness beta: smooth at -1, perfectly rough at 1."""
+"""The roughness beta, from smooth (-1) to perfectly rough (1)."""
 
 
 __version__ = "0.1.0"

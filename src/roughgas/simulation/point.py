@@ -13,7 +13,6 @@ from roughgas.data.variables import Variable
 from roughgas.effects import speed_of_r
 from roughgas.effects.surface import LEAST_DEPARTURE
 from roughgas.kernel import hooks
-from roughgas.kernel.compiler import source_hash
 from roughgas.scene import Scene, build, packing
 from roughgas.simulation import schedule
 from roughgas.simulation.energies import species_names
@@ -49,6 +48,8 @@ def run_point(
     Raises InputError if the particles do not fit or could not begin so, CollapseError if contacts
     accumulate without end.
     """
+    from roughgas.kernel.compiler import source_hash  # only a run needs the compiler
+
     _refuse_rest(scene)
     keep, number = experiment.get("keep_state", False), experiment["particles"]
     watching = _watching(scene, experiment, functions)

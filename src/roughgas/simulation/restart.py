@@ -21,7 +21,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 import numpy as np
 
 from roughgas.base import InputError, shown
-from roughgas.kernel.compiler import source_hash
 from roughgas.kernel.hooks import displacement
 from roughgas.kernel.memory import new_state
 from roughgas.kernel.state import BASE, EXPONENT, NOW, State
@@ -190,6 +189,8 @@ def check_initial(initial: Sequence[Initial], experiment: Mapping[str, Any], sce
 
 def owner(scene: Scene) -> str:
     """Return a text that is the same for all runs that understand each other's memory."""
+    from roughgas.kernel.compiler import source_hash
+
     about = repr((source_hash(), np.__version__, scene))
     return hashlib.sha256(about.encode()).hexdigest()[:16]
 
