@@ -205,14 +205,6 @@ VALUES = [*NUMBERS, 0.25, 1.5, 3, 4, 5, 6, 8, 10, 12, 16, 20, *WORDS[:3], *OTHER
 """Of keys of schedules."""
 
 
-def size():
-    """How many of each are walked."""
-    return {
-        "commands": len(RIGHT),
-        "options": len(options()),
-        "keys of schedules": len(schedule_keys()),
-        "environments": len(ENVIRONMENTS),
-    }
 
 
 def cases():

@@ -2,6 +2,7 @@
 
 import copy
 import math
+import os
 from collections import Counter
 
 import pytest
@@ -18,17 +19,18 @@ SCALARS = ["0x_", "0b_", "1:30:00", "2001-02-30", "9" * 5000, "null", ".nan", "<
 STRUCTURE = ["!!bool ", "!!int ", "&a ", "*a", "? ", ": ", "- ", "# ", "[" * 500, "---\n", "...\n"]
 PIECES = st.sampled_from([*SIGNS, *SCALARS, *STRUCTURE, "%YAML 1.1\n---\n"])
 
+TRIES = os.environ.get("FUZZ_TRIES")
 QUICK, LONG = (
     settings(
         max_examples=number,
         deadline=None,
-        derandomize=True,
+        derandomize=TRIES is None,
         database=None,
         suppress_health_check=list(HealthCheck),
     )
-    for number in (50, 2000)
+    for number in (50, int(TRIES or 2000))
 )
-"""How often `make test` tries, and the extras: always the same examples."""
+"""How often `make test` tries, and the extras: always the same examples unless FUZZ_TRIES is set."""
 OFTEN = pytest.mark.parametrize("often", [QUICK, pytest.param(LONG, marks=pytest.mark.slow)])
 ENOUGH = 0.2
 """Least share of examples that are taken: what refuses everything is no program."""

@@ -2,6 +2,7 @@
 
 import math
 import multiprocessing
+import os
 from collections import defaultdict
 from concurrent.futures import ProcessPoolExecutor
 
@@ -172,12 +173,12 @@ def keep_invariants(margins, kinds, few, many):
 
 
 def drawn(kinds, number):
-    """Return [(experiment, r, beta, seed)] of those scenes whose particles find room."""
-    found = []
+    """Return [(experiment, r, beta, seed)] of those scenes whose particles find room; so many are
+    tried as FUZZ_TRIES says if it is set, and then others for each --hypothesis-seed."""
+    found, tries = [], os.environ.get("FUZZ_TRIES")
+    how = {"phases": [Phase.generate], "database": None, "deadline": None}
 
-    @settings(
-        max_examples=number, phases=[Phase.generate], derandomize=True, database=None, deadline=None
-    )
+    @settings(max_examples=int(tries or number), derandomize=tries is None, **how)
     @given(kinds)
     def draw(scene):
         if fits(*scene, len(found)):
