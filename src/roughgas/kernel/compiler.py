@@ -22,6 +22,7 @@ tests/kernel/test_compiler.py:
   a state for a call from Python takes more code, and time to compile it, than most functions do;
 - `_numba_type_`: how a value tells its type;
 - `Library`, `set_env`: machine code is made of a kernel, and not of each function in it besides;
+- the types and values of a Reference (kernel/reference.py): a state and a scene in memory;
 - `event.broadcast`: a tenth of the time went into telling of locks that nobody asked for;
 - `_cache`, the classes of numba.core.caching, `rtsys`: to load a kernel without setting up the
   compiler, to share it among copies of the project, to seal files with a checksum, to have one
@@ -53,7 +54,7 @@ from numba.core.runtime import rtsys
 from numba.extending import overload
 
 from roughgas.base import InputError
-from roughgas.kernel import operations
+from roughgas.kernel import operations, reference
 
 PACKAGE = Path(__file__).resolve().parent.parent
 ROOMS = ("kernel", "effects")
@@ -180,16 +181,11 @@ class Library(JITCodeLibrary):
 
     Numba makes machine code of each function that a kernel is put together from, and optimises it
     with all that it calls, though only the kernel's own is ever run. Here only what Python or C
-    calls is finished; the rest is handed on as it is.
+    calls is optimised and finished; the rest is handed on as it is.
     """
 
     def _optimize_functions(self, ll_module):
-        """As numba's, with one pass manager for a module; a declaration needs none."""
-        ll_module.data_layout = self._codegen._data_layout
-        passes, builder = self._codegen._function_pass_manager()
-        for function in ll_module.functions:
-            if not function.is_declaration:
-                passes.run(function, builder)
+        ll_module.data_layout = self._codegen._data_layout  # all else once, when all is linked
 
     def finalize(self):
         if any(_is_entry(function.name) for function in self._final_module.functions):
@@ -229,7 +225,8 @@ def type_of(name):
     """
     context = cpu_target.typing_context
     context.refresh()
-    return context.resolve_value_type(getattr(operations, name))
+    room = operations if hasattr(operations, name) else reference
+    return context.resolve_value_type(getattr(room, name))
 
 
 def register(overloads):

@@ -64,7 +64,7 @@ def compiled(function):
 def jit(function):
     """Decorate a function that is inlined where compiled code calls it.
 
-    A call would pass the whole state, some two hundred words: what runs once an event is inlined.
+    What runs once an event is inlined: a call takes longer than much that such functions do.
     """
     return Compiled(function, inner=True, inline=True)
 
@@ -97,6 +97,10 @@ def overload(function):
         return chooser
 
     return keep
+
+
+by_reference = Primitive("by_reference")
+"""(whole) -> the named tuple, which compiled code takes from memory: kernel/reference.py"""
 
 
 def is_none(kind):

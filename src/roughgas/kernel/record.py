@@ -4,7 +4,7 @@ import math
 from typing import NamedTuple
 
 from roughgas.kernel.hooks import either, present, unless_absent
-from roughgas.kernel.jit import compiled, entry, jit, unrolled
+from roughgas.kernel.jit import by_reference, compiled, entry, jit, unrolled
 from roughgas.kernel.loop import REACHED, advance, start
 from roughgas.kernel.particles import (
     enter_box,
@@ -65,6 +65,7 @@ def record(state, scene, plan, samples):
 
     Returns how it ended (see `advance`) and the number of rows filled: all, if it REACHED the end.
     """
+    state, scene = by_reference(state), by_reference(scene)
     if state.counts[STARTED] == 0:
         start(state, scene)
         state.counts[STARTED] = 1
