@@ -26,7 +26,11 @@ ELSEWHERE = {  # tests of a room that are not in its own folder
     "base": ["data", "cli/test_process.py", "habits/test_surroundings.py"],
     "cli": ["habits/test_surroundings.py"],
     "doctor": ["habits/test_surroundings.py"],
-    "effects": ["hard_cases"],
+    "effects": [
+        "kernel/test_against_brute_force.py",
+        "kernel/test_collision_rule.py",
+        "hard_cases",
+    ],
     "kernel": ["hard_cases"],
     "library": ["test_library.py"],
     "scene": ["simulation/test_protocols.py"],

@@ -5,7 +5,6 @@ import os
 import subprocess
 import sys
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -15,13 +14,9 @@ from schedules import COOLING, STEADY
 
 from roughgas.data.point import read_point, write_point
 from roughgas.data.variables import POINT
-from roughgas.effects import KINDS, friction, thermostat
-from roughgas.effects.settings import Number, register
+from roughgas.effects import KINDS
 from roughgas.effects.side import SIDES
 from roughgas.kernel import mathematics
-from roughgas.kernel.contact import SPLIT
-from roughgas.kernel.hooks import Hooks, present
-from roughgas.kernel.record import record
 from roughgas.kernel.state import BOUNDARY, BOUNDARY_HITS
 from roughgas.scene import build
 from roughgas.simulation.point import run_point
@@ -35,8 +30,6 @@ MOMENTS = {"contact_time", "thermostat"}  # what keeps a time for each particle
 EVENTS = {"floor", "walls", "shaken_walls", *SIDES, "thermostat"}  # what has events of its own
 SUMS = {"contact_averages": 3, "contact_stress": 9}  # what keeps running sums, and how many
 PHASES = {"floor", "shaken_walls", "bottom_wall", "lid", "shear"}  # sides: those that move
-
-TWO = [{"fraction": 0.5}, {"fraction": 0.5, "radius": 1.5}]
 
 
 def small(kernel):
@@ -85,25 +78,6 @@ def test_an_effect_that_is_there_could_not_be_compiled_so(tmp_path):
     assert result.returncode != 0 and "no_such_thing" in result.stderr
 
 
-def test_each_composition_has_machine_code_of_its_own():
-    for name in ("gas", "smooth"):
-        run(*reversed(begin(small(name), 0.9, -1.0)), 0)
-    scenes = {str(signature[1]) for signature in record.dispatcher.signatures}
-    without, having = (
-        [scene for scene in scenes if ("Spin" in scene) == present] for present in (False, True)
-    )
-    assert without and having
-
-
-def test_the_barest_gas_has_the_least_code():
-    lengths = {
-        kernel: sum(len(bits) for name, bits in sections(kernel).items() if "text" in name)
-        for kernel in ("smooth", "gas", "friction", "heated")
-    }
-    assert lengths["smooth"] < lengths["gas"] < lengths["friction"]
-    assert lengths["gas"] < lengths["heated"]
-
-
 @pytest.mark.parametrize("kernel", ["smooth", "gas", "friction", "heated"])
 def test_the_multipliers_of_random_numbers_are_where_they_are_drawn(kernel):
     """SplitMix64's constants, which are in nothing else."""
@@ -111,14 +85,6 @@ def test_the_multipliers_of_random_numbers_are_where_they_are_drawn(kernel):
     heated = "thermostat" in KERNELS[kernel]["effects"]
     for number in (mathematics.STEP, mathematics.FIRST, mathematics.SECOND):
         assert (np.uint64(number).tobytes() in code) == heated
-
-
-def test_what_the_normal_of_unlike_particles_needs_is_only_where_there_are_some():
-    """The number that cuts the digits of their distance in two, which is in nothing else."""
-    cut = np.float64(SPLIT).tobytes()
-    for more, there in (({}, False), ({"species": TWO}, True)):
-        code = b"".join(sections("gas", more).values())
-        assert (cut in code) == there
 
 
 # ---------------------------------------------------------------------- memory and events
@@ -222,27 +188,3 @@ def test_a_point_holds_nothing_of_absent_effects(kernel, tmp_path):
     assert set(data.variables) == found
     if "spin" not in there:
         assert np.all(data.energy_input.sel(motion="rotation") == 0.0)
-
-
-def test_a_misspelt_hook_is_refused():
-    class Drag(NamedTuple):
-        strength: float
-
-    with pytest.raises(TypeError, match="unexpected keyword argument 'resolv'"):
-        register(Drag, {"strength": Number("Strength.")}, resolv=thermostat.resolve)
-    assert not hasattr(Drag, "hooks")
-
-
-def test_a_name_that_is_only_in_the_file_is_no_hook(monkeypatch):
-    monkeypatch.setattr(friction, "resolve", thermostat.resolve, raising=False)
-    monkeypatch.setattr(friction, "drives", True, raising=False)
-    scene, _ = begin(settings("friction"), 0.9, -1.0)
-    assert not present(scene.effects, "resolve") and not present(scene.effects, "drives")
-    ((place, rank, own),) = present(scene.effects, "roughness")
-    assert (scene.effects._fields[place], rank, own) == ("friction", 1, friction.roughness)
-
-
-def test_every_effect_has_hooks_and_parameters():
-    for name, kind in KINDS.items():
-        assert isinstance(kind.hooks, Hooks) and kind.parameters is not None, name
-        assert name == "spin" or any(kind.hooks), name

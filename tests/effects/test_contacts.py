@@ -4,19 +4,14 @@ import numpy as np
 import pytest
 from brute_force import begin, run, scene_of, settings, snapshot
 from brute_force.beside import brute_force_from
-from schedules import STEADY
 
 from roughgas import theory
-from roughgas.base import InputError
 from roughgas.kernel.memory import new_state
 from roughgas.kernel.record import Sampling, columns, record
-from roughgas.kernel.state import COLLISIONS, EXPONENT, TOUCHED
-from roughgas.scene import build
+from roughgas.kernel.state import EXPONENT, TOUCHED
 from roughgas.simulation.energies import SUMS, contact_averages
 from roughgas.simulation.energy_balance import balance
-from roughgas.simulation.point import run_point
 
-ENDS = ("", "_stderr", "_dof", "_ci95")
 LOOKED_AT = ("bed", "sheared", "shaken", "heated", "spheres")
 
 TWO = [{"fraction": 0.5}, {"fraction": 0.5, "radius": 1.5, "inertia": 0.3}]
@@ -60,27 +55,6 @@ def test_a_gas_that_cools_by_many_powers_of_two():
     assert np.all(state.sums.contact_averages[:2, 0] == [0.0, A])
 
 
-@pytest.mark.slow  # two kernels more; tests/test_bits.py has bits from before there was the effect
-@pytest.mark.parametrize("kernel", ["bed", "heated"])
-def test_looking_changes_no_bit(kernel):
-    seen, plain = settings(kernel, 40), settings(kernel, 40)
-    del plain["effects"]["contact_averages"]
-    points = []
-    for experiment in (seen, plain):
-        settled = experiment | {"schedule": STEADY}
-        points.append(run_point(build(settled, 0.9, 0.2), settled, 7).variables)
-    with_it, without = points
-    added = {f"{name}{end}" for name in ("R_collisional", "contact_correlation") for end in ENDS}
-    assert set(with_it) - set(without) == added and set(without) <= set(with_it)
-    for name in set(without) - {"kernel_seconds"}:
-        assert np.array_equal(with_it[name], without[name]), name
-
-
-def test_without_spin_it_is_refused():
-    with pytest.raises(InputError, match="contact_averages needs spin"):
-        build(settings("smooth") | {"effects": {"contact_averages": {}}}, 0.9, -1.0)
-
-
 def test_averages_of_made_up_contacts():
     """Two periods of two samples after one that does not count; an odd sample is left out."""
     steps = {"v_t^2": [9, 9, 2, 2, 3, 5, 7], "v_r^2": [9, 9, 1, 2, 3, 2, 7]}
@@ -111,20 +85,6 @@ def test_errors_are_those_of_independent_repetitions():
         scatter = np.std([one[name] for one in found], ddof=1)
         stated = np.sqrt(np.mean([one[f"{name}_stderr"] ** 2 for one in found]))
         assert stated == pytest.approx(scatter, rel=0.1), name
-
-
-BED = settings(
-    "walled", 40, [12.5, "open"], walls={"roughness": -1.0}, contact_time={"duration": 1e-5}
-)
-
-
-def test_it_keeps_a_bed_from_collapsing():
-    """r = 0.6, beta = 0: the bed of the issue at a quarter of its size, 60 T."""
-    scene, state = begin(BED, 0.6, 0.0, 1)
-    run(state, scene, 240, interval=0.25)
-    touched, collisions = state.counts[TOUCHED], state.counts[COLLISIONS]
-    assert 0 < touched < 0.9 * collisions
-    assert collisions < 1e7
 
 
 def in_a_row(spacing, number=3):
@@ -184,50 +144,3 @@ def test_t_c_is_a_time_however_slow_the_gas_has_become():
         rows = np.empty((2, len(columns(scene))))
         record(state, scene, Sampling(np.inf, 1, 0), rows)
         assert state.counts[TOUCHED] == touched, duration
-
-
-GAS = settings("sheared", 40, [25, 25])
-U, L = 2.0, 25.0
-
-
-def test_the_mean_flow_is_linear():
-    """Velocities in ten layers over 1000 T: each within 5 standard errors of the straight line.
-
-    The layers are averages over 2000 samples 0.5 T apart; errors are from 20 blocks. Chance of a
-    failure for any one seed: about 1e-4 (10 layers, t distribution of 19 degrees of freedom).
-    """
-    scene, state = begin(GAS, 0.9, 0.2, 1)
-    run(state, scene, 1, interval=200.0)
-    profile = np.empty((2000, 10))
-    for k in range(len(profile)):
-        run(state, scene, 1, interval=0.5)
-        shot = snapshot(state, scene)
-        crossings = np.floor(shot.position[:, 1] / L)
-        y, v = shot.position[:, 1] - crossings * L, shot.velocity[:, 0] - crossings * U
-        layer = np.minimum((10 * y / L).astype(int), 9)
-        excess = v - U / L * (y - L / 2)
-        number = np.bincount(layer, minlength=10)
-        total = np.bincount(layer, excess, minlength=10)
-        profile[k] = np.divide(total, number, out=np.zeros(10), where=number > 0)
-    blocks = profile.reshape(20, 100, 10).mean(axis=1)
-    error = blocks.std(axis=0, ddof=1) / np.sqrt(20)
-    assert np.all(np.abs(blocks.mean(axis=0)) < 5.0 * error)
-    assert np.all(error < 0.1 * U)
-
-
-def test_shear_heats_by_the_flow_and_reaches_a_steady_state():
-    """The mean of m <v^2> from 500 T to 1500 T over seeds 1 to 8, to 7 %.
-
-    128 other seeds found .20606, and a scatter of .0104 between them. That makes four standard
-    errors .015, which chance alone surpasses once in 16 000; both parts of a run are as steady.
-    """
-    energy = np.empty((8, 2))
-    for seed in range(8):
-        scene, state = begin(GAS, 0.9, 0.2, seed + 1)
-        row = run(state, scene, 3000, interval=0.5)
-        rate = U / L
-        every = (row["vv_x"] + row["vv_y"] - 2 * rate * row["yv_x"] + rate**2 * row["yy"]) / 40
-        energy[seed] = every[1000:].reshape(2, 1000).mean(axis=1)
-    assert energy.mean() == pytest.approx(0.20606, abs=4 * 0.0104 * np.sqrt(1 / 8 + 1 / 128))
-    changed = energy[:, 1] - energy[:, 0]
-    assert abs(changed.mean()) < 4 * 2 * 0.0104 / np.sqrt(8)  # halves scatter sqrt(2) more

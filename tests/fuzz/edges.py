@@ -205,8 +205,6 @@ VALUES = [*NUMBERS, 0.25, 1.5, 3, 4, 5, 6, 8, 10, 12, 16, 20, *WORDS[:3], *OTHER
 """Of keys of schedules."""
 
 
-
-
 def cases():
     """All cases: a kind, and what it is about."""
     options_ = [("option", name, action, text) for name, action in options() for text in TEXTS]

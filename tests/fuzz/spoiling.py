@@ -30,7 +30,7 @@ QUICK, LONG = (
     )
     for number in (50, int(TRIES or 2000))
 )
-"""How often `make test` tries, and the extras: always the same examples unless FUZZ_TRIES is set."""
+"""How often `make test` tries, and the extras: the same examples unless FUZZ_TRIES is set."""
 OFTEN = pytest.mark.parametrize("often", [QUICK, pytest.param(LONG, marks=pytest.mark.slow)])
 ENOUGH = 0.2
 """Least share of examples that are taken: what refuses everything is no program."""

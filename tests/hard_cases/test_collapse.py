@@ -4,7 +4,6 @@ import math
 from fractions import Fraction
 
 import numpy as np
-import pytest
 from brute_force import begin, run, settings, snapshot
 from brute_force.scenes import UNLIMITED
 
@@ -109,43 +108,6 @@ def bed_with(duration, seed, measure):
     gas, settle = Gas(scene, state), max(40, measure)
     R = ratio(gas.energies(gas.in_time(0.25, 4 * (settle + measure))))[4 * settle :]
     return R.mean(), state.counts[TOUCHED] / state.counts[COLLISIONS]
-
-
-@pytest.mark.slow
-@hard_case(
-    "the contact-time model at r = 0.6 in the bed of Fig. 1a and the sheared gas of Fig. 2a",
-    "R depends on t_c in the gases of the figures, or at other roughnesses",
-)
-def test_R_does_not_depend_on_the_contact_time_in_the_gases_of_the_figures(margins):
-    """t_c from 1e-8 to 1e-4 T at three beta: 30 deviations, in standard errors of each gas. 4.5 of
-    them are passed by chance once in 500 times where there are few seeds.
-
-    1e-3 T is too long: beds at beta = -0.5 and 0.5 then are 0.007 and 0.005 off.
-    """
-    seeds, length = margins.size(quick=4, full=8), margins.size(quick=1, full=4)
-    durations, betas = 10.0 ** np.arange(-8, -3), (-0.5, 0.0, 0.5)
-    gases = {(scene, beta): [] for scene in ("bed", "sheared") for beta in betas}
-    for (scene, beta), found in gases.items():
-        for t_c in durations:
-            experiment = settings(scene)
-            experiment["effects"] = experiment["effects"] | {"contact_time": {"duration": t_c}}
-            found.append([figure_ratio(experiment, beta, seed, length) for seed in range(seeds)])
-    runs = np.array(list(gases.values()))
-    mean, error = runs.mean(axis=2), runs.std(axis=2, ddof=1) / math.sqrt(seeds)
-    deviation = np.abs(mean - mean.mean(axis=1, keepdims=True))
-    pooled = np.sqrt(np.mean(error**2, axis=1, keepdims=True))
-    tried = {"tried": runs.size, "unit": "gases"}
-    margins.at_most("deviation of R, in standard errors", (deviation / pooled).max(), 4.5, **tried)
-    margins.at_most("deviation of R", deviation.max(), 0.005 if margins.full else 0.02, **tried)
-
-
-def figure_ratio(experiment, beta, seed, length):
-    """R of a gas at r = 0.6 that has settled, over 100 T of a bed or 1000 of a sheared gas, times
-    `length`."""
-    scene, state = begin(experiment, 0.6, beta, seed)
-    gas, every = Gas(scene, state), 0.25 if "floor" in experiment["effects"] else 2.5
-    R = ratio(gas.energies(gas.in_time(every, 400 * (1 + length))))
-    return R[400:].mean()
 
 
 # ---------------------------------------------------------------------- three on a line

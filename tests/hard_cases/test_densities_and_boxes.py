@@ -1,9 +1,6 @@
 """Densities and boxes."""
 
-import json
 import math
-import subprocess
-import sys
 
 import numpy as np
 import pytest
@@ -188,50 +185,3 @@ def test_few_particles(margins):
                 nothing += not all(np.isfinite(found[x]) for x in ("R", "R_stderr", "E_trans"))
     margins.at_most("points without a number", nothing, 0, points, "points")
     margins.at_most("points refused: those of one undriven particle", refused, 6, points, "points")
-
-
-REFUSED = {
-    "too many disks": settings("gas", 109, [20.1, 20.1]),
-    "too many spheres": settings("spheres", 257, [12, 12, 12]),
-    "too many between walls": settings("walled", 10, [2.005, "open"]),
-    "a periodic box of two diameters": settings("gas", 2, [4.0, 4.0]),
-    "one hardly wider": settings("gas", 2, [4.001, 40]),
-    "a box that ends below zero": settings("gas", 2, [-4.0, 40]),
-    "no number": settings("gas", 2, [math.nan, 40]),
-    "one in a gas": ALONE["a gas"],
-    "one under shear": ALONE["under shear"],
-}
-
-
-@hard_case(
-    "what cannot be simulated",
-    "a scene that does not fit, or in which nothing can happen, would hang, or write a file "
-    "without numbers",
-)
-def test_the_impossible_is_refused_in_one_line(margins, tmp_path):
-    accepted = lines = 0
-    for experiment in REFUSED.values():
-        try:
-            point({"schedule": COOLING} | experiment, 0.9, 0.2)
-            accepted += 1
-        except InputError as error:
-            lines = max(lines, str(error).count("\n") + 1)
-    margins.at_most("scenes run all the same", accepted, 0, len(REFUSED), "scenes")
-    margins.at_most("lines of an error", lines, 1, len(REFUSED), "scenes")
-    names = list(REFUSED)[: margins.size(quick=2, full=6)]
-    said = [_by_command(REFUSED[name], tmp_path / "point.nc") for name in names]
-    wrong = sum(status != 2 or text.count("\n") != 1 for status, text in said)
-    margins.at_most("commands that end otherwise", wrong, 0, len(names), "commands")
-    assert not list(tmp_path.iterdir())
-
-
-def _by_command(experiment, output):
-    """(exit status, what is said) of `roughgas run`."""
-    effects = experiment["effects"]
-    if "contact_time" in effects:
-        effects = effects | {"contact_time": effects["contact_time"] | {"below_r": 0.5}}
-    text = json.dumps({"schedule": COOLING} | experiment | {"effects": effects})
-    command = [sys.executable, "-m", "roughgas", "run", "some", "--settings", text, "--r=0.9"]
-    command += ["--beta=0.2", "--seed=1", "--output", str(output)]
-    done = subprocess.run(command, capture_output=True, text=True)
-    return done.returncode, done.stderr

@@ -1,37 +1,11 @@
 """Overlap by rounding."""
 
 import numpy as np
-import pytest
 from brute_force import run, scene_of, settings
 
 from hard_cases.catalogue import hard_case
-from hard_cases.probe import gaps_at_contacts
 from roughgas.kernel.memory import new_state
 from roughgas.kernel.state import COLLISIONS
-
-DENSE = settings("gas", 160, [27, 27])  # 0.69 of the area
-SCENES = {
-    "dense gas": (DENSE, 0.95, 0.3),
-    "dilute gas": (settings("gas"), 1.0, 0.3),
-    "sheared gas": (settings("sheared"), 0.9, 0.3),
-    "vibrated bed": (settings("bed"), 0.8, 0.3),
-}
-
-
-@pytest.mark.slow  # a kernel that nothing else compiles; test_random_scenes.py sees overlaps, too
-@hard_case(
-    "the gap at which pairs collide",
-    "positions are rounded: a pair that should just touch overlaps a little, and once an overlap "
-    "is lost sight of, particles sink into each other",
-)
-def test_pairs_collide_where_they_touch(margins):
-    """A place is rounded to some 1e-15 of itself; a bed throws particles up to hundreds of a."""
-    chosen = SCENES if margins.full else {"dense gas": SCENES["dense gas"]}
-    collisions = margins.size(quick=300_000, full=25_000_000)
-    gaps = np.array([gaps_at_contacts(*scene, collisions) for scene in chosen.values()])
-    tried = {"tried": collisions * len(chosen), "unit": "collisions"}
-    margins.at_most("largest overlap at a contact, in a", -gaps[:, 0].min(), 1e-11, **tried)
-    margins.at_most("largest gap at a contact, in a", gaps[:, 1].max(), 1e-11, **tried)
 
 
 @hard_case(

@@ -49,21 +49,3 @@ def test_R_converges_as_kicks_shrink(margins):
     what = "R of kicks 4 to 32 times as rare, off that of the finest"
     margins.at_most(f"{what}, in standard errors", max(sigmas), 4.0, **tried)
     margins.at_most(what, max(differences), 0.02, **tried)
-
-
-@hard_case(
-    "the trap: all kicks at once, and sampled right after",
-    "the bias that spreading the kicks avoids is not there in the first place, and the case above "
-    "shows nothing",
-)
-def test_a_gas_kicked_all_at_once_is_seen_at_its_hottest(margins):
-    """R drops where the kicks go into translation alone, and rises where spins get their half."""
-    time = margins.size(quick=1000, full=4000)
-    biases, sigmas = [], []
-    for share, sign in ((0.0, -1.0), (0.5, 1.0)):
-        (true, error), (found, other) = (measured(4.0, share, time, once) for once in (False, True))
-        biases.append(sign * (found - true))
-        sigmas.append(sign * (found - true) / np.hypot(error, other))
-    tried = {"tried": 2, "unit": f"gases of {NUMBER} disks, {time} T each"}
-    margins.at_least("bias of R", min(biases), 0.02, **tried)
-    margins.at_least("bias of R, in standard errors", min(sigmas), 5.0, **tried)

@@ -205,26 +205,3 @@ def _check_afterwards(margins, bouncer, floor_speed):
     tried = {"tried": bouncer.hits - hits, "unit": "bounces at rest"}
     margins.at_most("bounces per T", 0.5 * tried["tried"], 0.5 / RULE + 1.0, **tried)
     margins.at_most("height of these, in a", highest, 0.501 * RULE**2, **tried)
-
-
-@hard_case(
-    "a crowd on the floor",
-    "a particle that others push against the floor, whenever that is, must not get below it",
-)
-def test_no_particle_falls_through_the_floor(margins):
-    instants = margins.size(quick=500, full=20_000)
-    deepest = -math.inf
-    # on a floor at rest a gas that dissipates would come to rest
-    lossy, elastic = (0.9, 0.2), (1.0, -1.0)
-    for amplitude, period, own in ((5.0, 1.0, lossy), (0.3, 0.2, lossy), (0.0, 1.0, elastic)):
-        floor = {"amplitude": amplitude, "period": period}
-        scene, state = begin(settings("bed", 40, [12.5, "open"], floor=floor), *own, 3)
-        for _ in range(instants):
-            run(state, scene, 1, interval=0.137)
-            # each where something has happened to it last, which often is the floor
-            y, time = state.trajectory[:, 1], state.trajectory[:, 4]
-            surface = amplitude / period * ((state.clock[BASE] % period + time) % period)
-            deepest = max(deepest, np.max(1.0 + surface - y))
-    tried = {"tried": 3 * instants, "unit": "instants"}
-    # heights of some ten, and times of some ten since the base, each rounded a few times
-    margins.at_most("depth below the floor, in a", deepest, 1e-13, **tried)

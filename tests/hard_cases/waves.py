@@ -10,6 +10,7 @@ import math
 
 import mpmath
 
+from roughgas.effects.floor import Floor
 from roughgas.effects.sine_floor import SineFloor
 from roughgas.effects.triangular_floor import TriangularFloor
 
@@ -157,5 +158,7 @@ def level(floor, phase):
     share = phase / floor.period % 1.0
     if isinstance(floor, SineFloor):
         return floor.amplitude * math.sin(math.pi * share) ** 2
+    if isinstance(floor, Floor):
+        return floor.amplitude * share
     share = share / floor.rise if share < floor.rise else (1.0 - share) / (1.0 - floor.rise)
     return floor.amplitude * share

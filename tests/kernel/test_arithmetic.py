@@ -65,26 +65,6 @@ def test_vectors_take_their_components_in_order(like):
         assert random_vector(state, like, size) == expected
 
 
-def test_numbers_are_uniform_and_independent():
-    """Mean, variance and the next one's correlation within 4 sigma (chance of failure 2e-4)."""
-    state, count = word(11), 100_000
-    x = np.array([uniform(state) for _ in range(count)])
-    assert x.min() >= 0.0 and x.max() < 1.0
-    assert abs(x.mean() - 1 / 2) < 4.0 * np.sqrt(1 / 12 / count)
-    assert abs(x.var() - 1 / 12) < 4.0 * np.sqrt(1 / 180 / count)
-    assert abs(np.corrcoef(x[1:], x[:-1])[0, 1]) < 4.0 / np.sqrt(count)
-
-
-def test_the_largest_number_names_no_particle_that_is_not_there():
-    """A partner is drawn as int(uniform * others): the product must not be rounded up to `others`.
-
-    2^53 - 1 times 2^-53 is the largest number that there is.
-    """
-    largest = 1.0 - 2.0**-53
-    for others in (*range(1, 5000), *(2**k + d for k in range(13, 31) for d in (-1, 0, 1))):
-        assert int(largest * others) == others - 1
-
-
 def angles():
     """From within a turn and far beyond, quarters of quarters, and their neighbours."""
     rng = np.random.default_rng(0)

@@ -9,14 +9,6 @@ from roughgas.kernel import event_lists, memory
 from roughgas.kernel.memory import new_state
 from roughgas.kernel.state import LAST_FIRST, LAST_SECOND, LONGEST_HORIZON, NOW, TYPICAL_SPEED
 
-
-def meeting(dimension, gap, impact, speed, rng):
-    """A pair `gap` apart along its path, whose miss distance is 2 `impact`."""
-    direction, across = np.linalg.qr(rng.standard_normal((dimension, 2)))[0].T
-    along = gap + 2.0 * np.sqrt(1.0 - impact**2)
-    return 2.0 * impact * across - along * direction, speed * direction
-
-
 # ---------------------------------------------------------------------- the search for partners
 
 

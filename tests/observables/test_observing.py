@@ -4,7 +4,6 @@ import shlex
 
 import numpy as np
 import pytest
-import xarray
 from schedules import BRIEF, COOLING, STEADY
 
 from roughgas import simulate
@@ -86,20 +85,6 @@ def test_a_function_sees_what_the_point_measures():
     assert found.energy_stderr == pytest.approx(float(found.E_trans_stderr), rel=1e-6)
     assert found.energy.long_name == "translational energy"
     assert found.energy.reduced_units == "m a^2 T^-2"
-
-
-def test_a_function_may_return_arrays_with_or_without_names():
-    def labelled(frame):
-        values = np.sort(frame.position[:, 1])[:3]
-        return xarray.DataArray(values, {"rank": [1, 2, 3]}, attrs={"long_name": "lowest"})
-
-    def several(frame):
-        return {"momentum": frame.velocity.sum(axis=0), "now": frame.time}
-
-    found = point(SHEARED, {"labelled": labelled, "several": several})
-    assert found.labelled.dims == ("rank",) and found["rank"].values.tolist() == [1, 2, 3]
-    assert found.labelled.long_name == "lowest" and found.labelled_stderr.dims == ("rank",)
-    assert found.momentum.shape == (2,) and 40 < found.now < 60
 
 
 # ---------------------------------------------------------------------- refusals

@@ -49,63 +49,52 @@ def test_the_contact_time_model_acts_below_an_r(r, present):
     assert (build(experiment(**SPIN, **model), r, 0.0).effects.contact_time is not None) == present
 
 
+LEGAL = BED | FRICTION | HEAT | TIME | SHEAR | WALLS
 ILLEGAL = {
-    "effects.spin.inertia": [{"spin": {"inertia": q}} for q in (0, -1, 1.1, math.nan, "x", True)]
-    + [{"spin": {}}],
-    "effects.gravity.acceleration": [
-        BED | {"gravity": {"acceleration": g}} for g in (0, -1, math.nan, math.inf, None)
-    ],
-    "effects.floor.amplitude": [
-        BED | {"floor": FLOOR["floor"] | {"amplitude": A}} for A in (-1, math.inf, math.nan, 1e300)
-    ],
-    "effects.floor.period": [
-        BED | {"floor": FLOOR["floor"] | {"period": P}} for P in (0, -1, 1e-300)
-    ],
-    "effects.floor: amplitude/period": [BED | {"floor": FLOOR["floor"] | {"period": 1e-5}}],
-    "effects.left_wall: amplitude/period": [
-        SPIN | {"left_wall": {"amplitude": 1, "period": 1e-5}, "right_wall": {}}
-    ],
-    "effects.shaken_walls: amplitude/period": [
-        SPIN | {"shaken_walls": FLOOR["floor"] | {"amplitude": 1, "period": 1e-5}}
-    ],
-    "effects.left_wall.temperature": [SPIN | {"left_wall": {"temperature": 1e12}}],
-    "effects.floor.restitution": [
-        BED | {"floor": FLOOR["floor"] | {"restitution": r}} for r in (-0.1, 1.1, "own", math.nan)
-    ],
-    "effects.floor.roughness": [
-        BED | {"floor": FLOOR["floor"] | {"roughness": b}} for b in (-1.1, 1.1)
-    ],
-    "effects.walls.restitution": [BED | {"walls": {"restitution": 2, "roughness": 0}}],
-    "effects.walls.roughness": [BED | {"walls": {"restitution": 1, "roughness": -2}}],
-    "effects.shear.velocity": [SPIN | {"shear": {"velocity": U}} for U in (0, -2, math.nan, 1e300)],
-    "effects.friction.mu": [SPIN | {"friction": {"mu": mu}} for mu in (-0.1, math.inf, "rough")],
-    "effects.thermostat.power": [
-        SPIN | {"thermostat": HEAT["thermostat"] | {"power": p}} for p in (0, -1, math.nan, 1e300)
-    ],
-    "effects.thermostat.spin_share": [
-        SPIN | {"thermostat": HEAT["thermostat"] | {"spin_share": s}} for s in (-0.1, 1.1, None)
-    ],
-    "effects.thermostat.interval": [
-        SPIN | {"thermostat": HEAT["thermostat"] | {"interval": t}}
-        for t in (0, -1, math.inf, 1e-300)
-    ],
-    "effects.friction: key": [SPIN | {"friction": {"mu": 1, "nu": 1}}],
-    "effects.contact_time.duration": [
-        SPIN | {"contact_time": {"duration": t}} for t in (0, -1e-5, math.nan)
-    ],
-    "effects.contact_time.below_r": [SPIN | {"contact_time": {"duration": 1, "below_r": 1.5}}],
-    "effect": [SPIN | {"wind": {}}],
+    "spin.inertia": (0, -1, 1.1, math.nan, "x", True, ...),
+    "gravity.acceleration": (0, -1, math.nan, math.inf, None),
+    "floor.amplitude": (-1, math.inf, math.nan, 1e300),
+    "floor.period": (0, -1, 1e-300),
+    "floor.restitution": (-0.1, 1.1, "own", math.nan),
+    "floor.roughness": (-1.1, 1.1),
+    "walls.restitution": (2,),
+    "walls.roughness": (-2,),
+    "shear.velocity": (0, -2, math.nan, 1e300),
+    "friction.mu": (-0.1, math.inf, "rough"),
+    "thermostat.power": (0, -1, math.nan, 1e300),
+    "thermostat.spin_share": (-0.1, 1.1, None),
+    "thermostat.interval": (0, -1, math.inf, 1e-300),
+    "contact_time.duration": (0, -1e-5, math.nan),
+    "contact_time.below_r": (1.5,),
 }
+"""Values of parameters; ... stands for none at all."""
 
 
 @pytest.mark.parametrize("key", ILLEGAL)
-def test_illegal_effects(key):
-    for effects in ILLEGAL[key]:
-        box = (50, "open") if "floor" in effects else (50, 50)
-        with pytest.raises(InputError) as caught:
-            build(experiment(box, **effects), 0.9, 0.0)
-        assert caught.value.key == key, effects
-        assert "\n" not in str(caught.value)
+def test_illegal_parameters(key):
+    name, parameter = key.split(".")
+    around = BED if name in ("gravity", "floor") else SPIN
+    for value in ILLEGAL[key]:
+        own = {} if value is ... else LEGAL[name] | {parameter: value}
+        assert refusal(around | {name: own}).key == f"effects.{key}", value
+
+
+FAST = {"amplitude": 1, "period": 1e-5}
+
+
+@pytest.mark.parametrize(
+    ("key", "effects"),
+    [
+        ("effects.floor: amplitude/period", BED | {"floor": FLOOR["floor"] | {"period": 1e-5}}),
+        ("effects.left_wall: amplitude/period", SPIN | {"left_wall": FAST, "right_wall": {}}),
+        ("effects.shaken_walls: amplitude/period", SPIN | {"shaken_walls": FLOOR["floor"] | FAST}),
+        ("effects.left_wall.temperature", SPIN | {"left_wall": {"temperature": 1e12}}),
+        ("effects.friction: key", SPIN | {"friction": {"mu": 1, "nu": 1}}),
+        ("effect", SPIN | {"wind": {}}),
+    ],
+)
+def test_illegal_effects(key, effects):
+    assert refusal(effects).key == key
 
 
 @pytest.mark.parametrize(
@@ -125,82 +114,47 @@ def test_illegal_effects(key):
         (("open", "open"), BED, "box"),
         ((50, "open"), SPIN, "box"),
         ((50, 50), BED, "box"),
-        ((50, "open"), SPIN | GRAVITY, "effects.gravity"),
-        ((50, "open"), SPIN | FLOOR, "effects.floor"),
-        ((50, 50), SPIN | WALLS | SHEAR, "effects"),
         ((50, "open"), BED | SHEAR, "effects.shear"),
     ],
 )
 def test_what_does_not_go_together(box, effects, key):
-    with pytest.raises(InputError) as caught:
-        build(experiment(box, **effects), 0.9, 0.0)
-    assert caught.value.key == key and "\n" not in str(caught.value)
+    assert refusal(effects, box).key == key
 
 
-MISMATCHES = {
-    # what: (box, effects, beta, schedule or target, the whole message)
-    "walls and shear": (
-        (50, 50),
-        SPIN | WALLS | SHEAR,
-        0.0,
-        {},
-        "effects = walls and shear: must not close the axis that is sheared along",
+UNSPUN = "must be -1 where particles do not spin"
+ROUGH_FLOOR = {"floor": FLOOR["floor"] | {"roughness": 0.5}}
+MISMATCHES = {  # the whole message: effects, beta, more settings
+    "effects = walls and shear: must not close the axis that is sheared along": (
+        *(SPIN | WALLS | SHEAR, 0.0, {}),
     ),
-    "a floor without gravity": ((50, "open"), SPIN | FLOOR, 0.0, {}, "effects.floor needs gravity"),
-    "gravity without a floor": (
-        (50, "open"),
-        SPIN | GRAVITY,
-        0.0,
-        {},
-        "effects.gravity needs a floor",
-    ),
-    "friction without spin": ((50, 50), FRICTION, -1.0, {}, "effects.friction needs spin"),
-    "heat for spins that are not there": (
-        (50, 50),
-        HEAT,
-        -1.0,
-        {},
-        "effects.thermostat.spin_share = 0.5: must be 0 where nothing spins",
-    ),
-    "rough walls without spin": (
-        (50, 50),
-        WALLS,
-        -1.0,
-        {},
-        "effects.walls.roughness = 1: must be -1 where particles do not spin",
-    ),
-    "a rough floor without spin": (
-        (50, "open"),
-        GRAVITY | {"floor": FLOOR["floor"] | {"roughness": 0.5}},
-        -1.0,
-        {},
-        "effects.floor.roughness = 0.5: must be -1 where particles do not spin",
-    ),
-    "rough particles without spin": (
-        (50, 50),
-        {},
-        0.5,
-        {},
-        "roughness beta = 0.5: must be -1 where particles do not spin",
-    ),
-    "a target without spin": (
-        (50, 50),
-        {},
-        -1.0,
-        {"schedule": {"target_stderr": 0.01}},
-        "schedule.target_stderr = 0.01: must not be given where nothing spins",
+    "effects.floor needs gravity": (SPIN | FLOOR, 0.0, {}),
+    "effects.gravity needs a floor": (SPIN | GRAVITY, 0.0, {}),
+    "effects.friction needs spin": (FRICTION, -1.0, {}),
+    "effects.thermostat.spin_share = 0.5: must be 0 where nothing spins": (HEAT, -1.0, {}),
+    f"effects.walls.roughness = 1: {UNSPUN}": (WALLS, -1.0, {}),
+    f"effects.floor.roughness = 0.5: {UNSPUN}": (GRAVITY | ROUGH_FLOOR, -1.0, {}),
+    f"roughness beta = 0.5: {UNSPUN}": ({}, 0.5, {}),
+    "schedule.target_stderr = 0.01: must not be given where nothing spins": (
+        *({}, -1.0, {"schedule": {"target_stderr": 0.01}}),
     ),
 }
 
 
-@pytest.mark.parametrize("what", MISMATCHES)
-def test_what_does_not_go_together_is_said_in_one_line(what):
+@pytest.mark.parametrize("message", MISMATCHES)
+def test_what_does_not_go_together_is_said_in_one_line(message):
     """By key, value and what is legal; what is built all the same is refused when checked."""
-    box, effects, beta, settings, message = MISMATCHES[what]
+    effects, beta, settings = MISMATCHES[message]
+    assert str(refusal(effects, beta=beta, **settings)) == message
+
+
+def refusal(effects, box=None, beta=0.0, **settings):
+    """The error with which a scene is built or checked."""
+    box = box or (50, "open" if {"floor", "gravity"} & set(effects) else 50)
     with pytest.raises(InputError) as caught:
         build(experiment(box, **effects), 0.9, beta)
         check(experiment(box, **effects) | settings)
-    assert str(caught.value) == message
+    assert "\n" not in str(caught.value)
+    return caught.value
 
 
 @pytest.mark.parametrize(

@@ -61,11 +61,6 @@ def test_autocorrelation_time_of_replicas_is_sharper_than_of_one(ar1):
     assert autocorrelation_time(series) == pytest.approx(8, rel=0.16)
 
 
-def test_anticorrelation_is_given_no_credit(ar1):
-    series = ar1.series(np.random.default_rng(15), 0.2, 1000, 1)[0]
-    assert autocorrelation_time(series) == 1.0
-
-
 def test_raw_samples_of_a_periodic_drive_mislead_and_period_means_do_not(ar1):
     """Four phases a period over noise of tau = 80 samples, which raw samples hide."""
     slow = 0.01 * ar1.series(np.random.default_rng(16), 80, 16000, 20)
@@ -201,11 +196,6 @@ def test_difference_adds_errors_in_quadrature():
 
 def test_means_of_whole_periods_leave_out_the_incomplete_one():
     np.testing.assert_allclose(period_means(np.arange(11.0), 4), [1.5, 5.5])
-
-
-def test_the_phases_of_a_drive_disappear():
-    phases = np.tile([0.18, 0.24, 0.26, 0.21], 50)
-    np.testing.assert_allclose(period_means(phases, 4), np.full(50, 0.2225))
 
 
 def test_means_over_blocks_keep_the_shorter_last_one():

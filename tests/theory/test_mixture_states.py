@@ -59,13 +59,6 @@ def test_equal_species_are_driven_like_one(r, beta, q, dimension, share):
     assert pytest.approx(np.full(2, R), rel=1e-8) == found.R
 
 
-@settings(derandomize=True, deadline=None, max_examples=15)
-@given(**one_species)
-def test_spins_of_equal_species_are_those_of_luns_formula(r, beta, q, dimension):
-    T_rot = theory.mixture_rotation(alike(r, beta, dimension, q), 2.0)
-    assert T_rot / (T_rot + 2) == pytest.approx(np.full(2, theory.lun_ratio(beta, q)), rel=1e-12)
-
-
 @dimensions
 @pytest.mark.parametrize("mu", [0.2, 0.5])
 def test_equal_species_with_friction(dimension, mu):
@@ -132,16 +125,6 @@ def test_elastic_mixtures_reach_equipartition(dimension):
     assert theory.mixture_decay_rate(gas) == pytest.approx(0, abs=1e-14)
     with pytest.raises(InputError, match="must be what collisions can dissipate"):
         theory.mixture_driven(gas, 1)
-
-
-@dimensions
-def test_smooth_mixtures_leave_spin_out(dimension):
-    gas = theory.mixture(UNLIKE, 0.9, -1, dimension)
-    found = theory.mixture_cooling(gas)
-    assert (found.T_rot == 0).all()
-    assert (theory.mixture_rotation(gas, found.T_tr) == 0).all()
-    assert 1.05 < found.T_tr[1] / found.T_tr[0] < 2  # the heavy ones are hotter
-    assert theory.mixture_relaxation_rate(gas) > 0
 
 
 def test_a_smooth_intruder_is_that_of_martin_and_piasecki():
