@@ -12,6 +12,7 @@ from brute_force import KERNELS, begin, kernels, run, settings
 from machine_code import checksums, sections
 from schedules import COOLING, STEADY
 
+from roughgas.data.checkpoint import arrays_of
 from roughgas.data.point import read_point, write_point
 from roughgas.data.variables import POINT
 from roughgas.effects import KINDS
@@ -38,9 +39,6 @@ def small(kernel):
     number, lengths = SMALL[len(box)]
     top = "open" if box[-1] == "open" else lengths[-1]
     return settings(kernel, number, [*lengths[:-1], top])
-
-
-# ---------------------------------------------------------------------- code
 
 
 def poisoned(folder, kernel, *effects):
@@ -87,19 +85,6 @@ def test_the_multipliers_of_random_numbers_are_where_they_are_drawn(kernel):
         assert (np.uint64(number).tobytes() in code) == heated
 
 
-# ---------------------------------------------------------------------- memory and events
-
-
-def arrays(part, name=""):
-    """Name -> array of all that a state holds."""
-    if isinstance(part, np.ndarray):
-        return {name: part}
-    if not hasattr(part, "_fields"):
-        return {}
-    inner = [arrays(getattr(part, key), f"{name}.{key}".strip(".")) for key in part._fields]
-    return {key: array for found in inner for key, array in found.items()}
-
-
 @pytest.mark.parametrize("kernel", ["gas", "heated", "spheres", "walled"])
 def test_what_an_effect_needs_is_what_it_adds(kernel):
     """In bytes, beside the barest gas of as many particles: a spin of one component or three, a
@@ -110,7 +95,7 @@ def test_what_an_effect_needs_is_what_it_adds(kernel):
     there, dimension = set(KERNELS[kernel]["effects"]), len(scene.box)
     bare = small(kernel) | {"effects": {}, "box": SMALL[dimension][1]}
     size, least = (
-        sum(array.nbytes for array in arrays(one).values())
+        sum(array.nbytes for _, array in arrays_of(one))
         for one in (state, begin(bare, 0.9, -1.0)[1])
     )
     added = 16 * 8 * (2 * dimension - 3) * ("spin" in there)
@@ -146,8 +131,6 @@ def test_smooth_disks_move_as_rough_ones_at_beta_minus_1():
         trajectories.append(state.trajectory.tobytes())
     assert trajectories[0] == trajectories[1]
 
-
-# ---------------------------------------------------------------------- dataset
 
 OF_SPIN = {
     *("R", "R_stderr", "R_dof", "R_ci95", "R_ci95_trusted", "R_ratio_of_means", "R_replica"),

@@ -6,6 +6,7 @@ from brute_force import begin, run, scene_of, settings, snapshot
 from brute_force.beside import brute_force_from
 
 from roughgas import theory
+from roughgas.effects import contact_stress
 from roughgas.kernel.memory import new_state
 from roughgas.kernel.record import Sampling, columns, record
 from roughgas.kernel.state import EXPONENT, TOUCHED
@@ -13,13 +14,12 @@ from roughgas.simulation.energies import SUMS, contact_averages
 from roughgas.simulation.energy_balance import balance
 
 LOOKED_AT = ("bed", "sheared", "shaken", "heated", "spheres")
-
 TWO = [{"fraction": 0.5}, {"fraction": 0.5, "radius": 1.5, "inertia": 0.3}]
 
 
-def sums(rows):
-    """The last running sums of v_t^2, v_r^2 and v_t.v_r."""
-    return np.array([rows[name][-1] for name in SUMS])
+def sums(rows, names=SUMS):
+    """The last running sums, of v_t^2, v_r^2 and v_t.v_r."""
+    return np.array([rows[name][-1] for name in names])
 
 
 @pytest.mark.parametrize(
@@ -31,14 +31,19 @@ def test_each_contact_counts_as_brute_force_has_it(kernel, species):
     scene, world = scene_of(experiment, 0.9, 0.3)
     _, state = begin(experiment, 0.9, 0.3, 4)
     run(state, scene, 1, collisions=200)
+    stress = contact_stress.SUMS if "contact_stress" in experiment["effects"] else ()
     for _ in range(10):
-        before = sums(run(state, scene, 1, collisions=0))
+        rows = run(state, scene, 1, collisions=0)
+        before, carried = sums(rows), sums(rows, stress)
         brute = brute_force_from(world, snapshot(state, scene))
         for _ in range(5):
             brute.run(1)
-            found = sums(run(state, scene, 1, collisions=1)) - before
+            rows = run(state, scene, 1, collisions=1)
             rounding = 1e-11 * (brute.seen[:2].max() + before.max())
-            assert found == pytest.approx(brute.seen, abs=rounding)
+            assert sums(rows) - before == pytest.approx(brute.seen, abs=rounding)
+            if stress:
+                found, rounding = sums(rows, stress) - carried, 1e-11 * abs(carried).max()
+                assert found == pytest.approx(brute.carried.ravel(), abs=rounding)
 
 
 def test_a_gas_that_cools_by_many_powers_of_two():

@@ -25,9 +25,6 @@ def gas(**effects):
     return settings("viscoelastic", **effects)
 
 
-# ---------------------------------------------------------------------- viscoelastic
-
-
 def test_the_series_is_that_of_the_literature():
     """C_1 to C_4 of Ramirez et al. (1999), in powers of x = C_1 A alpha^(2/5) g^(1/5)."""
     C = 1.15344, 0.79826, 0.483582, 0.285279
@@ -48,9 +45,6 @@ def test_fifth_roots():
         assert fifth_root(float(x), -35) == math.ldexp(fifth_root(float(x), 0), -7)
     assert fifth_root(1.0, -5000) == pytest.approx(math.ldexp(1.0, -1000), rel=1e-15)
     assert fifth_root(0.0, 12) == 0.0
-
-
-# ---------------------------------------------------------------------- tables, thresholds
 
 
 def hook_of(r, **table):
@@ -83,9 +77,6 @@ def test_other_contacts_lose_in_proportion():
     assert [restitution(v, 1.0) for v in (0.1, 5.0)] == [1.0, 1.0]
 
 
-# ---------------------------------------------------------------------- a gas that cools
-
-
 def test_a_gas_is_the_same_in_any_unit_of_velocity():
     """To the last bit: in units of 2^20 a/T, and of 1 a/T."""
     ends = []
@@ -99,8 +90,6 @@ def test_a_gas_is_the_same_in_any_unit_of_velocity():
     assert np.array_equal(*(trajectory for trajectory, _ in ends))
     assert np.array_equal(*(spin for _, spin in ends))
 
-
-# ---------------------------------------------------------------------- mistakes
 
 REFUSED = {
     "be a list of 2 to 32 numbers": {"speed": [1.0]},
@@ -119,6 +108,3 @@ def test_a_table_that_is_none_is_refused(legal):
         build({"box": [20, 20], "effects": effects}, 0.9, -1.0)
     assert str(caught.value).endswith(f": must {legal}")
     assert "effects.restitution_table." in str(caught.value)
-
-
-# ---------------------------------------------------------------------- the exponent of time

@@ -24,11 +24,6 @@ def closed(effects, box, particles=12):
     return {"particles": particles, "box": box, "effects": effects}
 
 
-# ---------------------------------------------------------------------- collision by collision
-
-
-# ---------------------------------------------------------------------- when walls are met
-
 SOLVERS = {
     "sawtooth": (floor.Floor, {}, floor.time_to_floor),
     "reversed_sawtooth": (triangular_floor.TriangularFloor, {"rise": 0.1}, None),
@@ -63,9 +58,6 @@ def test_strokes_are_met_as_brute_force_finds_them(wave, weight):
     assert met > 1
 
 
-# ---------------------------------------------------------------------- energy, places
-
-
 def test_initial_places_are_checked_against_every_wall():
     scene = build(closed(KERNELS["container"]["effects"], [20, 20]), 0.9, 0.0)
     check_places(scene, np.array([[1.0, 1.0]]), 0.0)
@@ -75,8 +67,6 @@ def test_initial_places_are_checked_against_every_wall():
     with pytest.raises(InputError, match=r"= 0\.9: must lie in \[1, 19\]"):
         check_places(scene, np.array([[0.9, 10.0]]), 0.0)
 
-
-# ---------------------------------------------------------------------- what settings mean
 
 LID = DISKS | {"bottom_wall": {}}
 REFUSED = {

@@ -2,30 +2,13 @@
 
 import numpy as np
 import pytest
-from brute_force import begin, run, settings, snapshot
+from brute_force import begin, run, settings
 
 from roughgas import simulate
 from roughgas.base import InputError
-from roughgas.kernel import memory
-from roughgas.kernel.state import LAST_FIRST, LAST_SECOND
 from roughgas.simulation.energies import energies_of_each
 from roughgas.simulation.gas import Gas
 from roughgas.statistics.errors import blocking
-
-UNLIKE = [
-    {"name": "small", "fraction": 0.5, "radius": 0.7, "restitution": 0.95},
-    {"name": "large", "fraction": 0.25, "radius": 1.5, "mass": 7.0, "roughness": 0.6},
-    {"fraction": 0.25, "mass": 0.01, "inertia": 0.2},
-]
-PAIRS = [{"between": ["small", 2], "restitution": 0.8, "roughness": -0.3}]
-
-
-def of_species(kernel, particles, box, species=UNLIKE, pairs=PAIRS, **effects):
-    return settings(kernel, particles, box, **effects) | {
-        "species": species,
-        "species_pairs": pairs,
-    }
-
 
 ALIKE = [{"fraction": 0.5}, {"fraction": 0.5, "radius": 1, "mass": 1.0}]
 
@@ -53,28 +36,6 @@ def test_species_that_are_alike_are_one(kernel, particles, box):
     """To the last bit of every place, velocity, spin, count, booked energy and sample."""
     experiment = settings(kernel, particles, box)
     assert everything(experiment) == everything(experiment | {"species": ALIKE})
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("kernel", ["gas", "sheared"])
-def test_neither_scheme_shows_in_the_results(kernel, monkeypatch):
-    """Among few particles, swept all at once or in cells for the largest."""
-    experiment = of_species(kernel, 120, [45, 45])
-    states = []
-    for most in (memory.FEW, 60):
-        monkeypatch.setattr(memory, "FEW", most)
-        scene, state = begin(experiment, 0.9, 0.3, 1)
-        states.append(state)
-    assert [state.cells is None for state in states] == [True, False]
-    for _ in range(500):
-        pairs = []
-        for state in states:
-            run(state, scene, 1, collisions=1)
-            pairs.append({int(state.counts[LAST_FIRST]), int(state.counts[LAST_SECOND])})
-        assert pairs[0] == pairs[1]
-    one, other = (snapshot(state, scene) for state in states)
-    assert np.array_equal(one.company.mass, other.company.mass)
-    assert np.abs(one.velocity - other.velocity).max() < 1e-3  # chaos
 
 
 MIXED = [

@@ -126,10 +126,24 @@ WRONG = [
 ]
 
 
-@pytest.mark.parametrize(("species", "message"), WRONG)
-def test_what_makes_no_sense_is_one_line(species, message):
+OWN = [{"fraction": 0.5}, {"fraction": 0.5, "restitution": 0.5}]
+WALLS = {"walls": {"restitution": "particles", "roughness": -1}}
+WRONG = [(species, {}, message) for species, message in WRONG]
+WRONG += [(OWN, {"effects": WALLS}, "effects.walls.restitution = particles: must be a number")]
+WRONG += [
+    (HALVES, {"pairs": [{"between": between, "restitution": 0.5} for between in pairs]}, message)
+    for pairs, message in (
+        ([["a", 0]], "species_pairs[0].between = 'a': must be one of 0, 1"),
+        ([[0, 2]], "species_pairs[0].between = 2"),
+        ([[0, 1], [1, 0]], "species_pairs[1].between"),
+    )
+]
+
+
+@pytest.mark.parametrize(("species", "more", "message"), WRONG)
+def test_what_makes_no_sense_is_one_line(species, more, message):
     with pytest.raises(InputError) as caught:
-        build(gas(species), 0.9, 0.3)
+        build(gas(species, **more), 0.9, -1.0 if more.get("effects") else 0.3)
     assert str(caught.value).startswith(message) and "\n" not in str(caught.value)
 
 
@@ -147,26 +161,6 @@ def test_what_no_species_can_have(species, message):
     with pytest.raises(InputError) as caught:
         check_schema(gas(species), "gas", "experiment")
     assert message in str(caught.value) and "\n" not in str(caught.value)
-
-
-def test_walls_of_the_particles_material_need_one():
-    species = [{"fraction": 0.5}, {"fraction": 0.5, "restitution": 0.5}]
-    walls = {"walls": {"restitution": "particles", "roughness": -1}}
-    with pytest.raises(InputError, match=r"walls\.restitution = particles: must be a number"):
-        build(gas(species, effects=walls), 0.9, -1.0)
-
-
-def test_pairs_that_are_wrong():
-    for between, message in (
-        (["a", 0], "species_pairs[0].between = 'a': must be one of 0, 1"),
-        ([0, 2], "species_pairs[0].between = 2"),
-    ):
-        with pytest.raises(InputError) as caught:
-            build(gas(HALVES, [{"between": between, "restitution": 0.5}]), 0.9, 0.3)
-        assert str(caught.value).startswith(message)
-    twice = [{"between": [0, 1]}, {"between": [1, 0]}]
-    with pytest.raises(InputError, match="must be given once"):
-        build(gas(HALVES, twice), 0.9, 0.3)
 
 
 def test_the_largest_that_is_drawn_must_fit():

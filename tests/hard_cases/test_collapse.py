@@ -19,9 +19,6 @@ BED = settings("bed")  # 160 disks on 50 a, as in Fig. 1a
 THRESHOLD = 7.0 - 4.0 * math.sqrt(3.0)  # of r, for three particles on a line
 
 
-# ---------------------------------------------------------------------- without the model
-
-
 @hard_case(
     "a vibrated bed at r = 0.6 without the contact-time model",
     "chains of particles touch infinitely often in a finite time: a simulation never gets past it",
@@ -75,9 +72,6 @@ def test_a_dense_bed_is_not_taken_for_a_collapse(margins):
     margins.at_most("quarters of T that are missing", missing, 0, **tried)
 
 
-# ---------------------------------------------------------------------- with the model
-
-
 @hard_case(
     "the contact-time model at r = 0.6, t_c from 1e-8 to 1e-3 T",
     "the remedy against collapse changes the physics: R depends on t_c",
@@ -108,9 +102,6 @@ def bed_with(duration, seed, measure):
     gas, settle = Gas(scene, state), max(40, measure)
     R = ratio(gas.energies(gas.in_time(0.25, 4 * (settle + measure))))[4 * settle :]
     return R.mean(), state.counts[TOUCHED] / state.counts[COLLISIONS]
-
-
-# ---------------------------------------------------------------------- three on a line
 
 
 @hard_case(

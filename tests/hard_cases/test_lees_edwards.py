@@ -39,8 +39,6 @@ def measure(margins, what, segments):
     margins.at_most(name, ratio, ROUNDINGS, **tried)
 
 
-# ---------------------------------------------------------------------- one gas, seen in many ways
-
 GAS = settings("sheared", 12, [32, 20], shear={"velocity": 4.0})
 LENGTH, HEIGHT, U, PERIOD = 32.0, 20.0, 4.0, 8.0
 GRID = 2.0**-24  # all numbers of a start are its multiples, so that no sum of them is rounded
@@ -149,8 +147,6 @@ def test_the_slide_is_where_it_should_be(margins):
     margins.at_most(what, largest, 2.0**-52, tried, "instants")
 
 
-# ---------------------------------------------------------------------- contacts on the boundary
-
 OFFSETS = (0.0, 2.0**-52, 1e-14, 1e-12, 1e-9, 1e-6, 1e-3)
 ANGLES = np.linspace(0.0, 2.0 * np.pi, 24, endpoint=False)
 
@@ -185,9 +181,6 @@ def test_contacts_coincide_with_crossings(box, margins):
         pair = touching_on_the_boundary(sign * offset, angle, box, rng)
         segments.append(segment(started(scene, *pair), scene, world, most=2))
     measure(margins, f"two particles in a box of {box[0]:g} by {box[1]:g}", segments)
-
-
-# ---------------------------------------------------------------------- images that rush past
 
 
 @hard_case(

@@ -209,23 +209,3 @@ def test_an_error_in_a_process_tells_its_scene():
     with pytest.raises(InputError, match="box") as raised:
         next(in_processes([[(crowded, 0.9, -1.0, 3)]]))
     assert raised.value.__notes__ == [f"scene {(crowded, 0.9, -1.0, 3)}"]
-
-
-def test_roundings_of_energy_that_has_gone_are_not_missing():
-    """Random kicks raise the energy from 0.08 to 44, and then take it back to 0.24.
-
-    Of so little, roundings of what was there before are 32 an exchange.
-    """
-    heat = {"power": 2.281931965746018, "spin_share": 1.0, "interval": 4.768556541726747}
-    same = 0.9658698438656339
-    alike = {name: same for name in ("radius", "mass", "restitution", "roughness")}
-    experiment = {
-        "particles": 2,
-        "box": [7.0, 18.241065684322493],
-        "effects": {"spin": {"inertia": 0.6498636082543502}, "thermostat": heat}
-        | {"contact_averages": {}},
-        "species": [alike | {"inertia": 0.9566424242067445, "fraction": 1.0}],
-    }
-    worst = Worst()
-    assert worst.see(experiment, 0.901071948700902, -0.11080577233027777, 7187) == "run"
-    assert 0.0 < worst.imbalance < 0.2

@@ -9,7 +9,7 @@ from brute_force import largest_overlap, run, scene_of, settings
 from brute_force.kicks import SplitMix
 from compiled import from_python
 
-from roughgas.kernel import mathematics, vectors
+from roughgas.kernel import mathematics
 from roughgas.kernel.jit import entry, unrolled
 from roughgas.kernel.mathematics import (
     REGISTER,
@@ -244,29 +244,3 @@ def test_a_branch_that_types_do_not_decide_is_refused():
     with pytest.raises(Exception, match="name 'x' is not defined"):
         from_python(undecidable)(1.0, 2.0)
     assert undecidable(1.0, 2.0) == 2.0
-
-
-VECTORS = {
-    "dot": "ab",
-    "subtract": "ab",
-    "scale": "as",
-    "add_scaled": "abs",
-    "cross_squared": "ab",
-    "cross_to_spin": "ab",
-    "along_first": "as",
-    "along_last": "as",
-}
-
-
-@pytest.mark.parametrize("dimension", [2, 3])
-def test_vectors_are_compiled_to_the_same_bits(dimension):
-    a, b = map(tuple, np.random.default_rng(1).standard_normal((2, dimension)).tolist())
-    values = {"a": a, "b": b, "s": 0.7}
-    for name, arguments in VECTORS.items():
-        function = getattr(vectors, name)
-        given = [values[one] for one in arguments]
-        assert from_python(function)(*given) == function(*given), name
-    array = np.arange(12.0).reshape(2, 6)
-    for function in (vectors.read, vectors.column):
-        given = array, 1, 0, (0.0, 0.0)
-        assert from_python(function)(*given) == function(*given)

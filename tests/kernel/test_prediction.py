@@ -9,8 +9,6 @@ from roughgas.kernel import event_lists, memory
 from roughgas.kernel.memory import new_state
 from roughgas.kernel.state import LAST_FIRST, LAST_SECOND, LONGEST_HORIZON, NOW, TYPICAL_SPEED
 
-# ---------------------------------------------------------------------- the search for partners
-
 
 def first_contact(scene, world, position, velocity, spin=None):
     """((pair, time) of the kernel's first contact, the same of the brute force)."""
@@ -99,8 +97,6 @@ def test_a_seventh_contact_is_not_lost_when_the_first_six_fall_through():
     assert {int(state.counts[LAST_FIRST]), int(state.counts[LAST_SECOND])} == {12, 13}
     assert row["time"][-1] == pytest.approx(brute.time, rel=1e-12)
 
-
-# ---------------------------------------------------------------------- what must not matter
 
 POINTS = {
     "gas": (settings("gas", 40, [25, 25]), 0.9, 0.2),

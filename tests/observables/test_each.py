@@ -156,15 +156,8 @@ def test_free_particles_get_as_far_as_they_fly(speed):
 )
 def test_what_a_system_does_not_have_is_refused(name, changes, settings, message):
     with pytest.raises(InputError, match=message):
-        results(
-            name,
-            [
-                frame_of(system_of((20, 20)))._replace(
-                    system=system_of((20, 20))._replace(**changes)
-                )
-            ],
-            **settings,
-        )
+        system = system_of((20, 20))
+        results(name, [frame_of(system)._replace(system=system._replace(**changes))], **settings)
 
 
 RNG = np.random.default_rng(3)

@@ -68,9 +68,6 @@ def test_in_a_cooling_gas_the_energy_stays_1():
     assert np.mean(found.temperature_profile + flow**2) == pytest.approx(2.0, rel=1e-9)
 
 
-# ---------------------------------------------------------------------- functions
-
-
 def energy(frame):
     return 0.5 * np.mean(frame.thermal_velocity**2)
 
@@ -85,9 +82,6 @@ def test_a_function_sees_what_the_point_measures():
     assert found.energy_stderr == pytest.approx(float(found.E_trans_stderr), rel=1e-6)
     assert found.energy.long_name == "translational energy"
     assert found.energy.reduced_units == "m a^2 T^-2"
-
-
-# ---------------------------------------------------------------------- refusals
 
 
 @pytest.mark.parametrize(
@@ -130,9 +124,6 @@ def test_observables_that_do_not_suit_the_scene_are_refused_before_it_runs():
         point(scene, ["spin_correlation"], beta=-1)
 
 
-# ---------------------------------------------------------------------- species
-
-
 MIXED = [{"fraction": 0.5, "radius": 0.7}, {"fraction": 0.5, "radius": 1.3, "mass": 3.0}]
 
 
@@ -148,9 +139,6 @@ def test_of_species_what_depends_on_the_particle_takes_its_size_and_mass():
         InputError, match=r"^observables\.cumulants = with species: must come without"
     ):
         point(COOLED, "cumulants", species=MIXED)
-
-
-# ---------------------------------------------------------------------- files
 
 
 def test_the_command_line_watches_and_reduced_datasets_hold_what_was_seen(tmp_path, monkeypatch):

@@ -75,11 +75,6 @@ def test_the_temperature_is_one():
     assert np.mean(squares) == pytest.approx(1.0, abs=4.0 / np.sqrt(20 * 159))
 
 
-def test_seeds_differ_and_repeat():
-    states = [begin(settings("gas"), 0.9, 0.0, seed)[1].trajectory for seed in (1, 1, 2)]
-    assert np.array_equal(states[0], states[1]) and not np.array_equal(states[0], states[2])
-
-
 @pytest.mark.parametrize(
     "most", [settings("gas", 108, [20.1, 20.1]), settings("spheres", 144, [10.1] * 3)]
 )

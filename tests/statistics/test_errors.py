@@ -55,12 +55,6 @@ def test_autocorrelation_is_calibrated(ar1, samples, tau):
     assert abs(rms - 1) < 0.10 + 3 * scatter
 
 
-def test_autocorrelation_time_of_replicas_is_sharper_than_of_one(ar1):
-    """Of 20 series of 400 samples with tau = 8: 4 % scatter, tested at 4 sigma."""
-    series = ar1.series(np.random.default_rng(14), 8, 400, 20)
-    assert autocorrelation_time(series) == pytest.approx(8, rel=0.16)
-
-
 def test_raw_samples_of_a_periodic_drive_mislead_and_period_means_do_not(ar1):
     """Four phases a period over noise of tau = 80 samples, which raw samples hide."""
     slow = 0.01 * ar1.series(np.random.default_rng(16), 80, 16000, 20)
@@ -175,11 +169,6 @@ def test_significance_has_the_probability_of_students_t():
         exact = -NormalDist().inv_cdf(beyond(ratio, 30))
         assert Estimate(ratio, 1.0, 30).sigma == pytest.approx(exact, rel=0.02)
         assert Estimate(-ratio, 1.0, 30).sigma == -Estimate(ratio, 1.0, 30).sigma
-
-
-def test_four_seeds_alone_need_ten_standard_errors_for_three_sigma():
-    assert not Estimate(9.0, 1.0, 3).real
-    assert Estimate(10.0, 1.0, 3).real
 
 
 def test_estimates_without_or_with_zero_error():

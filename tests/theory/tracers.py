@@ -3,6 +3,7 @@ each meeting particles drawn from Maxwellians. In units of sqrt(T_tr/m) of the g
 gas stays as it is and the spinners gain."""
 
 import numpy as np
+from tests.theory.collisions import after_contact
 
 
 def spin_in_the_end(spinners, start, gas, rate, tau, duration, seed, step=0.03):
@@ -31,18 +32,9 @@ def spin_in_the_end(spinners, start, gas, rate, tau, duration, seed, step=0.03):
         hit = np.flatnonzero(np.abs(speed) * share > rng.random(spinners))
         n = n[hit] * -np.sign(speed[hit, None])
         spin = drawn(turning, np.sqrt(theta / q), len(hit))
-        impulse = _impulse(v[hit] - other[hit], w[hit] + spin, n, r, beta, mu, q)
-        v[hit] += impulse
-        w[hit] -= np.cross(n, impulse) / q
+        ones = np.ones(len(hit))
+        one, two = ((*x, ones, q * ones, ones) for x in ((v[hit], w[hit]), (other[hit], spin)))
+        (v[hit], w[hit]), _ = after_contact(n, one, two, r, beta, mu)
         v, w = gain * v, gain * w
         squares.append(np.sum(v**2) / spinners / dimension)
     return np.linalg.norm(w, axis=1) * np.exp(-rate * duration / 2), np.mean(squares)
-
-
-def _impulse(v, spins, n, r, beta, mu, q):
-    """What sticks, or slides where the tangential impulse would exceed mu times the normal one."""
-    g = v - np.cross(spins, n)
-    normal = np.sum(g * n, axis=1, keepdims=True) * n
-    push, drag = -(1 + r) / 2 * normal, -(1 + beta) / (2 + 2 / q) * (g - normal)
-    most, needed = (mu * np.linalg.norm(push, axis=1), np.linalg.norm(drag, axis=1))
-    return push + np.minimum(1.0, most / np.maximum(needed, 1e-300))[:, None] * drag
