@@ -29,89 +29,53 @@ _BED = _DISKS | {
 _FRICTION = {"friction": {"mu": 0.5}}
 _HEAT = {"thermostat": {"power": 1.0, "spin_share": 0.5, "interval": 0.5}}
 _TABLE = {"speed": [0.0, 0.5, 2.0, 5.0], "restitution": [1.0, 0.9, 0.8, 0.5], "reference": 1.0}
+_ROUGH = {"restitution": 1.0, "roughness": 1.0}
+_LATE = {"contact_time": {"duration": NEVER}}
+_SPHERES = {"spin": {"inertia": 0.4}}
+_SINE = {"amplitude": 1.0, "period": 2.0, "wave": "sine"}
+_SHAKEN = {"amplitude": 1, "period": 2, "restitution": 1, "roughness": 0.5}
+
+
+def _kernel(box, *effects):
+    whole = {name: own for part in effects for name, own in part.items()}
+    return {"particles": 160 if len(box) == 2 else 64, "box": box, "effects": whole}
+
+
 KERNELS = {
-    "gas": {"particles": 160, "box": [100, 100], "effects": _DISKS},
-    "smooth": {"particles": 160, "box": [100, 100], "effects": {}},
-    "sheared": {
-        "particles": 160,
-        "box": [50, 50],
-        "effects": _DISKS | _SUMS | {"shear": {"velocity": 2.0}},
-    },
-    "bed": {"particles": 160, "box": [50, "open"], "effects": _BED | _SUMS},
-    "walled": {
-        "particles": 160,
-        "box": [50, "open"],
-        "effects": _BED
-        | {"walls": {"restitution": 1.0, "roughness": 1.0}, "contact_time": {"duration": NEVER}},
-    },
-    "spheres": {
-        "particles": 64,
-        "box": [12, 12, 12],
-        "effects": {"spin": {"inertia": 0.4}, "contact_time": {"duration": NEVER}} | _ALL_SUMS,
-    },
-    "friction": {"particles": 160, "box": [100, 100], "effects": _DISKS | _FRICTION},
-    "rubbed bed": {
-        "particles": 160,
-        "box": [50, "open"],
-        "effects": _BED | {"walls": {"restitution": 1.0, "roughness": 1.0}} | _FRICTION,
-    },
-    "shaken": {
-        "particles": 160,
-        "box": [50, 50],
-        "effects": _DISKS
-        | _SUMS
-        | {"shaken_walls": {"amplitude": 1, "period": 2, "restitution": 1, "roughness": 0.5}},
-    },
-    "heated": {"particles": 160, "box": [100, 100], "effects": _DISKS | _HEAT | _SUMS},
-    "heated, smooth": {
-        "particles": 160,
-        "box": [100, 100],
-        "effects": {"thermostat": _HEAT["thermostat"] | {"spin_share": 0.0}},
-    },
-    "heated spheres": {
-        "particles": 64,
-        "box": [12, 12, 12],
-        "effects": {"spin": {"inertia": 0.4}} | _HEAT | _FRICTION | _ALL_SUMS,
-    },
-    "viscoelastic": {
-        "particles": 160,
-        "box": [100, 100],
-        "effects": _DISKS
-        | {"viscoelastic": {"speed": 1.0}, "threshold": {"speed": 1e-3, "restitution": 1.0}},
-    },
-    "container": {
-        "particles": 160,
-        "box": [50, 50],
-        "effects": _DISKS
-        | {
-            "left_wall": {"temperature": 2.0, "velocity": 0.7},
-            "right_wall": {"restitution": 0.9, "roughness": 0.5},
-            "bottom_wall": {"velocity": -1.0, "roughness": 0.8},
-            "lid": {"amplitude": 1.0, "period": 2.0, "wave": "sine", "roughness": 0.3},
-        },
-    },
-    "closed spheres": {
-        "particles": 64,
-        "box": [12, 12, 12],
-        "effects": {
-            "spin": {"inertia": 0.4},
-            "front_wall": {"temperature": 2.0, "velocity": -0.5},
-            "back_wall": {"velocity": 1.0, "roughness": 0.5},
-            "bottom_wall": {"restitution": 0.9},
-            "lid": {
-                "amplitude": 1.0,
-                "period": 2.0,
-                "wave": "sine",
-                "shaken": "along",
-                "roughness": 0.4,
-            },
-        },
-    },
-    "tabulated bed": {
-        "particles": 160,
-        "box": [50, "open"],
-        "effects": _BED | {"restitution_table": _TABLE},
-    },
+    "gas": _kernel([100, 100], _DISKS),
+    "smooth": _kernel([100, 100]),
+    "sheared": _kernel([50, 50], _DISKS, _SUMS, {"shear": {"velocity": 2.0}}),
+    "bed": _kernel([50, "open"], _BED, _SUMS),
+    "walled": _kernel([50, "open"], _BED, {"walls": _ROUGH}, _LATE),
+    "spheres": _kernel([12, 12, 12], _SPHERES, _LATE, _ALL_SUMS),
+    "friction": _kernel([100, 100], _DISKS, _FRICTION),
+    "rubbed bed": _kernel([50, "open"], _BED, {"walls": _ROUGH}, _FRICTION),
+    "shaken": _kernel([50, 50], _DISKS, _SUMS, {"shaken_walls": _SHAKEN}),
+    "heated": _kernel([100, 100], _DISKS, _HEAT, _SUMS),
+    "heated, smooth": _kernel(
+        [100, 100], {"thermostat": _HEAT["thermostat"] | {"spin_share": 0.0}}
+    ),
+    "heated spheres": _kernel([12, 12, 12], _SPHERES, _HEAT, _FRICTION, _ALL_SUMS),
+    "viscoelastic": _kernel(
+        [100, 100],
+        _DISKS,
+        {"viscoelastic": {"speed": 1.0}, "threshold": {"speed": 1e-3, "restitution": 1.0}},
+    ),
+    "container": _kernel(
+        [50, 50],
+        _DISKS,
+        {"left_wall": {"temperature": 2.0, "velocity": 0.7}},
+        {"right_wall": {"restitution": 0.9, "roughness": 0.5}},
+        {"bottom_wall": {"velocity": -1.0, "roughness": 0.8}, "lid": _SINE | {"roughness": 0.3}},
+    ),
+    "closed spheres": _kernel(
+        [12, 12, 12],
+        _SPHERES,
+        {"front_wall": {"temperature": 2.0, "velocity": -0.5}},
+        {"back_wall": {"velocity": 1.0, "roughness": 0.5}, "bottom_wall": {"restitution": 0.9}},
+        {"lid": _SINE | {"shaken": "along", "roughness": 0.4}},
+    ),
+    "tabulated bed": _kernel([50, "open"], _BED, {"restitution_table": _TABLE}),
 }
 
 

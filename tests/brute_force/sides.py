@@ -13,6 +13,24 @@ ALIKE = {"velocity": 0.0, "amplitude": 0.0, "period": 1.0, "wave": "sawtooth", "
 ALIKE |= {"restitution": 1.0, "roughness": -1.0, "temperature": None}
 
 
+STROKES = {
+    "sawtooth": (lambda share: share, lambda share: 1.0),
+    "reversed_sawtooth": (
+        lambda share: np.minimum(share / 0.1, (1.0 - share) / 0.9),
+        lambda share: 10.0 if share < 0.1 else -1.0 / 0.9,
+    ),
+    "triangle": (
+        lambda share: 2.0 * np.minimum(share, 1.0 - share),
+        lambda share: 2.0 if share < 0.5 else -2.0,
+    ),
+    "sine": (
+        lambda share: 0.5 - 0.5 * np.cos(2.0 * math.pi * share),
+        lambda share: math.pi * math.sin(2.0 * math.pi * share),
+    ),
+}
+"""Height, in amplitudes, and slope, in amplitudes a period, at a share of the period."""
+
+
 class Side(NamedTuple):
     """One wall."""
 
@@ -25,30 +43,14 @@ class Side(NamedTuple):
 
     def shift(self, time):
         """How far a stroke has gone, of a wall that is shaken; of one time or an array of them."""
-        share = time / self.settings["period"] % 1.0
-        return (
-            self.settings["amplitude"]
-            * {
-                "sawtooth": lambda: share,
-                "reversed_sawtooth": lambda: np.minimum(share / 0.1, (1.0 - share) / 0.9),
-                "triangle": lambda: 2.0 * np.minimum(share, 1.0 - share),
-                "sine": lambda: 0.5 - 0.5 * np.cos(2.0 * math.pi * share),
-            }[self.settings["wave"]]()
-        )
+        height, _ = STROKES[self.settings["wave"]]
+        return self.settings["amplitude"] * height(time / self.settings["period"] % 1.0)
 
     def speed(self, time):
         """How fast it goes."""
-        share = time / self.settings["period"] % 1.0
-        return (
-            self.settings["amplitude"]
-            / self.settings["period"]
-            * {
-                "sawtooth": lambda: 1.0,
-                "reversed_sawtooth": lambda: 10.0 if share < 0.1 else -1.0 / 0.9,
-                "triangle": lambda: 2.0 if share < 0.5 else -2.0,
-                "sine": lambda: math.pi * math.sin(2.0 * math.pi * share),
-            }[self.settings["wave"]]()
-        )
+        _, slope = STROKES[self.settings["wave"]]
+        fastest = self.settings["amplitude"] / self.settings["period"]
+        return fastest * slope(time / self.settings["period"] % 1.0)
 
     @property
     def goes_in(self):

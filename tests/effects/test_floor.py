@@ -38,22 +38,13 @@ def from_settings(**chosen):
 
 
 def test_the_wave_is_chosen_by_name():
-    assert (
-        from_settings()
-        == from_settings(wave=None)
-        == from_settings(wave="sawtooth")
-        == (5.0, 2.0, 0.9, 0.5)
-    )
-    assert isinstance(from_settings(), Floor)
-    triangle, reverse, harmonic = (
-        from_settings(wave=wave) for wave in ("triangle", "reversed_sawtooth", "sine")
-    )
-    assert isinstance(triangle, TriangularFloor) and isinstance(reverse, TriangularFloor)
-    assert (triangle.rise, reverse.rise) == (0.5, 0.1)
-    assert isinstance(harmonic, SineFloor)
-    for floor in (triangle, reverse, harmonic):
-        chosen = floor.amplitude, floor.period, floor.restitution, floor.roughness
-        assert chosen == from_settings()
+    assert from_settings() == from_settings(wave=None) == (5.0, 2.0, 0.9, 0.5)
+    kinds = {"sawtooth": Floor, "sine": SineFloor}
+    rises = {"triangle": 0.5, "reversed_sawtooth": 0.1}
+    for wave, kind in (kinds | dict.fromkeys(rises, TriangularFloor)).items():
+        floor = from_settings(wave=wave)
+        assert type(floor) is kind and getattr(floor, "rise", None) == rises.get(wave)
+        assert (floor.amplitude, floor.period, *floor[-2:]) == from_settings()
 
 
 @pytest.mark.parametrize("wave", ["square", "Sine", 1, ["sine"]])

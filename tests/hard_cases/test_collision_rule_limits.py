@@ -21,6 +21,10 @@ SPHERES = settings("spheres", 64, [12, 12, 12])
 ROUNDING = 2.0**-53  # the largest relative error of one operation
 
 
+def pair(dimension, side):
+    return settings("gas" if dimension == 2 else "spheres", 2, [side] * dimension)
+
+
 def energy(shot, q):
     """Kinetic energy of all particles."""
     return 0.5 * (shot.velocity**2).sum() + 0.5 * q * (shot.spin**2).sum()
@@ -108,10 +112,7 @@ def test_angular_momentum(margins, dimension):
 
     Some ten roundings: of positions, velocities, and spins, each before and after.
     """
-    experiment = (
-        settings("gas", 2, [20, 20]) if dimension == 2 else settings("spheres", 2, [20] * 3)
-    )
-    scene, _ = begin(experiment, 1.0, 1.0)
+    scene, _ = begin(pair(dimension, 20), 1.0, 1.0)
     q, rng = theory.moment_of_inertia(dimension), np.random.default_rng(dimension)
     pairs_tried, worst = margins.size(500, 10_000), 0.0
     for _ in range(pairs_tried):
@@ -182,10 +183,7 @@ def test_parting(margins, dimension):
     """One contact a pair, for r from 0 and 1e-16 to 1, and normal velocities from 1e-12 to 1 of
     the tangential one: two free particles that have met never do again.
     """
-    experiment = (
-        settings("gas", 2, [14, 14]) if dimension == 2 else settings("spheres", 2, [14] * 3)
-    )
-    scene, _ = begin(experiment, 0.0, -1.0)
+    scene, _ = begin(pair(dimension, 14), 0.0, -1.0)
     rng, most, pairs_tried = np.random.default_rng(dimension), 0, margins.size(1000, 20_000)
     row = np.empty((1, len(columns(scene))))
     for _ in range(pairs_tried):

@@ -161,10 +161,6 @@ ALONE = {
 }
 
 
-def point(experiment, r, beta):
-    return run_point(build(experiment, r, beta), experiment, 1)
-
-
 @hard_case(
     "one, two, three particles",
     "a single particle in a periodic box has no energy, and its R would be 0/0; two may wait for "
@@ -175,8 +171,9 @@ def test_few_particles(margins):
     for alone in ALONE.values():
         for number in (1, 2, 3):
             for r, beta in ((0.9, 0.2), (0.5, -0.5), (1.0, 1.0)):
+                chosen = alone | {"particles": number}
                 try:
-                    found = point(alone | {"particles": number}, r, beta).variables
+                    found = run_point(build(chosen, r, beta), chosen, 1).variables
                 except InputError:
                     assert number == 1
                     refused += 1

@@ -8,6 +8,11 @@ from exact import segment
 from hard_cases.catalogue import hard_case
 
 TWO = [{"fraction": 0.5}, {"fraction": 0.5, "radius": 1.5, "mass": 6.0, "inertia": 0.25}]
+WALLED = {
+    "floor": {"restitution": 0.9, "roughness": 0.5},
+    "walls": {"restitution": 0.7, "roughness": -0.4},
+    "contact_time": {"duration": 0.05},
+}
 SCENES = {
     # experiment, r, beta, seed
     "gas": (settings("gas", 8, [12, 11]), 1.0, 1.0, 1),
@@ -15,19 +20,7 @@ SCENES = {
     "smooth gas": (settings("smooth", 8, [12, 11]), 1.0, -1.0, 3),
     "sheared gas": (settings("sheared", 8, [12, 11], shear={"velocity": 3.7}), 0.9, 0.2, 4),
     "bed": (settings("bed", 8, [9, "open"], floor={"amplitude": 2.0}), 0.9, 0.2, 5),
-    "bed between walls, contact time": (
-        settings(
-            "walled",
-            8,
-            [9, "open"],
-            floor={"restitution": 0.9, "roughness": 0.5},
-            walls={"restitution": 0.7, "roughness": -0.4},
-            contact_time={"duration": 0.05},
-        ),
-        0.8,
-        0.2,
-        6,
-    ),
+    "bed between walls, contact time": (settings("walled", 8, [9, "open"], **WALLED), 0.8, 0.2, 6),
     "mixture": (settings("gas", 8, [14, 13]) | {"species": TWO}, 1.0, 1.0, 9),
     "viscoelastic gas": (settings("viscoelastic", 8, [12, 11]), 0.9, 1.0, 8),
     "spheres": (settings("spheres", 8, [6, 6.5, 7]), 1.0, 1.0, 7),

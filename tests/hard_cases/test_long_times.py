@@ -7,9 +7,7 @@ from hard_cases.catalogue import hard_case
 from roughgas.data.checkpoint import arrays_of
 from roughgas.kernel.state import BASE, COLLISIONS, NOW
 
-LATE = (
-    1_000_000_000  # T: a whole number of strokes, and of the times in which the images come round
-)
+LATE = 1_000_000_000  # T: a whole number of strokes, and of times in which images come round
 SCENES = {
     "gas": settings("gas"),
     "gas in cells": settings("gas", 1000, [120, 120]),
@@ -79,9 +77,6 @@ def test_a_billion_collisions_wear_nothing_out(margins):
     time = state.clock[BASE] + state.clock[NOW]
     mean_free = 0.5 * len(state.changes) * time / state.counts[COLLISIONS]
     drift = np.abs(energy / energy[0] - 1.0).max()
-    print(
-        f"{state.counts[COLLISIONS]} collisions in {time:.4g} T, mean free time {mean_free:.3g} T"
-    )
     tried = {"tried": state.counts[COLLISIONS], "unit": "collisions"}
     resolution = np.spacing(np.abs(state.trajectory[:, -1]).max()) / mean_free
     margins.at_most("spacing of times, in mean free times", resolution, 1e-14, **tried)

@@ -121,30 +121,21 @@ def test_autocorrelation_time_is_the_windowed_sum_with_the_correction_for_a_shor
 
 
 @pytest.mark.parametrize(
-    ("value", "stderr", "text"),
-    [
-        (0.35649, 0.00301, "0.3565(30)"),
-        (0.35649, 0.000999, "0.3565(10)"),
-        (0.35649, 0.0996, "0.36(10)"),
-        (-0.002, 0.0131, "-0.002(13)"),
-        (17.03, 1.24, "17.0(1.2)"),
-        (1234.5, 87.0, "1234(87)"),
-        (1234.5, 1870.0, "1200(1900)"),
-        (3.3489e-11, 3.2e-12, "3.35(32)e-11"),
-        (2.5e7, 1.25e5, "2.500(12)e+07"),
-        (0.0, 0.01, "0.000(10)"),
-        (0.123456789, math.nan, "0.123457"),
-        (0.5, 0.0, "0.5"),
-        (math.nan, 0.1, "nan"),
-    ],
-)
-def test_the_compact_form_has_the_error_in_units_of_the_last_digits(value, stderr, text):
-    assert f"{Estimate(value, stderr)}" == text
-
-
-@pytest.mark.parametrize(
     ("value", "stderr", "how", "text"),
     [
+        (0.35649, 0.00301, "", "0.3565(30)"),
+        (0.35649, 0.000999, "", "0.3565(10)"),
+        (0.35649, 0.0996, "", "0.36(10)"),
+        (-0.002, 0.0131, "", "-0.002(13)"),
+        (17.03, 1.24, "", "17.0(1.2)"),
+        (1234.5, 87.0, "", "1234(87)"),
+        (1234.5, 1870.0, "", "1200(1900)"),
+        (3.3489e-11, 3.2e-12, "", "3.35(32)e-11"),
+        (2.5e7, 1.25e5, "", "2.500(12)e+07"),
+        (0.0, 0.01, "", "0.000(10)"),
+        (0.123456789, math.nan, "", "0.123457"),
+        (0.5, 0.0, "", "0.5"),
+        (math.nan, 0.1, "", "nan"),
         (0.35649, 0.00301, "±", "0.3565 ± 0.0030"),
         (0.35649, 0.00301, "+±", "+0.3565 ± 0.0030"),
         (68.2, 0.0996, "±", "68.20 ± 0.10"),
@@ -154,7 +145,8 @@ def test_the_compact_form_has_the_error_in_units_of_the_last_digits(value, stder
         (0.5, math.nan, "+.4f", "+0.5000 (error unknown)"),
     ],
 )
-def test_the_long_form_applies_one_format_to_both(value, stderr, how, text):
+def test_a_value_and_its_error_in_one_text(value, stderr, how, text):
+    """The compact form has the error in units of the last digits, the long one a format of both."""
     assert f"{Estimate(value, stderr):{how}}" == text
 
 
