@@ -92,8 +92,6 @@ class BruteForce(Contacts):
                 self.time = self._stroke()[1]
                 self.stroke += 1
 
-    # ------------------------------------------------------------------ what comes next
-
     def _longest_look(self):
         """No pair moves by more than half a box within it, and the floor's stroke does not end."""
         periods = [length for length in self.world.box if length is not None]
@@ -187,8 +185,6 @@ class BruteForce(Contacts):
             return height + v * wait - g * wait**2 / 2.0 - self.surface(wait)[0]
 
         return first_touch(gap, limit)
-
-    # ------------------------------------------------------------------ what happens
 
     def _move(self, wait):
         self.x += self.v * wait

@@ -87,8 +87,6 @@ class Exact:
         self.move(self._wait(event))
         self._resolve(event)
 
-    # ------------------------------------------------------------------ what comes next
-
     def _longest_look(self):
         """No pair moves by more than half a box within it, and the floor's stroke does not end."""
         look = self._stroke_end() - self.time if self.floor else NEVER
@@ -176,8 +174,6 @@ class Exact:
         if discriminant < 0:
             return NEVER
         return max(ZERO, (-b - discriminant.sqrt()) / vv)
-
-    # ------------------------------------------------------------------ what happens
 
     def move(self, wait):
         """Everything in free flight."""

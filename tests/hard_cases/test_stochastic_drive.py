@@ -17,12 +17,10 @@ INTERVALS = 0.125, 0.5, 2.0, 4.0  # in T; in the finest a particle loses a tenth
 NUMBER, POWER, R, BETA = 160, 1.0, 0.8, 0.0
 
 
-def measured(interval, share, time, at_once=False):
+def measured(interval, share, time):
     """(mean of R, its standard error) of a gas at packing 0.2, sampled once an interval."""
     drive = {"power": POWER, "spin_share": share, "interval": interval}
     scene, state = begin(settings("heated", NUMBER, [50, 50], thermostat=drive), R, BETA, 1)
-    if at_once:
-        state.moments.thermostat[:] = interval
     run(state, scene, 1, interval=100.0)
     found = ratio(energies(run(state, scene, int(time / interval), interval=interval), NUMBER, 0.5))
     return found.mean(), blocking_stderr(found)
