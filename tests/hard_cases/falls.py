@@ -7,30 +7,29 @@ import math
 
 import mpmath
 
+from hard_cases.waves import Fall
 from roughgas.effects.floor import Floor
 
 
-class Exact:
-    """The same fall in 50 digits: `gap` above the stroke's surface, continued for ever, at t."""
+class Exact(Fall):
+    """The same fall in many digits: `gap` above the stroke's surface, continued for ever, at t."""
 
-    def __init__(self, floor, gravity, height, speed, phase):
-        numbers = floor.amplitude, floor.period, gravity, height, speed, phase
-        self.A, self.P, self.g, self.y, self.v, self.phase = map(mpmath.mpf, map(float, numbers))
-        self.V = self.A / self.P
+    @property
+    def fastest(self):
+        return self.A / self.P
 
     def gap(self, t, stroke):
-        fallen = self.y + self.v * t - self.g * t**2 / 2
-        return fallen - self.V * (self.phase + t - stroke * self.P)
+        return self.height(t) - self.fastest * (self.phase + t - stroke * self.P)
 
     def strokes(self, t):
         """Those up to t in which the floor may be met, with the times at which they begin and end:
         the particle is met by none that lasts while it is above where all strokes end."""
-        first, last = (int(mpmath.floor((self.phase + x) / self.P)) for x in (0, t))
-        square = max(self.v**2 + 2 * self.g * (self.y - self.A), mpmath.mpf(0))
-        up, down = ((self.v + s * mpmath.sqrt(square)) / self.g for s in (-1, 1))
-        rises, falls = (int(mpmath.floor((self.phase + x) / self.P)) for x in (up, down))
-        before, after = range(first, min(last, rises) + 1), range(max(first, falls - 1), last + 1)
-        for stroke in {*before, *after}:
+        first = int(mpmath.floor(self.phase / self.P))
+        found = {first}
+        for window in self._windows(t):
+            one, last = (int(mpmath.floor((self.phase + x) / self.P)) for x in window)
+            found |= set(range(max(first, one - 1), last + 1))
+        for stroke in found:
             begin, end = stroke * self.P - self.phase, (stroke + 1) * self.P - self.phase
             yield stroke, max(mpmath.mpf(0), begin), min(end, t)
 
@@ -38,15 +37,11 @@ class Exact:
         """How far below a surface the lowest point has been by t: a gap is least at an end."""
         return max(-self.gap(x, k) for k, *ends in self.strokes(t) for x in ends)
 
-    def lengths(self, t):
-        """The sum of the lengths that enter the gap: what roundings are relative to."""
-        return self.y + self.A + (abs(self.v) + self.g * t + self.V) * (self.phase + t)
-
     def miss(self, t):
         """Distance from the surface at t, or from that of another stroke and from when it is."""
         k = int(mpmath.floor((self.phase + t) / self.P))
         edges = {k - 1: k * self.P - self.phase, k: t, k + 1: (k + 1) * self.P - self.phase}
-        fast = abs(self.v) + self.g * t + self.V
+        fast = abs(self.v) + self.g * t + self.fastest
         return min(abs(self.gap(t, stroke)) + fast * abs(t - x) for stroke, x in edges.items())
 
 

@@ -56,7 +56,7 @@ def test_take_off_at_hardly_any_speed(margins):
             start = nearly_at_rest(rng)
             exact = Exact(*start)
             t = mpmath.mpf(time_to_floor(*start))
-            speed = exact.v - exact.V
+            speed = exact.v - exact.fastest
             # one that is below the floor by rounding is taken to be on it
             beside = max(beside, abs(exact.gap(t, 0) - min(0, exact.gap(0, 0))) / exact.lengths(t))
             if speed > 0:
