@@ -1,4 +1,7 @@
 # What the rules share. Bad input ends the workflow with one line, before anything is run.
+import gc
+
+gc.set_threshold(100_000)  # a fifth of Snakemake's own time goes into looking for what nobody uses
 import difflib
 import fcntl
 import functools

@@ -1,11 +1,13 @@
-# How Snakemake starts jobs, and what a person reads of a run, a line for each job that starts;
-# `--verbose` has all of it.
+# How Snakemake starts jobs, and what a person reads of a run: how far it is, and what is ready to be
+# looked at. `--verbose` has all that Snakemake says.
 import atexit
 import re
 import sys
 from pathlib import Path
 
 from snakemake_interface_logger_plugins.common import LogEvent
+
+from roughgas.simulation.progress import Bar
 
 NOISE = (
     *("Select jobs", "Execute ", "Touching ", "RuleException:\nCalledProcessError"),
@@ -14,27 +16,70 @@ NOISE = (
 """How messages begin that the lines of jobs say better."""
 REFUSED = re.compile(r"Traceback .*\n\w+: \[Errno \d+\] ([^\n]*): '([^\n]*)'", re.DOTALL)
 """A traceback that ends in a place that cannot be read or written: what is wrong, and where."""
-STEPS = {"done": 0, "total": 0}
+POINT_MADE = re.compile(r"/seed[^/]+\.nc$")
+
+
+class Watch:
+    """How far a run is, counted in points, or in jobs where it makes none: a bar in a terminal, a
+    line a minute in a pipe."""
+
+    bar = None
+
+    def begin(self, jobs):
+        """`jobs` has the output of each job that is to be run."""
+        self.running, self.done = {}, 0
+        points = sum(map(self.points, jobs))
+        self.points_alone = points > 0
+        self.bar = Bar(SCALE, points or len(jobs), "points" if points else "steps")
+
+    @staticmethod
+    def points(files):
+        return sum(POINT_MADE.search(str(file)) is not None for file in files)
+
+    def start(self, record):
+        at = record.wildcards.get("experiment", record.rule_name)
+        size = self.points(record.output) if self.points_alone else 1
+        seen = [file for file in record.output if file.endswith((".png", ".md", ".html", ".csv"))]
+        self.running[record.jobid] = at, size, seen
+
+    def finish(self, jobid):
+        _, size, seen = self.running.pop(jobid, ("", 0, ()))
+        self.done += size
+        for file in seen:
+            self.bar.say(f"ready: {file}")
+        at = ", ".join(sorted({at for at, size, _ in self.running.values() if size}))
+        self.bar.reach(self.done, at)
+
+    def end(self):
+        if self.bar:
+            self.bar.__exit__()
+
+
+watch = Watch()
 
 
 def is_of_use(record):
-    """Turn what starts a job into a line; leave out what others say, and the command of a failed job,
-    which repeats all settings of its experiment in some fifty lines."""
+    """Whether a person is told. How jobs go is shown in place of a paragraph for each; the command of
+    a failed job, which repeats all settings of its experiment in some fifty lines, is left out."""
     shown, event = workflow.output_settings, getattr(record, "event", None)
     if shown.verbose or shown.dryrun:
         return True
     if event == LogEvent.RUN_INFO:
-        STEPS.update(done=0, total=record.stats["total"])
+        watch.begin([job.output for job in workflow.dag.needrun_jobs()])
     elif event == LogEvent.PROGRESS:
-        STEPS.update(done=record.done)
+        if record.done == record.total:
+            watch.end()
         return record.done == record.total
     elif event == LogEvent.JOB_INFO:
-        told = f"{STEPS['done']} of {STEPS['total']} done. {record.rule_msg or record.rule_name}"
-        record.event, record.msg, record.args = None, told, ()
+        watch.start(record)
+    elif event == LogEvent.JOB_FINISHED:
+        watch.finish(record.job_id)
     elif event == LogEvent.JOB_ERROR:
+        watch.end()
         record.shellcmd = None
         return not any(map(was_stopped, record.log))
-    return event != LogEvent.JOB_FINISHED and not record.getMessage().startswith(NOISE)
+    hidden = (LogEvent.RUN_INFO, LogEvent.JOB_INFO, LogEvent.JOB_FINISHED)
+    return event not in hidden and not record.getMessage().startswith(NOISE)
 
 
 def was_stopped(log):

@@ -82,6 +82,7 @@ rule figure:
         ),
     log:
         "logs/figures/{folder}{figure}.log",
+    priority: FIRST
     params:
         code=code_of_figure,
         caption=caption_of_figure,

@@ -48,6 +48,24 @@ def settings_of_kernels(wildcards, output):
     return roughgas.config.as_text(roughgas.config.kernel_settings(found))
 
 
+# The figures of the paper appear one by one, the one that takes least first.
+IN_TURN = [
+    one for name in reversed(catalogue.figures_of("paper")) for one in catalogue.FIGURES[name].shows
+]
+TURN = 10**9  # more than any point takes
+
+
+def turn(wildcards):
+    """How urgent the experiment is: beyond the paper the length of a point alone decides."""
+    experiment, _, _ = wildcards.experiment.partition("/")
+    return (len(IN_TURN) - IN_TURN.index(experiment)) * TURN if experiment in IN_TURN else 0
+
+
+def urgency_of_kernel(wildcards):
+    """Before its points, and after those that are more urgent."""
+    return turn(wildcards) + TURN
+
+
 rule compile_kernel:
     # Before the fan-out, and few at a time (see the profile); one job for all variants, since most of
     # them run the same machine code. Its code is part of that of points: what compiles anew runs anew,
@@ -60,7 +78,7 @@ rule compile_kernel:
         "logs/{scale}/{experiment}/r{r}/compiled.tsv"
     wildcard_constraints:
         experiment=EXPERIMENT,
-    priority: FIRST
+    priority: urgency_of_kernel
     resources:
         compiling=1,
     params:
@@ -100,12 +118,13 @@ def points_of_job(wildcards, output):
 
 
 def urgency(wildcards):
-    """How long a point takes: the longest start first, so that none is left alone at the end. A job
-    on several betas counts as if they were 0."""
+    """How long a point takes: of an experiment the longest start first, so that none is left alone at
+    the end. A job on several betas counts as if they were 0."""
     from roughgas.simulation.point import effort
 
     place = place_of(wildcards)
-    return effort(settings(wildcards.scale, wildcards.experiment), place.r, place.beta)
+    length = effort(settings(wildcards.scale, wildcards.experiment), place.r, place.beta)
+    return turn(wildcards) + min(length, TURN - 1)
 
 
 def jobs_of_points():

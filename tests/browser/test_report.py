@@ -43,7 +43,7 @@ def caption(report, product):
 def test_it_opens_on_what_it_is_about(report):
     assert "scale tiny" in report.wait(lambda: report.find("#app .prose"))[0].text
     headings = [one.text for one in report.find("nav li a") if one.text]
-    assert headings == ["Workflow", "Statistics", "About", "1 The paper", "7 This run"]
+    assert headings == ["Workflow", "Statistics", "About", "1 The paper", "5 This run"]
 
 
 def test_every_figure_is_shown_with_the_parameters_of_this_run(report):

@@ -18,7 +18,9 @@ from roughgas.cli import main
 ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "command_line.md"
 BLOCK = re.compile(r"^```console\n(.*?)^```$", re.DOTALL | re.MULTILINE)
-PROGRESS = re.compile(r"^.* s so far\n", re.MULTILINE)  # which a slow machine makes
+PROGRESS = re.compile(
+    r"^.* s so far(?:, about \d+ s left)?\n", re.MULTILINE
+)  # which a slow machine makes
 WIDEST = 140
 NUMBER = r"[\d.]+(?:e\+\d+)?"
 MACHINE = [(rf"{NUMBER} s of CPU time, [\d,]+ a second", "some time")]

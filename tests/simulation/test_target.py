@@ -199,6 +199,6 @@ def test_a_pipe_hears_now_and_then_of_what_takes_long(monkeypatch):
         for done in range(1, 5):
             bar.reach(done, "r = 0.9", total=9)
     assert stream.getvalue().splitlines() == [
-        "task: 2 of 9 points (r = 0.9), 11 s so far",
-        "task: 4 of 9 points (r = 0.9), 72 s so far",
+        "task: 22 %, 2 of 9 points (r = 0.9), 11 s so far, about 38 s left",
+        "task: 44 %, 4 of 9 points (r = 0.9), 72 s so far, about 90 s left",
     ]

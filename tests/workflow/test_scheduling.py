@@ -1,6 +1,7 @@
 """Snakemake's timers of jobs per second, which a long run must not pile up."""
 
 import re
+import shlex
 import subprocess
 import sys
 
@@ -44,11 +45,22 @@ def test_timers_pile_up_in_the_installed_snakemake(tmp_path):
     assert threads_at_the_end(tmp_path, "pass") > JOBS / 2
 
 
-def test_a_job_that_starts_is_a_line(project, tmp_path):
+def test_a_run_tells_what_is_ready(project, tmp_path):
     ran = project.copy_to(tmp_path / "project")
-    told = ("-c1", "--config", "scale=tiny", "--", "results/tiny/config.yaml")
+    told = ("-c1", "--config", "scale=tiny", "--", "results/tiny/config.html")
     lines = ran.succeed(*told).splitlines()
-    assert "0 of 1 done. write results/tiny/config.yaml" in lines and len(lines) < 20
-    assert "1 of 1 steps (100%) done" in lines
+    assert "ready: results/tiny/config.html" in lines and len(lines) < 20
+    assert not any("localrule" in line or "jobid" in line for line in lines)
     verbose = ran.succeed("-F", "--verbose", *told)
-    assert "Finished jobid: 0" in verbose and "0 of 1 done" not in verbose
+    assert "Finished jobid: 0" in verbose and "ready: " not in verbose
+
+
+def test_a_run_counts_its_points(project, tmp_path):
+    """In a terminal, too, since a bar is drawn there."""
+    ran = project.copy_to(tmp_path / "project")
+    point = "results/tiny/cooling/r0.9/beta0/seed7.nc"
+    command = [sys.executable, "-m", "snakemake", "-j1", "--config", "scale=tiny", "--", point]
+    typed = f"stty cols 100 rows 40; {shlex.join(command)}"
+    terminal = ["script", "--quiet", "--return", "--command", typed, "/dev/null"]
+    done = subprocess.run(terminal, cwd=ran.folder, capture_output=True, text=True, check=True)
+    assert re.search(r"tiny: 100%\|.*1 of 1 points", done.stdout)

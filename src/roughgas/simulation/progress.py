@@ -61,6 +61,13 @@ class Bar:
         if self._bar is not None:
             self._bar.close()
 
+    def say(self, text: str) -> None:
+        """Print a line above the bar."""
+        if self._bar is not None:
+            self._bar.write(text, file=self._stream)
+        else:
+            self._print(text)
+
     def reach(self, done: float, note: str = "", total: float | None = None) -> None:
         """Show how much is done; `total` where it has become known."""
         self._done, self._total = done, self._total if total is None else total
@@ -71,8 +78,17 @@ class Bar:
         elif (now := time.monotonic()) > self._next:
             self._next = now + SILENCE
             told = f"{done:g} of {self._total:g}{self._unit}{note and f' ({note})'}"
-            with suppress(OSError, ValueError):  # nobody reads, or the stream is closed
-                print(f"{self._name}: {told}, {now - self._begun:.0f} s so far", file=self._stream)
+            elapsed = now - self._begun
+            if done > 0:
+                told = f"{100 * done / self._total:.0f} %, {told}"
+                left = f", about {elapsed * (self._total - done) / done:.0f} s left"
+            else:
+                left = ""
+            self._print(f"{self._name}: {told}, {elapsed:.0f} s so far{left}")
+
+    def _print(self, text: str) -> None:
+        with suppress(OSError, ValueError):  # nobody reads, or the stream is closed
+            print(text, file=self._stream, flush=True)
 
 
 class Progress(Bar):
