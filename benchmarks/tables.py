@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 
-from roughgas.base.formatting import markdown
+from roughgas.base import markdown
 
 
 def table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:

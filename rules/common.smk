@@ -21,7 +21,7 @@ try:
     from roughgas.config import schema
     from roughgas.base.files import PACKAGE as PACKAGE_FOLDER, code_in, code_of as hash_of_code
     from roughgas.base import InputError, not_one_of, shown
-    from roughgas.base.formatting import in_rst
+    from roughgas.base import in_rst
     from roughgas.config.reading import read_yaml
     from roughgas.config.schema import keys
     from roughgas.show import catalogue

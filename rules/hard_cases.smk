@@ -51,7 +51,7 @@ rule family:
         "logs/{folder}hard_cases/{family}.tsv"
     priority: urgency_of_family
     params:
-        code=code_of("simulation.point", "data", "data.checkpoint", alone=["cli.run"]),
+        code=code_of("simulation.point", "data", alone=["cli.run"]),
         size=size_of_cases,
     message:
         "hard cases: {wildcards.family}"

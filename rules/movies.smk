@@ -37,7 +37,7 @@ rule movie:
     benchmark:
         "logs/figures/{folder}movies/{movie}.tsv"
     params:
-        code=code_of("show.movies.drawing", alone=["cli.products"], settings=settings_of_movie),
+        code=code_of("show.movies", alone=["cli.products"], settings=settings_of_movie),
         settings=settings_of_movie,
         told=told_of_movie,
     message:

@@ -31,10 +31,6 @@ def data_of_talk(wildcards):
     return reduced(wildcards.scale, entry_of(wildcards).shows)
 
 
-def code_of_figure(wildcards):
-    return hash_of_code(f"show.figures.{wildcards.figure}", "show.style")
-
-
 def experiments_of_product(wildcards):
     part = PARTS[wildcards.product]
     return SWEPT_IN_STUDIES if part == "beyond" else catalogue.shown_in(part)
@@ -84,7 +80,7 @@ rule figure:
         "logs/figures/{folder}{figure}.log",
     priority: FIRST
     params:
-        code=code_of_figure,
+        code=code_of("show.figures.paper", "show.style"),
         caption=caption_of_figure,
         experiments=experiments_of_figure,
     message:
@@ -119,7 +115,7 @@ rule picture_for_talks:
     log:
         "logs/{scale}/pictures/{figure}.log",
     params:
-        code=code_of_figure,
+        code=code_of("show.figures.paper", "show.style"),
     message:
         "draw {output}"
     shell:
@@ -142,7 +138,7 @@ rule table:
     wildcard_constraints:
         product="R|extensions",
     params:
-        code=code_of("results.table"),
+        code=code_of("results.products"),
     message:
         "write {output}"
     shell:
@@ -178,7 +174,7 @@ rule run_times:
     wildcard_constraints:
         product="run_times|run_times_extensions",
     params:
-        code=code_of("results.table"),
+        code=code_of("results.products"),
     message:
         "write {output}"
     shell:

@@ -1,6 +1,6 @@
 # What `snakemake --report` shows, and under which headings: the catalogue of figures says so. Captions
 # are in captions/; those of figures add the parameters of this run.
-from roughgas.results.crate import project_files
+from roughgas.results.products import project_files
 
 OF_DOCUMENTS = ("base.html", "document.html", "document.css")
 OF_FRONT = ("base.html", "front.html", "front.css")
@@ -169,7 +169,7 @@ rule crate:
     log:
         f"logs/{SCALE}/crate.log",
     params:
-        code=code_of("results.crate"),
+        code=code_of("results.products"),
         configuration=roughgas.config.as_text(config),
     message:
         "pack the run into {output}"

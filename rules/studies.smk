@@ -1,7 +1,7 @@
 # Studies: folders that hold a question beyond the paper each, found by being there. What no sweep of an
 # experiment answers has tasks of its own, independent jobs, and a dataset that combines them.
 from roughgas.config import study_folders
-from roughgas.show.studies import captions
+from roughgas.show.pages import captions
 
 STUDIES = config[roughgas.config.FOLDERS]
 BROKEN = {
@@ -59,7 +59,7 @@ def code_of_study_figure(wildcards):
 
 
 def code_of_study_claims(wildcards):
-    modules = "judging", "claims.report", "claims.statements"
+    modules = "judging", "claims"
     return code_beside(study_of(wildcards), ["*.py", "claims.yaml"], *modules)
 
 
@@ -321,7 +321,7 @@ rule study_table:
     wildcard_constraints:
         study=one_of(STUDIES),
     params:
-        code=code_of("results.table"),
+        code=code_of("results.products"),
     message:
         "write {output.csv}"
     shell:
@@ -369,7 +369,7 @@ rule study_page:
     wildcard_constraints:
         study=one_of(STUDIES),
     params:
-        code=code_of("show.studies"),
+        code=code_of("show.pages"),
         folder=folder_of_study,
         title=title_of_study,
         options=options_of_study_page,

@@ -3,8 +3,7 @@
 from pathlib import Path
 
 from roughgas.base.files import module_of
-from roughgas.claims import PAPER
-from roughgas.claims.statements import read_study
+from roughgas.claims import PAPER, read_study
 from roughgas.tasks import variables
 
 ROOT = Path(__file__).parent.parent

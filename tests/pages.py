@@ -12,8 +12,8 @@ from operator import attrgetter
 from pathlib import Path
 
 from roughgas import accuracy, effects, observables
-from roughgas.base.formatting import markdown
-from roughgas.claims import PAPER, paper, verdicts
+from roughgas.base import markdown
+from roughgas.claims import PAPER, evidence, paper
 from roughgas.config.schema import SAID, _legal, _schema
 from roughgas.data.reduced import REDUCED
 from roughgas.data.trajectory import TRAJECTORY
@@ -25,7 +25,7 @@ from roughgas.tasks import variables
 DOCS = Path(__file__).parents[1] / "docs"
 BEGIN, END = "<!-- {}: made by tests/pages.py -->\n", "<!-- until here -->\n"
 REMOVED = ("swept",)  # a key of experiments that only roughgas writes
-DECIDES = dict.fromkeys(("AGREE", "LIMIT", "TENDENCY", "FEW", "NEAR", "FAR"), verdicts)
+DECIDES = dict.fromkeys(("AGREE", "LIMIT", "TENDENCY", "FEW", "NEAR", "FAR"), evidence)
 DECIDES |= {"SIGNIFICANT": errors, "INTERMEDIATE": paper, "CONSIDERABLY": paper, "MOST": paper}
 """Tolerances of verdicts, and the module of each."""
 

@@ -12,7 +12,7 @@ from pathlib import Path
 import snakemakes
 
 from roughgas.config.reading import read_yaml
-from roughgas.results.crate import PROJECT
+from roughgas.results.products import PROJECT
 
 ROOT = Path(__file__).parent.parent
 COPIED = (*PROJECT, "rules", "profiles", "src", "studies")

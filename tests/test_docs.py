@@ -18,7 +18,7 @@ import roughgas
 from roughgas import config, theory
 from roughgas.cli import parser_of
 from roughgas.config.reading import parse_yaml, read_yaml
-from roughgas.results.crate import project_files
+from roughgas.results.products import project_files
 
 ROOT = Path(__file__).parent.parent
 EXAMPLE = re.compile(r"^```python\n(.*?)^```$(?:\n+```text\n(.*?)^```$)?", re.M | re.S)

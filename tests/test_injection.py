@@ -13,8 +13,7 @@ from show.page.conftest import write
 from tests.entry import main
 from tests.files import point
 
-from roughgas.base import InputError
-from roughgas.base.formatting import in_csv, markdown
+from roughgas.base import InputError, in_csv, markdown
 from roughgas.config import schema
 from roughgas.config.provenance import provenance
 from roughgas.data.point import write_point

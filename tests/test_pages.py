@@ -16,7 +16,7 @@ from tests.houses import statements
 import roughgas
 from roughgas import config, theory
 from roughgas.base import InputError
-from roughgas.claims import paper, verdicts
+from roughgas.claims import evidence, paper
 from roughgas.data.point import read_point
 from roughgas.effects import KINDS
 from roughgas.scene import build
@@ -41,7 +41,7 @@ def test_each_statement_says_its_criterion_and_when_it_was_fixed(statement):
 
 def test_no_tolerance_is_left_out_and_each_says_when_it_was_fixed():
     """Each number that a judge is in these files is in the page's table, or decides nothing."""
-    for module in (verdicts, paper, paper):
+    for module in (evidence, paper, paper):
         said = pages.said(module)
         numbers = {name for name in said if isinstance(getattr(module, name), float)}
         left = {name for name in numbers if pages.DECIDES.get(name) is not module}

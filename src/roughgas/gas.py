@@ -14,24 +14,8 @@ same bits.
 """
 
 from roughgas.base import CollapseError, InputError
-from roughgas.data.checkpoint import UnusableCheckpoint
 from roughgas.effects import inertia
 from roughgas.scene import DIAMETER, Scene, build, shear_rate
 from roughgas.simulation.energies import Columns, Energies, ratio, restored
 from roughgas.simulation.gas import Gas
-
-__all__ = [
-    "DIAMETER",
-    "CollapseError",
-    "Columns",
-    "Energies",
-    "Gas",
-    "InputError",
-    "Scene",
-    "UnusableCheckpoint",
-    "build",
-    "inertia",
-    "ratio",
-    "restored",
-    "shear_rate",
-]
+from roughgas.simulation.restart import UnusableCheckpoint

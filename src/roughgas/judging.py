@@ -6,22 +6,6 @@ compatible with zero; `grade`, `worse` and `together` combine verdicts.
 """
 
 from roughgas.claims.evidence import (
-    NotTestedError,
-    Sample,
-    deviation,
-    deviation_at_shares,
-    difference,
-    of_ratio,
-    over_seeds,
-    sample,
-    spin_shares,
-)
-from roughgas.claims.paper import (
-    averaged,
-    follows_its_share,
-    follows_over_collisions,
-)
-from roughgas.claims.verdicts import (
     AGREE,
     FAILS,
     FAR,
@@ -31,64 +15,26 @@ from roughgas.claims.verdicts import (
     NEAR,
     QUALIFIED,
     Finding,
+    NotTestedError,
+    Sample,
     agreement,
     agreement_in_proportion,
+    deviation,
+    deviation_at_shares,
+    difference,
     grade,
+    of_ratio,
+    over_seeds,
     points,
+    sample,
+    spin_shares,
     tendency,
     text,
     together,
     worse,
 )
-from roughgas.data.reduced import (
-    third_axis,
-)
-from roughgas.statistics.errors import (
-    SIGNIFICANT,
-    Estimate,
-    sum_error,
-)
-from roughgas.statistics.fits import (
-    power_law,
-)
-from roughgas.theory.prediction import (
-    species_at,
-)
-
-__all__ = [
-    "AGREE",
-    "FAILS",
-    "FAR",
-    "FEW",
-    "HOLDS",
-    "LIMIT",
-    "NEAR",
-    "QUALIFIED",
-    "SIGNIFICANT",
-    "Estimate",
-    "Finding",
-    "NotTestedError",
-    "Sample",
-    "agreement",
-    "agreement_in_proportion",
-    "averaged",
-    "deviation",
-    "deviation_at_shares",
-    "difference",
-    "follows_its_share",
-    "follows_over_collisions",
-    "grade",
-    "of_ratio",
-    "over_seeds",
-    "points",
-    "power_law",
-    "sample",
-    "species_at",
-    "spin_shares",
-    "sum_error",
-    "tendency",
-    "text",
-    "third_axis",
-    "together",
-    "worse",
-]
+from roughgas.claims.paper import averaged, follows_its_share, follows_over_collisions
+from roughgas.data.reduced import third_axis
+from roughgas.statistics.errors import SIGNIFICANT, Estimate, sum_error
+from roughgas.statistics.fits import power_law
+from roughgas.theory.prediction import species_at

@@ -36,8 +36,7 @@ def study_claims(
     experiments: Sequence[str] = (),
 ) -> None:
     """Judge the statements in claims.yaml of the study in a folder, which has these experiments."""
-    from roughgas.claims.report import judge
-    from roughgas.claims.statements import read_study
+    from roughgas.claims import judge, read_study
 
     judge(inputs, json, markdown, read_study(folder, title, experiments))
 
@@ -70,14 +69,14 @@ STEPS: dict[str, str | Callable[..., None]] = {
     "figure": "show.gallery:draw",
     "front": "show.pages:write_front",
     "living": "show.living:write_living",
-    "run_times": "results.table:write_times",
+    "run_times": "results.products:write_times",
     "study_claims": study_claims,
     "study_data": "tasks.running:combine",
     "study_figure": "show.gallery:draw_of_study",
     "study_movie": "show.gallery:movie_of_study",
-    "study_page": "show.studies:write_page",
+    "study_page": "show.pages:write_study",
     "study_task": "tasks.running:run_task",
-    "table": "results.table:write_table",
+    "table": "results.products:write_table",
 }
 
 

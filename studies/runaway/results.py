@@ -1,7 +1,7 @@
 """How long a cooling gas with friction keeps the R of the rate equations, and who ends that.
 
 Sooner or later a particle spins so fast that sliding contacts cannot stop it before the gas around
-it has cooled (roughgas.theory.runaway), and in the end holds nearly all energy: R goes to 1. The
+it has cooled (roughgas.theory.friction), and in the end holds nearly all energy: R goes to 1. The
 more particles, the sooner. Runs end at R > ESCAPED, or at a limit, which bounds the time.
 """
 

@@ -8,8 +8,7 @@ import sys
 import numpy as np
 import pytest
 
-from roughgas.base import InputError, Interval, files, not_one_of
-from roughgas.base.formatting import as_json, columns, markdown
+from roughgas.base import InputError, Interval, as_json, columns, files, markdown, not_one_of
 
 
 @pytest.mark.parametrize(

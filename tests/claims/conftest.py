@@ -1,8 +1,8 @@
 import pytest
 from tests.houses import statements
 
+from roughgas.claims import examine
 from roughgas.claims.evidence import beside_theory
-from roughgas.claims.statements import examine
 
 
 @pytest.fixture(scope="session")

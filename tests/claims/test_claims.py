@@ -9,10 +9,8 @@ from synthetic import averaged, couette, mixed, reduced, viscoelastic
 from tests.claims.gases import KICKS, boundaries, constant, swept
 from tests.houses import part, statements
 
-from roughgas.claims import evidence
-from roughgas.claims.evidence import Sample, beside_theory
-from roughgas.claims.statements import examine
-from roughgas.claims.verdicts import FAILS, HOLDS, NOT_TESTED, QUALIFIED
+from roughgas.claims import evidence, examine
+from roughgas.claims.evidence import FAILS, HOLDS, NOT_TESTED, QUALIFIED, Sample, beside_theory
 from roughgas.data.point import Point, write_point
 from roughgas.results.reduce import reduce_points
 

@@ -18,7 +18,7 @@ from tests.claims.gases import (
 from tests.synthetic import reduced
 
 from roughgas import theory
-from roughgas.claims.verdicts import FAILS, HOLDS, NOT_TESTED, QUALIFIED
+from roughgas.claims.evidence import FAILS, HOLDS, NOT_TESTED, QUALIFIED
 
 VERDICTS = [(0.0, HOLDS), (0.03, QUALIFIED), (0.1, FAILS)]
 

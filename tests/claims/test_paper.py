@@ -5,7 +5,7 @@ import pytest
 from tests.claims.gases import ROUGH, bump, constant, cooling, cooling_as, lun, sheared, walls
 from tests.synthetic import BETA, reduced
 
-from roughgas.claims.verdicts import FAILS, HOLDS, NOT_TESTED, QUALIFIED
+from roughgas.claims.evidence import FAILS, HOLDS, NOT_TESTED, QUALIFIED
 
 CASES = {
     "vibrated_follows_lun": (

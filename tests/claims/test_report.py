@@ -7,7 +7,7 @@ from synthetic import reduced
 
 from roughgas.base import InputError
 from roughgas.claims import PAPER, judge
-from roughgas.claims.verdicts import NOT_TESTED
+from roughgas.claims.evidence import NOT_TESTED
 
 
 @pytest.fixture

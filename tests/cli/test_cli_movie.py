@@ -13,7 +13,7 @@ from roughgas import cli
 from roughgas.cli import main
 from roughgas.config.reading import read_yaml
 from roughgas.data.point import read_point
-from roughgas.show import movies as movie
+from roughgas.show import style as movie
 
 SMALL = {"particles": 8, "box": [12, 12], "effects": {"spin": {"inertia": 0.5}}}
 CONFIG = str(Path(__file__).parents[2] / "config.yaml")

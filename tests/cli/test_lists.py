@@ -9,7 +9,7 @@ import pytest
 from cli.conftest import GAS
 from roughgas.cli import main
 from roughgas.data.point import read_point
-from roughgas.show.movies import drawing
+from roughgas.show import movies
 
 RUN = ["run", "cooling", f"--settings={json.dumps(GAS)}"]
 
@@ -37,7 +37,7 @@ def test_each_r_is_run_with_each_beta_and_each_seed(told, capsys):
 
 def test_a_movie_takes_the_same_lists(monkeypatch):
     drawn = []
-    monkeypatch.setattr(drawing, "write_movie", lambda _, picture, *__: drawn.append(picture()[0]))
+    monkeypatch.setattr(movies, "write_movie", lambda _, picture, *__: drawn.append(picture()[0]))
     line = "--r 0.9 .8 --beta .5 --seed 1 2 --frames=2 --set particles=10 -o gas.gif"
     assert main(["movie", *RUN[1:], *line.split()]) == 0
     titles = [part.get_suptitle().partition("\n")[2] for part in drawn[0].subfigs]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from brute_force import begin, run, settings
 
-from roughgas.data.checkpoint import UnusableCheckpoint, arrays_of, discard, restore, save
+from roughgas.simulation.restart import UnusableCheckpoint, arrays_of, discard, restore, save
 
 SCENES = {
     "gas": settings("gas", 40, [25, 25]),

@@ -12,15 +12,15 @@ from brute_force import KERNELS, begin, kernels, run, settings
 from machine_code import checksums, sections
 from schedules import COOLING, STEADY
 
-from roughgas.data.checkpoint import arrays_of
 from roughgas.data.point import read_point, write_point
 from roughgas.data.variables import POINT
 from roughgas.effects import KINDS
-from roughgas.effects.side import SIDES
+from roughgas.effects.walls import SIDES
 from roughgas.kernel import mathematics
 from roughgas.kernel.state import BOUNDARY, BOUNDARY_HITS
 from roughgas.scene import build
 from roughgas.simulation.point import run_point
+from roughgas.simulation.restart import arrays_of
 
 PROGRAM = Path(__file__).parent.parent / "machine_code.py"
 RANDOM = {"thermostat", "left_wall", "front_wall"}  # of the sides, those that are thermal here

@@ -6,12 +6,11 @@ from brute_force import begin, run, scene_of, settings, snapshot
 from brute_force.beside import brute_force_from
 
 from roughgas import theory
-from roughgas.effects import contact_stress
+from roughgas.effects import contacts
 from roughgas.kernel.memory import new_state
 from roughgas.kernel.record import Sampling, columns, record
 from roughgas.kernel.state import EXPONENT, TOUCHED
-from roughgas.simulation.energies import SUMS, contact_averages
-from roughgas.simulation.energy_balance import balance
+from roughgas.simulation.energies import SUMS, balance, contact_averages
 
 LOOKED_AT = ("bed", "sheared", "shaken", "heated", "spheres")
 TWO = [{"fraction": 0.5}, {"fraction": 0.5, "radius": 1.5, "inertia": 0.3}]
@@ -31,7 +30,7 @@ def test_each_contact_counts_as_brute_force_has_it(kernel, species):
     scene, world = scene_of(experiment, 0.9, 0.3)
     _, state = begin(experiment, 0.9, 0.3, 4)
     run(state, scene, 1, collisions=200)
-    stress = contact_stress.SUMS if "contact_stress" in experiment["effects"] else ()
+    stress = contacts.STRESSES if "contact_stress" in experiment["effects"] else ()
     for _ in range(10):
         rows = run(state, scene, 1, collisions=0)
         before, carried = sums(rows), sums(rows, stress)

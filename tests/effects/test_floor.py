@@ -8,11 +8,9 @@ from brute_force import begin, run, settings, snapshot
 from compiled import from_python
 
 from roughgas.base import InputError
-from roughgas.effects import sine_floor
-from roughgas.effects.floor import Floor
+from roughgas.effects import floors
+from roughgas.effects.floors import Floor, SineFloor, TriangularFloor
 from roughgas.effects.settings import SceneContext, make
-from roughgas.effects.sine_floor import SineFloor
-from roughgas.effects.triangular_floor import TriangularFloor
 from roughgas.kernel.hooks import CODES
 from roughgas.kernel.memory import new_state
 from roughgas.kernel.state import BASE, BOUNDARY_HITS
@@ -25,7 +23,7 @@ def one_particle(height, velocity, **floor):
     return scene, new_state(scene, position, np.array([velocity]), np.zeros((1, 1)))
 
 
-time_to_sine = from_python(sine_floor.time_to_floor)
+time_to_sine = from_python(floors.time_to_sine)
 
 
 SPIN = {"spin": {"inertia": 0.5}}
@@ -60,9 +58,9 @@ def test_a_particle_above_a_sine_looks_again_when_it_is_back():
     run(state, scene, 1, interval=1e-9)
     back, code = state.agenda.boundary_time[0], state.agenda.boundary_code[0]
     assert back == pytest.approx(math.sqrt(2.0 * (lowest - floor.amplitude)), rel=1e-14)
-    assert code % CODES == sine_floor.LOOK
+    assert code % CODES == floors.LOOK
     run(state, scene, 1, interval=back)
-    assert state.agenda.boundary_code[0] % CODES == sine_floor.MEET
+    assert state.agenda.boundary_code[0] % CODES == floors.MEET
     meeting = state.clock[BASE] + state.agenda.boundary_time[0]
     assert meeting == pytest.approx(time_to_sine(floor, 1.0, lowest, 0.0, 0.0), rel=1e-14)
     assert state.counts[BOUNDARY_HITS] == 0 and state.changes[0] == 0

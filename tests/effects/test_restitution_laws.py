@@ -9,7 +9,7 @@ import pytest
 from brute_force import KERNELS, begin, run, settings
 
 from roughgas.base import InputError
-from roughgas.effects.viscoelastic import ABOVE, B_1, B_2, B_3, B_4, fifth_root
+from roughgas.effects.restitution import ABOVE, B_1, B_2, B_3, B_4, fifth_root
 from roughgas.kernel.state import EXPONENT
 from roughgas.scene import build
 

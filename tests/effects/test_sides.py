@@ -8,7 +8,7 @@ from brute_force import KERNELS
 from brute_force.sides import ALIKE, Side
 
 from roughgas.base import InputError
-from roughgas.effects import floor, sine_floor, triangular_floor
+from roughgas.effects import floors
 from roughgas.scene import build
 from roughgas.scene.initial import check_places
 
@@ -25,10 +25,10 @@ def closed(effects, box, particles=12):
 
 
 SOLVERS = {
-    "sawtooth": (floor.Floor, {}, floor.time_to_floor),
-    "reversed_sawtooth": (triangular_floor.TriangularFloor, {"rise": 0.1}, None),
-    "triangle": (triangular_floor.TriangularFloor, {"rise": 0.5}, None),
-    "sine": (sine_floor.SineFloor, {}, sine_floor.time_to_floor),
+    "sawtooth": (floors.Floor, {}, floors.time_to_sawtooth),
+    "reversed_sawtooth": (floors.TriangularFloor, {"rise": 0.1}, None),
+    "triangle": (floors.TriangularFloor, {"rise": 0.5}, None),
+    "sine": (floors.SineFloor, {}, floors.time_to_sine),
 }
 
 
@@ -37,7 +37,7 @@ SOLVERS = {
 def test_strokes_are_met_as_brute_force_finds_them(wave, weight):
     """Particles that nothing pulls, or gravity towards the wall, or away from it."""
     kind, more, solve = SOLVERS[wave]
-    solve = solve or (lambda *way: triangular_floor.time_to_floor(*way)[0])
+    solve = solve or (lambda *way: floors.time_to_triangle(*way)[0])
     motion = kind(amplitude=1.5, period=1.1, restitution=1.0, roughness=-1.0, **more)
     moving = ALIKE | {"amplitude": 1.5, "period": 1.1, "wave": wave}
     side, rng, met = Side("lid", 0, 1.0, 0.0, 0, moving), np.random.default_rng(1), 0

@@ -8,7 +8,7 @@ import math
 import mpmath
 
 from hard_cases.waves import Fall
-from roughgas.effects.floor import Floor
+from roughgas.effects.floors import Floor
 
 
 class Exact(Fall):

@@ -13,8 +13,8 @@ from pathlib import Path
 
 from hard_cases import pictures
 from hard_cases.catalogue import Margin, Remedy
+from roughgas.base import markdown
 from roughgas.base.files import write_text
-from roughgas.base.formatting import markdown
 from roughgas.show.style import save
 
 HEAD = """# Hard cases

@@ -8,7 +8,7 @@ from compiled import from_python
 from hard_cases.catalogue import hard_case
 from roughgas import theory
 from roughgas.effects import Effects
-from roughgas.effects.spin import Spin
+from roughgas.effects.contacts import Spin
 from roughgas.kernel import contact
 from roughgas.kernel.memory import new_state
 from roughgas.kernel.record import Sampling, columns, record

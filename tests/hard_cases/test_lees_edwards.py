@@ -10,15 +10,15 @@ from compiled import from_python
 from exact import exactly, segment
 
 from hard_cases.catalogue import hard_case
-from roughgas.effects import shear
-from roughgas.effects.shear import Shear
+from roughgas.effects import drives
+from roughgas.effects.drives import Shear
 from roughgas.kernel import memory
 from roughgas.kernel.memory import new_state
 from roughgas.kernel.state import BASE
 
 # As in test_exact_arithmetic.py, where these limits come from
 SMALL, ROUNDINGS = 1e-6, 10.0
-phase = from_python(shear.phase)
+phase = from_python(drives.offset)
 
 
 @pytest.fixture(params=["swept", "in cells"])

@@ -4,8 +4,8 @@ import numpy as np
 from brute_force import Beside, begin, run, scene_of, settings
 
 from hard_cases.catalogue import hard_case
-from roughgas.data.checkpoint import arrays_of
 from roughgas.kernel.state import BASE, COLLISIONS, NOW
+from roughgas.simulation.restart import arrays_of
 
 LATE = 1_000_000_000  # T: a whole number of strokes, and of times in which images come round
 SCENES = {

@@ -10,7 +10,7 @@ from hard_cases.catalogue import hard_case
 from roughgas.effects.species import UNIFORM
 from roughgas.kernel import memory
 from roughgas.kernel.state import COLLISIONS
-from roughgas.simulation.energy_balance import balance
+from roughgas.simulation.energies import balance
 
 ROUNDING = 2.0**-53
 # The reduced mass of two species is rounded once and for all, and so to the same side each time;

@@ -10,12 +10,12 @@ from compiled import from_python
 
 from hard_cases.catalogue import hard_case
 from hard_cases.waves import DIGITS, exact, level, sine, triangle
-from roughgas.effects import sine_floor, triangular_floor
-from roughgas.effects.sine_floor import SineFloor
+from roughgas.effects import floors
+from roughgas.effects.floors import SineFloor
 from roughgas.kernel.state import BASE
 
-time_to_sine = from_python(sine_floor.time_to_floor)
-time_to_triangle = from_python(triangular_floor.time_to_floor)
+time_to_sine = from_python(floors.time_to_sine)
+time_to_triangle = from_python(floors.time_to_triangle)
 
 
 def time_to(floor, *fall):

@@ -7,7 +7,7 @@ from brute_force import begin, largest_overlap, scene_of, snapshot
 
 from hard_cases.invariants import beyond_cone, gain_of_momentum, outside
 from roughgas.base import CollapseError, JammedError
-from roughgas.effects.side import SIDES
+from roughgas.effects.walls import SIDES
 from roughgas.kernel.state import BOUNDARY_HITS, COLLISIONS, LAST_FIRST, LAST_SECOND
 from roughgas.simulation.gas import Gas
 

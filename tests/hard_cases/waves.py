@@ -10,9 +10,7 @@ import math
 
 import mpmath
 
-from roughgas.effects.floor import Floor
-from roughgas.effects.sine_floor import SineFloor
-from roughgas.effects.triangular_floor import TriangularFloor
+from roughgas.effects.floors import Floor, SineFloor, TriangularFloor
 
 DIGITS = 40
 

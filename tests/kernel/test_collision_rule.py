@@ -9,8 +9,7 @@ from compiled import from_python
 
 from roughgas import theory
 from roughgas.effects import Effects
-from roughgas.effects.friction import Friction
-from roughgas.effects.spin import Spin
+from roughgas.effects.contacts import Friction, Spin
 from roughgas.kernel.contact import response as compiled_response
 from roughgas.kernel.state import BOUNDARY_HITS, EXPONENT
 

@@ -9,8 +9,8 @@ from tests.observables.frames import frame_of, system_of
 
 from roughgas.base import InputError
 from roughgas.observables import KINDS
-from roughgas.observables.averages import averaged
-from roughgas.observables.pair_correlation import squares
+from roughgas.observables.distributions import squares
+from roughgas.observables.plugin import averaged
 from roughgas.statistics.errors import blocking
 
 NUMBER = 40_000

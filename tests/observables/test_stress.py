@@ -7,7 +7,7 @@ import pytest
 from brute_force import begin, run, settings
 
 from roughgas import simulate, theory
-from roughgas.effects.contact_stress import SUMS
+from roughgas.effects.contacts import STRESSES
 from roughgas.kernel.state import NOW
 from roughgas.simulation.restart import positions_and_velocities
 
@@ -18,7 +18,7 @@ U, L = SHEARED["effects"]["shear"]["velocity"], 20.0
 
 def carried(rows):
     """The last running sums of momentum times distance (3, 3)."""
-    return np.array([rows[name][-1] for name in SUMS]).reshape(3, 3)
+    return np.array([rows[name][-1] for name in STRESSES]).reshape(3, 3)
 
 
 def flown(position, velocity, elapsed):

@@ -9,7 +9,7 @@ import pytest
 from rocrate.rocrate import ROCrate
 
 from roughgas.cli import main
-from roughgas.results.crate import project_files
+from roughgas.results.products import project_files
 
 ROOT = Path(__file__).parents[2]
 PRODUCTS = ["results/tiny/cooling.nc", "results/tiny/R.csv", "figures/tiny/fig1a.png"]

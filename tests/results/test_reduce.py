@@ -14,8 +14,8 @@ from roughgas.base import InputError
 from roughgas.cli import main
 from roughgas.data.point import Point, write_point
 from roughgas.data.reduced import read_reduced
+from roughgas.results.products import why_wide, write_table
 from roughgas.results.reduce import reduce_points
-from roughgas.results.table import why_wide, write_table
 
 ABOUT = {"experiment": "sheared", "scale": "small", "dimension": 2, "inertia": 0.5, "particles": 40}
 

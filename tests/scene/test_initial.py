@@ -6,7 +6,7 @@ from brute_force import KERNELS, begin, largest_overlap, scene_of, settings
 
 from roughgas.base import InputError
 from roughgas.scene import check_places
-from roughgas.scene.random_packing import random_positions
+from roughgas.scene.initial import random_positions
 
 CASES = {
     **{name: settings(name) for name in KERNELS},

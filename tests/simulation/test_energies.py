@@ -9,8 +9,16 @@ from schedules import COOLING, STEADY
 
 from roughgas.data.point import read_point, write_point
 from roughgas.scene import build
-from roughgas.simulation.energies import Energies, energies, fitted_flow, ratio, ratio_of_means
-from roughgas.simulation.energy_balance import balance, energy_exchange, imbalance
+from roughgas.simulation.energies import (
+    Energies,
+    balance,
+    energies,
+    energy_exchange,
+    fitted_flow,
+    imbalance,
+    ratio,
+    ratio_of_means,
+)
 from roughgas.simulation.point import VOUCHED, _withdrawn, run_point
 from roughgas.statistics.errors import NO, UNKNOWN, YES
 

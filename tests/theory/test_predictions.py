@@ -9,9 +9,9 @@ from integration import integrate
 
 from roughgas import theory
 from roughgas.base import InputError
-from roughgas.effects.viscoelastic import pade, x_of
+from roughgas.effects.restitution import pade, x_of
+from roughgas.theory.closed_forms import shear_factor, sheared_ratio
 from roughgas.theory.prediction import Equation, equation_of, predicted_ratio, species_at
-from roughgas.theory.transport import shear_factor, sheared_ratio
 
 DISKS, SPHERES = {"dimension": 2}, {"dimension": 3}
 FRICTION = "rate equations with Coulomb friction"

@@ -41,12 +41,12 @@ EDITED = {  # file of the package: what an edit of its code runs again
     "kernel/prediction.py": SIMULATED,
     "effects/walls.py": SIMULATED | {"effective_config", "living_page"},
     "scene/scene.py": SIMULATED | {"living_page"},
-    "config/schema.py": {"effective_config", "document", "living_page", "study_page"},
-    "results/table.py": {"table", "run_times", "document", "study_table", "study_page"},
+    "config/schema.py": {"effective_config", "document", "living_page"},
+    "results/products.py": {"table", "run_times", "document", "study_table", "study_page"},
     "claims/paper.yaml": {"claims", "document", "study_claims", "study_page"},
-    "show/figures/fig1a.py": {"fig1a"},
+    "show/figures/paper.py": FIGURES,
     "show/page/explore.js": {"page"},
-    "show/movies/drawing.py": {"movie"},
+    "show/movies/__init__.py": {"movie"},
     "tasks/dsmc.py": ACCURACY | {"models"} | OF_DSMC,
     "cli/run.py": POINTS | FAMILIES,
 }
@@ -58,10 +58,10 @@ ALIKE = {  # files after whose edits much the same runs again as after others'
 }
 TOGETHER = {  # files of which hardly anything needs two: their edits are tried at once, as well
     "config/schema.py",
-    "results/table.py",
+    "results/products.py",
     "claims/paper.yaml",
-    "show/figures/fig1a.py",
-    "show/movies/drawing.py",
+    "show/figures/paper.py",
+    "show/movies/__init__.py",
 }
 UNUSED = ("steps.py", "doctor.py", "library.py")
 

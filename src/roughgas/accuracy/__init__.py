@@ -4,8 +4,8 @@ A file each: noise of a run (statistical), models of a cooling gas, springs and 
 of events (discretisation), coverage of intervals. Each names its independent tasks (`tasks`, the
 longest first), does one of them (`run`), combines what all have found (`combine`), and shows that
 in Markdown (`table`); running.py calls these. variables.yaml describes the outcome, figures.py
-draws it; config.yaml has the settings, schema.yaml says what they may be. soft_spheres/ is another
-method to compare with.
+draws it; config.yaml has the settings, schema.yaml says what they may be. soft_spheres.py is
+another method to compare with.
 """
 
 from importlib import import_module

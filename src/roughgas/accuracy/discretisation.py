@@ -18,8 +18,7 @@ import numpy as np
 import xarray as xr
 
 from roughgas.accuracy import VARIABLES
-from roughgas.accuracy.soft_spheres import CONTACTS, new_gas, springs
-from roughgas.accuracy.soft_spheres.stepping import COLUMNS, step
+from roughgas.accuracy.soft_spheres import COLUMNS, CONTACTS, new_gas, springs, step
 from roughgas.kernel.memory import new_state
 from roughgas.kernel.state import EXPONENT, STARTED
 from roughgas.scene import build, initial_state
@@ -27,17 +26,7 @@ from roughgas.simulation.energies import Energies, ratio
 from roughgas.simulation.gas import Gas
 from roughgas.statistics.errors import Estimate, blocking_stderr, period_means, stderr_over_seeds
 from roughgas.statistics.fits import PowerLaw, limit_at_zero, signed_power_law
-from roughgas.tasks import (
-    along,
-    cell,
-    dataset,
-    flat,
-    markdown,
-    stacked,
-    stream,
-    timed,
-    variables,
-)
+from roughgas.tasks import along, cell, dataset, flat, markdown, stacked, stream, timed, variables
 from roughgas.theory import collision_frequency, stationary_theta
 
 TARGETS = 0.03, 0.01, 0.003  # relative errors of R

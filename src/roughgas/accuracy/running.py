@@ -1,7 +1,6 @@
 """The tasks of accuracy, run one at a time and combined; tables and figures of what they find."""
 
-import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,6 +9,7 @@ from roughgas.accuracy import FIGURES, STUDIES, study
 from roughgas.base import InputError, not_one_of
 from roughgas.base.files import write_text
 from roughgas.data.netcdf import TASK, Content, content_of, read_groups, read_netcdf, write_netcdf
+from roughgas.tasks.running import combined, write_found
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -30,20 +30,13 @@ def run_task(
     `settings` are those of the `study` and of `experiments`, as JSON. Raises InputError for an
     unknown study or task and for illegal settings, CollapseError as a simulation does, OSError.
     """
-    from roughgas.simulation.progress import Bar
-
     module = study(name)
     found = config.study_from_text(settings, name, "--settings")
     if task not in (known := module.tasks(found["study"])):
         raise not_one_of("task", task, known)
-    with Bar(task, None) as bar:
-
-        def progress(done: int, total: int) -> None:
-            bar.reach(done, total=total)
-
-        data = module.run(task, found["study"], Experiments(found["experiments"]), progress)
+    found["experiments"] = Experiments(found["experiments"])
     about = {"study": name, "task": task, "scale": scale, "settings_json": settings}
-    write_netcdf(output, content_of(data.assign_attrs(about)))
+    write_found(module.run, found, about, output)
 
 
 def combine(inputs: Iterable[str | Path], *, output: str | Path) -> None:
@@ -55,21 +48,11 @@ def combine(inputs: Iterable[str | Path], *, output: str | Path) -> None:
     for path in inputs:
         data = read_netcdf(path, TASK)
         found.setdefault(data.attrs["study"], {})[data.attrs["task"]] = data
-    groups = {name: content_of(_combined(name, parts)) for name, parts in found.items()}
+    groups = {}
+    for name, parts in found.items():
+        one = study(name)
+        groups[name] = content_of(combined(name, parts, one.tasks, one.combine))
     write_netcdf(output, Content({}, {"title": "Studies"}), groups)
-
-
-def _combined(name: str, parts: "Mapping[str, xr.Dataset]") -> "xr.Dataset":
-    texts = {data.attrs["settings_json"] for data in parts.values()}
-    if len(texts) > 1:
-        raise InputError(f"settings of {name}", f"{len(texts)} different ones", "be the same")
-    settings = json.loads(texts.pop())["study"]
-    missing = set(study(name).tasks(settings)) - set(parts)
-    if missing:
-        raise InputError(f"tasks of {name}", f"without {sorted(missing)[0]}", "be complete")
-    scales = {data.attrs["scale"] for data in parts.values()}
-    data = study(name).combine(parts, settings)
-    return data.assign_attrs(title=name, scale=", ".join(sorted(scales)))
 
 
 def read_studies(path: str | Path) -> "dict[str, xr.Dataset]":

@@ -22,17 +22,7 @@ from roughgas.simulation.energies import ratio
 from roughgas.simulation.steady import samples_per_period
 from roughgas.statistics.errors import Estimate, autocorrelation_time, period_means
 from roughgas.statistics.fits import power_law
-from roughgas.tasks import (
-    along,
-    cell,
-    dataset,
-    markdown,
-    mean,
-    stacked,
-    stream,
-    timed,
-    variables,
-)
+from roughgas.tasks import along, cell, dataset, markdown, mean, stacked, stream, timed, variables
 
 WAYS = ("length", "seeds")
 PARTS = ("reference", *WAYS)

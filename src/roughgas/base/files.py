@@ -1,4 +1,4 @@
-"""Files that are whole or not there; the hash of the code on which a result depends.
+"""Files that are whole or not there; code in folders of studies; the hash of what a result needs.
 
 The workflow makes a result again when the hash of its code changes: of the modules it uses, and of
 all that these import. A file of the same name, such as schema.yaml beside schema.py, counts, and so
@@ -216,3 +216,9 @@ def module_of(folder: str | Path, name: str) -> types.ModuleType:
     except Exception as error:
         said = f"{type(error).__name__}: {error}"
         raise InputError(f"studies/{folder.name}/{name}.py", said, "be Python") from error
+
+
+def readme(folder: str | Path) -> str:
+    """Return README.md of the study in `folder`; nothing without one."""
+    file = Path(folder, "README.md")
+    return file.read_text(encoding="utf-8") if file.exists() else ""

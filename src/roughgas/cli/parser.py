@@ -181,9 +181,7 @@ def _named(path: str | Path, part: str) -> Iterable[str]:
 
 
 SCALE = value(
-    "--scale",
-    "a scale of the configuration: small, ... (default: its own)",
-    completer=_scales,
+    "--scale", "a scale of the configuration: small, ... (default: its own)", completer=_scales
 )
 CONFIG = value("--config FILE", "the configuration (default: config.yaml here, or roughgas's own)")
 SETTINGS = (

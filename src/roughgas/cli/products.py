@@ -9,8 +9,7 @@ from textwrap import fill
 from typing import TYPE_CHECKING, Any
 
 from roughgas import config
-from roughgas.base import InputError, Interval, on_one_line
-from roughgas.base.formatting import as_json, from_json
+from roughgas.base import InputError, Interval, as_json, from_json, on_one_line
 from roughgas.cli.parser import WIDTH, number, whole_number
 from roughgas.cli.run import initial_in, points_of
 from roughgas.config.provenance import provenance
@@ -21,7 +20,7 @@ from roughgas.simulation.restart import Initial
 from roughgas.simulation.trajectory import LEGAL, NUMBERS, Frames, chosen, snapshots, variables
 
 if TYPE_CHECKING:
-    from roughgas.show.movies.drawing import Panel
+    from roughgas.show.movies import Panel
 
 RATES = Interval("[1, 50]")  # frames a second
 
@@ -63,8 +62,8 @@ def chosen_take(
 
 def movie(options: Namespace) -> None:
     """Simulate a point, or several, and write their movie, side by side."""
-    from roughgas.show.movies import check_kind
-    from roughgas.show.movies.drawing import write
+    from roughgas.show.movies import write
+    from roughgas.show.style import check_kind
 
     fps = number("--fps", options.fps, RATES)
     for output in options.output:
@@ -79,7 +78,7 @@ def movie(options: Namespace) -> None:
 
 def _panel(options: Namespace, place: config.Place, settings: dict[str, Any]) -> "Panel":
     """Simulate a point; return it with what is to be seen of it."""
-    from roughgas.show.movies.drawing import MovieSubject
+    from roughgas.show.movies import MovieSubject
 
     name, scene = options.experiment, build(settings, place.r, place.beta)
     take = chosen_take(options, settings, scene)
@@ -109,7 +108,7 @@ def plot(options: Namespace) -> None:
 
 def crate(options: Namespace) -> None:
     """Write a crate."""
-    from roughgas.results.crate import write_crate
+    from roughgas.results.products import write_crate
 
     if not options.output.endswith(".zip"):
         raise InputError("--output", options.output, "end in .zip")

@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 
 from roughgas import config
-from roughgas.base import InputError
-from roughgas.base.formatting import as_json
+from roughgas.base import InputError, as_json
 from roughgas.cli.parser import check_outputs, labels
 from roughgas.config.labels import SPECIES, holder, names_of
 from roughgas.config.provenance import variant_attributes

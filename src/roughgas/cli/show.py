@@ -11,14 +11,13 @@ import numpy as np
 from xarray import Dataset
 
 from roughgas import config
-from roughgas.base import on_one_line
+from roughgas.base import as_json, columns, from_json, on_one_line
 from roughgas.base.files import module_of
-from roughgas.base.formatting import as_json, columns, from_json
 from roughgas.data import netcdf
 from roughgas.data.netcdf import read_netcdf, unit_of
 from roughgas.data.reduced import EQUILIBRATED, particles_of, third_axis
-from roughgas.results.table import rows as rows_of
-from roughgas.results.table import why_wide
+from roughgas.results.products import rows as rows_of
+from roughgas.results.products import why_wide
 from roughgas.scene import packing
 from roughgas.statistics.errors import NO, UNKNOWN, YES, Estimate, decimals_of
 from roughgas.theory.prediction import equation_of, ratio_of_point
@@ -28,10 +27,7 @@ FEW = 0.01
 OF_SPECIES = ("E_trans", "E_rot", "R")
 MOST_VALUES = 4  # of a variable, that are all shown
 FLAGS = {YES: True, NO: False, UNKNOWN: None}
-QUOTED = {
-    netcdf.POINT: ("experiment_json", "command"),
-    netcdf.TASK: ("settings_json",),
-}
+QUOTED = {netcdf.POINT: ("experiment_json", "command"), netcdf.TASK: ("settings_json",)}
 """Attributes of each kind that a summary quotes."""
 BOOKS = {"source", "motion", "energy_input", "energy_gain", "energy_imbalance"}
 SHAPES = {2: "disks", 3: "spheres"}

@@ -9,8 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from roughgas import config, theory
-from roughgas.base import Interval, NeedsError
-from roughgas.base.formatting import as_json, columns
+from roughgas.base import Interval, NeedsError, as_json, columns
 from roughgas.cli.parser import labels, number
 from roughgas.config.reading import parse_yaml, read_yaml
 from roughgas.theory.arguments import FRICTION, SHARE, check, moment_of_inertia

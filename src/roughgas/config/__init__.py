@@ -18,8 +18,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from roughgas.base import InputError, not_one_of, shown
-from roughgas.base.formatting import as_text, from_json  # noqa: F401
+from roughgas.base import InputError, as_text, from_json, not_one_of, shown  # noqa: F401
 from roughgas.config.labels import (  # noqa: F401
     PARSE,
     SPECIES,

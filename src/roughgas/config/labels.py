@@ -1,5 +1,6 @@
 """What names a point: r, beta, seed and a swept parameter as they stand in paths and on command
-lines; and what a third axis changes of a species or of a box."""
+lines; and what a third axis changes of a species or of a box.
+"""
 
 import itertools
 import re

@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import Any
 
 from roughgas import config as settings_of
-from roughgas.base import InputError, shown
-from roughgas.base.formatting import from_json
+from roughgas.base import InputError, from_json, shown
+from roughgas.base.files import readme
 from roughgas.config.reading import read_yaml
 from roughgas.config.schema import RESERVED, check_ancestors, check_by, check_one, check_schema
 
@@ -186,12 +186,6 @@ def _checked(name: str, folder: Path, root: Mapping[str, Any]) -> dict[str, Any]
                 legal = f"be {name} or begin with {name}_"
                 raise InputError(f"{source}: key of {part}", key, legal)
     return study
-
-
-def readme(folder: str | Path) -> str:
-    """Return README.md of the study in `folder`; nothing without one."""
-    file = Path(folder, "README.md")
-    return file.read_text(encoding="utf-8") if file.exists() else ""
 
 
 def _title(folder: Path) -> str:

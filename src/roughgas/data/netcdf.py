@@ -21,9 +21,16 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from roughgas.base import RESTITUTION, ROUGHNESS, InputError, Interval, __version__, shown
+from roughgas.base import (
+    RESTITUTION,
+    ROUGHNESS,
+    InputError,
+    Interval,
+    __version__,
+    from_json,
+    shown,
+)
 from roughgas.base.files import whole_file
-from roughgas.base.formatting import from_json
 from roughgas.data.variables import CLOCKS, Array
 
 if TYPE_CHECKING:

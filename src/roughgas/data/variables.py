@@ -188,8 +188,7 @@ POINT = {
     "time": _series("time since the start", TIME, DRIVEN),
     "collisions_per_particle": _series("collisions per particle since the start", TIME, COOLING),
     "decay_exponent": Variable(
-        "-d ln E_trans/d ln t over the second half of the samples",
-        when=(COOLING, OF_SPEED),
+        "-d ln E_trans/d ln t over the second half of the samples", when=(COOLING, OF_SPEED)
     ),
     "time_series": Variable(
         "time since dissipation was switched on, mean over replicas",

@@ -1,4 +1,4 @@
-"""What a scene can be made of: one file an effect, each named once, here.
+"""What a scene can be made of: effects, by their names in settings.
 
 The order is that in which effects act where several have a say (see kernel/hooks.py). What only
 looks comes last.
@@ -6,23 +6,13 @@ looks comes last.
 
 from typing import Any, NamedTuple
 
-from roughgas.effects.contact_averages import ContactAverages
-from roughgas.effects.contact_stress import ContactStress
-from roughgas.effects.contact_time import ContactTime
-from roughgas.effects.floor import Floor
-from roughgas.effects.friction import Friction
-from roughgas.effects.gravity import Gravity
-from roughgas.effects.restitution_table import RestitutionTable
+from roughgas.effects.contacts import ContactAverages, ContactStress, Friction, Spin
+from roughgas.effects.drives import Gravity, Shear, Thermostat
+from roughgas.effects.floors import Floor
+from roughgas.effects.restitution import ContactTime, RestitutionTable, Threshold, Viscoelastic
 from roughgas.effects.settings import schema_of_kinds
-from roughgas.effects.shaken_walls import ShakenWalls
-from roughgas.effects.shear import Shear
-from roughgas.effects.side import SideWall
 from roughgas.effects.species import Species
-from roughgas.effects.spin import Spin
-from roughgas.effects.thermostat import Thermostat
-from roughgas.effects.threshold import Threshold
-from roughgas.effects.viscoelastic import Viscoelastic
-from roughgas.effects.walls import Walls
+from roughgas.effects.walls import ShakenWalls, SideWall, Walls
 
 
 class Effects(NamedTuple):

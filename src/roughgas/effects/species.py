@@ -20,7 +20,7 @@ import numpy as np
 
 from roughgas.base import RESTITUTION, ROUGHNESS, InputError, Interval, NeedsError, shown
 from roughgas.effects.settings import register
-from roughgas.theory.transport import packing_fraction
+from roughgas.theory.closed_forms import packing_fraction
 
 SIZE, MASS, INERTIA = Interval("[1e-06, 1e+06]"), Interval("[1e-12, 1e+12]"), Interval("[1e-06, 1]")
 MATERIAL = {"restitution": RESTITUTION, "roughness": ROUGHNESS, "mu": Interval("[0, inf)")}

@@ -1,13 +1,36 @@
-"""Resting side walls that close the first axis, with a material of their own."""
+"""Walls: two equal ones that close the first axis, or one on a single side of the box.
+
+The two are at rest, or shaken along the last axis as a sine, both alike, so that they drive what
+their roughness grips. The surface of such a wall stays where it is: only the velocity that
+particles meet there changes.
+
+A single wall has a material and a motion of its own. It is at rest, or moves along itself, at
+constant velocity or shaken; or it is a piston or thermal (planes.py). What each is follows from its
+parameters: `SideWall.from_settings` makes it.
+"""
 
 import math
 from typing import NamedTuple
 
-from roughgas.effects.settings import MATERIAL, register
+from roughgas.base import InputError, NeedsError
+from roughgas.effects import planes
+from roughgas.effects.floors import REVERSED_RISE, WAVES, phase
+from roughgas.effects.planes import Place, bounce_off_plane, normal_axis, predict_plane
+from roughgas.effects.settings import (
+    LENGTH,
+    MATERIAL,
+    TEMPERATURE,
+    TIME,
+    Number,
+    Word,
+    check_speed,
+    register,
+)
 from roughgas.kernel.contact import collide_with_wall
 from roughgas.kernel.jit import jit
+from roughgas.kernel.mathematics import TURN, sine_and_cosine
 from roughgas.kernel.particles import position_and_velocity, radius_of
-from roughgas.kernel.vectors import along_first
+from roughgas.kernel.vectors import along_first, along_last
 
 LEFT, RIGHT = 0, 1
 
@@ -26,7 +49,7 @@ class Walls(NamedTuple):
 
 
 @jit
-def predict(walls, index, state, scene, i):
+def predict_walls(walls, index, state, scene, i):
     time = state.trajectory[i, 2 * len(scene.box)]
     position, velocity = position_and_velocity(state, scene, i, time)
     speed, radius = velocity[0], radius_of(state.bodies, i)
@@ -38,11 +61,195 @@ def predict(walls, index, state, scene, i):
 
 
 @jit
-def resolve(walls, index, what, state, scene, i, time):
+def resolve_walls(walls, index, what, state, scene, i, time):
     normal = along_first(scene.box, 1.0 if what == LEFT else -1.0)
     material = (walls.restitution, walls.roughness)
     at_rest = along_first(scene.box, 0.0)
     return collide_with_wall(state, scene, index, i, time, material, normal, at_rest, 0.0)
 
 
-register(Walls, MATERIAL, predict=predict, resolve=resolve, closes=True)
+register(Walls, MATERIAL, predict=predict_walls, resolve=resolve_walls, closes=True)
+
+
+SHAKEN_SETTINGS = {
+    "amplitude": Number("Largest displacement from the middle, in a.", LENGTH),
+    "period": Number("Period of the motion, in T.", TIME),
+    **MATERIAL,
+}
+
+
+class ShakenWalls(NamedTuple):
+    """Side walls that close the first axis, and are shaken along the last one as a sine."""
+
+    width: float  # they are at 0 and at this place, in a
+    speed: float  # the largest, in a/T
+    period: float
+    restitution: float
+    roughness: float
+
+    @classmethod
+    def from_settings(cls, settings, around):
+        """Return the effect; raise InputError beside walls at rest."""
+        if "walls" in around.effects:
+            raise InputError("effects", "walls and shaken_walls", "not close the same axis twice")
+        amplitude, period, *material = settings.values()
+        check_speed(around, amplitude, period)
+        return cls(around.box[0], TURN * amplitude / period, period, *material)
+
+
+@jit
+def resolve_shaken(shaken, index, what, state, scene, i, time):
+    normal = along_first(scene.box, 1.0 if what == LEFT else -1.0)
+    turns = (state.phase[index] + time) / shaken.period
+    moving = along_last(scene.box, shaken.speed * sine_and_cosine(turns)[1])
+    material = (shaken.restitution, shaken.roughness)
+    return collide_with_wall(state, scene, index, i, time, material, normal, moving, 0.0)
+
+
+def displacement_of_walls(shaken, time):
+    """Return how far the walls are from their middle at `time`, in a."""
+    turn = TURN * (time % shaken.period) / shaken.period
+    return shaken.speed * shaken.period / TURN * math.sin(turn)
+
+
+register(
+    ShakenWalls,
+    SHAKEN_SETTINGS,
+    predict=predict_walls,
+    resolve=resolve_shaken,
+    phase=phase,
+    displacement=displacement_of_walls,
+    drives=True,
+    closes=True,
+)
+
+
+SIDES = {  # name -> (axis, the end of it: 0 or 1); -1 is the last axis
+    "left_wall": (0, 0),
+    "right_wall": (0, 1),
+    "front_wall": (1, 0),
+    "back_wall": (1, 1),
+    "bottom_wall": (-1, 0),
+    "lid": (-1, 1),
+}
+NORMAL, ALONG = "normal", "along"
+RISES = {"sawtooth": 1.0, "reversed_sawtooth": REVERSED_RISE, "triangle": 0.5, "sine": 0.0}
+SIDE_SETTINGS = {
+    "restitution": MATERIAL["restitution"]._replace(default=1.0),
+    "roughness": MATERIAL["roughness"]._replace(default=-1.0),
+    "velocity": Number(
+        "Constant velocity along itself, in a/T: along the first axis, of a left or right wall "
+        "along the last one.",
+        "[-1e+06, 1e+06]",
+        default=0.0,
+    ),
+    "amplitude": Number("Height of a stroke of a shaken wall, in a.", LENGTH, 0.0),
+    "period": Number("Time between strokes, in T; given for a shaken wall.", TIME, math.inf),
+    "wave": Word("Form of its motion, as of floors.", WAVES),
+    "shaken": Word("Whether it is shaken along its normal or along itself.", (NORMAL, ALONG)),
+    "temperature": Number(
+        "Temperature of a thermal wall, in m a^2/T^2: particles leave it with Maxwellian "
+        "velocities and spins, whatever its material.",
+        TEMPERATURE,
+        default=math.inf,
+    ),
+}
+
+
+class SideWall(NamedTuple):
+    """A wall on one side of the box: at rest, sliding, shaken or thermal."""
+
+    place: Place
+    restitution: float
+    roughness: float
+
+    axis = normal_axis
+
+    @classmethod
+    def from_settings(cls, settings, around):
+        """Return the wall that the settings describe; raise InputError where they contradict."""
+        place = _place(around)
+        _refuse_contradictions(settings, around)
+        material = settings["restitution"], settings["roughness"]
+        if settings["temperature"] < math.inf:
+            return planes.ThermalWall(place, settings["temperature"], settings["velocity"])
+        amplitude, period = settings["amplitude"], settings["period"]
+        if amplitude > 0.0 and settings["shaken"] == NORMAL:
+            return planes.make_piston(place, settings, around)
+        if amplitude > 0.0:
+            return MovingWall(place, *material, 0.0, amplitude, period, RISES[settings["wave"]])
+        if settings["velocity"] != 0.0:
+            return MovingWall(place, *material, settings["velocity"], 0.0, 1.0, 1.0)
+        return cls(place, *material)
+
+
+class MovingWall(NamedTuple):
+    """A wall that moves along itself: at a velocity that is constant, in turns, or a sine."""
+
+    place: Place
+    restitution: float
+    roughness: float
+    velocity: float  # constant, and
+    amplitude: float  # of what is added, in a
+    period: float  # T
+    rise: float  # share of the period in which it goes forwards; 0 stands for a sine
+
+    axis = normal_axis
+
+
+def _place(around):
+    """Return the plane of a wall; raise InputError where the box has no such side."""
+    key, (axis, end) = f"effects.{around.name}", SIDES[around.name]
+    dimension = len(around.box)
+    if axis == 1 and dimension == 2:
+        raise InputError(key, "in the plane", "be bottom_wall or lid there")
+    axis %= dimension
+    if around.box[axis] is None:
+        raise NeedsError(key, f"a length of the box along its {'last' if axis else 'first'} axis")
+    if around.name == "bottom_wall" and "gravity" in around.effects:
+        raise InputError(key, "with gravity", "be a floor there, which may be at rest")
+    along = dimension - 1 if axis == 0 else 0
+    return Place(axis, 1.0 - 2.0 * end, around.box[axis] * end, along)
+
+
+def _refuse_contradictions(settings, around):
+    key, given = f"effects.{around.name}", around.effects[around.name]
+    shaken = settings["amplitude"] > 0.0
+    if shaken and settings["period"] == math.inf:
+        raise InputError(f"{key}.period", "(nothing)", "be given where the wall is shaken")
+    check_speed(around, settings["amplitude"], settings["period"])
+    if shaken and settings["velocity"] != 0.0:
+        raise InputError(f"{key}.velocity", settings["velocity"], "be 0 where the wall is shaken")
+    if settings["temperature"] < math.inf:
+        for name in ("restitution", "roughness", "amplitude"):
+            if name in given:
+                legal = "not be given where the wall has a temperature"
+                raise InputError(f"{key}.{name}", given[name], legal)
+
+
+@jit
+def resolve_side(wall, index, what, state, scene, i, time):
+    return bounce_off_plane(wall, index, state, scene, i, time, 0, 0.0, 0.0)
+
+
+@jit
+def resolve_moving(wall, index, what, state, scene, i, time):
+    velocity = wall.velocity + _speed(wall, state.phase[index] + time)
+    return bounce_off_plane(wall, index, state, scene, i, time, wall.place.along, velocity, 0.0)
+
+
+@jit
+def _speed(wall, time):
+    """Return the velocity that shaking adds, at a time since some period began."""
+    if wall.rise == 0.0:
+        return 0.5 * TURN * wall.amplitude / wall.period * sine_and_cosine(time / wall.period)[0]
+    done = time / wall.period
+    if done - math.floor(done) <= wall.rise:
+        return wall.amplitude / (wall.rise * wall.period)
+    return -wall.amplitude / ((1.0 - wall.rise) * wall.period)
+
+
+register(SideWall, SIDE_SETTINGS, predict=predict_plane, resolve=resolve_side, closes=True)
+register(
+    MovingWall, predict=predict_plane, resolve=resolve_moving, phase=phase, drives=True, closes=True
+)

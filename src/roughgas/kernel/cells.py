@@ -107,8 +107,7 @@ def _beside_row_that_moves(slide, cells, home, position, velocity):
 
 
 _beside_row = either(
-    _beside_row_that_moves,
-    lambda slide, cells, home, position, velocity: (position, velocity),
+    _beside_row_that_moves, lambda slide, cells, home, position, velocity: (position, velocity)
 )
 
 

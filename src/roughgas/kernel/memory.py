@@ -212,10 +212,7 @@ def _sums(effects):
 
 
 def _shortlist(number, dimension):
-    return Shortlist(
-        found=np.zeros(number + LANES, np.int32),
-        when=np.zeros((1, TOGETHER)),
-    )
+    return Shortlist(found=np.zeros(number + LANES, np.int32), when=np.zeros((1, TOGETHER)))
 
 
 def _least_of_blocks(blocks):

@@ -187,14 +187,12 @@ widest_of = unless_absent(lambda bodies: 2.0 * bodies.largest[0])
 """(bodies) -> the largest distance at which any pair touches; None stands for 2."""
 
 spin_mass_of = either(
-    lambda bodies, spin, i: bodies.mass[i] * bodies.inertia[i],
-    lambda bodies, spin, i: spin.inertia,
+    lambda bodies, spin, i: bodies.mass[i] * bodies.inertia[i], lambda bodies, spin, i: spin.inertia
 )
 """(bodies, spin, i) -> s of a particle, which its energy of rotation is s (a w)^2/2 with."""
 
 change_of_velocity = either(  # a product with 1/m would be rounded to the same side each time
-    lambda bodies, i, push: divide(push, bodies.mass[i]),
-    lambda bodies, i, push: push,
+    lambda bodies, i, push: divide(push, bodies.mass[i]), lambda bodies, i, push: push
 )
 """(bodies, i, push) -> what an impulse changes the particle's velocity by."""
 

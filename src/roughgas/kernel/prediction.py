@@ -203,6 +203,5 @@ def _all_at_once(cells, state, i, first, when):
 
 
 _note = either(
-    lambda cells, state, i, first, when: _one_by_one(state, i, first, when),
-    _all_at_once,
+    lambda cells, state, i, first, when: _one_by_one(state, i, first, when), _all_at_once
 )

@@ -15,15 +15,7 @@ from roughgas.kernel.particles import (
     spin_mass_of,
     spin_of,
 )
-from roughgas.kernel.state import (
-    BASE,
-    COLLISIONS,
-    EXPONENT,
-    INSTANT_END,
-    NOW,
-    ORIGIN,
-    STARTED,
-)
+from roughgas.kernel.state import BASE, COLLISIONS, EXPONENT, INSTANT_END, NOW, ORIGIN, STARTED
 
 
 class Sampling(NamedTuple):

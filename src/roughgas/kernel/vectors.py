@@ -86,11 +86,7 @@ def spin_cross(w, n):
     if len(w) == 1:
         return (-w[0] * n[1], w[0] * n[0])
     else:
-        return (
-            w[1] * n[2] - w[2] * n[1],
-            w[2] * n[0] - w[0] * n[2],
-            w[0] * n[1] - w[1] * n[0],
-        )
+        return (w[1] * n[2] - w[2] * n[1], w[2] * n[0] - w[0] * n[2], w[0] * n[1] - w[1] * n[0])
 
 
 @unrolled

@@ -1,4 +1,4 @@
-"""Observables of a run, by their names in settings: one file each.
+"""Observables of a run, by their names in settings.
 
 To add one is to add a file with a class (see roughgas.observables.plugin), and its line in KINDS.
 An observable that nobody asks for is not made, and costs nothing.
@@ -10,15 +10,15 @@ from typing import Any, NamedTuple
 
 from roughgas.base import InputError, NeedsError, not_one_of
 from roughgas.effects.settings import schema_of_kinds
-from roughgas.observables.cumulants import Cumulants
-from roughgas.observables.frame import Frame, System
-from roughgas.observables.histograms import Histograms
-from roughgas.observables.mean_square_displacement import MeanSquareDisplacement
-from roughgas.observables.pair_correlation import PairCorrelation
-from roughgas.observables.plugin import Function, Observable, Setting, Whole
-from roughgas.observables.profiles import Profiles
-from roughgas.observables.spin_correlation import SpinCorrelation
-from roughgas.observables.stress import Stress
+from roughgas.observables.distributions import (
+    Cumulants,
+    Histograms,
+    MeanSquareDisplacement,
+    PairCorrelation,
+    SpinCorrelation,
+)
+from roughgas.observables.fields import Profiles, Stress
+from roughgas.observables.plugin import Frame, Function, Observable, Setting, System, Whole
 
 __all__ = ["KINDS", "Frame", "Observable", "System"]
 

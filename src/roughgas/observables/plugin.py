@@ -1,10 +1,18 @@
 """What an observable is: it looks at frames, and says what the means of all looks amount to.
 
-An observable is made anew for every gas, so it may remember frames. Each file of this room holds
-one, with its equation, its source and its settings; `roughgas.observables.KINDS` lists them.
+An observable is made anew for every gas, so it may remember frames; `roughgas.observables.KINDS`
+lists them. A frame holds the particles of a gas at an instant, as plain numpy arrays. Units:
+particle radius a = particle mass m = time unit T = 1. A freely cooling gas has no lasting energy:
+its velocities and spins are in units in which the present E_trans is 1.
+
+The standard error of a function f of means is that of the series to which f is linear in the
+deviations from the means: z_k = df(m).(x_k - m), whose mean vanishes (the infinitesimal jackknife,
+B. Efron, The Jackknife, the Bootstrap and Other Resampling Plans, 1982, chapter 6).
 """
 
-from collections.abc import Callable, Mapping
+import math
+import warnings
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
@@ -12,7 +20,82 @@ import numpy as np
 from roughgas.base import InputError
 from roughgas.data.variables import Variable
 from roughgas.effects.settings import Number
-from roughgas.observables.frame import Frame, System
+from roughgas.statistics.errors import blocking, degrees_of_freedom, period_means
+
+AXES = "xyz"
+
+
+class System(NamedTuple):
+    """What stays the same during a run."""
+
+    particles: int  # N
+    box: tuple[float | None, ...]  # lengths in a, D of them; None is open above
+    periodic: tuple[bool, ...]  # of each axis
+    inertia: float | None  # q = I/(m a^2); None where particles do not spin
+    shear_rate: float  # 1/T: the mean flow is v_x = shear_rate (y - L/2)
+    interval: float  # between looks, in T or in collisions per particle
+    cooling: bool
+    alike: bool = True  # all particles have radius a and mass m
+
+    @property
+    def dimension(self) -> int:
+        """D, 2 of disks and 3 of spheres."""
+        return len(self.box)
+
+    @property
+    def volume(self) -> float:
+        """Area or volume of the box in a^D; infinite if it is open."""
+        return math.prod(math.inf if length is None else length for length in self.box)
+
+    @property
+    def across(self) -> int:
+        """The axis that layers are across, the vertical one; of a sheared gas that of the shear."""
+        return 1 if self.shear_rate else self.dimension - 1
+
+    @property
+    def axes(self) -> list[str]:
+        """The names of the axes, `x`, `y`, `z`."""
+        return list(AXES[: self.dimension])
+
+
+class Frame(NamedTuple):
+    """The particles at an instant, in the order of the start."""
+
+    system: System
+    time: float  # T since the start
+    collisions: float  # per particle, since the start or since the gas began to cool
+    position: np.ndarray  # (N, D) in a, folded into the box
+    velocity: np.ndarray  # (N, D) in a/T, of the images in the box
+    spin: np.ndarray | None  # (N, 2 D - 3) surface velocities in a/T; None without spin
+    radius: np.ndarray  # (N,) in a
+    mass: np.ndarray  # (N,) in m
+    inertia: np.ndarray  # (N,) q, I over mass and radius^2
+    image_shift: float  # displacement along x of the image above, of a sheared gas; else 0
+    rates: Mapping[str, float]  # what effects have summed up since the look before, per T
+    species_of: np.ndarray | None = None  # (N,) index of each one's species; None: all are alike
+    speed_unit: float = 1.0  # of the velocities, in a/T: not 1 in a cooling gas
+
+    @property
+    def thermal_velocity(self) -> np.ndarray:
+        """Velocities (N, D) without the mean flow of a sheared gas."""
+        rate, velocity = self.system.shear_rate, self.velocity
+        if rate:
+            velocity = velocity.copy()
+            middle = (self.system.box[1] or 0.0) / 2.0
+            velocity[:, 0] -= rate * (self.position[:, 1] - middle)
+        return velocity
+
+    @property
+    def thermal_spin(self) -> np.ndarray:
+        """Spins (N, 2 D - 3) without their mean in a sheared gas; zeros where nothing spins."""
+        if self.spin is None:
+            return np.zeros((self.system.particles, 2 * self.system.dimension - 3))
+        if not self.system.shear_rate:
+            return self.spin
+        turning = (self.mass * self.inertia * self.radius)[:, None]
+        rotation = (turning * self.spin).sum(axis=0) / (turning[:, 0] @ self.radius)
+        return self.spin - self.radius[:, None] * rotation
+
 
 Values = Mapping[str, np.ndarray]
 
@@ -127,3 +210,74 @@ def _told(one: Any) -> dict[str, str]:
     """Return the long name and units that a function or an array has as attributes."""
     found = getattr(one, "attrs", None) or getattr(one, "__dict__", {})
     return {key: str(found[key]) for key in ("long_name", "units") if key in found}
+
+
+STEP = 1e-4  # of the deviations, in which the slope is taken
+
+
+class Averages(NamedTuple):
+    """Results, their standard errors, and the degrees of freedom of these, each by name."""
+
+    value: dict[str, np.ndarray]
+    stderr: dict[str, np.ndarray]
+    dof: dict[str, np.ndarray]
+
+
+def averaged(
+    combine: Callable[[Values], Values], runs: Sequence[Sequence[Values]], per_period: int = 1
+) -> Averages:
+    """Return the averages of what was seen in independent runs, in each at equal intervals.
+
+    Means are over whole periods of so many looks, if there is one. The error is by blocking in a
+    single run, else from the scatter over runs. Looks that are NaN do not count.
+    """
+    with np.errstate(divide="ignore", invalid="ignore"), warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)  # means of nothing are NaN
+        series = [_stacked(run, per_period) for run in runs]
+        own = [{name: np.nanmean(x, axis=0) for name, x in one.items()} for one in series]
+        if len(runs) > 1:
+            series = [{name: np.array([one[name] for one in own]) for name in own[0]}]
+        mean = {name: np.nanmean(x, axis=0) for name, x in series[0].items()}
+        found = combine(mean)
+        slopes = list(_slopes(combine, mean, series[0]))
+    value = {name: np.asarray(one, float) for name, one in found.items()}
+    error = _scatter if len(runs) > 1 else _blocked
+    errors = {name: error(np.array([one[name] for one in slopes])) for name in value}
+    return Averages(value, *({n: errors[n][k] for n in value} for k in range(2)))
+
+
+def _stacked(looks: Sequence[Values], per_period: int) -> dict[str, np.ndarray]:
+    """Return arrays (periods, ...) by name."""
+    stacks = {name: np.array([look[name] for look in looks], float) for name in looks[0]}
+    if per_period == 1 or len(looks) < per_period:
+        return stacks
+    turned = {name: np.moveaxis(x, 0, -1) for name, x in stacks.items()}
+    return {name: np.moveaxis(period_means(x, per_period), -1, 0) for name, x in turned.items()}
+
+
+def _slopes(combine, mean, series) -> Iterator[Values]:
+    """Generate the linear part of f(x_k) - f(mean) for each k."""
+    for k in range(len(next(iter(series.values())))):
+        ends = [
+            combine({name: m + sign * STEP * (series[name][k] - m) for name, m in mean.items()})
+            for sign in (1, -1)
+        ]
+        yield {name: (ends[0][name] - ends[1][name]) / (2.0 * STEP) for name in ends[0]}
+
+
+def _blocked(series: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return error and degrees of freedom of the means of a series (samples, ...)."""
+    columns = series.reshape(len(series), -1).T
+    found = [blocking(column[np.isfinite(column)]) for column in columns]
+    pairs = [(one.stderr, degrees_of_freedom(one.blocks)) for one in found]
+    return tuple(np.array(pairs).T.reshape(2, *series.shape[1:]))
+
+
+def _scatter(runs: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return error and degrees of freedom of the means of independent numbers (runs, ...)."""
+    there = np.isfinite(runs)
+    count = there.sum(axis=0)
+    square = np.where(there, runs, 0.0) ** 2
+    with np.errstate(divide="ignore", invalid="ignore"):
+        stderr = np.sqrt(square.sum(axis=0) / (count * (count - 1.0)))
+    return np.where(count > 1, stderr, math.nan), np.maximum(count - 1.0, 0.0)

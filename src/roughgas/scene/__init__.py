@@ -7,12 +7,14 @@ from roughgas.scene.scene import (
     Scene,
     build,
     closed_axes,
+    draw_bodies,
     elastic,
+    for_theory,
+    given_bodies,
     has_sides,
     moves_along,
     shear_rate,
 )
-from roughgas.scene.species import draw_bodies, for_theory, given_bodies
 
 __all__ = [
     "DIAMETER",

@@ -1,22 +1,25 @@
-"""A scene: box, material, effects and walls, built from settings.
+"""A scene: a box, the material of its particles, and the effects that act, built from settings.
 
-The walls of a scene: which go together, and what they mean for its gas.
-
-What is simulated: a box, its particles' material, and the effects that act. Computes nothing.
+Which walls go together, and what each particle of a mixture is, drawn with a generator of its own:
+that of positions and velocities is left as it is, so that particles of several species that are
+alike in all things begin as those of one.
 
 Units: particle radius a = particle mass m = time unit T = 1.
 """
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from roughgas import theory
 from roughgas.base import RESTITUTION, ROUGHNESS, InputError, NeedsError
 from roughgas.effects import KINDS, Effects
 from roughgas.effects.settings import SceneContext, make
-from roughgas.effects.species import mixture_of
+from roughgas.effects.species import Mixture, mixture_of
 from roughgas.kernel import hooks
+from roughgas.kernel.state import Bodies
 
 OPPOSITE = (("left_wall", "right_wall"), ("front_wall", "back_wall"), ("bottom_wall", "lid"))
 PAIRS = ("walls", "shaken_walls")
@@ -220,3 +223,72 @@ def _check_company(particles, effects):
         raise InputError("particles", 1, "be at least 2 where there is no floor to meet")
     if particles == 1 and effects.thermostat is not None:
         raise InputError("particles", 1, "be at least 2 where a thermostat kicks pairs")
+
+
+def draw_bodies(
+    scene: Scene, experiment: Mapping[str, Any], rng: np.random.Generator
+) -> Bodies | None:
+    """Return what each particle is, in random order; None where all are alike.
+
+    Raises InputError where the box is too small for the largest.
+    """
+    mixture = mixture_of(experiment)
+    if mixture is None:
+        return None
+    (own,) = rng.spawn(1)
+    radius = np.concatenate([kind.radii(own) for kind in mixture.kinds])
+    species = np.repeat(np.arange(len(mixture.kinds)), [kind.number for kind in mixture.kinds])
+    order = own.permutation(len(species))
+    return _bodies(mixture, scene, experiment, radius[order], species[order])
+
+
+def for_theory(scene: Scene, experiment: Mapping[str, Any]) -> theory.Mixture | None:
+    """Return the species as theory takes them; None where all particles are alike."""
+    if not experiment.get("species"):
+        return None
+    friction, spin = scene.effects.friction, scene.effects.spin
+    return theory.mixture(
+        experiment["species"],
+        scene.restitution,
+        scene.roughness,
+        len(scene.box),
+        None if spin is None else spin.inertia,
+        math.inf if friction is None else friction.mu,
+        experiment.get("species_pairs") or (),
+    )
+
+
+def given_bodies(
+    scene: Scene, experiment: Mapping[str, Any], radius: np.ndarray, species: np.ndarray
+) -> Bodies:
+    """Return the same of particles with these radii (N,), in a, and species (N,), from 0.
+
+    Raises InputError where these are not the species of the experiment.
+    """
+    mixture = mixture_of(experiment)
+    assert mixture is not None
+    numbers = [kind.number for kind in mixture.kinds]
+    found = np.bincount(np.maximum(species, 0), minlength=len(numbers)).tolist()
+    if found != numbers or species.min() < 0:
+        raise InputError("initial.species", f"{found} particles of each", f"be {numbers} of each")
+    if not (np.isfinite(radius) & (radius > 0.0)).all():
+        raise InputError("initial.radius", radius.min(), "be positive")
+    return _bodies(mixture, scene, experiment, radius, species)
+
+
+def _bodies(mixture: Mixture, scene, experiment, radius, species):
+    sides = [None if side == "open" else float(side) for side in experiment["box"]]
+    check_box(sides, scene.effects, float(radius.max()))
+    effects = scene.effects
+    q = 1.0 if effects.spin is None else effects.spin.inertia
+    mass, inertia = radius ** len(scene.box), np.full(len(radius), q)
+    for k, kind in enumerate(mixture.kinds):
+        here = species == k
+        mass[here] = mass[here] if kind.mass is None else kind.mass
+        inertia[here] = q if kind.inertia is None else kind.inertia
+    common = {
+        "restitution": scene.restitution,
+        "roughness": scene.roughness,
+        "mu": np.nan if effects.friction is None else effects.friction.mu,
+    }
+    return Bodies(radius, mass, inertia, species, radius.max(keepdims=True), mixture.table(common))

@@ -11,9 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from roughgas.base import InputError
+from roughgas.base import InputError, from_json
 from roughgas.base.files import PACKAGE
-from roughgas.base.formatting import from_json
 from roughgas.config.reading import read_yaml
 from roughgas.data.netcdf import POINT, attributes_of, opened, require
 from roughgas.data.point import read_point

@@ -20,11 +20,7 @@ if TYPE_CHECKING:
 
 
 def draw(
-    name: str,
-    inputs: Iterable[str | Path],
-    *,
-    output: Iterable[str | Path],
-    slide: bool = False,
+    name: str, inputs: Iterable[str | Path], *, output: Iterable[str | Path], slide: bool = False
 ) -> None:
     """Draw the figure `name` of the paper from the reduced datasets at `inputs`, in any order.
 
@@ -34,9 +30,10 @@ def draw(
     """
     if name not in (known := figures_of("paper")):
         raise not_one_of("figure", name, known)
-    module = import_module(f"roughgas.show.figures.{name}")
+    # by name: figures of studies, which are drawn here, too, do not depend on those of the paper
+    paper = import_module("roughgas.show.figures.paper")
     datasets = {data.attrs["experiment"]: data for data in map(read_reduced, inputs)}
-    _draw(name, module.draw, FIGURES[name].shows, datasets, output, slide)
+    _draw(name, getattr(paper, name), FIGURES[name].shows, datasets, output, slide)
 
 
 def draw_of_study(
@@ -122,10 +119,10 @@ def plot(
 
 
 def _plot_point(path: str | Path, outputs: Iterable[str | Path], *axes: Any) -> list[str]:
-    from roughgas.show.figures import timeline
+    from roughgas.show.figures import sweep
 
     if any(axes):
         raise InputError("dataset", path, "be a reduced one for --over, --r and --beta")
     point = read_point(path)
-    style.draw(lambda: timeline.draw(point, ratio_of_point(point)), outputs)
+    style.draw(lambda: sweep.draw_point(point, ratio_of_point(point)), outputs)
     return []

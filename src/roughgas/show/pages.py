@@ -1,4 +1,4 @@
-"""Pages of HTML that load nothing: documents, and the report's front page.
+"""Pages of HTML that load nothing: documents, the report's front page, and the page of a study.
 
 Templates (Jinja2), style sheets and programs are in page/ and living/. Whatever text gets into a
 page from a file stays text, and its content security policy lets it run no program but its own.
@@ -7,15 +7,16 @@ page from a file stays text, and its content security policy lets it run no prog
 import base64
 import hashlib
 import json
-from collections.abc import Iterable
+import re
+from collections.abc import Iterable, Sequence
 from html import escape
 from itertools import takewhile
 from pathlib import Path
 from typing import Any
 from urllib.parse import unquote
 
-from roughgas.base import InputError, not_one_of
-from roughgas.base.files import write_text
+from roughgas.base import InputError, markdown, not_one_of
+from roughgas.base.files import readme, write_text
 from roughgas.show.catalogue import FIGURES
 
 HERE = Path(__file__).parent
@@ -27,6 +28,12 @@ POLICY = {
     "base-uri": "'none'",
     "form-action": "'none'",
 }
+SHOWN = re.compile(r"!\[[^]]*\]\([^)]*?([\w.]+)\.png\)")
+LINK = re.compile(r"(?<!!)\[([^]]*)\]\((?!https?:)[^)]*\)")
+COLUMNS = ("experiment", "parameter", "value", "r", "beta", "n_seeds", "R", "R_stderr", "R_theory")
+MOST = 400
+"""Rows of a table on a page; the file beside it has all."""
+STEADY = {1: "yes", 0: "no", -1: "not known"}
 
 
 def write_page(
@@ -179,3 +186,65 @@ def _figure(path: Path, texts: dict[str, str]) -> dict[str, Any]:
         "alt": f"{title}. {' '.join(text.partition('**')[0].split())}",
         "caption": markup(markdown_as_html(text.encode())),
     }
+
+
+# ---------------------------------------------------------------- studies
+
+
+def captions(folder: str | Path, figures: Sequence[str]) -> dict[str, str]:
+    """Return what stands after each picture in README.md of the study in `folder`, up to the next
+    picture or heading, by the figure; plain text, which may be bold."""
+    text = readme(folder)
+    parts = SHOWN.split(text)
+    names = _in_place(parts[1::2], figures)
+    pairs = zip(names, parts[2::2], strict=True)
+    return {name: re.split(r"^#", after, flags=re.M)[0].strip() for name, after in pairs}
+
+
+def write_study(
+    folder: str | Path,
+    *,
+    title: str,
+    figures: Sequence[str],
+    output: str | Path,
+    table: str | Path = "",
+    found: str | Path = "",
+    claims: str | Path = "",
+) -> None:
+    """Write a page of HTML that loads nothing: README.md with the pictures `figures` in it, those
+    that it does not show after it, verdicts, the table that its tasks have `found`, and that of R.
+    """
+    text = readme(folder) or f"# {title}\n"
+    pictures = {Path(one).stem: f"![{Path(one).stem}](<{one}>)" for one in figures}
+    text = LINK.sub(r"\1", text)  # of the project, which is not beside the page
+    parts = SHOWN.split(text)
+    parts[1::2] = [pictures.pop(one, "") for one in _in_place(parts[1::2], [*pictures])]
+    whole = ["".join(parts), *pictures.values()]
+    for path in (claims, found):
+        if path:
+            whole.append(re.sub(r"^#", "##", Path(path).read_text("utf-8"), flags=re.M))
+    if table:
+        whole.append(_table_of(Path(table)))
+    body = markup(markdown_as_html("\n\n".join(whole).encode(), Path()))
+    shown = {"title": title, "body": body}
+    write_page(output, "page/document.html", ["page/document.css"], **shown)
+
+
+def _in_place(named: Sequence[str], figures: Sequence[str]) -> list[str]:
+    """Return which figures stand where a README names some: where it names those of another study,
+    of which this one is a copy, they stand in their order."""
+    left = [one for one in figures if one not in named]
+    return [one if one in figures else left.pop(0) if left else one for one in named]
+
+
+def _table_of(path: Path) -> str:
+    """Return R at each point as Markdown."""
+    import pandas as pd
+
+    every = pd.read_csv(path)
+    columns = [name for name in COLUMNS if name in every and every[name].notna().any()]
+    steady = every.equilibrated.map(STEADY)
+    rows = every[columns].assign(steady=steady).head(MOST).to_numpy().tolist()
+    shown = [[f"{one:.5g}" if isinstance(one, float) else one for one in row] for row in rows]
+    more = f"\n{len(every) - MOST} more rows are in {path.name}.\n" if len(every) > MOST else ""
+    return f"## R at every point\n\n{markdown([*columns, 'steady'], shown)}{more}"

@@ -12,13 +12,14 @@ from roughgas.scene import Scene, for_theory, packing
 from roughgas.simulation.energies import (
     Columns,
     Energies,
+    EnergyBalance,
     cooling_species,
     energies_of_each,
+    energy_exchange,
     ratio,
     ratio_of_means,
     restored,
 )
-from roughgas.simulation.energy_balance import EnergyBalance, energy_exchange
 from roughgas.simulation.gas import Gas, count
 from roughgas.simulation.recorder import KEY, Recorder, until_met
 from roughgas.simulation.restart import Initial

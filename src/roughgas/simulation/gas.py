@@ -13,12 +13,18 @@ from typing import Any, Protocol, Self
 import numpy as np
 
 from roughgas.base import NeedsError
-from roughgas.data import checkpoint
 from roughgas.kernel.record import Sampling
 from roughgas.kernel.state import COLLISIONS, EXPONENT, LAST_FIRST, LAST_SECOND, State
 from roughgas.scene import Scene, elastic, initial_state
-from roughgas.simulation.energies import SUMS, Columns, Energies, energies_of
-from roughgas.simulation.energy_balance import EnergyBalance, balance
+from roughgas.simulation import restart
+from roughgas.simulation.energies import (
+    SUMS,
+    Columns,
+    Energies,
+    EnergyBalance,
+    balance,
+    energies_of,
+)
 from roughgas.simulation.recorder import Recorder, most_in, now
 from roughgas.simulation.restart import Initial, positions_and_velocities, state_from
 
@@ -244,7 +250,7 @@ class Gas:
         or not at all. Raises OSError.
         """
         costs = {f"costs.{name}": np.array(getattr(self.recorder, name)) for name in COSTS}
-        checkpoint.save(path, owner, self.state, {**record, **costs})
+        restart.save(path, owner, self.state, {**record, **costs})
 
     def restore(self, path: str | Path, owner: str) -> dict[str, np.ndarray]:
         """Bring a gas that has just started to where it was saved, and return the record.
@@ -252,7 +258,7 @@ class Gas:
         Call `cool` again where it cools. Raises FileNotFoundError if there is no such file, and
         UnusableCheckpoint if it is damaged or of another run; the gas is then as it was.
         """
-        record = checkpoint.restore(path, owner, self.state)
+        record = restart.restore(path, owner, self.state)
         for name in COSTS:
             setattr(self.recorder, name, record.pop(f"costs.{name}").item())
         return record

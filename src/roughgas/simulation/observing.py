@@ -14,8 +14,7 @@ from roughgas.data.variables import ENERGY, POINT, SPEED, TIME, Variable
 from roughgas.kernel.hooks import displacement, present
 from roughgas.kernel.state import EXPONENT
 from roughgas.observables import Frame, System, wanted
-from roughgas.observables.averages import averaged
-from roughgas.observables.plugin import Observable, Values
+from roughgas.observables.plugin import Observable, Values, averaged
 from roughgas.scene import Scene
 from roughgas.simulation import schedule
 from roughgas.simulation.gas import Gas

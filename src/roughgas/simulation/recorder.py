@@ -1,7 +1,6 @@
 """How the kernel is called: in pieces, so that it stops soon; what gases have cost together.
 
-A target for the standard error of R: a run goes on in blocks until the error is that small.
-
+A run with a target for the standard error of R goes on in blocks until the error is that small.
 Blocks are whole: after k of them everything is computed anew from the whole run, which has the bits
 of one that was asked for k times the length, or k times the replicas, from the start. To stop when
 an estimated error is small selects runs whose error is underestimated; looks are therefore few: a
@@ -56,9 +55,7 @@ def samples_of(schedule: Schedule) -> float:
 
 
 def until_met(
-    schedule: Schedule,
-    key: str,
-    run_to: Callable[[Schedule], tuple[dict[str, Any], bool]],
+    schedule: Schedule, key: str, run_to: Callable[[Schedule], tuple[dict[str, Any], bool]]
 ) -> dict[str, Any]:
     """Return the variables of a run that has been prolonged, in `key`, until its target is met.
 

@@ -12,15 +12,16 @@ from roughgas.kernel.hooks import present
 from roughgas.scene import Scene, moves_along
 from roughgas.simulation.energies import (
     Columns,
+    EnergyBalance,
     contact_averages,
     driven_species,
     energies,
     energies_of_each,
+    energy_exchange,
     ratio,
     ratio_of_means,
     shear_rates,
 )
-from roughgas.simulation.energy_balance import EnergyBalance, energy_exchange
 from roughgas.simulation.gas import Gas, joined
 from roughgas.simulation.recorder import KEY, Recorder, until_met
 from roughgas.simulation.restart import Initial

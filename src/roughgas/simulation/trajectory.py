@@ -1,11 +1,7 @@
-"""Snapshots of a gas, and the trajectory that they make.
-
-A point's trajectory, frame by frame: where its particles are, and how far they have turned.
+"""A point's trajectory, frame by frame: where its particles are, and how far they have turned.
 
 It is that of run_point with the same settings and seed; of a cooling gas, that of the first
 replica. Units: particle radius a = mass m = time unit T = 1.
-
-The trajectory of a point as variables of a dataset: all particles at chosen times.
 """
 
 import math
@@ -22,7 +18,7 @@ from roughgas.simulation import cooling, schedule
 from roughgas.simulation.energies import Energies, ratio, restored, species_names
 from roughgas.simulation.gas import Gas
 from roughgas.simulation.restart import Initial, check_initial, in_order, positions_and_velocities
-from roughgas.theory.transport import collision_frequency
+from roughgas.theory.closed_forms import collision_frequency
 
 STRIDES = 200  # steps are of one collision in the gas for each so many particles
 PATIENCE = 1_000_000  # particles times T that a movie waits for its gas to be stationary, at most

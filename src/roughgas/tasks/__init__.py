@@ -18,30 +18,9 @@ import numpy as np
 import xarray as xr
 import yaml
 
-from roughgas.base import CollapseError, InputError, shown
-from roughgas.base.formatting import markdown
+from roughgas.base import CollapseError, InputError, markdown, shown
 from roughgas.data.variables import Variable, described
 from roughgas.statistics.errors import Estimate
-
-__all__ = [
-    "CollapseError",
-    "Estimate",
-    "InputError",
-    "along",
-    "cell",
-    "check_alike",
-    "dataset",
-    "estimate",
-    "flat",
-    "label",
-    "markdown",
-    "mean",
-    "over",
-    "stacked",
-    "stream",
-    "timed",
-    "variables",
-]
 
 WORD, COUNT = "word", "count"
 

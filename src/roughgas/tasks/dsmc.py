@@ -17,8 +17,7 @@ import numpy as np
 
 from roughgas.base import InputError
 from roughgas.effects import Effects
-from roughgas.effects.friction import Friction
-from roughgas.effects.spin import Spin
+from roughgas.effects.contacts import Friction, Spin
 from roughgas.kernel.contact import response
 from roughgas.kernel.jit import compiled, entry, unrolled
 from roughgas.kernel.particles import spin_of, spin_sum, turn_spin

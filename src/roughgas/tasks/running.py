@@ -10,7 +10,8 @@ import hashlib
 import inspect
 import json
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -20,9 +21,9 @@ from roughgas.base import InputError, not_one_of, shown
 from roughgas.base.files import code_in, module_of, write_text
 from roughgas.config import PAPER
 from roughgas.config.study_folders import tasks_from_text
-from roughgas.data.checkpoint import discard
 from roughgas.data.netcdf import TASK, Content, content_of, read_groups, read_netcdf, write_netcdf
 from roughgas.simulation.progress import Bar
+from roughgas.simulation.restart import discard
 
 NAME = re.compile(r"[\w+.-]+", re.ASCII)  # a part of a path, and of a command
 
@@ -68,23 +69,35 @@ def run_task(
     run = module_of(folder, "tasks").run
     digest = hashlib.sha256(f"{code_in(folder, 'tasks')} {task} {settings}".encode())
     checkpoint = Checkpoint(Path(f"{output}.checkpoint.npz"), digest.hexdigest())
-    wanted = "checkpoint" in inspect.signature(run).parameters
-    offered = {"checkpoint": checkpoint} if wanted else {}
+    if "checkpoint" in inspect.signature(run).parameters:
+        run = partial(run, checkpoint=checkpoint)
+    about = {"study": Path(folder).name, "task": task, "scale": scale, "settings_json": settings}
+    try:
+        write_found(run, found, about, output)
+    except KeyboardInterrupt:
+        if checkpoint.path.exists():
+            legal = f"the same command goes on from {checkpoint.path}"
+            raise KeyboardInterrupt(legal) from None
+        raise
+    discard(checkpoint.path)
+
+
+def write_found(
+    run: Callable[..., xr.Dataset],
+    found: Mapping[str, Any],
+    about: Mapping[str, Any],
+    output: str | Path,
+) -> None:
+    """Run the task that the attributes `about` name, with the settings `found`, and write what it
+    finds."""
+    task = about["task"]
     with Bar(task, None) as bar:
 
         def progress(done: float, total: float) -> None:
             bar.reach(done, total=total)
 
-        try:
-            data = run(task, found["study"], found["experiments"], progress, **offered)
-        except KeyboardInterrupt:
-            if checkpoint.path.exists():
-                legal = f"the same command goes on from {checkpoint.path}"
-                raise KeyboardInterrupt(legal) from None
-            raise
-    about = {"study": Path(folder).name, "task": task, "scale": scale, "settings_json": settings}
+        data = run(task, found["study"], found["experiments"], progress)
     write_netcdf(output, content_of(data.assign_attrs(about)))
-    discard(checkpoint.path)
 
 
 def combine(
@@ -102,21 +115,28 @@ def combine(
             raise InputError(f"study of {path}", data.attrs["study"], f"be {name}")
         parts[data.attrs["task"]] = data
     results = module_of(folder, "results")
-    data = results.combine(parts, _settings(folder, parts))
-    scales = {one.attrs["scale"] for one in parts.values()}
-    data = data.assign_attrs(title=name, scale=", ".join(sorted(scales)))
+    data = combined(name, parts, partial(names, folder), results.combine)
     write_netcdf(output, Content({}, {"title": "Studies"}), {name: content_of(data)})
     write_text(table, results.table(read_groups(output)[name]))
 
 
-def _settings(folder: str, parts: Mapping[str, xr.Dataset]) -> dict[str, Any]:
-    """Return the settings that all tasks have, each of which has to be there."""
-    name = Path(folder).name
+def combined(
+    name: str,
+    parts: Mapping[str, xr.Dataset],
+    tasks: Callable[[Mapping[str, Any]], Iterable[str]],
+    combine: Callable[..., xr.Dataset],
+) -> xr.Dataset:
+    """Return what `combine` makes of what all tasks of a study have found, by name.
+
+    Raises InputError where some of the `tasks` are missing or come from different settings.
+    """
     texts = {data.attrs["settings_json"] for data in parts.values()}
     if len(texts) > 1:
         raise InputError(f"settings of {name}", f"{len(texts)} different ones", "be the same")
     settings: dict[str, Any] = json.loads(texts.pop())["study"]
-    missing = set(names(folder, settings)) - set(parts)
+    missing = set(tasks(settings)) - set(parts)
     if missing:
         raise InputError(f"tasks of {name}", f"without {sorted(missing)[0]}", "be complete")
-    return settings
+    scales = {data.attrs["scale"] for data in parts.values()}
+    found = combine(parts, settings)
+    return found.assign_attrs(title=name, scale=", ".join(sorted(scales)))

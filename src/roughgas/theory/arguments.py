@@ -88,10 +88,7 @@ def shares(first, second, neither) -> tuple[np.ndarray, np.ndarray]:
     total = first + second
     some = total > 0
     divisor = np.where(some, total, 1)
-    return (
-        np.where(some, first / divisor, 1 - neither),
-        np.where(some, second / divisor, neither),
-    )
+    return (np.where(some, first / divisor, 1 - neither), np.where(some, second / divisor, neither))
 
 
 def positive_root(square, linear, constant) -> tuple[np.ndarray, np.ndarray]:

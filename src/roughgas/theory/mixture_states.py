@@ -1,15 +1,14 @@
 """Mixtures: their structure, and stationary temperatures.
 
-How dense mixtures of disks and spheres are packed: contact values and the equation of state.
+How dense mixtures of disks and spheres are packed: contact values and the equation of state. The
+packing phi is the fraction of the area or volume that particles fill; at 0 a gas is dilute. M_k is
+the mean of a^k over the particles.
 
-The packing phi is the fraction of the area or volume that particles fill; at 0 a gas is dilute.
-M_k is the mean of a^k over the particles.
-
-Stationary temperatures of a mixture: cooling freely, driven, and Lun's formula for mixtures.
-
-All rates are those of `mixtures`, at a packing that matters through the contact values alone.
-Temperatures come in units of their mean over particles, <T_tr> = 1, unless said otherwise. A gas
-whose contacts never change the spin of a species has T_rot = 0 there, as it starts without spin.
+Stationary temperatures are those of a gas that cools or is driven, or by Lun's formula for
+mixtures. All rates are those of `mixtures`, at a packing that matters through the contact values
+alone. Temperatures come in units of their mean over particles, <T_tr> = 1, unless said otherwise. A
+gas whose contacts never change the spin of a species has T_rot = 0 there, as it starts without
+spin.
 """
 
 from collections.abc import Callable
@@ -18,6 +17,7 @@ import numpy as np
 
 from roughgas.base import InputError, Interval
 from roughgas.theory.arguments import check, check_dimension
+from roughgas.theory.closed_forms import CLOSE_PACKING, VOLUME
 from roughgas.theory.mixtures import (
     SURFACE,
     Mixture,
@@ -26,7 +26,6 @@ from roughgas.theory.mixtures import (
     mixture,
     rate_matrix,
 )
-from roughgas.theory.transport import CLOSE_PACKING, VOLUME
 
 
 def mixture_contact_values(gas: Mixture, packing) -> np.ndarray:

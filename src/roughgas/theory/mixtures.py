@@ -1,8 +1,4 @@
-"""Mixtures: their composition, collision frequencies and rate equations.
-
-What a mixture consists of: species as in config.yaml, for theory.
-
-Mixtures of rough disks or spheres: composition, collision frequencies and rate equations.
+"""Mixtures of rough disks or spheres: composition, collision frequencies and rate equations.
 
 Species i has the number fraction x_i, radius a_i, mass m_i, inertia q_i = I_i/(m_i a_i^2), and the
 temperatures T_i = m_i <v^2>/D and tau_i = q_i m_i a_i^2 <omega^2>/(2D-3). A contact of i and j has

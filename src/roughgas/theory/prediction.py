@@ -1,12 +1,8 @@
-"""What theory predicts for a dataset, of one species or of a mixture.
+"""What theory predicts for a dataset: which equation it obeys, and what that says of R.
 
-Which equation a dataset obeys, and what it says of R.
-
-What theory says of R of a mixture, from the attributes of its dataset.
-
-`species_json` among them holds `species` and `species_pairs`, as in config.yaml, and the `volume`
-of a periodic box. Where a quantity of a species is swept, its values stand among the attributes
-under its name.
+Of a mixture, `species_json` among its attributes holds `species` and `species_pairs`, as in
+config.yaml, and the `volume` of a periodic box. Where a quantity of a species is swept, its values
+stand among the attributes under its name.
 """
 
 import json
@@ -16,6 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from roughgas.theory.closed_forms import VOLUME
 from roughgas.theory.mixture_states import (
     kick_power,
     mixture_cooling,
@@ -23,7 +20,6 @@ from roughgas.theory.mixture_states import (
     mixture_rotation,
 )
 from roughgas.theory.mixtures import SPECIES, Mixture, Temperatures, mixture
-from roughgas.theory.transport import VOLUME
 
 
 class Equation(NamedTuple):

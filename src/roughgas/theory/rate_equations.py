@@ -1,14 +1,10 @@
 """Energies that contacts exchange, the rate equations of the two temperatures, and relaxation.
 
-Energies that a collision moves between translation and rotation, and averages for them.
-
 v_n and v_t are the normal and tangential parts of v1 - v2 and v_r = -a (omega1 + omega2) x n is the
 tangential velocity due to rotation, n pointing from particle 2 to particle 1. Squared velocities
 are in a^2/T^2, energies in m a^2/T^2. Source: McNamara & Luding (1998).
 
-Rate equations for the two granular temperatures, and where they are stationary.
-
-They are McNamara & Luding (1998), Eqs. (deltaEt) and (deltaEr), averaged over the collisions of a
+The rate equations are Eqs. (deltaEt) and (deltaEr) there, averaged over the collisions of a
 Maxwellian gas with eta = q (1 + beta)/[2 (1 + q)], nu collisions per particle per time:
 
     dT_tr/dt  = (nu/D) {-[(1-r^2) + 2(D-1) eta (1-eta)] T_tr + 2(D-1) (eta^2/q) T_rot} + drive
@@ -22,13 +18,11 @@ translational, 1 rotational driving (R. Cafiero, S. Luding & H. J. Herrmann, Eur
 854, 2002), and None no drive: free cooling. A. Megias & A. Santos, Front. Phys. 10, 971671 (2022)
 drive disks so with any share.
 
-How the two temperatures approach their stationary ratio, and decay from there on: Haff's law.
-
-The rate equations are linear in (T_tr, T_rot) when time is counted in collisions per particle, n,
-so their solution is exact: the part of the initial state off the stationary ratio fades as
-exp(-Gamma n), Gamma the difference of the two eigenvalues. `spin_share` describes the drive as in
-rate_equations. A drive is taken to replace at each moment the energy that collisions dissipate.
-With one of constant power the energy may settle more slowly than theta, at the same stationary R.
+The equations are linear in (T_tr, T_rot) when time is counted in collisions per particle, n, so
+their solution is exact: the part of the initial state off the stationary ratio fades as
+exp(-Gamma n), Gamma the difference of the two eigenvalues; from there on, Haff's law. A drive is
+taken to replace at each moment the energy that collisions dissipate. With one of constant power the
+energy may settle more slowly than theta, at the same stationary R.
 """
 
 from typing import NamedTuple

@@ -4,8 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roughgas.accuracy.soft_spheres import new_gas, springs
-from roughgas.accuracy.soft_spheres.stepping import COLUMNS, step
+from roughgas.accuracy.soft_spheres import COLUMNS, new_gas, springs, step
 
 INERTIA = {2: 0.5, 3: 0.4}
 BOX = 8.0

@@ -87,7 +87,7 @@ def test_nothing_happens_to_spheres_that_pass():
     pair = shot(1.999)._replace(velocity=np.array([[-1.0, 0.0], [0.0, 0.0]]))
     forces = springs(0.9, 0.0, 0.5, 0.01)
     gas, spheres = new_gas(*pair, (8.0, 8.0), forces)
-    from roughgas.accuracy.soft_spheres.stepping import step
+    from roughgas.accuracy.soft_spheres import step
 
     step(gas, spheres, 0.001, 500, 0.0, np.empty((1, 3)))
     assert np.array_equal(gas.velocity, pair.velocity) and gas.counts[1] == 0

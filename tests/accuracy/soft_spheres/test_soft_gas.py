@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from brute_force import begin, settings
 
-from roughgas.accuracy.soft_spheres import BUILDS, PAIRS, new_gas, springs
-from roughgas.accuracy.soft_spheres.stepping import COLUMNS, step
+from roughgas.accuracy.soft_spheres import BUILDS, COLUMNS, PAIRS, new_gas, springs, step
 from roughgas.statistics.errors import blocking_stderr
 from roughgas.theory import collision_frequency
 

@@ -1,5 +1,3 @@
-from importlib import import_module
-
 import numpy as np
 import pytest
 from matplotlib.image import imread
@@ -9,7 +7,7 @@ from tests.show.figures.legibility import faults
 
 from roughgas.base import InputError
 from roughgas.show.catalogue import figures_of
-from roughgas.show.figures import fig1a, fig1b, fig2b
+from roughgas.show.figures import paper
 from roughgas.show.gallery import draw, draw_of_study
 from roughgas.theory.prediction import predicted_ratio
 
@@ -132,7 +130,7 @@ def test_a_figure_is_drawn(name, tmp_path):
 
 def drawn(name):
     if name in figures_of("paper"):
-        return import_module(f"roughgas.show.figures.{name}").draw(*DATA[name]())
+        return getattr(paper, name)(*DATA[name]())
     study, line, suffix = name.partition("_")
     return getattr(part(study, "figure"), f"draw{line}{suffix}")(*DATA[name]())
 
@@ -167,7 +165,7 @@ def test_the_same_data_in_any_order_give_the_same_bytes(tmp_path):
 
 def test_points_are_the_data_and_residuals_are_data_minus_theory():
     data = reduced("vibrated", lambda r, beta: 0.03 + 0 * r * beta)
-    main, residual = fig1a.draw(data).axes
+    main, residual = paper.fig1a(data).axes
     points = [column for column in bars(main) if len(column)]
     assert len(points) == 3
     np.testing.assert_allclose(points[0][:, 1], data.R.sel(r=0.99))
@@ -179,7 +177,7 @@ def test_points_are_the_data_and_residuals_are_data_minus_theory():
 
 
 def test_theory_of_forced_gases_is_one_smooth_line():
-    main, _ = fig1a.draw(reduced("vibrated")).axes
+    main, _ = paper.fig1a(reduced("vibrated")).axes
     lines = [line for line in main.lines if len(line.get_xdata()) > 200]
     assert len(lines) == 1
     beta, ratio = lines[0].get_data()
@@ -190,7 +188,7 @@ def test_theory_of_forced_gases_is_one_smooth_line():
 def test_points_whose_steadiness_is_not_known_are_half_filled_and_explained():
     data = reduced("vibrated")
     data["equilibrated"][0, :3] = -1.0
-    main, _ = fig1a.draw(data).axes
+    main, _ = paper.fig1a(data).axes
     assert any("half: not known" in word for word in words(main))
     assert "open: not steady" not in words(main)
     half = [box[0] for box in main.containers if box[0].get_fillstyle() == "bottom"]
@@ -199,16 +197,16 @@ def test_points_whose_steadiness_is_not_known_are_half_filled_and_explained():
 
 def test_series_on_which_the_contact_time_model_acted_are_marked_and_explained():
     data = reduced("vibrated", r=(0.6, 0.8, 0.9, 0.99))
-    assert "contact-time model acted" not in words(fig1a.draw(data).axes[0])
+    assert "contact-time model acted" not in words(paper.fig1a(data).axes[0])
     data["contact_time_fraction"][0, 3] = 1e-3
-    labels = words(fig1a.draw(data).axes[0])
+    labels = words(paper.fig1a(data).axes[0])
     assert "contact-time model acted" in labels
     assert [label for label in labels if "†" in label] == ["$r = 0.6$†"]
 
 
 def test_words_say_how_many_residuals_lie_beyond_the_scale():
     beds = walls()
-    main, residual = fig1b.draw(*beds).axes
+    main, residual = paper.fig1b(*beds).axes
     high = residual.get_ylim()[1]
     away = beds[1].R.sel(r=0.9) - predicted_ratio(beds[1].attrs, 0.9, beds[1].beta.values)
     assert high < 0.1
@@ -217,7 +215,7 @@ def test_words_say_how_many_residuals_lie_beyond_the_scale():
     )
     assert {"no side walls", "Lun's formula"} <= set(words(main))
     beds[1]["R"][0] = [*[np.nan] * (len(BETA) - 2), 0.0, 0.0, 1.0]
-    _, residual = fig1b.draw(*beds).axes
+    _, residual = paper.fig1b(*beds).axes
     assert residual.get_title(loc="right") == "1 point above, 2 points below this scale"
 
 
@@ -225,7 +223,7 @@ def test_places_without_data_are_left_out():
     data = reduced("cooling")
     data["R"][:, :4] = np.nan
     data["R"][0] = np.nan
-    main, _ = fig2b.draw(data).axes
+    main, _ = paper.fig2b(data).axes
     assert sum(len(column) for column in bars(main)) == 2 * (len(BETA) - 4)
 
 
@@ -250,7 +248,7 @@ def test_the_average_over_collisions_has_a_row_of_residuals():
     data = reduced("vibrated", lambda r, beta: 0.03 + 0 * r * beta)
     data["R_ratio_of_means"] = data.R - 0.01
     data = data.assign(R_collisional=data.R - 0.03, R_collisional_stderr=2 * data.R_stderr)
-    main, *rows = fig1a.draw(data).axes
+    main, *rows = paper.fig1a(data).axes
     assert [row.get_title(loc="left") for row in rows] == [
         "mean of $R(t)$",
         "averaged over collisions, finer scale",

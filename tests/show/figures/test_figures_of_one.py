@@ -12,7 +12,7 @@ from tests.show.figures.legibility import faults
 from roughgas.base import InputError
 from roughgas.cli import main
 from roughgas.data.point import read_point
-from roughgas.show.figures import sweep, timeline
+from roughgas.show.figures import sweep
 from roughgas.theory.prediction import ratio_of_point
 from show.page.conftest import write
 
@@ -36,18 +36,18 @@ def drawn(axes):
 def test_what_is_drawn_is_the_point(points, name):
     point = points[name]
     theory = ratio_of_point(point) if "R" in point else math.nan
-    assert faults(lambda: timeline.draw(point, theory)) == []
-    *ratio, energies = timeline.draw(point, theory).axes
+    assert faults(lambda: sweep.draw_point(point, theory)) == []
+    *ratio, energies = sweep.draw_point(point, theory).axes
     cools = "plateau_end" in point
     clock = point.collisions_per_particle if cools else point.time
     assert energies.get_yscale() == ("log" if cools else "linear")
     assert energies.get_xlabel() == ("collisions per particle" if cools else "time / $T$")
     end = float(point.plateau_end) if cools else float(clock[-1])
-    (shaded,) = [one for one in energies.patches if to_hex(one.get_facecolor()) == timeline.WINDOW]
+    (shaded,) = [one for one in energies.patches if to_hex(one.get_facecolor()) == sweep.WINDOW]
     span = shaded.get_x(), shaded.get_x() + shaded.get_width()
     assert span == pytest.approx((float(point.measured_from), end))
     (E_trans,) = [one for one in energies.get_lines() if "trans" in one.get_label()]
-    block = math.ceil(clock.size / timeline.MOST)
+    block = math.ceil(clock.size / sweep.MOST_PLACES)
     assert block == 2
     assert E_trans.get_ydata()[0] == pytest.approx(point.E_trans_series.values[:block].mean())
     assert len(ratio) == ("R" in point)
@@ -64,7 +64,7 @@ def test_what_is_drawn_is_the_point(points, name):
 
 def test_a_verdict_without_evidence_is_said(points):
     unknown = points["cooling"].assign(R_ci95_trusted=-1)
-    (band,) = timeline.draw(unknown, math.nan).axes[0].collections
+    (band,) = sweep.draw_point(unknown, math.nan).axes[0].collections
     assert band.get_label() == "95 % interval, whether to trust it is not known"
 
 

@@ -9,9 +9,8 @@ from schedules import COOLING, STEADY
 
 from roughgas.kernel.state import Bodies
 from roughgas.scene import build
-from roughgas.show import movies as movie
-from roughgas.show.movies import particles
-from roughgas.show.movies.drawing import MovieSubject, picture, spin_scales, write
+from roughgas.show import style as movie
+from roughgas.show.movies import MovieSubject, particles, picture, spin_scales, write
 from roughgas.simulation.trajectory import Snapshot
 
 SIDE = 12.0

@@ -16,9 +16,9 @@ from tests.houses import FOLDERS
 
 from roughgas import config
 from roughgas.data.reduced import read_reduced
-from roughgas.results.table import write_times
+from roughgas.results.products import write_times
 from roughgas.show.catalogue import FIGURES, figures_of
-from roughgas.show.studies import captions
+from roughgas.show.pages import captions
 
 ROOT = Path(__file__).parents[3]
 CAPTIONS = ROOT / "rules" / "captions"

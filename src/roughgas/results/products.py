@@ -1,16 +1,21 @@
-"""From reduced datasets to one table, with a row for each point; and what they took."""
+"""What is made of results for people: tables of points and of run times, and a run as one file, an
+RO-Crate, with its configuration, code, results and figures.
+"""
 
 import csv
+import io
+import json
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from xarray import Dataset
 
+from roughgas.base import InputError, __version__, in_csv, markdown
 from roughgas.base.files import whole_file, write_text
-from roughgas.base.formatting import in_csv, markdown
+from roughgas.config.reading import read_yaml
 from roughgas.data.reduced import GRID, particles_of, read_reduced, third_axis
 from roughgas.statistics.errors import half_width
 from roughgas.theory.prediction import predicted_ratio
@@ -44,7 +49,7 @@ def write_table(inputs: Iterable[str | Path], *, output: str | Path) -> None:
         table.writerow(HEAD)
         for path in inputs:
             for row in rows(read_reduced(path)):
-                table.writerow(map(_cell, row.values()))
+                table.writerow(map(_in_csv, row.values()))
 
 
 def rows(dataset: Dataset, head: Sequence[str] = HEAD) -> Iterator[dict[str, Any]]:
@@ -88,7 +93,7 @@ def why_wide(dataset: Dataset) -> str:
     )
 
 
-def _cell(value: Any) -> str:
+def _in_csv(value: Any) -> str:
     """Return a number with ten digits; an empty cell for NaN."""
     if isinstance(value, str):
         return in_csv(value)
@@ -109,3 +114,62 @@ def write_times(inputs: Iterable[str | Path], *, output: str | Path) -> None:
 def _sums(points: int, seeds: int, collisions: int, seconds: float) -> list[str]:
     counts = [f"{count:,}" for count in (points, seeds, collisions)]
     return [*counts, f"{seconds:,.1f}", f"{collisions / seconds:,.0f}" if seconds > 0 else ""]
+
+
+PROJECT = (
+    *("CHANGELOG.md", "CITATION.cff", "LICENSE", "Makefile", "README.md", "Snakefile"),
+    *("config.yaml", "pyproject.toml", "requirements.lock"),
+)
+FOLDERS = ("profiles", "rules", "src")
+CONFIGURATION = "configuration.json"
+
+
+def project_files(root: str | Path = ".") -> list[str]:
+    """Return the files in `root` that a run of the workflow consists of, relative to it."""
+    found = list(PROJECT)
+    for files in (sorted(Path(root, folder).rglob("*.*")) for folder in FOLDERS):
+        found += [str(path.relative_to(root)) for path in files if path.suffix != ".pyc"]
+    return found
+
+
+def write_crate(
+    products: Sequence[str | Path], output: str | Path, configuration: Mapping[str, Any]
+) -> None:
+    """Write a .zip of the project in this folder and its `products`, paths relative to it.
+
+    Raises InputError if a product, or the project, is elsewhere; OSError as files do.
+    """
+    from rocrate.rocrate import ROCrate
+
+    made = [str(product) for product in products]
+    if missing := [name for name in PROJECT if not Path(name).is_file()]:
+        legal = f"be one with the workflow, such as a clone of it: {missing[0]} is missing"
+        raise InputError("folder", Path.cwd(), legal)
+    for name in made:
+        if Path(name).is_absolute() or ".." in Path(name).parts:
+            raise InputError("product", name, "be in this folder")
+        Path(name).open("rb").close()
+    crate, about = ROCrate(version="1.1"), {"version": __version__, "name": "roughgas"}
+    crate.add_workflow("Snakefile", "Snakefile", main=True, lang="snakemake", properties=about)
+    files = {n: crate.add_file(n, n) for n in [*project_files(), *made] if n != "Snakefile"}
+    settings = io.StringIO(json.dumps(configuration, indent=1, sort_keys=True) + "\n")
+    _describe(crate, crate.add_file(settings, CONFIGURATION), [files[name] for name in made])
+    with whole_file(output) as draft:
+        crate.write_zip(draft)
+
+
+def _describe(crate: Any, configuration: Any, results: Sequence[Any]) -> None:
+    """Add title, authors, licence and paper, as CITATION.cff has them, and the run."""
+    cited, root = read_yaml("CITATION.cff"), crate.root_dataset
+    root["name"] = f"A run of {cited['title']}"
+    root["description"] = "Configuration, code, results and figures of a run of the workflow."
+    root["license"] = f"https://spdx.org/licenses/{cited['license']}"
+    root["author"] = [_author(one) for one in cited["authors"]]
+    root["citation"] = [f"https://doi.org/{work['doi']}" for work in cited["references"]]
+    root["mentions"] = crate.add_action(
+        crate.mainEntity, "#run", [configuration], results, {"name": "the run"}
+    )
+
+
+def _author(author: Mapping[str, str]) -> str:
+    return author.get("name") or f"{author['given-names']} {author['family-names']}"

@@ -1,5 +1,12 @@
-"""A stochastic drive: random kicks to pairs of particles, a chosen share of them into the spins.
+"""What acts on all particles: gravity, shear, and random kicks.
 
+Shear through Lees-Edwards boundaries. The box is periodic; its image above (along the second axis)
+moves along the first axis at the velocity U, the one below at -U. What leaves at the top enters at
+the bottom with U less. This is where the shear does its work: on particles that cross the boundary,
+and in contacts across it, where the impulses on the two partners are opposite but the velocities at
+which they act differ.
+
+The thermostat kicks pairs of particles at random, a chosen share of the energy into the spins.
 Every particle starts a kick once an `interval`, the particles in a random order and evenly spaced,
 and draws a partner from all others. The two get opposite random velocities, so that momentum is
 conserved, and spins of their own. Kicks are spread over time rather than given to all at once,
@@ -16,7 +23,7 @@ same energy whichever they are, of which the lighter one gets the more, m_j/(m_i
 import math
 from typing import NamedTuple
 
-from roughgas.base import InputError
+from roughgas.base import InputError, NeedsError
 from roughgas.effects.settings import Number, register
 from roughgas.kernel.hooks import either, unless_absent
 from roughgas.kernel.jit import jit
@@ -35,7 +42,75 @@ from roughgas.kernel.particles import (
 )
 from roughgas.kernel.vectors import add_scaled, dot, scale, subtract
 
-SETTINGS = {
+GRAVITY_SETTINGS = {"acceleration": Number("g, in a/T^2.", "[1e-06, 1e+06]")}
+
+
+class Gravity(NamedTuple):
+    """Uniform gravity along the last axis, downwards."""
+
+    acceleration: float
+
+
+@jit
+def acceleration(gravity, index, none):
+    return gravity.acceleration
+
+
+register(Gravity, GRAVITY_SETTINGS, acceleration=acceleration)
+
+
+SHEAR_SETTINGS = {
+    "velocity": Number("Velocity U of the images above relative to the box, in a/T.", "(0, 10000]")
+}
+
+
+class Shear(NamedTuple):
+    """Lees-Edwards boundaries: images along the second axis slide along the first."""
+
+    velocity: float
+    length: float  # of the box along the first axis, in a
+
+    @classmethod
+    def from_settings(cls, settings, around):
+        """Return the effect; raise InputError for a box that is not periodic."""
+        if None in around.box[:2]:
+            raise NeedsError("effects.shear", "a box periodic in both directions")
+        return cls(**settings, length=around.box[0])
+
+
+@jit
+def offset(shear, index, base):
+    """Return the offset of the image above at absolute time `base`, from 0 to L."""
+    return shear.velocity * (base % (shear.length / abs(shear.velocity)))
+
+
+@jit
+def transfer(shear, index, none, state, work):
+    state.ledger[0, index, 0] += work
+
+
+@jit
+def sliding(shear, index, none, state):
+    return state.phase[index], shear.velocity
+
+
+def offset_at(shear, time):
+    """Return the offset of the image above at `time`, from 0 to L, in a."""
+    return (shear.velocity * time) % shear.length
+
+
+register(
+    Shear,
+    SHEAR_SETTINGS,
+    sliding=sliding,
+    transfer=transfer,
+    phase=offset,
+    displacement=offset_at,
+    drives=True,
+)
+
+
+THERMOSTAT_SETTINGS = {
     "power": Number("Energy put in per particle and time, in m a^2/T^3.", "(0, 1e+12]"),
     "spin_share": Number("Share of the power that goes into rotation.", "[0, 1]"),
     "interval": Number("Time between the kicks that a particle starts, in T.", "[0.0001, 1e+09]"),
@@ -63,18 +138,18 @@ class Thermostat(NamedTuple):
         return cls(push, turn, settings["interval"])
 
 
-def moment(thermostat, number, rng):
+def first_kicks(thermostat, number, rng):
     """Return when each particle starts its next kick."""
     return thermostat.interval * (1.0 + rng.permutation(number)) / number
 
 
 @jit
-def predict(thermostat, index, state, scene, i):
+def predict_kick(thermostat, index, state, scene, i):
     return state.moments.thermostat[i], 0
 
 
 @jit
-def resolve(thermostat, index, what, state, scene, i, time):
+def resolve_kick(thermostat, index, what, state, scene, i, time):
     """Kick particle i and another one; return the other."""
     others = len(state.changes) - 1
     j = int(uniform(state.random) * others)
@@ -117,5 +192,11 @@ _as_hot = either(  # every particle gets the same energy
 
 
 register(
-    Thermostat, SETTINGS, moment=moment, predict=predict, resolve=resolve, random=True, drives=True
+    Thermostat,
+    THERMOSTAT_SETTINGS,
+    moment=first_kicks,
+    predict=predict_kick,
+    resolve=resolve_kick,
+    random=True,
+    drives=True,
 )
