@@ -83,9 +83,9 @@ RARE = ("rubbed bed", "heated, smooth", "heated spheres", "tabulated bed", "clos
 """Kernels that only tests marked as slow compile: in others, each effect of theirs acts as well."""
 
 
-def kernels():
-    """Names of kernels, as parameters of a test; rare ones are slow."""
-    return [pytest.param(n, marks=[pytest.mark.slow] * (n in RARE)) for n in KERNELS]
+def kernels(*names):
+    """Names of kernels, by default of all, as parameters of a test; rare ones are slow."""
+    return [pytest.param(n, marks=[pytest.mark.slow] * (n in RARE)) for n in names or KERNELS]
 
 
 def settings(kernel, particles=None, box=None, **effects):
