@@ -79,7 +79,7 @@ class Bar:
             self._next = now + SILENCE
             told = f"{done:g} of {self._total:g}{self._unit}{note and f' ({note})'}"
             elapsed = now - self._begun
-            if done > 0:
+            if done > 0 and self._total is not None:
                 told = f"{100 * done / self._total:.0f} %, {told}"
                 left = f", about {elapsed * (self._total - done) / done:.0f} s left"
             else:
