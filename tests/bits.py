@@ -38,7 +38,6 @@ def digest(path):
 
 
 def known():
-    """The hashes by path below results/."""
     return json.loads(KNOWN.read_text())
 
 

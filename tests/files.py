@@ -33,7 +33,6 @@ def write_all(folder):
 
 
 def _points(folder):
-    """Points of two seeds at two places of a sweep with a third axis."""
     for number, (wave, r) in enumerate((("sine", 0.9), ("sine", 0.8), ("saw", 0.9), ("saw", 0.8))):
         place = {"r": r, "swept": "floor.wave", "swept_value": wave}
         for seed in (1, 2):

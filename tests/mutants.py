@@ -39,7 +39,6 @@ ELSEWHERE = {  # tests of a room that are not in its own folder
 
 
 def tests_of(room):
-    """The files and folders of tests that are run for a fault in a room."""
     own = [room] if (ROOT / "tests" / room).is_dir() else []
     return [f"tests/{name}" for name in own + ELSEWHERE.get(room, [])]
 

@@ -50,13 +50,11 @@ def tables():
 
 
 def written(page, name):
-    """A table that is on its page."""
     text = (DOCS / f"{page}.md").read_text(encoding="utf-8")
     return text.split(BEGIN.format(name))[1].split(END)[0]
 
 
 def write():
-    """Write all tables anew."""
     for (page, name), table in tables().items():
         path, begin = DOCS / f"{page}.md", BEGIN.format(name)
         text = path.read_text(encoding="utf-8")

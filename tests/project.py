@@ -101,7 +101,6 @@ class Project:
         path.write_text(json.dumps(config))  # which is YAML, too, and has no aliases
 
     def append(self, path, text="\nADDED = 1\n"):
-        """Edit a source file."""
         with open(self.folder / path, "a") as file:
             file.write(text)
 
@@ -117,7 +116,6 @@ class Project:
         )
 
     def snakemake(self, *arguments):
-        """Exit status and all output of a run of Snakemake."""
         return snakemakes.run(self.folder, self.environment(), arguments)
 
     def environment(self):
@@ -137,7 +135,6 @@ class Project:
         return jobs_by_rule(output)
 
     def files(self):
-        """All files except Snakemake's own."""
         return {
             str(path.relative_to(self.folder))
             for path in self.folder.rglob("*")

@@ -18,7 +18,6 @@ LATE = ("jsonschema", "numpy.random", "snakemake.report.html_reporter", "snakema
 
 
 def run(folder, environment, arguments):
-    """Return the exit status and all output of a run of Snakemake."""
     server = _server()
     with tempfile.NamedTemporaryFile("r") as output:
         job = [str(folder), dict(environment), [*map(str, arguments)], output.name]

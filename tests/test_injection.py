@@ -28,7 +28,6 @@ RULES = sorted((Path(__file__).parents[1] / "rules").glob("*.smk"))
 
 
 def made(**about):
-    """A point with such attributes."""
     settings = {"experiment_json": '{"particles": 5, "box": [8, 8], "effects": {}}', "command": ""}
     return point()._replace(attributes=point().attributes | settings | about)
 

@@ -42,7 +42,6 @@ POINTS = {
 
 
 def same(one, other):
-    """Whether two points are equal in all but the time that they took."""
     return one.drop_vars(WALL_CLOCK, errors="ignore").identical(
         other.drop_vars(WALL_CLOCK, errors="ignore")
     )
@@ -69,14 +68,6 @@ def test_a_dataset_is_that_of_the_file_which_its_command_writes(name, tmp_path, 
     assert main(shlex.split(point.command)[1:]) == 0
     assert same(point, read_point("point.nc"))
     assert point.R.attrs["long_name"] and point.E_trans.attrs["units"]
-
-
-def test_a_named_experiment_is_the_pipelines(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    labels = ["--scale=small", "--r=0.9", "--beta=-0.8", "--seed=2", "--output=point.nc"]
-    assert main(["run", "cooling", f"--config={ROOT / 'config.yaml'}", *labels]) == 0
-    point = simulate("cooling", r=0.9, beta=-0.8, seed=2, scale="small", progress=False)
-    assert same(point, read_point("point.nc"))
 
 
 def test_an_experiment_of_another_configuration(tmp_path):
@@ -108,25 +99,14 @@ def test_lists_make_the_reduced_dataset_of_their_points(tmp_path, monkeypatch):
     [
         ("colling", {}, "experiment = 'colling': must be one of cooling, sheared, "),
         ("cooling", {"r": 1.5}, "restitution r = 1.5: must lie in [0, 1]"),
-        ("cooling", {"beta": np.nan}, "roughness beta = nan: must lie in [-1, 1]"),
         ("cooling", {"beta": [0, 0.5, 0]}, "beta = 0: must be given once"),
         ("cooling", {"seed": []}, "seed = []: must be one value or several"),
-        ("cooling", {"r": [0.9, 1.5]}, "restitution r = 1.5: must lie in [0, 1]"),
         ("cooling", {"beta": [0], "keep_state": True}, "keep_state = given: must come with one r,"),
         ("cooling", {"packing": 0.2, "box": (40, 40)}, "cooling.box = [40, 40]: must not stand"),
-        ("cooling", {"seed": -1}, "seed = -1: must be a whole number in [0, 2^63 - 1]"),
         ("cooling", {"scale": "big"}, "scale = 'big': must be one of paper, small"),
-        ("cooling", {"particles": 0}, "cooling.particles = 0: must be a whole number in [1, 1"),
         ("cooling", {"particles": 10**6}, "particles = 1000000: must be at most 2842 in this box"),
         ("cooling", {"box": 50}, "cooling.box = 50: must be a list of 2 to 3 entries"),
-        ("cooling", {"effects": {"frction": {}}}, "cooling.effects: key = 'frction': must be one"),
-        ("cooling", {"schedule": {"measure": 9}}, "cooling.schedule: key = 'measure': must be one"),
         ("vibrated", {"effects": {"gravity": None}}, "effects.floor needs gravity"),
-        (
-            "friction.vibrated_friction",
-            {},
-            "friction.vibrated_friction.effects.friction.mu = (nothing)",
-        ),
         (
             "friction.vibrated_friction/mu0.3",
             {"effects": {"friction": {"mu": 0.5}}},

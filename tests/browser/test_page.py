@@ -2,18 +2,12 @@
 
 import re
 
-import netCDF4
-import numpy as np
 import pytest
 from selenium.webdriver.common.action_chains import ActionChains
-from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.select import Select
-from show.page.conftest import SAMPLES, points_in
-from tests.houses import EXPERIMENTS
 
 from roughgas.data.point import read_point
 from roughgas.data.reduced import read_reduced
-from roughgas.show.explore import write_page
 from roughgas.theory.prediction import predicted_ratio
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
@@ -132,34 +126,6 @@ def test_what_is_drawn_are_the_datasets(page, ran):
     assert 0 < drawn[4] <= 200
 
 
-@pytest.fixture
-def made_up(browser, tmp_path):
-    """A page of made-up points: of a gas that cools by 90 decades, and of one whose steady state is
-    not known."""
-    points = points_in(tmp_path / "small")
-    for path in (points / "cooling").rglob("seed1.nc"):
-        with netCDF4.Dataset(path, "a") as file:
-            file["E_trans_series"][...] = 10.0 ** (-0.2 * np.arange(SAMPLES))
-    with netCDF4.Dataset(points / "sheared.nc", "a") as file:
-        file["equilibrated"][...] = -1.0
-    names = ("cooling", "sheared")
-    write_page([points / f"{name}.nc" for name in names], points=points, output=tmp_path / "e.html")
-    browser.open(tmp_path / "e.html")
-    browser.wait(lambda: browser.find("#ratios canvas") and browser.find("#energies canvas"))
-    return browser
-
-
-def test_what_is_not_known_is_said_and_drawn(made_up):
-    select(made_up, "experiment", "sheared")
-    assert numbers(made_up)["steady state"].startswith("not known")
-    middle, beside = made_up.script("""
-        const u = PLOTS.ratios, { x, choice } = drawnRows()[0].places.at(-1), px = uPlot.pxRatio;
-        const colour = shift => [...u.ctx.getImageData(u.valToPos(x, "x", true) + shift * px,
-          u.valToPos(choice.point.R, "y", true), 1, 1).data];
-        return [colour(0), colour(-3)];""")
-    assert beside[:3] == [255, 255, 255] != middle[:3]  # an open symbol with a dot
-
-
 def test_a_choice_can_be_shared(ran, browser):
     browser.open(ran.folder / "results/tiny/explore.html", "#sheared/r0.8/beta0")
     assert shows(browser, ran, "sheared", "0.8", "0")
@@ -167,52 +133,3 @@ def test_a_choice_can_be_shared(ran, browser):
     assert "no point sheared/r0.8/beta7" in browser.text("#status")
     assert shows(browser, ran, "vibrated", "0.9", "-0.5")
     assert browser.complaints() == []
-
-
-def test_a_third_axis_is_chosen_too(browser, tmp_path):
-    points = points_in(tmp_path / "small")
-    write_page(
-        [points / f"{name}.nc" for name in ("sheared", "cooling_friction")],
-        points=points,
-        output=tmp_path / "e.html",
-        config=EXPERIMENTS,
-    )
-    browser.open(tmp_path / "e.html")
-    assert not browser.find("#variant")[0].is_displayed()
-    select(browser, "experiment", "cooling_friction")
-    assert browser.text("#variant-name") == "friction: mu"
-    select(browser, "variant", "1")
-    assert fragment(browser) == "#cooling_friction/mu1/r0.9/beta-0.5"
-    assert browser.text("#title").endswith("with Coulomb friction: 40 disks, friction: mu = 1")
-    select(browser, "beta", "0.50")
-    assert numbers(browser)["R"] == "0.3510(40)"
-    assert browser.text("#target").endswith("/small/cooling_friction/mu1/r0.9/beta0.50/seed1.nc")
-    assert "mean over a block of 3 samples" in browser.text("#thinned")
-    select(browser, "over", "friction: mu")
-    drawn = browser.script("""
-        const { places } = drawnRows().find(one => one.label === "β = 0.50");
-        return places.map(one => [one.x, one.choice.point.R]);""")
-    assert drawn == [[0.1, 0.351], [1, 0.351]]
-    assert browser.complaints() == [] and browser.requests() == []
-
-
-def test_the_command_is_copied(page):
-    page.find("button[data-copies=target]")[0].click()
-    page.wait(lambda: page.text("button[data-copies=target]") == "Copied")
-    page.script("document.body.append(document.createElement('textarea'))")
-    (field,) = page.find("textarea")
-    field.send_keys(Keys.CONTROL, "v")
-    assert field.get_attribute("value") == page.text("#target")
-
-
-def test_what_is_dragged_over_is_zoomed_to_in_both_plots(page):
-    spans = "return [PLOTS.ratios, PLOTS.residuals].map(u => [u.scales.x.min, u.scales.x.max])"
-    (low, high), _ = page.script(spans)
-    assert (low, high) == pytest.approx((-1.1, 1.1))
-    (over,) = page.find("#ratios .u-over")
-    actions = ActionChains(page.driver).move_to_element(over).click_and_hold()
-    actions.move_by_offset(80, 80).release().perform()
-    above, beneath = page.wait(lambda: page.script(spans))
-    assert above == pytest.approx(beneath) and -0.1 < above[0] < 0.1 < above[1] < 0.7
-    ActionChains(page.driver).double_click(over).perform()
-    page.wait(lambda: page.script(spans)[0] == [low, high])

@@ -64,27 +64,3 @@ def test_every_figure_is_shown_with_the_parameters_of_this_run(report):
         assert "10 particles in a box of" in text and "2 seeds of each point" in text
     assert "cooling: A freely cooling gas" in text and "beta: -0.5, 0, 0.5" in text
     assert "replicas 3" in text and "plateau 20" in text
-
-
-def test_its_front_page_shows_the_figures_beside_their_captions(ran, browser):
-    browser.open(ran.folder / "results/tiny/report.html")
-    browser.wait(lambda: browser.script("return document.images[3].complete"))
-    beside = """return [...document.querySelectorAll("figure")].map(one => {
-        const [picture, text] = [...one.children].map(part => part.getBoundingClientRect());
-        return [one.firstChild.naturalWidth > 0, one.firstChild.alt, text.left >= picture.right,
-          document.documentElement.scrollWidth <= innerWidth];
-      });"""
-    found = browser.script(beside)
-    assert len(found) == 4
-    for loaded, alt, aside, fits in found:
-        assert loaded and aside and fits and alt.startswith("Fig. ")
-    browser.driver.execute_cdp_cmd(
-        "Emulation.setDeviceMetricsOverride",
-        {"width": 360, "height": 740, "deviceScaleFactor": 2, "mobile": True},
-    )
-    try:
-        browser.wait(lambda: browser.script("return innerWidth") == 360)
-        assert [row[2:] for row in browser.script(beside)] == [[False, True]] * 4
-    finally:
-        browser.driver.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
-    assert browser.complaints() == [] and browser.requests() == []

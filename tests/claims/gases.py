@@ -14,7 +14,6 @@ def bump(size):
 
 
 def constant(size):
-    """The same difference everywhere."""
     return lambda r, beta, *third: size + 0 * r * beta
 
 
@@ -41,7 +40,6 @@ def sheared(direct=0.1, error=0.004, **others):
 
 
 def cooling(shift=0.0, **others):
-    """A cooling gas on the theory of free cooling but for a constant."""
     return reduced("cooling", constant(shift), beta=ROUGH, **others)
 
 

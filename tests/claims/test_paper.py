@@ -7,74 +7,46 @@ from tests.synthetic import BETA, reduced
 
 from roughgas.claims.evidence import FAILS, HOLDS, NOT_TESTED, QUALIFIED
 
-CASES = {
-    "vibrated_follows_lun": (
-        lambda size: [reduced(shift=bump(size))],
-        {0.0: HOLDS, 0.015: HOLDS, 0.04: QUALIFIED, 0.09: FAILS},
-    ),
-    "vibrated_independent_of_r": (
-        lambda slope: [reduced(shift=lambda r, beta: slope * (0.99 - r) + 0 * beta)],
-        {0.0: HOLDS, 0.2: QUALIFIED, 0.5: FAILS},
-    ),
-    "forced_equipartition": (
-        lambda size: [
-            reduced(),
-            reduced("sheared", shift=lambda r, beta: size * (beta == 1) + 0 * r),
-        ],
-        {0: HOLDS, 0.04: QUALIFIED, -0.1: FAILS},
-    ),
-    "particle_walls_change_nothing": (
-        lambda size: walls(particle=size),
-        {0.0: HOLDS, 0.02: QUALIFIED, 0.1: FAILS},
-    ),
-    "smooth_walls_change_nothing": (
-        lambda size: walls(smooth=size),
-        {0.0: HOLDS, 0.02: QUALIFIED, 0.1: FAILS},
-    ),
-    "rough_walls_push_to_half": (
-        lambda size: walls(rough=size),
-        {0.2: HOLDS, 0.003: QUALIFIED, 0.0: FAILS, -0.2: FAILS},
-    ),
-    "sheared_follows_lun": (
-        lambda size: [sheared(shift=lambda r, beta: 2 * size * lun(r, beta))],
-        {0: HOLDS, 0.04: QUALIFIED, 0.1: FAILS},
-    ),
-    "shear_fails_unsubtracted": (
-        lambda direct: [sheared(direct, error=0.002)],
-        {0.1: HOLDS, 0.04: QUALIFIED, 0.0: FAILS},
-    ),
-    "cooling_follows_k": (
-        lambda size: [cooling(size)],
-        {0.0: HOLDS, -0.012: HOLDS, 0.03: QUALIFIED, -0.07: FAILS},
-    ),
-    "cooling_depends_on_r": (
-        lambda slope: [cooling_as(lambda r, beta: lun(r, beta) + slope * (1 - r))],
-        {1.0: HOLDS, 0.2: QUALIFIED, 0.0: FAILS},
-    ),
-    "forcing_decides": (
-        lambda size: [cooling(size), reduced()],
-        {0.0: HOLDS, 0.04: QUALIFIED, 0.3: FAILS},
-    ),
+CASES = {  # what makes datasets of an effect of some size; sizes with which each verdict is found
+    "vibrated_follows_lun": (lambda size: [reduced(shift=bump(size))], 0.015, 0.04, 0.09),
+    "vibrated_independent_of_r": (lambda slope: [falling(slope)], 0.0, 0.2, 0.5),
+    "forced_equipartition": (lambda size: [reduced(), at_equal(size)], 0.0, 0.04, -0.1),
+    "particle_walls_change_nothing": (lambda size: walls(particle=size), 0.0, 0.02, 0.1),
+    "smooth_walls_change_nothing": (lambda size: walls(smooth=size), 0.0, 0.02, 0.1),
+    "rough_walls_push_to_half": (lambda size: walls(rough=size), 0.2, 0.003, -0.2),
+    "sheared_follows_lun": (lambda size: [sheared(shift=of_lun(2 * size))], 0.0, 0.04, 0.1),
+    "shear_fails_unsubtracted": (lambda direct: [sheared(direct, error=0.002)], 0.1, 0.04, 0.0),
+    "cooling_follows_k": (lambda size: [cooling(size)], -0.012, 0.03, -0.07),
+    "cooling_depends_on_r": (lambda slope: [cooling_as(above_lun(slope))], 1.0, 0.2, 0.0),
+    "forcing_decides": (lambda size: [cooling(size), reduced()], 0.0, 0.04, 0.3),
     "restitution_matters_when_cooling": (
-        lambda slope: [
-            cooling_as(lambda r, beta: lun(r, beta) + 1 - r),
-            reduced(shift=lambda r, beta: slope * (1 - r) + 0 * beta),
-        ],
-        {0.0: HOLDS, 0.5: QUALIFIED, 1.0: FAILS},
+        lambda slope: [cooling_as(above_lun(1.0)), falling(slope, 1.0)],
+        *(0.0, 0.5, 1.0),
     ),
 }
 
 
-@pytest.mark.parametrize(
-    ("name", "size", "expected"),
-    [
-        (name, size, verdict)
-        for name, (_, sizes) in CASES.items()
-        for size, verdict in sizes.items()
-    ],
-)
-def test_a_verdict_depends_on_the_size_of_an_effect(judged, name, size, expected):
-    assert judged(name, *CASES[name][0](size)).verdict == expected
+def falling(slope, r_end=0.99):
+    return reduced(shift=lambda r, beta: slope * (r_end - r) + 0 * beta)
+
+
+def at_equal(size):
+    return reduced("sheared", shift=lambda r, beta: size * (beta == 1) + 0 * r)
+
+
+def of_lun(share):
+    return lambda r, beta: share * lun(r, beta)
+
+
+def above_lun(slope):
+    return lambda r, beta: lun(r, beta) + slope * (1 - r)
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_a_verdict_depends_on_the_size_of_an_effect(judged, name):
+    make, *sizes = CASES[name]
+    found = [judged(name, *make(size)).verdict for size in sizes]
+    assert found == [HOLDS, QUALIFIED, FAILS]
 
 
 @pytest.mark.parametrize(
@@ -112,11 +84,6 @@ def test_one_stray_point_qualifies_but_does_not_refute(judged):
 def test_what_cannot_be_told_is_not_tested(judged, name, datasets, reason):
     finding = judged(name, *datasets)
     assert finding.verdict == NOT_TESTED and reason in finding.reason
-
-
-def test_large_errors_neither_hold_nor_refute(judged):
-    finding = judged("vibrated_follows_lun", reduced(error=0.02))
-    assert finding.verdict == QUALIFIED and "too large to tell" in finding.reason
 
 
 def test_the_degrees_of_freedom_of_each_point_count(judged):
@@ -189,11 +156,6 @@ def test_above_half_at_smooth_particles(judged, above, expected):
     assert found.verdict == expected and found.numbers[0][1].value == pytest.approx(above)
 
 
-def test_unsubtracted_must_be_worse_than_subtracted(judged):
-    data = sheared(direct=0.05, shift=constant(0.1))
-    assert judged("shear_fails_unsubtracted", data).verdict == FAILS
-
-
 @pytest.mark.parametrize(
     ("error", "expected"),
     [(0.004, HOLDS), (0.0013, QUALIFIED), (0.001, QUALIFIED), (0.0005, FAILS)],
@@ -220,7 +182,3 @@ def test_reaches_a_constant(judged, drift, steady, expected):
     data = cooling(equilibrated=steady, R_drift=drift, R_drift_stderr=0.001)
     found = judged("cooling_reaches_a_constant", data)
     assert found.verdict == expected and "A plateau was found at" in found.reason
-
-
-def test_forcing_does_not_decide_where_both_gases_agree(judged):
-    assert judged("forcing_decides", cooling_as(lun), reduced()).verdict == FAILS

@@ -34,16 +34,6 @@ def test_one_row_for_each_statement_in_both_reports(paths, tmp_path):
             assert claim["deviation"] == deciding["value"] and claim["sigma"] == deciding["sigma"]
 
 
-def test_missing_experiments_are_named(paths, tmp_path):
-    judge(paths, tmp_path / "claims.json", tmp_path / "claims.md", PAPER)
-    content = json.loads((tmp_path / "claims.json").read_text())
-    claims = {claim["id"]: claim for claim in content["claims"]}
-    assert claims["sheared_follows_lun"]["verdict"] == NOT_TESTED
-    assert claims["sheared_follows_lun"]["reason"] == "No data of sheared."
-    assert claims["sheared_follows_lun"]["sigma"] is None
-    assert claims["vibrated_follows_lun"]["verdict"] != NOT_TESTED
-
-
 def test_the_same_data_give_the_same_bytes(paths, tmp_path):
     reports = []
     for order in (paths, paths[::-1]):

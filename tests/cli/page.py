@@ -38,7 +38,6 @@ def blocks():
 
 
 def commands(block):
-    """The command lines in a block."""
     return [line[2:] for line in block.splitlines() if line.startswith("$ ")]
 
 
@@ -72,7 +71,6 @@ def in_its_own(arguments):
 
 
 def cut(line):
-    """A line that fits the page."""
     return line if len(line) <= WIDEST else f"{line[: WIDEST - 4]} ..."
 
 

@@ -10,7 +10,6 @@ LINE = re.compile(r"\broughgas ([^#|)\n]*)")
 
 
 def commands():
-    """The parser of each command by its name."""
     parser = cli.parser_of()
     (found,) = (one for one in parser._actions if isinstance(one, argparse._SubParsersAction))
     return found.choices

@@ -2,21 +2,18 @@
 
 import json
 import sys
-from pathlib import Path
 
 import pytest
-from brute_force import settings as scene_settings
 from PIL import Image
-from schedules import COOLING, STEADY, TINY
+from schedules import COOLING, TINY
 
 from roughgas import cli
 from roughgas.cli import main
 from roughgas.config.reading import read_yaml
 from roughgas.data.point import read_point
-from roughgas.show import style as movie
 
 SMALL = {"particles": 8, "box": [12, 12], "effects": {"spin": {"inertia": 0.5}}}
-CONFIG = str(Path(__file__).parents[2] / "config.yaml")
+ALONE = SMALL | {"particles": 1, "schedule": COOLING}
 
 
 def make(*outputs, experiment="cooling", settings=SMALL | {"schedule": COOLING}, **others):
@@ -33,61 +30,8 @@ def test_every_file_that_is_asked_for_is_made(tmp_path, capsys):
     with Image.open(outputs[1]) as image:
         assert image.n_frames == 3 and image.info["duration"] == 100
     said = capsys.readouterr()
-    assert said.out == "" and said.err.splitlines() == [f"{path}: 3 frames" for path in outputs]
-
-
-@pytest.mark.parametrize(
-    ("choice", "message"),
-    [
-        ({"frames": "1"}, "--frames = 1: must be a whole number in [2, 10000]"),
-        ({"frames": "many"}, "--frames = many: must be a whole number"),
-        ({"fps": "0"}, "--fps = 0.0: must lie in [1, 50]"),
-        ({"length": "0"}, "--length = 0.0: must lie in (0, 1e9]"),
-        ({"start": "-1"}, "--start = -1.0: must lie in [0, 1e9]"),
-        ({"start": "nan"}, "--start = nan: must lie in [0, 1e9]"),
-        ({"seed": "x"}, "seed = x: must be a whole number"),
-        ({"r": "2"}, "restitution r = 2: must lie in [0, 1]"),
-        (
-            {"experiment": "coolin", "settings": None, "config": CONFIG},
-            "experiment = 'coolin': must be one of cooling",
-        ),
-        (
-            {"settings": SMALL | {"particles": 1, "schedule": COOLING}},
-            "particles = 1: must be at least 2",
-        ),
-    ],
-)
-def test_bad_input_is_refused_in_one_line(tmp_path, capsys, choice, message):
-    assert make(tmp_path / "gas.gif", **choice) == 2
-    said = capsys.readouterr()
-    assert said.err.startswith(f"roughgas: error: {message}") and said.err.count("\n") == 1
-    assert said.out == "" and list(tmp_path.iterdir()) == []
-
-
-def test_another_kind_of_file_is_refused_before_anything_is_simulated(tmp_path, capsys):
-    assert make(tmp_path / "gas.gif", tmp_path / "gas.avi") == 2
-    message = f"file = {tmp_path / 'gas.avi'}: must end in .mp4 or .gif\n"
-    assert capsys.readouterr().err == f"roughgas: error: {message}"
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_a_collapse_is_told_in_one_line(tmp_path, capsys):
-    floor = {"amplitude": 0, "restitution": 0.1}
-    bed = scene_settings("bed", 12, [6, "open"], floor=floor) | {"schedule": STEADY}
-    assert make(tmp_path / "bed.gif", settings=bed, r="0.1", beta="0", start="100") == 1
-    said = capsys.readouterr().err
-    assert said.startswith("roughgas: error: inelastic collapse at t =") and said.count("\n") == 1
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_an_interruption_leaves_nothing(tmp_path, capsys, monkeypatch):
-    def stop(*_):
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(movie.subprocess.Popen, "communicate", stop)
-    assert make(tmp_path / "gas.mp4") == 130
-    assert capsys.readouterr().err.startswith("roughgas: stopped: ")
-    assert list(tmp_path.iterdir()) == []
+    assert said.out == ""  # a slow machine says how far it is, before
+    assert said.err.splitlines()[-2:] == [f"{path}: 3 frames" for path in outputs]
 
 
 def make_trajectory(*outputs, times=("0", "2"), **others):
@@ -101,29 +45,40 @@ def test_every_file_that_is_asked_for_is_made_and_the_same_each_time(tmp_path, c
     outputs = [tmp_path / "gas.xyz", tmp_path / "gas.nc"]
     assert make_trajectory(*outputs) == 0
     said = capsys.readouterr()
-    assert said.out == "" and said.err.splitlines() == [f"{path}: 2 frames" for path in outputs]
+    assert said.out == ""
+    assert said.err.splitlines()[-2:] == [f"{path}: 2 frames" for path in outputs]
     before = [path.read_bytes() for path in outputs]
     assert make_trajectory(*outputs) == 0 and [path.read_bytes() for path in outputs] == before
     assert before[0].count(b"Lattice=") == 2
 
 
 @pytest.mark.parametrize(
-    ("choice", "message"),
+    ("made", "choice", "message"),
     [
-        ({"times": ("2", "1")}, "times = [2.0, 1.0]: must rise"),
-        ({"times": ("x",)}, "--times = x: must be a number"),
-        ({"times": ("-1",)}, "times = -1.0: must lie in [0, 1e9]"),
-        ({"frames": "3"}, "times = [0.0, 2.0]: must rise, and stand without start"),
-        ({"times": None, "frames": "1"}, "--frames = 1: must be a whole number in [2, 10000]"),
-        ({"times": None, "length": "0"}, "--length = 0.0: must lie in (0, 1e9]"),
-        ({"beta": "2"}, "roughness beta = 2: must lie in [-1, 1]"),
+        (make, {"frames": "1"}, "--frames = 1: must be a whole number in [2, 10000]"),
+        (make, {"frames": "many"}, "--frames = many: must be a whole number"),
+        (make, {"fps": "0"}, "--fps = 0.0: must lie in [1, 50]"),
+        (make, {"length": "0"}, "--length = 0.0: must lie in (0, 1e9]"),
+        (make, {"start": "nan"}, "--start = nan: must lie in [0, 1e9]"),
+        (make, {"seed": "x"}, "seed = x: must be a whole number"),
+        (make, {"r": "2"}, "restitution r = 2: must lie in [0, 1]"),
+        (make, {"settings": ALONE}, "particles = 1: must be at least 2"),
+        (make, {"file": "gas.avi"}, "gas.avi: must end in .mp4 or .gif"),
+        (make_trajectory, {"times": ("2", "1")}, "times = [2.0, 1.0]: must rise"),
+        (make_trajectory, {"times": ("x",)}, "--times = x: must be a number"),
+        (make_trajectory, {"times": ("-1",)}, "times = -1.0: must lie in [0, 1e9]"),
+        (make_trajectory, {"frames": "3"}, "times = [0.0, 2.0]: must rise, and stand without"),
+        (make_trajectory, {"times": None, "length": "0"}, "--length = 0.0: must lie in (0, 1e9]"),
+        (make_trajectory, {"beta": "2"}, "roughness beta = 2: must lie in [-1, 1]"),
     ],
 )
-def test_frames_that_make_no_sense_are_refused_in_one_line(tmp_path, capsys, choice, message):
-    assert make_trajectory(tmp_path / "gas.xyz", **choice) == 2
+def test_bad_input_is_refused_in_one_line(tmp_path, capsys, made, choice, message):
+    others = {key: value for key, value in choice.items() if key != "file"}
+    usual = "gas.gif" if made is make else "gas.xyz"
+    assert made(tmp_path / choice.get("file", usual), **others) == 2
     said = capsys.readouterr()
-    assert said.err.startswith(f"roughgas: error: {message}") and said.err.count("\n") == 1
-    assert said.out == "" and list(tmp_path.iterdir()) == []
+    assert said.err.startswith("roughgas: error: ") and message in said.err
+    assert said.err.count("\n") == 1 and said.out == "" and list(tmp_path.iterdir()) == []
 
 
 def test_an_extra_that_lacks_is_named_before_anything_is_simulated(tmp_path, capsys, monkeypatch):

@@ -45,12 +45,14 @@ def contents():
         (["reduce", POINT, "-o", POINT], "must be another file than those that are read"),
         (["reduce", "beta0.5_2.nc", "-o", POINT], "must be new, or hold a reduced dataset"),
         (["plot", REDUCED, "-o", "a.png", "a.png"], "--output = a.png: must be named once"),
+        (ONE, "must be new, or hold a point"),  # a name of its own is no excuse
     ],
     ids=lambda value: " ".join(value[-4:]) if isinstance(value, list) else "",
 )
 def test_nothing_is_overwritten_without_a_word(folder, capsys, line, said):
     shutil.copy("config.yaml", "other.yaml")
     shutil.copy(POINT, "notes.nc")
+    Path("cooling_r0.9_beta0.5_seed1.nc").write_text("of a person")
     before = contents()
     assert main(line) == 2
     (found,) = capsys.readouterr().err.splitlines()
@@ -62,12 +64,6 @@ def test_where_nothing_can_be_written_is_seen_before_any_work(folder, capsys):
     assert main([*ONE, "--seed", "1", "2", "-o", "a.nc", "/proc/none"]) == 1
     assert capsys.readouterr().err == "roughgas: error: /proc/none: cannot be written\n"
     assert not Path("a.nc").exists()
-
-
-def test_a_name_of_its_own_is_no_excuse(folder, capsys):
-    Path("cooling_r0.9_beta0.5_seed1.nc").write_text("of a person")
-    assert main(ONE) == 2
-    assert "must be new, or hold a point" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

@@ -4,14 +4,11 @@ import json
 import shutil
 
 import netCDF4
-import numpy as np
 import pytest
-import xarray
 from tests.cli.conftest import GAS
 from tests.entry import main
 
 from roughgas import theory
-from roughgas.data.netcdf import content_of, write_netcdf
 from roughgas.data.point import read_point
 from roughgas.data.reduced import read_reduced
 from roughgas.statistics.errors import Estimate
@@ -46,17 +43,6 @@ def test_a_point(product, capsys):
     assert len(rows["R(t)"].split()[0]) == min(48, point.sizes["sample"])
     assert text.rstrip().endswith(point.attrs["command"])
     assert "\n  contacts " in text and "energy balance closes to" in text
-
-
-def test_a_point_for_a_script(product, capsys):
-    path = product / "beta0.5_1.nc"
-    found, point = json.loads(shown(capsys, path, "--json")), read_point(path)
-    assert found["kind"] == "point" and found["file"] == str(path)
-    assert found["attributes"]["experiment"] == "cooling" and found["attributes"]["seed"] == 1
-    assert found["variables"]["R"] == float(point.R)
-    assert point.equilibrated == -1 and found["variables"]["equilibrated"] is None
-    residual = float(point.R - theory.cooling_ratio(0.9, 0.5))
-    assert found["variables"]["residual"] == pytest.approx(residual)
 
 
 @pytest.mark.parametrize(
@@ -124,25 +110,10 @@ def test_a_reduced_dataset(product, capsys):
     assert (first["beta"], first["R"], first["theory"]) == (-0.5, data.R.values[0, 0], "K")
 
 
-def test_a_task_of_a_study(tmp_path, capsys):
-    data = xarray.Dataset({"R": ("chain", np.linspace(0.1, 0.2, 11)), "seconds": 1.5})
-    about = {"study": "models", "task": "dsmc", "scale": "small"}
-    settings = json.dumps({"study": {"groups": 3, "dsmc": [1, 2]}, "experiments": {}})
-    about |= {"settings_json": settings}
-    write_netcdf(tmp_path / "task.nc", content_of(data.assign_attrs(about)))
-    text = shown(capsys, tmp_path / "task.nc")
-    assert "dsmc of the study models, scale small" in text and "groups  3\n" in text
-    assert "R         chain (11)  0.1 to 0.2, 0.15 on average\n" in text
-    assert text.rstrip().endswith("snakemake -j1 results/small/accuracy/models/dsmc.nc")
-    found = json.loads(shown(capsys, tmp_path / "task.nc", "--json"))
-    assert found["sizes"] == {"chain": 11} and found["variables"] == {"seconds": 1.5}
-
-
 @pytest.mark.parametrize(
     ("name", "content", "status", "message"),
     [
         ("README.md", "words", 2, "must be a dataset of roughgas: it is of another program"),
-        ("x.json", "{}", 2, "must be a dataset of roughgas"),
         ("x.nc", "", 2, "must be a dataset of roughgas"),
         ("", None, 2, "must be a file"),
         ("no.nc", None, 1, "No such file or directory"),

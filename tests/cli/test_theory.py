@@ -8,6 +8,8 @@ import pytest
 from roughgas import theory
 from roughgas.cli import main
 
+PLACE = ("--r=0.9", "--beta=0", "--dimension=2")
+
 
 def asked(capsys, *arguments):
     assert main(["theory", *arguments]) == 0
@@ -69,6 +71,12 @@ def test_what_a_drive_and_friction_change(capsys):
         (["--r=0.9", "--beta=0", "--inertia=0"], "inertia q = 0.0: must be a positive number"),
         (["--r=0.9", "--beta=0", "--mu=-1"], "friction mu = -1.0: must lie in [0, inf]"),
         (["--r=0.9", "--beta=0", "--mu=ice"], "--mu = ice: must be a number"),
+        ([*PLACE, "--species=[{fraction: 0.5}]"], "species.fraction = 0.5 in all: must add up"),
+        ([*PLACE, "--species=[{fraction: 1, size: 2}]"], "species = size: must be one of fr"),
+        ([*PLACE, "--species=[{fraction: 1"], "--species: line 1 = "),
+        ([*PLACE, "--species=[1]"], "species = 1: must be a list of species, each with"),
+        ([*PLACE, "--packing=0.1"], "--packing needs --species"),
+        ([*PLACE, "--species=[{number: 3}]", "--packing=2"], "--packing = 2.0: must lie in [0, 1)"),
         (["--r=0.9", "--beta=0", "--spin-share=2"], "spin share of the drive = 2.0: must lie in"),
     ],
 )
@@ -81,7 +89,6 @@ def test_bad_values_are_refused_in_one_line(capsys, arguments, message):
 
 GIVEN = "[{fraction: 0.5, name: light}, {fraction: 0.5, radius: 2, mass: 4}]"
 SPECIES = [{"fraction": 0.5, "name": "light"}, {"fraction": 0.5, "radius": 2, "mass": 4}]
-PLACE = ("--r=0.9", "--beta=0", "--dimension=2")
 
 
 def test_it_is_what_the_functions_say(capsys):
@@ -95,30 +102,3 @@ def test_it_is_what_the_functions_say(capsys):
             assert found[f"R_{way}_{name}"] == pytest.approx(state.R[k], rel=1e-12)
             assert found[f"T_{way}_{name}"] == pytest.approx(state.T_tr[k], rel=1e-12)
     assert found["decay"] == pytest.approx(theory.mixture_decay_rate(gas, 0.1), rel=1e-12)
-
-
-def test_a_file_of_species_and_a_curve(capsys, tmp_path):
-    path = tmp_path / "mine.yaml"
-    path.write_text(f"species: {GIVEN}\n")
-    curve = points(capsys, *PLACE[:1], "--beta", "-0.5:0.5:0.5", "--species", str(path))
-    assert len(curve) == 6  # of disks and of spheres
-    (one,) = points(capsys, *PLACE, "--species", GIVEN)
-    assert curve[1] == one
-
-
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (["--species=[{fraction: 0.5}]"], "species.fraction = 0.5 in all: must add up to 1"),
-        (["--species=[{fraction: 1, size: 2}]"], "species = size: must be one of fraction,"),
-        (["--species=[{fraction: 1"], "--species: line 1 = "),
-        (["--species=[1]"], "species = 1: must be a list of species, each with"),
-        (["--packing=0.1"], "--packing needs --species"),
-        (["--species=[{number: 3}]", "--packing=2"], "--packing = 2.0: must lie in [0, 1)"),
-    ],
-)
-def test_bad_species_are_refused_in_one_line(capsys, arguments, message):
-    assert main(["theory", *PLACE, *arguments]) == 2
-    said = capsys.readouterr()
-    assert said.out == "" and said.err.count("\n") == 1
-    assert said.err.startswith(f"roughgas: error: {message}")

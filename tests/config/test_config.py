@@ -21,23 +21,6 @@ ROOT = Path(__file__).parents[2]
 CONFIG = ROOT / "tests" / "experiments.yaml"
 
 
-def test_the_paper_as_data(paper):
-    vibrated = config.experiment(paper, "vibrated", "paper")
-    assert vibrated["particles"] == 160
-    assert vibrated["box"] == [50, "open"]
-    assert vibrated["effects"]["floor"] == {
-        "amplitude": 5,
-        "period": 1,
-        "restitution": 1,
-        "roughness": -1,
-    }
-    assert vibrated["schedule"]["equilibrate"] + vibrated["schedule"]["measure"] == 7000
-    assert vibrated["sweep"]["r"] == ["0.99", "0.9", "0.8", "0.6"]
-    assert len(list(config.sweep(vibrated))) == 4 * 21 * 4
-    assert config.experiment(paper, "sheared", "paper")["effects"]["shear"] == {"velocity": 2}
-    assert config.experiment(paper, "cooling", "paper")["box"] == [100, 100]
-
-
 def test_an_experiment_inherits_what_it_does_not_set(paper):
     walls = config.experiment(paper, "vibrated_rough_walls", "paper")
     vibrated = config.experiment(paper, "vibrated", "paper")
@@ -68,10 +51,6 @@ def test_merging_changes_neither_part(paper):
     assert paper == before
 
 
-def test_an_override_from_the_command_line():
-    assert config.load(CONFIG, {"scale": "small"})["scale"] == "small"
-
-
 def test_settings_of_a_point_survive_the_way_through_text(paper):
     settings = config.point_settings(config.experiment(paper, "vibrated", "paper"))
     assert "sweep" not in settings
@@ -90,12 +69,6 @@ def test_numbers_are_read_as_a_person_means_them(tmp_path):
     path = tmp_path / "c.yaml"
     path.write_text("[1e-5, 1.0e-5, 2E3, -1e+2, 0.5, '1e-5', 1e]")
     assert read_yaml(path) == [1e-5, 1e-5, 2000.0, -100.0, 0.5, "1e-5", "1e"]
-
-
-def test_legal_labels():
-    labels = {"0": 0, "1": 1, "0.90": 0.9, ".5": 0.5, "1e-3": 0.001, "-0": 0}
-    assert {label: config.restitution(label) for label in labels} == labels
-    assert config.seed(str(2**63 - 1)) == 2**63 - 1
 
 
 def test_checking_needs_no_compiler_and_writes_nothing(tmp_path):

@@ -34,25 +34,18 @@ def changed(whole, path, value):
 MISTAKES = """
 cooling.sweep.r | ['0.9', '1.5'] | sweep.r[1] = '1.5': must lie in [0, 1]
 cooling.sweep.r | [.nan] | sweep.r[0] = nan: must lie in [0, 1]
-cooling.sweep.r | ['nan'] | sweep.r[0] = 'nan': must lie in [0, 1]
 cooling.sweep.beta | ['-1.1'] | sweep.beta[0] = '-1.1': must lie in [-1, 1]
-cooling.sweep.beta | ['abc'] | sweep.beta[0] = 'abc': must lie in [-1, 1]
 cooling.sweep.beta | ['0.1', '0.10'] | sweep.beta = 0.10: must be given once
 cooling.sweep.r | [] | sweep.r = []: must be a list that is not empty
 cooling.sweep.seeds | 0 | sweep.seeds = 0: must be a whole number >= 1
 cooling.schedule.target_stderr | 0 | schedule.target_stderr = 0: must be a number in (0, 0.1]
 crate | {} | key of experiments = crate: must be another name: the work
 accuracy | {} | key of experiments = accuracy: must be another name: the work
-coverage | {} | key of experiments = coverage: must be another name: the work
-hard_cases | {} | key of experiments = hard_cases: must be another name: the work
-reduce | {} | key of experiments = reduce: must be another name: the work
-cooling.particles | 0 | particles = 0: must be a whole number in [1, 1
 cooling.particles | 'many' | particles = 'many': must be a whole number in [1, 1
 cooling.particles | 1.5 | particles = 1.5: must be a whole number in [1, 1
 cooling.particles | true | particles = True: must be a whole number in [1, 1
 cooling.particles | .nan | particles = nan: must be a whole number in [1, 1
 cooling.box.0 | -1 | box[0] = -1: must be a number in (0, 10000
-cooling.box.1 | .inf | box[1] = inf: must be a number in (0, 10000
 cooling.box | [50] | box = [50]: must be a list of 2 to 3 entries
 cooling.effects.spin.inertia | 0 | effects.spin.inertia = 0: must be a number in [1e-06,
 vibrated.effects.floor.roughness | 'rough' | effects.floor.roughness = 'rough': must be a number in
@@ -67,7 +60,6 @@ cooling.schedule.measure | 1 | schedule: key = 'measure': must be one of kind, r
     relaxation_times, plateau, sample_every
 cooling.schedule.kind | 'heating' | schedule.kind = 'heating': must be one of steady, cooling
 cooling.schedule | (absent) | schedule = (nothing): must be given
-cooling.sweep | (absent) | sweep = (nothing): must be given
 cooling | null | cooling = None: must be a mapping of keys to values
 vibrated_smooth_walls.extends | 'foo' | must be one of cooling,
 cooling.extends | 'cooling' | that does not itself build on this one
@@ -77,7 +69,6 @@ No Name | {} | must consist of lower-case letters, digits and _, a letter first
 /scales.small.foo | {} | key of scales.small = 'foo': must be one of accuracy, cooling,
     cooling_friction
 /scales.small.cooling.extends | 'vibrated' | must not be given here
-/scales.small.cooling.particles | 0 | particles = 0: must be a whole number in [1, 1
 /scale | 'large' | config.yaml: scale = 'large': must be one of paper, small
 /n_particles | 5 | config.yaml: key = 'n_particles': must be one of accuracy, betas_per_job,
     complete
@@ -96,11 +87,6 @@ def test_the_first_mistake_in_the_file_is_named(paper, refusal):
     whole = changed(paper, "sheared.particles", 0)
     whole = changed(whole, "vibrated.particles", "x")
     assert "experiments.vibrated.particles = 'x'" in refusal(schema.check, whole)
-
-
-def test_a_long_value_is_shortened(paper, refusal):
-    whole = changed(paper, "cooling.particles", list(range(1000)))
-    assert len(refusal(schema.check, whole)) < 150
 
 
 def test_unknown_names(paper, refusal):

@@ -14,7 +14,6 @@ from tests.houses import EXPERIMENTS, FOLDERS, ROOT
 from roughgas import config
 from roughgas.base import InputError
 from roughgas.base.files import module_of
-from roughgas.config import study_folders
 
 ROOMS = ("gas", "plotting", "judging", "tasks", "tasks.dsmc", "tasks.free_cooling", "theory")
 PUBLIC = {f"roughgas.{one}" for one in ROOMS}
@@ -166,13 +165,3 @@ def test_the_settings_of_the_paper_are_those_that_tests_use(scale):
     own, frozen = config.load(ROOT / "config.yaml"), config.load(EXPERIMENTS)
     for name in (one for one in own["experiments"] if "." not in one):
         assert config.experiment(own, name, scale) == config.experiment(frozen, name, scale)
-
-
-def test_circles_do_not_keep_others_from_being_in_order():
-    def study(*parents):
-        named = {f"x{k}": {"extends": f"{one}.x"} for k, one in enumerate(parents)}
-        return {"experiments": named, "about": {"figures": {}, "movies": {}}}
-
-    broken = {}
-    found = {"a": study("b"), "b": study("a"), "c": study("d"), "d": study()}
-    assert study_folders._in_order(found, broken) == ["d", "c"] and broken.keys() == {"a", "b"}

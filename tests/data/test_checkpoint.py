@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from brute_force import begin, run, settings
 
-from roughgas.simulation.restart import UnusableCheckpoint, arrays_of, discard, restore, save
+from roughgas.simulation.restart import UnusableCheckpoint, arrays_of, restore, save
 
 SCENES = {
     "gas": settings("gas", 40, [25, 25]),
@@ -81,15 +81,6 @@ def test_what_belongs_to_another_run_is_refused_and_changes_nothing(tmp_path):
     with pytest.raises(UnusableCheckpoint, match="other settings"):
         restore(tmp_path / "c.npz", "you", state)
     assert content(state) == content(nested(1.0))
-
-
-def test_nothing_stays_of_what_is_discarded(tmp_path):
-    path = tmp_path / "c.npz"
-    save(path, "me", nested(2.0), RECORD)
-    (tmp_path / f"c.npz.{2**22 + 1}.tmp").write_bytes(b"left by a killed process")
-    discard(path)
-    discard(path)
-    assert list(tmp_path.iterdir()) == []
 
 
 def test_another_kind_of_state_is_refused_and_changes_nothing(tmp_path):

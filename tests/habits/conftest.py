@@ -46,13 +46,11 @@ def roughgas(*arguments, **others):
 
 
 def point(output, settings=TINY, seed=1):
-    """The arguments that simulate a tiny point."""
     arguments = ["run", "cooling", "--r=0.9", "--beta=0", f"--seed={seed}"]
     return [*arguments, "--settings", json.dumps(settings), "--output", str(output)]
 
 
 def catches(process, number):
-    """Whether a process has set up what it does at a signal."""
     for line in Path(f"/proc/{process.pid}/status").read_text().splitlines():
         if line.startswith("SigCgt:"):
             return bool(int(line.split()[1], 16) >> (number - 1) & 1)
@@ -77,7 +75,6 @@ def interrupt(process, number=signal.SIGINT):
 
 @pytest.fixture(scope="session")
 def mounts():
-    """Skips where no disks can be mounted for a test."""
     tried = subprocess.run(
         ["unshare", "--mount", "--map-root-user", "mount", "-t", "tmpfs", "none", "/mnt"],
         capture_output=True,

@@ -35,15 +35,6 @@ def test_closed_streams(tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["point.nc"]
 
 
-def test_where_nothing_can_be_written_is_said_at_once(tmp_path, mounts):
-    done = roughgas(*point("disk/a/point.nc"), cwd=tmp_path, mount=("ro", "disk"))
-    assert done.returncode != 0  # there is no such folder
-    (tmp_path / "disk").mkdir()
-    done = roughgas(*point("disk/point.nc"), cwd=tmp_path, mount=("ro", "disk"))
-    assert (done.returncode, done.stdout) == (1, "")
-    assert done.stderr == f"roughgas: error: {tmp_path / 'disk/point.nc'}: cannot be written\n"
-
-
 def test_a_full_disk_is_said_in_one_line(tmp_path, mounts):
     (tmp_path / "disk").mkdir()
     done = roughgas(*point("disk/point.nc"), cwd=tmp_path, mount=("size=4k", "disk"))
@@ -154,16 +145,6 @@ main = (steps if sys.argv[1] in steps.STEPS else cli).main
 sys.exit(main(sys.argv[1:]))
 """
 
-EXAMINED = """
-import sys
-sys.modules.update(dict.fromkeys({packages!r}))
-from argparse import Namespace
-from roughgas import doctor
-names = "libraries", "extras", "Snakemake"
-doctor.CHECKS = dict((name, doctor.CHECKS[name]) for name in names)
-doctor.doctor(Namespace(json=False))
-"""
-
 
 def told(line, folder):
     """A finished process of `roughgas`, in an environment without the packages of any extra."""
@@ -188,12 +169,3 @@ def test_an_extra_that_lacks_is_named_in_a_line(extra, tmp_path):
     assert (done.returncode, done.stdout) == (1, "")
     assert done.stderr == f"roughgas: error: {said}\n"
     assert [path.name for path in tmp_path.iterdir()] == ["text.md"]
-
-
-def test_the_doctor_says_what_is_left_out(tmp_path):
-    packages = [package for brought in EXTRAS.values() for package in brought]
-    done = python("-c", EXAMINED.format(packages=packages), cwd=tmp_path)
-    assert done.returncode == 0, done.stdout + done.stderr
-    assert (
-        "none; not installed: workflow, figures, movies, report, crate, trajectories" in done.stdout
-    )

@@ -2,19 +2,16 @@
 
 import csv
 import math
-import os
 import random
 
 import numpy as np
 import pytest
-from tests.synthetic import reduced
 
 from roughgas import theory
 from roughgas.base import InputError
-from roughgas.cli import main
 from roughgas.data.point import Point, write_point
 from roughgas.data.reduced import read_reduced
-from roughgas.results.products import why_wide, write_table
+from roughgas.results.products import write_table
 from roughgas.results.reduce import reduce_points
 
 ABOUT = {"experiment": "sheared", "scale": "small", "dimension": 2, "inertia": 0.5, "particles": 40}
@@ -101,12 +98,6 @@ def test_missing_seeds_and_places(paths, tmp_path):
     assert np.isnan(none.R) and np.isnan(none.R_stderr) and np.isnan(none.R_stderr_within)
 
 
-def test_an_error_unknown_within_one_file_stays_unknown(tmp_path):
-    paths = [write(tmp_path, 0.9, 0.0, seed, 0.2, R_stderr=np.nan) for seed in (1, 2)]
-    reduce_points(paths, tmp_path / "sheared.nc")
-    assert np.isnan(read_reduced(tmp_path / "sheared.nc").R_stderr_within.item())
-
-
 def test_drift_and_length_of_the_measured_window(tmp_path):
     paths = [write(tmp_path, 0.9, 0.0, seed, 0.2) for seed in (1, 2)]
     reduce_points(paths, tmp_path / "sheared.nc")
@@ -129,12 +120,6 @@ def test_the_order_of_the_points_does_not_matter(paths, tmp_path):
     assert (tmp_path / "a.nc").read_bytes() == (tmp_path / "b.nc").read_bytes()
 
 
-def test_points_of_several_kernels_say_so(paths, tmp_path):
-    paths.append(write(tmp_path, 0.8, -0.5, 1, 0.2, attributes={"kernel_source_hash": "j"}))
-    reduce_points(paths, tmp_path / "a.nc")
-    assert read_reduced(tmp_path / "a.nc").attrs["kernel_source_hash"] == "j, k"
-
-
 def test_sheared_points_keep_the_unsubtracted_ratio(tmp_path):
     paths = [write(tmp_path, 0.9, 0.0, s, 0.2, R_unsubtracted=0.1 * s) for s in (1, 2)]
     reduce_points(paths, tmp_path / "a.nc")
@@ -153,17 +138,6 @@ def test_what_cannot_be_reduced_is_refused(paths, tmp_path):
     with pytest.raises(InputError, match="cooling and sheared: must be the same"):
         reduce_points([*paths, other], out)
     assert not out.exists()
-
-
-def test_a_full_disk_leaves_no_reduced_dataset(paths, tmp_path, monkeypatch):
-    def full(*_):
-        raise OSError(28, "No space left on device")
-
-    (tmp_path / "out").mkdir()
-    monkeypatch.setattr(os, "fsync", full)
-    with pytest.raises(OSError, match="No space left"):
-        reduce_points(paths, tmp_path / "out" / "a.nc")
-    assert not list((tmp_path / "out").iterdir())
 
 
 def test_the_table_has_one_row_for_each_place_with_data(paths, tmp_path):
@@ -185,13 +159,6 @@ def test_the_table_has_one_row_for_each_place_with_data(paths, tmp_path):
     assert float(row["residual"]) == pytest.approx(0.23 - theory.lun_ratio(-0.5, 0.5))
     assert row["R_unsubtracted"] == "" and "kernel_seconds" not in row
     assert float(rows[3]["R_theory"]) == pytest.approx(theory.cooling_ratio(0.7, 0.0, 2, 0.5))
-
-
-def test_intervals_from_two_seeds_say_why_they_are_wide():
-    said = " ".join(why_wide(reduced(seeds=2, beta=(0.0, 0.5), R_dof=2.0)).split())
-    assert said.startswith("Wide intervals: 6 of 6, since errors from 2 seeds are uncertain")
-    assert "known with 2 degrees of freedom, 95 % are 4.5 standard errors to each side" in said
-    assert why_wide(reduced(beta=(0.0, 0.5))) == ""
 
 
 def test_a_file_of_another_kind_stays_where_it_is(tmp_path):
@@ -239,21 +206,6 @@ def test_the_parameter_is_a_dimension(inertia):
     assert place.R.item() == pytest.approx(0.115)
     assert place.R_stderr_over_seeds.item() == pytest.approx(0.005)
     assert np.isnan(data.R.sel(inertia=0.5, r=0.9, beta=0.5))
-
-
-@pytest.mark.parametrize("key", ["particles", "box", "schedule.measure"])
-def test_a_number_of_the_settings_is_a_dimension_too(tmp_path, key, capsys):
-    parameter = key.rpartition(".")[2]
-    for value in (20, 40):
-        own = {"particles": value} if key == "particles" else {}
-        variant(tmp_path, key, value, beta=0.0, seed=1, ratio=0.2, **own)
-    reduce_points(sorted(tmp_path.rglob("seed*.nc")), tmp_path / "swept.nc")
-    data = read_reduced(tmp_path / "swept.nc")
-    assert data.R.dims == (parameter, "r", "beta") and data.attrs["swept"] == key
-    np.testing.assert_array_equal(data[parameter], [20, 40])
-    assert main(["show", str(tmp_path / "swept.nc")]) == 0
-    shown = capsys.readouterr().out
-    assert ("20 to 40 disks" in shown) == (key == "particles") and f"over {parameter}, r" in shown
 
 
 def test_words_come_in_alphabetical_order_after_numbers(tmp_path):

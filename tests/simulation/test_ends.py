@@ -102,17 +102,6 @@ def test_from_what_physics_knows_it_goes_on_to_rounding(name):
         assert other[series][near].values == pytest.approx(exact[series][near].values, rel=1e-6)
 
 
-def test_the_state_is_where_the_particles_are():
-    point = run(scene_of("sheared"), steady(40)).isel(replica=0)
-    velocity, spin = point.last_velocity.values.copy(), point.last_spin.values
-    velocity[:, 0] -= 2.0 / 12.0 * (point.last_position.values[:, 1] - 6.0)
-    E_trans = (velocity**2).sum() / (2 * 2 * 16)
-    assert E_trans == pytest.approx(point.E_trans_series.values[-1], rel=1e-9)
-    E_rot = 0.5 * ((spin - spin.mean()) ** 2).sum() / (2 * 16)
-    assert E_rot == pytest.approx(point.E_rot_series.values[-1], rel=1e-9)
-    assert point.last_time == pytest.approx(40.0) and np.all(point.last_position.values < 12.0)
-
-
 def test_a_state_of_ones_own():
     experiment = settings("gas", 2, [12, 12]) | {"schedule": cooling(5)}
     vectors = {"position": [[2.0, 6.0], [9.0, 6.0]], "velocity": [[1.0, 0.0], [-1.0, 0.0]]}

@@ -10,13 +10,11 @@ from schedules import COOLING, STEADY
 from roughgas.data.point import read_point, write_point
 from roughgas.scene import build
 from roughgas.simulation.energies import (
-    Energies,
     balance,
     energies,
     energy_exchange,
     fitted_flow,
     imbalance,
-    ratio,
     ratio_of_means,
 )
 from roughgas.simulation.point import VOUCHED, _withdrawn, run_point
@@ -86,17 +84,6 @@ def test_no_bias_of_order_one_over_n_when_momentum_and_mean_spin_are_removed():
     # As they are, with the whole spin kept: 1/(1 + 7/8), 27 sigma from 1/2.
     whole = energies(columns_of(v, spin, np.zeros((samples, particles))), particles, q)
     assert ratio_of_means(whole) == pytest.approx(8 / 15, abs=0.0035)
-
-
-def test_ratio_of_each_sample_and_of_the_means():
-    some = Energies(np.array([1.0, 3.0]), np.array([1.0, 1.0]))
-    np.testing.assert_allclose(ratio(some), [1 / 2, 1 / 4])
-    assert ratio_of_means(some) == pytest.approx(1 / 3)
-
-
-def test_ratio_without_any_energy_is_undefined_and_silent(recwarn):
-    assert np.isnan(ratio(Energies(np.zeros(1), np.zeros(1))))
-    assert not recwarn.list
 
 
 def test_a_line_that_fits_the_flow_is_taken_off():

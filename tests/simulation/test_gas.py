@@ -87,13 +87,6 @@ def test_steps_change_no_bit_of_a_run():
     assert np.array_equal(cut.state.trajectory, whole.state.trajectory)
 
 
-def test_a_step_ends_at_an_instant():
-    gas = gas_of(0.5, 0.5, 2, 40)
-    while gas.step(300.0, 7):
-        pass
-    assert gas.time == pytest.approx(300.0, rel=1e-14) and gas.state.counts[EXPONENT] < 0
-
-
 def test_thermalising_conserves_the_energy():
     gas = gas_of(0.5, 0.5, 2)
     gas.look()
@@ -133,26 +126,6 @@ def test_particles_that_do_little_but_hit_walls_are_given_up(monkeypatch, go_on)
         go_on(gas)
 
 
-@pytest.mark.slow
-def test_a_particle_held_in_a_corner_is_given_up():
-    """Found by a campaign: elastic within the contact time, it hits the wall 1e7 times a T."""
-    material = {"restitution": 0.3, "roughness": 0.5}
-    corner = {
-        "particles": 3,
-        "box": [8.150308597455371, "open"],
-        "effects": {
-            "spin": {"inertia": 0.9318785065468795},
-            "gravity": {"acceleration": 9.0},
-            "floor": {"amplitude": 0.7302816097250766, "period": 2.7221786675685795, **material},
-            "walls": material,
-            "contact_time": {"duration": 1e-5},
-        },
-    }
-    scene, state = begin(corner, 0.6435775350489338, 0.0, 3)
-    with pytest.raises(JammedError, match="some are held: make walls and floor smoother"):
-        Gas(scene, state).in_time(0.5, 40)
-
-
 @pytest.mark.parametrize("soon", [0.0, math.inf])
 def test_no_bit_depends_on_how_long_the_calls_of_the_kernel_are(monkeypatch, soon):
     plain, refreshed = gas_of(0.5, 0.5, 2), gas_of(0.5, 0.5, 2, 40)
@@ -175,20 +148,6 @@ POINTS = {
 
 def point(experiment, r, beta, seed, tell=None):
     return run_point(build(experiment, r, beta), experiment, seed, tell)
-
-
-@pytest.mark.parametrize("name", POINTS)
-def test_the_same_point_twice_and_another_seed(name):
-    one, same, other = (point(POINTS[name], 0.9, 0.2, seed) for seed in (3, 3, 4))
-    for key, value in one.variables.items():
-        if key != "kernel_seconds":
-            np.testing.assert_array_equal(value, same.variables[key], err_msg=key)
-    assert one.variables["R"] != other.variables["R"]
-    assert one.variables["kernel_seconds"] > 0.0
-    assert one.attributes["seed"] == 3 and one.attributes["particles"] == 20
-    assert one.attributes["inertia"] == 0.5 and one.attributes["dimension"] == 2
-    filled = {"sheared": 20 * np.pi / 18**2, "gas": 20 * np.pi / 25**2}  # the bed is open above
-    assert one.attributes.get("packing") == (filled.get(name) and pytest.approx(filled[name]))
 
 
 def test_a_gas_that_comes_to_rest_on_its_floor_is_refused():

@@ -2,14 +2,13 @@
 
 import numpy as np
 import pytest
-from brute_force import kernels, scene_of, settings, snapshot
+from brute_force import scene_of, settings, snapshot
 from brute_force.beside import brute_force_from
 from schedules import COOLING, STEADY
 
 from roughgas.kernel.hooks import displacement
 from roughgas.scene import build
 from roughgas.scene.initial import initial_state
-from roughgas.simulation.point import run_point
 from roughgas.simulation.trajectory import Frames, snapshots
 
 R, BETA, SEED = 0.9, 0.3, 7
@@ -24,44 +23,6 @@ DRIVEN = {
 
 def start_of(scene, experiment):
     return initial_state(scene, experiment, np.random.default_rng(SEED))
-
-
-@pytest.mark.parametrize("name", kernels(*DRIVEN))
-def test_energies_of_a_driven_gas_are_those_of_its_point(name):
-    experiment = DRIVEN[name] | {"schedule": STEADY}
-    beta = BETA if "spin" in experiment["effects"] else -1.0
-    point = run_point(build(experiment, R, beta), experiment, SEED).variables
-    start, every = point["time"][0] - STEADY["sample_every"] / 2, STEADY["sample_every"]
-    take = Frames(start, 40 * every, 40)
-    shots = list(snapshots(build(experiment, R, beta), experiment, SEED, take))
-    assert [shot.time for shot in shots] == pytest.approx(point["time"][:40], rel=1e-12)
-    for field, series in (("R", "R_series"), ("E_trans", "E_trans_series")):
-        found = [getattr(shot, field) for shot in shots]
-        if series in point:
-            # roundings of the instants, and nothing else: chaos would make any more of it
-            assert found == pytest.approx(point[series][:40], rel=1e-9)
-        else:
-            assert found == [None] * 40
-
-
-def test_a_cooling_gas_is_the_first_replica_of_its_point():
-    experiment = settings("gas", 20, [30, 30]) | {"schedule": COOLING}
-    point = run_point(build(experiment, R, BETA), experiment, SEED).variables
-    first, last = point["measured_from"], point["plateau_end"]
-    shots = list(
-        snapshots(build(experiment, R, BETA), experiment, SEED, Frames(0.0, 1.3 * last, 4000))
-    )
-    passed = np.array([shot.collisions for shot in shots])
-    # R changes at collisions only: the first frame after one has its value
-    plateau = [
-        shots[np.searchsorted(passed, n)].R
-        for n in point["collisions_per_particle"]
-        if first <= n <= last
-    ]
-    assert len(plateau) > 10 and passed[-1] > last
-    assert np.mean(plateau) == pytest.approx(point["R_replica"][0], rel=1e-12)
-    start = next(snapshots(build(experiment, R, BETA), experiment, SEED, Frames(5.0, 1.0, 2)))
-    assert start.collisions == 5.0 and start.R == shots[np.searchsorted(passed, 5.0)].R
 
 
 def test_frames_of_a_cooling_gas_are_equally_spaced_in_scaled_time():

@@ -22,7 +22,6 @@ OF_TARGET = {"target_met", "target_blocks"}
 
 
 def found(experiment, beta=0.0, **changes):
-    """The variables of a point whose schedule has these changes."""
     chosen = experiment | {"schedule": experiment["schedule"] | changes}
     return run_point(begin(chosen, 0.9, beta)[0], chosen, 1).variables
 
@@ -46,14 +45,6 @@ def test_a_run_to_a_target_has_the_bits_of_one_that_was_asked_to_be_as_long(expe
 
 
 @pytest.mark.parametrize("experiment", [SHEARED, FREE])
-def test_a_target_that_is_met_at_once_changes_nothing(experiment):
-    long = {"measure": 1000} if "measure" in experiment["schedule"] else {"replicas": 12}
-    aimed = found(experiment, **long, target_stderr=0.1)
-    assert aimed["target_blocks"] == 1 and aimed["target_met"] == YES
-    assert_same(aimed, found(experiment, **long))
-
-
-@pytest.mark.parametrize("experiment", [SHEARED, FREE])
 def test_what_is_not_reached_is_said(experiment, monkeypatch):
     monkeypatch.setattr(recorder, "MOST_BLOCKS", 3)
     aimed = found(experiment, target_stderr=1e-5)
@@ -71,21 +62,6 @@ def test_of_an_r_that_never_changes_it_is_not_known(monkeypatch):
     aimed = found(SHEARED, beta=-1.0, measure=100, target_stderr=0.01)
     assert aimed["R"] == aimed["R_stderr"] == 0.0
     assert aimed["target_met"] == UNKNOWN and aimed["target_blocks"] == 1
-
-
-def test_two_replicas_are_too_few_to_know_their_error():
-    aimed = found(FREE, replicas=2, target_stderr=0.1)
-    assert aimed["target_blocks"] == 4  # 2, 4, 8 replicas: 5 are the fewest
-    assert aimed["target_met"] == YES
-
-
-@pytest.mark.parametrize(
-    ("blocks", "excess", "wanted"),
-    [(1, 1.01, 2), (1, 5.0, 2), (4, 1.2, 6), (4, 3.0, 8), (4, np.nan, 8), (4, np.inf, 8)],
-)
-def test_how_far_it_goes_on(blocks, excess, wanted):
-    """As far as the error says, by one block at least, to twice the length at most."""
-    assert recorder._wanted(blocks, excess) == wanted
 
 
 def test_a_drive_must_be_seen_in_enough_phases():
@@ -155,15 +131,6 @@ class Terminal(io.StringIO):
 @pytest.fixture(autouse=True)
 def every_step_is_shown(monkeypatch):
     monkeypatch.setattr("roughgas.simulation.progress.SECONDS_BETWEEN", 0.0)
-
-
-def test_a_run_that_is_prolonged_is_followed_to_its_new_end():
-    stream = Terminal()
-    with Progress("sheared", build(DRIVEN, 0.9, 0.0), DRIVEN, stream=stream) as progress:
-        progress(7000.0, 98_765)
-        progress.expect(14_000.0)
-        progress(10_500.0, 123_456)
-    assert stream.shown[-1].startswith("sheared:  75%|") and "of 14000 T" in stream.shown[-1]
 
 
 def test_a_cooling_gas_is_followed_through_its_replicas():

@@ -100,20 +100,6 @@ def test_it_goes_on_from_the_state_of_a_run(name):
         chosen(experiment, scene, times=[59.0, 61.0], initial=states)
 
 
-def test_a_cooling_gas_counts_anew_from_the_state_of_a_run():
-    experiment = settings("gas", 20, [30, 30]) | {"schedule": COOLING, "keep_state": True}
-    point = run_point(build(experiment, R, BETA), experiment, SEED)
-    about = {"experiment": "x", "scale": "small"} | point.attributes
-    states = initial_of(as_dataset(point._replace(attributes=about)))
-    whole = list(snapshots(build(experiment, R, BETA), experiment, SEED, Frames.at([30.0, 35.0])))
-    shots = list(
-        snapshots(build(experiment, R, BETA), experiment, 99, Frames.at([0.0, 5.0]), states)
-    )
-    assert [shot.collisions for shot in shots] == [0.0, 5.0]
-    for one, other in zip(whole, shots, strict=True):
-        assert np.array_equal(one.spin, other.spin) and one.E_trans == other.E_trans
-
-
 def least_distance(cell, position, periodic):
     """Of two particles or images of them, by brute force."""
     images = itertools.product(*((-1, 0, 1) if one else (0,) for one in periodic))

@@ -66,13 +66,6 @@ def test_the_frames_are_evenly_spaced_in_collisions(undisturbed):
     assert passed[0] == 0.0 and np.all(np.diff(np.diff(passed)) > 0.0)  # it slows down
 
 
-def test_the_gas_cools_and_begins_to_spin(undisturbed):
-    E_trans, E_rot = undisturbed.E_trans.values, undisturbed.E_rot.values
-    assert E_trans[0] == 1.0 and E_rot[0] == 0.0
-    assert np.all(np.diff(E_trans + E_rot / 2) < 0.0)  # two degrees of freedom to one
-    assert undisturbed.E_trans_start == pytest.approx(0.5, rel=0.3)
-
-
 def test_every_particle_is_on_the_map(undisturbed):
     count = undisturbed["count"].values
     assert count.shape == (13, 10, 8) and np.all(count.sum(axis=(1, 2)) == 100)
@@ -106,21 +99,6 @@ def test_a_run_that_is_stopped_several_times_gives_the_same_bits(
             filmed(gas, path, stop, every=3)
     assert capsys.readouterr().err.splitlines() == [f"going on from {path}"]  # from 6, for 11
     assert same_bits(filmed(gas, path, every=3), undisturbed)
-
-
-@pytest.mark.parametrize(
-    ("content", "why"), [(None, "belongs to other settings"), (b"PK not", "is damaged")]
-)
-def test_a_checkpoint_that_does_not_suit_is_not_used(gas, tmp_path, capsys, content, why):
-    path = tmp_path / "c.npz"
-    with pytest.raises(KeyboardInterrupt):
-        filmed(gas, path, 5, every=2, seed=4)
-    if content:
-        path.write_bytes(content)
-    film = filmed(gas, path)
-    said = capsys.readouterr().err
-    assert why in said and said.endswith(": starting afresh\n")
-    assert same_bits(film, filmed(gas, tmp_path / "none.npz"))
 
 
 def test_a_killed_step_goes_on_from_its_checkpoint_with_the_same_bits(gas, tmp_path, capsys):
@@ -178,7 +156,6 @@ def film():
 
 
 def panels(film):
-    """Axes by the first letter of their title."""
     return {axes.get_title(loc="left")[:1]: axes for axes in figure.draw(film).axes}
 
 
@@ -186,39 +163,6 @@ def test_the_movie_is_drawn(film, tmp_path, monkeypatch):
     monkeypatch.setattr(movie, "LAST_FRAME", 0.1)  # or it is drawn 18 times
     movie.draw(film, tmp_path / "c.mp4")
     assert (tmp_path / "c.mp4").read_bytes()[4:8] == b"ftyp"
-
-
-def test_smoothing_keeps_the_particles(film):
-    even, uneven = figure.packing(film, 0), figure.packing(film, -1)
-    cell = (SIDE / CELLS) ** 2
-    assert even == pytest.approx(np.full_like(even, np.pi * PER_CELL / cell))
-    added = uneven - even
-    assert added.sum() * cell == pytest.approx(np.pi * 37)
-    assert np.unravel_index(added.argmax(), added.shape) == (BLOB[1], BLOB[0])
-    spread = SIDE / CELLS * (np.arange(CELLS) - BLOB[0])
-    assert (added.sum(0) @ spread**2) / added.sum() == pytest.approx(36, rel=0.1)
-
-
-def test_the_square_lies_where_the_gas_is_densest_within_the_window(film, monkeypatch):
-    assert figure.closeup(film) == (10.0, 10.0, 100.0)  # no room to choose
-    assert figure.closeup(film.assign_attrs(window=500.0)) == (0.0, 0.0, 120.0)
-    monkeypatch.setattr(figure, "CLOSEUP", 40.0)
-    left, bottom, side = figure.closeup(film)
-    middle = [(cell + 0.5) * SIDE / CELLS for cell in BLOB]
-    assert [left + side / 2, bottom + side / 2] == pytest.approx(middle)
-
-
-def test_a_gas_that_stays_homogeneous_lies_on_the_line_of_theory(film):
-    drawn = panels(film)
-    assert set("abcdefg") <= set(drawn)
-    for letter, data, line in (("e", 0, 2), ("e", 1, 3), ("f", 0, 1)):
-        x, y = drawn[letter].lines[data].get_data()
-        theory_x, theory_y = drawn[letter].lines[line].get_data()
-        assert np.interp(x, theory_x, theory_y) == pytest.approx(y, rel=1e-3), letter
-    titles = [drawn[letter].get_title(loc="left") for letter in "abc"]
-    assert titles == [
-        f"{a}   {n} collisions per particle" for a, n in zip("abc", (0, 10, 40), strict=True)
-    ]
 
 
 def test_the_picture_can_be_read_and_says_how_long_lengths_are(film):

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-import xarray as xr
 from brute_force import scene_of, settings, snapshot
 from brute_force.beside import brute_force_from
 from schedules import STEADY
@@ -71,48 +70,6 @@ def test_sums_are_those_that_brute_force_counts(name):
     if name == "gas":  # the same everywhere, and counted when the next phase begins
         contacts, profile.contacts = (one.sum((1, 2)) for one in (contacts, profile.contacts))
     assert profile.contacts == pytest.approx(contacts, abs=1e-6)
-
-
-def test_pairs_are_all_that_are_level_and_those_that_meet():
-    gas, world = gas_of(EXPERIMENTS["bed"])
-    profile = runs.Profile(gas, BED, 1, 4)
-    profile.go_on(0)
-    brute = brute_force_from(world, snapshot(gas.state, gas.scene))
-    found = np.zeros((6, 2))
-    for i, j in brute.pairs:
-        x, v = brute.x[i] - brute.x[j], brute.v[i] - brute.v[j]
-        x[0] -= world.box[0] * round(x[0] / world.box[0])
-        if abs(x[1]) < LEVEL:
-            g, s2 = np.sqrt(v @ v), (brute.w[i, 2] + brute.w[j, 2]) ** 2
-            row = np.array([1.0, g, g**2, g**3, s2, g * s2])
-            found[:, 0] += row
-            found[:, 1] += row * (np.sqrt(x @ x) < NEAR and x @ v < 0)
-    assert 0 < found[0, 1] < found[0, 0]
-    assert profile.pairs == pytest.approx(found, rel=1e-9)
-
-
-def test_maxwellian_pairs_need_no_correction():
-    """400 disks, some 3000 pairs at one height: at 4 sigma of the scatter over 30 gases."""
-    experiment = settings("bed", 400, [100, "open"])
-    factors, ratios = [], []
-    for seed in range(30):
-        gas, _ = gas_of(experiment)
-        rng = np.random.default_rng(seed)
-        gas.state.trajectory[:, 2:4] = rng.standard_normal((400, 2))
-        gas.state.spin[:] = rng.standard_normal((400, 1))  # T_rot = T/2 at q = 1/2: R = 1/3
-        profile = runs.Profile(gas, BED, 1, 4)
-        moving = gas.state.trajectory
-        sums = profile._pairs(moving[:, :2], moving[:, 2:4])
-        names = ("pairs", "g", "g^2", "g^3", "s^2", "g s^2")
-        data = {name: ("company", row) for name, row in zip(names, sums, strict=True)}
-        about = {"inertia": 0.5, "dimension": 2}
-        found = results._by_pairs(xr.Dataset(data | about, {"company": ["level", "meeting"]}))
-        factors.append(float(found["speed_factor"]))
-        ratios.append(float(found["R_level"]))
-    for values, expected in ((factors, 1.0), (ratios, 1 / 3)):
-        stderr = np.std(values, ddof=1) / np.sqrt(len(values))
-        assert abs(np.mean(values) - expected) < 4 * stderr
-        assert stderr < 0.01
 
 
 def test_an_elastic_gas_at_rest_is_barometric():

@@ -41,13 +41,6 @@ def data(parts):
     return results.combine(parts, SETTINGS)
 
 
-def test_the_longest_task_is_the_first():
-    gases = runs.gases_of(SETTINGS)
-    assert list(gases) == runs.tasks(SETTINGS) and len(gases) == 10
-    first, *_, last = gases
-    assert first.startswith("dsmc-n400") and last == "example-n400-mu0.1"
-
-
 def test_who_takes_part():
     """One of ten particles spins; all spin alike; two energies of 1 and one of 2."""
     alone = np.zeros((10, 1))
@@ -59,7 +52,6 @@ def test_who_takes_part():
 
 
 def scripted(*R):
-    """A gas whose R is given at each collision per particle."""
     left = iter(np.reshape(R, (-1, runs.STRIDE)))
     return lambda: (next(left), np.ones((4, 1)))
 
@@ -73,12 +65,6 @@ def test_an_escape_is_dated_by_the_collision():
     np.testing.assert_array_equal(R, [0.4, 1.0, np.nan])
     np.testing.assert_array_equal(share, [0.25, 0.25, np.nan])
     np.testing.assert_array_equal(number, [4.0, 4.0, np.nan])
-
-
-def test_times_of_all_escapes_are_averaged():
-    time = np.array([100.0, 120.0, 140.0])
-    value, bound = results.time_of_escape(time, time)
-    assert value[:2] == pytest.approx((120, 20 / math.sqrt(3))) and math.isnan(bound)
 
 
 def test_times_are_unbiased_where_runs_are_given_up():
@@ -129,28 +115,6 @@ def test_it_is_documented_tabulated_and_drawn(data):
     figure = draw(data)
     assert isinstance(figure, Figure) and len(figure.axes) == 4
     assert not any("printed at" in fault for fault in faults(lambda: draw(data)))
-
-
-def test_arrows_at_one_place_are_one(data):
-    twice = data.isel(mu=[0, 1, 2, 2]).assign_coords(mu=[0.05, 0.1, 0.5, 1.0])
-    times = draw(twice).axes[1]
-    arrows = [line for line in times.lines if line.get_marker() == r"$\uparrow$"]
-    assert [line.get_label() for line in arrows] == [r"$\mu = 0.5, 1$: later than (95 %)"]
-
-
-def test_the_more_particles_the_sooner():
-    """At mu = 0.15: 20 gases each of 100 and of 2000 particles. Ten times the escapes are expected;
-    an escape is sooner by more than 4 standard errors."""
-    found = []
-    for particles in (100, 2000):
-        seeds = stream(SETTINGS, 99, particles).spawn(20)
-        steps = (runs.without_positions(COOLING, SETTINGS, 0.15, particles, s) for s in seeds)
-        time = np.array([runs.escape(step, 20000)[0] for step in steps])
-        assert np.all(np.isfinite(time))
-        found.append(results.time_of_escape(time, time)[0])
-    few, many = found
-    assert few.value - many.value > 4 * math.hypot(few.stderr, many.stderr)
-    assert many.value > theory.runaway_growth(2000, 0.9, 0.0, 0.15)
 
 
 @pytest.mark.slow

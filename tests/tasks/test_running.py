@@ -1,6 +1,5 @@
 """Tasks of a study in a folder: named, checked, run, continued after a kill, combined."""
 
-import json
 from pathlib import Path
 
 import pytest
@@ -175,11 +174,3 @@ def test_compiled_code_is_not_that_of_a_sibling_that_has_changed(folder, monkeyp
     assert folder_of(folder / "tasks.py") == before
     (folder / "parts.py").write_text("OFFSET = 1\n")
     assert folder_of(folder / "tasks.py") != before
-
-
-def test_what_was_made_says_how(folder):
-    run(folder, "length-2")
-    run(folder, "length-2")
-    about = xr.open_dataset("length-2.nc").attrs
-    assert (about["study"], about["task"], about["scale"]) == ("mine", "length-2", "paper")
-    assert json.loads(about["settings_json"]) == json.loads(config.as_text(settings()))

@@ -133,16 +133,6 @@ def test_a_module_makes_points_and_pages_of_them(source, host):
 
 
 @pytest.mark.slow
-def test_a_report_of_a_module_has_its_captions(source, host):
-    told = ("-c1", "other folder/figures/tiny/fig2b.png")
-    succeed(source, host, *told)
-    succeed(source, host, "--report", "report.html", "--", told[1])
-    report = (host / "report.html").read_text("utf-8")
-    assert "A freely cooling gas" in report and "Parameters of this run" in report
-    assert "What to notice." in report
-
-
-@pytest.mark.slow
 def test_every_rule_has_a_container_and_lint_says_nothing_without_a_reason():
     command = [sys.executable, "-m", "snakemake", "--lint"]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)

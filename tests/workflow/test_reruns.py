@@ -50,19 +50,7 @@ EDITED = {  # file of the package: what an edit of its code runs again
     "tasks/dsmc.py": ACCURACY | {"models"} | OF_DSMC,
     "cli/run.py": POINTS | FAMILIES,
 }
-ALIKE = {  # files after whose edits much the same runs again as after others'
-    "kernel/prediction.py",
-    "scene/scene.py",
-    "theory/prediction.py",
-    "show/page/explore.js",
-}
-TOGETHER = {  # files of which hardly anything needs two: their edits are tried at once, as well
-    "config/schema.py",
-    "results/products.py",
-    "claims/paper.yaml",
-    "show/figures/paper.py",
-    "show/movies/__init__.py",
-}
+QUICK = ("statistics/steady_state.py", "effects/walls.py", "config/schema.py", "tasks/dsmc.py")
 UNUSED = ("steps.py", "doctor.py", "library.py")
 
 
@@ -142,16 +130,10 @@ def rerun(made, edit):
 
 
 @pytest.mark.parametrize(
-    "file",
-    [pytest.param(file, marks=[pytest.mark.slow] * (file in ALIKE | TOGETHER)) for file in EDITED],
+    "file", [pytest.param(file, marks=[pytest.mark.slow] * (file not in QUICK)) for file in EDITED]
 )
 def test_what_an_edit_in_each_room_runs_again(made, file):
     assert rerun(made, {file: "\nADDED = 1\n"}) == EDITED[file]
-
-
-def test_what_edits_in_several_rooms_run_again(made):
-    expected = set().union(*(EDITED[file] for file in TOGETHER))
-    assert rerun(made, dict.fromkeys(TOGETHER, "\nADDED = 1\n")) == expected
 
 
 def test_what_nothing_depends_on_runs_nothing_again(made):
@@ -189,24 +171,10 @@ def test_an_edit_is_not_forgotten_when_a_run_is_interrupted(finished):
     assert finished.planned("results/tiny/cooling.nc") == {"seeds": EACH, "reduce": 1}
 
 
-def test_an_edit_counts_where_what_was_compiled_has_been_deleted(finished):
-    (finished.folder / "results/tiny/cooling/r0.9/compiled.txt").unlink()
-    assert finished.planned() == {}
-    finished.append("src/roughgas/statistics/steady_state.py")
-    assert finished.planned("results/tiny/cooling.nc")["seeds"] == EACH
-
-
 def test_an_edit_of_what_combines_the_tasks_of_a_study_runs_none_of_them_again(finished):
     finished.append("studies/runaway/results.py")
     expected = {"study_data": 1, "study_figure": 1, "study_claims": 1, "study_page": 1}
     assert finished.planned("runaway") == expected | {"runaway": 1}
-
-
-def test_an_edit_of_a_family_of_hard_cases_concerns_it_alone(finished):
-    assert finished.planned("hard_cases") == {}
-    finished.append("tests/hard_cases/test_ties.py")
-    expected = {"family": 2, "catalogue": 1, "document": 1, "hard_cases": 1}  # and its remedies
-    assert finished.planned("hard_cases") == expected
 
 
 def test_an_edit_of_the_settings_of_tasks(finished):

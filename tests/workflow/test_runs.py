@@ -7,7 +7,6 @@ import subprocess
 import sys
 import time
 import zipfile
-from pathlib import Path
 
 import pytest
 from bits import digest
@@ -22,7 +21,6 @@ TARGET = ("--config", "scale=tiny", "--", "figures")
 
 @pytest.fixture(scope="module")
 def undisturbed(project, tmp_path_factory):
-    """A project after a run on two cores."""
     ran = project.copy_to(tmp_path_factory.mktemp("runs") / "undisturbed")
     ran.succeed("-j2", *TARGET)
     return ran
@@ -77,10 +75,6 @@ def test_a_run_is_packed_with_all_that_it_takes_to_repeat_it(undisturbed, tmp_pa
     assert digest(point) == digest(tmp_path / "point.nc")
 
 
-def test_a_second_run_does_nothing(undisturbed):
-    assert "Nothing to be done" in undisturbed.succeed("-j2", *TARGET)
-
-
 def test_after_a_kill_the_same_command_ends_with_the_same_numbers(project, undisturbed, tmp_path):
     killed = project.copy_to(tmp_path / "killed")
     running = killed.start("-j2", *TARGET)
@@ -100,30 +94,3 @@ def test_after_a_kill_the_same_command_ends_with_the_same_numbers(project, undis
         remade = killed.folder / path.relative_to(undisturbed.folder)
         assert same_numbers(path, remade), path
     assert "Nothing to be done" in killed.succeed("-j2", *TARGET)
-
-
-ROOT = Path(__file__).parent.parent.parent
-MANY = 10_000
-MEMORY = 0.15 + 4 * MANY / 100_000  # GiB: what Snakemake takes, and 4 for a hundred thousand
-
-PROGRAM = """
-import json
-from benchmarks.sweep import dry_run
-print(json.dumps(dry_run({points}, betas_per_job={betas})))
-"""
-
-
-def planned(points, betas):
-    """Jobs by rule, and peak memory, told by a small process: what a large one starts counts the
-    memory of that one, too."""
-    command = [sys.executable, "-c", PROGRAM.format(points=points, betas=betas)]
-    jobs, *_, memory = json.loads(subprocess.check_output(command, cwd=ROOT))
-    return jobs, memory
-
-
-def test_batches_of_betas():
-    jobs, memory = planned(MANY, betas=25)
-    blocks = {rule: count for rule, count in jobs.items() if "block" in rule}
-    assert jobs == blocks | {"compile_kernel": 10, "reduce": 1}
-    assert len(blocks) == 10 and set(blocks.values()) == {10}  # each r is a job of the block
-    assert memory < MEMORY

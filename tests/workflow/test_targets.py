@@ -1,17 +1,8 @@
 """What can be asked for, and how the rest is refused."""
 
-from pathlib import Path
-
 import pytest
-from project import BEYOND, JOBS, POINTS, Project
+from project import BEYOND, JOBS, Project
 
-import roughgas.config
-from roughgas import accuracy
-from roughgas.config import study_folders
-from roughgas.tasks.running import names
-
-SHOWN = len(BEYOND) + 1  # couette is drawn beside the paper's sheared gas
-"""Experiments that figures beyond the paper show: some are the paper's, too."""
 LEGAL = [
     "results/paper/cooling/r0.87/beta-0.33/seed7.nc",
     "results/paper/vibrated/r1/beta1/seed0.nc",
@@ -57,13 +48,6 @@ def test_the_default_are_the_figures_which_need_every_point_of_the_sweep_once(pr
     }
 
 
-def test_each_seed_can_be_a_job_of_its_own(tmp_path):
-    project = Project(tmp_path)
-    project.configure(lambda config: config.update(seeds_per_job=1))
-    planned = project.planned()
-    assert planned["point"] == POINTS and "seeds" not in planned
-
-
 def test_seeds_that_fill_no_job_are_jobs_nevertheless(tmp_path):
     project = Project(tmp_path)
 
@@ -91,32 +75,6 @@ def test_one_job_makes_points_at_several_betas(tmp_path):
     assert project.planned("results/tiny/cooling/r0.8/beta0.1/seed1.nc")["point"] == 1
 
 
-def test_what_lies_beyond_the_paper_is_a_target_of_its_own(project):
-    planned = project.planned("extensions")
-    config = roughgas.config.load(project.folder / "config.yaml")
-    found = config["folders"]
-    with_tasks = {name: about["folder"] for name, about in found.items() if "tasks" in about}
-    settings = {name: study_folders.tasks(config, name, "tiny")["study"] for name in with_tasks}
-    judged = [one for one in found.values() if Path(one["folder"], "claims.yaml").exists()]
-    assert planned == {
-        "compile_kernel": SHOWN,
-        "seeds": SHOWN,
-        "reduce": SHOWN,
-        "study_task": sum(len(names(with_tasks[one], settings[one])) for one in with_tasks),
-        "study_data": len(with_tasks),
-        "study_movie": 1,
-        "study_figure": sum(len(one["figures"]) for one in found.values()),
-        "study_table": len([one for one in found.values() if one["experiments"]]),
-        "study_claims": len(judged),
-        "study_page": len(found),
-        "table": 1,
-        "run_times": 1,
-        "document": 1,
-        "extensions": 1,
-    }
-    assert project.planned("figures")["seeds"] == JOBS
-
-
 def test_everything_has_films_and_the_experiments_that_were_added(tmp_path):
     project = Project(tmp_path)
     project.configure(
@@ -128,18 +86,6 @@ def test_everything_has_films_and_the_experiments_that_were_added(tmp_path):
     found = {rule: planned[rule] for rule in ("seeds", "point", "study_movie", "movie")}
     assert found == {"seeds": JOBS + len(BEYOND), "point": 1, "study_movie": 1, "movie": 8}
     assert "point" not in project.planned("figures")
-
-
-@pytest.mark.parametrize(("dataset", "figures"), [("accuracy", 2), ("coverage", 1)])
-def test_accuracy_is_a_job_for_each_task(project, dataset, figures):
-    settings = roughgas.config.accuracy(
-        roughgas.config.load(project.folder / "config.yaml"), "tiny"
-    )
-    tasks = sum(
-        len(accuracy.study(name).tasks(settings[name])) for name in accuracy.DATASETS[dataset]
-    )
-    drawn = {"accuracy_figure": figures, "accuracy_table": 1, "document": 1, dataset: 1}
-    assert project.planned(dataset) == {"accuracy_task": tasks, "accuracy_data": 1} | drawn
 
 
 def test_any_legal_point_can_be_asked_for(project):
@@ -164,10 +110,7 @@ def test_an_illegal_target_is_refused_in_one_line(project, target, message):
     ("setting", "message"),
     [
         ("scale=large", "scale = 'large': must be one of paper, small"),
-        (
-            "n_particles=5",
-            "key = 'n_particles': must be one of accuracy, betas_per_job, complete,",
-        ),
+        ("n_particles=5", "key = 'n_particles': must be one of accuracy, betas_per_job, complete,"),
     ],
 )
 def test_an_illegal_setting_on_the_command_line_is_refused(project, setting, message):

@@ -176,49 +176,6 @@ def test_points_are_the_data_and_residuals_are_data_minus_theory():
     assert low < 0 < 0.03 < high
 
 
-def test_theory_of_forced_gases_is_one_smooth_line():
-    main, _ = paper.fig1a(reduced("vibrated")).axes
-    lines = [line for line in main.lines if len(line.get_xdata()) > 200]
-    assert len(lines) == 1
-    beta, ratio = lines[0].get_data()
-    assert beta[0] == -1 and beta[-1] == 1
-    assert np.interp([0, 1], beta, ratio) == pytest.approx([0.2, 0.5])
-
-
-def test_points_whose_steadiness_is_not_known_are_half_filled_and_explained():
-    data = reduced("vibrated")
-    data["equilibrated"][0, :3] = -1.0
-    main, _ = paper.fig1a(data).axes
-    assert any("half: not known" in word for word in words(main))
-    assert "open: not steady" not in words(main)
-    half = [box[0] for box in main.containers if box[0].get_fillstyle() == "bottom"]
-    assert sum(len(line.get_xdata()) for line in half) == 3
-
-
-def test_series_on_which_the_contact_time_model_acted_are_marked_and_explained():
-    data = reduced("vibrated", r=(0.6, 0.8, 0.9, 0.99))
-    assert "contact-time model acted" not in words(paper.fig1a(data).axes[0])
-    data["contact_time_fraction"][0, 3] = 1e-3
-    labels = words(paper.fig1a(data).axes[0])
-    assert "contact-time model acted" in labels
-    assert [label for label in labels if "†" in label] == ["$r = 0.6$†"]
-
-
-def test_words_say_how_many_residuals_lie_beyond_the_scale():
-    beds = walls()
-    main, residual = paper.fig1b(*beds).axes
-    high = residual.get_ylim()[1]
-    away = beds[1].R.sel(r=0.9) - predicted_ratio(beds[1].attrs, 0.9, beds[1].beta.values)
-    assert high < 0.1
-    assert (
-        residual.get_title(loc="right") == f"{(away > high).sum().item()} points above this scale"
-    )
-    assert {"no side walls", "Lun's formula"} <= set(words(main))
-    beds[1]["R"][0] = [*[np.nan] * (len(BETA) - 2), 0.0, 0.0, 1.0]
-    _, residual = paper.fig1b(*beds).axes
-    assert residual.get_title(loc="right") == "1 point above, 2 points below this scale"
-
-
 def test_places_without_data_are_left_out():
     data = reduced("cooling")
     data["R"][:, :4] = np.nan
@@ -238,17 +195,11 @@ def test_what_cannot_be_drawn_is_refused_and_leaves_no_file(tmp_path):
     assert {path.name for path in tmp_path.iterdir()} == {"vibrated.nc"}
 
 
-def test_a_figure_of_one_restitution_takes_another_where_the_data_have_no_other():
-    gases = [data.assign_coords(r=[0.8]) for data in DATA["friction"]()]
-    titles = [axes.get_title(loc="left") for axes in part("friction", "figure").draw(*gases).axes]
-    assert "r = 0.8" in titles[0] and "r = 0.8" in titles[1]
-
-
 def test_the_average_over_collisions_has_a_row_of_residuals():
     data = reduced("vibrated", lambda r, beta: 0.03 + 0 * r * beta)
     data["R_ratio_of_means"] = data.R - 0.01
     data = data.assign(R_collisional=data.R - 0.03, R_collisional_stderr=2 * data.R_stderr)
-    main, *rows = paper.fig1a(data).axes
+    _, *rows = paper.fig1a(data).axes
     assert [row.get_title(loc="left") for row in rows] == [
         "mean of $R(t)$",
         "averaged over collisions, finer scale",
@@ -258,24 +209,6 @@ def test_the_average_over_collisions_has_a_row_of_residuals():
         expected = data.R.sel(r=0.99) - predicted_ratio(data.attrs, 0.99, np.array(BETA)) - shift
         np.testing.assert_allclose(points[0][:, 1], expected)
     assert np.ptp(rows[1].get_ylim()) < 0.8 * np.ptp(rows[0].get_ylim())
-    # which stands beneath the line at 1/2
-    main.figure.draw_without_rendering()
-    _, top = main.transData.inverted().transform(main.get_legend().get_window_extent())[1]
-    assert top < 0.5
-
-
-def test_boundary_drives_stand_at_their_measured_shares():
-    heated, *beds, walls = DATA["drives"]()
-    beds[0]["input_spin_share"][0] = -0.4  # which is within the axis
-    main, residual = part("drives", "figure").draw(heated, *beds, walls).axes
-    assert main.get_xlim()[0] < -0.4
-    points = [column for column in bars(main) if len(column)]
-    assert len(points) == 4 * heated.beta.size
-    np.testing.assert_allclose(points[-1][:, 0], walls.input_spin_share.sel(r=0.9, beta=1.0))
-    beneath = [column for column in bars(residual) if len(column)]
-    share, ratio = (walls[name].sel(r=0.9, beta=1.0) for name in ("input_spin_share", "R"))
-    expected = predicted_ratio(walls.attrs | {"spin_share": share.values}, 0.9, 1.0)
-    np.testing.assert_allclose(beneath[-1][:, 1], ratio - expected)
 
 
 def test_wave_forms_are_compared_with_the_sawtooth():
@@ -287,17 +220,6 @@ def test_wave_forms_are_compared_with_the_sawtooth():
         assert np.all(first[:, 1] == 0.0)
         one, other = (waves.R.sel(r=r, wave=wave) for wave in ("reversed_sawtooth", "sawtooth"))
         np.testing.assert_allclose(second[:, 1], one - other)
-
-
-def test_shifts_are_from_the_smooth_boundary_beside_those_of_the_measured_share():
-    floor, walls = DATA["drives_boundaries"]()
-    left, _ = part("drives", "figure").draw_boundaries(floor, walls).axes
-    shifts = [column for column in bars(left) if len(column)]
-    along = floor.R.sel(r=0.9, beta=-0.5)
-    np.testing.assert_allclose(shifts[0][:, 1], along - along.sel(roughness=-1.0))
-    line = left.get_lines()[0].get_ydata()
-    np.testing.assert_allclose(line[1], 0.0, atol=1e-12)  # a share of 0 shifts nothing
-    assert line[0] < 0.0 < line[2]
 
 
 def test_points_of_mixtures_that_are_not_steady_are_open_in_both_rows():

@@ -5,7 +5,6 @@ import math
 import numpy as np
 import pytest
 from matplotlib.colors import to_hex
-from matplotlib.image import imread
 from synthetic import reduced
 from tests.show.figures.legibility import faults
 
@@ -62,12 +61,6 @@ def test_what_is_drawn_is_the_point(points, name):
         assert np.unique(found.get_ydata()) == [theory]
 
 
-def test_a_verdict_without_evidence_is_said(points):
-    unknown = points["cooling"].assign(R_ci95_trusted=-1)
-    (band,) = sweep.draw_point(unknown, math.nan).axes[0].collections
-    assert band.get_label() == "95 % interval, whether to trust it is not known"
-
-
 def test_the_command_draws_points_too(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     write(tmp_path, "sheared", "0.9", "0.5").rename("p.nc")
@@ -116,17 +109,6 @@ def test_any_sweep_is_drawn_beside_theory(kind):
         assert below[0].get_xscale() == "log"
 
 
-def test_of_many_series_some_are_shown_and_the_rest_named(tmp_path, capsys):
-    path = tmp_path / "inertia.nc"
-    reduced("inertia", r=(0.9,), third=("spin.inertia", (0.1, 1.0))).to_netcdf(path)
-    assert main(["plot", str(path), "-o", str(tmp_path / "my.png"), str(tmp_path / "my.svg")]) == 0
-    assert "5 of 21 values of beta are shown: -0.95, " in capsys.readouterr().err
-    assert imread(tmp_path / "my.png").std() > 0.05 and "<svg" in (tmp_path / "my.svg").read_text()
-    chosen = ["plot", str(path), "--beta", "0", "1", "--over", "inertia", "-o"]
-    assert main([*chosen, str(tmp_path / "two.png")]) == 0
-    assert "2 of 21 values of beta are shown: 0, 1" in capsys.readouterr().err
-
-
 @pytest.mark.parametrize(
     ("asked", "message"),
     [
@@ -137,12 +119,3 @@ def test_of_many_series_some_are_shown_and_the_rest_named(tmp_path, capsys):
 def test_what_the_data_lack_is_refused(asked, message):
     with pytest.raises(InputError, match=message):
         sweep.draw(reduced("sheared"), **asked)
-
-
-def test_where_nothing_spins_energy_is_drawn():
-    data = reduced("smooth", beta=(-1.0,), r=(0.8, 0.9))
-    data = data.drop_vars([name for name in data if name.startswith("R")])
-    data["E_trans"] = data.E_trans + np.array([[1.0], [2.0]])
-    (axes,) = sweep.draw(data, over="r").axes
-    assert axes.get_ylabel().startswith(r"$E_\mathrm{trans}$")
-    assert list(axes.containers[0][0].get_ydata()) == [2.0, 3.0]

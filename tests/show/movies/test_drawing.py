@@ -66,19 +66,6 @@ def test_a_disk_on_the_edge_is_seen_on_both_sides_of_it():
     assert {tuple(np.round(x, 9)) for x in disks.get_offsets()[2:]} == corners
 
 
-def test_the_images_above_and_below_slide():
-    about = subject("sheared", [SIDE, SIDE])
-    axes, disks, (marks, *_) = drawn(about, shots(slide=2.5))
-    bottom, top = axes.get_ylim()
-    assert bottom < -1.5 and top > SIDE + 1.5
-    places = np.round(disks.get_offsets(), 9).tolist()
-    assert [2.0, 11.7] not in places  # 11.5 + 2.5 - 12 is where the image above it is
-    assert [9.0, -0.3] in places and [11.5, 11.7] in places
-    opacity = dict(zip(map(tuple, places), disks.get_facecolor()[:, 3], strict=True))
-    assert opacity[9.0, -0.3] == particles.IMAGE and opacity[11.5, 11.7] == 1.0
-    assert len(marks.get_segments()) == len(places)
-
-
 def test_the_floor_is_a_bar_that_moves():
     about = subject("bed", [SIDE, "open"])
     heights = (0.0, 2.0, 4.0)

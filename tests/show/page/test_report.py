@@ -2,7 +2,6 @@
 
 import base64
 import json
-import re
 from html import unescape
 from pathlib import Path
 from types import SimpleNamespace
@@ -22,10 +21,7 @@ from roughgas.show.pages import captions
 
 ROOT = Path(__file__).parents[3]
 CAPTIONS = ROOT / "rules" / "captions"
-
-
-def params_of(**values):
-    return Params(fromdict=values)
+NAMES = figures_of("paper")
 
 
 def rendered(caption, **about):
@@ -37,53 +33,32 @@ def rendered(caption, **about):
     return publish_parts(source, writer="html", settings_overrides=settings)["body"]
 
 
-def caption_of(name):
-    """The words of a figure's own caption, as the rules hand them on."""
-    return (CAPTIONS / f"{name}.rst").read_text("utf-8")
-
-
 @pytest.fixture(scope="module")
 def loaded():
     return config.load(ROOT / "tests" / "experiments.yaml")
 
 
-@pytest.mark.parametrize("figure", figures_of("paper"))
-def test_a_figure_says_what_it_shows_and_how_it_was_made(figure, loaded):
-    experiments = {"cooling": config.experiment(loaded, "cooling", "paper")}
-    experiments["waves"] = config.experiment(loaded, "waves", "small")
-    wildcards = SimpleNamespace(figure=figure, folder="")
-    params = params_of(experiments=experiments, caption=caption_of(figure))
-    text = re.sub(r"\s+", " ", rendered("figure", wildcards=wildcards, params=params))
-    assert "What to notice." in text
-    assert "160 particles in a box of 100 × 100" in text
-    assert "21 values from -0.95 to 1" in text
-    assert "4 seeds of each point" in text
-    assert "sawtooth, reversed_sawtooth, triangle, sine" in text
-
-
-@pytest.mark.parametrize("figure", figures_of("accuracy"))
-def test_a_study_says_how_it_was_made(figure, loaded):
-    settings = config.accuracy(loaded, "paper")
-    wildcards = SimpleNamespace(study_figure=figure, folder="")
-    params = params_of(studies=settings, caption=caption_of(figure))
-    text = rendered("study", wildcards=wildcards, params=params)
-    assert "What to notice." in text and "repetitions 600" in text
+@pytest.mark.parametrize("figure", [*figures_of("paper"), *figures_of("accuracy")])
+def test_a_caption_is_rendered_and_says_how_it_was_made(figure, loaded):
+    about = {"caption": (CAPTIONS / f"{figure}.rst").read_text("utf-8")}
+    about["experiments"] = {"cooling": config.experiment(loaded, "cooling", "paper")}
+    about["studies"] = config.accuracy(loaded, "paper")
+    wildcards = SimpleNamespace(figure=figure, study_figure=figure, folder="")
+    template = "figure" if figure in NAMES else "study"
+    text = rendered(template, wildcards=wildcards, params=Params(fromdict=about))
+    assert ("21 values from -0.95 to 1" if figure in NAMES else "repetitions 600") in text
 
 
 @pytest.mark.parametrize("folder", FOLDERS, ids=lambda one: one.name)
-def test_a_figure_of_a_study_says_what_it_shows(folder, loaded):
-    """README.md has each of its figures, and what follows it is a caption."""
+def test_readme_of_a_study_has_a_caption_for_each_figure(folder, loaded):
     figures = config.load(ROOT / "config.yaml")["folders"][folder.name]["figures"]
     found = captions(folder, [*figures])
     assert found.keys() == figures.keys()
     for caption in found.values():
-        experiments = {"cooling": config.experiment(loaded, "cooling", "paper")}
-        params = params_of(caption=caption, experiments=experiments)
-        text = rendered("figure", wildcards=SimpleNamespace(folder=""), params=params)
-        assert "What to notice." in text and "21 values from -0.95 to 1" in text
+        params = Params(fromdict={"caption": caption, "experiments": {}})
+        rendered("figure", wildcards=SimpleNamespace(folder=""), params=params)
 
 
-NAMES = figures_of("paper")
 TABLE = "| R | verdict |\n| --- | --- |\n| 1 | **holds** |"
 CLAIMS = f"# The verdict\n\nHow to <read> it.\n\n{TABLE}\n\nEnd.\n"
 
@@ -119,13 +94,6 @@ def test_it_opens_on_the_figures_each_with_its_caption_and_words_for_who_cannot_
     assert "<strong>What to notice.</strong> x &lt; y." in text
 
 
-def test_verdicts_come_before_how_to_read_them(files):
-    assert front(files) == 0
-    text = (files / "report.html").read_text("utf-8")
-    table, reading = text.index("<td><strong>holds"), text.index("How to &lt;read&gt; it.")
-    assert text.index("<h1>The verdict</h1>") < table < reading < text.index("<p>End.</p>")
-
-
 def test_a_figure_without_a_caption_or_a_place_is_refused(files, capsys):
     assert front(files, captions=NAMES[:1]) == 2
     assert "captions = fig1a: must have one of fig1b" in capsys.readouterr().err
@@ -133,9 +101,6 @@ def test_a_figure_without_a_caption_or_a_place_is_refused(files, capsys):
     assert front(files, figures=["mine"]) == 2
     assert "figure = mine: must be one of" in capsys.readouterr().err
     assert not (files / "report.html").exists()
-
-
-CONFIG = Path(__file__).parents[3] / "config.yaml"
 
 
 def html(source, tmp_path):
@@ -180,9 +145,9 @@ def test_run_times_are_sums_over_points_and_seeds(points, tmp_path):
 def test_the_complete_configuration_says_the_same_and_can_be_run(scale, tmp_path):
     path = tmp_path / "config.yaml"
     changes = {"experiments": {"cooling": {"particles": 99}}, "seeds_per_job": 2}
-    arguments = [str(CONFIG), f"--scale={scale}", f"--changes={json.dumps(changes)}"]
+    arguments = [str(ROOT / "config.yaml"), f"--scale={scale}", f"--changes={json.dumps(changes)}"]
     assert main(["effective_config", *arguments, "--output", str(path)]) == 0
-    given, found = config.load(CONFIG, changes), config.load(path)
+    given, found = config.load(ROOT / "config.yaml", changes), config.load(path)
     assert found["scale"] == scale and list(found["scales"]) == [scale]
     assert found["seeds_per_job"] == 2
     for name in given["experiments"]:

@@ -19,7 +19,6 @@ EXPERIMENT = {
 
 
 def settled(r, beta, dimension, particles, samples, seed):
-    """R and its standard error once a cooling gas has settled."""
     R = settled_samples(r, beta, dimension, particles, samples, seed).R
     return R.mean(), blocking_stderr(R)
 
