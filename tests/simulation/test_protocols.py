@@ -6,7 +6,7 @@ from brute_force import begin, run, settings
 
 from roughgas import simulate, theory
 from roughgas.base import InputError
-from roughgas.effects.contact_stress import SUMS
+from roughgas.effects.contacts import STRESSES
 from roughgas.scene import build, packing
 from roughgas.simulation import cooling, schedule, steady
 from roughgas.simulation.energies import Energies
@@ -174,7 +174,7 @@ def test_the_pressure_of_an_elastic_mixture_is_that_of_its_equation_of_state():
     mixed["effects"] = {"contact_stress": {}}
     scene, state = begin(mixed, 1.0, -1.0, 5)
     before, after = (run(state, scene, 1, collisions=number) for number in (10_000, 100_000))
-    virial = sum(after[name][0] - before[name][0] for name in list(SUMS)[::4])  # the trace
+    virial = sum(after[name][0] - before[name][0] for name in list(STRESSES)[::4])  # the trace
     elapsed, square = after["time"][0] - before["time"][0], after["vv_x"][0] + after["vv_y"][0]
     expected = theory.compressibility(theory.mixture(species, 1.0, -1.0), packing(mixed))
     assert 1.0 + virial / (elapsed * square) == pytest.approx(expected, rel=0.01)
