@@ -16,6 +16,8 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check install
 LOCK := uv pip compile --quiet --generate-hashes --no-emit-index-url --no-header --universal \
     --python-version 3.11 pyproject.toml
 EXTRA_TESTS := slow or remedy or browser or slurm
+TESTS ?=
+FAST := base claims config data results scene statistics theory
 
 # pip in a few lines, in a terminal or in a pipe: how far it is, and of a failure all that it said
 define install
@@ -28,7 +30,7 @@ define install
 endef
 
 help: ## say what there is to make
-	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /  make \1\t/' | expand -t 18
+	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /  make \1\t/' | expand -t 18
 
 figures: setup ## simulate, and draw the four figures of the paper
 	$(SNAKEMAKE) figures
@@ -47,11 +49,14 @@ report: setup ## pages for a browser: the report, every point to click on, a gas
 	@echo "With more in it:  make$(AT_SCALE) REPORTED='figures extensions' report"
 
 test: setup ## run the tests, but for those of `make extras`
-	$(BIN)/python -m pytest -n $(JOBS) --dist loadfile --no-loadscope-reorder -m "not ($(EXTRA_TESTS))"
+	$(BIN)/python -m pytest -n $(JOBS) --dist loadfile --no-loadscope-reorder -m "not ($(EXTRA_TESTS))" $(TESTS)
 	@echo "All tests pass. Those that take minutes more, a browser, or Slurm:  make extras"
 
+test-fast: setup ## run those tests that need neither a kernel nor a workflow, at each save
+	$(BIN)/python -m pytest -q -n $(JOBS) -m "not ($(EXTRA_TESTS))" $(addprefix tests/,$(FAST))
+
 extras: .venv/with-browser .venv-slurm/ready ## run what takes minutes more, a browser, or Slurm
-	$(BIN)/python -m pytest -n $(JOBS) --dist loadfile -m "$(EXTRA_TESTS)"
+	$(BIN)/python -m pytest -n $(JOBS) --dist loadfile -m "$(EXTRA_TESTS)" $(TESTS)
 	@echo "All of these pass, too."
 
 versions: ## install the wheel for each Python that is here, with the newest and the oldest dependencies, and test it
@@ -135,5 +140,5 @@ clean: ## remove all results; the environment and the committed figures stay
 	    $(filter-out figures/movies/,$(wildcard figures/*/))
 	@echo "All results are gone. To make them again:  make figures"
 
-.PHONY: help figures report test extras versions docs notebook bench lint format setup lock clean
+.PHONY: help figures report test test-fast extras versions docs notebook bench lint format setup lock clean
 .DELETE_ON_ERROR:

@@ -1,11 +1,11 @@
 # One short movie a scene, for README and docs: its name, its experiment or variant, and what else
 # `roughgas movie` is told. Studies have their own in their config.yaml.
 MOVIES = {
-    "vibrated": ("vibrated", "--r=0.9 --beta=0.5 --length=8 --frames=160"),
-    "roughness": ("vibrated", "--r=0.9 --beta -1 0 1 --length=12 --frames=180"),
-    "sheared": ("sheared", "--r=0.9 --beta=0.5 --frames=160"),
-    "cooling": ("cooling", "--r=0.9 --beta=0.5 --length=16 --frames=160"),
-    "rough_walls": ("vibrated_rough_walls", "--r=0.9 --beta=-1 --length=8 --frames=160"),
+    "vibrated": ("vibrated", "--r=0.9 --beta=0.5 --length=4 --frames=80"),
+    "roughness": ("vibrated", "--r=0.9 --beta -1 0 1 --length=4 --frames=60"),
+    "sheared": ("sheared", "--r=0.9 --beta=0.5 --frames=100"),
+    "cooling": ("cooling", "--r=0.9 --beta=0.5 --length=8 --frames=80"),
+    "rough_walls": ("vibrated_rough_walls", "--r=0.9 --beta=-1 --length=4 --frames=80"),
 }
 MOVIES |= {
     movie: (experiment, " ".join(options))

@@ -127,7 +127,7 @@ def move(circles: EllipseCollection, x: np.ndarray, y: np.ndarray, diameter: Any
 # x264's constant rate factor: lower is better and larger
 MP4 = "-vcodec libx264 -pix_fmt yuv420p -crf 28 -preset slow -f mp4"
 # one palette for all frames, and only the part of each frame that changes; dithering would flicker
-PALETTE = "split[a][b];[a]palettegen=max_colors=48[p];[b][p]paletteuse=dither=none"
+PALETTE = "split[a][b];[a]palettegen=max_colors=32[p];[b][p]paletteuse=dither=none"
 GIF = f"-filter_complex {PALETTE}:diff_mode=rectangle -loop 0 -f gif"
 ENCODERS = {".mp4": MP4, ".gif": GIF}
 

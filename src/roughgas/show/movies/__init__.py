@@ -21,7 +21,7 @@ from roughgas.simulation import schedule
 from roughgas.simulation.trajectory import Snapshot
 
 WIDTH = 4.8  # inches
-DPI = {".gif": 100, ".mp4": 200}
+DPI = {".gif": 80, ".mp4": 200}
 DPI_BESIDE = {".gif": 60, ".mp4": 120}  # where several are side by side
 TALLEST = 1.5  # of what is shown, in widths of the box
 SLIDING_IMAGES = 0.15  # of the images above and below that is shown, in heights of the box
