@@ -2,8 +2,8 @@
 # `roughgas movie` is told. Studies have their own in their config.yaml.
 MOVIES = {
     "vibrated": ("vibrated", "--r=0.9 --beta=0.5 --length=4 --frames=80"),
-    "roughness": ("vibrated", "--r=0.9 --beta -1 0 1 --length=4 --frames=60"),
-    "sheared": ("sheared", "--r=0.9 --beta=0.5 --frames=100"),
+    "roughness": ("vibrated", "--r=0.9 --beta -1 0 1 --length=3 --frames=48"),
+    "sheared": ("sheared", "--r=0.9 --beta=0.5 --frames=75"),
     "cooling": ("cooling", "--r=0.9 --beta=0.5 --length=8 --frames=80"),
     "rough_walls": ("vibrated_rough_walls", "--r=0.9 --beta=-1 --length=4 --frames=80"),
 }
