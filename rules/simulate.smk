@@ -2,12 +2,7 @@
 # Of the sweep, `seeds_per_job` seeds at `betas_per_job` values of beta are made by one job (see
 # config.yaml); any other point is a job of its own.
 SIMULATING = ("simulation.point", "data.point")
-RECORDING = (
-    "cli.run",
-    "simulation.points",
-    "config.labels",
-    "config.provenance",
-)  # these hand on and write down
+RECORDING = ("cli.run", "simulation.points", "config.labels")  # these hand on and write down
 
 
 def place_of(wildcards):

@@ -15,10 +15,10 @@ from tests.files import point
 
 from roughgas.base import InputError, in_csv, markdown
 from roughgas.config import schema
-from roughgas.config.provenance import provenance
 from roughgas.data.point import write_point
 from roughgas.results.reduce import reduce_points
 from roughgas.show.pages import policy
+from roughgas.simulation.points import provenance
 
 SCRIPT = "<script>alert(1)</script>"
 EVIL = [SCRIPT, "<!--<script>", "\"'`", "$(touch owned) `touch owned` ; touch owned", "a\nb"]

@@ -264,10 +264,9 @@ def trajectory(
     changes |= dict(species=species, species_pairs=species_pairs, schedule=schedule)
     ((legal_r, legal_beta, number, labels),), _ = _places(r, beta, seed)
 
-    from roughgas.config.provenance import provenance
     from roughgas.data.trajectory import as_trajectory
     from roughgas.scene import build
-    from roughgas.simulation.points import UNNAMED, settings_of
+    from roughgas.simulation.points import UNNAMED, provenance, settings_of
     from roughgas.simulation.progress import watched
     from roughgas.simulation.restart import initial_of
     from roughgas.simulation.trajectory import chosen, snapshots, variables

@@ -50,7 +50,7 @@ def claims(inputs: list[str], *, json: str, markdown: str) -> None:
 
 def effective_config(input: str, *, scale: str, output: str, changes: str = "{}") -> None:
     """Write the complete configuration of a scale, with changes to it in JSON."""
-    from roughgas.config.provenance import write_effective
+    from roughgas.config.study_folders import write_effective
 
     changed = config.from_text(changes, "--changes", checked=True)
     write_effective(config.load(input, changed), scale, output)

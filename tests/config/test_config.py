@@ -13,8 +13,8 @@ from roughgas import accuracy, config, simulate
 from roughgas.accuracy.running import run_task
 from roughgas.cli import main
 from roughgas.config import schema
-from roughgas.config.provenance import write_effective
 from roughgas.config.reading import read_yaml
+from roughgas.config.study_folders import write_effective
 from roughgas.show import catalogue
 
 ROOT = Path(__file__).parents[2]

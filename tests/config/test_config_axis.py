@@ -9,10 +9,10 @@ from tests.tables import rows
 from roughgas import config
 from roughgas.base import InputError
 from roughgas.config import schema
-from roughgas.config.provenance import variant_attributes
 from roughgas.data.reduced import REDUCED
 from roughgas.data.variables import POINT
 from roughgas.results.reduce import SAME
+from roughgas.simulation.points import variant_attributes
 
 INERTIA = {"extends": "sheared", "sweep": {"r": ["0.9"], "spin.inertia": ["1", "0.50", "1e-3"]}}
 

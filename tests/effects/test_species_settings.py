@@ -12,8 +12,8 @@ from brute_force import begin, settings
 
 from roughgas.base import InputError
 from roughgas.config.schema import check_schema
-from roughgas.effects.species import mixture_of
-from roughgas.scene import build, packing
+from roughgas.effects.species import mixture_of, packing
+from roughgas.scene import build
 from roughgas.scene.initial import initial_state
 
 HALVES = [{"fraction": 0.5}, {"fraction": 0.5, "radius": 2}]

@@ -9,7 +9,8 @@ from schedules import COOLING, STEADY
 
 from hard_cases.catalogue import hard_case
 from roughgas.base import InputError
-from roughgas.scene import build, check
+from roughgas.scene import build
+from roughgas.scene.initial import check
 from roughgas.simulation.point import run_point
 
 DISKS = (0.001, 0.01, 0.1, 0.3, 0.5, 0.7, 0.8)  # shares of the area

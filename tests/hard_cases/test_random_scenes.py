@@ -25,7 +25,8 @@ from hard_cases.compositions import (
 from hard_cases.watched import Worst, worst_of
 from roughgas.base import InputError
 from roughgas.effects import KINDS
-from roughgas.scene import build, check
+from roughgas.scene import build
+from roughgas.scene.initial import check
 
 QUICK = ("friction", "sheared", "walled", "shaken", "heated", "spheres")
 FEW = [

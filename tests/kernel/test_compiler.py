@@ -73,7 +73,7 @@ def test_reading_settings_takes_no_compiler(tmp_path):
     program = (
         "import sys\n"
         "from roughgas.config import load\n"
-        "from roughgas.scene import check\n"
+        "from roughgas.scene.initial import check\n"
         "settings = {'particles': 16, 'box': [20, 20], 'effects': {'spin': {'inertia': 0.5}}}\n"
         "load('config.yaml'), check(settings)\n"
         "sys.exit('numba' in sys.modules)"

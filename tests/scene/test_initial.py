@@ -5,8 +5,7 @@ import pytest
 from brute_force import KERNELS, begin, largest_overlap, scene_of, settings
 
 from roughgas.base import InputError
-from roughgas.scene import check_places
-from roughgas.scene.initial import random_positions
+from roughgas.scene.initial import check_places, random_positions
 
 CASES = {
     **{name: settings(name) for name in KERNELS},

@@ -5,7 +5,8 @@ import math
 import pytest
 
 from roughgas.base import InputError
-from roughgas.scene import build, check
+from roughgas.scene import build
+from roughgas.scene.initial import check
 
 SPIN = {"spin": {"inertia": 0.5}}
 GRAVITY = {"gravity": {"acceleration": 1}}

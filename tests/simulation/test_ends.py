@@ -166,7 +166,7 @@ def test_a_memory_that_was_changed_or_that_is_of_another_state_is_not_taken():
 def test_spins_may_have_a_temperature_at_the_start():
     experiment = settings("gas", 900, [80, 80]) | {"spin_temperature": 4.0}
     gas = build(experiment, R, BETA)
-    from roughgas.scene import initial_state
+    from roughgas.scene.initial import initial_state
 
     state = initial_state(gas, experiment, np.random.default_rng(SEED))
     cold = initial_state(gas, experiment | {"spin_temperature": 0.0}, np.random.default_rng(SEED))

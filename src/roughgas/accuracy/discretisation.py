@@ -21,7 +21,8 @@ from roughgas.accuracy import VARIABLES
 from roughgas.accuracy.soft_spheres import COLUMNS, CONTACTS, new_gas, springs, step
 from roughgas.kernel.memory import new_state
 from roughgas.kernel.state import EXPONENT, STARTED
-from roughgas.scene import build, initial_state
+from roughgas.scene import build
+from roughgas.scene.initial import initial_state
 from roughgas.simulation.energies import Energies, ratio
 from roughgas.simulation.gas import Gas
 from roughgas.statistics.errors import Estimate, blocking_stderr, period_means, stderr_over_seeds

@@ -12,9 +12,9 @@ from roughgas import config
 from roughgas.base import InputError, Interval, as_json, from_json, on_one_line
 from roughgas.cli.parser import WIDTH, number, whole_number
 from roughgas.cli.run import initial_in, points_of
-from roughgas.config.provenance import provenance
 from roughgas.data.trajectory import as_trajectory, check_format, write_trajectory
 from roughgas.scene import Scene, build
+from roughgas.simulation.points import provenance
 from roughgas.simulation.progress import watched
 from roughgas.simulation.restart import Initial
 from roughgas.simulation.trajectory import LEGAL, NUMBERS, Frames, chosen, snapshots, variables

@@ -12,10 +12,9 @@ from roughgas import config
 from roughgas.base import InputError, as_json
 from roughgas.cli.parser import check_outputs, labels
 from roughgas.config.labels import SPECIES, holder, names_of
-from roughgas.config.provenance import variant_attributes
 from roughgas.data.point import Point, read_point, write_point
 from roughgas.simulation import schedule
-from roughgas.simulation.points import points
+from roughgas.simulation.points import points, variant_attributes
 from roughgas.simulation.restart import Initial, initial_of
 from roughgas.statistics.errors import NO, UNKNOWN, YES, Estimate
 

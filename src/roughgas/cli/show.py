@@ -16,9 +16,9 @@ from roughgas.base.files import module_of
 from roughgas.data import netcdf
 from roughgas.data.netcdf import read_netcdf, unit_of
 from roughgas.data.reduced import EQUILIBRATED, particles_of, third_axis
+from roughgas.effects.species import packing
 from roughgas.results.products import rows as rows_of
 from roughgas.results.products import why_wide
-from roughgas.scene import packing
 from roughgas.statistics.errors import NO, UNKNOWN, YES, Estimate, decimals_of
 from roughgas.theory.prediction import equation_of, ratio_of_point
 

@@ -4,8 +4,11 @@ A folder studies/NAME with a config.yaml is one. It has experiments, which may e
 and what scales change in them; from outside its experiment KEY is NAME.KEY. A study that is broken
 is left out, with the error that says why: the paper's experiments and other studies stand without
 it.
+
+With all studies, and all that a scale changes, written out, a configuration is complete.
 """
 
+import json
 import re
 from collections.abc import Callable, Mapping
 from graphlib import CycleError, TopologicalSorter
@@ -14,11 +17,16 @@ from typing import Any
 
 from roughgas import config as settings_of
 from roughgas.base import InputError, from_json, shown
-from roughgas.base.files import readme
+from roughgas.base.files import readme, write_text
 from roughgas.config.reading import read_yaml
 from roughgas.config.schema import RESERVED, check_ancestors, check_by, check_one, check_schema
 
 FOLDER, TASKS = "studies", "tasks"
+HEAD = """\
+# The complete configuration of the scale `{scale}`: what experiments inherit from each other, and
+# what the scale and the command line change, is written out. Used in place of config.yaml, it gives
+# the same results.
+"""
 USUAL_SCALES = ("paper", "small")
 """Scales for which a study may have changes though the configuration does not have the scale."""
 
@@ -293,3 +301,26 @@ def tasks_from_text(folder: str | Path, text: str) -> dict[str, Any]:
     for one, experiment in settings["experiments"].items():
         check_schema(experiment, f"--settings: experiments.{one}", "experiment")
     return settings
+
+
+def write_effective(whole: Mapping[str, Any], scale: str, output: str | Path) -> None:
+    """Write a configuration whose only scale is `scale`, which changes nothing, as YAML.
+
+    Raises InputError for an unknown scale.
+    """
+    import yaml
+
+    names = whole["experiments"]
+    effective = {
+        "complete": True,
+        "scale": scale,
+        "seeds_per_job": whole.get("seeds_per_job", settings_of.SEEDS_PER_JOB),
+        "betas_per_job": whole.get("betas_per_job", 1),
+        "experiments": {name: settings_of.experiment(whole, name, scale) for name in names},
+    }
+    if settings_of.ACCURACY in whole:
+        effective[settings_of.ACCURACY] = settings_of.accuracy(whole, scale)
+    effective["scales"] = {scale: {}}
+    plain = json.loads(json.dumps(effective))  # without anchors
+    text = yaml.safe_dump(plain, sort_keys=False, width=100, default_flow_style=None)
+    write_text(output, HEAD.format(scale=scale) + text)

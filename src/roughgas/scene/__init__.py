@@ -1,36 +1,294 @@
-"""What is simulated: box, material and effects, and the state that it starts from."""
+"""A scene: a box, the material of its particles, and the effects that act, built from settings.
 
-from roughgas.effects.species import packing
-from roughgas.scene.initial import bounds, check, check_places, initial_state
-from roughgas.scene.scene import (
-    DIAMETER,
-    Scene,
-    build,
-    closed_axes,
-    draw_bodies,
-    elastic,
-    for_theory,
-    given_bodies,
-    has_sides,
-    moves_along,
-    shear_rate,
-)
+Which walls go together, and what each particle of a mixture is, drawn with a generator of its own:
+that of positions and velocities is left as it is, so that particles of several species that are
+alike in all things begin as those of one.
 
-__all__ = [
-    "DIAMETER",
-    "Scene",
-    "bounds",
-    "build",
-    "check",
-    "check_places",
-    "closed_axes",
-    "draw_bodies",
-    "elastic",
-    "for_theory",
-    "given_bodies",
-    "has_sides",
-    "initial_state",
-    "moves_along",
-    "packing",
-    "shear_rate",
-]
+Units: particle radius a = particle mass m = time unit T = 1.
+"""
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from roughgas import theory
+from roughgas.base import RESTITUTION, ROUGHNESS, InputError, NeedsError
+from roughgas.effects import KINDS, Effects
+from roughgas.effects.settings import SceneContext, make
+from roughgas.effects.species import Mixture, mixture_of
+from roughgas.kernel import hooks
+from roughgas.kernel.state import Bodies
+
+OPPOSITE = (("left_wall", "right_wall"), ("front_wall", "back_wall"), ("bottom_wall", "lid"))
+PAIRS = ("walls", "shaken_walls")
+"""What closes both ends of the first axis at once."""
+
+
+def check_sides(effects: Effects) -> None:
+    """Raise InputError for a side that is closed twice, or an axis that is closed at one end only,
+    and for walls where images slide."""
+    sheared = {"left_wall": 0, "right_wall": 0, "front_wall": 1, "back_wall": 1}
+    for name in (*PAIRS, *sheared, "bottom_wall", "lid"):
+        wall = getattr(effects, name)
+        if wall is None:
+            continue
+        if effects.shear is not None and getattr(wall, "axis", 0) < 2:
+            legal = "not close the axis that is sheared along"
+            if getattr(wall, "axis", 0) == 1:
+                legal = "not close the axis along which images slide past each other"
+            raise InputError("effects", f"{name} and shear", legal)
+        for pair in PAIRS:
+            if name not in PAIRS and wall.axis == 0 and getattr(effects, pair) is not None:
+                raise InputError("effects", f"{pair} and {name}", "not close the same axis twice")
+    for one, other in OPPOSITE:
+        _check_opposite(effects, one, other)
+        _check_opposite(effects, other, one)
+
+
+def _check_opposite(effects, name, other):
+    there = getattr(effects, other) or (other == "bottom_wall" and effects.floor)
+    if getattr(effects, name) is not None and not there:
+        raise NeedsError(f"effects.{name}", other)
+
+
+def moves_along(effects: Effects) -> bool:
+    """Return whether walls that close the second axis move along the first, so that gas flows."""
+    return any(
+        getattr(wall, "axis", 0) == 1 and getattr(wall, "velocity", 0.0) != 0.0
+        for wall in _walls(effects).values()
+    )
+
+
+def smooth_walls(effects: Effects) -> Effects:
+    """Return the effects with all walls smooth and elastic."""
+    smooth = {
+        name: wall._replace(restitution=1.0, roughness=-1.0)
+        for name, wall in _walls(effects).items()
+        if hasattr(wall, "restitution")
+    }
+    return effects._replace(**smooth)
+
+
+def has_sides(effects: Effects) -> bool:
+    """Return whether there are walls on single sides of the box."""
+    return any(hasattr(wall, "place") for wall in _walls(effects).values())
+
+
+def _walls(effects):
+    """Return all that closes an axis, by name."""
+    places = (part.place for part in hooks.present(effects, "closes"))
+    return {effects._fields[place]: effects[place] for place in places}
+
+
+DIAMETER = 2.0
+# Of a periodic box, in a: below two diameters a particle could meet two images of another, and a
+# little above that contacts are foreseen for moments only
+NARROWEST = 4.01
+NARROWEST_CHANNEL = 2.01  # between side walls, in a
+LONGEST = 1e9  # side of a box, in a: products of three still leave room for squares
+FAR_APART = 8.0  # of side walls, in a: nothing comes round there, however near they are
+
+
+class Scene(NamedTuple):
+    """A scene as the kernel takes it; what is None is compiled away."""
+
+    box: tuple[float | None, ...]  # period of each axis in a, None where it has none
+    restitution: float
+    roughness: float
+    effects: Effects
+    extent: float  # least distance after which something comes round: a period or a width, in a
+    middle: float  # height at which the mean flow vanishes, in a
+
+
+def shear_rate(scene: Scene) -> float:
+    """Return Gamma in 1/T, 0 where nothing shears the gas."""
+    shear = scene.effects.shear
+    return 0.0 if shear is None else shear.velocity / (2.0 * scene.middle)
+
+
+def build(experiment: Mapping[str, Any], r: float, beta: float) -> Scene:
+    """Return the scene of an experiment, with particles of restitution r and roughness beta.
+
+    Raises InputError for values that are illegal or contradict each other.
+    """
+    RESTITUTION.check("restitution r", r)
+    ROUGHNESS.check("roughness beta", beta)
+    lengths = tuple(None if side == "open" else float(side) for side in experiment["box"])
+    mixture = mixture_of(experiment)
+    asked_for = _asked_for(experiment) | dict(experiment["effects"])
+    effects = _effects(asked_for, lengths, float(r), float(beta), mixture)
+    if effects.spin is None and beta != -1.0:
+        raise InputError("roughness beta", beta, "be -1 where particles do not spin")
+    closed = closed_axes(effects)
+    _check_axes(lengths, effects)
+    check_sides(effects)
+    largest = 1.0 if mixture is None else mixture.largest()
+    check_box(lengths, effects, largest)
+    _check_company(experiment.get("particles"), effects)
+    # walls that are near shorten no outlook
+    across = [
+        max(length, FAR_APART * largest) if axis in closed else length
+        for axis, length in enumerate(lengths)
+        if length is not None
+    ]
+    return Scene(
+        box=tuple(None if axis in closed else length for axis, length in enumerate(lengths)),
+        restitution=float(r),
+        roughness=float(beta),
+        effects=effects,
+        extent=min(across),
+        middle=0.0 if lengths[1] is None else lengths[1] / 2.0,
+    )
+
+
+def elastic(scene: Scene) -> Scene:
+    """Return the scene with smooth elastic particles, and walls if it has any."""
+    species, effects = scene.effects.species, smooth_walls(scene.effects)
+    if species is not None:
+        effects = effects._replace(species=species._replace(alike=True))
+    return scene._replace(restitution=1.0, roughness=-1.0, effects=effects)
+
+
+def closed_axes(effects: Effects) -> set[int]:
+    """Return the axes of the box that walls close."""
+    walls = (effects[part.place] for part in hooks.present(effects, "closes"))
+    return {getattr(wall, "axis", 0) for wall in walls}
+
+
+def strokes(effects: Effects, dimension: int) -> np.ndarray:
+    """Return how far walls at the low and the high end of each axis come into the box, in a.
+
+    Those that do are shaken along their normal, as a floor is; shape (D, 2).
+    """
+    found = np.zeros((dimension, 2))
+    if effects.floor is not None:
+        found[-1, 0] = effects.floor.amplitude
+    for part in hooks.present(effects, "closes"):
+        wall: Any = effects[part.place]
+        if hasattr(wall, "motion"):
+            found[wall.axis, int(wall.place.inwards < 0.0)] = wall.motion.amplitude
+    return found
+
+
+def check_box(lengths: Sequence[float | None], effects: Effects, largest: float) -> None:
+    """Raise InputError where sides of the box are too short for particles of the largest radius."""
+    closed, taken = closed_axes(effects), strokes(effects, len(lengths)).sum(axis=1)
+    for k, length in enumerate(lengths):
+        least = (NARROWEST_CHANNEL if k in closed else NARROWEST) * largest + taken[k]
+        if length is not None and length > LONGEST:
+            raise InputError(f"box[{k}]", length, f"be at most {LONGEST:g}")
+        if length is not None and not least <= length:
+            raise InputError(f"box[{k}]", length, f"be a number of at least {least:g}")
+
+
+def _asked_for(experiment):
+    """Return the effects that only look, for observables of the experiment."""
+    if not experiment.get("observables"):
+        return {}
+    from roughgas.observables import effects_of  # imported where they are wanted
+
+    return effects_of(experiment["observables"])
+
+
+def _effects(settings, lengths, r, beta, mixture):
+    own = () if mixture is None else (mixture.own("restitution"), mixture.own("roughness"))
+    around = SceneContext(lengths, r, beta, settings, *own)
+    for name in settings:
+        if name not in KINDS:
+            raise InputError("effect", name, f"be one of {', '.join(KINDS)}")
+    there = {name: kind for name, kind in KINDS.items() if name in settings}
+    made = {name: make(kind, name, settings[name], around) for name, kind in there.items()}
+    return Effects(**made, species=None if mixture is None else mixture.effect())
+
+
+def _check_axes(lengths, effects):
+    """Refuse a top or walls that do not suit the effects."""
+    open_axes = [k for k, length in enumerate(lengths) if length is None]
+    if open_axes not in ([], [len(lengths) - 1]):
+        raise InputError("box", list(lengths), "be open along its last axis only")
+    if effects.gravity is None and effects.floor is not None:
+        raise NeedsError("effects.floor", "gravity")
+    if effects.gravity is not None and effects.floor is None:
+        raise NeedsError("effects.gravity", "a floor")
+    if (effects.gravity is None or effects.lid is not None) == bool(open_axes):
+        legal = "be open at the top if and only if there is gravity"
+        raise InputError("box", list(lengths), legal)
+
+
+def _check_company(particles, effects):
+    """Refuse a single particle that would rest in its box, or have no partner for kicks."""
+    if particles == 1 and effects.gravity is None:
+        raise InputError("particles", 1, "be at least 2 where there is no floor to meet")
+    if particles == 1 and effects.thermostat is not None:
+        raise InputError("particles", 1, "be at least 2 where a thermostat kicks pairs")
+
+
+def draw_bodies(
+    scene: Scene, experiment: Mapping[str, Any], rng: np.random.Generator
+) -> Bodies | None:
+    """Return what each particle is, in random order; None where all are alike.
+
+    Raises InputError where the box is too small for the largest.
+    """
+    mixture = mixture_of(experiment)
+    if mixture is None:
+        return None
+    (own,) = rng.spawn(1)
+    radius = np.concatenate([kind.radii(own) for kind in mixture.kinds])
+    species = np.repeat(np.arange(len(mixture.kinds)), [kind.number for kind in mixture.kinds])
+    order = own.permutation(len(species))
+    return _bodies(mixture, scene, experiment, radius[order], species[order])
+
+
+def for_theory(scene: Scene, experiment: Mapping[str, Any]) -> theory.Mixture | None:
+    """Return the species as theory takes them; None where all particles are alike."""
+    if not experiment.get("species"):
+        return None
+    friction, spin = scene.effects.friction, scene.effects.spin
+    return theory.mixture(
+        experiment["species"],
+        scene.restitution,
+        scene.roughness,
+        len(scene.box),
+        None if spin is None else spin.inertia,
+        math.inf if friction is None else friction.mu,
+        experiment.get("species_pairs") or (),
+    )
+
+
+def given_bodies(
+    scene: Scene, experiment: Mapping[str, Any], radius: np.ndarray, species: np.ndarray
+) -> Bodies:
+    """Return the same of particles with these radii (N,), in a, and species (N,), from 0.
+
+    Raises InputError where these are not the species of the experiment.
+    """
+    mixture = mixture_of(experiment)
+    assert mixture is not None
+    numbers = [kind.number for kind in mixture.kinds]
+    found = np.bincount(np.maximum(species, 0), minlength=len(numbers)).tolist()
+    if found != numbers or species.min() < 0:
+        raise InputError("initial.species", f"{found} particles of each", f"be {numbers} of each")
+    if not (np.isfinite(radius) & (radius > 0.0)).all():
+        raise InputError("initial.radius", radius.min(), "be positive")
+    return _bodies(mixture, scene, experiment, radius, species)
+
+
+def _bodies(mixture: Mixture, scene, experiment, radius, species):
+    sides = [None if side == "open" else float(side) for side in experiment["box"]]
+    check_box(sides, scene.effects, float(radius.max()))
+    effects = scene.effects
+    q = 1.0 if effects.spin is None else effects.spin.inertia
+    mass, inertia = radius ** len(scene.box), np.full(len(radius), q)
+    for k, kind in enumerate(mixture.kinds):
+        here = species == k
+        mass[here] = mass[here] if kind.mass is None else kind.mass
+        inertia[here] = q if kind.inertia is None else kind.inertia
+    common = {
+        "restitution": scene.restitution,
+        "roughness": scene.roughness,
+        "mu": np.nan if effects.friction is None else effects.friction.mu,
+    }
+    return Bodies(radius, mass, inertia, species, radius.max(keepdims=True), mixture.table(common))

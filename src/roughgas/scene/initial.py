@@ -20,7 +20,7 @@ from roughgas.kernel import hooks
 from roughgas.kernel.hooks import displacement
 from roughgas.kernel.memory import new_state
 from roughgas.kernel.state import State
-from roughgas.scene.scene import (
+from roughgas.scene import (
     DIAMETER,
     NARROWEST_CHANNEL,
     Scene,

@@ -8,7 +8,8 @@ import numpy as np
 
 from roughgas.base import InputError
 from roughgas.effects import inertia, speed_of_r
-from roughgas.scene import Scene, for_theory, packing
+from roughgas.effects.species import packing
+from roughgas.scene import Scene, for_theory
 from roughgas.simulation.energies import (
     Columns,
     Energies,

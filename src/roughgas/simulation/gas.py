@@ -15,7 +15,8 @@ import numpy as np
 from roughgas.base import NeedsError
 from roughgas.kernel.record import Sampling
 from roughgas.kernel.state import COLLISIONS, EXPONENT, LAST_FIRST, LAST_SECOND, State
-from roughgas.scene import Scene, elastic, initial_state
+from roughgas.scene import Scene, elastic
+from roughgas.scene.initial import initial_state
 from roughgas.simulation import restart
 from roughgas.simulation.energies import (
     SUMS,

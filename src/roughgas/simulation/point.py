@@ -12,8 +12,9 @@ from roughgas.data.point import Point
 from roughgas.data.variables import Variable
 from roughgas.effects import speed_of_r
 from roughgas.effects.floors import LEAST_DEPARTURE
+from roughgas.effects.species import packing
 from roughgas.kernel import hooks
-from roughgas.scene import Scene, build, packing
+from roughgas.scene import Scene, build
 from roughgas.simulation import schedule
 from roughgas.simulation.energies import species_names
 from roughgas.simulation.gas import Gas

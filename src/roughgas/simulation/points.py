@@ -4,13 +4,14 @@ Nothing here changes a number of a point: rules/simulate.smk runs none again aft
 this imports.
 """
 
+import shlex
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from roughgas import config
+from roughgas.base import InputError
 from roughgas.config import Place
-from roughgas.config.provenance import provenance
 from roughgas.data.point import Point
 from roughgas.scene import build
 from roughgas.simulation import schedule
@@ -86,3 +87,52 @@ def points(
         with Progress(one, scenes[r, beta], settings, quiet=quiet) as bar:
             found = run_point(scenes[r, beta], settings, seed, bar, initial, functions)
         yield found._replace(attributes=about | found.attributes)
+
+
+def provenance(
+    experiment: str,
+    settings: Mapping[str, Any],
+    point: tuple[str, str, str],
+    scale: str,
+    output: str,
+    verb: str = "run",
+    told: Sequence[str] = (),
+) -> dict[str, Any]:
+    """Return the attributes of a point's dataset that say how to make it again.
+
+    `point` has its labels (r, beta, seed); the command among the attributes, `roughgas VERB`, is
+    told what else is in `told`, and writes to `output`.
+    Raises InputError where the name of the experiment and the settings disagree.
+    """
+    text = config.as_text(config.point_settings(settings))
+    r, beta, seed = point
+    command = ["roughgas", verb, experiment, "--scale", scale]
+    # joined by =, so that a negative number is not taken for an option
+    command += [f"--r={r}", f"--beta={beta}", f"--seed={seed}"]
+    command += [*told, "--settings", text, "--output", output]
+    return {
+        "title": f"{experiment}: r = {r}, beta = {beta}",
+        **variant_attributes(experiment, settings),
+        "scale": scale,
+        "r_label": r,
+        "beta_label": beta,
+        "experiment_json": text,
+        "command": shlex.join(command),
+    }
+
+
+def variant_attributes(name: str, settings: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the attributes of a dataset that name its experiment, and its variant if any.
+
+    Raises InputError where name and settings disagree.
+    """
+    base, slash, variant = name.partition("/")
+    key = settings.get(config.SWEPT)
+    if key is None and not slash:
+        return {"experiment": base}
+    parameter = config.parameter_of(key or "")
+    value = config.swept_value(settings, key or "")
+    label = variant.removeprefix(parameter)
+    if value is None or label == variant or config.level(label) != value:
+        raise InputError("experiment", name, "be the variant that its settings are of")
+    return {"experiment": base, "variant": variant, "swept": key, "swept_value": value}

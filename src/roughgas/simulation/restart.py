@@ -28,7 +28,8 @@ from roughgas.base.files import remove_dead_drafts, whole_file
 from roughgas.kernel.hooks import displacement
 from roughgas.kernel.memory import new_state
 from roughgas.kernel.state import BASE, EXPONENT, NOW, State
-from roughgas.scene import Scene, check_places, given_bodies
+from roughgas.scene import Scene, given_bodies
+from roughgas.scene.initial import check_places
 
 if TYPE_CHECKING:
     import xarray

@@ -3,11 +3,11 @@
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Protocol
 
-from roughgas import scene
 from roughgas.base import InputError
 from roughgas.effects import inertia
 from roughgas.kernel import hooks
 from roughgas.scene import Scene, shear_rate
+from roughgas.scene.initial import check as check_scene
 from roughgas.simulation import cooling, steady
 from roughgas.simulation.energies import Columns
 from roughgas.simulation.gas import Gas
@@ -87,7 +87,7 @@ def system_of(scene: Scene, experiment: Mapping[str, Any]) -> "System":
 
 def check(experiment: Mapping[str, Any]) -> None:
     """Raise InputError if no point of the experiment could be simulated."""
-    built = scene.check(experiment)
+    built = check_scene(experiment)
     effects = built.effects
     drives = [effects._fields[part.place] for part in hooks.present(effects, "drives")]
     kind = experiment["schedule"]["kind"]

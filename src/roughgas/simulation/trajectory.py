@@ -11,9 +11,11 @@ from typing import Any, NamedTuple, Self
 import numpy as np
 
 from roughgas.base import InputError, Interval
+from roughgas.effects.species import packing
 from roughgas.kernel.hooks import displacement
 from roughgas.kernel.state import BASE, EXPONENT, NOW, Bodies, State
-from roughgas.scene import Scene, bounds, has_sides, packing
+from roughgas.scene import Scene, has_sides
+from roughgas.scene.initial import bounds
 from roughgas.simulation import cooling, schedule
 from roughgas.simulation.energies import Energies, ratio, restored, species_names
 from roughgas.simulation.gas import Gas

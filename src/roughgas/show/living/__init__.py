@@ -6,7 +6,7 @@ from typing import Any
 
 from roughgas.base import InputError
 from roughgas.config import PAPER, experiment, load
-from roughgas.scene import check
+from roughgas.scene.initial import check
 from roughgas.show import pages
 
 SCENES: dict[str, dict[str, Any]] = {
