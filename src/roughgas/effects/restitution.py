@@ -125,7 +125,7 @@ class Viscoelastic(NamedTuple):
 
     speed: float  # at which contacts have the r of their material, in a/T
     root: float  # fifth root of that speed
-    restitution_by_law: float  # r of the particles
+    restitution: float  # r of the particles
     x: float  # where the law has that r
 
     @classmethod
@@ -206,7 +206,7 @@ class Threshold(NamedTuple):
     """Contacts slower than a threshold have a constant restitution, such as 1."""
 
     speed: float
-    restitution_above: float
+    restitution: float
 
 
 @jit
