@@ -7,7 +7,8 @@ from brute_force import begin, run, settings
 from roughgas import simulate, theory
 from roughgas.base import InputError
 from roughgas.effects.contacts import STRESSES
-from roughgas.scene import build, packing
+from roughgas.effects.species import packing
+from roughgas.scene import build
 from roughgas.simulation import cooling, schedule, steady
 from roughgas.simulation.energies import Energies
 from roughgas.simulation.recorder import Recorder
