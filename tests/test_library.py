@@ -153,19 +153,6 @@ def bars(monkeypatch):
     return Bar.made
 
 
-@pytest.mark.parametrize("name", ["as it is", "changed"])
-def test_the_progress_bar_runs_from_none_to_all(name, bars, capsys):
-    experiment, changes = POINTS[name]
-    simulate(experiment, **POINT, **changes)
-    (bar,) = bars
-    assert bar.closed and bar.seen == sorted(bar.seen) and bar.seen[-1] > 0.95
-    assert len(bar.seen) > 20 and np.diff(bar.seen).max() < 0.1
-    said = capsys.readouterr()
-    assert said.out == "" and f"{experiment} (placing particles):   0%" in said.err
-    simulate(experiment, **POINT, **changes, progress=False)
-    assert capsys.readouterr() == ("", "")
-
-
 def test_an_interrupt_leaves_nothing_behind(bars, monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(Bar, "interrupted_at", 0.5)

@@ -4,34 +4,19 @@ import sys
 
 import numpy as np
 import pytest
-from files import ABOUT
+from tests import files
 
 from roughgas.base import InputError
 from roughgas.base.files import write_text
 from roughgas.data.point import Point, read_point, write_point
 
-ATTRIBUTES = ABOUT | {"command": "roughgas run ..."}
+ATTRIBUTES = files.ABOUT | {"command": "roughgas run ..."}
 CAPTURED = {"capture_output": True, "text": True, "check": True}
 
 
-def point(samples: int = 200, **others) -> Point:
-    rng = np.random.default_rng(1)
-    variables = {
-        "R": 0.25,
-        "R_stderr": 0.01,
-        "R_dof": 12.0,
-        "R_ci95": 0.022,
-        "R_ratio_of_means": 0.24,
-        "E_trans": 3.0,
-        "E_rot": 1.0,
-        "collisions": 2**40,
-        "kernel_seconds": 0.5,
-        "equilibrated": 1,
-        "measured_from": 5.0,
-        "time": np.arange(samples) / 4,
-        "R_series": rng.random(samples),
-    }
-    return Point(variables | others, dict(ATTRIBUTES))
+def point(**others) -> Point:
+    known = files.point().variables | {"R": 0.25, "collisions": 2**40}
+    return Point(known | others, dict(ATTRIBUTES))
 
 
 def test_a_point_comes_back_as_written(tmp_path):
@@ -73,7 +58,7 @@ def test_a_cooling_gas_counts_collisions_and_initial_energies(tmp_path):
     [
         ({"R_serie": 1.0}, "unknown variables of a point: R_serie"),
         ({"R_series": 1.0}, "R_series has shape"),
-        ({"E_rot_series": np.zeros(7)}, "E_rot_series has 7 values along sample, others 200"),
+        ({"E_rot_series": np.zeros(7)}, "E_rot_series has 7 values along sample, others 50"),
     ],
 )
 def test_what_the_table_does_not_know_is_refused(tmp_path, others, message):

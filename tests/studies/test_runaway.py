@@ -82,12 +82,6 @@ def test_times_are_unbiased_where_runs_are_given_up():
     assert np.mean(np.abs(values - 1000) < errors) == pytest.approx(0.68, abs=0.05)
 
 
-def test_a_bound_holds_in_19_of_20_cases_where_no_run_escapes():
-    value, bound = results.time_of_escape(np.full(4, np.nan), np.full(4, 500.0))
-    assert math.isnan(value.value)
-    assert math.exp(-2000 / bound) == pytest.approx(0.05)
-
-
 def test_what_is_combined(data, parts):
     one = parts["dsmc-n400-mu0.1"]
     there = data.sel(mu=0.1, dsmc_particles=400)
