@@ -45,10 +45,7 @@ def source(tmp_path_factory):
 
 def run(source, folder, *arguments):
     """Exit status and output of a Snakemake in another folder than that of the Snakefile."""
-    command = [sys.executable, "-m", "snakemake", *map(str, arguments)]
-    around = source.environment()
-    done = subprocess.run(command, cwd=folder, env=around, capture_output=True, text=True)
-    return done.returncode, done.stdout + done.stderr
+    return snakemakes.run(folder, source.environment(), arguments)
 
 
 def succeed(*arguments):
