@@ -70,6 +70,8 @@ def failing(copy, tests):
     done = subprocess.run(
         [*command, *tests], cwd=copy, env=environment, capture_output=True, text=True
     )
+    if done.returncode not in (0, 1, 5):  # such as killed: nothing is known (5: no quick test)
+        raise SystemExit(f"{' '.join(tests)}: pytest ended with {done.returncode}\n{done.stdout}")
     named = re.search(r"^(?:FAILED|ERROR) (\S+)", done.stdout, re.MULTILINE)
     return named and named[1]
 
