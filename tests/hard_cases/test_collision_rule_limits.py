@@ -11,6 +11,7 @@ from roughgas.effects import Effects
 from roughgas.effects.contacts import Spin
 from roughgas.kernel import contact
 from roughgas.kernel.memory import new_state
+from roughgas.kernel.particles import alike
 from roughgas.kernel.record import Sampling, columns, record
 from roughgas.kernel.state import COLLISIONS
 
@@ -169,7 +170,7 @@ def test_inverse(margins, dimension):
 def applied(material, q, n, v, w):
     """Relative velocity and sum of the spins after a contact."""
     vectors = [tuple(map(float, vector)) for vector in (n, v, w)]
-    push, turn = response(Spin(q), Effects(spin=Spin(q)), material, *vectors, 0.5, None)
+    push, turn = response(Effects(spin=Spin(q)), material, *vectors, 0.5, alike(Spin(q)))
     return v - 2.0 * np.array(push), w + 2.0 * np.array(turn)
 
 

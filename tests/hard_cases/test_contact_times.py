@@ -88,7 +88,7 @@ def test_grazing(margins):
         impact = 1.0 + 0.5 * rng.normal() * decades(rng, -17, -13)
         x, u = heading(rng, 2 + k % 2, distance, impact)
         depth = float(2 - closest(x, u)) / np.linalg.norm(x)
-        if time_to_contact(x, u, None) < np.inf:
+        if time_to_contact(x, u, 2.0) < np.inf:
             invented = max(invented, -depth)
         else:
             missed = max(missed, depth)
@@ -113,7 +113,7 @@ def test_close_pairs(margins):
     for k in range(pairs_tried):
         impact = rng.uniform(0.0, 1.0) if rng.random() < 0.5 else 0.0
         x, u = heading(rng, 2 + k % 2, decades(rng, -14, -6), impact)
-        error[k % 2] = max(error[k % 2], abs(gap_at(x, u, time_to_contact(x, u, None))))
+        error[k % 2] = max(error[k % 2], abs(gap_at(x, u, time_to_contact(x, u, 2.0))))
     tried = {"tried": pairs_tried // 2, "unit": "pairs"}
     margins.at_most("gap at the predicted time, in the plane [a]", error[0], 2.3e-16, **tried)
     margins.at_most("gap at the predicted time, in space [a]", error[1], 3.4e-16, **tried)
@@ -136,7 +136,7 @@ def test_far_pairs(margins):
     for k in range(pairs_tried):
         impact = rng.uniform(0.0, 0.9) if k % 4 > 1 else 1.0 - decades(rng, -9, -1)
         x, u = heading(rng, 2 + k % 2, decades(rng, 0, 4), impact)
-        time = time_to_contact(x, u, None)
+        time = time_to_contact(x, u, 2.0)
         gap = max(gap, abs(gap_at(x, u, time)) / np.linalg.norm(x))
         if impact < 0.9:
             relative = max(relative, abs(float(time / exact_time(x, u) - 1)))
@@ -169,7 +169,7 @@ def test_overlapping_pairs(margins):
         normal = rng.choice([-1.0, 1.0]) * decades(rng, -17, 0)
         x = floats((2.0 - overlap) * n)
         u = floats(decades(rng, -8, 8) * (normal * n + across))
-        time, gap = time_to_contact(x, u, None), gap_at(x, u, 0)
+        time, gap = time_to_contact(x, u, 2.0), gap_at(x, u, 0)
         if time < np.inf:
             moved = max(moved, abs(gap_at(x, u, time) - min(gap, 0.0)))
             again = max(again, -approach(x, u))

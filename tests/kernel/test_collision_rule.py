@@ -11,6 +11,7 @@ from roughgas import theory
 from roughgas.effects import Effects
 from roughgas.effects.contacts import Friction, Spin
 from roughgas.kernel.contact import response as compiled_response
+from roughgas.kernel.particles import alike
 from roughgas.kernel.state import BOUNDARY_HITS, EXPONENT
 
 PAIR, WALL = 0.5, 1.0
@@ -37,7 +38,7 @@ def exchange(material, n, v, w, share=PAIR, mu=None):
     q = theory.moment_of_inertia(len(n))
     effects = Effects(spin=Spin(q), friction=None if mu is None else Friction(mu, q))
     vectors = [tuple(map(float, vector)) for vector in (n, v, w)]
-    push, turn = response(effects.spin, effects, material, *vectors, share, None)
+    push, turn = response(effects, material, *vectors, share, alike(Spin(q)))
     return np.array(push), np.array(turn)
 
 
@@ -85,7 +86,8 @@ def test_a_contact_sticks_inside_the_cone_and_slides_on_it(dimension, share):
 
 
 def test_a_scene_without_spin_knows_the_normal_part_only():
-    push, turn = response(None, Effects(), (0.5, 0.7), (1.0, 0.0), (-2.0, 3.0), None, PAIR, None)
+    n, v = (1.0, 0.0), (-2.0, 3.0)
+    push, turn = response(Effects(), (0.5, 0.7), n, v, None, PAIR, alike(None))
     assert push == (-1.5, 0.0) and turn is None
 
 

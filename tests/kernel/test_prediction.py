@@ -148,27 +148,27 @@ def test_the_earliest_event(few, spread, monkeypatch):
     """Times within a day, over a year and over many of them; some at the same instant, some
     never."""
     monkeypatch.setattr(memory, "FEW", few)
-    scene, state = begin(settings("gas", 300, [60, 60]), 0.9, 0.2)
+    _, state = begin(settings("gas", 300, [60, 60]), 0.9, 0.2)
     rng = np.random.default_rng(0)
     state.clock[TYPICAL_SPEED] = 1.0
     if few == 0:
-        clear_calendar(state, state.cells, scene)
+        clear_calendar(state)
     expected = np.full(300, np.inf)
     for step in range(4000):
-        i = int(rng.integers(300)) if step < 600 else earliest(state.cells, state)
+        i = int(rng.integers(300)) if step < 600 else earliest(state)
         now = 0.0 if step < 600 else state.agenda.key[i]
         state.clock[NOW] = now
         time = now + rng.choice([spread * rng.exponential(), 0.5, np.inf], p=[0.96, 0.02, 0.02])
         if time == np.inf and np.isfinite(expected).sum() < 20:
             time = now + spread
         expected[i] = time
-        enter_in_queue(state.cells, state, i, time)
+        enter_in_queue(state, i, time)
         if step > 400:
-            assert state.agenda.key[earliest(state.cells, state)] == expected.min()
+            assert state.agenda.key[earliest(state)] == expected.min()
 
 
 @pytest.mark.parametrize("few", [0, 10_000])
 def test_nothing_is_ever_going_to_happen(few, monkeypatch):
     monkeypatch.setattr(memory, "FEW", few)
     _, state = begin(settings("gas", 300, [60, 60]), 0.9, 0.2)
-    assert state.agenda.key[earliest(state.cells, state)] == np.inf
+    assert state.agenda.key[earliest(state)] == np.inf

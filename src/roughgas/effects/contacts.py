@@ -30,9 +30,8 @@ from typing import NamedTuple
 
 from roughgas.base import NeedsError
 from roughgas.effects.settings import Number, register
-from roughgas.kernel.hooks import either
 from roughgas.kernel.jit import jit
-from roughgas.kernel.particles import pair_of, radius_of
+from roughgas.kernel.particles import pair_of, reach_of
 from roughgas.kernel.vectors import add_scaled, dot, spin_cross
 
 SPIN_SETTINGS = {
@@ -67,17 +66,11 @@ class Friction(NamedTuple):
         return cls(**settings, inertia=float(inertia))
 
 
-_mu = either(lambda pair, friction: pair.mu, lambda pair, friction: friction.mu)
-
-_ease = either(
-    lambda pair, friction: pair.mass * pair.inertia / pair.bulk + pair.mass / pair.bulk,
-    lambda pair, friction: 1.0 + 1.0 / friction.inertia,
-)
-
-
 @jit
 def roughness(friction, index, beta, r, speed, slip, pair):
-    most = _mu(pair, friction) * (1.0 + r) * _ease(pair, friction) * abs(speed)
+    mu = friction.mu if pair.mu is None else pair.mu
+    ease = pair.mass * pair.inertia / pair.bulk + pair.mass / pair.bulk
+    most = mu * (1.0 + r) * ease * abs(speed)
     sliding = math.sqrt(dot(slip, slip))
     return beta if (1.0 + beta) * sliding <= most else most / sliding - 1.0
 
@@ -100,7 +93,7 @@ class ContactAverages(NamedTuple):
 
 
 @jit
-def observe_squares(averages, index, none, state, i, j, n, v, w, push):
+def observe_squares(averages, index, state, i, j, n, v, w, push):
     sums = state.sums.contact_averages
     v_t = add_scaled(v, n, -dot(v, n))
     minus_v_r = spin_cross(w, n)
@@ -110,12 +103,12 @@ def observe_squares(averages, index, none, state, i, j, n, v, w, push):
     sums[0, 2] -= math.sqrt(m * s) * dot(v_t, minus_v_r)
 
 
-def _of_pair(bodies, i, j):
-    pair = pair_of(bodies, i, j)
+@jit
+def _weights(bodies, i, j):
+    if bodies is None:
+        return 1.0, 1.0
+    pair = pair_of(bodies, None, i, j)
     return pair.mass, pair.bulk
-
-
-_weights = either(_of_pair, lambda bodies, i, j: (1.0, 1.0))
 
 
 register(ContactAverages, {}, observe_contact=observe_squares, sums=SQUARES)
@@ -131,9 +124,9 @@ class ContactStress(NamedTuple):
 
 
 @jit
-def observe_stress(stress, index, none, state, i, j, n, v, w, push):
-    sums, bodies = state.sums.contact_stress, state.bodies
-    far = radius_of(bodies, i) + radius_of(bodies, j)
+def observe_stress(stress, index, state, i, j, n, v, w, push):
+    sums = state.sums.contact_stress
+    far = reach_of(state.bodies, i, j)
     for k in range(len(n)):
         for along in range(len(n)):
             sums[0, 3 * k + along] -= push[k] * far * n[along]

@@ -25,14 +25,11 @@ from typing import NamedTuple
 
 from roughgas.base import InputError, NeedsError
 from roughgas.effects.settings import Number, register
-from roughgas.kernel.hooks import either, unless_absent
 from roughgas.kernel.jit import jit
 from roughgas.kernel.mathematics import random_vector, uniform
 from roughgas.kernel.particles import (
     book_spin,
-    change_of_velocity,
     enter_box,
-    mass_in,
     mass_of,
     pair_of,
     set_path,
@@ -40,7 +37,7 @@ from roughgas.kernel.particles import (
     spin_of,
     turn_spin,
 )
-from roughgas.kernel.vectors import add_scaled, dot, scale, subtract
+from roughgas.kernel.vectors import add_scaled, divide, dot, scale, subtract
 
 GRAVITY_SETTINGS = {"acceleration": Number("g, in a/T^2.", "[1e-06, 1e+06]")}
 
@@ -52,7 +49,7 @@ class Gravity(NamedTuple):
 
 
 @jit
-def acceleration(gravity, index, none):
+def acceleration(gravity, index):
     return gravity.acceleration
 
 
@@ -85,12 +82,12 @@ def offset(shear, index, base):
 
 
 @jit
-def transfer(shear, index, none, state, work):
+def transfer(shear, index, state, work):
     state.ledger[0, index, 0] += work
 
 
 @jit
-def sliding(shear, index, none, state):
+def sliding(shear, index, state):
     return state.phase[index], shear.velocity
 
 
@@ -154,12 +151,13 @@ def resolve_kick(thermostat, index, what, state, scene, i, time):
     others = len(state.changes) - 1
     j = int(uniform(state.random) * others)
     j += j >= i
-    size = thermostat.push * math.sqrt(mass_in(pair_of(state.bodies, i, j)))
+    size = thermostat.push * math.sqrt(pair_of(state.bodies, scene.effects.spin, i, j).mass)
     kick = random_vector(state.random, scene.box, size)
     _push(state, scene, index, i, kick, 1.0, time)
     _push(state, scene, index, j, kick, -1.0, time)
-    _turn(state.spin, thermostat, index, state, scene, i)
-    _turn(state.spin, thermostat, index, state, scene, j)
+    if state.spin is not None:
+        _turn(thermostat, index, state, scene, i)
+        _turn(thermostat, index, state, scene, j)
     state.moments.thermostat[i] += thermostat.interval
     return j
 
@@ -167,28 +165,22 @@ def resolve_kick(thermostat, index, what, state, scene, i, time):
 @jit
 def _push(state, scene, index, i, kick, sign, time):
     position, before = enter_box(state, scene, i, time)
-    after = add_scaled(before, change_of_velocity(state.bodies, i, kick), sign)
+    after = add_scaled(before, divide(kick, mass_of(state.bodies, i)), sign)
     set_path(state, scene, i, position, after, time)
     work = 0.5 * dot(subtract(after, before), add_scaled(before, after, 1.0))
     state.ledger[0, index, 0] += mass_of(state.bodies, i) * work
     state.changes[i] += 1
 
 
-@unless_absent
-def _turn(spin, thermostat, index, state, scene, i):
-    before = spin_of(spin, scene.box, i)
+@jit
+def _turn(thermostat, index, state, scene, i):
+    """Kick the spin of particle i; every particle gets the same energy."""
+    effect, before = scene.effects.spin, spin_of(state.spin, scene.box, i)
     turn = random_vector(state.random, before, thermostat.turn)
-    turn = _as_hot(state.bodies, scene.effects.spin, i, turn)
-    turn_spin(spin, i, before, turn)
-    book_spin(before, turn, scene.effects.spin, state.bodies, i, state.ledger[0, index])
-
-
-_as_hot = either(  # every particle gets the same energy
-    lambda bodies, spin, i, turn: scale(
-        turn, math.sqrt(spin.inertia / spin_mass_of(bodies, spin, i))
-    ),
-    lambda bodies, spin, i, turn: turn,
-)
+    if state.bodies is not None:
+        turn = scale(turn, math.sqrt(effect.inertia / spin_mass_of(state.bodies, effect, i)))
+    turn_spin(state.spin, i, before, turn)
+    book_spin(before, turn, effect, state.bodies, i, state.ledger[0, index])
 
 
 register(

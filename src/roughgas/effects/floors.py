@@ -58,7 +58,7 @@ def flight(floor, index, state, scene, i):
     time = state.trajectory[i, 2 * dimension]
     height = state.trajectory[i, dimension - 1] - radius_of(state.bodies, i)
     speed = state.trajectory[i, 2 * dimension - 1]
-    gravity = hooks.acceleration(scene.effects, None)
+    gravity = hooks.acceleration(scene.effects)
     return (gravity, height, speed, state.phase[index] + time), time
 
 

@@ -18,8 +18,7 @@ from roughgas.effects.floors import LEAST_DEPARTURE, fall
 from roughgas.effects.settings import register
 from roughgas.kernel import hooks
 from roughgas.kernel.contact import collide_with_wall
-from roughgas.kernel.hooks import either, unless_absent
-from roughgas.kernel.jit import compiled, jit, unrolled
+from roughgas.kernel.jit import compiled, jit
 from roughgas.kernel.mathematics import gaussian_vector, logarithm, uniform
 from roughgas.kernel.particles import (
     book_spin,
@@ -56,14 +55,15 @@ def approach(place, state, scene, i):
     position = state.trajectory[i, place.axis]
     speed = place.inwards * state.trajectory[i, dimension + place.axis]
     gap = place.inwards * (position - place.at) - radius_of(state.bodies, i)
-    return (pull(hooks.acceleration(scene.effects, None), place, dimension), gap, speed), time
+    return (pull(hooks.acceleration(scene.effects), place, dimension), gap, speed), time
 
 
-def _pull(gravity, place, dimension):
-    return place.inwards * gravity if place.axis == dimension - 1 else 0.0
-
-
-pull = either(_pull, lambda gravity, place, dimension: 0.0)
+@jit
+def pull(gravity, place, dimension):
+    """Return the acceleration towards a plane."""
+    if gravity is None or place.axis != dimension - 1:
+        return 0.0
+    return place.inwards * gravity
 
 
 @jit
@@ -134,9 +134,9 @@ def phase_of_motion(wall, index, base):
 
 
 # there may be several such walls: each would else have the whole solver in its place
-_until_stroke = compiled(lambda *way: floors.time_to_sawtooth(*way))
-_until_piece = compiled(lambda *way: floors.time_to_triangle(*way))
-_until_sine = compiled(lambda *way: floors.time_to_sine(*way))
+_until_stroke = compiled(floors.time_to_sawtooth.py_func)
+_until_piece = compiled(floors.time_to_triangle.py_func)
+_until_sine = compiled(floors.time_to_sine.py_func)
 
 
 @jit
@@ -221,24 +221,25 @@ def resolve_thermal(wall, index, what, state, scene, i, time):
     set_path(state, scene, i, position, after, time)
     gained = 0.5 * dot(subtract(after, before), add_scaled(before, after, 1.0))
     state.ledger[0, index, 0] += mass * gained
-    _spin_anew(state.spin, wall, index, state, scene, i)
+    if state.spin is not None:
+        _spin_anew(wall, index, state, scene, i)
     state.changes[i] += 1
-    hooks.after_contact(scene.effects, None, state, i, time)
+    hooks.after_contact(scene.effects, state, i, time)
     state.counts[BOUNDARY_HITS] += 1
     return NOBODY
 
 
-@unrolled
+@jit
 def _with_normal(velocity, axis, normal):
     return tuple(normal if k == axis else velocity[k] for k in range(len(velocity)))
 
 
-@unless_absent
-def _spin_anew(spin, wall, index, state, scene, i):
-    before = spin_of(spin, scene.box, i)
+@jit
+def _spin_anew(wall, index, state, scene, i):
+    before = spin_of(state.spin, scene.box, i)
     deviation = math.sqrt(wall.temperature / spin_mass_of(state.bodies, scene.effects.spin, i))
     turn = subtract(gaussian_vector(state.random, before, deviation), before)
-    turn_spin(spin, i, before, turn)
+    turn_spin(state.spin, i, before, turn)
     book_spin(before, turn, scene.effects.spin, state.bodies, i, state.ledger[0, index])
 
 

@@ -34,7 +34,7 @@ import numpy as np
 
 from roughgas.base import InputError
 from roughgas.effects.settings import Number, Numbers, register
-from roughgas.kernel.jit import jit, unrolled
+from roughgas.kernel.jit import compiled, jit
 from roughgas.kernel.state import EXPONENT
 
 MOST = 32  # entries: a table that is shorter is filled up, so that all have the same machine code
@@ -87,7 +87,7 @@ def _lines(speeds, values):
     return values[0], *filled
 
 
-@unrolled
+@compiled
 def share(lowest, begins, widths, slopes, speed):
     """Return the value at a speed: the sum of what each straight line adds up to it."""
     found = lowest
@@ -98,7 +98,7 @@ def share(lowest, begins, widths, slopes, speed):
 
 @jit
 def restitution_by_table(table, index, r, state, i, j, time, speed):
-    speed = math.ldexp(abs(speed), state.counts[EXPONENT])
+    speed = math.ldexp(abs(speed), int(state.counts[EXPONENT]))
     lost = (1.0 - r) * share(table.lowest, table.begins, table.widths, table.slopes, speed)
     return 1.0 - min(max(lost, 0.0), 1.0)
 
@@ -143,7 +143,7 @@ def restitution_by_law(law, index, r, state, i, j, time, speed):
     if r <= 0.0 or r >= 1.0:
         return r  # at all speeds: the ends of the law, x infinite and x = 0
     x = law.x if r == law.restitution else x_of(r)
-    return pade(x * fifth_root(abs(speed), state.counts[EXPONENT]) / law.root)
+    return pade(x * fifth_root(abs(speed), int(state.counts[EXPONENT])) / law.root)
 
 
 @jit
@@ -211,7 +211,7 @@ class Threshold(NamedTuple):
 
 @jit
 def restitution_above(threshold, index, r, state, i, j, time, speed):
-    slow = abs(speed) < math.ldexp(threshold.speed, -state.counts[EXPONENT])
+    slow = abs(speed) < math.ldexp(threshold.speed, -int(state.counts[EXPONENT]))
     return max(r, threshold.restitution) if slow else r
 
 
@@ -250,11 +250,11 @@ def restitution_in_time(model, index, r, state, i, j, time, speed):
     previous = state.moments.contact_time[i]
     if j >= 0:
         previous = max(previous, state.moments.contact_time[j])
-    return 1.0 if time - previous < math.ldexp(model.duration, state.counts[EXPONENT]) else r
+    return 1.0 if time - previous < math.ldexp(model.duration, int(state.counts[EXPONENT])) else r
 
 
 @jit
-def after_contact(model, index, none, state, i, time):
+def after_contact(model, index, state, i, time):
     state.moments.contact_time[i] = time
 
 

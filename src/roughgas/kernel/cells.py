@@ -22,8 +22,7 @@ import sys
 
 from roughgas.kernel import hooks
 from roughgas.kernel.event_lists import clear_contacts, enter, unlink
-from roughgas.kernel.hooks import either, unless_absent
-from roughgas.kernel.jit import jit, unrolled
+from roughgas.kernel.jit import jit
 from roughgas.kernel.particles import (
     fold_into_box,
     image_numbers,
@@ -40,16 +39,17 @@ ORIGIN = 0.38196601125  # where cells begin, in their widths: no lattice has man
 FARTHEST = sys.float_info.max
 
 
-def find_around(cells, state, scene, i, time):
+@jit
+def find_around(state, scene, i, time):
     """Foresee particle i's contacts with the particles around it; if it leaves its cell now, only
     with those that enter its neighbourhood by that."""
-    agenda = state.agenda
+    agenda, cells = state.agenda, state.cells
     moved_on = time >= cells.leave[i]
     axis, step = _move_on(state, scene, i, time) if moved_on else (ALL, 0)
     d, u = _in_cell(state, scene, i, time)
-    gravity = hooks.acceleration(scene.effects, None)
+    gravity = hooks.acceleration(scene.effects)
     cells.leave[i] = time + _exit(d, u, cells.widths, gravity)[0]
-    slide = slid(hooks.sliding(scene.effects, None, state), time)
+    slide = slid(hooks.sliding(scene.effects, state), time)
     outlook = _outlook(slide, cells, state.clock[SPAN])
     known = state.trajectory[i, 2 * len(d)] < time < agenda.complete_until[i]
     if not (known and moved_on and _newcomers_in_one_slab(slide, axis)):
@@ -68,7 +68,7 @@ def settle(state, scene, i, time):
     """Put particle i on the list of the cell that it is in at `time`."""
     cells = state.cells
     position, velocity = position_and_velocity(state, scene, i, time)
-    slide = slid(hooks.sliding(scene.effects, None, state), time)
+    slide = slid(hooks.sliding(scene.effects, state), time)
     position, velocity = fold_into_box(position, velocity, cells.periods, slide)
     home = 0
     for k in range(len(position) - 1, -1, -1):
@@ -91,13 +91,17 @@ def _in_cell(state, scene, i, time):
     """Return particle i's position relative to the middle of its cell, and its velocity there."""
     cells = state.cells
     position, velocity = position_and_velocity(state, scene, i, time)
-    slide = slid(hooks.sliding(scene.effects, None, state), time)
+    slide = slid(hooks.sliding(scene.effects, state), time)
     position, velocity = _beside_row(slide, cells, cells.home[i], position, velocity)
     d = subtract(position, middle_of(cells.widths, places(cells.counts, cells.home[i])))
     return shifted(d, velocity, image_numbers(d, cells.periods, slide), cells.periods, slide)
 
 
-def _beside_row_that_moves(slide, cells, home, position, velocity):
+@jit
+def _beside_row(slide, cells, home, position, velocity):
+    """Return position and velocity relative to a row of cells, which slides under shear."""
+    if slide is None:
+        return position, velocity
     row = home // cells.counts[0] % cells.counts[1]
     share = (row + ORIGIN + 0.5) / cells.counts[1] - 0.5
     return (
@@ -106,21 +110,15 @@ def _beside_row_that_moves(slide, cells, home, position, velocity):
     )
 
 
-_beside_row = either(
-    _beside_row_that_moves, lambda slide, cells, home, position, velocity: (position, velocity)
-)
-
-
-@unrolled
+@jit
 def places(counts, home):
     """Return which cell along each axis the cell with this number is."""
     if len(counts) == 2:
         return home % counts[0], home // counts[0]
-    else:
-        return home % counts[0], home // counts[0] % counts[1], home // (counts[0] * counts[1])
+    return home % counts[0], home // counts[0] % counts[1], home // (counts[0] * counts[1])
 
 
-@unrolled
+@jit
 def middle_of(widths, places):
     """Return the position of the middle of a cell."""
     return tuple(widths[k] * (places[k] + ORIGIN + 0.5) for k in range(len(widths)))
@@ -146,7 +144,10 @@ def _fly_out(d, u, half):
     return (gap / abs(u) if u != 0.0 else math.inf), forward
 
 
-def _fall_out_under_gravity(gravity, d, u, half):
+@jit
+def _fall_out(gravity, d, u, half):
+    if gravity is None:
+        return _fly_out(d, u, half)
     above, below = max(half - d, 0.0), max(half + d, 0.0)
     if u > 0.0 and u * u >= 2.0 * gravity * above:
         return 2.0 * above / (u + math.sqrt(u * u - 2.0 * gravity * above)), True
@@ -156,19 +157,16 @@ def _fall_out_under_gravity(gravity, d, u, half):
     return (2.0 * below / (root - u) if below > 0.0 else 0.0), False
 
 
-_fall_out = either(_fall_out_under_gravity, lambda gravity, d, u, half: _fly_out(d, u, half))
-
-
 @jit
 def _move_on(state, scene, i, time):
     """Move particle i into the next cell on its way; return the axis and the step that it takes."""
     cells = state.cells
     d, u = _in_cell(state, scene, i, time)
-    _, axis, step = _exit(d, u, cells.widths, hooks.acceleration(scene.effects, None))
+    _, axis, step = _exit(d, u, cells.widths, hooks.acceleration(scene.effects))
     unlink(cells.first, cells.following, cells.previous, cells.home[i], i)
     cells.home[i] = _next_to(cells.counts, cells.home[i], axis, step)
     if axis == 1:
-        _find_column(hooks.sliding(scene.effects, None, state), state, scene, i, time)
+        _find_column(hooks.sliding(scene.effects, state), state, scene, i, time)
     _enter(cells, i, cells.home[i])
     return axis, step
 
@@ -182,9 +180,11 @@ def _next_to(counts, home, axis, step):
     return home + stride * (wrapped(place + step, counts[axis]) - place)
 
 
-@hooks.unless_absent
+@jit
 def _find_column(slide, state, scene, i, time):
     """Correct the column of a particle's home, which is in the right row: rows have slid."""
+    if slide is None:
+        return
     cells = state.cells
     d, _ = _in_cell(state, scene, i, time)
     place = cells.home[i] % cells.counts[0]
@@ -198,12 +198,21 @@ def wrapped(place, count):
     return place + count if place < 0 else place - count if place >= count else place
 
 
-_outlook = either(  # until rows have slid past each other by one cell
-    lambda slide, cells, longest: min(longest, cells.counts[1] * cells.widths[0] / abs(slide[1])),
-    lambda slide, cells, longest: longest,
-)
-# cells of rows that have slid are not in line: a particle that moves on has part of another outlook
-_newcomers_in_one_slab = either(lambda slide, axis: axis > 1, lambda slide, axis: True)
+@jit
+def _outlook(slide, cells, longest):
+    """Return for how long neighbours are found: rows slide past each other by one cell at most."""
+    if slide is None:
+        return longest
+    return min(longest, cells.counts[1] * cells.widths[0] / abs(slide[1]))
+
+
+@jit
+def _newcomers_in_one_slab(slide, axis):
+    """Return whether one that moves on along an axis meets newcomers in one slab of cells only.
+
+    Cells of rows that have slid are not in line: it has part of another outlook then.
+    """
+    return True if slide is None else axis > 1
 
 
 @jit
@@ -240,8 +249,10 @@ def _steps(along, axis, step):
     return (step, step + 1) if along == axis else (-1, 2)
 
 
-def _columns_of_row_that_slides(slide, cells, place, up, duration, steps):
-    if up == 0:
+@jit
+def _columns(slide, cells, place, up, duration, steps):
+    """Return first and end of the columns to look at in the same row or the next ones."""
+    if slide is None or up == 0:
         return place + steps[0], place + steps[1]
     by = up / (cells.counts[1] * cells.widths[0])
     begin, slip = by * slide[0], by * slide[1] * duration
@@ -249,12 +260,6 @@ def _columns_of_row_that_slides(slide, cells, place, up, duration, steps):
     last = math.floor(place + 2 - begin - min(slip, 0.0))
     column = first % cells.counts[0]
     return column, column + last - first + 1
-
-
-_columns = either(  # first and end of those to look at in the same row or the next ones
-    _columns_of_row_that_slides,
-    lambda slide, cells, place, up, duration, steps: (place + steps[0], place + steps[1]),
-)
 
 
 @jit
@@ -291,10 +296,18 @@ def _settle_all(state, scene, time):
 
 @jit
 def _exchange(state, i, j):
+    bodies, moments = state.bodies, state.moments
     _exchange_rows(state.trajectory, i, j)
-    _exchange_spins(state.spin, i, j)
-    _exchange_bodies(state.bodies, i, j)
-    _exchange_moments(state.moments, i, j)
+    if state.spin is not None:
+        _exchange_rows(state.spin, i, j)
+    if bodies is not None:
+        _exchange_entries(bodies.radius, i, j)
+        _exchange_entries(bodies.mass, i, j)
+        _exchange_entries(bodies.inertia, i, j)
+        _exchange_entries(bodies.species, i, j)
+    for k in range(len(moments)):
+        if moments[k] is not None:
+            _exchange_entries(moments[k], i, j)
     _exchange_entries(state.changes, i, j)
     _exchange_entries(state.label, i, j)
 
@@ -305,24 +318,6 @@ def _exchange_rows(array, i, j):
         array[i, k], array[j, k] = array[j, k], array[i, k]
 
 
-_exchange_spins = unless_absent(_exchange_rows.py_func)
-
-
 @jit
 def _exchange_entries(array, i, j):
     array[i], array[j] = array[j], array[i]
-
-
-@unless_absent
-def _exchange_bodies(bodies, i, j):
-    _exchange_entries(bodies.radius, i, j)
-    _exchange_entries(bodies.mass, i, j)
-    _exchange_entries(bodies.inertia, i, j)
-    _exchange_entries(bodies.species, i, j)
-
-
-@unrolled
-def _exchange_moments(moments, i, j):
-    for k in range(len(moments)):
-        if moments[k] is not None:
-            _exchange_entries(moments[k], i, j)

@@ -3,8 +3,7 @@
 import math
 
 from roughgas.kernel import hooks
-from roughgas.kernel.hooks import either
-from roughgas.kernel.jit import jit, unrolled
+from roughgas.kernel.jit import jit
 from roughgas.kernel.state import (
     AT_ONCE,
     BASE,
@@ -51,24 +50,19 @@ def rebase(state, scene):
     particle crosses the box, or CELLS cells. Returns how far the base has moved; the times
     on the agenda still count from the old one.
     """
-    clock = state.clock
+    clock, moments = state.clock, state.moments
     step = math.floor(clock[NOW] / clock[SPAN]) * clock[SPAN]
     clock[NOW] -= step
     clock[INSTANT_END] -= step
     for i in range(len(state.changes)):
         state.trajectory[i, 2 * len(scene.box)] -= step
-        _shift(state.moments, i, step)
+        for k in range(len(moments)):
+            if moments[k] is not None:
+                moments[k][i] -= step
     clock[BASE] += step
     hooks.set_phases(scene.effects, state.phase, clock[BASE])
     _survey(state, scene, step)
     return step
-
-
-@unrolled
-def _shift(moments, i, step):
-    for k in range(len(moments)):
-        if moments[k] is not None:
-            moments[k][i] -= step
 
 
 @jit
@@ -76,7 +70,7 @@ def _survey(state, scene, elapsed):
     clock, counts = state.clock, state.counts
     number = len(state.changes)
     total = 0.0
-    slide = hooks.sliding(scene.effects, None, state)
+    slide = hooks.sliding(scene.effects, state)
     for i in range(number):
         position = read(state.trajectory, i, 0, scene.box)
         v = read(state.trajectory, i, len(scene.box), scene.box)
@@ -92,12 +86,12 @@ def _survey(state, scene, elapsed):
     counts[SINCE_REBASE] = 0
 
 
-_stretch = either(
-    lambda cells, scene: min(scene.extent, CELLS * max(cells.widths)),
-    lambda cells, scene: scene.extent,
-)
+@jit
+def _stretch(cells, scene):
+    return scene.extent if cells is None else min(scene.extent, CELLS * max(cells.widths))
 
-_beside_flow = either(  # velocity relative to the mean flow of a sheared gas, up to a constant
-    lambda slide, box, x, v: (v[0] - slide[1] * (x[1] / box[1] - 0.5),) + v[1:],
-    lambda slide, box, x, v: v,
-)
+
+@jit
+def _beside_flow(slide, box, x, v):
+    """Return a velocity relative to the mean flow of a sheared gas, up to a constant."""
+    return v if slide is None else (v[0] - slide[1] * (x[1] / box[1] - 0.5),) + v[1:]

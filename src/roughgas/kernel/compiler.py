@@ -21,6 +21,7 @@ tests/kernel/test_compiler.py:
 - `no_cpython_wrapper`, `no_cfunc_wrapper`, `forceinline`: documented for `overload` only. Unpacking
   a state for a call from Python takes more code, and time to compile it, than most functions do;
 - `_numba_type_`: how a value tells its type;
+- `_compiler._get_implementation`: a function is written for types before it is compiled;
 - `Library`, `set_env`: machine code is made of a kernel, and not of each function in it besides;
 - the types and values of a Reference (kernel/reference.py): a state and a scene in memory;
 - `event.broadcast`: a tenth of the time went into telling of locks that nobody asked for;
@@ -51,7 +52,6 @@ from numba.core.caching import (
 from numba.core.codegen import JITCodeLibrary
 from numba.core.registry import cpu_target
 from numba.core.runtime import rtsys
-from numba.extending import overload
 
 from roughgas.base import InputError
 from roughgas.kernel import operations, reference
@@ -227,13 +227,6 @@ def type_of(name):
     context.refresh()
     room = operations if hasattr(operations, name) else reference
     return context.resolve_value_type(getattr(room, name))
-
-
-def register(overloads):
-    """Tell numba of overloads, a list of (function, chooser), and empty the list."""
-    while overloads:
-        function, chooser = overloads.pop(0)
-        overload(function, strict=False, jit_options={"no_cfunc_wrapper": True})(chooser)
 
 
 class Folder(_CacheLocator):

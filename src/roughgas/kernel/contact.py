@@ -7,22 +7,18 @@ velocity g = v1 - v2 - a (w1 + w2) x n:
     a w1,2' = a w1,2 + (1 + beta)/(2 + 2q) n x g_t
 
 A wall is a partner of infinite mass: both prefactors double, and n points into the gas. How
-particles that differ share the impulse and the turning is in bodies.py.
+particles that differ share the impulse and the turning is in particles.Pair.
 """
 
 import math
 
 from roughgas.kernel import hooks
-from roughgas.kernel.hooks import either
-from roughgas.kernel.jit import jit, unrolled
+from roughgas.kernel.jit import jit
 from roughgas.kernel.particles import (
     book_spin,
-    bulk_in,
-    change_of_velocity,
     enter_box,
     image_numbers,
-    inertia_in,
-    mass_in,
+    mass_of,
     material_of,
     pair_of,
     pair_with_wall,
@@ -31,8 +27,6 @@ from roughgas.kernel.particles import (
     shifted,
     slid,
     spin_of,
-    spin_sum,
-    turn_of,
     turn_spin,
 )
 from roughgas.kernel.state import (
@@ -64,44 +58,44 @@ SPLIT = 134217729.0  # 2^27 + 1: cuts the digits of a double in two
 @jit
 def collide(state, scene, i, j, time):
     """Carry out the contact of particles i and j at `time`."""
-    box = scene.box
+    box, effects, bodies, spin = scene.box, scene.effects, state.bodies, state.spin
     position_i, velocity_i = enter_box(state, scene, i, time)
     position_j, velocity_j = enter_box(state, scene, j, time)
-    slide = slid(hooks.sliding(scene.effects, None, state), time)
+    slide = slid(hooks.sliding(effects, state), time)
     x = subtract(position_i, position_j)
     between = subtract(velocity_i, velocity_j)
     x, v = shifted(x, between, image_numbers(x, box, slide), box, slide)
-    bodies = state.bodies
-    n = _normal(reach_of(bodies, i, j), x)
-    w_i = spin_of(state.spin, box, i)
-    w_j = spin_of(state.spin, box, j)
-    effects = scene.effects
+    n = direction(x) if bodies is None else direction_along(reach_of(bodies, i, j), x)
+    w_i, w_j = spin_of(spin, box, i), spin_of(spin, box, j)
+    w = None if spin is None else add_scaled(w_i, w_j, 1.0)
+
+    pair = pair_of(bodies, effects.spin, i, j)
     r, beta = material_of(bodies, scene, i, j)
     material = _material(effects, r, beta, state, i, j, time, dot(v, n))
-    w = spin_sum(w_i, w_j)
-    pair = pair_of(bodies, i, j)
-    push, turn = response(effects.spin, effects, material, n, v, w, 0.5, pair)
+    push, turn = response(effects, material, n, v, w, 0.5, pair)
     least = STICKING * state.clock[TYPICAL_SPEED]
-    push = _parted(push, n, v, 0.5 * mass_in(pair), least)
+    push = _parted(push, n, v, 0.5 * pair.mass, least)
     state.counts[SPENT] += -dot(v, n) < least
-    slowed, hastened = change_of_velocity(bodies, i, push), change_of_velocity(bodies, j, push)
-    set_path(state, scene, i, position_i, subtract(velocity_i, slowed), time)
-    set_path(state, scene, j, position_j, add_scaled(velocity_j, hastened, 1.0), time)
-    turn_i, turn_j = turn_of(turn, pair, 0), turn_of(turn, pair, 1)
-    turn_spin(state.spin, i, w_i, turn_i)
-    turn_spin(state.spin, j, w_j, turn_j)
+
     # in the frame of the pair, where nothing large cancels
     account = state.ledger[0, state.ledger.shape[1] - 1]
-    account[0] += dot(push, push) / mass_in(pair) - dot(v, push)
-    book_spin(w_i, turn_i, effects.spin, bodies, i, account)
-    book_spin(w_j, turn_j, effects.spin, bodies, j, account)
-    hooks.transfer(effects, None, state, dot(push, subtract(v, between)))
-    hooks.observe_contact(effects, None, state, i, j, n, v, w, push)
+    account[0] += dot(push, push) / pair.mass - dot(v, push)
+    slowed, hastened = divide(push, mass_of(bodies, i)), divide(push, mass_of(bodies, j))
+    set_path(state, scene, i, position_i, subtract(velocity_i, slowed), time)
+    set_path(state, scene, j, position_j, add_scaled(velocity_j, hastened, 1.0), time)
+    if spin is not None:
+        turn_i, turn_j = scale(turn, pair.gives[0]), scale(turn, pair.gives[1])
+        turn_spin(spin, i, w_i, turn_i)
+        turn_spin(spin, j, w_j, turn_j)
+        book_spin(w_i, turn_i, effects.spin, bodies, i, account)
+        book_spin(w_j, turn_j, effects.spin, bodies, j, account)
+
+    hooks.transfer(effects, state, dot(push, subtract(v, between)))
+    hooks.observe_contact(effects, state, i, j, n, v, w, push)
     _note_contact(state, effects, i, time)
     _note_contact(state, effects, j, time)
     state.counts[COLLISIONS] += 1
-    state.counts[LAST_FIRST] = state.label[i]
-    state.counts[LAST_SECOND] = state.label[j]
+    state.counts[LAST_FIRST], state.counts[LAST_SECOND] = state.label[i], state.label[j]
 
 
 @jit
@@ -112,20 +106,22 @@ def collide_with_wall(state, scene, index, i, time, material, n, wall_velocity, 
     gas; the wall's velocity; least_departure: the particle leaves at no less than this normal
     speed, so that a bouncing particle makes finitely many bounces in a finite time.
     """
+    effects, bodies, spin = scene.effects, state.bodies, state.spin
     position, velocity = enter_box(state, scene, i, time)
-    w = spin_of(state.spin, scene.box, i)
+    w = spin_of(spin, scene.box, i)
     v = subtract(velocity, wall_velocity)
-    effects = scene.effects
-    material = _material(effects, material[0], material[1], state, i, NOBODY, time, dot(v, n))
-    pair = pair_with_wall(state.bodies, i)
-    push, turn = response(effects.spin, effects, material, n, v, w, 1.0, pair)
-    push = _parted(push, n, v, mass_in(pair), least_departure)
-    slowed = change_of_velocity(state.bodies, i, push)
+    pair = pair_with_wall(bodies, effects.spin, i)
+    r, beta = material
+    material = _material(effects, r, beta, state, i, NOBODY, time, dot(v, n))
+    push, turn = response(effects, material, n, v, w, 1.0, pair)
+    push = _parted(push, n, v, pair.mass, least_departure)
+    slowed = divide(push, mass_of(bodies, i))
     set_path(state, scene, i, position, subtract(velocity, slowed), time)
-    turn_spin(state.spin, i, w, turn)
     account = state.ledger[0, index]
     account[0] += 0.5 * dot(push, slowed) - dot(velocity, push)
-    book_spin(w, turn, effects.spin, state.bodies, i, account)
+    if spin is not None:
+        turn_spin(spin, i, w, turn)
+        book_spin(w, turn, effects.spin, bodies, i, account)
     _note_contact(state, effects, i, time)
     state.counts[BOUNDARY_HITS] += 1
     return NOBODY
@@ -133,7 +129,7 @@ def collide_with_wall(state, scene, index, i, time, material, n, wall_velocity, 
 
 @jit
 def direction(x):
-    """Return the unit vector along the separation x of a pair in contact.
+    """Return the unit vector along the separation x of a pair in contact, of radius 1.
 
     Where |x| is 2 but for some roundings, the root of x.x and its reciprocal lie midway between two
     doubles half of the time, and then always on the same side of the middle: x times 1/|x| would be
@@ -146,7 +142,8 @@ def direction(x):
     return add_scaled(half, half, (4.0 - square) / (length * (2.0 + length)))
 
 
-def _along_reach(reach, x):
+@jit
+def direction_along(reach, x):
     """As `direction`, for |x| = reach. The rounding of reach^2, which would be on the same side in
     all contacts of two species, is added (T. J. Dekker, Numer. Math. 18, 224, 1971)."""
     square = dot(x, x)
@@ -159,38 +156,23 @@ def _along_reach(reach, x):
     return add_scaled(part, part, ((whole - square) + rest) / (length * (reach + length)))
 
 
-_normal = either(_along_reach, lambda reach, x: direction(x))
-
-
-@unrolled
-def response(spin, effects, material, n, v, w, share, pair):
-    """Return the momentum exchanged and the change of each spin a w in one contact, of mass 1.
+@jit
+def response(effects, material, n, v, w, share, pair):
+    """Return the momentum exchanged and the change of each spin a w in one contact.
 
     material = (r, beta); n the normal, v the relative velocity, w the sum of the spins; share =
-    1/2 between particles and 1 at a wall; pair tells where particles differ, and the change is then
-    the mean of both spins' (bodies.py). Without spin (None) only the normal part is there.
+    1/2 between particles and 1 at a wall. Where particles of the Pair differ, the change is the
+    mean of both spins'. Without spin (w is None) only the normal part is there.
     """
-    if spin is None:
-        return _smooth(material, n, v, share * mass_in(pair))
-    else:
-        return _rough(spin, effects, material, n, v, w, share, pair)
-
-
-@jit
-def _smooth(material, n, v, share):
-    return scale(n, share * (1.0 + material[0]) * dot(v, n)), None
-
-
-@jit
-def _rough(spin, effects, material, n, v, w, share, pair):
     r, beta = material
     speed = dot(v, n)
+    push = scale(n, share * pair.mass * (1.0 + r) * speed)
+    if w is None:
+        return push, None
     slip = subtract(add_scaled(v, n, -speed), spin_cross(w, n))
     beta = hooks.roughness(effects, beta, r, speed, slip, pair)
-    turn = share * (1.0 + beta) / (1.0 + inertia_in(pair, spin))
-    along = bulk_in(pair, spin) * turn
-    push = add_scaled(scale(n, share * mass_in(pair) * (1.0 + r) * speed), slip, along)
-    return push, scale(cross_to_spin(n, slip), turn)
+    turn = share * (1.0 + beta) / (1.0 + pair.inertia)
+    return add_scaled(push, slip, pair.bulk * turn), scale(cross_to_spin(n, slip), turn)
 
 
 @jit
@@ -211,4 +193,4 @@ def _material(effects, r, beta, state, i, j, time, speed):
 @jit
 def _note_contact(state, effects, i, time):
     state.changes[i] += 1
-    hooks.after_contact(effects, None, state, i, time)
+    hooks.after_contact(effects, state, i, time)

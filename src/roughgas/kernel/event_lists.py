@@ -15,7 +15,6 @@ Upcoming events of each particle: a short list of contacts, a boundary, the end 
 import math
 
 from roughgas.kernel.clock import FLIGHTS
-from roughgas.kernel.hooks import either
 from roughgas.kernel.jit import jit
 from roughgas.kernel.mathematics import (
     bits,
@@ -117,7 +116,23 @@ LAST_DAY = 2.0**62
 EVENTS_A_DAY = 2.0  # this many make a day's list short and empty days rare
 
 
-def _enter_in_blocks(cells, state, i, time):
+@jit
+def enter_in_queue(state, i, time):
+    """Let the next event of particle i be at a time, inf if there is none."""
+    if state.cells is None:
+        _enter_in_blocks(state, i, time)
+    else:
+        _enter_in_calendar(state, i, time)
+
+
+@jit
+def earliest(state):
+    """Return whose event comes first."""
+    return _earliest_in_blocks(state) if state.cells is None else _earliest_in_calendar(state)
+
+
+@jit
+def _enter_in_blocks(state, i, time):
     queue, block = state.queue, i // BLOCK
     keys = _with(queue.keys, block, i % BLOCK, time)
     _with(queue.least, block // BLOCK, block % BLOCK, least(keys))
@@ -134,7 +149,8 @@ def _with(blocks, block, place, time):
     return times
 
 
-def _earliest_in_blocks(cells, state):
+@jit
+def _earliest_in_blocks(state):
     queue = state.queue
     first, block = math.inf, 0
     for k in range(len(queue.least)):
@@ -146,7 +162,8 @@ def _earliest_in_blocks(cells, state):
     return BLOCK * block + trailing_zeros(bits(keys == first))
 
 
-def _enter_in_calendar(cells, state, i, time):
+@jit
+def _enter_in_calendar(state, i, time):
     """A day shares its list with the same day of other years. An entry costs the same among a
     thousand particles as among a million."""
     queue, key = state.queue, state.agenda.key
@@ -166,7 +183,8 @@ def day_of(queue, time):
     return int(min(time * queue.pace[0], LAST_DAY))
 
 
-def _earliest_in_calendar(cells, state):
+@jit
+def _earliest_in_calendar(state):
     queue, key = state.queue, state.agenda.key
     day = queue.today[0]
     for _ in range(queue.first.size):
@@ -198,7 +216,7 @@ def _earliest_of_all(state):
 
 
 @jit
-def clear_calendar(state, cells, scene):
+def clear_calendar(state):
     """Empty the calendar, and set its days to hold about EVENTS_A_DAY each."""
     queue = state.queue
     for place in range(queue.first.size):
@@ -206,15 +224,11 @@ def clear_calendar(state, cells, scene):
     for i in range(len(state.changes)):
         state.agenda.key[i] = math.inf
     clock = state.clock
-    crossings = 2.0 * clock[TYPICAL_SPEED] / max(cells.widths)
+    crossings = 2.0 * clock[TYPICAL_SPEED] / max(state.cells.widths)
     contacts = 4.0 * FLIGHTS / clock[LONGEST_HORIZON]  # none where nothing is known yet
     pace = len(state.changes) * (crossings + contacts) / EVENTS_A_DAY
     queue.pace[0] = pace if pace > 0.0 else 1.0
     queue.today[0] = day_of(queue, clock[NOW])
-
-
-enter_in_queue = either(_enter_in_calendar, _enter_in_blocks)
-earliest = either(_earliest_in_calendar, _earliest_in_blocks)
 
 
 @jit
@@ -261,16 +275,20 @@ def drop_contact(agenda, i, slot):
 def choose_next(state, i):
     """Make the earliest event of particle i its entry in the queue."""
     agenda = state.agenda
-    time, kind = _with_contact(state.cells, agenda, i, _foresight(state.cells, agenda, i))
-    time, kind = _with_boundary(agenda.boundary_time, i, time, kind)
+    time, kind = _of_eight(agenda, i) if state.cells is None else _of_two(state, i)
+    if agenda.boundary_time is not None and agenda.boundary_time[i] < time:
+        time, kind = agenda.boundary_time[i], BOUNDARY
     if time == math.inf:
         kind = NOTHING
     agenda.kind[i] = kind
-    enter_in_queue(state.cells, state, i, time)
+    enter_in_queue(state, i, time)
 
 
-def _of_two(cells, agenda, i, time):
-    kind = HORIZON
+@jit
+def _of_two(state, i):
+    """Return (time, kind) of the first contact, or of the end of foresight if that comes first."""
+    agenda, kind = state.agenda, HORIZON
+    time = min(agenda.complete_until[i], state.cells.leave[i])
     for k in range(agenda.slot_time.shape[1]):
         earlier = agenda.slot_time[i, k] <= time
         time = agenda.slot_time[i, k] if earlier else time
@@ -278,25 +296,10 @@ def _of_two(cells, agenda, i, time):
     return time, kind
 
 
-def _of_eight(cells, agenda, i, time):
+@jit
+def _of_eight(agenda, i):
+    time = agenda.complete_until[i]
     times = load(agenda.slot_time, i, 0, SLOTS_OF_FEW)
     first = least(times)
     slot = trailing_zeros(bits(times == first))
     return (first, slot) if first <= time else (time, HORIZON)
-
-
-_with_contact = either(_of_two, _of_eight)
-
-_foresight = either(
-    lambda cells, agenda, i: min(agenda.complete_until[i], cells.leave[i]),
-    lambda cells, agenda, i: agenda.complete_until[i],
-)
-
-
-def _sooner_of(boundary_time, i, time, kind):
-    if boundary_time[i] < time:
-        return boundary_time[i], BOUNDARY
-    return time, kind
-
-
-_with_boundary = either(_sooner_of, lambda boundary_time, i, time, kind: (time, kind))

@@ -2,17 +2,19 @@
 
 An effect is a NamedTuple whose file registers its hooks: the functions that are its part in the
 simulation (effects/settings.py; docs/effects.md has an example). `scene.effects` has one entry per
-effect, None where the scene does without it. While numba compiles, the types of these entries turn
-each hook into a chain of the functions that are present: an absent effect leaves no instruction.
+effect, None where the scene does without it: a loop over those present is written out before numba
+compiles it (kernel/jit.py), and an absent effect leaves no instruction.
 
 Where several effects have a say, each gets the value as those listed before it in `Effects` have
 left it.
 """
 
+import math
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
-from roughgas.kernel.jit import compiled, is_none, jit, overload
+from roughgas.kernel.jit import jit, of_types
+from roughgas.kernel.state import NOBODY
 
 CODES = 8  # kinds of event per effect
 
@@ -21,16 +23,16 @@ class Hooks(NamedTuple):
     """What an effect takes part in; None or False is what it leaves alone.
 
     All functions are jitted but for `moment` and `displacement`. `index` is the effect's number
-    among those present, and that of its account in State.ledger; `none` holds nothing. Times count
-    from the clock's base. Times and velocities are in the units of a gas that is rescaled as it
-    cools: with e = State.counts[EXPONENT], a velocity in a/T is the present one times 2^e, a time
-    in T the present one over 2^e.
+    among those present, and that of its account in State.ledger. Times count from the clock's base.
+    Times and velocities are in the units of a gas that is rescaled as it cools: with
+    e = State.counts[EXPONENT], a velocity in a/T is the present one times 2^e, a time in T the
+    present one over 2^e.
     """
 
     acceleration: Callable | None = None
-    """(effect, index, none) -> downward acceleration along the last axis"""
+    """(effect, index) -> downward acceleration along the last axis"""
     sliding: Callable | None = None
-    """(effect, index, none, state) -> (offset, velocity) along the first axis of the image above,
+    """(effect, index, state) -> (offset, velocity) along the first axis of the image above,
     at the clock's base"""
     restitution: Callable | None = None
     """(effect, index, r, state, i, j, time, speed) -> normal restitution of a contact, from the
@@ -39,12 +41,12 @@ class Hooks(NamedTuple):
     roughness: Callable | None = None
     """(effect, index, beta, r, speed, slip, pair) -> tangential restitution of a contact of
     particles that spin, from the value so far, r and speed as above, the tangential relative
-    velocity of the surfaces, a vector, and what is special about the two (bodies.Pair; None where
-    all particles are alike); without the state, it can depend on ratios of velocities only"""
+    velocity of the surfaces, a vector, and the particles.Pair; without the state, it can depend on
+    ratios of velocities only"""
     after_contact: Callable | None = None
-    """(effect, index, none, state, i, time): note that particle i has had a contact"""
+    """(effect, index, state, i, time): note that particle i has had a contact"""
     observe_contact: Callable | None = None
-    """(effect, index, none, state, i, j, n, v, w, push): look at the contact of a pair, and change
+    """(effect, index, state, i, j, n, v, w, push): look at the contact of a pair, and change
     nothing but State.sums; n is the unit vector from j to i, v the relative velocity before the
     contact, w the sum of the spins (None without spin), push the momentum that passes from i to j
     """
@@ -59,7 +61,7 @@ class Hooks(NamedTuple):
     puts in, and count in State.changes each particle whose velocity it changes; returns another
     particle than i whose velocity has changed, or NOBODY"""
     transfer: Callable | None = None
-    """(effect, index, none, state, work): book the energy that particles gain where they, or their
+    """(effect, index, state, work): book the energy that particles gain where they, or their
     partners, change images"""
     phase: Callable | None = None
     """(effect, index, base) -> the effect's phase when the clock's base is at absolute time
@@ -86,6 +88,7 @@ class Part(NamedTuple):
     own: Any  # the function, or True
 
 
+@of_types
 def present(effects, name):
     """Return the parts of every effect that is there and has the hook, in listed order.
 
@@ -110,96 +113,84 @@ def displacement(effect, time):
     return None if effect is None else effect.hooks.displacement(effect, time)
 
 
-def _chain(parts, join):
-    if not parts:
-        return lambda effects, value, *args: value
-    rest = compiled(_chain(parts[:-1], join))
-    return join(*parts[-1], rest)
+@jit
+def acceleration(effects):
+    """Return the downward acceleration, None without any."""
+    g = None
+    for part in present(effects, "acceleration"):
+        g = part.own(effects[part.place], part.rank)
+    return g
 
 
-def _hook(name, join):
-    def stub(effects, value, *args):
-        return _chain(present(effects, name), join)(effects, value, *args)
-
-    @overload(stub)
-    def chosen(effects, value, *args):
-        return _chain(present(effects, name), join)
-
-    return stub
+@jit
+def sliding(effects, state):
+    """Return (offset, velocity) of the image above at the clock's base; None: at rest."""
+    slide = None
+    for part in present(effects, "sliding"):
+        slide = part.own(effects[part.place], part.rank, state)
+    return slide
 
 
-def _thread(place, rank, part, rest):
-    """Pass the value through one effect after the other."""
-
-    def step(effects, value, *args):
-        return part(effects[place], rank, rest(effects, value, *args), *args)
-
-    return step
-
-
-def _earliest(place, rank, part, rest):
-    """Find the earliest of the effects' events, as (time, code)."""
-
-    def step(effects, value, *args):
-        before = rest(effects, value, *args)
-        time, what = part(effects[place], rank, *args)
-        if time < before[0]:
-            return time, CODES * rank + what
-        return before
-
-    return step
+@jit
+def restitution(effects, r, state, i, j, time, speed):
+    """Return the normal restitution of a contact."""
+    for part in present(effects, "restitution"):
+        r = part.own(effects[part.place], part.rank, r, state, i, j, time, speed)
+    return r
 
 
-def _addressed(place, rank, part, rest):
-    """Let only the effect act that the code names."""
-
-    def step(effects, value, *args):
-        if value // CODES == rank:
-            return part(effects[place], rank, value % CODES, *args)
-        return rest(effects, value, *args)
-
-    return step
+@jit
+def roughness(effects, beta, r, speed, slip, pair):
+    """Return the tangential restitution of a contact."""
+    for part in present(effects, "roughness"):
+        beta = part.own(effects[part.place], part.rank, beta, r, speed, slip, pair)
+    return beta
 
 
-def _stored(place, rank, part, rest):
-    """Put each effect's value in its own place in an array."""
-
-    def step(effects, value, *args):
-        rest(effects, value, *args)
-        value[rank] = part(effects[place], rank, *args)
-        return value
-
-    return step
+@jit
+def after_contact(effects, state, i, time):
+    """Note that particle i has had a contact."""
+    for part in present(effects, "after_contact"):
+        part.own(effects[part.place], part.rank, state, i, time)
 
 
-def either(present, absent):
-    """Return a function that is `present`, or `absent` where its first argument is
-    None; the other one is compiled away. Both take all arguments."""
-    present, absent = jit(present), jit(absent)
-
-    def stub(first, *args):
-        return (absent if first is None else present)(first, *args)
-
-    @overload(stub)
-    def chosen_for(first, *args):
-        chosen = absent if is_none(first) else present
-        return lambda first, *args: chosen(first, *args)
-
-    return stub
+@jit
+def observe_contact(effects, state, i, j, n, v, w, push):
+    """Look at the contact of a pair."""
+    for part in present(effects, "observe_contact"):
+        part.own(effects[part.place], part.rank, state, i, j, n, v, w, push)
 
 
-def unless_absent(function):
-    """Jit `function`; a call whose first argument is None is compiled away and gives None."""
-    return either(function, lambda first, *args: None)
+@jit
+def transfer(effects, state, work):
+    """Book the energy that particles gain as other images."""
+    for part in present(effects, "transfer"):
+        part.own(effects[part.place], part.rank, state, work)
 
 
-acceleration = _hook("acceleration", _thread)
-sliding = _hook("sliding", _thread)
-restitution = _hook("restitution", _thread)
-roughness = _hook("roughness", _thread)
-after_contact = _hook("after_contact", _thread)
-observe_contact = _hook("observe_contact", _thread)
-next_boundary = _hook("predict", _earliest)
-resolve_boundary = _hook("resolve", _addressed)
-transfer = _hook("transfer", _thread)
-set_phases = _hook("phase", _stored)
+@jit
+def next_boundary(effects, state, scene, i):
+    """Return (time, code) of the earliest event of particle i that is not a contact of a pair."""
+    time, code = math.inf, 0
+    for part in present(effects, "predict"):
+        when, what = part.own(effects[part.place], part.rank, state, scene, i)
+        if when < time:
+            time, code = when, CODES * part.rank + what
+    return time, code
+
+
+@jit
+def resolve_boundary(effects, code, state, scene, i, time):
+    """Let the effect carry its event out that the code names; return whose velocity has changed."""
+    for part in present(effects, "resolve"):
+        if code // CODES == part.rank:
+            what = code % CODES
+            return part.own(effects[part.place], part.rank, what, state, scene, i, time)
+    return NOBODY
+
+
+@jit
+def set_phases(effects, phase, base):
+    """Set the phases of all effects to those at the absolute time `base`."""
+    for part in present(effects, "phase"):
+        phase[part.rank] = part.own(effects[part.place], part.rank, base)

@@ -1,22 +1,26 @@
-"""Compiling with numba: what is compiled, and loops over components that are unrolled before.
+"""Compiling with numba: what is compiled, and how a function is written for a scene.
 
-The decorators of compiled functions. Numba is imported when the first of them is called.
+A function of the kernel is plain Python, and runs as such. Before numba compiles it it is written
+anew for the types of its arguments. They tell what is None, how many components a vector has, and
+which effects a scene has: `if scene.effects.gravity is None`, `for k in range(len(x))` and
+`for part in present(effects, "restitution")` are decided, and only what is left is compiled. What a
+scene lacks leaves no instruction; and the compiler keeps each component of a vector, a tuple, in a
+register. `python -m roughgas.kernel --show FUNCTION --scene EXPERIMENT` prints what is left.
+
+Types are known of an argument, of a field or an item of one (`state.sweep.sizes`), and of a name
+that is assigned once, to one of these. Where they do not decide `is None` the function is refused:
+it would be a branch at run time. Other tests stay.
 
 IEEE arithmetic throughout, without fast-math: the same seed gives the same bits on every x86-64
 machine. Division by zero gives inf or NaN as in numpy, so that no loop carries a check for it.
-
-Loops over the components of vectors, written out before numba compiles them.
-
-A vector is a tuple whose length is part of its type. So the dimension of space costs nothing at run
-time, and the compiler keeps every component in a register.
+Numba is imported when the first compiled function is called.
 """
 
 import ast
-import copy
 import functools
 import inspect
 import textwrap
-from collections.abc import Callable
+from types import SimpleNamespace
 
 
 class Compiled:
@@ -25,6 +29,7 @@ class Compiled:
     def __init__(self, function, **options):
         functools.update_wrapper(self, function)
         self.py_func, self.options = function, options
+        self.written = {}  # types of the arguments -> the function as it is compiled for them
 
     def __call__(self, *args):
         return self.py_func(*args)
@@ -34,16 +39,36 @@ class Compiled:
         """Numba's object for the function."""
         from roughgas.kernel import compiler
 
-        compiler.register(overloads)
-        return compiler.dispatcher(self.py_func, **self.options)
+        made = compiler.dispatcher(self.py_func, **self.options)
+        made._compiler._get_implementation = self._for_types
+        return made
 
     @property
     def _numba_type_(self):  # which numba asks for where compiled code names the function
         return self.dispatcher._numba_type_
 
+    @functools.cached_property
+    def _definition(self):
+        lines, first = inspect.getsourcelines(self.py_func)
+        (definition,) = ast.parse(textwrap.dedent("".join(lines))).body
+        return ast.increment_lineno(definition, first - 1)
+
+    def _for_types(self, kinds, keywords):
+        """Return the function for arguments of these types of numba's."""
+        function = self.py_func
+        if function.__name__ == "<lambda>":
+            return function
+        around = function.__globals__ | inspect.getclosurevars(function).nonlocals
+        writer = _Writer(self._definition, kinds, around)
+        self.written[kinds] = definition = writer.visit(self._definition)
+        module = ast.fix_missing_locations(ast.Module([definition], []))
+        defined = {}
+        exec(compile(module, inspect.getfile(function), "exec"), writer.around, defined)
+        return defined[function.__name__]
+
 
 class Entry(Compiled):
-    """A function that Python calls in its compiled form."""
+    """A function that Python calls in its compiled form; `py_func` runs as plain Python."""
 
     def __call__(self, *args):
         return self.dispatcher(*args)
@@ -70,132 +95,239 @@ def jit(function):
 
 
 class Primitive:
-    """An operation that only compiled code knows, by its name in operations.py."""
+    """An operation of compiled code, by its name in operations.py, and what Python runs for it."""
 
-    def __init__(self, name):
-        self.name = name
+    def __init__(self, plain):
+        functools.update_wrapper(self, plain)
+        self.plain = plain
+
+    def __call__(self, *args):
+        return self.plain(*args)
 
     @property
     def _numba_type_(self):
         from roughgas.kernel import compiler
 
-        return compiler.type_of(self.name)
+        return compiler.type_of(self.__name__)
 
 
-overloads: list[tuple[Callable, Callable]] = []
-"""(function, chooser) of each overload that numba has not been told of yet."""
+@Primitive
+def by_reference(whole):
+    """Return a named tuple, which compiled code takes from memory then: kernel/reference.py."""
+    return whole
 
 
-def overload(function):
-    """Have compiled code call what the decorated function returns in place of `function`.
+def of_types(function):
+    """Decorate a plain function whose value the types of its arguments tell, if they stand in for
+    these: the writer calls it, and compiled code does not."""
+    function.of_types = True
+    return function
 
-    The decorated function gets numba's types in place of arguments; see `is_none` and `is_single`.
+
+def part_of(kind, step):
+    """Return the type of a field, by its name, or of an item of a type of numba's.
+
+    None is what types do not tell. Raises TypeError for a field that a NamedTuple does not have.
+    """
+    fields = getattr(getattr(kind, "instance_class", None), "_fields", ())
+    if isinstance(step, str):
+        if fields and step not in fields:
+            raise TypeError(f"{kind.instance_class.__name__} has no {step}")
+        return kind.types[fields.index(step)] if fields else None
+    return kind.types[step] if hasattr(kind, "types") else None
+
+
+def _has_ended(nodes):
+    return nodes[-1:] and isinstance(nodes[-1], ast.Return | ast.Raise | ast.Break | ast.Continue)
+
+
+class _Writer(ast.NodeTransformer):
+    """Writes a function for types; nodes stay as they are, new ones take their place.
+
+    `known` has, by name, a type of numba's, or a constant as a node. A name that is assigned more
+    than once is not in it.
     """
 
-    def keep(chooser):
-        overloads.append((function, chooser))
-        return chooser
+    def __init__(self, definition, kinds, around):
+        self.around, self._place = around, definition.name
+        parameters = [*definition.args.args, definition.args.vararg][: len(kinds)]
+        nodes = [node for node in ast.walk(definition) if isinstance(node, ast.Name)]
+        names = [node.id for node in nodes if isinstance(node.ctx, ast.Store)]
+        self._once = {name for name in names if names.count(name) == 1}
+        given = zip([one.arg for one in parameters], kinds, strict=True)
+        self._known = {name: kind for name, kind in given if name not in names}
 
-    return keep
+    def visit(self, node):
+        """Return what takes the node's place; of a statement it may be a list."""
+        new = super().visit(node)
+        return new if isinstance(new, list) else ast.copy_location(new, node)
 
+    def generic_visit(self, node):
+        """Return a copy of the node with what it consists of visited; if it is known, its value."""
+        new = type(node)(**{name: self._visited(value) for name, value in ast.iter_fields(node)})
+        parts = [one for one in ast.iter_child_nodes(new) if isinstance(one, ast.expr)]
+        is_known = all(isinstance(getattr(one, "value", None), int) for one in parts)
+        if is_known and isinstance(node, ast.BinOp | ast.UnaryOp | ast.Compare):
+            whole = ast.fix_missing_locations(ast.Expression(new))
+            return ast.Constant(eval(compile(whole, self._place, "eval")))
+        return new
 
-by_reference = Primitive("by_reference")
-"""(whole) -> the named tuple, which compiled code takes from memory: kernel/reference.py"""
+    def _visited(self, value):
+        if isinstance(value, list):
+            return [self._visited(one) for one in value]
+        return self.visit(value) if isinstance(value, ast.AST) else value
+
+    # ------------------------------------------------------------------ statements
+
+    def visit_FunctionDef(self, node):
+        return ast.FunctionDef(node.name, node.args, self._all(node.body), [])
+
+    def _all(self, nodes):
+        """Return statements as they are written; what follows a return is left out."""
+        written = []
+        for node in nodes:
+            part = self.visit(node)
+            written += part if isinstance(part, list) else [part]
+            if _has_ended(written):
+                break
+        return written or [ast.Pass()]
+
+    def visit_If(self, node):
+        test = self._test(node.test)
+        if isinstance(test, ast.Constant):
+            chosen = node.body if test.value else node.orelse
+            return self._all(chosen) if chosen else []
+        return ast.If(test, self._all(node.body), self._all(node.orelse) if node.orelse else [])
+
+    def visit_While(self, node):
+        return ast.While(self._test(node.test), self._all(node.body), [])
+
+    def visit_For(self, node):
+        values = self.visit(node.iter)
+        if not isinstance(values, ast.Constant):
+            return ast.For(node.target, values, self._all(node.body), [])
+        if any(isinstance(one, ast.Break | ast.Continue) for one in ast.walk(node)):
+            self._refuse(node.iter, "what is written out has no break and no continue")
+        written = []
+        for _ in self._each(node, values):
+            written += [] if _has_ended(written) else self._all(node.body)
+        return written
+
+    def _each(self, loop, values):
+        """Go through the values of a loop, each of which its target has meanwhile."""
+        outer = self._known
+        for value in values.value:
+            self._known = outer | {loop.target.id: ast.Constant(value)}
+            yield value
+        self._known = outer
+
+    def visit_Assign(self, node):
+        new, (target,) = self.generic_visit(node), node.targets
+        pairs = [(target, new.value)]
+        if isinstance(target, ast.Tuple) and isinstance(new.value, ast.Tuple):
+            pairs = zip(target.elts, new.value.elts, strict=True)
+        for name, part in pairs:
+            is_constant = isinstance(part, ast.Constant) and isinstance(part.value, int | None)
+            told = part if is_constant else self._kind(part)
+            if getattr(name, "id", None) in self._once and told is not None:
+                self._known |= {name.id: told}
+        return new
+
+    # ------------------------------------------------------------------ expressions
+
+    def _kind(self, node):
+        """Return the type of an expression, None where types do not tell it."""
+        if isinstance(node, ast.Constant) and node.value is None:
+            return "none"
+        if isinstance(node, ast.Name):
+            return self._known.get(node.id)
+        if isinstance(node, ast.Attribute):
+            return part_of(self._kind(node.value), node.attr)
+        if isinstance(node, ast.Subscript) and isinstance(node.slice, ast.Constant):
+            return part_of(self._kind(node.value), node.slice.value)
+        if isinstance(node, ast.Tuple):
+            return SimpleNamespace(types=[self._kind(one) for one in node.elts])
+        return None
+
+    def _refuse(self, node, why):
+        raise TypeError(f"{self._place}, line {node.lineno}: {ast.unparse(node)}: {why}")
+
+    def _test(self, node):
+        """Return a test, decided or not; refuse one of something that has no truth."""
+        test = self.visit(node)
+        kind = self._kind(test.operand if isinstance(test, ast.UnaryOp) else test)
+        if not isinstance(test, ast.Constant) and (is_none(kind) or hasattr(kind, "types")):
+            self._refuse(node, "a test must say `is None`")
+        return test
+
+    def visit_Name(self, node):
+        known = self._known.get(node.id) if isinstance(node.ctx, ast.Load) else None
+        return known if isinstance(known, ast.Constant) else node
+
+    def visit_Attribute(self, node):
+        new = self.generic_visit(node)
+        if not isinstance(new.value, ast.Constant):
+            return new
+        value = getattr(new.value.value, node.attr)
+        if not callable(value):
+            return ast.Constant(value)
+        name = f"{value.__module__}.{value.__name__}".replace(".", "_")
+        self.around |= {name: value}
+        return ast.Name(name, node.ctx)
+
+    def visit_IfExp(self, node):
+        test = self._test(node.test)
+        if isinstance(test, ast.Constant):
+            return self.visit(node.body if test.value else node.orelse)
+        return ast.IfExp(test, self.visit(node.body), self.visit(node.orelse))
+
+    def visit_BoolOp(self, node):
+        settles, left = isinstance(node.op, ast.Or), []
+        for value in node.values:
+            test = self._test(value)
+            if not isinstance(test, ast.Constant):
+                left.append(test)
+            elif bool(test.value) == settles:
+                left.append(test)
+                break
+        return ast.BoolOp(node.op, left) if left[1:] else (left or [ast.Constant(not settles)])[0]
+
+    def visit_Compare(self, node):
+        new = self.generic_visit(node)
+        if not isinstance(node.ops[0], ast.Is | ast.IsNot) or isinstance(new, ast.Constant):
+            return new
+        kind = self._kind(new.left)
+        if kind is None and not isinstance(new.left, ast.Constant):
+            self._refuse(node, "types do not decide it")
+        return ast.Constant(is_none(kind) == isinstance(node.ops[0], ast.Is))
+
+    def visit_Call(self, node):
+        name = getattr(node.func, "id", "")
+        if name == "tuple" and isinstance(node.args[0], ast.GeneratorExp):
+            return self._tuple(node.args[0])
+        new = self.generic_visit(node)
+        constants = [one.value for one in new.args if isinstance(one, ast.Constant)]
+        told = [one.value if isinstance(one, ast.Constant) else self._kind(one) for one in new.args]
+        if name == "len" and hasattr(told[0], "types"):
+            return ast.Constant(len(told[0].types))
+        if name == "range" and len(constants) == len(told) and ast.dump(new) != ast.dump(node):
+            return ast.Constant(range(*told))
+        if hasattr(function := self.around.get(name), "of_types"):
+            if None in told:
+                self._refuse(node, "types do not decide it")
+            return ast.Constant(function(*told))
+        return new
+
+    def _tuple(self, node):
+        """Return what tuple(... for k in range(...) if ...) consists of."""
+        (loop,) = node.generators
+        values = self.visit(loop.iter)
+        if not isinstance(values, ast.Constant):
+            self._refuse(loop.iter, "types do not decide it")
+        chosen = (all(self._test(one).value for one in loop.ifs) for _ in self._each(loop, values))
+        return ast.Tuple([self.visit(node.elt) for is_chosen in chosen if is_chosen], ast.Load())
 
 
 def is_none(kind):
     """Return whether one of numba's types is that of None."""
     return str(kind) == "none"
-
-
-def is_lanes(kind):
-    """Return whether one of numba's types is that of lanes (lanes.py)."""
-    return hasattr(kind, "count") and hasattr(kind, "kind")
-
-
-def is_single(kind):
-    """Return whether one of numba's types, or that of each lane, is single precision."""
-    return str(kind.kind if is_lanes(kind) else kind) == "float32"
-
-
-def unrolled(function):
-    """Let compiled code call a plain function, with its loops over components written out.
-
-    Numba's types tell the length of each argument that is a tuple, `len(x)`, and what is None,
-    `x is None` and `x[0] is None`. Loops `for k in range(...)` and `tuple(... for k in range(...))`
-    must depend on nothing else, nor may the tests of `if`: of these only the branch taken stays.
-    """
-
-    @overload(function)
-    def written_out(*kinds):
-        lines, first = inspect.getsourcelines(function)
-        (definition,) = ast.parse(textwrap.dedent("".join(lines))).body
-        definition.decorator_list = []
-        ast.increment_lineno(definition, first - 1)
-        known = {}
-        for argument, kind in zip(definition.args.args, kinds, strict=True):
-            known |= _told_by(argument.arg, kind)
-        written = _Writer(known).visit(definition)
-        written.body = written.body or [ast.Pass()]
-        module = ast.Module([written], [])
-        code = compile(ast.fix_missing_locations(module), inspect.getfile(function), "exec")
-        defined = {}
-        exec(code, function.__globals__, defined)
-        return defined[function.__name__]
-
-    return function
-
-
-def _told_by(name, kind):
-    """Return the values of expressions that the type of an argument tells, by their text."""
-    parts = getattr(kind, "types", None) or ()
-    items = {name: kind} | {f"{name}[{k}]": part for k, part in enumerate(parts)}
-    lengths = {f"len({name})": len(parts)} if hasattr(kind, "types") else {}
-    absent = {item: is_none(one) for item, one in items.items()}
-    return (
-        lengths
-        | {f"{item} is None": value for item, value in absent.items()}
-        | {f"{item} is not None": not value for item, value in absent.items()}
-    )
-
-
-class _Writer(ast.NodeTransformer):
-    """Writes loops out; `known` has the values of expressions by their text."""
-
-    def __init__(self, known):
-        self._known = known
-
-    def visit(self, node):
-        node = super().visit(node)
-        if isinstance(node, ast.expr):
-            text = ast.unparse(node)
-            return ast.Constant(self._known[text]) if text in self._known else node
-        return node
-
-    def visit_Call(self, node):
-        if isinstance(node.func, ast.Name) and node.func.id == "tuple":
-            (loop,) = node.args[0].generators
-            return ast.Tuple(self._each(loop, [node.args[0].elt], loop.ifs), ast.Load())
-        return self.generic_visit(node)
-
-    def visit_For(self, node):
-        return self._each(node, node.body)
-
-    def visit_If(self, node):
-        return self._all(node.body if self._value(node.test) else node.orelse)
-
-    def _each(self, loop, nodes, tests=()):
-        written = []
-        for k in self._value(loop.iter):
-            here = _Writer(self._known | {loop.target.id: k})
-            if all(here._value(test) for test in tests):
-                written += here._all(nodes)
-        return written
-
-    def _all(self, nodes):
-        visited = [self.visit(copy.deepcopy(node)) for node in nodes]
-        return [one for part in visited for one in (part if isinstance(part, list) else [part])]
-
-    def _value(self, node):
-        known = ast.Expression(self.visit(copy.deepcopy(node)))
-        return eval(compile(ast.fix_missing_locations(known), "a range or a test", "eval"))

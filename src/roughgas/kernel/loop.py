@@ -13,7 +13,6 @@ from roughgas.kernel.event_lists import (
     earliest,
     enter_in_queue,
 )
-from roughgas.kernel.hooks import either
 from roughgas.kernel.jit import compiled, jit
 from roughgas.kernel.mathematics import index
 from roughgas.kernel.state import (
@@ -47,7 +46,7 @@ def advance(state, scene, until, collisions):
     clock, counts, agenda = state.clock, state.counts, state.agenda
     silent, patience = 0, max(SILENCE[0] // len(state.changes), SILENCE[1])
     while counts[COLLISIONS] < collisions:
-        i = index(earliest(state.cells, state))
+        i = index(earliest(state))
         time = agenda.key[i]
         if time > until - clock[BASE] or time == math.inf:
             if until == math.inf:
@@ -75,8 +74,9 @@ def execute_event(state, scene, i, kind, time):
     agenda = state.agenda
     if kind == HORIZON:
         return i, NOBODY
-    if kind == BOUNDARY:
-        return i, _resolve_boundary(agenda.boundary_code, state, scene, i, time)
+    if agenda.boundary_time is not None and kind == BOUNDARY:
+        code = agenda.boundary_code[i]
+        return i, hooks.resolve_boundary(scene.effects, code, state, scene, i, time)
     kind = index(kind)
     partner = index(int(agenda.slot_partner[i, kind]))
     if agenda.slot_change[i, kind] != state.changes[partner]:  # its path is another by now
@@ -89,46 +89,35 @@ def execute_event(state, scene, i, kind, time):
     return i, partner
 
 
-def _resolve(boundary_code, state, scene, i, time):
-    return hooks.resolve_boundary(scene.effects, boundary_code[i], state, scene, i, time)
-
-
-_resolve_boundary = either(_resolve, lambda boundary_code, state, scene, i, time: NOBODY)
-
-
 @jit
 def predict_events(state, scene, i, time):
     """Predict all events of particle i: its next meeting with a boundary, and its contacts."""
+    agenda = state.agenda
     state.counts[PREDICTIONS] += 1
-    _foresee_boundary(state.agenda.boundary_time, state, scene, i)
-    _find_contacts(state.cells, state, scene, i, time)
+    if agenda.boundary_time is not None:
+        boundary = hooks.next_boundary(scene.effects, state, scene, i)
+        agenda.boundary_time[i], agenda.boundary_code[i] = boundary
+    if state.cells is None:
+        find_by_sweep(state, scene, i, time)
+    else:
+        find_around(state, scene, i, time)
     choose_next(state, i)
-
-
-@hooks.unless_absent
-def _foresee_boundary(boundary_time, state, scene, i):
-    none = (math.inf, 0)
-    boundary = hooks.next_boundary(scene.effects, none, state, scene, i)
-    boundary_time[i], state.agenda.boundary_code[i] = boundary
-
-
-_find_contacts = either(find_around, find_by_sweep)
 
 
 @compiled
 def renew(state, scene):
     """Move the clock's base up to the present, and all foreseen times with it."""
     step = rebase(state, scene)
-    _carry_over(state.cells, state, scene, step)
+    if state.cells is None:
+        _shift_agenda(state, scene, step)
+    else:
+        arrange(state, scene, state.clock[NOW])
+        clear_calendar(state)
+        foresee_all(state)
 
 
-def _sort_anew(cells, state, scene, step):
-    arrange(state, scene, state.clock[NOW])
-    clear_calendar(state, cells, scene)
-    foresee_all(state)
-
-
-def _shift_agenda(cells, state, scene, step):
+@jit
+def _shift_agenda(state, scene, step):
     agenda = state.agenda
     state.clock[EXTENT] = 0.0
     for i in range(len(state.changes)):
@@ -136,16 +125,9 @@ def _shift_agenda(cells, state, scene, step):
         agenda.complete_until[i] -= step
         for k in range(agenda.slot_time.shape[1]):
             agenda.slot_time[i, k] -= step
-        _shift_boundary(agenda.boundary_time, i, step)
-        enter_in_queue(cells, state, i, agenda.key[i] - step)
-
-
-@hooks.unless_absent
-def _shift_boundary(boundary_time, i, step):
-    boundary_time[i] -= step
-
-
-_carry_over = either(_sort_anew, _shift_agenda)
+        if agenda.boundary_time is not None:
+            agenda.boundary_time[i] -= step
+        enter_in_queue(state, i, agenda.key[i] - step)
 
 
 @compiled
@@ -160,4 +142,4 @@ def foresee_all(state):
     """Let the next event of every particle be that its future is foreseen."""
     for i in range(len(state.changes) - 1, -1, -1):
         state.agenda.kind[i] = HORIZON
-        enter_in_queue(state.cells, state, i, state.clock[NOW])
+        enter_in_queue(state, i, state.clock[NOW])

@@ -6,27 +6,10 @@ Results are in double precision and rounded step by step, the same on every mach
 the sieve (sweep.py) uses single precision, and its rounding shows in no result: there a product and
 a sum become one instruction where the machine has it.
 
-Several particles at once, one to each lane of a vector register.
-
-Lanes are values of compiled code that never leave the registers (registers.py tells numba of
-them).
-+ - * / < <= > >= == & | abs max min math.sqrt take them lane by lane, with one operand a scalar if
-need be. A machine with narrower registers takes several for one.
-
-| operation | returns |
-| --- | --- |
-| load(array, row, first, count) | array[row, first:first + count], as lanes |
-| store(array, row, first, lanes) | nothing; the reverse of load |
-| gather(array, column, places, first, count) | array[p, column] for each p in places[first:...] |
-| numbers_in(places, first, count) | places[first:first + count], of 32-bit integers |
-| order(count) | 0, 1, 2, ... |
-| lanes_of(array) | how many of the array's numbers a register has |
-| bits(lanes of booleans) | an integer, the first lane its lowest bit |
-| least(lanes) | the least of them; their number is a power of two |
-| append(places, number, lanes of booleans, first) | see operations.py |
-| trailing_zeros(integer) | the number of zeros below its lowest bit |
-| prefetch(array, row) | nothing; array[row] is on its way to the cache |
-| index(number) | the number, promised not to count from the end of an array |
+Several particles at once, one to each lane of a vector register: lanes are values of compiled code
+that never leave the registers (registers.py tells numba of them), and arrays where the kernel runs
+as plain Python. + - * / < <= > >= == & | abs and the operations below take them lane by lane, with
+one operand a scalar if need be. A machine with narrower registers takes several for one.
 
 Sine and cosine of an angle that is given in turns, and logarithms, from sums and products alone.
 
@@ -43,51 +26,142 @@ import math
 
 import numpy as np
 
-from roughgas.kernel.jit import Primitive, compiled, is_lanes, is_single, jit, overload, unrolled
+from roughgas.kernel.jit import Primitive, compiled, jit, of_types
+
+REGISTER = 0  # a count: as many as a register has, of doubles if not of the array's own numbers
+BYTES = 64  # of a register, in plain Python
 
 
-def multiply_add(a, b, c):
-    """Return a b + c; in single precision perhaps with one rounding."""
+@of_types
+def is_lanes(x):
+    """Return whether x is lanes; in place of a value it may be a type of numba's."""
+    return (hasattr(x, "count") and hasattr(x, "kind")) or isinstance(x, np.ndarray)
+
+
+@of_types
+def is_single(x):
+    """Return whether x, or each lane of it, is in single precision; x may be a type, too."""
+    return str(getattr(x, "kind", getattr(x, "dtype", x))) == "float32"
+
+
+@Primitive
+def load(array, row, first, count):
+    """Return array[row, first:first + count], as lanes."""
+    return array[row, first : first + (count or BYTES // array.itemsize)].copy()
+
+
+@Primitive
+def store(array, row, first, lanes):
+    """Put lanes where `load` has them from."""
+    array[row, first : first + len(lanes)] = lanes
+
+
+@Primitive
+def gather(array, column, places, first, count):
+    """Return array[p, column] for each p in places[first:first + count]; singles are widened."""
+    rows = array[places[first : first + (count or BYTES // 8)]]
+    found = rows if array.ndim == 1 else rows[:, column]
+    return found.astype(float) if is_single(found) else found
+
+
+@Primitive
+def numbers_in(places, first, count):
+    """Return places[first:first + count], which are 32-bit integers."""
+    return places[first : first + (count or BYTES // 8)].copy()
+
+
+@Primitive
+def order(count):
+    """Return 0, 1, 2, ..."""
+    return np.arange(count or BYTES // 8)
+
+
+@Primitive
+def lanes_of(array):
+    """Return how many of the array's numbers a register has."""
+    return BYTES // array.itemsize
+
+
+@Primitive
+def bits(lanes):
+    """Return lanes of booleans as an integer, the first lane its lowest bit."""
+    return np.uint64(sum(1 << k for k, holds in enumerate(lanes) if holds))
+
+
+@Primitive
+def least(lanes):
+    """Return the least of the lanes, whose number is a power of two."""
+    return lanes.min()
+
+
+@Primitive
+def append(places, number, lanes, first):
+    """Write the numbers, counted from `first`, of the lanes that hold into places[number:]; return
+    how many places are taken then."""
+    (found,) = np.nonzero(lanes)
+    places[number : number + len(found)] = first + found
+    return number + len(found)
+
+
+@Primitive
+def trailing_zeros(word):
+    """Return the number of zeros below the lowest bit that is set."""
+    return (int(word) & -int(word)).bit_length() - 1
+
+
+@Primitive
+def prefetch(array, row):
+    """Have array[row] on its way to the cache."""
+
+
+@Primitive
+def index(number):
+    """Return a number, promised not to count from the end of an array."""
+    return number
+
+
+@Primitive
+def fused(a, b, c):
+    """Return a b + c, in one instruction where the machine has it."""
     return a * b + c
 
 
-@overload(multiply_add)
-def _compiled_multiply_add(a, b, c):
-    from roughgas.kernel.operations import fused
-
-    if is_single(a) and is_single(b) and is_single(c):
-        return lambda a, b, c: fused(a, b, c)
-    return lambda a, b, c: a * b + c
+@Primitive
+def select(condition, one, other):
+    """Return `one` in the lanes where the condition holds, `other` elsewhere."""
+    return np.where(condition, one, other)
 
 
+@Primitive
+def root(x):
+    """Return the square root of a number, or of lanes."""
+    return np.sqrt(x)
+
+
+@Primitive
+def larger(one, other):
+    """Return the larger of two numbers, lane by lane if need be; the first if one is NaN."""
+    return np.where(other > one, other, one)[()]
+
+
+@Primitive
+def smaller(one, other):
+    """Return the smaller of two numbers, lane by lane if need be; the first if one is NaN."""
+    return np.where(other < one, other, one)[()]
+
+
+@jit
+def multiply_add(a, b, c):
+    """Return a b + c; in single precision perhaps with one rounding."""
+    return fused(a, b, c) if is_single(a) and is_single(b) and is_single(c) else a * b + c
+
+
+@jit
 def choose(condition, one, other):
     """Return `one` where the condition holds, else `other`; lane by lane, where it is lanes."""
-    return one if condition else other
-
-
-@overload(choose)
-def _compiled_choose(condition, one, other):
-    from roughgas.kernel.operations import select
-
     if is_lanes(condition):
-        return lambda condition, one, other: select(condition, one, other)
-    return lambda condition, one, other: one if condition else other
-
-
-REGISTER = 0  # a count: as many as a register has, of doubles if not of the array's own numbers
-
-load = Primitive("load")
-store = Primitive("store")
-gather = Primitive("gather")
-numbers_in = Primitive("numbers_in")
-order = Primitive("order")
-lanes_of = Primitive("lanes_of")
-bits = Primitive("bits")
-least = Primitive("least")
-append = Primitive("append")
-trailing_zeros = Primitive("trailing_zeros")
-prefetch = Primitive("prefetch")
-index = Primitive("index")
+        return select(condition, one, other)
+    return one if condition else other
 
 
 TURN = 6.283185307179586  # 2 pi, and what that lacks
@@ -176,13 +250,13 @@ def uniform(state):
     return (word >> np.uint64(11)) * 2.0**-53
 
 
-@unrolled
+@jit
 def random_vector(state, like, size):
     """Return a vector of as many components as `like`, each uniform in [-size, size]."""
     return tuple(_centred(state, size) for k in range(len(like)))
 
 
-@unrolled
+@jit
 def gaussian_vector(state, like, size):
     """Return a vector of as many components as `like`, each Gaussian with the deviation `size`."""
     return tuple(size * gaussian(state) for k in range(len(like)))

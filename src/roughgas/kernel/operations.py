@@ -1,5 +1,7 @@
 """The operations on lanes (lanes.py); imported when compiled code is first called."""
 
+import math
+
 from llvmlite import ir
 from numba import types
 from numba.core import cgutils
@@ -7,6 +9,8 @@ from numba.core.registry import cpu_target
 from numba.extending import intrinsic
 
 from roughgas.kernel.registers import Lanes, call, least_of_two, spread
+
+root, larger, smaller = math.sqrt, max, min  # of lanes, too: registers.py
 
 
 def _pointer(context, builder, kind, array, indices):

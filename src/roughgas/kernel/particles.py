@@ -1,103 +1,69 @@
 """Particles: where they are among periodic images, what bodies they have, how they spin and fly.
 
-Periodic images: an axis of the box has a length, or is None and open.
+Periodic images: an axis of the box has a length, or is None and open. Under Lees-Edwards shear
+(`slide` = (offset, velocity), else None) the images above are displaced by the offset along the
+first axis and move with the velocity along it: the offset holds at the clock's base (hooks.sliding)
+or, after `slid`, at the time in question.
 
-Under Lees-Edwards shear (`slide` = (offset, velocity), else None) the images above are displaced
-by the offset along the first axis and move with the velocity along it: the offset holds at the
-clock's base (hooks.sliding) or, after `slid`, at the time in question.
+Bodies: State.bodies is None in a gas of one species, whose radius and mass are 1, at no cost. What
+is computed for particles that happen to be alike has the same bits as without them: of two equal
+numbers x, x/(x + x) is 1/2 exactly. All that belongs to a pair is symmetric in the two, to the last
+bit.
 
-What particles are where they differ; where they are alike, radius and mass are 1, at no cost.
-
-The kernel's functions take State.bodies, which is None in a gas of one species. What they compute
-for particles that happen to be alike has the same bits as without them: of two equal numbers x,
-x/(x + x) is 1/2 exactly. All that belongs to a pair is symmetric in the two, to the last bit.
-
-Spins of the particles, as surface velocities a w; in a scene without spin all of this is None.
-
-A spin has one component in the plane, three in space.
-
-Free flight between events, with or without gravity.
+Spins are surface velocities a w, of one component in the plane and three in space; in a scene
+without spin they are None.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from roughgas.kernel import hooks
-from roughgas.kernel.hooks import either, unless_absent
-from roughgas.kernel.jit import is_single, jit, overload, unrolled
-from roughgas.kernel.mathematics import multiply_add
-from roughgas.kernel.vectors import (
-    add_scaled,
-    divide,
-    dot,
-    read,
-    scale,
-    subtract,
-    subtract_last,
-    write,
-)
+from roughgas.kernel.jit import jit
+from roughgas.kernel.mathematics import is_single, multiply_add
+from roughgas.kernel.vectors import add_scaled, dot, read, subtract, subtract_last, write
 
-FIRST_LARGE_32 = np.float32(1.5 * 2.0**23)
+FIRST_LARGE_32, ONE_32 = np.float32(1.5 * 2.0**23), np.float32(1.0)
 FIRST_LARGE_64 = 1.5 * 2.0**52
 
 
+@jit
 def periods(x, length):
     """Return x/length rounded to the nearest integer, ties to even; exact to 2^22 (2^51 in double).
 
     Adding and subtracting a number whose spacing is 1 rounds in two additions, which every x86-64
-    machine has in vector form and which give the same bits on all of them.
+    machine has in vector form and which give the same bits on all of them. A loop over many divides
+    once and multiplies.
     """
-    large = FIRST_LARGE_32 if isinstance(x, np.float32) else FIRST_LARGE_64
-    return multiply_add(x, type(x)(1) / length, large) - large
-
-
-@overload(periods)
-def _compiled_periods(x, length):
     large = FIRST_LARGE_32 if is_single(length) else FIRST_LARGE_64
-    one = type(large)(1.0)
-    # a loop over many divides once and multiplies
-    return lambda x, length: multiply_add(x, one / length, large) - large
+    one = ONE_32 if is_single(length) else 1.0
+    return multiply_add(x, one / length, large) - large
 
 
-@unless_absent
+@jit
 def slid(slide, time):
     """Return the slide as it is at `time` after the clock's base."""
-    return slide[0] + slide[1] * time, slide[1]
-
-
-@jit
-def _axis_number(x, length):
-    if length is None:
-        return x  # not used: an open axis has one image
-    return periods(x, length)
-
-
-@jit
-def _axis_shift(x, number, length):
-    if length is None:
-        return x
-    return multiply_add(-number, length, x)
-
-
-@unrolled
-def _numbers(x, box):
-    return tuple(_axis_number(x[k], box[k]) for k in range(len(box)))
-
-
-@unrolled
-def _shift(x, numbers, box):
-    return tuple(_axis_shift(x[k], numbers[k], box[k]) for k in range(len(box)))
+    return None if slide is None else (slide[0] + slide[1] * time, slide[1])
 
 
 @jit
 def image_numbers(x, box, slide):
-    """Return which periodic image brings the separation x closest to zero, in periods per axis."""
-    numbers = _numbers(x, box)
+    """Return which periodic image brings the separation x closest to zero, in periods per axis.
+
+    That of an open axis, which has one image, is not used.
+    """
+    numbers = tuple(x[k] if box[k] is None else periods(x[k], box[k]) for k in range(len(box)))
     if slide is None:
         return numbers
     along = multiply_add(-numbers[1], slide[0], x[0])
-    return (_axis_number(along, box[0]),) + numbers[1:]
+    return (periods(along, box[0]),) + numbers[1:]
+
+
+@jit
+def _shift(x, numbers, box):
+    return tuple(
+        x[k] if box[k] is None else multiply_add(-numbers[k], box[k], x[k]) for k in range(len(box))
+    )
 
 
 @jit
@@ -115,13 +81,8 @@ def shifted(x, u, numbers, box, slide):
 @jit
 def fold_into_box(position, velocity, box, slide):
     """Return the image of a particle in the box, whose periodic axes reach from 0 to L."""
-    centred = _shift(position, _halves(position), box)
+    centred = _shift(position, tuple(0.5 for k in range(len(position))), box)
     return shifted(position, velocity, image_numbers(centred, box, slide), box, slide)
-
-
-@unrolled
-def _halves(like):
-    return tuple(0.5 for k in range(len(like)))
 
 
 @jit
@@ -129,38 +90,22 @@ def speed_limit(box, half, reach):
     """Return the square of the relative speed below which no second image is met within +-`half`.
 
     None where no axis is periodic. It has some room for rounding. `reach` is the distance of a pair
-    in contact, or of any; None stands for 2.
+    in contact, or of any.
     """
-    return _limit(_lengths(box), half, _roomy(reach))
-
-
-_roomy = either(lambda reach: 1.0005 * reach, lambda reach: 2.001)
-
-
-@unrolled
-def _lengths(box):
-    return tuple(box[k] for k in range(len(box)) if box[k] is not None)
-
-
-@unrolled
-def _limit(lengths, half, reach):
+    lengths = tuple(box[k] for k in range(len(box)) if box[k] is not None)
     if len(lengths) == 0:
         return None
-    else:
-        shortest = lengths[0]
-        for k in range(1, len(lengths)):
-            shortest = min(shortest, lengths[k])
-        speed = (0.5 * shortest - reach) / half
-        return speed * speed
+    shortest = lengths[0]
+    for k in range(1, len(lengths)):
+        shortest = min(shortest, lengths[k])
+    speed = (0.5 * shortest - 1.0005 * reach) / half
+    return speed * speed
 
 
-@unrolled
+@jit
 def exceeds(squared, limit):
     """Return whether the square of a relative speed is above a speed limit; NaN is not."""
-    if limit is None:
-        return False
-    else:
-        return squared > limit
+    return False if limit is None else squared > limit
 
 
 class Pair(NamedTuple):
@@ -174,46 +119,21 @@ class Pair(NamedTuple):
     inertia: float  # mean q, each weighted with the share of the turning that the particle takes
     bulk: float  # twice the reduced s; at a wall that of the particle
     gives: tuple[float, float]  # twice these shares
-    mu: float  # coefficient of friction; NaN without friction
-
-
-radius_of = either(lambda bodies, i: bodies.radius[i], lambda bodies, i: 1.0)
-mass_of = either(lambda bodies, i: bodies.mass[i], lambda bodies, i: 1.0)
-
-reach_of = unless_absent(lambda bodies, i, j: bodies.radius[i] + bodies.radius[j])
-"""(bodies, i, j) -> the distance at which a pair touches; None stands for 2."""
-
-widest_of = unless_absent(lambda bodies: 2.0 * bodies.largest[0])
-"""(bodies) -> the largest distance at which any pair touches; None stands for 2."""
-
-spin_mass_of = either(
-    lambda bodies, spin, i: bodies.mass[i] * bodies.inertia[i], lambda bodies, spin, i: spin.inertia
-)
-"""(bodies, spin, i) -> s of a particle, which its energy of rotation is s (a w)^2/2 with."""
-
-change_of_velocity = either(  # a product with 1/m would be rounded to the same side each time
-    lambda bodies, i, push: divide(push, bodies.mass[i]), lambda bodies, i, push: push
-)
-"""(bodies, i, push) -> what an impulse changes the particle's velocity by."""
-
-material_of = either(
-    lambda bodies, scene, i, j: _of_species(bodies, scene, i, j),
-    lambda bodies, scene, i, j: (scene.restitution, scene.roughness),
-)
-"""(bodies, scene, i, j) -> (r, beta) of a pair's contacts."""
+    mu: Any  # coefficient of friction; None where particles are alike, NaN without friction
 
 
 @jit
-def _of_species(bodies, scene, i, j):
-    if scene.effects.species.alike:
-        return scene.restitution, scene.roughness
-    of_one, of_other = bodies.species[i], bodies.species[j]
-    return bodies.pairs[of_one, of_other, 0], bodies.pairs[of_one, of_other, 1]
+def alike(spin):
+    """Return the Pair of particles that are alike; `spin` is the effect, or None."""
+    q = 0.0 if spin is None else spin.inertia
+    return Pair(1.0, q, q, (1.0, 1.0), None)
 
 
-@unless_absent
-def pair_of(bodies, i, j):
+@jit
+def pair_of(bodies, spin, i, j):
     """Return the Pair of two particles."""
+    if bodies is None:
+        return alike(spin)
     m_i, m_j = bodies.mass[i], bodies.mass[j]
     q_i, q_j = bodies.inertia[i], bodies.inertia[j]
     s_i, s_j = m_i * q_i, m_j * q_j
@@ -227,65 +147,82 @@ def pair_of(bodies, i, j):
     )
 
 
-@unless_absent
-def pair_with_wall(bodies, i):
+@jit
+def pair_with_wall(bodies, spin, i):
     """Return the Pair of a particle and a wall."""
+    if bodies is None:
+        return alike(spin)
     m, q = bodies.mass[i], bodies.inertia[i]
     return Pair(m, q, m * q, (1.0, 0.0), bodies.pairs[bodies.species[i], -1, 2])
 
 
-mass_in = either(lambda pair: pair.mass, lambda pair: 1.0)
-inertia_in = either(lambda pair, spin: pair.inertia, lambda pair, spin: spin.inertia)
-bulk_in = either(lambda pair, spin: pair.bulk, lambda pair, spin: spin.inertia)
+@jit
+def radius_of(bodies, i):
+    """Return the radius of a particle."""
+    return 1.0 if bodies is None else bodies.radius[i]
 
 
-@unless_absent
-def turn_of(turn, pair, k):
-    """Return what the spin of a contact's partner (0 or 1) is changed by; turn is the mean."""
-    return _given(pair, turn, k)
+@jit
+def largest_of(bodies):
+    """Return the largest radius."""
+    return 1.0 if bodies is None else bodies.largest[0]
 
 
-_given = either(lambda pair, turn, k: scale(turn, pair.gives[k]), lambda pair, turn, k: turn)
+@jit
+def reach_of(bodies, i, j):
+    """Return the distance at which a pair touches."""
+    return radius_of(bodies, i) + radius_of(bodies, j)
 
 
-@unrolled
+@jit
+def mass_of(bodies, i):
+    """Return the mass of a particle."""
+    return 1.0 if bodies is None else bodies.mass[i]
+
+
+@jit
+def spin_mass_of(bodies, spin, i):
+    """Return s of a particle: s (a w)^2/2 is its energy of rotation; `spin` is the effect."""
+    return spin.inertia if bodies is None else bodies.mass[i] * bodies.inertia[i]
+
+
+@jit
+def material_of(bodies, scene, i, j):
+    """Return (r, beta) of a pair's contacts."""
+    if bodies is None or scene.effects.species.alike:
+        return scene.restitution, scene.roughness
+    of_one, of_other = bodies.species[i], bodies.species[j]
+    return bodies.pairs[of_one, of_other, 0], bodies.pairs[of_one, of_other, 1]
+
+
+@jit
 def spin_of(spin, box, i):
     """Return the spin of particle i."""
-    if spin is None:
-        return None
-    else:
-        return tuple(spin[i, k] for k in range(2 * len(box) - 3))
+    return None if spin is None else tuple(spin[i, k] for k in range(2 * len(box) - 3))
 
 
-@unless_absent
-def spin_sum(a, b):
-    """Return the sum of two spins, which the contact velocity depends on."""
-    return add_scaled(a, b, 1.0)
-
-
-@unless_absent
+@jit
 def turn_spin(spin, i, before, turn):
     """Store particle i's spin after a contact."""
     write(spin, i, 0, add_scaled(before, turn, 1.0))
 
 
-@unless_absent
+@jit
 def book_spin(before, turn, effect, bodies, i, account):
     """Enter the rotational energy gained, m q [w.dw + dw.dw/2], in an account of the ledger."""
     gained = dot(before, turn) + 0.5 * dot(turn, turn)
     account[1] += spin_mass_of(bodies, effect, i) * gained
 
 
-@unrolled
+@jit
 def fallen(position, velocity, elapsed, gravity):
     """Return position and velocity after `elapsed`, falling along the last axis under gravity."""
     moved = add_scaled(position, velocity, elapsed)
     if gravity is None:
         return moved, velocity
-    else:
-        drop = 0.5 * gravity * elapsed * elapsed
-        fall = gravity * elapsed
-        return subtract_last(moved, drop), subtract_last(velocity, fall)
+    drop = 0.5 * gravity * elapsed * elapsed
+    fall = gravity * elapsed
+    return subtract_last(moved, drop), subtract_last(velocity, fall)
 
 
 @jit
@@ -308,14 +245,14 @@ def along(path, time, gravity):
 def position_and_velocity(state, scene, i, time):
     """Return position and velocity of particle i at `time`, on the continuation of its path."""
     path = path_of(state.trajectory, i, scene.box)
-    return along(path, time, hooks.acceleration(scene.effects, None))
+    return along(path, time, hooks.acceleration(scene.effects))
 
 
 @jit
 def position_in_box(state, scene, i, time):
     """Return position and velocity of particle i's image in the box at `time`."""
     position, velocity = position_and_velocity(state, scene, i, time)
-    slide = hooks.sliding(scene.effects, None, state)
+    slide = hooks.sliding(scene.effects, state)
     return fold_into_box(position, velocity, scene.box, slid(slide, time))
 
 
@@ -326,7 +263,7 @@ def enter_box(state, scene, i, time):
     position, velocity = position_in_box(state, scene, i, time)
     gained = subtract(velocity, before)
     work = dot(gained, add_scaled(before, gained, 0.5))
-    hooks.transfer(scene.effects, None, state, mass_of(state.bodies, i) * work)
+    hooks.transfer(scene.effects, state, mass_of(state.bodies, i) * work)
     return position, velocity
 
 

@@ -15,8 +15,7 @@ import numpy as np
 
 from roughgas.kernel import hooks
 from roughgas.kernel.event_lists import add_contact, set_contacts
-from roughgas.kernel.hooks import either, unless_absent
-from roughgas.kernel.jit import compiled, jit, unrolled
+from roughgas.kernel.jit import compiled, jit
 from roughgas.kernel.mathematics import (
     REGISTER,
     bits,
@@ -24,9 +23,12 @@ from roughgas.kernel.mathematics import (
     gather,
     index,
     lanes_of,
+    larger,
     load,
     numbers_in,
     order,
+    root,
+    smaller,
     store,
     trailing_zeros,
 )
@@ -35,25 +37,22 @@ from roughgas.kernel.particles import (
     along,
     exceeds,
     image_numbers,
+    largest_of,
     path_of,
+    radius_of,
     reach_of,
     shifted,
     slid,
     speed_limit,
-    widest_of,
 )
 from roughgas.kernel.vectors import add_scaled, cross_squared, dot, subtract
-
-DIAMETER = 2.0
-
-_touching = either(lambda reach: reach, lambda reach: DIAMETER)
 
 
 @jit
 def time_to_contact(x, u, reach):
     """Return the time until two particles at separation x, with relative velocity u, touch, or inf.
 
-    They touch at the distance `reach`; None stands for 2, here and below.
+    They touch at the distance `reach`.
 
     Touching or overlapping (by rounding) and approaching is a contact now; receding never is one.
     The smaller root is formed by division, so that it does not cancel when the particles are
@@ -64,11 +63,10 @@ def time_to_contact(x, u, reach):
     are done at once.
     """
     b, uu = dot(x, u), dot(u, u)
-    diameter = _touching(reach)
-    c = dot(x, x) - diameter * diameter
-    discriminant = diameter * diameter * uu - cross_squared(x, u)
-    time = max(c, 0.0) / (math.sqrt(max(discriminant, 0.0)) - b)
-    time = min(time, -b / uu)
+    c = dot(x, x) - reach * reach
+    discriminant = reach * reach * uu - cross_squared(x, u)
+    time = larger(c, 0.0) / (root(larger(discriminant, 0.0)) - b)
+    time = smaller(time, -b / uu)
     meets = (b < 0.0) & ((discriminant >= 0.0) | (c <= 0.0))
     return choose(meets, time, math.inf)
 
@@ -80,7 +78,7 @@ def meeting(path_i, path_j, box, gravity, slide, middle, limit, reach):
     The nearest image at `middle` is the only one that can be met as long as the pair moves less
     than half a box, less a diameter, from there: as long as it is not faster than the speed_limit.
     """
-    since = max(path_i[2], path_j[2])
+    since = larger(path_i[2], path_j[2])
     position_i, velocity_i = along(path_i, since, gravity)
     position_j, velocity_j = along(path_j, since, gravity)
     x = subtract(position_j, position_i)
@@ -123,10 +121,10 @@ def decide(state, scene, i, number, start, end, limit):
     """
     box = scene.box
     path = path_of(state.trajectory, i, box)
-    gravity = hooks.acceleration(scene.effects, None)
-    slide = hooks.sliding(scene.effects, None, state)
+    gravity = hooks.acceleration(scene.effects)
+    slide = hooks.sliding(scene.effects, state)
     half = 0.5 * (end - start)
-    fastest = speed_limit(box, half, widest_of(state.bodies))
+    fastest = speed_limit(box, half, 2.0 * largest_of(state.bodies))
     first, more = 0, True
     while more:  # once mostly, and at least once, so that the processor can foresee it
         others = _paths_of(state.trajectory, state.shortlist.found, first, box)
@@ -135,12 +133,12 @@ def decide(state, scene, i, number, start, end, limit):
         listed = order(REGISTER) < number - first
         unsure = unsure & listed
         when = _of_any_image(fastest, state, scene, i, path, first, start, end, when, unsure)
-        _note(state.cells, state, i, first, choose((when <= limit) & listed, when, math.inf))
+        _note(state, i, first, choose((when <= limit) & listed, when, math.inf))
         first += lanes_of(state.shortlist.when)
         more = first < number
 
 
-@unrolled
+@jit
 def _paths_of(trajectory, found, first, box):
     """Return the paths of the candidates from `first` on."""
     return (
@@ -150,19 +148,25 @@ def _paths_of(trajectory, found, first, box):
     )
 
 
-@unless_absent
+@jit
 def _reaches(bodies, found, i, first):
     """Return the distances at which particle i touches the candidates from `first` on."""
-    return bodies.radius[i] + gather(bodies.radius, 0, found, first, REGISTER)
+    if bodies is None:
+        return reach_of(bodies, i, i)
+    return radius_of(bodies, i) + gather(bodies.radius, 0, found, first, REGISTER)
 
 
-def _look_at_every_image(fastest, state, scene, i, path, first, start, end, when, unsure):
+@jit
+def _of_any_image(fastest, state, scene, i, path, first, start, end, when, unsure):
+    """Return the times of contact, with every image looked at where the nearest may not decide."""
+    if fastest is None:
+        return when
     undecided = bits(unsure)
     if undecided == 0:
         return when
     shortlist, box = state.shortlist, scene.box
-    gravity = hooks.acceleration(scene.effects, None)
-    slide = hooks.sliding(scene.effects, None, state)
+    gravity = hooks.acceleration(scene.effects)
+    slide = hooks.sliding(scene.effects, state)
     store(shortlist.when, 0, 0, when)
     while undecided != 0:
         k = trailing_zeros(undecided)
@@ -173,12 +177,6 @@ def _look_at_every_image(fastest, state, scene, i, path, first, start, end, when
         shortlist.when[0, k] = time
         undecided &= undecided - np.uint64(1)
     return load(shortlist.when, 0, 0, REGISTER)
-
-
-_of_any_image = either(
-    _look_at_every_image,
-    lambda fastest, state, scene, i, path, first, start, end, when, unsure: when,
-)
 
 
 @jit
@@ -193,15 +191,12 @@ def _one_by_one(state, i, first, when):
         contacts &= contacts - np.uint64(1)
 
 
-def _all_at_once(cells, state, i, first, when):
-    if first + lanes_of(state.shortlist.when) > SLOTS_OF_FEW:
+@jit
+def _note(state, i, first, when):
+    """Put contacts with candidates on particle i's list: all at once, where they have slots."""
+    if state.cells is not None or first + lanes_of(state.shortlist.when) > SLOTS_OF_FEW:
         _one_by_one(state, i, first, when)
         return
     found = state.shortlist.found
     changes = gather(state.changes, 0, found, first, REGISTER)
     set_contacts(state.agenda, i, first, when, numbers_in(found, first, REGISTER), changes)
-
-
-_note = either(
-    lambda cells, state, i, first, when: _one_by_one(state, i, first, when), _all_at_once
-)

@@ -3,8 +3,8 @@
 import math
 from typing import NamedTuple
 
-from roughgas.kernel.hooks import either, present, unless_absent
-from roughgas.kernel.jit import by_reference, compiled, entry, jit, unrolled
+from roughgas.kernel.hooks import present
+from roughgas.kernel.jit import by_reference, compiled, entry, jit
 from roughgas.kernel.loop import REACHED, advance, start
 from roughgas.kernel.particles import (
     enter_box,
@@ -13,7 +13,6 @@ from roughgas.kernel.particles import (
     radius_of,
     set_path,
     spin_mass_of,
-    spin_of,
 )
 from roughgas.kernel.state import BASE, COLLISIONS, EXPONENT, INSTANT_END, NOW, ORIGIN, STARTED
 
@@ -79,15 +78,19 @@ def take_sample(state, scene, row):
     time = state.clock[NOW]
     for k in range(len(row)):
         row[k] = 0.0
-    unit = math.ldexp(1.0, -state.counts[EXPONENT])
+    unit = math.ldexp(1.0, -int(state.counts[EXPONENT]))
     row[0] = state.clock[ORIGIN] + (state.clock[BASE] + time) * unit
     row[1] = state.counts[COLLISIONS]
     row[2] = state.counts[EXPONENT]
     for i in range(len(state.changes)):
         position, velocity = position_in_box(state, scene, i, time)
         _add(state, scene, i, position, velocity, row, 3)
-        _add_to_species(state.bodies, state, scene, i, position, velocity, row)
-    _enter_sums(state.sums, state.counts[EXPONENT], row, len(row))
+        if state.bodies is not None:
+            length = 2 * len(scene.box) + 3
+            length += 0 if state.spin is None else 1 + state.spin.shape[1]
+            first = 3 + length * (1 + state.bodies.species[i])
+            _add(state, scene, i, position, velocity, row, first)
+    _enter_sums(state.sums, state.counts[EXPONENT], row)
 
 
 @jit
@@ -100,55 +103,32 @@ def _add(state, scene, i, position, velocity, row, first):
     row[first + 2 * dimension] += mass * height
     row[first + 1 + 2 * dimension] += mass * (height * height)
     row[first + 2 + 2 * dimension] += mass * (height * velocity[0])
-    spin = spin_of(state.spin, scene.box, i)
-    _add_spin(spin, state.bodies, scene.effects.spin, i, row, first + 3 + 2 * dimension)
-
-
-@unless_absent
-def _add_to_species(bodies, state, scene, i, position, velocity, row):
-    length = 2 * len(position) + 3 + _components(state.spin)
-    first = 3 + length * (1 + bodies.species[i])
-    _add(state, scene, i, position, velocity, row, first)
-
-
-_components = either(lambda spin: 1 + spin.shape[1], lambda spin: 0)
-
-
-@unless_absent
-def _add_spin(spin, bodies, effect, i, row, first):
-    share = _share_of_spin(bodies, effect, i)
-    lever = share * radius_of(bodies, i)
-    for k in range(len(spin)):
-        row[first] += share * (spin[k] * spin[k])
-        row[first + 1 + k] += lever * spin[k]
-
-
-_share_of_spin = either(
-    lambda bodies, effect, i: spin_mass_of(bodies, effect, i) / effect.inertia,
-    lambda bodies, effect, i: 1.0,
-)
-
-
-@unrolled
-def _enter_sums(sums, exponent, row, end):
-    if sums is not None:
-        for k in range(len(sums) - 1, -1, -1):
-            if sums[k] is not None:
-                end = _enter(sums[k], exponent, row, end)
+    if state.spin is not None:
+        bodies, effect = state.bodies, scene.effects.spin
+        share = 1.0 if bodies is None else spin_mass_of(bodies, effect, i) / effect.inertia
+        lever = share * radius_of(bodies, i)
+        first += 3 + 2 * dimension
+        for k in range(state.spin.shape[1]):
+            row[first] += share * (state.spin[i, k] * state.spin[i, k])
+            row[first + 1 + k] += lever * state.spin[i, k]
 
 
 @jit
-def _enter(sums, exponent, row, end):
-    first = end - sums.shape[1]
-    for k in range(sums.shape[1]):
-        row[first + k] = _running_sum(sums, k, exponent)
-    return first
+def _enter_sums(sums, exponent, row):
+    """Put the running sums of all effects last into a row."""
+    if sums is not None:
+        end = len(row)
+        for k in range(len(sums) - 1, -1, -1):
+            if sums[k] is not None:
+                end -= sums[k].shape[1]
+                for column in range(sums[k].shape[1]):
+                    row[end + column] = _running_sum(sums[k], column, exponent)
 
 
 @jit
 def _running_sum(sums, k, exponent):
     """Return a sum in units of a and T; what is smaller than the smallest number becomes zero."""
-    return sums[1, k] + math.ldexp(sums[0, k], int(sums[2, k]) * exponent)
+    return sums[1, k] + math.ldexp(sums[0, k], int(sums[2, k] * exponent))
 
 
 @compiled
@@ -167,7 +147,9 @@ def refresh(state, scene):
         set_path(state, scene, i, position, velocity, time)
     square = 0.0
     for k in range(dimension, 2 * dimension):
-        mean = _conserved_mean(state.agenda.boundary_time, state, k)
+        mean = 0.0
+        if state.agenda.boundary_time is None:
+            mean = _mean_velocity(state, k)
         for i in range(number):
             state.trajectory[i, k] -= mean
             square += state.trajectory[i, k] ** 2
@@ -176,39 +158,32 @@ def refresh(state, scene):
     start(state, scene)
 
 
-def _mean(boundary_time, state, k):
-    momentum = 0.0
+@jit
+def _mean_velocity(state, k):
+    momentum, mass = 0.0, 0.0
     for i in range(len(state.trajectory)):
         momentum += mass_of(state.bodies, i) * state.trajectory[i, k]
-    return momentum / _total_mass(state.bodies, state.trajectory)
-
-
-def _sum_of_masses(bodies, trajectory):
-    total = 0.0
-    for i in range(len(trajectory)):
-        total += bodies.mass[i]
-    return total
-
-
-_total_mass = either(_sum_of_masses, lambda bodies, trajectory: len(trajectory))
-
-
-_conserved_mean = either(lambda boundary_time, state, k: 0.0, _mean)
+        mass += mass_of(state.bodies, i)
+    return momentum / mass
 
 
 @jit
 def rescale(state, scene, power):
     """Divide velocities by 2^power and multiply times by it, all particles being at one instant."""
-    clock, dimension = state.clock, len(scene.box)
+    clock, dimension, moments = state.clock, len(scene.box), state.moments
     down = math.ldexp(1.0, -power)
-    unit = math.ldexp(1.0, -state.counts[EXPONENT])
+    unit = math.ldexp(1.0, -int(state.counts[EXPONENT]))
     clock[ORIGIN] += (clock[BASE] + clock[NOW]) * unit
     for i in range(len(state.changes)):
         state.trajectory[i, 2 * dimension] = 0.0
         for k in range(dimension, 2 * dimension):
             state.trajectory[i, k] *= down
-        _scale_spin(state.spin, i, down)
-        _scale_moments(state.moments, i, clock[NOW], down)
+        if state.spin is not None:
+            for k in range(state.spin.shape[1]):
+                state.spin[i, k] *= down
+        for k in range(len(moments)):
+            if moments[k] is not None:
+                moments[k][i] = (moments[k][i] - clock[NOW]) / down
     for account in range(state.ledger.shape[1]):
         for k in range(2):
             state.ledger[1, account, k] += state.ledger[0, account, k] / (unit * unit)
@@ -220,29 +195,11 @@ def rescale(state, scene, power):
     clock[INSTANT_END] = 0.0
 
 
-@unrolled
+@jit
 def _keep_sums(sums, exponent):
     if sums is not None:
         for k in range(len(sums)):
             if sums[k] is not None:
-                _keep(sums[k], exponent)
-
-
-@jit
-def _keep(sums, exponent):
-    for k in range(sums.shape[1]):
-        sums[1, k] = _running_sum(sums, k, exponent)
-        sums[0, k] = 0.0
-
-
-@unless_absent
-def _scale_spin(spin, i, factor):
-    for k in range(spin.shape[1]):
-        spin[i, k] *= factor
-
-
-@unrolled
-def _scale_moments(moments, i, now, factor):
-    for k in range(len(moments)):
-        if moments[k] is not None:
-            moments[k][i] = (moments[k][i] - now) / factor
+                for column in range(sums[k].shape[1]):
+                    sums[k][1, column] = _running_sum(sums[k], column, exponent)
+                    sums[k][0, column] = 0.0

@@ -15,19 +15,19 @@ import numpy as np
 
 from roughgas.kernel import hooks
 from roughgas.kernel.event_lists import clear_contacts
-from roughgas.kernel.hooks import either, unless_absent
-from roughgas.kernel.jit import jit, unrolled
+from roughgas.kernel.jit import jit
 from roughgas.kernel.mathematics import REGISTER, append, lanes_of, load, multiply_add
 from roughgas.kernel.particles import (
     exceeds,
     image_numbers,
+    largest_of,
     position_and_velocity,
+    radius_of,
     shifted,
     slid,
     speed_limit,
-    widest_of,
 )
-from roughgas.kernel.prediction import DIAMETER, decide
+from roughgas.kernel.prediction import decide
 from roughgas.kernel.state import EXTENT, LONGEST_HORIZON, SPAN, TYPICAL_SPEED
 from roughgas.kernel.vectors import add_scaled, cross_squared, dot, read, subtract
 
@@ -35,12 +35,13 @@ ROUNDING = 2.0**-24  # half the spacing of single precision just above 1
 ROUNDED_UP = 1.0 + 2.0**-20  # radii in single precision are no less than they are
 
 
-def find_by_sweep(cells, state, scene, i, time):
+@jit
+def find_by_sweep(state, scene, i, time):
     """Foresee particle i's contacts with all others up to its horizon."""
     start, velocity = line_of(state, scene, i)
     end = time + horizon(state, scene, i)
     half = 0.5 * (end - time)
-    number = list_candidates(state, scene, i, single(start), single(velocity), time + half, half)
+    number = list_candidates(state, scene, i, singles(start), singles(velocity), time + half, half)
     draw_line(state, i, start, velocity)
     clear_contacts(state.agenda, i, end)
     decide(state, scene, i, number, time, end, end)
@@ -57,10 +58,11 @@ def horizon(state, scene, i):
     return min(_free_way(state.bodies, scene) / speed, state.clock[LONGEST_HORIZON])
 
 
-_free_way = either(  # between side walls that are near nothing comes round
-    lambda bodies, scene: max(scene.extent - 4.0 * bodies.largest[0], bodies.largest[0]),
-    lambda bodies, scene: scene.extent - 2.0 * DIAMETER,
-)
+@jit
+def _free_way(bodies, scene):
+    if bodies is None:
+        return scene.extent - 4.0
+    return max(scene.extent - 4.0 * bodies.largest[0], bodies.largest[0])  # walls may be near
 
 
 @jit
@@ -100,22 +102,22 @@ def list_candidates(state, scene, i, start, velocity, middle, half):
     shortlist; return their number. The particle itself may be among them: it never meets itself."""
     clock = state.clock
     slack = 16.0 * ROUNDING * clock[EXTENT]
-    margin = _farthest(state.bodies, i) + slack
+    margin = radius_of(state.bodies, i) + largest_of(state.bodies) + slack
     speed = max(clock[TYPICAL_SPEED], 1e-30)
     # s |u| <= (s / 2) (u.u / w + w) for any speed w, which saves a root per pair
     reach = half + 0.55 * margin / speed
-    slide = slid(hooks.sliding(scene.effects, None, state), middle)
+    slide = slid(hooks.sliding(scene.effects, state), middle)
     return _sweep(
         state.sweep.lines,
         state.sweep.sizes,
-        _own(state.bodies, i, slack),
+        single(ROUNDED_UP * (radius_of(state.bodies, i) + slack)),
         state.shortlist.found,
         len(state.changes),
         start,
         velocity,
-        single(scene.box),
-        single(slide),
-        _single(speed_limit(scene.box, half, widest_of(state.bodies))),
+        singles(scene.box),
+        singles(slide),
+        single(speed_limit(scene.box, half, 2.0 * largest_of(state.bodies))),
         np.float32(middle),
         np.float32(reach),
         np.float32(0.55 * margin * speed),
@@ -139,37 +141,29 @@ def _sweep(
     return number
 
 
-_farthest = either(
-    lambda bodies, i: bodies.radius[i] + bodies.largest[0], lambda bodies, i: DIAMETER
-)
-_own = either(
-    lambda bodies, i, slack: np.float32(ROUNDED_UP * (bodies.radius[i] + slack)),
-    lambda bodies, i, slack: None,
-)
-
-
-def _square_of_each(sizes, own, first, square):
+@jit
+def _square(sizes, own, first, square):
+    """Return the square of the distance at which each of these particles may be touched."""
+    if sizes is None:
+        return square
     reach = load(sizes, 0, first, REGISTER) + own
     return reach * reach
 
 
-_square = either(_square_of_each, lambda sizes, own, first, square: square)
-
-
-@unrolled
+@jit
 def _lines_of(lines, first, block, box):
     return tuple(load(lines, first + k, block, REGISTER) for k in range(len(box)))
 
 
-@unrolled
-def single(numbers):
+@jit
+def single(x):
+    """Return a number in single precision; None stays None."""
+    return None if x is None else np.float32(x)
+
+
+@jit
+def singles(numbers):
     """Return a tuple in single precision; None stays None, inside and out."""
     if numbers is None:
         return None
-    else:
-        return tuple(_single(numbers[k]) for k in range(len(numbers)))
-
-
-@unless_absent
-def _single(x):
-    return np.float32(x)
+    return tuple(single(numbers[k]) for k in range(len(numbers)))

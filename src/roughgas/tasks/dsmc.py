@@ -19,8 +19,8 @@ from roughgas.base import InputError
 from roughgas.effects import Effects
 from roughgas.effects.contacts import Friction, Spin
 from roughgas.kernel.contact import response
-from roughgas.kernel.jit import compiled, entry, unrolled
-from roughgas.kernel.particles import spin_of, spin_sum, turn_spin
+from roughgas.kernel.jit import compiled, entry, jit
+from roughgas.kernel.particles import alike, spin_of, turn_spin
 from roughgas.kernel.vectors import add_scaled, dot, read, scale, subtract, write
 from roughgas.theory import arguments, moment_of_inertia
 
@@ -199,7 +199,8 @@ def collide(gas, material, i, j, n, v):
     axes, effects = gas.axes, material.effects
     w_i, w_j = spin_of(gas.spin, axes, i), spin_of(gas.spin, axes, j)
     both = material.restitution, material.roughness
-    push, turn = response(effects.spin, effects, both, n, v, spin_sum(w_i, w_j), 0.5, None)
+    pair = alike(effects.spin)
+    push, turn = response(effects, both, n, v, add_scaled(w_i, w_j, 1.0), 0.5, pair)
     write(gas.velocity, i, 0, subtract(read(gas.velocity, i, 0, axes), push))
     write(gas.velocity, j, 0, add_scaled(read(gas.velocity, j, 0, axes), push, 1.0))
     turn_spin(gas.spin, i, w_i, turn)
@@ -217,7 +218,7 @@ def random_direction(axes, rng):
             return scale(x, 1.0 / math.sqrt(square))
 
 
-@unrolled
+@jit
 def _in_cube(axes, rng):
     return tuple(2.0 * rng.random() - 1.0 for k in range(len(axes)))
 
@@ -238,7 +239,7 @@ def take_sample(gas, row):
         row[8] += vw * vw
 
 
-@unrolled
+@jit
 def _along(v, w):
     """Return v.w, which in the plane is 0."""
     if len(w) == 1:

@@ -1,0 +1,206 @@
+"""The kernel as plain Python, beside what is compiled; and functions as they are written."""
+
+import subprocess
+import sys
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+from brute_force import begin, settings
+from brute_force.scenes import RARE
+from compiled import from_python
+from project import ROOT
+
+from roughgas.effects import Effects
+from roughgas.effects.gravity import Gravity
+from roughgas.kernel import hooks, memory
+from roughgas.kernel.hooks import present
+from roughgas.kernel.jit import jit
+from roughgas.kernel.record import Sampling, columns, record
+
+TWO = [{"fraction": 0.5}, {"fraction": 0.5, "radius": 1.5}]
+BOXES = {2: [14, 14], 3: [12, 12, 12]}
+SWEPT = ("smooth", "gas", "sheared", "bed", "walled", "spheres", "friction", "shaken", "heated")
+SWEPT += ("viscoelastic", "container", *RARE)
+CELLS = ("sheared", "walled", "spheres")
+WAVES = {name: settings("bed", floor={"wave": name}) for name in ("triangle", "sine")}
+# where registers differ between machines, and with plain Python, these have another order
+SCRATCH = ("slot_time", "slot_partner", "slot_change", "found", "when")
+
+
+def arrays(part, name=""):
+    """Name -> array of all that a state holds but for scratch."""
+    if isinstance(part, np.ndarray):
+        return {} if name in SCRATCH else {name: part}
+    inner = [arrays(getattr(part, key), key) for key in getattr(part, "_fields", ())]
+    return {f"{name}.{key}": array for found in inner for key, array in found.items()}
+
+
+def assert_plain_python_has_the_same_bits(experiment, collisions=25):
+    ends = []
+    for advance in (record, record.py_func):
+        beta = 0.3 if "spin" in experiment["effects"] else -1.0
+        scene, state = begin(experiment, 0.9, beta, 3)
+        rows = np.empty((3, len(columns(scene))))
+        refresh = 0 if present(scene.effects, "drives") else 2
+        with np.errstate(all="ignore"):  # infinite times
+            ended = advance(state, scene, Sampling(np.inf, collisions, refresh), rows)
+        ends.append(arrays(state) | {"rows": rows, "ended": np.array(ended)})
+    compiled, plain = ends
+    for name, array in compiled.items():
+        assert array.tobytes() == plain[name].tobytes(), name
+    assert rows[-1, 1] == 3 * collisions
+
+
+def of_ten(kernel, **more):
+    """The settings of a scene of ten particles."""
+    box = settings(kernel)["box"]
+    lengths = BOXES[len(box)]
+    top = "open" if box[-1] == "open" else lengths[-1]
+    return settings(kernel, 10, [*lengths[:-1], top]) | more
+
+
+@pytest.mark.parametrize(
+    "kernel", [pytest.param(n, marks=[pytest.mark.slow] * (n in RARE)) for n in SWEPT]
+)
+def test_scenes_run_as_plain_python(kernel):
+    assert_plain_python_has_the_same_bits(of_ten(kernel))
+
+
+@pytest.mark.parametrize("kernel", ["gas", "heated"])
+def test_mixtures_run_as_plain_python(kernel):
+    assert_plain_python_has_the_same_bits(of_ten(kernel, species=TWO, box=[20, 20]))
+
+
+@pytest.mark.parametrize("wave", WAVES)
+def test_floors_run_as_plain_python(wave):
+    assert_plain_python_has_the_same_bits(WAVES[wave] | {"particles": 10, "box": [14, "open"]})
+
+
+@pytest.mark.parametrize("kernel", CELLS)
+def test_cells_run_as_plain_python(kernel, monkeypatch):
+    monkeypatch.setattr(memory, "FEW", 0)
+    monkeypatch.setattr(memory, "PER_CELL", 0.0)
+    box = [17, *settings(kernel)["box"][1:]]
+    box[1:] = [length if length == "open" else 17 for length in box[1:]]
+    assert_plain_python_has_the_same_bits(settings(kernel, 10, box))
+
+
+# ---------------------------------------------------------------------- as it is written
+
+
+class Part(NamedTuple):
+    weights: tuple
+    other: object
+
+
+class Whole(NamedTuple):
+    part: Part
+    nothing: None
+
+
+@jit
+def aliases(whole, x):
+    part, nothing = whole.part, whole.nothing
+    weights = part.weights
+    pieces = tuple(2.0 * weights[k] for k in range(len(weights)) if k != 1)
+    if nothing is not None or (part.other is None and len(pieces) == 7):
+        return undefined(x)  # noqa: F821
+    y = x if not (nothing is None and len(pieces) > 1) else pieces[1]
+    if part.weights is not None:
+        return x + y + len(weights)
+    return undefined(x)  # noqa: F821
+
+
+@jit
+def reassigned(x):
+    while x is not None:
+        x = None
+    return x
+
+
+@jit
+def local(x):
+    y = abs(x)
+    return 1.0 if y is None else y
+
+
+@jit
+def misspelt(whole):
+    return 1.0 if whole.prat is None else 2.0
+
+
+@jit
+def without_is_none(whole):
+    return 1.0 if whole.part else 2.0
+
+
+@jit
+def left_in_the_middle(x):
+    for k in range(len(x)):
+        if x[k] > 1.0:
+            break
+    return 0.0
+
+
+@jit
+def accelerated(effects, v):
+    g = 0.0
+    for part in present(effects, "acceleration"):
+        g += part.own(effects[part.place], part.rank)
+    return v - g if present(effects, "acceleration") else v
+
+
+WHOLE = Whole(Part((1.0, 2.0, 3.0), 4), None)
+
+
+def test_what_types_tell_is_decided():
+    assert from_python(aliases)(WHOLE, 0.5) == aliases(WHOLE, 0.5) == 9.5
+    (written,) = aliases.written.values()
+    assert len(written.body) == 5  # what follows the decided return is cut
+    for effects in (Effects(), Effects(gravity=Gravity(2.0))):
+        assert from_python(accelerated)(effects, 3.0) == accelerated(effects, 3.0)
+    assert from_python(hooks.acceleration)(Effects()) is None
+
+
+@pytest.mark.parametrize(
+    ("function", "given", "said"),
+    [
+        (reassigned, 1.0, "reassigned, line [0-9]+: x is not None: types do not decide it"),
+        (local, 1.0, "local, line [0-9]+: y is None: types do not decide it"),
+        (misspelt, WHOLE, "Whole has no prat"),
+        (without_is_none, WHOLE, "whole.part: a test must say `is None`"),
+        (left_in_the_middle, (1.0, 2.0), "has no break"),
+    ],
+)
+def test_what_types_do_not_decide_is_refused(function, given, said):
+    with pytest.raises(Exception, match=said):
+        from_python(function)(given)
+
+
+def show(*options):
+    command = [sys.executable, "-m", "roughgas.kernel", *options]
+    return subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
+
+
+def test_a_function_is_shown_as_it_is_compiled_for_a_scene():
+    shown = show("--show", "collide", "--scene", "cooling").stdout
+    assert shown.startswith("# roughgas.kernel.contact") and "n = direction(x)" in shown
+    assert "None" not in shown and "direction_along" not in shown
+
+
+@pytest.mark.parametrize(
+    ("function", "scene", "said"),
+    [
+        ("colide", "cooling", "--show = colide: must be a compiled function"),
+        ("collide", "coolin", "experiment = 'coolin': must be one of cooling"),
+        pytest.param(
+            *("bounce", "cooling", "--show = bounce: must be compiled for this scene"),
+            marks=pytest.mark.slow,  # which compiles it
+        ),
+    ],
+)
+def test_what_cannot_be_shown_is_refused_in_one_line(function, scene, said):
+    done = show("--show", function, "--scene", scene)
+    assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
+    assert said in done.stderr
