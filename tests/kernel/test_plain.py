@@ -12,7 +12,7 @@ from compiled import from_python
 from project import ROOT
 
 from roughgas.effects import Effects
-from roughgas.effects.gravity import Gravity
+from roughgas.effects.drives import Gravity
 from roughgas.kernel import hooks, memory
 from roughgas.kernel.hooks import present
 from roughgas.kernel.jit import jit
