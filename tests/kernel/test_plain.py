@@ -13,6 +13,7 @@ from project import ROOT
 
 from roughgas.effects import Effects
 from roughgas.effects.drives import Gravity
+from roughgas.effects.settings import register
 from roughgas.kernel import hooks, memory
 from roughgas.kernel.hooks import present
 from roughgas.kernel.jit import jit
@@ -151,6 +152,28 @@ def accelerated(effects, v):
     return v - g if present(effects, "acceleration") else v
 
 
+@jit
+def twice_the_same(effects):
+    total = 0.0
+    for part in present(effects, "phase"):
+        total = 10.0 * total + part.own(effects[part.place], part.rank, 0.0)
+    return total
+
+
+def digit(number):
+    """An effect whose hook has the name and the file of those of others."""
+
+    class Digit(NamedTuple):
+        value: float
+
+    @jit
+    def phase(effect, index, base):
+        return number * effect.value
+
+    register(Digit, {}, phase=phase)
+    return Digit(1.0)
+
+
 WHOLE = Whole(Part((1.0, 2.0, 3.0), 4), None)
 
 
@@ -161,6 +184,11 @@ def test_what_types_tell_is_decided():
     for effects in (Effects(), Effects(gravity=Gravity(2.0))):
         assert from_python(accelerated)(effects, 3.0) == accelerated(effects, 3.0)
     assert from_python(hooks.acceleration)(Effects()) is None
+
+
+def test_hooks_of_one_name_are_told_apart():
+    effects = digit(1.0), digit(2.0), digit(3.0)
+    assert from_python(twice_the_same)(effects) == twice_the_same(effects) == 123.0
 
 
 @pytest.mark.parametrize(

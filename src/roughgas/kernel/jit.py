@@ -272,7 +272,8 @@ class _Writer(ast.NodeTransformer):
         if not callable(value):
             return ast.Constant(value)
         name = f"{value.__module__}.{value.__name__}".replace(".", "_")
-        self.around |= {name: value}
+        while self.around.setdefault(name, value) is not value:  # another function of this name
+            name += "_"
         return ast.Name(name, node.ctx)
 
     def visit_IfExp(self, node):
