@@ -150,7 +150,7 @@ def test_every_compiled_function_lies_in_a_hashed_room():
     marks = ["@jit\n", "@compiled\n", "@entry", "njit"]
     outside = [one for one in PACKAGE.rglob("*.py") if one.parent.name not in compiler.ROOMS]
     compiled = [one for one in outside if any(mark in one.read_text() for mark in marks)]
-    assert {"tasks", "soft_spheres"} <= {source.parent.name for source in compiled}
+    assert {"tasks", "accuracy"} <= {source.parent.name for source in compiled}
     for source in compiled:
         beside = [other.read_text() for other in source.parent.glob("*.py")]
         assert any("@entry(cache=True)" in text for text in beside), source
