@@ -1,4 +1,4 @@
-"""The operations on lanes (lanes.py); imported when compiled code is first called."""
+"""The operations on lanes (mathematics.py); imported when compiled code is first called."""
 
 import math
 

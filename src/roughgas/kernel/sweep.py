@@ -2,7 +2,7 @@
 
 The sweep works in single precision on straight lines r0 + v0 t from the clock's base and is only a
 sieve: with a margin for its rounding it never misses a contact, and what it lets through is decided
-in double precision (pairs.py). So neither its precision nor its order shows in the results.
+in double precision (prediction.py). So neither its precision nor its order shows in the results.
 
 For each pair, with x the separation at mid-interval (nearest image) and u the relative velocity,
 the line passes within a diameter s if |x cross u| <= s |u|, and does so within the interval of

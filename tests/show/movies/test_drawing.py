@@ -107,7 +107,7 @@ def test_a_gif_has_every_frame_and_goes_round(tmp_path):
     write(path, [(subject("gas", [SIDE, SIDE]), frames)], 20.0)
     with Image.open(path) as image:
         assert image.n_frames == 5 and image.info["loop"] == 0 and image.info["duration"] == 50
-        assert image.width == 480 and 400 < image.height <= 600
+        assert image.width == 384 and 320 < image.height <= 480
         pixels = np.asarray(image.convert("RGB"))
     assert pixels.std() > 20
     assert path.stat().st_size < 100_000
