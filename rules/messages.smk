@@ -16,7 +16,6 @@ NOISE = (
 """How messages begin that the lines of jobs say better."""
 REFUSED = re.compile(r"Traceback .*\n\w+: \[Errno \d+\] ([^\n]*): '([^\n]*)'", re.DOTALL)
 """A traceback that ends in a place that cannot be read or written: what is wrong, and where."""
-POINT_MADE = re.compile(r"/seed[^/]+\.nc$")
 
 
 class Watch:
@@ -34,7 +33,7 @@ class Watch:
 
     @staticmethod
     def points(files):
-        return sum(POINT_MADE.search(str(file)) is not None for file in files)
+        return sum(Path(str(file)).match("seed*.nc") for file in files)
 
     def start(self, record):
         at = record.wildcards.get("experiment", record.rule_name)
@@ -66,6 +65,8 @@ def is_of_use(record):
         return True
     if event == LogEvent.RUN_INFO:
         watch.begin([job.output for job in workflow.dag.needrun_jobs()])
+    elif watch.bar is None:  # before, or in a job on a cluster, of whose run another process tells
+        return not record.getMessage().startswith(NOISE)
     elif event == LogEvent.PROGRESS:
         if record.done == record.total:
             watch.end()

@@ -133,7 +133,7 @@ CASES = {  # experiment, r, beta, seed
         ),
         *(0.8, 0.2, 12),
     ),
-    "species, shaken walls": (of_species("shaken", 12, [14, 14]), 0.95, 0.2, 16),
+    "species, shaken walls": (of_species("shaken", 12, [14, 14]), 0.95, 0.2, 17),
     "species, kicks": (of_species("heated", 12, [16, 16]), 0.9, 0.2, 17),
     "species, spheres": (of_species("spheres", 12, [9, 9, 9], **LATE), 0.95, 0.2, 14),
     "container": (settings("container", 12, [12, 14]), 0.95, 0.2, 1),
