@@ -102,8 +102,11 @@ def draw(figure: Callable[[], Figure], outputs: Iterable[str | Path], slide: boo
 
 
 def save(figure: Figure, outputs: Iterable[str | Path]) -> None:
-    """Write `figure` to each of `outputs` (.pdf, .png or .svg), whole or not at all."""
-    for output in map(Path, outputs):
+    """Write `figure` to each of `outputs` (.pdf, .png or .svg), whole or not at all.
+
+    The .png first, whatever the order: the layout goes on from the last time that it was drawn.
+    """
+    for output in sorted(map(Path, outputs), key=lambda path: path.suffix != ".png"):
         with whole_file(output) as draft:
             kind = output.suffix
             figure.savefig(draft, format=kind.removeprefix("."), metadata=METADATA[kind])

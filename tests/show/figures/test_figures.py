@@ -1,11 +1,13 @@
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 from matplotlib.image import imread
 from synthetic import BETA, couette, mixed, reduced, viscoelastic
 from tests.houses import ROOT, part
 from tests.show.figures.legibility import faults
 
 from roughgas.base import InputError
+from roughgas.show import style
 from roughgas.show.catalogue import figures_of
 from roughgas.show.figures import paper
 from roughgas.show.gallery import draw, draw_of_study
@@ -161,6 +163,21 @@ def test_the_same_data_in_any_order_give_the_same_bytes(tmp_path):
     assert content[0] == content[1]
     assert content[0][0].startswith(b"%PDF") and b"CreationDate" not in content[0][0]
     assert sorted((tmp_path / "out").iterdir()) == outputs
+
+
+def test_the_order_of_its_files_changes_no_picture(tmp_path):
+    """Of a figure that, as one with a layout may, looks different each time that it is drawn."""
+
+    class Changing(Figure):
+        def savefig(self, *where, **how):
+            self.text(0.5, 0.1 * (1 + len(self.texts)), "drawn")
+            super().savefig(*where, **how)
+
+    pictures = []
+    for kinds in ((".pdf", ".png"), (".png", ".pdf", ".svg")):
+        style.save(Changing(), [tmp_path / f"figure{kind}" for kind in kinds])
+        pictures.append((tmp_path / "figure.png").read_bytes())
+    assert pictures[0] == pictures[1]
 
 
 def test_points_are_the_data_and_residuals_are_data_minus_theory():
