@@ -8,8 +8,9 @@ from brute_force import begin, run, settings, snapshot
 from compiled import from_python
 
 from roughgas.base import InputError
-from roughgas.effects import floors
-from roughgas.effects.floors import Floor, SineFloor, TriangularFloor
+from roughgas.effects import motions
+from roughgas.effects.motions import Sawtooth, Sine, Triangle
+from roughgas.effects.planes import Floor
 from roughgas.effects.settings import SceneContext, make
 from roughgas.kernel.hooks import CODES
 from roughgas.kernel.memory import new_state
@@ -23,7 +24,7 @@ def one_particle(height, velocity, **floor):
     return scene, new_state(scene, position, np.array([velocity]), np.zeros((1, 1)))
 
 
-time_to_sine = from_python(floors.time_to_sine)
+time_to_sine = from_python(motions.time_to_sine)
 
 
 SPIN = {"spin": {"inertia": 0.5}}
@@ -36,13 +37,17 @@ def from_settings(**chosen):
 
 
 def test_the_wave_is_chosen_by_name():
-    assert from_settings() == from_settings(wave=None) == (5.0, 2.0, 0.9, 0.5)
-    kinds = {"sawtooth": Floor, "sine": SineFloor}
-    rises = {"triangle": 0.5, "reversed_sawtooth": 0.1}
-    for wave, kind in (kinds | dict.fromkeys(rises, TriangularFloor)).items():
+    forms = {
+        None: Sawtooth(5.0, 2.0),
+        "sawtooth": Sawtooth(5.0, 2.0),
+        "sine": Sine(5.0, 2.0),
+        "triangle": Triangle(5.0, 2.0, 0.5),
+        "reversed_sawtooth": Triangle(5.0, 2.0, 0.1),
+    }
+    for wave, motion in forms.items():
         floor = from_settings(wave=wave)
-        assert type(floor) is kind and getattr(floor, "rise", None) == rises.get(wave)
-        assert (floor.amplitude, floor.period, *floor[-2:]) == from_settings()
+        assert floor.motion == motion and type(floor.motion) is type(motion)
+        assert (floor.restitution, floor.roughness) == (0.9, 0.5)
 
 
 @pytest.mark.parametrize("wave", ["square", "Sine", 1, ["sine"]])
@@ -58,11 +63,11 @@ def test_a_particle_above_a_sine_looks_again_when_it_is_back():
     run(state, scene, 1, interval=1e-9)
     back, code = state.agenda.boundary_time[0], state.agenda.boundary_code[0]
     assert back == pytest.approx(math.sqrt(2.0 * (lowest - floor.amplitude)), rel=1e-14)
-    assert code % CODES == floors.LOOK
+    assert code % CODES == motions.LOOK
     run(state, scene, 1, interval=back)
-    assert state.agenda.boundary_code[0] % CODES == floors.MEET
+    assert state.agenda.boundary_code[0] % CODES == motions.MEET
     meeting = state.clock[BASE] + state.agenda.boundary_time[0]
-    assert meeting == pytest.approx(time_to_sine(floor, 1.0, lowest, 0.0, 0.0), rel=1e-14)
+    assert meeting == pytest.approx(time_to_sine(floor.motion, 1.0, lowest, 0.0, 0.0), rel=1e-14)
     assert state.counts[BOUNDARY_HITS] == 0 and state.changes[0] == 0
 
 

@@ -4,11 +4,13 @@ import math
 
 import numpy as np
 import pytest
-from brute_force import KERNELS
+from brute_force import KERNELS, begin, run, settings
 from brute_force.sides import ALIKE, Side
 
 from roughgas.base import InputError
-from roughgas.effects import floors
+from roughgas.effects import motions
+from roughgas.effects.motions import Sawtooth, Sine, Triangle
+from roughgas.kernel.state import BASE, BOUNDARY_HITS, NOW
 from roughgas.scene import build
 from roughgas.scene.initial import check_places
 
@@ -24,26 +26,26 @@ def closed(effects, box, particles=12):
     return {"particles": particles, "box": box, "effects": effects}
 
 
-SOLVERS = {
-    "sawtooth": (floors.Floor, {}, floors.time_to_sawtooth),
-    "reversed_sawtooth": (floors.TriangularFloor, {"rise": 0.1}, None),
-    "triangle": (floors.TriangularFloor, {"rise": 0.5}, None),
-    "sine": (floors.SineFloor, {}, floors.time_to_sine),
+STROKE = 1.5, 1.1
+FORMS = {
+    "sawtooth": Sawtooth(*STROKE),
+    "reversed_sawtooth": Triangle(*STROKE, 0.1),
+    "triangle": Triangle(*STROKE, 0.5),
+    "sine": Sine(*STROKE),
 }
 
 
-@pytest.mark.parametrize("wave", SOLVERS)
+@pytest.mark.parametrize("wave", FORMS)
 @pytest.mark.parametrize("weight", [0.0, -0.7, 0.9])
 def test_strokes_are_met_as_brute_force_finds_them(wave, weight):
     """Particles that nothing pulls, or gravity towards the wall, or away from it."""
-    kind, more, solve = SOLVERS[wave]
-    solve = solve or (lambda *way: floors.time_to_triangle(*way)[0])
-    motion = kind(amplitude=1.5, period=1.1, restitution=1.0, roughness=-1.0, **more)
+    motion = FORMS[wave]
+    meet = motions.law_of(motion).meet
     moving = ALIKE | {"amplitude": 1.5, "period": 1.1, "wave": wave}
     side, rng, met = Side("lid", 0, 1.0, 0.0, 0, moving), np.random.default_rng(1), 0
     for _ in range(6):
         gap, speed, phase = 1.5 + rng.uniform(0, 2), rng.normal() - 1.5, rng.uniform(0, 1.1)
-        found, expected = solve(motion, weight, gap, speed, phase), math.inf
+        found, expected = meet(motion, weight, gap, speed, phase)[0], math.inf
         time, step = 0.0, 0.5
         while time < 4.0 and math.isinf(expected):
             here = gap + speed * time - weight * time**2 / 2
@@ -56,6 +58,21 @@ def test_strokes_are_met_as_brute_force_finds_them(wave, weight):
         else:
             assert found > 3.9
     assert met > 1
+
+
+TINY = {"amplitude": 1e-5, "period": 1e-9}
+FASTEST = {"left_wall": {"temperature": 1e8}, "lid": TINY}
+STILL = {"left_wall": {"temperature": 1e-300}, "lid": {"amplitude": 1e-300}}
+
+
+@pytest.mark.parametrize(("walls", "least"), [(FASTEST, 1000), (STILL, 0)])
+def test_the_fastest_walls_come_to_an_end(walls, least):
+    """The hottest thermal wall and the fastest sine that settings may state, and those that hardly
+    move: a search that crept would not return."""
+    scene, state = begin(settings("container", 12, [14, 16], **walls), 0.9, 0.2)
+    run(state, scene, 1, interval=1.0)
+    assert state.clock[BASE] + state.clock[NOW] == pytest.approx(1.0)
+    assert state.counts[BOUNDARY_HITS] >= least
 
 
 def test_initial_places_are_checked_against_every_wall():

@@ -10,11 +10,11 @@ from compiled import from_python
 
 from hard_cases.catalogue import hard_case
 from hard_cases.falls import Exact, dyadic, general, nearly_at_rest
-from roughgas.effects import floors as floors
+from roughgas.effects.motions import time_to_sawtooth
 from roughgas.kernel.memory import new_state
 from roughgas.kernel.state import BASE, BOUNDARY_HITS, NOW
 
-time_to_floor = from_python(floors.time_to_sawtooth)
+time_to_floor = from_python(time_to_sawtooth)
 ROUNDING = 2.0**-53
 RULE = 1e-3  # a/T: a particle leaves the floor at no less than this speed, relative to it
 PHASE = 0.3  # of the accelerating mode: no dyadic number

@@ -9,17 +9,17 @@ from brute_force import begin, run, settings
 from compiled import from_python
 
 from hard_cases.catalogue import hard_case
-from hard_cases.waves import DIGITS, exact, level, sine, triangle
-from roughgas.effects import floors
-from roughgas.effects.floors import SineFloor
+from hard_cases.waves import DIGITS, exact, level
+from roughgas.effects import motions
+from roughgas.effects.motions import Sine, Triangle
 from roughgas.kernel.state import BASE
 
-time_to_sine = from_python(floors.time_to_sine)
-time_to_triangle = from_python(floors.time_to_triangle)
+time_to_sine = from_python(motions.time_to_sine)
+time_to_triangle = from_python(motions.time_to_triangle)
 
 
 def time_to(floor, *fall):
-    if isinstance(floor, SineFloor):
+    if isinstance(floor, Sine):
         return time_to_sine(floor, *fall)
     return time_to_triangle(floor, *fall)[0]
 
@@ -45,7 +45,7 @@ def wave(rng):
     """A sine, a triangle, or one that rises in a tenth or in nine tenths of its period."""
     stroke = 10.0 ** rng.uniform(-2, 1), 10.0 ** rng.uniform(-1, 1)
     rise = rng.choice([0.0, 0.5, 0.1, 0.9])
-    return sine(*stroke) if rise == 0.0 else triangle(*stroke, rise)
+    return Sine(*stroke) if rise == 0.0 else Triangle(*stroke, rise)
 
 
 @hard_case(
@@ -72,7 +72,7 @@ def touching(rng):
     roots of the gap are close together then.
     """
     while True:
-        floor, gravity = sine(10.0 ** rng.uniform(-2, 1), 10.0 ** rng.uniform(-1, 1)), 1.0
+        floor, gravity = Sine(10.0 ** rng.uniform(-2, 1), 10.0 ** rng.uniform(-1, 1)), 1.0
         rate = 2.0 * math.pi / floor.period
         sharpest = 0.5 * floor.amplitude * rate * rate
         if sharpest <= gravity:
@@ -115,7 +115,7 @@ def test_meetings_at_turning_points(margins):
 
     def fall():
         """All numbers dyadic, and the meeting right at a turning point, or nearly so."""
-        floor = triangle(*(2.0 ** rng.integers(-3, 3, 2)), rng.choice([0.5, 0.25]))
+        floor = Triangle(*(2.0 ** rng.integers(-3, 3, 2)), rng.choice([0.5, 0.25]))
         crest = rng.integers(0, 2)
         before = rng.integers(1, 16) / 16.0 * floor.period * (floor.rise if crest else 0.5)
         phase = floor.period * (1.0 + (floor.rise if crest else 0.0)) - before
@@ -146,7 +146,7 @@ def test_take_off_from_a_moving_floor(margins):
         leaving = 10.0 ** rng.uniform(-3, 0)
         gap = rng.choice([0.0, -1e-16, 1e-16]) * floor.amplitude
         falls.append((floor, gravity, height + gap, rising + leaving, phase))
-        if isinstance(floor, SineFloor):
+        if isinstance(floor, Sine):
             bend = gravity + 0.5 * floor.amplitude * (2.0 * math.pi / floor.period) ** 2
             early = max(early, 1.0 - time_to(*falls[-1]) * bend / (2.0 * leaving))
     measure(margins, falls, "starts")
@@ -172,6 +172,6 @@ def test_no_particle_falls_through_the_floor(margins, form):
             # each where something has happened to it last, which often is the floor
             phases = state.clock[BASE] % period + state.trajectory[:, 4]
             for y, phase in zip(state.trajectory[:, 1], phases, strict=True):
-                deepest = max(deepest, 1.0 + level(scene.effects.floor, phase % period) - y)
+                deepest = max(deepest, 1.0 + level(scene.effects.floor.motion, phase % period) - y)
     tried = {"tried": 3 * instants, "unit": f"instants, {form.replace('_', ' ')}"}
     margins.at_most("depth below the floor, in a", deepest, 1e-12, **tried)

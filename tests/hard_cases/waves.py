@@ -1,8 +1,8 @@
 """Falls onto floors of any wave form, in many digits.
 
-A fall is (floor, gravity, height, speed, phase), as time_to_floor takes it in effects/. Between the
-times at which the gap to the floor has a stationary point or a kink it is monotone: what it does
-follows from its values there, and its first root from bisection.
+A fall is (floor, gravity, height, speed, phase), as effects.motions.time_to_sine takes it. Between
+the times at which the gap to the floor has a stationary point or a kink it is monotone: what it
+does follows from its values there, and its first root from bisection.
 """
 
 import itertools
@@ -10,7 +10,7 @@ import math
 
 import mpmath
 
-from roughgas.effects.floors import Floor, SineFloor, TriangularFloor
+from roughgas.effects.motions import Sawtooth, Sine
 
 DIGITS = 40
 
@@ -140,23 +140,15 @@ class TriangularFall(Fall):
 
 def exact(floor, *fall):
     """The same fall in many digits."""
-    return (SineFall if isinstance(floor, SineFloor) else TriangularFall)(floor, *fall)
-
-
-def sine(amplitude, period):
-    return SineFloor(amplitude, period, 1.0, -1.0)
-
-
-def triangle(amplitude, period, rise=0.5):
-    return TriangularFloor(amplitude, period, rise, 1.0, -1.0)
+    return (SineFall if isinstance(floor, Sine) else TriangularFall)(floor, *fall)
 
 
 def level(floor, phase):
     """Height of the surface, in double precision."""
     share = phase / floor.period % 1.0
-    if isinstance(floor, SineFloor):
+    if isinstance(floor, Sine):
         return floor.amplitude * math.sin(math.pi * share) ** 2
-    if isinstance(floor, Floor):
+    if isinstance(floor, Sawtooth):
         return floor.amplitude * share
     share = share / floor.rise if share < floor.rise else (1.0 - share) / (1.0 - floor.rise)
     return floor.amplitude * share

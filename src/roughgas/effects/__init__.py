@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 from roughgas.effects.contacts import ContactAverages, ContactStress, Friction, Spin
 from roughgas.effects.drives import Gravity, Shear, Thermostat
-from roughgas.effects.floors import Floor
+from roughgas.effects.planes import Floor
 from roughgas.effects.restitution import ContactTime, RestitutionTable, Threshold, Viscoelastic
 from roughgas.effects.settings import schema_of_kinds
 from roughgas.effects.species import Species

@@ -1,8 +1,8 @@
-"""Single sides of the box: how a particle meets them, and walls there that put energy in.
+"""Single sides of the box: how a particle meets them, and those that put energy in.
 
-Pistons are shaken along their normal, as the floors are, on any side. One is farthest out at the
-side of the box, and its strokes go into the gas. Along the last axis gravity pulls particles away
-from a lid; along the others nothing pulls.
+A floor under a gas with gravity, and pistons on any side of a box, are shaken along their normal
+(motions.py). A piston is farthest out at the side of the box, and its strokes go into the gas.
+Along the last axis gravity pulls particles away from a lid; along the others nothing pulls.
 
 Thermal walls: whatever a particle brings along, it leaves with the velocity and the spin of one
 that flies through a plane in a Maxwellian gas at the wall's temperature: the component into the gas
@@ -13,12 +13,12 @@ with T/(m q). The wall may move along itself; that is then the mean velocity of 
 import math
 from typing import NamedTuple
 
-from roughgas.effects import floors
-from roughgas.effects.floors import LEAST_DEPARTURE, fall
-from roughgas.effects.settings import register
+from roughgas.effects import motions
+from roughgas.effects.motions import LOOK, MEET, Sawtooth, Sine, Triangle, fall, law_of, motion_of
+from roughgas.effects.settings import MATERIAL, register
 from roughgas.kernel import hooks
 from roughgas.kernel.contact import collide_with_wall
-from roughgas.kernel.jit import compiled, jit
+from roughgas.kernel.jit import jit
 from roughgas.kernel.mathematics import gaussian_vector, logarithm, uniform
 from roughgas.kernel.particles import (
     book_spin,
@@ -30,8 +30,12 @@ from roughgas.kernel.particles import (
     spin_of,
     turn_spin,
 )
-from roughgas.kernel.state import BOUNDARY_HITS, NOBODY
+from roughgas.kernel.state import BOUNDARY_HITS, NOBODY, NOW
 from roughgas.kernel.vectors import add_scaled, along_axis, dot, subtract
+
+# Relative to what is shaken, a/T: any less, and a particle could hit it infinitely often in finite
+# time
+LEAST_DEPARTURE = 1e-3
 
 
 class Place(NamedTuple):
@@ -69,7 +73,7 @@ def pull(gravity, place, dimension):
 @jit
 def predict_plane(wall, index, state, scene, i):
     (gravity, gap, speed), time = approach(wall.place, state, scene, i)
-    return time + fall(gap, speed, gravity), 0
+    return time + fall(gap, speed, gravity), MEET
 
 
 @jit
@@ -83,120 +87,77 @@ def bounce_off_plane(wall, index, state, scene, i, time, axis, velocity, least_d
     )
 
 
-class Piston(NamedTuple):
-    """A wall that goes into the gas at constant speed, and is back at once."""
-
-    place: Place
-    restitution: float
-    roughness: float
-    motion: floors.Floor
-
-    axis = normal_axis
-    period = property(lambda wall: wall.motion.period)
-
-
-class TriangularPiston(NamedTuple):
-    """A wall that goes in and out at constant speeds."""
-
-    place: Place
-    restitution: float
-    roughness: float
-    motion: floors.TriangularFloor
-
-    axis = normal_axis
-    period = property(lambda wall: wall.motion.period)
-
-
-class SinePiston(NamedTuple):
-    """A wall that goes in and out harmonically."""
-
-    place: Place
-    restitution: float
-    roughness: float
-    motion: floors.SineFloor
-
-    axis = normal_axis
-    period = property(lambda wall: wall.motion.period)
-
-
-def make_piston(place, settings, around):
-    """Return the wall at a place that moves as the settings describe."""
-    chosen = {key: settings[key] for key in floors.SETTINGS}
-    motion = floors.Floor.from_settings(chosen, around)
-    kind = next(one for one in PISTONS if one.__annotations__["motion"] is type(motion))
-    return kind(place, motion.restitution, motion.roughness, motion)
+@jit
+def predict_stroke(wall, index, state, scene, i):
+    (gravity, gap, speed), time = approach(wall.place, state, scene, i)
+    motion, phase = wall.motion, state.phase[index] + time
+    if law_of(wall.motion).waits:
+        back = time + motions.time_below(motion.amplitude, gravity, gap, speed, 0.0)
+        if back > state.clock[NOW]:
+            return back, LOOK
+    wait, what = law_of(wall.motion).meet(motion, gravity, gap, speed, phase)
+    return time + wait, what
 
 
 @jit
-def phase_of_motion(wall, index, base):
+def resolve_stroke(wall, index, what, state, scene, i, time):
+    if law_of(wall.motion).waits and what == LOOK:
+        return NOBODY
+    speed = law_of(wall.motion).speed(wall.motion, what, state.phase[index] + time)
+    axis, velocity = wall.place.axis, wall.place.inwards * speed
+    return bounce_off_plane(wall, index, state, scene, i, time, axis, velocity, LEAST_DEPARTURE)
+
+
+@jit
+def phase_of_stroke(wall, index, base):
     """Return the time from the beginning of a period to the clock's base."""
     return base % wall.motion.period
 
 
-# there may be several such walls: each would else have the whole solver in its place
-_until_stroke = compiled(floors.time_to_sawtooth.py_func)
-_until_piece = compiled(floors.time_to_triangle.py_func)
-_until_sine = compiled(floors.time_to_sine.py_func)
-
-
-@jit
-def _out(wall, index, state, scene, i, time, speed):
-    axis, inwards = wall.place.axis, wall.place.inwards
-    return bounce_off_plane(
-        wall, index, state, scene, i, time, axis, inwards * speed, LEAST_DEPARTURE
-    )
-
-
-@jit
-def _predict_stroke(wall, index, state, scene, i):
-    way, time = approach(wall.place, state, scene, i)
-    return time + _until_stroke(wall.motion, *way, state.phase[index] + time), 0
-
-
-@jit
-def _resolve_stroke(wall, index, what, state, scene, i, time):
-    motion = wall.motion
-    return _out(wall, index, state, scene, i, time, motion.amplitude / motion.period)
-
-
-@jit
-def _predict_triangular(wall, index, state, scene, i):
-    way, time = approach(wall.place, state, scene, i)
-    wait, piece = _until_piece(wall.motion, *way, state.phase[index] + time)
-    return time + wait, piece
-
-
-@jit
-def _resolve_triangular(wall, index, what, state, scene, i, time):
-    speed = floors.speed_of_piece(wall.motion, what)
-    return _out(wall, index, state, scene, i, time, speed)
-
-
-@jit
-def _predict_sine(wall, index, state, scene, i):
-    way, time = approach(wall.place, state, scene, i)
-    return time + _until_sine(wall.motion, *way, state.phase[index] + time), 0
-
-
-@jit
-def _resolve_sine(wall, index, what, state, scene, i, time):
-    speed = floors.sine_motion(wall.motion, state.phase[index] + time)[1]
-    return _out(wall, index, state, scene, i, time, speed)
-
-
 def depth_of_stroke(wall, time):
-    """Return how far into the gas the wall is at `time`, in a."""
-    return wall.motion.hooks.displacement(wall.motion, time)
+    """Return how far into the gas the surface is at `time`, in a."""
+    return law_of(wall.motion).height(wall.motion, time)
 
 
-PISTONS = {
-    Piston: (_predict_stroke, _resolve_stroke),
-    TriangularPiston: (_predict_triangular, _resolve_triangular),
-    SinePiston: (_predict_sine, _resolve_sine),
+class Piston(NamedTuple):
+    """A wall that is shaken along its normal."""
+
+    place: Place
+    restitution: float
+    roughness: float
+    motion: Sawtooth | Sine | Triangle
+
+    axis = normal_axis
+
+
+class Floor(NamedTuple):
+    """A shaken floor under a gas with gravity."""
+
+    place: Place
+    restitution: float
+    roughness: float
+    motion: Sawtooth | Sine | Triangle
+
+    amplitude = property(lambda floor: floor.motion.amplitude)
+    period = property(lambda floor: floor.motion.period)
+
+    @classmethod
+    def from_settings(cls, settings, around):
+        """Return the floor whose motion the settings describe."""
+        motion = motion_of(around, *(settings[name] for name in motions.SETTINGS))
+        place = Place(len(around.box) - 1, 1.0, 0.0, 0)
+        return cls(place, settings["restitution"], settings["roughness"], motion)
+
+
+STROKES = {
+    "predict": predict_stroke,
+    "resolve": resolve_stroke,
+    "phase": phase_of_stroke,
+    "displacement": depth_of_stroke,
+    "drives": True,
 }
-for _kind, (_predict, _resolve) in PISTONS.items():
-    _hooks = {"predict": _predict, "resolve": _resolve, "displacement": depth_of_stroke}
-    register(_kind, phase=phase_of_motion, drives=True, closes=True, **_hooks)
+register(Floor, motions.SETTINGS | MATERIAL, **STROKES)
+register(Piston, closes=True, **STROKES)
 
 
 class ThermalWall(NamedTuple):

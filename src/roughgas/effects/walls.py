@@ -13,9 +13,15 @@ import math
 from typing import NamedTuple
 
 from roughgas.base import InputError, NeedsError
-from roughgas.effects import planes
-from roughgas.effects.floors import REVERSED_RISE, WAVES, phase
-from roughgas.effects.planes import Place, bounce_off_plane, normal_axis, predict_plane
+from roughgas.effects.motions import WAVES, Sawtooth, Sine, Triangle, law_of, motion_of
+from roughgas.effects.planes import (
+    Piston,
+    Place,
+    ThermalWall,
+    bounce_off_plane,
+    normal_axis,
+    predict_plane,
+)
 from roughgas.effects.settings import (
     LENGTH,
     MATERIAL,
@@ -106,6 +112,12 @@ def resolve_shaken(shaken, index, what, state, scene, i, time):
     return collide_with_wall(state, scene, index, i, time, material, normal, moving, 0.0)
 
 
+@jit
+def phase_of_walls(shaken, index, base):
+    """Return the time from the beginning of a period to the clock's base."""
+    return base % shaken.period
+
+
 def displacement_of_walls(shaken, time):
     """Return how far the walls are from their middle at `time`, in a."""
     turn = TURN * (time % shaken.period) / shaken.period
@@ -117,7 +129,7 @@ register(
     SHAKEN_SETTINGS,
     predict=predict_walls,
     resolve=resolve_shaken,
-    phase=phase,
+    phase=phase_of_walls,
     displacement=displacement_of_walls,
     drives=True,
     closes=True,
@@ -133,7 +145,6 @@ SIDES = {  # name -> (axis, the end of it: 0 or 1); -1 is the last axis
     "lid": (-1, 1),
 }
 NORMAL, ALONG = "normal", "along"
-RISES = {"sawtooth": 1.0, "reversed_sawtooth": REVERSED_RISE, "triangle": 0.5, "sine": 0.0}
 SIDE_SETTINGS = {
     "restitution": MATERIAL["restitution"]._replace(default=1.0),
     "roughness": MATERIAL["roughness"]._replace(default=-1.0),
@@ -172,14 +183,14 @@ class SideWall(NamedTuple):
         _refuse_contradictions(settings, around)
         material = settings["restitution"], settings["roughness"]
         if settings["temperature"] < math.inf:
-            return planes.ThermalWall(place, settings["temperature"], settings["velocity"])
-        amplitude, period = settings["amplitude"], settings["period"]
-        if amplitude > 0.0 and settings["shaken"] == NORMAL:
-            return planes.make_piston(place, settings, around)
-        if amplitude > 0.0:
-            return MovingWall(place, *material, 0.0, amplitude, period, RISES[settings["wave"]])
+            return ThermalWall(place, settings["temperature"], settings["velocity"])
+        if settings["amplitude"] > 0.0:
+            motion = motion_of(around, *(settings[k] for k in ("amplitude", "period", "wave")))
+            if settings["shaken"] == NORMAL:
+                return Piston(place, *material, motion)
+            return MovingWall(place, *material, 0.0, motion)
         if settings["velocity"] != 0.0:
-            return MovingWall(place, *material, settings["velocity"], 0.0, 1.0, 1.0)
+            return MovingWall(place, *material, settings["velocity"], None)
         return cls(place, *material)
 
 
@@ -189,10 +200,8 @@ class MovingWall(NamedTuple):
     place: Place
     restitution: float
     roughness: float
-    velocity: float  # constant, and
-    amplitude: float  # of what is added, in a
-    period: float  # T
-    rise: float  # share of the period in which it goes forwards; 0 stands for a sine
+    velocity: float  # constant, in a/T
+    shaking: Sawtooth | Sine | Triangle | None
 
     axis = normal_axis
 
@@ -234,22 +243,24 @@ def resolve_side(wall, index, what, state, scene, i, time):
 
 @jit
 def resolve_moving(wall, index, what, state, scene, i, time):
-    velocity = wall.velocity + _speed(wall, state.phase[index] + time)
+    velocity = wall.velocity
+    if wall.shaking is not None:
+        velocity += law_of(wall.shaking).along(wall.shaking, state.phase[index] + time)
     return bounce_off_plane(wall, index, state, scene, i, time, wall.place.along, velocity, 0.0)
 
 
 @jit
-def _speed(wall, time):
-    """Return the velocity that shaking adds, at a time since some period began."""
-    if wall.rise == 0.0:
-        return 0.5 * TURN * wall.amplitude / wall.period * sine_and_cosine(time / wall.period)[0]
-    done = time / wall.period
-    if done - math.floor(done) <= wall.rise:
-        return wall.amplitude / (wall.rise * wall.period)
-    return -wall.amplitude / ((1.0 - wall.rise) * wall.period)
+def phase_of_shaking(wall, index, base):
+    """Return the time from the beginning of a period to the clock's base."""
+    return 0.0 if wall.shaking is None else base % wall.shaking.period
 
 
 register(SideWall, SIDE_SETTINGS, predict=predict_plane, resolve=resolve_side, closes=True)
 register(
-    MovingWall, predict=predict_plane, resolve=resolve_moving, phase=phase, drives=True, closes=True
+    MovingWall,
+    predict=predict_plane,
+    resolve=resolve_moving,
+    phase=phase_of_shaking,
+    drives=True,
+    closes=True,
 )

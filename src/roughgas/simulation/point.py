@@ -11,7 +11,7 @@ from roughgas.base import InputError, __version__
 from roughgas.data.point import Point
 from roughgas.data.variables import Variable
 from roughgas.effects import speed_of_r
-from roughgas.effects.floors import LEAST_DEPARTURE
+from roughgas.effects.planes import LEAST_DEPARTURE
 from roughgas.effects.species import packing
 from roughgas.kernel import hooks
 from roughgas.scene import Scene, build
