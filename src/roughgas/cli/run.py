@@ -36,7 +36,16 @@ def run(options: Namespace) -> None:
     if options.keep_state:
         settings["keep_state"] = True
     told = ["--from", options.start_from] if initial else []
-    made = points(options.experiment, settings, at, options.scale, outputs, initial, told=told)
+    made = points(
+        options.experiment,
+        settings,
+        at,
+        options.scale,
+        outputs,
+        initial,
+        told=told,
+        checkpoints=True,
+    )
     for output, point in zip(outputs, made, strict=True):
         write_point(output, point)
         if options.json:

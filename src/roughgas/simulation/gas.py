@@ -26,10 +26,9 @@ from roughgas.simulation.energies import (
     balance,
     energies_of,
 )
+from roughgas.simulation.journal import COSTS
 from roughgas.simulation.recorder import Recorder, most_in, now
 from roughgas.simulation.restart import Initial, positions_and_velocities, state_from
-
-COSTS = "seconds", "collisions", "touched"  # what a Recorder sums up
 
 
 def count(particles: int, per_particle: float) -> int:
@@ -55,6 +54,10 @@ class Observer(Protocol):
 
     def look(self, gas: "Gas", taken: int) -> None: ...
 
+    def saved(self) -> bytes: ...
+
+    def restore(self, saved: bytes) -> None: ...
+
 
 class Gas:
     """A scene, the state that it has reached, and the recorder of what this has cost.
@@ -71,6 +74,8 @@ class Gas:
         self.sample: Columns = {}
         self.refresh_every = self.begun = 0
         self._just_restarted = False  # with its memory, just now
+        self._rows: list[Columns] | None = None  # of the present call
+        self._ahead = 0  # samples since the observer looked, of a call that goes on
         self.extents = np.ptp(state.trajectory[:, : len(scene.box)], axis=0)
 
     @classmethod
@@ -119,7 +124,7 @@ class Gas:
     def thermalise(self, per_particle: float) -> None:
         """Let particles, and side walls, collide as smooth elastic ones, so often per particle."""
         sampling = Sampling(np.inf, math.ceil(self.particles / 2 * per_particle), 0)
-        self._run(sampling, 1, elastic(self.scene))
+        self._call(1, lambda n: self._run(sampling, n, elastic(self.scene)))
 
     def cool(self, refresh_every: int) -> None:
         """Count collisions anew, unless a run goes on, and refresh the gas after each
@@ -131,7 +136,7 @@ class Gas:
     def in_time(self, interval: float, samples: int) -> Columns:
         """Return columns (name -> array of length `samples`), sampled every `interval` T."""
         sampling = Sampling(float(interval), most_in(interval, self.particles), 0)
-        return self._observed(lambda n: self._run(sampling, n, timed=True), samples, 0, 1)
+        return self._observed(lambda n: self._run(sampling, n, timed=True), samples, lambda: 0, 1)
 
     def in_collisions(self, collisions: int, samples: int) -> Columns:
         """Return the same, sampled every so many collisions, a divisor of `refresh_every`.
@@ -141,19 +146,25 @@ class Gas:
         roughgas.simulation.energies.restored.
         """
         unit = max(1, self.refresh_every // collisions)
-        first = unit - self._since_refresh(collisions) // collisions
-        return self._observed(lambda n: self._in_collisions(collisions, n), samples, first, unit)
+        rows = self._observed(
+            lambda n: self._in_collisions(collisions, n),
+            samples,
+            lambda: unit - self._since_refresh(collisions) // collisions,
+            unit,
+        )
+        self._just_restarted = False
+        return rows
 
-    def _in_collisions(self, collisions: int, samples: int) -> Columns:
+    def _in_collisions(self, collisions: int, samples: int) -> None:
         refresh, late = self.refresh_every // collisions, self._since_refresh(collisions)
         self._just_restarted = False
         left = (self.refresh_every - late) // collisions
         if not late or samples < left:
-            return self._run(Sampling(np.inf, collisions, 0 if late else refresh), samples)
-        parts = [self._run(Sampling(np.inf, collisions, left), left)]
+            self._run(Sampling(np.inf, collisions, 0 if late else refresh), samples)
+            return
+        self._run(Sampling(np.inf, collisions, left), left)
         if samples > left:
-            parts.append(self._run(Sampling(np.inf, collisions, refresh), samples - left))
-        return joined(parts)
+            self._run(Sampling(np.inf, collisions, refresh), samples - left)
 
     def _since_refresh(self, collisions: int) -> int:
         """Return the collisions since the last refresh, in the first call after a run went on."""
@@ -162,25 +173,54 @@ class Gas:
         return 0 if late % collisions else late
 
     def _observed(
-        self, advance: Callable[[int], Columns], samples: int, first: int, unit: int
+        self,
+        advance: Callable[[int], None],
+        samples: int,
+        first: Callable[[], int],
+        unit: int,
     ) -> Columns:
         """Return samples, taken in pieces where an observer looks in between."""
-        if self.observer is None:
-            return advance(samples)
-        parts = []
-        for length in self.observer.lengths(samples, first, unit):
-            if length:
-                parts.append(advance(length))
-            self.observer.look(self, length)
-        return joined(parts)
+        observer = self.observer
+        if observer is None:
+            return self._call(samples, advance)
+
+        def in_pieces(left: int) -> None:
+            ahead = self._ahead
+            for length in observer.lengths(left + ahead, first(), unit):
+                if length > ahead:
+                    advance(length - ahead)
+                ahead = 0
+                self._seen = sum(map(_length, self._rows or []))
+                observer.look(self, length)
+
+        return self._call(samples, in_pieces)
+
+    def _call(self, samples: int, advance: Callable[[int], None]) -> Columns:
+        """Return so many samples, which `advance` takes or a journal of the run has."""
+        journal = self.recorder.journal
+        known = journal.recall(self) if journal else None
+        self._rows, self._seen, self._ahead = [], 0, 0
+        if known:
+            self._rows, self.sample = [known.rows], _last(known.rows)
+            self._seen, self._ahead = _length(known.rows) - known.ahead, known.ahead
+        if not (known and known.finished):
+            self._just_restarted |= known is not None
+            advance(samples - sum(map(_length, self._rows)))
+        rows, self._rows = joined(self._rows), None
+        if journal and not (known and known.finished):
+            journal.finish(self, rows)
+        return rows
 
     def look(self) -> None:
         """Take a sample of the present instant."""
-        self._run(Sampling(0.0, 0, 0), 1)
+        if self._rows is None:
+            self._call(1, lambda n: self._run(Sampling(0.0, 0, 0), n))
+        else:  # for an observer, within a call
+            self.sample = self.recorder.run(self.state, self.scene, Sampling(0.0, 0, 0), 1)
 
     def refresh(self) -> None:
         """Take a sample, then bring all particles to the present instant, without momentum."""
-        self._run(Sampling(np.inf, 0, 1), 1)
+        self._call(1, lambda n: self._run(Sampling(np.inf, 0, 1), n))
 
     def step(self, until: float, collisions: int) -> bool:
         """Advance to an instant (T) or by so many collisions, whichever comes first.
@@ -192,7 +232,7 @@ class Gas:
         if self.watcher:
             self.watcher.before(self.state)
         interval = (until - self.time) * 2.0 ** int(self.state.counts[EXPONENT])
-        self._run(Sampling(interval, most, 0), 1)
+        self._call(1, lambda n: self._run(Sampling(interval, most, 0), n))
         if self.watcher:
             self.watcher.after(self.state)
         made = self.collisions - begun
@@ -270,10 +310,30 @@ class Gas:
 
     def _run(
         self, sampling: Sampling, samples: int, scene: Scene | None = None, timed: bool = False
-    ) -> Columns:
-        columns = self.recorder.run(self.state, scene or self.scene, sampling, samples, timed)
-        self.sample = {name: column[-1:] for name, column in columns.items()}
-        return columns
+    ) -> None:
+        """Advance, within a call, and add samples to those of the call."""
+        assert self._rows is not None
+        if samples == 0:  # of a call that was stopped at its end
+            return
+        columns = self.recorder.run(
+            self.state, scene or self.scene, sampling, samples, timed, self._keep
+        )
+        self.sample = _last(columns)
+        self._rows.append(columns)
+
+    def _keep(self, columns: Columns) -> None:
+        """Write into the journal how far the present call is, with these samples."""
+        assert self._rows is not None and self.recorder.journal is not None
+        rows = joined([*self._rows, columns])
+        self.recorder.journal.write(self, rows, _length(rows) - self._seen)
+
+
+def _length(rows: Columns) -> int:
+    return len(rows["time"])
+
+
+def _last(rows: Columns) -> Columns:
+    return {name: column[-1:] for name, column in rows.items()}
 
 
 def joined(parts: Sequence[Columns]) -> Columns:

@@ -18,6 +18,7 @@ from roughgas.scene import Scene, build
 from roughgas.simulation import schedule
 from roughgas.simulation.energies import species_names
 from roughgas.simulation.gas import Gas
+from roughgas.simulation.journal import Journal
 from roughgas.simulation.recorder import Recorder
 from roughgas.simulation.restart import Initial, check_initial, final_states, is_memory_of, owner
 from roughgas.statistics.errors import UNKNOWN, YES
@@ -38,6 +39,7 @@ def run_point(
     tell: Callable[[float, int], None] | None = None,
     initial: Sequence[Initial] = (),
     functions: Mapping[str, Callable[[Any], Any]] | None = None,
+    journal: Journal | None = None,
 ) -> Point:
     """Simulate one point and measure it.
 
@@ -45,7 +47,8 @@ def run_point(
     roughgas.scene.build makes of them at r and beta. The same settings, r, beta and seed give the
     same numbers to the last bit, but for `kernel_seconds`. `tell(time, collisions)` is called as
     the simulation goes on. It begins in the `initial` states, one per replica, or else on a
-    lattice. Its observables are those of the settings, and `functions` of frames by name.
+    lattice. Its observables are those of the settings, and `functions` of frames by name. It
+    goes on from where a `journal` of the same run is, and keeps there how far it is.
     Raises InputError if the particles do not fit or could not begin so, CollapseError if contacts
     accumulate without end.
     """
@@ -54,7 +57,7 @@ def run_point(
     _refuse_rest(scene)
     keep, number = experiment.get("keep_state", False), experiment["particles"]
     watching = _watching(scene, experiment, functions)
-    recorder = Recorder(tell, keep, watching.begin if watching else None)
+    recorder = Recorder(tell, keep, watching.begin if watching else None, journal)
     if initial:
         check_initial(initial, experiment, scene)
     found = schedule.of(experiment).run(scene, experiment, seed, recorder, initial)

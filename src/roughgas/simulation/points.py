@@ -4,21 +4,27 @@ Nothing here changes a number of a point: rules/simulate.smk runs none again aft
 this imports.
 """
 
+import hashlib
 import shlex
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from roughgas import config
-from roughgas.base import InputError
+from roughgas.base import EndedEarlyError, InputError
 from roughgas.config import Place
 from roughgas.data.point import Point
 from roughgas.scene import build
 from roughgas.simulation import schedule
+from roughgas.simulation.journal import Journal
 from roughgas.simulation.point import run_point
 from roughgas.simulation.progress import Progress
 from roughgas.simulation.restart import Initial
 
+ROOMS = ("base", "effects", "kernel", "observables", "scene", "simulation", "statistics", "theory")
+"""Where the sources are that a run's numbers depend on, between a stop and its going on."""
 UNNAMED = "scene"
 """What messages and datasets call an experiment that has no name."""
 
@@ -72,21 +78,59 @@ def points(
     functions: Mapping[str, Callable[[Any], Any]] | None = None,
     told: Sequence[str] = (),
     quiet: bool = False,
+    checkpoints: bool = False,
 ) -> Iterator[Point]:
     """Simulate the points of an experiment, and yield each with its attributes.
 
     Messages and attributes call it `name`, and attributes say that a command which is `told` more
-    writes it to one of `outputs`. Raises InputError and CollapseError as `run_point`, those of an
-    illegal scene before anything is simulated.
+    writes it to one of `outputs`. With `checkpoints` a point that takes minutes keeps beside its
+    output how far it is, until the next one is asked for.
+
+    Raises InputError and CollapseError as `run_point`, those of an illegal scene before anything is
+    simulated.
     """
     scenes = {(r, beta): build(settings, r, beta) for r, beta, *_ in at}
     for place, output in zip(at, outputs, strict=True):
         r, beta, seed, labels = place
         one = name if len(at) == 1 else f"{name}, r = {labels[0]}, beta = {labels[1]}, seed {seed}"
         about = provenance(name, settings, labels, scale, output, told=told)
+        journal = journal_of(output, settings, place, initial) if checkpoints else None
         with Progress(one, scenes[r, beta], settings, quiet=quiet) as bar:
-            found = run_point(scenes[r, beta], settings, seed, bar, initial, functions)
+            found = _run(scenes[r, beta], settings, seed, bar, initial, functions, journal)
         yield found._replace(attributes=about | found.attributes)
+        if journal:
+            journal.discard()
+
+
+def journal_of(
+    output: str, settings: Mapping[str, Any], place: Place, initial: Sequence[Initial] = ()
+) -> Journal:
+    """Return the journal of a point, beside the `output` that it is written to."""
+    from roughgas.kernel.compiler import source_hash  # only a run needs the compiler
+
+    about = [source_hash(*ROOMS), np.__version__, config.as_text(settings), place[:3]]
+    text = repr([*about, [one.digest() for one in initial]])
+    owner = hashlib.sha256(text.encode()).hexdigest()
+    return Journal(f"{output}.checkpoint.npz", owner)
+
+
+def _run(scene, settings, seed, bar, initial, functions, journal):
+    """Simulate a point; where it is stopped, say whether the next run goes on from there."""
+    if journal and journal.refused:
+        bar.say(f"{journal.path} {journal.refused}: starting afresh")
+    if journal and journal.begun:
+        bar.say(f"going on from {journal.path}")
+    try:
+        return run_point(scene, settings, seed, bar, initial, functions, journal)
+    except EndedEarlyError:
+        if journal:
+            journal.discard()
+        raise
+    except KeyboardInterrupt:
+        if journal and journal.path.exists():
+            legal = f"the same command goes on from {journal.path}"
+            raise KeyboardInterrupt(legal) from None
+        raise
 
 
 def provenance(

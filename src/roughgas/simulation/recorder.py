@@ -38,6 +38,7 @@ from roughgas.statistics.errors import LEAST, NO, UNKNOWN, YES
 
 if TYPE_CHECKING:
     from roughgas.simulation.gas import Gas
+    from roughgas.simulation.journal import Journal
 
 
 KEY = "target_stderr"  # of a schedule
@@ -101,11 +102,13 @@ class Recorder:
         tell: Callable[[float, int], None] | None = None,
         keep: bool = False,
         begin: "Callable[[Gas], None] | None" = None,
+        journal: "Journal | None" = None,
     ) -> None:
         self.seconds = 0.0
         self.collisions = 0
         self.touched = 0
         self.gases: list[Gas] = []  # all that it has seen begin, if it is to `keep` them
+        self.journal = journal  # where gases keep how far they are
         self._tell, self._keep, self._begin = tell, keep, begin
         self._begun = 0.0, 0  # time and collisions at which the present gas has begun
         self._compiled = True  # what the present gas runs
@@ -127,10 +130,17 @@ class Recorder:
             expect(length)
 
     def run(
-        self, state: State, scene: Scene, sampling: Sampling, samples: int, timed: bool = False
+        self,
+        state: State,
+        scene: Scene,
+        sampling: Sampling,
+        samples: int,
+        timed: bool = False,
+        keep: Callable[[Columns], None] | None = None,
     ) -> Columns:
         """Advance `state`; return columns (name -> array of length `samples`).
 
+        `keep(columns)` is called where the journal is to be written, with those so far.
         Raises CollapseError if contacts accumulate without end, SilentError if the collisions of a
         sample without an interval do not come, JammedError where particles do little but hit walls,
         or where samples are `timed` and one takes `sampling.collisions`.
@@ -141,12 +151,15 @@ class Recorder:
         if self._tell and not self._compiled:
             self._tell(0.0, 0)
         self._compiled = True
-        begin, before = time.process_time(), state.counts.copy()
         first, length = 0, max(1, sampling.refresh)
         while first < samples:
             part, called = rows[first : first + length], time.perf_counter()
             made, hits = int(state.counts[COLLISIONS]), _hits(state)
+            begin, before = time.process_time(), state.counts.copy()
             ended, _ = record(state, scene, sampling, part)
+            self.seconds += time.process_time() - begin
+            self.collisions += int(state.counts[COLLISIONS] - before[COLLISIONS])
+            self.touched += int(state.counts[TOUCHED] - before[TOUCHED])
             if ended != REACHED:
                 raise _failure(ended, state, scene)
             if timed and np.diff(part[:, 1], prepend=made).max() >= sampling.collisions:
@@ -158,9 +171,8 @@ class Recorder:
             if self._tell:
                 time_begun, collisions_begun = self._begun
                 self._tell(float(part[-1, 0] - time_begun), int(part[-1, 1]) - collisions_begun)
-        self.seconds += time.process_time() - begin
-        self.collisions += state.counts[COLLISIONS] - before[COLLISIONS]
-        self.touched += state.counts[TOUCHED] - before[TOUCHED]
+            if keep and self.journal and self.journal.due():
+                keep(dict(zip(names, rows[:first].T, strict=True)))
         return dict(zip(names, rows.T, strict=True))
 
 

@@ -49,11 +49,15 @@ def save(path: str | Path, owner: str, state: Any, record: Mapping[str, np.ndarr
 
     `owner` says which run this is: only the same one may resume from here. Raises OSError.
     """
-    content: dict[str, Any] = {OWNER: np.array(owner)}
-    content |= {STATE + name: array for name, array in arrays_of(state)}
-    content |= {RECORD + name: array for name, array in record.items()}
+    content = {STATE + name: array for name, array in arrays_of(state)}
+    write(path, owner, content | {RECORD + name: array for name, array in record.items()})
+
+
+def write(path: str | Path, owner: str, content: Mapping[str, np.ndarray]) -> None:
+    """Write arrays by name, and whose they are, whole or not at all. Raises OSError."""
+    arrays: dict[str, Any] = {OWNER: np.array(owner), **content}
     with whole_file(path) as draft, open(draft, "wb") as file:
-        np.savez(file, **content)
+        np.savez(file, **arrays)
 
 
 def restore(path: str | Path, owner: str, state: Any) -> dict[str, np.ndarray]:
@@ -63,9 +67,7 @@ def restore(path: str | Path, owner: str, state: Any) -> dict[str, np.ndarray]:
     FileNotFoundError if there is no checkpoint, and UnusableCheckpoint if it is damaged or belongs
     to another run; `state` is then as it was.
     """
-    content = _content(path)
-    if content.pop(OWNER, None) != owner:
-        raise UnusableCheckpoint("belongs to other settings or to other sources")
+    content = read(path, owner)
     here = dict(arrays_of(state))
     saved = {name: content.get(STATE + name, np.empty(())) for name in here}
     if any(saved[name].shape != here[name].shape for name in here):
@@ -97,18 +99,24 @@ def arrays_of(state: Any, prefix: str = "") -> Iterator[tuple[str, np.ndarray]]:
             yield from arrays_of(part, f"{prefix}{name}.")
 
 
-def _content(path: str | Path) -> dict[str, np.ndarray]:
-    """Return all arrays in the file, after verifying their checksums."""
+def read(path: str | Path, owner: str) -> dict[str, np.ndarray]:
+    """Return the arrays by name, after verifying their checksums.
+
+    Raises FileNotFoundError, and UnusableCheckpoint if the file is damaged or is another's.
+    """
     try:
         with zipfile.ZipFile(path) as archive:
             if archive.testzip() is not None:
                 raise UnusableCheckpoint("is damaged")
         with np.load(path, allow_pickle=False) as archive:
-            return {name: archive[name] for name in archive.files}
+            content = {name: archive[name] for name in archive.files}
     except FileNotFoundError:
         raise
     except DAMAGE as error:
         raise UnusableCheckpoint("is damaged") from error
+    if content.pop(OWNER, None) != owner:
+        raise UnusableCheckpoint("belongs to other settings or to other sources")
+    return content
 
 
 def in_order(state: State, values: np.ndarray) -> np.ndarray:
