@@ -1,16 +1,19 @@
 """Ctrl-C and SIGTERM: a clean stop, and a line that says how to go on."""
 
+import os
 import signal
 import subprocess
 import sys
 import time
 
 import pytest
+import xarray as xr
 from project import Project
-from schedules import TINY
+from schedules import BRIEF, TINY
 
 from habits.conftest import LONG, catches, environment, interrupt, point, wait_until
 
+SECONDS_LONG = TINY | {"schedule": BRIEF | {"plateau": 500_000, "sample_every": 25}}
 LAST = "Stopped: the same command goes on from here."
 
 
@@ -45,10 +48,11 @@ def project(tmp_path_factory):
     """A project at whose scale `long` points take a while; at `dense` they collapse."""
     project = Project(tmp_path_factory.mktemp("project"))
     sweep = {"r": ["0.9"], "beta": ["0"], "seeds": 2}
-    long = LONG | {"sweep": sweep}
+    long, lasting = LONG | {"sweep": sweep}, SECONDS_LONG | {"sweep": sweep}
     dense = TINY | {"particles": 60, "box": [18, 18], "sweep": sweep | {"r": ["0.01"]}}
     dense["effects"] = dense["effects"] | {"contact_time": None}
     scales = {"long": {"cooling": long}, "dense": {"cooling": dense}}
+    scales["lasting"] = {"cooling": lasting}
     project.configure(lambda config: config["scales"].update(scales))
     return project
 
@@ -87,3 +91,43 @@ def test_a_job_that_fails_shows_what_it_said_and_no_more(project):
     assert len(lines) < 60 and not [
         line for line in lines if "cksum" in line or "CalledProcessError" in line
     ]
+
+
+def killed(command, cwd, checkpoint):
+    """Start a command that writes checkpoints all the time, and kill it once there is one."""
+    running = start(command, cwd, ROUGHGAS_CHECKPOINT_SECONDS="0")
+    wait_until(lambda: list(cwd.rglob(checkpoint)), running)
+    os.killpg(running.pid, signal.SIGKILL)
+    running.communicate(timeout=60)
+
+
+def same_point(one, other):
+    """Whether two files have the same bits, but for the time that they took and where they are."""
+    with xr.open_dataset(one) as here, xr.open_dataset(other) as there:
+        return here.drop_vars("kernel_seconds").equals(there.drop_vars("kernel_seconds"))
+
+
+def test_a_simulation_that_was_killed_goes_on(tmp_path):
+    command = [sys.executable, "-m", "roughgas", *point("point.nc", SECONDS_LONG)]
+    killed(command, tmp_path, "point.nc.checkpoint.npz")
+    assert not (tmp_path / "point.nc").exists()
+    again = start(command, tmp_path)
+    said = again.communicate(timeout=300)[0]
+    assert "going on from point.nc.checkpoint.npz" in said
+    assert [path.name for path in tmp_path.iterdir()] == ["point.nc"]
+    command[-1] = "undisturbed.nc"
+    start(command, tmp_path).communicate(timeout=300)
+    assert same_point(tmp_path / "point.nc", tmp_path / "undisturbed.nc")
+
+
+def test_a_workflow_that_was_killed_goes_on_within_a_point(project):
+    folder, dataset = project.folder / "results/lasting", "results/lasting/cooling.nc"
+    command = [sys.executable, "-m", "snakemake", "-j1", "--config", "scale=lasting", "--", dataset]
+    killed(command, project.folder, "seed1.nc.checkpoint.npz")
+    status, _ = project.snakemake("-j1", "--config", "scale=lasting", "--", dataset)
+    assert status == 0 and not list(folder.rglob("*.npz"))
+    log = project.folder / "logs/lasting/cooling/r0.9/beta0/seeds1-2.log"
+    assert "going on from results/lasting/cooling/r0.9/beta0/seed1.nc.checkpoint" in log.read_text()
+    alone = point(folder / "alone.nc", SECONDS_LONG)
+    start([sys.executable, "-m", "roughgas", *alone], folder).communicate(timeout=300)
+    assert same_point(folder / "cooling/r0.9/beta0/seed1.nc", folder / "alone.nc")

@@ -9,6 +9,7 @@ import pytest
 from schedules import TINY
 
 from roughgas import config
+from roughgas.base import InputError
 from roughgas.scene import build
 from roughgas.simulation import journal as journals
 from roughgas.simulation.journal import Journal
@@ -24,7 +25,7 @@ RUNS = {
     "watched cooling": TINY | {"observables": {"cumulants": {"every": 3}}},
     "driven": DRIVEN | {"keep_state": True},
     "watched": DRIVEN | {"observables": WATCHED},
-    "target": DRIVEN | {"schedule": DRIVEN["schedule"] | {"target_stderr": 0.004}},
+    "target": DRIVEN | {"schedule": DRIVEN["schedule"] | {"target_stderr": 0.02}},
 }
 
 
@@ -99,7 +100,24 @@ def test_a_damaged_journal_is_not_used(tmp_path, killed_after):
 
 def test_a_run_that_takes_less_than_minutes_writes_none(tmp_path):
     run(TINY, Journal(tmp_path / "journal", "this"))
-    assert journals.EVERY >= 60 and not list(tmp_path.iterdir())
+    assert float(journals.USUAL) >= 60 and not list(tmp_path.iterdir())
+
+
+def test_a_run_that_has_ended_is_not_made_again(tmp_path, killed_after, monkeypatch):
+    killed_after(0)
+    path = tmp_path / "journal"
+    found = run(TINY, Journal(path, "this"))
+    monkeypatch.setattr("roughgas.simulation.recorder.record", None)
+    again = run(TINY, Journal(path, "this"))
+    assert again["R"] == found["R"] and again["kernel_seconds"] == found["kernel_seconds"]
+
+
+def test_seconds_that_are_none(tmp_path, monkeypatch):
+    monkeypatch.setenv(journals.SECONDS, "often")
+    with pytest.raises(
+        InputError, match=r"^ROUGHGAS_CHECKPOINT_SECONDS.* often.* must lie in .*1e9"
+    ):
+        Journal(tmp_path / "journal", "this")
 
 
 def test_what_observers_have_seen_can_run_nothing():

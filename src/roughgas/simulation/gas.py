@@ -313,7 +313,7 @@ class Gas:
     ) -> None:
         """Advance, within a call, and add samples to those of the call."""
         assert self._rows is not None
-        if samples == 0:  # of a call that was stopped at its end
+        if samples == 0 and self._rows:  # of a call that was stopped at its end
             return
         columns = self.recorder.run(
             self.state, scene or self.scene, sampling, samples, timed, self._keep

@@ -10,20 +10,25 @@ The file is written every so many seconds: a run that takes less writes none.
 """
 
 import json
+import os
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from roughgas.base import Interval
 from roughgas.simulation.energies import Columns
 from roughgas.simulation.restart import UnusableCheckpoint, arrays_of, discard, read, write
 
 if TYPE_CHECKING:
     from roughgas.simulation.gas import Gas
+    from roughgas.simulation.recorder import Recorder
 
-EVERY = 180.0  # seconds from one writing to the next
+SECONDS = "ROUGHGAS_CHECKPOINT_SECONDS"  # in the environment: from one writing to the next
+USUAL = "180"
+LEGAL = Interval("[0, 1e9]")
 COSTS = "seconds", "collisions", "touched"  # what a Recorder sums up
 COUNTED = "ahead", "finished"
 
@@ -42,10 +47,10 @@ class Journal:
     """The calls of a run. What cannot be read, or is another run's, is not used: `refused` says
     why."""
 
-    def __init__(self, path: str | Path, owner: str, every: float = EVERY) -> None:
-        """`owner` says which run this is, sources included. Raises OSError."""
-        self.path, self.refused = Path(path), ""
-        self._owner, self._every = owner, every
+    def __init__(self, path: str | Path, owner: str) -> None:
+        """`owner` says which run this is, sources included. Raises InputError, OSError."""
+        self.path, self.refused, self._owner = Path(path), "", owner
+        self._every = _seconds(os.environ.get(SECONDS, USUAL))
         self._written = time.monotonic()
         self._calls: list[Call] = []
         self._costs: list[np.ndarray] = []
@@ -92,8 +97,16 @@ class Journal:
 
     def write(self, gas: "Gas", rows: Columns, ahead: int) -> None:
         """Write all calls, and the present one as far as it is. Raises OSError."""
-        calls = [*self._calls, _call(gas, rows, ahead, finished=False)]
-        content: dict[str, Any] = {f"costs.{name}": getattr(gas.recorder, name) for name in COSTS}
+        self._write(gas.recorder, [*self._calls, _call(gas, rows, ahead, finished=False)])
+
+    def end(self, recorder: "Recorder") -> None:
+        """Note the end of a run that has taken long: others of the same command may still be
+        stopped. Raises OSError."""
+        if self.path.exists():
+            self._write(recorder, self._calls)
+
+    def _write(self, recorder: "Recorder", calls: Sequence[Call]) -> None:
+        content: dict[str, Any] = {f"costs.{name}": getattr(recorder, name) for name in COSTS}
         content |= {name: np.array([getattr(one, name) for one in calls]) for name in COUNTED}
         for number, call in enumerate(calls):
             content[f"{number}.looks"] = np.frombuffer(call.looks, np.uint8)
@@ -121,6 +134,13 @@ class Journal:
             }
             looks = content[f"{number}.looks"].tobytes()
             self._calls.append(Call(rows, state, looks, *(one.item() for one in counted)))
+
+
+def _seconds(text: str) -> float:
+    try:
+        return LEGAL.check(SECONDS, float(text))
+    except ValueError:
+        raise LEGAL.error(SECONDS, text) from None
 
 
 def _call(gas, rows, ahead, finished):

@@ -74,6 +74,8 @@ def run_point(
             found["measured_from"], found.get("plateau_end", math.inf)
         )
         found |= values
+    if journal:
+        journal.end(recorder)
     return Point(
         observed=observed,
         variables=found | _withdrawn(found),

@@ -84,26 +84,28 @@ def points(
 
     Messages and attributes call it `name`, and attributes say that a command which is `told` more
     writes it to one of `outputs`. With `checkpoints` a point that takes minutes keeps beside its
-    output how far it is, until the next one is asked for.
+    output how far it is, until all are there.
 
     Raises InputError and CollapseError as `run_point`, those of an illegal scene before anything is
     simulated.
     """
     scenes = {(r, beta): build(settings, r, beta) for r, beta, *_ in at}
+    journals: list[Journal] = []
     for place, output in zip(at, outputs, strict=True):
         r, beta, seed, labels = place
         one = name if len(at) == 1 else f"{name}, r = {labels[0]}, beta = {labels[1]}, seed {seed}"
         about = provenance(name, settings, labels, scale, output, told=told)
-        journal = journal_of(output, settings, place, initial) if checkpoints else None
+        journal = _journal(output, settings, place, initial) if checkpoints else None
+        journals += [journal] if journal else []
         with Progress(one, scenes[r, beta], settings, quiet=quiet) as bar:
             found = _run(scenes[r, beta], settings, seed, bar, initial, functions, journal)
         yield found._replace(attributes=about | found.attributes)
-        if journal:
-            journal.discard()
+    for journal in journals:
+        journal.discard()
 
 
-def journal_of(
-    output: str, settings: Mapping[str, Any], place: Place, initial: Sequence[Initial] = ()
+def _journal(
+    output: str, settings: Mapping[str, Any], place: Place, initial: Sequence[Initial]
 ) -> Journal:
     """Return the journal of a point, beside the `output` that it is written to."""
     from roughgas.kernel.compiler import source_hash  # only a run needs the compiler
