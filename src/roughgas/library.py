@@ -119,8 +119,9 @@ def simulate(
         with their settings, or with a function that returns a number or an array of a frame
         (`roughgas.observables.Frame`). docs/observables.md lists them.
     scale
-        ``"paper"`` or ``"small"`` (a quarter of the particles, and short); by default the
-        configuration's own ``scale``, ``"paper"``.
+        ``"paper"``, ``"quick"`` (the paper's experiments, with errors three times as wide) or
+        ``"small"`` (a quarter of the particles, and short); by default the configuration's own
+        ``scale``, ``"paper"``.
     config
         Path of a configuration to use instead of the one that comes with roughgas.
     progress
