@@ -1,11 +1,15 @@
 """What a simulation costs besides its kernel: one job, and the pipeline as a whole.
 
     python -m benchmarks.pipeline
+    python -m benchmarks.pipeline --jobs 500 2000 8000
 
-Two minutes or so on two cores, and some more where kernels must be compiled before.
+The first takes two minutes or so on two cores, and some more where kernels must be compiled before.
+The second says what Snakemake itself costs: its jobs write empty files in place of points.
 """
 
+import argparse
 import json
+import os
 import resource
 import shutil
 import statistics
@@ -24,6 +28,14 @@ from roughgas.show.catalogue import shown_in
 ROOT = Path(__file__).parent.parent
 COPIED = ("Snakefile", "config.yaml", "rules", "profiles", "src")
 CORES = 2
+SNAKEMAKE = [sys.executable, "-m", "snakemake", f"-j{CORES}", "--configfile", "fewer.json", "--"]
+POINT = "roughgas run"
+# in place of `roughgas run ... --output FILES`
+EMPTY_POINT = """
+while [ "$1" != --output ]; do shift; done
+shift
+touch "$@"
+"""
 RUNS = 9
 SMALLEST = ("sheared", "small")  # with fewer collisions than any other point that is swept
 BETAS = ["-0.7", "0", "0.7"]  # those of the paper's sweep that stand for all
@@ -71,12 +83,7 @@ def cost_of_job(folder: Path) -> Cost:
 
 def efficiency(project: Path) -> dict[str, float]:
     """How much of `CORES` cores the kernel has in a copy of the project at `project`."""
-    project.mkdir()
-    for name in COPIED:
-        if (ROOT / name).is_dir():
-            shutil.copytree(ROOT / name, project / name)
-        else:
-            shutil.copy2(ROOT / name, project)
+    copy(project)
     shown = shown_in("paper")
     fewer = {"experiments": {name: {"sweep": {"beta": BETAS}} for name in shown}}
     (project / "fewer.json").write_text(json.dumps(fewer))
@@ -100,9 +107,62 @@ def efficiency(project: Path) -> dict[str, float]:
     }
 
 
+def scheduling(jobs: int) -> dict[str, float]:
+    """What Snakemake's own process takes, in seconds of CPU, for so many jobs of one point each.
+
+    `scheduling_wall` is the time from its start to its end, `scheduling_cpu` that of its process
+    without its jobs, which write empty files.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        project = Path(folder) / "project"
+        copy(project)
+        (project / "empty.sh").write_text(EMPTY_POINT)
+        rules = project / "rules" / "simulate.smk"
+        rules.write_text(rules.read_text().replace(POINT, "sh empty.sh"))
+        one = {"sweep": {"r": ["0.9"], "beta": ["0"], "seeds": jobs}}
+        fewer = {"seeds_per_job": 1, "experiments": {"sheared": one}}
+        (project / "fewer.json").write_text(json.dumps(fewer))
+        _snakemake(project, ["results/paper/sheared/r0.9/compiled.txt"])
+        targets = [f"results/paper/sheared/r0.9/beta0/seed{n}.nc" for n in range(1, jobs + 1)]
+        begin = time.perf_counter()
+        with subprocess.Popen(
+            [*SNAKEMAKE, *targets],
+            cwd=project,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        ) as running:
+            cpu = 0.0
+            while running.poll() is None:
+                cpu = _cpu_of(running.pid) or cpu
+                time.sleep(0.1)
+        wall = time.perf_counter() - begin
+        made = sum(path.stat().st_size == 0 for path in project.rglob("seed*.nc"))
+        if running.returncode or made != jobs:
+            sys.exit(f"Snakemake made {made} of {jobs} empty points")
+    return {"scheduling_jobs": jobs, "scheduling_cpu": cpu, "scheduling_wall": wall}
+
+
+def copy(project: Path) -> None:
+    """Make a copy of the project."""
+    project.mkdir()
+    for name in COPIED:
+        if (ROOT / name).is_dir():
+            shutil.copytree(ROOT / name, project / name)
+        else:
+            shutil.copy2(ROOT / name, project)
+
+
+def _cpu_of(process: int) -> float:
+    """Seconds of CPU of a process that is alive, without its children; 0 of one that has ended."""
+    try:
+        fields = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()
+    except OSError:
+        return 0.0
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
 def _snakemake(project: Path, targets: list[str]) -> None:
-    command = [sys.executable, "-m", "snakemake", f"-j{CORES}", "--configfile", "fewer.json", "--"]
-    done = subprocess.run([*command, *targets], cwd=project, capture_output=True, text=True)
+    done = subprocess.run([*SNAKEMAKE, *targets], cwd=project, capture_output=True, text=True)
     if done.returncode:
         sys.exit(done.stdout + done.stderr)
 
@@ -118,5 +178,8 @@ def _kernel_seconds(path: Path) -> float:
 
 
 if __name__ == "__main__":
-    for name, value in measure().items():
-        print(f"{name:20}{value:10.3f}")
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("--jobs", type=int, nargs="+", metavar="N", help="cost of Snakemake itself")
+    for found in map(scheduling, jobs) if (jobs := parser.parse_args().jobs) else [measure()]:
+        for name, value in found.items():
+            print(f"{name:20}{value:10.3f}", flush=True)
