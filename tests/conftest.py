@@ -2,6 +2,8 @@
 
 import os
 import signal
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -35,15 +37,15 @@ def pytest_collection_modifyitems(items):
 
 @pytest.fixture(scope="session", autouse=True)
 def kernels(request, tmp_path_factory):
-    """Kernels for a run of all tests by several workers, which share out compiling them."""
+    """Kernels for a run of all tests by several workers, which share out compiling them, in
+    processes of their own: a compiler never gives back its gigabyte."""
     alone = "PYTEST_XDIST_WORKER" not in os.environ
     if alone or len({folder_of(item) for item in request.session.items}) < WHOLE:
         return
-    import warm
-
     folder = tmp_path_factory.getbasetemp().parent / "kernels"
     folder.mkdir(exist_ok=True)
-    warm.compile_kernels(folder)
+    command = [sys.executable, "-m", "warm", str(folder)]
+    subprocess.run(command, cwd=Path(__file__).parent, check=True)
 
 
 @pytest.fixture(scope="session")

@@ -1,7 +1,10 @@
-"""The kernels that several tests run, each compiled by one worker before the first test begins.
+"""The kernels that several tests run, each compiled by one process before the first test begins.
 
 Workers would else compile the same ones at the same time, since neighbouring tests need the same.
 """
+
+import sys
+from pathlib import Path
 
 import numpy as np
 from brute_force.scenes import KERNELS, RARE, begin, run, settings
@@ -42,3 +45,7 @@ def claims(path):
     except FileExistsError:
         return False
     return True
+
+
+if __name__ == "__main__":
+    compile_kernels(Path(sys.argv[1]))
