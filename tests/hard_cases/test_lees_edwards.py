@@ -25,7 +25,7 @@ phase = from_python(drives.offset)
 def scheme(request, monkeypatch):
     """By which of the two schemes contacts are found, however few the particles are."""
     monkeypatch.setattr(memory, "FEW", 0 if request.param == "in cells" else 700)
-    monkeypatch.setattr(memory, "PER_CELL", 0.0)
+    monkeypatch.setattr(memory, "PER_CELL", {2: 0.0, 3: 0.0})
     return request.param
 
 

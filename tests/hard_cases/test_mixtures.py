@@ -72,7 +72,7 @@ def test_mass_ratio_1e9(margins):
 
 @hard_case(
     "a lone large particle among many small ones, in cells as wide as it",
-    "cells hold more particles than fit on a shortlist, and some are never met",
+    "a cell holds a large share of all particles, and some of them are never met",
 )
 @pytest.mark.slow  # a kernel that no other test compiles
 def test_a_lone_large_one(margins, monkeypatch):

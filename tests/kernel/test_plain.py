@@ -81,7 +81,7 @@ def test_floors_run_as_plain_python(wave):
 @pytest.mark.parametrize("kernel", CELLS)
 def test_cells_run_as_plain_python(kernel, monkeypatch):
     monkeypatch.setattr(memory, "FEW", 0)
-    monkeypatch.setattr(memory, "PER_CELL", 0.0)
+    monkeypatch.setattr(memory, "PER_CELL", {2: 0.0, 3: 0.0})
     box = [17, *settings(kernel)["box"][1:]]
     box[1:] = [length if length == "open" else 17 for length in box[1:]]
     assert_plain_python_has_the_same_bits(settings(kernel, 10, box))

@@ -79,7 +79,7 @@ def test_a_cooling_gas_goes_on_wherever_it_was_last_refreshed(name, first):
 def test_many_particles_go_on_in_their_cells(name, monkeypatch):
     """However few they are; the cells of a bed stay those of the gas that it was at the start."""
     monkeypatch.setattr(memory, "FEW", 0)
-    monkeypatch.setattr(memory, "PER_CELL", 0.0)
+    monkeypatch.setattr(memory, "PER_CELL", {2: 0.0, 3: 0.0})
     box = {"walled": [20, "open"], "spheres": [17, 17, 17]}.get(name, [17, 19])
     experiment = settings(name, 40, box) | {"keep_state": True}
     length = cooling if name in ("gas", "spheres") else steady

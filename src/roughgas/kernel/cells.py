@@ -23,6 +23,7 @@ import sys
 from roughgas.kernel import hooks
 from roughgas.kernel.event_lists import clear_contacts, enter, unlink
 from roughgas.kernel.jit import jit
+from roughgas.kernel.mathematics import index
 from roughgas.kernel.particles import (
     fold_into_box,
     image_numbers,
@@ -55,12 +56,8 @@ def find_around(state, scene, i, time):
     if not (known and moved_on and _newcomers_in_one_slab(slide, axis)):
         axis = ALL
         clear_contacts(agenda, i, time + outlook)
-    done, found = 0, 1
-    while done < found:
-        found = _collect(state, i, slide, outlook, axis, step, done)
-        room = state.shortlist.found.size
-        decide(state, scene, i, min(found - done, room), time, time, FARTHEST)
-        done += room
+    number = _collect(state, i, slide, outlook, axis, step)
+    decide(state, scene, i, number, time, time, FARTHEST)
 
 
 @jit
@@ -83,7 +80,7 @@ def settle(state, scene, i, time):
 @jit
 def _enter(cells, i, home):
     cells.home[i] = home
-    enter(cells.first, cells.following, cells.previous, home, i)
+    enter(cells.first, cells.following, home, i)
 
 
 @jit
@@ -163,7 +160,7 @@ def _move_on(state, scene, i, time):
     cells = state.cells
     d, u = _in_cell(state, scene, i, time)
     _, axis, step = _exit(d, u, cells.widths, hooks.acceleration(scene.effects))
-    unlink(cells.first, cells.following, cells.previous, cells.home[i], i)
+    unlink(cells.first, cells.following, cells.home[i], i)
     cells.home[i] = _next_to(cells.counts, cells.home[i], axis, step)
     if axis == 1:
         _find_column(hooks.sliding(scene.effects, state), state, scene, i, time)
@@ -216,11 +213,11 @@ def _newcomers_in_one_slab(slide, axis):
 
 
 @jit
-def _collect(state, i, slide, duration, axis, step, skipped):
-    """List the particles around particle i in the shortlist; return how many there are in all.
+def _collect(state, i, slide, duration, axis, step):
+    """List the particles around particle i in the shortlist; return how many there are.
 
-    Take all cells around, or only those a step further along an axis. Skip the first particles:
-    they have been on the list already, and there was no room for more.
+    Take all cells around, or only those a step further along an axis: the first particle of each
+    cell, then those that follow the ones on the list, with no branch that depends on what is there.
     """
     cells, found, number = state.cells, state.shortlist.found, 0
     home = places(cells.counts, cells.home[i])
@@ -233,14 +230,20 @@ def _collect(state, i, slide, duration, axis, step, skipped):
             first, last = _columns(slide, cells, home[0], up, duration, _steps(0, axis, step))
             for column in range(first, last):
                 cell = wrapped(column, cells.counts[0]) + cells.counts[0] * (row + level)
-                j = cells.first[cell]
-                while j != NOBODY:
-                    if j != i:
-                        if skipped <= number < skipped + found.size:
-                            found[number - skipped] = j
-                        number += 1
-                    j = cells.following[j]
+                number = _append(found, number, cells.first[index(cell)])
+    k = 0
+    while k < number:
+        number = _append(found, number, cells.following[index(int(found[index(k)]))])
+        k += 1
+    found[index(number)] = 0  # `decide` reads on to the end of a register
     return number
+
+
+@jit
+def _append(found, number, j):
+    """Return how many are on the list with j, if that is a particle."""
+    found[index(number)] = j
+    return number + int(j != NOBODY)
 
 
 @jit

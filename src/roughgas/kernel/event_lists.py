@@ -5,7 +5,7 @@ Among many particles, ask the memory ahead for what the events of the calendar's
 A read that the caches cannot answer takes as long as a hundred additions, and an event has some
 twenty of them. Nothing here has an effect on any result.
 
-Lists of particles, one per cell or per day, as links from each particle to the next ones.
+Lists of particles, one per cell or per day, as links from each particle to the next one.
 
 Which particle's event comes first: blocks of keys for few particles, a calendar for many.
 
@@ -90,26 +90,22 @@ def _fetch_around(state, i):
 
 
 @jit
-def enter(first, following, previous, place, i):
+def enter(first, following, place, i):
     """Put particle i first on the list of a place."""
-    head = first[place]
-    following[i] = head
-    previous[i] = NOBODY
-    if head != NOBODY:
-        previous[head] = i
+    following[i] = first[place]
     first[place] = i
 
 
 @jit
-def unlink(first, following, previous, place, i):
+def unlink(first, following, place, i):
     """Take particle i off the list of a place."""
-    after, before = following[i], previous[i]
-    if before == NOBODY:
-        first[place] = after
-    else:
-        following[before] = after
-    if after != NOBODY:
-        previous[after] = before
+    before = first[place]
+    if before == i:
+        first[place] = following[i]
+        return
+    while following[before] != i:
+        before = following[before]
+    following[before] = following[i]
 
 
 LAST_DAY = 2.0**62
@@ -169,11 +165,11 @@ def _enter_in_calendar(state, i, time):
     queue, key = state.queue, state.agenda.key
     if key[i] < math.inf:
         place = day_of(queue, key[i]) & (queue.first.size - 1)
-        unlink(queue.first, queue.later, queue.sooner, place, i)
+        unlink(queue.first, queue.later, place, i)
     key[i] = time
     if time < math.inf:
         day = day_of(queue, time)
-        enter(queue.first, queue.later, queue.sooner, day & (queue.first.size - 1), i)
+        enter(queue.first, queue.later, day & (queue.first.size - 1), i)
         queue.today[0] = min(queue.today[0], day)
 
 

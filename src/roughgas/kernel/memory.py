@@ -19,17 +19,17 @@ from roughgas.kernel.state import (
     Sweep,
 )
 
-FEW = 700  # number of particles up to which all pairs are swept: see docs/performance.md
+FEW = 500  # number of particles up to which all pairs are swept: see docs/performance.md
 LANES = 16  # the arrays that are swept are padded to whole vector registers
 BLOCK = 16  # particles to a block of the queue; divides LANES
 TOGETHER = 8  # candidates that are decided at once
 SLOTS_OF_FEW, SLOTS_OF_MANY = 8, 2  # upcoming contacts kept per particle
 LINE = 64  # bytes that the processor fetches at once
-ROOM = 512  # candidates that cells may yield at once
 NARROWEST = 2.002  # of a cell: a diameter and room for rounding, in a
 OF_BODIES = {"radius": (float,), "mass": (float,), "inertia": (float,), "species": (np.int32,)}
 MOMENT = "moment of "  # before the name of an effect: the array of its moments
-PER_CELL = 1.0  # particles to a cell, where cells are wider than that
+PER_CELL = {2: 0.6, 3: 0.4}  # particles to a cell in so many dimensions, if that is wide enough
+IN_LAYER = 4.0  # density where most contacts of a layer are, over that of the layer as it is filled
 FEWEST = 8  # cells along an axis: fewer would be met twice
 
 
@@ -83,13 +83,17 @@ def _take_bodies(state, bodies, order):
 def cell_grid(scene, position, narrowest=NARROWEST):
     """Return (number, width) of cells along each axis, for PER_CELL particles to a cell or more.
 
-    None is narrower than `narrowest`, of the largest particles. Along an open axis they fill the
-    initial height of the gas.
+    None is narrower than `narrowest`, of the largest particles. Along an open axis they fill twice
+    the height below which half of the particles are: they repeat, and whoever flies above that is
+    listed with those below.
     """
-    heights = np.ptp(position, axis=0) + narrowest
+    heights = 2.0 * (np.median(position, axis=0) - position.min(axis=0)) + narrowest
     lengths = [length or height for length, height in zip(scene.box, heights, strict=True)]
-    volume = PER_CELL * math.prod(lengths) / len(position)
+    density = len(position) / math.prod(lengths) * (IN_LAYER if scene.box[-1] is None else 1.0)
+    volume = PER_CELL[len(lengths)] / density
     least = max(narrowest, volume ** (1.0 / len(lengths)))
+    fewest = [FEWEST if length is None else 1 for length in scene.box]
+    lengths = [max(length, n * least) for length, n in zip(lengths, fewest, strict=True)]
     counts = tuple(max(1, math.floor(length / least)) for length in lengths)
     return counts, tuple(float(length / n) for length, n in zip(lengths, counts, strict=True))
 
@@ -115,22 +119,20 @@ def _few(scene, number, dimension, precision):
 def _many(scene, number, dimension, precision, counts, widths):
     """Give each particle one line of the cache for where it is, and one for what comes next."""
     fields = _fields(scene, dimension, precision, SLOTS_OF_MANY)
-    here = ["trajectory", "spin", "radius", "changes", "home", "following", "previous"]
-    here += [name for name in fields if name.startswith(MOMENT)]
-    links = {name: (np.int32,) for name in ("home", "following", "previous", "later", "sooner")}
-    fields |= links | {"leave": (float,)}
-    small = ("kind", "label", "mass", "inertia", "species")
-    ahead = [name for name in fields if name not in (*here, *small)]
-    arrays = {name: _array(number, *fields[name]) for name in small if name in fields}
-    arrays |= _records(number, {name: fields[name] for name in here if name in fields})
-    arrays |= _records(number, {name: fields[name] for name in ahead})
+    fields |= {name: (np.int32,) for name in ("home", "following", "later")} | {"leave": (float,)}
+    ahead = [name for name in fields if name in Agenda._fields and name != "kind"]
+    here, ahead = ["trajectory", "changes", "following"], [*ahead, "later", "leave"]
+    (here if dimension == 2 else ahead).append("home")
+    here += [name for name in ("spin", "radius") if dimension == 2 and name in fields]
+    arrays = {name: _array(number, *fields[name]) for name in {*fields}.difference(here, ahead)}
+    for record in (here, ahead):
+        arrays |= _records(number, {name: fields[name] for name in record})
     return _state(
         scene,
         arrays,
         queue=Calendar(
             first=np.full(2 ** (number - 1).bit_length(), NOBODY, np.int32),
             later=arrays["later"],
-            sooner=arrays["sooner"],
             pace=np.ones(1),
             today=np.zeros(1, np.int64),
         ),
@@ -140,9 +142,9 @@ def _many(scene, number, dimension, precision, counts, widths):
             widths=widths,
             periods=tuple(n * width for n, width in zip(counts, widths, strict=True)),
             first=np.full(math.prod(counts), NOBODY, np.int32),
-            **{name: arrays[name] for name in ("following", "previous", "home", "leave")},
+            **{name: arrays[name] for name in ("following", "home", "leave")},
         ),
-        shortlist=_shortlist(ROOM, dimension),
+        shortlist=_shortlist(number, dimension),
     )
 
 

@@ -71,7 +71,6 @@ class Calendar(NamedTuple):
 
     first: np.ndarray  # (days,) first particle of each day's list
     later: np.ndarray  # (N,) the next particle of the same list
-    sooner: np.ndarray  # (N,) the one before
     pace: np.ndarray  # (1,) days per time
     today: np.ndarray  # (1,) the day on which the earliest event was found
 
@@ -91,7 +90,6 @@ class Cells(NamedTuple):
     periods: tuple[float, ...]  # counts * widths
     first: np.ndarray  # (cells,) first particle of each cell's list
     following: np.ndarray  # (N,) the next particle of the same list
-    previous: np.ndarray  # (N,) the one before
     home: np.ndarray  # (N,) number of the cell, the first axis running fastest
     leave: np.ndarray  # (N,) when the particle leaves it
 
