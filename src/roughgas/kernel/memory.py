@@ -83,11 +83,10 @@ def _take_bodies(state, bodies, order):
 def cell_grid(scene, position, narrowest=NARROWEST):
     """Return (number, width) of cells along each axis, for PER_CELL particles to a cell or more.
 
-    None is narrower than `narrowest`, of the largest particles. Along an open axis they fill twice
-    the height below which half of the particles are: they repeat, and whoever flies above that is
-    listed with those below.
+    None is narrower than `narrowest`, of the largest particles. Along an open axis they fill the
+    initial height of the gas.
     """
-    heights = 2.0 * (np.median(position, axis=0) - position.min(axis=0)) + narrowest
+    heights = np.ptp(position, axis=0) + narrowest
     lengths = [length or height for length, height in zip(scene.box, heights, strict=True)]
     density = len(position) / math.prod(lengths) * (IN_LAYER if scene.box[-1] is None else 1.0)
     volume = PER_CELL[len(lengths)] / density
