@@ -4,6 +4,7 @@
 #   snakemake -j2 figures --config scale=small  the same in a minute, with wide error bars
 #   snakemake -j2 friction                      one question beyond the paper, of a folder of studies/
 #   snakemake -j2 extensions                    all of them
+#   snakemake -j2 numbers                       the numbers that docs/results.md quotes
 #   snakemake -j1 explore                       a page in which to look at every point
 #   snakemake -j1 living                        a page in which a gas moves, with sliders
 #   snakemake -j1 pictures                      the four figures for talks: SVG, and PDF of 16 to 9
@@ -91,6 +92,11 @@ rule extensions:
         products_of_each,
         f"results/{SCALE}/extensions.csv" if SWEPT_IN_STUDIES else [],
         documents("run_times_extensions") if SWEPT_IN_STUDIES else [],
+
+
+rule numbers:
+    input:
+        f"figures/{folder_of(SCALE)}numbers.json",
 
 
 rule explore:

@@ -3,6 +3,7 @@
 It can be read without a network: nothing in it is loaded from elsewhere.
 """
 
+import json
 import logging
 import os.path
 import re
@@ -15,6 +16,7 @@ from latex2mathml.converter import convert
 from sphinx.errors import SphinxError
 
 import roughgas
+from roughgas.claims.numbers import filled
 
 DOCS = Path(__file__).resolve().parent
 ROOT = DOCS.parent
@@ -66,6 +68,7 @@ napoleon_google_docstring = False
 def setup(app):
     app.connect("builder-inited", write_studies)
     app.connect("source-read", mend_links)
+    app.connect("source-read", fill_numbers)
     app.add_html_math_renderer("mathml", (inline_formula, None), (formula, None))
     app.connect("env-get-outdated", lambda *_: ["tutorial"])  # it runs at each build
     app.connect("autodoc-process-docstring", as_prose)
@@ -92,6 +95,12 @@ def mend_links(app, docname, source):
     source[0] = linked(source[0], folder, folder)
     if docname == "index":
         source[0] = f"{linked(README.read_text(encoding='utf-8'), ROOT, DOCS)}\n{source[0]}"
+
+
+def fill_numbers(app, docname, source):
+    """Numbers that pages quote from results become those of the last results."""
+    numbers = json.loads((ROOT / "figures" / "numbers.json").read_text(encoding="utf-8"))
+    source[0] = filled(source[0], numbers)
 
 
 def inline_formula(translator, node):

@@ -18,6 +18,15 @@ def data_of_figure(wildcards):
     return reduced(scale_of(wildcards.folder), entry_of(wildcards).shows)
 
 
+def data_of_numbers(wildcards):
+    names = [*catalogue.shown_in("paper"), "drives.heated"]
+    return reduced(scale_of(wildcards.folder), names)
+
+
+def claims_of_numbers(wildcards):
+    return f"results/{scale_of(wildcards.folder)}/claims.json"
+
+
 def data_of_plot(wildcards):
     """The reduced dataset of the experiment by whose name a figure is asked for."""
     with one_line():
@@ -162,6 +171,24 @@ rule claims:
     shell:
         "python -P -m roughgas.steps claims {input:q} --json {output.json:q}"
         " --markdown {output.markdown:q} > {log:q} 2>&1"
+
+
+rule quoted_numbers:
+    # what docs/results.md quotes; at the scale `paper` beside the figures
+    input:
+        data=data_of_numbers,
+        claims=claims_of_numbers,
+    output:
+        "figures/{folder}numbers.json",
+    log:
+        "logs/figures/{folder}numbers.log",
+    params:
+        code=code_of("claims.numbers"),
+    message:
+        "write {output}"
+    shell:
+        "python -P -m roughgas.steps numbers {input.data:q} --claims {input.claims:q}"
+        " --output {output:q} > {log:q} 2>&1"
 
 
 rule run_times:

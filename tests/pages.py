@@ -6,6 +6,7 @@ tests/cli/page.py.
 
 import ast
 import inspect
+import json
 import math
 from itertools import pairwise
 from operator import attrgetter
@@ -14,6 +15,7 @@ from pathlib import Path
 from roughgas import accuracy, effects, observables
 from roughgas.base import markdown
 from roughgas.claims import PAPER, evidence, paper
+from roughgas.claims.numbers import filled
 from roughgas.config.schema import SAID, _legal, _schema
 from roughgas.data.reduced import REDUCED
 from roughgas.data.trajectory import TRAJECTORY
@@ -23,6 +25,7 @@ from roughgas.statistics import errors
 from roughgas.tasks import variables
 
 DOCS = Path(__file__).parents[1] / "docs"
+RESULTS = DOCS / "results.md"
 BEGIN, END = "<!-- {}: made by tests/pages.py -->\n", "<!-- until here -->\n"
 REMOVED = ("swept",)  # a key of experiments that only roughgas writes
 DECIDES = dict.fromkeys(("AGREE", "LIMIT", "TENDENCY", "FEW", "NEAR", "FAR"), evidence)
@@ -59,6 +62,13 @@ def write():
         path, begin = DOCS / f"{page}.md", BEGIN.format(name)
         text = path.read_text(encoding="utf-8")
         path.write_text(text.replace(begin + written(page, name) + END, begin + table + END))
+    RESULTS.write_text(quoted(), encoding="utf-8")
+
+
+def quoted():
+    """The page of results with the numbers of the last results."""
+    numbers = json.loads((DOCS.parent / "figures" / "numbers.json").read_text(encoding="utf-8"))
+    return filled(RESULTS.read_text(encoding="utf-8"), numbers, marks=True)
 
 
 # ---------------------------------------------------------------------- claims

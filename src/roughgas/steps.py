@@ -69,6 +69,7 @@ STEPS: dict[str, str | Callable[..., None]] = {
     "figure": "show.gallery:draw",
     "front": "show.pages:write_front",
     "living": "show.living:write_living",
+    "numbers": "claims.numbers:write",
     "run_times": "results.products:write_times",
     "study_claims": study_claims,
     "study_data": "tasks.running:combine",

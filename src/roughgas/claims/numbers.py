@@ -1,0 +1,114 @@
+"""The numbers that pages quote: each computed from reduced datasets and verdicts, as text by name.
+
+A page has the mark `<!--NAME-->` right behind a number. When the documentation is built, what
+stands before a mark comes from the file that `write` has written (`filled`).
+"""
+
+import json
+import re
+from collections import Counter
+from collections.abc import Mapping
+from pathlib import Path
+
+import xarray as xr
+
+from roughgas.base import as_json
+from roughgas.base.files import write_text
+from roughgas.claims.evidence import FAILS, HOLDS, QUALIFIED, theory_of
+from roughgas.data.reduced import EQUILIBRATED, read_reduced
+from roughgas.statistics.errors import Estimate
+
+WALLS = "vibrated_rough_walls", "vibrated_particle_walls", "vibrated_smooth_walls"
+ROWS = {"r9_b95": (0.9, -0.95), "r8_b80": (0.8, -0.8), "r8_b95": (0.8, -0.95), "r9_b50": (0.9, 0.5)}
+"""Points of the sheared gas that are compared one by one: (r, beta)."""
+IN_WORDS = "none one two three four five six seven eight nine ten eleven twelve thirteen fourteen "
+IN_WORDS += "fifteen sixteen seventeen eighteen nineteen twenty"
+MARKED = re.compile(r"[\w.−]+(?:\(\d+\))?(<!--([\w.]+)-->)")
+COUNTED = {"holds": HOLDS, "qualified": QUALIFIED, "fails": FAILS}
+
+
+def write(inputs: list[str], *, claims: str, output: str) -> None:
+    """Write the numbers of reduced datasets and of the verdicts on the paper, JSON."""
+    gases = {
+        one.attrs["experiment"].rpartition(".")[2]: _beside_theory(one)
+        for one in map(read_reduced, inputs)
+    }
+    verdicts = json.loads(Path(claims).read_text(encoding="utf-8"))
+    write_text(output, as_json(numbers(gases, verdicts)))
+
+
+def numbers(gases: Mapping[str, xr.Dataset], verdicts: Mapping[str, list]) -> dict[str, str]:
+    """Return the numbers of experiments beside theory, and the counts of verdicts, by name."""
+    bed, sheared, cooling = (gases[name] for name in ("vibrated", "sheared", "cooling"))
+    rough, *other = (abs(gases[name].R - bed.R) for name in WALLS)
+    kicked = gases["heated"].sel(spin_share=0.0)
+    found = {f"bed.collisions.{key}": one for key, one in _most(bed, "R_collisional").items()}
+    found |= {f"bed.time.{key}": one for key, one in _most(bed, "R").items()}
+    found |= {f"sheared.time.{key}": one for key, one in _most(sheared, "R").items()}
+    found["kicked.collisions"] = _up(abs(kicked.R_collisional - kicked.theory))
+    found["kicked.time"] = _at(kicked, "R", 0.9, 0.0)
+    found["walls.rough"] = f"{float(rough.max()):.1f}"
+    found["walls.other"] = _up(xr.merge([one.rename(f"R{k}") for k, one in enumerate(other)]))
+    off = 100.0 * (cooling.R / cooling.theory - 1.0)
+    found["cooling.percent"] = f"{float(abs(off.where(off.r >= 0.8)).max()):.1f}"
+    found["cooling.dissipative.percent"] = f"{-float(off.where(off.r < 0.8).min()):.0f}"
+    for name, r in (("r99", 0.99), ("r8", 0.8)):
+        found[f"cooling.{name}_b80"] = f"{float(cooling.R.sel(r=r, beta=-0.8)):.2f}"
+    return found | _of_rows(sheared) | _counts(verdicts["claims"])
+
+
+def filled(page: str, numbers: Mapping[str, str], marks: bool = False) -> str:
+    """Return a page with these numbers before its marks; the `marks` stay or go.
+
+    Raises KeyError for a mark that names none.
+    """
+    return MARKED.sub(lambda one: numbers[one[2]] + one[1] * marks, page)
+
+
+def _beside_theory(gas: xr.Dataset) -> xr.Dataset:
+    """Return a reduced dataset with `theory`, and its averages NaN where there is no steady state.
+
+    Other than `evidence.beside_theory` it keeps what was simulated with the contact-time model.
+    """
+    averages = [name for name in ("R", "R_collisional") if name in gas]
+    steady = gas[averages].where(gas.equilibrated > EQUILIBRATED)
+    return gas.assign(steady).assign(theory=gas.R.copy(data=theory_of(gas)))
+
+
+def _most(gas: xr.Dataset, name: str) -> dict[str, str]:
+    """Return the largest deviation from theory, and where it is; and that beyond the paper."""
+    off = gas[name] - gas.theory
+    inside = abs(off.where(off.r >= 0.8))
+    r, beta = (float(one) for one in inside.stack(at=("r", "beta")).idxmax("at").item())
+    at = {"r": f"{r:g}", "beta": f"{beta:g}".replace("-", "−")}
+    beyond = off.where(off.r < 0.8)
+    return {"most": _up(inside), "dissipative": f"{float(beyond.max()):.3f}"} | at
+
+
+def _up(values) -> str:
+    """Return the largest of values with three decimals."""
+    largest = values.max()
+    one = largest.to_array().max() if isinstance(largest, xr.Dataset) else largest
+    return f"{float(one):.3f}"
+
+
+def _at(gas: xr.Dataset, name: str, r: float, beta: float) -> str:
+    one = gas.sel(r=r, beta=beta)
+    return f"{Estimate(float(one[name]), float(one[f'{name}_stderr']))}"
+
+
+def _of_rows(gas: xr.Dataset) -> dict[str, str]:
+    """Return R over time, over collisions, and of theory at the points of ROWS."""
+    found = {}
+    for name, place in ROWS.items():
+        found[f"sheared.{name}.time"] = _at(gas, "R", *place)
+        found[f"sheared.{name}.collisions"] = _at(gas, "R_collisional", *place)
+        theory = float(gas.theory.sel(r=place[0], beta=place[1]))
+        found[f"sheared.{name}.theory"] = f"{theory:.4f}"
+    return found
+
+
+def _counts(claims) -> dict[str, str]:
+    words, verdicts = IN_WORDS.split(), Counter(one["verdict"] for one in claims)
+    found = {f"claims.{name}": words[verdicts[one]] for name, one in COUNTED.items()}
+    return found | {"claims.all": words[len(claims)]}

@@ -1,0 +1,58 @@
+"""Numbers that pages quote: from data whose answers are known, and in the page of results."""
+
+import json
+
+import pytest
+from tests import pages
+from tests.claims.gases import constant, walls
+from tests.synthetic import reduced
+
+from roughgas.claims.evidence import beside_theory
+from roughgas.claims.numbers import WALLS, filled, numbers
+
+AT_POINTS = (-0.95, -0.8, 0.0, 0.5)
+
+
+def gas(name, shift=0.0, beta=AT_POINTS, **others):
+    data = beside_theory(reduced(name, constant(shift), beta=beta, error=1e-6, **others))
+    data["R_collisional"] = data.theory + 0.001
+    data["R_collisional_stderr"] = data.R_stderr
+    return data
+
+
+@pytest.fixture(scope="module")
+def found():
+    """What is quoted of gases that lie off theory by known shifts."""
+    gases = dict(zip(("vibrated", *WALLS), walls(rough=0.1), strict=True))
+    gases |= {name: gas(name, beta=one.beta.values, r=one.r.values) for name, one in gases.items()}
+    gases["vibrated"] = gas("vibrated", 0.05, beta=gases["vibrated"].beta.values)
+    gases |= {"sheared": gas("sheared", 0.02), "cooling": gas("cooling")}
+    gases["heated"] = gas("heated", -0.003).expand_dims(spin_share=[0.0])
+    verdicts = ["holds"] * 3 + ["fails"]
+    return numbers(gases, {"claims": [{"verdict": one} for one in verdicts]})
+
+
+def test_numbers_are_those_of_the_data(found):
+    assert found["bed.time.most"] == "0.050"
+    assert found["bed.collisions.most"] == "0.001"
+    assert found["sheared.time.most"] == "0.020"
+    assert found["walls.other"] == "0.050"
+    assert found["sheared.r8_b95.theory"] == "0.0084"
+    assert (found["claims.all"], found["claims.holds"], found["claims.fails"]) == (
+        "four",
+        "three",
+        "one",
+    )
+
+
+def test_the_page_of_results_quotes_the_last_results():
+    assert pages.RESULTS.read_text(encoding="utf-8") == pages.quoted(), "python -m tests.pages"
+
+
+def test_a_mark_fills_the_number_before_it_and_must_be_known(found):
+    known = json.loads((pages.DOCS.parent / "figures" / "numbers.json").read_text())
+    assert known.keys() == found.keys()
+    page = "at most 0.5(2)<!--a.b--> (r = 7<!--c-->)"
+    assert filled(page, {"a.b": "1.25(3)", "c": "0.9"}) == "at most 1.25(3) (r = 0.9)"
+    with pytest.raises(KeyError):
+        filled(page, {"c": "0.9"})
