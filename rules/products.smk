@@ -19,8 +19,9 @@ def data_of_figure(wildcards):
 
 
 def data_of_numbers(wildcards):
-    names = [*catalogue.shown_in("paper"), "drives.heated"]
-    return reduced(scale_of(wildcards.folder), names)
+    marks = re.findall(r"<!--([\w.]+)[.]\w+-->", Path("docs/results.md").read_text(encoding="utf-8"))
+    quoted = sorted({*marks} & {*SWEPT_IN_STUDIES})
+    return reduced(scale_of(wildcards.folder), [*catalogue.shown_in("paper"), *quoted])
 
 
 def claims_of_numbers(wildcards):

@@ -103,7 +103,7 @@ def test_lists_make_the_reduced_dataset_of_their_points(tmp_path, monkeypatch):
         ("cooling", {"seed": []}, "seed = []: must be one value or several"),
         ("cooling", {"beta": [0], "keep_state": True}, "keep_state = given: must come with one r,"),
         ("cooling", {"packing": 0.2, "box": (40, 40)}, "cooling.box = [40, 40]: must not stand"),
-        ("cooling", {"scale": "big"}, "scale = 'big': must be one of paper, small"),
+        ("cooling", {"scale": "big"}, "scale = 'big': must be one of paper, quick, small"),
         ("cooling", {"particles": 10**6}, "particles = 1000000: must be at most 2842 in this box"),
         ("cooling", {"box": 50}, "cooling.box = 50: must be a list of 2 to 3 entries"),
         ("vibrated", {"effects": {"gravity": None}}, "effects.floor needs gravity"),

@@ -33,7 +33,7 @@ def run(output, experiment="cooling", r="0.9", beta="0", seed="1", **others):
         ({"beta": "rough"}, "roughness beta = rough: must lie in [-1, 1]"),
         ({"seed": "-1"}, "seed = -1: must be a whole number in [0, 2^63 - 1]"),
         ({"experiment": "foo"}, "experiment = 'foo': must be one of cooling, sheared, "),
-        ({"scale": "large"}, "scale = 'large': must be one of paper, small"),
+        ({"scale": "large"}, "scale = 'large': must be one of paper, quick, small"),
         ({"config": "no.yaml"}, "no.yaml: No such file or directory"),
         ({"settings": "{"}, "--settings = '{': must be JSON"),
         ({"settings": json.dumps(TINY | {"particles": 10_000})}, "particles = 10000: must"),

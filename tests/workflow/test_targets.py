@@ -14,7 +14,7 @@ LEGAL = [
 ILLEGAL = [
     ("results/paper/cooling/r1.5/beta0/seed1.nc", "restitution r = 1.5: must lie in [0, 1]"),
     ("results/paper/heating/r0.9/beta0/seed1.nc", "experiment = 'heating': must be one of clu"),
-    ("figures/large/fig1a.pdf", "scale = 'large': must be one of paper, small"),
+    ("figures/large/fig1a.pdf", "scale = 'large': must be one of paper, quick, small"),
     (
         "figures/fig9.png",
         "figure = 'fig9': must be a figure or an experiment, such as fig2b, fig2a, fig1b",
@@ -109,7 +109,7 @@ def test_an_illegal_target_is_refused_in_one_line(project, target, message):
 @pytest.mark.parametrize(
     ("setting", "message"),
     [
-        ("scale=large", "scale = 'large': must be one of paper, small"),
+        ("scale=large", "scale = 'large': must be one of paper, quick, small"),
         ("n_particles=5", "key = 'n_particles': must be one of accuracy, betas_per_job, complete,"),
     ],
 )
