@@ -29,10 +29,7 @@ COUNTED = {"holds": HOLDS, "qualified": QUALIFIED, "fails": FAILS}
 
 def write(inputs: list[str], *, claims: str, output: str) -> None:
     """Write the numbers of reduced datasets and of the verdicts on the paper, JSON."""
-    gases = {
-        one.attrs["experiment"]: _beside_theory(one)
-        for one in map(read_reduced, inputs)
-    }
+    gases = {one.attrs["experiment"]: _beside_theory(one) for one in map(read_reduced, inputs)}
     verdicts = json.loads(Path(claims).read_text(encoding="utf-8"))
     write_text(output, as_json(numbers(gases, verdicts)))
 
