@@ -19,7 +19,9 @@ def data_of_figure(wildcards):
 
 
 def data_of_numbers(wildcards):
-    marks = re.findall(r"<!--([\w.]+)[.]\w+-->", Path("docs/results.md").read_text(encoding="utf-8"))
+    marks = re.findall(
+        r"<!--([\w.]+)[.]\w+-->", Path("docs/results.md").read_text(encoding="utf-8")
+    )
     quoted = sorted({*marks} & {*SWEPT_IN_STUDIES})
     return reduced(scale_of(wildcards.folder), [*catalogue.shown_in("paper"), *quoted])
 
