@@ -27,7 +27,7 @@ def found():
     gases |= {name: gas(name, beta=one.beta.values, r=one.r.values) for name, one in gases.items()}
     gases["vibrated"] = gas("vibrated", 0.05, beta=gases["vibrated"].beta.values)
     gases |= {"sheared": gas("sheared", 0.02), "cooling": gas("cooling")}
-    gases["heated"] = gas("heated", -0.003).expand_dims(spin_share=[0.0])
+    gases["drives.heated"] = gas("heated", -0.003).expand_dims(spin_share=[0.0])
     verdicts = ["holds"] * 3 + ["fails"]
     return numbers(gases, {"claims": [{"verdict": one} for one in verdicts]})
 

@@ -145,7 +145,7 @@ def test_the_table_has_one_row_for_each_place_with_data(paths, tmp_path):
     cooling = [write(tmp_path, 0.7, 0.0, 1, 0.3, True, {"experiment": "cooling"}, plateau_end=9.0)]
     reduce_points(cooling, tmp_path / "cooling.nc")
     write_table([tmp_path / "sheared.nc", tmp_path / "cooling.nc"], output=tmp_path / "R.csv")
-    rows = list(csv.DictReader(open(tmp_path / "R.csv", encoding="utf-8")))
+    rows = list(csv.DictReader((tmp_path / "R.csv").read_text(encoding="utf-8").splitlines()))
     places = [(row["experiment"], row["r"], row["beta"]) for row in rows]
     assert places == [
         ("sheared", "0.8", "0.5"),
@@ -236,7 +236,7 @@ def test_the_table_has_a_row_for_each_value(inertia, tmp_path):
     reduce_points([write(tmp_path, 0.9, 0.0, 1, 0.3)], tmp_path / "plain.nc")
     reduce_points([variant(tmp_path, "floor.wave", "sine")], tmp_path / "waves.nc")
     write_table([tmp_path / "plain.nc", inertia, tmp_path / "waves.nc"], output=tmp_path / "R.csv")
-    rows = list(csv.DictReader(open(tmp_path / "R.csv", encoding="utf-8")))
+    rows = list(csv.DictReader((tmp_path / "R.csv").read_text(encoding="utf-8").splitlines()))
     assert list(rows[0])[4:9] == ["inertia", "parameter", "value", "r", "beta"]
     assert [(row["parameter"], row["value"], row["inertia"], row["beta"]) for row in rows] == [
         ("", "", "0.5", "0"),
