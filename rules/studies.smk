@@ -55,12 +55,12 @@ def data_of_study_claims(wildcards):
 
 
 def code_of_study_figure(wildcards):
-    return code_beside(study_of(wildcards), ["*.py"], "show.gallery", "plotting")
+    return code_beside(study_of(wildcards), ["*.py", "*.csv"], "show.gallery", "plotting")
 
 
 def code_of_study_claims(wildcards):
     modules = "judging", "claims"
-    return code_beside(study_of(wildcards), ["*.py", "claims.yaml"], *modules)
+    return code_beside(study_of(wildcards), ["*.py", "*.csv", "claims.yaml"], *modules)
 
 
 def option_of_experiments(wildcards):

@@ -18,7 +18,13 @@ import numpy as np
 KNOWN = Path(__file__).with_name("bits.json")
 CLOCKS = ("kernel_seconds",)
 # how variables begin that are newer than the file
-SINCE = ("R_collisional", "contact_correlation", "E_rot_stderr", "measured_collisions")
+SINCE = (
+    "R_collisional",
+    "R_corrected",
+    "contact_correlation",
+    "E_rot_stderr",
+    "measured_collisions",
+)
 VERDICTS = ("equilibrated", "R_ci95_trusted")  # are no numbers, and their criteria may change
 FOUR_PHASES = "four_phases"
 

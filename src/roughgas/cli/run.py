@@ -124,6 +124,8 @@ def _say_done(output: str, point: Point) -> None:
     if "R_collisional" in found:
         errors = float(found["R_collisional"]), float(found["R_collisional_stderr"])
         value += f" over time, {Estimate(*errors)} over collisions"
+    if "R_corrected" in found:
+        value += f", {float(found['R_corrected']):.4f} corrected for the number of particles"
     if "target_met" in found:
         value += f", target {REACHED[int(found['target_met'])]}"
     took = f"{int(found['collisions']):,} collisions in {float(found['kernel_seconds']):.1f} s"

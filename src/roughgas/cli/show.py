@@ -143,6 +143,7 @@ def _ratio(point: Dataset) -> list[list[str]]:
     return [
         ["R", f"{Estimate(R, float(point.R_stderr))}{', averaged over time' * over_time}"],
         ["95 % interval", f"{R - half:.{digits}f} to {R + half:.{digits}f}{trust}"],
+        *corrected(point),
         *collisional(point),
         *_target(point),
         *theory_beside(point, R, expected),
@@ -228,6 +229,14 @@ def theory_beside(point: Dataset, R: float, expected: float) -> list[list[str]]:
         return [["theory", f"none ({name}): at beta = -1 {spins}"]]
     side = "below" if R < expected else "above"
     return [["theory", f"{expected:.4f}, {name}: R is {abs(R - expected):.4f} {side} it"]]
+
+
+def corrected(point: Dataset) -> list[list[str]]:
+    """Return R for as many degrees of freedom as a gas has that conserves its momentum."""
+    if "R_corrected" not in point:
+        return []
+    said = "of the mean energies, with D (N - 1) translational degrees of freedom"
+    return [["R_corrected", f"{float(point.R_corrected):.4f}, {said}"]]
 
 
 def collisional(point: Dataset) -> list[list[str]]:

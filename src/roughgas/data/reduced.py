@@ -27,7 +27,7 @@ UNSURE = {
 }
 """Those that may be unknown, which is NaN."""
 SOUND = {
-    **dict.fromkeys(("R", "R_ratio_of_means"), SHARE),
+    **dict.fromkeys(("R", "R_ratio_of_means", "R_corrected"), SHARE),
     **dict.fromkeys(("E_trans", "E_rot", "collisions", "kernel_seconds"), AMOUNT),
     **dict.fromkeys(sorted(VERDICTS), VERDICT),
     **UNSURE,
@@ -123,6 +123,7 @@ REDUCED = {
     **_pooled("R_collisional"),
     **_pooled("contact_correlation"),
     "R_ratio_of_means_stderr": _derived("standard error of R_ratio_of_means: scatter over seeds"),
+    "R_corrected_stderr": _derived("standard error of R_corrected: scatter over seeds"),
     "equilibrated": _derived(
         "share of seeds that were found in a steady state; 0 for a mixture of two, -1 where most "
         "have too little to tell"

@@ -119,6 +119,11 @@ POINT = {
         flags="unknown untrusted trusted",
     ),
     "R_ratio_of_means": _of_spin("share of rotation in the energy, from the mean energies"),
+    "R_corrected": _of_spin(
+        "R_ratio_of_means with D (N - 1) translational degrees of freedom in place of D N",
+        "1",
+        "momentum conserved",
+    ),
     **_at_contacts("R_collisional", "share of rotation in the energy, averaged over collisions"),
     **_at_contacts(
         "contact_correlation", "<v_t.v_r>/sqrt(<v_t^2> <v_r^2>), averaged over collisions"

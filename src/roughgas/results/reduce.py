@@ -35,7 +35,15 @@ SAME = ("experiment", "scale", "dimension", "inertia", "spin_share", "mu", "part
 OF_A_POINT = ("r", "beta", "seed", "r_label", "beta_label", "variant", "swept_value", "command")
 PROVENANCE = ("roughgas_version", "numpy_version", "numba_version", "kernel_source_hash")
 SCATTERED = (
-    *("R_ratio_of_means", "R_unsubtracted", "R_drift", "E_trans", "E_rot", "input_spin_share"),
+    *(
+        "R_ratio_of_means",
+        "R_corrected",
+        "R_unsubtracted",
+        "R_drift",
+        "E_trans",
+        "E_rot",
+        "input_spin_share",
+    ),
     *("E_trans_species", "E_rot_species", "R_species", "T_ratio_species"),
     *("decay_exponent", "shear_rate"),
 )

@@ -157,6 +157,16 @@ def closed_axes(effects: Effects) -> set[int]:
     return {getattr(wall, "axis", 0) for wall in walls}
 
 
+def conserves_momentum(scene: Scene) -> bool:
+    """Return whether nothing but the particles themselves changes their momenta.
+
+    Random kicks go to pairs, and conserve the momentum. Of a sheared gas flow and mean spin are
+    removed, so that neither motion has all N (see roughgas.simulation.energies).
+    """
+    effects = scene.effects
+    return not closed_axes(effects) and effects.gravity is None and effects.shear is None
+
+
 def strokes(effects: Effects, dimension: int) -> np.ndarray:
     """Return how far walls at the low and the high end of each axis come into the box, in a.
 

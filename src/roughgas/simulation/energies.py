@@ -131,6 +131,15 @@ def ratio_of_means(energies: Energies, axis: int = -1) -> np.ndarray:
     return ratio(energies.map(lambda part: part.mean(axis)))
 
 
+def free_of_momentum(R: float, particles: int) -> float:
+    """Return R of energies for D (N - 1) translational degrees of freedom in place of D N.
+
+    A gas that conserves its momentum has no others: E_tr is N/(N - 1) of what it is per velocity,
+    so that R becomes (N - 1) R/(N - R), lower by R (1 - R)/N to first order.
+    """
+    return (particles - 1) * R / (particles - R)
+
+
 def _components(columns: Columns, quantity: str) -> list[str]:
     """Names of the columns of a vector: `vv_x`, `vv_y`, ...; a spin in the plane has one, `w`."""
     names = [f"{quantity}_{axis}" for axis in "xyz"]

@@ -14,9 +14,9 @@ from roughgas.effects import speed_of_r
 from roughgas.effects.planes import LEAST_DEPARTURE
 from roughgas.effects.species import packing
 from roughgas.kernel import hooks
-from roughgas.scene import Scene, build
+from roughgas.scene import Scene, build, conserves_momentum
 from roughgas.simulation import schedule
-from roughgas.simulation.energies import species_names
+from roughgas.simulation.energies import free_of_momentum, species_names
 from roughgas.simulation.gas import Gas
 from roughgas.simulation.journal import Journal
 from roughgas.simulation.recorder import Recorder
@@ -24,7 +24,7 @@ from roughgas.simulation.restart import Initial, check_initial, final_states, is
 from roughgas.statistics.errors import UNKNOWN, YES
 from roughgas.theory.mixtures import SPECIES
 
-ENERGIES = ("E_trans", "E_rot", "R", "R_ratio_of_means")
+ENERGIES = ("E_trans", "E_rot", "R", "R_ratio_of_means", "R_corrected")
 VOUCHED = {
     "equilibrated": ENERGIES,
     "R_ci95_trusted": (*ENERGIES, "R_stderr", "R_dof", "R_ci95", "autocorrelation_time"),
@@ -63,6 +63,8 @@ def run_point(
     found = schedule.of(experiment).run(scene, experiment, seed, recorder, initial)
     if keep:
         found |= final_states(recorder.gases)
+    if "R_ratio_of_means" in found and conserves_momentum(scene):
+        found["R_corrected"] = free_of_momentum(found["R_ratio_of_means"], number)
     found |= species_names(experiment)
     found |= {"collisions": recorder.collisions, "kernel_seconds": recorder.seconds}
     if scene.effects.contact_time is not None:

@@ -195,7 +195,7 @@ def stationary_shares(
     translational = (
         s * dimension * rates.translational_gain + (1 - s) * spins * rates.rotational_loss
     )
-    limit = np.clip(s * q / (s * q + 1 - s), 0, 1)
+    limit = np.clip(quotient(s * q, s * q + 1 - s), 0, 1)
     return shares(np.maximum(translational, 0), np.maximum(rotational, 0), neither=limit)
 
 
