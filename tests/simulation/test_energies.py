@@ -174,7 +174,8 @@ def test_smooth_particles_have_an_R_that_is_known_for_certain(experiment):
 def test_any_legal_moment_of_inertia_gives_numbers(inertia):
     experiment = SHEARED | {"effects": SHEARED["effects"] | {"spin": {"inertia": inertia}}}
     found = point(experiment, 0.9, 0.5)
-    assert all(np.isfinite(found[name]) for name in VOUCHED["R_ci95_trusted"])
+    names = set(VOUCHED["R_ci95_trusted"]) - {"R_corrected"}  # which a sheared gas does not have
+    assert all(np.isfinite(found[name]) for name in names)
     assert found["energy_imbalance"] < 1e-11
 
 
