@@ -59,6 +59,7 @@ BEYOND = {  # the experiments beyond the paper, and the third axis of their swee
     "mixtures.cooling_polydisperse": {"species.disks.deviation": ["0.2"]},
     "viscoelastic.cooling_viscoelastic": {},
     "couette.couette": {},
+    "megias_santos.dilute": {"thermostat.spin_share": ["0.5"]},
 }
 TINY |= {name: {"sweep": SWEEP | axis} for name, axis in BEYOND.items()}
 for name, box in (
@@ -69,8 +70,10 @@ for name, box in (
     ("mixtures.cooling_sizes", [20, 20]),
     ("drives.shaken_walls", [20, 20]),
     ("couette.couette", [20, 20]),
+    ("megias_santos.dilute", [100, 100]),
 ):
     TINY[name] |= {"particles": 10, "box": box}
+TINY["megias_santos.dilute"]["schedule"] = {"equilibrate": 80, "measure": 800, "target_stderr": 0.5}
 
 
 class Project:
