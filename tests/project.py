@@ -73,7 +73,7 @@ for name, box in (
     ("megias_santos.dilute", [100, 100]),
 ):
     TINY[name] |= {"particles": 10, "box": box}
-TINY["megias_santos.dilute"]["schedule"] = {"equilibrate": 80, "measure": 800, "target_stderr": 0.5}
+TINY["megias_santos.dilute"]["schedule"] = {"equilibrate": 80, "measure": 800, "target_stderr": 0.1}
 
 
 class Project:
