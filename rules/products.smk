@@ -19,11 +19,13 @@ def data_of_figure(wildcards):
 
 
 def data_of_numbers(wildcards):
-    marks = re.findall(
-        r"<!--([\w.]+)[.]\w+-->", Path("docs/results.md").read_text(encoding="utf-8")
-    )
-    quoted = sorted({*marks} & {*SWEPT_IN_STUDIES})
-    return reduced(scale_of(wildcards.folder), [*catalogue.shown_in("paper"), *quoted])
+    """The reduced datasets of the paper, and of what the page of results quotes of studies."""
+    from roughgas.claims.numbers import quoted  # loads xarray
+
+    page = Path("docs/results.md").read_text(encoding="utf-8")
+    named = {name.rpartition(".")[0] for name in quoted(page)}
+    beyond = sorted(named & {*SWEPT_IN_STUDIES})
+    return reduced(scale_of(wildcards.folder), [*catalogue.shown_in("paper"), *beyond])
 
 
 def claims_of_numbers(wildcards):

@@ -26,10 +26,10 @@ def published(method: str, at: xr.DataArray) -> tuple[xr.DataArray, xr.DataArray
     return values, errors
 
 
-def beside_published(gas: xr.Dataset, method: str = "DSMC") -> tuple[xr.DataArray, xr.DataArray]:
-    """Return R_corrected minus published R, and the combined standard error.
+def beside_published(gas: xr.Dataset) -> tuple[xr.DataArray, xr.DataArray]:
+    """Return R_corrected minus R published by DSMC, and the combined standard error.
 
     The error of R_corrected is taken as that of R, which pools the errors of seeds.
     """
-    values, errors = published(method, gas.R)
+    values, errors = published("DSMC", gas.R)
     return gas.R_corrected - values, np.sqrt(gas.R_stderr**2 + errors**2)

@@ -66,6 +66,11 @@ def filled(page: str, numbers: Mapping[str, str], marks: bool = False) -> str:
     return MARKED.sub(lambda one: numbers[one[2]] + one[1] * marks, page)
 
 
+def quoted(page: str) -> set[str]:
+    """Return the names of all marks in a page."""
+    return {one[2] for one in MARKED.finditer(page)}
+
+
 def _beside_theory(gas: xr.Dataset) -> xr.Dataset:
     """Return a reduced dataset with `theory`, and its averages NaN where there is no steady state.
 
