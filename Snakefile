@@ -4,6 +4,7 @@
 #   snakemake -j2 figures --config scale=small  the same in a minute, with wide error bars
 #   snakemake -j2 friction                      one question beyond the paper, of a folder of studies/
 #   snakemake -j2 extensions                    all of them
+#   snakemake -j2 evidence                      every published number that we know of beside ours
 #   snakemake -j2 numbers                       the numbers that docs/results.md quotes
 #   snakemake -j1 explore                       a page in which to look at every point
 #   snakemake -j1 living                        a page in which a gas moves, with sliders
@@ -55,6 +56,7 @@ wildcard_constraints:
 include: "rules/report.smk"
 include: "rules/simulate.smk"
 include: "rules/studies.smk"
+include: "rules/evidence.smk"
 include: "rules/products.smk"
 include: "rules/accuracy.smk"
 include: "rules/movies.smk"
@@ -92,6 +94,13 @@ rule extensions:
         products_of_each,
         f"results/{SCALE}/extensions.csv" if SWEPT_IN_STUDIES else [],
         documents("run_times_extensions") if SWEPT_IN_STUDIES else [],
+
+
+rule evidence:
+    input:
+        drawn(["evidence"]),
+        f"figures/{folder_of(SCALE)}evidence.csv",
+        documents("evidence"),
 
 
 rule numbers:

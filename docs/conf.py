@@ -17,9 +17,11 @@ from sphinx.errors import SphinxError
 
 import roughgas
 from roughgas.claims.numbers import filled
+from roughgas.results.evidence import as_markdown, read_rows
 
 DOCS = Path(__file__).resolve().parent
 ROOT = DOCS.parent
+EVIDENCE = "<!-- evidence: figures/evidence.csv -->"
 INDEX, README = DOCS / "index.md", ROOT / "README.md"
 LINK = re.compile(r"\[([^\]]*)\]\(([^)#\s]+)(#[^)\s]*)?\)")
 LOADED = re.compile(
@@ -98,9 +100,12 @@ def mend_links(app, docname, source):
 
 
 def fill_numbers(app, docname, source):
-    """Numbers that pages quote from results become those of the last results."""
+    """Numbers and rows that pages take from results become those of the last results."""
     numbers = json.loads((ROOT / "figures" / "numbers.json").read_text(encoding="utf-8"))
     source[0] = filled(source[0], numbers)
+    if docname == "evidence":
+        rows = read_rows(ROOT / "figures" / "evidence.csv")
+        source[0] = source[0].replace(EVIDENCE, as_markdown(rows))
 
 
 def inline_formula(translator, node):

@@ -25,6 +25,7 @@ from roughgas.claims.evidence import (
     grade,
     of_ratio,
     over_seeds,
+    place_of,
     points,
     sample,
     spin_shares,
@@ -34,7 +35,9 @@ from roughgas.claims.evidence import (
     worse,
 )
 from roughgas.claims.paper import averaged, follows_its_share, follows_over_collisions
+from roughgas.claims.published import references
 from roughgas.data.reduced import third_axis
+from roughgas.results.evidence import Row
 from roughgas.statistics.errors import SIGNIFICANT, Estimate, sum_error
 from roughgas.statistics.fits import power_law
 from roughgas.theory.prediction import species_at

@@ -1,6 +1,6 @@
 """The data that statements are judged on, as samples of numbers beside theory, and verdicts."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -77,8 +77,12 @@ class Sample(NamedTuple):
 
     def place(self, index: int) -> str:
         """Return such as "r = 0.9, beta = 0, mu = 0.1"."""
-        columns = self.places.items()
-        return ", ".join(f"{name} = {written(column[index])}" for name, column in columns)
+        return place_of({name: column[index] for name, column in self.places.items()})
+
+
+def place_of(coordinates: Mapping[str, Any]) -> str:
+    """Return such as "r = 0.9, beta = 0, mu = 0.1"."""
+    return ", ".join(f"{name} = {written(value)}" for name, value in coordinates.items())
 
 
 def written(value: float | str) -> str:

@@ -39,7 +39,7 @@ RESERVED = (
         "accuracy_task",
     ),
     *("catalogue", "claims", "compile_kernel", "config", "coverage", "crate"),
-    *("document", "effective_config", "everything", "explore", "explore_extensions"),
+    *("document", "effective_config", "everything", "evidence", "explore", "explore_extensions"),
     *("extensions", "family", "fig1a", "fig1b", "fig2a", "fig2b", "figure", "figures"),
     *("front", "hard_cases", "hard_cases_chaos", "hard_cases_collapse"),
     *("hard_cases_cooling", "living", "living_page", "movie", "movies", "numbers", "page"),

@@ -46,9 +46,10 @@ def joined(
 
     Their experiments and scales join those of `config`, where NAME.KEY changes an experiment of
     the study NAME. The key FOLDERS has what else there is to each study: `folder`, `title`,
-    `experiments` that are swept, `figures` (the experiments that each shows), `movies`, and `tasks`
-    (their `settings` by scale, and their `experiments`), where it has any; the key BROKEN has the
-    arguments of the InputError of each that is broken. With `only` one study joins, and those that
+    `experiments` that are swept, `figures` (the experiments that each shows), `movies`, `evidence`
+    (the experiments that stand beside published numbers), and `tasks` (their `settings` by scale,
+    and their `experiments`), where it has any; the key BROKEN has the arguments of the InputError
+    of each that is broken. With `only` one study joins, and those that
     it extends. Raises InputError where `config` changes an experiment that no study has.
     """
     whole = {**config, settings_of.FOLDERS: {}, settings_of.BROKEN: {}}
@@ -149,21 +150,24 @@ def _shown(
     about: Mapping[str, Any],
     qualified: Callable[[str, str], str],
 ) -> dict[str, Any]:
-    """Return which experiments the figures and movies of a study show."""
+    """Return which experiments the figures, movies and evidence of a study show."""
+
+    def these(names: list[str], where: str) -> list[str]:
+        return [one if one == TASKS and TASKS in about else qualified(one, where) for one in names]
+
     every = [key.partition(".")[2] for key in about["experiments"]] + [TASKS] * (TASKS in about)
     usual = {name: every} if Path(about["folder"], "figure.py").exists() else {}
     figures = {
-        figure: [
-            one if one == TASKS and TASKS in about else qualified(one, f"figures.{figure}")
-            for one in shows
-        ]
+        figure: these(shows, f"figures.{figure}")
         for figure, shows in study.get("figures", usual).items()
     }
     movies = {
         movie: [qualified((shows.split() or [""])[0], f"movies.{movie}"), *shows.split()[1:]]
         for movie, shows in study.get("movies", {}).items()
     }
-    return {"figures": figures, "movies": movies}
+    beside = every if Path(about["folder"], "evidence.py").exists() else []
+    evidence = these(study.get("evidence", beside), "evidence")
+    return {"figures": figures, "movies": movies} | ({"evidence": evidence} if evidence else {})
 
 
 def _checked(name: str, folder: Path, root: Mapping[str, Any]) -> dict[str, Any]:
@@ -182,6 +186,9 @@ def _checked(name: str, folder: Path, root: Mapping[str, Any]) -> dict[str, Any]
         raise InputError(f"{source}: experiments", "(nothing)", "be given")
     if (folder / "tasks.py").exists() and TASKS not in study:
         raise InputError(f"{source}: tasks", "(nothing)", "be given beside tasks.py")
+    if "evidence" in study and not (folder / "evidence.py").exists():
+        legal = "be there, as config.yaml has evidence"
+        raise InputError(f"{FOLDER}/{name}/evidence.py", "(nothing)", legal)
     for file in ("tasks.py", "results.py"):
         if TASKS in study and not (folder / file).exists():
             legal = "be there, as config.yaml has tasks"
@@ -207,6 +214,7 @@ def _needs(name: str, study: Mapping[str, Any]) -> set[str]:
     about = study["about"]
     named = [one.get("extends", "") for one in study["experiments"].values()]
     named += [key for shows in about["figures"].values() for key in shows]
+    named += about.get("evidence", [])
     named += [shows[0] for shows in about["movies"].values()]
     return {key.partition(".")[0] for key in named if "." in key} - {name}
 
@@ -246,9 +254,9 @@ def _with_study(
         check_ancestors(key, joined["experiments"], source)
         for scale in scales:
             check_one(joined, key, scale, source)
-    for shows in about["figures"].values():
-        for key in shows:
-            settings_of.one_of(f"{source}: figures", key, {TASKS, *joined["experiments"]})
+    used = [("figures", key) for shows in about["figures"].values() for key in shows]
+    for part, key in [*used, *(("evidence", key) for key in about.get("evidence", []))]:
+        settings_of.one_of(f"{source}: {part}", key, {TASKS, *joined["experiments"]})
     if TASKS in about:
         about = about | {TASKS: about[TASKS] | {"settings": _at_scales(config, name, study)}}
     return joined | {settings_of.FOLDERS: whole[settings_of.FOLDERS] | {name: about}}

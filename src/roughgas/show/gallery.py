@@ -10,6 +10,7 @@ from roughgas.base.files import module_of
 from roughgas.data.netcdf import POINT, REDUCED, STUDIES, kind_of, opened, read_groups
 from roughgas.data.point import read_point
 from roughgas.data.reduced import read_reduced
+from roughgas.results.evidence import read_rows
 from roughgas.show import style
 from roughgas.show.catalogue import FIGURES, figures_of
 from roughgas.theory.prediction import ratio_of_point
@@ -65,6 +66,13 @@ def movie_of_study(folder: str, input: str | Path, *, output: str | Path) -> Non
     `draw(data, path)`."""
     (data,) = read_groups(input).values()
     module_of(folder, "movie").draw(data, Path(output))
+
+
+def draw_evidence(input: str | Path, *, output: Iterable[str | Path]) -> None:
+    """Draw the histogram of the rows of evidence in a CSV."""
+    figure = import_module("roughgas.show.figures.evidence")
+    rows = [row for _, row in read_rows(input)]
+    style.draw(lambda: figure.draw(rows), output)
 
 
 def _draw(
