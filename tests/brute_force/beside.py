@@ -37,11 +37,13 @@ def snapshot(state, scene):
 
 
 def drive_of(state, order):
-    """Where the kicks of a kernel's state stand."""
-    due = state.moments.thermostat
+    """Where the kicks or steps of a kernel's state stand."""
+    moments = state.moments
+    due = moments.langevin if moments.thermostat is None else moments.thermostat
     if due is None:
         return None
-    return Drive(list(state.clock[BASE] + due[order]), state.random[0], list(state.label))
+    word = 0 if state.random is None else state.random[0]
+    return Drive(list(state.clock[BASE] + due[order]), word, list(state.label))
 
 
 def brute_force_from(world, shot, last_contact=None):

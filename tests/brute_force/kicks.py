@@ -21,15 +21,23 @@ class SplitMix:
         z = (z ^ (z // 2**27)) * 0x94D049BB133111EB % WORD
         return z ^ (z // 2**31)
 
+    def gaussian(self):
+        """A Gaussian number of variance 1, by Marsaglia's polar method."""
+        square = 0.0
+        while not 0.0 < square < 1.0:
+            x, y = 2.0 * self.uniform() - 1.0, 2.0 * self.uniform() - 1.0
+            square = x * x + y * y
+        return x * math.sqrt(-2.0 * math.log(square) / square)
+
     def uniform(self):
         """A number in [0, 1), from the 53 leading bits."""
         return (self.next() // 2**11) / 2**53
 
 
 class Drive(NamedTuple):
-    """A thermostat: what it is to do, and where it stands."""
+    """A thermostat or a bath: where it stands."""
 
-    due: list  # absolute time of each particle's next kick
+    due: list  # absolute time of each particle's next kick or step
     word: int  # the generator's state
     order: list  # the particles in the order in which a partner is drawn from them
 
@@ -73,3 +81,36 @@ class Kicks:
 
     def _component(self, size):
         return size * (2.0 * self.random.uniform() - 1.0)
+
+
+class Bath:
+    """Steps of drag and noise under way, of the settings of a Langevin bath."""
+
+    def __init__(self, bath, inertia, dimension, drive, company):
+        self.bath, self.company, self.due = bath, company, list(drive.due)
+        self.rotates, self.dimension, self.spins = bool(inertia), dimension, 2 * dimension - 3
+        self.random = SplitMix(drive.word)
+
+    def next(self, time):
+        """(wait, kind, particle, none) of the next step."""
+        due = min(self.due)
+        return max(0.0, due - time), "kick", self.due.index(due), -1
+
+    def give(self, i, v, w):
+        """Let particle i take a step, in the arrays of velocities and of spins."""
+        m = self.company.mass[i]
+        self._step(v[i], range(self.dimension), m, "")
+        if self.rotates:
+            self._step(w[i], range(3 - self.spins, 3), m * self.company.q[i], "spin_")
+        self.due[i] += self.bath["interval"]
+
+    def _step(self, u, axes, mass, of):
+        """u(h) of du = -g u dt + (2 D)^(1/2) dW: mean u e^(-g h), variance D (1 - e^(-2 g h))/g."""
+        g, h = self.bath.get(f"{of}drag", 0.0), self.bath["interval"]
+        D = g * self.bath.get(f"{of}temperature", 0.0) / mass
+        D += self.bath.get(f"{of}power", 0.0) / (len(axes) * mass)
+        variance = D * (1.0 - math.exp(-2.0 * g * h)) / g if g else 2.0 * D * h
+        for axis in axes:
+            u[axis] *= math.exp(-g * h)
+            if self.bath["noise"]:
+                u[axis] += math.sqrt(variance) * self.random.gaussian()

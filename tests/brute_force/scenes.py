@@ -16,6 +16,7 @@ from roughgas.kernel.record import Sampling, columns, record
 from roughgas.scene import build
 from roughgas.scene.initial import initial_state
 
+NOISE = "temperature", "power"
 NEVER = 1e-300  # a contact time
 UNLIMITED = 2**60
 
@@ -28,6 +29,7 @@ _BED = _DISKS | {
 }
 _FRICTION = {"friction": {"mu": 0.5}}
 _HEAT = {"thermostat": {"power": 1.0, "spin_share": 0.5, "interval": 0.5}}
+_BATH = {"interval": 0.5, "drag": 0.2, "temperature": 1.5, "spin_drag": 0.1, "spin_power": 0.3}
 _TABLE = {"speed": [0.0, 0.5, 2.0, 5.0], "restitution": [1.0, 0.9, 0.8, 0.5], "reference": 1.0}
 _ROUGH = {"restitution": 1.0, "roughness": 1.0}
 _LATE = {"contact_time": {"duration": NEVER}}
@@ -56,6 +58,7 @@ KERNELS = {
         [100, 100], {"thermostat": _HEAT["thermostat"] | {"spin_share": 0.0}}
     ),
     "heated spheres": _kernel([12, 12, 12], _SPHERES, _HEAT, _FRICTION, _ALL_SUMS),
+    "bath": _kernel([100, 100], _DISKS, {"langevin": _BATH}),
     "viscoelastic": _kernel(
         [100, 100],
         _DISKS,
@@ -104,6 +107,8 @@ def scene_of(experiment, r, beta):
     effects = experiment["effects"]
     periods = [None if side == "open" else float(side) for side in experiment["box"]]
     floor, heat, shaken = (effects.get(name) for name in ("floor", "thermostat", "shaken_walls"))
+    bath = effects.get("langevin")
+    noisy = bath and any(bath.get(f"{of}{kind}") for of in ("", "spin_") for kind in NOISE)
     table, threshold = (effects.get(name) for name in ("restitution_table", "threshold"))
     walls = effects.get("walls", shaken)
     if walls:
@@ -118,6 +123,7 @@ def scene_of(experiment, r, beta):
         q=effects["spin"]["inertia"] if "spin" in effects else None,
         mu=effects.get("friction", {}).get("mu"),
         thermostat=heat and (heat["power"], heat["spin_share"], heat["interval"]),
+        bath=bath and bath | {"noise": noisy},
         gravity=effects.get("gravity", {}).get("acceleration", 0.0),
         floor=floor
         and (floor["amplitude"], floor["period"], floor["restitution"], floor["roughness"]),

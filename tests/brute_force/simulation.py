@@ -13,7 +13,7 @@ import numpy as np
 from brute_force.company import alike
 from brute_force.contacts import Contacts
 from brute_force.formulas import falling_time, first_touch, meeting_times
-from brute_force.kicks import Kicks, SplitMix
+from brute_force.kicks import Bath, Kicks, SplitMix
 from brute_force.sides import leave_thermal
 from brute_force.world import Event, Snapshot
 
@@ -49,8 +49,9 @@ class BruteForce(Contacts):
         self.pairs = np.array(list(itertools.combinations(range(self.number), 2))).reshape(-1, 2)
         company = company or alike(self.number, world.q)
         self.radius, self.mass, self.q, self.species = company
-        drawn = drive and world.thermostat
-        self.kicks = Kicks(drawn, world.q, self.dimension, drive, company) if drawn else None
+        kind, drawn = (Bath, world.bath) if world.bath else (Kicks, world.thermostat)
+        drawn = drive and drawn
+        self.kicks = kind(drawn, world.q, self.dimension, drive, company) if drawn else None
         self.random = self.kicks.random if drawn else SplitMix(word)
         self.seen = np.zeros(3)  # v_t^2, v_r^2 and v_t.v_r, over the contacts of pairs so far
         self.carried = np.zeros((3, 3))  # momentum times distance, by component and axis

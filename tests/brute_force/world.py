@@ -18,6 +18,7 @@ class World(NamedTuple):
     q: float | None  # None: particles do not spin
     mu: float | None = None  # coefficient of friction; None: contacts never slide
     thermostat: tuple[float, float, float] | None = None  # power, share of spin, interval
+    bath: dict | None = None  # settings of a Langevin bath, and whether it has noise
     gravity: float = 0.0  # along the last axis
     floor: tuple[float, float, float, float] | None = None  # amplitude, period, r, beta
     walls: tuple[float, float, float] | None = None  # width, r, beta; along the first axis

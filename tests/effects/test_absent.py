@@ -23,12 +23,25 @@ from roughgas.simulation.point import run_point
 from roughgas.simulation.restart import arrays_of
 
 PROGRAM = Path(__file__).parent.parent / "machine_code.py"
-RANDOM = {"thermostat", "left_wall", "front_wall"}  # of the sides, those that are thermal here
-DRIVES = {"floor", "shaken_walls", "shear", "thermostat", "bottom_wall", "front_wall"}
+RANDOM = {
+    "thermostat",
+    "langevin",
+    "left_wall",
+    "front_wall",
+}  # of the sides, those that are thermal here
+DRIVES = {"floor", "shaken_walls", "shear", "thermostat", "langevin"}
+DRIVES |= {"bottom_wall", "front_wall"}
 FLOWS = {"shear", "bottom_wall", "front_wall"}  # of the sides, those that slide across the flow
 SMALL = {2: (16, [20, 20]), 3: (16, [12, 12, 12])}
-MOMENTS = {"contact_time", "thermostat"}  # what keeps a time for each particle
-EVENTS = {"floor", "walls", "shaken_walls", *SIDES, "thermostat"}  # what has events of its own
+MOMENTS = {"contact_time", "thermostat", "langevin"}  # what keeps a time for each particle
+EVENTS = {
+    "floor",
+    "walls",
+    "shaken_walls",
+    *SIDES,
+    "thermostat",
+    "langevin",
+}  # what has events of its own
 SUMS = {"contact_averages": 3, "contact_stress": 9}  # what keeps running sums, and how many
 PHASES = {"floor", "shaken_walls", "bottom_wall", "lid", "shear"}  # sides: those that move
 
@@ -53,7 +66,7 @@ def poisoned(folder, kernel, *effects):
 
 
 EVERY_EFFECT = ["sheared", "walled", "shaken", "heated spheres", "viscoelastic", "tabulated bed"]
-EVERY_EFFECT += ["container", "closed spheres"]
+EVERY_EFFECT += ["bath", "container", "closed spheres"]
 """Kernels in which each effect is there at least once; from the barest one all are absent."""
 
 
@@ -142,7 +155,7 @@ OF_CONTACTS = {f"R_collisional{end}" for end in ("", "_stderr", "_dof", "_ci95")
 }
 OF_CONTACT_TIME = {"contact_time", "contact_time_fraction"}
 # what does work has an account
-WORK = ("floor", "walls", "shaken_walls", *SIDES, "shear", "thermostat")
+WORK = ("floor", "walls", "shaken_walls", *SIDES, "shear", "thermostat", "langevin")
 
 
 @pytest.mark.parametrize("kernel", kernels())

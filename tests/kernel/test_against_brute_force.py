@@ -31,6 +31,7 @@ PISTONS = {
     "bottom_wall": SHAKEN | {"restitution": 0.9},
     "lid": SHAKEN | {"wave": "triangle", "period": 1.0},
 }
+DRAG = {"interval": 10.0, "drag": 0.001, "spin_drag": 0.002}
 BED = {name: KERNELS["bed"]["effects"][name] for name in ("spin", "gravity")} | {
     "floor": {"amplitude": 1.0, "period": 1.0, "restitution": 1.0, "roughness": -1.0}
 }
@@ -122,6 +123,13 @@ CASES = {  # experiment, r, beta, seed
     "kicks of a pair": (heated("heated", 2, [9, 9]), 0.9, 0.2, 5),
     "kicks, no spin": (heated("heated, smooth", 8, [12, 12]), 0.95, -1.0, 6),
     "kicks of spheres": (heated("heated spheres", 8, [7, 7, 7], spin_share=0.3), 0.9, 0.5, 7),
+    "bath": (settings("bath", 8, [12, 12]), 0.9, 0.4, 1),
+    "bath of spins": (
+        settings("bath", 8, [12, 12], langevin={"drag": 0.0, "temperature": 0.0, "spin_drag": 2.0}),
+        *(0.98, -0.5, 2),
+    ),
+    "species, bath": (of_species("bath", 12, [16, 16]), 0.9, 0.2, 17),
+    "drag": (closed({"spin": {"inertia": 0.5}, "langevin": DRAG}, [14, 16]), 1.0, 0.9, 1),
     "species": (of_species("gas", 8, [14, 14]), 0.98, 0.2, 1),
     "species, smallest box": (of_species("gas", 3, [6.02, 9.0]), 0.99, 0.5, 2),
     "species, smooth": (of_species("smooth", 8, [14, 14], SMOOTH, []), 0.98, -1.0, 5),
@@ -150,7 +158,7 @@ RARE = {"sheared spheres", "bed of spheres", "tabulated bed", "friction of spher
 RARE |= {"friction of floor and walls", "kicks, no spin", "kicks of spheres", "pistons"}
 RARE |= {"under a thermal lid", "under an inelastic lid", "species, container", "closed spheres"}
 RARE |= {"species, bed", "species, smallest box", "species, smooth", "species, sheared"}
-RARE |= {"species, shaken walls", "species, spheres"}
+RARE |= {"species, shaken walls", "species, spheres", "species, bath", "drag"}
 """Kernels that no other test compiles."""
 SEGMENTS = 40
 
@@ -169,7 +177,7 @@ def test_the_kernel_makes_the_same_collisions(case):
     beside.assert_same(SEGMENTS, collisions)
     met = {"floor"} if world.floor else set()
     met |= ({"left", "right"} if world.walls else set()) | {side.name for side in world.sides}
-    met |= {"kick"} if world.thermostat else set()
+    met |= {"kick"} if world.thermostat or world.bath else set()
     assert all(beside.events[name] > 5 for name in met), beside.events
     if world.contact_time > 1e-3:
         assert 0 < state.counts[TOUCHED] < 0.9 * SEGMENTS * collisions

@@ -196,7 +196,7 @@ ATTRIBUTES = {
     **dict.fromkeys(("r", "beta", "inertia", "spin_share", "mu", "packing", "r_at_speed"), NUMBER),
     **dict.fromkeys(("experiment", "scale", "r_label", "beta_label", "command", "swept"), WORD),
     **dict.fromkeys(("variant", "theory", "study", "task"), WORD),
-    **dict.fromkeys(("experiment_json", "settings_json", "species_json"), JSON),
+    **dict.fromkeys(("experiment_json", "settings_json", "species_json", "langevin_json"), JSON),
 }
 """What the attributes that are read must be, where they are there."""
 LEGAL = {

@@ -6,6 +6,7 @@ looks comes last.
 
 from typing import Any, NamedTuple
 
+from roughgas.effects.bath import Langevin
 from roughgas.effects.contacts import ContactAverages, ContactStress, Friction, Spin
 from roughgas.effects.drives import Gravity, Shear, Thermostat
 from roughgas.effects.planes import Floor
@@ -32,6 +33,7 @@ class Effects(NamedTuple):
     lid: SideWall | None = None
     shear: Shear | None = None
     thermostat: Thermostat | None = None
+    langevin: Langevin | None = None
     friction: Friction | None = None
     viscoelastic: Viscoelastic | None = None
     restitution_table: RestitutionTable | None = None

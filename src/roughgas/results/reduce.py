@@ -25,6 +25,7 @@ from roughgas.data.reduced import GRID, SOUND, VERDICTS, check_sound, read_reduc
 from roughgas.data.variables import CLOCKS, POINT, Array, described
 from roughgas.statistics.errors import NO, UNKNOWN, YES, pooled
 from roughgas.statistics.steady_state import is_bimodal
+from roughgas.theory.bath import LANGEVIN
 from roughgas.theory.mixtures import SPECIES
 from roughgas.theory.prediction import equation_of
 
@@ -358,7 +359,11 @@ def _common_attributes(points: Sequence[Summary]) -> dict[str, Any]:
         values = {str(point.attributes.get(name, "")) for point in points}
         if len(values) > 1 and name in PROVENANCE:
             shared[name] = ", ".join(sorted(values))
-        elif (len(values) > 1 and name != SPECIES) or name in OF_A_POINT or name == swept:
+        elif (
+            (len(values) > 1 and name not in (SPECIES, LANGEVIN))
+            or name in OF_A_POINT
+            or name == swept
+        ):
             del shared[name]
     over = "r and beta" if swept is None else f"{swept}, r and beta"
     return shared | netcdf.COMMON_ATTRIBUTES | {"title": f"{shared['experiment']}: R over {over}"}

@@ -164,7 +164,8 @@ def conserves_momentum(scene: Scene) -> bool:
     removed, so that neither motion has all N (see roughgas.simulation.energies).
     """
     effects = scene.effects
-    return not closed_axes(effects) and effects.gravity is None and effects.shear is None
+    apart = effects.gravity, effects.shear, effects.langevin
+    return not closed_axes(effects) and all(one is None for one in apart)
 
 
 def strokes(effects: Effects, dimension: int) -> np.ndarray:

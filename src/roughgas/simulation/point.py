@@ -22,6 +22,7 @@ from roughgas.simulation.journal import Journal
 from roughgas.simulation.recorder import Recorder
 from roughgas.simulation.restart import Initial, check_initial, final_states, is_memory_of, owner
 from roughgas.statistics.errors import UNKNOWN, YES
+from roughgas.theory.bath import LANGEVIN
 from roughgas.theory.mixtures import SPECIES
 
 ENERGIES = ("E_trans", "E_rot", "R", "R_ratio_of_means", "R_corrected")
@@ -157,6 +158,8 @@ def _known_to_theory(scene, experiment):
         found["mu"] = effects.friction.mu
     if effects.thermostat is not None:
         found["spin_share"] = float(experiment["effects"]["thermostat"]["spin_share"])
+    if effects.langevin is not None:
+        found[LANGEVIN] = json.dumps(experiment["effects"]["langevin"])
     if experiment.get("species"):
         known = {name: experiment.get(name) or [] for name in ("species", "species_pairs")}
         sides = [0.0 if side == "open" else float(side) for side in experiment["box"]]

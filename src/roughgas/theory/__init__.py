@@ -13,6 +13,7 @@ per particle: one collision counts for both its particles.
 """
 
 from roughgas.theory.arguments import moment_of_inertia
+from roughgas.theory.bath import bath_temperatures
 from roughgas.theory.closed_forms import (
     a_G,
     b_G,

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from roughgas.theory.bath import LANGEVIN, ratio_in_bath
 from roughgas.theory.closed_forms import VOLUME
 from roughgas.theory.mixture_states import (
     kick_power,
@@ -37,6 +38,8 @@ def equation_of(attributes: Mapping[str, Any], variables: Container[Any] = ()) -
     """
     kind = attributes.get("theory", "K" if "plateau_end" in variables else "lun")
     swept = attributes.get("swept", "").rpartition(".")[2]
+    if LANGEVIN in attributes:
+        return Equation(kind, "rate equations in a Langevin bath")
     if SPECIES in attributes:
         return Equation(kind, name_of_mixture(attributes, kind))
     if "mu" in attributes or swept == "mu":
@@ -57,8 +60,10 @@ def predicted_ratio(attributes: Mapping[str, Any], r: Any, beta: Any) -> np.ndar
     adds translation only, and the result of the rate equations for other drives, and for friction.
     `attributes` are those of a reduced dataset, with what is its third axis: `inertia`,
     `spin_share` (of the drive), or `mu`; these broadcast with `r` and `beta`. Mixtures have
-    `species_json`, and a theory of their own.
+    `species_json`, a Langevin bath `langevin_json`, and theories of their own.
     """
+    if LANGEVIN in attributes:
+        return ratio_in_bath(attributes, r, beta)
     if SPECIES in attributes:
         return ratio_of_mixture(attributes, r, beta)
     from roughgas import theory
