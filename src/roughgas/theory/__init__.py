@@ -83,6 +83,7 @@ from roughgas.theory.rate_equations import (
     temperature_changes,
     translational_energy_change,
 )
+from roughgas.theory.sonine import Cumulants, sonine_state
 from roughgas.theory.viscoelastic import (
     maxwellian_restitution,
     viscoelastic_cooling,

@@ -183,7 +183,11 @@ def stationary_shares(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the stationary T_tr and T_rot as shares of their sum: 1 - R and R."""
     r, beta, dimension, q = material(r, beta, dimension, inertia)
-    rates = collision_rates(r, beta, dimension, q)
+    return balanced_shares(collision_rates(r, beta, dimension, q), dimension, q, spin_share)
+
+
+def balanced_shares(rates, dimension, q, spin_share=None) -> tuple[np.ndarray, np.ndarray]:
+    """Return the same for `rates`, which other velocities than Maxwellian ones may have."""
     if spin_share is None:
         difference = rates.translational_loss - rates.rotational_loss
         rotational, translational = positive_root(
