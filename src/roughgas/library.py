@@ -131,7 +131,9 @@ def simulate(
     Returns
     -------
     xarray.Dataset
-        ``R`` is the share of rotation in the energy, ``R_stderr`` its standard error.
+        ``R`` is the share of rotation in the energy, a mean over time, ``R_stderr`` its standard
+        error. ``R_collisional`` of a driven gas with the effect ``contact_averages`` is the average
+        over collisions that Lun's formula is derived for, unless the gas is sheared.
         ``R_series`` (sample) is what R is the mean of; ``E_trans_series`` and ``E_rot_series`` are
         the energies. Their coordinate is ``time`` (T) or, if the gas cools,
         ``collisions_per_particle``. ``R_replica`` (replica) has the cooling runs one by one. Every

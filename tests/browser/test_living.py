@@ -60,7 +60,8 @@ GO_ON = """
     missed.push(Math.abs(gas.imbalance()));
     const [u, v] = gas.drift(), { translation } = gas.energies();
     return { drift: (u * u + v * v) / (4 * translation), missed: Math.max(...missed),
-      gap: gas.leastGap(), R: sum / samples, made: 2 * gas.collisions / gas.number };"""
+      gap: gas.leastGap(), R: sum / samples, made: 2 * gas.collisions / gas.number,
+      collisional: record.collisional(gas.q) };"""
 
 
 @pytest.fixture(scope="module")
@@ -145,6 +146,12 @@ def test_a_gas_obeys_its_laws_as_long_as_a_lecture(page, name, material, collisi
         assert together < 0.01
         assert R.mean() == pytest.approx(kernel["R"], abs=4 * together)
         assert R[-1] == pytest.approx(R.mean(), abs=4 * R.std(ddof=1))
+        found = parts[-1]["collisional"]
+        assert (found is None) == (name == "cooling") == ("R_collisional" not in kernel)
+        if found:  # within 4 sigma of both
+            together = math.hypot(found["half"] / 2, kernel["R_collisional_stderr"])
+            assert together < 0.01
+            assert found["mean"] == pytest.approx(kernel["R_collisional"], abs=4 * together)
 
 
 def test_its_theory_is_that_of_the_library(page):
@@ -269,12 +276,14 @@ def test_sliders_act_at_once_and_the_address_keeps_them(page):
     slide(page, "beta", -0.5)
     assert now(page)[2:] == [0.8, -0.5, "cooling"]
     assert float(page.text(".theory")) == pytest.approx(theory.cooling_ratio(0.8, -0.5), abs=6e-4)
+    assert page.text(".collisional") == "only of a driven gas"
     page.find("input[value=sheared]")[0].click()
     assert now(page)[2:] == [0.8, -0.5, "sheared"]
     assert float(page.text(".theory")) == pytest.approx(theory.lun_ratio(-0.5, 0.5), abs=6e-4)
     assert page.script("return location.hash") == "#sheared/r0.8/beta-0.5"
     page.script("location.hash = '#vibrated/r0.7/beta1'")
     page.wait(lambda: now(page)[2:] == [0.7, 1, "vibrated"])
+    assert page.text(".law") == "Lun's formula, for averages over collisions"
     page.find("input.r")[0].send_keys("\ue014")  # the arrow to the right
     assert now(page)[2] == pytest.approx(0.71)
 

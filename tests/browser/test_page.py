@@ -55,7 +55,14 @@ def shows(page, ran, experiment, r, beta):
     place, found = data.sel(r=float(r), beta=float(beta)), numbers(page)
     R, stderr, ci95 = (place[name].item() for name in ("R", "R_stderr", "R_ci95"))
     theory = float(predicted_ratio(data.attrs, float(r), float(beta)))
-    assert close(found["R"], R, stderr)
+    over_time = "R over time" if "R_collisional" in data else "R"
+    assert close(found[over_time], R, stderr)
+    said = {name: value for name, value in found.items() if name.startswith("R over collisions")}
+    assert bool(said) == ("R_collisional" in data)
+    for name, value in said.items():
+        assert ("unlike Lun's formula" in name) == (experiment == "sheared")
+        collisional = (place[f"R_collisional{end}"].item() for end in ("", "_stderr"))
+        assert close(value, *collisional)
     low, high = map(float, found["95 % interval"].replace("−", "-").split(" to "))
     assert (low, high) == pytest.approx((R - ci95, R + ci95), abs=0.06 * ci95)
     (shown,) = (value for name, value in found.items() if name.startswith("theory"))

@@ -56,7 +56,7 @@ def test_a_point(product, capsys):
         (
             {"R_collisional": 0.35, "R_collisional_stderr": 0.002, "R_unsubtracted": 0.1},
             {},
-            ["averaged over collisions, mean flow and mean spin included, unlike theory"],
+            ["averaged over collisions, mean flow included, unlike theory"],
         ),
         ({"E_rot_stderr": 1e-5}, {}, ["E_rot          {}"]),
         ({"contact_time_fraction": 0.264}, {}, ["contact time   26 % of contacts were altered"]),
@@ -108,6 +108,36 @@ def test_a_reduced_dataset(product, capsys):
         assert row[5:7] == [f"{expected:.4f}", f"{R - expected:+.4f}"]
     first, _ = json.loads(shown(capsys, path, "--json"))["points"]
     assert (first["beta"], first["R"], first["theory"]) == (-0.5, data.R.values[0, 0], "K")
+
+
+@pytest.mark.parametrize(
+    ("more", "said"),
+    [
+        ({}, "over collisions, as theory of free cooling."),
+        ({"R_unsubtracted": 0.1}, "over collisions, mean flow included, unlike"),
+    ],
+)
+def test_a_reduced_dataset_with_averages_over_collisions(product, tmp_path, capsys, more, said):
+    path = shutil.copy(product / "reduced.nc", tmp_path / "reduced.nc")
+    with netCDF4.Dataset(path, "a") as file:
+        for name, value in ({"R_collisional": 0.35, "R_collisional_stderr": 0.002} | more).items():
+            file.createVariable(name, "f8", ("r", "beta"))[...] = value
+    text = shown(capsys, path)
+    lines = [line.split() for line in text.splitlines()]
+    (head,) = [line for line in lines if line[:2] == ["r", "beta"]]
+    rows = [line for line in lines if line[:1] == ["0.9"]]
+    assert head[-2:] == ["R_collisional", "steady"]
+    assert [row[7] for row in rows] == ["0.3500(20)"] * 2
+    assert said in text
+
+
+def test_theory_of_a_point_is_held_against_both_averages(product, tmp_path, capsys):
+    path = shutil.copy(product / "beta0.5_1.nc", tmp_path / "p.nc")
+    with netCDF4.Dataset(path, "a") as file:
+        for name, value in {"R_collisional": 0.35, "R_collisional_stderr": 0.002}.items():
+            file.createVariable(name, "f8")[...] = value
+    expected = float(theory.cooling_ratio(0.9, 0.5))
+    assert f"it, R_collisional {expected - 0.35:.4f} below\n" in shown(capsys, path)
 
 
 @pytest.mark.parametrize(

@@ -17,6 +17,7 @@ from roughgas.simulation import schedule
 from roughgas.simulation.points import points, variant_attributes
 from roughgas.simulation.restart import Initial, initial_of
 from roughgas.statistics.errors import NO, UNKNOWN, YES, Estimate
+from roughgas.theory.prediction import over_collisions
 
 IDENTITY = ("experiment", "variant", "scale", "r", "beta", "seed")
 """The attributes that name a point."""
@@ -123,7 +124,8 @@ def _say_done(output: str, point: Point) -> None:
     value = f"{Estimate(float(found[name]), float(found[f'{name}_stderr']))}"
     if "R_collisional" in found:
         errors = float(found["R_collisional"]), float(found["R_collisional_stderr"])
-        value += f" over time, {Estimate(*errors)} over collisions"
+        said = over_collisions(point.attributes, found)
+        value += f" over time, {Estimate(*errors)} over collisions ({said})"
     if "R_corrected" in found:
         value += f", {float(found['R_corrected']):.4f} corrected for the number of particles"
     if "target_met" in found:

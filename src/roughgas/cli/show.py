@@ -20,7 +20,12 @@ from roughgas.effects.species import packing
 from roughgas.results.products import rows as rows_of
 from roughgas.results.products import why_wide
 from roughgas.statistics.errors import NO, UNKNOWN, YES, Estimate, decimals_of
-from roughgas.theory.prediction import equation_of, ratio_of_point
+from roughgas.theory.prediction import (
+    equation_of,
+    like_theory,
+    over_collisions,
+    ratio_of_point,
+)
 
 FEW = 0.01
 """Share of contacts altered by the contact-time model, above which a result depends on it."""
@@ -190,6 +195,7 @@ def _reduced_text(data: Dataset) -> str:
     about, swept = data.attrs, third_axis(data.attrs)
     axes = [*([swept] if swept else []), "r", "beta"]
     found = ["R", "95 %", "theory", "residual"] if "R" in data else ["E_trans"]
+    found += ["R_collisional"] * ("R_collisional" in data)
     table = [[*axes, "seeds", *found, "steady"]]
     for row in rows_of(data):
         values = [row["value"], row["r"], row["beta"]][-len(axes) :]
@@ -207,7 +213,10 @@ def _reduced_text(data: Dataset) -> str:
     note = "Energies per degree of freedom; their error is the scatter over seeds."
     if "R" in data:
         note = "95 %: half width of the interval; ?: it may be too narrow, as the run is short."
-        note += f"{why_wide(data)}\nTheory: {equation_of(about).name}."
+        note += f"{why_wide(data)}\nTheory: {equation_of(about).name}; residual: R minus theory."
+    if "R_collisional" in data:
+        said = over_collisions(about, data)
+        note += f"\nR is averaged over time, R_collisional over collisions, {said}."
     return f"{columns(head)}\n\n{columns(table, numbers=True)}\n\n{note}"
 
 
@@ -218,7 +227,9 @@ def _found(row: dict[str, Any]) -> list[str]:
     if name == "E_trans":
         return [value]
     half = f"{row['R_ci95']:.4f}{'' if row['R_ci95_trusted'] == 1.0 else '?'}"
-    return [value, half, f"{row['R_theory']:.4f}", f"{row['residual']:+.4f}"]
+    collisional = row["R_collisional"], row["R_collisional_stderr"]
+    beside = [] if "" in collisional else [f"{Estimate(*collisional)}"]
+    return [value, half, f"{row['R_theory']:.4f}", f"{row['residual']:+.4f}", *beside]
 
 
 def theory_beside(point: Dataset, R: float, expected: float) -> list[list[str]]:
@@ -227,8 +238,14 @@ def theory_beside(point: Dataset, R: float, expected: float) -> list[list[str]]:
     if math.isnan(expected):
         spins = "contacts change no spin, and spins that are 0 stay so"
         return [["theory", f"none ({name}): at beta = -1 {spins}"]]
-    side = "below" if R < expected else "above"
-    return [["theory", f"{expected:.4f}, {name}: R is {abs(R - expected):.4f} {side} it"]]
+    found = f"{expected:.4f}, {name}: R is {_beside(R, expected)} it"
+    if "R_collisional" in point and like_theory(point):
+        found += f", R_collisional {_beside(float(point.R_collisional), expected)}"
+    return [["theory", found]]
+
+
+def _beside(R: float, expected: float) -> str:
+    return f"{abs(R - expected):.4f} {'below' if R < expected else 'above'}"
 
 
 def corrected(point: Dataset) -> list[list[str]]:
@@ -243,10 +260,7 @@ def collisional(point: Dataset) -> list[list[str]]:
     """Return R averaged over collisions, as the theory of a driven gas is."""
     if "R_collisional" not in point:
         return []
-    like = equation_of(point.attrs, point).name
-    said = f"averaged over collisions, as {like}"
-    if "R_unsubtracted" in point:
-        said = f"averaged over collisions, mean flow and mean spin included, unlike {like}"
+    said = f"averaged over collisions, {over_collisions(point.attrs, point)}"
     return [["R_collisional", f"{_estimate(point, 'R_collisional')}, {said}"]]
 
 

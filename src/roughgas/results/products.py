@@ -24,6 +24,7 @@ ABOUT = ("experiment", "scale", "particles", "dimension", "inertia", "parameter"
 COLUMNS = (
     *("n_seeds", "R", "R_stderr", "R_dof", "R_ci95", "R_ci95_trusted"),
     *("R_stderr_over_seeds", "R_stderr_within", "R_ratio_of_means", "R_corrected"),
+    *("R_collisional", "R_collisional_stderr"),
     *("R_unsubtracted", "R_unsubtracted_stderr", "E_trans", "E_trans_stderr", "E_rot"),
     *("input_spin_share", "equilibrated", "measured_from", "measured_for"),
     *("collisions", "contact_time_fraction"),

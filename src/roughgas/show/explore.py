@@ -21,18 +21,20 @@ from roughgas.data.variables import CLOCKS
 from roughgas.show import pages
 from roughgas.show.style import LOOKS
 from roughgas.statistics.errors import block_means
-from roughgas.theory.prediction import equation_of, predicted_ratio
+from roughgas.theory.prediction import equation_of, over_collisions, predicted_ratio
 
 DASHES: dict[Any, list[int]] = {"-": [0], "--": [6, 4], "-.": [6, 3, 1, 3]}  # in pixels
 NUMBERS = {
     "R": "R",
     "stderr": "R_stderr",
     "ci95": "R_ci95",
+    "collisional": "R_collisional",
+    "collisional_stderr": "R_collisional_stderr",
     "seeds": "n_seeds",
     "collisions": "collisions",
     "seconds": "kernel_seconds",
 }
-"""What is shown of a point: its name in the page, and in the reduced dataset."""
+"""What is shown of a point: its name in the page, and in the reduced dataset, if it is there."""
 GRID = -np.cos(np.linspace(0.0, np.pi, 241))
 """Roughness at which theory is drawn as a curve, closest where it is steepest: at the ends."""
 PROGRAM = ("uplot/uPlot.iife.min.js", "picture.js", "plots.js", "explore.js")
@@ -108,6 +110,7 @@ def experiment(reduced_path: str | Path, points: Path, longest: int = LONGEST) -
         "dimension": int(data.attrs["dimension"]),
         "swept": data.attrs.get("swept"),
         "theory": equation_of(data.attrs).name,
+        "over_collisions": over_collisions(data.attrs, data),
         "effects": list(settings.get("effects", {})),
         "variants": [_variant(one, value, runs, longest) for value, one in variants],
     }
@@ -135,7 +138,8 @@ def _series(data, value, runs, longest):
 
 def _point(data, run, longest):
     path, about = run
-    return {name: exact(data[column]) for name, column in NUMBERS.items()} | {
+    shown = {name: exact(data[column]) for name, column in NUMBERS.items() if column in data}
+    return shown | {
         "beta": about["beta_label"],
         "theory": exact(predicted_ratio(data.attrs, data.r.item(), data.beta.item())),
         # None where there is too little to tell

@@ -52,6 +52,24 @@ def equation_of(attributes: Mapping[str, Any], variables: Container[Any] = ()) -
     return Equation(kind, f"rate equations, spin share {share:g}" if share else "Lun's formula")
 
 
+def like_theory(variables: Container[Any]) -> bool:
+    """Return whether the average over collisions is that of theory, in what has these `variables`.
+
+    Theory of a driven gas balances what collisions change, so its R is an average over collisions
+    (McNamara & Luding 1998, below Eq. (Energybalance)). Contacts of a sheared gas feel its mean
+    flow and mean spin, which theory leaves out; there it is R over time that leaves them out, too.
+    """
+    return "R_unsubtracted" not in variables
+
+
+def over_collisions(attributes: Mapping[str, Any], variables: Container[Any] = ()) -> str:
+    """Return what R averaged over collisions is to the equation of `equation_of`, in words."""
+    name = equation_of(attributes, variables).name
+    if like_theory(variables):
+        return f"as {name}"
+    return f"mean flow included, unlike {name}"
+
+
 def predicted_ratio(attributes: Mapping[str, Any], r: Any, beta: Any) -> np.ndarray:
     """Return R of theory, over the broadcast shape of its arguments; NaN where nothing spins, and
     for a cooling gas at beta = -1: contacts leave spins alone there, and R has no stationary value.

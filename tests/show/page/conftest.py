@@ -32,6 +32,9 @@ def write(folder, experiment, r, beta, seed=1, cooling=False, **about):
     }
     if cooling:
         variables["plateau_end"] = 400.0
+    else:
+        variables |= {"R_collisional": ratio + 0.02, "R_collisional_stderr": 0.003}
+        variables |= {"R_collisional_dof": 12.0, "R_collisional_ci95": 0.007}
     path = (
         folder / experiment / about.get("variant", "") / f"r{r}" / f"beta{beta}" / f"seed{seed}.nc"
     )

@@ -23,6 +23,7 @@ class Gas {
     this.seen = new Int32Array(number); // changes of the partner's path when that was foreseen
     this.now = this.begun = this.collisions = this.halvings = 0;
     this.last = null;
+    this.takeContacts();
     this.openLedger();
     this.foreseeAll();
   }
@@ -129,8 +130,10 @@ class Gas {
     x -= width * Math.round(x / width);
     const length = Math.hypot(x, y), previous = Math.max(this.touched[i], this.touched[j]);
     const r = now - previous < this.contactTime() ? 1 : this.r;
-    const [px, py, turn] = this.response(r, this.beta, x / length, y / length, u,
-      this.vy[i] - this.vy[j], this.w[i] + this.w[j], 0.5, 0);
+    const v = this.vy[i] - this.vy[j], w = this.w[i] + this.w[j];
+    this.contacts.sliding += ((v * x - u * y) / length) ** 2;
+    this.contacts.spinning += w * w;
+    const [px, py, turn] = this.response(r, this.beta, x / length, y / length, u, v, w, 0.5, 0);
     this.ledger.driven -= px * rows * this.slide(1);
     this.change(i, -px, -py, turn);
     this.change(j, px, py, turn);
@@ -195,6 +198,14 @@ class Gas {
     const translation = squares / (4 * number), rotation = q * spins / (2 * number);
     const whole = translation + rotation;
     return { translation, rotation, R: whole > 0 ? rotation / whole : 0 };
+  }
+
+  // Sums of v_t^2 and v_r^2 over the contacts of disks since they were last taken: R averaged over
+  // collisions is q times the second over the first plus q times the second.
+  takeContacts() {
+    const { contacts } = this;
+    this.contacts = { sliding: 0, spinning: 0 };
+    return contacts;
   }
 
   // ---------------------------------------------------------------- what is conserved

@@ -58,6 +58,7 @@ class Panel {
     this.say("theory", theory === null ? "none" : theory.toFixed(3));
     this.say("law", law);
     this.say("mean", average ? withError(average.mean, average.half) : "settling");
+    this.say("collisional", this.collisional());
     this.say("window", this.window(average));
     this.say("clock", this.run.clock().toFixed(gas.free() ? 1 : 0));
     this.say("energy", left < 1 ? left.toPrecision(2) : left.toFixed(left < 10 ? 1 : 0));
@@ -70,6 +71,14 @@ class Panel {
     const span = [average.from, average.end].map(one => Math.round(one)).join(" to ");
     const error = average.half >= 0 ? "±: 95 % interval" : "error not known yet";
     return this.run.gas.free() ? `Mean from ${span} collisions per disk; ${error}.` : `Mean over time from ${span} T; ${error}.`;
+  }
+
+  // R averaged over collisions, which theory of a driven gas means, and what sets it apart.
+  collisional() {
+    const { gas, record } = this.run, found = record.collisional(gas.q);
+    if (gas.free()) return "only of a driven gas";
+    if (!found) return record.from === null ? "settling" : "none";
+    return withError(found.mean, found.half) + (gas.scene.shear ? ", with mean flow and spin, unlike theory" : "");
   }
 
   // What a person should know of the gas, if anything.

@@ -45,21 +45,22 @@ function isSteady(series, sigmas) {
 
 class Record {
   // begun: the time at which it begins; step: time between samples; group: samples that make a value,
-  // such as a period of the drive; signals: which numbers of a sample must be steady.
-  constructor(begun, step, group, signals) {
+  // such as a period of the drive; signals: which numbers of a sample must be steady; more: others.
+  constructor(begun, step, group, signals, more = []) {
     Object.assign(this, { begun, step, group, signals, due: begun + step, rows: [], latest: null, from: null, known: false });
+    this.columns = [...signals, ...more];
     this.end = this.judged = begun;
     this.startValue();
   }
 
-  startValue() { this.sums = this.signals.map(() => 0); this.count = 0; }
+  startValue() { this.sums = this.columns.map(() => 0); this.count = 0; }
 
   // Time that a value spans.
   get width() { return this.step * this.group; }
 
   // Adds what was seen at the time `due`; R is the first of the signals.
-  add(energies) {
-    this.signals.forEach((signal, k) => { this.sums[k] += energies[signal]; });
+  add(seen) {
+    this.columns.forEach((name, k) => { this.sums[k] += seen[name]; });
     this.due += this.step;
     if (++this.count < this.group) return;
     this.rows.push(this.sums.map(one => one / this.group));
@@ -87,10 +88,27 @@ class Record {
   // both NaN where there is too little to know them; null while the gas is not steady.
   average() {
     if (this.from === null) return null;
-    const series = this.rows.slice(Math.round((this.from - this.begun) / this.width)).map(row => row[0]);
-    const { error, blocks, time } = blocking(series);
+    const series = this.steady("R"), { error, blocks, time } = blocking(series);
     this.known ||= error === 0 || blocks >= LEAST_BLOCKS && series.length >= LEAST_TIMES * time;
     const sure = this.known ? error : NaN;
     return { mean: meanOf(series), error: sure, half: sure && sure * student(blocks), from: this.from, end: this.end };
+  }
+
+  // R averaged over the collisions in the same window, q B/(A + q B) of the means A and B of v_t^2 and
+  // v_r^2, and half of its interval from the linearised ratio, as roughgas.simulation.energies; null
+  // while there is none.
+  collisional(q) {
+    if (!this.average() || !this.columns.includes("sliding")) return null;
+    const [sliding, spinning] = ["sliding", "spinning"].map(name => this.steady(name));
+    const A = meanOf(sliding), B = meanOf(spinning), mean = q * B / (A + q * B);
+    if (!(A > 0 && B > 0)) return null;
+    const { error, blocks } = blocking(sliding.map((one, i) => mean * (1 - mean) * (spinning[i] / B - one / A)));
+    return { mean, half: this.known ? error * student(blocks) : NaN };
+  }
+
+  // What was seen of a column since it is steady.
+  steady(name) {
+    const k = this.columns.indexOf(name);
+    return this.rows.slice(Math.round((this.from - this.begun) / this.width)).map(row => row[k]);
   }
 }

@@ -20,7 +20,9 @@ class Run {
   // A gas with a floor is sampled twenty times a period, each value is a mean over a period.
   startRecord() {
     const { floor } = this.gas.scene, [step, group] = this.gas.free() ? [0.5, 1] : floor ? [floor.period / 20, 20] : [1, 1];
-    this.record = new Record(this.clock(), step, group, this.gas.free() ? ["R"] : ["R", "translation", "rotation"]);
+    const columns = this.gas.free() ? [["R"]] : [["R", "translation", "rotation"], ["sliding", "spinning"]];
+    this.record = new Record(this.clock(), step, group, ...columns);
+    this.gas.takeContacts();
   }
 
   // Takes over another material at once.
@@ -36,7 +38,7 @@ class Run {
       const most = free ? Math.ceil(record.due * gas.number / 2) : Infinity;
       const next = free ? until : Math.min(until, record.due);
       if (!gas.run(next - gas.begun, most, goesOn)) return false;
-      if (free ? gas.collisions >= most : gas.time > record.due - 1e-9) record.add(gas.energies());
+      if (free ? gas.collisions >= most : gas.time > record.due - 1e-9) record.add({ ...gas.energies(), ...gas.takeContacts() });
       if (free && this.isSlow()) gas.doubleSpeeds();
       if (free && gas.collisions < most) break;
     }

@@ -26,6 +26,7 @@ function prediction(gas) {
     return free && r < 1 ? [1, "limit: smooth contacts leave spin, take translation"]
       : [null, "none: no contact changes a spin, R depends on the start"];
   }
-  if (!free) return [lun(beta, q, r, mu), mu < Infinity ? "with friction, for averages over collisions" : "Lun's formula, for averages over collisions"];
+  const meant = gas.scene.shear ? "without mean flow and mean spin" : "for averages over collisions";
+  if (!free) return [lun(beta, q, r, mu), `${mu < Infinity ? "with friction" : "Lun's formula"}, ${meant}`];
   return mu < Infinity ? [null, "none here for friction: single disks escape"] : [cooling(r, beta, q), "theory of free cooling"];
 }

@@ -92,13 +92,14 @@ function sizeOf({ particles, dimension, box, packing }) {
 }
 
 function rows(point) {
-  const { theory } = chosen.experiment;
+  const { theory, over_collisions } = chosen.experiment, collisional = point.collisional ?? null;
   const found = [
-    ["R", withError(point.R, point.stderr)],
+    [collisional === null ? "R" : "R over time", withError(point.R, point.stderr)],
     ["standard error", point.stderr?.toPrecision(2) ?? "not known"],
     ["95 % interval", interval(point)],
     [theoryName(theory), point.theory?.toFixed(4) ?? "none here"],
     ["R − theory", residual(point)],
+    ...(collisional === null ? [] : [[`R over collisions, ${over_collisions}`, withError(collisional, point.collisional_stderr)]]),
     ["steady state", STEADY.get(point.steady)],
     ["seeds", String(point.seeds)],
     ["collisions", point.collisions.toLocaleString("en")],
