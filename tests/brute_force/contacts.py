@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from brute_force.formulas import cut_by_friction, in_space, tabulated, viscoelastic
+from brute_force.formulas import cut_by_friction, falling, in_space, tabulated, viscoelastic
 
 
 class Contacts:
@@ -17,6 +17,8 @@ class Contacts:
             r = viscoelastic(r, speed, world.viscous)
         if world.table:
             r = tabulated(r, speed, *world.table)
+        if world.power:
+            r = falling(r, speed, *world.power)
         if world.threshold and speed < world.threshold[0]:
             r = max(r, world.threshold[1])
         recent = max(self.last[k] for k in particles)

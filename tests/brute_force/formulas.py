@@ -62,6 +62,11 @@ def tabulated(r, speed, speeds, restitutions, reference):
     return max(0.0, 1.0 - (1.0 - r) * lost / whole)
 
 
+def falling(r, speed, reference, exponent, least):
+    """Restitution at a normal speed of what has r at the reference: Bizon et al. 1998."""
+    return max(least if r > least else r, 1.0 - (1.0 - r) * (speed / reference) ** exponent)
+
+
 def in_space(vector):
     """A vector in the plane or in space as one in space."""
     full = np.zeros(3)

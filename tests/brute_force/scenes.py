@@ -31,6 +31,8 @@ _FRICTION = {"friction": {"mu": 0.5}}
 _HEAT = {"thermostat": {"power": 1.0, "spin_share": 0.5, "interval": 0.5}}
 _BATH = {"interval": 0.5, "drag": 0.2, "temperature": 1.5, "spin_drag": 0.1, "spin_power": 0.3}
 _TABLE = {"speed": [0.0, 0.5, 2.0, 5.0], "restitution": [1.0, 0.9, 0.8, 0.5], "reference": 1.0}
+_POWER = {"speed": 2.0**0.5, "exponent": 0.75, "least": 0.7}  # of Bizon et al. (1998)
+_RUBBER = {"restitution": 0.8, "roughness": 0.35}
 _ROUGH = {"restitution": 1.0, "roughness": 1.0}
 _LATE = {"contact_time": {"duration": NEVER}}
 _SPHERES = {"spin": {"inertia": 0.4}}
@@ -78,6 +80,14 @@ KERNELS = {
         {"back_wall": {"velocity": 1.0, "roughness": 0.5}, "bottom_wall": {"restitution": 0.9}},
         {"lid": _SINE | {"shaken": "along", "roughness": 0.4}},
     ),
+    "layer": _kernel(
+        [12, 12, "open"],
+        _SPHERES,
+        {"gravity": {"acceleration": 1.0}, "floor": _SINE | _RUBBER},
+        {side: _RUBBER for side in ("left_wall", "right_wall", "front_wall", "back_wall")},
+        _FRICTION,
+        {"power_law": _POWER},
+    ),
     "tabulated bed": _kernel([50, "open"], _BED, {"restitution_table": _TABLE}),
 }
 
@@ -109,7 +119,9 @@ def scene_of(experiment, r, beta):
     floor, heat, shaken = (effects.get(name) for name in ("floor", "thermostat", "shaken_walls"))
     bath = effects.get("langevin")
     noisy = bath and any(bath.get(f"{of}{kind}") for of in ("", "spin_") for kind in NOISE)
-    table, threshold = (effects.get(name) for name in ("restitution_table", "threshold"))
+    table, power, threshold = (
+        effects.get(name) for name in ("restitution_table", "power_law", "threshold")
+    )
     walls = effects.get("walls", shaken)
     if walls:
         width, periods[0] = periods[0], None
@@ -138,6 +150,7 @@ def scene_of(experiment, r, beta):
         sides=sides,
         viscous=effects.get("viscoelastic", {}).get("speed", 0.0),
         table=table and (table["speed"], table["restitution"], table["reference"]),
+        power=power and (power["speed"], power["exponent"], power["least"]),
         threshold=threshold and (threshold["speed"], threshold["restitution"]),
     )
     return build(experiment, r, beta), world

@@ -30,6 +30,7 @@ class World(NamedTuple):
     sides: tuple[Side, ...] = ()  # walls on single sides of the box
     viscous: float = 0.0  # normal speed at which viscoelastic contacts have their r; 0: not so
     table: tuple[list, list, float] | None = None  # speeds, restitutions, speed at which r is r
+    power: tuple[float, float, float] | None = None  # speed at which r is r, exponent, least r
     threshold: tuple[float, float] | None = None  # slower contacts have this restitution, or more
 
 

@@ -1,5 +1,6 @@
-"""Restitution that depends on the normal speed: viscoelastic, tabulated, or constant when slow."""
+"""Restitution that depends on the normal speed: viscoelastic, a power, or tabulated."""
 
+import itertools
 import math
 from decimal import Decimal
 from types import SimpleNamespace
@@ -9,7 +10,8 @@ import pytest
 from brute_force import KERNELS, begin, run, settings
 
 from roughgas.base import InputError
-from roughgas.effects.restitution import ABOVE, B_1, B_2, B_3, B_4, fifth_root
+from roughgas.effects.restitution import ABOVE, B_1, B_2, B_3, B_4, LAWS, fifth_root
+from roughgas.kernel.memory import new_state
 from roughgas.kernel.state import EXPONENT
 from roughgas.scene import build
 
@@ -47,10 +49,10 @@ def test_fifth_roots():
     assert fifth_root(0.0, 12) == 0.0
 
 
-def hook_of(r, **table):
-    """(speed in a/T, restitution of a contact) -> what the table makes of it, as plain Python."""
-    experiment = {"box": [20, 20], "effects": {"restitution_table": TABLE | table}}
-    effect = build(experiment, r, -1.0).effects.restitution_table
+def hook_of(r, name="restitution_table", settings=TABLE):
+    """(speed in a/T, restitution of a contact) -> what the law makes of it, as plain Python."""
+    experiment = {"box": [20, 20], "effects": {name: settings}}
+    effect = getattr(build(experiment, r, -1.0).effects, name)
 
     def found(speed, own=r, exponent=0):
         state, present = at_exponent(exponent), -math.ldexp(speed, -exponent)
@@ -77,6 +79,50 @@ def test_other_contacts_lose_in_proportion():
     assert [restitution(v, 1.0) for v in (0.1, 5.0)] == [1.0, 1.0]
 
 
+BIZON = {"speed": math.sqrt(2.0), "exponent": 0.75, "least": 0.7}  # g = a/T^2, D = 2 a
+
+
+@pytest.mark.parametrize("exponent", [0.25, 0.75, 1.0, 2.5])
+def test_a_power_law_is_its_closed_form(exponent):
+    """Above its least value 1 - r goes as the power, to a few roundings, in any unit."""
+    restitution = hook_of(0.7, "power_law", BIZON | {"exponent": exponent})
+    for speed in np.geomspace(1e-12, 1.0, 40) * BIZON["speed"]:
+        lost = 0.3 * (speed / BIZON["speed"]) ** exponent
+        assert restitution(speed) == pytest.approx(1.0 - lost, abs=2e-16)
+        assert restitution(speed, exponent=-40) == restitution(speed)
+    for speed in (1.5, 10.0, 1e9):
+        assert restitution(speed) == 0.7
+    assert restitution(0.0) == 1.0
+
+
+def test_a_least_restitution_is_that_of_contacts_that_have_more():
+    """A contact with r = 0.4 at the speed keeps that when it is faster; without a least value r
+    falls to 0; an elastic contact is elastic at all speeds."""
+    restitution = hook_of(0.7, "power_law", BIZON)
+    v = 0.01 * BIZON["speed"]
+    assert restitution(v, 0.4) == pytest.approx(1.0 - 0.6 * 0.01**0.75, rel=1e-15)
+    assert [restitution(x, 0.4) for x in (1.5, 9.0)] == [0.4, 0.4]
+    assert [restitution(x, 1.0) for x in (v, 1e9)] == [1.0, 1.0]
+    bare = hook_of(0.7, "power_law", {"speed": 1.0, "exponent": 1})
+    assert [bare(x) for x in (2.0, 9.0)] == [pytest.approx(0.4), 0.0]
+
+
+def test_what_two_spheres_lose_head_on():
+    """(1 - r^2) of the energy of their relative motion, m v^2/4, at each speed.
+
+    They fly along the second axis far above the floor, which gravity does not change.
+    """
+    for speed in (0.01, 0.3, 1.0, 3.0):
+        scene, _ = begin(settings("layer", 2, [40, 40, "open"]), 0.7, 0.35)
+        position = np.array([[20.0, 18.999, 30.0], [20.0, 21.001, 30.0]])
+        velocity = np.array([[0.0, 0.5 * speed, 0.0], [0.0, -0.5 * speed, 0.0]])
+        state = new_state(scene, position, velocity, np.zeros((2, 3)))
+        run(state, scene, 1, collisions=1)
+        r = max(0.7, 1.0 - 0.3 * (speed / math.sqrt(2.0)) ** 0.75)
+        after = state.trajectory[:, 4]
+        assert 0.5 * (after**2).sum() == pytest.approx(0.25 * (r * speed) ** 2, rel=1e-12)
+
+
 def test_a_gas_is_the_same_in_any_unit_of_velocity():
     """To the last bit: in units of 2^20 a/T, and of 1 a/T."""
     ends = []
@@ -99,6 +145,31 @@ REFUSED = {
     "increase": {"speed": [0.0, 1.0, 1.0, 2.0]},
     "be a speed at which the table has less than 1": {"reference": 0.0},
 }
+
+
+def test_a_table_does_not_choose_where_contacts_have_their_r():
+    """Which decides by how much losses are scaled."""
+    effects = {"restitution_table": {key: TABLE[key] for key in ("speed", "restitution")}}
+    with pytest.raises(InputError) as caught:
+        build({"box": [20, 20], "effects": effects}, 0.9, -1.0)
+    key = "effects.restitution_table.reference"
+    assert str(caught.value) == f"{key} = (nothing): must be a number in [0, inf)"
+
+
+def test_an_exponent_is_made_of_square_roots():
+    with pytest.raises(InputError) as caught:
+        hook_of(0.7, "power_law", BIZON | {"exponent": 0.2})
+    assert str(caught.value) == "effects.power_law.exponent = 0.2: must be a multiple of 1/4"
+
+
+@pytest.mark.parametrize("pair", [*itertools.combinations(LAWS, 2)])
+def test_two_laws_are_refused_whichever_they_are(pair):
+    settings = {"viscoelastic": {}, "power_law": BIZON, "restitution_table": TABLE}
+    effects = {name: settings[name] for name in pair}
+    with pytest.raises(InputError) as caught:
+        build({"box": [20, 20], "effects": effects}, 0.9, -1.0)
+    legal = "must not both define r of the speed"
+    assert str(caught.value) == f"effects = {' and '.join(pair)}: {legal}"
 
 
 @pytest.mark.parametrize("legal", REFUSED)

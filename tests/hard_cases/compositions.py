@@ -42,6 +42,11 @@ PARAMETERS = {
     },
     "friction": {"mu": st.sampled_from([0.0, 0.05, 0.3, 1.0, 20.0])},
     "viscoelastic": {"speed": st.floats(0.1, 10.0)},
+    "power_law": {
+        "speed": st.floats(0.1, 10.0),
+        "exponent": st.sampled_from([0.25, 0.75, 1.0]),
+        "least": st.sampled_from([0.0, 0.7]),
+    },
     "restitution_table": {
         "speed": st.just([0.0, 0.3, 2.0]),
         "restitution": st.sampled_from([[1.0, 0.9, 0.7], [0.95, 0.95, 1.0]]),
@@ -58,7 +63,8 @@ NEEDS += [("contact_averages", "spin")]
 NEEDS += [*((name, other) for pair in OPPOSITE for name, other in (pair, pair[::-1]))]
 NEEDS += [("bottom_wall", "lid")]
 EXCLUDES = [("walls", "shear"), ("shaken_walls", "shear"), ("walls", "shaken_walls")]
-EXCLUDES += [("viscoelastic", "restitution_table"), ("bottom_wall", "gravity")]
+EXCLUDES += [("bottom_wall", "gravity")]
+EXCLUDES += itertools.combinations(("viscoelastic", "power_law", "restitution_table"), 2)
 EXCLUDES += [*itertools.product(("walls", "shaken_walls", "shear"), OPPOSITE[0])]
 EXCLUDES += [*(("shear", name) for name in OPPOSITE[1])]
 # A bed in space that is sheared between its sides heats up without end: flights grow long while

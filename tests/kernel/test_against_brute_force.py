@@ -99,6 +99,11 @@ CASES = {  # experiment, r, beta, seed
     "viscoelastic gas": (settings("viscoelastic", 8, [12, 12]), 0.9, 0.2, 19),
     "slow viscoelastic gas": (settings("viscoelastic", 8, [12, 12], **SLOW_PAIRS), 0.6, 0.2, 20),
     "tabulated bed": (settings("tabulated bed", 16, [10, "open"], floor=ROUGH), 0.85, 0.2, 21),
+    "layer": (settings("layer", 24, [8, 9, "open"]), 0.7, 0.35, 22),
+    "layer, another power": (
+        settings("layer", 24, [8, 9, "open"], power_law={"speed": 8.0, "exponent": 1.75}),
+        *(0.8, 0.35, 23),
+    ),
     "spheres": (settings("spheres", 8, [7, 7, 7]), 0.98, 0.2, 14),
     "sheared spheres": (settings("sheared", 8, [8, 7, 9], spin={"inertia": 0.4}), 0.9, 0.2, 17),
     "bed of spheres": (settings("bed", 16, [7, 8, "open"], spin={"inertia": 0.4}), 0.8, 0.2, 18),

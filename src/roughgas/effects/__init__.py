@@ -10,7 +10,13 @@ from roughgas.effects.bath import Langevin
 from roughgas.effects.contacts import ContactAverages, ContactStress, Friction, Spin
 from roughgas.effects.drives import Gravity, Shear, Thermostat
 from roughgas.effects.planes import Floor
-from roughgas.effects.restitution import ContactTime, RestitutionTable, Threshold, Viscoelastic
+from roughgas.effects.restitution import (
+    ContactTime,
+    PowerLaw,
+    RestitutionTable,
+    Threshold,
+    Viscoelastic,
+)
 from roughgas.effects.settings import schema_of_kinds
 from roughgas.effects.species import Species
 from roughgas.effects.walls import ShakenWalls, SideWall, Walls
@@ -36,6 +42,7 @@ class Effects(NamedTuple):
     langevin: Langevin | None = None
     friction: Friction | None = None
     viscoelastic: Viscoelastic | None = None
+    power_law: PowerLaw | None = None
     restitution_table: RestitutionTable | None = None
     threshold: Threshold | None = None
     contact_time: ContactTime | None = None
@@ -50,7 +57,7 @@ def inertia(effects: Effects) -> float | None:
 
 def speed_of_r(effects: Effects) -> float | None:
     """Return the normal speed at which contacts have their r, in a/T; None where it is any."""
-    law = effects.viscoelastic or effects.restitution_table
+    law = effects.viscoelastic or effects.power_law or effects.restitution_table
     return None if law is None else law.speed
 
 

@@ -1,5 +1,16 @@
 """Restitution that depends on the contact: on its normal speed, or on the time since the last one.
 
+A law has r at one normal speed, and says how 1 - r depends on the speed; without a law r is
+constant. A scene has one law at most.
+
+By a power: 1 - r grows as a power p of the normal speed g, and r falls to a least value,
+
+    r(g) = max(r_min, 1 - (1 - r) (g/g_0)^p)
+
+with r at g_0. C. Bizon, M. D. Shattuck, J. B. Swift, W. D. McCormick and H. L. Swinney, Phys. Rev.
+Lett. 80, 57 (1998) have p = 3/4, g_0 the square root of gravity times the diameter, and r_min = r =
+0.7. p is a multiple of 1/4, so that the power is made of square roots and products.
+
 From a table over the normal speed, as it was measured, or made by any function. Between the table's
 speeds the restitution is on straight lines, beyond them it stays as it is at the ends. What the
 table has for the particles also says how other contacts depend on the speed: 1 - r of each is in
@@ -37,12 +48,66 @@ from roughgas.effects.settings import Number, Numbers, register
 from roughgas.kernel.jit import compiled, jit
 from roughgas.kernel.state import EXPONENT
 
+LAWS = ("viscoelastic", "power_law", "restitution_table")
+"""Effects that say how r depends on the normal speed, of which a scene has one at most."""
+
+
+def check_alone(around):
+    """Raise InputError where a scene has two laws of restitution."""
+    found = [name for name in LAWS if name in around.effects]
+    if len(found) > 1:
+        raise InputError("effects", " and ".join(found), "not both define r of the speed")
+
+
+POWER_SETTINGS = {
+    "speed": Number(
+        "Normal speed at which contacts have their restitution r, in a/T.", "[1e-09, 1e+09]"
+    ),
+    "exponent": Number("Power of the normal speed as which 1 - r grows: n/4, n whole.", "(0, 4]"),
+    "least": Number(
+        "Restitution of fast contacts, below which it does not fall; those that have less at "
+        "`speed` keep that.",
+        "[0, 1]",
+        default=0.0,
+    ),
+}
+
+
+class PowerLaw(NamedTuple):
+    """Restitution that falls as a power of the normal speed, down to a least value."""
+
+    speed: float  # at which contacts have the r of their material, in a/T
+    quarters: int  # four times the exponent
+    least: float
+
+    @classmethod
+    def from_settings(cls, settings, around):
+        """Return the effect; raise InputError beside another law, and for other exponents."""
+        check_alone(around)
+        speed, exponent, least = settings.values()
+        if not (4.0 * exponent).is_integer():
+            raise InputError("effects.power_law.exponent", exponent, "be a multiple of 1/4")
+        return cls(speed, int(4.0 * exponent), least)
+
+
+@jit
+def restitution_by_power(law, index, r, state, i, j, time, speed):
+    ratio = math.ldexp(abs(speed), int(state.counts[EXPONENT])) / law.speed
+    root, power = math.sqrt(math.sqrt(ratio)), 1.0
+    for _ in range(law.quarters):
+        power *= root
+    return max(min(r, law.least), 1.0 - (1.0 - r) * power)
+
+
+register(PowerLaw, POWER_SETTINGS, restitution=restitution_by_power)
+
+
 MOST = 32  # entries: a table that is shorter is filled up, so that all have the same machine code
 TABLE_SETTINGS = {
     "speed": Numbers("Normal speeds, increasing, in a/T.", "[0, inf)", 2, MOST),
     "restitution": Numbers("Restitution at each speed.", "[0, 1]", 2, MOST),
     "reference": Number(
-        "Normal speed at which contacts have their restitution r, in a/T.", "[0, inf)", 1.0
+        "Normal speed at which contacts have their restitution r, in a/T.", "[0, inf)"
     ),
 }
 
@@ -59,6 +124,7 @@ class RestitutionTable(NamedTuple):
     @classmethod
     def from_settings(cls, settings, around):
         """Return the effect; raise InputError for columns that are no table."""
+        check_alone(around)
         speeds, values, reference = settings.values()
         _check(speeds, values)
         losses = [1.0 - value for value in values]
@@ -131,9 +197,7 @@ class Viscoelastic(NamedTuple):
     @classmethod
     def from_settings(cls, settings, around):
         """Return the effect; raise InputError beside another law."""
-        if "restitution_table" in around.effects:
-            what = "viscoelastic and restitution_table"
-            raise InputError("effects", what, "not both define r of the speed")
+        check_alone(around)
         r, speed = around.restitution, settings["speed"]
         return cls(speed, fifth_root(speed, 0), r, x_of(r) if 0.0 < r < 1.0 else 0.0)
 

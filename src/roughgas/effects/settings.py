@@ -42,7 +42,8 @@ class Number(NamedTuple):
             return self.default
         is_number = isinstance(value, int | float) and not isinstance(value, bool)
         if not is_number or not Interval(self.interval).holds(value):
-            raise InputError(key, value, f"be a number in {self.interval}")
+            given = "(nothing)" if value is None else value
+            raise InputError(key, given, f"be a number in {self.interval}")
         return float(value)
 
     def schema(self) -> dict[str, Any]:
