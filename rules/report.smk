@@ -146,6 +146,21 @@ rule effective_config:
         " --changes {params.changes:q} --output {output:q} > {log:q} 2>&1"
 
 
+rule codemeta:
+    input:
+        of_project(SOURCE / "CITATION.cff"),
+    output:
+        "codemeta.json",
+    log:
+        "logs/codemeta.log",
+    params:
+        code=code_of("results.citation"),
+    message:
+        "write {output}"
+    shell:
+        "python -P -m roughgas.steps codemeta {input:q} --output {output:q} > {log:q} 2>&1"
+
+
 def data_of_run(wildcards):
     return reduced(SCALE, catalogue.shown_in("paper"))
 

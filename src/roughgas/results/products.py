@@ -17,6 +17,7 @@ from roughgas.base import InputError, __version__, in_csv, markdown
 from roughgas.base.files import whole_file, write_text
 from roughgas.config.reading import read_yaml
 from roughgas.data.reduced import GRID, particles_of, read_reduced, third_axis
+from roughgas.results.citation import called
 from roughgas.statistics.errors import half_width
 from roughgas.theory.prediction import predicted_ratio
 
@@ -165,12 +166,8 @@ def _describe(crate: Any, configuration: Any, results: Sequence[Any]) -> None:
     root["name"] = f"A run of {cited['title']}"
     root["description"] = "Configuration, code, results and figures of a run of the workflow."
     root["license"] = f"https://spdx.org/licenses/{cited['license']}"
-    root["author"] = [_author(one) for one in cited["authors"]]
+    root["author"] = [called(one) for one in cited["authors"]]
     root["citation"] = [f"https://doi.org/{work['doi']}" for work in cited["references"]]
     root["mentions"] = crate.add_action(
         crate.mainEntity, "#run", [configuration], results, {"name": "the run"}
     )
-
-
-def _author(author: Mapping[str, str]) -> str:
-    return author.get("name") or f"{author['given-names']} {author['family-names']}"
