@@ -145,6 +145,31 @@ def test_free_particles_get_as_far_as_they_fly(speed):
     assert found["mean_square_displacement"] == pytest.approx(expected, rel=1e-9)
 
 
+def test_velocities_are_remembered_for_as_long_as_they_last():
+    """Of an Ornstein-Uhlenbeck process with decay 0.8 a look, C(k) = 0.8^k, within 4 sigma; the
+
+    sum over pairs of looks is that of a loop in plain Python.
+    """
+    rng, keep, number, looks = np.random.default_rng(5), 0.8, 500, 60
+    system = system_of((20, 15), particles=number, interval=0.5)
+    state, series = rng.standard_normal((number, 3)), []
+    for _ in range(looks):
+        series.append(state)
+        state = keep * state + math.sqrt(1.0 - keep**2) * rng.standard_normal(state.shape)
+    frames = [frame_of(system, velocity=x[:, :2], spin=2.0 * x[:, 2:]) for x in series]
+    observable, found = results("autocorrelation", frames, delays=5)
+    assert observable.coordinates["delay"].tolist() == [0.0, 0.5, 1.0, 1.5, 2.0]
+    for k in range(5):
+        pairs = [(a, b) for a, b in zip(series[: looks - k], series[k:], strict=True)]
+        whole = [np.mean(a[:, :2] * b[:, :2]) for a, b in pairs]
+        assert found["velocity_autocorrelation"][k] == pytest.approx(np.mean(whole), rel=1e-12)
+    # memory of (1 + 0.64)/(1 - 0.64) = 4.6 looks, products of variance 2 at most
+    error = math.sqrt(2.0 * 4.6 / (looks * number))
+    expected = keep ** np.arange(5)
+    assert np.abs(found["velocity_autocorrelation"] - expected).max() < 4.0 * error / math.sqrt(2)
+    assert np.abs(found["spin_autocorrelation"] - 4.0 * expected).max() < 16.0 * error
+
+
 @pytest.mark.parametrize(
     ("name", "changes", "settings", "message"),
     [

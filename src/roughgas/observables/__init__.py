@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 from roughgas.base import InputError, NeedsError, not_one_of
 from roughgas.effects.settings import schema_of_kinds
+from roughgas.observables.autocorrelation import Autocorrelation
 from roughgas.observables.distributions import (
     Cumulants,
     Histograms,
@@ -30,6 +31,7 @@ KINDS: dict[str, type[Observable]] = {
     "pair_correlation": PairCorrelation,
     "stress": Stress,
     "mean_square_displacement": MeanSquareDisplacement,
+    "autocorrelation": Autocorrelation,
 }
 """The observables by the names that they have in settings."""
 EVERY = Whole("Samples from one observation to the next.", 1, 1_000_000, 1)

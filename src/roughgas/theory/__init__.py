@@ -34,6 +34,7 @@ from roughgas.theory.closed_forms import (
     shear_factor,
     thermal_conductivity,
 )
+from roughgas.theory.diffusion import rotational_diffusion, self_diffusion
 from roughgas.theory.friction import (
     ESCAPED,
     cooling_rate,
