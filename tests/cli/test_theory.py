@@ -48,6 +48,8 @@ def test_what_a_drive_and_friction_change(capsys):
     (one,) = points(capsys, *place, "--inertia=0.1", "--spin-share=0.3")
     assert one["R_driven"] == theory.stationary_ratio(0.9, 0.5, 2, 0.1, 0.3)
     assert one["R_cooling"] == theory.stationary_ratio(0.9, 0.5, 2, 0.1)
+    assert one["R_driven_sonine"] == theory.sonine_state(0.9, 0.5, 2, 0.1, 0.3).R
+    assert one["R_cooling_sonine"] == theory.sonine_state(0.9, 0.5, 2, 0.1).R
     (one,) = points(capsys, *place, "--mu=0.3")
     assert one["R_driven"] == theory.friction_ratio(0.9, 0.5, 0.3, spin_share=0.0)
     assert one["R_cooling"] == theory.friction_ratio(0.9, 0.5, 0.3)

@@ -103,6 +103,12 @@ def quantities(gas: GasParameters) -> dict[str, Quantity]:
         obeying = about | {"theory": kind}
         R = predicted_ratio(obeying, gas.r, gas.beta)
         found[f"R_{name}"] = Quantity(R, f"R, {way}", equation_of(obeying).name)
+        if gas.mu is None:
+            share = gas.spin_share if kind == "lun" else None
+            R = theory.sonine_state(gas.r, gas.beta, gas.dimension, gas.inertia, share).R
+            kicked = " by white noise" if kind == "lun" else ""
+            meaning = f"the same{kicked}, not Maxwellian"
+            found[f"R_{name}_sonine"] = Quantity(R, meaning, "Sonine approximation")
     return found | (_relaxation(gas) if gas.mu is None else _friction(gas))
 
 
