@@ -6,6 +6,7 @@
 #   snakemake -j2 extensions                    all of them
 #   snakemake -j2 evidence                      every published number that we know of beside ours
 #   snakemake -j2 numbers                       the numbers that docs/results.md quotes
+#   snakemake -j2 article                       the article on this reproduction, a PDF
 #   snakemake -j1 explore                       a page in which to look at every point
 #   snakemake -j1 living                        a page in which a gas moves, with sliders
 #   snakemake -j1 pictures                      the four figures for talks: SVG, and PDF of 16 to 9
@@ -14,6 +15,7 @@
 #   snakemake -j2 coverage                      whether error bars hold the truth as often as they say
 #   snakemake -j2 hard_cases                    where simulations go wrong, and how far from it we are
 #   snakemake -j2 crate                         the run as one file: an RO-Crate
+#   snakemake -j2 deposit                       the same with the article, for an archive
 #   snakemake -j2 fig1a                         a figure by its name, or an experiment's R over its sweep
 #   snakemake -j1 results/paper/cooling/r0.87/beta-0.33/seed7.nc     any one point
 
@@ -106,6 +108,11 @@ rule evidence:
 rule numbers:
     input:
         f"figures/{folder_of(SCALE)}numbers.json",
+
+
+rule article:
+    input:
+        f"results/{SCALE}/article.pdf",
 
 
 rule explore:

@@ -146,6 +146,34 @@ rule effective_config:
         " --changes {params.changes:q} --output {output:q} > {log:q} 2>&1"
 
 
+def figures_of_article(wildcards):
+    return drawn(catalogue.figures_of("paper"), [".pdf"], wildcards.scale)
+
+
+def numbers_of_article(wildcards):
+    return f"figures/{folder_of(wildcards.scale)}numbers.json"
+
+
+rule article_pdf:
+    input:
+        source=of_project(*sorted((SOURCE / "article").glob("*.*"))),
+        numbers=numbers_of_article,
+        claims="results/{scale}/claims.json",
+        table="results/{scale}/R.csv",
+        figures=figures_of_article,
+    output:
+        "results/{scale}/article.pdf",
+    log:
+        "logs/{scale}/article.log",
+    params:
+        code=code_of("results.article"),
+    message:
+        "write {output}"
+    shell:
+        "python -P -m roughgas.steps article {input.source:q} --numbers {input.numbers:q} --claims {input.claims:q}"
+        " --table {input.table:q} --figures {input.figures:q} --output {output:q} > {log:q} 2>&1"
+
+
 rule codemeta:
     input:
         of_project(SOURCE / "CITATION.cff"),
@@ -171,6 +199,28 @@ def files_of_project(wildcards):
         if SOURCE != Path():
             raise InputError("folder", os.getcwd(), f"be {SOURCE.resolve()}, which a crate packs")
     return of_project(*project_files())
+
+
+rule deposit:
+    # a crate with all that the article rests on, and the article
+    input:
+        files_of_project,
+        data=data_of_run,
+        tables=multiext(f"results/{SCALE}/", "R.csv", "claims.json", "claims.md", "article.pdf"),
+        figures=drawn(catalogue.figures_of("paper")),
+        numbers=f"figures/{folder_of(SCALE)}numbers.json",
+    output:
+        f"results/{SCALE}/deposit.zip",
+    log:
+        f"logs/{SCALE}/deposit.log",
+    params:
+        code=code_of("results.products"),
+        configuration=roughgas.config.as_text(config),
+    message:
+        "pack what is to be deposited into {output}"
+    shell:
+        "roughgas crate {input.data:q} {input.tables:q} {input.figures:q} {input.numbers:q} --output {output:q}"
+        " --configuration {params.configuration:q} > {log:q} 2>&1"
 
 
 rule crate:

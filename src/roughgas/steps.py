@@ -61,6 +61,7 @@ STEPS: dict[str, str | Callable[..., None]] = {
     "accuracy_figure": "accuracy.running:draw",
     "accuracy_table": "accuracy.running:write_tables",
     "accuracy_task": "accuracy.running:run_task",
+    "article": "results.article:write_article",
     "codemeta": "results.citation:write_codemeta",
     "compile_kernels": compile_kernels,
     "claims": claims,

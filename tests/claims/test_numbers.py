@@ -20,16 +20,27 @@ def gas(name, shift=0.0, beta=AT_POINTS, **others):
     return data
 
 
-@pytest.fixture(scope="module")
-def found():
+def quoted_of(sheared):
     """What is quoted of gases that lie off theory by known shifts."""
     gases = dict(zip(("vibrated", *WALLS), walls(rough=0.1), strict=True))
     gases |= {name: gas(name, beta=one.beta.values, r=one.r.values) for name, one in gases.items()}
     gases["vibrated"] = gas("vibrated", 0.05, beta=gases["vibrated"].beta.values)
-    gases |= {"sheared": gas("sheared", 0.02), "cooling": gas("cooling")}
+    gases |= {"sheared": sheared, "cooling": gas("cooling")}
     gases["drives.heated"] = gas("heated", -0.003).expand_dims(spin_share=[0.0])
     verdicts = ["holds"] * 3 + ["fails"]
     return numbers(gases, {"claims": [{"verdict": one} for one in verdicts]})
+
+
+@pytest.fixture(scope="module")
+def found():
+    return quoted_of(gas("sheared", 0.02))
+
+
+def test_a_point_that_a_small_scale_lacks_is_a_dash(found):
+    fewer = quoted_of(gas("sheared", 0.02, beta=AT_POINTS[1:]))
+    missing = {name for name, one in fewer.items() if one == "–"}
+    assert fewer.keys() == found.keys() and "–" not in found.values()
+    assert {name.split(".")[1] for name in missing} == {"r9_b95", "r8_b95"} and len(missing) == 6
 
 
 def test_numbers_are_those_of_the_data(found):

@@ -1,5 +1,6 @@
 """A run as an RO-Crate. That of a real run is in tests/workflow."""
 
+import hashlib
 import json
 import shutil
 import zipfile
@@ -30,13 +31,18 @@ def project(tmp_path, monkeypatch):
 
 def test_a_crate_holds_project_products_and_configuration(project):
     assert main(["crate", *PRODUCTS, "-o", "run.zip"]) == 0
-    packed = {*project_files(), *PRODUCTS, "configuration.json"}
+    packed = {*project_files(), *PRODUCTS, "configuration.json", "SHA256SUMS"}
     with zipfile.ZipFile("run.zip") as archive:
         assert packed < set(archive.namelist())
         archive.extractall("run")
     for name in (*project_files(), *PRODUCTS):
         assert Path("run", name).read_bytes() == Path(name).read_bytes()
+    lines = [line.split("  ") for line in Path("run/SHA256SUMS").read_text().splitlines()]
+    assert [name for _, name in lines] == [*project_files(), *PRODUCTS]
+    for digest, name in lines:
+        assert digest == hashlib.sha256(Path("run", name).read_bytes()).hexdigest()
     crate = ROCrate("run")
+    assert crate.get(PRODUCTS[1])["sha256"] == dict(map(reversed, lines))[PRODUCTS[1]]
     assert {file.id.replace("%2B", "+") for file in crate.get_by_type("File")} == packed
     assert crate.mainEntity.id == "Snakefile"
     assert crate.root_dataset["license"].endswith("/MIT")

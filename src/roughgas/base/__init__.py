@@ -140,6 +140,7 @@ EXTRAS = {
     "movies": ("imageio_ffmpeg",),
     "report": ("markdown_it", "jinja2"),
     "crate": ("rocrate",),
+    "article": ("typst",),
     "trajectories": ("gsd",),
 }
 """The packages, as they are imported, that each extra brings."""

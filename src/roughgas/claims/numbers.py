@@ -21,6 +21,7 @@ from roughgas.statistics.errors import Estimate
 WALLS = "vibrated_rough_walls", "vibrated_particle_walls", "vibrated_smooth_walls"
 ROWS = {"r9_b95": (0.9, -0.95), "r8_b80": (0.8, -0.8), "r8_b95": (0.8, -0.95), "r9_b50": (0.9, 0.5)}
 """Points of the sheared gas that are compared one by one: (r, beta)."""
+MISSING = "–"
 IN_WORDS = "none one two three four five six seven eight nine ten eleven twelve thirteen fourteen "
 IN_WORDS += "fifteen sixteen seventeen eighteen nineteen twenty"
 MARKED = re.compile(r"[\w.−]+(?:\(\d+\))?(<!--([\w.]+)-->)")
@@ -99,7 +100,12 @@ def _up(values) -> str:
 
 
 def _at(gas: xr.Dataset, name: str, r: float, beta: float) -> str:
+    """Return a value with its error; MISSING at a point that a small scale leaves out."""
+    if r not in gas.r or beta not in gas.beta:
+        return MISSING
     one = gas.sel(r=r, beta=beta)
+    if f"{name}_stderr" not in one:
+        return f"{float(one[name]):.4f}"
     return f"{Estimate(float(one[name]), float(one[f'{name}_stderr']))}"
 
 
@@ -109,8 +115,7 @@ def _of_rows(gas: xr.Dataset) -> dict[str, str]:
     for name, place in ROWS.items():
         found[f"sheared.{name}.time"] = _at(gas, "R", *place)
         found[f"sheared.{name}.collisions"] = _at(gas, "R_collisional", *place)
-        theory = float(gas.theory.sel(r=place[0], beta=place[1]))
-        found[f"sheared.{name}.theory"] = f"{theory:.4f}"
+        found[f"sheared.{name}.theory"] = _at(gas, "theory", *place)
     return found
 
 

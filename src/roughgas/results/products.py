@@ -3,6 +3,7 @@ RO-Crate, with its configuration, code, results and figures.
 """
 
 import csv
+import hashlib
 import io
 import json
 import math
@@ -122,8 +123,10 @@ PROJECT = (
     *("CHANGELOG.md", "CITATION.cff", "LICENSE", "Makefile", "README.md", "Snakefile"),
     *("config.yaml", "pyproject.toml", "requirements.lock"),
 )
-FOLDERS = ("profiles", "rules", "src")
+FOLDERS = ("article", "profiles", "rules", "src")
 CONFIGURATION = "configuration.json"
+CHECKSUMS = "SHA256SUMS"
+"""What `sha256sum --check` reads, in a crate that has been unpacked."""
 
 
 def project_files(root: str | Path = ".") -> list[str]:
@@ -153,7 +156,13 @@ def write_crate(
         Path(name).open("rb").close()
     crate, about = ROCrate(version="1.1"), {"version": __version__, "name": "roughgas"}
     crate.add_workflow("Snakefile", "Snakefile", main=True, lang="snakemake", properties=about)
-    files = {n: crate.add_file(n, n) for n in [*project_files(), *made] if n != "Snakefile"}
+    names = list(dict.fromkeys([*project_files(), *made]))
+    sums = {name: hashlib.sha256(Path(name).read_bytes()).hexdigest() for name in names}
+    files = {
+        n: crate.add_file(n, n, properties={"sha256": sums[n]}) for n in names if n != "Snakefile"
+    }
+    listed = "".join(f"{digest}  {name}\n" for name, digest in sums.items())
+    crate.add_file(io.StringIO(listed), CHECKSUMS)
     settings = io.StringIO(json.dumps(configuration, indent=1, sort_keys=True) + "\n")
     _describe(crate, crate.add_file(settings, CONFIGURATION), [files[name] for name in made])
     with whole_file(output) as draft:

@@ -1,0 +1,112 @@
+"""The article: what it quotes is known, and what it says of itself agrees with CITATION.cff."""
+
+import csv
+import json
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import pytest
+
+from roughgas.config.reading import read_yaml
+from roughgas.results.article import COLUMNS, QUOTED, excerpt, verdict
+from roughgas.results.citation import called
+from roughgas.steps import main
+
+ROOT = Path(__file__).parents[2]
+ARTICLE = ROOT / "article"
+NUMBERS = ROOT / "figures/numbers.json"
+FIGURES = ("fig1a", "fig1b", "fig2a", "fig2b")
+CLAIM = {"quote": "R > 1/2 at <v> [ours]", "verdict": "holds"}
+HEAD = ["experiment", "r", "beta", "R", "R_stderr"]
+HEAD += ["R_collisional", "R_collisional_stderr", "R_corrected", "R_theory"]
+
+
+def rows(r=(0.8, 0.9, 0.99)):
+    for name in COLUMNS:
+        for one in r:
+            for beta in (-0.8, 0.0, 0.5):
+                cooling = name == "cooling"
+                collisional = ["", ""] if cooling else [one + 0.01, 0.001]
+                corrected = [one - 0.001] if cooling else [""]
+                yield [name, one, beta, one, 0.002, *collisional, *corrected, 0.25]
+
+
+@pytest.fixture
+def compiled(tmp_path):
+    """A function that compiles a folder with made-up results, and returns the exit status."""
+    claims = {"scale": "tiny", "claims": [CLAIM | {"numbers": []}]}
+    (tmp_path / "claims.json").write_text(json.dumps(claims))
+    with open(tmp_path / "R.csv", "w", newline="") as file:
+        csv.writer(file).writerows([HEAD, *rows()])
+    figures = [str(tmp_path / f"{name}.pdf") for name in FIGURES]
+    for path in figures:
+        plt.figure().savefig(path)
+    plt.close("all")
+
+    def compile_in(folder):
+        files = [str(path) for path in sorted(folder.iterdir())]
+        results = [f"--{name}={tmp_path / file}" for name, file in MADE.items()]
+        output = tmp_path / "article.pdf"
+        told = [f"--numbers={NUMBERS}", *results, "--figures", *figures, "-o", str(output)]
+        return main(["article", *files, *told]), output
+
+    return compile_in
+
+
+MADE = {"claims": "claims.json", "table": "R.csv"}
+
+
+def test_the_article_compiles_with_made_up_results_to_the_same_bits(compiled):
+    status, output = compiled(ARTICLE)
+    assert status == 0
+    first = output.read_bytes()
+    assert first.startswith(b"%PDF-")
+    compiled(ARTICLE)
+    assert output.read_bytes() == first
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (
+            '#n("bed.tim")',
+            "number in article.typ = bed.tim: must be one that numbers.json holds",
+        ),
+        ("#nothing", "article.typ = unknown variable: nothing: must be what Typst compiles"),
+    ],
+)
+def test_what_cannot_be_filled_is_refused_in_one_line(compiled, tmp_path, capsys, text, said):
+    folder = tmp_path / "mine"
+    folder.mkdir()
+    (folder / "article.typ").write_text(text)
+    status, output = compiled(folder)
+    assert status == 2 and not output.exists()
+    assert capsys.readouterr().err == f"roughgas: error: {said}\n"
+
+
+def test_it_quotes_numbers_that_are_known():
+    quoted = set(QUOTED.findall((ARTICLE / "article.typ").read_text("utf-8")))
+    assert len(quoted) > 15 and quoted <= json.loads(NUMBERS.read_text()).keys()
+
+
+def test_the_table_has_the_points_nearest_to_those_wanted():
+    found = excerpt(dict(zip(HEAD, map(str, row), strict=True)) for row in rows())
+    assert found["r"] == "0.9" and len(found["head"]) == 10
+    assert [row[0] for row in found["rows"]] == ["−0.8", "0", "0.5"]
+    cells = ["0.9000(20)", "0.9100(10)", "0.2500"]
+    assert found["rows"][1] == ["0", *cells, *cells, "0.9000(20)", "0.8990", "0.2500"]
+
+
+def test_a_verdict_says_its_deciding_number():
+    number = {"label": "R - theory", "value": -0.0123, "error": 0.0011}
+    assert verdict(CLAIM | {"numbers": [number]})["deciding"] == "R − theory: −0.0123(11)"
+    assert verdict(CLAIM | {"numbers": []})["deciding"] == ""
+
+
+def test_its_facts_are_those_of_the_citation():
+    about, cited = read_yaml(ARTICLE / "metadata.yaml"), read_yaml(ROOT / "CITATION.cff")
+    (paper,) = cited["references"]
+    assert about["title"] == f"[Re] {paper['title']}"
+    assert [one["name"] for one in about["authors"]] == list(map(called, cited["authors"]))
+    assert {"doi": paper["doi"]} in about["replication"]
+    assert about["abstract"].startswith("McNamara and Luding (1998)")
