@@ -9,6 +9,8 @@ from schedules import COOLING, STEADY
 from roughgas.kernel.hooks import displacement
 from roughgas.scene import build
 from roughgas.scene.initial import initial_state
+from roughgas.simulation import trajectory
+from roughgas.simulation.gas import Gas
 from roughgas.simulation.trajectory import Frames, snapshots
 
 R, BETA, SEED = 0.9, 0.3, 7
@@ -63,6 +65,24 @@ def test_particles_are_where_brute_force_has_them_and_have_turned_as_far(name):
             if length is not None:
                 assert np.all((shot.position[:, axis] >= 0) & (shot.position[:, axis] <= length))
     assert np.abs(angle).max() > 0.5
+
+
+def test_spheres_of_a_layer_go_from_frame_to_frame_at_once(monkeypatch):
+    """One step a frame, where no angles are watched; to roundings as in steps of a collision."""
+    experiment = settings("layer", 24, [8, 9, "open"]) | {"schedule": STEADY | {"period": 2.0}}
+    scene, steps, step = build(experiment, R, BETA), [], Gas.step
+    monkeypatch.setattr(Gas, "step", lambda *given: steps.append(given) or step(*given))
+
+    def filmed():
+        steps.clear()
+        return list(snapshots(scene, experiment, SEED, Frames(0.0, 6.0, 6))), len(steps)
+
+    shots, made = filmed()
+    monkeypatch.setattr(trajectory, "LONG", 0.0)
+    slow, many = filmed()
+    assert made == 6 and many > 10 * made
+    for shot, other in zip(shots, slow, strict=True):
+        assert shot.position == pytest.approx(other.position, abs=TINY)
 
 
 def test_many_particles_keep_their_numbers():

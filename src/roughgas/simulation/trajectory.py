@@ -23,6 +23,7 @@ from roughgas.simulation.restart import Initial, check_initial, in_order, positi
 from roughgas.theory.closed_forms import collision_frequency
 
 STRIDES = 200  # steps are of one collision in the gas for each so many particles
+LONG = 100.0  # collisions per particle, of steps of a driven gas without angles to watch
 PATIENCE = 1_000_000  # particles times T that a movie waits for its gas to be stationary, at most
 UNKNOWN_TRANSIENT = 1000.0  # T, where the schedule does not say how long to wait
 PERIODS, FRAMES = 5, 125  # of a drive, and of a movie of a driven gas
@@ -149,6 +150,7 @@ def snapshots(
     equally spaced in scaled time: their interval is a fixed share of the mean free time (Enskog's,
     at the present E_trans), so that the take is about as long as asked for. Angles are exact unless
     a particle has two contacts within one step, of one collision in the gas for each 200 particles.
+    Spheres have no angle, and a driven gas of them goes from frame to frame in one step.
 
     Raises InputError for illegal values, CollapseError where contacts accumulate without end.
     """
@@ -156,13 +158,16 @@ def snapshots(
     if initial:
         check_initial(initial, experiment, scene)
     gas = kind.start(scene, experiment, seed, None, initial[:1])
-    stride, before = max(1, gas.particles // STRIDES), gas.collisions
+    before = gas.collisions
     if kind is not cooling and take.start > gas.time:
         wait = take.start - gas.time
         samples = math.ceil(wait / experiment["schedule"]["sample_every"])
         gas.in_time(wait / samples, samples)
+    stride = max(1, gas.particles // STRIDES)
     if scene.effects.spin is not None and len(scene.box) == 2:
         gas.watcher = AngleTracker(gas.particles)
+    elif kind is not cooling:  # whose instants follow from the steps, to their roundings
+        stride = gas.count(LONG)
     gas.look()
     if kind is cooling:
         _make_collisions(gas, take.start, stride, before)
