@@ -24,6 +24,10 @@ SINCE = (
     "contact_correlation",
     "E_rot_stderr",
     "measured_collisions",
+    "stage_",
+    "collisions_series",
+    "energy_input_series",
+    "energy_gain_series",
 )
 VERDICTS = ("equilibrated", "R_ci95_trusted")  # are no numbers, and their criteria may change
 FOUR_PHASES = "four_phases"

@@ -40,7 +40,7 @@ def tables():
     found["claims", "paper"] = markdown(("statement", "criterion", "fixed"), rows)
     parts = _schema()["$defs"]
     found["config", "file"] = _keys_of(_schema())
-    for name in ("experiment", "sweep", "schedule"):
+    for name in ("experiment", "sweep", "schedule", "stage"):
         found["config", name] = _keys_of(parts[name])
     found["config", "accuracy"] = _keys_of(parts["accuracy"], depth=4)
     found["effects", "effects"] = _effects()

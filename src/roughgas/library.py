@@ -29,14 +29,27 @@ Observe = Sequence[str] | Mapping[str, Mapping[str, float] | Callable[[Any], Any
 (`roughgas.observables.Frame`)."""
 
 
+class Stage(TypedDict, total=False):
+    """A stage of a schedule; what it changes stays so until another stage changes it again."""
+
+    duration: float  #: T
+    measure: bool  #: whether averages are over it, too; true by default
+    effects: Effects  #: new values of parameters of effects that are there
+    r: float  #: new restitution
+    beta: float  #: new roughness
+    temperature: float  #: of translation, that velocities are scaled to when it begins
+    spin_temperature: float  #: of rotation, that spins are scaled to when it begins
+
+
 class Schedule(TypedDict, total=False):
     """How long to simulate and what to measure, as `schedule` in config.yaml.
 
     A driven gas has the kind `steady`, and its lengths in T; one that nothing drives has the kind
-    `cooling`, and its lengths in collisions per particle.
+    `cooling`, and its lengths in collisions per particle. Any gas may go through `stages`, whose
+    lengths are in T.
     """
 
-    kind: Literal["steady", "cooling"]  #: driven, or not
+    kind: Literal["steady", "cooling", "stages"]  #: driven, not driven, or either
     sample_every: float  #: between samples
     equilibrate: float  #: (steady) before the measurement
     measure: float  #: (steady) length of the measurement
@@ -46,6 +59,7 @@ class Schedule(TypedDict, total=False):
     relaxation_times: float  #: (cooling) e-folds of theory until R is on its plateau
     plateau: float  #: (cooling) length of the plateau
     target_stderr: float  #: standard error of R that the run is prolonged to
+    stages: Sequence[Stage]  #: (stages) what the gas goes through, in place of all lengths above
 
 
 def simulate(

@@ -148,7 +148,7 @@ class BruteForce(Contacts):
         if world.box[0] is not None:
             ranges[0] = range(-reach, reach + 1)
         lengths = np.array([side or 0.0 for side in world.box])
-        offset = (world.shear * self.time) % world.box[0] if world.shear else 0.0
+        offset = (world.shear * self.time + world.slide) % world.box[0] if world.shear else 0.0
         for numbers in itertools.product(*ranges):
             shift, drift = lengths * numbers, np.zeros(self.dimension)
             shift[0] += numbers[1] * offset
@@ -197,7 +197,7 @@ class BruteForce(Contacts):
     def _fold(self):
         """Particles that have left a periodic box enter it on the other side."""
         world = self.world
-        offset = world.shear * self.time
+        offset = world.shear * self.time + world.slide
         for axis in reversed(range(self.dimension)):
             length = world.box[axis]
             if length is None:

@@ -24,6 +24,7 @@ class World(NamedTuple):
     walls: tuple[float, float, float] | None = None  # width, r, beta; along the first axis
     shaken: tuple[float, float] | None = None  # amplitude, period of these walls' displacement
     shear: float = 0.0  # U: velocity, along the first axis, of the image above along the second
+    slide: float = 0.0  # how far that image has slid at time 0
     contact_time: float = 0.0
     wave: str = "sawtooth"  # of the floor
     contents: Contents | None = None  # None: one species

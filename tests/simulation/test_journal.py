@@ -25,6 +25,15 @@ RUNS = {
     "watched cooling": TINY | {"observables": {"cumulants": {"every": 3}}},
     "driven": DRIVEN | {"keep_state": True},
     "watched": DRIVEN | {"observables": WATCHED},
+    "stages": DRIVEN
+    | {
+        "keep_state": True,
+        "schedule": {
+            "kind": "stages",
+            "sample_every": 0.5,
+            "stages": [{"duration": 10}, {"duration": 15, "effects": {"shear": {"velocity": 3}}}],
+        },
+    },
     "target": DRIVEN | {"schedule": DRIVEN["schedule"] | {"target_stderr": 0.02}},
 }
 

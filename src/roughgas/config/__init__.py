@@ -196,8 +196,13 @@ def merged(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any
 def changed_by(settings: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
     """Return an experiment's settings with `changes` merged in, to be `fitted` once all are.
 
-    Of a box and a packing the later one counts; beside a packing an earlier box is a shape.
+    Of a box and a packing the later one counts; beside a packing an earlier box is a shape. A
+    schedule of another kind takes nothing from the one before.
     """
+    schedules = [one.get("schedule") for one in (settings, changes)]
+    kinds = [one.get("kind") if isinstance(one, Mapping) else None for one in schedules]
+    if None not in kinds and kinds[0] != kinds[1]:
+        settings = {**settings, "schedule": {}}
     found = merged(settings, changes)
     if "box" in changes and PACKING not in changes:
         found.pop(PACKING, None)

@@ -44,8 +44,9 @@ RESERVED = (
     *("extensions", "family", "fig1a", "fig1b", "fig2a", "fig2b", "figure", "figures"),
     *("front", "hard_cases", "hard_cases_chaos", "hard_cases_collapse"),
     *("hard_cases_cooling", "living", "living_page", "movie", "movies", "numbers", "page"),
-    *("picture_for_talks", "pictures", "plot", "point", "quoted_numbers", "reduce", "report"),
-    *("run_times", "run_times_extensions", "study_claims", "study_data", "study_figure"),
+    *("picture_for_talks", "pictures", "plot", "point", "quoted_numbers", "reduce", "report", "rows_of_evidence"),
+    *("run_times", "run_times_extensions", "study_claims", "study_data"),
+    *("study_evidence", "study_figure"),
     *("study_movie", "study_page", "study_table", "study_task", "table"),
 )
 """Names that no experiment may have, those of rules and products of the workflow."""

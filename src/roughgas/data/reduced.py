@@ -9,7 +9,17 @@ import numpy as np
 from roughgas.base import InputError, Interval
 from roughgas.data import netcdf
 from roughgas.data.netcdf import read_netcdf
-from roughgas.data.variables import ENERGY, MIXTURE, NAMES, POINT, RATE, TIME, Variable, register
+from roughgas.data.variables import (
+    ENERGY,
+    MIXTURE,
+    NAMES,
+    POINT,
+    RATE,
+    STAGES,
+    TIME,
+    Variable,
+    register,
+)
 from roughgas.data.variables import GRID as OF_GRID
 
 if TYPE_CHECKING:
@@ -93,6 +103,14 @@ T_RATIO = Variable(
 OF_SPECIES = {name: POINT[name] for name in ("E_trans_species", "E_rot_species", "R_species")}
 OF_SPECIES["T_ratio_species"] = T_RATIO
 
+OF_STAGES = (
+    *("E_rot_series", "collisions_series", "energy_input_series", "energy_gain_series"),
+    *("stage_begin", "stage_input"),
+)
+"""What a gas through stages has besides, of those over more than r and beta."""
+STAGED = ("E_trans_series", "R_series", *OF_STAGES[:4], "stage_input")
+"""Those that carry an error there."""
+
 REDUCED = {
     name: about._replace(
         dims=(OF_GRID, *about.dims),
@@ -141,6 +159,22 @@ REDUCED = {
         name: POINT[name]._replace(dims=(OF_GRID, "sample"), over_seeds="")
         for name in ("time_series", "E_trans_series", "R_series", "collisions_per_particle")
     },
+    **{
+        name: POINT[name]._replace(dims=(OF_GRID, *POINT[name].dims), over_seeds="")
+        for name in OF_STAGES
+    },
+    **{
+        f"{name}_stderr": Variable(
+            f"standard error of {name}: scatter over seeds",
+            POINT[name].units,
+            (OF_GRID, *POINT[name].dims),
+            when=(STAGES,),
+            over_seeds="",
+        )
+        for name in STAGED
+    },
+    "source": POINT["source"]._replace(when=(STAGES,)),
+    "motion": POINT["motion"]._replace(when=(STAGES,)),
     "decay_exponent_stderr": _derived("standard error of decay_exponent: scatter over seeds"),
     "shear_rate_stderr": _derived("standard error of shear_rate: scatter over seeds", RATE),
     "R_unsubtracted_stderr": _derived("standard error of R_unsubtracted: scatter over seeds"),

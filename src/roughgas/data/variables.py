@@ -31,6 +31,7 @@ KEPT = "with `keep_state`"
 OF_SPEED = "whose r depends on the speed"
 MIXTURE = "with `species`"
 AT_CONTACTS = "driven gas with `contact_averages`"
+STAGES = "gas through stages"
 
 
 class Variable(NamedTuple):
@@ -190,7 +191,7 @@ POINT = {
     **_of_species("E_trans_species", "translational energy per degree of freedom", ENERGY),
     **_of_species("E_rot_species", "rotational energy per degree of freedom", ENERGY, SPIN),
     **_of_species("R_species", "share of rotation in the energy", "1", SPIN),
-    "time": _series("time since the start", TIME, DRIVEN),
+    "time": _series("time since the start", TIME, DRIVEN, STAGES),
     "collisions_per_particle": _series("collisions per particle since the start", TIME, COOLING),
     "decay_exponent": Variable(
         "-d ln E_trans/d ln t over the second half of the samples", when=(COOLING, OF_SPEED)
@@ -206,6 +207,26 @@ POINT = {
     "R_series_stderr": _series("standard error of R_series over replicas", "1", COOLING, SPIN),
     "E_trans_series": _series("translational energy per degree of freedom", ENERGY),
     "E_rot_series": _series("rotational energy per degree of freedom", ENERGY, SPIN),
+    "collisions_series": _series("collisions per particle since the start", "1", STAGES),
+    "energy_input_series": Variable(
+        "energy per particle that a source has put in since the start (negative: taken out)",
+        ENERGY,
+        ("sample", "source", "motion"),
+        when=(STAGES,),
+    ),
+    "energy_gain_series": Variable(
+        "change of the energy per particle, kinetic and potential, since the start",
+        ENERGY,
+        ("sample", "motion"),
+        when=(STAGES,),
+    ),
+    "stage_begin": Variable("time at which a stage begins", TIME, ("stage",), when=(STAGES,)),
+    "stage_input": Variable(
+        "energy per particle that the beginning of a stage puts in",
+        ENERGY,
+        ("stage", "motion"),
+        when=(STAGES,),
+    ),
     "last_time": _kept("time since the start at which it ends", TIME, ()),
     "last_position": _kept("position of a particle then", LENGTH, ("particle", "axis")),
     "last_velocity": _kept("velocity then of the image in the box", SPEED, ("particle", "axis")),

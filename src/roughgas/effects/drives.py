@@ -66,6 +66,7 @@ class Shear(NamedTuple):
 
     velocity: float
     length: float  # of the box along the first axis, in a
+    begun: float = 0.0  # offset of the image above at time 0, from 0 to L
 
     @classmethod
     def from_settings(cls, settings, around):
@@ -74,11 +75,16 @@ class Shear(NamedTuple):
             raise NeedsError("effects.shear", "a box periodic in both directions")
         return cls(**settings, length=around.box[0])
 
+    def going_on(self, before: "Shear", time: float) -> "Shear":
+        """Return the effect whose images are at `time` (T) where they were `before`."""
+        return self._replace(begun=(offset_at(before, time) - self.velocity * time) % self.length)
+
 
 @jit
 def offset(shear, index, base):
     """Return the offset of the image above at absolute time `base`, from 0 to L."""
-    return shear.velocity * (base % (shear.length / abs(shear.velocity)))
+    found = shear.velocity * (base % (shear.length / abs(shear.velocity))) + shear.begun
+    return found if found <= shear.length else found - shear.length
 
 
 @jit
@@ -93,7 +99,7 @@ def sliding(shear, index, state):
 
 def offset_at(shear, time):
     """Return the offset of the image above at `time`, from 0 to L, in a."""
-    return (shear.velocity * time) % shear.length
+    return (shear.begun + shear.velocity * time) % shear.length
 
 
 register(

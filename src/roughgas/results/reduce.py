@@ -21,7 +21,16 @@ from roughgas.base import InputError
 from roughgas.data import netcdf
 from roughgas.data.netcdf import Content, DamagedError, opened, require, unit_of
 from roughgas.data.point import Point, write_point
-from roughgas.data.reduced import GRID, SOUND, VERDICTS, check_sound, read_reduced, third_axis
+from roughgas.data.reduced import (
+    GRID,
+    OF_STAGES,
+    SOUND,
+    STAGED,
+    VERDICTS,
+    check_sound,
+    read_reduced,
+    third_axis,
+)
 from roughgas.data.variables import CLOCKS, POINT, Array, described
 from roughgas.statistics.errors import NO, UNKNOWN, YES, pooled
 from roughgas.statistics.steady_state import is_bimodal
@@ -49,7 +58,8 @@ SCATTERED = (
     *("decay_exponent", "shear_rate"),
 )
 """Means over seeds that carry a standard error, `<name>_stderr`, from their scatter."""
-SERIES = ("time_series", "E_trans_series", "R_series", "collisions_per_particle")
+SERIES: tuple[str, ...] = ("time_series", "E_trans_series", "R_series", "collisions_per_particle")
+SERIES += tuple(name for name in OF_STAGES if POINT[name].dims[0] == "sample")
 OF_SPECIES = [name for name, one in POINT.items() if one.dims == ("species",) and one.over_seeds]
 POOLED = ("R", "R_collisional", "contact_correlation")
 """Those whose standard error pools the scatter with the errors of the seeds themselves."""
@@ -62,7 +72,7 @@ class Summary(NamedTuple):
     attributes: dict[str, Any]
     place: tuple[Any, ...]  # (r, beta, seed), preceded by the value of what is swept besides
     replicas: np.ndarray  # R of each, of a cooling gas: else empty
-    species: tuple[str, ...] = ()  # names
+    names: Mapping[str, tuple[str, ...]] = {}  # of species, and of what exchanges energy
     observed: Mapping[str, Array] = {}  # what observables have watched
 
 
@@ -118,7 +128,10 @@ def _summary(path: Path) -> Summary:
             energy = scalars["E_trans_species"]
             scalars["T_ratio_species"] = energy / energy[0]
         scalars |= _series(file)
-        names = file["species"][...].tolist() if "species" in file.variables else []
+        exchanged = ("source", "motion") if "stage_begin" in file.variables else ()
+        names = {name: tuple(file[name][...].tolist()) for name in exchanged}
+        if "species" in file.variables:
+            names["species"] = tuple(file["species"][...].tolist())
         for name in scalars.keys() & SOUND:
             check_sound(path, name, scalars[name])
         scalars["measured_for"], scalars["R_drift"] = _window(file, scalars)
@@ -127,11 +140,15 @@ def _summary(path: Path) -> Summary:
     swept = (attributes["swept_value"],) if "swept" in attributes else ()
     r, beta, seed = (attributes[name] for name in (*GRID, "seed"))
     place = (*swept, float(r), float(beta), int(seed))
-    return Summary(scalars, attributes, place, replicas, tuple(names), observed)
+    return Summary(scalars, attributes, place, replicas, names, observed)
 
 
 def _series(file: netCDF4.Dataset) -> dict[str, np.ndarray]:
-    """Return what changes over time, of a cooling gas that has no R for all times."""
+    """Return what changes over time, of a cooling gas that has no R for all times, and of a gas
+    through stages."""
+    if "stage_begin" in file.variables:
+        names = [name for name in (*SERIES, *OF_STAGES) if name in file.variables]
+        return {"time_series": file["time"][...]} | {name: file[name][...] for name in names}
     if "time_series" not in file.variables:
         return {}
     return {name: file[name][...] for name in SERIES if name in file.variables}
@@ -178,7 +195,7 @@ def _combined(points: Sequence[Summary]) -> Content:
     if swept is not None:
         about = {"long_name": f"swept setting: {attributes['swept']}"}
         third[swept] = Array((swept,), coordinates.pop(swept), about)
-    values = _over_seeds(stacks) | coordinates | _species(points)
+    values = _over_seeds(stacks) | coordinates | _names(points)
     mixed = _mixed(points, axes[:-1])
     for name in VERDICTS & values.keys():
         values[name] = np.where(mixed & (values[name] > NO), float(NO), values[name])
@@ -187,13 +204,16 @@ def _combined(points: Sequence[Summary]) -> Content:
     return Content(third | reduced | seen, attributes)
 
 
-def _species(points: Sequence[Summary]) -> dict[str, Any]:
-    """Return the names of the species, which all points share; none where particles are alike."""
-    names = {point.species for point in points}
-    if len(names) > 1:
-        found = " and ".join(sorted(", ".join(one) or "(none)" for one in names))
-        raise InputError("species of the points", found, "be the same")
-    return {"species": list(points[0].species)} if points[0].species else {}
+def _names(points: Sequence[Summary]) -> dict[str, Any]:
+    """Return the names of species, and of what exchanges energy, which all points share."""
+    found = {}
+    for kind in sorted({kind for point in points for kind in point.names}):
+        names = {point.names.get(kind, ()) for point in points}
+        if len(names) > 1:
+            given = " and ".join(sorted(", ".join(one) or "(none)" for one in names))
+            raise InputError(f"{kind} of the points", given, "be the same")
+        found[kind] = list(points[0].names[kind])
+    return found
 
 
 def _mixed(points: Sequence[Summary], axes: Sequence[Sequence[Any]]) -> np.ndarray:
@@ -259,7 +279,7 @@ def _over_seeds(stacks: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
             reduced[name] = np.nansum(values, -1) if how == "sum" else _mean(values)
         if name in VERDICTS:
             reduced[name] = _share(values)
-        if name in SCATTERED:
+        if name in SCATTERED or (name in STAGED and "stage_begin" in stacks):
             reduced[f"{name}_stderr"] = _standard_error(values)
     for name in POOLED:
         reduced |= _errors(name, stacks) if name in stacks else {}

@@ -300,6 +300,8 @@ def _variables(name, value, gradient, periods):
 
 MOTIONS = ("translation", "rotation")
 CONTACTS = "contacts"
+STAGES = "stages"
+"""What the beginnings of stages put in, among the sources of a gas that goes through stages."""
 LEAST = (
     1e-3  # of the energy: of what exchanges less, roundings of the energy are all that is missing
 )
@@ -339,15 +341,25 @@ def _energy(state, scene):
 
 
 def energy_exchange(
-    before: EnergyBalance, after: EnergyBalance, scene: Scene, particles: int
+    before: EnergyBalance,
+    after: EnergyBalance,
+    scene: Scene,
+    particles: int,
+    changes: np.ndarray | None = None,
 ) -> dict[str, Any]:
     """Return variables of a point (see roughgas.data.point): what was put in between two instants.
 
     With drives and spin, these say how the drives' input is shared between the two motions.
+    `changes` is what the beginnings of stages have put in, (2,).
     """
     booked = (after.ledger - before.ledger) / particles
     gain = (after.energy - before.energy) / particles
     accounts = _accounts(scene)
+    if changes is not None:
+        accounts, booked = (
+            accounts | {STAGES: len(booked)},
+            np.vstack([booked, changes / particles]),
+        )
     found = {
         "source": list(accounts),
         "motion": list(MOTIONS),
@@ -357,10 +369,43 @@ def energy_exchange(
     }
     if scene.effects.spin is None or not hooks.present(scene.effects, "drives"):
         return found
-    sources = [number for name, number in accounts.items() if name != CONTACTS]
+    sources = [number for name, number in accounts.items() if name not in (CONTACTS, STAGES)]
     put_in = booked[sources].sum(axis=0)
     total = put_in.sum()
     return found | {"input_spin_share": put_in[1] / total if total else math.nan}
+
+
+def as_columns(books: EnergyBalance) -> Columns:
+    """Return an energy balance as columns of one sample."""
+    found = {f"energy {k}": books.energy[k : k + 1] for k in range(len(MOTIONS))}
+    parts = np.ndenumerate(books.ledger)
+    return found | {f"booked {account} {k}": np.array([one]) for (account, k), one in parts}
+
+
+def exchange_series(
+    columns: Columns,
+    before: EnergyBalance,
+    scene: Scene,
+    particles: int,
+    changes: np.ndarray,
+    counts: Sequence[int],
+) -> dict[str, np.ndarray]:
+    """Return what was put in up to each sample since `before`, and the gain of energy.
+
+    `changes` is what the beginning of each stage has put in, (stages, 2), and `counts` are the
+    samples of each stage.
+    """
+    energy = np.stack([columns[f"energy {k}"] for k in range(len(MOTIONS))], axis=1)
+    booked = [
+        np.stack([columns[f"booked {account} {k}"] for k in range(len(MOTIONS))], axis=1)
+        - before.ledger[account]
+        for account in _accounts(scene).values()
+    ]
+    booked.append(np.repeat(changes.cumsum(axis=0), counts, axis=0))
+    return {
+        "energy_input_series": np.stack(booked, axis=1) / particles,
+        "energy_gain_series": (energy - before.energy) / particles,
+    }
 
 
 def imbalance(booked: np.ndarray, gain: np.ndarray, energy: float = 0.0) -> float:

@@ -23,6 +23,7 @@ from roughgas.simulation.energies import (
     Columns,
     Energies,
     EnergyBalance,
+    as_columns,
     balance,
     energies_of,
 )
@@ -63,7 +64,8 @@ class Gas:
     """A scene, the state that it has reached, and the recorder of what this has cost.
 
     `sample` holds the columns of the last sample, arrays of length 1. A cooling gas is refreshed
-    after every `refresh_every` collisions (0: never).
+    after every `refresh_every` collisions (0: never). One that `keeps_books` has its energy balance
+    in every sample.
     """
 
     def __init__(self, scene: Scene, state: State, recorder: Recorder | None = None) -> None:
@@ -73,6 +75,7 @@ class Gas:
         self.observer: Observer | None = None
         self.sample: Columns = {}
         self.refresh_every = self.begun = 0
+        self.keeps_books = False
         self._just_restarted = False  # with its memory, just now
         self._rows: list[Columns] | None = None  # of the present call
         self._ahead = 0  # samples since the observer looked, of a call that goes on
@@ -315,16 +318,22 @@ class Gas:
         assert self._rows is not None
         if samples == 0 and self._rows:  # of a call that was stopped at its end
             return
-        columns = self.recorder.run(
-            self.state, scene or self.scene, sampling, samples, timed, self._keep
-        )
-        self.sample = _last(columns)
-        self._rows.append(columns)
+        for piece in [1] * samples if self.keeps_books else [samples]:
+            columns = self.recorder.run(
+                self.state, scene or self.scene, sampling, piece, timed, self._keep
+            )
+            columns = self._with_books(columns)
+            self.sample = _last(columns)
+            self._rows.append(columns)
+
+    def _with_books(self, columns: Columns) -> Columns:
+        """Return a sample of the present instant with the energy balance, where that is kept."""
+        return {**columns, **as_columns(self.balance())} if self.keeps_books else columns
 
     def _keep(self, columns: Columns) -> None:
         """Write into the journal how far the present call is, with these samples."""
         assert self._rows is not None and self.recorder.journal is not None
-        rows = joined([*self._rows, columns])
+        rows = joined([*self._rows, self._with_books(columns)])
         self.recorder.journal.write(self, rows, _length(rows) - self._seen)
 
 

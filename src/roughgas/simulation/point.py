@@ -90,8 +90,9 @@ def run_point(
             "dimension": len(scene.box),
             **_packing(scene, experiment),
             **_known_to_theory(scene, experiment),
+            **_about_stages(experiment),
             **_about_restitution(scene),
-            **({"memory_of": owner(scene)} if keep else {}),
+            **({"memory_of": owner(recorder.gases[-1].scene)} if keep else {}),
             **_about_start(initial, scene),
             "roughgas_version": __version__,
             "numpy_version": np.__version__,
@@ -165,6 +166,12 @@ def _known_to_theory(scene, experiment):
         sides = [0.0 if side == "open" else float(side) for side in experiment["box"]]
         found[SPECIES] = json.dumps(known | {"volume": math.prod(sides)})
     return found
+
+
+def _about_stages(experiment):
+    """Return how many stages there are, of a gas whose settings change."""
+    stages = experiment["schedule"].get("stages", ())
+    return {"stages": len(stages)} if stages else {}
 
 
 def _about_restitution(scene):

@@ -52,6 +52,7 @@ Schedule = Mapping[str, Any]
 def samples_of(schedule: Schedule) -> float:
     """Return how many samples a schedule makes, but for those of a transient by theory."""
     lengths = sum(schedule[name] for name in LENGTHS if name in schedule)
+    lengths += sum(stage["duration"] for stage in schedule.get("stages", ()))
     return schedule.get("replicas", 1) * lengths / schedule["sample_every"]
 
 

@@ -8,7 +8,7 @@ from roughgas.effects import inertia
 from roughgas.kernel import hooks
 from roughgas.scene import Scene, shear_rate
 from roughgas.scene.initial import check as check_scene
-from roughgas.simulation import cooling, steady
+from roughgas.simulation import cooling, stages, steady
 from roughgas.simulation.energies import Columns
 from roughgas.simulation.gas import Gas
 from roughgas.simulation.recorder import LENGTHS, MOST_SAMPLES, Recorder, samples_of
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 class Kind(Protocol):
     """What a module of this room says of schedules of its kind."""
 
-    DRIVEN: bool  # whether effects drive the gas; else progress is counted in collisions
+    DRIVEN: bool  # whether time is counted in T, as of a gas that effects drive; else in collisions
     UNIT: str  # of lengths
     LENGTH: str  # key of the schedule: how long R is measured
     SAMPLES_PER_REFRESH: int  # samples after which a gas is refreshed; 1 where none is
@@ -60,7 +60,7 @@ class Kind(Protocol):
         """Return the variables of a point (see roughgas.data.point)."""
 
 
-KINDS: dict[str, Kind] = {"steady": steady, "cooling": cooling}
+KINDS: dict[str, Kind] = {"steady": steady, "cooling": cooling, "stages": stages}
 
 
 def of(experiment: Mapping[str, Any]) -> Kind:
@@ -92,10 +92,12 @@ def check(experiment: Mapping[str, Any]) -> None:
     drives = [effects._fields[part.place] for part in hooks.present(effects, "drives")]
     kind = experiment["schedule"]["kind"]
     if drives and not KINDS[kind].DRIVEN:
-        legal = f"be steady where there is a drive: {', '.join(drives)}"
+        legal = f"be steady or stages where there is a drive: {', '.join(drives)}"
         raise InputError("schedule.kind", kind, legal)
-    if KINDS[kind].DRIVEN and not drives:
-        raise InputError("schedule.kind", kind, "be cooling where no effect drives the gas")
+    if kind == "steady" and not drives:
+        raise InputError(
+            "schedule.kind", kind, "be cooling or stages where no effect drives the gas"
+        )
     _check_samples(experiment)
     KINDS[kind].check(built, experiment)
     if experiment.get("observables"):

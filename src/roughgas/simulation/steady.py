@@ -76,11 +76,11 @@ def check(scene: Scene, experiment: Mapping[str, Any]) -> None:
     measure, every = schedule["measure"], schedule["sample_every"]
     period = schedule.get("period", every)
     for name, own in drive_periods(scene).items():
-        if "period" not in schedule or not _is_whole(period / own):
+        if "period" not in schedule or not is_whole(period / own):
             found = schedule.get("period", "(none)")
             legal = f"be a whole multiple of that of {name}, {own:g} T"
             raise InputError("schedule.period", found, legal)
-    if not _is_whole(period / every):
+    if not is_whole(period / every):
         legal = f"divide schedule.period, {period:g} T, into whole samples"
         raise InputError("schedule.sample_every", every, legal)
     if sum(_planned(schedule)) < wait(scene, experiment) + samples_per_period(schedule):
@@ -116,7 +116,8 @@ def _planned(schedule):
     return tuple(round(schedule[part] / every) for part in ("equilibrate", "measure"))
 
 
-def _is_whole(number: float) -> bool:
+def is_whole(number: float) -> bool:
+    """Return whether a quotient of lengths is a whole number, at least 1."""
     return number > 0.5 and abs(number - round(number)) <= WHOLE * number
 
 
@@ -190,8 +191,8 @@ def _measure(gas: Gas, schedule: Mapping[str, Any], rows: Columns, begun: Begun)
     return {
         "E_trans": window.translational.mean(),
         "E_trans_stderr": blocking(translational)[0],
-        **(_shared(window, per_period, every, vouched) if window.rotational is not None else {}),
-        **contact_averages(rows, first, per_period, _inertia_of_sums(scene), begun.sums),
+        **(shared(window, per_period, every, vouched) if window.rotational is not None else {}),
+        **contact_averages(rows, first, per_period, inertia_of_sums(scene), begun.sums),
         **_unsubtracted(gas, rows, first),
         **_of_species(gas, rows, first, per_period),
         **energy_exchange(begun.balance, gas.balance(), scene, gas.particles),
@@ -212,7 +213,7 @@ def _start(series, planned, length, per_period):
     return start, is_equilibrated(*means, start=start // per_period)
 
 
-def _shared(window, per_period, every, steady):
+def shared(window, per_period, every, steady):
     """Return how the energy is shared between translation and rotation, steady or not."""
     R = ratio(window)
     R_periods = period_means(R, per_period)
@@ -239,9 +240,10 @@ def _series(time, window, together):
     return {name: period_means(values, together) for name, values in found.items()}
 
 
-def _inertia_of_sums(scene):
+def inertia_of_sums(scene: Scene) -> float:
     """Return the q that sums over contacts belong to."""
-    return inertia(scene.effects) if scene.effects.species is None else 1.0
+    q = inertia(scene.effects)
+    return 1.0 if q is None or scene.effects.species is not None else q
 
 
 def _of_species(gas, rows, first, per_period):

@@ -16,10 +16,12 @@ from roughgas.kernel.hooks import displacement
 from roughgas.kernel.state import BASE, EXPONENT, NOW, Bodies, State
 from roughgas.scene import Scene, has_sides
 from roughgas.scene.initial import bounds
-from roughgas.simulation import cooling, schedule
+from roughgas.simulation import cooling, schedule, stages
+from roughgas.simulation.change import change
 from roughgas.simulation.energies import Energies, ratio, restored, species_names
 from roughgas.simulation.gas import Gas
 from roughgas.simulation.restart import Initial, check_initial, in_order, positions_and_velocities
+from roughgas.simulation.stages import Stage
 from roughgas.theory.closed_forms import collision_frequency
 
 STRIDES = 200  # steps are of one collision in the gas for each so many particles
@@ -125,6 +127,8 @@ def usual_take(experiment: Mapping[str, Any], scene: Scene) -> Frames:
     """
     if schedule.of(experiment) is cooling:
         return COOLING
+    if schedule.of(experiment) is stages:
+        return Frames(0.0, stages.length(scene, experiment), FRAMES)
     wait = experiment["schedule"].get("equilibrate", UNKNOWN_TRANSIENT)
     shear, drive = scene.effects.shear, scene.effects.floor or scene.effects.shaken_walls
     length = PERIODS * drive.period if drive else TIME
@@ -159,7 +163,10 @@ def snapshots(
         check_initial(initial, experiment, scene)
     gas = kind.start(scene, experiment, seed, None, initial[:1])
     before = gas.collisions
-    if kind is not cooling and take.start > gas.time:
+    changes: list[Stage] = []
+    if kind is stages:
+        changes = stages.course(scene, experiment, gas.time)
+    elif kind is not cooling and take.start > gas.time:
         wait = take.start - gas.time
         samples = math.ceil(wait / experiment["schedule"]["sample_every"])
         gas.in_time(wait / samples, samples)
@@ -169,6 +176,8 @@ def snapshots(
     elif kind is not cooling:  # whose instants follow from the steps, to their roundings
         stride = gas.count(LONG)
     gas.look()
+    if kind is stages:
+        _let_pass(gas, take.start, stride, changes)
     if kind is cooling:
         _make_collisions(gas, take.start, stride, before)
     if take.times:
@@ -176,7 +185,7 @@ def snapshots(
             if kind is cooling:
                 _make_collisions(gas, time, stride, before)
             else:
-                _let_pass(gas, time, stride)
+                _let_pass(gas, time, stride, changes)
             yield _snapshot(gas, before)
         return
     if kind is cooling:
@@ -186,12 +195,18 @@ def snapshots(
         until = take.start + (frame + 0.5) * interval
         if kind is cooling:
             until = gas.time + interval / _collision_frequency(gas, experiment)
-        _let_pass(gas, until, stride)
+        _let_pass(gas, until, stride, changes)
         yield _snapshot(gas, before)
 
 
-def _let_pass(gas: Gas, until: float, stride: int) -> None:
-    """Advance a gas to an instant (T), so many collisions at a time."""
+def _let_pass(gas: Gas, until: float, stride: int, changes: list[Stage]) -> None:
+    """Advance a gas to an instant (T), so many collisions at a time, and let stages begin."""
+    while changes and changes[0].begin <= until:
+        stage = changes.pop(0)
+        # by way of the middle, from where the difference of the times is exact
+        for instant in (0.5 * (gas.time + stage.begin), stage.begin):
+            _let_pass(gas, instant, stride, [])
+        change(gas, stage.scene, stage.begin, stage.temperatures)
     while gas.time < until and gas.step(until, stride):
         pass
 

@@ -71,8 +71,9 @@ def over_collisions(attributes: Mapping[str, Any], variables: Container[Any] = (
 
 
 def predicted_ratio(attributes: Mapping[str, Any], r: Any, beta: Any) -> np.ndarray:
-    """Return R of theory, over the broadcast shape of its arguments; NaN where nothing spins, and
-    for a cooling gas at beta = -1: contacts leave spins alone there, and R has no stationary value.
+    """Return R of theory, over the broadcast shape of its arguments; NaN where nothing spins, for a
+    gas through `stages`, and for a cooling gas at beta = -1: contacts leave spins alone there, and
+    R has no stationary value.
 
     That is the theory of free cooling for a gas without a drive, Lun's formula for one whose drive
     adds translation only, and the result of the rate equations for other drives, and for friction.
@@ -80,6 +81,8 @@ def predicted_ratio(attributes: Mapping[str, Any], r: Any, beta: Any) -> np.ndar
     `spin_share` (of the drive), or `mu`; these broadcast with `r` and `beta`. Mixtures have
     `species_json`, a Langevin bath `langevin_json`, and theories of their own.
     """
+    if "stages" in attributes:
+        return np.full(np.broadcast_shapes(np.shape(r), np.shape(beta)), math.nan)
     if LANGEVIN in attributes:
         return ratio_in_bath(attributes, r, beta)
     if SPECIES in attributes:
