@@ -60,6 +60,7 @@ def test_stages_are_what_a_steady_run_is():
 CHANGES = {  # an experiment, and what changes in it
     "kicks": (HEATED, {"thermostat": {"power": 5.0, "spin_share": 1.0}}),
     "interval of kicks": (HEATED, {"thermostat": {"interval": 0.2}}),
+    "bath": (settings("bath", 20, [20, 20]), {"langevin": {"drag": 1.0, "interval": 0.3}}),
     "gravity": (BED, {"gravity": {"acceleration": 2.5}}),
     "floor": (BED, {"floor": {"amplitude": 3.0, "restitution": 0.9}}),
     "shear": (settings("sheared", 20, [20, 20]), {"shear": {"velocity": 3.7}}),
@@ -120,6 +121,29 @@ def test_what_a_change_of_gravity_puts_in_is_the_change_of_potential_energy():
     shot = trajectory(**own, schedule=stages(*parts), times=[10.0])
     height = float(shot.position.sel(axis="y").mean())
     assert found.stage_input.values[1] == pytest.approx([height, 0.0], rel=1e-9)
+
+
+def test_an_elastic_gas_follows_its_bath_to_another_temperature():
+    """T(t) = T_2 + (T_1 - T_2) exp(-2 gamma t), within 4 sigma of the scatter over ten seeds; steps
+
+    of particles follow one another, so that the decay begins half an interval later at most.
+    """
+    still = {name: 0.0 for name in ("spin_drag", "spin_power")}
+    bath = {"drag": 0.2, "temperature": 1.0, "interval": 0.05} | still
+    experiment = settings("bath", 400, [200, 200], langevin=bath)
+    parts = {"duration": 15, "measure": False}, {
+        "duration": 10,
+        "effects": {"langevin": {"temperature": 3.0}},
+    }
+    runs = [point(experiment, *parts, r=1.0, beta=-1.0, seed=seed) for seed in range(10)]
+    T = 2.0 * np.array([one.E_trans_series.values for one in runs])
+    late = runs[0].time.values >= 15.0
+    passed = runs[0].time.values[late] - 15.0
+    expected = 3.0 - 2.0 * np.exp(-0.4 * passed)
+    error = T[:, late].std(axis=0, ddof=1) / math.sqrt(10)
+    assert error.max() < 0.1
+    # 4 sigma of Student's t with 9 degrees of freedom are 6.6 standard errors
+    assert ratio_to_error(T[:, late].mean(axis=0), expected + 0.01, error + 0.01) < 6.6
 
 
 @pytest.mark.parametrize("name", CHANGES)
