@@ -2,10 +2,13 @@
 
 import csv
 import json
+import shutil
+import zipfile
 from pathlib import Path
 
 import matplotlib.pyplot as plt
 import pytest
+from project import Project
 
 from roughgas.config.reading import read_yaml
 from roughgas.results.article import COLUMNS, QUOTED, excerpt, verdict
@@ -82,6 +85,26 @@ def test_what_cannot_be_filled_is_refused_in_one_line(compiled, tmp_path, capsys
     status, output = compiled(folder)
     assert status == 2 and not output.exists()
     assert capsys.readouterr().err == f"roughgas: error: {said}\n"
+
+
+@pytest.mark.slow
+def test_a_run_writes_the_article_and_a_deposit(tmp_path):
+    project = Project(tmp_path)
+    shutil.copytree(ARTICLE, tmp_path / "article")
+    (tmp_path / "docs").mkdir()
+    shutil.copy(ROOT / "docs/results.md", tmp_path / "docs")
+
+    def change(config):  # to what numbers are quoted of
+        tiny = config["scales"]["tiny"]
+        tiny["drives.heated"]["sweep"]["thermostat.spin_share"] = ["0"]
+        tiny["vibrated_rough_walls"]["sweep"] = {"beta": ["0"]}
+
+    project.configure(change)
+    project.succeed("-j2", "--config", "scale=tiny", "--", "article", "deposit")
+    article = (tmp_path / "results/tiny/article.pdf").read_bytes()
+    with zipfile.ZipFile(tmp_path / "results/tiny/deposit.zip") as archive:
+        assert archive.read("results/tiny/article.pdf") == article
+        assert {"figures/tiny/numbers.json", "article/article.typ"} < set(archive.namelist())
 
 
 def test_it_quotes_numbers_that_are_known():

@@ -5,6 +5,7 @@ stands before a mark comes from the file that `write` has written (`filled`).
 """
 
 import json
+import math
 import re
 from collections import Counter
 from collections.abc import Mapping
@@ -22,6 +23,7 @@ WALLS = "vibrated_rough_walls", "vibrated_particle_walls", "vibrated_smooth_wall
 ROWS = {"r9_b95": (0.9, -0.95), "r8_b80": (0.8, -0.8), "r8_b95": (0.8, -0.95), "r9_b50": (0.9, 0.5)}
 """Points of the sheared gas that are compared one by one: (r, beta)."""
 MISSING = "–"
+"""In place of a number that a small scale does not simulate."""
 IN_WORDS = "none one two three four five six seven eight nine ten eleven twelve thirteen fourteen "
 IN_WORDS += "fifteen sixteen seventeen eighteen nineteen twenty"
 MARKED = re.compile(r"[\w.−]+(?:\(\d+\))?(<!--([\w.]+)-->)")
@@ -49,13 +51,14 @@ def numbers(gases: Mapping[str, xr.Dataset], verdicts: Mapping[str, list]) -> di
         kicked = gases[name].sel(spin_share=0.0)
         found[f"{name}.collisions"] = _up(abs(kicked.R_collisional - kicked.theory))
         found[f"{name}.time"] = _at(kicked, "R", 0.9, 0.0)
-    found["walls.rough"] = f"{float(rough.max()):.1f}"
+    found["walls.rough"] = _text(float(rough.max()), 1)
     found["walls.other"] = _up(xr.merge([one.rename(f"R{k}") for k, one in enumerate(other)]))
     off = 100.0 * (cooling.R / cooling.theory - 1.0)
-    found["cooling.percent"] = f"{float(abs(off.where(off.r >= 0.8)).max()):.1f}"
-    found["cooling.dissipative.percent"] = f"{-float(off.where(off.r < 0.8).min()):.0f}"
+    found["cooling.percent"] = _text(float(abs(off.where(off.r >= 0.8)).max()), 1)
+    found["cooling.dissipative.percent"] = _text(-float(off.where(off.r < 0.8).min()), 0)
     for name, r in (("r99", 0.99), ("r8", 0.8)):
-        found[f"cooling.{name}_b80"] = f"{float(cooling.R.sel(r=r, beta=-0.8)):.2f}"
+        at = cooling.R.where((cooling.r == r) & (cooling.beta == -0.8))
+        found[f"cooling.{name}_b80"] = _text(float(at.max()), 2)
     return found | _of_rows(sheared) | _counts(verdicts["claims"])
 
 
@@ -86,17 +89,23 @@ def _most(gas: xr.Dataset, name: str) -> dict[str, str]:
     """Return the largest deviation from theory, and where it is; and that beyond the paper."""
     off = gas[name] - gas.theory
     inside = abs(off.where(off.r >= 0.8))
-    r, beta = (float(one) for one in inside.stack(at=("r", "beta")).idxmax("at").item())
-    at = {"r": f"{r:g}", "beta": f"{beta:g}".replace("-", "−")}
+    at = dict.fromkeys(("r", "beta"), MISSING)
+    if inside.notnull().any():
+        r, beta = (float(one) for one in inside.stack(at=("r", "beta")).idxmax("at").item())
+        at = {"r": f"{r:g}", "beta": f"{beta:g}".replace("-", "−")}
     beyond = off.where(off.r < 0.8)
-    return {"most": _up(inside), "dissipative": f"{float(beyond.max()):.3f}"} | at
+    return {"most": _up(inside), "dissipative": _text(float(beyond.max()), 3)} | at
 
 
 def _up(values) -> str:
     """Return the largest of values with three decimals."""
     largest = values.max()
     one = largest.to_array().max() if isinstance(largest, xr.Dataset) else largest
-    return f"{float(one):.3f}"
+    return _text(float(one), 3)
+
+
+def _text(value: float, digits: int) -> str:
+    return MISSING if math.isnan(value) else f"{value:.{digits}f}"
 
 
 def _at(gas: xr.Dataset, name: str, r: float, beta: float) -> str:
