@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from typing import Any
 
 import xarray as xr
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from roughgas import plotting
@@ -48,7 +47,7 @@ def _staying(drawn: Sequence[plotting.Series]) -> list[plotting.Series]:
     return parts
 
 
-def _tell_of_runaways(main: Axes, drawn: Sequence[plotting.Series]) -> None:
+def _tell_of_runaways(panel: plotting.Panel, drawn: Sequence[plotting.Series]) -> None:
     """Say in the legend what points above the lines are."""
     if any((abs(one.residual) > 1 - one.data.R.values).any() for one in drawn):
-        main.plot([], [], " ", label="above lines: runaway spins")
+        panel.main.plot([], [], " ", label="above lines: runaway spins")

@@ -11,6 +11,7 @@ from roughgas.show import style
 from roughgas.show.catalogue import figures_of
 from roughgas.show.figures import paper
 from roughgas.show.gallery import draw, draw_of_study
+from roughgas.theory import cooling_ratio, sonine_state
 from roughgas.theory.prediction import predicted_ratio
 
 
@@ -199,6 +200,20 @@ def test_places_without_data_are_left_out():
     data["R"][0] = np.nan
     main, _ = paper.fig2b(data).axes
     assert sum(len(column) for column in bars(main)) == 2 * (len(BETA) - 4)
+
+
+def test_the_cooling_gas_is_beside_a_theory_that_is_not_maxwellian():
+    """Thin lines above, and beneath minus the theory of free cooling: one for each r."""
+    main, beneath = paper.fig2b(reduced("cooling", r=(0.9, 0.99))).axes
+    above, below = (
+        [line for line in axes.lines if line.get_linewidth() == paper.THIN["linewidth"]]
+        for axes in (main, beneath)
+    )
+    for one, gap, r in zip(above[:2], below, (0.99, 0.9), strict=True):
+        beta = one.get_xdata()
+        assert np.array_equal(one.get_ydata(), sonine_state(r, beta).R, equal_nan=True)
+        expected = one.get_ydata() - cooling_ratio(r, beta)
+        assert gap.get_ydata()[1:] == pytest.approx(expected[1:], abs=1e-14, nan_ok=True)
 
 
 def test_what_cannot_be_drawn_is_refused_and_leaves_no_file(tmp_path):

@@ -168,7 +168,7 @@ class PanelContent(NamedTuple):
     # of the series drawn: those whose residuals are to fit
     scale: Callable[[Sequence[Series]], Sequence[Series]] = lambda drawn: drawn
     # draws what only this figure has
-    extra: Callable[[Axes, Sequence[Series]], None] = lambda main, drawn: None
+    extra: Callable[[Panel, Sequence[Series]], None] = lambda panel, drawn: None
 
 
 def content_for_each_r(title: str, data: xr.Dataset, **how: Any) -> PanelContent:
@@ -195,7 +195,7 @@ def ratio_figure(
     for part, panel in zip(parts, panels, strict=True):
         draw_series(panel, part.drawn, averages)
         draw_theory(panel, part.drawn[:1] if part.theory else part.drawn, black=bool(part.theory))
-        part.extra(panel.main, part.drawn)
+        part.extra(panel, part.drawn)
         frame_rows(panel, part.drawn, part.scale(part.drawn), averages)
         add_title(panel.main, part.data, part.title, part.message)
     known: set[str] = set()

@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from typing import Any
 
 import xarray as xr
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from roughgas.base import InputError
@@ -12,6 +11,7 @@ from roughgas.show.figures.panel import (
     ANY_R,
     HALF,
     RESTITUTION,
+    Panel,
     PanelContent,
     Series,
     averages_of,
@@ -20,8 +20,10 @@ from roughgas.show.figures.panel import (
     series,
 )
 from roughgas.show.style import GREY, LOOKS
+from roughgas.theory import sonine_state
 
 WALLS = ("no side walls", "rough elastic walls", "walls like the particles", "smooth elastic walls")
+THIN: dict[str, Any] = {"linestyle": "-", "linewidth": 0.7, "zorder": 0.5}
 FAINT: dict[str, Any] = {"alpha": 0.5, "markersize": 2.6, "markeredgewidth": 0, "zorder": 0}
 
 
@@ -62,10 +64,11 @@ def fig2a(sheared: xr.Dataset) -> Figure:
     return ratio_figure(content_for_each_r("Sheared gas", sheared, message=message, **how))
 
 
-def _draw_unsubtracted(main: Axes, drawn: Sequence[Series]) -> None:
+def _draw_unsubtracted(panel: Panel, drawn: Sequence[Series]) -> None:
     """Draw R with mean flow and mean spin left in, small and faint, since it is not the result."""
     if "R_unsubtracted" not in drawn[0].data:
         return
+    main = panel.main
     for one in drawn:
         ratio = one.data.R_unsubtracted.values
         main.plot(one.at, ratio, one.look.marker, color=one.look.colour, **FAINT)
@@ -79,5 +82,17 @@ def fig2b(cooling: xr.Dataset) -> Figure:
     how = {
         "theories": "lines: theory of free cooling",
         "legend": {"loc": "upper right", "ncols": 2},
+        "extra": _draw_sonine,
     }
     return ratio_figure(content_for_each_r("Cooling gas", cooling, message=message, **how))
+
+
+def _draw_sonine(panel: Panel, drawn: Sequence[Series]) -> None:
+    """Draw R without the assumption of Maxwellian velocities, where there is such a state."""
+    beta = panel.axis.grid
+    for one in drawn:
+        about = one.data.attrs
+        found = sonine_state(float(one.data.r), beta, about["dimension"], about["inertia"]).R
+        panel.main.plot(beta, found, color=one.look.colour, **THIN)
+        panel.residuals[0].plot(beta, found - one.predict(beta=beta), color=one.look.colour, **THIN)
+    panel.main.plot([], [], color=GREY, label="thin: Sonine", **THIN)
