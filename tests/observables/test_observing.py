@@ -26,7 +26,8 @@ COOLED = {
     "effects": {"spin": {"inertia": 0.5}},
     "schedule": COOLING | {"replicas": 2, "sample_every": 0.5},
 }
-ONLY_LOOK = [name for name in KINDS if not KINDS[name].effects]
+OF_LAYERS = ("layer", "pattern")
+ONLY_LOOK = [name for name in KINDS if not KINDS[name].effects and name not in OF_LAYERS]
 
 
 def point(scene, observe=None, r=0.9, beta=0.5, **more):

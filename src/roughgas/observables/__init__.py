@@ -19,6 +19,7 @@ from roughgas.observables.distributions import (
     SpinCorrelation,
 )
 from roughgas.observables.fields import Profiles, Stress
+from roughgas.observables.layers import Layer, Pattern
 from roughgas.observables.plugin import Frame, Function, Observable, Setting, System, Whole
 
 __all__ = ["KINDS", "Frame", "Observable", "System"]
@@ -32,6 +33,8 @@ KINDS: dict[str, type[Observable]] = {
     "stress": Stress,
     "mean_square_displacement": MeanSquareDisplacement,
     "autocorrelation": Autocorrelation,
+    "layer": Layer,
+    "pattern": Pattern,
 }
 """The observables by the names that they have in settings."""
 EVERY = Whole("Samples from one observation to the next.", 1, 1_000_000, 1)

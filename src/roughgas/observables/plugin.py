@@ -36,6 +36,7 @@ class System(NamedTuple):
     interval: float  # between looks, in T or in collisions per particle
     cooling: bool
     alike: bool = True  # all particles have radius a and mass m
+    period: float | None = None  # of the schedule, in T: whole ones of the drive
 
     @property
     def dimension(self) -> int:
@@ -74,6 +75,7 @@ class Frame(NamedTuple):
     rates: Mapping[str, float]  # what effects have summed up since the look before, per T
     species_of: np.ndarray | None = None  # (N,) index of each one's species; None: all are alike
     speed_unit: float = 1.0  # of the velocities, in a/T: not 1 in a cooling gas
+    floor: float = 0.0  # height of a shaken floor, in a
 
     @property
     def thermal_velocity(self) -> np.ndarray:
@@ -135,6 +137,7 @@ class Observable:
     effects: ClassVar[tuple[str, ...]] = ()  # that it needs in the kernel, which only look
     spins: ClassVar[bool] = False  # it needs particles that spin
     alike: ClassVar[bool] = False  # it needs particles of one species
+    kept: ClassVar[tuple[str, ...]] = ()  # what points keep look by look, and nobody averages
     variables: Mapping[str, Variable] = {}
 
     def __init__(self, system: System) -> None:
@@ -143,7 +146,8 @@ class Observable:
         self.coordinates: dict[str, Any] = {}
 
     def look(self, frame: Frame) -> Values:
-        """Return arrays, which are averaged over all looks; NaN where there is nothing yet."""
+        """Return arrays, which are averaged over all looks, or `kept`; NaN where there is nothing
+        yet. A look whose first kept array is NaN is not kept."""
         raise NotImplementedError
 
     def combine(self, means: Values) -> Values:
@@ -251,8 +255,15 @@ def _stacked(looks: Sequence[Values], per_period: int) -> dict[str, np.ndarray]:
     stacks = {name: np.array([look[name] for look in looks], float) for name in looks[0]}
     if per_period == 1 or len(looks) < per_period:
         return stacks
-    turned = {name: np.moveaxis(x, 0, -1) for name, x in stacks.items()}
-    return {name: np.moveaxis(period_means(x, per_period), -1, 0) for name, x in turned.items()}
+    return {name: _by_period(x, per_period) for name, x in stacks.items()}
+
+
+def _by_period(x: np.ndarray, per_period: int) -> np.ndarray:
+    """Return means over periods (periods, ...), of what there is in each."""
+    if np.isfinite(x).all():
+        return np.moveaxis(period_means(np.moveaxis(x, 0, -1), per_period), -1, 0)
+    whole = x[: len(x) // per_period * per_period]
+    return np.nanmean(whole.reshape(-1, per_period, *x.shape[1:]), axis=1)
 
 
 def _slopes(combine, mean, series) -> Iterator[Values]:

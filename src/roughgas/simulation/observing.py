@@ -174,17 +174,19 @@ class Observers:
             low, high = ((end - begun) / every + 0.5 for end in (start, stop))
             runs.append([look.values for look in one.looks if low < look.taken < high])
         runs = [run for run in runs if run]
+        kept = watched[0].observable.kept
         if not runs:
             legal = "be small enough for observations during the measurement"
             raise InputError("observables: every", watched[0].every, legal)
         period = self._kind.samples_per_period(self._experiment["schedule"])
         per_period = period // one.every if period % one.every == 0 else 1
-        found = averaged(one.observable.combine, runs, per_period)
+        means = [[_without(kept, values) for values in run] for run in runs]
+        found = averaged(one.observable.combine, means, per_period)
         return {
             f"{name}{end}": values[name]
             for name in found.value
             for end, values in zip(("", "_stderr", "_dof"), found, strict=True)
-        }
+        } | _series(kept, [values for run in runs for values in run])
 
     def _described(self, observable, variables, found) -> dict[str, Variable]:
         """Return what the variables of an observable are, errors included."""
@@ -192,6 +194,8 @@ class Observers:
         for name, about in variables.items():
             units = _present(about.units) if self._system.cooling else about.units
             about = about._replace(units=units, of_settings=True, observable=observable)
+            if name in found and f"{name}_stderr" not in found:
+                about = about._replace(observable="")  # a series, which reduced datasets leave out
             described[name] = about
             if f"{name}_stderr" in found:
                 error = f"standard error of {name} within this file"
@@ -199,6 +203,16 @@ class Observers:
                 described[f"{name}_stderr"] = about._replace(long_name=error)
                 described[f"{name}_dof"] = about._replace(long_name=freedom, units="1")
         return described
+
+
+def _without(names, values):
+    return {name: value for name, value in values.items() if name not in names}
+
+
+def _series(kept, looks):
+    """Return what is kept of looks, (looks, ...) by name."""
+    there = [values for values in looks if kept and np.isfinite(values[kept[0]]).all()]
+    return {name: np.array([values[name] for values in there]) for name in kept}
 
 
 def frame_of(gas: Gas, system: System) -> Frame:
@@ -225,6 +239,7 @@ def frame_of(gas: Gas, system: System) -> Frame:
         rates={},
         species_of=None if state.bodies is None else in_order(state, state.bodies.species),
         speed_unit=unit / scale if scale else math.nan,
+        floor=displacement(gas.scene.effects.floor, time) or 0.0,
     )
 
 

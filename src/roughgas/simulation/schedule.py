@@ -82,6 +82,7 @@ def system_of(scene: Scene, experiment: Mapping[str, Any]) -> "System":
         interval=KINDS[schedule["kind"]].interval(experiment),
         cooling=not KINDS[schedule["kind"]].DRIVEN,
         alike=effects.species is None,
+        period=schedule.get("period"),
     )
 
 

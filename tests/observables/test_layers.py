@@ -1,0 +1,173 @@
+"""The pattern of a layer from fields whose answer is known, and a layer over its drive."""
+
+import math
+
+import numpy as np
+import pytest
+from brute_force import settings
+from tests.observables.frames import frame_of, system_of
+
+from roughgas import simulate
+from roughgas.base import InputError
+from roughgas.observables.layers import FOLDS, Pattern, height_field, smoothed, spectrum
+
+SIDE = 40.0
+CELLS = 100
+PERIOD = 2.0
+
+
+def waves(number, angles, phase=0.3):
+    """A sum of plane waves with so many wavelengths in a side, one for each direction."""
+    x, y = np.meshgrid(*[(np.arange(CELLS) + 0.5) / CELLS] * 2, indexing="ij")
+    along = [x * math.cos(angle) + y * math.sin(angle) for angle in angles]
+    return sum(np.cos(2 * math.pi * number * one + phase * k) for k, one in enumerate(along))
+
+
+@pytest.mark.parametrize("number", [4, 5, 8, 13, 20])
+def test_the_order_of_stripes_is_what_a_hann_window_leaves(number):
+    """It adds a quarter of the power of the peak one shell to either side along the stripes, and
+    what it adds across them is on other shells: Q_m = [1 + cos(m arctan(1/n))/2]/(3/2)."""
+    found = spectrum(waves(number, [0.0]), (SIDE, SIDE))
+    assert found.wavelength == pytest.approx(SIDE / number)
+    for fold, order in zip(FOLDS, found.order, strict=True):
+        expected = (1.0 + 0.5 * math.cos(fold * math.atan(1.0 / number))) / 1.5
+        assert order == pytest.approx(expected, abs=0.01)
+
+
+PATTERNS = {  # directions of the waves, their order Q_m, and by how much a window may lower it
+    "stripes": ([0.7], 2, 0.02),
+    "squares": ([0.2, 0.2 + math.pi / 2], 4, 0.05),
+    "hexagons": ([0.1, 0.1 + math.pi / 3, 0.1 + 2 * math.pi / 3], 6, 0.1),
+}
+
+
+@pytest.mark.parametrize("name", PATTERNS)
+def test_stripes_squares_and_hexagons_have_their_own_order(name):
+    """With twelve wavelengths in a side, in any direction; lower orders of a lattice vanish."""
+    angles, own, tolerance = PATTERNS[name]
+    found = spectrum(waves(12, angles), (SIDE, SIDE))
+    order = dict(zip(FOLDS, found.order, strict=True))
+    assert 1.0 - tolerance < order[own] <= 1.0
+    assert all(order[fold] < 0.1 for fold in FOLDS if fold < own)
+    assert found.wavelength == pytest.approx(SIDE / 12)
+    assert found.power.sum() == pytest.approx(1.0)
+
+
+def test_noise_has_no_order():
+    """97.8 % of fields have all orders below 1/2 (of 2000); 95 % of 500 is 4 sigma less."""
+    rng = np.random.default_rng(3)
+    found = [spectrum(rng.standard_normal((32, 32)), (1.0, 1.0)).order for _ in range(500)]
+    assert np.mean(np.max(found, axis=1) < 0.5) > 0.95
+
+
+def test_a_spectrum_is_that_of_a_sum_term_by_term():
+    """By another way: a discrete Fourier transform as it is defined, in an oblong box."""
+    rng = np.random.default_rng(5)
+    field, sides = rng.standard_normal((12, 9)), (6.0, 4.0)
+    n, m = field.shape
+    w = [0.5 - 0.5 * np.cos(2 * np.pi * np.arange(k) / (k - 1)) for k in (n, m)]
+    weighed = (field - field.mean()) * w[0][:, None] * w[1]
+    shells, peaks = {}, {}
+    for a in range(-(n // 2), (n + 1) // 2):
+        for b in range(-(m // 2), (m + 1) // 2):
+            turns = a * np.arange(n)[:, None] / n + b * np.arange(m) / m
+            power = abs((weighed * np.exp(-2j * np.pi * turns)).sum()) ** 2
+            k = np.array([a / sides[0], b / sides[1]])
+            peaks[a, b] = power, k
+            shell = round(math.hypot(*k) * 6.0)
+            shells[shell] = shells.get(shell, 0.0) + power * (shell >= 2)
+    best = max(shells, key=shells.get)
+    found = spectrum(field, sides)
+    assert found.wavelength == pytest.approx(6.0 / best)
+    for shell, power in shells.items():
+        assert found.power[shell] == pytest.approx(power / sum(shells.values()), abs=1e-12)
+    near = [(p, k) for p, k in peaks.values() if abs(math.hypot(*k) * 6.0 - best) <= 0.75]
+    for fold, order in zip(FOLDS, found.order, strict=True):
+        total = sum(p * complex(*k) ** fold / abs(complex(*k)) ** fold for p, k in near)
+        assert order == pytest.approx(abs(total) / sum(p for p, _ in near), rel=1e-9)
+
+
+def test_smoothing_keeps_the_mean_and_damps_each_wave_by_its_gaussian():
+    for number in (1, 4, 9):
+        field = 2.0 + waves(number, [0.0])
+        gain = math.exp(-2.0 * (math.pi * 2.0 * number / CELLS) ** 2)
+        assert smoothed(field, 2.0) == pytest.approx(2.0 + gain * (field - 2.0), abs=1e-12)
+
+
+def test_a_height_field_is_that_of_a_loop_over_particles():
+    rng = np.random.default_rng(2)
+    position = rng.uniform(0.0, 1.0, (200, 3)) * [SIDE, 30.0, 9.0]
+    radius = rng.uniform(0.5, 1.5, 200)
+    highest = {}
+    for (x, y, z), a in zip(position, radius, strict=True):
+        cell = min(int(x / SIDE * 8), 7), min(int(y / 30.0 * 8), 7)
+        highest[cell] = max(highest.get(cell, -1.0), z + a)
+    middle = np.median(list(highest.values()))
+    expected = [[highest.get((i, j), middle) for j in range(8)] for i in range(8)]
+    assert 40 < len(highest) < 64  # some are empty
+    assert height_field(position, radius, (SIDE, 30.0), 8) == pytest.approx(np.array(expected))
+
+
+def test_a_layer_that_stands_in_stripes():
+    """Particles that cover a wavy layer: its wavelength and contrast, whatever the floor does."""
+    side = 60.0
+    x, y = np.meshgrid(*[np.arange(0.25, side, 0.5)] * 2)
+    height = 5.0 + 1.5 * np.cos(2 * math.pi * x / 15.0)
+    position = np.array([x.ravel(), y.ravel(), height.ravel() + 3.0]).T
+    system = system_of((side, side, 1.0), particles=len(position), period=PERIOD, interval=0.1)
+    system = system._replace(box=(side, side, None), periodic=(False, False, False))
+    found = Pattern(system, 100, 0.0, None).look(frame_of(system, position, floor=3.0))
+    assert found["wavelength"] == pytest.approx(15.0)
+    assert found["fold_order"][0] > 0.95
+    assert found["contrast"] == pytest.approx(1.5 / math.sqrt(2.0), rel=0.02)
+    assert np.median(found["height_field"]) == pytest.approx(6.0, abs=0.1)
+
+
+LAYER = settings("layer", 48) | {
+    "schedule": {
+        "kind": "steady",
+        "equilibrate": 4.0,
+        "measure": 24.0,
+        "sample_every": 0.25,
+        "period": PERIOD,
+    }
+}
+
+
+def layer(**observe):
+    return simulate(r=0.7, beta=0.35, observe=observe, progress=False, **LAYER)
+
+
+def test_a_layer_over_the_phase_of_its_drive():
+    """Its energy is E_trans phase by phase, the series is what the phases are means of."""
+    found = layer(layer={"phases": 8}, pattern={"cells": 8, "phase": 0.5})
+    assert found.layer_energy.mean() == pytest.approx(float(found.E_trans), rel=1e-12)
+    phase = np.round(found.layer_time % PERIOD / PERIOD * 8) % 8
+    for name in ("layer_height", "layer_depth", "layer_energy"):
+        series = found[f"{name}_series"]
+        means = [float(series[phase == k].mean()) for k in range(8)]
+        assert found[name].values == pytest.approx(means, rel=1e-12)
+        assert np.all(found[f"{name}_stderr"] > 0)
+    assert np.ptp(found.layer_height.values) > 0.2  # the floor moves by 1 a
+    assert found.pattern_time.values % PERIOD == pytest.approx(PERIOD / 2)
+    assert found.height_field.shape == (12, 8, 8)
+    assert found.wavelength == pytest.approx(float(found.wavelength_series.mean()))
+    assert found.fold_order_series.dims == ("pattern_time", "fold")
+
+
+def test_what_has_no_pattern_is_refused_in_one_line():
+    disks = settings("bed", 16, [10, "open"]) | {"schedule": LAYER["schedule"]}
+    with pytest.raises(InputError, match=r"^observables\.pattern = of disks: must be of spheres$"):
+        simulate(r=0.9, beta=0.2, observe=["pattern"], progress=False, **disks)
+    with pytest.raises(InputError, match=r"^observables\.layer needs a floor$"):
+        simulate(
+            "sheared",
+            r=0.9,
+            beta=0.2,
+            scale="small",
+            observe=["layer"],
+            schedule={"period": 10},
+            progress=False,
+        )
+    with pytest.raises(InputError, match=r"^observables\.layer needs schedule\.period$"):
+        simulate("sheared", r=0.9, beta=0.2, scale="small", observe=["layer"], progress=False)
