@@ -27,7 +27,7 @@ from roughgas.tasks import variables
 DOCS = Path(__file__).parents[1] / "docs"
 RESULTS = DOCS / "results.md"
 BEGIN, END = "<!-- {}: made by tests/pages.py -->\n", "<!-- until here -->\n"
-REMOVED = ("swept",)  # a key of experiments that only roughgas writes
+WRITTEN = "only roughgas writes it"  # what the schema says of keys that no configuration has
 DECIDES = dict.fromkeys(("AGREE", "LIMIT", "TENDENCY", "FEW", "NEAR", "FAR"), evidence)
 DECIDES |= {"SIGNIFICANT": errors, "INTERMEDIATE": paper, "CONSIDERABLY": paper, "MOST": paper}
 """Tolerances of verdicts, and the module of each."""
@@ -100,9 +100,13 @@ def _keys_of(schema, depth=1):
     return markdown(("key", "it must", "meaning"), _rows(schema, "", depth))
 
 
+def _is_written(about):
+    return WRITTEN in about.get("description", "")
+
+
 def _rows(schema, above, depth):
     """A row for each key of a mapping, and for those of the mappings in it, down to a depth."""
-    keys = [(key, one) for key, one in schema["properties"].items() if key not in REMOVED]
+    keys = [(key, one) for key, one in schema["properties"].items() if not _is_written(one)]
     keys += [(one["title"], one) for one in schema.get("patternProperties", {}).values()]
     for key, about in keys:
         found = _resolved(about)

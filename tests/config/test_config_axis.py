@@ -57,6 +57,58 @@ def test_a_variant_is_an_experiment_like_others(whole):
     config.check_one_variant("spun/inertia1", found)
 
 
+CASES = {
+    "slow": {"effects": {"floor": {"amplitude": 2, "period": 2}}, "schedule": {"period": 2}},
+    "many": {"particles": 320, "box": [100, "open"]},
+}
+
+
+def test_cases_are_settings_that_vary_together(with_experiments):
+    """Merged at every depth over the experiment's own, at a scale, too; null removes one."""
+    beds = {"extends": "vibrated", "sweep": {"r": ["0.9"], "case": CASES}}
+    whole = with_experiments(beds=beds)
+    whole["scales"]["small"]["beds"] = {"sweep": {"case": {"many": None}}}
+    schema.check(whole)
+    written = config.experiment(whole, "beds", "paper")
+    assert config.variants("beds", written) == ["beds/caseslow", "beds/casemany"]
+    slow, many = (config.experiment(whole, f"beds/case{name}", "paper") for name in CASES)
+    plain = config.experiment(whole, "vibrated", "paper")
+    floor = plain["effects"]["floor"] | {"amplitude": 2, "period": 2}
+    assert slow["effects"] == plain["effects"] | {"floor": floor}
+    assert slow["schedule"] == plain["schedule"] | {"period": 2}
+    assert (many["particles"], many["box"]) == (320, [100, "open"])
+    about = variant_attributes("beds/caseslow", slow)
+    expected = {"variant": "caseslow", "swept": "case", "swept_value": "slow"}
+    assert about == {"experiment": "beds"} | expected
+    small = config.experiment(whole, "beds", "small")
+    assert config.variants("beds", small) == ["beds/caseslow"]
+    assert "case" not in REDUCED | POINT
+
+
+WRONG_CASES = {
+    "sweep.case.slow: key = 'amplitude': must be one of": {"slow": {"amplitude": 2}},
+    "sweep.case: key = 'Slow': must consist of lower-case letters": {"Slow": {}},
+    "sweep.case.a.sweep = {}: must not be given here": {"a": {"sweep": {}}},
+    "beds/casea.particles = 0: must be a whole number in": {"a": {"particles": 0}},
+}
+
+
+@pytest.mark.parametrize("message", WRONG_CASES)
+def test_a_case_that_is_none_is_named(with_experiments, message):
+    sweep = {"r": ["0.9"], "case": WRONG_CASES[message]}
+    whole = with_experiments(beds={"extends": "vibrated", "sweep": sweep})
+    with pytest.raises(InputError) as caught:
+        schema.check(whole)
+    assert message.replace("beds/casea", "sweep.case.a") in str(caught.value)
+
+
+def test_a_case_that_is_not_there_is_named(with_experiments):
+    sweep = {"r": ["0.9"], "case": CASES}
+    whole = with_experiments(beds={"extends": "vibrated", "sweep": sweep})
+    with pytest.raises(InputError, match=r"case = 'fast': must be one of many, slow"):
+        config.experiment(whole, "beds/casefast", "paper")
+
+
 def test_the_axis_is_inherited_and_null_removes_it(whole):
     child, still = (config.experiment(whole, name, "paper") for name in ("child", "still"))
     assert config.variants("child", child)[0] == "child/inertia1"
@@ -153,8 +205,8 @@ MISTAKES = """
 {species.heavy.mass: ['1']} | experiments.spun.sweep: key = 'species.heavy.mass': must name one of
     species: there are none
 {spin.mass: ['1']} | experiments.spun/mass1.effects.spin: key = 'mass': must be one of inertia
-{inertia: ['1']} | sweep: key = 'inertia': must be one of beta, box, packing, particles, r, seeds,
-    species.NAME.KEY, EFFECT.PARAMETER, schedule.KEY; did you mean it under `effects: spin:`?
+{inertia: ['1']} | sweep: key = 'inertia': must be one of beta, box, case, packing, particles, r,
+    seeds, species.NAME.KEY, EFFECT.PARAMETER, schedule.KEY; did you mean it under `effects: spin:`?
 {particles: ['1.5']} | experiments.spun/particles1.5.particles = 1.5: must be a whole number
 {packing: ['1']} | experiments.spun/packing1.packing = 1: must be a number in (0, 0.95]
 {packing: ['0.1'], box: ['9']} | experiments.spun.sweep: key = 'box': must not stand beside packing

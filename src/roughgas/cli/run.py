@@ -21,7 +21,7 @@ from roughgas.theory.prediction import over_collisions
 
 IDENTITY = ("experiment", "variant", "scale", "r", "beta", "seed")
 """The attributes that name a point."""
-NOT_TO_SET = (*config.NOT_OF_A_POINT, config.SWEPT, "extends")
+NOT_TO_SET = (*config.NOT_OF_A_POINT, config.SWEPT, config.CASE, "extends")
 REACHED = {YES: "met", NO: "NOT met", UNKNOWN: "not known to be met"}
 
 

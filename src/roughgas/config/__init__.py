@@ -3,8 +3,8 @@
 A sweep may have a third axis, with its labels: one parameter of one effect, as EFFECT.PARAMETER,
 such as `spin.inertia: ["1", "0.1"]`; one quantity of one species, as species.NAME.KEY, a KEY of its
 `radius` too where radii are spread; one length of the schedule, as schedule.KEY; the number of
-`particles`; the width of the `box`, whose other sides keep their proportion to it; or the
-`packing`. Each label
+`particles`; the width of the `box`, whose other sides keep their proportion to it; the `packing`;
+or a `case`, the name of settings that vary together. Each label
 makes a variant of the experiment, named EXPERIMENT/PARAMETERLABEL, such as
 mine/inertia0.1: an experiment like any other, whose settings have that value.
 
@@ -46,6 +46,8 @@ FOLDERS, BROKEN = "folders", "broken"
 PAPER = "paper"
 """The scale of a configuration that names none."""
 SEEDS_PER_JOB = 4
+CASE = "case"
+"""A third axis whose labels are names of settings that vary together."""
 GRID = ("r", "beta", "seeds")
 """The axes of every sweep; any other key of a sweep is its third axis."""
 NOT_OF_A_POINT = ("description", "sweep")
@@ -345,6 +347,9 @@ def variant(name: str, settings: Mapping[str, Any]) -> dict[str, Any]:
 
 def swept_to(settings: Mapping[str, Any], key: str, value: Any) -> dict[str, Any]:
     """Return the change to an experiment's settings that gives its third axis `key` this value."""
+    if key == CASE:
+        one_of("case", str(value), settings["sweep"][CASE])
+        return settings["sweep"][CASE][value] | {CASE: value}
     part, _, parameter = key.rpartition(".")
     if part.startswith(SPECIES):
         species = copy.deepcopy(settings["species"])

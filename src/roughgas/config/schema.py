@@ -315,6 +315,8 @@ def _check_axis(settings: Mapping[str, Any], where: str) -> None:
             raise InputError(f"{where}.sweep: key", shown(key), legal)
         if key == "box" and "packing" in settings:
             raise InputError(f"{where}.sweep: key", shown(key), "not be swept beside packing")
+        if key == settings_of.CASE:
+            continue
         if not part and key not in settings and (key, "box" in settings) != ("packing", True):
             raise InputError(f"{where}.{key}", "(nothing)", "be given, as it is swept")
         numbers_of(f"{where}.sweep.{key}", settings["sweep"][key], level)
