@@ -71,6 +71,7 @@ def simulate(
     particles: int | None = None,
     box: Sequence[Side] | None = None,
     packing: float | None = None,
+    layer: Mapping[str, Any] | None = None,
     effects: Effects | None = None,
     species: Species | None = None,
     species_pairs: Species | None = None,
@@ -110,6 +111,10 @@ def simulate(
     packing
         Volume fraction of the particles, in place of these lengths. The box keeps its shape, or has
         that of the proportions in `box`, such as ``(1, 1, 1)``; by default it is a square.
+    layer
+        A shaken layer of spheres by Gamma, f* and its depth in diameters, such as ``{"gamma": 3,
+        "f_star": 0.44, "depth": 5.42}``, in place of the amplitude and the period of its floor;
+        also ``width``, and ``cycles`` of the schedule (docs/config.md).
     effects
         The effects that act, such as ``{"friction": {"mu": 0.3}}``; None removes one, as in
         ``{"contact_time": None}``. docs/effects.md lists them all.
@@ -195,6 +200,7 @@ def simulate(
     True
     """
     changes: dict[str, Any] = dict(particles=particles, box=box, packing=packing, effects=effects)
+    changes["layer"] = layer
     changes |= dict(species=species, species_pairs=species_pairs, schedule=schedule)
     changes |= dict(spin_temperature=spin_temperature, keep_state=keep_state)
 
@@ -225,6 +231,7 @@ def trajectory(
     particles: int | None = None,
     box: Sequence[Side] | None = None,
     packing: float | None = None,
+    layer: Mapping[str, Any] | None = None,
     effects: Effects | None = None,
     species: Species | None = None,
     species_pairs: Species | None = None,
@@ -245,7 +252,8 @@ def trajectory(
 
     Parameters
     ----------
-    experiment, r, beta, seed, particles, box, packing, effects, species, species_pairs, schedule
+    experiment, r, beta, seed, particles, box, packing, layer, effects, species, species_pairs,
+    schedule
         As for `simulate`.
     initial, scale, config, progress
         As for `simulate`.
@@ -278,6 +286,7 @@ def trajectory(
     (2, 40, 2)
     """
     changes: dict[str, Any] = dict(particles=particles, box=box, packing=packing, effects=effects)
+    changes["layer"] = layer
     changes |= dict(species=species, species_pairs=species_pairs, schedule=schedule)
     ((legal_r, legal_beta, number, labels),), _ = _places(r, beta, seed)
 

@@ -131,10 +131,13 @@ def test_an_elastic_gas_follows_its_bath_to_another_temperature():
     still = {name: 0.0 for name in ("spin_drag", "spin_power")}
     bath = {"drag": 0.2, "temperature": 1.0, "interval": 0.05} | still
     experiment = settings("bath", 400, [200, 200], langevin=bath)
-    parts = {"duration": 15, "measure": False}, {
-        "duration": 10,
-        "effects": {"langevin": {"temperature": 3.0}},
-    }
+    parts = (
+        {"duration": 15, "measure": False},
+        {
+            "duration": 10,
+            "effects": {"langevin": {"temperature": 3.0}},
+        },
+    )
     runs = [point(experiment, *parts, r=1.0, beta=-1.0, seed=seed) for seed in range(10)]
     T = 2.0 * np.array([one.E_trans_series.values for one in runs])
     late = runs[0].time.values >= 15.0

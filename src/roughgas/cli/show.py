@@ -122,10 +122,12 @@ def _settings(about: Mapping[str, Any], text: str) -> list[list[str]]:
     netcdf.require(experiment, ("particles", "box", "effects"), "its settings")
     box = " x ".join(f"{side:g}" if side != "open" else "open" for side in experiment["box"])
     filled = "" if "open" in experiment["box"] else f", packing {packing(experiment):.3g}"
+    layer = experiment.get("layer") or {}
     effects = [f"{name} ({_listed(one)})" for name, one in experiment["effects"].items()]
     rows = [
         ["point", f"r = {about['r']:g}, beta = {about['beta']:g}, seed {about['seed']}"],
         ["gas", f"{experiment['particles']} {SHAPES[len(experiment['box'])]}, box {box} a{filled}"],
+        *([["layer", f"{_listed(layer)}, in diameters and cycles"]] if layer else []),
         *(["" if k else "effects", one] for k, one in enumerate(effects)),
     ]
     schedule = experiment.get("schedule")

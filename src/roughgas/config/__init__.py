@@ -32,6 +32,7 @@ from roughgas.config.labels import (  # noqa: F401
     roughness,
     seed,
 )
+from roughgas.config.layers import LAYER, with_layer, without_layer
 
 # the schema and YAML are imported where they are used: a job of checked settings needs neither
 
@@ -205,7 +206,7 @@ def changed_by(settings: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[
     kinds = [one.get("kind") if isinstance(one, Mapping) else None for one in schedules]
     if None not in kinds and kinds[0] != kinds[1]:
         settings = {**settings, "schedule": {}}
-    found = merged(settings, changes)
+    found = merged(without_layer(settings), changes)
     if "box" in changes and PACKING not in changes:
         found.pop(PACKING, None)
     elif PACKING in found and "box" not in changes and "open" not in settings.get("box", ["open"]):
@@ -214,12 +215,13 @@ def changed_by(settings: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[
 
 
 def fitted(settings: Mapping[str, Any], where: str) -> dict[str, Any]:
-    """Return settings whose box has the `packing` asked for, if any: lengths in a.
+    """Return settings with what their `layer` says, whose box has the `packing` asked for, if any:
+    lengths in a.
 
     Values that the schema refuses are left to it. Raises InputError, whose key begins with `where`,
     for an open box, for a box of another packing, and for one that would be too large.
     """
-    found, asked = dict(settings), settings.get(PACKING)
+    found, asked = with_layer(settings, where), settings.get(PACKING)
     number = settings.get("particles")
     if not isinstance(asked, int | float) or not asked > 0 or not isinstance(number, int):
         return found
@@ -290,6 +292,8 @@ def validated(settings: Mapping[str, Any], source: str) -> dict[str, Any]:
     from roughgas.config.schema import check_schema
 
     check_schema(settings, source, "experiment")
+    if settings.get(LAYER):
+        check_schema(settings[LAYER], f"{source}.{LAYER}", "point/properties/layer")
     settings = fitted(settings, source)
     check_schema(settings, source, "point")
     return settings

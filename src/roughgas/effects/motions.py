@@ -29,7 +29,9 @@ RISING, FALLING = 0, 1
 REVERSED_RISE = 0.1  # of the reversed sawtooth's period
 WAVES = ("sawtooth", "reversed_sawtooth", "triangle", "sine")
 SETTINGS = {
-    "amplitude": Number("Height of a stroke, in a; 0 is a floor at rest.", LENGTH),
+    "amplitude": Number(
+        "Height of a whole stroke, in a (2 A of a sine); 0 is a floor at rest.", LENGTH
+    ),
     "period": Number("Time between strokes, in T.", TIME),
     "wave": Word(
         "Form of its motion; the sawtooth returns at once, the reversed one rises in a tenth of "

@@ -78,7 +78,9 @@ register(Walls, MATERIAL, predict=predict_walls, resolve=resolve_walls, closes=T
 
 
 SHAKEN_SETTINGS = {
-    "amplitude": Number("Largest displacement from the middle, in a.", LENGTH),
+    "amplitude": Number(
+        "Largest displacement from the middle, in a: half a stroke (A of a sine).", LENGTH
+    ),
     "period": Number("Period of the motion, in T.", TIME),
     **MATERIAL,
 }

@@ -14,10 +14,10 @@ from typing import ClassVar
 
 import numpy as np
 
-from roughgas.data.variables import SPEED, SPIN, TIME, Variable
+from roughgas.data.variables import SPIN, TIME, Variable
 from roughgas.observables.plugin import Frame, Observable, Setting, System, Values, Whole
 
-SQUARED = f"{SPEED}^2"
+SQUARED = "a^2 T^-2"
 VELOCITY, OF_SPIN = "velocity_autocorrelation", "spin_autocorrelation"
 
 
