@@ -1,29 +1,41 @@
-"""Judge of the statement on published stationary states."""
+"""Judges of the statements on published stationary states."""
 
 import numpy as np
 import xarray as xr
 
 from roughgas.judging import SIGNIFICANT, Finding, grade, points, sample, text
 
-from .published import beside_published
+from .published import beside_published, cumulants_beside_published
 
 CLOSE = 0.003
 """Difference in R up to which points that differ significantly qualify. An independent check of
 heated gases found finite kicks worth 0.0003 at most, and the number of particles, beyond its
 degrees of freedom, 0.0004. Fixed before its data."""
+CLOSE_CUMULANTS = 0.01
+"""The same of cumulants, a tenth of the larger ones. Fixed after runs at one state with larger
+kicks, and before the data that are judged."""
 
 
 def is_published(gas: xr.Dataset) -> Finding:
     """R_corrected minus the published R is compatible with zero."""
-    gap, error = beside_published(gas)
+    return _compatible(gas, *beside_published(gas), "R", CLOSE)
+
+
+def are_published(gas: xr.Dataset) -> Finding:
+    """a20, a11 and a02 minus the published ones are compatible with zero."""
+    found = cumulants_beside_published(gas)
+    return _compatible(gas, *found, "a cumulant", CLOSE_CUMULANTS)
+
+
+def _compatible(gas, gap, error, what, close) -> Finding:
     gap = sample(gap.where(np.isfinite(gas.R)), error, np.full(gap.shape, np.inf))
     z, off = gap.value / gap.stderr, gap.real()
     largest = int(np.argmax(np.abs(z)))
     worst = gap.at(largest)
     reason = (
-        f"At {int(off.sum())} of {points(gap.size)} R differs by {SIGNIFICANT:g} combined standard "
-        f"errors or more; z has the root mean square {np.sqrt(np.mean(z**2)):.2f}, and the largest "
-        f"is that of {text(worst)} at {gap.place(largest)}."
+        f"At {int(off.sum())} of {points(gap.size)} {what} differs by {SIGNIFICANT:g} combined "
+        f"standard errors or more; z has the root mean square {np.sqrt(np.mean(z**2)):.2f}, and "
+        f"the largest is that of {text(worst)} at {gap.place(largest)}."
     )
-    verdict = grade(not off.any(), not gap.off(CLOSE).any())
-    return Finding(verdict, reason, (("R - published R where z is largest", worst),))
+    verdict = grade(not off.any(), not gap.off(close).any())
+    return Finding(verdict, reason, ((f"{what} - published where z is largest", worst),))
