@@ -310,3 +310,31 @@ def test_decoupled_spin_keeps_its_energy():
     assert np.isinf(theory.collisions_to_relax(1, -1, theta0=1))
     assert np.isinf(theory.collisions_to_relax(1, -1, spin_share=0.5))
     assert theory.relaxation_rate(1, -1) == 0
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("s", [0.0, 0.4, 1.0])
+def test_a_drive_of_constant_power_leads_to_the_stationary_state(dimension, s):
+    """Collisions take what the drive gives there, and theta is that of `stationary_theta`."""
+    r, beta, packing, power = 0.8, 0.2, 0.05, 0.01
+    T_tr, T_rot = theory.driven_temperatures(
+        [0.0, 5000.0], 2.0, 0.3, r, beta, packing, power, s, dimension
+    )
+    assert (T_tr[0], T_rot[0]) == (2.0, 0.3)
+    assert T_rot[1] / T_tr[1] == pytest.approx(theory.stationary_theta(r, beta, dimension, None, s))
+    nu = theory.collision_frequency(T_tr[1], packing, dimension)
+    lost = theory.temperature_changes(T_tr[1], T_rot[1], r, beta, dimension, None, nu)
+    given = theory.drive_changes(power, s, dimension)
+    assert np.add(lost, given) == pytest.approx([0.0, 0.0], abs=1e-9)
+
+
+def test_without_a_drive_it_cools_as_the_exact_solution():
+    """At the times that so many collisions take in it: the integral of 1/nu over them."""
+    n = np.linspace(0.0, 20.0, 20001)
+    gas = theory.relax(3.0, 0.8, 0.2, n)
+    slow = 1.0 / theory.collision_frequency(gas.T_tr, 0.05)
+    time = np.concatenate([[0.0], np.cumsum(0.5 * (slow[1:] + slow[:-1]) * np.diff(n))])
+    some = slice(None, None, 4000)
+    T_tr, T_rot = theory.driven_temperatures(time[some], 1.0, 3.0, 0.8, 0.2, 0.05)
+    assert T_tr == pytest.approx(gas.T_tr[some], rel=1e-5)
+    assert T_rot == pytest.approx(gas.T_rot[some], rel=1e-5)

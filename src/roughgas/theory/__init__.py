@@ -71,6 +71,7 @@ from roughgas.theory.rate_equations import (
     collisions_to_relax,
     decay_rate,
     drive_changes,
+    driven_temperatures,
     haff_temperature,
     haff_time,
     mean_normal_squared,

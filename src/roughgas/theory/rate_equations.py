@@ -38,6 +38,10 @@ from roughgas.theory.arguments import (
     quotient,
     shares,
 )
+from roughgas.theory.closed_forms import collision_frequency
+
+STEP = 0.05
+"""Of an integration, in mean free times of a gas all of whose energy is translational."""
 
 
 def translational_energy_change(
@@ -242,6 +246,41 @@ def relax(theta0, r, beta, collisions, dimension=2, inertia=None, spin_share=Non
     decay = slow_decay(r, beta, dimension, inertia) if spin_share is None else 0.0
     scale = np.exp(-decay * n)
     return Relaxation(quotient(T_rot, T_tr), scale * T_tr, scale * T_rot)
+
+
+def driven_temperatures(
+    time, T_tr, T_rot, r, beta, packing, power=0.0, spin_share=0.0, dimension=2, inertia=None
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return T_tr and T_rot at each `time` (>= 0, rising, in T) since they had the values given.
+
+    A drive of constant `power` per particle (m a^2/T^3), of which spin gets the share, in a gas
+    with Enskog's collision frequency at `packing`: `temperature_changes` and `drive_changes`,
+    integrated by the Runge-Kutta method of fourth order in steps of STEP mean free times or less.
+    """
+    time = np.atleast_1d(check("time", time))
+    state = np.array([check("temperature T_tr", T_tr), check("temperature T_rot", T_rot)], float)
+    rates, unit = (
+        collision_rates(r, beta, dimension, inertia),
+        collision_frequency(1.0, packing, dimension),
+    )
+    drive = np.array(drive_changes(power, spin_share, dimension))
+
+    def change(state):
+        return drive + rates.changes(*state, unit * np.sqrt(state[0]))
+
+    found, now = [], 0.0
+    for instant in time:
+        while now < instant:
+            step = min(instant - now, STEP / (unit * np.sqrt(state.sum())))
+            one = change(state)
+            two = change(state + 0.5 * step * one)
+            three = change(state + 0.5 * step * two)
+            four = change(state + step * three)
+            state = state + step / 6.0 * (one + 2.0 * (two + three) + four)
+            now = instant if instant - now <= step else now + step
+        found.append(state)
+    T_tr, T_rot = np.transpose(found)
+    return T_tr, T_rot
 
 
 def collisions_to_relax(
