@@ -60,6 +60,10 @@ BEYOND = {  # the experiments beyond the paper, and the third axis of their swee
     "viscoelastic.cooling_viscoelastic": {},
     "couette.couette": {},
     "megias_santos.dilute": {"thermostat.spin_share": ["0.5"]},
+    **{
+        f"mpemba.{name}": {}
+        for name in ("hot", "cold", "overshoot_hot", "overshoot_cold", "memory")
+    },
 }
 TINY |= {name: {"sweep": SWEEP | axis} for name, axis in BEYOND.items()}
 for name, box in (
@@ -73,6 +77,8 @@ for name, box in (
     ("megias_santos.dilute", [100, 100]),
 ):
     TINY[name] |= {"particles": 10, "box": box}
+for name in (name for name in BEYOND if name.startswith("mpemba.")):
+    TINY[name] |= {"particles": 20, "schedule": {"sample_every": 40}}
 TINY["megias_santos.dilute"]["schedule"] = {"equilibrate": 80, "measure": 800, "target_stderr": 0.1}
 
 
