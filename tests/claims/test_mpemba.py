@@ -9,7 +9,7 @@ from tests.synthetic import reduced
 
 from roughgas import theory
 from roughgas.base.files import module_of
-from roughgas.claims.evidence import FAILS, HOLDS, QUALIFIED
+from roughgas.claims.evidence import FAILS, HOLDS, NOT_TESTED, QUALIFIED
 
 STUDY = DOCS.parent / "studies" / "mpemba"
 POWER, PACKING = 0.00127, 0.001
@@ -127,6 +127,13 @@ def test_gases_as_published_cross_when_they_are_published_to(
 ):
     found = judged(name, *pair(curves, CASES[name], stretch=stretch))
     assert found.verdict == verdict, found.reason
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_what_is_too_noisy_is_not_judged(judged, curves, name):
+    gases = pair(curves, CASES[name])
+    noisy = [one.assign(E_trans_series_stderr=one.E_trans_series_stderr + 1.0) for one in gases]
+    assert judged(name, *noisy).verdict == NOT_TESTED
 
 
 @pytest.mark.parametrize("name", CASES)

@@ -126,7 +126,11 @@ def test_a_drive_and_nothing_else_needs_a_steady_schedule(kernel):
     schedule.check(experiment | {"schedule": right})
     with pytest.raises(InputError) as caught:
         schedule.check(experiment | {"schedule": wrong})
-    legal = f"steady where there is a drive: {driven[0]}" if driven else "cooling where no effect"
+    legal = (
+        f"steady or stages where there is a drive: {driven[0]}"
+        if driven
+        else "cooling or stages where no effect"
+    )
     assert str(caught.value).startswith(f"schedule.kind = {wrong['kind']}: must be {legal}")
 
 

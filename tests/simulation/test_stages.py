@@ -9,11 +9,13 @@ from brute_force.beside import brute_force_from
 
 from roughgas import config, simulate, trajectory
 from roughgas.base import InputError
+from roughgas.cli.show import theory_beside
 from roughgas.config import merged
 from roughgas.effects.species import packing
 from roughgas.simulation import change, schedule
 from roughgas.simulation.gas import Gas
 from roughgas.tasks import dsmc
+from roughgas.theory.prediction import ratio_of_point
 
 GAS = settings("gas", 40, [30, 30])
 HEATED = settings("heated", 40, [30, 30])
@@ -236,6 +238,13 @@ def test_what_is_watched_counts_in_measured_stages_only():
     assert found.energy == pytest.approx(float(found.E_trans), rel=1e-12)
     late = found.E_trans_series[found.time > 5.0]
     assert float(found.E_trans) == pytest.approx(float(late.mean()), rel=1e-12)
+
+
+def test_no_theory_of_a_steady_state_is_held_against_it():
+    parts = ({"duration": 5}, {"duration": 5, "temperature": 2.0})
+    found = point(HEATED, *parts)
+    assert math.isnan(ratio_of_point(found)) and found.attrs["stages"] == 2
+    assert theory_beside(found, 0.5, math.nan) == [["theory", "none: settings change in 2 stages"]]
 
 
 def test_seeds_are_averaged_with_errors():

@@ -237,6 +237,8 @@ def _found(row: dict[str, Any]) -> list[str]:
 def theory_beside(point: Dataset, R: float, expected: float) -> list[list[str]]:
     """Return what theory says of R, and how far off R is; or why it says nothing."""
     name = equation_of(point.attrs, point).name
+    if "stages" in point.attrs:
+        return [["theory", f"none: settings change in {point.attrs['stages']} stages"]]
     if math.isnan(expected):
         spins = "contacts change no spin, and spins that are 0 stay so"
         return [["theory", f"none ({name}): at beta = -1 {spins}"]]
