@@ -42,6 +42,7 @@ def tables():
     found["config", "file"] = _keys_of(_schema())
     for name in ("experiment", "sweep", "schedule", "stage"):
         found["config", name] = _keys_of(parts[name])
+    found["config", "layer"] = _keys_of(parts["layer"], depth=2)
     found["config", "accuracy"] = _keys_of(parts["accuracy"], depth=4)
     found["effects", "effects"] = _effects()
     found["observables", "observables"] = _observables()

@@ -252,8 +252,9 @@ def trajectory(
 
     Parameters
     ----------
-    experiment, r, beta, seed, particles, box, packing, layer, effects, species, species_pairs,
-    schedule
+    experiment, r, beta, seed, particles, box, packing, layer
+        As for `simulate`.
+    effects, species, species_pairs, schedule
         As for `simulate`.
     initial, scale, config, progress
         As for `simulate`.

@@ -4,7 +4,8 @@ import math
 
 import numpy as np
 import pytest
-from brute_force import begin, run, settings, snapshot
+from brute_force import begin, run, scene_of, settings, snapshot
+from brute_force.beside import brute_force_from
 from compiled import from_python
 
 from roughgas.base import InputError
@@ -12,7 +13,7 @@ from roughgas.effects import motions
 from roughgas.effects.motions import Sawtooth, Sine, Triangle
 from roughgas.effects.planes import Floor
 from roughgas.effects.settings import SceneContext, make
-from roughgas.kernel.hooks import CODES
+from roughgas.kernel.hooks import CODES, displacement
 from roughgas.kernel.memory import new_state
 from roughgas.kernel.state import BASE, BOUNDARY_HITS
 
@@ -48,6 +49,36 @@ def test_the_wave_is_chosen_by_name():
         floor = from_settings(wave=wave)
         assert floor.motion == motion and type(floor.motion) is type(motion)
         assert (floor.restitution, floor.roughness) == (0.9, 0.5)
+
+
+@pytest.mark.parametrize("wave", motions.WAVES)
+def test_a_phase_is_a_start_in_the_middle_of_a_period(wave):
+    """The same collisions as brute force makes that starts so much later: 200 of them."""
+    floor = {"amplitude": 1.0, "period": 1.7, "wave": wave, "restitution": 0.9, "roughness": 0.5}
+    experiment = settings("bed", 16, [10, "open"], floor=floor)
+    _, world = scene_of(experiment, 0.9, 0.2)
+    experiment["effects"]["floor"]["phase"] = 0.3
+    scene, state = begin(experiment, 0.9, 0.2, 5)
+    for _ in range(20):
+        shot = snapshot(state, scene)
+        brute = brute_force_from(world, shot._replace(time=shot.time + 0.3 * 1.7))
+        height = displacement(scene.effects.floor, shot.time)
+        assert height == pytest.approx(brute.surface(0.0)[0], abs=1e-9)
+        begun = brute.time - shot.time
+        run(state, scene, 1, collisions=10)
+        brute.run(10)
+        shot = snapshot(state, scene)
+        assert brute.time - shot.time == pytest.approx(begun, abs=1e-9)
+        assert shot.position[:, 1] == pytest.approx(brute.x[:, 1], abs=1e-8)
+        assert shot.velocity == pytest.approx(brute.v, abs=1e-8)
+
+
+@pytest.mark.parametrize("phase", [1.0, -0.1, "late"])
+def test_a_phase_is_a_share(phase):
+    with pytest.raises(
+        InputError, match=r"effects\.floor\.phase = .*: must be a number in \[0, 1\)"
+    ):
+        from_settings(phase=phase)
 
 
 @pytest.mark.parametrize("wave", ["square", "Sine", 1, ["sine"]])

@@ -38,6 +38,7 @@ SETTINGS = {
         "the period.",
         WAVES,
     ),
+    "phase": Number("Share of a period that has passed at the start.", "[0, 1)", 0.0),
 }
 
 
@@ -46,6 +47,7 @@ class Sawtooth(NamedTuple):
 
     amplitude: float  # height of a stroke, in a; what is at rest has 0
     period: float  # T
+    ahead: float = 0.0  # T that have passed since a period began, at the start
 
 
 class Sine(NamedTuple):
@@ -53,6 +55,7 @@ class Sine(NamedTuple):
 
     amplitude: float
     period: float
+    ahead: float = 0.0
 
 
 class Triangle(NamedTuple):
@@ -61,19 +64,27 @@ class Triangle(NamedTuple):
     amplitude: float
     period: float
     rise: float  # share of the period in which it goes out
+    ahead: float = 0.0
 
 
 def motion_of(
-    around: SceneContext, amplitude: float, period: float, wave: str
+    around: SceneContext, amplitude: float, period: float, wave: str, phase: float
 ) -> Sawtooth | Sine | Triangle:
     """Return the motion that settings describe; raise InputError for one that is too fast."""
     check_speed(around, amplitude, period)
+    ahead = phase * period if phase else 0.0  # the period may be infinite
     if wave == "sine":
-        return Sine(amplitude, period)
+        return Sine(amplitude, period, ahead)
     rises = {"triangle": 0.5, "reversed_sawtooth": REVERSED_RISE}
-    return (
-        Triangle(amplitude, period, rises[wave]) if wave in rises else Sawtooth(amplitude, period)
-    )
+    if wave in rises:
+        return Triangle(amplitude, period, rises[wave], ahead)
+    return Sawtooth(amplitude, period, ahead)
+
+
+@jit
+def since_period_began(motion, time):
+    """Return how long a period has lasted at an absolute time, in T."""
+    return (time + motion.ahead) % motion.period
 
 
 class Law(NamedTuple):

@@ -111,12 +111,12 @@ def resolve_stroke(wall, index, what, state, scene, i, time):
 @jit
 def phase_of_stroke(wall, index, base):
     """Return the time from the beginning of a period to the clock's base."""
-    return base % wall.motion.period
+    return motions.since_period_began(wall.motion, base)
 
 
 def depth_of_stroke(wall, time):
     """Return how far into the gas the surface is at `time`, in a."""
-    return law_of(wall.motion).height(wall.motion, time)
+    return law_of(wall.motion).height(wall.motion, time + wall.motion.ahead)
 
 
 class Piston(NamedTuple):

@@ -13,7 +13,15 @@ import math
 from typing import NamedTuple
 
 from roughgas.base import InputError, NeedsError
-from roughgas.effects.motions import WAVES, Sawtooth, Sine, Triangle, law_of, motion_of
+from roughgas.effects.motions import (
+    WAVES,
+    Sawtooth,
+    Sine,
+    Triangle,
+    law_of,
+    motion_of,
+    since_period_began,
+)
 from roughgas.effects.planes import (
     Piston,
     Place,
@@ -147,6 +155,7 @@ SIDES = {  # name -> (axis, the end of it: 0 or 1); -1 is the last axis
     "lid": (-1, 1),
 }
 NORMAL, ALONG = "normal", "along"
+SHAKING = ("amplitude", "period", "wave", "phase")
 SIDE_SETTINGS = {
     "restitution": MATERIAL["restitution"]._replace(default=1.0),
     "roughness": MATERIAL["roughness"]._replace(default=-1.0),
@@ -156,9 +165,10 @@ SIDE_SETTINGS = {
         "[-1e+06, 1e+06]",
         default=0.0,
     ),
-    "amplitude": Number("Height of a stroke of a shaken wall, in a.", LENGTH, 0.0),
+    "amplitude": Number("Height of a whole stroke of a shaken wall, in a.", LENGTH, 0.0),
     "period": Number("Time between strokes, in T; given for a shaken wall.", TIME, math.inf),
     "wave": Word("Form of its motion, as of floors.", WAVES),
+    "phase": Number("Share of a period that has passed at the start, as of floors.", "[0, 1)", 0.0),
     "shaken": Word("Whether it is shaken along its normal or along itself.", (NORMAL, ALONG)),
     "temperature": Number(
         "Temperature of a thermal wall, in m a^2/T^2: particles leave it with Maxwellian "
@@ -187,7 +197,7 @@ class SideWall(NamedTuple):
         if settings["temperature"] < math.inf:
             return ThermalWall(place, settings["temperature"], settings["velocity"])
         if settings["amplitude"] > 0.0:
-            motion = motion_of(around, *(settings[k] for k in ("amplitude", "period", "wave")))
+            motion = motion_of(around, *(settings[k] for k in SHAKING))
             if settings["shaken"] == NORMAL:
                 return Piston(place, *material, motion)
             return MovingWall(place, *material, 0.0, motion)
@@ -254,7 +264,7 @@ def resolve_moving(wall, index, what, state, scene, i, time):
 @jit
 def phase_of_shaking(wall, index, base):
     """Return the time from the beginning of a period to the clock's base."""
-    return 0.0 if wall.shaking is None else base % wall.shaking.period
+    return 0.0 if wall.shaking is None else since_period_began(wall.shaking, base)
 
 
 register(SideWall, SIDE_SETTINGS, predict=predict_plane, resolve=resolve_side, closes=True)
