@@ -1,0 +1,281 @@
+"""Exact results and theories beside what was measured, row by row."""
+
+from collections.abc import Callable, Iterator
+from functools import partial
+
+import xarray as xr
+
+from roughgas import theory
+from roughgas.judging import Estimate, Row, references
+
+from . import published
+
+NAMES = {2: "disks", 3: "spheres"}
+DSMC = "direct simulation Monte Carlo of this package"
+CLISBY = "Clisby & McCoy 2006, doi:10.1007/s10955-005-8080-0"
+HENDERSON = "Henderson 1975, doi:10.1080/00268977500102511"
+CARNAHAN = "Carnahan & Starling 1969, doi:10.1063/1.1672048"
+WALTON = "Walton 1993, in Particulate Two-Phase Flow, p. 884"
+CORIOLIS = "Coriolis 1835, Theorie mathematique des effets du jeu de billard"
+HUTHMANN = "Huthmann & Zippelius 1997, doi:10.1103/PhysRevE.56.R6275"
+HAFF = "Haff 1983, doi:10.1017/S0022112083003419"
+MARTIN = "Martin & Piasecki 1999, Europhys. Lett. 46, 613"
+VAN_NOIJE = "van Noije & Ernst 1998, doi:10.1007/s100350050009"
+MONTANERO = "Montanero & Santos 2000, Granular Matter 2, 53; Coppex et al. 2003, Physica A 329, 114"
+CHAPMAN = "Chapman & Cowling 1970, The Mathematical Theory of Non-uniform Gases"
+PIDDUCK = "Pidduck 1922, Proc. R. Soc. A 101, 101"
+ROUNDING = "ours is the worst of hundreds; its error is that of rounding, taken as 1e-11 of it"
+CLOSED_FORM = "closed form"
+FIXED_NUMBER = "as the number is fixed (Lebowitz & Percus 1961)"
+SONINE = "linear in a2, and a3 is left out"
+
+
+class Gas:
+    """What was measured of one gas."""
+
+    def __init__(self, data: xr.Dataset, task: str) -> None:
+        self._data, self.task = data, task
+        self.kind, *parameters = task.split("_")
+        self.parameters = [float(one) for one in parameters]
+
+    def number(self, quantity: str) -> Estimate:
+        """Return a mean over runs with its error."""
+        found = self._data.isel(number=(self._data.task == self.task).values)
+        one = found.isel(number=(found.quantity == quantity).values).squeeze("number")
+        return Estimate(float(one.value), float(one.value_stderr), float(one.runs) - 1.0)
+
+
+def rows(data: xr.Dataset) -> Iterator[Row]:
+    """Yield every number for which there is a closed form or a theory."""
+    for task in data.task_name.values:
+        gas = Gas(data, str(task))
+        yield from OF_KIND[gas.kind](gas, data)
+
+
+def _at(dimension: float, **place: float) -> str:
+    """Return such as "spheres, r = 0.9"."""
+    return ", ".join([NAMES[int(dimension)], *(f"{name} = {x:g}" for name, x in place.items())])
+
+
+def _known(value: float) -> Estimate:
+    """Return a number of a closed form."""
+    return Estimate(value, 0.0)
+
+
+def _fluid(gas: Gas, data: xr.Dataset) -> Iterator[Row]:
+    dimension, packing = int(gas.parameters[0]), gas.parameters[1]
+    at = _at(dimension, packing=packing)
+    exact = published.compressibility(packing, dimension)
+    missing = published.of_fixed_number(packing, dimension) / data.attrs["particles"]
+    series = {"tier": "exact", "source": CLISBY, "theirs": exact}
+    series |= {"read": "virial series to B_10 (Table 1), its tail taken as geometric"}
+    closed = {"tier": "theory", "source": HENDERSON if dimension == 2 else CARNAHAN}
+    approximate = _known(published.approximate_compressibility(packing, dimension))
+    closed |= {"read": CLOSED_FORM, "theirs": approximate}
+    ways = {"stress": "momentum transfer", "collisions": "the collision rate"}
+    for name, known in (("stress", series), ("collisions", series), ("stress", closed)):
+        found = gas.number(f"Z_{name}")
+        yield Row(
+            quantity=f"compressibility factor Z from {ways[name]}",
+            at=at,
+            ours=found._replace(value=found.value + missing),
+            corrections=f"D (N - 1) translational degrees of freedom, and {FIXED_NUMBER}: "
+            f"{missing:+.5f}",
+            **known,
+        )
+    volumes = 2.0 ** (dimension - 1) * packing
+    yield Row(
+        quantity="pair correlation at contact",
+        at=at,
+        tier="exact",
+        source=CLISBY,
+        read="(Z - 1)/(2^(D - 1) packing), of the virial series",
+        theirs=exact._replace(value=exact.value - 1.0).scaled(1.0 / volumes),
+        ours=gas.number("contact_value"),
+        corrections="N (N - 1)/2 pairs; extrapolated by a parabola from [2a, 2.5a]",
+    )
+
+
+def _contacts(gas: Gas, data: xr.Dataset) -> Iterator[Row]:
+    dimension = int(gas.parameters[0])
+    q = theory.moment_of_inertia(dimension)
+    about = {name: data.attrs[name] for name in ("restitution", "roughness", "mu")}
+    r, beta, mu = about.values()
+    limit = (1.0 + 1.0 / q) * mu * (1.0 + r) / (1.0 + beta)
+    known = {
+        "restitution": ("normal restitution of a contact", r, "-g_n'/g_n = r"),
+        "roughness": ("tangential restitution of a sticking contact", beta, "-g_t'/g_t = beta_0"),
+        "friction": ("tangential over normal impulse of a sliding contact", mu, "J_t/J_n = mu"),
+        "threshold": (
+            "g_t/g_n from which contacts slide",
+            limit,
+            "(1 + 1/q) mu (1 + r)/(1 + beta_0); ours is mu (g_t/g_n)/(J_t/J_n) of those that stick",
+        ),
+        "turn": ("change of spin over the impulse's torque", 1.0, "q m a^2 (w' - w) = -a n x J"),
+    }
+    at = _at(dimension, r=r, beta_0=beta, mu=mu)
+    for place, where in {"pair": "pairs", "wall": "walls that move"}.items():
+        for name, (quantity, value, read) in known.items():
+            yield Row(
+                quantity=quantity,
+                at=f"{at}, {where}",
+                tier="exact",
+                source=WALTON,
+                read=read,
+                theirs=_known(value),
+                ours=gas.number(f"{name}_{place}"),
+                corrections=ROUNDING,
+            )
+    yield Row(
+        quantity="speed at which a sliding particle begins to roll, over its first speed",
+        at=_at(dimension, q=q),
+        tier="exact",
+        source=CORIOLIS,
+        read="1/(1 + q): angular momentum about the point of contact is conserved",
+        theirs=_known(1.0 / (1.0 + q)),
+        ours=gas.number("rolling"),
+        corrections=ROUNDING,
+    )
+
+
+def _rates(gas: Gas, data: xr.Dataset) -> Iterator[Row]:
+    dimension, r, beta, theta = gas.parameters
+    q = theory.moment_of_inertia(int(dimension))
+    exact = published.first_rates(int(dimension), r, beta, theta, q)
+    quantities = {
+        "loss": "first loss of T_tr from equilibrium, -dT_tr/dn over T_tr",
+        "gain": "first gain of T_rot from equilibrium, dT_rot/dn over T_tr",
+    }
+    for (name, quantity), value in zip(quantities.items(), exact, strict=True):
+        if name == "gain" and beta == -1.0:
+            continue  # smooth particles keep their spins
+        yield Row(
+            quantity=quantity,
+            at=_at(dimension, r=r, beta=beta, theta=theta),
+            tier="exact",
+            source=HUTHMANN,
+            read="rate equations, n in collisions per particle; exact for Maxwellians",
+            theirs=_known(value),
+            ours=gas.number(name),
+            corrections="D (N - 1) translational degrees of freedom",
+        )
+
+
+def _tracer(gas: Gas, data: xr.Dataset) -> Iterator[Row]:
+    r, mass = gas.parameters
+    share = data.attrs["tracers"]
+    species = [
+        {"fraction": 1.0 - share, "name": "elastic"},
+        {"fraction": share, "mass": mass, "name": "tracer"},
+    ]
+    pairs = [{"between": ["elastic", "tracer"], "restitution": r}]
+    finite = theory.mixture_cooling(theory.mixture(species, 1.0, -1.0, 3, pairs=pairs)).T_tr
+    exact, found = published.tracer_ratio(r, mass), gas.number("ratio")
+    shift = exact - float(finite[1] / finite[0])
+    yield Row(
+        quantity="T_0/T of a smooth tracer among elastic spheres",
+        at=f"r = {r:g}, mass {mass:g}",
+        tier="exact",
+        source=MARTIN,
+        read="(1 + r)/(2 + (1 - r) m/M)",
+        theirs=_known(exact),
+        ours=found._replace(value=found.value + shift),
+        corrections=(
+            f"{shift:+.4f} as {100 * share:g} % are tracers and the gas cools, by the theory of "
+            "mixtures; no total momentum"
+        ),
+    )
+
+
+def _haff(gas: Gas, data: xr.Dataset) -> Iterator[Row]:
+    dimension, r, beta = gas.parameters
+    at = _at(dimension, r=r, beta=beta)
+    yield Row(
+        quantity="exponent p of T ~ t^-p of a homogeneous cooling gas",
+        at=at,
+        tier="exact",
+        source=HAFF,
+        read="2, as nothing but T sets the time",
+        theirs=_known(2.0),
+        ours=gas.number("exponent"),
+        corrections=f"none; {DSMC}",
+    )
+    yield Row(
+        quantity="decay rate -d ln T/dn of a homogeneous cooling gas",
+        at=at,
+        tier="theory",
+        source=HUTHMANN,
+        read="rate equations of Maxwellian velocities, stationary T_rot/T_tr",
+        theirs=_known(float(theory.decay_rate(r, beta, int(dimension)))),
+        ours=gas.number("decay"),
+        corrections=f"none, N - 1 would be 0.05 %; {DSMC}",
+        reason="velocities and spins are not Maxwellian",
+    )
+
+
+Formula = Callable[[int, float], float]
+
+
+def _sonine(gas: Gas, theories: dict[str, Formula], drive: str, note: str) -> Iterator[Row]:
+    dimension, r = int(gas.parameters[0]), gas.parameters[1]
+    for source, formula in theories.items():
+        yield Row(
+            quantity=f"a2 of a smooth {drive} gas",
+            at=_at(dimension, r=r),
+            tier="theory",
+            source=source,
+            read=CLOSED_FORM,
+            theirs=_known(formula(dimension, r)),
+            ours=gas.number("a2"),
+            corrections=note,
+            reason=SONINE,
+        )
+
+
+def _cooling(gas: Gas, data: xr.Dataset) -> Iterator[Row]:
+    theories = {VAN_NOIJE: published.sonine, MONTANERO: published.sonine_closer}
+    return _sonine(gas, theories, "cooling", f"2/(D N) of the sample's own energy; {DSMC}")
+
+
+def _noise(gas: Gas, data: xr.Dataset) -> Iterator[Row]:
+    theories = {VAN_NOIJE: published.sonine_driven}
+    return _sonine(gas, theories, "white-noise driven", "2/(D N) of the sample's own energy")
+
+
+def _diffusion(gas: Gas, data: xr.Dataset) -> Iterator[Row]:
+    dimension = int(gas.parameters[0])
+    smooth = gas.number("smooth").scaled(1.0 / published.diffusion(dimension))
+    q = theory.moment_of_inertia(dimension)
+    one = partial(Row, at=NAMES[dimension], corrections=f"1/N of the others' velocities; {DSMC}")
+    of_smooth = partial(
+        one,
+        "self-diffusion of smooth elastic particles, D nu/T over D/2",
+        source=CHAPMAN,
+        ours=smooth,
+    )
+    yield of_smooth(tier="theory", read="first approximation", theirs=_known(1.0))
+    for row in references(__file__):
+        if row["quantity"] == "diffusion" and int(row["dimension"]) == dimension:
+            theirs = Estimate(float(row["value"]), float(row["stderr"]))
+            yield of_smooth(tier="exact", read=row["read"], theirs=theirs)
+    yield one(
+        "self-diffusion of perfectly rough over smooth elastic particles",
+        tier="theory",
+        source=PIDDUCK,
+        read="first approximation: spheres (1 + q)/(1 + 2 q); disks by the same steps",
+        theirs=_known(published.rough_diffusion(dimension, q)),
+        ours=gas.number("rough_over_smooth"),
+        reason="higher polynomials, and velocities with which contacts have correlated spins",
+    )
+
+
+OF_KIND: dict[str, Callable[[Gas, xr.Dataset], Iterator[Row]]] = {
+    "fluids": _fluid,
+    "contacts": _contacts,
+    "rates": _rates,
+    "tracers": _tracer,
+    "haff": _haff,
+    "cooling": _cooling,
+    "noise": _noise,
+    "diffusion": _diffusion,
+}

@@ -1,0 +1,118 @@
+"""What is known of these gases: closed forms, and sums of published numbers."""
+
+import math
+
+import numpy as np
+
+from roughgas.judging import Estimate, references
+
+TAIL = 0.1
+"""Relative error of what the virial series has beyond its last known term, taken as geometric."""
+
+
+def compressibility(packing: float, dimension: int) -> Estimate:
+    """Return Z = p/(n T) of smooth elastic disks or spheres, from ten virial coefficients.
+
+    N. Clisby & B. M. McCoy, J. Stat. Phys. 122, 15 (2006), Table 1: B_k/B_2^(k-1), of which B_2 is
+    2^(D-1) volumes of a particle.
+    """
+    rows = _series(dimension)
+    powers = (2.0 ** (dimension - 1) * packing) ** np.arange(1, len(rows) + 1)
+    terms, errors = (powers * np.array(column) for column in zip(*rows, strict=True))
+    falls = terms[-1] / terms[-2]
+    tail = terms[-1] * falls / (1.0 - falls)
+    error = math.hypot(float(np.linalg.norm(errors)), TAIL * tail)
+    return Estimate(1.0 + float(terms.sum()) + tail, error)
+
+
+def of_fixed_number(packing: float, dimension: int) -> float:
+    """Return by how much Z - 1 of N particles in a periodic box is too low, times N.
+
+    As the number does not fluctuate, contacts are fewer: n^2 g by S/(2 N) n^2 d^2(n^2 g)/dn^2, S
+    being the structure factor at long waves. J. L. Lebowitz & J. K. Percus, Phys. Rev. 124, 1673
+    (1961). Without correlations that is the 1/N of N (N - 1)/2 pairs.
+    """
+    rows = _series(dimension)
+    k = np.arange(2, len(rows) + 2)
+    c = np.array([value for value, _ in rows]) * 2.0 ** ((dimension - 1) * (k - 1))
+    slope, curvature = (
+        (k * c * packing ** (k - 1)).sum(),
+        (k * (k - 1) * c * packing ** (k - 2)).sum(),
+    )
+    return float(packing * curvature / (2.0 * (1.0 + slope)))
+
+
+def _series(dimension):
+    rows = [row for row in references(__file__) if row["quantity"] == "virial"]
+    own = [row for row in rows if int(row["dimension"]) == dimension]
+    return [(float(row["value"]), float(row["stderr"])) for row in own]
+
+
+def approximate_compressibility(packing: float, dimension: int) -> float:
+    """Return Z of D. Henderson, Mol. Phys. 30, 971 (1975), for disks, and of N. F. Carnahan & K. E.
+    Starling, J. Chem. Phys. 51, 635 (1969), for spheres."""
+    x = packing
+    if dimension == 2:
+        return (1.0 + x**2 / 8.0) / (1.0 - x) ** 2
+    return (1.0 + x + x**2 - x**3) / (1.0 - x) ** 3
+
+
+def first_rates(dimension, r, beta, theta, q) -> tuple[float, float]:
+    """Return -dT_tr/dn and dT_rot/dn over T_tr of Maxwellian velocities and spins, theta =
+    T_rot/T_tr, n in collisions per particle.
+
+    M. Huthmann & A. Zippelius, Phys. Rev. E 56, R6275 (1997); S. Luding, M. Huthmann, S. McNamara &
+    A. Zippelius, Phys. Rev. E 58, 3416 (1998). While velocities are Maxwellian, exact.
+    """
+    eta = q * (1.0 + beta) / (2.0 * (1.0 + q))
+    tangents, spins = 2.0 * (dimension - 1), 2 * dimension - 3
+    loss = 1.0 - r**2 + tangents * eta * (1.0 - eta) - tangents * eta**2 / q * theta
+    gain = tangents * (eta**2 / q - eta / q * (1.0 - eta / q) * theta)
+    return loss / dimension, gain / spins
+
+
+def tracer_ratio(r, mass) -> float:
+    """Return T_0/T of one smooth particle of a mass among elastic ones of mass 1: P. A. Martin & J.
+    Piasecki, Europhys. Lett. 46, 613 (1999)."""
+    return (1.0 + r) / (2.0 + (1.0 - r) / mass)
+
+
+def sonine(dimension, r) -> float:
+    """Return a2 of a smooth cooling gas: T. P. C. van Noije & M. H. Ernst, Granular Matter 1, 57
+    (1998)."""
+    d = dimension
+    return _excess(r) / (9 + 24 * d + (8 * d - 41) * r + 30 * r**2 * (1 - r))
+
+
+def sonine_driven(dimension, r) -> float:
+    """Return a2 of a smooth gas that white noise drives, of the same authors."""
+    d = dimension
+    return _excess(r) / (73 + 56 * d - 24 * d * r - 105 * r + 30 * r**2 * (1 - r))
+
+
+def sonine_closer(dimension, r) -> float:
+    """Return a2 of a smooth cooling gas by another way of linearising: J. M. Montanero & A. Santos,
+    Granular Matter 2, 53 (2000); any dimension: F. Coppex, M. Droz, J. Piasecki & E. Trizac,
+    Physica A 329, 114 (2003)."""
+    d = dimension
+    return _excess(r) / (25 + 24 * d + (8 * d - 57) * r - 2 * r**2 * (1 - r))
+
+
+def _excess(r):
+    return 16 * (1 - r) * (1 - 2 * r**2)
+
+
+def diffusion(dimension) -> float:
+    """Return D nu/T of smooth elastic particles in the first Enskog approximation, nu being
+    collisions per particle and time: S. Chapman & T. G. Cowling (1970), section 14.2."""
+    return dimension / 2.0
+
+
+def rough_diffusion(dimension, q) -> float:
+    """Return by how much perfectly rough particles diffuse more slowly, to the same order.
+
+    A contact takes v_1 (2/D) from normal impulses, of mean square g_n^2 = 4 T/m, and q/(1 + q)
+    (D - 1)/D from tangential ones, of 2 T/m each. For spheres that is (1 + q)/(1 + 2 q): F. B.
+    Pidduck, Proc. R. Soc. A 101, 101 (1922).
+    """
+    return 1.0 / (1.0 + (dimension - 1) * q / (2.0 * (1.0 + q)))
