@@ -45,11 +45,17 @@ class Gas:
         return Estimate(float(one.value), float(one.value_stderr), float(one.runs) - 1.0)
 
 
-def rows(data: xr.Dataset) -> Iterator[Row]:
-    """Yield every number for which there is a closed form or a theory."""
-    for task in data.task_name.values:
-        gas = Gas(data, str(task))
-        yield from OF_KIND[gas.kind](gas, data)
+def rows(data: xr.Dataset) -> list[Row]:
+    """Return every number for which there is a closed form or a theory, those of one comparison
+    together, and exact ones first."""
+    gases = [Gas(data, str(task)) for task in data.task_name.values]
+    found = [row for gas in gases for row in OF_KIND[gas.kind](gas, data)]
+    order = list(dict.fromkeys(map(_comparison, found)))
+    return sorted(found, key=lambda row: (row.tier != "exact", order.index(_comparison(row))))
+
+
+def _comparison(row: Row) -> tuple[str, str, str]:
+    return row.quantity, row.tier, row.source
 
 
 def _at(dimension: float, **place: float) -> str:
