@@ -30,11 +30,11 @@ FAMILIES = {"family", "catalogue", "document"}
 FILM = {"clustering", "study_data", "study_movie", "study_page"}
 ACCURACY = {"accuracy", "accuracy_limits", "accuracy_data", "accuracy_table", "document"}
 COVERAGE = {"coverage", "accuracy_data", "accuracy_table", "document"}
-OF_TASKS = {"study_data", "profiles", "finite_size", "runaway"}
-OF_DSMC = {"finite_size", "runaway", "study_data", "study_claims", "study_page"}
+OF_TASKS = {"study_data", "profiles", "finite_size", "runaway", "exact"}
+OF_DSMC = {"exact", "finite_size", "runaway", "study_data", "study_claims", "study_page"}
 STUDIES = ACCURACY | COVERAGE | OF_TASKS | {"statistical", "models", "discretisation"}
 SIMULATED = COMPILED | FAMILIES | FILM | STUDIES | {"movie"}
-OF_NO_PLATEAU = {"clustering", "discretisation", "profiles", "study_movie"}
+OF_NO_PLATEAU = {"clustering", "discretisation", "exact", "profiles", "study_movie"}
 EDITED = {  # file of the package: what an edit of its code runs again
     "statistics/steady_state.py": SIMULATED - OF_NO_PLATEAU,
     "theory/prediction.py": REDUCED | OF_TASKS_ALONE | {"study_movie"},
