@@ -64,6 +64,9 @@ BEYOND = {  # the experiments beyond the paper, and the third axis of their swee
         f"mpemba.{name}": {}
         for name in ("hot", "cold", "overshoot_hot", "overshoot_cold", "memory")
     },
+    **{f"transport.smooth_{kind}": {"r": ["1"], "beta": ["-1"]} for kind in ("disks", "spheres")},
+    **{f"transport.rough_{kind}": {"r": ["1"], "beta": ["1"]} for kind in ("disks", "spheres")},
+    "transport.heated": {},
 }
 TINY |= {name: {"sweep": SWEEP | axis} for name, axis in BEYOND.items()}
 for name, box in (
@@ -75,6 +78,9 @@ for name, box in (
     ("drives.shaken_walls", [20, 20]),
     ("couette.couette", [20, 20]),
     ("megias_santos.dilute", [100, 100]),
+    *((f"transport.{one}_disks", [60, 60]) for one in ("smooth", "rough")),
+    *((f"transport.{one}_spheres", [20, 20, 20]) for one in ("smooth", "rough")),
+    ("transport.heated", [60, 60]),
 ):
     TINY[name] |= {"particles": 10, "box": box}
 for name in (name for name in BEYOND if name.startswith("mpemba.")):

@@ -1,0 +1,86 @@
+"""Coefficients of diffusion from what was observed, over the share that a collision forgets.
+
+D* = D_s nu/T_tr (m = 1), nu collisions per particle per time: 1 over the share of its velocity that
+a particle loses in a collision. A cooling gas counts time in collisions per particle, and then
+D* = D_s nu_1^2, nu_1 being nu at T_tr = 1.
+"""
+
+import numpy as np
+import xarray as xr
+
+from roughgas import theory
+from roughgas.judging import Estimate
+
+BALLISTIC = 6.0
+"""Collisions per particle after which displacements grow in proportion to time: what is missing of
+the slope is exp(-6) there."""
+
+
+def per_collision(gas: xr.Dataset) -> tuple[float, float]:
+    """Return nu_1, and collisions per particle in a unit of the observed times."""
+    nu = float(theory.collision_frequency(1.0, gas.attrs["packing"], gas.attrs["dimension"]))
+    cools = gas.attrs["theory"] == "K"
+    return nu, 1.0 if cools else nu * float(2.0 * gas.E_trans) ** 0.5
+
+
+def by_displacement(gas: xr.Dataset) -> Estimate:
+    """Return D* of one point from its mean square displacements at two lags.
+
+    Displacements at both are taken as independent, which makes the error too large if anything.
+    """
+    nu, unit = per_collision(gas)
+    squares = gas.mean_square_displacement.mean("moving")
+    errors = np.sqrt((gas.mean_square_displacement_stderr**2).mean("moving") / gas.sizes["moving"])
+    lags = gas.lag.values * unit
+    first = int(np.searchsorted(lags, BALLISTIC))
+    both = [first, first + 1]
+    steps = np.diff(gas.lag.values[both]).item()
+    slope = np.diff(squares.values[both]).item() / (2.0 * steps)
+    stderr = float(np.linalg.norm(errors.values[both])) / (2.0 * steps)
+    scale = nu**2 if gas.attrs["theory"] == "K" else nu / float(2.0 * gas.E_trans) ** 0.5
+    dof = float(gas.mean_square_displacement_dof.min())
+    return Estimate(slope, stderr, max(dof, 1.0)).scaled(scale)
+
+
+def by_memory(gas: xr.Dataset, name: str) -> Estimate:
+    """Return D* of one point from an autocorrelation (Green and Kubo): of velocities, or of spins.
+
+    Errors at different times are taken as those of one number, which makes them too large.
+    """
+    _, unit = per_collision(gas)
+    memory, errors = gas[name].values, gas[f"{name}_stderr"].values
+    times = gas.delay.values * unit
+    value = float(np.trapezoid(memory, times)) / memory[0]
+    stderr = float(np.trapezoid(errors, times)) / memory[0]
+    return Estimate(value, stderr, max(float(gas[f"{name}_dof"].min()), 1.0))
+
+
+def expected(gas: xr.Dataset) -> float:
+    """Return D* of theory, in first Sonine approximation."""
+    about = float(gas.r), float(gas.beta), gas.attrs["dimension"], gas.attrs["inertia"]
+    packing = gas.attrs["packing"]
+    nu = theory.collision_frequency(1.0, packing, about[2])
+    return float(theory.self_diffusion(1.0, packing, *about) * nu)
+
+
+def expected_of_spins(gas: xr.Dataset) -> float:
+    """Return the same of spins, infinite where they are never changed."""
+    dimension, q = gas.attrs["dimension"], gas.attrs["inertia"]
+    packing = gas.attrs["packing"]
+    nu = theory.collision_frequency(1.0, packing, dimension)
+    found = theory.rotational_diffusion(1.0, 1.0, packing, float(gas.beta), dimension, q)
+    return float(found * nu * q)
+
+
+def rough_over_smooth(rough: xr.Dataset, smooth: xr.Dataset) -> tuple[Estimate, float]:
+    """Return D* of perfectly rough over that of smooth elastic particles, and that of theory."""
+    one, other = (by_displacement(point(gas)) for gas in (rough, smooth))
+    value = one.value / other.value
+    relative = np.hypot(one.stderr / one.value, other.stderr / other.value)
+    found = Estimate(value, float(value * relative), min(one.dof, other.dof))
+    return found, expected(point(rough)) / expected(point(smooth))
+
+
+def point(gas: xr.Dataset) -> xr.Dataset:
+    """Return the only point of a sweep."""
+    return gas.isel(r=0, beta=0)
