@@ -12,7 +12,7 @@ CLOSE = 0.003
 heated gases found finite kicks worth 0.0003 at most, and the number of particles, beyond its
 degrees of freedom, 0.0004. Fixed before its data."""
 CLOSE_CUMULANTS = 0.01
-"""The same of cumulants, a tenth of the larger ones. Fixed after runs at one state with larger
+"""The same of cumulants, a tenth of the larger ones. Fixed after runs at two states with larger
 kicks, and before the data that are judged."""
 
 
