@@ -17,6 +17,7 @@ RUN python -m venv /opt/roughgas \
     && /opt/roughgas/bin/python -m pip install --no-cache-dir --require-hashes --requirement requirements.lock
 
 COPY --chown=roughgas CHANGELOG.md CITATION.cff LICENSE Makefile README.md Snakefile config.yaml pyproject.toml ./
+COPY --chown=roughgas article article
 COPY --chown=roughgas profiles profiles
 COPY --chown=roughgas rules rules
 COPY --chown=roughgas src src

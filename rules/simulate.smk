@@ -114,11 +114,11 @@ def points_of_job(wildcards, output):
 
 def urgency(wildcards):
     """How long a point takes: of an experiment the longest start first, so that none is left alone at
-    the end. A job on several betas counts as if they were 0."""
+    the end. A job on several betas counts as if they were 0, or -1 where nothing spins."""
     from roughgas.simulation.point import effort
 
-    place = place_of(wildcards)
-    length = effort(settings(wildcards.scale, wildcards.experiment), place.r, place.beta)
+    place, found = place_of(wildcards), settings(wildcards.scale, wildcards.experiment)
+    length = effort(found, place.r, place.beta if "spin" in found["effects"] else -1.0)
     return turn(wildcards) + min(length, TURN - 1)
 
 

@@ -167,7 +167,7 @@ def test_a_bath_is_at_rest_and_needs_spins_for_its_spins():
 
 def test_drag_alone_is_no_drive():
     one = bath(interval=0.5, drag=1.0) | {"schedule": {"kind": "steady", "measure": 10}}
-    with pytest.raises(InputError, match=r"be cooling where no effect drives the gas"):
+    with pytest.raises(InputError, match=r"be cooling or stages where no effect drives the gas"):
         check(one | {"schedule": {"kind": "steady", "equilibrate": 1, "measure": 10}})
 
 

@@ -98,7 +98,7 @@ def test_a_problem_is_told_in_words_and_by_the_exit_status(monkeypatch, capsys):
     monkeypatch.setattr(doctor, "CHECKS", {name: doctor.CHECKS[name] for name in ("extras",)})
     monkeypatch.setitem(sys.modules, "gsd", None)
     doctor.doctor(Namespace(json=False))
-    assert capsys.readouterr().out.endswith("crate; not installed: trajectories\n")
+    assert capsys.readouterr().out.endswith("crate, article; not installed: trajectories\n")
     monkeypatch.setattr(doctor, "LIBRARIES", "tqdm gsd")
     monkeypatch.setattr(doctor, "CHECKS", {"libraries": (doctor._libraries, "mend it")})
     with pytest.raises(SystemExit) as stop:

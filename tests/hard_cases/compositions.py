@@ -40,6 +40,12 @@ PARAMETERS = {
         "spin_share": st.sampled_from([0.0, 0.3, 1.0]),
         "interval": st.floats(0.02, 5.0),
     },
+    "langevin": {
+        "interval": st.floats(0.02, 5.0),
+        "drag": st.floats(0.01, 1.0),
+        "temperature": st.just(1.0),
+        "spin_drag": st.sampled_from([0.0, 0.5]),
+    },
     "friction": {"mu": st.sampled_from([0.0, 0.05, 0.3, 1.0, 20.0])},
     "viscoelastic": {"speed": st.floats(0.1, 10.0)},
     "power_law": {
@@ -63,14 +69,15 @@ NEEDS += [("contact_averages", "spin")]
 NEEDS += [*((name, other) for pair in OPPOSITE for name, other in (pair, pair[::-1]))]
 NEEDS += [("bottom_wall", "lid")]
 EXCLUDES = [("walls", "shear"), ("shaken_walls", "shear"), ("walls", "shaken_walls")]
-EXCLUDES += [("bottom_wall", "gravity")]
+EXCLUDES += [("bottom_wall", "gravity"), ("langevin", "shear")]
 EXCLUDES += itertools.combinations(("viscoelastic", "power_law", "restitution_table"), 2)
 EXCLUDES += [*itertools.product(("walls", "shaken_walls", "shear"), OPPOSITE[0])]
 EXCLUDES += [*(("shear", name) for name in OPPOSITE[1])]
 # A bed in space that is sheared between its sides heats up without end: flights grow long while
 # images slide past by thousands, and a scene may take minutes
 ENDLESS = {"gravity", "shear"}
-WITHOUT_SPIN = {"roughness": -1.0, "spin_share": 0.0}  # what parameters are where nothing spins
+# what parameters are where nothing spins
+WITHOUT_SPIN = {"roughness": -1.0, "spin_share": 0.0, "spin_drag": 0.0}
 
 
 def is_legal(effects, dimension):

@@ -5,6 +5,7 @@ import math
 import pytest
 
 from roughgas.base import InputError
+from roughgas.effects.motions import Sawtooth
 from roughgas.scene import build
 from roughgas.scene.initial import check
 
@@ -34,7 +35,7 @@ def test_a_gas():
 def test_a_bed_between_walls():
     scene = build(experiment((50, "open"), **BED, **WALLS), 0.9, -0.5)
     assert scene.box == (None, None) and scene.extent == 50.0 and scene.effects.walls.width == 50.0
-    assert scene.effects.floor[1:] == (1.0, -1.0, (5.0, 1.0))
+    assert scene.effects.floor[1:] == (1.0, -1.0, Sawtooth(5.0, 1.0))
 
 
 def test_the_particles_own_material_at_a_boundary():

@@ -187,6 +187,20 @@ def columns(rows: Iterable[Sequence[str]], numbers: bool = False) -> str:
     return "\n".join("  ".join(row).rstrip() for row in _padded(rows, align))
 
 
+def merged(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
+    """Return `base` with `changes` merged in at every depth; a change to None removes a key."""
+    result = dict(base)
+    for key, change in changes.items():
+        if change is None:
+            result.pop(key, None)
+        elif isinstance(change, Mapping):
+            inner = result.get(key)
+            result[key] = merged(inner if isinstance(inner, Mapping) else {}, change)
+        else:
+            result[key] = change
+    return result
+
+
 def markdown(
     head: Iterable[str], rows: Iterable[Iterable[Any]], align: str = "", padded: bool = False
 ) -> str:

@@ -110,9 +110,11 @@ def beside_theory(data: xr.Dataset) -> xr.Dataset:
 
     Points that are not in a steady state cannot test a theory of one: their R is NaN, and the
     attribute `set_aside` counts them. Values of r that were simulated with the contact-time model
-    are left out, since the paper has none.
+    are left out, since the paper has none. A gas without spin has no R, and no theory of it.
     """
     data = data.copy()
+    if "R" not in data:
+        return data.assign_attrs(points=int((data.n_seeds > 0).sum()), set_aside=0)
     if "contact_time" in data:
         modelled = np.isfinite(data.contact_time)
         data = data.sel(r=data.r[~modelled.any([name for name in modelled.dims if name != "r"])])

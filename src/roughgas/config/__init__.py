@@ -18,7 +18,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from roughgas.base import InputError, as_text, from_json, not_one_of, shown  # noqa: F401
+from roughgas.base import InputError, as_text, from_json, merged, not_one_of, shown  # noqa: F401
 from roughgas.config.labels import (  # noqa: F401
     PARSE,
     SPECIES,
@@ -180,20 +180,6 @@ def _at_scale(config: Mapping[str, Any], part: str, scale: str) -> dict[str, Any
     if part not in config:
         raise InputError(f"{part} in the configuration", "(nothing)", "be given for this")
     return merged(config[part], config["scales"][scale].get(part, {}))
-
-
-def merged(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
-    """Return `base` with `changes` merged in at every depth; a change to None removes a key."""
-    result = dict(base)
-    for key, change in changes.items():
-        if change is None:
-            result.pop(key, None)
-        elif isinstance(change, Mapping):
-            inner = result.get(key)
-            result[key] = merged(inner if isinstance(inner, Mapping) else {}, change)
-        else:
-            result[key] = change
-    return result
 
 
 def changed_by(settings: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:

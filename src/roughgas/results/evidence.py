@@ -7,7 +7,6 @@ import csv
 import math
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
-from itertools import groupby
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -97,19 +96,17 @@ def read_rows(path: str | Path) -> list[tuple[str, Row]]:
 
 def as_markdown(rows: Sequence[tuple[str, Row]]) -> str:
     """Return the counts of verdicts, a line for each comparison, and every row, as Markdown."""
-    groups = [(key, list(one)) for key, one in groupby((row for _, row in rows), _comparison)]
+    groups: dict[tuple[str, str, str], list[Row]] = {}
+    for _, row in rows:
+        groups.setdefault((row.quantity, row.tier, row.source), []).append(row)
     parts = [
         _counts([row for _, row in rows]),
         "## Comparison by comparison",
-        markdown(*_summary(groups)),
+        markdown(*_summary(groups.items())),
         "## Every row",
-        *(_table(key, members) for key, members in groups),
+        *(_table(key, members) for key, members in groups.items()),
     ]
     return "\n\n".join(part.rstrip() for part in parts) + "\n"
-
-
-def _comparison(row: Row) -> tuple[str, str, str]:
-    return row.quantity, row.tier, row.source
 
 
 def _counts(rows: Sequence[Row]) -> str:

@@ -10,8 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from roughgas.base import InputError
-from roughgas.config import merged
+from roughgas.base import InputError, merged
 from roughgas.kernel.state import EXPONENT
 from roughgas.scene import Scene, build
 from roughgas.simulation import steady
