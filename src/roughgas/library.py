@@ -199,9 +199,10 @@ def simulate(
     >>> bool(second.measured_from == first.last_time)
     True
     """
-    changes: dict[str, Any] = dict(particles=particles, box=box, packing=packing, effects=effects)
-    changes["layer"] = layer
-    changes |= dict(species=species, species_pairs=species_pairs, schedule=schedule)
+    changes: dict[str, Any] = dict(particles=particles, box=box, packing=packing, layer=layer)
+    changes |= dict(
+        effects=effects, species=species, species_pairs=species_pairs, schedule=schedule
+    )
     changes |= dict(spin_temperature=spin_temperature, keep_state=keep_state)
 
     from roughgas.data.point import as_dataset
@@ -286,9 +287,10 @@ def trajectory(
     >>> gas.position.shape
     (2, 40, 2)
     """
-    changes: dict[str, Any] = dict(particles=particles, box=box, packing=packing, effects=effects)
-    changes["layer"] = layer
-    changes |= dict(species=species, species_pairs=species_pairs, schedule=schedule)
+    changes: dict[str, Any] = dict(particles=particles, box=box, packing=packing, layer=layer)
+    changes |= dict(
+        effects=effects, species=species, species_pairs=species_pairs, schedule=schedule
+    )
     ((legal_r, legal_beta, number, labels),), _ = _places(r, beta, seed)
 
     from roughgas.data.trajectory import as_trajectory

@@ -31,6 +31,8 @@ STATES = {
     "cooling": (published.sonine, published.sonine_closer),
     "noise": (published.sonine_driven,),
 }
+STYLES = {"-": "van Noije & Ernst", "--": "Montanero & Santos; Coppex et al."}
+"""Of lines: whose theory each is, in the order of the formulae above."""
 LABELS = {"cooling": "cooling", "noise": "white noise"}
 
 
@@ -80,8 +82,10 @@ def draw_cumulants(axes: Axes, data: xr.Dataset) -> None:
             lw=0.9,
             label=f"{NAMES[dimension]}, {LABELS[kind]}",
         )
-        for formula, style in zip(STATES[kind], ("-", "--"), strict=False):
+        for formula, style in zip(STATES[kind], STYLES, strict=False):
             axes.plot(r, [formula(dimension, x) for x in r], style, color=look.colour, lw=0.9)
+    for style, label in STYLES.items():
+        axes.plot([], [], style, color=THEORY, lw=0.9, label=label)
     axes.axhline(0.0, color=GREY, lw=0.8, zorder=0)
     axes.set(xlabel="restitution $r$", ylabel="cumulant $a_2$", xlim=(0.0, 1.0))
     axes.legend(loc="upper right")

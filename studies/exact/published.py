@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from roughgas import theory
 from roughgas.judging import Estimate, references
 
 TAIL = 0.1
@@ -109,10 +110,7 @@ def diffusion(dimension) -> float:
 
 
 def rough_diffusion(dimension, q) -> float:
-    """Return by how much perfectly rough particles diffuse more slowly, to the same order.
-
-    A contact takes v_1 (2/D) from normal impulses, of mean square g_n^2 = 4 T/m, and q/(1 + q)
-    (D - 1)/D from tangential ones, of 2 T/m each. For spheres that is (1 + q)/(1 + 2 q): F. B.
-    Pidduck, Proc. R. Soc. A 101, 101 (1922).
-    """
-    return 1.0 / (1.0 + (dimension - 1) * q / (2.0 * (1.0 + q)))
+    """Return by how much perfectly rough particles diffuse more slowly, to the same order; spheres
+    by (1 + q)/(1 + 2 q): F. B. Pidduck, Proc. R. Soc. A 101, 101 (1922)."""
+    rough, smooth = (theory.self_diffusion(1.0, 0.1, 1.0, b, dimension, q) for b in (1.0, -1.0))
+    return float(rough / smooth)

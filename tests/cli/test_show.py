@@ -63,6 +63,11 @@ def test_a_point(product, capsys):
         ({"contact_time_fraction": 0.264}, {}, ["by the contact-time model: R depends on it\n"]),
         ({"contact_time_fraction": 3e-5}, {}, ["0.003 % of contacts were altered"]),
         ({}, {"beta": -1.0}, ["none (theory of free cooling): at beta = -1 contacts"]),
+        (
+            {},
+            {"langevin_json": '{"interval": 1.0, "drag": 0.1}', "mu": 0.5},
+            ["none (rate equations in a Langevin bath): not known for this gas"],
+        ),
         ({}, {"command": "\x1b[31mred\n\x9bJR  1"}, ["red\\n\\x9bJR  1\n"]),
         ({}, {"scale": "a\x1b]0;b\x07"}, [r"cooling, scale a\x1b]0;b\x07"]),
     ],

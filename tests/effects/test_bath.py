@@ -1,5 +1,6 @@
 """A Langevin bath: fluctuation and dissipation, its parts alone, and theory of its gases."""
 
+import json
 import math
 
 import numpy as np
@@ -12,6 +13,7 @@ from roughgas.scene import build, conserves_momentum
 from roughgas.simulation.energies import balance, energies, imbalance, restored
 from roughgas.simulation.schedule import check
 from roughgas.statistics.errors import blocking_stderr
+from roughgas.theory.prediction import predicted_ratio
 
 ALONE = {name: 0.0 for name in ("drag", "temperature", "power", "spin_drag", "spin_power")}
 
@@ -187,3 +189,24 @@ def test_limits_of_the_stationary_state():
         lost = theory.temperature_changes(*T, 0.8, 0.4, dimension, None, nu)
         assert lost == pytest.approx((-0.6 * (2.0 - T[0]), -1.4 * (0.5 - T[1])), rel=1e-9)
     assert of(0.9, 0.0, 0.1, 1.0, 0.0) == (0.0, 0.0)
+
+
+BATH = {"interval": 0.5, "drag": 0.3, "temperature": 2.0, "spin_drag": 0.1}
+GAS = {"langevin_json": json.dumps(BATH), "dimension": 2, "inertia": 0.5, "packing": 0.1}
+
+
+def test_a_dataset_is_held_against_the_rate_equations_of_its_bath():
+    """Also where a parameter of it is swept."""
+    swept = GAS | {"swept": "langevin.drag", "drag": np.array([0.3, 0.6])}
+    found = predicted_ratio(swept | {"theory": "lun"}, np.full(2, 0.9), np.full(2, 0.2))
+    for drag, R in zip((0.3, 0.6), found, strict=True):
+        T_tr, T_rot = theory.bath_temperatures(0.9, 0.2, 0.1, drag, 2.0, 0.1)
+        assert pytest.approx(T_rot / (T_tr + T_rot)) == R
+
+
+@pytest.mark.parametrize(
+    "more",
+    [{"mu": 0.5}, {"spin_share": 0.2}, {"species_json": "{}"}, {"packing": np.nan}],
+)
+def test_theory_says_nothing_of_what_its_rate_equations_leave_out(more):
+    assert np.isnan(predicted_ratio(GAS | {"theory": "lun"} | more, 0.9, 0.2))

@@ -239,6 +239,8 @@ def theory_beside(point: Dataset, R: float, expected: float) -> list[list[str]]:
     name = equation_of(point.attrs, point).name
     if "stages" in point.attrs:
         return [["theory", f"none: settings change in {point.attrs['stages']} stages"]]
+    if math.isnan(expected) and float(point.attrs["beta"]) != -1.0:
+        return [["theory", f"none ({name}): not known for this gas"]]
     if math.isnan(expected):
         spins = "contacts change no spin, and spins that are 0 stay so"
         return [["theory", f"none ({name}): at beta = -1 {spins}"]]

@@ -29,34 +29,17 @@ from roughgas.config.reading import read_yaml
 if TYPE_CHECKING:
     from jsonschema import Draft202012Validator, ValidationError
 
-RESERVED = (
-    *(
-        "accuracy",
-        "accuracy_data",
-        "accuracy_figure",
-        "accuracy_limits",
-        "accuracy_table",
-        "accuracy_task",
-    ),
-    *("article", "article_pdf", "catalogue", "claims", "codemeta", "compile_kernel", "config"),
-    *("coverage", "crate", "deposit", "document", "effective_config", "everything", "evidence"),
-    *("explore", "explore_extensions", "figure_of_evidence", "page_of_evidence"),
-    *("extensions", "family", "fig1a", "fig1b", "fig2a", "fig2b", "figure", "figures"),
-    *("front", "hard_cases", "hard_cases_chaos", "hard_cases_collapse"),
-    *("hard_cases_cooling", "living", "living_page", "movie", "movies", "numbers", "page"),
-    *(
-        "picture_for_talks",
-        "pictures",
-        "plot",
-        "point",
-        "quoted_numbers",
-        "reduce",
-        "report",
-        "rows_of_evidence",
-    ),
-    *("run_times", "run_times_extensions", "study_claims", "study_data"),
-    *("study_evidence", "study_figure"),
-    *("study_movie", "study_page", "study_table", "study_task", "table"),
+RESERVED = frozenset(
+    """
+    accuracy accuracy_data accuracy_figure accuracy_limits accuracy_table accuracy_task article
+    article_pdf catalogue claims codemeta compile_kernel config coverage crate deposit document
+    effective_config everything evidence explore explore_extensions extensions family fig1a fig1b
+    fig2a fig2b figure figure_of_evidence figures front hard_cases hard_cases_chaos
+    hard_cases_collapse hard_cases_cooling living living_page movie movies numbers page
+    page_of_evidence picture_for_talks pictures plot point quoted_numbers reduce report
+    rows_of_evidence run_times run_times_extensions study_claims study_data study_evidence
+    study_figure study_movie study_page study_table study_task table
+    """.split()
 )
 """Names that no experiment may have, those of rules and products of the workflow."""
 FORMATS = {

@@ -26,6 +26,7 @@ from roughgas.kernel.jit import jit
 from roughgas.kernel.mathematics import gaussian_vector
 from roughgas.kernel.particles import (
     book_spin,
+    book_velocity,
     enter_box,
     mass_of,
     set_path,
@@ -34,7 +35,7 @@ from roughgas.kernel.particles import (
     turn_spin,
 )
 from roughgas.kernel.state import EXPONENT, NOBODY
-from roughgas.kernel.vectors import add_scaled, dot, scale, subtract
+from roughgas.kernel.vectors import add_scaled, scale
 
 DRAG, POWER, BATH = "[0, 1e+09]", "[0, 1e+12]", TEMPERATURE.replace("(", "[")
 SETTINGS = {
@@ -120,15 +121,14 @@ def predict_step(bath, index, state, scene, i):
 @jit
 def resolve_step(bath, index, what, state, scene, i, time):
     """Let particle i take a step of its Ornstein-Uhlenbeck process."""
-    mass = mass_of(state.bodies, i)
     position, before = enter_box(state, scene, i, time)
     after = scale(before, bath.kept)
     if bath.noise is not None:
-        noise = gaussian_vector(state.random, before, math.sqrt(bath.noise / mass))
+        size = math.sqrt(bath.noise / mass_of(state.bodies, i))
+        noise = gaussian_vector(state.random, before, size)
         after = add_scaled(after, noise, 1.0)
     set_path(state, scene, i, position, after, time)
-    gained = 0.5 * dot(subtract(after, before), add_scaled(before, after, 1.0))
-    state.ledger[0, index, 0] += mass * gained
+    book_velocity(before, after, state.bodies, i, state.ledger[0, index])
     if state.spin is not None:
         _turn(bath, index, state, scene, i)
     state.changes[i] += 1

@@ -29,6 +29,7 @@ from roughgas.kernel.jit import jit
 from roughgas.kernel.mathematics import random_vector, uniform
 from roughgas.kernel.particles import (
     book_spin,
+    book_velocity,
     enter_box,
     mass_of,
     pair_of,
@@ -37,7 +38,7 @@ from roughgas.kernel.particles import (
     spin_of,
     turn_spin,
 )
-from roughgas.kernel.vectors import add_scaled, divide, dot, scale, subtract
+from roughgas.kernel.vectors import add_scaled, divide, scale
 
 GRAVITY_SETTINGS = {"acceleration": Number("g, in a/T^2.", "[1e-06, 1e+06]")}
 
@@ -173,8 +174,7 @@ def _push(state, scene, index, i, kick, sign, time):
     position, before = enter_box(state, scene, i, time)
     after = add_scaled(before, divide(kick, mass_of(state.bodies, i)), sign)
     set_path(state, scene, i, position, after, time)
-    work = 0.5 * dot(subtract(after, before), add_scaled(before, after, 1.0))
-    state.ledger[0, index, 0] += mass_of(state.bodies, i) * work
+    book_velocity(before, after, state.bodies, i, state.ledger[0, index])
     state.changes[i] += 1
 
 

@@ -22,6 +22,7 @@ from roughgas.kernel.jit import jit
 from roughgas.kernel.mathematics import gaussian_vector, logarithm, uniform
 from roughgas.kernel.particles import (
     book_spin,
+    book_velocity,
     enter_box,
     mass_of,
     radius_of,
@@ -31,7 +32,7 @@ from roughgas.kernel.particles import (
     turn_spin,
 )
 from roughgas.kernel.state import BOUNDARY_HITS, NOBODY, NOW
-from roughgas.kernel.vectors import add_scaled, along_axis, dot, subtract
+from roughgas.kernel.vectors import add_scaled, along_axis, subtract
 
 # Relative to what is shaken, a/T: any less, and a particle could hit it infinitely often in finite
 # time
@@ -172,16 +173,15 @@ class ThermalWall(NamedTuple):
 
 @jit
 def resolve_thermal(wall, index, what, state, scene, i, time):
-    place, mass = wall.place, mass_of(state.bodies, i)
+    place = wall.place
     position, before = enter_box(state, scene, i, time)
-    thermal = math.sqrt(wall.temperature / mass)
+    thermal = math.sqrt(wall.temperature / mass_of(state.bodies, i))
     outwards = place.inwards * thermal * math.sqrt(-2.0 * logarithm(1.0 - uniform(state.random)))
     random = gaussian_vector(state.random, before, thermal)
     after = _with_normal(random, place.axis, outwards)
     after = add_scaled(after, along_axis(scene.box, place.along, wall.velocity), 1.0)
     set_path(state, scene, i, position, after, time)
-    gained = 0.5 * dot(subtract(after, before), add_scaled(before, after, 1.0))
-    state.ledger[0, index, 0] += mass * gained
+    book_velocity(before, after, state.bodies, i, state.ledger[0, index])
     if state.spin is not None:
         _spin_anew(wall, index, state, scene, i)
     state.changes[i] += 1

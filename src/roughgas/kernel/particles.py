@@ -208,6 +208,13 @@ def turn_spin(spin, i, before, turn):
 
 
 @jit
+def book_velocity(before, after, bodies, i, account):
+    """Enter the translational energy gained, m (v'^2 - v^2)/2, in an account of the ledger."""
+    gained = 0.5 * dot(subtract(after, before), add_scaled(before, after, 1.0))
+    account[0] += mass_of(bodies, i) * gained
+
+
+@jit
 def book_spin(before, turn, effect, bodies, i, account):
     """Enter the rotational energy gained, m q [w.dw + dw.dw/2], in an account of the ledger."""
     gained = dot(before, turn) + 0.5 * dot(turn, turn)

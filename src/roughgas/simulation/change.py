@@ -93,8 +93,7 @@ def change(
     state.clock[NOW] = time - state.clock[BASE]
     _settle(state, old, time)
     _let_flow(state, shear_rate(scene) - shear_rate(old), scene.middle)
-    for name in ("thermostat", "langevin"):
-        parts = (getattr(effects, name) for effects in (old.effects, scene.effects, state.moments))
+    for parts in zip(old.effects, scene.effects, state.moments, strict=True):
         _keep_kicks_apart(state, *parts)
     gas.scene = scene
     state.counts[STARTED] = 0
@@ -125,7 +124,7 @@ def _let_flow(state, rate, middle):
 
 def _keep_kicks_apart(state, old, new, due):
     """Let kicks or steps be evenly spaced in a new interval as they were in the old one."""
-    if new is not None and new.interval != old.interval:
+    if hasattr(new, "interval") and new.interval != old.interval:
         ahead = due - state.clock[NOW]
         due[:] = state.clock[NOW] + ahead * (new.interval / old.interval)
 

@@ -356,10 +356,8 @@ def energy_exchange(
     gain = (after.energy - before.energy) / particles
     accounts = _accounts(scene)
     if changes is not None:
-        accounts, booked = (
-            accounts | {STAGES: len(booked)},
-            np.vstack([booked, changes / particles]),
-        )
+        accounts = accounts | {STAGES: len(booked)}
+        booked = np.vstack([booked, changes / particles])
     found = {
         "source": list(accounts),
         "motion": list(MOTIONS),
@@ -395,16 +393,16 @@ def exchange_series(
     `changes` is what the beginning of each stage has put in, (stages, 2), and `counts` are the
     samples of each stage.
     """
-    energy = np.stack([columns[f"energy {k}"] for k in range(len(MOTIONS))], axis=1)
-    booked = [
-        np.stack([columns[f"booked {account} {k}"] for k in range(len(MOTIONS))], axis=1)
-        - before.ledger[account]
-        for account in _accounts(scene).values()
-    ]
+
+    def motions(name):
+        return np.stack([columns[f"{name} {k}"] for k in range(len(MOTIONS))], axis=1)
+
+    accounts = _accounts(scene).values()
+    booked = [motions(f"booked {account}") - before.ledger[account] for account in accounts]
     booked.append(np.repeat(changes.cumsum(axis=0), counts, axis=0))
     return {
         "energy_input_series": np.stack(booked, axis=1) / particles,
-        "energy_gain_series": (energy - before.energy) / particles,
+        "energy_gain_series": (motions("energy") - before.energy) / particles,
     }
 
 

@@ -8,10 +8,13 @@ import numpy as np
 
 from roughgas.theory.arguments import check, quotient
 from roughgas.theory.closed_forms import collision_frequency
+from roughgas.theory.mixtures import SPECIES
 from roughgas.theory.rate_equations import collision_rates
 
 LANGEVIN = "langevin_json"
 """The attribute of datasets that holds the settings of a bath."""
+BESIDE = (SPECIES, "mu", "spin_share")
+"""Attributes of a gas that is more than a bath of rough particles."""
 FAR, HALVINGS = 30.0, 110
 """Decades of T_tr, either way, in which a stationary state is looked for, and steps of that."""
 
@@ -20,8 +23,8 @@ def bath_temperatures(
     r,
     beta,
     packing,
-    drag,
-    temperature,
+    drag=0.0,
+    temperature=0.0,
     spin_drag=0.0,
     spin_temperature=0.0,
     power=0.0,
@@ -67,24 +70,22 @@ def bath_temperatures(
 
 def ratio_in_bath(attributes: Mapping[str, Any], r: Any, beta: Any) -> np.ndarray:
     """Return R of theory in the bath of a dataset, over the broadcast shape of its arguments; NaN
-    where the packing is not known, nothing spins, or the bath gives nothing.
+    where the packing is not known, nothing spins, or the bath gives nothing, and for what these
+    rate equations leave out: several species, friction, a thermostat beside the bath.
 
     A swept parameter of the bath stands among the attributes, as the inertia does.
     """
-    swept = attributes.get("swept", "").rpartition(".")
-    settings = dict(json.loads(attributes[LANGEVIN]))
-    settings.pop("interval", None)
-    if swept[0] == "langevin" and swept[2] in settings:
-        settings[swept[2]] = attributes.get(swept[2], np.nan)
-    names = {"inertia": np.nan, "packing": np.nan} | settings
-    given = [attributes.get(name, names[name]) for name in ("inertia", "packing")]
-    r, beta, q, packing, *bath = np.broadcast_arrays(r, beta, *given, *settings.values())
-    if not np.isfinite([q, packing, *bath]).all():
+    r, beta = np.broadcast_arrays(r, beta)
+    if any(name in attributes for name in BESIDE):
         return np.full(r.shape, np.nan)
-    known = dict(zip(settings, bath, strict=True)) | {"inertia": q}
-    known = {"drag": 0.0, "temperature": 0.0} | known
-    T_tr, T_rot = bath_temperatures(
-        r, beta, packing, dimension=int(attributes["dimension"]), **known
-    )
+    settings = json.loads(attributes[LANGEVIN])
+    part, _, swept = attributes.get("swept", "").rpartition(".")
+    names = {"inertia", "packing", *(settings.keys() - {"interval"})}
+    given = {name: settings.get(name, attributes.get(name, np.nan)) for name in names}
+    if part == "langevin" and swept in given:
+        given[swept] = attributes.get(swept, np.nan)
+    if not all(np.isfinite(value).all() for value in given.values()):
+        return np.full(r.shape, np.nan)
+    T_tr, T_rot = bath_temperatures(r, beta, dimension=int(attributes["dimension"]), **given)
     with np.errstate(invalid="ignore"):
         return np.asarray(T_rot / (T_tr + T_rot))
