@@ -54,7 +54,7 @@ from numba.core.registry import cpu_target
 from numba.core.runtime import rtsys
 
 from roughgas.base import InputError
-from roughgas.kernel import operations, reference
+from roughgas.kernel import reference, simd
 
 PACKAGE = Path(__file__).resolve().parent.parent
 ROOMS = ("kernel", "effects")
@@ -225,7 +225,7 @@ def type_of(name):
     """
     context = cpu_target.typing_context
     context.refresh()
-    room = operations if hasattr(operations, name) else reference
+    room = simd if hasattr(simd, name) else reference
     return context.resolve_value_type(getattr(room, name))
 
 

@@ -95,7 +95,7 @@ def jit(function):
 
 
 class Primitive:
-    """An operation of compiled code, by its name in operations.py, and what Python runs for it."""
+    """An operation of compiled code, by its name in simd.py, and what Python runs for it."""
 
     def __init__(self, plain):
         functools.update_wrapper(self, plain)

@@ -7,7 +7,7 @@ the sieve (sweep.py) uses single precision, and its rounding shows in no result:
 a sum become one instruction where the machine has it.
 
 Several particles at once, one to each lane of a vector register: lanes are values of compiled code
-that never leave the registers (registers.py tells numba of them), and arrays where the kernel runs
+that never leave the registers (simd.py tells numba of them), and arrays where the kernel runs
 as plain Python. + - * / < <= > >= == & | abs and the operations below take them lane by lane, with
 one operand a scalar if need be. A machine with narrower registers takes several for one.
 
