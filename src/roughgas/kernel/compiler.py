@@ -1,18 +1,12 @@
-"""The compiler, and the cache of what it made.
-
-Where compiled kernels are kept between runs.
+"""Compiling with numba, and the cache of kernels: imported when compiled code is first called.
 
 Numba's disk cache notices an edit only in the file of the function that is looked up, not in the
 files of the functions that it calls: a kernel could outlive an edit and give yesterday's numbers.
 The folder is therefore named by a hash of every source that machine code is made from.
 
 The cache only saves time: kernels that are damaged are compiled again, and where nothing can be
-written each process compiles its own.
-
-What is loaded is run: folders are made for their owner alone, and a folder or a file that somebody
-else could have written is left alone.
-
-All that is numba's: imported when compiled code is first called (kernel/jit.py).
+written each process compiles its own. What is loaded is run: folders are made for their owner
+alone, and a folder or a file that somebody else could have written is left alone.
 
 What is private to numba, and what it is needed for; checked with numba 0.68, and by
 tests/kernel/test_compiler.py:

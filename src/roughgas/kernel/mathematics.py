@@ -1,25 +1,19 @@
-"""Arithmetic, vector registers, trigonometry, random numbers: the same bits everywhere.
+"""Arithmetic that has the same bits on every machine, of numbers and of vector registers.
 
-a b + c, and when the compiler may round it once instead of twice; and a choice without a branch.
+Double precision is rounded step by step: sums and products are never fused. Only the sieve
+(sweep.py) uses single precision, where a b + c may be one instruction; its rounding shows in no
+result.
 
-Results are in double precision and rounded step by step, the same on every machine. Only
-the sieve (sweep.py) uses single precision, and its rounding shows in no result: there a product and
-a sum become one instruction where the machine has it.
+Lanes are several particles at once, one to each lane of a vector register: values of compiled code
+that never leave the registers (simd.py tells numba of them), and arrays where the kernel runs as
+plain Python. + - * / < <= > >= == & | abs and the operations below take them lane by lane, with one
+operand a scalar if need be. A machine with narrower registers takes several for one.
 
-Several particles at once, one to each lane of a vector register: lanes are values of compiled code
-that never leave the registers (simd.py tells numba of them), and arrays where the kernel runs
-as plain Python. + - * / < <= > >= == & | abs and the operations below take them lane by lane, with
-one operand a scalar if need be. A machine with narrower registers takes several for one.
+Every libm rounds sine, cosine and logarithm as it likes; here they are sums and products. Angles
+are in turns, whose reduction to an eighth is exact.
 
-Sine and cosine of an angle that is given in turns, and logarithms, from sums and products alone.
-
-A libm may round differently on every machine. In turns the reduction of the angle is exact, and
-polynomials do the rest: the same bits on every machine.
-
-Random numbers for effects that draw them: SplitMix64, whose state is one word.
-
-G. L. Steele, D. Lea and C. H. Flood, OOPSLA 2014, p. 453. Integer arithmetic and exact products, so
-that the same seed gives the same numbers on every machine.
+Random numbers are those of SplitMix64, whose state is one word (G. L. Steele, D. Lea and
+C. H. Flood, OOPSLA 2014, p. 453): integer arithmetic and exact products.
 """
 
 import math
