@@ -46,6 +46,19 @@ def test_only_what_is_called_from_python_is_finished():
     assert engine.is_symbol_defined(outer.fndesc.llvm_cpython_wrapper_name)
 
 
+def test_every_pass_that_is_left_out_is_one_of_numbas():
+    """One that is renamed would be there again, and take its time."""
+    passes = []
+    for compile_it in (numba.njit, lambda function: entry(function).dispatcher):
+        function = compile_it(lambda x: 2.0 * x)
+        assert function(1.5) == 3.0
+        (about,) = function.get_metadata().values()
+        (times,) = about["pipeline_times"].values()
+        passes.append({name.partition("_")[2] for name in times})
+    assert passes[1] < passes[0]
+    assert len(passes[0] - passes[1]) == len(compiler.IDLE)
+
+
 COPY = """from roughgas.kernel.jit import entry
 @entry(cache=True)
 def double(x):

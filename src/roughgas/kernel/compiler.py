@@ -16,6 +16,7 @@ tests/kernel/test_compiler.py:
   a state for a call from Python takes more code, and time to compile it, than most functions do;
 - `_numba_type_`: how a value tells its type;
 - `_compiler._get_implementation`: a function is written for types before it is compiled;
+- `Passes`: passes of numba that find nothing to do in a function that is written for types;
 - `Library`, `set_env`: machine code is made of a kernel, and not of each function in it besides;
 - the types and values of a Reference (kernel/reference.py): a state and a scene in memory;
 - `event.broadcast`: a tenth of the time went into telling of locks that nobody asked for;
@@ -44,6 +45,8 @@ from numba.core.caching import (
     _CacheLocator,
 )
 from numba.core.codegen import JITCodeLibrary
+from numba.core.compiler import CompilerBase, DefaultPassBuilder
+from numba.core.compiler_machinery import PassManager
 from numba.core.registry import cpu_target
 from numba.core.runtime import rtsys
 
@@ -122,6 +125,38 @@ def _try_to_write(folder):
     tempfile.TemporaryFile(dir=folder).close()
 
 
+# For closures, `with`, branches that types decide, functions that numba inlines, literals,
+# expressions of whole arrays: kernel/jit.py has done it, or the kernel has none
+IDLE = {
+    "WithLifting",
+    "InlineClosureLikes",
+    "RewriteSemanticConstants",
+    "DeadBranchPrune",
+    "MakeFunctionToJitFunction",
+    "InlineInlinables",
+    "FindLiterallyCalls",
+    "LiteralUnroll",
+    "LiteralPropagationSubPipelinePass",
+    "InlineOverloads",
+    "NopythonRewrites",
+    "NoPythonSupportedFeatureValidation",
+    "DumpParforDiagnostics",
+}
+
+
+class Passes(CompilerBase):
+    """What numba does to a function, without the passes that would find nothing to do."""
+
+    def define_pipelines(self):
+        whole = DefaultPassBuilder.define_nopython_pipeline(self.state)
+        needed = PassManager("kernel")
+        for one, purpose in whole.passes:
+            if one.__name__ not in IDLE:
+                needed.add_pass(one, purpose)
+        needed.finalize()
+        return [needed]
+
+
 INNER = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 
 
@@ -136,7 +171,7 @@ def dispatcher(function, cache=False, inner=False, inline=False):
     options = INNER if inner else {}
     if inline:
         options = options | {"forceinline": True}
-    made = numba.njit(error_model="numpy", _nrt=False, **options)(function)
+    made = numba.njit(error_model="numpy", _nrt=False, pipeline_class=Passes, **options)(function)
     if cache:
         made._cache = Kept(function)
     if not inner:
@@ -175,7 +210,7 @@ class Library(JITCodeLibrary):
 
     Numba makes machine code of each function that a kernel is put together from, and optimises it
     with all that it calls, though only the kernel's own is ever run. Here only what Python or C
-    calls is optimised and finished; the rest is handed on as it is.
+    calls is optimised and finished, with each function that it calls, directly or not, linked once.
     """
 
     def _optimize_functions(self, ll_module):
@@ -183,13 +218,22 @@ class Library(JITCodeLibrary):
 
     def finalize(self):
         if any(_is_entry(function.name) for function in self._final_module.functions):
+            self._linking_libraries = _all_below(self)
             super().finalize()
             return
-        for library in dict.fromkeys(self._linking_libraries):
+        for library in self._linking_libraries:
             self._reload_init.update(library._reload_init)
-            self._final_module.link_in(library._get_module_for_linking(), preserve=True)
         self._finalize_dynamic_globals()
         self._finalized = True
+
+
+def _all_below(library, found=()):
+    """Return the libraries that one calls, directly or not, each once."""
+    found = dict(found)
+    for one in library._linking_libraries:
+        if one not in found:
+            found |= _all_below(one, found | {one: None})
+    return found
 
 
 def _is_entry(name):
