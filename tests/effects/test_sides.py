@@ -9,7 +9,7 @@ from brute_force.sides import ALIKE, Side
 
 from roughgas.base import InputError
 from roughgas.effects import motions
-from roughgas.effects.motions import Sawtooth, Sine, Triangle
+from roughgas.effects.motions import Sine, sawtooth, triangle
 from roughgas.kernel.state import BASE, BOUNDARY_HITS, NOW
 from roughgas.scene import build
 from roughgas.scene.initial import check_places
@@ -28,9 +28,9 @@ def closed(effects, box, particles=12):
 
 STROKE = 1.5, 1.1
 FORMS = {
-    "sawtooth": Sawtooth(*STROKE),
-    "reversed_sawtooth": Triangle(*STROKE, 0.1),
-    "triangle": Triangle(*STROKE, 0.5),
+    "sawtooth": sawtooth(*STROKE),
+    "reversed_sawtooth": triangle(*STROKE, 0.1),
+    "triangle": triangle(*STROKE, 0.5),
     "sine": Sine(*STROKE),
 }
 

@@ -7,7 +7,7 @@ import pytest
 from brute_force import begin, run, settings, snapshot
 
 from roughgas import theory
-from roughgas.effects import planes
+from roughgas.effects import walls
 from roughgas.kernel.mathematics import logarithm
 from roughgas.kernel.memory import new_state
 from roughgas.kernel.state import BASE, COLLISIONS, NOW
@@ -97,7 +97,7 @@ def left(number, dimension, temperature, inertia):
     velocities, spins = [], []
     for _ in range(number):
         with np.errstate(over="ignore"):  # of the generator's words, which wrap around
-            planes.resolve_thermal(scene.effects.left_wall, 1, 0, state, scene, 0, 0.0)
+            walls.resolve_wall(scene.effects.left_wall, 1, 0, state, scene, 0, 0.0)
         velocities.append(state.trajectory[0, dimension:-1].copy())
         spins.append(state.spin[0].copy())
     return np.array(velocities), np.array(spins), state.ledger[0, 1]

@@ -1,6 +1,6 @@
 """Falls onto a vibrated floor that are hard to time, and the same falls in many digits.
 
-A fall is (floor, gravity, height, speed, phase), as effects.motions.time_to_sawtooth takes it.
+A fall is (floor, gravity, height, speed, phase), as effects.motions.time_to_pieces takes it.
 """
 
 import math
@@ -8,7 +8,7 @@ import math
 import mpmath
 
 from hard_cases.waves import Fall
-from roughgas.effects.motions import Sawtooth
+from roughgas.effects.motions import sawtooth
 
 
 class Exact(Fall):
@@ -47,14 +47,14 @@ class Exact(Fall):
 
 def dyadic(rng):
     """A fall that ends exactly where a stroke does, or somewhat above or below."""
-    floor = Sawtooth(*(2.0 ** rng.integers(-3, 3, 2)))
+    floor = sawtooth(*(2.0 ** rng.integers(-3, 3, 2)))
     gravity, speed = 2.0 ** rng.integers(-4, 4), rng.integers(-64, 65) / 8.0
     phase = rng.integers(0, 64) / 16.0 * floor.period
     return _shortly_before_or_after(rng, floor, gravity, speed, phase)
 
 
 def general(rng):
-    floor = Sawtooth(*(10.0 ** rng.uniform(-1, 1, 2)))
+    floor = sawtooth(*(10.0 ** rng.uniform(-1, 1, 2)))
     gravity = 10.0 ** rng.uniform(-3, 2)
     speed = rng.choice((-1.0, 1.0)) * 10.0 ** rng.uniform(-1, 3)
     phase = rng.uniform(0.0, 100.0) * floor.period
@@ -78,7 +78,7 @@ def _shortly_before_or_after(rng, floor, gravity, speed, phase):
 
 def nearly_at_rest(rng):
     """On the first stroke's surface, or so; half of the starts are exactly on it or below."""
-    floor = Sawtooth(10.0 ** rng.uniform(-1, 1), 2.0 ** rng.integers(10, 14))
+    floor = sawtooth(10.0 ** rng.uniform(-1, 1), 2.0 ** rng.integers(10, 14))
     floor_speed, gravity = floor.amplitude / floor.period, 10.0 ** rng.uniform(-2, 2)
     phase = rng.choice((0.0, rng.uniform(0.0, 0.5) * floor.period))
     gap = rng.choice((0.0, -1e-16, 10.0 ** rng.uniform(-16, -10)))

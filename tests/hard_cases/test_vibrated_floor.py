@@ -10,11 +10,11 @@ from compiled import from_python
 
 from hard_cases.catalogue import hard_case
 from hard_cases.falls import Exact, dyadic, general, nearly_at_rest
-from roughgas.effects.motions import time_to_sawtooth
+from roughgas.effects.motions import time_to_pieces
 from roughgas.kernel.memory import new_state
 from roughgas.kernel.state import BASE, BOUNDARY_HITS, NOW
 
-time_to_floor = from_python(time_to_sawtooth)
+time_to_floor = from_python(time_to_pieces)
 ROUNDING = 2.0**-53
 RULE = 1e-3  # a/T: a particle leaves the floor at no less than this speed, relative to it
 PHASE = 0.3  # of the accelerating mode: no dyadic number
@@ -33,7 +33,7 @@ def test_hits_around_the_return_of_the_floor(margins):
         for k in range(falls):
             fall = (dyadic if k % 2 else general)(rng)
             exact = Exact(*fall)
-            t = mpmath.mpf(time_to_floor(*fall))
+            t = mpmath.mpf(time_to_floor(*fall)[0])
             lengths = exact.lengths(t)
             below = max(below, exact.depth(t) / lengths)
             beside = max(beside, exact.miss(t) / lengths)
@@ -55,7 +55,7 @@ def test_take_off_at_hardly_any_speed(margins):
         for _ in range(starts):
             start = nearly_at_rest(rng)
             exact = Exact(*start)
-            t = mpmath.mpf(time_to_floor(*start))
+            t = mpmath.mpf(time_to_floor(*start)[0])
             speed = exact.v - exact.fastest
             # one that is below the floor by rounding is taken to be on it
             beside = max(beside, abs(exact.gap(t, 0) - min(0, exact.gap(0, 0))) / exact.lengths(t))

@@ -9,19 +9,16 @@ from brute_force import begin, run, settings
 from compiled import from_python
 
 from hard_cases.catalogue import hard_case
-from hard_cases.waves import DIGITS, exact, level
+from hard_cases.waves import DIGITS, exact, level, rise_of
 from roughgas.effects import motions
-from roughgas.effects.motions import Sine, Triangle
+from roughgas.effects.motions import Sine, triangle
 from roughgas.kernel.state import BASE
 
-time_to_sine = from_python(motions.time_to_sine)
-time_to_triangle = from_python(motions.time_to_triangle)
+MEET = {kind: from_python(law.meet) for kind, law in motions.LAWS.items() if law.meet}
 
 
 def time_to(floor, *fall):
-    if isinstance(floor, Sine):
-        return time_to_sine(floor, *fall)
-    return time_to_triangle(floor, *fall)[0]
+    return MEET[type(floor)](floor, *fall)[0]
 
 
 def measure(margins, falls, unit):
@@ -45,7 +42,7 @@ def wave(rng):
     """A sine, a triangle, or one that rises in a tenth or in nine tenths of its period."""
     stroke = 10.0 ** rng.uniform(-2, 1), 10.0 ** rng.uniform(-1, 1)
     rise = rng.choice([0.0, 0.5, 0.1, 0.9])
-    return Sine(*stroke) if rise == 0.0 else Triangle(*stroke, rise)
+    return Sine(*stroke) if rise == 0.0 else triangle(*stroke, rise)
 
 
 @hard_case(
@@ -115,10 +112,10 @@ def test_meetings_at_turning_points(margins):
 
     def fall():
         """All numbers dyadic, and the meeting right at a turning point, or nearly so."""
-        floor = Triangle(*(2.0 ** rng.integers(-3, 3, 2)), rng.choice([0.5, 0.25]))
+        floor = triangle(*(2.0 ** rng.integers(-3, 3, 2)), rng.choice([0.5, 0.25]))
         crest = rng.integers(0, 2)
-        before = rng.integers(1, 16) / 16.0 * floor.period * (floor.rise if crest else 0.5)
-        phase = floor.period * (1.0 + (floor.rise if crest else 0.0)) - before
+        before = rng.integers(1, 16) / 16.0 * floor.period * (rise_of(floor) if crest else 0.5)
+        phase = floor.period * (1.0 + (rise_of(floor) if crest else 0.0)) - before
         gravity, arrives = 2.0 ** rng.integers(-4, 4), -rng.integers(0, 256) / 8.0
         speed = arrives + gravity * before
         height = floor.amplitude * crest - speed * before + 0.5 * gravity * before * before

@@ -10,7 +10,7 @@ import math
 
 import mpmath
 
-from roughgas.effects.motions import Sawtooth, Sine
+from roughgas.effects.motions import Sine
 
 DIGITS = 40
 
@@ -103,6 +103,11 @@ class Fall:
         return b
 
 
+def rise_of(floor):
+    """Share of a period in which a floor goes up at constant speed; 1 is a sawtooth."""
+    return (*floor.shares, 1.0)[1]
+
+
 class SineFall(Fall):
     @property
     def fastest(self):
@@ -124,10 +129,11 @@ class SineFall(Fall):
 class TriangularFall(Fall):
     @property
     def fastest(self):
-        return self.A / self.P / min(self.floor.rise, 1 - self.floor.rise)
+        rise = rise_of(self.floor)
+        return self.A / self.P / min(rise, 1 - rise)
 
     def surface(self, t):
-        rise = mpmath.mpf(self.floor.rise)
+        rise = mpmath.mpf(rise_of(self.floor))
         share = (self.phase + t) / self.P
         share -= mpmath.floor(share)
         if share < rise:
@@ -135,7 +141,7 @@ class TriangularFall(Fall):
         return self.A * (1 - share) / (1 - rise), -self.A / ((1 - rise) * self.P)
 
     def edges(self):
-        return [0, mpmath.mpf(self.floor.rise), 1]
+        return [0, mpmath.mpf(rise_of(self.floor)), 1]
 
 
 def exact(floor, *fall):
@@ -148,7 +154,5 @@ def level(floor, phase):
     share = phase / floor.period % 1.0
     if isinstance(floor, Sine):
         return floor.amplitude * math.sin(math.pi * share) ** 2
-    if isinstance(floor, Sawtooth):
-        return floor.amplitude * share
-    share = share / floor.rise if share < floor.rise else (1.0 - share) / (1.0 - floor.rise)
-    return floor.amplitude * share
+    rise = rise_of(floor)
+    return floor.amplitude * (share / rise if share < rise else (1.0 - share) / (1.0 - rise))

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from roughgas.base import InputError
-from roughgas.effects.motions import Sawtooth
+from roughgas.effects.motions import sawtooth
 from roughgas.scene import build
 from roughgas.scene.initial import check
 
@@ -34,15 +34,18 @@ def test_a_gas():
 
 def test_a_bed_between_walls():
     scene = build(experiment((50, "open"), **BED, **WALLS), 0.9, -0.5)
-    assert scene.box == (None, None) and scene.extent == 50.0 and scene.effects.walls.width == 50.0
-    assert scene.effects.floor[1:] == (1.0, -1.0, Sawtooth(5.0, 1.0))
+    assert (
+        scene.box == (None, None) and scene.extent == 50.0 and scene.effects.walls.place.at == 50.0
+    )
+    floor = scene.effects.floor
+    assert (*floor[1:3], floor.motion) == (1.0, -1.0, sawtooth(5.0, 1.0))
 
 
 def test_the_particles_own_material_at_a_boundary():
     own = {"restitution": "particles", "roughness": "particles"}
     effects = BED | {"floor": FLOOR["floor"] | own, "walls": own}
     scene = build(experiment((50, "open"), **effects), 0.9, -0.5)
-    assert scene.effects.floor[1:3] == scene.effects.walls[1:] == (0.9, -0.5)
+    assert scene.effects.floor[1:3] == scene.effects.walls[1:3] == (0.9, -0.5)
 
 
 @pytest.mark.parametrize(("r", "present"), [(0.74, True), (0.75, False), (0.9, False)])

@@ -9,7 +9,6 @@ from typing import Any, NamedTuple
 from roughgas.effects.bath import Langevin
 from roughgas.effects.contacts import ContactAverages, ContactStress, Friction, Spin
 from roughgas.effects.drives import Gravity, Shear, Thermostat
-from roughgas.effects.planes import Floor
 from roughgas.effects.restitution import (
     ContactTime,
     PowerLaw,
@@ -19,7 +18,7 @@ from roughgas.effects.restitution import (
 )
 from roughgas.effects.settings import schema_of_kinds
 from roughgas.effects.species import Species
-from roughgas.effects.walls import ShakenWalls, SideWall, Walls
+from roughgas.effects.walls import Floor, ShakenWalls, Wall, Walls
 
 
 class Effects(NamedTuple):
@@ -31,12 +30,12 @@ class Effects(NamedTuple):
     floor: Floor | None = None
     walls: Walls | None = None
     shaken_walls: ShakenWalls | None = None
-    left_wall: SideWall | None = None
-    right_wall: SideWall | None = None
-    front_wall: SideWall | None = None
-    back_wall: SideWall | None = None
-    bottom_wall: SideWall | None = None
-    lid: SideWall | None = None
+    left_wall: Wall | None = None
+    right_wall: Wall | None = None
+    front_wall: Wall | None = None
+    back_wall: Wall | None = None
+    bottom_wall: Wall | None = None
+    lid: Wall | None = None
     shear: Shear | None = None
     thermostat: Thermostat | None = None
     langevin: Langevin | None = None

@@ -1,22 +1,23 @@
-"""How floors and walls are shaken, and when a particle meets one that comes towards it.
+"""How walls are shaken, and when a particle meets one that is shaken along its normal.
 
-A, the amplitude, is the height of a stroke, T its period; a stroke begins at the lowest point. What
-is a height above a floor is a gap in front of a piston.
+T is the period. What is a height above a floor is a gap in front of a wall on any other side.
 
-- Sawtooth: the surface is at height A (t mod T)/T. While it rises it meets a falling particle at a
-  root of a quadratic; at the end of a stroke it is back at zero without having touched anything.
+- Pieces: from its lowest point the surface goes at constant speeds, from one share of the period to
+  the next. It meets a particle at a root of a quadratic: one that falls, and while it goes down
+  itself also one that overtakes it. A sawtooth has one piece, A t/T: at its end it is back at zero
+  without having touched anything. A triangle has two, and a reversed sawtooth, which rises in a
+  tenth of its period: if it rose at once it would give every particle that it meets an infinite
+  speed. A is the height of the stroke.
 - Sine: it is at A (1 - cos 2 pi t/T)/2. When it meets a particle no formula says; the time is
   approached by steps that cannot lead past a meeting.
-- Triangle, and sawtooth the other way round: while it rises it is at A t/(rise T), for the rest of
-  the period at A (1 - t/T)/(1 - rise). It meets a particle at a root of a quadratic: one that
-  falls, and while it goes down itself also one that overtakes it. The reversed sawtooth rises in a
-  tenth of its period: a floor that rose at once would give every particle that it meets an infinite
-  speed.
+- Swing: about its middle, A sin 2 pi t/T; along the wall only.
 
-Each is a type of its own, so that a kernel has the code of its own motion alone: `law_of`.
+Each is a type of its own, so that a kernel has the code of its own motion alone: `law_of`. A new
+one is its fields, its functions and a line in LAWS.
 """
 
 import math
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from roughgas.effects.settings import LENGTH, TIME, Number, SceneContext, Word, check_speed
@@ -25,14 +26,13 @@ from roughgas.kernel.mathematics import TURN, sine_and_cosine
 
 ROUNDING = 2.0**-52
 MEET, LOOK = range(2)  # what comes next: the surface, or the search for when it does
-RISING, FALLING = 0, 1
-REVERSED_RISE = 0.1  # of the reversed sawtooth's period
-WAVES = ("sawtooth", "reversed_sawtooth", "triangle", "sine")
+RISES = {"reversed_sawtooth": 0.1, "triangle": 0.5}  # shares of a period
+WAVES = ("sawtooth", *RISES, "sine")
+AMPLITUDE = Number("Height of a whole stroke, in a (2 A of a sine); 0 is a wall at rest.", LENGTH)
+PERIOD = Number("Time between strokes, in T.", TIME)
 SETTINGS = {
-    "amplitude": Number(
-        "Height of a whole stroke, in a (2 A of a sine); 0 is a floor at rest.", LENGTH
-    ),
-    "period": Number("Time between strokes, in T.", TIME),
+    "amplitude": AMPLITUDE,
+    "period": PERIOD,
     "wave": Word(
         "Form of its motion; the sawtooth returns at once, the reversed one rises in a tenth of "
         "the period.",
@@ -42,12 +42,15 @@ SETTINGS = {
 }
 
 
-class Sawtooth(NamedTuple):
-    """Out at constant speed, and back at once."""
+class Pieces(NamedTuple):
+    """Out and back in pieces of constant speed."""
 
     amplitude: float  # height of a stroke, in a; what is at rest has 0
     period: float  # T
-    ahead: float = 0.0  # T that have passed since a period began, at the start
+    ahead: float  # T that have passed since a period began, at the start
+    shares: tuple[float, ...]  # of a period that have passed when each piece begins
+    levels: tuple[float, ...]  # where the surface is then, in a
+    speeds: tuple[float, ...]  # outwards, in a/T
 
 
 class Sine(NamedTuple):
@@ -58,48 +61,51 @@ class Sine(NamedTuple):
     ahead: float = 0.0
 
 
-class Triangle(NamedTuple):
-    """Out and back at constant speeds."""
+class Swing(NamedTuple):
+    """To and fro about the middle, harmonically."""
 
-    amplitude: float
+    amplitude: float  # half a stroke
     period: float
-    rise: float  # share of the period in which it goes out
     ahead: float = 0.0
 
 
-def motion_of(
-    around: SceneContext, amplitude: float, period: float, wave: str, phase: float
-) -> Sawtooth | Sine | Triangle:
+Motion = Pieces | Sine | Swing
+
+
+def sawtooth(amplitude: float, period: float, ahead: float = 0.0) -> Pieces:
+    """Return the motion that goes out at constant speed, and back at once."""
+    return Pieces(amplitude, period, ahead, (0.0,), (0.0,), (amplitude / period,))
+
+
+def triangle(amplitude: float, period: float, rise: float, ahead: float = 0.0) -> Pieces:
+    """Return the motion that goes out in this share of the period, and back in the rest of it."""
+    speeds = amplitude / (rise * period), -amplitude / ((1.0 - rise) * period)
+    return Pieces(amplitude, period, ahead, (0.0, rise), (0.0, amplitude), speeds)
+
+
+def motion_of(around: SceneContext, settings: Mapping[str, Any]) -> Pieces | Sine:
     """Return the motion that settings describe; raise InputError for one that is too fast."""
+    amplitude, period, wave = (settings[key] for key in ("amplitude", "period", "wave"))
     check_speed(around, amplitude, period)
-    ahead = phase * period if phase else 0.0  # the period may be infinite
+    ahead = settings["phase"] * period
     if wave == "sine":
         return Sine(amplitude, period, ahead)
-    rises = {"triangle": 0.5, "reversed_sawtooth": REVERSED_RISE}
-    if wave in rises:
-        return Triangle(amplitude, period, rises[wave], ahead)
-    return Sawtooth(amplitude, period, ahead)
-
-
-@jit
-def since_period_began(motion, time):
-    """Return how long a period has lasted at an absolute time, in T."""
-    return (time + motion.ahead) % motion.period
+    if wave in RISES:
+        return triangle(amplitude, period, RISES[wave], ahead)
+    return sawtooth(amplitude, period, ahead)
 
 
 class Law(NamedTuple):
-    """What a kind of motion does; all but `waits` and `height` is compiled."""
+    """What a kind of motion does, in compiled functions; `phase` is the time since some period
+    began."""
 
-    meet: Any
+    at: Any
+    """(motion, phase) -> (where the surface is, in a; its speed; perhaps more)"""
+    meet: Any = None
     """(motion, gravity, height, speed, phase) -> (time, what): when it meets a particle that is at
-    `height`, rising at `speed`, and `phase` of the motion is the time since some period began; inf
-    where they never meet"""
-    speed: Any
+    `height`, rising at `speed`; inf where they never meet"""
+    met: Any = None
     """(motion, what, phase) -> the speed of the surface when it meets a particle so"""
-    along: Any
-    """(motion, phase) -> its speed if it is shaken along itself"""
-    height: Any
-    """(motion, time) -> height of the surface in a; in Python"""
     waits: bool = False
     """What flies above all strokes is looked at again when it is back: most collide before"""
 
@@ -111,6 +117,17 @@ def law_of(motion):
 
 
 @jit
+def since_period_began(motion, time):
+    """Return how long a period has lasted at an absolute time, in T."""
+    return (time + motion.ahead) % motion.period
+
+
+def displacement(motion, time):
+    """Return where the surface is at an absolute time, in a."""
+    return law_of(motion).at(motion, since_period_began(motion, time))[0]
+
+
+@jit
 def fall(gap, speed, gravity):
     """Return the first time at which gap + speed t - gravity t^2 / 2 = 0, without cancellation.
 
@@ -118,19 +135,14 @@ def fall(gap, speed, gravity):
     hop. Where gravity pulls away from the surface it is negative; inf where there is no meeting.
     """
     if gravity <= 0.0:
-        return _drift(gap, speed, -gravity)
+        square = speed * speed + 2.0 * gravity * gap
+        if speed >= 0.0 or square < 0.0:
+            return math.inf
+        return 2.0 * max(gap, 0.0) / (math.sqrt(square) - speed)
     if gap <= 0.0:
         return 0.0 if speed < 0.0 else 2.0 * speed / gravity
     root = math.sqrt(speed * speed + 2.0 * gravity * gap)
     return 2.0 * gap / (root - speed) if speed < 0.0 else (speed + root) / gravity
-
-
-@jit
-def _drift(gap, speed, lift):
-    square = speed * speed - 2.0 * lift * gap
-    if speed >= 0.0 or square < 0.0:
-        return math.inf
-    return 2.0 * max(gap, 0.0) / (math.sqrt(square) - speed)
 
 
 @jit
@@ -147,47 +159,60 @@ def time_below(amplitude, gravity, height, speed, time):
 
 
 @jit
-def time_to_sawtooth(motion, gravity, height, speed, phase):
-    """Return when a particle with its lowest point at `height`, rising at `speed`, meets it.
+def time_to_pieces(motion, gravity, height, speed, phase):
+    """(time, piece): when a particle whose lowest point is at `height`, rising at `speed`, meets
+    the surface, and on which piece of its motion.
 
-    phase is the time since some stroke began. Times in T, lengths in a; inf where they never meet.
+    phase is the time since some period began. Times in T, lengths in a; inf where they never meet.
+    At a turning point it is the earlier piece on which the particle approaches it.
     """
-    stroke = math.floor(phase / motion.period)
-    own_speed = motion.amplitude / motion.period
+    number = _piece_at(motion, phase)
     back = time_below(motion.amplitude, gravity, height, speed, 0.0)
     while back < math.inf:
-        stroke = max(stroke, math.floor((phase + back) / motion.period))
-        begin = max(0.0, stroke * motion.period - phase)
-        end = (stroke + 1.0) * motion.period - phase
-        surface = own_speed * (phase + begin - stroke * motion.period)
+        number = max(number, _piece_at(motion, phase + back))
+        piece = number % len(motion.shares)
+        own_speed = motion.speeds[piece]
+        start, end = _begin(motion, number), _begin(motion, number + 1) - phase
+        begin = max(0.0, start - phase)
+        surface = motion.levels[piece] + own_speed * (phase + begin - start)
         gap = height + speed * begin - 0.5 * gravity * begin * begin - surface
-        relative = speed - gravity * begin - own_speed
-        meeting = begin + fall(gap, relative, gravity)
+        meeting = begin + fall(gap, speed - gravity * begin - own_speed, gravity)
         if meeting <= end:
-            return meeting
-        stroke += 1
+            return meeting, piece
+        number += 1
         back = time_below(motion.amplitude, gravity, height, speed, end)
-    return math.inf
+    return math.inf, MEET
 
 
 @jit
-def _meet_sawtooth(motion, gravity, height, speed, phase):
-    return time_to_sawtooth(motion, gravity, height, speed, phase), MEET
+def _piece_at(motion, phase):
+    """Return the number of the piece at a time since some period began."""
+    periods = phase / motion.period
+    whole = math.floor(periods)
+    number = len(motion.shares) * whole
+    for k in range(1, len(motion.shares)):
+        number += 1 if periods - whole > motion.shares[k] else 0
+    return number
 
 
 @jit
-def _speed_of_sawtooth(motion, what, phase):
-    return motion.amplitude / motion.period
+def _begin(motion, number):
+    """Return when a piece begins."""
+    pieces = len(motion.shares)
+    return (number // pieces + motion.shares[number % pieces]) * motion.period
 
 
 @jit
-def _along_sawtooth(motion, phase):
-    return motion.amplitude / motion.period
+def _pieces_at(motion, phase):
+    number = _piece_at(motion, phase)
+    piece = number % len(motion.shares)
+    speed = motion.speeds[piece]
+    return motion.levels[piece] + speed * (phase - _begin(motion, number)), speed
 
 
-def height_of_sawtooth(motion, time):
-    """Return the height of the surface at `time`, in a."""
-    return motion.amplitude * (time % motion.period / motion.period)
+@jit
+def _speed_of_piece(motion, what, phase):
+    return motion.speeds[what % len(motion.shares)]
 
 
 @jit
@@ -195,7 +220,7 @@ def time_to_sine(motion, gravity, height, speed, phase):
     """Return when a particle with its lowest point at `height`, rising at `speed`, meets it.
 
     phase is the time since some period began, negative before. Times in T, lengths in a; inf where
-    they never meet.
+    they never meet. Returns (time, MEET).
 
     With f the gap at the time t that has been reached, b a bound of -f'' within the reach D of the
     next step, f(t + d) >= f + f' d - b d^2/2 for 0 <= d <= D: the step d to the root of that
@@ -216,18 +241,18 @@ def time_to_sine(motion, gravity, height, speed, phase):
         gap = height + speed * time - 0.5 * gravity * time * time - surface
         relative = speed - gravity * time - surface_speed
         bend = gravity + min(sharpest, acceleration + sharpest * rate * reach / 3.0)
-        step = _stays_above(gap, relative, bend)
+        step = fall(gap, relative, bend)
         if bend < gravity + sharpest:
             step = min(step, reach)
         if relative >= 0.0:
             step = max(step, slack)
         elif step <= ROUNDING * (motion.period + abs(phase) + time):
-            return time + max(0.0, step)
+            return time + max(0.0, step), MEET
         back = time_below(motion.amplitude, gravity, height, speed, time)
         step = max(step, back - time)
         reach = 2.0 * step
         time += step
-    return math.inf
+    return math.inf, MEET
 
 
 @jit
@@ -240,110 +265,18 @@ def sine_motion(motion, phase):
 
 
 @jit
-def _stays_above(gap, speed, bend):
-    """Return how long gap + speed t - bend t^2/2 >= 0 is certain; bend may be negative.
-
-    A gap that is negative by rounding, and opens, is none.
-    """
-    if bend > 0.0:
-        return fall(gap, speed, bend)
-    square = speed * speed + 2.0 * bend * gap
-    if speed >= 0.0 or square < 0.0:
-        return math.inf
-    return 2.0 * gap / (math.sqrt(square) - speed)
-
-
-@jit
-def _meet_sine(motion, gravity, height, speed, phase):
-    return time_to_sine(motion, gravity, height, speed, phase), MEET
-
-
-@jit
 def _speed_of_sine(motion, what, phase):
     return sine_motion(motion, phase)[1]
 
 
 @jit
-def _along_sine(motion, phase):
-    turns = phase / motion.period
-    return 0.5 * TURN * motion.amplitude / motion.period * sine_and_cosine(turns)[0]
-
-
-def height_of_sine(motion, time):
-    """Return the height of the surface at `time`, in a."""
-    turn = TURN * (time % motion.period / motion.period)
-    return motion.amplitude * (1.0 - math.cos(turn)) / 2.0
-
-
-@jit
-def time_to_triangle(motion, gravity, height, speed, phase):
-    """(time, RISING or FALLING): when a particle whose lowest point is at `height`, rising at
-    `speed`, meets it, and on which piece of its motion.
-
-    phase is the time since some period began. Times in T, lengths in a; inf where they never meet.
-    At a turning point it is the earlier piece on which the particle approaches it.
-    """
-    number = _piece_at(motion, phase)
-    back = time_below(motion.amplitude, gravity, height, speed, 0.0)
-    while back < math.inf:
-        number = max(number, _piece_at(motion, phase + back))
-        piece = number & 1
-        own_speed = speed_of_piece(motion, piece)
-        start = _begin(motion, number) - phase
-        end = _begin(motion, number + 1) - phase
-        begin = max(0.0, start)
-        level = motion.amplitude if piece == FALLING else 0.0
-        gap = height + speed * begin - 0.5 * gravity * begin * begin
-        gap -= level + own_speed * (begin - start)
-        meeting = begin + fall(gap, speed - gravity * begin - own_speed, gravity)
-        if meeting <= end:
-            return meeting, piece
-        number += 1
-        back = time_below(motion.amplitude, gravity, height, speed, end)
-    return math.inf, RISING
-
-
-@jit
-def speed_of_piece(motion, piece):
-    """Return the upward speed of the surface on a piece of its motion."""
-    if piece == RISING:
-        return motion.amplitude / (motion.rise * motion.period)
-    return -motion.amplitude / ((1.0 - motion.rise) * motion.period)
-
-
-@jit
-def _begin(motion, number):
-    """Return when a piece begins; a period has two, and those of even number rise."""
-    return (number // 2 + (number & 1) * motion.rise) * motion.period
-
-
-@jit
-def _piece_at(motion, phase):
-    """Return the number of the piece at a time since some period began."""
-    periods = phase / motion.period
-    whole = math.floor(periods)
-    return 2 * whole + (FALLING if periods - whole > motion.rise else RISING)
-
-
-@jit
-def _speed_of_triangle(motion, what, phase):
-    return speed_of_piece(motion, what)
-
-
-@jit
-def _along_triangle(motion, phase):
-    return speed_of_piece(motion, _piece_at(motion, phase) & 1)
-
-
-def height_of_triangle(motion, time):
-    """Return the height of the surface at `time`, in a."""
-    done = time % motion.period / motion.period
-    share = done / motion.rise if done < motion.rise else (1.0 - done) / (1.0 - motion.rise)
-    return motion.amplitude * share
+def _swing_at(motion, phase):
+    sine, cosine = sine_and_cosine(phase / motion.period)
+    return motion.amplitude * sine, TURN * motion.amplitude / motion.period * cosine
 
 
 LAWS = {
-    Sawtooth: Law(_meet_sawtooth, _speed_of_sawtooth, _along_sawtooth, height_of_sawtooth),
-    Sine: Law(_meet_sine, _speed_of_sine, _along_sine, height_of_sine, waits=True),
-    Triangle: Law(time_to_triangle, _speed_of_triangle, _along_triangle, height_of_triangle),
+    Pieces: Law(_pieces_at, time_to_pieces, _speed_of_piece),
+    Sine: Law(sine_motion, time_to_sine, _speed_of_sine, waits=True),
+    Swing: Law(_swing_at),
 }

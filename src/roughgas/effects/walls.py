@@ -1,161 +1,72 @@
-"""Walls: two equal ones that close the first axis, or one on a single side of the box.
+"""Walls: what closes a side of the box, and how particles meet it.
 
-The two are at rest, or shaken along the last axis as a sine, both alike, so that they drive what
-their roughness grips. The surface of such a wall stays where it is: only the velocity that
-particles meet there changes.
+A wall has a place, a motion, and what it does to particles. It is at rest, or slides along itself,
+at constant velocity or shaken; or it is shaken along its normal (motions.py): then it is farthest
+out at the side of the box, and its strokes go into the gas. A floor is one under a gas with
+gravity, which pulls particles towards it and away from a lid; along the other axes nothing pulls.
+Two equal walls that close both ends of the first axis are one effect, with one account. The
+surface of what moves along itself stays where it is: only the velocity that particles meet there
+changes.
 
-A single wall has a material and a motion of its own. It is at rest, or moves along itself, at
-constant velocity or shaken; or it is a piston or thermal (planes.py). What each is follows from its
-parameters: `SideWall.from_settings` makes it.
+What bounces off has a restitution and a roughness. From a thermal wall, whatever a particle brings
+along, it leaves with the velocity and the spin of one that flies through a plane in a Maxwellian
+gas at the wall's temperature, which moves as the wall does: the component into the gas has the
+density v exp(-m v^2/(2 T)), all others are Gaussian with the variance T/m, those of a w with
+T/(m q).
 """
 
 import math
 from typing import NamedTuple
 
 from roughgas.base import InputError, NeedsError
-from roughgas.effects.motions import (
-    WAVES,
-    Sawtooth,
-    Sine,
-    Triangle,
-    law_of,
-    motion_of,
-    since_period_began,
-)
-from roughgas.effects.planes import (
-    Piston,
-    Place,
-    ThermalWall,
-    bounce_off_plane,
-    normal_axis,
-    predict_plane,
-)
+from roughgas.effects import motions
+from roughgas.effects.motions import AMPLITUDE, LOOK, PERIOD, Motion, Swing, fall, law_of, motion_of
 from roughgas.effects.settings import (
     LENGTH,
     MATERIAL,
     TEMPERATURE,
-    TIME,
     Number,
     Word,
     check_speed,
     register,
 )
+from roughgas.kernel import hooks
 from roughgas.kernel.contact import collide_with_wall
 from roughgas.kernel.jit import jit
-from roughgas.kernel.mathematics import TURN, sine_and_cosine
-from roughgas.kernel.particles import position_and_velocity, radius_of
-from roughgas.kernel.vectors import along_first, along_last
+from roughgas.kernel.mathematics import gaussian_vector, logarithm, uniform
+from roughgas.kernel.particles import (
+    book_spin,
+    book_velocity,
+    enter_box,
+    mass_of,
+    radius_of,
+    set_path,
+    spin_mass_of,
+    spin_of,
+    turn_spin,
+)
+from roughgas.kernel.state import BOUNDARY_HITS, NOBODY, NOW
+from roughgas.kernel.vectors import add_scaled, along_axis, subtract
 
-LEFT, RIGHT = 0, 1
-
-
-class Walls(NamedTuple):
-    """Side walls at rest that close the first axis."""
-
-    width: float  # they are at 0 and at this place, in a
-    restitution: float
-    roughness: float
-
-    @classmethod
-    def from_settings(cls, settings, around):
-        """Return the effect, as wide as the box."""
-        return cls(around.box[0], **settings)
-
-
-@jit
-def predict_walls(walls, index, state, scene, i):
-    time = state.trajectory[i, 2 * len(scene.box)]
-    position, velocity = position_and_velocity(state, scene, i, time)
-    speed, radius = velocity[0], radius_of(state.bodies, i)
-    if speed < 0.0:
-        return time + max(0.0, (position[0] - radius) / -speed), LEFT
-    if speed > 0.0:
-        return time + max(0.0, (walls.width - radius - position[0]) / speed), RIGHT
-    return math.inf, LEFT
-
-
-@jit
-def resolve_walls(walls, index, what, state, scene, i, time):
-    normal = along_first(scene.box, 1.0 if what == LEFT else -1.0)
-    material = (walls.restitution, walls.roughness)
-    at_rest = along_first(scene.box, 0.0)
-    return collide_with_wall(state, scene, index, i, time, material, normal, at_rest, 0.0)
-
-
-register(Walls, MATERIAL, predict=predict_walls, resolve=resolve_walls, closes=True)
-
-
+# Relative to what is shaken, a/T: any less, and a particle could hit it infinitely often in finite
+# time
+LEAST_DEPARTURE = 1e-3
+LOW, HIGH = 0, 1  # the ends of an axis
+SIDES = {  # name -> (axis, which end of it); -1 is the last axis
+    "left_wall": (0, LOW),
+    "right_wall": (0, HIGH),
+    "front_wall": (1, LOW),
+    "back_wall": (1, HIGH),
+    "bottom_wall": (-1, LOW),
+    "lid": (-1, HIGH),
+}
+NORMAL, ALONG = "normal", "along"
 SHAKEN_SETTINGS = {
     "amplitude": Number(
         "Largest displacement from the middle, in a: half a stroke (A of a sine).", LENGTH
     ),
-    "period": Number("Period of the motion, in T.", TIME),
-    **MATERIAL,
+    "period": PERIOD,
 }
-
-
-class ShakenWalls(NamedTuple):
-    """Side walls that close the first axis, and are shaken along the last one as a sine."""
-
-    width: float  # they are at 0 and at this place, in a
-    speed: float  # the largest, in a/T
-    period: float
-    restitution: float
-    roughness: float
-
-    @classmethod
-    def from_settings(cls, settings, around):
-        """Return the effect; raise InputError beside walls at rest."""
-        if "walls" in around.effects:
-            raise InputError("effects", "walls and shaken_walls", "not close the same axis twice")
-        amplitude, period, *material = settings.values()
-        check_speed(around, amplitude, period)
-        return cls(around.box[0], TURN * amplitude / period, period, *material)
-
-
-@jit
-def resolve_shaken(shaken, index, what, state, scene, i, time):
-    normal = along_first(scene.box, 1.0 if what == LEFT else -1.0)
-    turns = (state.phase[index] + time) / shaken.period
-    moving = along_last(scene.box, shaken.speed * sine_and_cosine(turns)[1])
-    material = (shaken.restitution, shaken.roughness)
-    return collide_with_wall(state, scene, index, i, time, material, normal, moving, 0.0)
-
-
-@jit
-def phase_of_walls(shaken, index, base):
-    """Return the time from the beginning of a period to the clock's base."""
-    return base % shaken.period
-
-
-def displacement_of_walls(shaken, time):
-    """Return how far the walls are from their middle at `time`, in a."""
-    turn = TURN * (time % shaken.period) / shaken.period
-    return shaken.speed * shaken.period / TURN * math.sin(turn)
-
-
-register(
-    ShakenWalls,
-    SHAKEN_SETTINGS,
-    predict=predict_walls,
-    resolve=resolve_shaken,
-    phase=phase_of_walls,
-    displacement=displacement_of_walls,
-    drives=True,
-    closes=True,
-)
-
-
-SIDES = {  # name -> (axis, the end of it: 0 or 1); -1 is the last axis
-    "left_wall": (0, 0),
-    "right_wall": (0, 1),
-    "front_wall": (1, 0),
-    "back_wall": (1, 1),
-    "bottom_wall": (-1, 0),
-    "lid": (-1, 1),
-}
-NORMAL, ALONG = "normal", "along"
-SHAKING = ("amplitude", "period", "wave", "phase")
 SIDE_SETTINGS = {
     "restitution": MATERIAL["restitution"]._replace(default=1.0),
     "roughness": MATERIAL["roughness"]._replace(default=-1.0),
@@ -165,10 +76,9 @@ SIDE_SETTINGS = {
         "[-1e+06, 1e+06]",
         default=0.0,
     ),
-    "amplitude": Number("Height of a whole stroke of a shaken wall, in a.", LENGTH, 0.0),
-    "period": Number("Time between strokes, in T; given for a shaken wall.", TIME, math.inf),
-    "wave": Word("Form of its motion, as of floors.", WAVES),
-    "phase": Number("Share of a period that has passed at the start, as of floors.", "[0, 1)", 0.0),
+    **motions.SETTINGS,
+    "amplitude": AMPLITUDE._replace(default=0.0),
+    "period": PERIOD._replace(default=math.inf),
     "shaken": Word("Whether it is shaken along its normal or along itself.", (NORMAL, ALONG)),
     "temperature": Number(
         "Temperature of a thermal wall, in m a^2/T^2: particles leave it with Maxwellian "
@@ -179,47 +89,102 @@ SIDE_SETTINGS = {
 }
 
 
-class SideWall(NamedTuple):
+class Place(NamedTuple):
+    """Which side of the box a wall closes."""
+
+    axis: int
+    inwards: float | None  # component of its normal into the gas, 1 or -1; None: both ends
+    at: float  # in a, when it is farthest out; the high one of two
+    along: int  # axis along which it moves if it moves along itself
+
+
+class Wall(NamedTuple):
     """A wall on one side of the box: at rest, sliding, shaken or thermal."""
 
     place: Place
-    restitution: float
-    roughness: float
+    restitution: float = 1.0
+    roughness: float = -1.0
+    velocity: float = 0.0  # constant, along itself, in a/T
+    motion: Motion | None = None  # along its normal
+    sliding: Motion | None = None  # along itself
+    temperature: float | None = None  # m a^2/T^2; None is not thermal
 
-    axis = normal_axis
+    @property
+    def axis(self) -> int:
+        """The axis that it closes."""
+        return self.place.axis
+
+    @property
+    def ends(self) -> tuple[int, ...]:
+        """Which ends of the axis it closes: LOW, HIGH, or both."""
+        if self.place.inwards is None:
+            return LOW, HIGH
+        return (HIGH if self.place.inwards < 0.0 else LOW,)
 
     @classmethod
     def from_settings(cls, settings, around):
         """Return the wall that the settings describe; raise InputError where they contradict."""
-        place = _place(around)
+        place, velocity = _place(around), settings["velocity"]
         _refuse_contradictions(settings, around)
-        material = settings["restitution"], settings["roughness"]
         if settings["temperature"] < math.inf:
-            return ThermalWall(place, settings["temperature"], settings["velocity"])
+            return ThermalWall(place, velocity=velocity, temperature=settings["temperature"])
+        material = settings["restitution"], settings["roughness"]
         if settings["amplitude"] > 0.0:
-            motion = motion_of(around, *(settings[k] for k in SHAKING))
-            if settings["shaken"] == NORMAL:
-                return Piston(place, *material, motion)
-            return MovingWall(place, *material, 0.0, motion)
-        if settings["velocity"] != 0.0:
-            return MovingWall(place, *material, settings["velocity"], None)
-        return cls(place, *material)
+            way = "motion" if settings["shaken"] == NORMAL else "sliding"
+            return MovingWall(place, *material, **{way: motion_of(around, settings)})
+        return (MovingWall if velocity else cls)(place, *material, velocity)
 
 
-class MovingWall(NamedTuple):
-    """A wall that moves along itself: at a velocity that is constant, in turns, or a sine."""
+class MovingWall(Wall):
+    """A wall that puts energy in by its motion."""
 
-    place: Place
-    restitution: float
-    roughness: float
-    velocity: float  # constant, in a/T
-    shaking: Sawtooth | Sine | Triangle | None
 
-    axis = normal_axis
+class ThermalWall(Wall):
+    """A wall that particles leave with Maxwellian velocities and spins."""
+
+
+class Walls(Wall):
+    """Side walls at rest that close the first axis."""
+
+    @classmethod
+    def from_settings(cls, settings, around):
+        """Return the walls, as far apart as the box is wide."""
+        return cls(_both_ends(around), **settings)
+
+
+class ShakenWalls(Wall):
+    """Side walls that close the first axis, and are shaken along the last one as a sine."""
+
+    period = property(lambda walls: walls.sliding.period)
+
+    @classmethod
+    def from_settings(cls, settings, around):
+        """Return the walls, as far apart as the box is wide."""
+        amplitude, period, *material = settings.values()
+        check_speed(around, amplitude, period)
+        return cls(_both_ends(around), *material, sliding=Swing(amplitude, period))
+
+
+class Floor(Wall):
+    """A shaken floor under a gas with gravity."""
+
+    amplitude = property(lambda floor: floor.motion.amplitude)
+    period = property(lambda floor: floor.motion.period)
+
+    @classmethod
+    def from_settings(cls, settings, around):
+        """Return the floor whose motion the settings describe."""
+        place = Place(len(around.box) - 1, 1.0, 0.0, 0)
+        material = settings["restitution"], settings["roughness"]
+        return cls(place, *material, motion=motion_of(around, settings))
+
+
+def _both_ends(around):
+    return Place(0, None, around.box[0], len(around.box) - 1)
 
 
 def _place(around):
-    """Return the plane of a wall; raise InputError where the box has no such side."""
+    """Return the place of a single wall; raise InputError where the box has no such side."""
     key, (axis, end) = f"effects.{around.name}", SIDES[around.name]
     dimension = len(around.box)
     if axis == 1 and dimension == 2:
@@ -249,30 +214,112 @@ def _refuse_contradictions(settings, around):
 
 
 @jit
-def resolve_side(wall, index, what, state, scene, i, time):
-    return bounce_off_plane(wall, index, state, scene, i, time, 0, 0.0, 0.0)
+def predict_wall(wall, index, state, scene, i):
+    place, dimension, radius = wall.place, len(scene.box), radius_of(state.bodies, i)
+    time = state.trajectory[i, 2 * dimension]
+    position = state.trajectory[i, place.axis]
+    velocity = state.trajectory[i, dimension + place.axis]
+    if place.inwards is None:
+        end = HIGH if velocity > 0.0 else LOW
+        gap = place.at - radius - position if end == HIGH else position - radius
+        return time + fall(gap, -abs(velocity), 0.0), end
+    gap = place.inwards * (position - place.at) - radius
+    speed = place.inwards * velocity
+    gravity = _pull(hooks.acceleration(scene.effects), place, dimension)
+    if wall.motion is None:
+        return time + fall(gap, speed, gravity), motions.MEET
+    if law_of(wall.motion).waits:
+        back = time + motions.time_below(wall.motion.amplitude, gravity, gap, speed, 0.0)
+        if back > state.clock[NOW]:
+            return back, LOOK
+    phase = state.phase[index] + time
+    wait, what = law_of(wall.motion).meet(wall.motion, gravity, gap, speed, phase)
+    return time + wait, what
 
 
 @jit
-def resolve_moving(wall, index, what, state, scene, i, time):
-    velocity = wall.velocity
-    if wall.shaking is not None:
-        velocity += law_of(wall.shaking).along(wall.shaking, state.phase[index] + time)
-    return bounce_off_plane(wall, index, state, scene, i, time, wall.place.along, velocity, 0.0)
+def _pull(gravity, place, dimension):
+    """Return the acceleration towards a wall."""
+    if gravity is None or place.axis != dimension - 1:
+        return 0.0
+    return place.inwards * gravity
 
 
 @jit
-def phase_of_shaking(wall, index, base):
+def resolve_wall(wall, index, what, state, scene, i, time):
+    place, material = wall.place, (wall.restitution, wall.roughness)
+    if wall.temperature is not None:
+        return _leave(wall, index, state, scene, i, time)
+    if wall.motion is not None and law_of(wall.motion).waits and what == LOOK:
+        return NOBODY
+    normal = along_axis(scene.box, place.axis, _inwards(place, what))
+    velocity = _velocity(wall, index, what, state, scene.box, time)
+    least = 0.0 if wall.motion is None else LEAST_DEPARTURE
+    return collide_with_wall(state, scene, index, i, time, material, normal, velocity, least)
+
+
+@jit
+def _inwards(place, end):
+    if place.inwards is None:
+        return 1.0 if end == LOW else -1.0
+    return place.inwards
+
+
+@jit
+def _velocity(wall, index, what, state, box, time):
+    """Return the velocity of the surface when it meets a particle."""
+    place = wall.place
+    if wall.motion is not None:
+        speed = law_of(wall.motion).met(wall.motion, what, state.phase[index] + time)
+        return along_axis(box, place.axis, place.inwards * speed)
+    if wall.sliding is not None:
+        here = law_of(wall.sliding).at(wall.sliding, state.phase[index] + time)
+        return along_axis(box, place.along, here[1])
+    return along_axis(box, place.along, wall.velocity)
+
+
+@jit
+def _leave(wall, index, state, scene, i, time):
+    """Let particle i leave a thermal wall."""
+    place, box = wall.place, scene.box
+    position, before = enter_box(state, scene, i, time)
+    thermal = math.sqrt(wall.temperature / mass_of(state.bodies, i))
+    outwards = place.inwards * thermal * math.sqrt(-2.0 * logarithm(1.0 - uniform(state.random)))
+    random = gaussian_vector(state.random, before, thermal)
+    after = tuple(outwards if k == place.axis else random[k] for k in range(len(box)))
+    after = add_scaled(after, along_axis(box, place.along, wall.velocity), 1.0)
+    set_path(state, scene, i, position, after, time)
+    book_velocity(before, after, state.bodies, i, state.ledger[0, index])
+    if state.spin is not None:
+        w, spin = spin_of(state.spin, box, i), scene.effects.spin
+        deviation = math.sqrt(wall.temperature / spin_mass_of(state.bodies, spin, i))
+        turn = subtract(gaussian_vector(state.random, w, deviation), w)
+        turn_spin(state.spin, i, w, turn)
+        book_spin(w, turn, spin, state.bodies, i, state.ledger[0, index])
+    state.changes[i] += 1
+    hooks.after_contact(scene.effects, state, i, time)
+    state.counts[BOUNDARY_HITS] += 1
+    return NOBODY
+
+
+@jit
+def phase_of_wall(wall, index, base):
     """Return the time from the beginning of a period to the clock's base."""
-    return 0.0 if wall.shaking is None else since_period_began(wall.shaking, base)
+    if wall.motion is not None:
+        return motions.since_period_began(wall.motion, base)
+    return 0.0 if wall.sliding is None else motions.since_period_began(wall.sliding, base)
 
 
-register(SideWall, SIDE_SETTINGS, predict=predict_plane, resolve=resolve_side, closes=True)
-register(
-    MovingWall,
-    predict=predict_plane,
-    resolve=resolve_moving,
-    phase=phase_of_shaking,
-    drives=True,
-    closes=True,
-)
+def displacement_of_wall(wall, time):
+    """Return how far the wall has moved at `time`, in a."""
+    return motions.displacement(wall.motion or wall.sliding, time)
+
+
+MET = {"predict": predict_wall, "resolve": resolve_wall}
+MOVES = {"phase": phase_of_wall, "displacement": displacement_of_wall, "drives": True}
+register(Wall, SIDE_SETTINGS, **MET)
+register(MovingWall, **MET, **MOVES)
+register(ThermalWall, **MET, random=True, drives=True)
+register(Walls, MATERIAL, **MET)
+register(ShakenWalls, SHAKEN_SETTINGS | MATERIAL, **MET, **MOVES)
+register(Floor, motions.SETTINGS | MATERIAL, **MET, **MOVES)

@@ -76,8 +76,6 @@ class Hooks(NamedTuple):
     """The effect draws random numbers, from State.random"""
     drives: bool = False
     """The effect puts energy in"""
-    closes: bool = False
-    """The effect closes an axis of the box: the one that is its `axis`, else the first one"""
 
 
 class Part(NamedTuple):

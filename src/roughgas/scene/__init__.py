@@ -18,30 +18,25 @@ from roughgas.base import RESTITUTION, ROUGHNESS, InputError, NeedsError
 from roughgas.effects import KINDS, Effects
 from roughgas.effects.settings import SceneContext, make
 from roughgas.effects.species import Mixture, mixture_of
-from roughgas.kernel import hooks
+from roughgas.effects.walls import Floor, Wall
 from roughgas.kernel.state import Bodies
 
 OPPOSITE = (("left_wall", "right_wall"), ("front_wall", "back_wall"), ("bottom_wall", "lid"))
-PAIRS = ("walls", "shaken_walls")
-"""What closes both ends of the first axis at once."""
 
 
 def check_sides(effects: Effects) -> None:
     """Raise InputError for a side that is closed twice, or an axis that is closed at one end only,
     and for walls where images slide."""
-    sheared = {"left_wall": 0, "right_wall": 0, "front_wall": 1, "back_wall": 1}
-    for name in (*PAIRS, *sheared, "bottom_wall", "lid"):
-        wall = getattr(effects, name)
-        if wall is None:
-            continue
-        if effects.shear is not None and getattr(wall, "axis", 0) < 2:
+    closed: dict[tuple[int, int], str] = {}
+    for name, wall in _closing(effects).items():
+        if effects.shear is not None and wall.axis < 2:
             legal = "not close the axis that is sheared along"
-            if getattr(wall, "axis", 0) == 1:
+            if wall.axis == 1:
                 legal = "not close the axis along which images slide past each other"
             raise InputError("effects", f"{name} and shear", legal)
-        for pair in PAIRS:
-            if name not in PAIRS and wall.axis == 0 and getattr(effects, pair) is not None:
-                raise InputError("effects", f"{pair} and {name}", "not close the same axis twice")
+        for end in wall.ends:
+            if (other := closed.setdefault((wall.axis, end), name)) != name:
+                raise InputError("effects", f"{other} and {name}", "not close the same axis twice")
     for one, other in OPPOSITE:
         _check_opposite(effects, one, other)
         _check_opposite(effects, other, one)
@@ -55,31 +50,32 @@ def _check_opposite(effects, name, other):
 
 def moves_along(effects: Effects) -> bool:
     """Return whether walls that close the second axis move along the first, so that gas flows."""
-    return any(
-        getattr(wall, "axis", 0) == 1 and getattr(wall, "velocity", 0.0) != 0.0
-        for wall in _walls(effects).values()
-    )
+    return any(wall.axis == 1 and wall.velocity != 0.0 for wall in _closing(effects).values())
 
 
 def smooth_walls(effects: Effects) -> Effects:
     """Return the effects with all walls smooth and elastic."""
     smooth = {
         name: wall._replace(restitution=1.0, roughness=-1.0)
-        for name, wall in _walls(effects).items()
-        if hasattr(wall, "restitution")
+        for name, wall in _closing(effects).items()
     }
     return effects._replace(**smooth)
 
 
 def has_sides(effects: Effects) -> bool:
     """Return whether there are walls on single sides of the box."""
-    return any(hasattr(wall, "place") for wall in _walls(effects).values())
+    return any(len(wall.ends) == 1 for wall in _closing(effects).values())
 
 
-def _walls(effects):
-    """Return all that closes an axis, by name."""
-    places = (part.place for part in hooks.present(effects, "closes"))
-    return {effects._fields[place]: effects[place] for place in places}
+def walls_of(effects: Effects) -> dict[str, Wall]:
+    """Return all walls by name, and the floor."""
+    named = zip(effects._fields, effects, strict=True)
+    return {name: one for name, one in named if isinstance(one, Wall)}
+
+
+def _closing(effects):
+    walls = walls_of(effects).items()
+    return {name: wall for name, wall in walls if not isinstance(wall, Floor)}
 
 
 DIAMETER = 2.0
@@ -153,8 +149,7 @@ def elastic(scene: Scene) -> Scene:
 
 def closed_axes(effects: Effects) -> set[int]:
     """Return the axes of the box that walls close."""
-    walls = (effects[part.place] for part in hooks.present(effects, "closes"))
-    return {getattr(wall, "axis", 0) for wall in walls}
+    return {wall.axis for wall in _closing(effects).values()}
 
 
 def conserves_momentum(scene: Scene) -> bool:
@@ -174,12 +169,9 @@ def strokes(effects: Effects, dimension: int) -> np.ndarray:
     Those that do are shaken along their normal, as a floor is; shape (D, 2).
     """
     found = np.zeros((dimension, 2))
-    if effects.floor is not None:
-        found[-1, 0] = effects.floor.amplitude
-    for part in hooks.present(effects, "closes"):
-        wall: Any = effects[part.place]
-        if hasattr(wall, "motion"):
-            found[wall.axis, int(wall.place.inwards < 0.0)] = wall.motion.amplitude
+    for wall in walls_of(effects).values():
+        if wall.motion is not None:
+            found[wall.axis, wall.ends] = wall.motion.amplitude
     return found
 
 

@@ -16,7 +16,6 @@ import numpy as np
 
 from roughgas.base import InputError
 from roughgas.effects import Effects, inertia_of_spin
-from roughgas.kernel import hooks
 from roughgas.kernel.hooks import displacement
 from roughgas.kernel.memory import new_state
 from roughgas.kernel.state import State
@@ -28,6 +27,7 @@ from roughgas.scene import (
     draw_bodies,
     shear_rate,
     strokes,
+    walls_of,
 )
 
 SIMILAR = 1.5  # ratio of radii within a class
@@ -271,17 +271,10 @@ def check_places(
 def bounds(effects: Effects, dimension: int, time: float) -> list[tuple[float, float]]:
     """Return between which planes the gas is at `time` (T) along each axis, in a; inf: no wall."""
     found = [[-math.inf, math.inf] for _ in range(dimension)]
-    closed = effects.walls or effects.shaken_walls
-    if closed is not None:
-        found[0] = [0.0, closed.width]
-    if effects.floor is not None:
-        found[-1][0] = displacement(effects.floor, time)
-    walls: list[Any] = [effects[part.place] for part in hooks.present(effects, "closes")]
-    for wall in walls:
-        if hasattr(wall, "place"):
-            _, inwards, at, _ = wall.place
-            moved = displacement(wall, time) if hasattr(wall, "motion") else 0.0
-            found[wall.axis][int(inwards < 0.0)] = at + inwards * moved
+    for wall in walls_of(effects).values():
+        moved = 0.0 if wall.motion is None else displacement(wall, time)
+        for end in wall.ends:
+            found[wall.axis][end] = wall.place.at * end + (1.0 - 2.0 * end) * moved
     return [(low, high) for low, high in found]
 
 

@@ -14,7 +14,6 @@ from typing import NamedTuple
 import numpy as np
 
 from roughgas.base import InputError
-from roughgas.effects.planes import Floor, Piston
 from roughgas.kernel import hooks
 from roughgas.kernel.hooks import displacement
 from roughgas.kernel.state import BASE, NOW, STARTED
@@ -46,7 +45,7 @@ def check_change(old: Scene, new: Scene, time: float, temperatures: Temperatures
         if (name in NOT_TO_CHANGE and before != after) or _kind(before) != _kind(after):
             legal = "stay the kind that it is: a stage changes numbers only"
             raise InputError(where, "of another kind", legal)
-        if isinstance(after, Floor | Piston) and before != after:
+        if getattr(after, "motion", None) is not None and before != after:
             heights = [_height(one, time) for one in (before, after)]
             if abs(heights[0] - heights[1]) > GRAZE:
                 legal = f"change where it is at the same place before and after, at {time:g} T not"

@@ -11,8 +11,8 @@ from roughgas.base import InputError, __version__
 from roughgas.data.point import Point
 from roughgas.data.variables import Variable
 from roughgas.effects import speed_of_r
-from roughgas.effects.planes import LEAST_DEPARTURE
 from roughgas.effects.species import packing
+from roughgas.effects.walls import LEAST_DEPARTURE
 from roughgas.kernel import hooks
 from roughgas.scene import Scene, build, conserves_momentum
 from roughgas.simulation import schedule

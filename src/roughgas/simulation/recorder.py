@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from roughgas.base import CollapseError, EndedEarlyError, JammedError, SilentError
-from roughgas.kernel import hooks
 from roughgas.kernel.clock import INSTANT
 from roughgas.kernel.loop import COLLAPSED, REACHED
 from roughgas.kernel.record import Sampling, columns, record
@@ -32,7 +31,7 @@ from roughgas.kernel.state import (
     TOUCHED,
     State,
 )
-from roughgas.scene import Scene
+from roughgas.scene import Scene, walls_of
 from roughgas.simulation.energies import Columns
 from roughgas.statistics.errors import LEAST, NO, UNKNOWN, YES
 
@@ -235,7 +234,7 @@ def _collapse(state: State, scene: Scene) -> CollapseError:
     effects, remedy = scene.effects, "raise r, or the duration of contact_time"
     if effects.contact_time is None:
         remedy = "add the contact_time effect to the experiment, or raise r"
-    elif effects.floor is not None or hooks.present(effects, "closes"):
+    elif walls_of(effects):
         remedy = "raise r, or make floor or walls smoother, between which a particle may be held"
     where = f"at t = {now(state):.6g} T of particles {', '.join(names[:NAMED])}{others}"
     return CollapseError(f"inelastic collapse {where}: {remedy}")
