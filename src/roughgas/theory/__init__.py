@@ -23,18 +23,13 @@ from roughgas.theory.closed_forms import (
     cooling_K,
     cooling_ratio,
     correlated_ratio,
-    fourier_flux,
-    free_molecular_flux,
     goldshtein_ratio,
-    heat_flux,
     lun_ratio,
     mean_free_path,
     number_density,
     packing_fraction,
     shear_factor,
-    thermal_conductivity,
 )
-from roughgas.theory.diffusion import rotational_diffusion, self_diffusion
 from roughgas.theory.friction import (
     ESCAPED,
     cooling_rate,
@@ -86,6 +81,15 @@ from roughgas.theory.rate_equations import (
     translational_energy_change,
 )
 from roughgas.theory.sonine import Cumulants, sonine_state
+from roughgas.theory.transport import (
+    fourier_flux,
+    free_molecular_flux,
+    heat_flux,
+    rotational_diffusion,
+    self_diffusion,
+    shear_viscosity,
+    thermal_conductivity,
+)
 from roughgas.theory.viscoelastic import (
     maxwellian_restitution,
     viscoelastic_cooling,

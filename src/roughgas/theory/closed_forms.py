@@ -1,17 +1,10 @@
-"""Closed forms: R, collision frequencies, shear and heat flux.
+"""Closed forms: R, collision frequencies, and shear.
 
 R = E_rot/(E_rot + E_tr) is the share of rotational energy per degree of freedom. Source: McNamara &
 Luding (1998). docs/references.md says who has published the formulae in other forms.
 
 Collision frequencies are Enskog's, of a gas in equilibrium; radius a = 1. `packing` phi is the
 fraction of the area or volume that particles fill, from 0 to close packing.
-
-Heat flows through a gas at rest between two thermal walls. Where the mean free path is much longer
-than the gap, particles fly from wall to wall. They leave a wall of temperature T with the velocity
-component v across the gap distributed as v exp(-m v^2/(2 T)), so that a flight takes
-gap sqrt(pi m/(2 T)) on average and carries the energy [(D + 1)/2 + n_r/2] T, n_r = 2 D - 3 where
-they spin. Where it is much shorter, Fourier's law holds. Fluxes are in m/T^3 (times a^(3-D)):
-energy per time and per length or area of a wall.
 """
 
 import math
@@ -21,7 +14,6 @@ import numpy as np
 
 from roughgas.base import Interval
 from roughgas.theory.arguments import (
-    POSITIVE,
     check,
     check_dimension,
     material,
@@ -199,49 +191,3 @@ def sheared_ratio(beta, inertia, rate, stress, difference) -> np.ndarray:
     lun = lun_ratio(beta, inertia)
     gain = lun * shear_factor(rate, stress, difference)
     return gain / (gain + 1 - lun)
-
-
-def free_molecular_flux(hot, cold, particles, gap, dimension=2, spins=False) -> np.ndarray:
-    """Return the flux from the wall at temperature `hot` to the one at `cold`, without collisions.
-
-    `particles` is their number per length (2D) or area (3D) of a wall, in a^(1-D); `gap` the room
-    that their centres have between the walls, in a. `spins`: they have spins that walls change.
-    """
-    hot, cold = check("temperature hot", hot, POSITIVE), check("temperature cold", cold, POSITIVE)
-    dimension, gap = check_dimension(dimension), check("gap", gap, POSITIVE)
-    carried = (dimension + 1 + (2 * dimension - 3 if spins else 0)) / 2 * (hot - cold)
-    round_trip = gap * math.sqrt(math.pi / 2) * (1 / np.sqrt(hot) + 1 / np.sqrt(cold))
-    return check("particles", particles) * carried / round_trip
-
-
-def thermal_conductivity(T, dimension=2) -> np.ndarray:
-    """Return kappa of dilute smooth elastic disks or spheres of radius 1, in m a^(2-D)/T.
-
-    By Enskog's theory in first Sonine approximation, kappa = [D (D + 2)^2 Gamma(D/2)/(16 (D - 1)
-    pi^((D-1)/2))] sqrt(T/m)/(2 a)^(D-1): J. J. Brey and D. Cubero, in Granular Gases (2001), p. 59.
-    """
-    T, D = check("temperature", T), check_dimension(dimension)
-    number = D * (D + 2) ** 2 * math.gamma(D / 2) / (16 * (D - 1) * math.pi ** ((D - 1) / 2))
-    return number * np.sqrt(T) / 2 ** (D - 1)
-
-
-def fourier_flux(hot, cold, gap, dimension=2) -> np.ndarray:
-    """Return the flux by Fourier's law between walls with a gap of many mean free paths, in a.
-
-    As kappa goes as T^(1/2), it is the difference of 2/3 kappa T at the walls, over the gap.
-    """
-    hot, cold = check("temperature hot", hot), check("temperature cold", cold)
-    ends = (thermal_conductivity(T, dimension) * T for T in (hot, cold))
-    one, other = ends
-    return 2 / 3 * (one - other) / check("gap", gap, POSITIVE)
-
-
-def heat_flux(hot, cold, particles, gap, dimension=2) -> np.ndarray:
-    """Return the flux of smooth elastic particles for any gap, between the limits above.
-
-    1/q = 1/q_free + 1/q_Fourier: F. S. Sherman, in Rarefied Gas Dynamics (1963), vol. 2, p. 228;
-    within some per cent of measurements.
-    """
-    free = free_molecular_flux(hot, cold, particles, gap, dimension)
-    fourier = fourier_flux(hot, cold, gap, dimension)
-    return free * fourier / (free + fourier)

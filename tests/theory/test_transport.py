@@ -1,0 +1,193 @@
+"""Transport coefficients: published limits, and averages over pairs as they collide."""
+
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+from tests.theory.collisions import directions, drawn, drawn_spins
+
+from roughgas import theory
+
+BATCHES = 16
+
+
+class Pairs(NamedTuple):
+    """Pairs of a Maxwellian gas with T_tr = 1; `n` (N, 3) points from the second to the first."""
+
+    v1: np.ndarray
+    v2: np.ndarray
+    w1: np.ndarray
+    w2: np.ndarray
+    n: np.ndarray
+
+
+def batches(dimension, T_rot, q, size=20_000):
+    """BATCHES independent samples of pairs."""
+    for seed in range(BATCHES):
+        rng = np.random.default_rng((3, seed))
+        v = [drawn(rng, size, dimension, 1.0) for _ in range(2)]
+        w = [drawn_spins(rng, size, dimension, (T_rot / q) ** 0.5) for _ in range(2)]
+        yield Pairs(*v, *w, directions(rng, size, dimension))
+
+
+def response(pairs, r, beta, q):
+    """What the first gives to the second, the change of both spins, and how fast pairs approach."""
+    g, n = pairs.v1 - pairs.v2, pairs.n
+    normal = np.sum(g * n, axis=1)[:, None] * n
+    surface = g - normal - np.cross(pairs.w1 + pairs.w2, n)
+    push = (1 + r) / 2 * normal + q * (1 + beta) / (2 * (1 + q)) * surface
+    return push, np.cross(n, push) / q, np.maximum(0.0, -np.sum(g * n, axis=1))
+
+
+def agrees(estimates, expected, within):
+    """Whether their mean is within five errors of it, where the error is this share: by chance it
+    is not in 2 of 10 000 cases."""
+    error = np.std(estimates, axis=0, ddof=1) / np.sqrt(BATCHES)
+    assert np.all(error < within * np.abs(expected))
+    return np.all(np.abs(np.mean(estimates, axis=0) - expected) < 5.0 * error)
+
+
+@pytest.mark.parametrize(
+    ("dimension", "smooth"), [(2, 1 / (2 * np.sqrt(np.pi))), (3, 3 / (8 * np.sqrt(np.pi)))]
+)
+def test_limits_of_elastic_particles(dimension, smooth):
+    """sqrt(T/m)/(n (2a)^(D-1)) times 1/(2 sqrt(pi)) or 3/(8 sqrt(pi)); Pidduck's rough spheres."""
+    n = theory.number_density(1e-6, dimension)
+    found = theory.self_diffusion(4.0, 1e-6, dimension=dimension)
+    assert found == pytest.approx(smooth * 2.0 / (n * 2 ** (dimension - 1)), rel=1e-5)
+    q = np.array([0.1, 0.4, 2 / 3])
+    rough = theory.self_diffusion(4.0, 1e-6, 1.0, 1.0, dimension, q) / found
+    assert rough == pytest.approx((1 + q) / (1 + (dimension + 1) / 2 * q), rel=1e-12)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("packing", [0.0, 0.2])
+def test_viscosity_and_conductivity_of_smooth_elastic_particles_are_enskogs(dimension, packing):
+    """Gass 1971 (disks) and Chapman & Cowling 1970, 16.4 (spheres), in first approximation: with
+    y = 2 or 4 times the packing, coefficient/dilute one = (1 + c y chi)^2/chi + e y^2 chi."""
+    chi = theory.contact_value(packing, dimension)
+    y = 2 ** (dimension - 1) * packing
+    dilute = {2: (1 / 4, 1), 3: (5 / 64, 75 / 256)}[dimension]
+    numbers = {2: ((1 / 2, 2), (3 / 4, 1)), 3: ((2 / 5, 48 / 25), (3 / 5, 32 / 25))}[dimension]
+    found = (
+        theory.shear_viscosity(4.0, 0.0, packing, dimension=dimension),
+        theory.thermal_conductivity(4.0, dimension, packing),
+    )
+    for one, first, (c, e) in zip(found, dilute, numbers, strict=True):
+        enskog = (1 + c * y * chi) ** 2 / chi + e / np.pi * y**2 * chi
+        assert one == pytest.approx(2.0 * first / np.sqrt(np.pi) * enskog, rel=1e-12)
+
+
+def test_rough_elastic_spheres_are_pidducks():
+    """Chapman & Cowling 1970, 11.6, with K = q."""
+    q = np.array([0.01, 0.4, 2 / 3])
+    viscosity = theory.shear_viscosity(1.0, 1.0, 0.0, 1.0, 1.0, 3, q)
+    expected = 15 / 8 * (1 + q) ** 2 / (6 + 13 * q) / 4 / np.sqrt(np.pi)
+    assert viscosity == pytest.approx(expected, rel=1e-12)
+    top, below = 37 + 151 * q + 50 * q**2, 12 + 75 * q + 101 * q**2 + 102 * q**3
+    expected = 9 / 16 * (1 + q) ** 2 * top / below / 4 / np.sqrt(np.pi)
+    assert theory.thermal_conductivity(1.0, 3, 0.0, q) == pytest.approx(expected, rel=1e-12)
+
+
+def test_the_viscosity_of_a_rough_inelastic_gas_relaxes_as_kremer_santos_and_garzo_have_it():
+    """nu_s/nu of spheres is 4/5 times a (2 - a) + eta^2 theta/(6 q), a = alpha + eta."""
+    r, beta, q, theta = 0.8, 0.3, 0.4, 0.7
+    alpha, eta = (1 + r) / 2, q * (1 + beta) / (2 * (1 + q))
+    a = alpha + eta
+    smooth = theory.shear_viscosity(1.0, 0.0, 0.0, dimension=3)
+    found = smooth / theory.shear_viscosity(1.0, theta, 0.0, r, beta, 3, q)
+    assert found == pytest.approx(a * (2 - a) + eta**2 * theta / (6 * q), rel=1e-12)
+
+
+MATERIALS = [(0.8, 0.3), (0.6, -0.5), (1.0, 1.0)]
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize(("r", "beta"), MATERIALS)
+def test_memory_is_lost_as_in_collisions_of_random_pairs(dimension, r, beta):
+    q, T_rot, packing = 0.4, 0.7, 0.1
+    found = []
+    for pairs in batches(dimension, T_rot, q):
+        push, turn, approach = response(pairs, r, beta, q)
+        lost = np.sum(pairs.v1 * push, axis=1) / dimension, -np.sum(pairs.w1 * turn, axis=1)
+        found.append(np.average(lost, axis=1, weights=approach))
+    D, D_r = (
+        theory.self_diffusion(1.0, packing, r, beta, dimension, q),
+        theory.rotational_diffusion(1.0, T_rot, packing, beta, dimension, q),
+    )
+    nu, components = theory.collision_frequency(1.0, packing, dimension), 2 * dimension - 3
+    expected = 1 / (nu * D), components * (T_rot / q) ** 2 / (nu * D_r)
+    assert agrees(found, expected, 0.02)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize(("r", "beta"), MATERIALS)
+def test_viscosity_is_that_of_random_pairs(dimension, r, beta):
+    q, T_rot, packing = 0.4, 1.0 if r == 1.0 else 0.7, 0.1
+    found = [viscosity(pairs, r, beta, q, packing) for pairs in batches(dimension, T_rot, q)]
+    expected = theory.shear_viscosity(1.0, T_rot, packing, r, beta, dimension, q)
+    assert agrees(found, expected, 0.02)
+
+
+def viscosity(pairs, r, beta, q, packing):
+    """From what a collision takes of v v and carries from centre to centre, in a gas whose v v is
+    disturbed, and in one that is strained."""
+    D = 2 if not pairs.n[:, 2].any() else 3
+    nu, n = theory.collision_frequency(1.0, packing, D), theory.number_density(packing, D)
+    g, both = pairs.v1 - pairs.v2, (D - 1) * (D + 2)  # <A_xy B_xy> = <A : B>/both
+
+    def traceless(a, b):
+        product = (a[:, :D, None] * b[:, None, :D] + b[:, :D, None] * a[:, None, :D]) / 2
+        return product - np.eye(D) * np.trace(product, axis1=1, axis2=2)[:, None, None] / D
+
+    def change(push):
+        return 2 * traceless(push, push) - 2 * traceless(g, push)
+
+    push, _, approach = response(pairs, r, beta, q)
+    gg, total = traceless(g, g), approach.sum()
+    lost = -nu / 4 * np.sum(change(push) * gg, axis=(1, 2)) / both @ approach / total
+    k = -nu / 2 * np.sum(traceless(pairs.n, push) * gg, axis=(1, 2)) / both @ approach / total
+    gained = bulk = 0.0
+    for strain in (0.01, -0.01):  # v_x of a flow over y; centres are 2 a apart
+        shift = np.zeros_like(g)
+        shift[:, :2] = strain * pairs.n[:, [1, 0]]
+        push, _, approach = response(pairs._replace(v1=pairs.v1 + shift), r, beta, q)
+        gained += nu / 2 * change(push)[:, 0, 1] @ approach / total / (2 * strain)
+        bulk += -n * nu * traceless(pairs.n, push)[:, 0, 1] @ approach / total / (2 * strain)
+    return n / lost * (1 + k) * (1 - gained) - bulk
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("q", [0.1, 0.5])
+def test_the_conductivity_of_rough_elastic_particles_is_that_of_random_pairs(dimension, q):
+    packing = 0.1
+    found = [conductivity(pairs, q, packing) for pairs in batches(dimension, 1.0, q)]
+    expected = theory.thermal_conductivity(1.0, dimension, packing, q)
+    assert agrees(found, expected, 0.04)
+
+
+def conductivity(pairs, q, packing):
+    """From what a collision takes of the fluxes of translational and rotational energy, and what
+    energy it carries from centre to centre."""
+    D = 2 if not pairs.n[:, 2].any() else 3
+    nu, n = theory.collision_frequency(1.0, packing, D), theory.number_density(packing, D)
+    push, turn, approach = response(pairs, 1.0, 1.0, q)
+    weight = approach / approach.sum()
+
+    def energies(v, w):
+        return np.array([np.sum(v**2, axis=1), q * np.sum(w**2, axis=1)]) / 2
+
+    def fluxes(v, w):
+        means = np.array([(D + 2) / 2, (2 * D - 3) / 2])
+        return (energies(v, w) - means[:, None])[:, :, None] * v
+
+    first, second = energies(pairs.v1, pairs.w1), energies(pairs.v2, pairs.w2)
+    before = fluxes(pairs.v1, pairs.w1) + fluxes(pairs.v2, pairs.w2)
+    v1, v2, w1, w2 = pairs.v1 - push, pairs.v2 + push, pairs.w1 + turn, pairs.w2 + turn
+    after = fluxes(v1, w1) + fluxes(v2, w2)
+    M = nu / 2 * np.einsum("p,xpd,ypd->xy", weight, before - after, before) / D
+    gained = (energies(v1, w1) - first).sum(axis=0)  # by the first
+    k = nu * np.einsum("p,pd,xpd->x", weight * gained, pairs.n, before) / D
+    bulk = -nu * (weight * gained) @ (first - second).sum(axis=0) / D
+    s = np.array([(D + 2) / 2, (2 * D - 3) / 2]) + k
+    return n * (s @ np.linalg.solve(M, s) + bulk)
