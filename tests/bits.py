@@ -28,6 +28,7 @@ SINCE = (
     "collisions_series",
     "energy_input_series",
     "energy_gain_series",
+    "logged_",
 )
 VERDICTS = ("equilibrated", "R_ci95_trusted")  # are no numbers, and their criteria may change
 FOUR_PHASES = "four_phases"

@@ -20,7 +20,7 @@ from roughgas.results.products import project_files
 ROOT = Path(__file__).parent.parent
 EXAMPLE = re.compile(r"^```python\n(.*?)^```$(?:\n+```text\n(.*?)^```$)?", re.M | re.S)
 WITH_EXAMPLES = {"data", "effects", "experiments", "library", "observables", "trajectories"}
-SAYING_WHAT_IS_PRINTED = {"experiments", "library", "observables"}
+SAYING_WHAT_IS_PRINTED = {"experiments", "library", "observables", "trajectories"}
 
 
 def examples():
@@ -51,8 +51,8 @@ def test_pages_have_the_examples_that_they_should_have():
     assert sum("simulate(" in text for text, _ in found["library"]) > 4
 
 
-# what observables show is compiled anew
-SLOW = {"observables": [pytest.mark.slow]}
+# what these show is compiled anew
+SLOW = {name: [pytest.mark.slow] for name in ("observables", "trajectories")}
 
 
 @pytest.mark.parametrize(

@@ -42,7 +42,8 @@ EVENTS = {
     "thermostat",
     "langevin",
 }  # what has events of its own
-SUMS = {"contact_averages": 3, "contact_stress": 9}  # what keeps running sums, and how many
+# what only looks, and how many running sums it keeps
+SUMS = {"contact_averages": 3, "contact_stress": 9, "contact_log": 0}
 PHASES = {"floor", "shaken_walls", "bottom_wall", "lid", "shear"}  # sides: those that move
 
 
@@ -114,6 +115,9 @@ def test_what_an_effect_needs_is_what_it_adds(kernel):
     added = 16 * 8 * (2 * dimension - 3) * ("spin" in there)
     added += 16 * 8 * len(there & MOMENTS) + 16 * (8 + 4) * bool(there & EVENTS)
     added += 3 * 8 * sum(SUMS[name] for name in there & SUMS.keys())
+    if "contact_log" in there:
+        columns = 3 + 6 * dimension + 4 * (2 * dimension - 3)
+        added += 8 * (columns * KERNELS[kernel]["effects"]["contact_log"]["most"] + 1)
     added += 8 * bool(there & RANDOM) + 8 * len(there) * bool(there & PHASES)
     assert size - least == added + 2 * 2 * 8 * len(there - SUMS.keys())
 
@@ -170,6 +174,7 @@ def test_a_point_holds_nothing_of_absent_effects(kernel, tmp_path):
     assert not [name for name in found if "species" in name]
     assert bool(found & OF_SPIN) == ("spin" in there)
     assert bool(found & OF_CONTACT_TIME) == ("contact_time" in there)
+    assert bool(found & {"contacts_lost", "logged_time"}) == ("contact_log" in there)
     assert bool(found & OF_CONTACTS) == ("contact_averages" in there and bool(driven))
     wanted = OF_SHEAR & found
     slides = {name for name, own in KERNELS[kernel]["effects"].items() if "velocity" in own}

@@ -110,7 +110,8 @@ def _point_text(point: Dataset) -> str:
         ["", ""],
         *(_ratio(point) if "R" in point else []),
     ]
-    rows += [*energies(point), ["steady state", _steady(point)], *altered(point), _cost(point)]
+    rows += [*energies(point), ["steady state", _steady(point)], *altered(point)]
+    rows += [*contact_log(point), _cost(point)]
     parts = [columns(rows), *([by_species(point)] if "species" in point else [])]
     parts += [_books(point)] if BOOKS <= set(point.variables) else []
     return "\n\n".join([*parts, f"To make it again:\n{about['command']}"])
@@ -290,6 +291,15 @@ def altered(point: Dataset) -> list[list[str]]:
         return []
     said = f"{100.0 * share:.2g} % of contacts were altered by the contact-time model"
     return [["contact time", f"{said}: R depends on it" if share > FEW else said]]
+
+
+def contact_log(point: Dataset) -> list[list[str]]:
+    """Return how many contacts are logged, and how many are not."""
+    if "contacts_lost" not in point:
+        return []
+    logged, lost = point.sizes["contact"], int(point.contacts_lost)
+    said = f"the last {logged:,}; {lost:,} before them are lost" if lost else f"all {logged:,}"
+    return [["contacts logged", said]]
 
 
 def by_species(point: Dataset) -> str:

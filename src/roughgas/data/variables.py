@@ -32,6 +32,7 @@ OF_SPEED = "whose r depends on the speed"
 MIXTURE = "with `species`"
 AT_CONTACTS = "driven gas with `contact_averages`"
 STAGES = "gas through stages"
+LOGGED = "with `contact_log`"
 
 
 class Variable(NamedTuple):
@@ -65,6 +66,9 @@ def _series(long_name: str, units: str = "1", *when: str) -> Variable:
     return Variable(long_name, units, ("sample",), when=when)
 
 
+PARTNER, MOMENT = ("partner",), ("instant", "partner")
+
+
 def _of_spin(long_name: str, units: str = "1", *more: str, over_seeds: str = "mean") -> Variable:
     return Variable(long_name, units, when=(*more, SPIN), over_seeds=over_seeds)
 
@@ -92,6 +96,13 @@ def _kept(long_name: str, units: str, dims: tuple[str, ...], *when: str) -> Vari
     dtype = "u1" if dims == ("byte",) else "f8"
     dims = ("replica", *dims)
     return Variable(long_name, units, dims, dtype, (KEPT, *when), of_settings=True)
+
+
+def _logged(
+    long_name: str, units: str, dims: tuple[str, ...], *when: str, dtype: str = "f8"
+) -> Variable:
+    dims = ("contact", *dims)
+    return Variable(long_name, units, dims, dtype, (LOGGED, *when), of_settings=True)
 
 
 def _of_species(name: str, long_name: str, units: str = "1", *when: str) -> dict[str, Variable]:
@@ -234,6 +245,33 @@ POINT = {
     "last_radius": _kept("radius of a particle", LENGTH, ("particle",), MIXTURE),
     "last_species_of": _kept("number of its species, from 0", "1", ("particle",), MIXTURE),
     "last_memory": _kept("the kernel's arrays then, as they lie in memory", "1", ("byte",)),
+    "contacts_lost": Variable(
+        "contacts before the first one that is logged", dtype="i8", when=(LOGGED,), over_seeds=""
+    ),
+    "instant": Variable("before or after a contact", "", ("instant",), "str", (LOGGED,)),
+    "logged_time": _logged("time of a contact since the start", TIME, ()),
+    "logged_partner": _logged(
+        "number of a partner from 0, as it is at the start; -1 is a floor or a wall",
+        "1",
+        PARTNER,
+        dtype="i4",
+    ),
+    "logged_normal": _logged("unit vector from the second partner to the first", "1", ("axis",)),
+    "logged_position": _logged("position of the first partner", LENGTH, ("axis",)),
+    "logged_velocity": _logged(
+        "velocity of a partner, of the second as the image that the first touches",
+        SPEED,
+        (*MOMENT, "axis"),
+    ),
+    "logged_spin": _logged("spin a w of a partner", SPEED, (*MOMENT, "spin_axis"), SPIN),
+    "logged_species": _logged(
+        "number of a partner's species, from 0; -1 is a wall", "1", PARTNER, MIXTURE, dtype="i4"
+    ),
+    "logged_radius": _logged("radius of a partner", LENGTH, PARTNER, MIXTURE),
+    "logged_mass": _logged("mass of a partner", "m", PARTNER, MIXTURE),
+    "logged_inertia": _logged(
+        "moment of inertia of a partner over its m a^2", "1", PARTNER, MIXTURE
+    ),
 }
 
 REGISTRY: dict[str, Mapping[str, Variable]] = {"point": POINT}

@@ -22,6 +22,9 @@ Collisional stress, for the observable `stress`: in a contact the momentum -push
 i, and is carried at once from the centre of j to that of i, over 2a where particles are alike.
 Summed over contacts, per time and volume, that is the collisional part of the pressure tensor (the
 virial of J. H. Irving & J. G. Kirkwood, J. Chem. Phys. 18, 817 (1950)).
+
+The log of contacts keeps the last ones: a row of State.log for each, which the next one but `most`
+overwrites. Contacts with floors and walls are there, too, unless these are thermal.
 """
 
 import math
@@ -29,10 +32,11 @@ from itertools import product
 from typing import NamedTuple
 
 from roughgas.base import NeedsError
-from roughgas.effects.settings import Number, register
+from roughgas.effects.settings import Number, Whole, register
 from roughgas.kernel.jit import jit
 from roughgas.kernel.particles import pair_of, reach_of
-from roughgas.kernel.vectors import add_scaled, dot, spin_cross
+from roughgas.kernel.state import BASE, EXPONENT, NOBODY, ORIGIN
+from roughgas.kernel.vectors import add_scaled, dot, read, scale, spin_cross, subtract, write
 
 SPIN_SETTINGS = {
     "inertia": Number("q = I/(m a^2), 1/2 for disks and 2/5 for spheres.", "[1e-06, 1]")
@@ -93,11 +97,11 @@ class ContactAverages(NamedTuple):
 
 
 @jit
-def observe_squares(averages, index, state, i, j, n, v, w, push):
-    sums = state.sums.contact_averages
+def observe_squares(averages, index, state, contact):
+    sums, n, v = state.sums.contact_averages, contact.n, contact.v
     v_t = add_scaled(v, n, -dot(v, n))
-    minus_v_r = spin_cross(w, n)
-    m, s = _weights(state.bodies, i, j)
+    minus_v_r = spin_cross(contact.w, n)
+    m, s = _weights(state.bodies, contact.i, contact.j)
     sums[0, 0] += m * dot(v_t, v_t)
     sums[0, 1] += s * dot(minus_v_r, minus_v_r)
     sums[0, 2] -= math.sqrt(m * s) * dot(v_t, minus_v_r)
@@ -124,12 +128,60 @@ class ContactStress(NamedTuple):
 
 
 @jit
-def observe_stress(stress, index, state, i, j, n, v, w, push):
-    sums = state.sums.contact_stress
-    far = reach_of(state.bodies, i, j)
+def observe_stress(stress, index, state, contact):
+    sums, n, push = state.sums.contact_stress, contact.n, contact.push
+    far = reach_of(state.bodies, contact.i, contact.j)
     for k in range(len(n)):
         for along in range(len(n)):
             sums[0, 3 * k + along] -= push[k] * far * n[along]
 
 
 register(ContactStress, {}, observe_contact=observe_stress, sums=STRESSES)
+
+
+class ContactLog(NamedTuple):
+    """Keeps the last contacts: time, partners, normal, velocities and spins before and after."""
+
+    most: int
+    on: bool = True  # not while a gas is thermalised
+
+
+@jit
+def log_contact(effect, index, state, contact):
+    if not effect.on:
+        return
+    log, i, j, n = state.log, contact.i, contact.j, contact.n
+    row, dimension = log.made[0] % len(log.rows), len(contact.n)
+    log.made[0] += 1
+    unit = math.ldexp(1.0, int(state.counts[EXPONENT]))
+    rows, trajectory = log.rows, state.trajectory
+    rows[row, 0] = state.clock[ORIGIN] + (state.clock[BASE] + contact.time) / unit
+    rows[row, 1] = state.label[i]
+    rows[row, 2] = NOBODY if j == NOBODY else state.label[j]
+    write(rows, row, 3, n)
+    write(rows, row, 3 + dimension, read(trajectory, i, 0, n))
+    # the image of j that i touches, if it is another than the one in the box
+    before_i, before_j = contact.velocities
+    image = subtract(subtract(before_i, before_j), contact.v)
+    after_j = before_j if j == NOBODY else read(trajectory, j, dimension, n)
+    write(rows, row, 3 + 2 * dimension, scale(before_i, unit))
+    write(rows, row, 3 + 3 * dimension, scale(add_scaled(before_j, image, 1.0), unit))
+    write(rows, row, 3 + 4 * dimension, scale(read(trajectory, i, dimension, n), unit))
+    write(rows, row, 3 + 5 * dimension, scale(add_scaled(after_j, image, 1.0), unit))
+    if state.spin is not None:
+        w_i, w_j = contact.spins
+        first, width = 3 + 6 * dimension, state.spin.shape[1]
+        walled = 0.0 if j == NOBODY else unit
+        after_j = w_j if j == NOBODY else read(state.spin, j, 0, w_j)
+        write(rows, row, first, scale(w_i, unit))
+        write(rows, row, first + width, scale(w_j, walled))
+        write(rows, row, first + 2 * width, scale(read(state.spin, i, 0, w_i), unit))
+        write(rows, row, first + 3 * width, scale(after_j, walled))
+
+
+register(
+    ContactLog,
+    {"most": Whole("Number of contacts that are kept, the last ones.", 1, 1_000_000, 10_000)},
+    observe_contact=log_contact,
+    observe_wall=log_contact,
+)

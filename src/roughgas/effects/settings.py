@@ -51,6 +51,33 @@ class Number(NamedTuple):
         return {"description": self.description} | Interval(self.interval).schema()
 
 
+class Whole(NamedTuple):
+    """A parameter that is a whole number in a range."""
+
+    description: str
+    low: int
+    high: int
+    default: int
+
+    @property
+    def interval(self) -> str:
+        """The range."""
+        return f"[{self.low}, {self.high}]"
+
+    def read(self, key: str, value: Any, around: SceneContext | None = None) -> int:
+        """Return the number; raise InputError for any other value."""
+        if value is None:
+            return self.default
+        if type(value) is not int or not self.low <= value <= self.high:
+            raise InputError(key, value, f"be a whole number in {self.interval}")
+        return value
+
+    def schema(self) -> dict[str, Any]:
+        """Return the same as a JSON schema."""
+        ends = {"minimum": self.low, "maximum": self.high}
+        return {"description": self.description, "type": "integer"} | ends
+
+
 class Numbers(NamedTuple):
     """A parameter that is a list of numbers in an interval; it must be given."""
 
@@ -157,9 +184,9 @@ def schema_of_kinds(
 def register(kind: Any, parameters: Mapping[str, Any] | None = None, **hooks: Any) -> None:
     """Give an effect's class its parameters and its hooks (see roughgas.kernel.hooks.Hooks).
 
-    `parameters` maps names to Number, Numbers, Word or OfParticles; None is a variant that another
-    effect's `from_settings` returns. A class without `from_settings` is made from its parameters as
-    they are. Raises TypeError for a hook that does not exist.
+    `parameters` maps names to Number, Whole, Numbers, Word or OfParticles; None is a variant that
+    another effect's `from_settings` returns. A class without `from_settings` is made from its
+    parameters as they are. Raises TypeError for a hook that does not exist.
     """
     kind.hooks = Hooks(**hooks)
     kind.parameters = parameters

@@ -11,6 +11,7 @@ particles that differ share the impulse and the turning is in particles.Pair.
 """
 
 import math
+from typing import Any, NamedTuple
 
 from roughgas.kernel import hooks
 from roughgas.kernel.jit import jit
@@ -55,6 +56,20 @@ STICKING = 1e-10
 SPLIT = 134217729.0  # 2^27 + 1: cuts the digits of a double in two
 
 
+class Contact(NamedTuple):
+    """A contact that has just been made, for hooks that look at it; vectors are tuples."""
+
+    i: int
+    j: int  # NOBODY at a wall
+    time: float
+    n: Any  # unit vector from j to i, or from the wall into the gas
+    v: Any  # relative velocity of i, before
+    w: Any  # sum of the spins, before; None without spin
+    push: Any  # the momentum that has passed from i to j
+    velocities: Any  # of i and of j before, of the images in the box
+    spins: Any  # of i and of j before; at a wall twice that of i
+
+
 @jit
 def collide(state, scene, i, j, time):
     """Carry out the contact of particles i and j at `time`."""
@@ -91,7 +106,9 @@ def collide(state, scene, i, j, time):
         book_spin(w_j, turn_j, effects.spin, bodies, j, account)
 
     hooks.transfer(effects, state, dot(push, subtract(v, between)))
-    hooks.observe_contact(effects, state, i, j, n, v, w, push)
+    velocities, spins = (velocity_i, velocity_j), (w_i, w_j)
+    contact = Contact(i, j, time, n, v, w, push, velocities, spins)
+    hooks.observe_contact(effects, state, contact)
     _note_contact(state, effects, i, time)
     _note_contact(state, effects, j, time)
     state.counts[COLLISIONS] += 1
@@ -122,6 +139,9 @@ def collide_with_wall(state, scene, index, i, time, material, n, wall_velocity, 
     if spin is not None:
         turn_spin(spin, i, w, turn)
         book_spin(w, turn, effects.spin, bodies, i, account)
+    velocities, spins = (velocity, wall_velocity), (w, w)
+    contact = Contact(i, NOBODY, time, n, v, w, push, velocities, spins)
+    hooks.observe_wall(effects, state, contact)
     _note_contact(state, effects, i, time)
     state.counts[BOUNDARY_HITS] += 1
     return NOBODY

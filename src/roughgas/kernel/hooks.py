@@ -46,10 +46,10 @@ class Hooks(NamedTuple):
     after_contact: Callable | None = None
     """(effect, index, state, i, time): note that particle i has had a contact"""
     observe_contact: Callable | None = None
-    """(effect, index, state, i, j, n, v, w, push): look at the contact of a pair, and change
-    nothing but State.sums; n is the unit vector from j to i, v the relative velocity before the
-    contact, w the sum of the spins (None without spin), push the momentum that passes from i to j
-    """
+    """(effect, index, state, contact): look at a contact.Contact of a pair that has just been made,
+    and change nothing but State.sums and State.log"""
+    observe_wall: Callable | None = None
+    """The same of a contact with a floor or a wall, unless that is thermal"""
     sums: Mapping[str, int] | None = None
     """Columns of samples in which the effect keeps running sums -> the power of velocity that each
     has as its unit; State.sums has them under the effect's name"""
@@ -153,10 +153,17 @@ def after_contact(effects, state, i, time):
 
 
 @jit
-def observe_contact(effects, state, i, j, n, v, w, push):
+def observe_contact(effects, state, contact):
     """Look at the contact of a pair."""
     for part in present(effects, "observe_contact"):
-        part.own(effects[part.place], part.rank, state, i, j, n, v, w, push)
+        part.own(effects[part.place], part.rank, state, contact)
+
+
+@jit
+def observe_wall(effects, state, contact):
+    """Look at the contact of a particle with a floor or a wall."""
+    for part in present(effects, "observe_wall"):
+        part.own(effects[part.place], part.rank, state, contact)
 
 
 @jit

@@ -14,6 +14,7 @@ from roughgas.kernel.state import (
     Bodies,
     Calendar,
     Cells,
+    Log,
     Shortlist,
     State,
     Sweep,
@@ -187,6 +188,7 @@ def _state(scene, arrays, **parts):
         phase=np.zeros(there) if hooks.present(effects, "phase") else None,
         ledger=np.zeros((2, hooks.accounts(effects) + 1, 2)),
         sums=_sums(effects),
+        log=_log(effects.contact_log, arrays),
         random=np.zeros(1, np.uint64) if hooks.present(effects, "random") else None,
         clock=np.zeros(8),
         counts=np.zeros(12, np.int64),
@@ -210,6 +212,14 @@ def _sums(effects):
     powers = {effects._fields[part.place]: list(part.own.values()) for part in parts}
     kept = {name: np.array([[0.0], [0.0], [1.0]]) * own for name, own in powers.items()}
     return type(effects)(**kept) if kept else None
+
+
+def _log(effect, arrays):
+    if effect is None:
+        return None
+    components = arrays["trajectory"].shape[1] - 1  # of position and velocity
+    width = 3 + 3 * components + (4 * arrays["spin"].shape[1] if "spin" in arrays else 0)
+    return Log(rows=np.zeros((effect.most, width)), made=np.zeros(1, np.int64))
 
 
 def _shortlist(number, dimension):

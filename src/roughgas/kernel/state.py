@@ -101,6 +101,13 @@ class Shortlist(NamedTuple):
     when: np.ndarray  # (1, 8) times of contact, of those that are looked at one by one
 
 
+class Log(NamedTuple):
+    """The last contacts, in turn; the effect contact_log says what a row holds."""
+
+    rows: np.ndarray  # (contacts, columns)
+    made: np.ndarray  # (1,) contacts so far
+
+
 class State(NamedTuple):
     """Everything that a simulation changes."""
 
@@ -115,6 +122,7 @@ class State(NamedTuple):
     # contacts, put into translation and rotation: [0] in present units, [1] before a rescaling
     sums: tuple | None  # an Effects with, for each effect that keeps running sums, (3, sums): [0]
     # in present units, [1] before a rescaling, [2] the power of velocity in each; None without any
+    log: Log | None  # None without the effect contact_log
     random: np.ndarray | None  # (1,) of the generator; None where no effect draws random numbers
     clock: np.ndarray
     counts: np.ndarray

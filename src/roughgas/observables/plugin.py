@@ -19,7 +19,7 @@ import numpy as np
 
 from roughgas.base import InputError
 from roughgas.data.variables import Variable
-from roughgas.effects.settings import Number
+from roughgas.effects.settings import Number, Whole
 from roughgas.statistics.errors import blocking, degrees_of_freedom, period_means
 
 AXES = "xyz"
@@ -100,27 +100,6 @@ class Frame(NamedTuple):
 
 
 Values = Mapping[str, np.ndarray]
-
-
-class Whole(NamedTuple):
-    """A setting that is a whole number in a range."""
-
-    description: str
-    low: int
-    high: int
-    default: int
-
-    def read(self, key: str, value: Any) -> int:
-        """Return the number; raise InputError for any other value."""
-        if type(value) is not int or not self.low <= value <= self.high:
-            legal = f"be a whole number in [{self.low}, {self.high}]"
-            raise InputError(key, value, legal)
-        return value
-
-    def schema(self) -> dict[str, Any]:
-        """Return the same as a JSON schema."""
-        ends = {"minimum": self.low, "maximum": self.high}
-        return {"description": self.description, "type": "integer"} | ends
 
 
 Setting = Number | Whole

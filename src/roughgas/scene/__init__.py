@@ -144,6 +144,8 @@ def elastic(scene: Scene) -> Scene:
     species, effects = scene.effects.species, smooth_walls(scene.effects)
     if species is not None:
         effects = effects._replace(species=species._replace(alike=True))
+    if effects.contact_log is not None:
+        effects = effects._replace(contact_log=effects.contact_log._replace(on=False))
     return scene._replace(restitution=1.0, roughness=-1.0, effects=effects)
 
 

@@ -16,6 +16,7 @@ from roughgas.effects.walls import LEAST_DEPARTURE
 from roughgas.kernel import hooks
 from roughgas.scene import Scene, build, conserves_momentum
 from roughgas.simulation import schedule
+from roughgas.simulation.contact_log import logged
 from roughgas.simulation.energies import free_of_momentum, species_names
 from roughgas.simulation.gas import Gas
 from roughgas.simulation.journal import Journal
@@ -58,12 +59,15 @@ def run_point(
     _refuse_rest(scene)
     keep, number = experiment.get("keep_state", False), experiment["particles"]
     watching = _watching(scene, experiment, functions)
-    recorder = Recorder(tell, keep, watching.begin if watching else None, journal)
+    logs = scene.effects.contact_log is not None
+    recorder = Recorder(tell, keep or logs, watching.begin if watching else None, journal)
     if initial:
         check_initial(initial, experiment, scene)
     found = schedule.of(experiment).run(scene, experiment, seed, recorder, initial)
     if keep:
         found |= final_states(recorder.gases)
+    if logs and (log := recorder.gases[0].state.log):
+        found |= logged(recorder.gases[0], log)
     if "R_ratio_of_means" in found and conserves_momentum(scene):
         found["R_corrected"] = free_of_momentum(found["R_ratio_of_means"], number)
     found |= species_names(experiment)
