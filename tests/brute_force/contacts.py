@@ -38,6 +38,7 @@ class Contacts:
         r = self._restitution(r, abs(v @ n), i, j)
         v_n = (v @ n) * n
         m, s = self.mass[[i, j]], (self.mass * self.q)[[i, j]]
+        before = self.energies[[i, j]]
         push = (1.0 + r) * v_n / (1.0 / m).sum()
         if world.q is not None:
             v_t, v_r = v - v_n, -np.cross(self.w[i] + self.w[j], n)
@@ -50,6 +51,14 @@ class Contacts:
         self.carried += np.outer(-push, self.radius[[i, j]].sum() * n)
         self.v[i] -= push[: self.dimension] / m[0]
         self.v[j] += push[: self.dimension] / m[1]
+        gained = self.energies[[i, j]] - before
+        self.heat += (gained[0] - gained[1]) / 2.0 * self.radius[[i, j]].sum() * n
+
+    @property
+    def energies(self):
+        """Energy of each particle."""
+        spins = 0.0 if self.world.q is None else (self.w**2).sum(axis=1) * self.q
+        return self.mass * ((self.v**2).sum(axis=1) + spins) / 2.0
 
     def _see(self, v_t, v_r, m, s):
         if self.world.contents is not None:  # sqrt(m v^2) and sqrt(m q v^2) instead, for m of both

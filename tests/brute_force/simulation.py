@@ -55,6 +55,7 @@ class BruteForce(Contacts):
         self.random = self.kicks.random if drawn else SplitMix(word)
         self.seen = np.zeros(3)  # v_t^2, v_r^2 and v_t.v_r, over the contacts of pairs so far
         self.carried = np.zeros((3, 3))  # momentum times distance, by component and axis
+        self.heat = np.zeros(3)  # energy times distance
         self._fold()
 
     def run(self, collisions):

@@ -13,6 +13,7 @@ from roughgas.kernel.state import EXPONENT, TOUCHED
 from roughgas.simulation.energies import SUMS, balance, contact_averages
 
 LOOKED_AT = ("bed", "sheared", "shaken", "heated", "spheres")
+MIXED = ("heated", "spheres")
 TWO = [{"fraction": 0.5}, {"fraction": 0.5, "radius": 1.5, "inertia": 0.3}]
 
 
@@ -22,7 +23,8 @@ def sums(rows, names=SUMS):
 
 
 @pytest.mark.parametrize(
-    ("kernel", "species"), [*((kernel, {}) for kernel in LOOKED_AT), ("heated", {"species": TWO})]
+    ("kernel", "species"),
+    [*((kernel, {}) for kernel in LOOKED_AT), *((one, {"species": TWO}) for one in MIXED)],
 )
 def test_each_contact_counts_as_brute_force_has_it(kernel, species):
     """Collision by collision, to roundings; each piece starts where the kernel stands."""
@@ -30,19 +32,20 @@ def test_each_contact_counts_as_brute_force_has_it(kernel, species):
     scene, world = scene_of(experiment, 0.9, 0.3)
     _, state = begin(experiment, 0.9, 0.3, 4)
     run(state, scene, 1, collisions=200)
-    stress = contacts.STRESSES if "contact_stress" in experiment["effects"] else ()
+    flux = {**contacts.STRESSES, **contacts.HEAT} if kernel == "spheres" else {}
     for _ in range(10):
         rows = run(state, scene, 1, collisions=0)
-        before, carried = sums(rows), sums(rows, stress)
+        before, carried = sums(rows), sums(rows, flux)
         brute = brute_force_from(world, snapshot(state, scene))
         for _ in range(5):
             brute.run(1)
             rows = run(state, scene, 1, collisions=1)
             rounding = 1e-11 * (brute.seen[:2].max() + before.max())
             assert sums(rows) - before == pytest.approx(brute.seen, abs=rounding)
-            if stress:
-                found, rounding = sums(rows, stress) - carried, 1e-11 * abs(carried).max()
-                assert found == pytest.approx(brute.carried.ravel(), abs=rounding)
+            if flux:
+                found, rounding = sums(rows, flux) - carried, 1e-11 * abs(carried).max()
+                expected = [*brute.carried.ravel(), *brute.heat]
+                assert found == pytest.approx(expected, abs=rounding)
 
 
 def test_a_gas_that_cools_by_many_powers_of_two():

@@ -62,6 +62,7 @@ PARAMETERS = {
     "contact_time": {"duration": st.sampled_from([1e-5, 1e-3, 1e-1])},
     "contact_averages": {},
     "contact_stress": {},
+    "contact_heat": {},
     "contact_log": {"most": st.sampled_from([1, 100])},
 }
 OPPOSITE = [("left_wall", "right_wall"), ("front_wall", "back_wall")]

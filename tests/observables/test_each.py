@@ -8,6 +8,7 @@ import pytest
 from tests.observables.frames import frame_of, system_of
 
 from roughgas.base import InputError
+from roughgas.effects.contacts import HEAT, STRESSES
 from roughgas.observables import KINDS
 from roughgas.observables.distributions import squares
 from roughgas.observables.plugin import averaged
@@ -170,12 +171,52 @@ def test_velocities_are_remembered_for_as_long_as_they_last():
     assert np.abs(found["spin_autocorrelation"] - 4.0 * expected).max() < 16.0 * error
 
 
+def test_fluxes_are_averaged_over_all_directions():
+    """Stress over its five shears, heat over three axes; delay by delay, from means over each
+    interval, of made-up gases."""
+    rng, looks, names = np.random.default_rng(6), 7, (*STRESSES, *HEAT)
+    system = system_of((20, 15, 10), particles=9, interval=0.5)
+    velocities, spins = rng.standard_normal((2, looks, 9, 3))
+    rates = rng.standard_normal((looks, len(names)))
+    frames = [
+        frame_of(system, velocity=v, spin=w, rates=dict(zip(names, one, strict=True)))
+        for v, w, one in zip(velocities, spins, rates, strict=True)
+    ]
+    observable, found = results("flux_autocorrelation", frames, delays=4)
+    assert observable.coordinates["delay"].tolist() == [0.0, 0.5, 1.0, 1.5]
+    series = []
+    for k in range(1, looks):
+        P, q = rates[k, :9].reshape(3, 3).copy(), rates[k, 9:].copy()
+        ends = velocities[k - 1 : k + 1], spins[k - 1 : k + 1]
+        for v, w in zip(*(one.reshape(-1, 3) for one in ends), strict=True):
+            P += np.outer(v, v) / 2
+            q += (v @ v + 0.4 * w @ w) / 2 * v / 2
+        (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = P
+        shears = (xy + yx) / 2, (xz + zx) / 2, (yz + zy) / 2, (xx - yy) / 2
+        series.append([*shears, (xx + yy - 2 * zz) / math.sqrt(12), *q])
+    T, free = np.mean(velocities**2) * 9 / 8, 8 / 9
+    for k in range(4):
+        products = [
+            np.multiply(a, b) / 3000
+            for a, b in zip(series[: looks - 1 - k], series[k:], strict=True)
+        ]
+        means = np.mean(products, axis=0)
+        assert found["stress_autocorrelation"][k] == pytest.approx(means[:5].mean() / free)
+        assert found["heat_flux_autocorrelation"][k] == pytest.approx(means[5:].mean() / free)
+    for name, memory, power in (("viscosity", "stress", 1), ("conductivity", "heat_flux", 2)):
+        C = found[f"{memory}_autocorrelation"]
+        area = 0.5 * (C[0] / 2 + C[1] + C[2] + C[3] / 2)
+        assert found[f"{name}_until"][-1] == pytest.approx(area / T**power)
+
+
 @pytest.mark.parametrize(
     ("name", "changes", "settings", "message"),
     [
         ("stress", {"box": (20.0, None)}, {}, "an open box has no volume"),
         ("pair_correlation", {"periodic": (True, False)}, {}, "the box must be periodic"),
         ("pair_correlation", {}, {"reach": 11.0}, r"reach = 11\.0: must be in \(2, 10\]"),
+        ("flux_autocorrelation", {"cooling": True}, {}, "in a periodic box that does not cool"),
+        ("flux_autocorrelation", {"periodic": (True, False)}, {}, "in a periodic box"),
         ("profiles", {}, {"height": 21.0}, r"height = 21\.0: must be 20 or less, the box"),
     ],
 )

@@ -7,7 +7,14 @@ looks comes last.
 from typing import Any, NamedTuple
 
 from roughgas.effects.bath import Langevin
-from roughgas.effects.contacts import ContactAverages, ContactLog, ContactStress, Friction, Spin
+from roughgas.effects.contacts import (
+    ContactAverages,
+    ContactHeat,
+    ContactLog,
+    ContactStress,
+    Friction,
+    Spin,
+)
 from roughgas.effects.drives import Gravity, Shear, Thermostat
 from roughgas.effects.restitution import (
     ContactTime,
@@ -47,6 +54,7 @@ class Effects(NamedTuple):
     contact_time: ContactTime | None = None
     contact_averages: ContactAverages | None = None
     contact_stress: ContactStress | None = None
+    contact_heat: ContactHeat | None = None
     contact_log: ContactLog | None = None
 
 

@@ -23,6 +23,9 @@ i, and is carried at once from the centre of j to that of i, over 2a where parti
 Summed over contacts, per time and volume, that is the collisional part of the pressure tensor (the
 virial of J. H. Irving & J. G. Kirkwood, J. Chem. Phys. 18, 817 (1950)).
 
+Collisional heat flux, for the observable `flux_autocorrelation`: as far is carried the energy that
+passes from j to i, half of what i gains and j loses. Where particles are alike that is -push.(v_i +
+v_j)/2 + (n x push).(w_i - w_j)/2, with the velocities and spins after the contact.
 The log of contacts keeps the last ones: a row of State.log for each, which the next one but `most`
 overwrites. Contacts with floors and walls are there, too, unless these are thermal.
 """
@@ -34,9 +37,18 @@ from typing import NamedTuple
 from roughgas.base import NeedsError
 from roughgas.effects.settings import Number, Whole, register
 from roughgas.kernel.jit import jit
-from roughgas.kernel.particles import pair_of, reach_of
+from roughgas.kernel.particles import pair_of, reach_of, spin_mass_of, spin_of
 from roughgas.kernel.state import BASE, EXPONENT, NOBODY, ORIGIN
-from roughgas.kernel.vectors import add_scaled, dot, read, scale, spin_cross, subtract, write
+from roughgas.kernel.vectors import (
+    add_scaled,
+    cross_to_spin,
+    dot,
+    read,
+    scale,
+    spin_cross,
+    subtract,
+    write,
+)
 
 SPIN_SETTINGS = {
     "inertia": Number("q = I/(m a^2), 1/2 for disks and 2/5 for spheres.", "[1e-06, 1]")
@@ -185,3 +197,31 @@ register(
     observe_contact=log_contact,
     observe_wall=log_contact,
 )
+HEAT = {f"E s_{along}": 2 for along in AXES}
+"""Energy times distance, carried along an axis."""
+
+
+class ContactHeat(NamedTuple):
+    """Measures the collisional heat flux, from sums over all contacts of pairs."""
+
+
+@jit
+def observe_heat(heat, index, state, contact):
+    sums, bodies, along = state.sums.contact_heat, state.bodies, len(contact.n)
+    i, j, n, push = contact.i, contact.j, contact.n, contact.push
+    both = add_scaled(read(state.trajectory, i, along, n), read(state.trajectory, j, along, n), 1.0)
+    passed = -0.5 * dot(push, both)
+    if state.spin is not None:
+        turn = cross_to_spin(n, push)
+        passed += 0.5 * dot(turn, subtract(spin_of(state.spin, n, i), spin_of(state.spin, n, j)))
+    if bodies is not None:
+        passed -= 0.25 * dot(push, push) * (1.0 / bodies.mass[i] - 1.0 / bodies.mass[j])
+    if bodies is not None and state.spin is not None:
+        one, other = spin_mass_of(bodies, None, i), spin_mass_of(bodies, None, j)
+        passed -= 0.25 * dot(turn, turn) * (1.0 / one - 1.0 / other)
+    far = reach_of(bodies, i, j)
+    for k in range(len(n)):
+        sums[0, k] += passed * far * n[k]
+
+
+register(ContactHeat, {}, observe_contact=observe_heat, sums=HEAT)

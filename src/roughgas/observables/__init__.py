@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 from roughgas.base import InputError, NeedsError, not_one_of
 from roughgas.effects.settings import schema_of_kinds
-from roughgas.observables.autocorrelation import Autocorrelation
+from roughgas.observables.autocorrelation import Autocorrelation, FluxAutocorrelation
 from roughgas.observables.distributions import (
     Cumulants,
     Histograms,
@@ -33,6 +33,7 @@ KINDS: dict[str, type[Observable]] = {
     "stress": Stress,
     "mean_square_displacement": MeanSquareDisplacement,
     "autocorrelation": Autocorrelation,
+    "flux_autocorrelation": FluxAutocorrelation,
     "layer": Layer,
     "pattern": Pattern,
 }

@@ -1,4 +1,4 @@
-"""How long velocities and spins are remembered.
+"""How long velocities and spins are remembered, and stress and heat flux.
 
     C_v(t) = <V(t0) . V(t0 + t)>/D,    C_w(t) = <w(t0) . w(t0 + t)>/(2 D - 3),
 
@@ -6,6 +6,18 @@ over all particles and all looks t0. The coefficient of self-diffusion is the in
 time, that of the angle the integral of C_w/a^2: M. S. Green, J. Chem. Phys. 22, 398 (1954); R.
 Kubo, J. Phys. Soc. Jpn. 12, 570 (1957). In a cooling gas velocities are in units of the present
 E_trans at either time, which is 1, and time counts in collisions per particle.
+
+In a gas in equilibrium viscosity and conductivity are such integrals, too,
+
+    viscosity = (V/T) int <P_xy(0) P_xy(t)> dt,    conductivity = (V/T^2) int <q_x(0) q_x(t)> dt.
+
+Here P_xy stands for all of the traceless symmetric part of the pressure tensor, <P : P>/[(D - 1)
+(D + 2)], and q_x for the heat flux, <q.q>/D. Both are means over the time from one look to the
+next: the kinetic parts, sum m v v and sum (m v^2 + m q a^2 w^2) v/2, over V, of its ends, and what
+all contacts in between have carried (effects/contacts.py). Of such means the integral up to t by
+the trapezium rule is half of the slope of the mean square of int P_xy dt (E. Helfand, Phys. Rev.
+119, 1 (1960)). Looks must be dense: h apart, with a memory of tau, they give (h/tau)^2/12 too much.
+T is that of N - 1 particles, since momentum is conserved, and both get the factor N/(N - 1).
 """
 
 from collections import deque
@@ -14,11 +26,20 @@ from typing import ClassVar
 
 import numpy as np
 
-from roughgas.data.variables import SPIN, TIME, Variable
+from roughgas.base import InputError
+from roughgas.data.variables import ENERGY, SPIN, TIME, Variable
+from roughgas.effects.contacts import HEAT, STRESSES
 from roughgas.observables.plugin import Frame, Observable, Setting, System, Values, Whole
 
 SQUARED = "a^2 T^-2"
 VELOCITY, OF_SPIN = "velocity_autocorrelation", "spin_autocorrelation"
+
+
+STRESS, HEAT_FLUX = "stress_autocorrelation", "heat_flux_autocorrelation"
+VISCOSITY, CONDUCTIVITY = "viscosity_until", "conductivity_until"
+ALONG = ("delay",)
+DELAY = Variable("time from one observation to another", TIME, ALONG)
+DELAYS = {"delays": Whole("Number of times, the first one 0.", 2, 10_000, 50)}
 
 
 class Autocorrelation(Observable):
@@ -26,13 +47,11 @@ class Autocorrelation(Observable):
 
     alike = True
 
-    settings: ClassVar[Mapping[str, Setting]] = {
-        "delays": Whole("Number of times, the first one 0.", 2, 10_000, 50)
-    }
+    settings: ClassVar[Mapping[str, Setting]] = DELAYS
     variables: Mapping[str, Variable] = {
-        "delay": Variable("time from one observation to another", TIME, ("delay",)),
-        VELOCITY: Variable("autocorrelation of a velocity component", SQUARED, ("delay",)),
-        OF_SPIN: Variable("autocorrelation of a spin component", SQUARED, ("delay",), when=(SPIN,)),
+        "delay": DELAY,
+        VELOCITY: Variable("autocorrelation of a velocity component", SQUARED, ALONG),
+        OF_SPIN: Variable("autocorrelation of a spin component", SQUARED, ALONG, when=(SPIN,)),
     }
 
     def __init__(self, system: System, delays: int) -> None:
@@ -54,3 +73,64 @@ class Autocorrelation(Observable):
         if self.system.inertia is not None:
             return means
         return {VELOCITY: means[VELOCITY]}
+
+
+class FluxAutocorrelation(Observable):
+    """Autocorrelation of stress and heat flux, and the coefficients that are its integrals."""
+
+    alike = True
+    effects = ("contact_stress", "contact_heat")
+    settings: ClassVar[Mapping[str, Setting]] = DELAYS
+    variables: Mapping[str, Variable] = {
+        "delay": DELAY,
+        STRESS: Variable("V <P_xy(0) P_xy(t)> of the pressure tensor", f"{ENERGY}^2 a^-D", ALONG),
+        HEAT_FLUX: Variable("V <q_x(0) q_x(t)> of the heat flux", "m^2 a^(6-D) T^-6", ALONG),
+        VISCOSITY: Variable("shear viscosity, of memory up to this delay", "m a^(2-D) T^-1", ALONG),
+        CONDUCTIVITY: Variable("conductivity, of memory up to this delay", "a^(2-D) T^-1", ALONG),
+    }
+
+    def __init__(self, system: System, delays: int) -> None:
+        super().__init__(system)
+        if system.cooling or system.shear_rate or not all(system.periodic):
+            legal = "be of a gas at rest in a periodic box that does not cool"
+            raise InputError("observables", "flux_autocorrelation", legal)
+        self._kinetic: tuple[np.ndarray, np.ndarray] | None = None
+        self._path: tuple[deque[np.ndarray], ...] = deque(maxlen=delays), deque(maxlen=delays)
+        self.coordinates = {"delay": np.arange(delays) * system.interval}
+
+    def look(self, frame: Frame) -> Values:
+        """Return both since earlier looks, NaN where there was none, and the temperature."""
+        system, V = self.system, frame.velocity
+        D, volume, before = system.dimension, system.volume, self._kinetic
+        energy = ((V**2).sum(axis=1) + frame.inertia * (frame.thermal_spin**2).sum(axis=1)) / 2.0
+        self._kinetic = V.T @ V, energy @ V
+        temperature = np.trace(self._kinetic[0]) / (D * (system.particles - 1))
+        found = np.full((2, self._path[0].maxlen or 0), np.nan)
+        if before is not None:
+            rates = [np.array([frame.rates[name] for name in names]) for names in (STRESSES, HEAT)]
+            contacts = rates[0].reshape(3, 3)[:D, :D], rates[1][:D]
+            stress, heat = (
+                (one + other) / 2.0 + carried
+                for one, other, carried in zip(before, self._kinetic, contacts, strict=True)
+            )
+            stress = (stress + stress.T) / 2.0 - np.eye(D) * np.trace(stress) / D
+            numbers = (D - 1) * (D + 2), D
+            for row, path, flux, number in zip(
+                found, self._path, (stress.ravel(), heat), numbers, strict=True
+            ):
+                path.appendleft(flux)
+                row[: len(path)] = np.array(path) @ flux / (number * volume)
+        return {STRESS: found[0], HEAT_FLUX: found[1], "temperature": np.array(temperature)}
+
+    def combine(self, means: Values) -> Values:
+        """Return both, and their integrals."""
+        free = (self.system.particles - 1) / self.system.particles
+        found = {name: means[name] / free for name in (STRESS, HEAT_FLUX)}
+        T, step = means["temperature"], self.system.interval
+        until = [_integral(found[name]) * step for name in (STRESS, HEAT_FLUX)]
+        return found | {VISCOSITY: until[0] / T, CONDUCTIVITY: until[1] / T**2}
+
+
+def _integral(values):
+    """Return the integral from the first value to each, by the trapezium rule, in steps."""
+    return np.concatenate([[0.0], np.cumsum((values[1:] + values[:-1]) / 2.0)])

@@ -193,7 +193,7 @@ class Gas:
                 if length > ahead:
                     advance(length - ahead)
                 ahead = 0
-                self._seen = sum(map(_length, self._rows or []))
+                self._seen += length
                 observer.look(self, length)
 
         return self._call(samples, in_pieces)
