@@ -92,6 +92,28 @@ def test_the_pressure_of_elastic_spheres_is_that_of_carnahan_and_starling():
     assert found == pytest.approx(expected, rel=0.02)
 
 
+def test_heat_flows_from_wall_to_wall():
+    """What thermal walls give and take is the flux between particles, within 4 sigma."""
+    walls = {"bottom_wall": {"temperature": 0.5}, "lid": {"temperature": 1.5}}
+    length, measure = 24, 4000
+    gas = simulate(
+        r=1.0,
+        beta=1.0,
+        particles=40,
+        box=(24, length),
+        effects={"spin": {"inertia": 0.5}} | walls,
+        schedule={"kind": "steady", "equilibrate": 0, "measure": measure, "sample_every": 1},
+        observe="heat_flux",
+        progress=False,
+    )
+    given = gas.energy_input.sel(source=["bottom_wall", "lid"]).sum("motion").values
+    flux = 40 / 24 * (given[0] - given[1]) / 2 / measure  # upwards
+    across, along = gas.heat_flux.sel(component="y"), gas.heat_flux.sel(component="x")
+    errors = gas.heat_flux_stderr * length / (length - 2)
+    assert abs(across * length / (length - 2) - flux) < 4 * errors[1] < 0.3 * abs(flux)
+    assert abs(along) < 4 * errors[0]
+
+
 def test_dense_elastic_spheres_have_enskogs_viscosity_and_conductivity():
     """Within 4 sigma and the 5 % that higher approximations and N = 64 may make. At packing 0.2
     half of either is what contacts carry; kicks of 1e-12 are no drive."""

@@ -18,7 +18,7 @@ from roughgas.observables.distributions import (
     PairCorrelation,
     SpinCorrelation,
 )
-from roughgas.observables.fields import Profiles, Stress
+from roughgas.observables.fields import HeatFlux, Profiles, Stress
 from roughgas.observables.layers import Layer, Pattern
 from roughgas.observables.plugin import Frame, Function, Observable, Setting, System, Whole
 
@@ -31,6 +31,7 @@ KINDS: dict[str, type[Observable]] = {
     "spin_correlation": SpinCorrelation,
     "pair_correlation": PairCorrelation,
     "stress": Stress,
+    "heat_flux": HeatFlux,
     "mean_square_displacement": MeanSquareDisplacement,
     "autocorrelation": Autocorrelation,
     "flux_autocorrelation": FluxAutocorrelation,

@@ -21,6 +21,10 @@ is the power of the shear, its `energy_input` per time. p/(n T) of an elastic ga
 state, 1 + 2 phi chi (disks) or 1 + 4 phi chi (spheres): D. Henderson, Mol. Phys. 30, 971 (1975);
 N. F. Carnahan & K. E. Starling, J. Chem. Phys. 51, 635 (1969). Between walls, the stress is the
 average over the box of that between particles.
+
+The heat flux is likewise (1/V) [ sum (m v^2 + m q a^2 w^2) v/2 + (1/t) sum_contacts e s ], e being
+the energy that a contact passes on. Between thermal walls at a distance L it is the flux that they
+give and take times (L - 2 a)/L, as centres come no closer than a.
 """
 
 import math
@@ -168,3 +172,26 @@ class Stress(Observable):
             share = system.volume / system.particles
             found["shear_power"] = -total[0, 1] * system.shear_rate * share
         return found
+
+
+class HeatFlux(Observable):
+    """The heat flux, of the whole box."""
+
+    effects = ("contact_heat",)
+    variables: Mapping[str, Variable] = {
+        "component": Variable("component of a vector", "", ("component",), "str"),
+        "heat_flux": Variable("heat flux", f"{ENERGY} a^(1-D) T^-1", ("component",)),
+    }
+
+    def __init__(self, system: System) -> None:
+        super().__init__(system)
+        if math.isinf(system.volume) or system.shear_rate:
+            raise InputError("observables.heat_flux", "in this box", "be of a closed one, at rest")
+        self.coordinates = {"component": system.axes}
+
+    def look(self, frame: Frame) -> Values:
+        """Return the flux, its collisional part since the look before."""
+        v, spin_mass = frame.velocity, frame.mass * frame.inertia
+        energy = frame.mass * (v**2).sum(axis=1) + spin_mass * (frame.thermal_spin**2).sum(axis=1)
+        carried = np.array([frame.rates[name] for name in contacts.HEAT])[: v.shape[1]]
+        return {"heat_flux": (energy @ v / 2.0 + carried) / self.system.volume}
