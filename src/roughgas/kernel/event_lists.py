@@ -15,7 +15,7 @@ Upcoming events of each particle: a short list of contacts, a boundary, the end 
 import math
 
 from roughgas.kernel.clock import FLIGHTS
-from roughgas.kernel.jit import jit
+from roughgas.kernel.jit import compiled, jit
 from roughgas.kernel.mathematics import (
     bits,
     choose,
@@ -110,6 +110,7 @@ def unlink(first, following, place, i):
 
 LAST_DAY = 2.0**62
 EVENTS_A_DAY = 2.0  # this many make a day's list short and empty days rare
+GREATEST_CHANGE = 8.0  # of the days' length at once
 
 
 @jit
@@ -182,6 +183,9 @@ def day_of(queue, time):
 @jit
 def _earliest_in_calendar(state):
     queue, key = state.queue, state.agenda.key
+    queue.events[0] += 1
+    if queue.events[0] > queue.first.size >> 2:
+        _keep_pace(state)
     day = queue.today[0]
     for _ in range(queue.first.size):
         least, place = math.inf, NOBODY
@@ -211,20 +215,45 @@ def _earliest_of_all(state):
     return place
 
 
+@compiled
+def _keep_pace(state):
+    """Let days be shorter, or longer, if they do not hold about EVENTS_A_DAY each.
+
+    A layer makes most of its contacts within a tenth of a stroke, when it lands.
+    """
+    queue = state.queue
+    change = queue.events[0] / (EVENTS_A_DAY * max(queue.today[0] - queue.since[0], 1))
+    if 0.5 < change < 2.0:
+        change = 1.0
+    _set_pace(state, queue.pace[0] * min(max(change, 1.0 / GREATEST_CHANGE), GREATEST_CHANGE))
+
+
+@jit
+def _set_pace(state, pace):
+    """Begin to count the events; list all particles anew if days are to be of another length."""
+    queue, key = state.queue, state.agenda.key
+    if pace != queue.pace[0]:
+        queue.pace[0] = pace
+        for place in range(queue.first.size):
+            queue.first[place] = NOBODY
+        for i in range(key.size):
+            if key[i] < math.inf:
+                enter(queue.first, queue.later, day_of(queue, key[i]) & (queue.first.size - 1), i)
+        queue.today[0] = day_of(queue, state.clock[NOW])
+    queue.events[0], queue.since[0] = 0, queue.today[0]
+
+
 @jit
 def clear_calendar(state):
     """Empty the calendar, and set its days to hold about EVENTS_A_DAY each."""
-    queue = state.queue
-    for place in range(queue.first.size):
-        queue.first[place] = NOBODY
-    for i in range(len(state.changes)):
-        state.agenda.key[i] = math.inf
+    state.agenda.key[:] = math.inf
     clock = state.clock
     crossings = 2.0 * clock[TYPICAL_SPEED] / max(state.cells.widths)
     contacts = 4.0 * FLIGHTS / clock[LONGEST_HORIZON]  # none where nothing is known yet
     pace = len(state.changes) * (crossings + contacts) / EVENTS_A_DAY
-    queue.pace[0] = pace if pace > 0.0 else 1.0
-    queue.today[0] = day_of(queue, clock[NOW])
+    state.queue.pace[0] = 0.0  # all are to be listed anew
+    _set_pace(state, pace if pace > 0.0 else 1.0)
+    state.queue.events[0] = -len(state.changes)  # that all is foreseen first takes no time
 
 
 @jit

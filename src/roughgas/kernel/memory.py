@@ -135,6 +135,8 @@ def _many(scene, number, dimension, precision, counts, widths):
             later=arrays["later"],
             pace=np.ones(1),
             today=np.zeros(1, np.int64),
+            since=np.zeros(1, np.int64),
+            events=np.zeros(1, np.int64),
         ),
         sweep=None,
         cells=Cells(

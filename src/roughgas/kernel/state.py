@@ -73,6 +73,8 @@ class Calendar(NamedTuple):
     later: np.ndarray  # (N,) the next particle of the same list
     pace: np.ndarray  # (1,) days per time
     today: np.ndarray  # (1,) the day on which the earliest event was found
+    since: np.ndarray  # (1,) the day from which on events are counted
+    events: np.ndarray  # (1,) how many there were
 
 
 class Sweep(NamedTuple):
