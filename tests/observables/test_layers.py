@@ -108,19 +108,44 @@ def test_a_height_field_is_that_of_a_loop_over_particles():
     assert height_field(position, radius, (SIDE, 30.0), 8) == pytest.approx(np.array(expected))
 
 
+def stripes(side, wavelength, turned=0.0):
+    """Particles that cover a wavy layer, on a floor at 3 a."""
+    x, y = np.meshgrid(*[np.arange(0.25, side, 0.5)] * 2)
+    height = 5.0 + 1.5 * np.cos(2 * math.pi * x / wavelength + turned)
+    return np.array([x.ravel(), y.ravel(), height.ravel() + 3.0]).T
+
+
+def layered(side, particles):
+    system = system_of((side, side, 1.0), particles=particles, period=PERIOD, interval=0.1)
+    return system._replace(box=(side, side, None), periodic=(False, False, False))
+
+
 def test_a_layer_that_stands_in_stripes():
     """Particles that cover a wavy layer: its wavelength and contrast, whatever the floor does."""
-    side = 60.0
-    x, y = np.meshgrid(*[np.arange(0.25, side, 0.5)] * 2)
-    height = 5.0 + 1.5 * np.cos(2 * math.pi * x / 15.0)
-    position = np.array([x.ravel(), y.ravel(), height.ravel() + 3.0]).T
-    system = system_of((side, side, 1.0), particles=len(position), period=PERIOD, interval=0.1)
-    system = system._replace(box=(side, side, None), periodic=(False, False, False))
-    found = Pattern(system, 100, 0.0, None).look(frame_of(system, position, floor=3.0))
+    position = stripes(60.0, 15.0)
+    system = layered(60.0, len(position))
+    pattern = Pattern(system, 100, 0.0, None, 1, 2)
+    found = pattern.look(frame_of(system, position, floor=3.0))
     assert found["wavelength"] == pytest.approx(15.0)
     assert found["fold_order"][0] > 0.95
     assert found["contrast"] == pytest.approx(1.5 / math.sqrt(2.0), rel=0.02)
     assert np.median(found["height_field"]) == pytest.approx(6.0, abs=0.1)
+
+
+def test_stripes_that_turn_come_back_after_a_turn():
+    """Four looks in a period; in each stripes turn by a quarter: C_k = cos(pi k/2)."""
+    quarters = [stripes(60.0, 15.0, math.pi / 2.0 * k) for k in range(4)]
+    system = layered(60.0, len(quarters[0]))._replace(interval=PERIOD / 4)
+    pattern = Pattern(system, 100, 0.0, 0.25, 4, 6)
+    assert pattern.coordinates["pattern_phase"] == pytest.approx([0.25, 0.5, 0.75, 0.0])
+    assert pattern.coordinates["pattern_delay"] == pytest.approx(np.arange(6) / 4)
+    for k in range(6):
+        frame = frame_of(system, quarters[k % 4], time=(k + 1) * PERIOD / 4, floor=3.0)
+        found = pattern.look(frame)
+        there = np.isfinite(found["mean_height"]).all(axis=(1, 2))
+        assert np.flatnonzero(there).tolist() == [k % 4]
+        expected = [math.cos(math.pi / 2.0 * n) if n <= k else math.nan for n in range(6)]
+        assert found["height_autocorrelation"] == pytest.approx(expected, abs=0.03, nan_ok=True)
 
 
 LAYER = settings("layer", 48) | {
@@ -153,6 +178,23 @@ def test_a_layer_over_the_phase_of_its_drive():
     assert found.height_field.shape == (12, 8, 8)
     assert found.wavelength == pytest.approx(float(found.wavelength_series.mean()))
     assert found.fold_order_series.dims == ("pattern_time", "fold")
+
+
+def test_a_pattern_over_the_phases_of_its_drive():
+    """Its mean heights and correlations are those of the fields that points keep."""
+    found = layer(pattern={"cells": 8, "phase": 0.25, "phases": 2, "delays": 4})
+    assert found.pattern_time.values % 1.0 == pytest.approx(0.5)  # twice in a period of 2 T
+    fields = found.height_field.values
+    for k in range(2):
+        assert found.mean_height[k].values == pytest.approx(fields[k::2].mean(axis=0), rel=1e-12)
+    assert np.all(found.mean_height_stderr > 0)
+    flat = fields.reshape(len(fields), -1)
+    for delay in range(4):
+        pairs = [np.corrcoef(*pair)[0, 1] for pair in zip(flat, flat[delay:], strict=False)]
+        periods = np.array([math.nan] * delay + pairs).reshape(-1, 2)  # of two looks
+        periods = periods[np.isfinite(periods).any(axis=1)]
+        expected = np.nanmean(periods, axis=1).mean()
+        assert found.height_autocorrelation[delay] == pytest.approx(expected, rel=1e-9)
 
 
 def test_what_has_no_pattern_is_refused_in_one_line():

@@ -13,9 +13,14 @@ most power has the wavelength L/n, half a shell uncertain. On it, within 3/4 of 
 
 is the m-fold order: Q_2 is 1 for stripes, Q_4 for squares, Q_6 for hexagons. A window widens each
 peak by a shell or so, which lowers Q_m the more, the larger m and the fewer wavelengths there are.
+
+A pattern may need several cycles of the drive to repeat. With z' the smoothed field without its
+mean, C_k = <z'(t) z'(t + k)>/sqrt(<z'^2>(t) <z'^2>(t + k)) over all cells is the correlation of
+fields k looks apart: 1 after as many as it repeats after.
 """
 
 import math
+from collections import deque
 from collections.abc import Mapping, Sequence
 from typing import Any, ClassVar, NamedTuple
 
@@ -32,6 +37,7 @@ ANNULUS = 0.75  # of a shell's width, to either side
 DEPTH = (5.0, 95.0)  # percentiles of height, between which the depth of a layer is
 ALONG = ("layer_phase",)
 LOOKS, PATTERNS = ("layer_time",), ("pattern_time",)
+PHASES, DELAYS = ("pattern_phase",), ("pattern_delay",)
 
 
 class Spectrum(NamedTuple):
@@ -152,17 +158,25 @@ class Pattern(Observable):
             "Share of schedule.period at which it looks; at every observation if not given.",
             "[0, 1)",
         ),
+        "phases": Whole("Number of phases, evenly spaced from `phase` on.", 1, 1000, 1),
+        "delays": Whole("Number of delays, the first one 0, of the autocorrelation.", 2, 1000, 5),
     }
     variables: Mapping[str, Variable] = {
         "wavenumber": Variable("inverse wavelength of a shell", f"{LENGTH}^-1", ("wavenumber",)),
         "fold": Variable("m of the m-fold order", "1", ("fold",)),
         "cell_x": Variable("middle of a cell", LENGTH, ("cell_x",)),
         "cell_y": Variable("middle of a cell", LENGTH, ("cell_y",)),
+        "pattern_phase": Variable("share of schedule.period that has passed", "1", PHASES),
+        "pattern_delay": Variable("share of schedule.period between two looks", "1", DELAYS),
         "shell_power": Variable("share of a shell in the power", "1", ("wavenumber",)),
         "contrast": Variable("standard deviation of the height", LENGTH),
         "wavelength": Variable("mean wavelength of the shell with most power", LENGTH),
         "wavelength_resolution": Variable("half a shell, as a wavelength", LENGTH),
         "fold_order": Variable("m-fold order on that shell", "1", ("fold",)),
+        "mean_height": Variable(
+            "mean height above the floor at a phase", LENGTH, (*PHASES, "cell_x", "cell_y")
+        ),
+        "height_autocorrelation": Variable("autocorrelation of the height", "1", DELAYS),
         "pattern_time": Variable("when the pattern was looked at, since the start", TIME, PATTERNS),
         "contrast_series": Variable("standard deviation of the height", LENGTH, PATTERNS),
         "wavelength_series": Variable("wavelength of the shell with most power", LENGTH, PATTERNS),
@@ -179,48 +193,80 @@ class Pattern(Observable):
         "height_field",
     )
 
-    def __init__(self, system: System, cells: int, smoothing: float, phase: float | None) -> None:
+    def __init__(
+        self,
+        system: System,
+        cells: int,
+        smoothing: float,
+        phase: float | None,
+        phases: int,
+        delays: int,
+    ) -> None:
         super().__init__(system)
         self._period = period_of("pattern", system)
         if system.dimension != 3:
             raise InputError("observables.pattern", "of disks", "be of spheres")
         self._sides = [side or math.nan for side in system.box[:2]]
-        self._cells, self._smoothing, self._phase = cells, smoothing, phase
+        self._cells, self._smoothing = cells, smoothing
+        self._phase, self._phases = phase, phases
+        self._before: deque[np.ndarray] = deque(maxlen=delays)
         flat = spectrum(np.zeros((cells, cells)), self._sides)
-        self._nothing = self._found(math.nan, np.full((cells, cells), math.nan), flat, math.nan)
+        nowhere = np.full((phases, cells, cells), math.nan)
+        self._nothing = self._found(math.nan, nowhere, 0, flat, np.full(delays, math.nan))
         middles = (np.arange(cells) + 0.5) / cells
+        apart = system.interval / self._period if phase is None else 1.0 / phases
         self.coordinates: dict[str, Any] = {
             "wavenumber": flat.wavenumber,
             "fold": np.array(FOLDS),
             "cell_x": middles * self._sides[0],
             "cell_y": middles * self._sides[1],
+            "pattern_phase": ((phase or 0.0) + np.arange(phases) / phases) % 1.0,
+            "pattern_delay": np.arange(delays) * apart,
         }
 
     def look(self, frame: Frame) -> Values:
         """Return the field, and what its transform says; NaN at other phases."""
-        if not self._is_due(frame):
+        now = self._phase_of(frame)
+        if now is None:
             return self._nothing
         position = frame.position - [0.0, 0.0, frame.floor]
         field = height_field(position, frame.radius, self._sides, self._cells)
         field = smoothed(field, self._smoothing)
-        return self._found(frame.time, field, spectrum(field, self._sides), field.std())
+        at_phase = np.full((self._phases, *field.shape), math.nan)
+        at_phase[now] = field
+        about = spectrum(field, self._sides)
+        return self._found(frame.time, at_phase, now, about, self._correlations(field))
 
-    def _is_due(self, frame):
+    def _phase_of(self, frame):
+        """Return the number of the phase that is now; None between phases."""
         if self._phase is None:
-            return True
-        off = (frame.time / self._period - self._phase + 0.5) % 1.0 - 0.5
-        step = self.system.interval / self._period
-        return -0.5 * step < off <= 0.5 * step
+            return 0
+        passed = (frame.time / self._period - self._phase) * self._phases
+        off = (passed + 0.5) % 1.0 - 0.5
+        step = self.system.interval / self._period * self._phases
+        return round(passed - off) % self._phases if -0.5 * step < off <= 0.5 * step else None
 
-    def _found(self, time, field, about, contrast):
+    def _correlations(self, field):
+        """Return the correlation (delays,) of a field with this one and earlier ones."""
+        about = field - field.mean()
+        norm = np.linalg.norm(about)
+        self._before.appendleft(about / norm if norm > 0.0 else np.full_like(about, math.nan))
+        found = np.full(self._before.maxlen or 0, math.nan)
+        found[: len(self._before)] = [(self._before[0] * one).sum() for one in self._before]
+        return found
+
+    def _found(self, time, at_phase, now, about, correlations):
+        field = at_phase[now]
         averaged = {
             "shell_power": about.power,
-            "contrast": np.array(contrast),
+            "contrast": np.array(field.std()),
             "wavelength": np.array(about.wavelength),
             "fold_order": about.order,
         }
         series = {f"{name}_series": averaged[name] for name in averaged if name != "shell_power"}
-        return averaged | series | {"height_field": field, "pattern_time": np.array(time)}
+        series |= {"height_field": field, "pattern_time": np.array(time)}
+        over = {"mean_height": at_phase, "height_autocorrelation": correlations}
+        return averaged | over | series
 
     def combine(self, means: Values) -> Values:
         """Return the means, and how much of a wavelength half a shell is."""
