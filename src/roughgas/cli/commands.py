@@ -56,8 +56,8 @@ COMMANDS = {
         value("--fps RATE", "frames a second", default="25"),
         value(
             "--colour",
-            "meaning of colour in a mixture",
-            choices=("spin", "species"),
+            "meaning of colour: spin, species of a mixture, or height of spheres, seen from above",
+            choices=("spin", "species", "height"),
             default="spin",
         ),
         output(".mp4 or .gif files", nargs="+"),

@@ -81,11 +81,12 @@ def _panel(options: Namespace, place: config.Place, settings: dict[str, Any]) ->
     from roughgas.show.movies import MovieSubject
 
     name, scene = options.experiment, build(settings, place.r, place.beta)
+    if options.colour == "height" and len(scene.box) == 2:
+        raise InputError("--colour", "height", "be spin or species of disks")
     take = chosen_take(options, settings, scene)
     simulated = snapshots(scene, settings, place.seed, take)
     shots = list(watched(f"{name}: simulated", take.frames, "frames", simulated))
-    by_species = options.colour == "species"
-    return MovieSubject(name, settings, scene, place.seed, by_species), shots
+    return MovieSubject(name, settings, scene, place.seed, options.colour), shots
 
 
 def reduce(options: Namespace) -> None:

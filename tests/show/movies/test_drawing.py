@@ -153,3 +153,20 @@ def test_particles_that_differ_are_drawn_at_their_size():
     assert spin_scales(about, shots(bodies=UNLIKE))[0] == pytest.approx(
         spin_scales(about, shots())[0] / np.array([1.0, 2.0, 1.0])
     )
+
+
+def test_spheres_seen_from_above_are_the_lighter_the_higher():
+    """The highest is drawn last, the floor not at all; heights are those above the floor."""
+    about = subject("layer", [SIDE, SIDE, "open"])._replace(colour="height")
+    position = np.array([[3.0, 4.0, 8.0], [6.0, 5.0, 12.0], [9.0, 7.0, 3.0]])
+    frames = shots(2, position=position, spin=np.zeros((3, 3)), angle=None, floor=2.0)
+    figure, show = picture([(about, frames)])
+    show(1)
+    axes = figure.axes[0]
+    assert axes.get_xlabel() == "$x/a$" and axes.get_ylabel() == "$y/a$"
+    disks = axes.collections[0]
+    assert disks.get_offsets().tolist() == [[9.0, 7.0], [3.0, 4.0], [6.0, 5.0]]
+    shades = disks.get_facecolor()[:, 0]
+    tallest = np.percentile([1.0, 6.0, 10.0], 99)
+    assert shades == pytest.approx(np.minimum(np.array([1.0, 6.0, 10.0]) / tallest, 1.0), abs=0.01)
+    assert not [one for one in axes.patches if one.get_width() > SIDE / 2 and one.get_height() == 2]

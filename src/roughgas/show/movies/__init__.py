@@ -15,7 +15,15 @@ from roughgas.config.labels import names_of
 from roughgas.data.reduced import third_axis
 from roughgas.scene import Scene
 from roughgas.show import style
-from roughgas.show.movies.particles import OF_SPECIES, Boundaries, Disks, Spheres, View
+from roughgas.show.movies.particles import (
+    OF_SPECIES,
+    Boundaries,
+    Disks,
+    Heights,
+    Spheres,
+    View,
+    heights,
+)
 from roughgas.show.style import write_movie
 from roughgas.simulation import schedule
 from roughgas.simulation.trajectory import Snapshot
@@ -24,6 +32,7 @@ WIDTH = 4.8  # inches
 DPI = {".gif": 80, ".mp4": 200}
 DPI_BESIDE = {".gif": 60, ".mp4": 120}  # where several are side by side
 TALLEST = 1.5  # of what is shown, in widths of the box
+TALL = 99.0  # percentile of height from which on spheres seen from above are white
 SLIDING_IMAGES = 0.15  # of the images above and below that is shown, in heights of the box
 FRAME_SPACE, GRAPH = 0.85, 1.25  # inches: title and label, and the graph beneath
 PER_PARTICLE, SHAKES = "collisions per particle", "shakes"
@@ -36,7 +45,7 @@ class MovieSubject(NamedTuple):
     settings: Mapping[str, Any]
     scene: Scene
     seed: int
-    by_species: bool = False  # how particles are coloured; else by their spin
+    colour: str = "spin"  # what particles are coloured by: spin, species, or height, from above
 
 
 Panel = tuple[MovieSubject, Sequence[Snapshot]]
@@ -87,16 +96,14 @@ def _panel(figure, subject, shots, view, room):
     above, below = figure.subplots(2, 1, height_ratios=(room + FRAME_SPACE, GRAPH))
     figure.suptitle(_title(subject, view), fontsize=9, linespacing=1.4)
     _set_up(above, subject.scene, view)
-    kind = Disks if len(subject.scene.box) == 2 else Spheres
-    by_species = shots[0].bodies is not None and (subject.by_species or shots[0].spin is None)
-    particles = kind(above, view, by_species)
+    particles, name = _particles(above, subject, shots, view)
     scales = spin_scales(subject, shots)
     boundaries = Boundaries(above, view, subject.scene.effects)
-    if by_species:
+    if particles.coloured is None:
         _name_species(above, subject)
-    elif shots[0].spin is not None:
+    elif name:
         bar = figure.colorbar(particles.coloured, ax=above, shrink=0.9, pad=0.02)
-        bar.set_label(f"{particles.quantity} / thermal spin")
+        bar.set_label(name)
         bar.minorticks_off()
     present = _graph(below, subject, shots)
 
@@ -107,6 +114,19 @@ def _panel(figure, subject, shots, view, room):
         present(frame)
 
     return show
+
+
+def _particles(axes, subject, shots, view):
+    """Return what draws the particles, and what their colour means, if anything."""
+    if subject.colour == "height":
+        tallest = max(np.percentile(heights(shot), TALL) for shot in shots)
+        return Heights(axes, view, tallest), "height above the floor / a"
+    by_species = shots[0].bodies is not None and (
+        subject.colour == "species" or shots[0].spin is None
+    )
+    kind = Disks if len(subject.scene.box) == 2 else Spheres
+    name = "" if shots[0].spin is None else f"{kind.quantity} / thermal spin"
+    return kind(axes, view, by_species), name
 
 
 def _name_species(axes, subject):
@@ -129,10 +149,11 @@ def view_of(subject: MovieSubject, shots: Sequence[Snapshot]) -> View:
     """Return what is seen of the box: all of it, but no more than TALLEST widths high.
 
     In space it is seen from the side: the vertical axis is that of gravity, or of the gradient of
-    shear.
+    shear; coloured by height, it is seen from above.
     """
     scene, lengths = subject.scene, subject.settings["box"]
-    vertical = len(lengths) - 1 if scene.effects.gravity is not None else 1
+    falls = scene.effects.gravity is not None and subject.colour != "height"
+    vertical = len(lengths) - 1 if falls else 1
     width, tall = float(lengths[0]), lengths[vertical]
     bottom = 0.0
     if lengths[vertical] == "open":
@@ -141,11 +162,10 @@ def view_of(subject: MovieSubject, shots: Sequence[Snapshot]) -> View:
     shown = min(tall, TALLEST * width)
     margin = 0.04 * width if scene.box[0] is None else 0.0  # where walls are drawn
     images = SLIDING_IMAGES * tall if scene.effects.shear is not None else 0.0
-    if scene.box[vertical] is None and lengths[vertical] != "open":  # a lid, and what is beneath
+    if scene.box[vertical] is None and lengths[vertical] != "open":  # two walls across
         bottom, images = -0.04 * width, 0.04 * width
-        return View(
-            -margin, width + margin, bottom, shown + images, vertical, (scene.box[0], None), False
-        )
+        sides = -margin, width + margin, bottom, shown + images
+        return View(*sides, vertical, (scene.box[0], None), False, falls)
     return View(
         left=-margin,
         right=width + margin,
@@ -154,6 +174,7 @@ def view_of(subject: MovieSubject, shots: Sequence[Snapshot]) -> View:
         vertical=vertical,
         periods=(scene.box[0], scene.box[vertical]),
         cropped=shown < tall,
+        falls=falls,
     )
 
 

@@ -37,6 +37,7 @@ class View(NamedTuple):
     vertical: int  # axis of the box
     periods: tuple[float | None, float | None]  # along what is drawn across and up
     cropped: bool  # whether there is more of it above
+    falls: bool = True  # whether what is up is up; not seen from above
 
 
 def copies(view: View, shot: Snapshot) -> tuple[np.ndarray, ...]:
@@ -129,6 +130,28 @@ class Spheres:
         self._disks.set_edgecolor(list(to_rgba_array(EDGE, rim)))
 
 
+class Heights:
+    """Spheres seen from above, the highest last, the lighter the higher above the floor."""
+
+    def __init__(self, axes: Axes, view: View, tallest: float) -> None:
+        self._view, self.coloured = view, ScalarMappable(Normalize(0.0, tallest), "gray")
+        self._disks = add_circles(axes, linewidth=0.0)
+
+    def show(self, shot: Snapshot, scale: np.ndarray) -> None:
+        """Bring them to a snapshot; thermal spins do not matter."""
+        height = heights(shot)
+        of, x, y, _ = copies(self._view, shot)
+        order = np.argsort(height[of], kind="stable")
+        of = of[order]
+        move(self._disks, x[order], y[order], 2.0 * shot.radius()[of])
+        self._disks.set_facecolor(list(self.coloured.to_rgba(height[of])))
+
+
+def heights(shot: Snapshot) -> np.ndarray:
+    """Return the heights of the particles above the floor, (N,) in a."""
+    return shot.position[:, -1] - (shot.floor or 0.0)
+
+
 class Boundaries:
     """The floor as a bar that moves, and side walls; those that are shaken carry scratches."""
 
@@ -141,7 +164,7 @@ class Boundaries:
         if effects.shaken_walls is not None:
             self._scratches = LineCollection([], color=SCRATCH, linewidth=1.2)
             axes.add_collection(self._scratches)
-        if effects.floor is not None:
+        if effects.floor is not None and view.falls:
             wide = view.right - view.left
             self._floor = Rectangle((view.left, view.bottom), wide, 0.0, color=WALL)
             axes.add_patch(self._floor)
