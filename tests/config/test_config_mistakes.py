@@ -52,8 +52,8 @@ vibrated.effects.floor.roughness | 'rough' | effects.floor.roughness = 'rough': 
     [-1, 1] or be particles
 cooling.effects.gravty | {acceleration: 1} | effects: key = 'gravty': must be one of back_wall,
     bottom_wall, contact_averages,
-vibrated.effects.floor.height | 1 | effects.floor: key = 'height': must be one of amplitude, period,
-    phase, restitution, roughness, wave
+vibrated.effects.floor.height | 1 | effects.floor: key = 'height': must be one of amplitude,
+    half_stroke, period, phase, restitution, roughness, wave
 vibrated.effects.floor.period | (absent) | effects.floor.period = (nothing): must be given
 vibrated.schedule.measure | -1 | schedule.measure = -1: must be a number in (0, 1000000000]
 cooling.schedule.measure | 1 | schedule: key = 'measure': must be one of kind, replicas, thermalise,

@@ -4,12 +4,14 @@ import math
 
 import numpy as np
 import pytest
-from brute_force import KERNELS, begin, run, settings
+from brute_force import KERNELS, begin, run, scene_of, settings, snapshot
+from brute_force.beside import brute_force_from
 from brute_force.sides import ALIKE, Side
 
 from roughgas.base import InputError
 from roughgas.effects import motions
 from roughgas.effects.motions import Sine, sawtooth, triangle
+from roughgas.kernel.hooks import displacement
 from roughgas.kernel.state import BASE, BOUNDARY_HITS, NOW
 from roughgas.scene import build
 from roughgas.scene.initial import check_places
@@ -26,12 +28,11 @@ def closed(effects, box, particles=12):
     return {"particles": particles, "box": box, "effects": effects}
 
 
-STROKE = 1.5, 1.1
 FORMS = {
-    "sawtooth": sawtooth(*STROKE),
-    "reversed_sawtooth": triangle(*STROKE, 0.1),
-    "triangle": triangle(*STROKE, 0.5),
-    "sine": Sine(*STROKE),
+    "sawtooth": sawtooth,
+    "reversed_sawtooth": lambda *stroke: triangle(*stroke, 0.1),
+    "triangle": lambda *stroke: triangle(*stroke, 0.5),
+    "sine": Sine,
 }
 
 
@@ -39,7 +40,7 @@ FORMS = {
 @pytest.mark.parametrize("weight", [0.0, -0.7, 0.9])
 def test_strokes_are_met_as_brute_force_finds_them(wave, weight):
     """Particles that nothing pulls, or gravity towards the wall, or away from it."""
-    motion = FORMS[wave]
+    motion = FORMS[wave](1.5, 1.1)
     meet = motions.law_of(motion).meet
     moving = ALIKE | {"amplitude": 1.5, "period": 1.1, "wave": wave}
     side, rng, met = Side("lid", 0, 1.0, 0.0, 0, moving), np.random.default_rng(1), 0
@@ -58,6 +59,68 @@ def test_strokes_are_met_as_brute_force_finds_them(wave, weight):
         else:
             assert found > 3.9
     assert met > 1
+
+
+@pytest.mark.parametrize("wave", FORMS)
+@pytest.mark.parametrize(
+    ("amplitude", "period", "weight"), [(1e-5, 1e-9, 0.0), (1e-5, 1e-9, 0.9), (0.0, 1.0, 0.9)]
+)
+def test_the_shortest_period_and_a_wall_at_rest_are_met_at_once(wave, amplitude, period, weight):
+    """Within twenty periods of when the strokes are reached, as far as roundings of the time allow;
+    there may be 1e12 before: a search that crept would not return."""
+    motion, rng = FORMS[wave](amplitude, period), np.random.default_rng(2)
+    for gap in (1.1e-5, 1e-3, 1.0):
+        for speed in (-1e-3, -1.0, -100.0):
+            reached = motions.fall(gap - amplitude, speed, weight)
+            phase = rng.uniform(0.0, period)
+            met = motions.law_of(motion).meet(motion, weight, gap, speed, phase)[0]
+            latest = 20.0 * period if amplitude else 0.0
+            assert -1e-13 * reached <= met - reached <= latest + 1e-13 * reached
+
+
+def moved(effects, box, name):
+    """How far a wall has moved at 400 instants of a period of 1.7."""
+    wall = getattr(build(closed(effects, box), 0.9, 0.0).effects, name)
+    return np.array([displacement(wall, 1.7 * k / 400) for k in range(400)])
+
+
+@pytest.mark.parametrize(
+    ("name", "amplitude", "lowest"),
+    [("floor", 3.0, 0.0), ("lid", 3.0, 0.0), ("shaken_walls", 1.5, -1.5)],
+)
+def test_half_a_stroke_means_the_same_of_all_that_is_shaken(name, amplitude, lowest):
+    """1.5 about the middle, as the old keys have it whose meaning differs; at phase 1/4 a quarter
+    of the period later: the sine is then where it would have been."""
+    around, box = (BED, [20, "open"]) if name == "floor" else (DISKS, [20, 20])
+    around = around | ({"bottom_wall": {}} if name == "lid" else {})
+    material = {"restitution": 1.0, "roughness": 0.5, "period": 1.7}
+    material |= {} if name == "shaken_walls" else {"wave": "sine"}
+    new, old, late = (
+        moved(around | {name: material | own}, box, name)
+        for own in (
+            {"half_stroke": 1.5},
+            {"amplitude": amplitude},
+            {"half_stroke": 1.5, "phase": 0.25},
+        )
+    )
+    assert (new == old).all() and (new.min(), np.ptp(new)) == pytest.approx((lowest, 3.0))
+    assert late == pytest.approx(np.roll(new, -100), abs=1e-12)
+
+
+def test_a_phase_of_shaken_walls_is_a_start_in_the_middle_of_a_period():
+    """The same 200 collisions as brute force makes that starts so much later."""
+    experiment = settings("shaken", 16, [14, 14], shaken_walls={"period": 1.7})
+    _, world = scene_of(experiment, 0.9, 0.2)
+    experiment["effects"]["shaken_walls"]["phase"] = 0.3
+    scene, state = begin(experiment, 0.9, 0.2, 5)
+    for _ in range(20):
+        shot = snapshot(state, scene)
+        brute = brute_force_from(world, shot._replace(time=shot.time + 0.3 * 1.7))
+        run(state, scene, 1, collisions=10)
+        brute.run(10)
+        shot = snapshot(state, scene)
+        assert shot.velocity == pytest.approx(brute.v, abs=1e-8)
+        assert shot.spin == pytest.approx(brute.w[:, -shot.spin.shape[1] :], abs=1e-8)
 
 
 TINY = {"amplitude": 1e-5, "period": 1e-9}
@@ -101,6 +164,12 @@ REFUSED = {
     | {"walls": {"restitution": 1, "roughness": 1}, "left_wall": {}, "right_wall": {}},
     "effects = bottom_wall and shear: must not close the axis along which images slide past each "
     "other": LID | {"lid": {}, "shear": {"velocity": 1.0}},
+    "effects.lid.half_stroke = 1.0: must be given, or else amplitude, and not both": LID
+    | {"lid": SHAKEN | {"half_stroke": 1.0}},
+    "effects.lid.amplitude = 1.0: must not be given where the wall has a temperature": LID
+    | {"lid": SHAKEN | {"temperature": 1.0}},
+    "effects.shaken_walls.half_stroke = (nothing): must be given, or else amplitude, and not "
+    "both": {"shaken_walls": {"period": 1.0, "restitution": 1, "roughness": -1}},
     "box[1] = 20.0: must be a number of at least 20.01": LID | {"lid": SHAKEN | {"amplitude": 18}},
 }
 

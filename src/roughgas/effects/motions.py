@@ -20,6 +20,7 @@ import math
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
+from roughgas.base import InputError
 from roughgas.effects.settings import LENGTH, TIME, Number, SceneContext, Word, check_speed
 from roughgas.kernel.jit import jit, of_types
 from roughgas.kernel.mathematics import TURN, sine_and_cosine
@@ -28,17 +29,25 @@ ROUNDING = 2.0**-52
 MEET, LOOK = range(2)  # what comes next: the surface, or the search for when it does
 RISES = {"reversed_sawtooth": 0.1, "triangle": 0.5}  # shares of a period
 WAVES = ("sawtooth", *RISES, "sine")
-AMPLITUDE = Number("Height of a whole stroke, in a (2 A of a sine); 0 is a wall at rest.", LENGTH)
-PERIOD = Number("Time between strokes, in T.", TIME)
-SETTINGS = {
-    "amplitude": AMPLITUDE,
-    "period": PERIOD,
+STROKE = {  # of all that is shaken
+    "amplitude": Number(
+        "Height of a whole stroke, in a (2 A of a sine); 0 is a wall at rest.", LENGTH, math.inf
+    ),
+    "half_stroke": Number(
+        "In place of an amplitude: half of a stroke, in a (A of a sine A sin 2 pi t/T), of "
+        "whatever is shaken.",
+        LENGTH,
+        math.inf,
+    ),
+    "period": Number("Time between strokes, in T.", TIME),
+    "phase": Number("Share of a period that has passed at the start.", "[0, 1)", 0.0),
+}
+SETTINGS = STROKE | {
     "wave": Word(
         "Form of its motion; the sawtooth returns at once, the reversed one rises in a tenth of "
         "the period.",
         WAVES,
     ),
-    "phase": Number("Share of a period that has passed at the start.", "[0, 1)", 0.0),
 }
 
 
@@ -83,10 +92,26 @@ def triangle(amplitude: float, period: float, rise: float, ahead: float = 0.0) -
     return Pieces(amplitude, period, ahead, (0.0, rise), (0.0, amplitude), speeds)
 
 
-def motion_of(around: SceneContext, settings: Mapping[str, Any]) -> Pieces | Sine:
-    """Return the motion that settings describe; raise InputError for one that is too fast."""
-    amplitude, period, wave = (settings[key] for key in ("amplitude", "period", "wave"))
-    check_speed(around, amplitude, period)
+def half_stroke(
+    around: SceneContext, settings: Mapping[str, Any], share: float = 0.5, fewest: int = 1
+) -> float:
+    """Return half of a stroke, in a, which is a `share` of an amplitude; 0 if not given.
+
+    Raises InputError where it is given twice, or less often than `fewest`, or the motion is too
+    fast.
+    """
+    given = [x for x in (settings["half_stroke"], share * settings["amplitude"]) if x < math.inf]
+    if not fewest <= len(given) <= 1:
+        key, value = f"effects.{around.name}.half_stroke", given[0] if given else "(nothing)"
+        raise InputError(key, value, "be given, or else amplitude, and not both")
+    (half,) = given or (0.0,)
+    check_speed(around, half / share, settings["period"])
+    return half
+
+
+def motion_of(half: float, settings: Mapping[str, Any]) -> Pieces | Sine:
+    """Return the motion that settings describe; `half` of a stroke in a."""
+    amplitude, period, wave = 2.0 * half, settings["period"], settings["wave"]
     ahead = settings["phase"] * period
     if wave == "sine":
         return Sine(amplitude, period, ahead)

@@ -20,14 +20,12 @@ from typing import NamedTuple
 
 from roughgas.base import InputError, NeedsError
 from roughgas.effects import motions
-from roughgas.effects.motions import AMPLITUDE, LOOK, PERIOD, Motion, Swing, fall, law_of, motion_of
+from roughgas.effects.motions import LOOK, Motion, Swing, fall, law_of, motion_of
 from roughgas.effects.settings import (
-    LENGTH,
     MATERIAL,
     TEMPERATURE,
     Number,
     Word,
-    check_speed,
     register,
 )
 from roughgas.kernel import hooks
@@ -61,11 +59,11 @@ SIDES = {  # name -> (axis, which end of it); -1 is the last axis
     "lid": (-1, HIGH),
 }
 NORMAL, ALONG = "normal", "along"
-SHAKEN_SETTINGS = {
-    "amplitude": Number(
-        "Largest displacement from the middle, in a: half a stroke (A of a sine).", LENGTH
-    ),
-    "period": PERIOD,
+SHAKEN_SETTINGS = motions.STROKE | {
+    "amplitude": motions.STROKE["amplitude"]._replace(
+        description="Largest displacement from the middle, in a: the same as `half_stroke`, and "
+        "half of what an amplitude of a floor is."
+    )
 }
 SIDE_SETTINGS = {
     "restitution": MATERIAL["restitution"]._replace(default=1.0),
@@ -77,8 +75,7 @@ SIDE_SETTINGS = {
         default=0.0,
     ),
     **motions.SETTINGS,
-    "amplitude": AMPLITUDE._replace(default=0.0),
-    "period": PERIOD._replace(default=math.inf),
+    "period": motions.STROKE["period"]._replace(default=math.inf),
     "shaken": Word("Whether it is shaken along its normal or along itself.", (NORMAL, ALONG)),
     "temperature": Number(
         "Temperature of a thermal wall, in m a^2/T^2: particles leave it with Maxwellian "
@@ -125,13 +122,14 @@ class Wall(NamedTuple):
     def from_settings(cls, settings, around):
         """Return the wall that the settings describe; raise InputError where they contradict."""
         place, velocity = _place(around), settings["velocity"]
-        _refuse_contradictions(settings, around)
+        half = motions.half_stroke(around, settings, fewest=0)
+        _refuse_contradictions(settings, around, half > 0.0)
         if settings["temperature"] < math.inf:
             return ThermalWall(place, velocity=velocity, temperature=settings["temperature"])
-        material = settings["restitution"], settings["roughness"]
-        if settings["amplitude"] > 0.0:
+        material = _material(settings)
+        if half > 0.0:
             way = "motion" if settings["shaken"] == NORMAL else "sliding"
-            return MovingWall(place, *material, **{way: motion_of(around, settings)})
+            return MovingWall(place, *material, **{way: motion_of(half, settings)})
         return (MovingWall if velocity else cls)(place, *material, velocity)
 
 
@@ -160,9 +158,9 @@ class ShakenWalls(Wall):
     @classmethod
     def from_settings(cls, settings, around):
         """Return the walls, as far apart as the box is wide."""
-        amplitude, period, *material = settings.values()
-        check_speed(around, amplitude, period)
-        return cls(_both_ends(around), *material, sliding=Swing(amplitude, period))
+        half, period = motions.half_stroke(around, settings, share=1.0), settings["period"]
+        swing = Swing(half, period, settings["phase"] * period)
+        return cls(_both_ends(around), *_material(settings), sliding=swing)
 
 
 class Floor(Wall):
@@ -174,9 +172,13 @@ class Floor(Wall):
     @classmethod
     def from_settings(cls, settings, around):
         """Return the floor whose motion the settings describe."""
+        motion = motion_of(motions.half_stroke(around, settings), settings)
         place = Place(len(around.box) - 1, 1.0, 0.0, 0)
-        material = settings["restitution"], settings["roughness"]
-        return cls(place, *material, motion=motion_of(around, settings))
+        return cls(place, *_material(settings), motion=motion)
+
+
+def _material(settings):
+    return settings["restitution"], settings["roughness"]
 
 
 def _both_ends(around):
@@ -198,16 +200,14 @@ def _place(around):
     return Place(axis, 1.0 - 2.0 * end, around.box[axis] * end, along)
 
 
-def _refuse_contradictions(settings, around):
+def _refuse_contradictions(settings, around, shaken):
     key, given = f"effects.{around.name}", around.effects[around.name]
-    shaken = settings["amplitude"] > 0.0
     if shaken and settings["period"] == math.inf:
         raise InputError(f"{key}.period", "(nothing)", "be given where the wall is shaken")
-    check_speed(around, settings["amplitude"], settings["period"])
     if shaken and settings["velocity"] != 0.0:
         raise InputError(f"{key}.velocity", settings["velocity"], "be 0 where the wall is shaken")
     if settings["temperature"] < math.inf:
-        for name in ("restitution", "roughness", "amplitude"):
+        for name in ("restitution", "roughness", "amplitude", "half_stroke"):
             if name in given:
                 legal = "not be given where the wall has a temperature"
                 raise InputError(f"{key}.{name}", given[name], legal)
@@ -305,9 +305,8 @@ def _leave(wall, index, state, scene, i, time):
 @jit
 def phase_of_wall(wall, index, base):
     """Return the time from the beginning of a period to the clock's base."""
-    if wall.motion is not None:
-        return motions.since_period_began(wall.motion, base)
-    return 0.0 if wall.sliding is None else motions.since_period_began(wall.sliding, base)
+    shaken = wall.sliding if wall.motion is None else wall.motion
+    return 0.0 if shaken is None else motions.since_period_began(shaken, base)
 
 
 def displacement_of_wall(wall, time):

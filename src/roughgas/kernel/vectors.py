@@ -63,18 +63,6 @@ def write(array, i, first, vector):
 
 
 @jit
-def along_first(like, s):
-    """Return the vector s along the first axis, with as many components as `like`."""
-    return (s,) + tuple(0.0 for k in range(1, len(like)))
-
-
-@jit
-def along_last(like, s):
-    """Return the vector s along the last axis, with as many components as `like`."""
-    return tuple(0.0 for k in range(1, len(like))) + (s,)
-
-
-@jit
 def along_axis(like, axis, s):
     """Return the vector s along an axis, with as many components as `like`."""
     return tuple(s if k == axis else 0.0 for k in range(len(like)))

@@ -54,8 +54,10 @@ def scene_of(name: str, settings: dict[str, Any]) -> dict[str, Any]:
     floor, model = effects.get("floor"), effects.get("contact_time", {})
     for other in set(effects) - KNOWN:
         raise InputError(f"effects of {name}", other, f"be among {', '.join(sorted(KNOWN))}")
-    if floor and (floor.get("wave", WAVE) != WAVE or "particles" in floor.values()):
-        raise InputError(f"floor of {name}", floor, "be a sawtooth of a material of its own")
+    unlike = floor and (floor.get("wave", WAVE) != WAVE or "particles" in floor.values())
+    if unlike or (floor and {"half_stroke", "phase"} & floor.keys()):
+        legal = "be a sawtooth of an amplitude, no phase, and a material of its own"
+        raise InputError(f"floor of {name}", floor, legal)
     return {
         "particles": settings["particles"],
         "box": [width, None if height == "open" else height],
