@@ -223,7 +223,7 @@ def test_a_function_is_shown_as_it_is_compiled_for_a_scene():
         ("colide", "cooling", "--show = colide: must be a compiled function"),
         ("collide", "coolin", "experiment = 'coolin': must be one of cooling"),
         pytest.param(
-            *("resolve_wall", "cooling", "resolve_walls: must be compiled for this scene"),
+            *("resolve_wall", "cooling", "resolve_wall: must be compiled for this scene"),
             marks=pytest.mark.slow,  # which compiles it
         ),
     ],
