@@ -1,7 +1,5 @@
 """Floors that move as a sawtooth, a sine and a triangle; walls."""
 
-import math
-
 import numpy as np
 import pytest
 from brute_force import begin, run, scene_of, settings, snapshot
@@ -13,9 +11,8 @@ from roughgas.effects import motions
 from roughgas.effects.motions import Sine, sawtooth, triangle
 from roughgas.effects.settings import SceneContext, make
 from roughgas.effects.walls import Floor
-from roughgas.kernel.hooks import CODES, displacement
+from roughgas.kernel.hooks import displacement
 from roughgas.kernel.memory import new_state
-from roughgas.kernel.state import BASE, BOUNDARY_HITS
 
 
 def one_particle(height, velocity, **floor):
@@ -26,6 +23,7 @@ def one_particle(height, velocity, **floor):
 
 
 time_to_sine = from_python(motions.time_to_sine)
+search_sine = from_python(motions.search_sine)
 
 
 SPIN = {"spin": {"inertia": 0.5}}
@@ -87,19 +85,18 @@ def test_an_unknown_wave_is_an_error_that_names_the_known_ones(wave):
         from_settings(wave=wave)
 
 
-def test_a_particle_above_a_sine_looks_again_when_it_is_back():
-    """What is foreseen then is the same meeting that a search from the start of its path finds."""
-    scene, state = one_particle(21.3, (0.3, 0.0), wave="sine")
-    floor, lowest = scene.effects.floor, 20.3
-    run(state, scene, 1, interval=1e-9)
-    back, code = state.agenda.boundary_time[0], state.agenda.boundary_code[0]
-    assert back == pytest.approx(math.sqrt(2.0 * (lowest - floor.amplitude)), rel=1e-14)
-    assert code % CODES == motions.LOOK
-    run(state, scene, 1, interval=back)
-    assert state.agenda.boundary_code[0] % CODES == motions.MEET
-    meeting = state.clock[BASE] + state.agenda.boundary_time[0]
-    assert meeting == pytest.approx(time_to_sine(floor.motion, 1.0, lowest, 0.0, 0.0)[0], rel=1e-14)
-    assert state.counts[BOUNDARY_HITS] == 0 and state.changes[0] == 0
+@pytest.mark.parametrize("share", [0.0, 0.3, 0.99, 1.01])
+def test_a_search_that_ends_early_has_passed_no_meeting(share):
+    """It goes on from the start of the path, and so finds the same bits as if it had not ended."""
+    scene, _ = one_particle(21.3, (0.3, 0.0), wave="sine")
+    fall = (scene.effects.floor.motion, 1.0, 20.3, 0.0, 0.0)
+    meeting, _ = time_to_sine(*fall)
+    limit = share * meeting
+    time, what = search_sine(*fall, limit)
+    if share > 1.0:
+        assert (time, what) == (meeting, motions.MEET)
+    else:
+        assert limit <= time < meeting and what == motions.LOOK
 
 
 def thrown(velocity, spin=0.0, **walls):

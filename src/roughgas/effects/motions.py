@@ -132,7 +132,7 @@ class Law(NamedTuple):
     met: Any = None
     """(motion, what, phase) -> the speed of the surface when it meets a particle so"""
     waits: bool = False
-    """What flies above all strokes is looked at again when it is back: most collide before"""
+    """It is searched for no longer than until the next contact: few particles get past that"""
 
 
 @of_types
@@ -242,10 +242,17 @@ def _speed_of_piece(motion, what, phase):
 
 @jit
 def time_to_sine(motion, gravity, height, speed, phase):
-    """Return when a particle with its lowest point at `height`, rising at `speed`, meets it.
+    """Return (time, what): when a particle with its lowest point at `height`, rising at `speed`,
+    meets it; inf where they never meet.
 
-    phase is the time since some period began, negative before. Times in T, lengths in a; inf where
-    they never meet. Returns (time, MEET).
+    phase is the time since some period began, negative before. Times in T, lengths in a.
+    """
+    return search_sine(motion, gravity, height, speed, phase, math.inf)
+
+
+@jit
+def search_sine(motion, gravity, height, speed, phase, limit):
+    """Return (time, what): when they meet, or a later time than `limit` before which they do not.
 
     With f the gap at the time t that has been reached, b a bound of -f'' within the reach D of the
     next step, f(t + d) >= f + f' d - b d^2/2 for 0 <= d <= D: the step d to the root of that
@@ -261,7 +268,7 @@ def time_to_sine(motion, gravity, height, speed, phase):
     most = abs(gravity) + sharpest
     slack = math.sqrt(2.0 * ROUNDING * (motion.amplitude + abs(height)) / most)
     time, reach = 0.0, motion.period  # so far that the acceleration may be any
-    while time < math.inf:
+    while time < limit:
         surface, surface_speed, acceleration = sine_motion(motion, phase + time)
         gap = height + speed * time - 0.5 * gravity * time * time - surface
         relative = speed - gravity * time - surface_speed
@@ -277,7 +284,7 @@ def time_to_sine(motion, gravity, height, speed, phase):
         step = max(step, back - time)
         reach = 2.0 * step
         time += step
-    return math.inf, MEET
+    return time, LOOK
 
 
 @jit

@@ -30,6 +30,7 @@ from roughgas.effects.settings import (
 )
 from roughgas.kernel import hooks
 from roughgas.kernel.contact import collide_with_wall
+from roughgas.kernel.event_lists import first_contact
 from roughgas.kernel.jit import jit
 from roughgas.kernel.mathematics import gaussian_vector, logarithm, uniform
 from roughgas.kernel.particles import (
@@ -43,7 +44,7 @@ from roughgas.kernel.particles import (
     spin_of,
     turn_spin,
 )
-from roughgas.kernel.state import BOUNDARY_HITS, NOBODY, NOW
+from roughgas.kernel.state import BOUNDARY_HITS, NOBODY
 from roughgas.kernel.vectors import add_scaled, along_axis, subtract
 
 # Relative to what is shaken, a/T: any less, and a particle could hit it infinitely often in finite
@@ -228,11 +229,11 @@ def predict_wall(wall, index, state, scene, i):
     gravity = _pull(hooks.acceleration(scene.effects), place, dimension)
     if wall.motion is None:
         return time + fall(gap, speed, gravity), motions.MEET
-    if law_of(wall.motion).waits:
-        back = time + motions.time_below(wall.motion.amplitude, gravity, gap, speed, 0.0)
-        if back > state.clock[NOW]:
-            return back, LOOK
     phase = state.phase[index] + time
+    if law_of(wall.motion).waits:
+        limit = first_contact(state, i)
+        wait, what = motions.search_sine(wall.motion, gravity, gap, speed, phase, limit - time)
+        return (time + wait if what == motions.MEET else max(time + wait, limit)), what
     wait, what = law_of(wall.motion).meet(wall.motion, gravity, gap, speed, phase)
     return time + wait, what
 

@@ -300,13 +300,24 @@ def drop_contact(agenda, i, slot):
 def choose_next(state, i):
     """Make the earliest event of particle i its entry in the queue."""
     agenda = state.agenda
-    time, kind = _of_eight(agenda, i) if state.cells is None else _of_two(state, i)
+    time, kind = _contact_or_horizon(state, i)
     if agenda.boundary_time is not None and agenda.boundary_time[i] < time:
         time, kind = agenda.boundary_time[i], BOUNDARY
     if time == math.inf:
         kind = NOTHING
     agenda.kind[i] = kind
     enter_in_queue(state, i, time)
+
+
+@jit
+def first_contact(state, i):
+    """Return when particle i's first contact is foreseen, or foresight ends if that is earlier."""
+    return _contact_or_horizon(state, i)[0]
+
+
+@jit
+def _contact_or_horizon(state, i):
+    return _of_eight(state.agenda, i) if state.cells is None else _of_two(state, i)
 
 
 @jit

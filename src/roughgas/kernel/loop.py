@@ -94,13 +94,13 @@ def predict_events(state, scene, i, time):
     """Predict all events of particle i: its next meeting with a boundary, and its contacts."""
     agenda = state.agenda
     state.counts[PREDICTIONS] += 1
-    if agenda.boundary_time is not None:
-        boundary = hooks.next_boundary(scene.effects, state, scene, i)
-        agenda.boundary_time[i], agenda.boundary_code[i] = boundary
     if state.cells is None:
         find_by_sweep(state, scene, i, time)
     else:
         find_around(state, scene, i, time)
+    if agenda.boundary_time is not None:
+        boundary = hooks.next_boundary(scene.effects, state, scene, i)
+        agenda.boundary_time[i], agenda.boundary_code[i] = boundary
     choose_next(state, i)
 
 
