@@ -38,6 +38,7 @@ from roughgas.kernel.vectors import subtract
 ALL = -1  # every axis
 ORIGIN = 0.38196601125  # where cells begin, in their widths: no lattice has many sites on an edge
 FARTHEST = sys.float_info.max
+AT_ONCE = tuple(range(8))  # particles whose followers are read before any is put on a list
 
 
 @jit
@@ -233,8 +234,7 @@ def _collect(state, i, slide, duration, axis, step):
                 number = _append(found, number, cells.first[index(cell)])
     k = 0
     while k < number:
-        number = _append(found, number, cells.following[index(int(found[index(k)]))])
-        k += 1
+        k, number = _append_followers(cells.following, found, number, k, AT_ONCE)
     found[index(number)] = 0  # `decide` reads on to the end of a register
     return number
 
@@ -244,6 +244,20 @@ def _append(found, number, j):
     """Return how many are on the list with j, if that is a particle."""
     found[index(number)] = j
     return number + int(j != NOBODY)
+
+
+@jit
+def _append_followers(following, found, number, k, those):
+    """Do so with those that follow the k-th on the list and some after it, if these are there.
+
+    Return how far the list is done. Each alone would wait for what was put on the list before it.
+    """
+    end = number
+    behind = tuple(following[index(max(int(found[index(k + m)]), 0))] for m in range(len(those)))
+    for m in range(len(those)):
+        found[index(number)] = behind[m]
+        number += int((behind[m] != NOBODY) & (k + m < end))
+    return min(k + len(those), end), number
 
 
 @jit
