@@ -136,10 +136,6 @@ def test_of_species_what_depends_on_the_particle_takes_its_size_and_mass():
     assert point(COOLED, mass, species=MIXED).heavy == 3.0
     alike = {"alike": lambda frame: frame.species_of is None}
     assert point(COOLED, alike).alike == 1.0
-    with pytest.raises(
-        InputError, match=r"^observables\.cumulants = with species: must come without"
-    ):
-        point(COOLED, "cumulants", species=MIXED)
 
 
 def test_the_command_line_watches_and_reduced_datasets_hold_what_was_seen(tmp_path, monkeypatch):

@@ -30,6 +30,7 @@ from roughgas.theory.prediction import (
 FEW = 0.01
 """Share of contacts altered by the contact-time model, above which a result depends on it."""
 OF_SPECIES = ("E_trans", "E_rot", "R")
+PARTS = {"species", "other"}  # what is over nothing else is shown value by value
 MOST_VALUES = 4  # of a variable, that are all shown
 FLAGS = {YES: True, NO: False, UNKNOWN: None}
 QUOTED = {netcdf.POINT: ("experiment_json", "command"), netcdf.TASK: ("settings_json",)}
@@ -113,6 +114,7 @@ def _point_text(point: Dataset) -> str:
     rows += [*energies(point), ["steady state", _steady(point)], *altered(point)]
     rows += [*contact_log(point), _cost(point)]
     parts = [columns(rows), *([by_species(point)] if "species" in point else [])]
+    parts += [seen for seen in [observed(point)] if seen]
     parts += [_books(point)] if BOOKS <= set(point.variables) else []
     return "\n\n".join([*parts, f"To make it again:\n{about['command']}"])
 
@@ -207,9 +209,10 @@ def _reduced_text(data: Dataset) -> str:
         steady = "yes" if row["equilibrated"] > EQUILIBRATED else steady
         table.append([*place, f"{row['n_seeds']:.0f}", *_found(row), steady])
     over = f"{swept}, r and beta" if swept else "r and beta"
+    filled = f", packing {about['packing']:.3g}" if "packing" in about else ""
     head = [
         ["experiment", f"{about['experiment']}, scale {about['scale']}"],
-        ["gas", f"{particles_of(data)} {SHAPES[int(about['dimension'])]}"],
+        ["gas", f"{particles_of(data)} {SHAPES[int(about['dimension'])]}{filled}"],
         ["points", f"{len(table) - 1} over {over}"],
         _cost(data.sum()),
     ]
@@ -311,6 +314,26 @@ def by_species(point: Dataset) -> str:
         found = [_estimate(one, f"{name}_species") for name in there]
         rows.append([str(name), str(int(one.species_particles)), *found])
     return columns(rows, numbers=True)
+
+
+def observed(point: Dataset) -> str:
+    """Return a row for each result of an observable, and what it is over; one for each species, or
+    pair of species, where it is over nothing else."""
+    rows = [["observed", "value", "meaning"]]
+    for key, about in point.variables.items():
+        if "observable" not in about.attrs or f"{key}_stderr" not in point:
+            continue
+        if not PARTS >= {*about.dims}:
+            over = ", ".join(f"{dim} ({point.sizes[dim]})" for dim in about.dims)
+            rows.append([str(key), f"over {over}", about.attrs["long_name"]])
+            continue
+        for at in np.ndindex(about.shape):
+            if list(at) == sorted(at):  # a pair is the same in either order
+                kinds = ", ".join(str(point.species.values[k]) for k in at)
+                one = point.isel(dict(zip(about.dims, at, strict=True)))
+                name = f"{key} [{kinds}]" if kinds else str(key)
+                rows.append([name, _estimate(one, str(key)), about.attrs["long_name"]])
+    return columns(rows) if rows[1:] else ""
 
 
 def _estimate(point: Dataset, name: str) -> str:

@@ -20,7 +20,15 @@ from roughgas.observables.distributions import (
 )
 from roughgas.observables.fields import HeatFlux, Profiles, Stress
 from roughgas.observables.layers import Layer, Pattern
-from roughgas.observables.plugin import Frame, Function, Observable, Setting, System, Whole
+from roughgas.observables.plugin import (
+    Frame,
+    Function,
+    Observable,
+    OfSpecies,
+    Setting,
+    System,
+    Whole,
+)
 
 __all__ = ["KINDS", "Frame", "Observable", "System"]
 
@@ -80,8 +88,8 @@ def _wanted(name, given):
     def make(system):
         if kind.spins and system.inertia is None:
             raise NeedsError(f"observables.{name}", "spin")
-        if kind.alike and not system.alike:
-            raise InputError(f"observables.{name}", "with species", "come without species")
+        if system.species and not kind.effects:
+            return OfSpecies(kind, system, values)
         return kind(system, **values)
 
     return Wanted(name, every, make)

@@ -29,7 +29,8 @@ Pair correlation is how likely particles are at a distance from each other,
 
     g(r) = <pairs at a distance in [r, r + dr)> / (N (N - 1)/2 * V_shell/V),
 
-1 where particles do not know of each other, and 0 below the diameter 2a. A cooling gas is looked at
+1 where particles do not know of each other, and 0 below the diameter 2a. Of two species it is that
+of the N_k N_l pairs of one with the other, 0 below a_k + a_l. A cooling gas is looked at
 in the moment of a collision; the pair that collides does not count. Its value at contact, chi,
 is that of a parabola through g just outside the diameter. In equilibrium chi is
 theory.contact_value: D. Henderson, Mol. Phys. 30, 971 (1975); N. F. Carnahan & K. E. Starling,
@@ -55,7 +56,7 @@ import numpy as np
 from roughgas.base import InputError
 from roughgas.data.variables import LENGTH, SPIN, TIME, Variable
 from roughgas.effects.settings import Number
-from roughgas.observables.plugin import Frame, Observable, Setting, System, Values, Whole
+from roughgas.observables.plugin import Frame, Group, Observable, Setting, System, Values, Whole
 from roughgas.theory.closed_forms import VOLUME
 
 
@@ -176,7 +177,7 @@ ROWS = 64  # particles that are compared with others at once
 class PairCorrelation(Observable):
     """The pair correlation function g(r), and its value at contact."""
 
-    alike = True
+    alike = pairs = True
     settings: ClassVar[Mapping[str, Setting]] = {
         "bins": Whole("Number of bins in a diameter.", 1, 1000, 20),
         "reach": Number(f"Largest distance, in a; {REACH:g} if the box is wide enough."),
@@ -201,26 +202,30 @@ class PairCorrelation(Observable):
         self._edges = self._width * np.arange(int((reach or min(REACH, most)) / self._width) + 1)
         middle = (self._edges[1:] + self._edges[:-1]) / 2.0
         self.coordinates = {"distance": middle}
-        D, N = system.dimension, system.particles
-        shells = VOLUME[D] * np.diff(self._edges**D)
-        self._ideal = N * (N - 1) / 2.0 * shells / system.volume
-        self._near = np.flatnonzero((middle > DIAMETER) & (middle < DIAMETER + FITTED))
+        D, groups = system.dimension, system.species or (Group(system.particles, 1.0),)
+        N, M = groups[0].particles, groups[-1].particles
+        number = N * M if len(groups) == 2 else N * (N - 1) / 2.0
+        self._ideal = number * VOLUME[D] * np.diff(self._edges**D) / system.volume
+        self._contact = contact = groups[0].radius + groups[-1].radius
+        outside = self._edges[:-1] > contact - GRAZE
+        self._near = np.flatnonzero(outside & (middle < contact + FITTED))
 
     def look(self, frame: Frame) -> Values:
         """Return g of a frame."""
         counts = np.zeros(len(self._ideal))
         for square in squares(frame, self._edges[-1]):
             if self.system.cooling:
-                square = square[np.abs(np.sqrt(square) - DIAMETER) > GRAZE]
+                square = square[~(np.abs(np.sqrt(square) - self._contact) <= GRAZE)]
             place = ((np.sqrt(square) + GRAZE) / self._width).astype(int)
             counts += np.bincount(place[place < len(counts)], minlength=len(counts))
-        return {"pair_correlation": counts / self._ideal}
+        with np.errstate(invalid="ignore"):  # one particle has no pairs
+            return {"pair_correlation": counts / self._ideal}
 
     def combine(self, means: Values) -> Values:
         """Return g, and its value at contact."""
         g, near = means["pair_correlation"], self._near
         order = min(2, len(near) - 1)
-        away = self.coordinates["distance"][near] - DIAMETER
+        away = self.coordinates["distance"][near] - self._contact
         if order < 0:
             return {**means, "contact_value": np.array(np.nan)}
         chi = np.polynomial.polynomial.polyfit(away, g[near], order)[0]
@@ -228,15 +233,18 @@ class PairCorrelation(Observable):
 
 
 def squares(frame: Frame, reach: float) -> Iterator[np.ndarray]:
-    """Generate the squared distances of all pairs nearer than `reach`, at most half of the box.
+    """Generate the squared distances of all pairs nearer than `reach`, at most half of the box; of
+    two species those of one with the other.
 
     Particles are sorted along the second axis, along which the images above slide in a sheared gas,
     and each is compared with those that follow it within `reach`.
     """
     lengths = np.array(frame.system.box, float)
-    position = frame.position[np.argsort(frame.position[:, 1])]
-    number = len(position)
-    above = position[position[:, 1] < reach].copy()
+    order, species = np.argsort(frame.position[:, 1]), frame.species_of
+    apart = species is not None and len(frame.system.species) == 2
+    position, kind = frame.position[order], order if species is None else species[order]
+    number, near = len(position), position[:, 1] < reach
+    above, kind = position[near].copy(), np.concatenate([kind, kind[near]])
     above[:, 1] += lengths[1]
     above[:, 0] += frame.image_shift
     position = np.concatenate([position, above])
@@ -249,7 +257,10 @@ def squares(frame: Frame, reach: float) -> Iterator[np.ndarray]:
         for axis in others:
             between[..., axis] -= lengths[axis] * np.rint(between[..., axis] / lengths[axis])
         square = (between**2).sum(axis=-1)
-        yield square[(later[None] > rows[:, None]) & (square < reach**2)]
+        there = (later[None] > rows[:, None]) & (square < reach**2)
+        if apart:
+            there &= kind[later] != kind[rows, None]
+        yield square[there]
 
 
 NAME = "mean_square_displacement"

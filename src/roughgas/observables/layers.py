@@ -120,7 +120,7 @@ class Layer(Observable):
         "layer_depth_series": Variable("height between the 5th and 95th percentile", LENGTH, LOOKS),
         "layer_energy_series": Variable("E_trans", ENERGY, LOOKS),
     }
-    kept: ClassVar[tuple[str, ...]] = (
+    kept: tuple[str, ...] = (
         "layer_time",
         "layer_height_series",
         "layer_depth_series",
@@ -185,7 +185,7 @@ class Pattern(Observable):
             "height above the floor, smoothed", LENGTH, (*PATTERNS, "cell_x", "cell_y")
         ),
     }
-    kept: ClassVar[tuple[str, ...]] = (
+    kept: tuple[str, ...] = (
         "pattern_time",
         "contrast_series",
         "wavelength_series",

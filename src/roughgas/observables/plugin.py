@@ -1,5 +1,8 @@
 """What an observable is: it looks at frames, and says what the means of all looks amount to.
 
+Of a mixture every observable is made once for each species, or for each pair of species, and sees
+the frame of these particles alone: `<name>_species` has what it finds (OfSpecies).
+
 An observable is made anew for every gas, so it may remember frames; `roughgas.observables.KINDS`
 lists them. A frame holds the particles of a gas at an instant, as plain numpy arrays. Units:
 particle radius a = particle mass m = time unit T = 1. A freely cooling gas has no lasting energy:
@@ -10,6 +13,7 @@ deviations from the means: z_k = df(m).(x_k - m), whose mean vanishes (the infin
 B. Efron, The Jackknife, the Bootstrap and Other Resampling Plans, 1982, chapter 6).
 """
 
+import itertools
 import math
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -17,12 +21,19 @@ from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
-from roughgas.base import InputError
+from roughgas.base import InputError, NeedsError
 from roughgas.data.variables import Variable
 from roughgas.effects.settings import Number, Whole
 from roughgas.statistics.errors import blocking, degrees_of_freedom, period_means
 
 AXES = "xyz"
+
+
+class Group(NamedTuple):
+    """The particles of a species."""
+
+    particles: int
+    radius: float  # in a; NaN where their radii differ
 
 
 class System(NamedTuple):
@@ -35,8 +46,13 @@ class System(NamedTuple):
     shear_rate: float  # 1/T: the mean flow is v_x = shear_rate (y - L/2)
     interval: float  # between looks, in T or in collisions per particle
     cooling: bool
-    alike: bool = True  # all particles have radius a and mass m
+    species: tuple[Group, ...] = ()  # none where all particles have radius a and mass m
     period: float | None = None  # of the schedule, in T: whole ones of the drive
+
+    def only(self, *species: int) -> "System":
+        """Return what is known of the particles of some species alone, by index."""
+        chosen = tuple(self.species[k] for k in sorted({*species}))
+        return self._replace(particles=sum(one.particles for one in chosen), species=chosen)
 
     @property
     def dimension(self) -> int:
@@ -59,6 +75,10 @@ class System(NamedTuple):
         return list(AXES[: self.dimension])
 
 
+OF_EACH = ("position", "velocity", "spin", "radius", "mass", "inertia", "species_of")
+"""What a frame has of each particle."""
+
+
 class Frame(NamedTuple):
     """The particles at an instant, in the order of the start."""
 
@@ -76,6 +96,19 @@ class Frame(NamedTuple):
     species_of: np.ndarray | None = None  # (N,) index of each one's species; None: all are alike
     speed_unit: float = 1.0  # of the velocities, in a/T: not 1 in a cooling gas
     floor: float = 0.0  # height of a shaken floor, in a
+
+    def only(self, *species: int) -> "Frame":
+        """Return the frame of the particles of some species alone, by index, without `rates`.
+
+        Raises NeedsError where all particles are alike.
+        """
+        if self.species_of is None:
+            raise NeedsError("Frame.only", "species")
+        there, own = np.isin(self.species_of, species), self._asdict()
+        of_each: dict[str, Any] = {
+            name: own[name][there] for name in OF_EACH if own[name] is not None
+        }
+        return self._replace(system=self.system.only(*species), rates={}, **of_each)
 
     @property
     def thermal_velocity(self) -> np.ndarray:
@@ -115,8 +148,9 @@ class Observable:
     settings: ClassVar[Mapping[str, Setting]] = {}
     effects: ClassVar[tuple[str, ...]] = ()  # that it needs in the kernel, which only look
     spins: ClassVar[bool] = False  # it needs particles that spin
-    alike: ClassVar[bool] = False  # it needs particles of one species
-    kept: ClassVar[tuple[str, ...]] = ()  # what points keep look by look, and nobody averages
+    alike: ClassVar[bool] = False  # of a mixture, it makes sense of each species alone
+    pairs: ClassVar[bool] = False  # it is of pairs, which may be of two species
+    kept: tuple[str, ...] = ()  # what points keep look by look, and nobody averages
     variables: Mapping[str, Variable] = {}
 
     def __init__(self, system: System) -> None:
@@ -132,6 +166,59 @@ class Observable:
     def combine(self, means: Values) -> Values:
         """Return the results, a smooth function of the means of what `look` returns."""
         return means
+
+
+SUFFIX = "_species"
+"""Ends the names of what a species, or a pair of species, has of its own."""
+
+
+class OfSpecies(Observable):
+    """An observable of a mixture: of all particles, unless they must be alike, and of each species
+    or pair of species alone, unless it rests on sums over all contacts."""
+
+    def __init__(self, kind: type[Observable], system: System, settings: Mapping[str, Any]) -> None:
+        super().__init__(system)
+        kinds, dims = range(len(system.species)), ("species", "other")[: 1 + kind.pairs]
+        self._which = list(itertools.combinations_with_replacement(kinds, len(dims)))
+        number = {which: n for n, which in enumerate(self._which)}
+        every = [number[tuple(sorted(at))] for at in itertools.product(kinds, repeat=len(dims))]
+        self._place = np.array(every).reshape([len(kinds)] * len(dims))  # parts by species
+        self._whole = None if kind.alike else kind(system, **settings)
+        self._parts = [kind(system.only(*which), **settings) for which in self._which]
+        self.coordinates = self._parts[0].coordinates
+        self.kept = (*kind.kept, *(name + SUFFIX for name in kind.kept[1:]))
+        self.variables = {}
+        for name, about in kind.variables.items():
+            if name in self.coordinates or self._whole is not None:
+                self.variables[name] = about
+            if name not in (*self.coordinates, *kind.kept[:1]):
+                looks = 1 if name in kind.kept else 0
+                own = (*about.dims[:looks], *dims, *about.dims[looks:])
+                of = "pair of species" if kind.pairs else "species"
+                said = f"{about.long_name}, of each {of}"
+                self.variables[name + SUFFIX] = about._replace(long_name=said, dims=own)
+
+    def look(self, frame: Frame) -> Values:
+        """Return what is seen of all particles, and of each part."""
+        found = {} if self._whole is None else dict(self._whole.look(frame))
+        each = zip(self._parts, self._which, strict=True)
+        return found | self._stacked([part.look(frame.only(*which)) for part, which in each])
+
+    def combine(self, means: Values) -> Values:
+        """Return the results of all particles, and of each part."""
+        of_all = {name: one for name, one in means.items() if not name.endswith(SUFFIX)}
+        found = {} if self._whole is None else dict(self._whole.combine(of_all))
+        parts = []
+        for part, which in zip(self._parts, self._which, strict=True):
+            own = {n.removesuffix(SUFFIX): x[which] for n, x in means.items() if n.endswith(SUFFIX)}
+            parts.append(part.combine(own))
+        return found | self._stacked(parts)
+
+    def _stacked(self, parts: Sequence[Values]) -> dict[str, np.ndarray]:
+        names = [name for name in parts[0] if name not in self.kept[:1]]
+        return {
+            name + SUFFIX: np.array([part[name] for part in parts])[self._place] for name in names
+        }
 
 
 class Function(Observable):

@@ -15,8 +15,8 @@ from roughgas.base import InputError
 from roughgas.data.variables import ENERGY, POINT, SPEED, TIME, Variable
 from roughgas.kernel.hooks import displacement, present
 from roughgas.kernel.state import EXPONENT
-from roughgas.observables import Frame, System, wanted
-from roughgas.observables.plugin import Observable, Values, averaged
+from roughgas.observables import KINDS, Frame, System, wanted
+from roughgas.observables.plugin import Group, Observable, Values, averaged
 from roughgas.scene import Scene
 from roughgas.simulation import schedule
 from roughgas.simulation.gas import Gas
@@ -111,7 +111,7 @@ class Seen(pickle.Unpickler):
 
     def find_class(self, module: str, name: str) -> Any:
         """Return a class that may be there."""
-        own = {one.__name__: one for one in (Look, Frame, System)}
+        own = {one.__name__: one for one in (Look, Frame, System, Group, Variable, *KINDS.values())}
         if module.startswith("roughgas.") and name in own:
             return own[name]
         if module.startswith("numpy") and name in ARRAYS:

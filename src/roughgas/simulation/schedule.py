@@ -1,10 +1,12 @@
 """Kinds of schedule: all that depends on whether a gas is driven or cools, by one look-up."""
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Protocol
 
 from roughgas.base import InputError
 from roughgas.effects import inertia
+from roughgas.effects.species import mixture_of
 from roughgas.kernel import hooks
 from roughgas.scene import Scene, shear_rate
 from roughgas.scene.initial import check as check_scene
@@ -72,6 +74,7 @@ def system_of(scene: Scene, experiment: Mapping[str, Any]) -> "System":
     """Return what observables know of a run."""
     from roughgas.observables import System
 
+    mixture = mixture_of(experiment)
     effects, schedule = scene.effects, experiment["schedule"]
     return System(
         particles=experiment["particles"],
@@ -81,9 +84,16 @@ def system_of(scene: Scene, experiment: Mapping[str, Any]) -> "System":
         shear_rate=shear_rate(scene),
         interval=KINDS[schedule["kind"]].interval(experiment),
         cooling=not KINDS[schedule["kind"]].DRIVEN,
-        alike=effects.species is None,
+        species=() if mixture is None else tuple(map(_group, mixture.kinds)),
         period=schedule.get("period"),
     )
+
+
+def _group(kind):
+    from roughgas.observables.plugin import Group
+
+    radii = {*kind.radius} if kind.spread is None else ()
+    return Group(kind.number, *(radii if len(radii) == 1 else (math.nan,)))
 
 
 def check(experiment: Mapping[str, Any]) -> None:
