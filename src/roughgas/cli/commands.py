@@ -110,12 +110,14 @@ COMMANDS = {
         "cli.products:plot",
         "draw a point over time, or any reduced dataset beside theory",
         value("input DATASET", "a point, or a reduced dataset"),
+        value("--of VARIABLE", "what an observable of a point has found, in place of R(t)"),
         value("--over AXIS", "horizontal axis: r, beta, or the third axis (the default)"),
         value("--r VALUE", "values of r to show", nargs="+"),
         value("--beta VALUE", "values of beta to show", nargs="+"),
         output(".png, .pdf or .svg files", nargs="+"),
         examples=(
             "roughgas plot cooling_r0.9_beta0.5_seed1.nc -o over_time.png",
+            "roughgas plot stress.nc --of temperature_profile -o profile.png",
             "roughgas plot results/paper/sheared.nc -o my.png",
             "roughgas plot results/paper/sheared.nc --beta 0 1 --over r -o my.png my.pdf",
             "roughgas plot results/paper/vibrated.nc --over beta --r 0.9 -o bed.png",
@@ -124,7 +126,8 @@ COMMANDS = {
         "axis is the third axis of the sweep, else beta. Of many series an evenly spaced selection "
         "is drawn; --r and --beta choose. Without spin, the energy is drawn. Of a point, R(t) and "
         "both energies: the window in which R is measured is shaded, its mean, its 95 % interval "
-        "and theory are lines.",
+        "and theory are lines. --of draws a variable of an observable instead, such as g(r), with "
+        "its error, a line for each species.",
     ),
     "reduce": Command(
         "cli.products:reduce",

@@ -103,7 +103,7 @@ def plot(options: Namespace) -> None:
 
     names = ("r", "beta")
     chosen = {n: [number(f"--{n}", one) for one in getattr(options, n) or ()] for n in names}
-    for line in gallery.plot(options.input, options.output, options.over, **chosen):
+    for line in gallery.plot(options.input, options.output, options.over, options.of, **chosen):
         print(line, file=sys.stderr)
 
 

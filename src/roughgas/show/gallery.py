@@ -106,10 +106,11 @@ def plot(
     path: str | Path,
     outputs: Iterable[str | Path],
     over: str | None = None,
+    of: str | None = None,
     **chosen: Sequence[float],
 ) -> list[str]:
-    """Draw the reduced dataset at `path`, or the time series of a point, into `outputs`, each a
-    .pdf, .png or .svg.
+    """Draw the reduced dataset at `path`, or the time series of a point, or what it is told `of`,
+    into `outputs`, each a .pdf, .png or .svg.
 
     Returns a line for each coordinate of which not all values are shown. Raises InputError as
     `sweep.draw` does, for another kind of file, and for an axis or values of a point.
@@ -117,7 +118,9 @@ def plot(
     with opened(path, REDUCED, POINT) as file:
         is_point = kind_of(file) == POINT
     if is_point:
-        return _plot_point(path, outputs, over, *chosen.values())
+        return _plot_point(path, outputs, of, over, *chosen.values())
+    if of is not None:
+        raise InputError("dataset", path, "be a point for --of")
     from roughgas.show.figures import sweep
 
     data = read_reduced(path)
@@ -126,11 +129,16 @@ def plot(
     return sweep.left_out(data, layout)
 
 
-def _plot_point(path: str | Path, outputs: Iterable[str | Path], *axes: Any) -> list[str]:
-    from roughgas.show.figures import sweep
+def _plot_point(
+    path: str | Path, outputs: Iterable[str | Path], of: str | None, *axes: Any
+) -> list[str]:
+    from roughgas.show.figures import observed, sweep
 
     if any(axes):
         raise InputError("dataset", path, "be a reduced one for --over, --r and --beta")
     point = read_point(path)
-    style.draw(lambda: sweep.draw_point(point, ratio_of_point(point)), outputs)
+    if of is None:
+        style.draw(lambda: sweep.draw_point(point, ratio_of_point(point)), outputs)
+    else:
+        style.draw(lambda: observed.draw(point, of), outputs)
     return []

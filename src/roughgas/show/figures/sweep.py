@@ -218,7 +218,7 @@ def draw_point(point: xr.Dataset, theory: float) -> Figure:
     every[-1].set_xlabel("collisions per particle" if cooling else "time / $T$")
     averaged = f"; lines: means over {block} samples" if block > 1 else ""
     every[0].set_title(
-        f"{_title_of_point(point)}\nshaded: where R is measured{averaged}", fontsize=8
+        f"{title_of_point(point)}\nshaded: where R is measured{averaged}", fontsize=8
     )
     return figure
 
@@ -258,7 +258,8 @@ def _energies_over_time(axes: Axes, point, at, block, cooling) -> None:
     axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False)
 
 
-def _title_of_point(point: xr.Dataset) -> str:
+def title_of_point(point: xr.Dataset) -> str:
+    """Return what a point is of."""
     about = point.attrs
     name = "/".join(about[key] for key in ("experiment", "variant") if key in about)
     place = rf"$r = {about['r']:g}$, $\beta = {about['beta']:g}$"
