@@ -5,13 +5,14 @@ import math
 import numpy as np
 
 from roughgas import theory
-from roughgas.gas import Gas, build
+from roughgas.gas import Gas, build, restored
 
 from .homogeneous import unbiased
 
 KICKS = 4  # that a particle gets between two of its collisions
 BURST = 0.01  # collisions per particle that are watched at once
 RENEWED = 0.2  # collisions per particle of the smooth elastic gas in between
+REFRESHED = 10.0  # collisions per particle after which a cooling gas is rescaled
 GRAZE = 1e-9  # a: nearer pairs are in contact
 SHELLS = np.linspace(2.0, 2.5, 11)  # in which pairs are counted, in a
 
@@ -163,3 +164,65 @@ def rates(about, gas, seed) -> dict[str, float]:
     passed = about["bursts"] * 2.0 * most / number
     # of the centre of mass nothing is lost
     return {"loss": lost / passed * (number - 1) / number, "gain": gained / passed}
+
+
+def clusters(about, gas, seed) -> dict[str, float]:
+    """Return -d ln E/d ln t of translation and rotation of rough disks that cool, between two
+    numbers of collisions per particle, while clusters grow."""
+    r, beta = gas
+    effects = {"spin": {"inertia": theory.moment_of_inertia(2)}}
+    effects["contact_time"] = {"duration": 1e-4, "below_r": 1}  # against a collapse in clusters
+    disks = _started(about, 2, about["packing"], r, beta, effects, seed)
+    disks.look()
+    begun = float(disks.sample["time"][0])
+    leg = disks.count(REFRESHED)
+    disks.cool(refresh_every=leg)
+    disks.in_collisions(leg, round(about["from"] / REFRESHED))
+    early, time = _log_energies(disks), float(disks.sample["time"][0]) - begun
+    disks.in_collisions(leg, round((about["to"] - about["from"]) / REFRESHED))
+    passed = math.log((float(disks.sample["time"][0]) - begun) / time)
+    translation, rotation = (early - _log_energies(disks)) / passed
+    return {"translation": float(translation), "rotation": float(rotation)}
+
+
+def _log_energies(gas) -> np.ndarray:
+    """Return the logarithms of E_trans and E_rot at the last sample."""
+    energies = restored(gas.energies(gas.sample), gas.sample["exponent"])
+    return np.log([float(one[0]) for one in energies[:2]])
+
+
+def mixtures(about, gas, seed) -> dict[str, float]:
+    """Return the same of each species of spheres, half of them of mass and radius 1.
+
+    Energies of pairs are as if the momentum were not fixed, since T is that of D (N - 1).
+    """
+    r, beta, theta, mass, radius = gas
+    number, q = about["particles"], theory.moment_of_inertia(3)
+    species = [{"name": "a"}, {"name": "b", "mass": mass, "radius": radius}]
+    species = [one | {"number": number // 2} for one in species]
+    packing = about["packing"] / (0.5 * (1.0 + radius**3))  # as if all had the radius 1
+    effects = {"spin": {"inertia": q}}
+    both = _started(about, 3, packing, r, beta, effects, seed, species=species)
+    rng, most = np.random.default_rng(seed.spawn(1)[0]), both.count(BURST)
+    sums, passed = np.zeros((2, 2)), about["bursts"] * 2.0 * most / number
+    for _ in range(about["bursts"]):
+        both.thermalise(RENEWED)
+        mass = both.state.bodies.mass
+        drawn = rng.standard_normal((number, 3)) * np.sqrt(theta / (q * mass))[:, None]
+        velocity = both.positions_and_velocities()[1]
+        T = float(np.sum(mass * np.sum(velocity**2, axis=1))) / (3.0 * (number - 1))
+        both.state.spin[:] = drawn * math.sqrt(T)
+        before = _energies(both, q)
+        both.in_collisions(most, 1)
+        change = _energies(both, q) - before
+        sums += change / (T + 0.25 * change[:, 0].sum())
+    (loss_1, gain_1), (loss_2, gain_2) = sums / passed
+    return {"loss_1": -loss_1, "loss_2": -loss_2, "gain_1": gain_1, "gain_2": gain_2}
+
+
+def _energies(gas, q):
+    """Return m v^2/3 and q m (a w)^2/3 averaged over each species, (species, 2)."""
+    mass, own = gas.state.bodies.mass / 3.0, gas.state.bodies.species
+    velocity, spin = gas.positions_and_velocities()[1], gas.spins()
+    energies = mass * np.sum(velocity**2, axis=1), q * mass * np.sum(spin**2, axis=1)
+    return np.array([[one[own == k].mean() for one in energies] for k in (0, 1)])

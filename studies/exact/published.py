@@ -72,6 +72,27 @@ def first_rates(dimension, r, beta, theta, q) -> tuple[float, float]:
     return loss / dimension, gain / spins
 
 
+def mixture_rates(r, beta, theta, mass, radius, crowding) -> dict[str, float]:
+    """Return loss_1, loss_2, -dT_tr/dn over T_tr, and gain_1, gain_2, dT_rot/dn over it, of species
+    of spheres, half of them of mass and radius 1, as `first_rates`; `crowding` is chi_ij.
+
+    A. Santos, G. M. Kremer & V. Garzo, Prog. Theor. Phys. Suppl. 184, 31 (2010), in their notation.
+    """
+    m, sigma, kappa = np.array([1.0, mass]), np.add.outer([1.0, radius], [1.0, radius]), 0.4
+    reduced = np.multiply.outer(m, m) / np.add.outer(m, m)
+    alpha = reduced * (1.0 + r)
+    beta = reduced * kappa / (1.0 + kappa) * (1.0 + beta)
+    speed = np.add.outer(1.0 / m, 1.0 / m)
+    nu = 4.0 * math.sqrt(2.0 * math.pi) / 3.0 * crowding * 0.5 * sigma**2 * np.sqrt(speed)
+    both = speed * (1.0 + theta / kappa)  # T_i/m_i + T_j/m_j, with those of spins over kappa
+    loss = 2.0 * (alpha + beta) - alpha**2 * speed - beta**2 * both
+    gain = beta / kappa * (beta * both - 2.0 * theta)
+    contacts = 1.5 * nu.sum(axis=1).mean()  # of a particle per time
+    rates = {"loss": loss, "gain": gain}
+    found = {name: (nu * rate).sum(axis=1) / m / contacts for name, rate in rates.items()}
+    return {f"{name}_{k + 1}": float(one[k]) for name, one in found.items() for k in (0, 1)}
+
+
 def tracer_ratio(r, mass) -> float:
     """Return T_0/T of one smooth particle of a mass among elastic ones of mass 1: P. A. Martin & J.
     Piasecki, Europhys. Lett. 46, 613 (1999)."""
@@ -97,6 +118,30 @@ def sonine_closer(dimension, r) -> float:
     Physica A 329, 114 (2003)."""
     d = dimension
     return _excess(r) / (25 + 24 * d + (8 * d - 57) * r - 2 * r**2 * (1 - r))
+
+
+def tail(dimension, r, a2, driven) -> float:
+    """Return A of the tails exp(-A c) of a smooth cooling gas, or exp(-A c^(3/2)) of one that white
+    noise drives, c being v over sqrt(2 T/m), from its a2.
+
+    Fast particles are lost at the rate beta_1 c, and nearly none gained; the gas loses energy at
+    the rate mu_2: T. P. C. van Noije & M. H. Ernst, Granular Matter 1, 57 (1998).
+    """
+    d = dimension
+    lost = math.pi ** ((d - 1) / 2) / math.gamma((d + 1) / 2)
+    cooled = (1.0 - r**2) * math.pi ** ((d - 1) / 2) / (math.sqrt(2.0) * math.gamma(d / 2))
+    ratio = lost / (cooled * (1.0 + 3.0 / 16.0 * a2))
+    return 2.0 / 3.0 * math.sqrt(2.0 * d * ratio) if driven else d * ratio
+
+
+def gained(dimension, r, driven) -> float:
+    """Return by how much grazing contacts, which take little of a fast particle's speed, change
+    -d ln f/d ln c of a tail: to first order in 1/c, derived here; left out in `tail`.
+
+    The share K/(s k c) of what is lost is gained, where s = -d ln f/dc, k = 1 - ((1 - r)/2)^2, and
+    K = 1, 2 of disks, spheres.
+    """
+    return (dimension - 1) / (1.0 - ((1.0 - r) / 2.0) ** 2) / (2.0 if driven else 1.0)
 
 
 def _excess(r):

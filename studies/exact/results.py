@@ -28,6 +28,7 @@ def combine(parts: Mapping[str, xr.Dataset], settings: Mapping[str, Any]) -> xr.
         "seed": settings["seed"],
         "particles": settings["fluids"]["particles"],
         "tracers": tracers["tracers"] / tracers["particles"],
+        "mixed": settings["mixtures"]["packing"],
         **{name: contacts[name] for name in ("restitution", "roughness", "mu")},
     }
     return dataset(variables(VARIABLES), stacked(rows) | spent, **about)

@@ -18,6 +18,10 @@ KINDS: dict[str, Callable[..., dict[str, float]]] = {
     "haff": homogeneous.haff,
     "rates": events.rates,
     "diffusion": homogeneous.diffusion,
+    "tails": homogeneous.tails,
+    "rough": homogeneous.rough,
+    "mixtures": events.mixtures,
+    "clusters": events.clusters,
 }
 """What finds numbers in one run of a gas, from settings, the gas and a seed."""
 CONTACTS = "contacts"

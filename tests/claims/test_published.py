@@ -34,7 +34,7 @@ def gas(published, shift, shares=SHARES, shifted="R"):
 
 
 def test_all_points_are_read(published):
-    """Two of 28 by hand: theta = .2424406 and 60.71607, R = theta/(1 + theta)."""
+    """Two of 28 by hand: theta = .2424406 and 60.71611, R = theta/(1 + theta)."""
     data = reduced(r=(0.7, 0.9), beta=(-0.7, 0.0), third=("thermostat.spin_share", SHARES))
     for method in ("DSMC", "EDMD"):
         values, errors = published(method, data.R)
