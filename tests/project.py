@@ -67,6 +67,7 @@ BEYOND = {  # the experiments beyond the paper, and the third axis of their swee
     **{f"transport.smooth_{kind}": {"r": ["1"], "beta": ["-1"]} for kind in ("disks", "spheres")},
     **{f"transport.rough_{kind}": {"r": ["1"], "beta": ["1"]} for kind in ("disks", "spheres")},
     "transport.heated": {},
+    "patterns.layers": {"seeds": 1},  # of seven cases
 }
 TINY |= {name: {"sweep": SWEEP | axis} for name, axis in BEYOND.items()}
 for name, box in (
@@ -85,6 +86,11 @@ for name, box in (
     TINY[name] |= {"particles": 10, "box": box}
 for name in (name for name in BEYOND if name.startswith("mpemba.")):
     TINY[name] |= {"particles": 20, "schedule": {"sample_every": 40}}
+TINY["patterns.layers"] |= {
+    "particles": 40,
+    "layer": {"width": 4, "cycles": {"equilibrate": 0, "measure": 4}},
+    "observables": {"pattern": {"cells": 4}},
+}
 TINY["megias_santos.dilute"]["schedule"] = {"equilibrate": 80, "measure": 800, "target_stderr": 0.1}
 
 

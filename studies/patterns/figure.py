@@ -1,0 +1,112 @@
+"""Shaken layers from above, as in the published figure, and how they move and stay."""
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from roughgas.plotting import FAINT, LOOKS, TWO_WIDE
+
+from .published import (
+    DIAMETER,
+    FAR,
+    FITS,
+    FITS_WELL,
+    FOLDS,
+    REPEATS,
+    Panel,
+    beside,
+    cycles,
+    order,
+    panels,
+    period,
+    room,
+    settled,
+    side,
+    wavelength,
+)
+
+HEIGHT = 6.9  # inches
+COLUMNS = 4
+SMALL = 6.0  # points
+GREYS = (2, 98)  # percentiles of height that are black and white
+MESSAGE = "Shaken spheres stand in patterns that repeat after two or four cycles"
+
+
+def draw(layers: xr.Dataset) -> Figure:
+    """Draw the figure from the reduced dataset of layers."""
+    figure = Figure(figsize=(TWO_WIDE, HEIGHT), layout="constrained")
+    *above, below = figure.subfigures(3, 1, height_ratios=(1.22, 1.22, 1))
+    there = {panel.panel: layer for panel, layer in beside(layers)}
+    pictures = np.concatenate([part.subplots(1, COLUMNS) for part in above])
+    for axes, panel in zip(pictures, panels(), strict=True):
+        _picture(axes, panel, there.get(panel.panel), layers.attrs["particles"])
+    shown = {panel.case: there[panel.panel] for panel in panels() if panel.panel in there}
+    over, apart = below.subplots(1, 2)
+    for axes in (over, apart):
+        axes.tick_params(labelsize=7)
+    for number, case in enumerate(dict.fromkeys(panel.case for panel in panels())):
+        if case in shown:
+            look, line = LOOKS[number % len(LOOKS)], "-" if number < len(LOOKS) else "--"
+            how: dict[str, Any] = {"color": look.colour, "lw": 1, "ls": line, "label": case}
+            _height(over, shown[case], how)
+            _correlation(apart, shown[case], how | {"marker": look.marker, "ms": 3})
+    over.set_ylim(0.0, 1.15 * over.get_ylim()[1])
+    over.legend(fontsize=SMALL, ncols=len(shown), loc="upper center", handlelength=1)
+    figure.suptitle(MESSAGE, fontsize=8.5, fontweight="bold", x=0.01, ha="left")
+    return figure
+
+
+def _picture(axes, panel: Panel, layer, number):
+    """Draw the mean height at the phase at which it differs most, for d at the cycle after it."""
+    axes.set(xticks=[], yticks=[])
+    axes.set_title(f"({panel.panel}) {panel.pattern}", fontsize=7.5, loc="left")
+    if layer is None:
+        axes.text(0.5, 0.5, "not simulated", ha="center", va="center", color=FAINT)
+        axes.set_aspect("equal")
+        axes.set_xlabel(f"published: {_published(panel)}", fontsize=SMALL)
+        return
+    heights = layer.mean_height
+    best = int(np.argmax(heights.std(("cell_x", "cell_y")).values))
+    one = heights[(best + (panel.panel == "d")) % REPEATS].values.T
+    low, high = np.percentile(one, GREYS)
+    axes.imshow(one, cmap="gray", origin="lower", vmin=low, vmax=high, interpolation="bilinear")
+    axes.set_xlabel(_said(panel, layer, number), fontsize=SMALL, linespacing=1.35)
+
+
+def _published(panel):
+    order_said = f", $Q_{panel.fold}$ {panel.order:.2f}" if panel.fold else ""
+    return rf"$\lambda$ {panel.wavelength:g} D{order_said}, {panel.repeats} cycles"
+
+
+def _said(panel, layer, number):
+    """Return what is measured, what is published, and how large and long the run is."""
+    space, length, stays = room(panel, layer), wavelength(layer), settled(layer)
+    ours = rf"$\lambda$ {length.value:.0f} $\pm$ {length.stderr:.0f} D" if space >= FITS else ""
+    if panel.fold in FOLDS and space >= FITS_WELL:
+        ours += f", $Q_{panel.fold}$ {order(layer, panel.fold).value:.2f}"
+    ours += f", {period(layer)} cycles" if stays else ""
+    size = rf"N = {number}, {side(layer):g} D = {space:.1f} $\lambda$, "
+    size += f"after {cycles(panel, layer):.0f} cycles"
+    ours = ours.removeprefix(", ") or "no number"
+    ours += "" if stays else " (not settled)"
+    return f"ours: {ours}\npublished: {_published(panel)}\n{size}"
+
+
+def _height(axes, layer, how):
+    """Draw the mean height of the layer above the floor over four cycles."""
+    axes.plot(REPEATS * layer.layer_phase, layer.layer_height / DIAMETER, **how)
+    axes.set_xlabel("cycles of the floor", fontsize=8)
+    axes.set_ylabel("mean height / D", fontsize=8)
+
+
+def _correlation(axes, layer, how):
+    """Draw the correlation of heights so many cycles apart."""
+    apart = np.arange(1, layer.sizes["pattern_delay"])
+    found = layer.height_autocorrelation[1:]
+    axes.errorbar(apart, found, layer.height_autocorrelation_stderr[1:], **how)
+    axes.axhline(0, color=FAINT, lw=0.6, zorder=0)
+    axes.set_xlim(0, FAR + 0.5)
+    axes.set_xlabel("cycles apart", fontsize=8)
+    axes.set_ylabel("correlation of heights", fontsize=8)

@@ -1,0 +1,123 @@
+"""Made-up layers beside the published ones: what has settled, its wavelength, order and period."""
+
+import numpy as np
+import pytest
+from matplotlib.text import Text
+from tests.houses import ROOT, part
+from tests.synthetic import reduced
+
+from roughgas import config
+from roughgas.base.files import module_of
+from roughgas.claims.evidence import FAILS, HOLDS, NOT_TESTED, QUALIFIED
+from roughgas.config.reading import read_yaml
+
+STUDY = ROOT / "studies" / "patterns"
+REPEATS = {"a": 2, "b": 2, "cd": 2, "e": 4, "f": 4, "g": 4, "h": 4}
+WAVELENGTH = {"a": 33.3, "b": 20, "cd": 25, "e": 16.7, "f": 33.3, "g": 20, "h": 25}
+ORDER = {"a": 0.833, "b": 0.851, "cd": 0.486, "f": 0.758, "g": 0.874}
+FOLD = {"a": 4, "b": 2, "cd": 6, "f": 4, "g": 2}
+PERIOD = 8.0
+THE_WAVELENGTH, THE_ORDER = "the_wavelength_is_published", "the_order_is_published"
+IT_REPEATS = "it_repeats_when_published"
+
+
+def layers(width, cases=tuple(REPEATS), stretch=1.0, less=0.0, repeats=None, fading=1.0):
+    """Layers as published, or with wavelengths `stretch` times as long, orders `less` smaller,
+    other periods, and patterns whose correlation is `fading` times as large after each cycle."""
+    data = reduced("layers", r=(0.7,), beta=(0.35,), third=("case", cases))
+    data.attrs["particles"] = 6 * width**2
+    cells = np.arange(width) * 2.0 + 1.0
+    delays, grid = np.arange(17), ("case", "r", "beta")
+    shape = (len(cases), 1, 1)
+    turns = [(repeats or REPEATS)[one] for one in cases]
+    lags = np.array([np.cos(2 * np.pi * delays / n) * fading**delays for n in turns])
+    orders = np.zeros((len(cases), 3))
+    for row, one in enumerate(cases):
+        orders[row, (2, 4, 6).index(FOLD.get(one, 2))] = ORDER.get(one, 0.0) - less
+    lengths = np.array([2.0 * stretch * WAVELENGTH[one] for one in cases]).reshape(shape)
+    wave = 10.0 + np.cos(cells)
+    heights = np.broadcast_to(wave, (*shape, 4, width, width))
+    values = {
+        "wavelength": (grid, lengths),
+        "wavelength_resolution": (grid, lengths**2 / (4.0 * width)),
+        "fold_order": ((*grid, "fold"), orders[:, None, None]),
+        "mean_height": ((*grid, "pattern_phase", "cell_x", "cell_y"), heights),
+        "height_autocorrelation": ((*grid, "pattern_delay"), lags[:, None, None]),
+        "layer_height": ((*grid, "layer_phase"), np.full((*shape, 64), 12.0)),
+    }
+    errors = {f"{name}_stderr": (one[0], 0.01 * np.abs(one[1])) for name, one in values.items()}
+    freedom = {f"{name}_dof": (one[0], np.full(one[1].shape, 9.0)) for name, one in values.items()}
+    axes = {"cell_x": cells, "cell_y": cells, "fold": [2, 4, 6], "layer_phase": np.arange(64) / 64}
+    begun = {"measured_from": (grid, np.full(shape, 300.0))}
+    return data.assign(values | errors | freedom | begun).assign_coords(axes)
+
+
+def test_layers_as_published_hold(judged):
+    every = layers(100)
+    for name in (THE_WAVELENGTH, THE_ORDER, IT_REPEATS):
+        assert judged(name, every).verdict == HOLDS
+
+
+def test_wavelengths_of_another_mode_fail(judged):
+    """Of 100 D/20 D a mode less is 25 D; with 100 D/33.3 D a mode less is half as long again."""
+    assert judged(THE_WAVELENGTH, layers(100, ("b", "g"), stretch=1.2)).verdict == HOLDS
+    assert judged(THE_WAVELENGTH, layers(100, ("b", "g"), stretch=1.3)).verdict == FAILS
+    mixed = judged(THE_WAVELENGTH, layers(100, ("a", "b"), stretch=1.3))
+    assert mixed.verdict == QUALIFIED and "a: 43.3 D (33.3 published)" in mixed.reason
+
+
+def test_orders_that_are_too_low_fail(judged):
+    assert judged(THE_ORDER, layers(100, less=0.09)).verdict == HOLDS
+    assert judged(THE_ORDER, layers(100, less=0.11)).verdict == FAILS
+
+
+def test_periods_are_told_apart(judged):
+    swapped = {case: 6 - repeats for case, repeats in REPEATS.items()}
+    assert judged(IT_REPEATS, layers(100, repeats=swapped)).verdict == FAILS
+    assert judged(IT_REPEATS, layers(100, repeats=REPEATS | {"g": 2})).verdict == QUALIFIED
+
+
+def test_what_has_not_settled_or_does_not_fit_is_not_judged(judged):
+    """After 16 cycles 0.98^12 of the correlation after 4 is 0.785; and 33 D in a box of 40 D."""
+    for name in (THE_WAVELENGTH, THE_ORDER, IT_REPEATS):
+        assert judged(name, layers(100, fading=0.98)).verdict == NOT_TESTED
+        assert judged(name, layers(100, fading=0.99)).verdict != NOT_TESTED
+    assert judged(THE_WAVELENGTH, layers(40, ("a", "f"))).verdict == NOT_TESTED
+    assert judged(THE_ORDER, layers(40, ("a", "cd", "f", "h"))).verdict == NOT_TESTED
+    assert judged(IT_REPEATS, layers(40, ("a", "f"))).verdict == HOLDS
+
+
+def test_evidence_says_nothing_of_what_has_not_settled():
+    rows = module_of(STUDY, "evidence").rows
+    there = {(one.at[:7], one.quantity): one for one in rows(layers(100))}
+    assert there["panel g", "wavelength/D"].verdict == "agrees"
+    assert there["panel d", "Q_6"].theirs.value == 0.49
+    for one in rows(layers(100, fading=0.9)):
+        assert np.isnan(one.ours.value) and one.verdict == "not known"
+
+
+def test_panels_say_what_is_not_there_and_what_has_not_settled():
+    figure = part("patterns", "figure").draw(layers(20, ("cd", "g"), fading=0.9))
+    texts = [one.get_text() for one in figure.findobj(Text)]
+    assert sum("not simulated" in one for one in texts) == 5
+    said = [one for one in texts if one.startswith("ours: ")]
+    assert len(said) == 3 and all("not settled" in one and "N = 2400" in one for one in said)
+
+
+def test_the_full_size_is_the_published_one():
+    found = config.load(ROOT / "config.yaml", read_yaml(STUDY / "full.yaml"))
+    b = config.experiment(found, "patterns.layers/caseb", "full")
+    assert (b["particles"], b["box"]) == (60000, [200.0, 200.0, "open"])
+    cycle = b["effects"]["floor"]["period"]
+    assert b["schedule"]["equilibrate"] == pytest.approx(2700 * cycle)
+
+
+def test_the_published_numbers_are_those_of_their_table():
+    published = part("patterns", "published").panels()
+    assert [one.panel for one in published] == list("abcdefgh")
+    for one in published:
+        assert (one.repeats, one.wavelength) == (REPEATS[one.case], WAVELENGTH[one.case])
+    settings = config.load(ROOT / "config.yaml")
+    for one in published:
+        case = config.experiment(settings, f"patterns.layers/case{one.case}", "paper")
+        assert case["layer"]["f_star"] == one.f_star
