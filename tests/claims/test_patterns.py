@@ -92,6 +92,7 @@ def test_evidence_says_nothing_of_what_has_not_settled():
     there = {(one.at[:7], one.quantity): one for one in rows(layers(100))}
     assert there["panel g", "wavelength/D"].verdict == "agrees"
     assert there["panel d", "Q_6"].theirs.value == 0.49
+    assert ("panel d", "wavelength/D") not in there  # that of c
     for one in rows(layers(100, fading=0.9)):
         assert np.isnan(one.ours.value) and one.verdict == "not known"
 
