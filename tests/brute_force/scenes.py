@@ -21,7 +21,7 @@ NEVER = 1e-300  # a contact time
 UNLIMITED = 2**60
 
 _SUMS = {"contact_averages": {}}
-_ALL_SUMS = _SUMS | {"contact_stress": {}, "contact_heat": {}}
+_ALL_SUMS = _SUMS | {"contact_stress": {}, "contact_heat": {}, "contact_pairs": {}}
 _LOG = {"contact_log": {"most": 3000}}
 _DISKS = {"spin": {"inertia": 0.5}}
 _BED = _DISKS | {

@@ -43,7 +43,13 @@ EVENTS = {
     "langevin",
 }  # what has events of its own
 # what only looks, and how many running sums it keeps
-SUMS = {"contact_averages": 3, "contact_stress": 9, "contact_heat": 3, "contact_log": 0}
+SUMS = {
+    "contact_averages": 3,
+    "contact_stress": 9,
+    "contact_heat": 3,
+    "contact_pairs": 2,
+    "contact_log": 0,
+}
 PHASES = {"floor", "shaken_walls", "bottom_wall", "lid", "shear"}  # sides: those that move
 
 

@@ -63,6 +63,7 @@ PARAMETERS = {
     "contact_averages": {},
     "contact_stress": {},
     "contact_heat": {},
+    "contact_pairs": {},
     "contact_log": {"most": st.sampled_from([1, 100])},
 }
 OPPOSITE = [("left_wall", "right_wall"), ("front_wall", "back_wall")]

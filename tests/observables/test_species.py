@@ -155,6 +155,41 @@ def test_g_at_contact_of_each_pair_is_that_of_theory():
     assert not g.isel(species=0, other=1).where(g.distance < 2.55, drop=True).any()
 
 
+def test_how_often_species_meet_is_as_theory_says():
+    """Elastic disks in equilibrium: Enskog's frequencies within four errors of eight replicas, and
+
+    2 %, as of g at contact; each contact of a pair is one of either species, and takes nothing.
+    """
+    schedule = {"kind": "cooling", "replicas": 8, "thermalise": 30, "relaxation_times": 0}
+    schedule |= {"plateau": 50, "sample_every": 0.5}
+    common = {"schedule": schedule, "observe": "contacts", "progress": False}
+    gas = simulate(r=1, beta=-1, species=MIXTURE, **common, **GAS)
+    mixture = theory.mixture(MIXTURE, 1.0, -1.0, 2)
+    expected = theory.mixture_frequency(mixture, 2.0, gas.packing)  # where E_trans is 1
+    found, error = gas.contact_frequency_species, gas.contact_frequency_species_stderr.values
+    assert np.all(abs(found - expected) < 4.0 * error + 0.02 * expected)
+    assert np.all(error < 0.03 * expected)
+    numbers = gas.species_particles.values[:, None]
+    assert found.values * numbers == pytest.approx((found.values * numbers).T, rel=1e-9)
+    mean = (found.sum("other").values * numbers[:, 0]).sum() / numbers.sum()
+    assert float(gas.contact_frequency) == pytest.approx(mean, rel=1e-9)
+    assert abs(gas.contact_loss_species).max() < 1e-12
+
+
+def test_contacts_take_what_the_books_say():
+    """Losses per contact times the contacts of a run are what contacts have put in."""
+    heat = {"thermostat": {"power": 1.0, "spin_share": 0.5, "interval": 0.5}}
+    schedule = {"kind": "steady", "equilibrate": 0, "measure": 400, "sample_every": 1}
+    gas = simulate(
+        r=0.8, beta=0.3, observe="contacts", schedule=schedule, progress=False,
+        particles=40, box=(30, 30), effects=GAS["effects"] | heat, species=MIXTURE,
+    )  # fmt: skip
+    per_time = gas.contact_frequency / 2.0 * gas.contact_loss
+    booked = float(gas.energy_input.sel(source="contacts").sum()) / 400.0
+    assert float(per_time) == pytest.approx(-booked, rel=1e-2)  # but for the first T, in which
+    assert gas.contact_loss_species.min() > 0.0  # nobody looks
+
+
 def test_a_dataset_says_what_each_species_does():
     schedule = {"kind": "cooling", "replicas": 2, "thermalise": 2, "relaxation_times": 1}
     schedule |= {"plateau": 8, "sample_every": 0.5}

@@ -9,6 +9,7 @@ from roughgas import simulate
 from roughgas.base import InputError, as_json
 from roughgas.cli.show import summary
 from roughgas.data.point import read_point, write_point
+from roughgas.effects.contacts import columns_of_pairs
 from roughgas.kernel.state import BASE, EXPONENT
 from roughgas.scene import build
 from roughgas.simulation.contact_log import logged
@@ -17,7 +18,7 @@ from roughgas.simulation.gas import Gas
 from roughgas.simulation.point import run_point
 
 TWO = {"species": [{"fraction": 0.5}, {"fraction": 0.5, "radius": 1.5, "inertia": 0.3}]}
-LOG = {"contact_log": {"most": 3000}}
+LOG = {"contact_log": {"most": 3000}, "contact_pairs": {}}
 GASES = {
     "walled": settings("walled", 40, [25, "open"]),
     "spheres": settings("spheres", 40),
@@ -59,6 +60,21 @@ def test_what_logged_contacts_take_is_what_the_books_say(name):
     if name == "walled":
         assert (~pairs).sum() > 10
         assert gained[~pairs].sum(axis=0) == pytest.approx(booked[:-1].sum(axis=0), rel=1e-9)
+
+
+@pytest.mark.parametrize("name", ["two species", "spheres"])
+def test_contacts_of_each_pair_of_species_are_those_of_the_log(name):
+    """Their number, and the energy that they take, to rounding."""
+    gas = gas_of(name)
+    columns = gas.in_time(5.0, 3)
+    found, kinds = logged(gas, gas.state.log), 2 if name == "two species" else 1
+    species = found.get("logged_species", np.zeros_like(found["logged_partner"]))
+    place = species @ [kinds, 1]
+    lost = -gains(found, gas.scene.effects.spin.inertia).sum(axis=1)
+    sums = np.array([columns[one][-1] for one in columns_of_pairs(kinds)]).reshape(2, -1)
+    assert sums[0].tolist() == np.bincount(place, minlength=kinds**2).tolist()
+    assert sums[1] == pytest.approx(np.bincount(place, lost, kinds**2), rel=1e-9)
+    assert sums[0].min() > 5
 
 
 def test_a_gas_that_cools_by_powers_of_two_is_logged_in_its_first_units():

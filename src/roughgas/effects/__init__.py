@@ -11,6 +11,7 @@ from roughgas.effects.contacts import (
     ContactAverages,
     ContactHeat,
     ContactLog,
+    ContactPairs,
     ContactStress,
     Friction,
     Spin,
@@ -55,6 +56,7 @@ class Effects(NamedTuple):
     contact_averages: ContactAverages | None = None
     contact_stress: ContactStress | None = None
     contact_heat: ContactHeat | None = None
+    contact_pairs: ContactPairs | None = None
     contact_log: ContactLog | None = None
 
 

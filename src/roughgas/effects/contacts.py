@@ -26,6 +26,9 @@ virial of J. H. Irving & J. G. Kirkwood, J. Chem. Phys. 18, 817 (1950)).
 Collisional heat flux, for the observable `flux_autocorrelation`: as far is carried the energy that
 passes from j to i, half of what i gains and j loses. Where particles are alike that is -push.(v_i +
 v_j)/2 + (n x push).(w_i - w_j)/2, with the velocities and spins after the contact.
+Contacts of each pair of species are counted for the observable `contacts`, and the energy summed up
+that they take from translation and rotation together.
+
 The log of contacts keeps the last ones: a row of State.log for each, which the next one but `most`
 overwrites. Contacts with floors and walls are there, too, unless these are thermal.
 """
@@ -149,6 +152,57 @@ def observe_stress(stress, index, state, contact):
 
 
 register(ContactStress, {}, observe_contact=observe_stress, sums=STRESSES)
+
+
+def columns_of_pairs(kinds: int) -> list[str]:
+    """Return the columns in which contacts of so many species are counted, and then those of the
+    energy that they take: of species k with each species, from k = 0 on."""
+    pairs = [f"[{k},{other}]" for k, other in product(range(kinds), repeat=2)]
+    return [f"{what}{pair}" for what in ("contacts", "loss") for pair in pairs]
+
+
+def sums_of_pairs(effects):
+    names = columns_of_pairs(1 if effects.species is None else effects.species.kinds)
+    return {name: 2 if name.startswith("loss") else 0 for name in names}
+
+
+class ContactPairs(NamedTuple):
+    """Counts the contacts of each pair of species, and sums up the energy that they take."""
+
+    inertia: float  # q of the particles, 0 where they do not spin
+
+    @classmethod
+    def from_settings(cls, settings, around):
+        """Return the effect."""
+        return cls(float(around.effects.get("spin", {}).get("inertia", 0.0)))
+
+
+@jit
+def observe_pairs(effect, index, state, contact):
+    i, j, push, bodies = contact.i, contact.j, contact.push, state.bodies
+    lost = dot(push, contact.v) - dot(push, push) / pair_of(bodies, None, i, j).mass
+    if state.spin is not None:
+        w_i, w_j = contact.spins
+        lost -= _gained(effect, state, i, w_i) + _gained(effect, state, j, w_j)
+    sums, place = state.sums.contact_pairs, _number_of_pair(bodies, i, j)
+    sums[0, place] += 1.0
+    sums[0, sums.shape[1] // 2 + place] += lost
+
+
+@jit
+def _gained(effect, state, i, before):
+    gained = dot(read(state.spin, i, 0, before), read(state.spin, i, 0, before))
+    return 0.5 * spin_mass_of(state.bodies, effect, i) * (gained - dot(before, before))
+
+
+@jit
+def _number_of_pair(bodies, i, j):
+    if bodies is None:
+        return 0
+    return bodies.pairs.shape[0] * bodies.species[i] + bodies.species[j]
+
+
+register(ContactPairs, {}, observe_contact=observe_pairs, sums=sums_of_pairs)
 
 
 class ContactLog(NamedTuple):

@@ -50,9 +50,10 @@ class Hooks(NamedTuple):
     and change nothing but State.sums and State.log"""
     observe_wall: Callable | None = None
     """The same of a contact with a floor or a wall, unless that is thermal"""
-    sums: Mapping[str, int] | None = None
+    sums: Mapping[str, int] | Callable | None = None
     """Columns of samples in which the effect keeps running sums -> the power of velocity that each
-    has as its unit; State.sums has them under the effect's name"""
+    has as its unit, or a function of all Effects that returns this; State.sums has them under the
+    effect's name"""
     predict: Callable | None = None
     """(effect, index, state, scene, i) -> (time, what) of particle i's next event that is not a
     contact of a pair; 0 <= what < CODES"""
@@ -104,6 +105,12 @@ def accounts(effects):
     It is listed last in Effects, so that the numbers of the others' accounts are their ranks.
     """
     return sum(effect is not None for effect in effects) - len(present(effects, "observe_contact"))
+
+
+def sums(effects):
+    """Return the columns of each effect that keeps running sums, by its place in Effects."""
+    parts = present(effects, "sums")
+    return {part.place: part.own(effects) if callable(part.own) else part.own for part in parts}
 
 
 def displacement(effect, time):

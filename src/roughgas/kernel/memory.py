@@ -210,8 +210,8 @@ def _bodies(species, arrays):
 
 
 def _sums(effects):
-    parts = hooks.present(effects, "sums")
-    powers = {effects._fields[part.place]: list(part.own.values()) for part in parts}
+    found = hooks.sums(effects)
+    powers = {effects._fields[place]: list(own.values()) for place, own in found.items()}
     kept = {name: np.array([[0.0], [0.0], [1.0]]) * own for name, own in powers.items()}
     return type(effects)(**kept) if kept else None
 

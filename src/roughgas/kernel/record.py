@@ -3,7 +3,7 @@
 import math
 from typing import NamedTuple
 
-from roughgas.kernel.hooks import present
+from roughgas.kernel.hooks import sums as sums_of
 from roughgas.kernel.jit import by_reference, compiled, entry, jit
 from roughgas.kernel.loop import REACHED, advance, start
 from roughgas.kernel.particles import (
@@ -46,7 +46,7 @@ def columns(scene):
         ["time", "collisions", "exponent"]
         + sums
         + [f"{name}[{kind}]" for kind in range(kinds) for name in sums]
-        + [name for part in present(effects, "sums") for name in part.own]
+        + [name for own in sums_of(effects).values() for name in own]
     )
 
 

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 from roughgas.base import InputError, NeedsError, not_one_of
 from roughgas.effects.settings import schema_of_kinds
 from roughgas.observables.autocorrelation import Autocorrelation, FluxAutocorrelation
+from roughgas.observables.contacts import Contacts
 from roughgas.observables.distributions import (
     Cumulants,
     Histograms,
@@ -40,6 +41,7 @@ KINDS: dict[str, type[Observable]] = {
     "pair_correlation": PairCorrelation,
     "stress": Stress,
     "heat_flux": HeatFlux,
+    "contacts": Contacts,
     "mean_square_displacement": MeanSquareDisplacement,
     "autocorrelation": Autocorrelation,
     "flux_autocorrelation": FluxAutocorrelation,

@@ -12,8 +12,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from roughgas.base import InputError
-from roughgas.data.variables import ENERGY, POINT, SPEED, TIME, Variable
-from roughgas.kernel.hooks import displacement, present
+from roughgas.data.variables import ENERGY, POINT, RATE, SPEED, TIME, Variable
+from roughgas.kernel.hooks import displacement, sums
 from roughgas.kernel.state import EXPONENT
 from roughgas.observables import KINDS, Frame, System, wanted
 from roughgas.observables.plugin import Group, Observable, Values, averaged
@@ -27,6 +27,7 @@ PRESENT = {
     ENERGY: "present E_trans",
     SPEED: "sqrt(present E_trans/m)",
     TIME: "collisions per particle",
+    RATE: "sqrt(present E_trans/m)/a",
 }
 """Units of a cooling gas in place of those of a driven one."""
 ARRAYS = ("_reconstruct", "_frombuffer", "scalar", "ndarray", "dtype")
@@ -259,8 +260,7 @@ def running_sums(gas: Gas) -> dict[str, float]:
 
 def _powers(gas):
     """Return, for each sum of effects, the power of velocity that it has."""
-    parts = present(gas.scene.effects, "sums")
-    return {name: power for part in parts for name, power in part.own.items()}
+    return {name: one for own in sums(gas.scene.effects).values() for name, one in own.items()}
 
 
 def _rates(before, now, gas):
