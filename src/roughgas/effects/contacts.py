@@ -26,6 +26,7 @@ virial of J. H. Irving & J. G. Kirkwood, J. Chem. Phys. 18, 817 (1950)).
 Collisional heat flux, for the observable `flux_autocorrelation`: as far is carried the energy that
 passes from j to i, half of what i gains and j loses. Where particles are alike that is -push.(v_i +
 v_j)/2 + (n x push).(w_i - w_j)/2, with the velocities and spins after the contact.
+
 Contacts of each pair of species are counted for the observable `contacts`, and the energy summed up
 that they take from translation and rotation together.
 
