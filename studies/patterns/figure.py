@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 
 from roughgas.plotting import FAINT, LOOKS, TWO_WIDE
 
+from .ball import flights
 from .published import (
     DIAMETER,
     FAR,
@@ -46,14 +47,17 @@ def draw(layers: xr.Dataset) -> Figure:
     over, apart = below.subplots(1, 2)
     for axes in (over, apart):
         axes.tick_params(labelsize=7)
-    for number, case in enumerate(dict.fromkeys(panel.case for panel in panels())):
+    for number, (case, gamma) in enumerate({one.case: one.gamma for one in panels()}.items()):
         if case in shown:
             look, line = LOOKS[number % len(LOOKS)], "-" if number < len(LOOKS) else "--"
-            how: dict[str, Any] = {"color": look.colour, "lw": 1, "ls": line, "label": case}
+            how: dict[str, Any] = {"color": look.colour, "lw": 1, "ls": line}
+            how["label"] = f"{case}: " + ", ".join(f"{one:.2f}" for one in flights(gamma))
             _height(over, shown[case], how)
             _correlation(apart, shown[case], how | {"marker": look.marker, "ms": 3})
-    over.set_ylim(0.0, 1.15 * over.get_ylim()[1])
-    over.legend(fontsize=SMALL, ncols=len(shown), loc="upper center", handlelength=1)
+    over.set_ylim(0.0, 1.35 * over.get_ylim()[1])
+    title = "panel: flights of a ball that does not bounce, in cycles"
+    keys: dict[str, Any] = {"fontsize": SMALL, "title_fontsize": SMALL, "handlelength": 1.5}
+    over.legend(**keys, title=title, ncols=4, loc="upper center")
     figure.suptitle(MESSAGE, fontsize=8.5, fontweight="bold", x=0.01, ha="left")
     return figure
 

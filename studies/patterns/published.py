@@ -33,6 +33,7 @@ class Panel(NamedTuple):
 
     panel: str
     case: str
+    gamma: float  # A (2 pi f)^2/g
     f_star: float  # f sqrt(H/g)
     pattern: str
     wavelength: float  # D

@@ -1,5 +1,7 @@
 """Made-up layers beside the published ones: what has settled, its wavelength, order and period."""
 
+import math
+
 import numpy as np
 import pytest
 from matplotlib.text import Text
@@ -121,4 +123,21 @@ def test_the_published_numbers_are_those_of_their_table():
     settings = config.load(ROOT / "config.yaml")
     for one in published:
         case = config.experiment(settings, f"patterns.layers/case{one.case}", "paper")
-        assert case["layer"]["f_star"] == one.f_star
+        assert (case["layer"]["gamma"], case["layer"]["f_star"]) == (one.gamma, one.f_star)
+
+
+def test_a_ball_that_does_not_bounce_flies_for_a_cycle_between_its_thresholds():
+    """sqrt(1 + pi^2) = 3.297 and sqrt(4 + pi^2) = 3.724; and shorter where the floor is slower."""
+    flights = part("patterns", "ball").flights
+    for gamma in (3.32, 3.5, 3.68):
+        assert flights(gamma) == pytest.approx([1.0], abs=2e-3)
+    (shorter,) = flights(3.29)
+    assert 0.99 < shorter < 1.0
+    low, high = flights(3.74)
+    assert low + high == pytest.approx(2.0, abs=2e-3) and high - low > 0.02
+    (one,) = flights(1.5)
+    start = math.asin(1.0 / 1.5)
+    end = start + 2.0 * math.pi * one
+    fall = (end - start) ** 2 / (2.0 * 1.5)
+    rise = math.sin(start) + math.cos(start) * (end - start)
+    assert rise - fall == pytest.approx(math.sin(end), abs=1e-9)
