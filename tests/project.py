@@ -38,6 +38,7 @@ TINY = {
 POINTS = 6 * SWEEP["seeds"]
 JOBS = 6  # one makes both seeds of a point
 FINISHED = ("everything",)
+ELASTIC = ["disks", "spheres", "disks_fluxes", "spheres_fluxes", "disks_between_walls"]
 BEYOND = {  # the experiments beyond the paper, and the third axis of their sweeps
     "spheres.cooling_spheres": {},
     "spheres.sheared_spheres": {},
@@ -64,10 +65,11 @@ BEYOND = {  # the experiments beyond the paper, and the third axis of their swee
         f"mpemba.{name}": {}
         for name in ("hot", "cold", "overshoot_hot", "overshoot_cold", "memory")
     },
-    **{f"transport.smooth_{kind}": {"r": ["1"], "beta": ["-1"]} for kind in ("disks", "spheres")},
-    **{f"transport.rough_{kind}": {"r": ["1"], "beta": ["1"]} for kind in ("disks", "spheres")},
+    **{f"transport.smooth_{kind}": {"r": ["1"], "beta": ["-1"]} for kind in ELASTIC},
+    **{f"transport.rough_{kind}": {"r": ["1"], "beta": ["1"]} for kind in ELASTIC},
     "transport.heated": {},
     "patterns.layers": {"seeds": 1},  # of seven cases
+    "transport.strained": {"shear.velocity": ["0.4"]},
 }
 TINY |= {name: {"sweep": SWEEP | axis} for name, axis in BEYOND.items()}
 for name, box in (
@@ -79,9 +81,11 @@ for name, box in (
     ("drives.shaken_walls", [20, 20]),
     ("couette.couette", [20, 20]),
     ("megias_santos.dilute", [100, 100]),
-    *((f"transport.{one}_disks", [60, 60]) for one in ("smooth", "rough")),
-    *((f"transport.{one}_spheres", [20, 20, 20]) for one in ("smooth", "rough")),
-    ("transport.heated", [60, 60]),
+    *(
+        (name, [20] * 3 if "spheres" in name else [60, 60])
+        for name in BEYOND
+        if "transport" in name
+    ),
 ):
     TINY[name] |= {"particles": 10, "box": box}
 for name in (name for name in BEYOND if name.startswith("mpemba.")):
@@ -91,6 +95,9 @@ TINY["patterns.layers"] |= {
     "layer": {"width": 4, "cycles": {"equilibrate": 0, "measure": 4}},
     "observables": {"pattern": {"cells": 4}},
 }
+for name in BEYOND:
+    if name.endswith(("strained", "fluxes", "between_walls")):
+        TINY[name]["schedule"] = {"equilibrate": 100, "measure": 1000, "sample_every": 10}
 TINY["megias_santos.dilute"]["schedule"] = {"equilibrate": 80, "measure": 800, "target_stderr": 0.1}
 
 

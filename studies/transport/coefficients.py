@@ -1,8 +1,12 @@
-"""Coefficients of diffusion from what was observed, over the share that a collision forgets.
+"""Transport coefficients from what was observed.
+
+Coefficients of diffusion are over the share that a collision forgets:
 
 D* = D_s nu/T_tr (m = 1), nu collisions per particle per time: 1 over the share of its velocity that
 a particle loses in a collision. A cooling gas counts time in collisions per particle, and then
-D* = D_s nu_1^2, nu_1 being nu at T_tr = 1.
+D* = D_s nu_1^2, nu_1 being nu at T_tr = 1. Viscosity and conductivity are over those of theory at
+the temperatures that were measured. In a gas of N particles that keeps its momentum T_tr is
+N/(N - 1) times 2 E_trans.
 """
 
 import numpy as np
@@ -90,3 +94,81 @@ def rough_over_smooth(rough: xr.Dataset, smooth: xr.Dataset) -> tuple[Estimate, 
 def point(gas: xr.Dataset) -> xr.Dataset:
     """Return the only point of a sweep."""
     return gas.isel(r=0, beta=0)
+
+
+REMEMBERED = {"viscosity": 6.0, "conductivity": 12.0}
+"""Collisions per particle up to which stress and heat flux are integrated: theory has memories of
+1 to 1.3, and of up to 2.6."""
+MARGIN = 0.2
+"""Share of the height next to either wall that is left out: four mean free paths."""
+
+
+def temperature(gas: xr.Dataset) -> xr.DataArray:
+    """Return T_tr of a gas that keeps its momentum."""
+    particles = gas.attrs["particles"]
+    return 2.0 * gas.E_trans * particles / (particles - 1)
+
+
+def in_equilibrium(gas: xr.Dataset, name: str) -> tuple[np.ndarray, np.ndarray, Estimate]:
+    """Return collisions per particle, a coefficient of one elastic gas, over theory, from memory up
+    to these (Green and Kubo), and its estimate."""
+    T, about = float(temperature(gas)), gas.attrs
+    D, q, packing = about["dimension"], about.get("inertia"), about["packing"]
+    if name == "viscosity":
+        expected = theory.shear_viscosity(T, T, packing, 1.0, float(gas.beta), D, q)
+    else:
+        expected = theory.thermal_conductivity(T, D, packing, q)
+    passed = gas.delay.values * float(theory.collision_frequency(T, packing, D))
+    there, ends = gas[f"{name}_until"] / expected, ("stderr", "dof")
+    last = min(int(np.searchsorted(passed, REMEMBERED[name])), len(passed) - 1)
+    stderr, dof = (float(gas[f"{name}_until_{end}"][last]) for end in ends)
+    return passed, there.values, Estimate(float(there[last]), stderr / float(expected), dof)
+
+
+def in_shear(gas: xr.Dataset) -> tuple[Estimate, Estimate, Estimate]:
+    """Return the viscosity at one r and beta over theory: at two shear rates, and at none.
+
+    What a shear rate changes grows with its square over the temperature.
+    """
+    about, T = gas.attrs, temperature(gas)
+    D, packing = about["dimension"], about["packing"]
+    n = theory.number_density(packing, D)
+    places = float(gas.r), float(gas.beta), D, about["inertia"]
+    stress = (gas.stress_kinetic + gas.stress_collisional).sel(component="x", along="y").values
+    rate = -n * gas.shear_power.values / stress
+    expected = theory.shear_viscosity(T.values, 2.0 * gas.E_rot.values, packing, *places)
+    over = n / (rate**2 * expected)
+    slow, fast = (
+        Estimate(*map(float, one)).scaled(scale)
+        for *one, scale in zip(
+            gas.shear_power, gas.shear_power_stderr, gas.shear_power_dof, over, strict=True
+        )
+    )
+    small, large = rate**2 / T.values
+    weights = large / (large - small), small / (large - small)
+    return slow, fast, slow.scaled(weights[0]).minus(fast.scaled(weights[1]))
+
+
+def between_walls(gas: xr.Dataset) -> Estimate:
+    """Return the conductivity of one gas between thermal walls over theory, q/[int kappa dT/dy].
+
+    Errors of the layers are added as if they were one, which makes the error too large.
+    """
+    length = float(gas.height[0] + gas.height[-1])  # of their middles
+    flux = Estimate(
+        *(float(gas[f"heat_flux{end}"].sel(component="y")) for end in ("", "_stderr", "_dof"))
+    ).scaled(-length / (length - 2.0))
+    middle = abs(gas.height.values / length - 0.5) < 0.5 - MARGIN
+    layers = gas.isel(height=middle)
+    T = layers.temperature_profile.mean("component").values
+    errors = layers.temperature_profile_stderr.mean("component").values
+    kappa = theory.thermal_conductivity(
+        T, gas.attrs["dimension"], layers.packing_profile.values, gas.attrs.get("inertia")
+    )
+    passed = np.concatenate([[0.0], np.cumsum((kappa[1:] + kappa[:-1]) / 2.0 * np.diff(T))])
+    height = layers.height.values - layers.height.values.mean()
+    weights = height / (height @ height)
+    slope, stderr = float(weights @ passed), float(abs(weights) @ (kappa * errors))
+    value = flux.value / slope
+    relative = np.hypot(flux.stderr / flux.value, stderr / slope)
+    return Estimate(value, float(value * relative), flux.dof)

@@ -1,17 +1,28 @@
-"""Judges of statements on self-diffusion."""
+"""Judges of statements on transport coefficients."""
+
+from collections.abc import Callable
 
 import numpy as np
 import xarray as xr
 
-from roughgas.judging import Finding, Sample, grade, points, text, together
+from roughgas.judging import Estimate, Finding, Sample, grade, points, text, together
 
-from .coefficients import by_displacement, expected, rough_over_smooth
+from .coefficients import (
+    REMEMBERED,
+    between_walls,
+    by_displacement,
+    expected,
+    in_equilibrium,
+    in_shear,
+    point,
+    rough_over_smooth,
+)
 
 FULL, PARTLY = 0.01, 0.02
 """Relative difference of a ratio of coefficients up to which it holds, or is qualified. The first
 Sonine approximation is 2 % low for smooth elastic spheres; part of that cancels in a ratio."""
 CLOSE, NEAR = 0.03, 0.1
-"""The same of the coefficients of a driven gas, whose velocities are not Maxwellian."""
+"""The same of the coefficients themselves; velocities of a driven gas are not Maxwellian."""
 
 
 def rough_diffuse_less(
@@ -36,12 +47,44 @@ def _one_ratio(rough: xr.Dataset, smooth: xr.Dataset) -> Finding:
 
 def driven_gas_diffuses(gas: xr.Dataset) -> Finding:
     """D of a driven gas is that of theory at its temperature."""
+    return _at_all_points(gas, lambda one: by_displacement(one).scaled(1.0 / expected(one)))
+
+
+def driven_gas_is_viscous(gas: xr.Dataset) -> Finding:
+    """Viscosity of a driven gas in a slow shear is that of theory at its temperatures."""
+    return _at_all_points(gas, lambda one: in_shear(one)[-1])
+
+
+def elastic_gases_carry(*gases: xr.Dataset) -> Finding:
+    """Viscosity and conductivity of elastic gases in equilibrium are those of theory."""
+    return together(
+        (f"{name} of {gas.attrs['experiment']}", _one(in_equilibrium(point(gas), name)[-1]))
+        for gas in gases
+        for name in REMEMBERED
+    )
+
+
+def heat_flows_between_walls(*gases: xr.Dataset) -> Finding:
+    """Conductivity of elastic gases between thermal walls is that of theory."""
+    return together((gas.attrs["experiment"], _one(between_walls(point(gas)))) for gas in gases)
+
+
+def _one(over_theory: Estimate) -> Finding:
+    off = over_theory._replace(value=over_theory.value - 1.0)
+    verdict = grade(
+        not (off.real and abs(off.value) > CLOSE), not (off.real and abs(off.value) > NEAR)
+    )
+    reason = f"a relative difference of {text(off)}."
+    return Finding(verdict, reason, (("relative difference", off),))
+
+
+def _at_all_points(gas: xr.Dataset, over_theory: Callable[[xr.Dataset], Estimate]) -> Finding:
     places, values = [], []
     for r in gas.r.values:
         for beta in gas.beta.values:
             one = gas.sel(r=r, beta=beta)
-            if np.isfinite(one.R):
-                found = by_displacement(one).scaled(1.0 / expected(one))
+            if np.isfinite(one.R).all():
+                found = over_theory(one)
                 values.append(found._replace(value=found.value - 1.0))
                 places.append((r, beta))
     r, beta = np.array(places).T

@@ -27,7 +27,7 @@ from typing import ClassVar
 import numpy as np
 
 from roughgas.base import InputError
-from roughgas.data.variables import ENERGY, SPIN, TIME, Variable
+from roughgas.data.variables import SPIN, TIME, Variable
 from roughgas.effects.contacts import HEAT, STRESSES
 from roughgas.observables.plugin import Frame, Observable, Setting, System, Values, Whole
 
@@ -83,7 +83,7 @@ class FluxAutocorrelation(Observable):
     settings: ClassVar[Mapping[str, Setting]] = DELAYS
     variables: Mapping[str, Variable] = {
         "delay": DELAY,
-        STRESS: Variable("V <P_xy(0) P_xy(t)> of the pressure tensor", f"{ENERGY}^2 a^-D", ALONG),
+        STRESS: Variable("V <P_xy(0) P_xy(t)> of the pressure tensor", "m^2 a^(4-D) T^-4", ALONG),
         HEAT_FLUX: Variable("V <q_x(0) q_x(t)> of the heat flux", "m^2 a^(6-D) T^-6", ALONG),
         VISCOSITY: Variable("shear viscosity, of memory up to this delay", "m a^(2-D) T^-1", ALONG),
         CONDUCTIVITY: Variable("conductivity, of memory up to this delay", "a^(2-D) T^-1", ALONG),
