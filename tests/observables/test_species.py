@@ -10,7 +10,7 @@ import pytest
 from tests.observables.frames import frame_of, system_of
 
 from roughgas import simulate, theory
-from roughgas.base import NeedsError
+from roughgas.base import InputError, NeedsError
 from roughgas.cli.show import observed
 from roughgas.observables import KINDS, wanted
 from roughgas.observables.plugin import SUFFIX, Group
@@ -119,6 +119,18 @@ def test_what_is_seen_of_species_can_be_kept_in_a_journal():
         found = other.look(frames[1])
         for key, value in one.look(frames[1]).items():
             assert np.array_equal(found[key], value, equal_nan=True)
+
+
+def test_what_rests_on_all_contacts_is_not_that_of_a_species():
+    """It is of all particles, or is refused in one line."""
+    system = mixed_frames(number=1)[0].system
+    for name, kind in KINDS.items():
+        if kind.effects and kind.alike:
+            with pytest.raises(
+                InputError, match=rf"^observables\.{name} = with species: must come"
+            ):
+                wanted({name: {}})[0].make(system)
+    assert type(wanted({"stress": {}})[0].make(system)) is KINDS["stress"]
 
 
 def test_a_function_may_look_at_one_species():
