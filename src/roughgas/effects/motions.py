@@ -131,8 +131,14 @@ class Law(NamedTuple):
     `height`, rising at `speed`; inf where they never meet"""
     met: Any = None
     """(motion, what, phase) -> the speed of the surface when it meets a particle so"""
-    waits: bool = False
-    """It is searched for no longer than until the next contact: few particles get past that"""
+    search: Any = None
+    """As `meet`, with a limit as well: (a time beyond it, LOOK) where they do not meet before. The
+    limit is the next contact, for a meeting that takes long to find: few particles get past it"""
+
+    @property
+    def waits(self) -> bool:
+        """Whether the search may end before a meeting is found."""
+        return self.search is not None
 
 
 @of_types
@@ -309,6 +315,6 @@ def _swing_at(motion, phase):
 
 LAWS = {
     Pieces: Law(_pieces_at, time_to_pieces, _speed_of_piece),
-    Sine: Law(sine_motion, time_to_sine, _speed_of_sine, waits=True),
+    Sine: Law(sine_motion, time_to_sine, _speed_of_sine, search_sine),
     Swing: Law(_swing_at),
 }

@@ -232,7 +232,8 @@ def predict_wall(wall, index, state, scene, i):
     phase = state.phase[index] + time
     if law_of(wall.motion).waits:
         limit = first_contact(state, i)
-        wait, what = motions.search_sine(wall.motion, gravity, gap, speed, phase, limit - time)
+        search = law_of(wall.motion).search
+        wait, what = search(wall.motion, gravity, gap, speed, phase, limit - time)
         return (time + wait if what == motions.MEET else max(time + wait, limit)), what
     wait, what = law_of(wall.motion).meet(wall.motion, gravity, gap, speed, phase)
     return time + wait, what
