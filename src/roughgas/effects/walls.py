@@ -44,7 +44,7 @@ from roughgas.kernel.particles import (
     spin_of,
     turn_spin,
 )
-from roughgas.kernel.state import BOUNDARY_HITS, NOBODY
+from roughgas.kernel.state import BOUNDARY_HITS, NOBODY, NOW
 from roughgas.kernel.vectors import add_scaled, along_axis, subtract
 
 # Relative to what is shaken, a/T: any less, and a particle could hit it infinitely often in finite
@@ -230,11 +230,15 @@ def predict_wall(wall, index, state, scene, i):
     if wall.motion is None:
         return time + fall(gap, speed, gravity), motions.MEET
     phase = state.phase[index] + time
-    if law_of(wall.motion).waits:
+    if law_of(wall.motion).waits and state.cells is not None:  # few get there before a contact
         limit = first_contact(state, i)
         search = law_of(wall.motion).search
         wait, what = search(wall.motion, gravity, gap, speed, phase, limit - time)
         return (time + wait if what == motions.MEET else max(time + wait, limit)), what
+    if law_of(wall.motion).waits:  # what flies above all strokes is looked at when it is back
+        back = time + motions.time_below(wall.motion.amplitude, gravity, gap, speed, 0.0)
+        if back > state.clock[NOW]:
+            return back, LOOK
     wait, what = law_of(wall.motion).meet(wall.motion, gravity, gap, speed, phase)
     return time + wait, what
 
