@@ -12,6 +12,7 @@ from .homogeneous import unbiased
 KICKS = 4  # that a particle gets between two of its collisions
 BURST = 0.01  # collisions per particle that are watched at once
 RENEWED = 0.2  # collisions per particle of the smooth elastic gas in between
+EQUALISED = 2.0  # the same of a mixture, whose species have lost unlike shares of their energies
 REFRESHED = 10.0  # collisions per particle after which a cooling gas is rescaled
 GRAZE = 1e-9  # a: nearer pairs are in contact
 SHELLS = np.linspace(2.0, 2.5, 11)  # in which pairs are counted, in a
@@ -206,7 +207,7 @@ def mixtures(about, gas, seed) -> dict[str, float]:
     rng, most = np.random.default_rng(seed.spawn(1)[0]), both.count(BURST)
     sums, passed = np.zeros((2, 2)), about["bursts"] * 2.0 * most / number
     for _ in range(about["bursts"]):
-        both.thermalise(RENEWED)
+        both.thermalise(EQUALISED)
         mass = both.state.bodies.mass
         drawn = rng.standard_normal((number, 3)) * np.sqrt(theta / (q * mass))[:, None]
         velocity = both.positions_and_velocities()[1]

@@ -21,7 +21,13 @@ SHORT = {
     "pair correlation at contact": "$g$ at contact",
     "first loss of T_tr from equilibrium, -dT_tr/dn over T_tr": "first loss",
     "first gain of T_rot from equilibrium, dT_rot/dn over T_tr": "first gain of spin",
+    "first loss of T_tr of a species in a mixture, over T_tr": "first loss, mixture",
+    "first gain of T_rot of a species in a mixture, over T_tr": "first gain, mixture",
     "T_0/T of a smooth tracer among elastic spheres": "tracer",
+    "A of the tail exp(-A c) of a smooth gas cooling, c = v/sqrt(2 T/m)": "tail, cooling",
+    "A of the tail exp(-A c^(3/2)) of a smooth gas driven by white noise, c = v/sqrt(2 T/m)": (
+        "tail, white noise"
+    ),
     "exponent p of T ~ t^-p of a homogeneous cooling gas": "Haff's exponent",
     "self-diffusion of smooth elastic particles, D nu/T over D/2": "diffusion",
 }
