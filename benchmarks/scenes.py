@@ -86,7 +86,7 @@ def advance(scene, state, time=np.inf, collisions=UNLIMITED):
 
 def _copied(scene, state, copies, rng):
     """Positions, velocities and spins of copies x copies boxes; open ones all stand in a row."""
-    position, velocity, spin = _present(scene, state)
+    position, velocity, spin = present(scene, state)
     across, up = (copies**2, 1) if scene.box[1] is None else (copies, copies)
     place = np.stack(np.meshgrid(np.arange(across), np.arange(up)), axis=-1).reshape(-1, 1, 2)
     position = position + place * np.array([length or 0.0 for length in scene.box])
@@ -97,8 +97,8 @@ def _copied(scene, state, copies, rng):
     return position.reshape(-1, 2), velocity.reshape(-1, 2), np.tile(spin, (across * up, 1))
 
 
-def _present(scene, state):
-    """Positions in the box, velocities and spins, all at the present, when no image has slid."""
+def present(scene, state):
+    """(positions in the box, velocities, spins), all at the present, when no image has slid."""
     since = (state.clock[NOW] - state.trajectory[:, -1])[:, None]
     position, velocity = np.hsplit(state.trajectory[:, :-1], 2)
     fall = np.zeros(len(scene.box))
