@@ -19,6 +19,7 @@ from roughgas.kernel.jit import compiled, jit
 from roughgas.kernel.mathematics import (
     bits,
     choose,
+    index,
     least,
     load,
     order,
@@ -34,6 +35,7 @@ from roughgas.kernel.state import (
     NOBODY,
     NOTHING,
     NOW,
+    SPAN,
     TYPICAL_SPEED,
 )
 
@@ -99,18 +101,21 @@ def enter(first, following, place, i):
 @jit
 def unlink(first, following, place, i):
     """Take particle i off the list of a place."""
-    before = first[place]
+    before = index(int(first[place]))
     if before == i:
         first[place] = following[i]
         return
-    while following[before] != i:
-        before = following[before]
+    after = index(int(following[before]))
+    while after != i:
+        before = after
+        after = index(int(following[before]))
     following[before] = following[i]
 
 
 LAST_DAY = 2.0**62
 EVENTS_A_DAY = 2.0  # this many make a day's list short and empty days rare
 GREATEST_CHANGE = 8.0  # of the days' length at once
+MOST_DAYS = 2.0**40  # in a span: events at one instant tell nothing of how long a day should be
 
 
 @jit
@@ -184,8 +189,9 @@ def day_of(queue, time):
 def _earliest_in_calendar(state):
     queue, key = state.queue, state.agenda.key
     queue.events[0] += 1
-    if queue.events[0] > queue.first.size >> 2:
-        _keep_pace(state)
+    days = queue.today[0] - queue.since[0]
+    if 4 * queue.events[0] > queue.first.size or days > queue.first.size:
+        _keep_pace(state, days)
     day = queue.today[0]
     for _ in range(queue.first.size):
         least, place = math.inf, NOBODY
@@ -216,16 +222,15 @@ def _earliest_of_all(state):
 
 
 @compiled
-def _keep_pace(state):
+def _keep_pace(state, days):
     """Let days be shorter, or longer, if they do not hold about EVENTS_A_DAY each.
 
     A layer makes most of its contacts within a tenth of a stroke, when it lands.
     """
     queue = state.queue
-    change = queue.events[0] / (EVENTS_A_DAY * max(queue.today[0] - queue.since[0], 1))
-    if 0.5 < change < 2.0:
-        change = 1.0
-    _set_pace(state, queue.pace[0] * min(max(change, 1.0 / GREATEST_CHANGE), GREATEST_CHANGE))
+    change = queue.events[0] / (EVENTS_A_DAY * max(days, 1))
+    change = 1.0 if 0.5 < change < 2.0 else min(max(change, 1.0 / GREATEST_CHANGE), GREATEST_CHANGE)
+    _set_pace(state, min(queue.pace[0] * change, MOST_DAYS / state.clock[SPAN]))
 
 
 @jit
