@@ -134,7 +134,8 @@ def _shift_agenda(state, scene, step):
 def start(state, scene):
     """Have everything foreseen again, after velocities were set from outside."""
     renew(state, scene)
-    foresee_all(state)
+    if state.cells is None:  # many are foreseen anew whenever the clock is
+        foresee_all(state)
 
 
 @jit
