@@ -73,7 +73,10 @@ def _of_elastic(gas: xr.Dataset) -> Iterator[Row]:
     disks, smooth = gas.attrs["dimension"] == 2, float(gas.beta) == -1.0
     source = (DISKS if smooth else NEW) if disks else SMOOTH if smooth else ROUGH
     kind = f"{'smooth' if smooth else 'rough'} elastic {'disks' if disks else 'spheres'}"
-    at = place_of({"packing": round(gas.attrs["packing"], 4)})
+    if "packing" in gas.attrs:
+        at = place_of({"packing": round(gas.attrs["packing"], 4)})
+    else:  # walls take some of the room
+        at = place_of({"N": int(gas.attrs["particles"])})
     if "heat_flux" in gas:
         name = f"conductivity of {kind} between walls over theory"
         yield _over_theory(name, at, source, between_walls(gas), CARRIED)
