@@ -28,7 +28,8 @@ NUMBER, EVENTS, RUNS, IN_TURN = 160, 500_000, 7, 1000
 @jit
 def _execute(state, scene):
     i = index(earliest(state))
-    state.clock[NOW] = time = state.agenda.key[i]
+    time = state.agenda.key[i]
+    state.clock[NOW] = time
     affected = execute_event(state, scene, i, int(state.agenda.kind[i]), time)
     return affected[0], affected[1], time
 
