@@ -155,6 +155,36 @@ def observe_stress(stress, index, state, contact):
 register(ContactStress, {}, observe_contact=observe_stress, sums=STRESSES)
 
 
+HEAT = {f"E s_{along}": 2 for along in AXES}
+"""Energy times distance, carried along an axis."""
+
+
+class ContactHeat(NamedTuple):
+    """Measures the collisional heat flux, from sums over all contacts of pairs."""
+
+
+@jit
+def observe_heat(heat, index, state, contact):
+    sums, bodies, along = state.sums.contact_heat, state.bodies, len(contact.n)
+    i, j, n, push = contact.i, contact.j, contact.n, contact.push
+    both = add_scaled(read(state.trajectory, i, along, n), read(state.trajectory, j, along, n), 1.0)
+    passed = -0.5 * dot(push, both)
+    if state.spin is not None:
+        turn = cross_to_spin(n, push)
+        passed += 0.5 * dot(turn, subtract(spin_of(state.spin, n, i), spin_of(state.spin, n, j)))
+    if bodies is not None:
+        passed -= 0.25 * dot(push, push) * (1.0 / bodies.mass[i] - 1.0 / bodies.mass[j])
+    if bodies is not None and state.spin is not None:
+        one, other = spin_mass_of(bodies, None, i), spin_mass_of(bodies, None, j)
+        passed -= 0.25 * dot(turn, turn) * (1.0 / one - 1.0 / other)
+    far = reach_of(bodies, i, j)
+    for k in range(len(n)):
+        sums[0, k] += passed * far * n[k]
+
+
+register(ContactHeat, {}, observe_contact=observe_heat, sums=HEAT)
+
+
 def columns_of_pairs(kinds: int) -> list[str]:
     """Return the columns in which contacts of so many species are counted, and then those of the
     energy that they take: of species k with each species, from k = 0 on."""
@@ -252,31 +282,3 @@ register(
     observe_contact=log_contact,
     observe_wall=log_contact,
 )
-HEAT = {f"E s_{along}": 2 for along in AXES}
-"""Energy times distance, carried along an axis."""
-
-
-class ContactHeat(NamedTuple):
-    """Measures the collisional heat flux, from sums over all contacts of pairs."""
-
-
-@jit
-def observe_heat(heat, index, state, contact):
-    sums, bodies, along = state.sums.contact_heat, state.bodies, len(contact.n)
-    i, j, n, push = contact.i, contact.j, contact.n, contact.push
-    both = add_scaled(read(state.trajectory, i, along, n), read(state.trajectory, j, along, n), 1.0)
-    passed = -0.5 * dot(push, both)
-    if state.spin is not None:
-        turn = cross_to_spin(n, push)
-        passed += 0.5 * dot(turn, subtract(spin_of(state.spin, n, i), spin_of(state.spin, n, j)))
-    if bodies is not None:
-        passed -= 0.25 * dot(push, push) * (1.0 / bodies.mass[i] - 1.0 / bodies.mass[j])
-    if bodies is not None and state.spin is not None:
-        one, other = spin_mass_of(bodies, None, i), spin_mass_of(bodies, None, j)
-        passed -= 0.25 * dot(turn, turn) * (1.0 / one - 1.0 / other)
-    far = reach_of(bodies, i, j)
-    for k in range(len(n)):
-        sums[0, k] += passed * far * n[k]
-
-
-register(ContactHeat, {}, observe_contact=observe_heat, sums=HEAT)

@@ -218,7 +218,7 @@ class Library(JITCodeLibrary):
 
     def finalize(self):
         if any(_is_entry(function.name) for function in self._final_module.functions):
-            self._linking_libraries = _all_below(self)
+            self._linking_libraries = _all_below(self, [])
             super().finalize()
             return
         for library in self._linking_libraries:
@@ -227,12 +227,12 @@ class Library(JITCodeLibrary):
         self._finalized = True
 
 
-def _all_below(library, found=()):
-    """Return the libraries that one calls, directly or not, each once."""
-    found = dict(found)
+def _all_below(library, found):
+    """Return the list with all libraries added that one calls, directly or not, each once."""
     for one in library._linking_libraries:
         if one not in found:
-            found |= _all_below(one, found | {one: None})
+            found.append(one)
+            _all_below(one, found)
     return found
 
 

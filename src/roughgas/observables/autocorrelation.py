@@ -102,8 +102,7 @@ class FluxAutocorrelation(Observable):
         """Return both since earlier looks, NaN where there was none, and the temperature."""
         system, V = self.system, frame.velocity
         D, volume, before = system.dimension, system.volume, self._kinetic
-        energy = ((V**2).sum(axis=1) + frame.inertia * (frame.thermal_spin**2).sum(axis=1)) / 2.0
-        self._kinetic = V.T @ V, energy @ V
+        self._kinetic = V.T @ V, frame.energy @ V
         temperature = np.trace(self._kinetic[0]) / (D * (system.particles - 1))
         found = np.full((2, self._path[0].maxlen or 0), np.nan)
         if before is not None:

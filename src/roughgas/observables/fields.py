@@ -191,7 +191,5 @@ class HeatFlux(Observable):
 
     def look(self, frame: Frame) -> Values:
         """Return the flux, its collisional part since the look before."""
-        v, spin_mass = frame.velocity, frame.mass * frame.inertia
-        energy = frame.mass * (v**2).sum(axis=1) + spin_mass * (frame.thermal_spin**2).sum(axis=1)
-        carried = np.array([frame.rates[name] for name in contacts.HEAT])[: v.shape[1]]
-        return {"heat_flux": (energy @ v / 2.0 + carried) / self.system.volume}
+        carried = np.array([frame.rates[name] for name in contacts.HEAT])[: self.system.dimension]
+        return {"heat_flux": (frame.energy @ frame.velocity + carried) / self.system.volume}

@@ -111,6 +111,12 @@ class Frame(NamedTuple):
         return self._replace(system=self.system.only(*species), rates={}, **of_each)
 
     @property
+    def energy(self) -> np.ndarray:
+        """Kinetic energies (N,), m v^2/2 and, without a mean spin, m q a^2 w^2/2."""
+        square, spin_square = (self.velocity**2).sum(axis=1), (self.thermal_spin**2).sum(axis=1)
+        return 0.5 * (self.mass * square + self.mass * self.inertia * spin_square)
+
+    @property
     def thermal_velocity(self) -> np.ndarray:
         """Velocities (N, D) without the mean flow of a sheared gas."""
         rate, velocity = self.system.shear_rate, self.velocity
