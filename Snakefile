@@ -101,13 +101,13 @@ rule extensions:
 rule evidence:
     input:
         drawn(["evidence"]),
-        f"figures/{folder_of(SCALE)}evidence.csv",
+        kept("evidence.csv"),
         documents("evidence"),
 
 
 rule numbers:
     input:
-        f"figures/{folder_of(SCALE)}numbers.json",
+        kept("numbers.json"),
 
 
 rule article:

@@ -188,6 +188,11 @@ def folder_of(scale):
     return "" if scale == "paper" else f"{scale}/"
 
 
+def kept(product):
+    """A product of this run, and its copy beside the figures, which the documentation reads."""
+    return [f"results/{SCALE}/{product}", f"figures/{folder_of(SCALE)}{product}"]
+
+
 def drawn(figures, kinds=(".pdf", ".png"), scale=None):
     """The files of figures at a scale, by default that of this run."""
     folder = folder_of(scale or SCALE)

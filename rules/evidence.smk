@@ -16,11 +16,6 @@ def names_of_evidence(wildcards):
     return study_of(wildcards)["evidence"]
 
 
-def rows_of_studies(wildcards):
-    scale = scale_of(wildcards.folder)
-    return [ROWS_OF_STUDY.format(scale=scale, study=name) for name in WITH_EVIDENCE]
-
-
 rule study_evidence:
     input:
         data=data_of_evidence,
@@ -42,13 +37,12 @@ rule study_evidence:
 
 
 rule rows_of_evidence:
-    # at the scale `paper` beside the figures, where the documentation finds it
     input:
-        rows_of_studies,
+        expand(ROWS_OF_STUDY, study=WITH_EVIDENCE, allow_missing=True),
     output:
-        "figures/{folder}evidence.csv",
+        "results/{scale}/evidence.csv",
     log:
-        "logs/figures/{folder}evidence.log",
+        "logs/{scale}/evidence.log",
     params:
         code=code_of("results.evidence"),
     message:
@@ -59,7 +53,7 @@ rule rows_of_evidence:
 
 rule page_of_evidence:
     input:
-        lambda wildcards: f"figures/{folder_of(wildcards.scale)}evidence.csv",
+        "results/{scale}/evidence.csv",
     output:
         "results/{scale}/evidence.md",
     log:
@@ -74,7 +68,7 @@ rule page_of_evidence:
 
 rule figure_of_evidence:
     input:
-        "figures/{folder}evidence.csv",
+        lambda wildcards: f"results/{scale_of(wildcards.folder)}/evidence.csv",
     output:
         "figures/{folder}evidence.pdf",
         report(

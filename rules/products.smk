@@ -25,11 +25,7 @@ def data_of_numbers(wildcards):
     page = Path("docs/results.md").read_text(encoding="utf-8")
     named = {name.rpartition(".")[0] for name in quoted(page)}
     beyond = sorted(named & {*SWEPT_IN_STUDIES})
-    return reduced(scale_of(wildcards.folder), [*catalogue.shown_in("paper"), *beyond])
-
-
-def claims_of_numbers(wildcards):
-    return f"results/{scale_of(wildcards.folder)}/claims.json"
+    return reduced(wildcards.scale, [*catalogue.shown_in("paper"), *beyond])
 
 
 def data_of_plot(wildcards):
@@ -179,14 +175,14 @@ rule claims:
 
 
 rule quoted_numbers:
-    # what docs/results.md quotes; at the scale `paper` beside the figures
+    # what docs/results.md and the article quote
     input:
         data=data_of_numbers,
-        claims=claims_of_numbers,
+        claims="results/{scale}/claims.json",
     output:
-        "figures/{folder}numbers.json",
+        "results/{scale}/numbers.json",
     log:
-        "logs/figures/{folder}numbers.log",
+        "logs/{scale}/numbers.log",
     params:
         code=code_of("claims.numbers"),
     message:
@@ -194,6 +190,22 @@ rule quoted_numbers:
     shell:
         "python -P -m roughgas.steps numbers {input.data:q} --claims {input.claims:q}"
         " --output {output:q} > {log:q} 2>&1"
+
+
+rule quoted_by_documentation:
+    # beside the figures, where the documentation finds it in a clone that has no results
+    input:
+        lambda wildcards: f"results/{scale_of(wildcards.folder)}/{wildcards.file}",
+    output:
+        "figures/{folder}{file}",
+    log:
+        "logs/figures/{folder}{file}.log",
+    wildcard_constraints:
+        file=one_of(["evidence.csv", "numbers.json"]),
+    message:
+        "write {output}"
+    shell:
+        "cp {input:q} {output:q} 2> {log:q}"
 
 
 rule run_times:

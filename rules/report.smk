@@ -150,14 +150,10 @@ def figures_of_article(wildcards):
     return drawn(catalogue.figures_of("paper"), [".pdf"], wildcards.scale)
 
 
-def numbers_of_article(wildcards):
-    return f"figures/{folder_of(wildcards.scale)}numbers.json"
-
-
 rule article_pdf:
     input:
         source=of_project(*sorted((SOURCE / "article").glob("*.*"))),
-        numbers=numbers_of_article,
+        numbers="results/{scale}/numbers.json",
         claims="results/{scale}/claims.json",
         table="results/{scale}/R.csv",
         figures=figures_of_article,
@@ -208,7 +204,7 @@ rule deposit:
         data=data_of_run,
         tables=multiext(f"results/{SCALE}/", "R.csv", "claims.json", "claims.md", "article.pdf"),
         figures=drawn(catalogue.figures_of("paper")),
-        numbers=f"figures/{folder_of(SCALE)}numbers.json",
+        numbers=f"results/{SCALE}/numbers.json",
     output:
         f"results/{SCALE}/deposit.zip",
     log:

@@ -104,7 +104,7 @@ def test_a_run_writes_the_article_and_a_deposit(tmp_path):
     article = (tmp_path / "results/tiny/article.pdf").read_bytes()
     with zipfile.ZipFile(tmp_path / "results/tiny/deposit.zip") as archive:
         assert archive.read("results/tiny/article.pdf") == article
-        assert {"figures/tiny/numbers.json", "article/article.typ"} < set(archive.namelist())
+        assert {"results/tiny/numbers.json", "article/article.typ"} < set(archive.namelist())
 
 
 def test_it_quotes_numbers_that_are_known():

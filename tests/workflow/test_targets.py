@@ -1,5 +1,7 @@
 """What can be asked for, and how the rest is refused."""
 
+from pathlib import Path
+
 import pytest
 from project import BEYOND, JOBS, Project
 
@@ -93,6 +95,18 @@ def test_everything_has_films_and_the_experiments_that_were_added(tmp_path):
 def test_any_legal_point_can_be_asked_for(project):
     planned = project.planned(*LEGAL)
     assert planned == {"compile_kernel": len(LEGAL), "point": len(LEGAL)}
+
+
+@pytest.mark.parametrize("product", ["evidence.csv", "numbers.json"])
+def test_what_a_clone_brings_along_is_made_anew(tmp_path, product):
+    project = Project(tmp_path)
+    (tmp_path / "docs").mkdir()
+    (tmp_path / "docs/results.md").touch()
+    (tmp_path / "figures/tiny").mkdir(parents=True)
+    (tmp_path / "figures/tiny" / product).write_text("of another machine")
+    planned = project.planned(Path(product).stem)
+    assert planned["quoted_by_documentation"] == 1
+    assert planned["reduce"] > 0
 
 
 def test_figures_and_experiments_are_targets_by_their_names(project):
