@@ -2,6 +2,7 @@
 right, and what ends early says so."""
 
 import math
+from contextlib import nullcontext
 from dataclasses import dataclass
 
 import numpy as np
@@ -295,3 +296,20 @@ def test_a_period_of_several_strokes_and_the_phases_that_it_shows():
         run = Run("bed", 10, 0.2, 0.9, 0.0, STEADY | {"period": period, "sample_every": every})
         scene, _ = begin(run.experiment, 0.9, 0.0)
         assert steady.phases(scene, run.schedule) == phases
+
+
+@pytest.mark.parametrize(
+    ("wall", "legal"),
+    [
+        ({"amplitude": 1, "period": 2, "wave": "sine"}, False),
+        ({"amplitude": 1, "period": 2, "shaken": "along"}, False),
+        ({"amplitude": 0, "period": 2, "velocity": 1}, True),
+        ({"velocity": 1}, True),
+    ],
+)
+def test_samples_show_all_phases_of_any_wall_that_is_shaken(wall, legal):
+    """A period of samples that is no multiple of its own would see some of its phases alone."""
+    experiment = settings("sheared", 10, [20, 20]) | {"schedule": STEADY | {"period": 3.0}}
+    experiment["effects"] = {"bottom_wall": {}, "lid": wall}
+    with nullcontext() if legal else pytest.raises(InputError, match="that of lid, 2 T"):
+        schedule.check(experiment)

@@ -119,6 +119,12 @@ class Wall(NamedTuple):
             return LOW, HIGH
         return (HIGH if self.place.inwards < 0.0 else LOW,)
 
+    @property
+    def period(self) -> float:
+        """Time between strokes, in T; infinite where it is not shaken."""
+        shaken = self.motion or self.sliding
+        return math.inf if shaken is None or shaken.amplitude == 0.0 else shaken.period
+
     @classmethod
     def from_settings(cls, settings, around):
         """Return the wall that the settings describe; raise InputError where they contradict."""
@@ -154,8 +160,6 @@ class Walls(Wall):
 class ShakenWalls(Wall):
     """Side walls that close the first axis, and are shaken along the last one as a sine."""
 
-    period = property(lambda walls: walls.sliding.period)
-
     @classmethod
     def from_settings(cls, settings, around):
         """Return the walls, as far apart as the box is wide."""
@@ -168,7 +172,6 @@ class Floor(Wall):
     """A shaken floor under a gas with gravity."""
 
     amplitude = property(lambda floor: floor.motion.amplitude)
-    period = property(lambda floor: floor.motion.period)
 
     @classmethod
     def from_settings(cls, settings, around):

@@ -8,7 +8,6 @@ import numpy as np
 
 from roughgas.base import InputError
 from roughgas.effects import inertia
-from roughgas.kernel.hooks import present
 from roughgas.scene import Scene, moves_along
 from roughgas.simulation.energies import (
     Columns,
@@ -93,10 +92,8 @@ def check(scene: Scene, experiment: Mapping[str, Any]) -> None:
 
 def drive_periods(scene: Scene) -> dict[str, float]:
     """Return the period (T) of each effect that drives a gas periodically, by name."""
-    effects = scene.effects
-    found = {effects._fields[part.place]: effects[part.place] for part in present(effects, "phase")}
-    moving = {name: one for name, one in found.items() if getattr(one, "amplitude", 1.0) > 0}
-    periods = {name: getattr(one, "period", math.inf) for name, one in moving.items()}
+    found = scene.effects._asdict().items()
+    periods = {name: getattr(one, "period", math.inf) for name, one in found}
     return {name: period for name, period in periods.items() if period < math.inf}
 
 

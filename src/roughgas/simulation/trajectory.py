@@ -16,7 +16,7 @@ from roughgas.kernel.hooks import displacement
 from roughgas.kernel.state import BASE, EXPONENT, NOW, Bodies, State
 from roughgas.scene import Scene, has_sides
 from roughgas.scene.initial import bounds
-from roughgas.simulation import cooling, schedule, stages
+from roughgas.simulation import cooling, schedule, stages, steady
 from roughgas.simulation.change import change
 from roughgas.simulation.energies import Energies, ratio, restored, species_names
 from roughgas.simulation.gas import Gas
@@ -130,8 +130,8 @@ def usual_take(experiment: Mapping[str, Any], scene: Scene) -> Frames:
     if schedule.of(experiment) is stages:
         return Frames(0.0, stages.length(scene, experiment), FRAMES)
     wait = experiment["schedule"].get("equilibrate", UNKNOWN_TRANSIENT)
-    shear, drive = scene.effects.shear, scene.effects.floor or scene.effects.shaken_walls
-    length = PERIODS * drive.period if drive else TIME
+    shear, periods = scene.effects.shear, steady.drive_periods(scene).values()
+    length = PERIODS * max(periods) if periods else TIME
     if shear is not None:
         length = shear.length / shear.velocity
     return Frames(min(wait, PATIENCE / experiment["particles"]), length, FRAMES)

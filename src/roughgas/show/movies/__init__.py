@@ -26,6 +26,7 @@ from roughgas.show.movies.particles import (
 )
 from roughgas.show.style import write_movie
 from roughgas.simulation import schedule
+from roughgas.simulation.steady import drive_periods
 from roughgas.simulation.trajectory import Snapshot
 
 WIDTH = 4.8  # inches
@@ -238,9 +239,8 @@ def _graph(axes: Axes, subject: MovieSubject, shots: Sequence[Snapshot]) -> Call
         values = np.array([shot.R for shot in shots])
         axes.set(ylabel=r"$R$", ylim=(0.0, 1.05 * max(0.6, values.max())))
         axes.axhline(0.5, color=style.FAINT, linewidth=0.6, linestyle=":")
-    effects = subject.scene.effects
-    shaken = effects.floor or effects.shaken_walls
-    at = at / shaken.period if shaken else at
+    shaken = list(drive_periods(subject.scene).values())
+    at = at / shaken[0] if shaken else at
     begun = 0 if cooling else math.floor(at[0])
     at = at - begun
     unit = PER_PARTICLE if cooling else SHAKES if shaken else "time in $T$"
