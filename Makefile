@@ -17,7 +17,7 @@ LOCK := uv pip compile --quiet --generate-hashes --no-emit-index-url --no-header
     --python-version 3.11 pyproject.toml
 EXTRA_TESTS := slow or remedy or browser or slurm
 TESTS ?=
-FAST := base claims config data results scene statistics theory
+FAST := base claims config data results scene statistics theory test_refusals.py
 
 # pip in a few lines, in a terminal or in a pipe: how far it is, and of a failure all that it said
 define install

@@ -24,7 +24,8 @@ COPIED += ("studies", "tests")
 QUICK = "not (slow or remedy or browser or slurm)"
 ELSEWHERE = {  # tests of a room that are not in its own folder
     "base": ["data", "cli/test_process.py", "habits/test_surroundings.py"],
-    "cli": ["habits/test_surroundings.py"],
+    "cli": ["habits/test_surroundings.py", "test_refusals.py"],
+    "config": ["test_refusals.py"],
     "doctor": ["habits/test_surroundings.py"],
     "effects": [
         "kernel/test_against_brute_force.py",
@@ -33,7 +34,7 @@ ELSEWHERE = {  # tests of a room that are not in its own folder
     ],
     "kernel": ["hard_cases"],
     "library": ["test_library.py"],
-    "scene": ["simulation/test_protocols.py"],
+    "scene": ["simulation/test_protocols.py", "test_refusals.py"],
     "tasks": ["accuracy", "studies"],
 }
 

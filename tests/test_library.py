@@ -94,34 +94,6 @@ def test_lists_make_the_reduced_dataset_of_their_points(tmp_path, monkeypatch):
     assert 10 * np.pi / np.prod(sides) == pytest.approx(0.1)
 
 
-@pytest.mark.parametrize(
-    ("name", "changes", "message"),
-    [
-        ("colling", {}, "experiment = 'colling': must be one of cooling, sheared, "),
-        ("cooling", {"r": 1.5}, "restitution r = 1.5: must lie in [0, 1]"),
-        ("cooling", {"beta": [0, 0.5, 0]}, "beta = 0: must be given once"),
-        ("cooling", {"seed": []}, "seed = []: must be one value or several"),
-        ("cooling", {"beta": [0], "keep_state": True}, "keep_state = given: must come with one r,"),
-        ("cooling", {"packing": 0.2, "box": (40, 40)}, "cooling.box = [40, 40]: must not stand"),
-        ("cooling", {"scale": "big"}, "scale = 'big': must be one of paper, quick, small"),
-        ("cooling", {"particles": 10**6}, "particles = 1000000: must be at most 2842 in this box"),
-        ("cooling", {"box": 50}, "cooling.box = 50: must be a list of 2 to 3 entries"),
-        ("vibrated", {"effects": {"gravity": None}}, "effects.floor needs gravity"),
-        (
-            "friction.vibrated_friction/mu0.3",
-            {"effects": {"friction": {"mu": 0.5}}},
-            "experiment = friction.vibrated_friction/mu0.3: must be the variant",
-        ),
-        (None, {}, "scene.particles = (nothing): must be given"),
-        (None, OWN | {"schedule": {"kind": "steady"}}, "scene.schedule.equilibrate = (nothing)"),
-    ],
-)
-def test_bad_input_is_refused_as_by_the_pipeline(name, changes, message):
-    with pytest.raises(InputError) as refusal:
-        simulate(name, **(POINT | changes))
-    assert str(refusal.value).startswith(message) and "\n" not in str(refusal.value)
-
-
 class Bar(tqdm.auto.tqdm):
     """A progress bar that remembers, and is interrupted at some share of its way."""
 

@@ -16,22 +16,6 @@ ROOT = Path(__file__).parents[1]
 AXIS = {"r": ["0.9"], "beta": ["0"], "seeds": 1}
 
 
-@pytest.mark.parametrize(
-    ("line", "message"),
-    [
-        ("fly", "argument STEP: invalid choice: 'fly'"),
-        ("figure fig1a", "the following arguments are required: inputs, -o/--output"),
-        ("table a.nc --output a.csv --slide", "unrecognized arguments: --slide"),
-    ],
-)
-def test_bad_arguments_are_refused_in_one_line(line, message, capsys):
-    with pytest.raises(SystemExit) as stop:
-        steps.main(line.split())
-    said = capsys.readouterr()
-    assert (stop.value.code, said.out) == (2, "")
-    assert said.err.startswith(f"roughgas: error: {message}") and said.err.count("\n") == 1
-
-
 def test_a_mistake_ends_a_process_in_one_line(tmp_path):
     line = ["figure", "fig9", "x.nc", "--output", "f.png"]
     done = subprocess.run(

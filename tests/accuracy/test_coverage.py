@@ -9,7 +9,7 @@ from schedules import COOLING, STEADY
 from tests.pages import check_study
 
 from roughgas.accuracy import coverage
-from roughgas.accuracy.coverage import REGROUPINGS, calibrate, one_run, several, table
+from roughgas.accuracy.coverage import calibrate, one_run, table
 from roughgas.statistics.errors import Estimate
 
 tasks = coverage.tasks
@@ -69,13 +69,6 @@ def test_the_errors_of_the_coverage_are_those_seen_over_many_studies():
     seen = np.std([one["coverage"].value for one in studies], axis=0, ddof=1)
     stated = np.sqrt(np.mean(np.square([one["coverage"].stderr for one in studies]), axis=0))
     assert np.all(np.abs(seen / stated - 1) < 0.36)
-
-
-def test_groups_formed_again_and_again_tell_more_than_one_division():
-    runs = honest(np.random.default_rng(4), 400)
-    (share,) = several(runs, 0.0, [0.95], 4, np.random.default_rng(0))
-    assert share.stderr < 0.7 * math.sqrt(0.95 * 0.05 / 100)
-    assert REGROUPINGS > 1
 
 
 def test_runs_that_state_no_error_hold_no_truth():

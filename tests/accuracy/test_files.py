@@ -1,7 +1,5 @@
 """Studies from their tasks to one file, its tables and its figure."""
 
-import json
-
 import pytest
 import xarray as xr
 from tests.accuracy.test_coverage import EXPERIMENTS, SETTINGS
@@ -53,17 +51,3 @@ def test_tasks_of_different_settings_are_refused(tasks, tmp_path):
     other.to_netcdf(tmp_path / "other.nc")
     with pytest.raises(InputError, match="settings of coverage = 2 different ones: must be the s"):
         combine([tmp_path / "other.nc", tasks[1]], output=tmp_path / "all.nc")
-
-
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (["magic", "x"], "study = magic: must be one of statistical, models, discretisation"),
-        (["coverage", "x"], "task = x: must be one of "),
-    ],
-)
-def test_an_unknown_study_or_task_is_refused(arguments, message, tmp_path, capsys):
-    command = ["accuracy_task", *arguments, "--settings", settings()]
-    assert main([*command, "-o", str(tmp_path / "x.nc")]) == 2
-    assert message in capsys.readouterr().err
-    assert json.dumps(list(tmp_path.iterdir())) == "[]"

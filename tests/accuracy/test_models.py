@@ -8,10 +8,8 @@ from tests.pages import check_study
 from roughgas import theory
 from roughgas.accuracy import figures as plotting
 from roughgas.accuracy import models
-from roughgas.accuracy.models import DSMC, MAP, METHODS, error_bar
-from roughgas.base import InputError
-from roughgas.tasks import stream
-from roughgas.tasks.free_cooling import FreeCooling, event_driven, few_particles, integrate
+from roughgas.accuracy.models import METHODS, error_bar
+from roughgas.tasks.free_cooling import FreeCooling, integrate
 
 tasks = models.tasks
 
@@ -67,12 +65,6 @@ def test_the_integrated_rate_equations_are_those_that_are_solved_exactly(dimensi
     assert T_rot == pytest.approx(exact.T_rot, rel=1e-6)
 
 
-def test_species_are_refused():
-    mixed = FreeCooling(EXPERIMENT | {"species": [{"fraction": 1}]}, 0.8, 0.0)
-    with pytest.raises(InputError, match=r"species = .*: must not be there"):
-        _ = mixed.theta
-
-
 def test_a_box_is_scaled_to_the_packing():
     moved = FreeCooling(EXPERIMENT, 0.8, 0.0).at_packing(0.01)
     assert 40 * np.pi / np.prod(moved.experiment["box"]) == pytest.approx(0.01)
@@ -88,16 +80,6 @@ def test_error_bars_are_the_scatter_of_rms_errors():
         errors = shift + rng.standard_normal((4000, 16))
         observed = np.sqrt(np.mean(errors**2, axis=1)).std()
         assert np.median(error_bar(errors, common)) == pytest.approx(observed, rel=0.07)
-
-
-def test_the_same_seed_gives_the_same_bits_and_another_does_not():
-    cooling = FreeCooling(EXPERIMENT, 0.8, 0.0)
-    streams = [stream(SETTINGS, kind, 1) for kind in (DSMC, DSMC, MAP)]
-    first, same, other = (few_particles(cooling, 20, one) for one in streams)
-    assert first == same != other
-    runs = [event_driven(cooling, 20, 40, stream(SETTINGS, DSMC, 1)) for _ in range(2)]
-    assert np.array_equal(*runs)
-    assert len(set(runs[0])) == 2
 
 
 def test_jobs_draw_from_streams_of_their_own(parts):

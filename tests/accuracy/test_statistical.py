@@ -121,18 +121,6 @@ def test_no_estimate_is_used_twice_and_none_is_the_references(parts):
         assert not np.isin(parts[f"{scene}-reference"].R, R).any()
 
 
-def test_the_reference_is_as_much_longer_as_is_said(parts):
-    for scene in SCENES:
-        longest = 4 * SETTINGS["scenes"][scene]["shortest"]
-        assert parts[f"{scene}-reference"].time.sum() == SETTINGS["reference"] * longest
-
-
-def test_the_same_settings_give_the_same_numbers(parts):
-    task = "sheared-seeds"
-    again = run(task, SETTINGS, EXPERIMENTS)
-    np.testing.assert_array_equal(again.R, parts[task].R)
-
-
 @pytest.mark.parametrize("scene", SCENES)
 def test_segments_continue_one_another(scene):
     """Two of them are one of their joint length: in a cooling gas up to a new unit of velocity."""

@@ -42,10 +42,7 @@ def completed(line, script):
         ("roughgas run spheres.c", {"spheres.cooling_spheres"}),
         (f"roughgas run {BED}/mu0.0", {f"{BED}/mu0.0{k}" for k in "13"}),
         ("roughgas movie cooling --scale ", {"paper", "quick", "small"}),
-        ("roughgas run cooling --config config.", {"config.yaml"}),
-        ("roughgas show READ", {"README.md"}),
         ("roughgas run cooling --config no.yaml --scale ", set()),
-        ("roughgas completion ", {"-h", "--help", "bash", "zsh", "fish"}),
     ],
 )
 def test_what_is_offered(line, offered, capsys):

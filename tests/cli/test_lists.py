@@ -66,30 +66,6 @@ def test_settings_that_are_changed_are_those_of_the_dataset(capsys):
     assert Path("t.xyz").read_text().startswith("10\n")
 
 
-@pytest.mark.parametrize(
-    ("change", "message"),
-    [
-        ("particle=10", "cooling: key = 'particle': must be one of box, "),
-        ("mu=0.3", "did you mean it under `effects: friction:`?"),
-        ("effects.friction.mu=many", "cooling.effects.friction.mu = 'many': must be a number"),
-        (
-            "species.heavy.mass=2",
-            "--set = species.heavy.mass: must name one of species: there are none",
-        ),
-        ("particles", "--set = particles: must be KEY=VALUE, such as particles=80"),
-        ("particles=", "--set = particles=: must be KEY=VALUE"),
-        ("particles=[", "--set particles: line 1 = '[': must be YAML"),
-        ("sweep.r=[1]", "--set = sweep.r: must be a setting of one point"),
-        ("box=30 box=20", "--set = box: must be given once"),
-    ],
-)
-def test_a_change_that_makes_no_sense_is_one_line(change, message, capsys):
-    assert main([*RUN, "--r=0.9", "--beta=0", "--set", *change.split()]) == 2
-    (said,) = capsys.readouterr().err.splitlines()
-    assert said.startswith("roughgas: error: ") and message in said
-    assert list(Path().iterdir()) == []
-
-
 def test_the_command_alone_is_its_help(capsys):
     with pytest.raises(SystemExit) as stop:
         main([])

@@ -9,7 +9,7 @@ import sys
 import pytest
 from schedules import TINY
 
-from cli.conftest import GAS, ROOT
+from cli.conftest import GAS
 from roughgas.base import CollapseError
 from roughgas.cli import main
 from roughgas.cli.show import summary
@@ -17,37 +17,11 @@ from roughgas.data.point import WALL_CLOCK, read_point
 from roughgas.data.reduced import read_reduced
 from roughgas.simulation.point import run_point
 
-CONFIG = str(ROOT / "config.yaml")
-
 
 def run(output, experiment="cooling", r="0.9", beta="0", seed="1", **others):
     arguments = ["run", experiment, f"--r={r}", f"--beta={beta}", f"--seed={seed}"]
     arguments += [f"--{name}={value}" for name, value in others.items()]
     return main([*arguments, "--output", str(output)])
-
-
-@pytest.mark.parametrize(
-    ("choice", "message"),
-    [
-        ({"r": "1.5"}, "restitution r = 1.5: must lie in [0, 1]"),
-        ({"beta": "rough"}, "roughness beta = rough: must lie in [-1, 1]"),
-        ({"seed": "-1"}, "seed = -1: must be a whole number in [0, 2^63 - 1]"),
-        ({"experiment": "foo"}, "experiment = 'foo': must be one of cooling, sheared, "),
-        ({"scale": "large"}, "scale = 'large': must be one of paper, quick, small"),
-        ({"config": "no.yaml"}, "no.yaml: No such file or directory"),
-        ({"settings": "{"}, "--settings = '{': must be JSON"),
-        ({"settings": json.dumps(TINY | {"particles": 10_000})}, "particles = 10000: must"),
-        ({"settings": json.dumps(TINY | {"box": [3, 3]})}, "box[0] = 3"),
-    ],
-)
-def test_bad_input_is_refused_in_one_line_and_leaves_no_file(tmp_path, capsys, choice, message):
-    status = run(tmp_path / "point.nc", **({"config": CONFIG} | choice))
-    said = capsys.readouterr()
-    assert status != 0
-    assert said.out == ""
-    assert said.err.startswith(f"roughgas: error: {message}")
-    assert said.err.count("\n") == 1
-    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_process_has_one_thread_for_linear_algebra(monkeypatch):
@@ -64,7 +38,7 @@ def test_an_interrupt_ends_in_one_line(tmp_path, capsys, monkeypatch):
         raise KeyboardInterrupt
 
     monkeypatch.setattr("roughgas.simulation.points.run_point", interrupted)
-    assert run(tmp_path / "point.nc", config=CONFIG) == 130
+    assert run(tmp_path / "point.nc") == 130
     said = "roughgas: stopped: nothing is half-written; the same command begins anew\n"
     assert capsys.readouterr().err == said
     assert list(tmp_path.iterdir()) == []
@@ -116,20 +90,6 @@ def test_points_to_reduce_are_read_from_standard_input(point, tmp_path, monkeypa
         monkeypatch.setattr("sys.stdin", io.StringIO(f"{point}\n"))
         assert main(["reduce", given, "--output", str(tmp_path / name)]) == 0
     assert (tmp_path / "named.nc").read_bytes() == (tmp_path / "piped.nc").read_bytes()
-
-
-@pytest.mark.parametrize(
-    ("seeds", "files", "message"),
-    [
-        ("12", ["1.nc"], "must name 2, one per point"),
-        (["1", "x"], ["1.nc", "x.nc"], "seed = x: must"),
-    ],
-)
-def test_a_mistake_in_one_seed_stops_all_of_them(tmp_path, capsys, seeds, files, message):
-    assert run_seeds(tmp_path, seeds, files) == 2
-    said = capsys.readouterr().err
-    assert message in said and said.count("\n") == 1
-    assert list(tmp_path.iterdir()) == []
 
 
 def test_what_is_done_stays_when_a_later_seed_fails(tmp_path, monkeypatch):

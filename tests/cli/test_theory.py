@@ -59,36 +59,6 @@ def test_what_a_drive_and_friction_change(capsys):
     assert rough["sliding"] == 0.0
 
 
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (["--r=1.1", "--beta=0"], "restitution r = 1.1: must lie in [0, 1]"),
-        (["--r=0.9", "--beta=rough"], "roughness beta = rough: must lie in [-1, 1]"),
-        (["--r=0.9", "--beta=-1:2:1"], "roughness beta = 2: must lie in [-1, 1]"),
-        (["--r=0.9", "--beta=0:1:0"], "--beta = 0:1:0: must be START:STOP:STEP, such as"),
-        (["--r=0.9", "--beta=0:1:nan"], "--beta = 0:1:nan: must be START:STOP:STEP"),
-        (["--r=0.9", "--beta=0:1:x"], "--beta = 0:1:x: must be START:STOP:STEP"),
-        (["--r=0.9", "--beta=1:0:0.1"], "--beta = 1:0:0.1: must go up from START to STOP"),
-        (["--r=0:1:1e-9", "--beta=0"], "--r = 0:1:1e-9: must go up from START to STOP in at most"),
-        (["--r=0.9", "--beta=0", "--inertia=0"], "inertia q = 0.0: must be a positive number"),
-        (["--r=0.9", "--beta=0", "--mu=-1"], "friction mu = -1.0: must lie in [0, inf]"),
-        (["--r=0.9", "--beta=0", "--mu=ice"], "--mu = ice: must be a number"),
-        ([*PLACE, "--species=[{fraction: 0.5}]"], "species.fraction = 0.5 in all: must add up"),
-        ([*PLACE, "--species=[{fraction: 1, size: 2}]"], "species = size: must be one of fr"),
-        ([*PLACE, "--species=[{fraction: 1"], "--species: line 1 = "),
-        ([*PLACE, "--species=[1]"], "species = 1: must be a list of species, each with"),
-        ([*PLACE, "--packing=0.1"], "--packing needs --species"),
-        ([*PLACE, "--species=[{number: 3}]", "--packing=2"], "--packing = 2.0: must lie in [0, 1)"),
-        (["--r=0.9", "--beta=0", "--spin-share=2"], "spin share of the drive = 2.0: must lie in"),
-    ],
-)
-def test_bad_values_are_refused_in_one_line(capsys, arguments, message):
-    assert main(["theory", *arguments]) == 2
-    said = capsys.readouterr()
-    assert said.out == "" and said.err.count("\n") == 1
-    assert said.err.startswith(f"roughgas: error: {message}")
-
-
 GIVEN = "[{fraction: 0.5, name: light}, {fraction: 0.5, radius: 2, mass: 4}]"
 SPECIES = [{"fraction": 0.5, "name": "light"}, {"fraction": 0.5, "radius": 2, "mass": 4}]
 

@@ -2,10 +2,7 @@
 
 import copy
 import json
-import os
 import re
-import subprocess
-import sys
 from functools import partial
 from pathlib import Path
 
@@ -69,14 +66,6 @@ def test_numbers_are_read_as_a_person_means_them(tmp_path):
     path = tmp_path / "c.yaml"
     path.write_text("[1e-5, 1.0e-5, 2E3, -1e+2, 0.5, '1e-5', 1e]")
     assert read_yaml(path) == [1e-5, 1e-5, 2000.0, -100.0, 0.5, "1e-5", "1e"]
-
-
-def test_checking_needs_no_compiler_and_writes_nothing(tmp_path):
-    code = f"import sys; from roughgas import config; config.load({str(CONFIG)!r}); "
-    code += "sys.exit(bool({'numba', 'xarray', 'netCDF4'} & {*sys.modules}))"
-    home = os.environ | {"HOME": str(tmp_path), "XDG_CACHE_HOME": str(tmp_path)}
-    assert subprocess.run([sys.executable, "-B", "-c", code], env=home).returncode == 0
-    assert not list(tmp_path.iterdir())
 
 
 def test_one_experiment_is_read_without_checking_every_scale(tmp_path, refusal):

@@ -4,7 +4,6 @@ import copy
 import math
 
 import pytest
-from tests.tables import rows
 
 from roughgas import config
 from roughgas.base import InputError
@@ -85,23 +84,6 @@ def test_cases_are_settings_that_vary_together(with_experiments):
     assert "case" not in REDUCED | POINT
 
 
-WRONG_CASES = {
-    "sweep.case.slow: key = 'amplitude': must be one of": {"slow": {"amplitude": 2}},
-    "sweep.case: key = 'Slow': must consist of lower-case letters": {"Slow": {}},
-    "sweep.case.a.sweep = {}: must not be given here": {"a": {"sweep": {}}},
-    "beds/casea.particles = 0: must be a whole number in": {"a": {"particles": 0}},
-}
-
-
-@pytest.mark.parametrize("message", WRONG_CASES)
-def test_a_case_that_is_none_is_named(with_experiments, message):
-    sweep = {"r": ["0.9"], "case": WRONG_CASES[message]}
-    whole = with_experiments(beds={"extends": "vibrated", "sweep": sweep})
-    with pytest.raises(InputError) as caught:
-        schema.check(whole)
-    assert message.replace("beds/casea", "sweep.case.a") in str(caught.value)
-
-
 def test_a_case_that_is_not_there_is_named(with_experiments):
     sweep = {"r": ["0.9"], "case": CASES}
     whole = with_experiments(beds={"extends": "vibrated", "sweep": sweep})
@@ -143,28 +125,6 @@ def test_any_number_of_the_settings_is_swept(with_experiments, key, label, part,
         variant_attributes(f"{name}1", settings)
 
 
-@pytest.mark.parametrize(
-    ("place", "key", "value", "where"),
-    [
-        ((), "hollow", {"extends": "vibrated"}, "experiments:"),
-        (("experiments", "vibrated"), "measure", 10, "schedule:"),
-        (("experiments", "vibrated"), "seeds", 2, "sweep:"),
-        (("experiments", "vibrated"), "spin", {"inertia": 1}, "effects:"),
-        (("experiments", "vibrated", "effects"), "inertia", 1, "effects: spin:"),
-        (("experiments", "vibrated", "schedule"), "particles", 10, "experiments: NAME:"),
-    ],
-)
-def test_a_key_in_the_wrong_place_is_told_its_place(
-    with_experiments, refusal, place, key, value, where
-):
-    whole = with_experiments()
-    part = whole
-    for name in place:
-        part = part[name]
-    part[key] = value
-    assert refusal(schema.check, whole).endswith(f"; did you mean it under `{where}`?")
-
-
 def test_a_quantity_of_a_species_is_a_variant(with_experiments):
     species = [
         {"fraction": 0.5, "name": "light"},
@@ -197,32 +157,6 @@ def test_no_parameter_has_a_name_that_datasets_need():
     definitions = schema._schema()["$defs"]
     parameters |= {*definitions["one_species"]["properties"], *definitions["radii"]["properties"]}
     assert parameters & taken == {"inertia", "mu", "spin_share", "particles"}
-
-
-MISTAKES = """
-{spn.inertia: ['1']} | experiments.spun.sweep: key = 'spn.inertia': must begin with an effect of
-    this experiment: contact_averages, contact_time, shear, spin
-{species.heavy.mass: ['1']} | experiments.spun.sweep: key = 'species.heavy.mass': must name one of
-    species: there are none
-{spin.mass: ['1']} | experiments.spun/mass1.effects.spin: key = 'mass': must be one of inertia
-{inertia: ['1']} | sweep: key = 'inertia': must be one of beta, box, case, packing, particles, r,
-    seeds, species.NAME.KEY, EFFECT.PARAMETER, schedule.KEY; did you mean it under `effects: spin:`?
-{particles: ['1.5']} | experiments.spun/particles1.5.particles = 1.5: must be a whole number
-{packing: ['1']} | experiments.spun/packing1.packing = 1: must be a number in (0, 0.95]
-{packing: ['0.1'], box: ['9']} | experiments.spun.sweep: key = 'box': must not stand beside packing
-{schedule.lenght: ['1']} | key = 'schedule.lenght': must name a length of this schedule:
-{schedule.measure: ['-1']} | experiments.spun/measure-1.schedule.measure = -1: must be a
-{spin.inertia: []} | sweep.spin.inertia = []: must be a list that is not empty
-{spin.inertia: ['1', '1.0']} | sweep.spin.inertia = 1.0: must be given once
-{spin.inertia: ['0.5', '2']} | experiments.spun/inertia2.effects.spin.inertia = 2.0: must be a
-    number in [1e-06,
-{spin.inertia: ['sine']} | experiments.spun/inertiasine.effects.spin.inertia = 'sine': must be a
-    number in [1e-06,
-{spin.inertia: ['0.5/1']} | sweep.spin.inertia[0] = '0.5/1': must be a number, or a word of
-    lower-case letters
-{spin.inertia: ['1'], shear.velocity: ['2']} | experiments.spun.sweep: key = 'shear.velocity': must
-    not stand beside spin.inertia
-"""
 
 
 def sides(whole, name):
@@ -267,53 +201,3 @@ def test_a_packing_is_the_size_of_the_box(with_experiments):
         "packed/packing0.4", config.experiment(whole, "packed/packing0.4", "paper")
     )
     assert about["swept"] == "packing" and about["swept_value"] == 0.4
-
-
-@pytest.mark.parametrize(
-    ("settings", "message"),
-    [
-        ({"packing": 0}, "dense.packing = 0: must be a number in (0, 0.95]"),
-        ({"packing": 0.1, "box": [50, 50]}, "dense.box = [50, 50]: must not stand beside packing"),
-        ({"packing": 1e-300}, "dense.packing = 1e-300: must be so large that no side of the box"),
-        ({"extends": "vibrated", "packing": 0.1}, "dense.packing = 0.1: must not be given for a"),
-        ({"packing": 0.1, "sweep": {"box": ["50"]}}, "key = 'box': must not be swept beside pack"),
-    ],
-)
-def test_a_packing_that_makes_no_box(settings, message, refusal, with_experiments):
-    whole = with_experiments(dense={"extends": "cooling"} | settings)
-    assert message in refusal(schema.check, whole)
-
-
-@pytest.mark.parametrize(("sweep", "message"), rows(MISTAKES))
-def test_a_mistake_is_named_in_one_line(sweep, message, refusal, with_experiments):
-    whole = with_experiments(spun={"extends": "sheared", "sweep": sweep})
-    said = refusal(schema.check, whole)
-    assert said.startswith("config.yaml: ") and message in said
-
-
-def test_a_mistake_at_a_scale_is_named(refusal, with_experiments):
-    whole = with_experiments(spun=INERTIA)
-    whole["scales"]["small"]["spun"] = {"sweep": {"spin.inertia": ["3"]}}
-    assert "experiments.spun/inertia3 at scale small.effects.spin.inertia = 3.0" in refusal(
-        schema.check, whole
-    )
-
-
-@pytest.mark.parametrize(
-    ("name", "message"),
-    [
-        ("sheared/inertia1", "= 'sheared/inertia1': must be sheared alone, which has no third"),
-        ("spun/mass1", "= 'spun/mass1': must name a value of inertia, such as spun/inertia1"),
-        ("spun/inertia1/r0.9", "spun: spin.inertia = 1/r0.9: must be a number, or a word"),
-        ("spun/inertia2", "spun/inertia2.effects.spin.inertia = 2.0: must be a number in [1e-06, "),
-        ("spin/inertia1", "experiment = 'spin': must be one of"),
-    ],
-)
-def test_what_is_no_variant(whole, name, message, refusal):
-    assert message in refusal(config.experiment, whole, name, "paper")
-
-
-def test_a_point_needs_its_variant(whole, refusal):
-    written = config.experiment(whole, "spun", "paper")
-    said = refusal(config.check_one_variant, "spun", written)
-    assert said == "experiment = 'spun': must be followed by a variant, such as spun/inertia1"

@@ -5,7 +5,6 @@ import math
 import pytest
 
 from roughgas import config
-from roughgas.base import InputError
 from roughgas.scene import build
 from roughgas.simulation import schedule
 
@@ -13,11 +12,7 @@ RUBBER = {"restitution": "particles", "roughness": "particles"}
 STRIPES = {
     "particles": 600,
     "layer": {"gamma": 3.0, "f_star": 0.44, "depth": 5.42, "width": 10},
-    "effects": {
-        "spin": {"inertia": 0.4},
-        "gravity": {"acceleration": 2.5},
-        "floor": dict(RUBBER),
-    },
+    "effects": {"spin": {"inertia": 0.4}, "gravity": {"acceleration": 2.5}, "floor": dict(RUBBER)},
     "schedule": {"kind": "steady"},
 }
 CYCLES = {"equilibrate": 40, "measure": 8, "samples": 32, "repeat": 4}
@@ -72,23 +67,3 @@ def test_cases_of_a_layer_have_floors_of_their_own():
     assert b == settings()["effects"]["floor"]
     assert g["period"] == pytest.approx(b["period"] * 0.44 / 0.84)
     assert g["amplitude"] == pytest.approx(b["amplitude"] * 2.0 * (0.44 / 0.84) ** 2)
-
-
-REFUSED = {
-    "effects.floor.amplitude = 5: must not be given beside layer, which makes it": {
-        "effects": {"floor": {"amplitude": 5}}
-    },
-    "box = [30, 30, 'open']: must not be given beside layer": {"box": [30, 30, "open"]},
-    "schedule.period = 1: must not be given beside layer": {"schedule": {"period": 1}},
-    "layer.gamma = -1: must be a number > 0": {"layer": {"gamma": -1}},
-    "layer.depth = (nothing): must be given": {"layer": {"depth": None}},
-    "layer: key = 'Gamma': must be one of": {"layer": {"Gamma": 3}},
-}
-
-
-@pytest.mark.parametrize("message", REFUSED)
-def test_what_contradicts_a_layer_is_refused_in_one_line(message):
-    with pytest.raises(InputError) as caught:
-        config.validated(config.changed_by(settings(), REFUSED[message]), "stripes")
-    assert str(caught.value).startswith(f"stripes.{message}")
-    assert "\n" not in str(caught.value)

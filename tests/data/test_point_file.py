@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from tests import files
 
-from roughgas.base import InputError
 from roughgas.base.files import write_text
 from roughgas.data.point import Point, read_point, write_point
 
@@ -30,14 +29,6 @@ def test_a_point_comes_back_as_written(tmp_path):
     assert data.R_series.dims == ("sample",) and "time" in data.R_series.coords
     assert {name: data.attrs[name] for name in ATTRIBUTES} == ATTRIBUTES
     assert data.attrs["schema_version"] == 2 and data.attrs["Conventions"].startswith("CF-")
-
-
-def test_a_file_of_a_newer_schema_is_refused(tmp_path):
-    write_point(tmp_path / "a.nc", point()._replace(attributes=ATTRIBUTES | {"schema_version": 3}))
-    with pytest.raises(
-        InputError, match=r"^schema_version of .*a\.nc = 3: must be at most 2: a new"
-    ):
-        read_point(tmp_path / "a.nc")
 
 
 def test_a_cooling_gas_counts_collisions_and_initial_energies(tmp_path):

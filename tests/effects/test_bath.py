@@ -9,7 +9,7 @@ from brute_force import begin, run, settings, snapshot
 
 from roughgas import theory
 from roughgas.base import InputError
-from roughgas.scene import build, conserves_momentum
+from roughgas.scene import conserves_momentum
 from roughgas.simulation.energies import balance, energies, imbalance, restored
 from roughgas.simulation.schedule import check
 from roughgas.statistics.errors import blocking_stderr
@@ -140,33 +140,6 @@ def test_noise_alone_puts_in_its_power():
     assert imbalance(after.ledger - before.ledger, after.energy - before.energy) < 1e-12
 
 
-@pytest.mark.parametrize(
-    ("langevin", "message"),
-    [
-        ({}, "effects.langevin .*: must have a drag or a power"),
-        ({"temperature": 1.0}, "effects.langevin.temperature = 1.0: must be 0 without drag"),
-        (
-            {"drag": 1.0, "temperature": 1.0, "power": 2.0},
-            "effects.langevin.power = 2.0: must be 0 beside temperature 1",
-        ),
-        ({"drag": -1.0}, r"effects.langevin.drag = -1.0: must be a number in \[0, 1e\+09\]"),
-    ],
-)
-def test_settings_that_contradict_each_other_are_refused(langevin, message):
-    with pytest.raises(InputError, match=message):
-        build(bath(interval=0.5, **langevin), 0.9, 0.2)
-
-
-def test_a_bath_is_at_rest_and_needs_spins_for_its_spins():
-    langevin = {"interval": 0.5, "drag": 1.0, "spin_drag": 0.5}
-    experiment = {"particles": 10, "box": [20, 20], "effects": {"langevin": langevin}}
-    with pytest.raises(InputError, match=r"spin_drag = 0.5: must be 0 where nothing spins"):
-        build(experiment, 0.9, -1.0)
-    experiment["effects"] |= {"spin": {"inertia": 0.5}, "shear": {"velocity": 1.0}}
-    with pytest.raises(InputError, match=r"effects.langevin = there: must be without shear"):
-        build(experiment, 0.9, 0.0)
-
-
 def test_drag_alone_is_no_drive():
     one = bath(interval=0.5, drag=1.0) | {"schedule": {"kind": "steady", "measure": 10}}
     with pytest.raises(InputError, match=r"be cooling or stages where no effect drives the gas"):
@@ -205,8 +178,7 @@ def test_a_dataset_is_held_against_the_rate_equations_of_its_bath():
 
 
 @pytest.mark.parametrize(
-    "more",
-    [{"mu": 0.5}, {"spin_share": 0.2}, {"species_json": "{}"}, {"packing": np.nan}],
+    "more", [{"mu": 0.5}, {"spin_share": 0.2}, {"species_json": "{}"}, {"packing": np.nan}]
 )
 def test_theory_says_nothing_of_what_its_rate_equations_leave_out(more):
     assert np.isnan(predicted_ratio(GAS | {"theory": "lun"} | more, 0.9, 0.2))

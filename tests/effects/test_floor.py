@@ -6,7 +6,6 @@ from brute_force import begin, run, scene_of, settings, snapshot
 from brute_force.beside import brute_force_from
 from compiled import from_python
 
-from roughgas.base import InputError
 from roughgas.effects import motions
 from roughgas.effects.motions import Sine, sawtooth, triangle
 from roughgas.effects.settings import SceneContext, make
@@ -69,20 +68,6 @@ def test_a_phase_is_a_start_in_the_middle_of_a_period(wave):
         assert brute.time - shot.time == pytest.approx(begun, abs=1e-9)
         assert shot.position[:, 1] == pytest.approx(brute.x[:, 1], abs=1e-8)
         assert shot.velocity == pytest.approx(brute.v, abs=1e-8)
-
-
-@pytest.mark.parametrize("phase", [1.0, -0.1, "late"])
-def test_a_phase_is_a_share(phase):
-    with pytest.raises(
-        InputError, match=r"effects\.floor\.phase = .*: must be a number in \[0, 1\)"
-    ):
-        from_settings(phase=phase)
-
-
-@pytest.mark.parametrize("wave", ["square", "Sine", 1, ["sine"]])
-def test_an_unknown_wave_is_an_error_that_names_the_known_ones(wave):
-    with pytest.raises(InputError, match=r"effects\.floor\.wave .*sawtooth.*triangle, sine"):
-        from_settings(wave=wave)
 
 
 @pytest.mark.parametrize("share", [0.0, 0.3, 0.99, 1.01])

@@ -1,6 +1,5 @@
 """Restitution that depends on the normal speed: viscoelastic, a power, or tabulated."""
 
-import itertools
 import math
 from decimal import Decimal
 from types import SimpleNamespace
@@ -9,8 +8,7 @@ import numpy as np
 import pytest
 from brute_force import KERNELS, begin, run, settings
 
-from roughgas.base import InputError
-from roughgas.effects.restitution import ABOVE, B_1, B_2, B_3, B_4, LAWS, fifth_root
+from roughgas.effects.restitution import ABOVE, B_1, B_2, B_3, B_4, fifth_root
 from roughgas.kernel.memory import new_state
 from roughgas.kernel.state import EXPONENT
 from roughgas.scene import build
@@ -135,47 +133,3 @@ def test_a_gas_is_the_same_in_any_unit_of_velocity():
         ends.append((state.trajectory[:, :4] * [1.0, 1.0, unit, unit], state.spin * unit))
     assert np.array_equal(*(trajectory for trajectory, _ in ends))
     assert np.array_equal(*(spin for _, spin in ends))
-
-
-REFUSED = {
-    "be a list of 2 to 32 numbers": {"speed": [1.0]},
-    "be a number in [0, inf)": {"speed": [-1.0, 0.0, 1.0, 2.0]},
-    "be a number in [0, 1]": {"restitution": [1.0, 0.9, 0.8, 1.1]},
-    "have as many entries as speed, 4": {"restitution": [1.0, 0.9]},
-    "increase": {"speed": [0.0, 1.0, 1.0, 2.0]},
-    "be a speed at which the table has less than 1": {"reference": 0.0},
-}
-
-
-def test_a_table_does_not_choose_where_contacts_have_their_r():
-    """Which decides by how much losses are scaled."""
-    effects = {"restitution_table": {key: TABLE[key] for key in ("speed", "restitution")}}
-    with pytest.raises(InputError) as caught:
-        build({"box": [20, 20], "effects": effects}, 0.9, -1.0)
-    key = "effects.restitution_table.reference"
-    assert str(caught.value) == f"{key} = (nothing): must be a number in [0, inf)"
-
-
-def test_an_exponent_is_made_of_square_roots():
-    with pytest.raises(InputError) as caught:
-        hook_of(0.7, "power_law", BIZON | {"exponent": 0.2})
-    assert str(caught.value) == "effects.power_law.exponent = 0.2: must be a multiple of 1/4"
-
-
-@pytest.mark.parametrize("pair", [*itertools.combinations(LAWS, 2)])
-def test_two_laws_are_refused_whichever_they_are(pair):
-    settings = {"viscoelastic": {}, "power_law": BIZON, "restitution_table": TABLE}
-    effects = {name: settings[name] for name in pair}
-    with pytest.raises(InputError) as caught:
-        build({"box": [20, 20], "effects": effects}, 0.9, -1.0)
-    legal = "must not both define r of the speed"
-    assert str(caught.value) == f"effects = {' and '.join(pair)}: {legal}"
-
-
-@pytest.mark.parametrize("legal", REFUSED)
-def test_a_table_that_is_none_is_refused(legal):
-    effects = {"restitution_table": TABLE | REFUSED[legal]}
-    with pytest.raises(InputError) as caught:
-        build({"box": [20, 20], "effects": effects}, 0.9, -1.0)
-    assert str(caught.value).endswith(f": must {legal}")
-    assert "effects.restitution_table." in str(caught.value)

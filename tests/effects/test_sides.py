@@ -21,7 +21,6 @@ BED = DISKS | {
     "gravity": {"acceleration": 1.0},
     "floor": {"amplitude": 1.0, "period": 1.0, "restitution": 1.0, "roughness": -1.0},
 }
-SHAKEN = {"amplitude": 1.0, "period": 1.7}
 
 
 def closed(effects, box, particles=12):
@@ -146,43 +145,3 @@ def test_initial_places_are_checked_against_every_wall():
         check_places(scene, np.array([[10.0, 19.0]]), 1.0)  # the lid is at the end of its stroke
     with pytest.raises(InputError, match=r"= 0\.9: must lie in \[1, 19\]"):
         check_places(scene, np.array([[0.9, 10.0]]), 0.0)
-
-
-LID = DISKS | {"bottom_wall": {}}
-REFUSED = {
-    "effects.lid needs bottom_wall": DISKS | {"lid": {}},
-    "effects.front_wall = in the plane: must be bottom_wall or lid there": {"front_wall": {}},
-    "effects.lid.restitution = 0.5: must not be given where the wall has a temperature": LID
-    | {"lid": {"temperature": 1.0, "restitution": 0.5}},
-    "effects.lid.period = (nothing): must be given where the wall is shaken": LID
-    | {"lid": {"amplitude": 1.0}},
-    "effects.lid.velocity = 1.0: must be 0 where the wall is shaken": LID
-    | {"lid": SHAKEN | {"velocity": 1.0}},
-    "effects.lid.temperature = 0: must be a number in (0, 1e+08]": LID
-    | {"lid": {"temperature": 0}},
-    "effects = walls and left_wall: must not close the same axis twice": DISKS
-    | {"walls": {"restitution": 1, "roughness": 1}, "left_wall": {}, "right_wall": {}},
-    "effects = bottom_wall and shear: must not close the axis along which images slide past each "
-    "other": LID | {"lid": {}, "shear": {"velocity": 1.0}},
-    "effects.lid.half_stroke = 1.0: must be given, or else amplitude, and not both": LID
-    | {"lid": SHAKEN | {"half_stroke": 1.0}},
-    "effects.lid.amplitude = 1.0: must not be given where the wall has a temperature": LID
-    | {"lid": SHAKEN | {"temperature": 1.0}},
-    "effects.shaken_walls.half_stroke = (nothing): must be given, or else amplitude, and not "
-    "both": {"shaken_walls": {"period": 1.0, "restitution": 1, "roughness": -1}},
-    "box[1] = 20.0: must be a number of at least 20.01": LID | {"lid": SHAKEN | {"amplitude": 18}},
-}
-
-
-@pytest.mark.parametrize("message", REFUSED)
-def test_what_is_refused(message):
-    with pytest.raises(InputError) as caught:
-        build(closed(REFUSED[message], [20, 20]), 0.9, 0.0 if "spin" in REFUSED[message] else -1.0)
-    assert str(caught.value) == message
-
-
-def test_a_bottom_wall_under_gravity_is_a_floor():
-    with pytest.raises(InputError, match=r"bottom_wall = with gravity: must be a floor there"):
-        build(closed(BED | {"bottom_wall": {}, "lid": {}}, [20, 20]), 0.9, 0.0)
-    with pytest.raises(InputError, match=r"lid needs a length"):
-        build(closed(BED | {"lid": {}}, [20, "open"]), 0.9, 0.0)

@@ -10,11 +10,7 @@ import numpy as np
 import pytest
 from brute_force import begin, settings
 
-from roughgas.base import InputError
-from roughgas.config.schema import check_schema
 from roughgas.effects.species import mixture_of, packing
-from roughgas.scene import build
-from roughgas.scene.initial import initial_state
 
 HALVES = [{"fraction": 0.5}, {"fraction": 0.5, "radius": 2}]
 
@@ -101,71 +97,3 @@ def test_radii_come_from_text_files_of_an_end(tmp_path, kind):
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
     legal = f"{path}: must be a text file of radii, one per line, of at most 1e+08 bytes\n"
     assert done.stderr.endswith(legal)
-
-
-SPREAD = {"distribution": "uniform"}
-WRONG = [
-    ([{"fraction": 0.5}, {"fraction": 0.4}], "sum of species.fraction = 0.9: must be 1 within"),
-    ([{"number": 20}, {"number": 19}], "sum of species.number = 39: must be particles, 40"),
-    ([{"fraction": 0.5}, {"number": 20}], "species[1].number = 20: must be a fraction"),
-    ([{"radius": 2}], "species[0].fraction = (nothing): must be given, or number"),
-    ([{"number": 40, "fraction": 1}], "species[0].fraction = 1: must not stand beside number"),
-    ([{"fraction": 0.999}, {"fraction": 0.001}], "species[1].fraction = 0.001: must be large"),
-    ([{"fraction": 1, "radius": 11}], "box[0] = 40.0: must be a number of at least 44.11"),
-    ([{"fraction": 1, "mu": 0.1}], "species[0].mu needs effects.friction"),
-    ([{"name": "a", "fraction": 0.5}] * 2, "species[1].name = a: must be given once"),
-    ([{"fraction": 1, "radius": SPREAD}], "species[0].radius.deviation = (nothing): must be given"),
-    (
-        [{"fraction": 1, "radius": SPREAD | {"deviation": 0.6}}],
-        "species[0].radius.deviation = 0.6: must lie in [0, 0.5774)",
-    ),
-    (
-        [{"fraction": 1, "radius": {"distribution": "file", "file": "nowhere"}}],
-        "species[0].radius.file = nowhere: must be a text file of radii, one per line",
-    ),
-]
-
-
-OWN = [{"fraction": 0.5}, {"fraction": 0.5, "restitution": 0.5}]
-WALLS = {"walls": {"restitution": "particles", "roughness": -1}}
-WRONG = [(species, {}, message) for species, message in WRONG]
-WRONG += [(OWN, {"effects": WALLS}, "effects.walls.restitution = particles: must be a number")]
-WRONG += [
-    (HALVES, {"pairs": [{"between": between, "restitution": 0.5} for between in pairs]}, message)
-    for pairs, message in (
-        ([["a", 0]], "species_pairs[0].between = 'a': must be one of 0, 1"),
-        ([[0, 2]], "species_pairs[0].between = 2"),
-        ([[0, 1], [1, 0]], "species_pairs[1].between"),
-    )
-]
-
-
-@pytest.mark.parametrize(("species", "more", "message"), WRONG)
-def test_what_makes_no_sense_is_one_line(species, more, message):
-    with pytest.raises(InputError) as caught:
-        build(gas(species, **more), 0.9, -1.0 if more.get("effects") else 0.3)
-    assert str(caught.value).startswith(message) and "\n" not in str(caught.value)
-
-
-@pytest.mark.parametrize(
-    ("species", "message"),
-    [
-        ([{"fraction": 1, "radius": 0}], "radius = 0: must be a number"),
-        ([{"fraction": 1, "radius": []}], "radius = []: must be"),
-        ([{"fraction": 0.5}, {"fraction": 0.5, "mass": -1}], "species[1].mass = -1: must be"),
-        ([], "species = []: must be a list that is not empty"),
-        ([{"fraction": 1, "charge": 1}], "species[0]: key"),
-    ],
-)
-def test_what_no_species_can_have(species, message):
-    with pytest.raises(InputError) as caught:
-        check_schema(gas(species), "gas", "experiment")
-    assert message in str(caught.value) and "\n" not in str(caught.value)
-
-
-def test_the_largest_that_is_drawn_must_fit():
-    spread = {"distribution": "lognormal", "deviation": 0.5}
-    experiment = gas([{"fraction": 1, "radius": spread}], particles=4, box=(5, 5))
-    scene = build(experiment, 0.9, 0.3)
-    with pytest.raises(InputError, match=r"box\[0\] = 5.0: must be a number of at least"):
-        initial_state(scene, experiment, np.random.default_rng(3))

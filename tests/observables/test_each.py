@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from tests.observables.frames import frame_of, system_of
 
-from roughgas.base import InputError
 from roughgas.effects.contacts import HEAT, STRESSES
 from roughgas.observables import KINDS
 from roughgas.observables.distributions import squares
@@ -207,23 +206,6 @@ def test_fluxes_are_averaged_over_all_directions():
         C = found[f"{memory}_autocorrelation"]
         area = 0.5 * (C[0] / 2 + C[1] + C[2] + C[3] / 2)
         assert found[f"{name}_until"][-1] == pytest.approx(area / T**power)
-
-
-@pytest.mark.parametrize(
-    ("name", "changes", "settings", "message"),
-    [
-        ("stress", {"box": (20.0, None)}, {}, "an open box has no volume"),
-        ("pair_correlation", {"periodic": (True, False)}, {}, "the box must be periodic"),
-        ("pair_correlation", {}, {"reach": 11.0}, r"reach = 11\.0: must be in \(2, 10\]"),
-        ("flux_autocorrelation", {"cooling": True}, {}, "in a periodic box that does not cool"),
-        ("flux_autocorrelation", {"periodic": (True, False)}, {}, "in a periodic box"),
-        ("profiles", {}, {"height": 21.0}, r"height = 21\.0: must be 20 or less, the box"),
-    ],
-)
-def test_what_a_system_does_not_have_is_refused(name, changes, settings, message):
-    with pytest.raises(InputError, match=message):
-        system = system_of((20, 20))
-        results(name, [frame_of(system)._replace(system=system._replace(**changes))], **settings)
 
 
 RNG = np.random.default_rng(3)

@@ -8,7 +8,6 @@ from brute_force import settings
 from tests.observables.frames import frame_of, system_of
 
 from roughgas import simulate
-from roughgas.base import InputError
 from roughgas.observables.layers import FOLDS, Pattern, height_field, smoothed, spectrum
 
 SIDE = 40.0
@@ -195,21 +194,3 @@ def test_a_pattern_over_the_phases_of_its_drive():
         periods = periods[np.isfinite(periods).any(axis=1)]
         expected = np.nanmean(periods, axis=1).mean()
         assert found.height_autocorrelation[delay] == pytest.approx(expected, rel=1e-9)
-
-
-def test_what_has_no_pattern_is_refused_in_one_line():
-    disks = settings("bed", 16, [10, "open"]) | {"schedule": LAYER["schedule"]}
-    with pytest.raises(InputError, match=r"^observables\.pattern = of disks: must be of spheres$"):
-        simulate(r=0.9, beta=0.2, observe=["pattern"], progress=False, **disks)
-    with pytest.raises(InputError, match=r"^observables\.layer needs a floor$"):
-        simulate(
-            "sheared",
-            r=0.9,
-            beta=0.2,
-            scale="small",
-            observe=["layer"],
-            schedule={"period": 10},
-            progress=False,
-        )
-    with pytest.raises(InputError, match=r"^observables\.layer needs schedule\.period$"):
-        simulate("sheared", r=0.9, beta=0.2, scale="small", observe=["layer"], progress=False)

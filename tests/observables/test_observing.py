@@ -88,11 +88,6 @@ def test_a_function_sees_what_the_point_measures():
 @pytest.mark.parametrize(
     ("observe", "message"),
     [
-        (["profile"], r"^scene\.observables: key = 'profile': must be one of .*mean profiles\?$"),
-        ({"profiles": {"bin": 3}}, r"^scene\.observables\.profiles: key = 'bin': must be one of"),
-        ({"profiles": {"bins": 0}}, r"observables\.profiles\.bins = 0: must be a whole number in"),
-        ({"stress": energy}, r"^observe = stress: must be a name, and not that of another"),
-        ({"two words": energy}, r"^observe = two words: must be a name"),
         ({"R": energy}, r"^variable of R = R: must have a name that no other variable"),
         ({"words": lambda frame: "many"}, r"^observe\.words = str: must return a number, an array"),
         (
@@ -104,25 +99,12 @@ def test_a_function_sees_what_the_point_measures():
             {"odd": lambda frame: np.zeros(int(frame.time) % 3)},
             r"^observe\.odd: shapes = .*: must be the same at every observation, as at the first",
         ),
-        ({"cumulants": {"every": 10**6}}, r"^observables: every = 1000000: must be small enough"),
     ],
 )
 def test_what_cannot_be_watched_is_refused_in_one_line(observe, message):
     with pytest.raises(InputError, match=message) as found:
         point(SHEARED, observe)
     assert "\n" not in str(found.value)
-
-
-def test_observables_that_do_not_suit_the_scene_are_refused_before_it_runs():
-    bed = {
-        "gravity": {"acceleration": 1},
-        "floor": {"amplitude": 1, "period": 1, "restitution": 1, "roughness": -1},
-    }
-    scene = SHEARED | {"effects": bed, "box": (25, "open")}
-    with pytest.raises(InputError, match=r"^observables\.stress = in this box: must not be given"):
-        point(scene, ["stress"], beta=-1)
-    with pytest.raises(InputError, match=r"^observables\.spin_correlation needs spin"):
-        point(scene, ["spin_correlation"], beta=-1)
 
 
 MIXED = [{"fraction": 0.5, "radius": 0.7}, {"fraction": 0.5, "radius": 1.3, "mass": 3.0}]

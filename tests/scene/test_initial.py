@@ -4,13 +4,14 @@ import numpy as np
 import pytest
 from brute_force import KERNELS, begin, largest_overlap, scene_of, settings
 
-from roughgas.base import InputError
 from roughgas.scene.initial import check_places, random_positions
 
 CASES = {
     **{name: settings(name) for name in KERNELS},
     "two in the smallest box": settings("gas", 2, [4.01, 4.01]),
     "dense": settings("gas", 100, [20.1, 20.1]),
+    "as many as fit": settings("gas", 108, [20.1, 20.1]),
+    "as many spheres as fit": settings("spheres", 144, [10.1, 10.1, 10.1]),
     "narrow": settings("gas", 30, [4.5, 300]),
     "dense spheres": settings("spheres", 125, [10.1, 10.1, 10.1]),
     "one in a bed": settings("bed", 1, [10, "open"]),
@@ -74,16 +75,6 @@ def test_the_temperature_is_one():
     assert np.mean(squares) == pytest.approx(1.0, abs=4.0 / np.sqrt(20 * 159))
 
 
-@pytest.mark.parametrize(
-    "most", [settings("gas", 108, [20.1, 20.1]), settings("spheres", 144, [10.1] * 3)]
-)
-def test_more_than_fit_are_refused(most):
-    begin(most, 0.9, 0.0)
-    with pytest.raises(InputError) as caught:
-        begin(most | {"particles": most["particles"] + 1}, 0.9, 0.0)
-    assert caught.value.key == "particles"
-
-
 SPREAD = {"distribution": "uniform", "deviation": 0.2}
 WALLS = {"walls": {"restitution": 1.0, "roughness": -1.0}}
 CROWDED = {
@@ -128,11 +119,3 @@ def test_a_giant_among_dwarfs_takes_no_lattice_of_dwarfs():
     apart -= 100.0 * np.round(apart / 100.0)
     assert len(found) == 100 and np.hypot(*apart.T).min() > 10.001
     assert np.ptp(found, axis=0).min() > 50.0
-
-
-def test_what_fits_nowhere_is_refused():
-    experiment = settings("smooth", 130, [20, 20]) | {
-        "species": [{"fraction": 1, "radius": SPREAD}]
-    }
-    with pytest.raises(InputError, match="particles = 130: must be fewer or smaller"):
-        begin(experiment, 0.9, -1.0)

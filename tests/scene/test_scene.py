@@ -84,74 +84,6 @@ def test_illegal_parameters(key):
         assert refusal(around | {name: own}).key == f"effects.{key}", value
 
 
-FAST = {"amplitude": 1, "period": 1e-5}
-
-
-@pytest.mark.parametrize(
-    ("key", "effects"),
-    [
-        ("effects.floor: amplitude/period", BED | {"floor": FLOOR["floor"] | {"period": 1e-5}}),
-        ("effects.left_wall: amplitude/period", SPIN | {"left_wall": FAST, "right_wall": {}}),
-        ("effects.shaken_walls: amplitude/period", SPIN | {"shaken_walls": FLOOR["floor"] | FAST}),
-        ("effects.left_wall.temperature", SPIN | {"left_wall": {"temperature": 1e12}}),
-        ("effects.friction: key", SPIN | {"friction": {"mu": 1, "nu": 1}}),
-        ("effect", SPIN | {"wind": {}}),
-    ],
-)
-def test_illegal_effects(key, effects):
-    assert refusal(effects).key == key
-
-
-@pytest.mark.parametrize(
-    ("box", "effects", "key"),
-    [
-        ((4, 50), SPIN, "box[0]"),
-        ((50, 1e300), SPIN, "box[1]"),
-        ((50, 4), SPIN, "box[1]"),
-        ((50, 50, 3.9), SPIN, "box[2]"),
-        ((4.009, 50), SPIN, "box[0]"),
-        ((2.009, "open"), BED | WALLS, "box[0]"),
-        ((4.009, "open"), BED, "box[0]"),
-        ((50, -50), SPIN, "box[1]"),
-        ((math.nan, 50), SPIN, "box[0]"),
-        ((math.inf, 50), SPIN, "box[0]"),
-        (("open", 50), BED, "box"),
-        (("open", "open"), BED, "box"),
-        ((50, "open"), SPIN, "box"),
-        ((50, 50), BED, "box"),
-        ((50, "open"), BED | SHEAR, "effects.shear"),
-    ],
-)
-def test_what_does_not_go_together(box, effects, key):
-    assert refusal(effects, box).key == key
-
-
-UNSPUN = "must be -1 where particles do not spin"
-ROUGH_FLOOR = {"floor": FLOOR["floor"] | {"roughness": 0.5}}
-MISMATCHES = {  # the whole message: effects, beta, more settings
-    "effects = walls and shear: must not close the axis that is sheared along": (
-        *(SPIN | WALLS | SHEAR, 0.0, {}),
-    ),
-    "effects.floor needs gravity": (SPIN | FLOOR, 0.0, {}),
-    "effects.gravity needs a floor": (SPIN | GRAVITY, 0.0, {}),
-    "effects.friction needs spin": (FRICTION, -1.0, {}),
-    "effects.thermostat.spin_share = 0.5: must be 0 where nothing spins": (HEAT, -1.0, {}),
-    f"effects.walls.roughness = 1: {UNSPUN}": (WALLS, -1.0, {}),
-    f"effects.floor.roughness = 0.5: {UNSPUN}": (GRAVITY | ROUGH_FLOOR, -1.0, {}),
-    f"roughness beta = 0.5: {UNSPUN}": ({}, 0.5, {}),
-    "schedule.target_stderr = 0.01: must not be given where nothing spins": (
-        *({}, -1.0, {"schedule": {"target_stderr": 0.01}}),
-    ),
-}
-
-
-@pytest.mark.parametrize("message", MISMATCHES)
-def test_what_does_not_go_together_is_said_in_one_line(message):
-    """By key, value and what is legal; what is built all the same is refused when checked."""
-    effects, beta, settings = MISMATCHES[message]
-    assert str(refusal(effects, beta=beta, **settings)) == message
-
-
 def refusal(effects, box=None, beta=0.0, **settings):
     """The error with which a scene is built or checked."""
     box = box or (50, "open" if {"floor", "gravity"} & set(effects) else 50)
@@ -183,17 +115,3 @@ def test_too_many_particles_for_the_box():
     with pytest.raises(InputError) as caught:
         check(experiment((8.1, 8.1), 17, **SPIN))
     assert caught.value.key == "particles" and "16" in caught.value.legal
-
-
-@pytest.mark.parametrize("effects", [SPIN, SPIN | SHEAR])
-def test_one_particle_alone(effects):
-    check(experiment((50, "open"), 1, **BED))
-    with pytest.raises(InputError) as caught:
-        check(experiment((50, 50), 1, **effects))
-    assert caught.value.key == "particles" and "\n" not in str(caught.value)
-
-
-def test_one_particle_has_nobody_to_be_kicked_with():
-    check(experiment((50, "open"), 2, **BED, **HEAT))
-    with pytest.raises(InputError, match="at least 2 where a thermostat kicks pairs"):
-        check(experiment((50, "open"), 1, **BED, **HEAT))

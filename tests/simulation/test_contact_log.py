@@ -6,7 +6,7 @@ from brute_force import BruteForce, begin, run, scene_of, settings, snapshot
 from schedules import COOLING
 
 from roughgas import simulate
-from roughgas.base import InputError, as_json
+from roughgas.base import as_json
 from roughgas.cli.show import summary
 from roughgas.data.point import read_point, write_point
 from roughgas.effects.contacts import columns_of_pairs
@@ -195,10 +195,3 @@ def test_a_log_is_asked_for_in_python():
         "sheared", r=0.9, beta=0, scale="small", progress=False, effects={"contact_log": {}}
     )
     assert gas.sizes["contact"] == 10_000 and gas.contacts_lost == gas.collisions - 10_000
-
-
-@pytest.mark.parametrize("most", [0, 2.5, "all", 2_000_000])
-def test_a_limit_that_is_none(most):
-    effects = GASES["spheres"]["effects"] | {"contact_log": {"most": most}}
-    with pytest.raises(InputError, match=r"effects\.contact_log\.most .* a whole number in \[1, 1"):
-        build(GASES["spheres"] | {"effects": effects}, 0.8, 0.3)

@@ -11,7 +11,7 @@ from roughgas.data.point import as_dataset
 from roughgas.kernel import memory
 from roughgas.scene import build
 from roughgas.simulation.point import run_point
-from roughgas.simulation.restart import Initial, check_initial, initial_of
+from roughgas.simulation.restart import initial_of
 
 R, BETA, SEED = 0.9, 0.3, 3
 DRIVEN = ("sheared", "bed", "walled", "rubbed bed", "shaken", "heated")
@@ -109,35 +109,6 @@ def test_a_state_of_ones_own():
     assert one.time == 0.0 and one.spin is None
     point = run_point(build(experiment, 1.0, 1.0), experiment, SEED, None, [one] * 3).variables
     assert point["E_trans_series"] == pytest.approx(np.ones_like(point["E_trans_series"]))
-
-
-PAIR = Initial(np.array([[2.0, 6.0], [9.0, 6.0]]), np.zeros((2, 2)))
-
-
-@pytest.mark.parametrize(
-    ("kernel", "position", "message"),
-    [
-        ("gas", [[2, 2], [2, 3.9]], "distance of particles 0 and 1 = 1.9: must be 2 or more"),
-        ("gas", [[0.5, 0.5], [11.6, 11.4]], "distance of particles 0 and 1 = 1.42126704"),
-        ("gas", [[12.5, 6], [1.5, 6]], "distance of particles 0 and 1 = 1:"),
-        (
-            "gas",
-            [[1, 2], [3, 4], [5, 6]],
-            r"position = of shape (3, 2): must have the shape (2, 2)",
-        ),
-        ("sheared", [[2, 0.5], [8, 11.5]], "distance of particles"),
-        ("bed", [[2, 0.5], [9, 6]], "initial position of particle 0 = 0.5: must lie in [1, inf]"),
-        ("shaken", [[2, 4], [11.5, 6]], "particle 1 = 11.5: must lie in [1, 11]"),
-    ],
-)
-def test_what_could_not_be_is_refused(kernel, position, message):
-    box = [12, "open"] if kernel == "bed" else [12, 12]
-    experiment = settings(kernel, 2, box) | {"schedule": steady(1)}
-    time = 3.0  # after which the images of the sheared gas have slid by 6 a
-    one = PAIR._replace(position=np.array(position, float), time=time)
-    with pytest.raises(InputError) as error:
-        check_initial([one], experiment, build(experiment, R, BETA))
-    assert message in str(error.value)
 
 
 def test_datasets_that_hold_no_state_are_refused():

@@ -6,7 +6,6 @@ from brute_force import scene_of, settings, snapshot
 from brute_force.beside import brute_force_from
 from schedules import COOLING, STEADY
 
-from roughgas.kernel.hooks import displacement
 from roughgas.scene import build
 from roughgas.scene.initial import initial_state
 from roughgas.simulation import trajectory
@@ -97,14 +96,3 @@ def test_many_particles_keep_their_numbers():
     alike = spins[1:] == spins[:-1]  # those that met nobody
     assert alike.mean() > 0.9
     assert turned[alike] == pytest.approx((spins[:-1] * intervals)[alike], abs=1e-12)
-
-
-@pytest.mark.parametrize("wave", ["sawtooth", "reversed_sawtooth", "triangle", "sine"])
-def test_the_floor_is_where_brute_force_has_it(wave):
-    floor = {"amplitude": 2.0, "period": 1.5, "wave": wave}
-    experiment = settings("bed", 4, [10, "open"], floor=floor)
-    scene, world = scene_of(experiment, R, BETA)
-    brute = brute_force_from(world, snapshot(start_of(scene, experiment), scene))
-    for time in (0.1, 0.4, 1.0, 1.4, 1.6, 2.9):
-        brute.run_until(time)
-        assert displacement(scene.effects.floor, time) == pytest.approx(brute.surface(0.0)[0])

@@ -135,10 +135,7 @@ def test_an_elastic_gas_follows_its_bath_to_another_temperature():
     experiment = settings("bath", 400, [200, 200], langevin=bath)
     parts = (
         {"duration": 15, "measure": False},
-        {
-            "duration": 10,
-            "effects": {"langevin": {"temperature": 3.0}},
-        },
+        {"duration": 10, "effects": {"langevin": {"temperature": 3.0}}},
     )
     runs = [point(experiment, *parts, r=1.0, beta=-1.0, seed=seed) for seed in range(10)]
     T = 2.0 * np.array([one.E_trans_series.values for one in runs])
@@ -258,36 +255,6 @@ def test_seeds_are_averaged_with_errors():
         np.testing.assert_allclose(whole[f"{name}_stderr"], error, rtol=1e-9, atol=1e-15)
     assert whole.source.values.tolist() == ["thermostat", "contacts", "stages"]
     np.testing.assert_array_equal(whole.time_series, each[0].time)
-
-
-MISTAKES = {
-    "schedule.stages[0].duration = (nothing)": [{}],
-    "schedule.stages[1].effects: key = gravity: must be one of this experiment: contact_": [
-        {"duration": 1},
-        {"duration": 1, "effects": {"gravity": {"acceleration": 1}}},
-    ],
-    "schedule.stages[0].effects: key = 'wind'": [{"duration": 1, "effects": {"wind": {}}}],
-    "schedule.stages[0]: key = 'box'": [{"duration": 1, "box": [10, 10]}],
-    "schedule.stages[0].effects.spin = of another kind: must": [
-        {"duration": 1, "effects": {"spin": {"inertia": 0.4}}}
-    ],
-    "schedule.stages[0].duration = 0.7: must be a whole multiple": [{"duration": 0.7}],
-    "schedule.stages[1].measure = False": [{"duration": 1}, {"duration": 1, "measure": False}],
-    "schedule.stages[0].measure = False": [{"duration": 1, "measure": False}],
-    "schedule.stages[0].r = 1.5": [{"duration": 1, "r": 1.5}],
-    "schedule.stages[0].effects.thermostat.power = -1": [
-        {"duration": 1, "effects": {"thermostat": {"power": -1}}}
-    ],
-    "schedule.stages[0].spin_temperature = 1": [{"duration": 1, "spin_temperature": 1}],
-    "schedule.stages = []": [],
-}
-
-
-@pytest.mark.parametrize("text", MISTAKES)
-def test_a_mistake_in_a_stage_is_one_line(text):
-    with pytest.raises(InputError) as caught:
-        point(HEATED, *MISTAKES[text])
-    assert text in str(caught.value) and "\n" not in str(caught.value)
 
 
 def test_a_floor_may_not_jump():

@@ -64,18 +64,6 @@ def test_of_an_r_that_never_changes_it_is_not_known(monkeypatch):
     assert aimed["target_met"] == UNKNOWN and aimed["target_blocks"] == 1
 
 
-def test_a_drive_must_be_seen_in_enough_phases():
-    bed = settings("bed", 40, [12.5, "open"])
-    aimed = {"kind": "steady", "equilibrate": 10, "measure": 20, "sample_every": 0.25, "period": 1}
-    schedule.check(bed | {"schedule": aimed})
-    with pytest.raises(InputError) as caught:
-        schedule.check(bed | {"schedule": aimed | {"target_stderr": 0.01}})
-    assert str(caught.value) == (
-        "schedule.sample_every = 0.25: must divide a period of the drive into 16 samples beside "
-        "schedule.target_stderr"
-    )
-
-
 def test_states_to_begin_in_are_no_target_of_replicas():
     scene, aimed = begin(FREE, 0.9, 0.0)[0], COOLING | {"target_stderr": 0.01}
     with pytest.raises(InputError, match=r"target_stderr = 0\.01: must not stand beside initial"):

@@ -14,7 +14,6 @@ from schedules import COOLING, STEADY
 from roughgas.base import InputError
 from roughgas.data.point import as_dataset
 from roughgas.data.trajectory import (
-    FORMATS,
     as_trajectory,
     frames,
     lengths_and_angles,
@@ -189,9 +188,3 @@ def test_gsd_has_particles_inside_a_centred_cell(name, tmp_path):
             assert least_distance(cell, shot.particles.position, periodic) > 2.0 - 1e-5
             assert shot.particles.velocity == pytest.approx(one.velocity, rel=1e-5, abs=1e-6)
             assert shot.log["time"].item() == one.time
-
-
-def test_another_ending_is_refused(tmp_path):
-    with pytest.raises(InputError, match=r"must end in \.xyz, \.nc, \.gsd"):
-        write_trajectory(tmp_path / "bed.pdb", sample("sheared"))
-    assert list(tmp_path.iterdir()) == [] and set(FORMATS) == {".xyz", ".nc", ".gsd"}

@@ -262,34 +262,6 @@ def test_a_bed_seen_at_few_phases_of_its_floor_is_not_trusted():
 # ------------------------------------------------------------------------ schedules
 
 
-@pytest.mark.parametrize(
-    ("kernel", "changes", "says"),
-    [
-        ("sheared", {"measure": 0.5}, "schedule.measure = 0.5: must hold a whole period, 1 T"),
-        ("sheared", {"period": 30.0}, "schedule.measure = 20.0: must hold a whole period, 30 T"),
-        ("sheared", {"period": 1.5}, "schedule.sample_every = 1.0: must divide schedule.period"),
-        ("sheared", {"sample_every": 1e-300}, "schedule.sample_every = 1e-300: must make at most"),
-        ("bed", {}, r"schedule.period = \(none\): must be a whole multiple of that of floor, 1 T"),
-        ("bed", {"period": 8.66}, "schedule.period = 8.66: must be a whole multiple of that of fl"),
-        ("bed", {"period": 1.0, "sample_every": 0.3}, "schedule.sample_every = 0.3: must divide"),
-        ("bed", {"period": 1.0, "sample_every": 1.5}, "schedule.sample_every = 1.5: must divide"),
-        ("gas", {"plateau": 0.5}, "schedule.plateau = 0.5: must be at least schedule.sampl"),
-        (
-            "gas",
-            {"sample_every": 24.0, "plateau": 20.0},
-            "schedule.plateau = 20.0: must be at least",
-        ),
-        ("gas", {"sample_every": 50.0}, "schedule.sample_every = 50.0: must be at most 25 coll"),
-        ("gas", {"sample_every": 1e-9}, "schedule.sample_every = 1e-09: must make at most"),
-    ],
-)
-def test_a_schedule_that_measures_nothing_is_refused(kernel, changes, says):
-    usual = COOLING if kernel == "gas" else STEADY
-    run = Run(kernel, 10, 0.2, 0.9, 0.0, usual | changes)
-    with pytest.raises(InputError, match=says):
-        _ = run.experiment
-
-
 def test_a_period_of_several_strokes_and_the_phases_that_it_shows():
     """Three strokes in four samples: four phases; four strokes in four: one."""
     for period, every, phases in ((3.0, 0.75, 4), (4.0, 1.0, 1), (2.0, 0.05, 20)):

@@ -1,6 +1,8 @@
 """A slow, independent account of contacts between unlike particles, in three dimensions throughout:
 disks move and meet in a plane, and spin about its normal."""
 
+from typing import NamedTuple
+
 import numpy as np
 
 
@@ -67,6 +69,48 @@ def energies(v, w, mass, inertia):
     return mass * np.sum(v**2, axis=1) / 2, inertia * np.sum(w**2, axis=1) / 2
 
 
+class Pairs(NamedTuple):
+    """Pairs of equal particles, m = a = 1, each (N, 3); `n` points from the second to the first."""
+
+    v1: np.ndarray
+    v2: np.ndarray
+    w1: np.ndarray
+    w2: np.ndarray
+    n: np.ndarray
+
+    def particles(self):
+        return (self.v1, self.w1), (self.v2, self.w2)
+
+    def approach(self):
+        """How fast they come together, which is how often they collide; 0 where they part."""
+        return np.maximum(0.0, -np.sum((self.v1 - self.v2) * self.n, axis=1))
+
+    def after(self, r, beta, q, mu=np.inf):
+        """The pairs after their contacts."""
+        one = np.ones(len(self.n))
+        both = ((v, w, one, q * one, one) for v, w in self.particles())
+        (v1, w1), (v2, w2) = after_contact(self.n, *both, r, beta, mu)
+        return self._replace(v1=v1, v2=v2, w1=w1, w2=w2)
+
+    def energies(self, q):
+        """Translational and rotational energy of each pair, (2, N)."""
+        return np.sum([energies(v, w, 1, q) for v, w in self.particles()], axis=0)
+
+
+def maxwellian_pairs(rng, size, dimension, spin):
+    """Pairs of a gas with T_tr = 1 and spins of this mean square along each axis."""
+    v = [drawn(rng, size, dimension, 1.0) for _ in range(2)]
+    w = [drawn_spins(rng, size, dimension, spin**0.5) for _ in range(2)]
+    return Pairs(*v, *w, directions(rng, size, dimension))
+
+
+def sigmas(samples, weights, expected):
+    """Distance of the weighted mean from what is expected, in its standard errors."""
+    mean = np.average(samples, weights=weights)
+    error = np.sqrt((weights**2 * (samples - mean) ** 2).sum()) / weights.sum()
+    return abs(mean - expected) / max(error, 1e-12)
+
+
 class Dsmc:
     """A mixture without positions: pairs meet at random, in proportion to how fast they approach.
 
@@ -84,11 +128,13 @@ class Dsmc:
         self.w = drawn_spins(self.rng, size, D, np.sqrt(T_rot / self.inertia))
 
     def collide(self, per_particle):
-        """Make about so many collisions per particle; keep the translational energy at 1."""
+        """Make about so many collisions per particle, and return how many they are; keep the
+        translational energy at 1."""
         done = 0.0
         while done < per_particle * len(self.kind):
             done += 2 * self._round()
             self._scale()
+        return done / len(self.kind)
 
     def temperatures(self):
         """Return T_tr and T_rot of each species."""

@@ -211,27 +211,3 @@ def test_arguments_outside_their_range(key):
         with pytest.raises(InputError) as caught:
             function(value)
         assert str(caught.value) == f"{key} = {value}: {legal}"
-
-
-OTHERS = [
-    (lambda: theory.relax(-1, 0.9, 0, 1), "theta0 = -1.0: must be a number >= 0"),
-    (lambda: theory.relax(1, 0.9, 0, [1, -2]), "collisions = -2.0: must be a number >= 0"),
-    (lambda: theory.collisions_to_relax(0.9, 0, 1), "tolerance = 1.0: must lie in (0, 1)"),
-    (
-        lambda: theory.correlated_ratio(0, 0.5, 1.1),
-        "correlation at contacts = 1.1: must lie in [-1, 1]",
-    ),
-    (lambda: theory.haff_time(0.9, 0, np.inf), "frequency = inf: must be a number >= 0"),
-    (lambda: theory.collision_frequency(1, 0.8, 3), "packing = 0.8: must lie in [0, 0.7405]"),
-    (
-        lambda: theory.stationary_ratio(0.9, 0, spin_share=2.1),
-        "net spin share of the drive = 2.1: must lie in [-1, 2]",
-    ),
-]
-
-
-@pytest.mark.parametrize(("call", "text"), OTHERS)
-def test_other_arguments(call, text):
-    with pytest.raises(InputError) as caught:
-        call()
-    assert str(caught.value) == text

@@ -6,15 +6,13 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tests.theory.collisions import after_contact, energies
+from tests.theory.collisions import maxwellian_pairs, sigmas
 from tests.theory.tracers import spin_in_the_end
 
 from roughgas import theory
-from roughgas.base import InputError
 
 PAIRS = 400_000
 SIGMAS = 5
-DRIVES = [None, 0, 0.4, 1]
 
 gases = {
     "r": st.floats(0, 1),
@@ -28,29 +26,15 @@ temperature = st.floats(0, 5)
 
 
 def sampled_changes(theta, r, beta, mu, dimension, q, seed):
-    """Energy changes of pairs colliding as in a gas with T_tr = 1, T_rot = theta, and who slides.
-
-    The normal lies along x and v_n is drawn from its distribution among collisions.
-    """
-    rng = np.random.default_rng(seed)
-    v1, v2, w1, w2 = rng.standard_normal((4, PAIRS, 3))
-    approach = -2 * np.sqrt(rng.standard_exponential(PAIRS))
-    v1[:, 0], v2[:, 0] = approach / 2, -approach / 2  # in their centre's frame
-    if dimension == 2:
-        v1[:, 2] = v2[:, 2] = 0
-        w1[:, :2] = w2[:, :2] = 0
-    w1, w2 = w1 * np.sqrt(theta / q), w2 * np.sqrt(theta / q)
-    n, ones, before = np.tile([1.0, 0, 0], (PAIRS, 1)), np.ones(PAIRS), ((v1, w1), (v2, w2))
-    after = after_contact(n, *((v, w, ones, q * ones, ones) for v, w in before), r, beta, mu)
-    energy = [sum(np.array(energies(v, w, 1, q)) for v, w in pair) for pair in (before, after)]
-    impulse = after[0][0] - v1
-    slides = np.hypot(*impulse[:, 1:].T) > (1 - 1e-9) * mu * impulse[:, 0]
-    return *(energy[1] - energy[0]), slides
-
-
-def sigmas(samples, expected):
-    error = samples.std() / np.sqrt(len(samples))
-    return abs(samples.mean() - expected) / max(error, 1e-12)
+    """Energy changes of pairs of a gas with T_tr = 1, T_rot = theta, who slides, and how often each
+    pair collides."""
+    before = maxwellian_pairs(np.random.default_rng(seed), PAIRS, dimension, theta / q)
+    after = before.after(r, beta, q, mu)
+    impulse = after.v1 - before.v1
+    normal = np.sum(impulse * before.n, axis=1, keepdims=True)
+    along = np.linalg.norm(impulse - normal * before.n, axis=1)
+    slides = along > (1 - 1e-9) * mu * np.abs(normal[:, 0])
+    return *(after.energies(q) - before.energies(q)), slides, before.approach()
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
@@ -66,12 +50,12 @@ def sigmas(samples, expected):
 def test_changes_are_those_of_sampled_collisions(dimension, r, beta, mu, theta, q):
     """Means over 4e5 pairs within 5 standard errors: of 70000 seeds one fails any by chance."""
     inertia = theory.moment_of_inertia(dimension) if q is None else q
-    tr, rot, slides = sampled_changes(theta, r, beta, mu, dimension, inertia, seed=7)
+    tr, rot, slides, often = sampled_changes(theta, r, beta, mu, dimension, inertia, seed=7)
     rates = theory.friction_changes(1, theta, r, beta, mu, dimension, inertia)
-    assert sigmas(tr, dimension * rates[0]) < SIGMAS
-    assert sigmas(rot, (2 * dimension - 3) * rates[1]) < SIGMAS
+    assert sigmas(tr, often, dimension * rates[0]) < SIGMAS
+    assert sigmas(rot, often, (2 * dimension - 3) * rates[1]) < SIGMAS
     expected = theory.sliding_fraction(1, theta, r, beta, mu, dimension, inertia)
-    assert sigmas(slides, expected) < SIGMAS
+    assert sigmas(slides, often, expected) < SIGMAS
 
 
 @settings(derandomize=True, deadline=None)
@@ -151,35 +135,6 @@ def test_below_the_critical_friction_a_spinning_gas_keeps_its_spin(dimension):
     assert R[1] < 1
 
 
-@pytest.mark.parametrize("bad", [-0.1, np.nan, "1", None])
-@pytest.mark.parametrize("name", ["friction_ratio", "friction_changes", "sliding_fraction"])
-def test_friction_outside_its_range(name, bad):
-    temperatures = () if name == "friction_ratio" else (1, 1)
-    with pytest.raises(InputError) as caught:
-        getattr(theory, name)(*temperatures, 0.9, 0, bad)
-    assert str(caught.value) == f"friction mu = {bad}: must lie in [0, inf]"
-
-
-@pytest.mark.parametrize(
-    ("call", "key"),
-    [
-        (lambda: theory.friction_ratio(1.5, 0, 1), "restitution r"),
-        (lambda: theory.friction_ratio(1, [0, 2], 1), "roughness beta"),
-        (lambda: theory.friction_ratio(1, 0, 1, 4), "dimension"),
-        (lambda: theory.friction_ratio(1, 0, 1, 2, 0), "inertia q"),
-        (lambda: theory.friction_ratio(1, 0, 1, spin_share=2), "spin share of the drive"),
-        (lambda: theory.friction_changes(1, 0, 1, 0, 1, frequency=-1), "frequency"),
-        (lambda: theory.sliding_fraction(1, -1, 1, 0, 1), "temperature T_rot"),
-        (lambda: theory.runaway_spin(0.9, 0.0, -0.1), "friction mu"),
-        (lambda: theory.runaway_time(-1, 0.9, 0.0, 0.1), "particles"),
-    ],
-)
-def test_other_illegal_arguments_are_named(call, key):
-    with pytest.raises(InputError) as caught:
-        call()
-    assert caught.value.key == key
-
-
 GASES = [(0.9, 0.0, 2), (0.9, -0.5, 2), (0.8, 1.0, 2), (0.9, 0.5, 3)]
 
 
@@ -208,7 +163,7 @@ def test_a_small_deviation_fades_at_this_rate(r, beta, dimension, mu):
         assert left == pytest.approx(np.exp(-1.0), abs=0.01)
 
 
-RUNAWAY_GASES = [(0.9, 0.0, 0.1, 2), (0.9, 0.0, 0.3, 2), (0.99, 0.5, 0.05, 2), (0.9, 0.0, 0.3, 3)]
+RUNAWAY_GASES = [(0.9, 0.0, 0.1, 2), (0.9, 0.0, 0.3, 3)]
 
 
 def simulated(gas, start, folds, spinners=1500):

@@ -153,32 +153,6 @@ def test_unlike_partners_meet_half_way():
     assert gas.friction == pytest.approx(np.array([[0.1, 0.2], [0.2, 0.3]]))
 
 
-HALF = {"fraction": 0.5}
-BAD = [
-    ([], "species = []: must be a list of species, each with a fraction or a number"),
-    ([{"fraction": 0.5}], "species.fraction = 0.5 in all: must add up to 1"),
-    ([HALF, {"fraction": 0.0}], "species.fraction = 0.0: must lie in (0, 1]"),
-    ([HALF, {"number": 5}], "species = fraction and number: must have one of them throughout"),
-    ([HALF, {"radius": 2}], "species = {'radius': 2}: must have either fraction or number"),
-    ([HALF, HALF | {"radius": 0}], "species.radius = 0.0: must be a positive number"),
-    (
-        [HALF, HALF | {"radius": {"distribution": "uniform", "deviation": 0.6}}],
-        "species.radius.deviation = 0.6: must lie in [0, 0.5773]",
-    ),
-    ([HALF, HALF | {"mass": -1}], "species.mass = -1.0: must be a positive number"),
-    ([HALF, HALF | {"restitution": 2}], "restitution r = 2.0: must lie in [0, 1]"),
-    ([HALF, HALF | {"roughness": None}], "roughness beta = None: must lie in [-1, 1]"),
-    ([HALF, HALF | {"inertia": 0}], "inertia q = 0.0: must be a positive number"),
-]
-
-
-@pytest.mark.parametrize(("species", "text"), BAD)
-def test_bad_species_are_one_line(species, text):
-    with pytest.raises(InputError) as caught:
-        theory.mixture(species, 0.9, 0)
-    assert str(caught.value) == text
-
-
 packings = pytest.mark.parametrize("packing", [0.0, 0.1, 0.5])
 SPECIES = [
     {"fraction": 0.2, "radius": 0.3, "mass": 7},
@@ -248,10 +222,3 @@ def test_third_virial_coefficient_of_points_and_disks_is_exact(dimension):
     error = expected.std() / np.sqrt(size)
     # disks: 9/16 stands for 4/3 - sqrt(3)/pi - ..., right to a per cent
     assert slope == pytest.approx(expected.mean(), abs=4 * error + 0.02 * expected.mean())
-
-
-def test_a_full_box_is_refused():
-    with pytest.raises(InputError, match=r"packing = 1.0: must lie in \[0, 1\)"):
-        theory.compressibility(elastic(2), 1)
-    with pytest.raises(InputError, match=r"packing = 0.8: must lie in \[0, 0.7405\]"):
-        theory.mixture_density(elastic(3, [{"fraction": 1}]), 0.8)

@@ -8,7 +8,6 @@ import pytest
 from integration import integrate
 
 from roughgas import theory
-from roughgas.base import InputError
 from roughgas.effects.restitution import pade, x_of
 from roughgas.theory.closed_forms import shear_factor, sheared_ratio
 from roughgas.theory.prediction import Equation, equation_of, predicted_ratio, species_at
@@ -201,11 +200,3 @@ def test_cooling_is_integrated_to_many_digits(beta):
 
     expected = integrate(slope, np.array([0.0, 1.0, 0.0]), [20.0], pieces=100)
     assert [column[-1] for column in gas[1:]] == pytest.approx(expected[:, 0], rel=1e-8)
-
-
-def test_mistakes():
-    for r in (0.0, 1.1, -0.2):
-        with pytest.raises(InputError, match=r"restitution r = .*: must lie in"):
-            theory.viscoelastic_restitution(1.0, r)
-    with pytest.raises(InputError, match=r"speed = 0\.0: must be a positive number"):
-        theory.maxwellian_restitution(1.0, 0.9, 0.0)

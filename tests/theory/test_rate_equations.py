@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from integration import integrate
-from tests.theory.collisions import after_contact, energies
+from tests.theory.collisions import maxwellian_pairs, sigmas
 
 from roughgas import theory
 
@@ -122,17 +122,7 @@ THETA = 0.6
 
 def energy_changes(state, r, beta, q):
     """Exact changes of the pair's translational and rotational energies."""
-    v1, v2, w1, w2, n = state
-    ones = np.ones(len(n))
-    before = (v1, w1), (v2, w2)
-    after = after_contact(n, *((v, w, ones, q * ones, ones) for v, w in before), r, beta)
-    return np.sum(
-        [
-            np.subtract(energies(*x, 1, q), energies(*y, 1, q))
-            for x, y in zip(after, before, strict=True)
-        ],
-        axis=0,
-    )
+    return state.after(r, beta, q).energies(q) - state.energies(q)
 
 
 def invariants(state):
@@ -145,30 +135,9 @@ def invariants(state):
     return [(x * y).sum(-1) for x, y in products]
 
 
-def maxwellian_pairs(dimension, q, seed, pairs=PAIRS):
-    """Pairs of a gas with T_tr = 1, T_rot = THETA and n in any direction; planar in 2D."""
-    rng = np.random.default_rng(seed)
-    v1, v2, w1, w2, n = rng.standard_normal((5, pairs, 3))
-    if dimension == 2:
-        for vector in (v1, v2, n):
-            vector[:, 2] = 0
-        for spin in (w1, w2):
-            spin[:, :2] = 0
-    spread = np.sqrt(THETA / q)
-    return v1, v2, w1 * spread, w2 * spread, n / np.linalg.norm(n, axis=-1, keepdims=True)
-
-
-def collision_weights(state):
-    """Pairs collide as often as they approach fast: weights proportional to -(v1 - v2).n."""
-    v1, v2, _, _, n = state
-    return np.maximum(-((v1 - v2) * n).sum(-1), 0)
-
-
-def sigmas(samples, weights, expected):
-    """Distance of the weighted mean from what is expected, in its standard errors."""
-    mean = np.average(samples, weights=weights)
-    error = np.sqrt((weights**2 * (samples - mean) ** 2).sum()) / weights.sum()
-    return abs(mean - expected) / error
+def pairs(dimension, q, seed, number=PAIRS):
+    """Of a gas with T_tr = 1, T_rot = THETA."""
+    return maxwellian_pairs(np.random.default_rng(seed), number, dimension, THETA / q)
 
 
 @settings(derandomize=True, deadline=None)
@@ -180,7 +149,7 @@ def sigmas(samples, weights, expected):
     seed=st.integers(0, 10**6),
 )
 def test_energy_changes_are_those_of_the_collision_rule(r, beta, q, dimension, seed):
-    state = maxwellian_pairs(dimension, q, seed, pairs=20)
+    state = pairs(dimension, q, seed, 20)
     exact_tr, exact_rot = energy_changes(state, r, beta, q)
     v_n2, v_t2, v_tr, v_r2 = invariants(state)
     size = v_n2 + v_t2 + v_r2 + sum((v**2).sum(-1) for v in state[:2])
@@ -197,8 +166,8 @@ def test_averages_and_rates_over_sampled_collisions(dimension, r, beta, q):
 
     A collision counts for both its particles: dT_tr/dn = <change of the pair's energy>/D.
     """
-    state = maxwellian_pairs(dimension, q, seed=20 + dimension)
-    weights = collision_weights(state)
+    state = pairs(dimension, q, 20 + dimension)
+    weights = state.approach()
     expected = [
         theory.mean_normal_squared(1 / 2),
         theory.mean_tangential_squared(1 / 2, dimension),
@@ -216,7 +185,7 @@ def test_averages_and_rates_over_sampled_collisions(dimension, r, beta, q):
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_collision_frequency_is_the_sampled_flux(dimension):
     """nu = n chi (2a)^(D-1) times the integral of <max(-v.n, 0)> over all directions n."""
-    weights = collision_weights(maxwellian_pairs(dimension, 0.5, seed=3))
+    weights = pairs(dimension, 0.5, 3).approach()
     surface = {2: 2 * np.pi * 2, 3: 4 * np.pi * 4}[dimension]
     crowding = theory.number_density(0.2, dimension) * theory.contact_value(0.2, dimension)
     flux = surface * crowding * weights

@@ -1,42 +1,24 @@
 """Transport coefficients: published limits, and averages over pairs as they collide."""
 
-from typing import NamedTuple
-
 import numpy as np
 import pytest
-from tests.theory.collisions import directions, drawn, drawn_spins
+from tests.theory.collisions import maxwellian_pairs
 
 from roughgas import theory
 
 BATCHES = 16
 
 
-class Pairs(NamedTuple):
-    """Pairs of a Maxwellian gas with T_tr = 1; `n` (N, 3) points from the second to the first."""
-
-    v1: np.ndarray
-    v2: np.ndarray
-    w1: np.ndarray
-    w2: np.ndarray
-    n: np.ndarray
-
-
 def batches(dimension, T_rot, q, size=20_000):
     """BATCHES independent samples of pairs."""
     for seed in range(BATCHES):
-        rng = np.random.default_rng((3, seed))
-        v = [drawn(rng, size, dimension, 1.0) for _ in range(2)]
-        w = [drawn_spins(rng, size, dimension, (T_rot / q) ** 0.5) for _ in range(2)]
-        yield Pairs(*v, *w, directions(rng, size, dimension))
+        yield maxwellian_pairs(np.random.default_rng((3, seed)), size, dimension, T_rot / q)
 
 
 def response(pairs, r, beta, q):
     """What the first gives to the second, the change of both spins, and how fast pairs approach."""
-    g, n = pairs.v1 - pairs.v2, pairs.n
-    normal = np.sum(g * n, axis=1)[:, None] * n
-    surface = g - normal - np.cross(pairs.w1 + pairs.w2, n)
-    push = (1 + r) / 2 * normal + q * (1 + beta) / (2 * (1 + q)) * surface
-    return push, np.cross(n, push) / q, np.maximum(0.0, -np.sum(g * n, axis=1))
+    after = pairs.after(r, beta, q)
+    return pairs.v1 - after.v1, after.w1 - pairs.w1, pairs.approach()
 
 
 def agrees(estimates, expected, within):

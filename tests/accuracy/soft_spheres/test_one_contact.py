@@ -6,8 +6,6 @@ import numpy as np
 import pytest
 
 from accuracy.soft_spheres.pair import angular_momentum, collide, energy, momentum, shot
-from roughgas.accuracy.soft_spheres import springs
-from roughgas.base import InputError
 
 PHASES = np.linspace(0.03, 1.03, 12, endpoint=False)  # in steps: where in a step a contact begins
 BETAS = [-1.0, -0.5, 0.0, 0.5, 1.0]
@@ -80,19 +78,3 @@ def test_energy_of_elastic_spheres(beta):
         )
     ]
     assert lost[0] < 2e-4 and lost[1] < lost[0] / 14.0 and lost[2] < lost[1] / 14.0
-
-
-@pytest.mark.parametrize(
-    ("key", "values"),
-    [
-        ("restitution r of a soft sphere", (0.0, 0.0, 0.5, 1.0)),
-        ("restitution r of a soft sphere", (math.nan, 0.0, 0.5, 1.0)),
-        ("roughness beta", (0.9, 1.1, 0.5, 1.0)),
-        ("inertia", (0.9, 0.0, 0.0, 1.0)),
-        ("duration of a contact", (0.9, 0.0, 0.5, 0.0)),
-    ],
-)
-def test_what_springs_cannot_do_is_refused(key, values):
-    with pytest.raises(InputError) as caught:
-        springs(*values)
-    assert caught.value.key == key and "\n" not in str(caught.value)

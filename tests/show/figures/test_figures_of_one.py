@@ -8,7 +8,6 @@ from matplotlib.colors import to_hex
 from synthetic import reduced
 from tests.show.figures.legibility import faults
 
-from roughgas.base import InputError
 from roughgas.cli import main
 from roughgas.data.point import read_point
 from roughgas.show.figures import sweep
@@ -107,15 +106,3 @@ def test_any_sweep_is_drawn_beside_theory(kind):
     if kind == "particles":
         assert "$N = 40$ to $2560$" in above[0].get_title("left")
         assert below[0].get_xscale() == "log"
-
-
-@pytest.mark.parametrize(
-    ("asked", "message"),
-    [
-        ({"over": "mu"}, "axis = mu: must be one of r, beta"),
-        ({"beta": [0.05]}, "beta = 0.05: must be one of -0.95, -0.9"),
-    ],
-)
-def test_what_the_data_lack_is_refused(asked, message):
-    with pytest.raises(InputError, match=message):
-        sweep.draw(reduced("sheared"), **asked)
