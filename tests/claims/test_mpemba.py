@@ -22,39 +22,37 @@ def curves():
     return module_of(STUDY, "curves")
 
 
+def dataset(name, begins, stages, at, temperatures, frequency):
+    """A reduced dataset of a gas with these T_tr and T_rot at times, and what its stages say."""
+    settings = {"effects": {"thermostat": {}}, "schedule": {"stages": stages}} | stages[0]
+    error = np.full(len(at), ERROR / 2)
+    trans, rot = (one / 2 for one in temperatures)
+    series = {"time_series": at, "collisions_series": 2 * frequency * at}
+    series |= {"E_trans_series": trans, "E_trans_series_stderr": error}
+    series |= {"E_rot_series": rot, "E_rot_series_stderr": error}
+    found = {name: (("r", "beta", "sample"), values[None, None]) for name, values in series.items()}
+    found["stage_begin"] = (("r", "beta", "stage"), np.array(begins)[None, None])
+    about = {"experiment_json": json.dumps(settings), "packing": PACKING}
+    return reduced(name, r=(0.7,), beta=(0.0,)).assign(found).assign_attrs(about)
+
+
+def driven(power, share):
+    return {"effects": {"thermostat": {"power": power, "spin_share": share}}}
+
+
 def gas(name, T, theta, time, power=POWER, share=0.1, stretch=1.0):
-    """A reduced dataset of a gas with these temperatures T and theta = T_rot/T_tr over time,
-    before and after which it is stationary; `stretch` makes it slower."""
+    """One with these temperatures T and theta = T_rot/T_tr over time, before and after which it is
+    stationary; `stretch` makes it slower."""
     T_tr = 3 * T / (2 + theta)
     frequency = 0.5 * float(theory_frequency())
     at = np.arange(20.0, 18001.0, 20.0)
     since = np.clip((at - BEGIN) * frequency / stretch, 0.0, None)
     trans = np.interp(since, time, T_tr, right=T_tr[-1])
     rot = np.interp(since, time, theta * T_tr, right=(theta * T_tr)[-1])
-    stages = [
-        {"duration": BEGIN},
-        {
-            "duration": END - BEGIN,
-            "effects": {"thermostat": {"power": power, "spin_share": share}},
-            "temperature": float(T_tr[0]),
-            "spin_temperature": float(theta[0] * T_tr[0]),
-        },
-        {"duration": 8000.0},
-    ]
-    settings = {"effects": {"thermostat": {}}, "schedule": {"stages": stages}}
-    series = {
-        "time_series": at,
-        "E_trans_series": trans / 2,
-        "E_rot_series": rot / 2,
-        "E_trans_series_stderr": np.full(len(at), ERROR / 2),
-        "E_rot_series_stderr": np.full(len(at), ERROR / 2),
-        "collisions_series": 2 * frequency * at,
-    }
-    found = {name: (("r", "beta", "sample"), values[None, None]) for name, values in series.items()}
-    found["stage_begin"] = (("r", "beta", "stage"), np.array([[[0.0, BEGIN, END]]]))
-    data = reduced(name, r=(0.7,), beta=(0.0,))
-    about = {"experiment_json": json.dumps(settings), "packing": PACKING}
-    return data.assign(found).assign_attrs(about)
+    set_to = {"temperature": float(T_tr[0]), "spin_temperature": float(theta[0] * T_tr[0])}
+    stages = [{"duration": BEGIN}, {"duration": END - BEGIN} | driven(power, share) | set_to]
+    stages.append({"duration": 8000.0})
+    return dataset(name, [0.0, BEGIN, END], stages, at, (trans, rot), frequency)
 
 
 def remembering(depth):
@@ -67,27 +65,12 @@ def remembering(depth):
         parts.append(np.array(part))
     end = np.repeat(parts[-1][:, -1:], 400, axis=1)
     parts[-1] = end[:, :1] + depth * (parts[-1] - end[:, :1])
-    trans, rot = np.concatenate([*parts, end], axis=1)
-    stages = [
-        {"effects": {"thermostat": dict(zip(("power", "spin_share"), drive, strict=True))}}
-        for drive in drives
-    ]
-    settings = {"effects": stages[0]["effects"], "schedule": {"stages": [{}, *stages[1:], {}]}}
-    time = 20.0 * np.arange(1, len(trans) + 1)
-    frequency = float(theory.collision_frequency(end[0, 0], PACKING))
-    series = {
-        "time_series": time,
-        "E_trans_series": trans / 2,
-        "E_rot_series": rot / 2,
-        "E_trans_series_stderr": np.full(len(time), ERROR / 2),
-        "E_rot_series_stderr": np.full(len(time), ERROR / 2),
-        "collisions_series": frequency * time,
-    }
-    found = {name: (("r", "beta", "sample"), values[None, None]) for name, values in series.items()}
+    series = np.concatenate([*parts, end], axis=1)
+    stages = [*(driven(*drive) for drive in drives), {}]
+    time = 20.0 * np.arange(1, series.shape[1] + 1)
     begins = np.concatenate([[0.0], np.cumsum(lengths)])
-    found["stage_begin"] = (("r", "beta", "stage"), begins[None, None])
-    about = {"experiment_json": json.dumps(settings), "packing": PACKING}
-    return reduced("memory", r=(0.7,), beta=(0.0,)).assign(found).assign_attrs(about)
+    frequency = float(theory.collision_frequency(end[0, 0], PACKING)) / 2
+    return dataset("memory", begins, stages, time, series, frequency)
 
 
 @pytest.mark.parametrize(("depth", "verdict"), [(1.0, HOLDS), (1.08, QUALIFIED), (0.0, FAILS)])
@@ -114,10 +97,7 @@ def pair(curves, protocol, **changes):
     return [one.assign_attrs(experiment=prefix + one.experiment) for one in found]
 
 
-CASES = {
-    "hotter_cools_first": "crossing",
-    "overshoot": "overshoot",
-}
+CASES = {"hotter_cools_first": "crossing", "overshoot": "overshoot"}
 
 
 @pytest.mark.parametrize("name", CASES)

@@ -18,7 +18,6 @@ REPEATS = {"a": 2, "b": 2, "cd": 2, "e": 4, "f": 4, "g": 4, "h": 4}
 WAVELENGTH = {"a": 33.3, "b": 20, "cd": 25, "e": 16.7, "f": 33.3, "g": 20, "h": 25}
 ORDER = {"a": 0.833, "b": 0.851, "cd": 0.486, "f": 0.758, "g": 0.874}
 FOLD = {"a": 4, "b": 2, "cd": 6, "f": 4, "g": 2}
-PERIOD = 8.0
 THE_WAVELENGTH, THE_ORDER = "the_wavelength_is_published", "the_order_is_published"
 IT_REPEATS = "it_repeats_when_published"
 

@@ -34,15 +34,6 @@ def test_one_row_for_each_statement_in_both_reports(paths, tmp_path):
             assert claim["deviation"] == deciding["value"] and claim["sigma"] == deciding["sigma"]
 
 
-def test_the_same_data_give_the_same_bytes(paths, tmp_path):
-    reports = []
-    for order in (paths, paths[::-1]):
-        judge(order, tmp_path / "claims.json", tmp_path / "claims.md", PAPER)
-        names = ("claims.json", "claims.md")
-        reports.append([(tmp_path / name).read_bytes() for name in names])
-    assert reports[0] == reports[1]
-
-
 def test_datasets_of_several_scales_are_refused(paths, tmp_path):
     reduced("sheared").assign_attrs(scale="paper").to_netcdf(tmp_path / "sheared.nc")
     with pytest.raises(InputError, match="paper and small"):

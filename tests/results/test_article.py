@@ -11,7 +11,7 @@ import pytest
 from project import Project
 
 from roughgas.config.reading import read_yaml
-from roughgas.results.article import COLUMNS, QUOTED, excerpt, verdict
+from roughgas.results.article import COLUMNS, QUOTED
 from roughgas.results.citation import called
 from roughgas.steps import main
 
@@ -71,10 +71,7 @@ def test_the_article_compiles_with_made_up_results_to_the_same_bits(compiled):
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        (
-            '#n("bed.tim")',
-            "number in article.typ = bed.tim: must be one that numbers.json holds",
-        ),
+        ('#n("bed.tim")', "number in article.typ = bed.tim: must be one that numbers.json holds"),
         ("#nothing", "article.typ = unknown variable: nothing: must be what Typst compiles"),
     ],
 )
@@ -110,20 +107,6 @@ def test_a_run_writes_the_article_and_a_deposit(tmp_path):
 def test_it_quotes_numbers_that_are_known():
     quoted = set(QUOTED.findall((ARTICLE / "article.typ").read_text("utf-8")))
     assert len(quoted) > 15 and quoted <= json.loads(NUMBERS.read_text()).keys()
-
-
-def test_the_table_has_the_points_nearest_to_those_wanted():
-    found = excerpt(dict(zip(HEAD, map(str, row), strict=True)) for row in rows())
-    assert found["r"] == "0.9" and len(found["head"]) == 10
-    assert [row[0] for row in found["rows"]] == ["−0.8", "0", "0.5"]
-    cells = ["0.9000(20)", "0.9100(10)", "0.2500"]
-    assert found["rows"][1] == ["0", *cells, *cells, "0.9000(20)", "0.8990", "0.2500"]
-
-
-def test_a_verdict_says_its_deciding_number():
-    number = {"label": "R - theory", "value": -0.0123, "error": 0.0011}
-    assert verdict(CLAIM | {"numbers": [number]})["deciding"] == "R − theory: −0.0123(11)"
-    assert verdict(CLAIM | {"numbers": []})["deciding"] == ""
 
 
 def test_its_facts_are_those_of_the_citation():
