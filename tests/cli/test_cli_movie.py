@@ -2,13 +2,14 @@
 
 import json
 import sys
+import weakref
 
 import pytest
 from PIL import Image
 from schedules import COOLING, TINY
 
 from roughgas import cli
-from roughgas.cli import main
+from roughgas.cli import main, products
 from roughgas.config.reading import read_yaml
 from roughgas.data.point import read_point
 
@@ -49,6 +50,24 @@ def test_every_file_that_is_asked_for_is_made_and_the_same_each_time(tmp_path, c
     before = [path.read_bytes() for path in outputs]
     assert make_trajectory(*outputs) == 0 and [path.read_bytes() for path in outputs] == before
     assert before[0].count(b"Lattice=") == 2
+
+
+def test_a_trajectory_is_written_as_it_goes_on_in_bounded_memory(tmp_path, capsys, monkeypatch):
+    path, alive = tmp_path / "gas.xyz", []
+    taken = products.snapshots
+
+    def stopped(*given):
+        for shot in taken(*given):
+            alive.append(weakref.ref(shot.position))
+            assert sum(one() is not None for one in alive) <= 2  # this one, and the one before
+            yield shot
+            del shot
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(products, "snapshots", stopped)
+    assert make_trajectory(path, times=[*"0123456789"]) == 130
+    assert path.read_text().count("Lattice=") == len(alive) == 10
+    assert capsys.readouterr().err == f"roughgas: stopped: {path}: 10 of 10 frames\n"
 
 
 def test_an_extra_that_lacks_is_named_before_anything_is_simulated(tmp_path, capsys, monkeypatch):

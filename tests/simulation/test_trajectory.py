@@ -3,6 +3,7 @@
 import functools
 import itertools
 import re
+import shutil
 
 import gsd.hoomd
 import netCDF4
@@ -14,11 +15,13 @@ from schedules import COOLING, STEADY
 from roughgas.base import InputError
 from roughgas.data.point import as_dataset
 from roughgas.data.trajectory import (
+    FORMATS,
     as_trajectory,
-    frames,
+    growing_trajectory,
     lengths_and_angles,
     write_trajectory,
 )
+from roughgas.data.trajectory import frames as frames_of_values
 from roughgas.scene import build
 from roughgas.simulation import cooling
 from roughgas.simulation.energies import restored
@@ -46,6 +49,10 @@ def taken(name, times):
     scene = build(experiment, R, BETA)
     shots = list(snapshots(scene, experiment, SEED, Frames.at(times)))
     return scene, as_trajectory(variables(scene, experiment, shots), {"title": name})
+
+
+def frames(trajectory):
+    return frames_of_values({name: one.values for name, one in trajectory.variables.items()})
 
 
 @functools.cache
@@ -188,3 +195,41 @@ def test_gsd_has_particles_inside_a_centred_cell(name, tmp_path):
             assert least_distance(cell, shot.particles.position, periodic) > 2.0 - 1e-5
             assert shot.particles.velocity == pytest.approx(one.velocity, rel=1e-5, abs=1e-6)
             assert shot.log["time"].item() == one.time
+
+
+@pytest.mark.parametrize("ending", FORMATS)
+@pytest.mark.parametrize("name", kernels("bed", "sheared"))
+def test_a_file_that_grows_has_each_frame_on_the_disk_and_the_bytes_of_the_whole(
+    name, ending, tmp_path
+):
+    experiment, at = experiment_of(name), [1.0, 2.0, 4.0, 7.5]
+    scene = build(experiment, R, BETA)
+    grown, copy, whole = (tmp_path / f"{one}{ending}" for one in ("grown", "copy", "whole"))
+    with growing_trajectory(grown, name) as write:
+        for number, shot in enumerate(snapshots(scene, experiment, SEED, Frames.at(at)), 1):
+            write(variables(scene, experiment, [shot]))
+            shutil.copy(grown, copy)  # what is left if the program is killed now
+            assert times_in(copy) == pytest.approx(at[:number], rel=1e-9)
+    write_trajectory(whole, sample(name))
+    assert grown.read_bytes() == whole.read_bytes()
+
+
+def times_in(path):
+    if path.suffix == ".xyz":
+        return [float(HEAD.fullmatch(line)[4]) for line, _ in numbers_of_xyz(path)]
+    if path.suffix == ".nc":
+        with netCDF4.Dataset(path) as file:
+            return file["time"][:].tolist()
+    with gsd.hoomd.open(path) as file:
+        return [shot.log["time"].item() for shot in file]
+
+
+def test_the_floor_of_an_open_box_stays_where_it_is_in_gsd(tmp_path):
+    found, path = sample("bed"), tmp_path / "bed.gsd"
+    write_trajectory(path, found)
+    with gsd.hoomd.open(path) as file:
+        reached = 0.0
+        for shot, position in zip(file, found.position.values, strict=True):
+            reached = max(reached, position[:, 1].max() + 1.0)
+            assert shot.particles.position[:, 1] == pytest.approx(position[:, 1], abs=1e-5)
+            assert shot.configuration.box[1] == pytest.approx(2.0 * reached, rel=1e-6)

@@ -1,7 +1,8 @@
 """The command `roughgas`: one subcommand for each step of the pipeline.
 
 Bad input ends a command with one line on stderr and exit status 2, a full disk and other failures
-with status 1, Ctrl-C and SIGTERM with 130; none of them leaves half a file behind.
+with status 1, Ctrl-C and SIGTERM with 130; none of them leaves half a file behind, but for the
+frames of a trajectory so far.
 """
 
 import argparse

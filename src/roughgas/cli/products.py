@@ -2,7 +2,8 @@
 
 import sys
 from argparse import Namespace
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from contextlib import ExitStack
 from functools import partial
 from math import prod
 from textwrap import fill
@@ -12,7 +13,7 @@ from roughgas import config
 from roughgas.base import InputError, Interval, as_json, from_json, on_one_line
 from roughgas.cli.parser import WIDTH, number, whole_number
 from roughgas.cli.run import initial_in, points_of
-from roughgas.data.trajectory import as_trajectory, check_format, write_trajectory
+from roughgas.data.trajectory import check_format, growing_trajectory
 from roughgas.scene import Scene, build
 from roughgas.simulation.points import provenance
 from roughgas.simulation.progress import watched
@@ -26,23 +27,33 @@ RATES = Interval("[1, 50]")  # frames a second
 
 
 def trajectory(options: Namespace) -> None:
-    """Simulate a point, and write its trajectory."""
+    """Simulate a point, and write its trajectory, frame by frame."""
     name, ((place,), settings) = options.experiment, points_of(options)
     scene = build(settings, place.r, place.beta)
     for output in options.output:
         check_format(output)
     initial = initial_in(options)
     take = chosen_take(options, settings, scene, initial)
+    about = provenance(name, settings, place.labels, options.scale, options.output[0])
     simulated = snapshots(scene, settings, place.seed, take, initial)
-    shots = list(watched(name, take.frames, "frames", simulated))
-    told = take.options()
-    if initial:
-        told += ["--from", options.start_from]
+    done = 0
+    try:
+        with ExitStack() as files:
+            writers: list[Callable[..., None]] = []
+            for shot in watched(name, take.frames, "frames", simulated):
+                if not writers:  # nothing is replaced before there is a frame
+                    opened = (growing_trajectory(one, about["title"]) for one in options.output)
+                    writers = [files.enter_context(one) for one in opened]
+                for write in writers:
+                    write(variables(scene, settings, [shot]))
+                done += 1
+    except KeyboardInterrupt:
+        if done:
+            kept = f"{', '.join(options.output)}: {done} of {take.frames} frames"
+            raise KeyboardInterrupt(kept) from None
+        raise
     for output in options.output:
-        about = provenance(name, settings, place.labels, options.scale, output, "trajectory", told)
-        found = as_trajectory(variables(scene, settings, shots), about)
-        write_trajectory(output, found)
-        print(f"{output}: {len(shots)} frames", file=sys.stderr)
+        print(f"{output}: {done} frames", file=sys.stderr)
 
 
 def chosen_take(

@@ -8,12 +8,14 @@ in a, times in T, masses in m.
 - `.gsd`, the format of HOOMD-blue, for OVITO and freud: needs the package gsd.
 
 A sheared box is a triclinic cell, whose second vector leads to the image above: (shift, L_y). An
-open axis is as long as the particles reach, and not periodic where the format can say so. Disks lie
+open axis is as long as the particles have reached so far, and not periodic where the format can say
+so. Frames are written one by one, and are on the disk as soon as they are. Disks lie
 in the plane z = 0 of a cell that is the largest diameter thick. Particles of several species have
 their masses, and the number of the species from 0 (`kind`); in .gsd these are types with a name.
 """
 
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -120,6 +122,10 @@ def as_trajectory(
     return in_memory(Content(described("trajectory", variables), attributes))
 
 
+Values = Mapping[str, np.ndarray]
+"""The variables of TRAJECTORY, with one frame or more."""
+
+
 class Frame(NamedTuple):
     """A frame as files have it: three-dimensional, the cell's corner at the origin."""
 
@@ -145,93 +151,142 @@ def write_trajectory(path: str | Path, trajectory: "xarray.Dataset") -> None:
     Raises InputError for another ending, ImportError if gsd is not installed, OSError.
     """
     check_format(path)
-    with whole_file(path) as draft:
-        FORMATS[Path(path).suffix](draft, trajectory)
+    values = {str(name): one.values for name, one in trajectory.variables.items()}
+    with whole_file(path) as draft, FORMATS[Path(path).suffix](draft, trajectory.title) as append:
+        for frame in frames(values):
+            append(frame, values)
 
 
-def frames(trajectory: "xarray.Dataset") -> Iterator[Frame]:
-    """Yield the frames of a trajectory as files have them: an open axis such that all fit."""
-    reach = trajectory.position.values + trajectory.radius.values[:, None]
-    lengths = trajectory.box.values
-    heights = np.where(np.isnan(lengths), reach.max(axis=(0, 1)), lengths)
-    depth, flat = DEPTH * float(trajectory.radius.max()), ((0, 0), (0, 3 - len(lengths)))
-    for number in range(trajectory.sizes["frame"]):
-        one = trajectory.isel(frame=number)
-        cell = np.diag(np.append(heights, depth)[:3])
-        cell[1, 0] = float(one.image_shift) if "image_shift" in one else 0.0
-        spin = one.spin.values if "spin" in one else None
+@contextmanager
+def growing_trajectory(path: str | Path, title: str) -> Iterator[Callable[[Values], None]]:
+    """Open a .xyz, .nc or .gsd file, and yield what appends frames to it.
+
+    Each frame is handed to the disk at once: what interrupts the program, or kills it, leaves a
+    file of the frames before. It has the bytes that `write_trajectory` writes of all together.
+    Raises InputError for another ending, ImportError if gsd is not installed, OSError.
+    """
+    check_format(path)
+    Path(path).parent.mkdir(parents=True, exist_ok=True)
+    reached = 0.0
+    with FORMATS[Path(path).suffix](Path(path), title) as append:
+
+        def write(values: Values) -> None:
+            nonlocal reached
+            for frame in frames(values, reached):
+                append(frame, values)
+            reached = max(reached, _tallest(values).max())
+
+        yield write
+
+
+def frames(values: Values, reached: float = 0.0) -> Iterator[Frame]:
+    """Yield the frames of variables as files have them; an open axis is as long as the particles
+    have reached so far, or in frames before these."""
+    lengths = values["box"]
+    tallest = np.maximum.accumulate(np.maximum(_tallest(values), reached))
+    depth, flat = DEPTH * float(values["radius"].max()), ((0, 0), (0, 3 - len(lengths)))
+    for number, tall in enumerate(tallest):
+        cell = np.diag(np.append(np.where(np.isnan(lengths), tall, lengths), depth)[:3])
+        cell[1, 0] = values["image_shift"][number] if "image_shift" in values else 0.0
+        spin = values["spin"][number] if "spin" in values else None
         yield Frame(
-            time=float(one.time),
+            time=float(values["time"][number]),
             cell=cell,
-            position=np.pad(one.position.values, flat),
-            velocity=np.pad(one.velocity.values, flat),
+            position=np.pad(values["position"][number], flat),
+            velocity=np.pad(values["velocity"][number], flat),
             # that of a disk points along z
             spin=spin if spin is None else np.pad(spin, ((0, 0), (3 - spin.shape[1], 0))),
-            angle=one.angle.values if "angle" in one else None,
+            angle=values["angle"][number] if "angle" in values else None,
         )
 
 
-def _write_xyz(path: Path, trajectory: "xarray.Dataset") -> None:
-    radius = trajectory.radius.values[:, None]
-    more = {name: values[:, None] for name, values in _differing(trajectory).items()}
-    bounded = [*(trajectory.periodic.values == 0), True][:3]
-    pbc = " ".join("F" if one else "T" for one in bounded)
+def _tallest(values: Values) -> np.ndarray:
+    """Return how far up particles reach in each frame, (F,); the last axis is the open one."""
+    return (values["position"][..., -1] + values["radius"]).max(axis=1)
+
+
+@contextmanager
+def _xyz(path: Path, title: str) -> Iterator["Append"]:
     with open(path, "w", encoding="utf-8", newline="\n") as file:
-        for frame in frames(trajectory):
-            columns = {"pos": frame.position, "velo": frame.velocity, "radius": radius} | more
+
+        def append(frame: Frame, values: Values) -> None:
+            radius = values["radius"][:, None]
+            columns = {"pos": frame.position, "velo": frame.velocity, "radius": radius}
+            columns |= {name: one[:, None] for name, one in _differing(values).items()}
             if frame.spin is not None:
                 columns["omega"] = frame.spin
             if frame.angle is not None:
                 columns["angle"] = frame.angle[:, None]
             kinds = ":".join(f"{name}:R:{one.shape[1]}" for name, one in columns.items())
             cell = " ".join(map(repr, frame.cell.ravel().tolist()))
+            bounded = [*(values["periodic"] == 0), True][:3]
+            pbc = " ".join("F" if one else "T" for one in bounded)
             file.write(
                 f'{len(radius)}\nLattice="{cell}" Properties=species:S:1:{kinds} pbc="{pbc}" '
                 f"Time={frame.time!r}\n"
             )
             for row in np.hstack(list(columns.values())).tolist():
                 file.write(f"{SPECIES} {' '.join(map(repr, row))}\n")
+            file.flush()
+
+        yield append
 
 
-def _write_amber(path: Path, trajectory: "xarray.Dataset") -> None:
+@contextmanager
+def _amber(path: Path, title: str) -> Iterator["Append"]:
     import netCDF4
 
     with netCDF4.Dataset(path, "w", format="NETCDF3_64BIT_OFFSET") as file:
-        file.setncatts(AMBER | {"programVersion": __version__, "title": trajectory.title})
-        file.createDimension("frame", None)
-        sizes = {"atom": trajectory.sizes["particle"], "spatial": 3}
-        for name, size in (sizes | {"cell_spatial": 3, "cell_angular": 3, "label": 5}).items():
-            file.createDimension(name, size)
-        _label(file, "spatial", ("spatial",), "xyz")
-        _label(file, "cell_spatial", ("cell_spatial",), "abc")
-        _label(file, "cell_angular", ("cell_angular", "label"), ["alpha", "beta ", "gamma"])
-        file.createVariable("radius", "f8", ("atom",))[:] = trajectory.radius.values
-        for name, values in _differing(trajectory).items():
-            file.createVariable(name, "f8", ("atom",))[:] = values
-        for number, frame in enumerate(frames(trajectory)):
-            lengths, angles = lengths_and_angles(frame.cell)
-            rows: dict[str, tuple[Any, tuple[str, ...]]] = {
-                "time": (frame.time, ("frame",)),
-                "coordinates": (frame.position, ("frame", "atom", "spatial")),
-                "velocities": (frame.velocity, ("frame", "atom", "spatial")),
-                "cell_lengths": (lengths, ("frame", "cell_spatial")),
-                "cell_angles": (angles, ("frame", "cell_angular")),
-                "omega": (frame.spin, ("frame", "atom", "spatial")),
-                "angle": (frame.angle, ("frame", "atom")),
-            }
-            for name, (values, dims) in rows.items():
-                if values is not None:
-                    if name not in file.variables:
-                        file.createVariable(name, "f8", dims)
-                    file[name][number] = values
-        file["cell_angles"].units = "degree"
+        file.setncatts(AMBER | {"programVersion": __version__, "title": title})
+
+        def append(frame: Frame, values: Values) -> None:
+            if not file.dimensions:
+                _describe(file, frame, values)
+            number = len(file.dimensions["frame"])
+            for name, (present, _) in _rows(frame).items():
+                if present is not None:
+                    file[name][number] = present
+            file.sync()
+
+        yield append
 
 
-def _differing(trajectory: "xarray.Dataset") -> dict[str, np.ndarray]:
+def _describe(file: "netCDF4.Dataset", frame: Frame, values: Values) -> None:
+    """Give a file of AMBER its dimensions and variables, those of no frame with their values."""
+    file.createDimension("frame", None)
+    sizes = {"atom": len(values["radius"]), "spatial": 3}
+    for name, size in (sizes | {"cell_spatial": 3, "cell_angular": 3, "label": 5}).items():
+        file.createDimension(name, size)
+    _label(file, "spatial", ("spatial",), "xyz")
+    _label(file, "cell_spatial", ("cell_spatial",), "abc")
+    _label(file, "cell_angular", ("cell_angular", "label"), ["alpha", "beta ", "gamma"])
+    for name, one in ({"radius": values["radius"]} | _differing(values)).items():
+        file.createVariable(name, "f8", ("atom",))[:] = one
+    for name, (present, dims) in _rows(frame).items():
+        if present is not None:
+            file.createVariable(name, "f8", ("frame", *dims))
+    file["cell_angles"].units = "degree"
+
+
+def _rows(frame: Frame) -> dict[str, tuple[Any, tuple[str, ...]]]:
+    """Return what AMBER has of a frame, with its dimensions; None is what the frame lacks."""
+    lengths, angles = lengths_and_angles(frame.cell)
+    return {
+        "time": (frame.time, ()),
+        "coordinates": (frame.position, ("atom", "spatial")),
+        "velocities": (frame.velocity, ("atom", "spatial")),
+        "cell_lengths": (lengths, ("cell_spatial",)),
+        "cell_angles": (angles, ("cell_angular",)),
+        "omega": (frame.spin, ("atom", "spatial")),
+        "angle": (frame.angle, ("atom",)),
+    }
+
+
+def _differing(values: Values) -> dict[str, np.ndarray]:
     """Return mass and species of each particle, (N,), where they differ."""
-    if "species_of" not in trajectory:
+    if "species_of" not in values:
         return {}
-    return {"mass": trajectory.mass.values, "kind": trajectory.species_of.values.astype(float)}
+    return {"mass": values["mass"], "kind": values["species_of"].astype(float)}
 
 
 def _label(file: "netCDF4.Dataset", name: str, dims: tuple[str, ...], letters: Any) -> None:
@@ -247,35 +302,45 @@ def lengths_and_angles(cell: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return lengths, np.degrees(np.arccos(cosines))
 
 
-def _write_gsd(path: Path, trajectory: "xarray.Dataset") -> None:
+@contextmanager
+def _gsd(path: Path, title: str) -> Iterator["Append"]:
     hoomd = required("gsd.hoomd")
-    dimension, number = trajectory.sizes["axis"], trajectory.sizes["particle"]
     with hoomd.open(path, "w") as file:
-        for step, frame in enumerate(frames(trajectory)):
-            shot = hoomd.Frame()
-            shot.configuration.step = step
-            shot.configuration.dimensions = dimension
-            lengths, tilt = np.diag(frame.cell), frame.cell[1, 0] / frame.cell[1, 1]
-            depth = lengths[2] * (dimension == 3)  # 0 says that this is a plane
-            shot.configuration.box = [*lengths[:2], depth, _least(tilt, lengths), 0.0, 0.0]
-            shot.particles.N = number
-            shot.particles.types = [SPECIES]
-            if "species_of" in trajectory:
-                shot.particles.types = trajectory.species.values.tolist()
-                shot.particles.typeid = trajectory.species_of.values.astype(np.uint32)
-                shot.particles.mass = trajectory.mass.values
-            shot.particles.diameter = 2.0 * trajectory.radius.values
-            shot.particles.position = _centred(frame, dimension)
-            shot.particles.velocity = frame.velocity
-            shot.log["time"] = np.array([frame.time])
-            if frame.spin is not None:
-                shot.log["particles/omega"] = frame.spin
-            if frame.angle is not None:
-                half = frame.angle / 2.0
-                zero = np.zeros(number)
-                turned = np.stack([np.cos(half), zero, zero, np.sin(half)], axis=1)
-                shot.particles.orientation = turned
-            file.append(shot)
+
+        def append(frame: Frame, values: Values) -> None:
+            file.append(_shot(hoomd.Frame(), len(file), frame, values))
+            file.file.flush()
+
+        yield append
+
+
+def _shot(shot: Any, step: int, frame: Frame, values: Values) -> Any:
+    """Return an empty frame of HOOMD with all there is to a frame."""
+    dimension, number = len(values["box"]), len(values["radius"])
+    shot.configuration.step = step
+    shot.configuration.dimensions = dimension
+    # an open axis is as long below zero, so that the floor stays where it is
+    upward = np.append(np.isnan(values["box"]), False)[:3]
+    cell = frame.cell * np.where(upward, 2.0, 1.0)[:, None]
+    lengths, tilt = np.diag(cell), cell[1, 0] / cell[1, 1]
+    depth = lengths[2] * (dimension == 3)  # 0 says that this is a plane
+    shot.configuration.box = [*lengths[:2], depth, _least(tilt, lengths), 0.0, 0.0]
+    shot.particles.N = number
+    shot.particles.types = [SPECIES]
+    if "species_of" in values:
+        shot.particles.types = values["species"].tolist()
+        shot.particles.typeid = values["species_of"].astype(np.uint32)
+        shot.particles.mass = values["mass"]
+    shot.particles.diameter = 2.0 * values["radius"]
+    shot.particles.position = _centred(frame.position, cell, upward, dimension)
+    shot.particles.velocity = frame.velocity
+    shot.log["time"] = np.array([frame.time])
+    if frame.spin is not None:
+        shot.log["particles/omega"] = frame.spin
+    if frame.angle is not None:
+        half, zero = frame.angle / 2.0, np.zeros(number)
+        shot.particles.orientation = np.stack([np.cos(half), zero, zero, np.sin(half)], axis=1)
+    return shot
 
 
 def _least(tilt, lengths):
@@ -284,11 +349,11 @@ def _least(tilt, lengths):
     return tilt - whole * round(tilt / whole)
 
 
-def _centred(frame, dimension):
+def _centred(position, cell, upward, dimension):
     """Return positions relative to the middle of the cell, inside of it: as HOOMD wants them."""
-    lengths = np.diag(frame.cell)
-    shift = lengths[1] * _least(frame.cell[1, 0] / lengths[1], lengths)
-    position = frame.position - 0.5 * lengths
+    lengths = np.diag(cell)
+    shift = lengths[1] * _least(cell[1, 0] / lengths[1], lengths)
+    position = position - np.where(upward, 0.0, 0.5 * lengths)
     position[:, 2] *= dimension == 3
     # across the sheared cell: x runs from one slanted face to the other
     slant = shift * position[:, 1] / lengths[1]
@@ -297,9 +362,10 @@ def _centred(frame, dimension):
     return position
 
 
-FORMATS: dict[str, Callable[[Path, "xarray.Dataset"], None]] = {
-    ".xyz": _write_xyz,
-    ".nc": _write_amber,
-    ".gsd": _write_gsd,
+Append = Callable[[Frame, Values], None]
+FORMATS: dict[str, Callable[[Path, str], AbstractContextManager[Append]]] = {
+    ".xyz": _xyz,
+    ".nc": _amber,
+    ".gsd": _gsd,
 }
-"""Writers by the endings of their files."""
+"""What opens files, by their endings: with a title, for frames to come."""
