@@ -44,7 +44,7 @@ nitpick_ignore_regex = [
 ]
 
 html_theme = "furo"
-html_extra_path = ["explore.html", "living.html"]
+html_extra_path = ["explore.html", "living.html", *map(str, ROOT.glob("figures/*.html"))]
 html_title = f"roughgas {version}"
 html_show_sourcelink = html_show_sphinx = html_copy_source = False
 
@@ -140,7 +140,7 @@ def linked(text, base, folder):
         if target.is_dir() or (target.suffix == ".md" and not target.is_relative_to(DOCS)):
             return label if target != README else f"[{label}]({os.path.relpath(INDEX, folder)})"
         if target.suffix == ".html":
-            return f'<a href="{os.path.relpath(target, folder)}">{label}</a>'
+            return f'<a href="{os.path.relpath(DOCS / target.name, folder)}">{label}</a>'
         return f"[{label}]({os.path.relpath(target, folder)}{anchor})"
 
     return LINK.sub(here, text)

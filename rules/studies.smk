@@ -12,7 +12,11 @@ OF_STUDY = "results/{scale}/{study}/"  # products, beside results/{scale}/{study
 TASK_OF_STUDY = f"{OF_STUDY}tasks/{{task}}.nc"
 WITH_TASKS = [name for name, about in STUDIES.items() if "tasks" in about]
 WITH_MOVIE = [name for name in WITH_TASKS if Path(STUDIES[name]["folder"], "movie.py").exists()]
+WITH_SLIDES = [
+    name for name, about in STUDIES.items() if Path(about["folder"], "slides.py").exists()
+]
 SWEPT_IN_STUDIES = [one for about in STUDIES.values() for one in about["experiments"]]
+OF_SLIDES = ("base.html", "document.css", "slides.html", "slides.css", "slides.js")
 STUDY_OF = {figure: name for name, about in STUDIES.items() for figure in about["figures"]}
 
 if workflow.is_main_process:
@@ -56,6 +60,10 @@ def data_of_study_claims(wildcards):
 
 def code_of_study_figure(wildcards):
     return code_beside(study_of(wildcards), ["*.py", "*.csv"], "show.gallery", "plotting")
+
+
+def code_of_study_slides(wildcards):
+    return code_beside(study_of(wildcards), ["*.py", "*.csv"], "show.slides", "plotting")
 
 
 def code_of_study_claims(wildcards):
@@ -197,6 +205,8 @@ def products_of(name):
         figures = figures_of_study(name, [".pdf", ".png"], SCALE)
         if name in WITH_MOVIE:
             figures += drawn([name], [".mp4"])
+        if name in WITH_SLIDES:
+            figures += drawn([name], [".html"])
         tables = [path for paths in tables_of_study(name, SCALE).values() for path in paths]
         return [*figures, *tables, f"{OF_STUDY.format(scale=SCALE, study=name)}page.html"]
 
@@ -267,6 +277,30 @@ rule study_movie:
     shell:
         "python -P -m roughgas.steps study_movie {params.folder:q} {input.data:q} --output {output:q}"
         " > {log:q} 2>&1"
+
+
+rule study_slides:
+    # a page with a slider through the pictures that its slides.py draws
+    input:
+        of_project(*(f"{PACKAGE}/show/page/{name}" for name in OF_SLIDES)),
+        data=lambda wildcards: reduced(
+            scale_of(wildcards.folder), study_of(wildcards)["experiments"]
+        ),
+    output:
+        "figures/{folder}{study}.html",
+    log:
+        "logs/figures/{folder}{study}_slides.log",
+    wildcard_constraints:
+        study=one_of(WITH_SLIDES),
+    params:
+        code=code_of_study_slides,
+        folder=folder_of_study,
+        title=title_of_study,
+    message:
+        "write {output}"
+    shell:
+        "python -P -m roughgas.steps study_slides {params.folder:q} {input.data:q} --title {params.title:q}"
+        " --output {output:q} > {log:q} 2>&1"
 
 
 rule study_task:

@@ -82,6 +82,7 @@ STEPS: dict[str, str | Callable[..., None]] = {
     "study_figure": "show.gallery:draw_of_study",
     "study_movie": "show.gallery:movie_of_study",
     "study_page": "show.pages:write_study",
+    "study_slides": "show.slides:write_slides",
     "study_task": "tasks.running:run_task",
     "table": "results.products:write_table",
 }

@@ -6,7 +6,11 @@ flight takes one cycle for sqrt(1 + pi^2) <= Gamma <= sqrt(4 + pi^2); then a lon
 take turns, until one leaps over a whole cycle, and so on.
 """
 
+import itertools
 import math
+from collections.abc import Iterator
+
+import numpy as np
 
 STEP, BISECTIONS = 1e-3, 50  # of the search for a landing, in radians
 CYCLE = 2.0 * math.pi
@@ -15,16 +19,32 @@ WAIT = 200  # flights until they repeat
 
 def flights(gamma: float) -> list[float]:
     """Return the lengths, in cycles, of the flights that repeat: one, or two that take turns."""
-    phase = start = math.asin(1.0 / gamma)
-    found = []
-    for _ in range(WAIT):
-        length = _flight(phase, gamma)
-        found.append(length / CYCLE)
-        phase = (phase + length) % CYCLE
-        if math.sin(phase) <= 1.0 / gamma:
-            phase = start
-    last, other = found[-1], found[-2]
+    *_, other, last = (length / CYCLE for _, length in itertools.islice(_leaps(gamma), WAIT))
     return [last] if math.isclose(last, other, rel_tol=1e-3) else sorted((last, other))
+
+
+def path(gamma: float, phase: np.ndarray) -> np.ndarray:
+    """Return heights of the ball over A, once its flights repeat, at rising phases of the floor."""
+    height = np.sin(phase)
+    leaps = list(itertools.islice(_leaps(gamma), WAIT))
+    before = CYCLE * (leaps[WAIT // 2][0] // CYCLE)
+    for start, length in leaps[WAIT // 2 - 1 :]:
+        time = phase + before - start
+        flies = (time > 0.0) & (time < length)
+        flight = math.sin(start) + math.cos(start) * time - 0.5 * time**2 / gamma
+        height = np.where(flies, flight, height)
+    return height
+
+
+def _leaps(gamma: float) -> Iterator[tuple[float, float]]:
+    """Yield the phases at which flights begin, and how long they are, in radians."""
+    first = phase = math.asin(1.0 / gamma)
+    while True:
+        length = _flight(phase, gamma)
+        yield phase, length
+        phase += length
+        if math.sin(phase) <= 1.0 / gamma:  # it lies until the floor falls away
+            phase = first + CYCLE * math.ceil((phase - first) / CYCLE)
 
 
 def _flight(phase, gamma):

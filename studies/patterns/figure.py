@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from roughgas.plotting import FAINT, LOOKS, TWO_WIDE
@@ -31,6 +32,7 @@ from .published import (
 HEIGHT = 6.9  # inches
 COLUMNS = 4
 SMALL = 6.0  # points
+Q = {2: "Q₂", 4: "Q₄", 6: "Q₆"}
 GREYS = (2, 98)  # percentiles of height that are black and white
 MESSAGE = "Shaken spheres stand in patterns that repeat after two or four cycles"
 
@@ -52,7 +54,7 @@ def draw(layers: xr.Dataset) -> Figure:
             look, line = LOOKS[number % len(LOOKS)], "-" if number < len(LOOKS) else "--"
             how: dict[str, Any] = {"color": look.colour, "lw": 1, "ls": line}
             how["label"] = f"{case}: " + ", ".join(f"{one:.2f}" for one in flights(gamma))
-            _height(over, shown[case], how)
+            draw_height(over, shown[case], how)
             _correlation(apart, shown[case], how | {"marker": look.marker, "ms": 3})
     over.set_ylim(0.0, 1.35 * over.get_ylim()[1])
     title = "panel: flights of a ball that does not bounce, in cycles"
@@ -62,6 +64,32 @@ def draw(layers: xr.Dataset) -> Figure:
     return figure
 
 
+def draw_full(layers: xr.Dataset) -> Figure:
+    """Draw four cycles of each layer that is there, a layer a row."""
+    there = {panel.case: (panel, layer) for panel, layer in beside(layers)}
+    figure = Figure(figsize=(TWO_WIDE, 2.4 * len(there)), layout="constrained")
+    parts = np.atleast_1d(figure.subfigures(len(there), 1))
+    for part, (panel, layer) in zip(parts, there.values(), strict=True):
+        draw_cycles(part.subplots(1, REPEATS), layer)
+        how = size(panel, layer, layers.attrs["particles"])
+        said = f"({panel.case}) {panel.pattern}; {how}: {measured(panel, layer)}"
+        part.suptitle(f"{said}\npublished: {published(panel)}", fontsize=7.5)
+    return figure
+
+
+def draw_cycles(row: np.ndarray, layer: xr.Dataset) -> None:
+    """Draw mean heights one cycle apart into four axes, all in the same greys."""
+    first = clearest(layer)
+    low, high = np.percentile(layer.mean_height.values, GREYS)
+    look: dict[str, Any] = {"cmap": "gray", "vmin": low, "vmax": high}
+    for number, axes in enumerate(row):
+        one = layer.mean_height[(first + number) % REPEATS].values.T
+        axes.imshow(one, origin="lower", interpolation="bilinear", **look)
+        axes.set(xticks=[], yticks=[])
+        later = f"{number} cycle{'s' * (number > 1)} later" if number else "now"
+        axes.set_title(later, fontsize=7.5)
+
+
 def _picture(axes, panel: Panel, layer, number):
     """Draw the mean height at the phase at which it differs most, for d at the cycle after it."""
     axes.set(xticks=[], yticks=[])
@@ -69,36 +97,45 @@ def _picture(axes, panel: Panel, layer, number):
     if layer is None:
         axes.text(0.5, 0.5, "not simulated", ha="center", va="center", color=FAINT)
         axes.set_aspect("equal")
-        axes.set_xlabel(f"published: {_published(panel)}", fontsize=SMALL)
+        axes.set_xlabel(f"published: {published(panel)}", fontsize=SMALL)
         return
-    heights = layer.mean_height
-    best = int(np.argmax(heights.std(("cell_x", "cell_y")).values))
-    one = heights[(best + (panel.panel == "d")) % REPEATS].values.T
+    best = clearest(layer)
+    one = layer.mean_height[(best + (panel.panel == "d")) % REPEATS].values.T
     low, high = np.percentile(one, GREYS)
     axes.imshow(one, cmap="gray", origin="lower", vmin=low, vmax=high, interpolation="bilinear")
-    axes.set_xlabel(_said(panel, layer, number), fontsize=SMALL, linespacing=1.35)
+    said = measured(panel, layer), published(panel), size(panel, layer, number)
+    text = f"ours: {said[0]}\npublished: {said[1]}\n{said[2]}"
+    axes.set_xlabel(text, fontsize=SMALL, linespacing=1.35)
 
 
-def _published(panel):
-    order_said = f", $Q_{panel.fold}$ {panel.order:.2f}" if panel.fold else ""
-    return rf"$\lambda$ {panel.wavelength:g} D{order_said}, {panel.repeats} cycles"
+def clearest(layer: xr.Dataset) -> int:
+    """Return the phase, of four cycles, at which heights differ most."""
+    return int(np.argmax(layer.mean_height.std(("cell_x", "cell_y")).values))
 
 
-def _said(panel, layer, number):
-    """Return what is measured, what is published, and how large and long the run is."""
+def published(panel: Panel) -> str:
+    """Return what is published of a panel."""
+    order_said = f", {Q[panel.fold]} {panel.order:.2f}" if panel.fold else ""
+    return f"λ {panel.wavelength:g} D{order_said}, {panel.repeats} cycles"
+
+
+def measured(panel: Panel, layer: xr.Dataset) -> str:
+    """Return what is measured, of a box that is large enough for it."""
     space, length, stays = room(panel, layer), wavelength(layer), settled(layer)
-    ours = rf"$\lambda$ {length.value:.0f} $\pm$ {length.stderr:.0f} D" if space >= FITS else ""
+    ours = f"λ {length.value:.0f} ± {length.stderr:.0f} D" if space >= FITS else ""
     if panel.fold in FOLDS and space >= FITS_WELL:
-        ours += f", $Q_{panel.fold}$ {order(layer, panel.fold).value:.2f}"
+        ours += f", {Q[panel.fold]} {order(layer, panel.fold).value:.2f}"
     ours += f", {period(layer)} cycles" if stays else ""
-    size = rf"N = {number}, {side(layer):g} D = {space:.1f} $\lambda$, "
-    size += f"after {cycles(panel, layer):.0f} cycles"
-    ours = ours.removeprefix(", ") or "no number"
-    ours += "" if stays else " (not settled)"
-    return f"ours: {ours}\npublished: {_published(panel)}\n{size}"
+    return (ours.removeprefix(", ") or "no number") + ("" if stays else " (not settled)")
 
 
-def _height(axes, layer, how):
+def size(panel: Panel, layer: xr.Dataset, number: int) -> str:
+    """Return how large a run of so many spheres is, and how long."""
+    box = f"N = {number}, {side(layer):g} D = {room(panel, layer):.1f} λ"
+    return f"{box}, after {cycles(panel, layer):.0f} cycles"
+
+
+def draw_height(axes: Axes, layer: xr.Dataset, how: dict[str, Any]) -> None:
     """Draw the mean height of the layer above the floor over four cycles."""
     axes.plot(REPEATS * layer.layer_phase, layer.layer_height / DIAMETER, **how)
     axes.set_xlabel("cycles of the floor", fontsize=8)

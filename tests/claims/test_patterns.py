@@ -8,10 +8,11 @@ from matplotlib.text import Text
 from tests.houses import ROOT, part
 from tests.synthetic import reduced
 
-from roughgas import config
+from roughgas import config, simulate
 from roughgas.base.files import module_of
 from roughgas.claims.evidence import FAILS, HOLDS, NOT_TESTED, QUALIFIED
 from roughgas.config.reading import read_yaml
+from roughgas.show import slides
 
 STUDY = ROOT / "studies" / "patterns"
 REPEATS = {"a": 2, "b": 2, "cd": 2, "e": 4, "f": 4, "g": 4, "h": 4}
@@ -140,3 +141,46 @@ def test_a_ball_that_does_not_bounce_flies_for_a_cycle_between_its_thresholds():
     fall = (end - start) ** 2 / (2.0 * 1.5)
     rise = math.sin(start) + math.cos(start) * (end - start)
     assert rise - fall == pytest.approx(math.sin(end), abs=1e-9)
+
+
+@pytest.mark.parametrize("gamma", [1.5, 3.0, 4.0, 5.0, 7.0])
+def test_the_path_of_a_ball_is_on_the_floor_or_falls_freely(gamma):
+    """On the floor it stays where that does not fall away faster than g."""
+    phase = np.linspace(0.0, 8.0 * math.pi, 20001)
+    height, floor = part("patterns", "ball").path(gamma, phase), np.sin(phase)
+    flies = height > floor + 1e-6
+    assert np.all(height >= floor - 1e-12) and 0.5 < np.mean(flies)
+    acceleration = np.diff(height, 2) / phase[1] ** 2
+    falls = np.abs(acceleration + 1.0 / gamma) < 1e-3
+    # but where it lands and leaves at once
+    assert np.mean(falls[flies[:-2] & flies[1:-1] & flies[2:]]) > 0.999
+    assert np.mean(~flies & (floor > 1.0 / gamma + 0.03)) < 1e-3
+
+
+def test_there_is_a_slide_of_each_layer_that_says_what_is_published(tmp_path, monkeypatch):
+    monkeypatch.setattr(slides, "read_reduced", lambda path: layers(20, fading=0.9))
+    page = tmp_path / "patterns.html"
+    slides.write_slides(STUDY, ["layers.nc"], title="Patterns", output=page)
+    text = page.read_text("utf-8")
+    assert text.count("<section>") == text.count("data:image/webp;base64,") == 8
+    assert text.count("not settled") == 7 and "λ 20 D, Q₂ 0.87, 4 cycles" in text
+    assert "http" not in text.partition("<body>")[2] and len(text) < 1e6
+
+
+@pytest.mark.slow  # a minute
+def test_the_small_layer_turns_over_with_each_cycle_without_overlap_or_loss_of_energy():
+    layer = simulate(
+        "patterns.layers/casecd", r=0.7, beta=0.35, scale="small", keep_state=True, progress=False
+    )
+    after = layer.height_autocorrelation.values
+    assert after[1] < -0.5 and after[2] > 0.8
+    assert layer.energy_imbalance < 1e-11
+    place = layer.last_position.values
+    order = np.argsort(place[:, 0])
+    for shift in range(1, 600):  # at least 7 a wide, six spheres to each D^2
+        one, other = place[order[shift:]], place[order[:-shift]]
+        apart = np.linalg.norm(one - other, axis=1)
+        assert apart.min() > 2.0 - 1e-9
+        if (one[:, 0] - other[:, 0]).min() > 2.0:
+            return
+    raise AssertionError("not all pairs were seen")

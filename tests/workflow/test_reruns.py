@@ -21,7 +21,7 @@ STUDIED, OF_TASKS_ALONE = (
     }
     for alone in (False, True)
 )
-OF_STUDIES = STUDIED | {"study_table", "study_claims", "study_page"}
+OF_STUDIES = STUDIED | {"study_table", "study_claims", "study_page", "study_slides"}
 FIGURES = {"fig1a", "fig1b", "fig2a", "fig2b"}
 REDUCED = FIGURES | OF_STUDIES | {"reduce", "table", "claims", "run_times", "page", "document"}
 POINTS = REDUCED | {"seeds", "point"}

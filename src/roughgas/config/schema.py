@@ -38,7 +38,8 @@ RESERVED = frozenset(
     hard_cases_collapse hard_cases_cooling living living_page movie movies numbers page
     page_of_evidence picture_for_talks pictures plot point quoted_numbers reduce report
     rows_of_evidence run_times run_times_extensions study_claims study_data study_evidence
-    study_figure study_movie study_page study_table study_task table
+    study_figure study_movie study_page study_slides
+    study_table study_task table
     """.split()
 )
 """Names that no experiment may have, those of rules and products of the workflow."""
