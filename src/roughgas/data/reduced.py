@@ -7,20 +7,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from roughgas.base import InputError, Interval
-from roughgas.data import netcdf
+from roughgas.data import netcdf, variables
 from roughgas.data.netcdf import read_netcdf
-from roughgas.data.variables import (
-    ENERGY,
-    MIXTURE,
-    NAMES,
-    POINT,
-    RATE,
-    STAGES,
-    TIME,
-    Variable,
-    register,
-)
-from roughgas.data.variables import GRID as OF_GRID
+from roughgas.data.variables import NAMES, POINT, SCATTER, STAGES, Variable, error_of
 
 if TYPE_CHECKING:
     import xarray
@@ -57,6 +46,19 @@ def read_reduced(path: str | Path) -> "xarray.Dataset":
     return data
 
 
+def read_by_name(path: str | Path) -> "dict[str, xarray.Dataset]":
+    """Return a reduced dataset by its experiment, or what tasks have found by their study.
+
+    Raises InputError and OSError as `read_reduced`.
+    """
+    with netcdf.opened(path, netcdf.REDUCED, netcdf.STUDIES) as file:
+        is_reduced = netcdf.kind_of(file) == netcdf.REDUCED
+    if not is_reduced:
+        return netcdf.read_groups(path)
+    data = read_reduced(path)
+    return {data.attrs["experiment"]: data}
+
+
 def check_sound(path: str | Path, name: str, values: Any) -> None:
     """Raise InputError for the first of `values`, of one of SOUND, that cannot be right."""
     right = SOUND[name].holds(values) | ((name in UNSURE) & np.isnan(values))
@@ -82,27 +84,25 @@ def particles_of(data: "xarray.Dataset") -> str:
 
 
 def _derived(long_name: str, units: str = "1", dtype: str = "f8") -> Variable:
-    return Variable(long_name, units, (OF_GRID,), dtype, over_seeds="")
+    return Variable(long_name, units, (variables.GRID,), dtype, over_seeds="")
 
 
-def _pooled(name: str) -> dict[str, Variable]:
-    pooled = f"standard error of {name}: scatter over seeds and error within them, pooled"
-    return {
-        f"{name}_stderr": _derived(pooled),
-        f"{name}_dof": _derived(f"degrees of freedom that {name}_stderr is known with"),
-        f"{name}_ci95": _derived(f"half width of the 95 % interval of {name}, by Student's t"),
-    }
+def _over_grid(about: Variable, **changes: Any) -> Variable:
+    dtype = about.dtype if about.over_seeds == "sum" else "f8"
+    dims = (variables.GRID, *about.dims)
+    return about._replace(dims=dims, dtype=dtype, flags="")._replace(**changes)
 
 
-T_RATIO = Variable(
-    "E_trans_species over that of the first species: mean of the ratios of the seeds",
-    dims=(OF_GRID, "species"),
-    when=(MIXTURE,),
-    over_seeds="",
+POOLED = ("R", "R_collisional", "contact_correlation")
+"""Means over seeds whose error pools their scatter with the errors of the seeds themselves."""
+SCATTERED = (
+    *("R_ratio_of_means", "R_corrected", "R_unsubtracted", "R_drift", "E_trans", "E_rot"),
+    *("input_spin_share", "decay_exponent", "shear_rate"),
+    *("E_trans_species", "E_rot_species", "R_species", "T_ratio_species"),
 )
-OF_SPECIES = {name: POINT[name] for name in ("E_trans_species", "E_rot_species", "R_species")}
-OF_SPECIES["T_ratio_species"] = T_RATIO
-
+"""Those that carry an error from their scatter."""
+OF_COOLING = ("time_series", "E_trans_series", "R_series", "collisions_per_particle")
+"""What a cooling gas without an R for all times has over time."""
 OF_STAGES = (
     *("E_rot_series", "collisions_series", "energy_input_series", "energy_gain_series"),
     *("stage_begin", "stage_input"),
@@ -112,84 +112,63 @@ STAGED = ("E_trans_series", "R_series", *OF_STAGES[:4], "stage_input")
 """Those that carry an error there."""
 
 REDUCED = {
-    name: about._replace(
-        dims=(OF_GRID, *about.dims),
-        dtype=about.dtype if about.over_seeds == "sum" else "f8",
-        flags="",
-    )
+    name: _over_grid(about)
     for name, about in POINT.items()
     if about.over_seeds and about.dims in ((), ("species",))
 } | {
     "species": NAMES["species"],
-    "T_ratio_species": T_RATIO,
-    **{
-        f"{name}_stderr": Variable(
-            f"standard error of {name}: scatter over seeds",
-            about.units,
-            (OF_GRID, "species"),
-            when=about.when,
-            over_seeds="",
-        )
-        for name, about in OF_SPECIES.items()
-    },
-    "R_seed": Variable("R of each seed", dims=(OF_GRID, "seed"), over_seeds=""),
-    **_pooled("R"),
+    "T_ratio_species": Variable(
+        "E_trans_species over that of the first species: mean of the ratios of the seeds",
+        dims=(variables.GRID, "species"),
+        when=(variables.MIXTURE,),
+        over_seeds="",
+    ),
+    "R_drift": _derived(
+        "mean of R in the second half of the measured window minus that in the first"
+    ),
+    "R_seed": Variable("R of each seed", dims=(variables.GRID, "seed"), over_seeds=""),
     "R_ci95_trusted": _derived(
         "share of seeds whose R_ci95 holds the truth as often as it says; -1 where most have too "
         "little to tell"
     ),
-    **_pooled("R_collisional"),
-    **_pooled("contact_correlation"),
-    "R_ratio_of_means_stderr": _derived("standard error of R_ratio_of_means: scatter over seeds"),
-    "R_corrected_stderr": _derived("standard error of R_corrected: scatter over seeds"),
     "equilibrated": _derived(
         "share of seeds that were found in a steady state; 0 for a mixture of two, -1 where most "
         "have too little to tell"
     ),
-    "target_met": POINT["target_met"]._replace(
+    "target_met": _over_grid(
+        POINT["target_met"],
         long_name="share of seeds whose R_stderr reached the target_stderr; -1 as for equilibrated",
-        dims=(OF_GRID,),
-        dtype="f8",
-        flags="",
         over_seeds="",
     ),
     "R_stderr_over_seeds": _derived("standard error of R from the scatter over seeds alone"),
     "R_stderr_within": _derived("standard error of R from within the files, combined over seeds"),
-    **{
-        name: POINT[name]._replace(dims=(OF_GRID, "sample"), over_seeds="")
-        for name in ("time_series", "E_trans_series", "R_series", "collisions_per_particle")
-    },
-    **{
-        name: POINT[name]._replace(dims=(OF_GRID, *POINT[name].dims), over_seeds="")
-        for name in OF_STAGES
-    },
-    **{
-        f"{name}_stderr": Variable(
-            f"standard error of {name}: scatter over seeds",
-            POINT[name].units,
-            (OF_GRID, *POINT[name].dims),
-            when=(STAGES,),
-            over_seeds="",
-        )
-        for name in STAGED
-    },
+    **{name: _over_grid(POINT[name], over_seeds="") for name in (*OF_COOLING, *OF_STAGES)},
     "source": POINT["source"]._replace(when=(STAGES,)),
     "motion": POINT["motion"]._replace(when=(STAGES,)),
-    "decay_exponent_stderr": _derived("standard error of decay_exponent: scatter over seeds"),
-    "shear_rate_stderr": _derived("standard error of shear_rate: scatter over seeds", RATE),
-    "R_unsubtracted_stderr": _derived("standard error of R_unsubtracted: scatter over seeds"),
-    "E_trans_stderr": _derived("standard error of E_trans: scatter over seeds", ENERGY),
-    "E_rot_stderr": _derived("standard error of E_rot: scatter over seeds", ENERGY),
-    "input_spin_share_stderr": _derived("standard error of input_spin_share: scatter over seeds"),
-    "R_drift": _derived(
-        "mean of R in the second half of the measured window minus that in the first"
-    ),
-    "R_drift_stderr": _derived("standard error of R_drift: scatter over seeds"),
-    "measured_for": _derived("length of the measured window, mean over seeds", TIME),
+    "measured_for": _derived("length of the measured window, mean over seeds", variables.TIME),
     "n_seeds": _derived("number of seeds found", dtype="i8"),
     "r": Variable("normal restitution", dims=("r",)),
     "beta": Variable("tangential restitution", dims=("beta",)),
     "seed": Variable("seed of the random generator", dims=("seed",), dtype="i8"),
 }
 
-register("reduced", REDUCED)
+
+def _with_errors(name: str, about: Variable) -> dict[str, Variable]:
+    """Return a variable, and what says how sure it is."""
+    if name in POOLED:
+        return {name: about, **variables.errors_of(name, variables.POOLED, about)}
+    if name not in (*SCATTERED, *STAGED):
+        return {name: about}
+    error = error_of(name, SCATTER, about)
+    return {
+        name: about,
+        f"{name}_stderr": error._replace(when=(STAGES,)) if name in STAGED else error,
+    }
+
+
+REDUCED = {
+    name: one
+    for known, about in REDUCED.items()
+    for name, one in _with_errors(known, about).items()
+}
+variables.register("reduced", REDUCED)

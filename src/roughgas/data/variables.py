@@ -8,6 +8,7 @@ time scale: there, times are counted in collisions per particle, energies in the
 """
 
 from collections.abc import Collection, Mapping
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -69,21 +70,37 @@ def _series(long_name: str, units: str = "1", *when: str) -> Variable:
 PARTNER, MOMENT = ("partner",), ("instant", "partner")
 
 
-def _of_spin(long_name: str, units: str = "1", *more: str, over_seeds: str = "mean") -> Variable:
-    return Variable(long_name, units, when=(*more, SPIN), over_seeds=over_seeds)
+def _of_spin(long_name: str, units: str = "1", *more: str) -> Variable:
+    return Variable(long_name, units, when=(*more, SPIN))
+
+
+WITHIN, SCATTER = "within this file", "scatter over seeds"
+POOLED = f"{SCATTER} and error within them, pooled"
+"""Where a standard error comes from."""
+
+
+def error_of(name: str, origin: str, about: Variable) -> Variable:
+    """Return the standard error of a variable, from an origin such as WITHIN."""
+    said = f"standard error of {name}{'' if origin == WITHIN else ':'} {origin}"
+    return about._replace(long_name=said, dtype="f8", over_seeds="", flags="")
+
+
+def errors_of(name: str, origin: str, about: Variable) -> dict[str, Variable]:
+    """Return what says how sure a variable is: its error, and how well that is known."""
+    texts = {
+        "dof": f"degrees of freedom that {name}_stderr is known with",
+        "ci95": f"half width of the 95 % interval of {name}, by Student's t",
+    }
+    error = error_of(name, origin, about)
+    return {f"{name}_stderr": error} | {
+        f"{name}_{end}": error._replace(long_name=text) for end, text in texts.items()
+    }
 
 
 def _at_contacts(name: str, long_name: str) -> dict[str, Variable]:
     """Return an average over the collisions of pairs, with its error."""
-    of_error = {
-        "stderr": f"standard error of {name} within this file",
-        "dof": f"degrees of freedom that {name}_stderr is known with",
-        "ci95": f"half width of the 95 % interval of {name}, by Student's t",
-    }
-    return {name: Variable(long_name, when=(AT_CONTACTS,))} | {
-        f"{name}_{key}": Variable(about, when=(AT_CONTACTS,), over_seeds="")
-        for key, about in of_error.items()
-    }
+    about = Variable(long_name, when=(AT_CONTACTS,))
+    return {name: about, **errors_of(name, WITHIN, about)}
 
 
 NAMES = {  # in all kinds of datasets
@@ -92,38 +109,34 @@ NAMES = {  # in all kinds of datasets
 }
 
 
-def _kept(long_name: str, units: str, dims: tuple[str, ...], *when: str) -> Variable:
-    dtype = "u1" if dims == ("byte",) else "f8"
-    dims = ("replica", *dims)
-    return Variable(long_name, units, dims, dtype, (KEPT, *when), of_settings=True)
-
-
-def _logged(
-    long_name: str, units: str, dims: tuple[str, ...], *when: str, dtype: str = "f8"
+def _of_each(
+    axis: str, having: str, name: str, units: str, dims: tuple, *when: str, dtype: str = "f8"
 ) -> Variable:
-    dims = ("contact", *dims)
-    return Variable(long_name, units, dims, dtype, (LOGGED, *when), of_settings=True)
+    return Variable(name, units, (axis, *dims), dtype, (having, *when), of_settings=True)
+
+
+_kept, _logged = partial(_of_each, "replica", KEPT), partial(_of_each, "contact", LOGGED)
 
 
 def _of_species(name: str, long_name: str, units: str = "1", *when: str) -> dict[str, Variable]:
     """Return a mean of each species, with its error and, but for R, its series."""
-    when = (MIXTURE, *when)
-    error = f"standard error of {name} within this file"
-    found = {
-        name: Variable(f"{long_name} of a species", units, ("species",), when=when),
-        f"{name}_stderr": Variable(error, units, ("species",), when=when, over_seeds=""),
-    }
+    about = Variable(f"{long_name} of a species", units, ("species",), when=(MIXTURE, *when))
+    found = {name: about, f"{name}_stderr": error_of(name, WITHIN, about)}
     if units == ENERGY:
-        series = f"{long_name} of a species"
-        found[f"{name}_series"] = Variable(series, units, ("species", "sample"), when=when)
+        found[f"{name}_series"] = about._replace(dims=("species", "sample"))
     return found
 
 
+_IN_ROTATION = _of_spin("share of rotation in the energy, mean of E_rot / (E_rot + E_trans)")
+_TRANSLATION = Variable("translational energy per degree of freedom", ENERGY)
+_ROTATION = _of_spin("rotational energy per degree of freedom", ENERGY)
+_INPUT = "energy per particle that a source has put in since the start (negative: taken out)"
+_GAIN = "change of the energy per particle, kinetic and potential, since the start"
+
+
 POINT = {
-    "R": _of_spin("share of rotation in the energy, mean of E_rot / (E_rot + E_trans)"),
-    "R_stderr": _of_spin("standard error of R within this file", over_seeds=""),
-    "R_dof": _of_spin("degrees of freedom that R_stderr is known with", over_seeds=""),
-    "R_ci95": _of_spin("half width of the 95 % interval of R, by Student's t", over_seeds=""),
+    "R": _IN_ROTATION,
+    **errors_of("R", WITHIN, _IN_ROTATION),
     "R_ci95_trusted": Variable(
         "whether R_ci95 holds the truth as often as it says; -1 where there is too little to tell",
         dtype="i1",
@@ -140,10 +153,10 @@ POINT = {
     **_at_contacts(
         "contact_correlation", "<v_t.v_r>/sqrt(<v_t^2> <v_r^2>), averaged over collisions"
     ),
-    "E_trans": Variable("translational energy per degree of freedom", ENERGY),
-    "E_trans_stderr": Variable("standard error of E_trans within this file", ENERGY, over_seeds=""),
-    "E_rot": _of_spin("rotational energy per degree of freedom", ENERGY),
-    "E_rot_stderr": _of_spin("standard error of E_rot within this file", ENERGY, over_seeds=""),
+    "E_trans": _TRANSLATION,
+    "E_trans_stderr": error_of("E_trans", WITHIN, _TRANSLATION),
+    "E_rot": _ROTATION,
+    "E_rot_stderr": error_of("E_rot", WITHIN, _ROTATION),
     "collisions": Variable("collisions simulated", dtype="i8", over_seeds="sum"),
     "kernel_seconds": Variable("CPU time spent in the kernel", "s", over_seeds="sum"),
     "equilibrated": Variable(
@@ -185,19 +198,11 @@ POINT = {
     "energy_imbalance": Variable("error of the energy balance, over all energy exchanged"),
     "source": Variable("what exchanged energy with the gas", "", ("source",), "str"),
     "motion": Variable("motion that holds the energy", "", ("motion",), "str"),
-    "energy_input": Variable(
-        "energy per particle that a source has put in since the start (negative: taken out)",
-        ENERGY,
-        ("source", "motion"),
-    ),
+    "energy_input": Variable(_INPUT, ENERGY, ("source", "motion")),
     "input_spin_share": _of_spin(
         "share of rotation in the energy that all drives have put in", "1", DRIVEN
     ),
-    "energy_gain": Variable(
-        "change of the energy per particle, kinetic and potential, since the start",
-        ENERGY,
-        ("motion",),
-    ),
+    "energy_gain": Variable(_GAIN, ENERGY, ("motion",)),
     **NAMES,
     **_of_species("E_trans_species", "translational energy per degree of freedom", ENERGY),
     **_of_species("E_rot_species", "rotational energy per degree of freedom", ENERGY, SPIN),
@@ -216,21 +221,11 @@ POINT = {
     ),
     "R_series": _series("share of rotation in the energy", "1", SPIN),
     "R_series_stderr": _series("standard error of R_series over replicas", "1", COOLING, SPIN),
-    "E_trans_series": _series("translational energy per degree of freedom", ENERGY),
-    "E_rot_series": _series("rotational energy per degree of freedom", ENERGY, SPIN),
+    "E_trans_series": _TRANSLATION._replace(dims=("sample",)),
+    "E_rot_series": _ROTATION._replace(dims=("sample",)),
     "collisions_series": _series("collisions per particle since the start", "1", STAGES),
-    "energy_input_series": Variable(
-        "energy per particle that a source has put in since the start (negative: taken out)",
-        ENERGY,
-        ("sample", "source", "motion"),
-        when=(STAGES,),
-    ),
-    "energy_gain_series": Variable(
-        "change of the energy per particle, kinetic and potential, since the start",
-        ENERGY,
-        ("sample", "motion"),
-        when=(STAGES,),
-    ),
+    "energy_input_series": Variable(_INPUT, ENERGY, ("sample", "source", "motion"), when=(STAGES,)),
+    "energy_gain_series": Variable(_GAIN, ENERGY, ("sample", "motion"), when=(STAGES,)),
     "stage_begin": Variable("time at which a stage begins", TIME, ("stage",), when=(STAGES,)),
     "stage_input": Variable(
         "energy per particle that the beginning of a stage puts in",
@@ -244,7 +239,9 @@ POINT = {
     "last_spin": _kept("spin a w of a particle then", SPEED, ("particle", "spin_axis"), SPIN),
     "last_radius": _kept("radius of a particle", LENGTH, ("particle",), MIXTURE),
     "last_species_of": _kept("number of its species, from 0", "1", ("particle",), MIXTURE),
-    "last_memory": _kept("the kernel's arrays then, as they lie in memory", "1", ("byte",)),
+    "last_memory": _kept(
+        "the kernel's arrays then, as they lie in memory", "1", ("byte",), dtype="u1"
+    ),
     "contacts_lost": Variable(
         "contacts before the first one that is logged", dtype="i8", when=(LOGGED,), over_seeds=""
     ),

@@ -23,7 +23,10 @@ from roughgas.data.netcdf import Content, DamagedError, opened, require, unit_of
 from roughgas.data.point import Point, write_point
 from roughgas.data.reduced import (
     GRID,
+    OF_COOLING,
     OF_STAGES,
+    POOLED,
+    SCATTERED,
     SOUND,
     STAGED,
     VERDICTS,
@@ -31,12 +34,11 @@ from roughgas.data.reduced import (
     read_reduced,
     third_axis,
 )
-from roughgas.data.variables import CLOCKS, POINT, Array, described
+from roughgas.data.variables import CLOCKS, POINT, Array, Variable, described, errors_of
+from roughgas.data.variables import POOLED as SEEDS
 from roughgas.statistics.errors import NO, UNKNOWN, YES, pooled
 from roughgas.statistics.steady_state import is_bimodal
-from roughgas.theory.bath import LANGEVIN
-from roughgas.theory.mixtures import SPECIES
-from roughgas.theory.prediction import equation_of
+from roughgas.theory.prediction import LANGEVIN, SPECIES, equation_of
 
 if TYPE_CHECKING:
     import xarray
@@ -44,25 +46,8 @@ if TYPE_CHECKING:
 SAME = ("experiment", "scale", "dimension", "inertia", "spin_share", "mu", "particles", "swept")
 OF_A_POINT = ("r", "beta", "seed", "r_label", "beta_label", "variant", "swept_value", "command")
 PROVENANCE = ("roughgas_version", "numpy_version", "numba_version", "kernel_source_hash")
-SCATTERED = (
-    *(
-        "R_ratio_of_means",
-        "R_corrected",
-        "R_unsubtracted",
-        "R_drift",
-        "E_trans",
-        "E_rot",
-        "input_spin_share",
-    ),
-    *("E_trans_species", "E_rot_species", "R_species", "T_ratio_species"),
-    *("decay_exponent", "shear_rate"),
-)
-"""Means over seeds that carry a standard error, `<name>_stderr`, from their scatter."""
-SERIES: tuple[str, ...] = ("time_series", "E_trans_series", "R_series", "collisions_per_particle")
-SERIES += tuple(name for name in OF_STAGES if POINT[name].dims[0] == "sample")
+SERIES = (*OF_COOLING, *(name for name in OF_STAGES if POINT[name].dims[0] == "sample"))
 OF_SPECIES = [name for name, one in POINT.items() if one.dims == ("species",) and one.over_seeds]
-POOLED = ("R", "R_collisional", "contact_correlation")
-"""Those whose standard error pools the scatter with the errors of the seeds themselves."""
 
 
 class Summary(NamedTuple):
@@ -129,9 +114,8 @@ def _summary(path: Path) -> Summary:
             scalars["T_ratio_species"] = energy / energy[0]
         scalars |= _series(file)
         exchanged = ("source", "motion") if "stage_begin" in file.variables else ()
-        names = {name: tuple(file[name][...].tolist()) for name in exchanged}
-        if "species" in file.variables:
-            names["species"] = tuple(file["species"][...].tolist())
+        named = [*exchanged, *(["species"] if "species" in file.variables else [])]
+        names = {name: tuple(file[name][...].tolist()) for name in named}
         for name in scalars.keys() & SOUND:
             check_sound(path, name, scalars[name])
         scalars["measured_for"], scalars["R_drift"] = _window(file, scalars)
@@ -324,13 +308,9 @@ def _observables(
     stacks = _stacks(seen, axes)
     for name in means:
         dims, about = (*grid, *first[name].dims), first[name].attrs
-        values, there = stacks[name], np.isfinite(stacks[name])
-        mean = np.full(there.shape[:-1], math.nan)
-        for place in zip(*np.nonzero(there.any(-1)), strict=True):
-            mean[place] = values[place][there[place]].mean()
+        mean = _mean(stacks[name])
         stderr, dof = _errors(name, stacks, interval=False).values()
-        said = f"standard error of {name}: scatter over seeds and error within them, pooled"
-        freedom = f"degrees of freedom that {name}_stderr is known with"
+        said, freedom, _ = (x.long_name for x in errors_of(name, SEEDS, Variable("")).values())
         found[name] = Array(dims, mean, about)
         found[f"{name}_stderr"] = Array(dims, stderr, about | {"long_name": said})
         found[f"{name}_dof"] = Array(dims, dof, about | {"long_name": freedom, "units": "1"})
@@ -377,13 +357,10 @@ def _common_attributes(points: Sequence[Summary]) -> dict[str, Any]:
             raise InputError(f"{name} of the points", " and ".join(sorted(values)), "be the same")
     for name in list(shared):
         values = {str(point.attributes.get(name, "")) for point in points}
-        if len(values) > 1 and name in PROVENANCE:
+        differ = len(values) > 1 and name not in (SPECIES, LANGEVIN)
+        if differ and name in PROVENANCE:
             shared[name] = ", ".join(sorted(values))
-        elif (
-            (len(values) > 1 and name not in (SPECIES, LANGEVIN))
-            or name in OF_A_POINT
-            or name == swept
-        ):
+        elif differ or name in (*OF_A_POINT, swept):
             del shared[name]
     over = "r and beta" if swept is None else f"{swept}, r and beta"
     return shared | netcdf.COMMON_ATTRIBUTES | {"title": f"{shared['experiment']}: R over {over}"}
