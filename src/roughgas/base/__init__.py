@@ -187,15 +187,20 @@ def columns(rows: Iterable[Sequence[str]], numbers: bool = False) -> str:
     return "\n".join("  ".join(row).rstrip() for row in _padded(rows, align))
 
 
-def merged(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
-    """Return `base` with `changes` merged in at every depth; a change to None removes a key."""
+def merged(
+    base: Mapping[str, Any], changes: Mapping[str, Any], removing: bool = True
+) -> dict[str, Any]:
+    """Return `base` with `changes` merged in at every depth.
+
+    A change to None removes a key, unless `base` consists of changes, too, and None is to stay.
+    """
     result = dict(base)
     for key, change in changes.items():
-        if change is None:
+        if change is None and removing:
             result.pop(key, None)
         elif isinstance(change, Mapping):
             inner = result.get(key)
-            result[key] = merged(inner if isinstance(inner, Mapping) else {}, change)
+            result[key] = merged(inner if isinstance(inner, Mapping) else {}, change, removing)
         else:
             result[key] = change
     return result
@@ -300,3 +305,22 @@ def _plain(answer: Any) -> Any:
 def as_text(settings: Mapping[str, Any]) -> str:
     """Return settings as JSON on one line, the same for equal settings."""
     return json.dumps(settings, sort_keys=True, separators=(",", ":"))
+
+
+SPECIES = "species."
+OF_RADII = "mean", "deviation"
+"""Keys of a distribution of radii."""
+
+
+def names_of(settings: Mapping[str, Any]) -> list[str]:
+    """Return what the species are called: by their index where they have no name."""
+    return [str(one.get("name", k)) for k, one in enumerate(settings.get("species") or [])]
+
+
+def holder(settings: Mapping[str, Any], part: str, key: str = "") -> dict[str, Any] | None:
+    """Return what has a key of the species that `part`, such as species.heavy, names by name or by
+    index: its distribution of radii, or itself; None without such a species."""
+    named = dict(zip(names_of(settings), settings.get("species") or [], strict=True))
+    one = named.get(part.removeprefix(SPECIES))
+    radius = one.get("radius") if one else None
+    return radius if key in OF_RADII and isinstance(radius, dict) else one

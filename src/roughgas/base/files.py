@@ -121,7 +121,8 @@ def code_in(
     while todo:
         file = f"{todo.pop()}.py"
         if file not in digests:
-            tree = _parsed(folder / file)
+            with _python(folder / file):
+                tree = ast.parse((folder / file).read_bytes())
             digests[file] = hashlib.sha256((folder / file).read_bytes()).hexdigest()
             package |= set(_imports(tree, True))
             todo += [one for one in _siblings(tree) if (folder / f"{one}.py").exists()]
@@ -131,14 +132,16 @@ def code_in(
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
-def _parsed(path: Path) -> ast.Module:
+@contextmanager
+def _python(path: Path) -> Iterator[None]:
+    """Raise InputError where the file of a study is not there, and for what its Python raises."""
     called = f"studies/{path.parent.name}/{path.name}"
     if not path.exists():
         raise InputError(called, "(nothing)", "be there for this")
     try:
-        return ast.parse(path.read_bytes())
-    except SyntaxError as error:
-        raise InputError(called, f"SyntaxError: {error}", "be Python") from error
+        yield
+    except Exception as error:
+        raise InputError(called, f"{type(error).__name__}: {error}", "be Python") from error
 
 
 def _siblings(tree: ast.Module) -> Iterator[str]:
@@ -209,13 +212,8 @@ def module_of(folder: str | Path, name: str) -> types.ModuleType:
             del sys.modules[known]
         sys.modules[package] = types.ModuleType(package)
         sys.modules[package].__path__ = [str(folder)]
-    if not (folder / f"{name}.py").exists():
-        raise InputError(f"studies/{folder.name}/{name}.py", "(nothing)", "be there for this")
-    try:
+    with _python(folder / f"{name}.py"):
         return importlib.import_module(f"{package}.{name}")
-    except Exception as error:
-        said = f"{type(error).__name__}: {error}"
-        raise InputError(f"studies/{folder.name}/{name}.py", said, "be Python") from error
 
 
 def readme(folder: str | Path) -> str:

@@ -4,10 +4,18 @@ lines; and what a third axis changes of a species or of a box.
 
 import itertools
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from typing import Any, NamedTuple
 
-from roughgas.base import RESTITUTION, ROUGHNESS, InputError, Interval
+from roughgas.base import (  # noqa: F401
+    RESTITUTION,
+    ROUGHNESS,
+    SPECIES,
+    InputError,
+    Interval,
+    holder,
+    names_of,
+)
 
 NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 WORD = re.compile(r"[a-z][a-z0-9_]*")
@@ -15,9 +23,6 @@ WHOLE_NUMBER = re.compile(r"\d{1,19}", re.ASCII)
 LARGEST_SEED = 2**63 - 1
 SWEPT = "swept"
 """Key, in the settings of a variant, of what its experiment sweeps, such as spin.inertia."""
-SPECIES = "species."
-OF_RADII = "mean", "deviation"
-"""Keys of a distribution of radii."""
 LEGAL_LEVEL = "be a number, or a word of lower-case letters, digits and _"
 
 
@@ -99,17 +104,3 @@ def _number_in(interval: Interval, key: str, label: Any) -> float:
     if not NUMBER.fullmatch(str(label)) or not interval.holds(float(label)):
         raise interval.error(key, label)
     return float(label) + 0.0  # turns -0 into 0
-
-
-def names_of(settings: Mapping[str, Any]) -> list[str]:
-    """Return what the species are called: by their index where they have no name."""
-    return [str(one.get("name", k)) for k, one in enumerate(settings.get("species") or [])]
-
-
-def holder(settings: Mapping[str, Any], part: str, key: str = "") -> dict[str, Any] | None:
-    """Return what has a key of the species that `part`, such as species.heavy, names by name or by
-    index: its distribution of radii, or itself; None without such a species."""
-    named = dict(zip(names_of(settings), settings.get("species") or [], strict=True))
-    one = named.get(part.removeprefix(SPECIES))
-    radius = one.get("radius") if one else None
-    return radius if key in OF_RADII and isinstance(radius, dict) else one

@@ -23,8 +23,8 @@ from roughgas.simulation.journal import Journal
 from roughgas.simulation.recorder import Recorder
 from roughgas.simulation.restart import Initial, check_initial, final_states, is_memory_of, owner
 from roughgas.statistics.errors import UNKNOWN, YES
-from roughgas.theory.bath import LANGEVIN
 from roughgas.theory.mixtures import SPECIES
+from roughgas.theory.rate_equations import LANGEVIN
 
 ENERGIES = ("E_trans", "E_rot", "R", "R_ratio_of_means", "R_corrected")
 VOUCHED = {

@@ -319,8 +319,6 @@ class Estimate(NamedTuple):
 
     def minus(self, other: "Estimate") -> "Estimate":
         """Return the difference of two independent estimates."""
-        from roughgas.statistics.errors import sum_error
-
         stderr, dof = sum_error([self.stderr, other.stderr], [self.dof, other.dof])
         return Estimate(self.value - other.value, float(stderr), float(dof))
 

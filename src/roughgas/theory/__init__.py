@@ -13,7 +13,6 @@ per particle: one collision counts for both its particles.
 """
 
 from roughgas.theory.arguments import moment_of_inertia
-from roughgas.theory.bath import bath_temperatures
 from roughgas.theory.closed_forms import (
     a_G,
     b_G,
@@ -62,6 +61,7 @@ from roughgas.theory.mixtures import Mixture, Temperatures, mixture, mixture_cha
 from roughgas.theory.rate_equations import (
     Rates,
     Relaxation,
+    bath_temperatures,
     collision_rates,
     collisions_to_relax,
     decay_rate,

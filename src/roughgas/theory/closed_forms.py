@@ -13,14 +13,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from roughgas.base import Interval
-from roughgas.theory.arguments import (
-    check,
-    check_dimension,
-    material,
-    positive_root,
-    quotient,
-    shares,
-)
+from roughgas.theory import arguments
+from roughgas.theory.arguments import check, check_dimension, material, quotient, shares
 
 
 def lun_ratio(beta, inertia) -> np.ndarray:
@@ -42,7 +36,7 @@ def correlated_ratio(beta, inertia, correlation) -> np.ndarray:
     beta, q = check("roughness beta", beta), check("inertia q", inertia)
     c = check("correlation at contacts", correlation)
     k = (1 + beta) / (2 + 2 * q)
-    x, one = positive_root(1 - k, (2 * k - 1) * c, k)
+    x, one = arguments.positive_root(1 - k, (2 * k - 1) * c, k)
     return shares(one**2, q * x**2, neither=0)[1][()]
 
 
@@ -81,11 +75,7 @@ def cooling_K(r, beta, dimension=2, inertia=None) -> np.ndarray:
 
 def a_G(r, beta, inertia) -> np.ndarray:
     """Return a_G = (1 - beta^2)(1 - q)/(1 + q) - 1 + r^2, of the theory of free cooling."""
-    r, beta, q = (
-        check("restitution r", r),
-        check("roughness beta", beta),
-        check("inertia q", inertia),
-    )
+    r, beta, _, q = material(r, beta, inertia=inertia)
     return (1 - beta) * (1 + beta) * (1 - q) / (1 + q) - (1 - r) * (1 + r)
 
 
@@ -107,7 +97,7 @@ def _cooling_shares(r, beta, dimension, inertia) -> tuple[np.ndarray, np.ndarray
     alpha = 2 / (dimension - 1)
     b = b_G(beta, q)
     linear = alpha * a_G(r, beta, q) + (alpha - 1) * c_G(beta, q)
-    return shares(*positive_root(alpha * b / 2, linear, b / 2), neither=0)
+    return shares(*arguments.positive_root(alpha * b / 2, linear, b / 2), neither=0)
 
 
 CLOSE_PACKING = {2: np.pi / np.sqrt(12), 3: np.pi / np.sqrt(18)}
@@ -184,10 +174,3 @@ def shear_factor(rate, stress, difference) -> np.ndarray:
     """
     g, p, d = check("shear rate g", rate), np.asarray(stress), np.asarray(difference)
     return 1 + (p**2 + d**2) / 4 + np.sqrt(np.pi) * g * p / 4 + g**2 / 4
-
-
-def sheared_ratio(beta, inertia, rate, stress, difference) -> np.ndarray:
-    """Return R of sheared disks: that of Lun's formula, with theta times `shear_factor`."""
-    lun = lun_ratio(beta, inertia)
-    gain = lun * shear_factor(rate, stress, difference)
-    return gain / (gain + 1 - lun)

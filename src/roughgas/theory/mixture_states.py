@@ -16,16 +16,10 @@ from collections.abc import Callable
 import numpy as np
 
 from roughgas.base import InputError, Interval
-from roughgas.theory.arguments import check, check_dimension
+from roughgas.theory import mixtures
+from roughgas.theory.arguments import POSITIVE, check, check_dimension
 from roughgas.theory.closed_forms import CLOSE_PACKING, VOLUME
-from roughgas.theory.mixtures import (
-    SURFACE,
-    Mixture,
-    Temperatures,
-    contact_frequencies,
-    mixture,
-    rate_matrix,
-)
+from roughgas.theory.mixtures import SURFACE, Mixture, Temperatures, mixture, rate_matrix
 
 
 def mixture_contact_values(gas: Mixture, packing) -> np.ndarray:
@@ -56,9 +50,8 @@ def mixture_frequency(gas: Mixture, T_tr, packing) -> np.ndarray:
     `T_tr` are the temperatures of the species, or one of all. Their sum over j is how often a
     particle of i collides. Equal species give `collision_frequency` in all.
     """
-    T_tr = np.broadcast_to(check("temperature T_tr", T_tr), gas.mass.shape)
-    crowding = mixture_contact_values(gas, packing)
-    return mixture_density(gas, packing) * contact_frequencies(gas, T_tr, crowding)
+    T_tr, crowding = _of_each("temperature T_tr", T_tr, gas), mixture_contact_values(gas, packing)
+    return mixture_density(gas, packing) * mixtures.contact_frequencies(gas, T_tr, crowding)
 
 
 def compressibility(gas: Mixture, packing, T_tr=1.0) -> float:
@@ -70,12 +63,17 @@ def compressibility(gas: Mixture, packing, T_tr=1.0) -> float:
     96, 1, 1999) for disks, with Henderson's for equal ones, and of Boublik and of G. A. Mansoori,
     N. F. Carnahan, K. E. Starling & T. W. Leland (J. Chem. Phys. 54, 1523, 1971) for spheres.
     """
-    T_tr = np.broadcast_to(check("temperature T_tr", T_tr), gas.mass.shape)
+    T_tr = _of_each("temperature T_tr", T_tr, gas)
     speed, D = T_tr / gas.mass, gas.dimension
     met = np.multiply.outer(gas.fraction, gas.fraction) * mixture_contact_values(gas, packing)
     push = gas.normal * np.add.outer(speed, speed) / 2
     virial = SURFACE[D] / (2 * D) * (met * gas.distance**D * push).sum()
     return float(1 + mixture_density(gas, packing) * virial / (gas.fraction @ T_tr))
+
+
+def _of_each(key: str, value, gas: Mixture, legal: Interval | None = None) -> np.ndarray:
+    """Return a number, or one of each species, as (species,), checked."""
+    return np.broadcast_to(check(key, value, legal), gas.mass.shape)
 
 
 def _mean_power(gas: Mixture, power: int) -> float:
@@ -133,7 +131,7 @@ def mixture_driven(gas: Mixture, power, packing=0.0, spin_power=0.0) -> Temperat
     particles alike gives in proportion to the mass; `kick_power` is that of the effect thermostat.
     Raises InputError for a gas that cannot dissipate what it is given.
     """
-    powers = [_power("power", power, gas), _power("spin power", spin_power, gas)]
+    powers = [_of_each("power", power, gas), _of_each("spin power", spin_power, gas)]
     crowding, D = mixture_contact_values(gas, packing), gas.dimension
     drive = np.concatenate([powers[0] / D, powers[1] / (2 * D - 3)])
     moves = np.append(np.ones(len(gas.mass), bool), gas.spins)
@@ -167,8 +165,7 @@ def mixture_rotation(gas: Mixture, T_tr, packing=0.0) -> np.ndarray:
     as it is, on average over its contacts, whatever they do to translation. Units are those of
     T_tr. r matters through friction alone.
     """
-    T_tr = check("temperature T_tr", T_tr, Interval("(0, inf)"))
-    T_tr = np.broadcast_to(T_tr, gas.mass.shape)
+    T_tr = _of_each("temperature T_tr", T_tr, gas, POSITIVE)
     crowding, size = mixture_contact_values(gas, packing), len(gas.mass)
 
     def sweep(T_rot: np.ndarray) -> np.ndarray:
@@ -193,7 +190,7 @@ def mimicry_masses(fraction, radius, dimension=2, packing=0.0) -> np.ndarray:
     crowding = mixture_contact_values(gas, packing)
 
     def sweep(mass: np.ndarray) -> np.ndarray:
-        nu = contact_frequencies(gas._replace(mass=mass), np.ones(len(mass)), crowding)
+        nu = mixtures.contact_frequencies(gas._replace(mass=mass), np.ones(len(mass)), crowding)
         loss = (nu * gas._replace(mass=mass).reduced_mass).sum(axis=1) / mass
         mass = mass * loss
         return mass / (gas.fraction @ mass)
@@ -237,7 +234,7 @@ def _growth(gas: Mixture, state: Temperatures, crowding: np.ndarray) -> np.ndarr
     """Return d ln T/dn of T_tr and T_rot, n in collisions per particle; 0 where T = 0."""
     together = np.concatenate(state, -1)
     change = (rate_matrix(gas, *state, crowding) @ together[..., None])[..., 0]
-    collisions = contact_frequencies(gas, state.T_tr, crowding).sum(axis=-1) @ gas.fraction
+    collisions = mixtures.contact_frequencies(gas, state.T_tr, crowding).sum(axis=-1) @ gas.fraction
     return change / np.where(together > 0, together, 1.0) / collisions[..., None]
 
 
@@ -255,10 +252,6 @@ def _settled(sweep: Callable[[np.ndarray], np.ndarray], state: np.ndarray) -> np
         if np.all(np.abs(state - before) <= ROUNDING * np.abs(state)):
             break
     return state
-
-
-def _power(key: str, power, gas: Mixture) -> np.ndarray:
-    return np.broadcast_to(check(key, power), gas.mass.shape)
 
 
 def _in_units(gas: Mixture, state: np.ndarray) -> Temperatures:

@@ -31,7 +31,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from roughgas.base import InputError, Interval, not_one_of, shown
+from roughgas.base import InputError, Interval, names_of, not_one_of, shown
 from roughgas.theory.arguments import POSITIVE, check, check_dimension, moment_of_inertia, quotient
 from roughgas.theory.friction import moments
 
@@ -174,7 +174,7 @@ def _grouped(radii: np.ndarray) -> np.ndarray:
 
 def _put_pairs(tables: Mapping[str, np.ndarray], pairs, species) -> None:
     """Put into the tables what contacts of two species have in place of the means."""
-    names = [str(one.get("name", k)) for k, one in enumerate(species)]
+    names = names_of({"species": species})
     for one in pairs:
         places = [str(name) for name in one["between"]]
         for name in places:

@@ -12,15 +12,16 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from roughgas.theory.bath import LANGEVIN, ratio_in_bath
+from roughgas.base import SPECIES as OF_SPECIES
+from roughgas.base import holder
+from roughgas.theory import mixture_states
 from roughgas.theory.closed_forms import VOLUME
-from roughgas.theory.mixture_states import (
-    kick_power,
-    mixture_cooling,
-    mixture_driven,
-    mixture_rotation,
-)
+from roughgas.theory.friction import friction_ratio
 from roughgas.theory.mixtures import SPECIES, Mixture, Temperatures, mixture
+from roughgas.theory.rate_equations import LANGEVIN, bath_temperatures, stationary_ratio
+
+BESIDE = (SPECIES, "mu", "spin_share")
+"""Attributes of a gas that is more than a bath of rough particles."""
 
 
 class Equation(NamedTuple):
@@ -40,8 +41,11 @@ def equation_of(attributes: Mapping[str, Any], variables: Container[Any] = ()) -
     swept = attributes.get("swept", "").rpartition(".")[2]
     if LANGEVIN in attributes:
         return Equation(kind, "rate equations in a Langevin bath")
+    if SPECIES in attributes and kind == "K":
+        return Equation(kind, "theory of free cooling of mixtures")
     if SPECIES in attributes:
-        return Equation(kind, name_of_mixture(attributes, kind))
+        kicked, other = "rate equations of mixtures", "Lun's formula for mixtures, equal T_trans"
+        return Equation(kind, kicked if "spin_share" in attributes else other)
     if "mu" in attributes or swept == "mu":
         return Equation(kind, "rate equations with Coulomb friction")
     if kind == "K":
@@ -87,8 +91,6 @@ def predicted_ratio(attributes: Mapping[str, Any], r: Any, beta: Any) -> np.ndar
         return ratio_in_bath(attributes, r, beta)
     if SPECIES in attributes:
         return ratio_of_mixture(attributes, r, beta)
-    from roughgas import theory
-
     names = {"inertia": math.nan, "spin_share": 0.0, "mu": math.inf}
     given = (attributes.get(name, value) for name, value in names.items())
     r, beta, q, share, mu = np.broadcast_arrays(*(np.asarray(x, float) for x in (r, beta, *given)))
@@ -97,10 +99,33 @@ def predicted_ratio(attributes: Mapping[str, Any], r: Any, beta: Any) -> np.ndar
     dimension, driven = int(attributes["dimension"]), attributes["theory"] != "K"
     of_drive = share if driven else None
     if np.isfinite(mu).any():
-        found = theory.friction_ratio(r, beta, mu, dimension, q, of_drive)
+        found = friction_ratio(r, beta, mu, dimension, q, of_drive)
     else:
-        found = theory.stationary_ratio(r, beta, dimension, q, of_drive)
+        found = stationary_ratio(r, beta, dimension, q, of_drive)
     return np.where((beta == -1.0) & (not driven), math.nan, found)
+
+
+def ratio_in_bath(attributes: Mapping[str, Any], r: Any, beta: Any) -> np.ndarray:
+    """Return R of theory in the bath of a dataset, over the broadcast shape of its arguments; NaN
+    where the packing is not known, nothing spins, or the bath gives nothing, and for what these
+    rate equations leave out: several species, friction, a thermostat beside the bath.
+
+    A swept parameter of the bath stands among the attributes, as the inertia does.
+    """
+    r, beta = np.broadcast_arrays(r, beta)
+    if any(name in attributes for name in BESIDE):
+        return np.full(r.shape, np.nan)
+    settings = json.loads(attributes[LANGEVIN])
+    part, _, swept = attributes.get("swept", "").rpartition(".")
+    names = {"inertia", "packing", *(settings.keys() - {"interval"})}
+    given = {name: settings.get(name, attributes.get(name, np.nan)) for name in names}
+    if part == "langevin" and swept in given:
+        given[swept] = attributes.get(swept, np.nan)
+    if not all(np.isfinite(value).all() for value in given.values()):
+        return np.full(r.shape, np.nan)
+    T_tr, T_rot = bath_temperatures(r, beta, dimension=int(attributes["dimension"]), **given)
+    with np.errstate(invalid="ignore"):
+        return np.asarray(T_rot / (T_tr + T_rot))
 
 
 def ratio_of_point(point: Any) -> float:
@@ -114,19 +139,10 @@ def ratio_of_point(point: Any) -> float:
     return float(predicted_ratio(about, about["r"], about["beta"]))
 
 
-OF_RADII = "mean", "deviation"
 SMOOTH = -1 + 1e-7
 """Roughness that stands for the limit beta -> -1 of a cooling gas: see `cooling_ratio`."""
 FINE = 121
 """Values along a line from which on theory is computed at some, and interpolated between them."""
-
-
-def name_of_mixture(attributes: Mapping[str, Any], kind: str) -> str:
-    """Return the name of the equation that a mixture obeys."""
-    if kind == "K":
-        return "theory of free cooling of mixtures"
-    kicked = "rate equations of mixtures"
-    return kicked if "spin_share" in attributes else "Lun's formula for mixtures, equal T_trans"
 
 
 def ratio_of_mixture(attributes: Mapping[str, Any], r: Any, beta: Any) -> np.ndarray:
@@ -165,9 +181,11 @@ def species_at(
     """
     gas, packing = mixture_at(attributes, place)
     if attributes["theory"] == "K":
-        return mixture_cooling(gas, packing).as_given(gas)
+        return mixture_states.mixture_cooling(gas, packing).as_given(gas)
     measured = np.asarray(T_tr)[gas.part_of]
-    return Temperatures(measured, mixture_rotation(gas, measured, packing)).as_given(gas)
+    return Temperatures(measured, mixture_states.mixture_rotation(gas, measured, packing)).as_given(
+        gas
+    )
 
 
 def mixture_at(attributes: Mapping[str, Any], place: Mapping[str, float]) -> tuple[Mixture, float]:
@@ -175,8 +193,8 @@ def mixture_at(attributes: Mapping[str, Any], place: Mapping[str, float]) -> tup
     beta, and what is swept, by name."""
     known = json.loads(attributes[SPECIES])
     part, _, key = attributes.get("swept", "").rpartition(".")
-    if part.startswith("species."):
-        _put(known["species"], part.removeprefix("species."), key, place[key])
+    if part.startswith(OF_SPECIES) and (changed := holder(known, part, key)) is not None:
+        changed[key] = float(place[key])
     q, mu = (place.get(name, attributes.get(name)) for name in ("inertia", "mu"))
     q = None if q is None or math.isnan(q) else q
     about = int(attributes["dimension"]), q, math.inf if mu is None else mu
@@ -187,23 +205,17 @@ def mixture_at(attributes: Mapping[str, Any], place: Mapping[str, float]) -> tup
     return gas, int(attributes["particles"]) * filled / known["volume"]
 
 
-def _put(species, name: str, key: str, value: float) -> None:
-    for k, one in enumerate(species):
-        if name == str(one.get("name", k)):
-            radius = one.get("radius")
-            spread = key in OF_RADII and isinstance(radius, dict)
-            (radius if spread else one)[key] = float(value)
-
-
 def _ratio(attributes: Mapping[str, Any], place: Mapping[str, float], swept: str) -> float:
     cools = attributes["theory"] == "K"
     rough = {"beta": max(place["beta"], SMOOTH)} if cools else {}
     gas, packing = mixture_at(attributes, {**place, **rough})
     if cools:
-        return mixture_cooling(gas, packing).overall_ratio(gas)
+        return mixture_states.mixture_cooling(gas, packing).overall_ratio(gas)
     if "spin_share" in attributes or swept == "spin_share":
         share = place["spin_share"]
-        power = (1 - share) * kick_power(gas)
-        return mixture_driven(gas, power, packing, share).overall_ratio(gas)
+        power = (1 - share) * mixture_states.kick_power(gas)
+        return mixture_states.mixture_driven(gas, power, packing, share).overall_ratio(gas)
     even = np.ones(len(gas.mass))
-    return Temperatures(even, mixture_rotation(gas, even, packing)).overall_ratio(gas)
+    return Temperatures(even, mixture_states.mixture_rotation(gas, even, packing)).overall_ratio(
+        gas
+    )

@@ -18,6 +18,8 @@ translational, 1 rotational driving (R. Cafiero, S. Luding & H. J. Herrmann, Eur
 854, 2002), and None no drive: free cooling. A. Megias & A. Santos, Front. Phys. 10, 971671 (2022)
 drive disks so with any share.
 
+A Langevin bath has drag and noise, on velocities and on spins (`bath_temperatures`).
+
 The equations are linear in (T_tr, T_rot) when time is counted in collisions per particle, n, so
 their solution is exact: the part of the initial state off the stationary ratio fades as
 exp(-Gamma n), Gamma the difference of the two eigenvalues; from there on, Haff's law. A drive is
@@ -25,23 +27,22 @@ taken to replace at each moment the energy that collisions dissipate. With one o
 energy may settle more slowly than theta, at the same stationary R.
 """
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
 from roughgas.base import Interval
-from roughgas.theory.arguments import (
-    check,
-    check_dimension,
-    material,
-    positive_root,
-    quotient,
-    shares,
-)
+from roughgas.theory import arguments
+from roughgas.theory.arguments import check, check_dimension, material, quotient, shares
 from roughgas.theory.closed_forms import collision_frequency
 
 STEP = 0.05
 """Of an integration, in mean free times of a gas all of whose energy is translational."""
+LANGEVIN = "langevin_json"
+"""The attribute of datasets that holds the settings of a Langevin bath."""
+FAR, HALVINGS = 30.0, 110
+"""Decades of T_tr, either way, in which a stationary state in a bath is looked for, and steps."""
 
 
 def translational_energy_change(
@@ -52,11 +53,7 @@ def translational_energy_change(
     The first four arguments are v_n^2, v_t^2, v_t.v_r and v_r^2 before the collision, of one
     collision or averaged over collisions.
     """
-    r, beta, q = (
-        check("restitution r", r),
-        check("roughness beta", beta),
-        check("inertia q", inertia),
-    )
+    r, beta, _, q = material(r, beta, inertia=inertia)
     exchanged = (
         -(2 + q * (1 - beta)) * np.asarray(tangential_squared)
         - (2 - 2 * q * beta) * np.asarray(tangential_dot_spin)
@@ -194,7 +191,7 @@ def balanced_shares(rates, dimension, q, spin_share=None) -> tuple[np.ndarray, n
     """Return the same for `rates`, which other velocities than Maxwellian ones may have."""
     if spin_share is None:
         difference = rates.translational_loss - rates.rotational_loss
-        rotational, translational = positive_root(
+        rotational, translational = arguments.positive_root(
             rates.translational_gain, difference, rates.rotational_gain
         )
         return shares(translational, rotational, neither=0)
@@ -259,10 +256,8 @@ def driven_temperatures(
     """
     time = np.atleast_1d(check("time", time))
     state = np.array([check("temperature T_tr", T_tr), check("temperature T_rot", T_rot)], float)
-    rates, unit = (
-        collision_rates(r, beta, dimension, inertia),
-        collision_frequency(1.0, packing, dimension),
-    )
+    rates = collision_rates(r, beta, dimension, inertia)
+    unit = collision_frequency(1.0, packing, dimension)
     drive = np.array(drive_changes(power, spin_share, dimension))
 
     def change(state):
@@ -272,15 +267,22 @@ def driven_temperatures(
     for instant in time:
         while now < instant:
             step = min(instant - now, STEP / (unit * np.sqrt(state.sum())))
-            one = change(state)
-            two = change(state + 0.5 * step * one)
-            three = change(state + 0.5 * step * two)
-            four = change(state + step * three)
-            state = state + step / 6.0 * (one + 2.0 * (two + three) + four)
+            state = runge_kutta(change, state, step)
             now = instant if instant - now <= step else now + step
         found.append(state)
     T_tr, T_rot = np.transpose(found)
     return T_tr, T_rot
+
+
+def runge_kutta(
+    change: Callable[[np.ndarray], np.ndarray], state: np.ndarray, step: float
+) -> np.ndarray:
+    """Return the state after a step, from the rate at which it changes: to fourth order."""
+    one = change(state)
+    two = change(state + 0.5 * step * one)
+    three = change(state + 0.5 * step * two)
+    four = change(state + step * three)
+    return state + step / 6.0 * (one + 2.0 * (two + three) + four)
 
 
 def collisions_to_relax(
@@ -356,3 +358,52 @@ def slow_decay(r, beta, dimension=2, inertia=None) -> np.ndarray:
     product = (1 - r) * (1 + r) * spin_loss + (dimension - 1) * (1 - beta) * spin_gain
     both = rates.translational_loss + spin_loss
     return quotient(2 * (product / dimension), both + relaxation_rate(r, beta, dimension, q))
+
+
+def bath_temperatures(
+    r,
+    beta,
+    packing,
+    drag=0.0,
+    temperature=0.0,
+    spin_drag=0.0,
+    spin_temperature=0.0,
+    power=0.0,
+    spin_power=0.0,
+    dimension=2,
+    inertia=None,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the stationary T_tr and T_rot of a gas in a Langevin bath.
+
+    They solve dT_tr/dt = (collisions) + 2 gamma (T - T_tr) + 2 power/D, and the same for spins with
+    2 spin_power/(2D-3), the collisions being those of a Maxwellian gas (`temperature_changes`) at
+    the `collision_frequency` of T_tr and the packing. For smooth particles: M. G. Chamorro, F.
+    Vega Reyes & V. Garzó, J. Stat. Mech. P07013 (2013). Drags are in 1/T, powers in
+    m a^2/T^3 per particle; temperatures 0 where the bath gives nothing.
+    """
+    rates = collision_rates(r, beta, dimension, inertia)
+    a, b, c, d = (np.asarray(rate) for rate in rates)
+    loss, spin_loss = 2 * check("drag", drag), 2 * check("drag of spins", spin_drag)
+    gain = loss * check("temperature T", temperature) + 2 * check("power", power) / dimension
+    spin_gain = spin_loss * check("temperature of spins", spin_temperature)
+    spin_gain = spin_gain + 2 * check("power of spins", spin_power) / (2 * dimension - 3)
+    unit = collision_frequency(1.0, packing, dimension)
+
+    def state(logarithm):
+        """Return both temperatures that balance at the frequency which one of them sets."""
+        nu = unit * 10.0 ** (logarithm / 2)
+        out, spin_out = nu * a + loss, nu * d + spin_loss
+        both = out * spin_out - nu**2 * b * c
+        T_tr = quotient(gain * spin_out + spin_gain * nu * b, both)
+        return T_tr, quotient(spin_gain * out + gain * nu * c, both)
+
+    parts = a, loss, gain, spin_gain, spin_loss, unit
+    low = np.full(np.broadcast_shapes(*(np.shape(part) for part in parts)), -FAR)
+    high = -low
+    for _ in range(HALVINGS):
+        middle = (low + high) / 2
+        rises = state(middle)[0] > 10.0**middle
+        low, high = np.where(rises, middle, low), np.where(rises, high, middle)
+    given = (gain > 0) | (spin_gain > 0)
+    T_tr, T_rot = state(low)
+    return np.where(given, T_tr, 0.0)[()], np.where(given, T_rot, 0.0)[()]

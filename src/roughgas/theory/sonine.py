@@ -88,7 +88,10 @@ def _settled(r, beta, dimension, q, drive) -> tuple[np.ndarray, np.ndarray, np.n
         if stays.all():
             break
         part = np.where(rough, np.clip(quotient(*balanced[::-1]) / (q * x), FAR, 1 / FAR), 1.0)
-    return R, a, stays & _returns(matrix) & _possible(a, dimension)
+    # cumulants that were disturbed go back, and are those of moments: <V^4> >= <V^2>^2 ...
+    returns = np.linalg.eigvals(matrix).real.max(axis=-1) < 0
+    least = -2 / (dimension + 2), -1.0, -2 / (2 * dimension - 1)
+    return R, a, stays & returns & (a[..., :3] >= least).all(axis=-1)
 
 
 def _corrected(rates: Rates, a) -> Rates:
@@ -138,17 +141,6 @@ def _stationary(constant, matrix, rough) -> np.ndarray:
     apart[0, 0] = 0.0
     matrix = np.where(rough[..., None, None], matrix, matrix * (1 - apart) + apart)
     return -np.linalg.solve(matrix, constant[..., None])[..., 0]
-
-
-def _returns(matrix) -> np.ndarray:
-    """Return whether cumulants that were disturbed go back."""
-    return np.linalg.eigvals(matrix).real.max(axis=-1) < 0
-
-
-def _possible(a, dimension) -> np.ndarray:
-    """Return whether there can be such moments: <V^4> >= <V^2>^2, <w^4> >= <w^2>^2, and > 0."""
-    least = -2 / (dimension + 2), -1.0, -2 / (2 * dimension - 1)
-    return (a[..., :3] >= least).all(axis=-1)
 
 
 def moment_changes(x, r, beta, dimension, q) -> np.ndarray:

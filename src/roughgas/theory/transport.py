@@ -163,8 +163,7 @@ def fourier_flux(hot, cold, gap, dimension=2) -> np.ndarray:
     As kappa goes as T^(1/2), it is the difference of 2/3 kappa T at the walls, over the gap.
     """
     hot, cold = check("temperature hot", hot), check("temperature cold", cold)
-    ends = (thermal_conductivity(T, dimension) * T for T in (hot, cold))
-    one, other = ends
+    one, other = (thermal_conductivity(T, dimension) * T for T in (hot, cold))
     return 2 / 3 * (one - other) / check("gap", gap, POSITIVE)
 
 

@@ -20,7 +20,7 @@ import numpy as np
 from roughgas.base import Interval
 from roughgas.theory.arguments import POSITIVE, check, check_dimension, material, quotient
 from roughgas.theory.closed_forms import cooling_ratio
-from roughgas.theory.rate_equations import collision_rates
+from roughgas.theory.rate_equations import collision_rates, runge_kutta
 
 ABOVE = 1.0, 2.583
 """Coefficients of powers of x above, and below, in the Pade approximation."""
@@ -113,21 +113,13 @@ def viscoelastic_cooling(
     steps = STEPS + math.ceil(PER_FOLD * fastest * last)
     states, step = [np.array([0.0, T0, T_rot])], last / steps
     for _ in range(steps):
-        states.append(_runge_kutta(slope, states[-1], step))
+        states.append(runge_kutta(slope, states[-1], step))
     return Cooling(np.linspace(0.0, last, steps + 1), *np.array(states).T)
 
 
 def _lost(x):
     """Return 1 - r_T^2, x being that of a contact at the speed 2 sqrt(T_tr/m)."""
     return ((1 - _pade(np.multiply.outer(x, ROOTS)) ** 2) * WEIGHTS).sum(-1)
-
-
-def _runge_kutta(slope, state, step):
-    one = slope(state)
-    two = slope(state + step / 2 * one)
-    three = slope(state + step / 2 * two)
-    four = slope(state + step * three)
-    return state + step / 6 * (one + 2 * two + 2 * three + four)
 
 
 def _pade(x):
