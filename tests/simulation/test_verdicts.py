@@ -56,7 +56,7 @@ class Run:
 
     def measured(self, number=1, **longer):
         """The variables of the point, and the recorder of what it has cost."""
-        recorder, experiment = Recorder(keep=True), self.experiment
+        recorder, experiment = Recorder(keep=1), self.experiment
         experiment["schedule"] = self.schedule | longer
         scene, _ = begin(experiment, self.r, self.beta)
         return schedule.of(experiment).run(scene, experiment, number, recorder), recorder

@@ -60,7 +60,8 @@ def run_point(
     keep, number = experiment.get("keep_state", False), experiment["particles"]
     watching = _watching(scene, experiment, functions)
     logs = scene.effects.contact_log is not None
-    recorder = Recorder(tell, keep or logs, watching.begin if watching else None, journal)
+    kept = math.inf if keep else int(logs)  # the log is that of the first gas
+    recorder = Recorder(tell, kept, watching.begin if watching else None, journal)
     if initial:
         check_initial(initial, experiment, scene)
     found = schedule.of(experiment).run(scene, experiment, seed, recorder, initial)

@@ -100,14 +100,14 @@ class Recorder:
     def __init__(
         self,
         tell: Callable[[float, int], None] | None = None,
-        keep: bool = False,
+        keep: float = 0,
         begin: "Callable[[Gas], None] | None" = None,
         journal: "Journal | None" = None,
     ) -> None:
         self.seconds = 0.0
         self.collisions = 0
         self.touched = 0
-        self.gases: list[Gas] = []  # all that it has seen begin, if it is to `keep` them
+        self.gases: list[Gas] = []  # the first that it has seen begin, so many as it is to `keep`
         self.journal = journal  # where gases keep how far they are
         self._tell, self._keep, self._begin = tell, keep, begin
         self._begun = 0.0, 0  # time and collisions at which the present gas has begun
@@ -119,7 +119,7 @@ class Recorder:
         self._compiled = False
         if stage := getattr(self._tell, "stage", None):
             stage("compiling")
-        if self._keep:
+        if len(self.gases) < self._keep:
             self.gases.append(gas)
         if self._begin:
             self._begin(gas)
