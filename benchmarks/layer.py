@@ -1,13 +1,14 @@
 """The kernel beside an event-driven program in C: a layer of rough spheres on a shaken floor.
 
-    python -m benchmarks.layer PROGRAM
+    python -m benchmarks.layer PROGRAM [--runs 12] [--widths 30 100]
 
 The layer is case b of Bizon et al., Phys. Rev. Lett. 80, 57 (1998), Fig. 1: acceleration 3 g,
 frequency 0.44 (g/H)^(1/2), depth H of 5.42 diameters, 30 and 100 diameters wide. PROGRAM is
 called as PROGRAM FILE CYCLES 1 FRAMES. FILE has doubles: number, width, amplitude and angular
 frequency of the floor, friction, beta, time, then position, velocity and spin of each sphere, with
 a = m = g = 1. After each cycle it prints, among others, "cpu SECONDS" and "col CONTACTS" so far.
-It and the kernel run in turns, from the same states, on one core.
+It and the kernel run in turns, from the same states, on one core. Each pair has another state, with
+velocities that differ by TOUCH, so that numbers of contacts scatter as far as chaos lets them.
 """
 
 import argparse
@@ -30,7 +31,8 @@ from roughgas.scene.initial import initial_state
 
 WIDTHS = (30, 100)  # diameters
 SETTLED = 30  # width of the layer that the others are made of
-SETTLING, CYCLES, RUNS = 6, 1, 3
+SETTLING, CYCLES, RUNS = 6, 2, 3
+TOUCH = 1e-9
 KICK = 0.02  # a/T, so that copies go different ways
 ACCELERATION, FREQUENCY, DEPTH = 3.0, 0.44, 2 * 5.42
 PERIOD = math.sqrt(DEPTH) / FREQUENCY
@@ -44,34 +46,39 @@ def main() -> None:
     """Print a line for each width."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("program", type=Path)
-    program = parser.parse_args().program.resolve()
-    settled = settle()
-    print("| spheres | roughgas / C | roughgas | C | bytes a sphere |\n|" + " --- |" * 5)
-    for width in WIDTHS:
+    parser.add_argument("--runs", type=int, default=RUNS)
+    parser.add_argument("--widths", type=int, nargs="+", default=WIDTHS, help="diameters")
+    options = parser.parse_args()
+    program, settled, rng = options.program.resolve(), settle(), np.random.default_rng(3)
+    head = "spheres | roughgas / C | roughgas | C | contacts | of C | bytes a sphere"
+    print(f"| {head} |\n|" + " --- |" * 7)
+    for width in options.widths:
         rows = widened(settled, width)
-        pairs = [(rate_of_kernel(rows, width), rate_of(program, rows, width)) for _ in range(RUNS)]
-        ours, theirs = (statistics.median(column) for column in zip(*pairs, strict=True))
+        runs: list = [[], []]
+        for _ in range(options.runs):
+            touched = rows.copy()
+            touched[:, 3:6] *= 1.0 + TOUCH * rng.standard_normal((len(rows), 3))
+            runs[0].append(run_here(touched, width))
+            runs[1].append(run_in(program, touched, width))
+        ours, theirs = (statistics.median(n / s for n, s in column) for column in runs)
+        ratio = statistics.median(a[0] / a[1] * b[1] / b[0] for a, b in zip(*runs, strict=True))
+        contacts = [mean_of([n for n, _ in column]) for column in runs]
         size = sum(memory_of(state_of(rows, width)[1]))
-        line = f"{len(rows):,} | {ours / theirs:.2f} | {ours:.3g} | {theirs:.3g} | {size:.0f}"
+        line = f"{len(rows):,} | {ratio:.2f} | {ours:.3g} | {theirs:.3g}"
+        line += f" | {contacts[0]} | {contacts[1]} | {size:.0f}"
         print(f"| {line} |", flush=True)
 
 
 def experiment(number: int, width: float) -> dict:
     """The settings of a layer so many diameters wide."""
     material = {"restitution": "particles", "roughness": "particles"}
-    losses = np.linspace(0.0, 1.0, 32)
-    table = {
-        "speed": (FASTEST * losses ** (4.0 / 3.0)).tolist(),
-        "restitution": (1.0 - (1.0 - SLOWEST) * losses).tolist(),
-        "reference": FASTEST,
-    }
     floor = {"amplitude": 2.0 * AMPLITUDE, "period": PERIOD, "wave": "sine"}
     effects = {
         "spin": {"inertia": 0.4},
         "gravity": {"acceleration": 1.0},
         "floor": floor | material,
         "friction": {"mu": FRICTION},
-        "restitution_table": table,
+        "power_law": {"speed": FASTEST, "exponent": 0.75, "least": SLOWEST},
     }
     sides = {f"{side}_wall": material for side in ("left", "right", "front", "back")}
     box = [2.0 * width, 2.0 * width, "open"]
@@ -105,15 +112,21 @@ def state_of(rows, width):
     return scene, new_state(scene, *np.hsplit(rows, 3))
 
 
-def rate_of_kernel(rows: np.ndarray, width: float) -> float:
-    """Contacts per second of CPU time, over CYCLES."""
+def mean_of(contacts: list[float]) -> str:
+    """Their mean, with its standard error."""
+    error = statistics.stdev(contacts) / math.sqrt(len(contacts)) if len(contacts) > 1 else math.nan
+    return f"{statistics.fmean(contacts):.5g} +- {error:.1g}"
+
+
+def run_here(rows: np.ndarray, width: float) -> tuple[float, float]:
+    """Contacts, and seconds of CPU time, of CYCLES."""
     scene, state = state_of(rows, width)
     begin = time.process_time()
     advance(scene, state, time=CYCLES * PERIOD)
-    return float(state.counts[COLLISIONS]) / (time.process_time() - begin)
+    return float(state.counts[COLLISIONS]), time.process_time() - begin
 
 
-def rate_of(program: Path, rows: np.ndarray, width: float) -> float:
+def run_in(program: Path, rows: np.ndarray, width: float) -> tuple[float, float]:
     """The same of the program."""
     head = [len(rows), 2.0 * width, AMPLITUDE, OMEGA, FRICTION, BETA, 0.0]
     with tempfile.TemporaryDirectory() as folder:
@@ -121,7 +134,7 @@ def rate_of(program: Path, rows: np.ndarray, width: float) -> float:
         command = [program, "layer", str(CYCLES), "1", "frames"]
         ran = subprocess.run(command, cwd=folder, check=True, capture_output=True, text=True)
     seconds, contacts = re.findall(r"cpu (\S+) col (\d+)", ran.stdout)[-1]
-    return float(contacts) / float(seconds)
+    return float(contacts), float(seconds)
 
 
 if __name__ == "__main__":
