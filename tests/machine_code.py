@@ -31,8 +31,8 @@ def sections(kernel, more=None):
     run(state, scene, 0)
     wanted = numba.typeof(state), numba.typeof(scene)
     signature = next(one for one in record.dispatcher.signatures if one[:2] == wanted)
-    key = record.dispatcher._cache._index_key(signature, cpu_target.target_context.codegen())
-    (_, _, (compiled, _)), *_ = record.dispatcher._cache._cache_file.load(key)
+    codegen = cpu_target.target_context.codegen()
+    (_, _, (compiled, _)), *_ = record.dispatcher._cache.read(signature, codegen)
     found = {one.name(): one.data() for one in llvm.ObjectFileRef.from_data(compiled).sections()}
     kinds = (b".text", b".ltext", b".rodata.cst")
     return {name.decode(): bits for name, bits in found.items() if name and name.startswith(kinds)}

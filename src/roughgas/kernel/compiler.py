@@ -16,16 +16,15 @@ tests/kernel/test_compiler.py:
   a state for a call from Python takes more code, and time to compile it, than most functions do;
 - `_numba_type_`: how a value tells its type;
 - `_compiler._get_implementation`: a function is written for types before it is compiled;
-- `Passes`: passes of numba that find nothing to do in a function that is written for types;
+- `Passes`, `_ENFORCING`: passes of numba, and analyses between them, that find nothing to do in a
+  function that is written for types;
 - `Library`, `set_env`: machine code is made of a kernel, and not of each function in it besides;
 - the types and values of a Reference (kernel/reference.py): a state and a scene in memory;
 - `event.start_event`, `end_event`: a tenth of the time went into telling of locks and passes;
-- `_cache`, the classes of numba.core.caching, `rtsys`: to load a kernel without setting up the
-  compiler, to share it among copies of the project, to seal files with a checksum, to have one
-  writer at a time.
+- `_cache`, `CompileResult`, `rtsys`: to load a kernel without setting up the compiler, to share it
+  among copies of the project, to seal files with a checksum.
 """
 
-import fcntl
 import functools
 import gc
 import hashlib
@@ -33,24 +32,21 @@ import os
 import pickle
 import sys
 import tempfile
-from contextlib import contextmanager, suppress
 from pathlib import Path
 
 import numba
+from llvmlite.binding import parse_assembly
 from numba.core import event
-from numba.core.caching import (
-    CompileResultCacheImpl,
-    FunctionCache,
-    IndexDataCacheFile,
-    _CacheLocator,
-)
+from numba.core.cgutils import normalize_ir_text
 from numba.core.codegen import JITCodeLibrary
-from numba.core.compiler import CompilerBase, DefaultPassBuilder
+from numba.core.compiler import CompilerBase, CompileResult, DefaultPassBuilder
 from numba.core.compiler_machinery import PassManager
 from numba.core.registry import cpu_target
 from numba.core.runtime import rtsys
+from numba.core.serialize import dumps
 
 from roughgas.base import InputError
+from roughgas.base.files import whole_file
 from roughgas.kernel import reference, simd
 
 PACKAGE = Path(__file__).resolve().parent.parent
@@ -61,7 +57,6 @@ def source_hash(*rooms):
     """Return a hex digest of the sources in these rooms, by default the kernel's, and of the
     versions of the compilers."""
     import llvmlite
-    import numba
 
     digest = hashlib.sha256(f"numba {numba.__version__} llvmlite {llvmlite.__version__}".encode())
     for room in rooms or ROOMS:
@@ -150,6 +145,7 @@ class Passes(CompilerBase):
     def define_pipelines(self):
         whole = DefaultPassBuilder.define_nopython_pipeline(self.state)
         needed = PassManager("kernel")
+        needed._ENFORCING = False  # no analysis that no pass asks for after each that changes much
         for one, purpose in whole.passes:
             if one.__name__ not in IDLE:
                 needed.add_pass(one, purpose)
@@ -210,20 +206,30 @@ class Library(JITCodeLibrary):
 
     Numba makes machine code of each function that a kernel is put together from, and optimises it
     with all that it calls, though only the kernel's own is ever run. Here only what Python or C
-    calls is optimised and finished, with each function that it calls, directly or not, linked once.
+    calls is optimised and finished, with each function that it calls, directly or not, linked once;
+    of the others LLVM knows nothing until then.
     """
 
-    def _optimize_functions(self, ll_module):
-        ll_module.data_layout = self._codegen._data_layout  # all else once, when all is linked
+    def __init__(self, codegen, name):
+        super().__init__(codegen, name)
+        self._written = []  # llvmlite's modules
+
+    def add_ir_module(self, ir_module):
+        self._written.append(ir_module)
 
     def finalize(self):
-        if any(_is_entry(function.name) for function in self._final_module.functions):
-            self._linking_libraries = _all_below(self, [])
+        if any(_is_entry(one.name) for module in self._written for one in module.functions):
+            below = _all_below(self, [])
+            for library in below:
+                self._reload_init.update(library._reload_init)
+                for module in library._written:
+                    for function in module.functions:
+                        if not function.is_declaration:
+                            function.linkage = function.linkage or "linkonce_odr"
+            for module in [one for library in (self, *below) for one in library._written]:
+                self._final_module.link_in(parse_assembly(normalize_ir_text(str(module))))
+            self._linking_libraries = []
             super().finalize()
-            return
-        for library in self._linking_libraries:
-            self._reload_init.update(library._reload_init)
-        self._finalize_dynamic_globals()
         self._finalized = True
 
 
@@ -267,103 +273,65 @@ def type_of(name):
     return context.resolve_value_type(getattr(room, name))
 
 
-class Folder(_CacheLocator):
-    """Where the compiled code of a function is kept, wherever its source is.
+class Kept:
+    """The compiled code of a function on the disk, a file for each signature and processor.
 
-    Numba takes the path and the content of the source for its content, of which our folders have
-    the hash: every copy of the project would compile anew.
+    Numba's own cache tells code by the path and the time of its source, of whose content our
+    folders have the hash: every copy of the project would compile anew. A file has a checksum at
+    its end: machine code with a hole in it, as a power cut leaves it, would crash every process to
+    come.
     """
 
     def __init__(self, function):
-        self._py_file = function.__code__.co_filename  # which numba names in warnings
-        self.line, self.path = function.__code__.co_firstlineno, str(folder_of(self._py_file))
+        self.cache_path = str(folder_of(function.__code__.co_filename))  # numba asks for it
+        self._name = f"{function.__name__}-{function.__code__.co_firstlineno}"
 
-    @classmethod
-    def from_function(cls, function, file):
-        return cls(function)
+    def _path(self, signature, codegen):
+        about = repr((signature, codegen.magic_tuple(), sys.version_info[:2]))
+        return Path(self.cache_path, f"{self._name}-{_digest(about.encode()).hex()[:16]}.nbc")
 
-    def get_cache_path(self):
-        return self.path
+    def read(self, signature, codegen):
+        """Return what is kept of the code for this signature, None where that is nothing whole.
 
-    def get_source_stamp(self):
-        return None
-
-    def get_disambiguator(self):
-        return str(self.line)
-
-
-class InFolder(CompileResultCacheImpl):
-    _locator_classes = (Folder,)  # type: ignore[assignment]  # of numba, which has a list
-
-
-class Sealed(IndexDataCacheFile):
-    """Numba's files with a checksum at their end; those without a right one count as missing.
-
-    Machine code with a hole in it, as a power cut leaves it, would crash every process to come.
-    Those that somebody else can have written count as missing, too: a pickle runs what it says.
-    """
-
-    def _load_index(self):
-        there = Path(self._index_path).exists()
-        return super()._load_index() if there and is_own(self._index_path) else {}
-
-    @contextmanager
-    def _open_for_write(self, filepath):
-        with super()._open_for_write(filepath) as file:
-            os.fchmod(file.fileno(), 0o600)
-            yield file
-
-    def _dump(self, content):
-        text = super()._dump(content)  # a pickle, which does not mind what comes after it
-        return text + hashlib.sha256(text).digest()
-
-    def _load_data(self, name):
-        if not is_own(self._data_path(name)):
-            raise OSError("written by others")
-        content = Path(self._data_path(name)).read_bytes()
-        text, seal = content[:-32], content[-32:]
-        if hashlib.sha256(text).digest() != seal:
-            raise OSError("damaged")
-        return pickle.loads(text)
-
-
-class Kept(FunctionCache):
-    """The compiled code of a function on the disk."""
-
-    _impl_class = InFolder
-
-    def __init__(self, function):
-        super().__init__(function)
-        self._cache_file = Sealed(self.cache_path, self._impl.filename_base, source_stamp=None)
+        Code that somebody else can have written counts as missing, too: a pickle runs what it says.
+        """
+        path = self._path(signature, codegen)
+        try:
+            content = path.read_bytes() if is_own(path) else b""
+            text, seal = content[:-32], content[-32:]
+            of, reduced = pickle.loads(text) if _digest(text) == seal else (None, None)
+        except Exception:  # a pickle of other versions may raise whatever it likes
+            return None
+        return reduced if of == signature else None
 
     def load_overload(self, signature, target):
         """Load compiled code without setting up the compiler before.
 
         Numba first imports and registers all that it can compile, which takes three times as long
-        as loading. Where nothing is found, or nothing whole, compiling begins with that anyway.
+        as loading. Where nothing is found compiling begins with that anyway.
         """
         rtsys.initialize(target)  # which the loaded code takes its arguments apart with
-        try:
-            return self._load_overload(signature, target)
-        except Exception:  # a damaged pickle may raise whatever it likes
-            with suppress(OSError):
-                self.flush()
-            return None
+        reduced = self.read(signature, target.codegen())
+        return None if reduced is None else CompileResult._rebuild(target, *reduced)
 
     def save_overload(self, signature, compiled):
-        """Save compiled code while no other process does.
+        """Save compiled code, at once and whole.
 
-        Numba reads its index, picks a free file number and writes both: two writers could pick the
-        same number, and one of them would later load the other's code. Where nothing can be written
-        (a full disk) the process goes on with what it has compiled, and says so.
+        Where nothing can be written (a full disk) the process goes on with what it has compiled,
+        and says so.
         """
-        folder = Path(self.cache_path)
+        if compiled.library.has_dynamic_globals:  # addresses of this process
+            return
+        text = dumps((signature, compiled._reduce()))
+        path = self._path(signature, compiled.library.codegen)
         try:
-            folder.mkdir(parents=True, exist_ok=True)
-            with (folder / "lock").open("w") as lock:
-                with suppress(OSError):  # some network disks have no locks
-                    fcntl.flock(lock, fcntl.LOCK_EX)
-                super().save_overload(signature, compiled)
+            with whole_file(path) as draft:
+                draft.touch(0o600)
+                draft.write_bytes(text + _digest(text))
         except OSError as error:
-            said = f"roughgas: warning: {folder}: {error.strerror}: the kernel is not kept"
+            said = f"roughgas: warning: {path.parent}: {error.strerror}: the kernel is not kept"
             print(said, file=sys.stderr)
+
+
+def _digest(text):
+    return hashlib.sha256(text).digest()
