@@ -23,6 +23,7 @@ from roughgas.kernel.mathematics import (
     least,
     load,
     multiply_add,
+    numbers_in,
     order,
     root,
     sine_and_cosine,
@@ -148,7 +149,7 @@ def test_arithmetic_of_lanes_is_that_of_numbers():
 
 @entry
 def _least_and_gather(a, rows, places, out):
-    store(out, 0, 0, gather(rows, 1, places, 0, EIGHT))
+    store(out, 0, 0, gather(rows, 1, numbers_in(places, 0, EIGHT)))
     return least(load(a, 0, 0, EIGHT)), trailing_zeros(np.uint64(40)), index(3)
 
 

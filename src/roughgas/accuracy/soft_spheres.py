@@ -24,8 +24,7 @@ import numpy as np
 
 from roughgas.base import ROUGHNESS, InputError, Interval
 from roughgas.kernel.jit import compiled, entry, jit
-from roughgas.kernel.particles import periods, spin_of, turn_spin
-from roughgas.kernel.vectors import (
+from roughgas.kernel.mathematics import (
     add_scaled,
     cross_to_spin,
     dot,
@@ -35,6 +34,7 @@ from roughgas.kernel.vectors import (
     subtract,
     write,
 )
+from roughgas.kernel.particles import periods, spin_of, turn_spin
 
 DIAMETER = 2.0
 # Entries of SoftGas.reach

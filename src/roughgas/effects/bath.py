@@ -23,19 +23,16 @@ from roughgas.base import InputError
 from roughgas.effects.drives import first_kicks
 from roughgas.effects.settings import TEMPERATURE, Number, register
 from roughgas.kernel.jit import jit
-from roughgas.kernel.mathematics import gaussian_vector
+from roughgas.kernel.mathematics import add_scaled, gaussian_vector, scale
 from roughgas.kernel.particles import (
-    book_spin,
-    book_velocity,
     enter_box,
     mass_of,
-    set_path,
+    set_path_and_book,
     spin_mass_of,
     spin_of,
-    turn_spin,
+    turn_and_book,
 )
 from roughgas.kernel.state import EXPONENT, NOBODY
-from roughgas.kernel.vectors import add_scaled, scale
 
 DRAG, POWER, BATH = "[0, 1e+09]", "[0, 1e+12]", TEMPERATURE.replace("(", "[")
 SETTINGS = {
@@ -127,8 +124,7 @@ def resolve_step(bath, index, what, state, scene, i, time):
         size = math.sqrt(bath.noise / mass_of(state.bodies, i))
         noise = gaussian_vector(state.random, before, size)
         after = add_scaled(after, noise, 1.0)
-    set_path(state, scene, i, position, after, time)
-    book_velocity(before, after, state.bodies, i, state.ledger[0, index])
+    set_path_and_book(state, scene, i, position, before, after, time, state.ledger[0, index])
     if state.spin is not None:
         _turn(bath, index, state, scene, i)
     state.changes[i] += 1
@@ -144,8 +140,7 @@ def _turn(bath, index, state, scene, i):
     if bath.spin_noise is not None:
         size = math.sqrt(bath.spin_noise / spin_mass_of(state.bodies, spin, i))
         turn = add_scaled(turn, gaussian_vector(state.random, before, size), 1.0)
-    turn_spin(state.spin, i, before, turn)
-    book_spin(before, turn, spin, state.bodies, i, state.ledger[0, index])
+    turn_and_book(state, scene, i, before, turn, state.ledger[0, index])
 
 
 STEPS = {"moment": first_kicks, "predict": predict_step, "resolve": resolve_step}

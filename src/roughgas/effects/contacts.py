@@ -41,9 +41,7 @@ from typing import NamedTuple
 from roughgas.base import NeedsError
 from roughgas.effects.settings import Number, Whole, register
 from roughgas.kernel.jit import jit
-from roughgas.kernel.particles import pair_of, reach_of, spin_mass_of, spin_of
-from roughgas.kernel.state import BASE, EXPONENT, NOBODY, ORIGIN
-from roughgas.kernel.vectors import (
+from roughgas.kernel.mathematics import (
     add_scaled,
     cross_to_spin,
     dot,
@@ -53,6 +51,8 @@ from roughgas.kernel.vectors import (
     subtract,
     write,
 )
+from roughgas.kernel.particles import pair_of, reach_of, spin_mass_of, spin_of
+from roughgas.kernel.state import BASE, EXPONENT, NOBODY, ORIGIN
 
 SPIN_SETTINGS = {
     "inertia": Number("q = I/(m a^2), 1/2 for disks and 2/5 for spheres.", "[1e-06, 1]")

@@ -26,19 +26,16 @@ from typing import NamedTuple
 from roughgas.base import InputError, NeedsError
 from roughgas.effects.settings import Number, register
 from roughgas.kernel.jit import jit
-from roughgas.kernel.mathematics import random_vector, uniform
+from roughgas.kernel.mathematics import add_scaled, divide, random_vector, scale, uniform
 from roughgas.kernel.particles import (
-    book_spin,
-    book_velocity,
     enter_box,
     mass_of,
     pair_of,
-    set_path,
+    set_path_and_book,
     spin_mass_of,
     spin_of,
-    turn_spin,
+    turn_and_book,
 )
-from roughgas.kernel.vectors import add_scaled, divide, scale
 
 GRAVITY_SETTINGS = {"acceleration": Number("g, in a/T^2.", "[1e-06, 1e+06]")}
 
@@ -173,8 +170,7 @@ def resolve_kick(thermostat, index, what, state, scene, i, time):
 def _push(state, scene, index, i, kick, sign, time):
     position, before = enter_box(state, scene, i, time)
     after = add_scaled(before, divide(kick, mass_of(state.bodies, i)), sign)
-    set_path(state, scene, i, position, after, time)
-    book_velocity(before, after, state.bodies, i, state.ledger[0, index])
+    set_path_and_book(state, scene, i, position, before, after, time, state.ledger[0, index])
     state.changes[i] += 1
 
 
@@ -185,8 +181,7 @@ def _turn(thermostat, index, state, scene, i):
     turn = random_vector(state.random, before, thermostat.turn)
     if state.bodies is not None:
         turn = scale(turn, math.sqrt(effect.inertia / spin_mass_of(state.bodies, effect, i)))
-    turn_spin(state.spin, i, before, turn)
-    book_spin(before, turn, effect, state.bodies, i, state.ledger[0, index])
+    turn_and_book(state, scene, i, before, turn, state.ledger[0, index])
 
 
 register(

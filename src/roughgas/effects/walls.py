@@ -29,23 +29,27 @@ from roughgas.effects.settings import (
     register,
 )
 from roughgas.kernel import hooks
-from roughgas.kernel.contact import collide_with_wall
-from roughgas.kernel.event_lists import first_contact
+from roughgas.kernel.contact import collide_with_wall, note_contact
+from roughgas.kernel.event_lists import next_contact
 from roughgas.kernel.jit import jit
-from roughgas.kernel.mathematics import gaussian_vector, logarithm, uniform
+from roughgas.kernel.mathematics import (
+    add_scaled,
+    along_axis,
+    gaussian_vector,
+    logarithm,
+    subtract,
+    uniform,
+)
 from roughgas.kernel.particles import (
-    book_spin,
-    book_velocity,
     enter_box,
     mass_of,
     radius_of,
-    set_path,
+    set_path_and_book,
     spin_mass_of,
     spin_of,
-    turn_spin,
+    turn_and_book,
 )
 from roughgas.kernel.state import BOUNDARY_HITS, NOBODY, NOW
-from roughgas.kernel.vectors import add_scaled, along_axis, subtract
 
 # Relative to what is shaken, a/T: any less, and a particle could hit it infinitely often in finite
 # time
@@ -234,7 +238,7 @@ def predict_wall(wall, index, state, scene, i):
         return time + fall(gap, speed, gravity), motions.MEET
     phase = state.phase[index] + time
     if law_of(wall.motion).waits and state.cells is not None:  # few get there before a contact
-        limit = first_contact(state, i)
+        limit = next_contact(state, i)[0]
         search = law_of(wall.motion).search
         wait, what = search(wall.motion, gravity, gap, speed, phase, limit - time)
         return (time + wait if what == motions.MEET else max(time + wait, limit)), what
@@ -297,16 +301,14 @@ def _leave(wall, index, state, scene, i, time):
     random = gaussian_vector(state.random, before, thermal)
     after = tuple(outwards if k == place.axis else random[k] for k in range(len(box)))
     after = add_scaled(after, along_axis(box, place.along, wall.velocity), 1.0)
-    set_path(state, scene, i, position, after, time)
-    book_velocity(before, after, state.bodies, i, state.ledger[0, index])
+    account = state.ledger[0, index]
+    set_path_and_book(state, scene, i, position, before, after, time, account)
     if state.spin is not None:
         w, spin = spin_of(state.spin, box, i), scene.effects.spin
         deviation = math.sqrt(wall.temperature / spin_mass_of(state.bodies, spin, i))
         turn = subtract(gaussian_vector(state.random, w, deviation), w)
-        turn_spin(state.spin, i, w, turn)
-        book_spin(w, turn, spin, state.bodies, i, state.ledger[0, index])
-    state.changes[i] += 1
-    hooks.after_contact(scene.effects, state, i, time)
+        turn_and_book(state, scene, i, w, turn, account)
+    note_contact(state, scene.effects, i, time)
     state.counts[BOUNDARY_HITS] += 1
     return NOBODY
 

@@ -11,10 +11,9 @@ away are considered, and never met. Under shear each row of cells moves with the
 of n by about (k + 1/2)/n - 1/2 of what the images above the box have slid: rows slide past each
 other slowly, and past the images no faster.
 
-The order in which many particles lie in memory: that of their cells.
-
-Neighbours in space are then neighbours in memory, and mostly in the cache when they are needed. As
-particles move they are numbered anew now and then; State.label keeps the numbers of the start.
+Particles lie in memory in the order of their cells: neighbours are mostly in the cache when they
+are needed. As particles move they are numbered anew now and then; State.label keeps the numbers of
+the start.
 """
 
 import math
@@ -22,8 +21,9 @@ import sys
 
 from roughgas.kernel import hooks
 from roughgas.kernel.event_lists import clear_contacts, enter, unlink
+from roughgas.kernel.hooks import present
 from roughgas.kernel.jit import jit
-from roughgas.kernel.mathematics import index
+from roughgas.kernel.mathematics import index, subtract
 from roughgas.kernel.particles import (
     fold_into_box,
     image_numbers,
@@ -33,7 +33,6 @@ from roughgas.kernel.particles import (
 )
 from roughgas.kernel.prediction import decide
 from roughgas.kernel.state import NOBODY, SPAN
-from roughgas.kernel.vectors import subtract
 
 ALL = -1  # every axis
 ORIGIN = 0.38196601125  # where cells begin, in their widths: no lattice has many sites on an edge
@@ -52,9 +51,14 @@ def find_around(state, scene, i, time):
     gravity = hooks.acceleration(scene.effects)
     cells.leave[i] = time + _exit(d, u, cells.widths, gravity)[0]
     slide = slid(hooks.sliding(scene.effects, state), time)
-    outlook = _outlook(slide, cells, state.clock[SPAN])
-    known = state.trajectory[i, 2 * len(d)] < time < agenda.complete_until[i]
-    if not (known and moved_on and _newcomers_in_one_slab(slide, axis)):
+    known = moved_on and state.trajectory[i, 2 * len(scene.box)] < time < agenda.complete_until[i]
+    outlook = state.clock[SPAN]
+    if present(scene.effects, "sliding"):
+        # rows slide past each other by one cell at most; cells of rows that have slid are not in
+        # line: one that moves on along them meets newcomers in part of another outlook
+        outlook = min(outlook, cells.counts[1] * cells.widths[0] / abs(slide[1]))
+        known = known and axis > 1
+    if not known:
         axis = ALL
         clear_contacts(agenda, i, time + outlook)
     number = _collect(state, i, slide, outlook, axis, step)
@@ -73,15 +77,9 @@ def settle(state, scene, i, time):
         place = math.floor(position[k] / cells.widths[k] - ORIGIN)
         home = home * cells.counts[k] + wrapped(place, cells.counts[k])
     cells.home[i] = home
-    _find_column(slide, state, scene, i, time)
+    _find_column(state, scene, i, time)
     cells.leave[i] = math.inf
-    _enter(cells, i, cells.home[i])
-
-
-@jit
-def _enter(cells, i, home):
-    cells.home[i] = home
-    enter(cells.first, cells.following, home, i)
+    enter(cells.first, cells.following, cells.home[i], i)
 
 
 @jit
@@ -91,7 +89,9 @@ def _in_cell(state, scene, i, time):
     position, velocity = position_and_velocity(state, scene, i, time)
     slide = slid(hooks.sliding(scene.effects, state), time)
     position, velocity = _beside_row(slide, cells, cells.home[i], position, velocity)
-    d = subtract(position, middle_of(cells.widths, places(cells.counts, cells.home[i])))
+    place, widths = places(cells.counts, cells.home[i]), cells.widths
+    middle = tuple(widths[k] * (place[k] + ORIGIN + 0.5) for k in range(len(widths)))
+    d = subtract(position, middle)
     return shifted(d, velocity, image_numbers(d, cells.periods, slide), cells.periods, slide)
 
 
@@ -114,12 +114,6 @@ def places(counts, home):
     if len(counts) == 2:
         return home % counts[0], home // counts[0]
     return home % counts[0], home // counts[0] % counts[1], home // (counts[0] * counts[1])
-
-
-@jit
-def middle_of(widths, places):
-    """Return the position of the middle of a cell."""
-    return tuple(widths[k] * (places[k] + ORIGIN + 0.5) for k in range(len(widths)))
 
 
 @jit
@@ -164,8 +158,8 @@ def _move_on(state, scene, i, time):
     unlink(cells.first, cells.following, cells.home[i], i)
     cells.home[i] = _next_to(cells.counts, cells.home[i], axis, step)
     if axis == 1:
-        _find_column(hooks.sliding(scene.effects, state), state, scene, i, time)
-    _enter(cells, i, cells.home[i])
+        _find_column(state, scene, i, time)
+    enter(cells.first, cells.following, cells.home[i], i)
     return axis, step
 
 
@@ -179,38 +173,20 @@ def _next_to(counts, home, axis, step):
 
 
 @jit
-def _find_column(slide, state, scene, i, time):
-    """Correct the column of a particle's home, which is in the right row: rows have slid."""
-    if slide is None:
-        return
-    cells = state.cells
-    d, _ = _in_cell(state, scene, i, time)
-    place = cells.home[i] % cells.counts[0]
-    moved = (place + round(d[0] / cells.widths[0])) % cells.counts[0]
-    cells.home[i] += moved - place
+def _find_column(state, scene, i, time):
+    """Correct the column of a particle's home, which is in the right row, if rows have slid."""
+    if present(scene.effects, "sliding"):
+        cells = state.cells
+        d, _ = _in_cell(state, scene, i, time)
+        place = cells.home[i] % cells.counts[0]
+        moved = (place + round(d[0] / cells.widths[0])) % cells.counts[0]
+        cells.home[i] += moved - place
 
 
 @jit
 def wrapped(place, count):
     """Return a place that is up to one period off, brought back."""
     return place + count if place < 0 else place - count if place >= count else place
-
-
-@jit
-def _outlook(slide, cells, longest):
-    """Return for how long neighbours are found: rows slide past each other by one cell at most."""
-    if slide is None:
-        return longest
-    return min(longest, cells.counts[1] * cells.widths[0] / abs(slide[1]))
-
-
-@jit
-def _newcomers_in_one_slab(slide, axis):
-    """Return whether one that moves on along an axis meets newcomers in one slab of cells only.
-
-    Cells of rows that have slid are not in line: it has part of another outlook then.
-    """
-    return True if slide is None else axis > 1
 
 
 @jit
@@ -313,20 +289,14 @@ def _settle_all(state, scene, time):
 
 @jit
 def _exchange(state, i, j):
-    bodies, moments = state.bodies, state.moments
+    bodies = state.bodies
     _exchange_rows(state.trajectory, i, j)
     if state.spin is not None:
         _exchange_rows(state.spin, i, j)
     if bodies is not None:
-        _exchange_entries(bodies.radius, i, j)
-        _exchange_entries(bodies.mass, i, j)
-        _exchange_entries(bodies.inertia, i, j)
-        _exchange_entries(bodies.species, i, j)
-    for k in range(len(moments)):
-        if moments[k] is not None:
-            _exchange_entries(moments[k], i, j)
-    _exchange_entries(state.changes, i, j)
-    _exchange_entries(state.label, i, j)
+        _exchange_entries((bodies.radius, bodies.mass, bodies.inertia, bodies.species), i, j)
+    _exchange_entries(state.moments, i, j)
+    _exchange_entries((state.changes, state.label), i, j)
 
 
 @jit
@@ -336,5 +306,7 @@ def _exchange_rows(array, i, j):
 
 
 @jit
-def _exchange_entries(array, i, j):
-    array[i], array[j] = array[j], array[i]
+def _exchange_entries(arrays, i, j):
+    for k in range(len(arrays)):
+        if arrays[k] is not None:
+            arrays[k][i], arrays[k][j] = arrays[k][j], arrays[k][i]

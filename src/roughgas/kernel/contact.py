@@ -14,9 +14,18 @@ import math
 from typing import Any, NamedTuple
 
 from roughgas.kernel import hooks
+from roughgas.kernel.hooks import present
 from roughgas.kernel.jit import jit
+from roughgas.kernel.mathematics import (
+    add_scaled,
+    cross_to_spin,
+    divide,
+    dot,
+    scale,
+    spin_cross,
+    subtract,
+)
 from roughgas.kernel.particles import (
-    book_spin,
     enter_box,
     image_numbers,
     mass_of,
@@ -28,7 +37,7 @@ from roughgas.kernel.particles import (
     shifted,
     slid,
     spin_of,
-    turn_spin,
+    turn_and_book,
 )
 from roughgas.kernel.state import (
     BOUNDARY_HITS,
@@ -39,15 +48,6 @@ from roughgas.kernel.state import (
     SPENT,
     TOUCHED,
     TYPICAL_SPEED,
-)
-from roughgas.kernel.vectors import (
-    add_scaled,
-    cross_to_spin,
-    divide,
-    dot,
-    scale,
-    spin_cross,
-    subtract,
 )
 
 # Where r leaves only rounding of the normal velocity, a pair would go on colliding forever:
@@ -85,8 +85,8 @@ def collide(state, scene, i, j, time):
     w = None if spin is None else add_scaled(w_i, w_j, 1.0)
 
     pair = pair_of(bodies, effects.spin, i, j)
-    r, beta = material_of(bodies, scene, i, j)
-    material = _material(effects, r, beta, state, i, j, time, dot(v, n))
+    material = material_of(bodies, scene, i, j)
+    material = _material(effects, material, state, i, j, time, dot(v, n))
     push, turn = response(effects, material, n, v, w, 0.5, pair)
     least = STICKING * state.clock[TYPICAL_SPEED]
     push = _parted(push, n, v, 0.5 * pair.mass, least)
@@ -99,18 +99,16 @@ def collide(state, scene, i, j, time):
     set_path(state, scene, i, position_i, subtract(velocity_i, slowed), time)
     set_path(state, scene, j, position_j, add_scaled(velocity_j, hastened, 1.0), time)
     if spin is not None:
-        turn_i, turn_j = scale(turn, pair.gives[0]), scale(turn, pair.gives[1])
-        turn_spin(spin, i, w_i, turn_i)
-        turn_spin(spin, j, w_j, turn_j)
-        book_spin(w_i, turn_i, effects.spin, bodies, i, account)
-        book_spin(w_j, turn_j, effects.spin, bodies, j, account)
+        turn_and_book(state, scene, i, w_i, scale(turn, pair.gives[0]), account)
+        turn_and_book(state, scene, j, w_j, scale(turn, pair.gives[1]), account)
 
     hooks.transfer(effects, state, dot(push, subtract(v, between)))
     velocities, spins = (velocity_i, velocity_j), (w_i, w_j)
     contact = Contact(i, j, time, n, v, w, push, velocities, spins)
-    hooks.observe_contact(effects, state, contact)
-    _note_contact(state, effects, i, time)
-    _note_contact(state, effects, j, time)
+    for part in present(effects, "observe_contact"):
+        part.own(effects[part.place], part.rank, state, contact)
+    note_contact(state, effects, i, time)
+    note_contact(state, effects, j, time)
     state.counts[COLLISIONS] += 1
     state.counts[LAST_FIRST], state.counts[LAST_SECOND] = state.label[i], state.label[j]
 
@@ -128,8 +126,7 @@ def collide_with_wall(state, scene, index, i, time, material, n, wall_velocity, 
     w = spin_of(spin, scene.box, i)
     v = subtract(velocity, wall_velocity)
     pair = pair_with_wall(bodies, effects.spin, i)
-    r, beta = material
-    material = _material(effects, r, beta, state, i, NOBODY, time, dot(v, n))
+    material = _material(effects, material, state, i, NOBODY, time, dot(v, n))
     push, turn = response(effects, material, n, v, w, 1.0, pair)
     push = _parted(push, n, v, pair.mass, least_departure)
     slowed = divide(push, mass_of(bodies, i))
@@ -137,12 +134,12 @@ def collide_with_wall(state, scene, index, i, time, material, n, wall_velocity, 
     account = state.ledger[0, index]
     account[0] += 0.5 * dot(push, slowed) - dot(velocity, push)
     if spin is not None:
-        turn_spin(spin, i, w, turn)
-        book_spin(w, turn, effects.spin, bodies, i, account)
+        turn_and_book(state, scene, i, w, turn, account)
     velocities, spins = (velocity, wall_velocity), (w, w)
     contact = Contact(i, NOBODY, time, n, v, w, push, velocities, spins)
-    hooks.observe_wall(effects, state, contact)
-    _note_contact(state, effects, i, time)
+    for part in present(effects, "observe_wall"):
+        part.own(effects[part.place], part.rank, state, contact)
+    note_contact(state, effects, i, time)
     state.counts[BOUNDARY_HITS] += 1
     return NOBODY
 
@@ -190,7 +187,8 @@ def response(effects, material, n, v, w, share, pair):
     if w is None:
         return push, None
     slip = subtract(add_scaled(v, n, -speed), spin_cross(w, n))
-    beta = hooks.roughness(effects, beta, r, speed, slip, pair)
+    for part in present(effects, "roughness"):
+        beta = part.own(effects[part.place], part.rank, beta, r, speed, slip, pair)
     turn = share * (1.0 + beta) / (1.0 + pair.inertia)
     return add_scaled(push, slip, pair.bulk * turn), scale(cross_to_spin(n, slip), turn)
 
@@ -203,14 +201,20 @@ def _parted(push, n, v, share, least):
 
 
 @jit
-def _material(effects, r, beta, state, i, j, time, speed):
-    effective = hooks.restitution(effects, r, state, i, j, time, speed)
-    if effective != r:
+def _material(effects, material, state, i, j, time, speed):
+    """Return (r, beta) as the effects have it that change a contact's restitution."""
+    usual, beta = material
+    r = usual
+    for part in present(effects, "restitution"):
+        r = part.own(effects[part.place], part.rank, r, state, i, j, time, speed)
+    if r != usual:
         state.counts[TOUCHED] += 1
-    return effective, beta
+    return r, beta
 
 
 @jit
-def _note_contact(state, effects, i, time):
+def note_contact(state, effects, i, time):
+    """Note that particle i has had a contact."""
     state.changes[i] += 1
-    hooks.after_contact(effects, state, i, time)
+    for part in present(effects, "after_contact"):
+        part.own(effects[part.place], part.rank, state, i, time)

@@ -1,20 +1,11 @@
-"""Lists of events: linked lists, the calendar queue, and each particle's next event.
+"""What comes next: the upcoming events of each particle, and whose event is the earliest.
 
-Among many particles, ask the memory ahead for what the events of the calendar's next days need.
-
-A read that the caches cannot answer takes as long as a hundred additions, and an event has some
-twenty of them. Nothing here has an effect on any result.
-
-Lists of particles, one per cell or per day, as links from each particle to the next one.
-
-Which particle's event comes first: blocks of keys for few particles, a calendar for many.
-
-Upcoming events of each particle: a short list of contacts, a boundary, the end of foresight.
+A particle's events are a short list of contacts, a boundary, and the end of its foresight. The
+earliest of them is its entry in the queue: blocks of keys for few particles, a calendar for many.
 """
 
 import math
 
-from roughgas.kernel.clock import FLIGHTS
 from roughgas.kernel.jit import compiled, jit
 from roughgas.kernel.mathematics import (
     bits,
@@ -39,14 +30,23 @@ from roughgas.kernel.state import (
     TYPICAL_SPEED,
 )
 
+FLIGHTS = 2.5  # mean free flights to foresee
+LAST_DAY = 2.0**62
+EVENTS_A_DAY = 2.0  # this many make a day's list short and empty days rare
+GREATEST_CHANGE = 8.0  # of the days' length at once
+MOST_DAYS = 2.0**40  # in a span: events at one instant tell nothing of how long a day should be
+
+# ------------------------------------------------------------------ what to fetch ahead
+
 
 @jit
 def prefetch_calendar(state, day):
     """Ask the memory for what the events after `day` need, so that they need not wait for it.
 
-    Only what has arrived can tell what is needed next: first the particles that come first and
-    second on a day's list, a day later their partners and the cells around them. Particle 0 stands
-    for one that is not there, since the processor could not foresee a branch.
+    A read that the caches cannot answer takes as long as a hundred additions, and an event has some
+    twenty of them. Only what has arrived can tell what is needed next: first the particles that
+    come first and second on a day's list, a day later their partners and the cells around them.
+    Particle 0 stands for one that is not there, since the processor could not foresee a branch.
     """
     queue = state.queue
     _fetch(state, _first_of(queue, day + 4))
@@ -91,6 +91,9 @@ def _fetch_around(state, i):
         prefetch(state.trajectory, _or_zero(cells.first[cell]))
 
 
+# ------------------------------------------------------------------ linked lists
+
+
 @jit
 def enter(first, following, place, i):
     """Put particle i first on the list of a place."""
@@ -112,10 +115,7 @@ def unlink(first, following, place, i):
     following[before] = following[i]
 
 
-LAST_DAY = 2.0**62
-EVENTS_A_DAY = 2.0  # this many make a day's list short and empty days rare
-GREATEST_CHANGE = 8.0  # of the days' length at once
-MOST_DAYS = 2.0**40  # in a span: events at one instant tell nothing of how long a day should be
+# ------------------------------------------------------------------ the queue
 
 
 @jit
@@ -261,20 +261,15 @@ def clear_calendar(state):
     state.queue.events[0] = -len(state.changes)  # that all is foreseen first takes no time
 
 
+# ------------------------------------------------------------------ events of a particle
+
+
 @jit
 def clear_contacts(agenda, i, complete_until):
     """Forget particle i's contacts; those added next are complete until the given time."""
     for k in range(agenda.slot_time.shape[1]):
         agenda.slot_time[i, k] = math.inf
     agenda.complete_until[i] = complete_until
-
-
-@jit
-def set_contacts(agenda, i, first, times, partners, changes):
-    """Fill particle i's list from slot `first` on with lanes, one to a slot; inf is no contact."""
-    store(agenda.slot_time, i, first, times)
-    store(agenda.slot_partner, i, first, partners)
-    store(agenda.slot_change, i, first, changes)
 
 
 @jit
@@ -296,16 +291,10 @@ def add_contact(agenda, i, time, partner, change):
 
 
 @jit
-def drop_contact(agenda, i, slot):
-    """Take a contact off particle i's list."""
-    agenda.slot_time[i, slot] = math.inf
-
-
-@jit
 def choose_next(state, i):
     """Make the earliest event of particle i its entry in the queue."""
     agenda = state.agenda
-    time, kind = _contact_or_horizon(state, i)
+    time, kind = next_contact(state, i)
     if agenda.boundary_time is not None and agenda.boundary_time[i] < time:
         time, kind = agenda.boundary_time[i], BOUNDARY
     if time == math.inf:
@@ -315,19 +304,14 @@ def choose_next(state, i):
 
 
 @jit
-def first_contact(state, i):
-    """Return when particle i's first contact is foreseen, or foresight ends if that is earlier."""
-    return _contact_or_horizon(state, i)[0]
-
-
-@jit
-def _contact_or_horizon(state, i):
+def next_contact(state, i):
+    """Return (time, kind) of particle i's first contact, or of the end of its foresight if that
+    comes first."""
     return _of_eight(state.agenda, i) if state.cells is None else _of_two(state, i)
 
 
 @jit
 def _of_two(state, i):
-    """Return (time, kind) of the first contact, or of the end of foresight if that comes first."""
     agenda, kind = state.agenda, HORIZON
     time = min(agenda.complete_until[i], state.cells.leave[i])
     for k in range(agenda.slot_time.shape[1]):

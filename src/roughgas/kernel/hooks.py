@@ -9,12 +9,10 @@ Where several effects have a say, each gets the value as those listed before it 
 left it.
 """
 
-import math
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
 from roughgas.kernel.jit import jit, of_types
-from roughgas.kernel.state import NOBODY
 
 CODES = 8  # kinds of event per effect
 
@@ -137,72 +135,7 @@ def sliding(effects, state):
 
 
 @jit
-def restitution(effects, r, state, i, j, time, speed):
-    """Return the normal restitution of a contact."""
-    for part in present(effects, "restitution"):
-        r = part.own(effects[part.place], part.rank, r, state, i, j, time, speed)
-    return r
-
-
-@jit
-def roughness(effects, beta, r, speed, slip, pair):
-    """Return the tangential restitution of a contact."""
-    for part in present(effects, "roughness"):
-        beta = part.own(effects[part.place], part.rank, beta, r, speed, slip, pair)
-    return beta
-
-
-@jit
-def after_contact(effects, state, i, time):
-    """Note that particle i has had a contact."""
-    for part in present(effects, "after_contact"):
-        part.own(effects[part.place], part.rank, state, i, time)
-
-
-@jit
-def observe_contact(effects, state, contact):
-    """Look at the contact of a pair."""
-    for part in present(effects, "observe_contact"):
-        part.own(effects[part.place], part.rank, state, contact)
-
-
-@jit
-def observe_wall(effects, state, contact):
-    """Look at the contact of a particle with a floor or a wall."""
-    for part in present(effects, "observe_wall"):
-        part.own(effects[part.place], part.rank, state, contact)
-
-
-@jit
 def transfer(effects, state, work):
     """Book the energy that particles gain as other images."""
     for part in present(effects, "transfer"):
         part.own(effects[part.place], part.rank, state, work)
-
-
-@jit
-def next_boundary(effects, state, scene, i):
-    """Return (time, code) of the earliest event of particle i that is not a contact of a pair."""
-    time, code = math.inf, 0
-    for part in present(effects, "predict"):
-        when, what = part.own(effects[part.place], part.rank, state, scene, i)
-        if when < time:
-            time, code = when, CODES * part.rank + what
-    return time, code
-
-
-@jit
-def resolve_boundary(effects, code, state, scene, i, time):
-    """Let the effect carry its event out that the code names; return whose velocity has changed."""
-    for part in present(effects, "resolve"):
-        if code // CODES == part.rank:
-            what = code % CODES
-            return part.own(effects[part.place], part.rank, what, state, scene, i, time)
-    return NOBODY
-
-
-@jit
-def set_phases(effects, phase, base):
-    """Set the phases of all effects to those at the absolute time `base`."""
-    for part in present(effects, "phase"):
-        phase[part.rank] = part.own(effects[part.place], part.rank, base)

@@ -1,32 +1,38 @@
-"""The event loop: take the earliest event, carry it out, foresee the next ones."""
+"""The event loop: take the earliest event, carry it out, foresee the next ones; and the clock."""
 
 import math
 
 from roughgas.kernel import hooks
 from roughgas.kernel.cells import arrange, find_around
-from roughgas.kernel.clock import check_collapse, rebase
 from roughgas.kernel.contact import collide
 from roughgas.kernel.event_lists import (
+    FLIGHTS,
     choose_next,
     clear_calendar,
-    drop_contact,
     earliest,
     enter_in_queue,
 )
+from roughgas.kernel.hooks import CODES, present
 from roughgas.kernel.jit import compiled, jit
-from roughgas.kernel.mathematics import index
+from roughgas.kernel.mathematics import dot, index
+from roughgas.kernel.particles import path_of
 from roughgas.kernel.state import (
+    AT_ONCE,
     BASE,
     BOUNDARY,
     COLLISIONS,
     EXTENT,
     HORIZON,
+    INSTANT_END,
+    LONGEST_HORIZON,
     NOBODY,
     NOW,
     PREDICTIONS,
     SINCE_REBASE,
     SPAN,
+    SPENT,
     STALE,
+    TYPICAL_SPEED,
 )
 from roughgas.kernel.sweep import find_by_sweep, redraw_line
 
@@ -34,6 +40,10 @@ REACHED, COLLAPSED, SILENT = range(3)  # how `advance` ends
 # Spans without a collision after which none is waited for any longer: so many in all, divided among
 # the particles, and so many at least. A hundred thousand of a gas of 100, a few seconds.
 SILENCE = 10_000_000, 1000
+CELLS = 16.0  # cells that a particle crosses before all are sorted anew
+INSTANT = 2.0**-30  # of a span; events as close as this count as simultaneous
+COLLAPSE = 10  # simultaneous contacts of particles that hardly approach
+STANDSTILL = 100_000, 10  # simultaneous events, and as many more for each particle
 
 
 @jit
@@ -75,13 +85,12 @@ def execute_event(state, scene, i, kind, time):
     if kind == HORIZON:
         return i, NOBODY
     if agenda.boundary_time is not None and kind == BOUNDARY:
-        code = agenda.boundary_code[i]
-        return i, hooks.resolve_boundary(scene.effects, code, state, scene, i, time)
+        return i, _resolve_boundary(state, scene, i, agenda.boundary_code[i], time)
     kind = index(kind)
     partner = index(int(agenda.slot_partner[i, kind]))
     if agenda.slot_change[i, kind] != state.changes[partner]:  # its path is another by now
         state.counts[STALE] += 1
-        drop_contact(agenda, i, kind)
+        agenda.slot_time[i, kind] = math.inf
         choose_next(state, i)
         return NOBODY, NOBODY
     collide(state, scene, i, partner, time)
@@ -90,17 +99,31 @@ def execute_event(state, scene, i, kind, time):
 
 
 @jit
+def _resolve_boundary(state, scene, i, code, time):
+    """Let an effect carry its event out; return another particle whose velocity has changed."""
+    for part in present(scene.effects, "resolve"):
+        if code // CODES == part.rank:
+            effect = scene.effects[part.place]
+            return part.own(effect, part.rank, code % CODES, state, scene, i, time)
+    return NOBODY
+
+
+@jit
 def predict_events(state, scene, i, time):
     """Predict all events of particle i: its next meeting with a boundary, and its contacts."""
-    agenda = state.agenda
+    agenda, effects = state.agenda, scene.effects
     state.counts[PREDICTIONS] += 1
     if state.cells is None:
         find_by_sweep(state, scene, i, time)
     else:
         find_around(state, scene, i, time)
     if agenda.boundary_time is not None:
-        boundary = hooks.next_boundary(scene.effects, state, scene, i)
-        agenda.boundary_time[i], agenda.boundary_code[i] = boundary
+        first, code = math.inf, 0
+        for part in present(effects, "predict"):
+            when, what = part.own(effects[part.place], part.rank, state, scene, i)
+            if when < first:
+                first, code = when, CODES * part.rank + what
+        agenda.boundary_time[i], agenda.boundary_code[i] = first, code
     choose_next(state, i)
 
 
@@ -144,3 +167,74 @@ def foresee_all(state):
     for i in range(len(state.changes) - 1, -1, -1):
         state.agenda.kind[i] = HORIZON
         enter_in_queue(state, i, state.clock[NOW])
+
+
+@jit
+def check_collapse(state, time):
+    """Note an event at `time`; return False where events accumulate as if time stood still.
+
+    In an inelastic collapse infinitely many contacts of a few particles are made in a finite time,
+    at less and less speed: contacts at almost no speed are its sign. Symmetry can make a few events
+    per particle simultaneous; many more are a fault, which must not hang.
+    """
+    clock, counts = state.clock, state.counts
+    if time > clock[INSTANT_END]:
+        clock[INSTANT_END] = time + INSTANT * clock[SPAN]
+        counts[AT_ONCE] = 0
+        counts[SPENT] = 0
+    counts[AT_ONCE] += 1
+    many = STANDSTILL[0] + STANDSTILL[1] * len(state.changes)
+    return (counts[SPENT] < COLLAPSE) & (counts[AT_ONCE] < many)
+
+
+@jit
+def rebase(state, scene):
+    """Move the base up to the present, by a whole number of spans, and look at the gas afresh.
+
+    A span is a power of two, so that the base stays exact, and about the time in which a typical
+    particle crosses the box, or CELLS cells. Returns how far the base has moved; the times
+    on the agenda still count from the old one.
+    """
+    clock, moments = state.clock, state.moments
+    step = math.floor(clock[NOW] / clock[SPAN]) * clock[SPAN]
+    clock[NOW] -= step
+    clock[INSTANT_END] -= step
+    for i in range(len(state.changes)):
+        state.trajectory[i, 2 * len(scene.box)] -= step
+        for k in range(len(moments)):
+            if moments[k] is not None:
+                moments[k][i] -= step
+    clock[BASE] += step
+    for part in present(scene.effects, "phase"):
+        state.phase[part.rank] = part.own(scene.effects[part.place], part.rank, clock[BASE])
+    _survey(state, scene, step)
+    return step
+
+
+@jit
+def _survey(state, scene, elapsed):
+    clock, counts = state.clock, state.counts
+    number = len(state.changes)
+    total = 0.0
+    slide = hooks.sliding(scene.effects, state)
+    for i in range(number):
+        x, v, _ = path_of(state.trajectory, i, scene.box)
+        v = _beside_flow(slide, scene.box, x, v)
+        total += dot(v, v)
+    speed = math.sqrt(total / number)
+    clock[TYPICAL_SPEED] = speed
+    if speed > 0.0:
+        way = scene.extent
+        if state.cells is not None:
+            way = min(way, CELLS * max(state.cells.widths))
+        clock[SPAN] = math.ldexp(0.5, math.frexp(way / speed)[1])
+    clock[LONGEST_HORIZON] = math.inf
+    if counts[SINCE_REBASE] > number and elapsed > 0.0:
+        clock[LONGEST_HORIZON] = FLIGHTS * elapsed * number / (2.0 * counts[SINCE_REBASE])
+    counts[SINCE_REBASE] = 0
+
+
+@jit
+def _beside_flow(slide, box, x, v):
+    """Return a velocity relative to the mean flow of a sheared gas, up to a constant."""
+    return v if slide is None else (v[0] - slide[1] * (x[1] / box[1] - 0.5),) + v[1:]

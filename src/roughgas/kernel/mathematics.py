@@ -1,4 +1,4 @@
-"""Arithmetic that has the same bits on every machine, of numbers and of vector registers.
+"""Arithmetic that has the same bits on every machine, of numbers, registers and vectors.
 
 Double precision is rounded step by step: sums and products are never fused. Only the sieve
 (sweep.py) uses single precision, where a b + c may be one instruction; its rounding shows in no
@@ -8,6 +8,8 @@ Lanes are several particles at once, one to each lane of a vector register: valu
 that never leave the registers (simd.py tells numba of them), and arrays where the kernel runs as
 plain Python. + - * / < <= > >= == & | abs and the operations below take them lane by lane, with one
 operand a scalar if need be. A machine with narrower registers takes several for one.
+
+Vectors are tuples, of one to three numbers or lanes.
 
 Every libm rounds sine, cosine and logarithm as it likes; here they are sums and products. Angles
 are in turns, whose reduction to an eighth is exact.
@@ -51,17 +53,17 @@ def store(array, row, first, lanes):
 
 
 @Primitive
-def gather(array, column, places, first, count):
-    """Return array[p, column] for each p in places[first:first + count]; singles are widened."""
-    rows = array[places[first : first + (count or BYTES // 8)]]
-    found = rows if array.ndim == 1 else rows[:, column]
-    return found.astype(float) if is_single(found) else found
+def numbers_in(places, first, count):
+    """Return places[first:first + count], which are 32-bit integers, each read by itself: what has
+    just been written one by one, a read of all would have to wait for."""
+    return places[first : first + (count or BYTES // 8)].copy()
 
 
 @Primitive
-def numbers_in(places, first, count):
-    """Return places[first:first + count], which are 32-bit integers."""
-    return places[first : first + (count or BYTES // 8)].copy()
+def gather(array, column, numbers):
+    """Return array[number, column], or array[number], for each number; singles are widened."""
+    found = array[numbers] if array.ndim == 1 else array[numbers, column]
+    return found.astype(float) if is_single(found) else found
 
 
 @Primitive
@@ -86,15 +88,6 @@ def bits(lanes):
 def least(lanes):
     """Return the least of the lanes, whose number is a power of two."""
     return lanes.min()
-
-
-@Primitive
-def append(places, number, lanes, first):
-    """Write the numbers, counted from `first`, of the lanes that hold into places[number:]; return
-    how many places are taken then."""
-    (found,) = np.nonzero(lanes)
-    places[number : number + len(found)] = first + found
-    return number + len(found)
 
 
 @Primitive
@@ -157,6 +150,98 @@ def choose(condition, one, other):
         return select(condition, one, other)
     return one if condition else other
 
+
+@Primitive
+def append(places, number, lanes, first):
+    """Write the numbers, counted from `first`, of the lanes that hold into places[number:]; return
+    how many places are taken then."""
+    (found,) = np.nonzero(lanes)
+    places[number : number + len(found)] = first + found
+    return number + len(found)
+
+
+# ------------------------------------------------------------------ vectors
+
+
+@jit
+def dot(a, b):
+    """Return the scalar product of two vectors of equal length."""
+    total = a[0] * b[0]
+    for k in range(1, len(a)):
+        total = multiply_add(a[k], b[k], total)
+    return total
+
+
+@jit
+def subtract(a, b):
+    """Return the difference a - b of two vectors."""
+    return tuple(a[k] - b[k] for k in range(len(a)))
+
+
+@jit
+def scale(a, s):
+    """Return the vector a times the scalar s."""
+    return tuple(a[k] * s for k in range(len(a)))
+
+
+@jit
+def divide(a, s):
+    """Return the vector a over the scalar s."""
+    return tuple(a[k] / s for k in range(len(a)))
+
+
+@jit
+def add_scaled(a, b, s):
+    """Return a + s b, for vectors a and b and a scalar s."""
+    return tuple(multiply_add(b[k], s, a[k]) for k in range(len(a)))
+
+
+@jit
+def read(array, i, first, like):
+    """Return the components array[i, first:first + len(like)] as a tuple."""
+    return tuple(array[i, first + k] for k in range(len(like)))
+
+
+@jit
+def write(array, i, first, vector):
+    """Store a tuple in array[i, first:first + len(vector)]."""
+    for k in range(len(vector)):
+        array[i, first + k] = vector[k]
+
+
+@jit
+def along_axis(like, axis, s):
+    """Return the vector s along an axis, with as many components as `like`."""
+    return tuple(s if k == axis else 0.0 for k in range(len(like)))
+
+
+@jit
+def spin_cross(w, n):
+    """Return w x n; in the plane w has one component, along the third axis."""
+    if len(w) == 1:
+        return (-w[0] * n[1], w[0] * n[0])
+    return (w[1] * n[2] - w[2] * n[1], w[2] * n[0] - w[0] * n[2], w[0] * n[1] - w[1] * n[0])
+
+
+@jit
+def cross_to_spin(n, g):
+    """Return n x g as a spin: one component in the plane, three in space."""
+    if len(n) == 2:
+        return (n[0] * g[1] - n[1] * g[0],)
+    return spin_cross(n, g)
+
+
+@jit
+def cross_squared(a, b):
+    """Return |a x b|^2, the square of the area that two vectors span."""
+    if len(a) == 2:
+        area = multiply_add(a[0], b[1], -(a[1] * b[0]))
+        return area * area
+    area = cross_to_spin(a, b)
+    return dot(area, area)
+
+
+# ------------------------------------------------------------------ functions
 
 TURN = 6.283185307179586  # 2 pi, and what that lacks
 ROOT_HALF, LN_2 = 0.7071067811865476, 0.6931471805599453

@@ -58,7 +58,13 @@ def new_state(scene, position, velocity, spin, precision=np.float64, rng=None, b
     if state.spin is not None:
         state.spin[:] = spin[order]
     if bodies is not None:
-        _take_bodies(state, bodies, order)
+        for name in OF_BODIES:
+            getattr(state.bodies, name)[:] = getattr(bodies, name)[order]
+        state.bodies.largest[0] = bodies.radius.max()
+        state.bodies.pairs[:] = bodies.pairs
+        if state.sweep is not None:
+            rounded_up = np.nextafter(state.bodies.radius.astype(np.float32), np.float32(np.inf))
+            state.sweep.sizes[0, :number] = rounded_up
     rng = np.random.default_rng(0) if rng is None else rng
     for place, _, moment in hooks.present(scene.effects, "moment"):
         state.moments[place][:] = moment(scene.effects[place], number, rng)
@@ -69,16 +75,6 @@ def new_state(scene, position, velocity, spin, precision=np.float64, rng=None, b
     state.agenda.kind[:] = NOTHING
     state.clock[SPAN] = 1.0
     return state
-
-
-def _take_bodies(state, bodies, order):
-    for name in OF_BODIES:
-        getattr(state.bodies, name)[:] = getattr(bodies, name)[order]
-    state.bodies.largest[0] = bodies.radius.max()
-    state.bodies.pairs[:] = bodies.pairs
-    if state.sweep is not None:
-        rounded_up = np.nextafter(state.bodies.radius.astype(np.float32), np.float32(np.inf))
-        state.sweep.sizes[0, : len(order)] = rounded_up
 
 
 def cell_grid(scene, position, narrowest=NARROWEST):
@@ -101,18 +97,18 @@ def cell_grid(scene, position, narrowest=NARROWEST):
 def _few(scene, number, dimension, precision):
     padded = _whole(number, LANES)
     key = np.full(padded, np.inf)
+    least = np.full(_whole(padded // BLOCK, BLOCK), np.inf)
     fields = _fields(scene, dimension, precision, SLOTS_OF_FEW)
-    arrays = {name: _array(number, *kind) for name, kind in fields.items()}
     return _state(
         scene,
-        arrays | {"key": key},
-        queue=Blocks(keys=key.reshape(-1, BLOCK), least=_least_of_blocks(padded // BLOCK)),
+        number,
+        _arrays(number, fields) | {"key": key},
+        queue=Blocks(keys=key.reshape(-1, BLOCK), least=least.reshape(-1, BLOCK)),
         sweep=Sweep(
             lines=np.full((2 * dimension, padded), np.nan, np.float32),
             sizes=None if scene.effects.species is None else np.zeros((1, padded), np.float32),
         ),
         cells=None,
-        shortlist=_shortlist(number, dimension),
     )
 
 
@@ -124,11 +120,13 @@ def _many(scene, number, dimension, precision, counts, widths):
     here, ahead = ["trajectory", "changes", "following"], [*ahead, "later", "leave"]
     (here if dimension == 2 else ahead).append("home")
     here += [name for name in ("spin", "radius") if dimension == 2 and name in fields]
-    arrays = {name: _array(number, *fields[name]) for name in {*fields}.difference(here, ahead)}
-    for record in (here, ahead):
-        arrays |= _records(number, {name: fields[name] for name in record})
+    records = [{name: fields.pop(name) for name in record} for record in (here, ahead)]
+    arrays = _arrays(number, fields)
+    for record in records:
+        arrays |= _interleaved(number, record)
     return _state(
         scene,
+        number,
         arrays,
         queue=Calendar(
             first=np.full(2 ** (number - 1).bit_length(), NOBODY, np.int32),
@@ -146,7 +144,6 @@ def _many(scene, number, dimension, precision, counts, widths):
             first=np.full(math.prod(counts), NOBODY, np.int32),
             **{name: arrays[name] for name in ("following", "home", "leave")},
         ),
-        shortlist=_shortlist(number, dimension),
     )
 
 
@@ -178,7 +175,7 @@ def _with_moments(effects):
     return [effects._fields[part.place] for part in hooks.present(effects, "moment")]
 
 
-def _state(scene, arrays, **parts):
+def _state(scene, number, arrays, **parts):
     effects = scene.effects
     there = sum(effect is not None for effect in effects)
     moments = {name: arrays[MOMENT + name] for name in _with_moments(effects)}
@@ -195,6 +192,7 @@ def _state(scene, arrays, **parts):
         clock=np.zeros(8),
         counts=np.zeros(12, np.int64),
         agenda=Agenda(**{name: arrays.get(name) for name in Agenda._fields}),
+        shortlist=Shortlist(np.zeros(number + LANES, np.int32), np.zeros((1, TOGETHER))),
         **parts,
     )
 
@@ -224,24 +222,16 @@ def _log(effect, arrays):
     return Log(rows=np.zeros((effect.most, width)), made=np.zeros(1, np.int64))
 
 
-def _shortlist(number, dimension):
-    return Shortlist(found=np.zeros(number + LANES, np.int32), when=np.zeros((1, TOGETHER)))
-
-
-def _least_of_blocks(blocks):
-    return np.full((-(-blocks // BLOCK), BLOCK), np.inf)
-
-
 def _whole(number, unit):
     return -(-number // unit) * unit
 
 
-def _array(number, kind, *width):
-    return np.zeros((number, *width), kind)
+def _arrays(number, fields):
+    return {name: np.zeros((number, *width), kind) for name, (kind, *width) in fields.items()}
 
 
-def _records(number, fields):
-    """Interleave arrays, so that all entries of a particle are in the same cache lines."""
+def _interleaved(number, fields):
+    """Return arrays in which all entries of a particle are in the same cache lines."""
     order = sorted(fields.items(), key=lambda field: -np.dtype(field[1][0]).itemsize)
     sizes = {name: np.dtype(kind).itemsize * math.prod(width) for name, (kind, *width) in order}
     size = _whole(sum(sizes.values()), 8)

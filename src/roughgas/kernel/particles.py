@@ -20,8 +20,15 @@ import numpy as np
 
 from roughgas.kernel import hooks
 from roughgas.kernel.jit import jit
-from roughgas.kernel.mathematics import is_single, multiply_add
-from roughgas.kernel.vectors import add_scaled, dot, read, subtract, subtract_last, write
+from roughgas.kernel.mathematics import (
+    add_scaled,
+    dot,
+    is_single,
+    multiply_add,
+    read,
+    subtract,
+    write,
+)
 
 FIRST_LARGE_32, ONE_32 = np.float32(1.5 * 2.0**23), np.float32(1.0)
 FIRST_LARGE_64 = 1.5 * 2.0**52
@@ -203,33 +210,17 @@ def spin_of(spin, box, i):
 
 @jit
 def turn_spin(spin, i, before, turn):
-    """Store particle i's spin after a contact."""
+    """Let particle i's spin change by `turn`."""
     write(spin, i, 0, add_scaled(before, turn, 1.0))
 
 
 @jit
-def book_velocity(before, after, bodies, i, account):
-    """Enter the translational energy gained, m (v'^2 - v^2)/2, in an account of the ledger."""
-    gained = 0.5 * dot(subtract(after, before), add_scaled(before, after, 1.0))
-    account[0] += mass_of(bodies, i) * gained
-
-
-@jit
-def book_spin(before, turn, effect, bodies, i, account):
-    """Enter the rotational energy gained, m q [w.dw + dw.dw/2], in an account of the ledger."""
+def turn_and_book(state, scene, i, before, turn, account):
+    """Let particle i's spin change by `turn`, and enter the rotational energy gained,
+    m q [w.dw + dw.dw/2], in an account of the ledger."""
+    turn_spin(state.spin, i, before, turn)
     gained = dot(before, turn) + 0.5 * dot(turn, turn)
-    account[1] += spin_mass_of(bodies, effect, i) * gained
-
-
-@jit
-def fallen(position, velocity, elapsed, gravity):
-    """Return position and velocity after `elapsed`, falling along the last axis under gravity."""
-    moved = add_scaled(position, velocity, elapsed)
-    if gravity is None:
-        return moved, velocity
-    drop = 0.5 * gravity * elapsed * elapsed
-    fall = gravity * elapsed
-    return subtract_last(moved, drop), subtract_last(velocity, fall)
+    account[1] += spin_mass_of(state.bodies, scene.effects.spin, i) * gained
 
 
 @jit
@@ -244,8 +235,16 @@ def path_of(trajectory, i, box):
 
 @jit
 def along(path, time, gravity):
-    """Return position and velocity at `time` on a path."""
-    return fallen(path[0], path[1], time - path[2], gravity)
+    """Return position and velocity at `time` on a path; gravity pulls down the last axis."""
+    position, velocity, elapsed = path[0], path[1], time - path[2]
+    moved = add_scaled(position, velocity, elapsed)
+    if gravity is None:
+        return moved, velocity
+    drop, fall, last = 0.5 * gravity * elapsed * elapsed, gravity * elapsed, len(position) - 1
+    return (
+        tuple(moved[k] - drop if k == last else moved[k] for k in range(len(position))),
+        tuple(velocity[k] - fall if k == last else velocity[k] for k in range(len(position))),
+    )
 
 
 @jit
@@ -280,3 +279,12 @@ def set_path(state, scene, i, position, velocity, time):
     write(state.trajectory, i, 0, position)
     write(state.trajectory, i, len(scene.box), velocity)
     state.trajectory[i, 2 * len(scene.box)] = time
+
+
+@jit
+def set_path_and_book(state, scene, i, position, before, after, time, account):
+    """Store particle i's trajectory, whose velocity was `before`, and enter the translational
+    energy gained, m (v'^2 - v^2)/2, in an account of the ledger."""
+    set_path(state, scene, i, position, after, time)
+    gained = 0.5 * dot(subtract(after, before), add_scaled(before, after, 1.0))
+    account[0] += mass_of(state.bodies, i) * gained

@@ -1,12 +1,8 @@
-"""Prediction of contacts: of one pair, and of all pairs that are candidates.
+"""When two particles meet; of all candidates for a contact with one particle, several at a time.
 
-When two particles meet: exact, in double precision, and a function of their paths alone.
-
-The time does not depend on when it is computed, or for which of the two, so that no choice of the
-scheduler can change a trajectory. A path is (position, velocity, time at which they
-hold), and goes on in free flight.
-
-Candidates for a contact with one particle, decided several at a time, one to a lane.
+The time is exact, in double precision, and a function of the two paths alone. It does not depend on
+when it is computed, or for which of the two, so that no choice of the scheduler can change a
+trajectory. A path is (position, velocity, time at which they hold), and goes on in free flight.
 """
 
 import math
@@ -14,12 +10,15 @@ import math
 import numpy as np
 
 from roughgas.kernel import hooks
-from roughgas.kernel.event_lists import add_contact, set_contacts
+from roughgas.kernel.event_lists import add_contact
 from roughgas.kernel.jit import compiled, jit
 from roughgas.kernel.mathematics import (
     REGISTER,
+    add_scaled,
     bits,
     choose,
+    cross_squared,
+    dot,
     gather,
     index,
     lanes_of,
@@ -30,6 +29,7 @@ from roughgas.kernel.mathematics import (
     root,
     smaller,
     store,
+    subtract,
     trailing_zeros,
 )
 from roughgas.kernel.memory import SLOTS_OF_FEW
@@ -45,7 +45,6 @@ from roughgas.kernel.particles import (
     slid,
     speed_limit,
 )
-from roughgas.kernel.vectors import add_scaled, cross_squared, dot, subtract
 
 
 @jit
@@ -127,41 +126,43 @@ def decide(state, scene, i, number, start, end, limit):
     fastest = speed_limit(box, half, 2.0 * largest_of(state.bodies))
     first, more = 0, True
     while more:  # once mostly, and at least once, so that the processor can foresee it
-        others = _paths_of(state.trajectory, state.shortlist.found, first, box)
-        reach = _reaches(state.bodies, state.shortlist.found, i, first)
-        when, unsure = meeting(path, others, box, gravity, slide, start + half, fastest, reach)
+        others = numbers_in(state.shortlist.found, first, REGISTER)
+        paths = _paths_of(state.trajectory, others, box)
+        reach = _reaches(state.bodies, i, others)
+        when, unsure = meeting(path, paths, box, gravity, slide, start + half, fastest, reach)
         listed = order(REGISTER) < number - first
-        unsure = unsure & listed
-        when = _of_any_image(fastest, state, scene, i, path, first, start, end, when, unsure)
-        _note(state, i, first, choose((when <= limit) & listed, when, math.inf))
+        candidates = path, first, listed
+        when = _of_any_image(fastest, state, scene, i, candidates, start, end, when, unsure)
+        _note(state, i, first, others, choose((when <= limit) & listed, when, math.inf))
         first += lanes_of(state.shortlist.when)
         more = first < number
 
 
 @jit
-def _paths_of(trajectory, found, first, box):
-    """Return the paths of the candidates from `first` on."""
+def _paths_of(trajectory, others, box):
+    """Return the paths of other particles, given as lanes."""
     return (
-        tuple(gather(trajectory, k, found, first, REGISTER) for k in range(len(box))),
-        tuple(gather(trajectory, len(box) + k, found, first, REGISTER) for k in range(len(box))),
-        gather(trajectory, 2 * len(box), found, first, REGISTER),
+        tuple(gather(trajectory, k, others) for k in range(len(box))),
+        tuple(gather(trajectory, len(box) + k, others) for k in range(len(box))),
+        gather(trajectory, 2 * len(box), others),
     )
 
 
 @jit
-def _reaches(bodies, found, i, first):
-    """Return the distances at which particle i touches the candidates from `first` on."""
+def _reaches(bodies, i, others):
+    """Return the distances at which particle i touches others, given as lanes."""
     if bodies is None:
         return reach_of(bodies, i, i)
-    return radius_of(bodies, i) + gather(bodies.radius, 0, found, first, REGISTER)
+    return radius_of(bodies, i) + gather(bodies.radius, 0, others)
 
 
 @jit
-def _of_any_image(fastest, state, scene, i, path, first, start, end, when, unsure):
+def _of_any_image(fastest, state, scene, i, candidates, start, end, when, unsure):
     """Return the times of contact, with every image looked at where the nearest may not decide."""
     if fastest is None:
         return when
-    undecided = bits(unsure)
+    path, first, listed = candidates
+    undecided = bits(unsure & listed)
     if undecided == 0:
         return when
     shortlist, box = state.shortlist, scene.box
@@ -192,11 +193,12 @@ def _one_by_one(state, i, first, when):
 
 
 @jit
-def _note(state, i, first, when):
+def _note(state, i, first, others, when):
     """Put contacts with candidates on particle i's list: all at once, where they have slots."""
     if state.cells is not None or first + lanes_of(state.shortlist.when) > SLOTS_OF_FEW:
         _one_by_one(state, i, first, when)
         return
-    found = state.shortlist.found
-    changes = gather(state.changes, 0, found, first, REGISTER)
-    set_contacts(state.agenda, i, first, when, numbers_in(found, first, REGISTER), changes)
+    agenda = state.agenda
+    store(agenda.slot_time, i, first, when)
+    store(agenda.slot_partner, i, first, others)
+    store(agenda.slot_change, i, first, gather(state.changes, 0, others))

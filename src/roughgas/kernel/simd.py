@@ -7,7 +7,6 @@ operand a scalar if need be; comparisons give lanes of booleans.
 """
 
 import inspect
-import math
 import operator
 from typing import Any, NamedTuple
 
@@ -18,8 +17,7 @@ from numba.core.registry import cpu_target
 from numba.core.typing.templates import AbstractTemplate, infer_global, signature
 from numba.extending import intrinsic, lower_builtin, models, register_model
 
-WORD = ir.IntType(64)
-root, larger, smaller = math.sqrt, max, min  # of lanes, too
+BIT, NUMBER, WORD = ir.IntType(1), ir.IntType(32), ir.IntType(64)
 
 
 class Lanes(types.Type):
@@ -34,7 +32,7 @@ class Lanes(types.Type):
 class LanesModel(models.PrimitiveModel):
     def __init__(self, manager, lanes):
         is_truth = lanes.kind == types.boolean
-        one = ir.IntType(1) if is_truth else manager.lookup(lanes.kind).get_value_type()
+        one = BIT if is_truth else manager.lookup(lanes.kind).get_value_type()
         super().__init__(manager, lanes, ir.VectorType(one, lanes.count))
 
 
@@ -54,122 +52,92 @@ class Site(NamedTuple):
         )
         return place if vector is None else self.builder.bitcast(place, vector.as_pointer())
 
-    def alike(self, values, kinds, whole):
-        """Return values with scalars in every lane, if the whole is lanes."""
-        pairs = zip(values, kinds, strict=True)
-        return [self.spread(value, kind, whole) for value, kind in pairs]
-
-    def spread(self, value, kind, lanes):
-        """Return a value in every lane; lanes as they are."""
-        if isinstance(kind, Lanes) or not isinstance(lanes, Lanes):
+    def spread(self, value, kind):
+        """Return a number in every lane of the result, if that is lanes; lanes as they are."""
+        if isinstance(kind, Lanes) or not isinstance(self.result, Lanes):
             return value
-        value = self.context.cast(self.builder, value, kind, lanes.kind)
-        if lanes.kind == types.boolean and value.type.width > 1:
-            value = self.builder.trunc(value, ir.IntType(1))
-        vector = ir.Constant(ir.VectorType(value.type, lanes.count), ir.Undefined)
-        vector = self.builder.insert_element(vector, value, ir.Constant(ir.IntType(32), 0))
-        return self.builder.shuffle_vector(vector, vector, _numbers([0] * lanes.count))
+        value = self.context.cast(self.builder, value, kind, self.result.kind)
+        vector = ir.Constant(ir.VectorType(value.type, self.result.count), ir.Undefined)
+        vector = self.builder.insert_element(vector, value, NUMBER(0))
+        return self.builder.shuffle_vector(vector, vector, _numbers([0] * self.result.count))
 
-    def joined(self, first, value_at):
-        """Return lanes of the values at the places first, first + 1, ..."""
+    def joined(self, values):
+        """Return numbers as lanes."""
         vector = ir.Constant(self.context.get_value_type(self.result), ir.Undefined)
-        for k in range(self.result.count):
-            value = value_at(self.builder.add(first, ir.Constant(first.type, k)))
-            vector = self.builder.insert_element(vector, value, ir.Constant(ir.IntType(32), k))
+        for k, value in enumerate(values):
+            vector = self.builder.insert_element(vector, value, NUMBER(k))
         return vector
 
-    def call(self, name, result, arguments):
-        """Return what one of LLVM's own functions returns."""
+    def call(self, name, result, *arguments, **more):
+        """Return what one of LLVM's functions makes of values, named by the type of the first."""
+        kind = arguments[0].type
+        one = kind.element if isinstance(kind, ir.VectorType) else kind
+        count = f"v{kind.count}" if kind != one else ""
+        name = f"{name}.{count}{one.intrinsic_name}"
         kind = ir.FunctionType(result, [one.type for one in arguments])
         function = cgutils.get_or_insert_function(self.builder.module, kind, name)
-        return self.builder.call(function, arguments)
-
-    def elementary(self, name, *arguments):
-        """Return what one of LLVM's operations makes of values of one type, lane by lane."""
-        kind = arguments[0].type
-        if isinstance(kind, ir.VectorType):
-            name = f"{name}.v{kind.count}{kind.element.intrinsic_name}"
-        else:
-            name = f"{name}.{kind.intrinsic_name}"
-        return self.call(name, kind, arguments)
+        return self.builder.call(function, arguments, **more)
 
 
 def _numbers(values):
-    values = list(values)
-    return ir.Constant(ir.VectorType(ir.IntType(32), len(values)), values)
-
-
-# ------------------------------------------------------------------ operators
+    return ir.VectorType(NUMBER, len(values))(list(values))
 
 
 def _lanes_among(kinds):
     return next((one for one in kinds if isinstance(one, Lanes)), None)
 
 
-def _same(lanes):
-    return lanes
+# ------------------------------------------------------------------ operators
 
 
-def _truth(lanes):
-    return Lanes(types.boolean, lanes.count)
-
-
-def _register(function, result, generate, number):
-    """Teach numba a function of lanes, or of lanes and a scalar.
-
-    result: of a Lanes -> the type returned; generate(site, *vectors) -> LLVM's value.
-    """
+def _operator(function, generate, is_comparison=False):
+    """Teach numba an operator of lanes, or of lanes and a scalar; generate(site, *vectors)."""
 
     @infer_global(function)
     class Typing(AbstractTemplate):
         def generic(self, arguments, keywords):
             lanes = _lanes_among(arguments)
-            if lanes is not None and len(arguments) == number:
-                return signature(result(lanes), *arguments)
+            if lanes is None:
+                return None
+            truth = Lanes(types.boolean, lanes.count)
+            return signature(truth if is_comparison else lanes, *arguments)
 
     def lower(context, builder, signature, arguments):
-        lanes = _lanes_among(signature.args)
-        site = Site(context, builder, signature.args, lanes)
-        return generate(site, *site.alike(arguments, signature.args, lanes))
+        kinds = signature.args
+        site = Site(context, builder, kinds, _lanes_among(kinds))
+        return generate(site, *map(site.spread, arguments, kinds))
 
-    lower_builtin(function, *[Lanes] * number)(lower)
-    if number == 2:
-        for scalar in (types.Number, types.Boolean):
-            lower_builtin(function, Lanes, scalar)(lower)
-            lower_builtin(function, scalar, Lanes)(lower)
+    for kinds in ((Lanes,), (Lanes, Lanes), (Lanes, types.Number), (types.Number, Lanes)):
+        lower_builtin(function, *kinds)(lower)
 
 
-def _instruction(name):
-    return lambda site, *vectors: getattr(site.builder, name)(*vectors)
-
-
-def _compare(sign):
-    def generate(site, one, other):
-        if isinstance(site.result.kind, types.Float):
-            return site.builder.fcmp_ordered(sign, one, other)
-        return site.builder.icmp_signed(sign, one, other)
+def _instruction(of_floats, of_integers):
+    def generate(site, *vectors):
+        is_float = isinstance(site.result.kind, types.Float)
+        return getattr(site.builder, of_floats if is_float else of_integers)(*vectors)
 
     return generate
 
 
-def _of_two(sign):
-    """As numba has it for scalars: the second where it is less (or more), else the first."""
-    return lambda site, one, other: site.builder.select(
-        _compare(sign)(site, other, one), other, one
-    )
+def _compare(sign):
+    def generate(site, one, other):
+        is_float = isinstance(getattr(site.result, "kind", site.result), types.Float)
+        compare = site.builder.fcmp_ordered if is_float else site.builder.icmp_signed
+        return compare(sign, one, other)
+
+    return generate
 
 
-for _name, _made in {"add": "fadd", "sub": "fsub", "mul": "fmul", "truediv": "fdiv"}.items():
-    _register(getattr(operator, _name), _same, _instruction(_made), 2)
-for _name, _made in {"lt": "<", "le": "<=", "gt": ">", "ge": ">=", "eq": "=="}.items():
-    _register(getattr(operator, _name), _truth, _compare(_made), 2)
-_register(operator.and_, _same, _instruction("and_"), 2)
-_register(operator.or_, _same, _instruction("or_"), 2)
-_register(operator.neg, _same, _instruction("fneg"), 1)
-_register(max, _same, _of_two(">"), 2)
-_register(min, _same, _of_two("<"), 2)
-_register(abs, _same, lambda site, vector: site.elementary("llvm.fabs", vector), 1)
-_register(math.sqrt, _same, lambda site, vector: site.elementary("llvm.sqrt", vector), 1)
+_operator(operator.add, _instruction("fadd", "add"))
+_operator(operator.sub, _instruction("fsub", "sub"))
+_operator(operator.mul, _instruction("fmul", "mul"))
+_operator(operator.truediv, _instruction("fdiv", ""))
+_operator(operator.neg, _instruction("fneg", "neg"))
+_operator(operator.and_, _instruction("", "and_"))
+_operator(operator.or_, _instruction("", "or_"))
+_operator(abs, lambda site, vector: site.call("llvm.fabs", vector.type, vector))
+for _name, _sign in {"lt": "<", "le": "<=", "gt": ">", "ge": ">=", "eq": "=="}.items():
+    _operator(getattr(operator, _name), _compare(_sign), is_comparison=True)
 
 # ------------------------------------------------------------------ operations
 
@@ -186,7 +154,10 @@ def operation(result):
             passed = [types.intp if type(one) is types.Integer else one for one in kinds]
 
             def lower(context, builder, signature, values):
-                return generate(Site(context, builder, signature.args, returned), *values)
+                site = Site(context, builder, signature.args, returned)
+                if result is _last_lanes:
+                    values = map(site.spread, values, site.kinds)
+                return generate(site, *values)
 
             return returned(*passed), lower
 
@@ -194,6 +165,15 @@ def operation(result):
         return intrinsic(prefer_literal=True)(define)
 
     return decorate
+
+
+def _last_lanes(*kinds):
+    """Return the type of what is done lane by lane, to numbers if there are no lanes."""
+    return _lanes_among(kinds[::-1]) or kinds[-1]
+
+
+def _number(*kinds):
+    return types.intp
 
 
 def register_bytes():
@@ -204,6 +184,10 @@ def register_bytes():
 def _side_by_side(kind, count, width=None):
     """Return as many lanes as are asked for; REGISTER is as many as a vector register has."""
     return Lanes(kind, count.literal_value or register_bytes() * 8 // (width or kind.bitwidth))
+
+
+def _wide(kind):
+    return types.float64 if kind == types.float32 else kind
 
 
 @operation(lambda array, row, first, count: _side_by_side(array.dtype, count))
@@ -231,37 +215,41 @@ def store(site, array, row, first, lanes):
     return site.context.get_dummy_value()
 
 
-def _widened(kind):
-    return types.float64 if kind == types.float32 else kind
-
-
-@operation(lambda array, j, places, k, count: _side_by_side(_widened(array.dtype), count, 64))
-def gather(site, array, column, places, first, count):
-    kind = site.kinds[0]
-
-    def value_at(k):
-        place = site.builder.load(site.pointer(site.kinds[2], places, [k]))
-        indices = [site.builder.zext(place, WORD), column][: kind.ndim]
-        value = site.builder.load(site.pointer(kind, array, indices))
-        return site.context.cast(site.builder, value, kind.dtype, site.result.kind)
-
-    return site.joined(first, value_at)
-
-
 @operation(lambda places, first, count: _side_by_side(types.int32, count, 64))
 def numbers_in(site, places, first, count):
-    pointer = site.pointer
-    return site.joined(first, lambda k: site.builder.load(pointer(site.kinds[0], places, [k])))
+    here = [site.builder.add(first, first.type(k)) for k in range(site.result.count)]
+    pointers = [site.pointer(site.kinds[0], places, [place]) for place in here]
+    return site.joined(map(site.builder.load, pointers))
 
 
-@operation(lambda condition, one, other: _lanes_among((one, other)))
-def select(site, condition, one, other):
-    return site.builder.select(condition, *site.alike([one, other], site.kinds[1:], site.result))
+@operation(lambda array, column, numbers: Lanes(_wide(array.dtype), numbers.count))
+def gather(site, array, column, numbers):
+    kind, values = site.kinds[0], []
+    for k in range(site.result.count):
+        row = site.builder.zext(site.builder.extract_element(numbers, NUMBER(k)), WORD)
+        value = site.builder.load(site.pointer(kind, array, [row, column][: kind.ndim]))
+        values.append(site.context.cast(site.builder, value, kind.dtype, site.result.kind))
+    return site.joined(values)
 
 
-@operation(lambda *kinds: _lanes_among(kinds) or kinds[0])
-def fused(site, a, b, c):
-    return site.elementary("llvm.fmuladd", *site.alike([a, b, c], site.kinds, site.result))
+lane_by_lane = operation(_last_lanes)
+select = lane_by_lane(lambda site, condition, a, b: site.builder.select(condition, a, b))
+larger = lane_by_lane(lambda site, a, b: site.builder.select(_compare(">")(site, b, a), b, a))
+smaller = lane_by_lane(lambda site, a, b: site.builder.select(_compare("<")(site, b, a), b, a))
+root = lane_by_lane(lambda site, x: site.call("llvm.sqrt", x.type, x))
+fused = lane_by_lane(lambda site, a, b, c: site.call("llvm.fmuladd", a.type, a, b, c))
+trailing_zeros = operation(_number)(lambda site, word: site.builder.cttz(word, BIT(0)))
+
+
+@operation(lambda lanes: lanes.kind)
+def least(site, value):
+    builder, count = site.builder, value.type.count
+    step = count
+    while step > 1:  # a power of two
+        step //= 2
+        other = builder.shuffle_vector(value, value, _numbers([k ^ step for k in range(count)]))
+        value = builder.select(builder.fcmp_ordered("<", other, value), other, value)
+    return builder.extract_element(value, NUMBER(0))
 
 
 @operation(lambda lanes: types.uint64)
@@ -271,49 +259,27 @@ def bits(site, lanes):
 
 @operation(lambda count: _side_by_side(types.intp, count))
 def order(site, count):
-    lanes = site.result.count
-    return ir.Constant(ir.VectorType(WORD, lanes), list(range(lanes)))
+    return ir.VectorType(WORD, site.result.count)(list(range(site.result.count)))
 
 
-@operation(lambda lanes: lanes.kind)
-def least(site, value):
-    lanes = site.kinds[0]
-    step = lanes.count
-    while step > 1:  # a power of two
-        step //= 2
-        others = _numbers(k ^ step for k in range(lanes.count))
-        other = site.builder.shuffle_vector(value, value, others)
-        value = _of_two("<")(site._replace(result=lanes), value, other)
-    return site.builder.extract_element(value, ir.Constant(ir.IntType(32), 0))
+@operation(_number)
+def lanes_of(site, array):
+    return WORD(register_bytes() * 8 // site.kinds[0].dtype.bitwidth)
 
 
-@operation(lambda word: types.intp)
-def trailing_zeros(site, word):
-    return site.builder.cttz(word, ir.Constant(ir.IntType(1), 0))
-
-
-@operation(lambda number: types.intp)
+@operation(_number)
 def index(site, number):
-    is_from_front = site.builder.icmp_signed(">=", number, ir.Constant(number.type, 0))
-    site.call("llvm.assume", ir.VoidType(), [is_from_front])
+    site.builder.assume(site.builder.icmp_signed(">=", number, number.type(0)))
     return number
 
 
 @operation(lambda array, row: types.none)
 def prefetch(site, array, row):
-    kind = site.kinds[0]
-    indices = [row] + [ir.Constant(row.type, 0)] * (kind.ndim - 1)
-    pointer = site.pointer(kind, array, indices, ir.IntType(8))
-    read, near, data = (ir.Constant(ir.IntType(32), number) for number in (0, 3, 1))
-    name = f"llvm.prefetch.{pointer.type.intrinsic_name}"
-    site.call(name, ir.VoidType(), [pointer, read, near, data])
+    indices = [row, WORD(0)][: site.kinds[0].ndim]
+    pointer = site.pointer(site.kinds[0], array, indices, ir.IntType(8))
+    read, near, data = NUMBER(0), NUMBER(3), NUMBER(1)
+    site.call("llvm.prefetch", ir.VoidType(), pointer, read, near, data)
     return site.context.get_dummy_value()
-
-
-@operation(lambda array: types.intp)
-def lanes_of(site, array):
-    count = register_bytes() * 8 // site.kinds[0].dtype.bitwidth
-    return site.context.get_constant(types.intp, count)
 
 
 @operation(lambda places, number, lanes, first: types.intp)
@@ -326,34 +292,30 @@ def append(site, places, number, mask, first):
         part = _numbers(range(k, k + step))
         some = builder.shuffle_vector(mask, mask, part) if step < lanes else mask
         word = builder.zext(builder.bitcast(some, ir.IntType(step)), WORD)
-        base = builder.add(first, ir.Constant(first.type, k))
-        bases = site.spread(base, types.intp, Lanes(types.int32, step))
-        numbers = _packed(site, some, word, bases)
+        packed = site._replace(result=Lanes(types.int32, step))
+        base = packed.spread(builder.add(first, first.type(k)), types.intp)
+        numbers = _packed(site, some, word, base)
         pointer = site.pointer(site.kinds[0], places, [number], numbers.type)
         builder.store(numbers, pointer, align=4)
         number = builder.add(number, builder.ctpop(word))
     return number
 
 
-def _packed(site, mask, word, bases):
-    """Return the numbers of the lanes that hold, in the first lanes, plus `bases`: by an
-    instruction, or from a table."""
-    builder, kind = site.builder, bases.type
+def _packed(site, mask, word, base):
+    """Return the numbers of the lanes that hold, in the first lanes, plus `base`: by an
+    instruction, or from a table of which bits are set in each byte."""
+    builder, kind = site.builder, base.type
     if kind.count == 16:
-        numbers = builder.add(bases, _numbers(range(16)))
+        compress = ir.FunctionType(kind, [kind, kind, mask.type])
         name = "llvm.x86.avx512.mask.compress.v16i32"
-        return site.call(name, kind, [numbers, ir.Constant(kind, None), mask])
-    row = builder.gep(_table(builder.module), [ir.Constant(WORD, 0), word])
-    return builder.add(bases, builder.zext(builder.load(row, align=8), kind))
-
-
-def _table(module):
-    """Return the table of which bits are set in each byte."""
-    kind, name = ir.VectorType(ir.IntType(8), 8), "roughgas.bits_set"
-    if name not in module.globals:
+        function = cgutils.get_or_insert_function(builder.module, compress, name)
+        numbers = builder.add(base, _numbers(range(16)))
+        return builder.call(function, [numbers, ir.Constant(kind, None), mask])
+    row, name = ir.VectorType(ir.IntType(8), 8), "roughgas.bits_set"
+    if name not in builder.module.globals:
         rows = [[k for k in range(8) if byte >> k & 1] for byte in range(256)]
-        rows = [ir.Constant(kind, row + [0] * (8 - len(row))) for row in rows]
-        table = ir.GlobalVariable(module, ir.ArrayType(kind, 256), name)
-        table.initializer = ir.Constant(table.type.pointee, rows)
+        table = ir.GlobalVariable(builder.module, ir.ArrayType(row, 256), name)
+        table.initializer = table.type.pointee([row(one + [0] * (8 - len(one))) for one in rows])
         table.global_constant, table.linkage = True, "internal"
-    return module.globals[name]
+    place = builder.gep(builder.module.globals[name], [WORD(0), word])
+    return builder.add(base, builder.zext(builder.load(place, align=8), kind))

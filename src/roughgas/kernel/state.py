@@ -1,7 +1,7 @@
-"""What changes while a scene is simulated: particles, clock, agenda and the books kept on them.
+"""What changes while a scene is simulated: particles, clock, agenda and energy balance.
 
-Arrays only, in NamedTuples that numba unpacks at compile time. Times are relative to a base that
-is moved along with the simulation (`clock[BASE]`), so that their resolution never wears out.
+Arrays only, in NamedTuples. Times are relative to a base that is moved along with the simulation
+(`clock[BASE]`), so that their resolution never wears out.
 
 The number of particles decides how contacts, and the next event, are found: a few are all swept at
 once (State.sweep, queue Blocks), many are sorted into cells (State.cells, queue Calendar). The

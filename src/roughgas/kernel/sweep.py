@@ -16,9 +16,19 @@ import numpy as np
 from roughgas.kernel import hooks
 from roughgas.kernel.event_lists import clear_contacts
 from roughgas.kernel.jit import jit
-from roughgas.kernel.mathematics import REGISTER, append, lanes_of, load, multiply_add
+from roughgas.kernel.mathematics import (
+    REGISTER,
+    add_scaled,
+    append,
+    cross_squared,
+    dot,
+    lanes_of,
+    load,
+    multiply_add,
+    read,
+    subtract,
+)
 from roughgas.kernel.particles import (
-    exceeds,
     image_numbers,
     largest_of,
     position_and_velocity,
@@ -29,7 +39,6 @@ from roughgas.kernel.particles import (
 )
 from roughgas.kernel.prediction import decide
 from roughgas.kernel.state import EXTENT, LONGEST_HORIZON, SPAN, TYPICAL_SPEED
-from roughgas.kernel.vectors import add_scaled, cross_squared, dot, read, subtract
 
 ROUNDING = 2.0**-24  # half the spacing of single precision just above 1
 ROUNDED_UP = 1.0 + 2.0**-20  # radii in single precision are no less than they are
@@ -136,8 +145,10 @@ def _sweep(
         x, u = shifted(x, u, image_numbers(x, box, slide), box, slide)
         uu = dot(u, u)
         passes = cross_squared(x, u) <= _square(sizes, own, first, square) * uu
-        soon = abs(dot(x, u)) <= multiply_add(uu, reach, spare)
-        number = append(found, number, (passes & soon) | exceeds(uu, limit), first)
+        meets = passes & (abs(dot(x, u)) <= multiply_add(uu, reach, spare))
+        if limit is not None:
+            meets = meets | (uu > limit)
+        number = append(found, number, meets, first)
     return number
 
 

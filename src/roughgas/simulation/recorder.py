@@ -15,8 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from roughgas.base import CollapseError, EndedEarlyError, JammedError, SilentError
-from roughgas.kernel.clock import INSTANT
-from roughgas.kernel.loop import COLLAPSED, REACHED
+from roughgas.kernel.loop import COLLAPSED, INSTANT, REACHED
 from roughgas.kernel.record import Sampling, columns, record
 from roughgas.kernel.state import (
     BASE,

@@ -20,8 +20,8 @@ from roughgas.effects import Effects
 from roughgas.effects.contacts import Friction, Spin
 from roughgas.kernel.contact import response
 from roughgas.kernel.jit import compiled, entry, jit
+from roughgas.kernel.mathematics import add_scaled, dot, read, scale, subtract, write
 from roughgas.kernel.particles import alike, spin_of, turn_spin
-from roughgas.kernel.vectors import add_scaled, dot, read, scale, subtract, write
 from roughgas.theory import arguments, moment_of_inertia
 
 FIRST_MAJORANT = 5.0  # standard deviations of the relative normal velocity; it rises where exceeded
