@@ -12,6 +12,7 @@ from tests.houses import part, statements
 from roughgas.claims import evidence, examine
 from roughgas.claims.evidence import FAILS, HOLDS, NOT_TESTED, QUALIFIED, Sample, beside_theory
 from roughgas.data.point import Point, write_point
+from roughgas.data.reduced import read_reduced
 from roughgas.results.reduce import reduce_points
 
 materials = part("viscoelastic", "judges")
@@ -101,7 +102,7 @@ def test_a_decay_that_species_share_is_no_error_of_their_ratio(tmp_path):
         place = {"seed": seed, "swept_value": 4.0}
         write_point(paths[-1], Point(known, about | place))
     reduce_points(paths, tmp_path / "cooling_masses.nc")
-    gas = evidence.load(tmp_path / "cooling_masses.nc")
+    gas = beside_theory(read_reduced(tmp_path / "cooling_masses.nc"))
     error = np.std(ratios, ddof=1) / 2
     first, second = mixtures._of_theory(gas, "T_tr").values.ravel()
     assert mixtures.temperature_ratio(gas).stderr == pytest.approx([error * first / second])

@@ -17,25 +17,7 @@ from roughgas import base
 from roughgas.base import InputError
 from roughgas.base.files import module_of, write_text
 from roughgas.claims import evidence, paper
-from roughgas.claims.evidence import (
-    AGREE,
-    FAILS,
-    FAR,
-    FEW,
-    HOLDS,
-    LIMIT,
-    NEAR,
-    NOT_TESTED,
-    QUALIFIED,
-    TENDENCY,
-    Finding,
-    NotTestedError,
-    agreement,
-    agreement_in_proportion,
-    load_all,
-    points,
-    text,
-)
+from roughgas.claims.evidence import NOT_TESTED, Finding, NotTestedError, load_all, points, text
 from roughgas.statistics.errors import SIGNIFICANT
 
 OWN = (evidence, paper)
@@ -108,16 +90,16 @@ def _read(path: Path) -> Any:
 def _statement(name: str, row: Mapping[str, Any], modules: tuple[ModuleType, ...]) -> Statement:
     functions = {key: one for module in modules for key, one in vars(module).items()}
     judge = functions[row["judge"]] if "judge" in row else _agrees(row, functions)
-    texts = row["quote"], tuple(row["experiments"]), judge, row["criterion"], row["fixed"]
-    return Statement(name, *texts)
+    experiments = tuple(row["experiments"])
+    return Statement(name, row["quote"], experiments, judge, row["criterion"], row["fixed"])
 
 
 def _agrees(row: Mapping[str, Any], functions: Mapping[str, Any]) -> Callable[..., Finding]:
     """Return the judge of agreement with what `agrees_with` names."""
     of, other = functions[row.get("sample", "deviation")], row["agrees_with"]
     if row.get("in_proportion"):
-        return lambda gas: agreement_in_proportion(gas, other)
-    return lambda *datasets: agreement(of(*datasets), other)
+        return lambda gas: evidence.agreement_in_proportion(gas, other)
+    return lambda *datasets: evidence.agreement(of(*datasets), other)
 
 
 def _size(data: xr.Dataset) -> str:
@@ -132,10 +114,10 @@ def _size(data: xr.Dataset) -> str:
 def examine(statement: Statement, datasets: dict[str, xr.Dataset]) -> Finding:
     """Judge `statement` on `datasets` (by experiment or study), or say why it cannot be judged."""
     missing = [name for name in statement.experiments if name not in datasets]
+    if missing:
+        return Finding(NOT_TESTED, f"No data of {', '.join(missing)}.")
+    used = [datasets[name] for name in statement.experiments]
     try:
-        if missing:
-            raise NotTestedError(f"no data of {', '.join(missing)}")
-        used = [datasets[name] for name in statement.experiments]
         finding = statement.judge(*used)
     except NotTestedError as lack:
         reason = str(lack)
@@ -145,19 +127,13 @@ def examine(statement: Statement, datasets: dict[str, xr.Dataset]) -> Finding:
     aside = sum(data.attrs.get("set_aside", 0) for data in used)
     if not aside:
         return finding
-    return finding.with_note(f"{points(aside)} not known to be in a steady state set aside.")
+    return finding.with_note(f"R of {points(aside)} not known to be in a steady state set aside.")
 
 
 SCHEMA_VERSION = 1
-TOLERANCES = {
-    "agree": AGREE,
-    "limit": LIMIT,
-    "tendency": TENDENCY,
-    "few": FEW,
-    "near": NEAR,
-    "far": FAR,
-    "significant_sigma": SIGNIFICANT,
-}
+LIMITS = ("agree", "limit", "tendency", "few", "near", "far")
+TOLERANCES = {name: getattr(evidence, name.upper()) for name in LIMITS}
+TOLERANCES |= {"significant_sigma": SIGNIFICANT}
 HOW_TO_READ = """\
 How to read it. A number is "value ± standard error (sigma)". Significance and size count
 separately: with small errors a theory that is 2 % off is 20 sigma off and still useful. R agrees
@@ -166,8 +142,8 @@ where it is within {agree:g}, and disagrees beyond {limit:g} where the differenc
 are too large to tell at more than a few points ({few:.0%} of them). Where R spans decades it is
 also judged relative to theory: agreement is qualified where more than a few points differ by
 {near:.0%} of theory, and fails at {far:.0%}. A direction (above, below) needs {tendency:g} in R.
-Points that are not in a steady state are set aside, and counted. docs/claims.md gives the reason
-for each of these numbers, and says what was fixed before the data were seen.
+R of points that are not in a steady state is set aside, and these are counted. docs/claims.md gives
+the reason for each of these numbers, and says what was fixed before the data were seen.
 
 Errors are those of the reduced datasets (`R_stderr`, with `R_dof` degrees of freedom), which pool
 the scatter over seeds with the errors within the runs; `coverage.md` shows how often their
@@ -237,7 +213,7 @@ def _claim(statement: Statement, finding: Finding) -> dict[str, Any]:
 def as_markdown(subject: Subject, findings: list[Finding], scale: str) -> str:
     """Return a table of all verdicts, then the reasons and numbers of each, as Markdown."""
     count = Counter(finding.verdict for finding in findings)
-    summary = ", ".join(f"{one} {count[one]}" for one in (HOLDS, QUALIFIED, FAILS, NOT_TESTED))
+    summary = ", ".join(f"{one} {count[one]}" for one in (*evidence.VERDICTS, NOT_TESTED))
     rows = [(i, *row) for i, row in enumerate(zip(subject.statements, findings, strict=True), 1)]
     head = ("#", subject.quotes, "Deciding number", "Verdict")
     parts = [

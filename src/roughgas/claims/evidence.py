@@ -7,8 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from roughgas.data.netcdf import REDUCED, STUDIES, kind_of, opened, read_groups
-from roughgas.data.reduced import EQUILIBRATED, GRID, read_reduced
+from roughgas.data.reduced import EQUILIBRATED, GRID, read_by_name
 from roughgas.statistics.errors import SIGNIFICANT, Estimate, sum_error
 from roughgas.theory.arguments import NET_SHARE
 from roughgas.theory.prediction import predicted_ratio
@@ -92,17 +91,8 @@ def written(value: float | str) -> str:
 
 def load_all(path: str | Path) -> dict[str, xr.Dataset]:
     """Return the reduced dataset at `path`, beside theory, or all studies in it, by their names."""
-    with opened(path, REDUCED, STUDIES) as file:
-        of_studies = kind_of(file) == STUDIES
-    if of_studies:
-        return read_groups(path)
-    data = load(path)
-    return {data.attrs["experiment"]: data}
-
-
-def load(path: str | Path) -> xr.Dataset:
-    """Return the reduced dataset at `path`, beside theory."""
-    return beside_theory(read_reduced(path))
+    found = read_by_name(path).items()
+    return {name: beside_theory(one) if "experiment" in one.attrs else one for name, one in found}
 
 
 def beside_theory(data: xr.Dataset) -> xr.Dataset:
@@ -218,6 +208,8 @@ HOLDS = "holds"
 QUALIFIED = "holds with a qualification"
 FAILS = "fails"
 NOT_TESTED = "not tested"
+VERDICTS = (HOLDS, QUALIFIED, FAILS)
+"""The most favourable first."""
 
 AGREE = 0.02
 """Difference in R up to which two values agree. Lun's formula and the theory of free cooling differ
@@ -332,7 +324,7 @@ def grade(full: bool, partly: bool) -> str:
 
 def worse(*verdicts: str) -> str:
     """Return the least favourable of some verdicts."""
-    return max(verdicts, key=(HOLDS, QUALIFIED, FAILS).index)
+    return max(verdicts, key=VERDICTS.index)
 
 
 def text(number: Estimate) -> str:

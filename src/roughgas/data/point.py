@@ -63,6 +63,5 @@ def _content(point: Point) -> Content:
     refuse("missing variables of a point", required - set(point.variables))
     refuse("missing attributes of a point", least.attributes - set(point.attributes))
     cooling = CLOCKS[1] in point.variables
-    return Content(
-        described("point", point.variables, cooling, observed=point.observed), point.attributes
-    )
+    found = described("point", point.variables, cooling, observed=point.observed)
+    return Content(found, point.attributes)

@@ -111,7 +111,7 @@ OF_STAGES = (
 STAGED = ("E_trans_series", "R_series", *OF_STAGES[:4], "stage_input")
 """Those that carry an error there."""
 
-REDUCED = {
+_WITHOUT_ERRORS = {
     name: _over_grid(about)
     for name, about in POINT.items()
     if about.over_seeds and about.dims in ((), ("species",))
@@ -153,22 +153,14 @@ REDUCED = {
 }
 
 
-def _with_errors(name: str, about: Variable) -> dict[str, Variable]:
-    """Return a variable, and what says how sure it is."""
+REDUCED: dict[str, Variable] = {}
+for name, about in _WITHOUT_ERRORS.items():
+    REDUCED[name] = about
     if name in POOLED:
-        return {name: about, **variables.errors_of(name, variables.POOLED, about)}
-    if name not in (*SCATTERED, *STAGED):
-        return {name: about}
-    error = error_of(name, SCATTER, about)
-    return {
-        name: about,
-        f"{name}_stderr": error._replace(when=(STAGES,)) if name in STAGED else error,
-    }
+        REDUCED |= variables.errors_of(name, variables.POOLED, about)
+    elif name in SCATTERED:
+        REDUCED[f"{name}_stderr"] = error_of(name, SCATTER, about)
+    elif name in STAGED:
+        REDUCED[f"{name}_stderr"] = error_of(name, SCATTER, about)._replace(when=(STAGES,))
 
-
-REDUCED = {
-    name: one
-    for known, about in REDUCED.items()
-    for name, one in _with_errors(known, about).items()
-}
 variables.register("reduced", REDUCED)

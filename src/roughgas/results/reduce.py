@@ -224,16 +224,12 @@ def _coordinate(values: Sequence[Any]) -> np.ndarray:
 def _of_one_length(points: Sequence[Summary]) -> list[Summary]:
     """Return the points with series as long as the shortest of them."""
     lengths = [len(point.scalars[SERIES[0]]) for point in points if SERIES[0] in point.scalars]
-    shorter = {name: slice(min(lengths, default=None)) for name in SERIES}
-    return [
-        point._replace(
-            scalars={
-                name: value[shorter[name]] if name in shorter else value
-                for name, value in point.scalars.items()
-            }
-        )
-        for point in points
-    ]
+    shortest, found = min(lengths, default=None), []
+    for point in points:
+        known = point.scalars.items()
+        cut = {name: one[:shortest] if name in SERIES else one for name, one in known}
+        found.append(point._replace(scalars=cut))
+    return found
 
 
 def _stacks(points: Sequence[Summary], axes: Sequence[Sequence[Any]]) -> dict[str, np.ndarray]:

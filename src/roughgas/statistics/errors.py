@@ -63,9 +63,8 @@ def period_means(series: np.ndarray, samples_per_period: int) -> np.ndarray:
     series = np.asarray(series)
     periods = series.shape[-1] // samples_per_period if samples_per_period >= 1 else 0
     if periods < 1:
-        raise ValueError(
-            f"{series.shape[-1]} samples hold no whole period of {samples_per_period} samples"
-        )
+        samples = f"{series.shape[-1]} samples"
+        raise ValueError(f"{samples} hold no whole period of {samples_per_period} samples")
     whole = series[..., : periods * samples_per_period]
     return whole.reshape(*series.shape[:-1], periods, samples_per_period).mean(axis=-1)
 

@@ -317,9 +317,8 @@ def _is_exceeded(R: np.ndarray, start: int, stop: int) -> bool:
     level = R[:, start:stop].mean(axis=1)
     outside = np.array_split(R[:, :start], 10, axis=1) + np.array_split(R[:, stop:], 10, axis=1)
     excess = [part.mean(axis=1) - level for part in outside if part.shape[1] > 0]
-    return any(
-        one.mean() > CLEAR_EXCESS * level.mean() and _sigmas(one) > ALARM_SIGMAS for one in excess
-    )
+    least = CLEAR_EXCESS * level.mean()
+    return any(one.mean() > least and _sigmas(one) > ALARM_SIGMAS for one in excess)
 
 
 def _sigmas(values: np.ndarray) -> np.ndarray:

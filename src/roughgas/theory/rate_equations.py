@@ -196,10 +196,9 @@ def balanced_shares(rates, dimension, q, spin_share=None) -> tuple[np.ndarray, n
         )
         return shares(translational, rotational, neither=0)
     s, spins = check("net spin share of the drive", spin_share), 2 * dimension - 3
-    rotational = s * dimension * rates.translational_loss + (1 - s) * spins * rates.rotational_gain
-    translational = (
-        s * dimension * rates.translational_gain + (1 - s) * spins * rates.rotational_loss
-    )
+    moved, turned = s * dimension, (1 - s) * spins
+    rotational = moved * rates.translational_loss + turned * rates.rotational_gain
+    translational = moved * rates.translational_gain + turned * rates.rotational_loss
     limit = np.clip(quotient(s * q, s * q + 1 - s), 0, 1)
     return shares(np.maximum(translational, 0), np.maximum(rotational, 0), neither=limit)
 
@@ -311,10 +310,9 @@ def _stationary_weight(theta0, translational, rotational, dimension, spin_share)
     they are being -alpha = -D/(2D-3); with a drive it is (-1, alpha), which carries no energy.
     """
     alpha = dimension / (2 * dimension - 3)
-    fast = (rotational, translational) if spin_share is None else (1.0, 1.0)
-    return (alpha * fast[1] + theta0 * fast[0]) / (
-        alpha * fast[1] * translational + fast[0] * rotational
-    )
+    one, other = (rotational, translational) if spin_share is None else (1.0, 1.0)
+    scale = alpha * other * translational + one * rotational
+    return (alpha * other + theta0 * one) / scale
 
 
 def haff_temperature(time, T0, r, beta, frequency, dimension=2, inertia=None) -> np.ndarray:
