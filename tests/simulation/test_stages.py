@@ -241,7 +241,7 @@ def test_no_theory_of_a_steady_state_is_held_against_it():
     parts = ({"duration": 5}, {"duration": 5, "temperature": 2.0})
     found = point(HEATED, *parts)
     assert math.isnan(ratio_of_point(found)) and found.attrs["stages"] == 2
-    assert theory_beside(found, 0.5, math.nan) == [["theory", "none: settings change in 2 stages"]]
+    assert theory_beside(found, 0.5, math.nan) == "none: settings change in 2 stages"
 
 
 def test_seeds_are_averaged_with_errors():

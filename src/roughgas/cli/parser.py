@@ -95,11 +95,11 @@ def output(help: str, metavar: str = "FILE", required: bool = True, **settings: 
     return value(f"-o --output {metavar}", help, required=required, **settings)
 
 
-def one_of(*options: Option, required: bool = False) -> Option:
+def one_of(*options: Option) -> Option:
     """Declare options that exclude each other."""
 
     def add(parser: argparse.ArgumentParser) -> None:
-        group = parser.add_mutually_exclusive_group(required=required)
+        group = parser.add_mutually_exclusive_group()
         for option in options:
             option(group)
 
@@ -159,7 +159,7 @@ def _experiments(prefix: str, parsed_args: Namespace, **others: Any) -> list[str
     base, slash, _ = prefix.partition("/")
     if slash:
         return variants(base, load_experiment(path, base, parsed_args.scale or usual_scale(path)))
-    found = [*_named(path, "experiments")]
+    found = _named(path, "experiments")
     for name, folder in folders(path).items():
         with suppress(Exception):  # of a broken study, which has none
             found += [f"{name}.{key}" for key in _named(folder / "config.yaml", "experiments")]
@@ -170,14 +170,15 @@ def _scales(parsed_args: Namespace, **_: Any) -> list[str]:
     """Return the names of scales."""
     from roughgas.config import in_use
 
-    return [*_named(parsed_args.config or in_use(), "scales")]
+    return _named(parsed_args.config or in_use(), "scales")
 
 
-def _named(path: str | Path, part: str) -> Iterable[str]:
+def _named(path: str | Path, part: str) -> list[str]:
     """Return the keys of a part of a configuration; an error makes argcomplete offer nothing."""
     import yaml
 
-    return yaml.load(Path(path).read_bytes(), getattr(yaml, "CSafeLoader", yaml.SafeLoader))[part]
+    loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+    return [*yaml.load(Path(path).read_bytes(), loader)[part]]
 
 
 SCALE = value(
@@ -281,7 +282,6 @@ def print_completion(options: Namespace) -> None:
 
 
 INPUTS = ("inputs", "input", "files", "start_from", "config")
-FOLDER = "a folder"
 DATASETS = ("POINT", "REDUCED")  # as roughgas.data.netcdf has them
 BEGINNINGS = {
     "a crate": rb"PK",
@@ -329,22 +329,17 @@ def _paths(given: object) -> list[Path]:
 
 def _check_kind(path: Path, kind: str) -> None:
     """Raise InputError where what is at `path` is not of this kind; an empty file is of any."""
-    if path.is_dir() and kind != FOLDER:
+    if path.is_dir():
         raise InputError("--output", path, "be a file, and is a folder")
     if not path.is_file() or not path.stat().st_size:
         return
     if kind in DATASETS:
         from roughgas.data import netcdf
 
-        name = getattr(netcdf, kind)
-        if not netcdf.is_of_kind(path, name):
-            raise _another(path, name)
-        return
-    with path.open("rb") as file:
-        fits = bool(re.match(BEGINNINGS.get(kind, b""), file.read(LONGEST)))
-    if kind == FOLDER or not fits:
-        raise _another(path, kind)
-
-
-def _another(path: Path, kind: str) -> InputError:
-    return InputError("--output", path, f"be new, or hold {kind}: it holds something else")
+        kind = getattr(netcdf, kind)
+        fits = netcdf.is_of_kind(path, kind)
+    else:
+        with path.open("rb") as file:
+            fits = bool(re.match(BEGINNINGS.get(kind, b""), file.read(LONGEST)))
+    if not fits:
+        raise InputError("--output", path, f"be new, or hold {kind}: it holds something else")

@@ -112,8 +112,8 @@ def plot(options: Namespace) -> None:
     """Draw any reduced dataset."""
     from roughgas.show import gallery
 
-    names = ("r", "beta")
-    chosen = {n: [number(f"--{n}", one) for one in getattr(options, n) or ()] for n in names}
+    given = {"r": options.r or (), "beta": options.beta or ()}
+    chosen = {name: [number(f"--{name}", one) for one in many] for name, many in given.items()}
     for line in gallery.plot(options.input, options.output, options.over, options.of, **chosen):
         print(line, file=sys.stderr)
 
@@ -135,7 +135,8 @@ def experiments(options: Namespace) -> None:
     found = {}
     for name, written in loaded["experiments"].items():
         settings = config.experiment(loaded, name, options.scale)
-        sweep = {key: settings["sweep"][key] for key in _axes(settings)}
+        axes = [config.third_axis(settings), "r", "beta"]
+        sweep = {key: settings["sweep"][key] for key in axes if key}
         points = prod(map(len, sweep.values()))
         about = {"description": written.get("description", ""), "extends": written.get("extends")}
         found[name] = about | {"points": points, "sweep": sweep}
@@ -143,12 +144,6 @@ def experiments(options: Namespace) -> None:
         print(as_json(found))
     else:
         print("\n\n".join(_text(name, about) for name, about in found.items()))
-
-
-def _axes(settings):
-    """Return the axes of a sweep, the third one first."""
-    third = config.third_axis(settings)
-    return [*([third] if third else []), "r", "beta"]
 
 
 def _text(name, about):

@@ -37,16 +37,8 @@ def run(options: Namespace) -> None:
     if options.keep_state:
         settings["keep_state"] = True
     told = ["--from", options.start_from] if initial else []
-    made = points(
-        options.experiment,
-        settings,
-        at,
-        options.scale,
-        outputs,
-        initial,
-        told=told,
-        checkpoints=True,
-    )
+    where = options.experiment, settings, at, options.scale, outputs, initial
+    made = points(*where, told=told, checkpoints=True)
     for output, point in zip(outputs, made, strict=True):
         write_point(output, point)
         if options.json:
@@ -103,10 +95,15 @@ def _settings(options: Namespace) -> dict[str, Any]:
 
 
 def _own_name(options: Namespace, place: config.Place) -> str:
-    """Return the file in the present folder for a point that was given none."""
+    """Return the file in the present folder for a point that was given none.
+
+    What --set changes is a part of its name: mu0.3 for effects.friction.mu=0.3.
+    """
     r, beta, seed = place.labels
-    scale = [] if options.scale == "paper" else [options.scale]
-    name = [options.experiment.replace("/", "_"), *as_label(options.changes), *scale]
+    pairs = (one.partition("=") for one in options.changes)
+    told = [re.sub(r"[^\w.+-]", "", f"{key.rpartition('.')[2]}{text}") for key, _, text in pairs]
+    scale = [] if options.scale == config.PAPER else [options.scale]
+    name = [options.experiment.replace("/", "_"), *told, *scale]
     return "_".join([*name, f"r{r}", f"beta{beta}", f"seed{seed}.nc"])
 
 
@@ -175,9 +172,3 @@ def _change(settings: Mapping[str, Any], key: str, value: Any) -> dict[str, Any]
     for name in reversed(names):
         value = {name: value}
     return value
-
-
-def as_label(told: Iterable[str]) -> list[str]:
-    """Return what `told` changes as parts of a file's name: mu0.3 for effects.friction.mu=0.3."""
-    pairs = (one.partition("=") for one in told)
-    return [re.sub(r"[^\w.+-]", "", f"{key.rpartition('.')[2]}{text}") for key, _, text in pairs]

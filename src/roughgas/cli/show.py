@@ -3,7 +3,7 @@
 import json
 import math
 from argparse import Namespace
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -81,10 +81,8 @@ def _read(path: str | Path) -> tuple[str, Any]:
 
 def _printable(data: Dataset) -> Dataset:
     """Return a dataset whose attributes are all on one line: another program may have set them."""
-    given = data.attrs.items()
-    return data.assign_attrs(
-        {name: on_one_line(one) if isinstance(one, str) else one for name, one in given}
-    )
+    words = {name: on_one_line(one) for name, one in data.attrs.items() if isinstance(one, str)}
+    return data.assign_attrs(words)
 
 
 def _cost(data: Dataset) -> list[str]:
@@ -107,82 +105,94 @@ def _point_text(point: Dataset) -> str:
     variant = f"/{about['variant']}" if "variant" in about else ""
     rows = [
         ["experiment", f"{about['experiment']}{variant}, scale {about['scale']}"],
-        *_settings(about, about["experiment_json"]),
+        *_settings(about),
         ["", ""],
         *(_ratio(point) if "R" in point else []),
+        *_measured(point),
+        _cost(point),
     ]
-    rows += [*energies(point), ["steady state", _steady(point)], *altered(point)]
-    rows += [*contact_log(point), _cost(point)]
-    parts = [columns(rows), *([by_species(point)] if "species" in point else [])]
-    parts += [seen for seen in [observed(point)] if seen]
-    parts += [_books(point)] if BOOKS <= set(point.variables) else []
-    return "\n\n".join([*parts, f"To make it again:\n{about['command']}"])
+    parts = columns(rows), _by_species(point), observed(point), _books(point)
+    return "\n\n".join([*filter(None, parts), f"To make it again:\n{about['command']}"])
 
 
-def _settings(about: Mapping[str, Any], text: str) -> list[list[str]]:
-    """Return rows with what was simulated, and for how long, from attributes and settings."""
-    experiment = from_json(text, "settings of the dataset")
+def _settings(about: Mapping[str, Any]) -> Iterator[list[str]]:
+    """Yield rows with what was simulated, and for how long, from attributes."""
+    experiment = from_json(about["experiment_json"], "settings of the dataset")
     netcdf.require(experiment, ("particles", "box", "effects"), "its settings")
+    yield ["point", f"r = {about['r']:g}, beta = {about['beta']:g}, seed {about['seed']}"]
     box = " x ".join(f"{side:g}" if side != "open" else "open" for side in experiment["box"])
     filled = "" if "open" in experiment["box"] else f", packing {packing(experiment):.3g}"
-    layer = experiment.get("layer") or {}
-    effects = [f"{name} ({_listed(one)})" for name, one in experiment["effects"].items()]
-    rows = [
-        ["point", f"r = {about['r']:g}, beta = {about['beta']:g}, seed {about['seed']}"],
-        ["gas", f"{experiment['particles']} {SHAPES[len(experiment['box'])]}, box {box} a{filled}"],
-        *([["layer", f"{_listed(layer)}, in diameters and cycles"]] if layer else []),
-        *(["" if k else "effects", one] for k, one in enumerate(effects)),
-    ]
-    schedule = experiment.get("schedule")
-    return [*rows, ["schedule", _listed(schedule)]] if schedule else rows
+    shape = SHAPES[len(experiment["box"])]
+    yield ["gas", f"{experiment['particles']} {shape}, box {box} a{filled}"]
+    if layer := experiment.get("layer"):
+        yield ["layer", f"{_listed(layer)}, in diameters and cycles"]
+    for number, (name, one) in enumerate(experiment["effects"].items()):
+        yield ["" if number else "effects", f"{name} ({_listed(one)})"]
+    if schedule := experiment.get("schedule"):
+        yield ["schedule", _listed(schedule)]
 
 
 def _listed(settings: Mapping[str, Any]) -> str:
     return ", ".join(f"{name} {value}" for name, value in settings.items())
 
 
-def _ratio(point: Dataset) -> list[list[str]]:
-    R, half, expected = float(point.R), float(point.R_ci95), ratio_of_point(point)
+def _ratio(point: Dataset) -> Iterator[list[str]]:
+    """Yield rows on R: its averages, their errors, and theory."""
+    R, half = float(point.R), float(point.R_ci95)
     digits = decimals_of(half) if 0.0 < half < 1.0 else 4
-    trust = TRUST[int(point.R_ci95_trusted)]
+    trust, over_time = TRUST[int(point.R_ci95_trusted)], "R_collisional" in point
+    yield ["R", f"{_estimate(point, 'R')}{', averaged over time' * over_time}"]
+    yield ["95 % interval", f"{R - half:.{digits}f} to {R + half:.{digits}f}{trust}"]
+    if "R_corrected" in point:
+        said = "of the mean energies, with D (N - 1) translational degrees of freedom"
+        yield ["R_corrected", f"{float(point.R_corrected):.4f}, {said}"]
+    if over_time:
+        said = f"averaged over collisions, {over_collisions(point.attrs, point)}"
+        yield ["R_collisional", f"{_estimate(point, 'R_collisional')}, {said}"]
+    if "target_met" in point:
+        settings = from_json(point.attrs["experiment_json"], "settings of the dataset")
+        wanted, blocks = settings["schedule"]["target_stderr"], int(point.target_blocks)
+        found = f"standard error {wanted:g}: {MET[int(point.target_met)]}"
+        yield ["target", found + f", in {blocks} times the schedule" * (blocks > 1)]
+    yield ["theory", theory_beside(point, R, ratio_of_point(point))]
     series = point.R_series.values[np.isfinite(point.R_series.values)]
     parts = np.array([part.mean() for part in np.array_split(series, min(WIDTH, len(series)))])
-    low, high, over_time = parts.min(), parts.max(), "R_collisional" in point
+    low, high = parts.min(), parts.max()
     heights = (parts - low) / ((high - low) or 1.0) * (len(BLOCKS) - 1)
-    blocks = "".join(BLOCKS[round(height)] for height in heights)
-    return [
-        ["R", f"{Estimate(R, float(point.R_stderr))}{', averaged over time' * over_time}"],
-        ["95 % interval", f"{R - half:.{digits}f} to {R + half:.{digits}f}{trust}"],
-        *corrected(point),
-        *collisional(point),
-        *_target(point),
-        *theory_beside(point, R, expected),
-        ["R(t)", f"{blocks}  {low:.3f} to {high:.3f}"],
-    ]
+    blocks_of_time = "".join(BLOCKS[round(height)] for height in heights)
+    yield ["R(t)", f"{blocks_of_time}  {low:.3f} to {high:.3f}"]
 
 
-def _target(point: Dataset) -> list[list[str]]:
-    """Return a row on the target error of R, where the run had one."""
-    if "target_met" not in point:
-        return []
-    settings = from_json(point.attrs["experiment_json"], "settings of the dataset")
-    wanted, blocks = settings["schedule"]["target_stderr"], int(point.target_blocks)
-    found = f"standard error {wanted:g}: {MET[int(point.target_met)]}"
-    return [["target", found + f", in {blocks} times the schedule" * (blocks > 1)]]
+def _measured(point: Dataset) -> Iterator[list[str]]:
+    """Yield rows on energies, the steady state, and contacts that were altered or logged."""
+    when = ", as the measurement begins" if "plateau_end" in point else ""
+    for name in ("E_trans", "E_rot"):
+        if name in point:
+            unit = unit_of(point[name].attrs)
+            yield [name, f"{_estimate(point, name)} {unit}, per degree of freedom{when}"]
+    yield ["steady state", _steady(point)]
+    share = float(point.get("contact_time_fraction", 0.0))
+    if share > 0.0:
+        said = f"{100.0 * share:.2g} % of contacts were altered by the contact-time model"
+        yield ["contact time", f"{said}: R depends on it" if share > FEW else said]
+    if "contacts_lost" in point:
+        logged, lost = point.sizes["contact"], int(point.contacts_lost)
+        some = f"the last {logged:,}; {lost:,} before them are lost"
+        yield ["contacts logged", some if lost else f"all {logged:,}"]
 
 
 def _steady(point: Dataset) -> str:
     found, made = STEADY[int(point.equilibrated)], float(point.get("measured_collisions", math.nan))
     end = f" to {float(point.plateau_end):g}" if "plateau_end" in point else " on"
     units = unit_of(point.measured_from.attrs)
-    span = f"measured from {float(point.measured_from):g}{end}, in {units}"
-    return f"{found}; {span}" + (
-        f" ({made:.4g} collisions per particle)" if "time" in point else ""
-    )
+    counted = f" ({made:.4g} collisions per particle)" if "time" in point else ""
+    return f"{found}; measured from {float(point.measured_from):g}{end}, in {units}{counted}"
 
 
 def _books(point: Dataset) -> str:
-    """Return what each source has put into each motion."""
+    """Return what each source has put into each motion, where that is known."""
+    if not set(point.variables) >= BOOKS:
+        return ""
     rows = [["energy put in, per particle", *point.motion.values]]
     for source, put_in in zip(point.source.values, point.energy_input.values, strict=True):
         rows.append([f"  {source}", *(f"{one:.6g}" for one in put_in)])
@@ -238,75 +248,30 @@ def _found(row: dict[str, Any]) -> list[str]:
     return [value, half, f"{row['R_theory']:.4f}", f"{row['residual']:+.4f}", *beside]
 
 
-def theory_beside(point: Dataset, R: float, expected: float) -> list[list[str]]:
+def theory_beside(point: Dataset, R: float, expected: float) -> str:
     """Return what theory says of R, and how far off R is; or why it says nothing."""
     name = equation_of(point.attrs, point).name
     if "stages" in point.attrs:
-        return [["theory", f"none: settings change in {point.attrs['stages']} stages"]]
-    if math.isnan(expected) and float(point.attrs["beta"]) != -1.0:
-        return [["theory", f"none ({name}): not known for this gas"]]
+        return f"none: settings change in {point.attrs['stages']} stages"
     if math.isnan(expected):
-        spins = "contacts change no spin, and spins that are 0 stay so"
-        return [["theory", f"none ({name}): at beta = -1 {spins}"]]
+        why = "not known for this gas"
+        if float(point.attrs["beta"]) == -1.0:
+            why = "at beta = -1 contacts change no spin, and spins that are 0 stay so"
+        return f"none ({name}): {why}"
     found = f"{expected:.4f}, {name}: R is {_beside(R, expected)} it"
     if "R_collisional" in point and like_theory(point):
         found += f", R_collisional {_beside(float(point.R_collisional), expected)}"
-    return [["theory", found]]
+    return found
 
 
 def _beside(R: float, expected: float) -> str:
     return f"{abs(R - expected):.4f} {'below' if R < expected else 'above'}"
 
 
-def corrected(point: Dataset) -> list[list[str]]:
-    """Return R for as many degrees of freedom as a gas has that conserves its momentum."""
-    if "R_corrected" not in point:
-        return []
-    said = "of the mean energies, with D (N - 1) translational degrees of freedom"
-    return [["R_corrected", f"{float(point.R_corrected):.4f}, {said}"]]
-
-
-def collisional(point: Dataset) -> list[list[str]]:
-    """Return R averaged over collisions, as the theory of a driven gas is."""
-    if "R_collisional" not in point:
-        return []
-    said = f"averaged over collisions, {over_collisions(point.attrs, point)}"
-    return [["R_collisional", f"{_estimate(point, 'R_collisional')}, {said}"]]
-
-
-def energies(point: Dataset) -> list[list[str]]:
-    """Return the energies of a point, with their errors where they are known."""
-    when = ", as the measurement begins" if "plateau_end" in point else ""
-    return [
-        [
-            name,
-            f"{_estimate(point, name)} {unit_of(point[name].attrs)}, per degree of freedom{when}",
-        ]
-        for name in ("E_trans", "E_rot")
-        if name in point
-    ]
-
-
-def altered(point: Dataset) -> list[list[str]]:
-    """Return how many contacts the contact-time model has altered, where it acts."""
-    share = float(point.get("contact_time_fraction", 0.0))
-    if not share > 0.0:
-        return []
-    said = f"{100.0 * share:.2g} % of contacts were altered by the contact-time model"
-    return [["contact time", f"{said}: R depends on it" if share > FEW else said]]
-
-
-def contact_log(point: Dataset) -> list[list[str]]:
-    """Return how many contacts are logged, and how many are not."""
-    if "contacts_lost" not in point:
-        return []
-    logged, lost = point.sizes["contact"], int(point.contacts_lost)
-    said = f"the last {logged:,}; {lost:,} before them are lost" if lost else f"all {logged:,}"
-    return [["contacts logged", said]]
-
-
-def by_species(point: Dataset) -> str:
-    """Return a row for each species of a mixture."""
+def _by_species(point: Dataset) -> str:
+    """Return a row for each species of a mixture; nothing where particles are alike."""
+    if "species" not in point:
+        return ""
     there = [name for name in OF_SPECIES if f"{name}_species" in point]
     rows = [["species", "particles", *there]]
     for k, name in enumerate(point.species.values):
@@ -407,14 +372,11 @@ def _table_of(study: str) -> Callable[[Dataset], str]:
     from roughgas.config.study_folders import folders
 
     if study in accuracy.STUDIES:
-        module = accuracy.study(study)
-    else:
-        folder = folders(config.in_use()).get(study)
-        if folder is None or not (folder / "results.py").exists():
-            return variables_text
-        module = module_of(folder, "results")
-    function: Callable[[Dataset], str] = module.table
-    return function
+        return accuracy.study(study).table
+    folder = folders(config.in_use()).get(study)
+    if folder is None or not (folder / "results.py").exists():
+        return variables_text
+    return module_of(folder, "results").table
 
 
 KINDS: dict[str, tuple[Callable[[Any], str], Callable[[Any], dict[str, Any]]]] = {

@@ -66,8 +66,8 @@ def _gases(options: Namespace) -> list[GasParameters]:
 
     Raises InputError for illegal values.
     """
-    every_r, every_beta = labels("--r", options.r), labels("--beta", options.beta)
-    at = config.places(every_r, every_beta, ["1"], prefix="--")
+    given = labels("--r", options.r), labels("--beta", options.beta)
+    at = config.places(*given, ["1"], prefix="--")
     r, beta = np.array([(one.r, one.beta) for one in at]).T
     share = SHARE.check("spin share of the drive", number("--spin-share", options.spin_share))
     mu = q = None
@@ -75,19 +75,13 @@ def _gases(options: Namespace) -> list[GasParameters]:
         mu = FRICTION.check("friction mu", number("--mu", options.mu))
     if options.inertia is not None:
         q = float(check("inertia q", number("--inertia", options.inertia)))
-    dimensions = [int(options.dimension)] if options.dimension else [2, 3]
-    gases = [GasParameters(r, beta, D, q or moment_of_inertia(D), share, mu) for D in dimensions]
-    return [gas._replace(**_mixed(options)) for gas in gases]
-
-
-def _mixed(options: Namespace) -> dict[str, Any]:
-    """Return what makes a mixture of a gas."""
     packing = number("--packing", options.packing, Interval("[0, 1)"))
-    if options.species is None:
-        if packing:
-            raise NeedsError("--packing", "--species: one species has the same R at any packing")
-        return {}
-    return {"species": species_from(options.species), "packing": packing}
+    if packing and options.species is None:
+        raise NeedsError("--packing", "--species: one species has the same R at any packing")
+    mixed = None if options.species is None else species_from(options.species), packing
+    dimensions = [int(options.dimension)] if options.dimension else [2, 3]
+    inertia = {D: q or moment_of_inertia(D) for D in dimensions}
+    return [GasParameters(r, beta, D, inertia[D], share, mu, *mixed) for D in dimensions]
 
 
 def quantities(gas: GasParameters) -> dict[str, Quantity]:
