@@ -83,6 +83,19 @@ def test_the_configuration_may_change_an_experiment_of_a_study(here):
         config.load("config.yaml", {"experiments": {"mine.bad": {"particles": 81}}})
 
 
+def test_the_configuration_may_remove_what_a_study_has(here):
+    cases = "{one: {particles: 20}, two: {particles: 30}}"
+    here("mine", f"experiments: {{bed: {{extends: vibrated, sweep: {{case: {cases}}}}}}}")
+    for part in (("experiments",), ("scales", "small")):
+        root = within = yaml.safe_load((ROOT / "config.yaml").read_text())
+        for key in part:
+            within = within[key]
+        within["mine.bed"] = {"sweep": {"case": {"one": None}}}
+        Path("config.yaml").write_text(yaml.safe_dump(root))
+        found = config.experiment(config.load("config.yaml"), "mine.bed", "small")
+        assert [*found["sweep"]["case"]] == ["two"]
+
+
 def test_a_broken_study_is_left_out_in_one_line_and_all_others_stand(here):
     here("mine", LEAST)
     for name, (text, _) in BROKEN.items():

@@ -2,12 +2,13 @@
 
 from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from roughgas import config
 from roughgas.accuracy import FIGURES, STUDIES, study
 from roughgas.base import InputError, not_one_of
 from roughgas.base.files import write_text
+from roughgas.config.schema import check_schema
 from roughgas.data.netcdf import TASK, Content, content_of, read_groups, read_netcdf, write_netcdf
 from roughgas.tasks.running import combined, write_found
 
@@ -31,12 +32,15 @@ def run_task(
     unknown study or task and for illegal settings, CollapseError as a simulation does, OSError.
     """
     module = study(name)
-    found = config.study_from_text(settings, name, "--settings")
-    if task not in (known := module.tasks(found["study"])):
-        raise not_one_of("task", task, known)
+
+    def check(own: Any, source: str) -> None:
+        for part in (name, f"accuracy_in_full/properties/{name}"):
+            check_schema(own, source, part)
+
+    found = config.task_from_text(settings, check)
     found["experiments"] = Experiments(found["experiments"])
     about = {"study": name, "task": task, "scale": scale, "settings_json": settings}
-    write_found(module.run, found, about, output)
+    write_found(module.run, module.tasks(found["study"]), found, about, output)
 
 
 def combine(inputs: Iterable[str | Path], *, output: str | Path) -> None:

@@ -14,7 +14,7 @@ All functions raise InputError, with a text of one line, for unknown names and i
 import copy
 import itertools
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -100,7 +100,7 @@ def with_accuracy(config: Mapping[str, Any]) -> dict[str, Any]:
     own = read_yaml(OF_ACCURACY / "config.yaml")
     changes = own.pop("scales")
     scales = {
-        scale: part | {ACCURACY: merged(changes.get(scale, {}), part.get(ACCURACY, {}))}
+        scale: part | {ACCURACY: merged(changes.get(scale, {}), part.get(ACCURACY, {}), False)}
         for scale, part in config["scales"].items()
     }
     return {**config, ACCURACY: merged(own, config.get(ACCURACY, {})), "scales": scales}
@@ -160,7 +160,10 @@ def _experiment(config: Mapping[str, Any], name: str, scale: str) -> dict[str, A
 
 def accuracy(config: Mapping[str, Any], scale: str) -> dict[str, Any]:
     """Return the settings of the studies of accuracy at `scale`, by name."""
-    return _at_scale(config, ACCURACY, scale)
+    one_of("scale", scale, config["scales"])
+    if ACCURACY not in config:
+        raise InputError(f"{ACCURACY} in the configuration", "(nothing)", "be given for this")
+    return merged(config[ACCURACY], config["scales"][scale].get(ACCURACY, {}))
 
 
 def study(config: Mapping[str, Any], name: str, scale: str) -> dict[str, Any]:
@@ -168,18 +171,9 @@ def study(config: Mapping[str, Any], name: str, scale: str) -> dict[str, Any]:
     experiments that it may run, as `experiments`, those of folders by their own names."""
     settings = accuracy(config, scale)
     one_of("study", name, settings)
-    known = config["experiments"]
-    experiments = {
-        one.rpartition(".")[2]: point_settings(experiment(config, one, scale)) for one in known
-    }
+    every = {one: experiment(config, one, scale) for one in config["experiments"]}
+    experiments = {one.rpartition(".")[2]: point_settings(own) for one, own in every.items()}
     return {"study": settings[name], "experiments": experiments}
-
-
-def _at_scale(config: Mapping[str, Any], part: str, scale: str) -> dict[str, Any]:
-    one_of("scale", scale, config["scales"])
-    if part not in config:
-        raise InputError(f"{part} in the configuration", "(nothing)", "be given for this")
-    return merged(config[part], config["scales"][scale].get(part, {}))
 
 
 def changed_by(settings: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
@@ -285,15 +279,14 @@ def validated(settings: Mapping[str, Any], source: str) -> dict[str, Any]:
     return settings
 
 
-def study_from_text(text: str, name: str, source: str) -> dict[str, Any]:
-    """Return the settings of a study of accuracy and of the experiments that it may run, from their
-    JSON."""
+def task_from_text(text: str, check: Callable[[Any, str], None]) -> dict[str, Any]:
+    """Return the settings of a task from their JSON: of its `study`, which `check` refuses where
+    they are illegal, and called so, and of the `experiments` that it may run."""
     from roughgas.config.schema import check_schema
 
-    settings = from_json(text, source)
+    settings, source = from_json(text, "--settings"), "--settings"
     check_schema(settings, source, "study_task")
-    for part in (name, f"accuracy_in_full/properties/{name}"):
-        check_schema(settings["study"], f"{source}: study", part)
+    check(settings["study"], f"{source}: study")
     for one, experiment in settings["experiments"].items():
         check_schema(experiment, f"{source}: experiments.{one}", "experiment")
     return settings

@@ -11,12 +11,13 @@ With all studies, and all that a scale changes, written out, a configuration is 
 import json
 import re
 from collections.abc import Callable, Mapping
+from functools import partial
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 from typing import Any
 
 from roughgas import config as settings_of
-from roughgas.base import InputError, from_json, shown
+from roughgas.base import InputError, shown
 from roughgas.base.files import readme, write_text
 from roughgas.config.reading import read_yaml
 from roughgas.config.schema import RESERVED, check_ancestors, check_by, check_one, check_schema
@@ -102,7 +103,10 @@ def _read_all(
 
 
 def _read(name: str, folder: Path, config: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the experiments of a study, names qualified, its changes by scale, and all else."""
+    """Return the experiments of a study, names qualified, its changes by scale, and all else.
+
+    Its title is the heading of its README.md, its name without one.
+    """
     source, root = _source(name), _of_root(config["experiments"])
     study = _checked(name, folder, root)
     own = study.get("experiments", {})
@@ -124,24 +128,17 @@ def _read(name: str, folder: Path, config: Mapping[str, Any]) -> dict[str, Any]:
         for key in changes:
             settings_of.one_of(f"{source}: key of scales.{scale}", key, changeable)
         scales[scale] = {f"{name}.{key}": one for key, one in changes.items()}
-    about: dict[str, Any] = {"folder": str(folder), "title": _title(folder)}
-    about |= _tasks(name, study, qualified)
+    heading = re.match(r"# (.+)", readme(folder))
+    title = heading[1].strip() if heading else name.replace("_", " ").capitalize()
+    about: dict[str, Any] = {"folder": str(folder), "title": title}
+    if TASKS in study:
+        settings = dict(study[TASKS])
+        names = {one: qualified(one, "tasks.experiments") for one in settings.pop("experiments")}
+        about[TASKS] = {"settings": settings, "experiments": names}
     of_tasks = about[TASKS]["experiments"].values() if TASKS in about else ()
     about["experiments"] = [key for key in experiments if key not in of_tasks]
     about |= _shown(name, study, about, qualified)
     return {"experiments": experiments, "scales": scales, "about": about}
-
-
-def _tasks(
-    name: str, study: Mapping[str, Any], qualified: Callable[[str, str], str]
-) -> dict[str, Any]:
-    """Return the settings of a study's tasks, and the names of their experiments."""
-    if TASKS not in study:
-        return {}
-    settings = dict(study[TASKS])
-    names = settings.pop("experiments")
-    experiments = {one: qualified(one, "tasks.experiments") for one in names}
-    return {TASKS: {"settings": settings, "experiments": experiments}}
 
 
 def _shown(
@@ -186,13 +183,10 @@ def _checked(name: str, folder: Path, root: Mapping[str, Any]) -> dict[str, Any]
         raise InputError(f"{source}: experiments", "(nothing)", "be given")
     if (folder / "tasks.py").exists() and TASKS not in study:
         raise InputError(f"{source}: tasks", "(nothing)", "be given beside tasks.py")
-    if "evidence" in study and not (folder / "evidence.py").exists():
-        legal = "be there, as config.yaml has evidence"
-        raise InputError(f"{FOLDER}/{name}/evidence.py", "(nothing)", legal)
-    for file in ("tasks.py", "results.py"):
-        if TASKS in study and not (folder / file).exists():
-            legal = "be there, as config.yaml has tasks"
-            raise InputError(f"{FOLDER}/{name}/{file}", "(nothing)", legal)
+    for file, key in (("evidence", "evidence"), ("tasks", TASKS), ("results", TASKS)):
+        if key in study and not (folder / f"{file}.py").exists():
+            legal = f"be there, as config.yaml has {key}"
+            raise InputError(f"{FOLDER}/{name}/{file}.py", "(nothing)", legal)
     for key in study.get("experiments", {}).keys() & {*root, TASKS}:
         raise InputError(f"{source}: key of experiments", key, "be no name of config.yaml's own")
     for part in ("figures", "movies"):
@@ -201,12 +195,6 @@ def _checked(name: str, folder: Path, root: Mapping[str, Any]) -> dict[str, Any]
                 legal = f"be {name} or begin with {name}_"
                 raise InputError(f"{source}: key of {part}", key, legal)
     return study
-
-
-def _title(folder: Path) -> str:
-    """Return the heading of its README.md; its name without one."""
-    heading = re.match(r"# (.+)", readme(folder))
-    return heading[1].strip() if heading else folder.name.replace("_", " ").capitalize()
 
 
 def _needs(name: str, study: Mapping[str, Any]) -> set[str]:
@@ -238,15 +226,14 @@ def _with_study(
 ) -> dict[str, Any]:
     """Return the configuration with one more study; raise InputError where that is illegal."""
     changes = config["experiments"]
-    experiments = {
-        key: settings_of.merged(one, changes.get(key, {}))
-        for key, one in study["experiments"].items()
-    }
+    together = partial(settings_of.merged, removing=False)
+    own = study["experiments"].items()
+    experiments = {key: together(one, changes.get(key, {})) for key, one in own}
     scales = {}
     for scale, known in whole["scales"].items():
         own, changes = study["scales"].get(scale, {}), config["scales"][scale]
         keys = [key for key in experiments if key in own or key in changes]
-        of_study = {key: settings_of.merged(own.get(key, {}), changes.get(key, {})) for key in keys}
+        of_study = {key: together(own.get(key, {}), changes.get(key, {})) for key in keys}
         scales[scale] = {**known, **of_study}
     joined = {**whole, "experiments": whole["experiments"] | experiments, "scales": scales}
     source, about = _source(name), study["about"]
@@ -264,29 +251,27 @@ def _with_study(
 
 def _at_scales(config: Mapping[str, Any], name: str, study: Mapping[str, Any]) -> dict[str, Any]:
     """Return the settings of a study's tasks by scale, checked."""
-    found, sources, key, about = {}, {}, f"{name}.{TASKS}", study["about"]
+    found, key, about = {}, f"{name}.{TASKS}", study["about"]
     for scale, root in config["scales"].items():
         settings = about[TASKS]["settings"]
         for changes in (study["scales"].get(scale, {}), root):
             settings = settings_of.merged(settings, changes.get(key, {}))
         at_scale = "" if scale == config["scale"] else f" at scale {scale}"
-        found[scale] = sources[f"{_source(name)}: tasks{at_scale}"] = settings
-    check_tasks(sources, about["folder"])
+        check_tasks(about["folder"], settings, f"{_source(name)}: tasks{at_scale}")
+        found[scale] = settings
     return found
 
 
-def check_tasks(sources: Mapping[str, Mapping[str, Any]], folder: str | Path) -> None:
-    """Check settings of tasks, by what messages call them, by schema.yaml of the study in `folder`,
-    where there is one.
+def check_tasks(folder: str | Path, settings: Mapping[str, Any], source: str) -> None:
+    """Check settings of tasks, which messages call `source`, by schema.yaml of the study in
+    `folder`, where there is one.
 
     It may use the definitions and formats of the schema of config.yaml. Raises InputError.
     """
     path = Path(folder, "schema.yaml")
     if path.exists():
         called = f"{FOLDER}/{path.parent.name}/{path.name}"
-        schema = read_yaml(path, called)
-        for source, settings in sources.items():
-            check_by(schema, settings, source, called)
+        check_by(read_yaml(path, called), settings, source, called)
 
 
 def tasks(config: Mapping[str, Any], name: str, scale: str) -> dict[str, Any]:
@@ -299,16 +284,6 @@ def tasks(config: Mapping[str, Any], name: str, scale: str) -> dict[str, Any]:
         for local, one in about["experiments"].items()
     }
     return {"study": about["settings"][scale], "experiments": experiments}
-
-
-def tasks_from_text(folder: str | Path, text: str) -> dict[str, Any]:
-    """Return the settings of the tasks of the study in `folder` from their JSON, checked."""
-    settings = from_json(text, "--settings")
-    check_schema(settings, "--settings", "study_task")
-    check_tasks({"--settings: study": settings["study"]}, folder)
-    for one, experiment in settings["experiments"].items():
-        check_schema(experiment, f"--settings: experiments.{one}", "experiment")
-    return settings
 
 
 def write_effective(whole: Mapping[str, Any], scale: str, output: str | Path) -> None:

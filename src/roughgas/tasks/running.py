@@ -19,8 +19,8 @@ import xarray as xr
 
 from roughgas.base import InputError, not_one_of, shown
 from roughgas.base.files import code_in, module_of, write_text
-from roughgas.config import PAPER
-from roughgas.config.study_folders import tasks_from_text
+from roughgas.config import PAPER, task_from_text
+from roughgas.config.study_folders import check_tasks
 from roughgas.data.netcdf import TASK, Content, content_of, read_groups, read_netcdf, write_netcdf
 from roughgas.simulation.progress import Bar
 from roughgas.simulation.restart import discard
@@ -62,10 +62,7 @@ def run_task(
 ) -> None:
     """Run a task of the study in a folder; the same command goes on from the checkpoint of one that
     was killed, if it has left one beside the output."""
-    found = tasks_from_text(folder, settings)
-    known = names(folder, found["study"])
-    if task not in known:
-        raise not_one_of("task", task, known)
+    found = task_from_text(settings, partial(check_tasks, folder))
     run = module_of(folder, "tasks").run
     digest = hashlib.sha256(f"{code_in(folder, 'tasks')} {task} {settings}".encode())
     checkpoint = Checkpoint(Path(f"{output}.checkpoint.npz"), digest.hexdigest())
@@ -73,7 +70,7 @@ def run_task(
         run = partial(run, checkpoint=checkpoint)
     about = {"study": Path(folder).name, "task": task, "scale": scale, "settings_json": settings}
     try:
-        write_found(run, found, about, output)
+        write_found(run, names(folder, found["study"]), found, about, output)
     except KeyboardInterrupt:
         if checkpoint.path.exists():
             legal = f"the same command goes on from {checkpoint.path}"
@@ -84,19 +81,18 @@ def run_task(
 
 def write_found(
     run: Callable[..., xr.Dataset],
-    found: Mapping[str, Any],
+    known: Iterable[str],
+    settings: Mapping[str, Any],
     about: Mapping[str, Any],
     output: str | Path,
 ) -> None:
-    """Run the task that the attributes `about` name, with the settings `found`, and write what it
-    finds."""
-    task = about["task"]
+    """Run the task that the attributes `about` name, one of the `known` ones, and write what it
+    finds. Raises InputError for an unknown one."""
+    if (task := about["task"]) not in known:
+        raise not_one_of("task", task, known)
     with Bar(task, None) as bar:
-
-        def progress(done: float, total: float) -> None:
-            bar.reach(done, total=total)
-
-        data = run(task, found["study"], found["experiments"], progress)
+        parts = settings["study"], settings["experiments"]
+        data = run(task, *parts, lambda done, total: bar.reach(done, total=total))
     write_netcdf(output, content_of(data.assign_attrs(about)))
 
 
