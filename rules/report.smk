@@ -178,7 +178,7 @@ rule codemeta:
     log:
         "logs/codemeta.log",
     params:
-        code=code_of("results.citation"),
+        code=code_of("results.products"),
     message:
         "write {output}"
     shell:
@@ -197,43 +197,31 @@ def files_of_project(wildcards):
     return of_project(*project_files())
 
 
-rule deposit:
-    # a crate with all that the article rests on, and the article
-    input:
-        files_of_project,
-        data=data_of_run,
-        tables=multiext(f"results/{SCALE}/", "R.csv", "claims.json", "claims.md", "article.pdf"),
-        figures=drawn(catalogue.figures_of("paper")),
-        numbers=f"results/{SCALE}/numbers.json",
-    output:
-        f"results/{SCALE}/deposit.zip",
-    log:
-        f"logs/{SCALE}/deposit.log",
-    params:
-        code=code_of("results.products"),
-        configuration=roughgas.config.as_text(config),
-    message:
-        "pack what is to be deposited into {output}"
-    shell:
-        "roughgas crate {input.data:q} {input.tables:q} {input.figures:q} {input.numbers:q} --output {output:q}"
-        " --configuration {params.configuration:q} > {log:q} 2>&1"
+# what is packed besides results and figures of the paper: in a deposit, all that the article rests on
+PACKED = {
+    "crate": [],
+    "deposit": multiext(f"results/{SCALE}/", "article.pdf", "numbers.json"),
+}
+for name, more in PACKED.items():
 
-
-rule crate:
-    input:
-        files_of_project,
-        data=data_of_run,
-        tables=multiext(f"results/{SCALE}/", "R.csv", "claims.json", "claims.md"),
-        figures=drawn(catalogue.figures_of("paper")),
-    output:
-        f"results/{SCALE}/crate.zip",
-    log:
-        f"logs/{SCALE}/crate.log",
-    params:
-        code=code_of("results.products"),
-        configuration=roughgas.config.as_text(config),
-    message:
-        "pack the run into {output}"
-    shell:
-        "roughgas crate {input.data:q} {input.tables:q} {input.figures:q} --output {output:q}"
-        " --configuration {params.configuration:q} > {log:q} 2>&1"
+    rule:
+        name:
+            name
+        input:
+            files_of_project,
+            data=data_of_run,
+            tables=multiext(f"results/{SCALE}/", "R.csv", "claims.json", "claims.md"),
+            figures=drawn(catalogue.figures_of("paper")),
+            more=more,
+        output:
+            f"results/{SCALE}/{name}.zip",
+        log:
+            f"logs/{SCALE}/{name}.log",
+        params:
+            code=code_of("results.products"),
+            configuration=roughgas.config.as_text(config),
+        message:
+            "pack the run into {output}"
+        shell:
+            "roughgas crate {input.data:q} {input.tables:q} {input.figures:q} {input.more:q}"
+            " --output {output:q} --configuration {params.configuration:q} > {log:q} 2>&1"

@@ -62,7 +62,7 @@ STEPS: dict[str, str | Callable[..., None]] = {
     "accuracy_table": "accuracy.running:write_tables",
     "accuracy_task": "accuracy.running:run_task",
     "article": "results.article:write_article",
-    "codemeta": "results.citation:write_codemeta",
+    "codemeta": "results.products:write_codemeta",
     "compile_kernels": compile_kernels,
     "claims": claims,
     "document": "show.pages:write_document",

@@ -12,7 +12,7 @@ from project import Project
 
 from roughgas.config.reading import read_yaml
 from roughgas.results.article import COLUMNS, QUOTED
-from roughgas.results.citation import called
+from roughgas.results.products import called
 from roughgas.steps import main
 
 ROOT = Path(__file__).parents[2]

@@ -7,7 +7,7 @@ from pathlib import Path
 from project import Project, jobs_by_rule
 
 from roughgas.config.reading import read_yaml
-from roughgas.results.citation import called, codemeta, write_codemeta
+from roughgas.results.products import called, codemeta, write_codemeta
 from roughgas.steps import main
 
 ROOT = Path(__file__).parents[2]

@@ -1,5 +1,5 @@
 """What is made of results for people: tables of points and of run times, and a run as one file, an
-RO-Crate, with its configuration, code, results and figures.
+RO-Crate, with its configuration, code, results and figures. CITATION.cff as codemeta.json.
 """
 
 import csv
@@ -14,11 +14,10 @@ from typing import Any
 import numpy as np
 from xarray import Dataset
 
-from roughgas.base import InputError, __version__, in_csv, markdown
+from roughgas.base import InputError, __version__, as_json, in_csv, markdown
 from roughgas.base.files import whole_file, write_text
 from roughgas.config.reading import read_yaml
 from roughgas.data.reduced import GRID, particles_of, read_reduced, third_axis
-from roughgas.results.citation import called
 from roughgas.statistics.errors import half_width
 from roughgas.theory.prediction import predicted_ratio
 
@@ -61,13 +60,13 @@ def rows(dataset: Dataset, head: Sequence[str] = HEAD) -> Iterator[dict[str, Any
     Each has the names in `head`, which may be those of HEAD, of variables over the grid, or of
     attributes; the value is "" where the dataset has no such thing, NaN for an unknown number.
     """
-    name, variants = third_axis(dataset.attrs), [dataset]
-    if name is not None:
+    swept, variants = third_axis(dataset.attrs), [dataset]
+    if swept is not None:
+        values = enumerate(dataset[swept].values)
+        about = {index: {swept: x, "parameter": swept, "value": x} for index, x in values}
         variants = [
-            dataset.isel({name: index}, drop=True).assign_attrs(
-                {name: value, "parameter": name, "value": value}
-            )
-            for index, value in enumerate(dataset[name].values)
+            dataset.isel({swept: index}, drop=True).assign_attrs(own)
+            for index, own in about.items()
         ]
     for one in variants:
         flat = one.drop_dims("seed").stack(point=GRID)
@@ -180,3 +179,52 @@ def _describe(crate: Any, configuration: Any, results: Sequence[Any]) -> None:
     root["mentions"] = crate.add_action(
         crate.mainEntity, "#run", [configuration], results, {"name": "the run"}
     )
+
+
+def write_codemeta(citation: str | Path, *, output: str | Path) -> None:
+    """Write the facts of a CITATION.cff by CodeMeta 3.0. Raises InputError if it is no YAML."""
+    write_text(output, as_json(codemeta(read_yaml(citation))) + "\n")
+
+
+def codemeta(cited: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the facts of a CITATION.cff by the names of CodeMeta; what it lacks is left out."""
+    found = {
+        "@context": "https://w3id.org/codemeta/3.0",
+        "@type": "SoftwareSourceCode",
+        "name": cited["title"].partition(":")[0],
+        "description": cited["title"],
+        "version": cited["version"],
+        "license": f"https://spdx.org/licenses/{cited['license']}",
+        "author": [person(one) for one in cited["authors"]],
+        "programmingLanguage": ["Python", "Snakemake"],
+        "referencePublication": [_article(one) for one in cited.get("references", [])],
+        "codeRepository": cited.get("repository-code"),
+        "identifier": cited.get("doi"),
+        "datePublished": cited.get("date-released"),
+    }
+    return {name: one for name, one in found.items() if one is not None}
+
+
+def person(author: Mapping[str, str]) -> dict[str, str]:
+    """Return an author as schema.org has it: a person, or a group that has only a name."""
+    if "name" in author:
+        return {"@type": "Organization", "name": author["name"]}
+    found = {"@type": "Person", "givenName": author["given-names"]}
+    found["familyName"] = author["family-names"]
+    return found | ({"@id": author["orcid"]} if "orcid" in author else {})
+
+
+def called(author: Mapping[str, str]) -> str:
+    """Return the name of an author in one piece."""
+    return author.get("name") or f"{author['given-names']} {author['family-names']}"
+
+
+def _article(work: Mapping[str, Any]) -> dict[str, Any]:
+    return {
+        "@type": "ScholarlyArticle",
+        "@id": f"https://doi.org/{work['doi']}",
+        "name": work["title"],
+        "author": [person(one) for one in work["authors"]],
+        "isPartOf": work["journal"],
+        "datePublished": str(work["year"]),
+    }
