@@ -31,6 +31,7 @@ from roughgas.show.figures.panel import (
     draw_series,
     draw_theory,
     frame_rows,
+    key,
     keys_of_steadiness,
     ratio_figure,
     ratio_panels,

@@ -13,17 +13,17 @@ from matplotlib.ticker import MaxNLocator
 from mpl_toolkits.axes_grid1.anchored_artists import AnchoredSizeBar
 
 from roughgas import theory
-from roughgas.plotting import LOOKS, THEORY, add_circles, move_circles
+from roughgas.plotting import LOOKS, THEORY, Style, add_circles, move_circles
 
 SHOWN = 0.05, 0.25, 1.0  # instants in the picture, as shares of the film
 SMOOTHING = 6.0  # in a: standard deviation of the Gaussian that packing is averaged with
-PACKING: dict[str, Any] = {"cmap": "cividis", "vmin": 0.0, "vmax": 0.8, "interpolation": "bilinear"}
+PACKING: Style = {"cmap": "cividis", "vmin": 0.0, "vmax": 0.8, "interpolation": "bilinear"}
 SPIN = {"cmap": "RdBu_r", "clim": (-2.0, 2.0)}
 SPIN_LABEL, PACKING_LABEL = "spin / its r.m.s.", "packing fraction"
 VOID = "#222222"
 CLOSEUP = 160.0  # side in a of the square in which single disks are shown
 TRANSLATION, ROTATION, UNEVENNESS = (look.colour for look in LOOKS[:3])
-DOTTED: dict[str, Any] = {"color": THEORY, "linestyle": ":"}
+DOTTED: Style = {"color": THEORY, "linestyle": ":"}
 LETTERS, TITLE = "abc", 8
 SIZE = (7.0, 5.0)  # inches, of the picture
 PER_PARTICLE = "collisions per particle"

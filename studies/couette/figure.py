@@ -6,10 +6,9 @@ import math
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
 from roughgas import plotting
-from roughgas.plotting import FAINT, GREY, LOOKS, THEORY, predicted_ratio
+from roughgas.plotting import FAINT, GREY, LOOKS, THEORY, key, predicted_ratio
 from roughgas.theory import lun_ratio
 
 SIZE = (4.6, 5.2)  # inches
@@ -52,17 +51,12 @@ def draw(couette: xr.Dataset, sheared: xr.Dataset) -> Figure:
     return figure
 
 
-def _keys(drawn: list[plotting.Series]) -> list[Line2D]:
+def _keys(drawn: list[plotting.Series]) -> list:
     """Return what colours, symbols, dashes and the line are."""
     looks = {one.label: one.look for one in drawn}
-    keys = [
-        Line2D([], [], ls="none", marker="s", color=look.colour, label=label)
-        for label, look in looks.items()
-    ]
-    for label, marker in GASES.items():
-        keys.append(Line2D([], [], ls="none", marker=marker, color=GREY, label=label))
-    keys.append(Line2D([], [], ls="none", marker="_", ms=10, mew=1.2, color=GREY, label=AT_SHARE))
-    keys.append(Line2D([], [], color=THEORY, label=plotting.ANY_R))
+    keys = [key(look.colour, label, "s") for label, look in looks.items()]
+    keys += [key(GREY, label, marker) for label, marker in GASES.items()]
+    keys += [key(GREY, AT_SHARE, "_", ms=10, mew=1.2), key(THEORY, plotting.ANY_R, "", "-")]
     return keys + plotting.keys_of_steadiness(drawn)
 
 

@@ -50,9 +50,8 @@ def draw(heated: xr.Dataset, *boundaries: xr.Dataset) -> Figure:
     lines = [series._replace(look=series.look._replace(marker="")) for series in of_heated]
     plotting.add_legend(one.main, lines, title="lines: rate equations", loc="lower right")
     plotting.add_notes(figure, drawn)
-    plotting.add_title(
-        one.main, [heated], rf"Driven disks, $r = {plotting.RESTITUTION:g}$", MESSAGE
-    )
+    title = rf"Driven disks, $r = {plotting.RESTITUTION:g}$"
+    plotting.add_title(one.main, [heated], title, MESSAGE)
     return figure
 
 

@@ -1,18 +1,16 @@
 """The figure of how much of R in a cooling gas is due to the number of particles and to the box."""
 
-from typing import Any
-
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 
-from roughgas.plotting import GREY, LOOKS, THEORY, Look
+from roughgas.plotting import GREY, LOOKS, THEORY, Look, Style
 from roughgas.tasks import along
 
 SIZE = (7.0, 7.6)  # inches
-THIN: dict[str, Any] = {"ls": "none", "elinewidth": 0.8}
+THIN: Style = {"ls": "none", "elinewidth": 0.8}
 SMALL, LARGE = 3.0, 6.0
 """Marker sizes of the fewest and of the most particles."""
 TYPICAL = "cooling_r0.9_beta0"  # the point whose R(t) is drawn, if it is there
@@ -60,7 +58,7 @@ def draw_tails(axes: Axes, data: xr.Dataset) -> None:
     for row, (one, look) in enumerate(_points(data)):
         for n, size in zip((0, -1), (SMALL, LARGE), strict=True):
             events = one.isel(packing=dilute, particles=n)
-            about: dict[str, Any] = {"color": look.colour, "marker": "x", "ms": size, "mew": 0.9}
+            about: Style = {"color": look.colour, "marker": "x", "ms": size, "mew": 0.9}
             axes.errorbar(events.a02, row + 0.35, xerr=events.a02_stderr, **about, **THIN)
     packing = f"{data.packing.values[dilute]:g}"
     for marker, label in (("o", "DSMC"), ("x", f"events, packing {packing}")):
@@ -76,7 +74,7 @@ def draw_box(axes: Axes, data: xr.Dataset) -> None:
     fills = ("white", None)
     for one, look in _points(data):
         for place, fill in zip(along(one, "packing"), fills, strict=False):
-            about: dict[str, Any] = {
+            about: Style = {
                 "color": look.colour,
                 "marker": look.marker,
                 "mfc": fill or look.colour,
@@ -101,16 +99,9 @@ def draw_time(axes: Axes, data: xr.Dataset) -> None:
     for gas, look in zip(along(one, "particles"), LOOKS, strict=False):
         for place, fill in zip(along(gas, "packing"), ("white", look.colour), strict=False):
             middle = (place.part - float(place.part[0]) / 2) * place.length
-            about: dict[str, Any] = {
-                "color": look.colour,
-                "marker": look.marker,
-                "mfc": fill,
-                "ms": 3.5,
-            }
-            label = f"$N = {int(gas.particles)}$" if fill != "white" else None
-            axes.errorbar(
-                middle, place.R_series, place.R_series_stderr, lw=0.8, label=label, **about
-            )
+            about: Style = {"color": look.colour, "marker": look.marker, "mfc": fill, "ms": 3.5}
+            about["label"] = f"$N = {int(gas.particles)}$" if fill != "white" else None
+            axes.errorbar(middle, place.R_series, place.R_series_stderr, lw=0.8, **about)
     axes.axhline(float(one.dsmc_R[-1]), color=THEORY, lw=0.8, ls="--", zorder=0, label="DSMC")
     axes.set(xlabel="collisions per particle", ylabel="$R$")
     axes.legend(loc="lower left", title=f"{_label(one)}\nopen: denser, filled: dilute")

@@ -1,17 +1,16 @@
 """Coulomb friction. R against its coefficient, for several beta_0, forced and cooling."""
 
 from collections.abc import Sequence
-from typing import Any
 
 import xarray as xr
 from matplotlib.figure import Figure
 
 from roughgas import plotting
-from roughgas.plotting import TWO_WIDE
+from roughgas.plotting import TWO_WIDE, Style
 
 BED = "A bed follows the rate equations"
 COOLING = "A cooling gas does, unless spins run away"
-COMMON: dict[str, Any] = {
+COMMON: Style = {
     "symbol": r"\beta_0",
     "theories": "lines: rate equations",
     "axis": plotting.FRICTION,
@@ -25,11 +24,7 @@ def draw(bed: xr.Dataset, cooling: xr.Dataset) -> Figure:
     """
     bed, cooling = (data.sel(mu=data.mu > 0.0) for data in (bed, cooling))
     columns = {"loc": "upper left", "ncols": 2}
-    free: dict[str, Any] = {
-        "legend": {"loc": "upper right"},
-        "scale": _staying,
-        "extra": _tell_of_runaways,
-    }
+    free: Style = {"legend": {"loc": "upper right"}, "scale": _staying, "extra": _tell_of_runaways}
     return plotting.ratio_figure(
         plotting.content_for_each_beta("Vibrated bed", bed, message=BED, legend=columns, **COMMON),
         plotting.content_for_each_beta("Cooling gas", cooling, message=COOLING, **COMMON, **free),

@@ -3,7 +3,6 @@
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
 from roughgas.plotting import (
     ENERGY_RATIO,
@@ -13,6 +12,7 @@ from roughgas.plotting import (
     THEORY,
     add_title,
     draw_theory,
+    key,
     keys_of_steadiness,
     series,
 )
@@ -90,18 +90,16 @@ def _cumulants(axes, gas, place, look) -> None:
 
 def _keys(drawn):
     """Return what colours and symbols are."""
-    how = [(one.look.colour, one.look.marker, one.label) for one in drawn]
-    keys = [Line2D([], [], ls="none", marker=m, color=c, label=label) for c, m, label in how]
-    for marker, label in METHODS.values():
-        keys.append(Line2D([], [], ls="none", marker=marker, mfc="none", color=GREY, label=label))
-    keys.append(Line2D([], [], color=GREY, label="theory: see below"))
+    keys = [key(one.look.colour, one.label, one.look.marker) for one in drawn]
+    keys += [key(GREY, label, marker, mfc="none") for marker, label in METHODS.values()]
+    keys.append(key(GREY, "theory: see below", "", "-"))
     return keys + keys_of_steadiness(drawn)
 
 
 def _keys_of_gap(axes) -> None:
     """Say what lines are; those of cumulants are of the same theory."""
     lines = {":": "rate equations, Maxwellian", "-": "Sonine approximation, also right"}
-    keys = [Line2D([], [], color=THEORY, ls=line, lw=0.8, label=one) for line, one in lines.items()]
+    keys = [key(THEORY, label, "", line, lw=0.8) for line, label in lines.items()]
     low, high = axes.get_ylim()
     axes.set_ylim(low, high + 0.3 * (high - low))
     axes.legend(handles=keys, loc="upper right", fontsize=7)

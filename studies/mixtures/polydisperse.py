@@ -6,10 +6,9 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
 from roughgas import plotting
-from roughgas.plotting import FAINT, LOOKS, THEORY, Look, Style
+from roughgas.plotting import FAINT, LOOKS, THEORY, Look, Style, key
 
 SIZE = (7.0, 5.4)  # inches
 ALIKE = 0.0
@@ -67,14 +66,9 @@ def _draw_r(
     return every
 
 
-def _keys(colours: dict[float, Look], drawn: Sequence[plotting.Series]) -> list[Line2D]:
+def _keys(colours: dict[float, Look], drawn: Sequence[plotting.Series]) -> list:
     """Return what colours, symbols and lines are, and open symbols if there are any."""
-    keys = [
-        Line2D([], [], ls="none", marker="s", color=look.colour, label=f"$r = {r:g}$")
-        for r, look in colours.items()
-    ]
-    forms = {one.label: one.look for one in drawn}
-    for label, look in forms.items():
-        form: Style = {"ls": look.line, "marker": look.marker, "color": THEORY}
-        keys.append(Line2D([], [], label=f"standard deviation of radii {label}", **form))
+    keys = [key(look.colour, f"$r = {r:g}$", "s") for r, look in colours.items()]
+    for label, look in {one.label: one.look for one in drawn}.items():
+        keys.append(key(THEORY, f"standard deviation of radii {label}", look.marker, look.line))
     return keys + plotting.keys_of_steadiness(drawn)

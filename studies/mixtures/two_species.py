@@ -8,11 +8,10 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from matplotlib.markers import TICKLEFT, TICKRIGHT
 
 from roughgas import plotting
-from roughgas.plotting import FAINT, LOOKS, THEORY, Look, Style, species_at
+from roughgas.plotting import FAINT, LOOKS, THEORY, Look, key, species_at
 
 SIZE = (7.0, 6.2)  # inches
 LABELS = {
@@ -136,29 +135,21 @@ def _finish(upper: Axes, lower: Axes, column: Column) -> None:
     lower.set_title(column.of_ratios, fontsize=8.5, fontweight="bold", loc="left")
 
 
-def _keys_of_beta(every: Sequence[plotting.Series]) -> list[Line2D]:
+def _keys_of_beta(every: Sequence[plotting.Series]) -> list:
     """Return what colours are, and open symbols if there are any."""
     looks = {float(one.data.beta): one.look for one in every}
-    keys = [
-        Line2D(
-            [], [], ls="none", marker=look.marker, color=look.colour, label=rf"$\beta = {beta:g}$"
-        )
-        for beta, look in looks.items()
-    ]
+    keys = [key(look.colour, rf"$\beta = {beta:g}$", look.marker) for beta, look in looks.items()]
     return keys + plotting.keys_of_steadiness(every)
 
 
-def _keys_of_species(theories: str, cooling: bool) -> list[Line2D]:
+def _keys_of_species(theories: str, cooling: bool) -> list:
     """Return what stands for the species, and for theory of each."""
     looks = (SMALL, THEORY, "1: light or small"), (LARGE, _pale(THEORY), "2: heavy or large")
-    keys = [
-        Line2D([], [], ls="none", marker="o", ms=size, color=colour, label=name)
-        for size, colour, name in looks
-    ]
+    keys = [key(colour, name, "o", ms=size) for size, colour, name in looks]
     for number, line, dash, side in zip((1, 2), LINES, DASHES, ("left", "right"), strict=True):
-        how: Style = (
-            {"ls": line} if cooling else {"ls": "none", "marker": dash, "ms": 9, "mew": 1.2}
-        )
-        label = f"{theories}, {number}" + ("" if cooling else f": dash to the {side}")
-        keys.append(Line2D([], [], label=label, color=THEORY, **how))
+        label = f"{theories}, {number}"
+        if cooling:
+            keys.append(key(THEORY, label, "", line))
+        else:
+            keys.append(key(THEORY, f"{label}: dash to the {side}", dash, ms=9, mew=1.2))
     return keys

@@ -1,15 +1,13 @@
 """Profiles across vibrated beds, and the averages of R that they tell apart; sheared gases."""
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
-from roughgas.plotting import FAINT, GREY, LOOKS, THEORY
+from roughgas.plotting import FAINT, GREY, LOOKS, THEORY, Style, key
 from roughgas.tasks import along
 from roughgas.theory import lun_ratio
 
@@ -28,7 +26,7 @@ AVERAGES = {
     "R_meeting": "those near,\napproaching",
     "R_collisional": "at contacts",
 }
-BARS: dict[str, Any] = {"capsize": 1.5, "elinewidth": 0.8}
+BARS: Style = {"capsize": 1.5, "elinewidth": 0.8}
 
 
 TITLES = (
@@ -52,7 +50,7 @@ def draw(data: xr.Dataset) -> Figure:
     for title, axes in zip(TITLES, panels.flat, strict=True):
         axes.set_title(title, loc="left", fontsize=8.5)
     keys = [
-        Line2D([], [], color=look.colour, marker=look.marker, ms=4, label=point_label(one))
+        key(look.colour, point_label(one), look.marker, "-", ms=4)
         for one, look in zip(beds, LOOKS, strict=False)
     ]
     figure.legend(handles=keys, loc="outside upper center", ncols=3, title="vibrated beds")
@@ -65,7 +63,7 @@ def draw_ratios(axes: Axes, beds: Sequence[xr.Dataset]) -> None:
         axes.plot(*_drawn(one, "R_slice"), color=look.colour, lw=1.4)
         height, at_contacts = _drawn(one, "R_slice_collisional", least=FEW)
         every = slice(None, None, 2)
-        style: dict[str, Any] = {"color": look.colour, "ms": 2.8}
+        style: Style = {"color": look.colour, "ms": 2.8}
         axes.plot(height[every], at_contacts[every], look.marker, **style)
     axes.plot([], [], color=GREY, lw=1.4, label="of the temperatures")
     axes.plot([], [], "o", color=GREY, ms=2.8, label="at contacts")
@@ -115,7 +113,7 @@ def draw_sheared(axes: Axes, gases: Sequence[xr.Dataset]) -> None:
         scale = (1 - lun) / lun
         value, bar = float(one.theta) * scale, float(one.theta_stderr) * scale
         label = point_label(one)
-        about: dict[str, Any] = {"xerr": float(one.factor_stderr), "yerr": bar, "fmt": look.marker}
+        about: Style = {"xerr": float(one.factor_stderr), "yerr": bar, "fmt": look.marker}
         axes.errorbar(float(one.factor), value, color=look.colour, label=label, **about, **BARS)
         top = max(top, value + bar, float(one.factor))
     ends = (1.0, 1.0 + 1.1 * (top - 1.0))

@@ -1,21 +1,19 @@
 """The figure of single particles that run away from a cooling gas with friction."""
 
-from typing import Any
-
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
-from roughgas.plotting import FAINT, GREY, LOOKS, THEORY, Look
+from roughgas.plotting import FAINT, GREY, LOOKS, THEORY, Look, Style
 from roughgas.tasks import along
 
 SIZE = (7.0, 6.6)  # inches
 BLACK = Look("#222222", "P", "-")
 SKY = Look("#56B4E9", "X", (0, (4, 1)))
 BY_FRICTION = (*LOOKS, SKY, BLACK)
-THIN: dict[str, Any] = {"ls": "none", "elinewidth": 0.8, "capsize": 1.5}
+THIN: Style = {"ls": "none", "elinewidth": 0.8, "capsize": 1.5}
 
 
 def draw(data: xr.Dataset) -> Figure:
@@ -52,7 +50,7 @@ def draw_times(axes: Axes, data: xr.Dataset) -> None:
         for kind, fill in (("dsmc", look.colour), ("events", "white")):
             x = one[f"{kind}_particles"].values
             time, error = (one[f"{kind}_time{end}"].values for end in ("", "_stderr"))
-            about: dict[str, Any] = {"color": look.colour, "mfc": fill, "marker": look.marker}
+            about: Style = {"color": look.colour, "mfc": fill, "marker": look.marker}
             axes.errorbar(x, time, error, ms=4, **about, **THIN)
         axes.plot(one.dsmc_particles, one.dsmc_time, color=look.colour, lw=0.7, ls=look.line)
         if np.isfinite(one.dsmc_time).any():
@@ -74,11 +72,10 @@ def draw_times(axes: Axes, data: xr.Dataset) -> None:
 
 def draw_rates(axes: Axes, data: xr.Dataset) -> None:
     """Draw the rate of crossings over mu, beside theory."""
-    about: dict[str, Any] = {"color": GREY, "marker": "o", "label": "DSMC"}
+    about: Style = {"color": GREY, "marker": "o", "label": "DSMC"}
     axes.errorbar(data.mu, data.rate, data.rate_stderr, **about, **THIN)
-    axes.plot(
-        data.mu, data.rate_bound, ls="none", marker=r"$\downarrow$", ms=8, color=about["color"]
-    )
+    below: Style = {"ls": "none", "marker": r"$\downarrow$", "ms": 8, "color": GREY}
+    axes.plot(data.mu, data.rate_bound, **below)
     shown = np.isfinite(data.rate.values) | np.isfinite(data.rate_bound.values)
     axes.plot(data.mu, data.predicted_rate, color=THEORY, label="theory, up to a factor")
     axes.plot(data.mu, data.maxwellian_share, "--", color=FAINT, label="share of a Maxwellian")
@@ -98,12 +95,7 @@ def draw_shares(axes: Axes, data: xr.Dataset) -> None:
         for kind, fill in (("dsmc", look.colour), ("events", "white")):
             x, share = (one[f"{kind}_{name}"].values for name in ("particles", "largest_share"))
             line = look.line if kind == "dsmc" else "none"
-            about: dict[str, Any] = {
-                "color": look.colour,
-                "mfc": fill,
-                "marker": look.marker,
-                "lw": 0.7,
-            }
+            about: Style = {"color": look.colour, "mfc": fill, "marker": look.marker, "lw": 0.7}
             axes.plot(x, share, ls=line, **about)
     axes.set(xscale="log", xlabel="number of particles $N$")
     axes.set_ylabel("largest share in the energy of spins", fontsize=9)

@@ -8,10 +8,9 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
 from roughgas import theory
-from roughgas.plotting import FAINT, GREY, LOOKS, THEORY, Look, Style, particles_of
+from roughgas.plotting import FAINT, GREY, LOOKS, THEORY, Look, Style, key, particles_of
 
 SIZE = (7.0, 4.4)  # inches
 MARKERS = "o", "^"
@@ -28,18 +27,16 @@ def draw(gas: xr.Dataset) -> Figure:
     """Draw the figure from the reduced dataset of the viscoelastic cooling gas."""
     figure = Figure(figsize=SIZE, layout="constrained")
     left, right = figure.subplots(1, 2)
-    keys = [Line2D([], [], color=THEORY, lw=0.9, label="theory")]
+    keys = [key(THEORY, "theory", "", "-", lw=0.9)]
     for beta, look in zip(gas.beta.values, LOOKS, strict=False):
-        label = rf"$\beta = {beta:g}$"
-        keys.append(Line2D([], [], ls="none", marker="s", color=look.colour, label=label))
+        keys.append(key(look.colour, rf"$\beta = {beta:g}$", "s"))
         for r, marker in zip(sorted(gas.r.values, reverse=True), MARKERS, strict=False):
             one = gas.sel(r=r, beta=beta)
             if np.isfinite(one.E_trans):
                 _draw_energy(left, one, look._replace(marker=marker))
                 _draw_ratio(right, one, look._replace(marker=marker))
     for r, marker in zip(sorted(gas.r.values, reverse=True), MARKERS, strict=False):
-        label = f"$r = {r:g}$ at first"
-        keys.append(Line2D([], [], ls="none", marker=marker, color=GREY, label=label))
+        keys.append(key(GREY, f"$r = {r:g}$ at first", marker))
     _draw_powers(left)
     energy = r"$E_\mathrm{trans}$ / initial $E_\mathrm{trans}$"
     left.set(xscale="log", yscale="log", xlabel="time / $T$", ylabel=energy)

@@ -4,12 +4,19 @@ McNamara & Luding (1998): "changing the wave form does not significantly change 
 are those from the sawtooth, not from theory.
 """
 
-from typing import Any
-
 import xarray as xr
 from matplotlib.figure import Figure
 
-from roughgas.plotting import HALF, LOOKS, TWO_WIDE, WIDTH, PanelContent, ratio_figure, series
+from roughgas.plotting import (
+    HALF,
+    LOOKS,
+    TWO_WIDE,
+    WIDTH,
+    PanelContent,
+    Style,
+    ratio_figure,
+    series,
+)
 
 LABELS = {
     "sawtooth": "sawtooth (the paper's)",
@@ -39,5 +46,5 @@ def _content(waves: xr.Dataset, r: float, message: str) -> PanelContent:
         for (wave, label), look in zip(LABELS.items(), LOOKS, strict=False)
     ]
     beside = [one._replace(theory=drawn[0].data.R.values) for one in drawn]
-    how: dict[str, Any] = {"theory": "Lun's formula", "message": message, "legend": HALF}
+    how: Style = {"theory": "Lun's formula", "message": message, "legend": HALF}
     return PanelContent(f"Vibrated bed, $r = {r:g}$", [waves], beside, **how)

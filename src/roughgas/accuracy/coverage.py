@@ -77,9 +77,8 @@ def combine(parts: Mapping[str, xr.Dataset], settings: Mapping[str, Any]) -> xr.
     found = stacked([_corner(parts[name], settings) for name in names])
     found |= {key: [corner[key] for corner in corners] for key in ("experiment", "r", "beta")}
     found |= {"corner": names, "way": list(WAYS), "level": list(LEVELS)}
-    return dataset(
-        variables(VARIABLES, "coverage"), found, seed=settings["seed"], unit_of_length=UNIT
-    )
+    known = variables(VARIABLES, "coverage")
+    return dataset(known, found, seed=settings["seed"], unit_of_length=UNIT)
 
 
 def calibrate(

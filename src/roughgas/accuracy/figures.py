@@ -4,7 +4,6 @@ A function a figure, by its name, of the datasets of the studies that it shows.
 """
 
 from collections.abc import Callable, Sequence
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -13,10 +12,9 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, MultipleLocator
 
 from roughgas.accuracy import in_order
-from roughgas.show.style import FAINT, GREY, LOOKS, THEORY, Look
-from roughgas.statistics.errors import Estimate
+from roughgas.show.style import FAINT, GREY, LOOKS, THEORY, Look, Style
 from roughgas.statistics.fits import power_law
-from roughgas.tasks import along, label
+from roughgas.tasks import along, cell, label
 
 Panel = tuple[Callable[[Axes, xr.Dataset], None], str]
 SIZE = (7.0, 4.2)  # inches, of two panels
@@ -32,14 +30,15 @@ ROOM = 0.4  # for the legend beneath, of the range of the data
 PACKING_MARKERS = ("X", "P", "d")
 BOTH = np.sqrt(2.0)  # statistical error and deviation being equal
 RESOLVED = 2.0  # standard errors: deviations below are not told from zero
-BARS: dict[str, Any] = {"elinewidth": 0.8, "capsize": 1.5}
-THIN: dict[str, Any] = {"ls": "none", "elinewidth": 0.9}
+BARS: Style = {"elinewidth": 0.8, "capsize": 1.5}
+THIN: Style = {"ls": "none", "elinewidth": 0.9}
+LOG: Style = {"xscale": "log", "yscale": "log"}
 LEGAL = (0.92, 0.98)
 """What share of the 95 % intervals has to hold the truth."""
 
 COVERAGE_WIDTH = 7.4  # inches
 COLOURS = {"vibrated": LOOKS[0], "sheared": LOOKS[1], "cooling": LOOKS[2]}
-CORNER_BARS: dict[str, Any] = {"ls": "none", "capsize": 1.5, "elinewidth": 0.8, "mew": 0.9}
+CORNER_BARS: Style = {"ls": "none", "capsize": 1.5, "elinewidth": 0.8, "mew": 0.9}
 SHIFT = 0.17  # of the two ways off their corner's row
 
 
@@ -78,42 +77,34 @@ def _in_panels(panels: Sequence[Panel], *data: xr.Dataset) -> Figure:
     every = figure.subplots(1, len(panels))
     for axes, (panel, title), one in zip(every, panels, data, strict=True):
         panel(axes, one)
-        axes.set_title(_of(one, title), loc="left", fontsize=8.5)
+        r, beta = (float(one.attrs[key]) for key in ("r", "beta"))
+        place = rf"$r = {r:g}$, $\beta = {beta:g}$"
+        axes.set_title(title.format(place), loc="left", fontsize=8.5)
     return figure
-
-
-def _of(data, title):
-    r, beta = (float(data.attrs[key]) for key in ("r", "beta"))
-    return title.format(rf"$r = {r:g}$, $\beta = {beta:g}$")
 
 
 def draw_statistical(axes: Axes, data: xr.Dataset) -> None:
     """Draw relative errors, their fits and the marks of what accuracy, from group `statistical`."""
-    _logarithmic(axes, "CPU seconds of measurement", "relative error of $R$ (rms)")
+    axes.set(xlabel="CPU seconds of measurement", ylabel="relative error of $R$ (rms)", **LOG)
     for look, name in zip(LOOKS, data.scene.values, strict=False):
         scene = data.sel(scene=name)
-        slopes = ", ".join(_slope(scene.sel(way=way)) for way in WAYS)
+        slopes = ", ".join(cell(scene.sel(way=way), "slope") for way in WAYS)
         label = f"{name}: {slopes}".replace("-", "\N{MINUS SIGN}")
         for way, line in WAYS.items():
             own, R = scene.sel(way=way), float(scene.R)
             x, error, groups = own.seconds.values, own.error.values / R, own.groups.values
-            about: dict[str, Any] = {
-                "color": look.colour,
-                "marker": look.marker,
-                "ls": "none",
-                "zorder": 3,
-            }
+            about: Style = {"color": look.colour, "marker": look.marker, "ls": "none", "zorder": 3}
             about |= {"label": label} if way == "length" else {"mfc": "white"}
             axes.errorbar(x, error, own.error_stderr / R, mew=0.9, **about, **BARS)
             ends = np.array([x.min(), x.max()])
             law = power_law(x, error, groups, bias=-0.5 / groups)
             axes.plot(ends, law(ends), color=look.colour, ls=line, lw=0.9)
     axes.set_ylim(bottom=min(data.relative_error.values) / 4)  # leaves room for the legend
-    grey: dict[str, Any] = {"color": GREY, "fontsize": 7.5}
-    beside: dict[str, Any] = {"xytext": (3, 3), "textcoords": "offset points", "va": "bottom"}
+    grey: Style = {"color": GREY, "fontsize": 7.5}
+    beside: Style = {"xytext": (3, 3), "textcoords": "offset points", "va": "bottom"}
     for accuracy in data.relative_error.values:
         axes.axhline(accuracy, color=FAINT, lw=0.6, ls=":", zorder=0)
-        place: dict[str, Any] = {"xy": (0.0, accuracy), "xycoords": ("axes fraction", "data")}
+        place: Style = {"xy": (0.0, accuracy), "xycoords": ("axes fraction", "data")}
         axes.annotate(f"{100 * accuracy:g} %", **place, **beside, **grey)
     title = "slope: longer runs (filled), more seeds (open)"
     axes.legend(loc="lower left", title=title, alignment="left")
@@ -124,11 +115,11 @@ def draw_models(axes: Axes, data: xr.Dataset) -> None:
 
     There is no line through symbols, since no run was made between two lengths.
     """
-    _logarithmic(axes, "CPU time of one run / s", r"relative error of $R$")
+    axes.set(xlabel="CPU time of one run / s", ylabel="relative error of $R$", **LOG)
     for method, (text, look) in METHODS.items():
         x, (y, bar) = data[f"{method}_seconds"].values, _with_error(data, f"{method}_error")
-        size: dict[str, Any] = {"markersize": 10} if look.marker == "*" else {}
-        colours: dict[str, Any] = {"color": look.colour, "marker": look.marker}
+        size: Style = {"markersize": 10} if look.marker == "*" else {}
+        colours: Style = {"color": look.colour, "marker": look.marker}
         axes.errorbar(x, y, bar, label=text, zorder=3, **colours, **size, **THIN)
     seconds = data.event_driven_seconds.values
     fit = data.event_driven_prefactor.values * seconds**data.event_driven_slope.values
@@ -147,7 +138,7 @@ def draw_map(axes: Axes, data: xr.Dataset) -> None:
         one = data.isel(map_r=row)
         x, (y, bar) = one.map_beta.values, _with_error(one, "map_gap")
         label = f"$r = {float(one.map_r):g}$"
-        about: dict[str, Any] = {"color": look.colour, "marker": look.marker, "label": label}
+        about: Style = {"color": look.colour, "marker": look.marker, "label": label}
         axes.errorbar(x, 100 * y, 100 * bar, markersize=3.6, **about, **THIN)
         explained = 100 * one.map_gap_explained.values
         axes.plot(x, explained, "_", color=look.colour, ms=7, zorder=1)
@@ -167,7 +158,7 @@ def draw_map(axes: Axes, data: xr.Dataset) -> None:
 
 def draw_discretisation(axes: Axes, data: xr.Dataset) -> None:
     """Draw error of R against CPU seconds, of soft spheres and events."""
-    _logarithmic(axes, "CPU seconds", r"relative error of $R$, r.m.s.")
+    axes.set(xlabel="CPU seconds", ylabel="relative error of $R$, r.m.s.", **LOG)
     _events(axes, data)
     for look, steps in zip(LOOKS, data.steps.values, strict=False):
         label = f"soft spheres, {steps} steps a contact"
@@ -187,16 +178,8 @@ PANELS: tuple[Panel, ...] = (
 )
 
 
-def _logarithmic(axes, x, y):
-    axes.set(xscale="log", yscale="log", xlabel=x, ylabel=y)
-
-
 def _with_error(data, name):
     return data[name].values, data[f"{name}_stderr"].values
-
-
-def _slope(own):
-    return f"{Estimate(float(own.slope), float(own.slope_stderr))}"
 
 
 def _floors(axes, data):
@@ -272,7 +255,7 @@ def _corners(axes: Axes, corners: Sequence[xr.Dataset], level: float) -> None:
     axes.axvline(level, color=GREY, lw=0.8, ls="--", zorder=0)
     for row, corner in enumerate(one.sel(level=level) for one in corners):
         look = COLOURS.get(str(corner.experiment.values), LOOKS[3])
-        about: dict[str, Any] = CORNER_BARS | {"color": look.colour, "marker": look.marker}
+        about: Style = CORNER_BARS | {"color": look.colour, "marker": look.marker}
         for way, (shift, fill) in enumerate(((-SHIFT, look.colour), (SHIFT, "white"))):
             share, stderr = corner.coverage[way], corner.coverage_stderr[way]
             axes.errorbar(share, row + shift, xerr=stderr, mfc=fill, **about)

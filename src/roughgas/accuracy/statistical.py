@@ -140,25 +140,18 @@ def _estimates(settings, shortest, chains, way) -> dict[str, tuple]:
         part = part if way == "length" else part.swapaxes(1, 2)
         R, seconds = part.reshape(2, -1, runs[level])
         filled[:, level, : len(R)] = R.mean(axis=1), seconds.sum(axis=1)
-    found = {
-        name: (("level", "group"), x) for name, x in zip(("R", "seconds"), filled, strict=True)
-    }
+    dims = ("level", "group")
+    found = {"R": (dims, filled[0]), "seconds": (dims, filled[1])}
     return {**found, "equilibration": ("chain", equilibration)}
 
 
 def combine(parts: Mapping[str, xr.Dataset], settings: Mapping[str, Any]) -> xr.Dataset:
     """Return errors, slopes, autocorrelation times and what an accuracy costs, from all tasks."""
-    found = stacked([_scene(scene, parts, settings) for scene in SCENES]) | {
-        "length_unit": [LENGTH_UNITS[scene] for scene in SCENES],
-        "scene": list(SCENES),
-        "way": list(WAYS),
-        "relative_error": list(RELATIVE_ERRORS),
-    }
-    return dataset(
-        variables(VARIABLES, "statistical"),
-        found,
-        **{key: settings[key] for key in ("r", "beta", "seed")},
-    )
+    found = stacked([_scene(scene, parts, settings) for scene in SCENES])
+    found |= {"scene": list(SCENES), "length_unit": [LENGTH_UNITS[scene] for scene in SCENES]}
+    found |= {"way": list(WAYS), "relative_error": list(RELATIVE_ERRORS)}
+    about = {key: settings[key] for key in ("r", "beta", "seed")}
+    return dataset(variables(VARIABLES, "statistical"), found, **about)
 
 
 def observed(R: np.ndarray, seconds: np.ndarray, truth: float) -> dict[str, Any]:

@@ -3,13 +3,13 @@
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from roughgas.base import InputError, not_one_of
 from roughgas.base.files import module_of
-from roughgas.data.netcdf import POINT, REDUCED, STUDIES, kind_of, opened, read_groups
+from roughgas.data.netcdf import POINT, REDUCED, kind_of, opened, read_groups
 from roughgas.data.point import read_point
-from roughgas.data.reduced import read_reduced
+from roughgas.data.reduced import read_by_name, read_reduced
 from roughgas.results.evidence import read_rows
 from roughgas.show import style
 from roughgas.show.catalogue import FIGURES, figures_of
@@ -57,7 +57,7 @@ def draw_of_study(
     if function is None:
         raise InputError(f"studies/{Path(folder).name}/figure.py", "it", f"have draw{part}()")
     names = [Path(folder).name if one == "tasks" else one for one in shows]
-    datasets = {name: data for path in inputs for name, data in _datasets(path).items()}
+    datasets = {name: data for path in inputs for name, data in read_by_name(path).items()}
     _draw(figure, function, names, datasets, output)
 
 
@@ -92,16 +92,6 @@ def _draw(
         raise InputError(f"data of {name}", swept, f"have all that it shows: {error}") from error
 
 
-def _datasets(path: str | Path) -> dict[str, "xr.Dataset"]:
-    """Return a reduced dataset by its experiment, or what tasks have found by their study."""
-    with opened(path, REDUCED, STUDIES) as file:
-        is_reduced = kind_of(file) == REDUCED
-    if not is_reduced:
-        return read_groups(path)
-    data = read_reduced(path)
-    return {data.attrs["experiment"]: data}
-
-
 def plot(
     path: str | Path,
     outputs: Iterable[str | Path],
@@ -115,30 +105,22 @@ def plot(
     Returns a line for each coordinate of which not all values are shown. Raises InputError as
     `sweep.draw` does, for another kind of file, and for an axis or values of a point.
     """
-    with opened(path, REDUCED, POINT) as file:
-        is_point = kind_of(file) == POINT
-    if is_point:
-        return _plot_point(path, outputs, of, over, *chosen.values())
-    if of is not None:
-        raise InputError("dataset", path, "be a point for --of")
     from roughgas.show.figures import sweep
 
-    data = read_reduced(path)
-    layout = sweep.arranged(data, over, chosen)
-    style.draw(lambda: sweep.draw(data, over, **chosen), outputs)
-    return sweep.left_out(data, layout)
-
-
-def _plot_point(
-    path: str | Path, outputs: Iterable[str | Path], of: str | None, *axes: Any
-) -> list[str]:
-    from roughgas.show.figures import observed, sweep
-
-    if any(axes):
+    with opened(path, REDUCED, POINT) as file:
+        is_point = kind_of(file) == POINT
+    if is_point and any((over, *chosen.values())):
         raise InputError("dataset", path, "be a reduced one for --over, --r and --beta")
+    if of is not None and not is_point:
+        raise InputError("dataset", path, "be a point for --of")
+    if not is_point:
+        data = read_reduced(path)
+        lines = sweep.left_out(data, over, chosen)
+        style.draw(lambda: sweep.draw(data, over, **chosen), outputs)
+        return lines
     point = read_point(path)
     if of is None:
         style.draw(lambda: sweep.draw_point(point, ratio_of_point(point)), outputs)
     else:
-        style.draw(lambda: observed.draw(point, of), outputs)
+        style.draw(lambda: sweep.draw_observed(point, of), outputs)
     return []

@@ -96,11 +96,7 @@ def write_document(input: str | Path, *, output: str | Path) -> None:
     if source.suffix not in KINDS:
         raise InputError("document", source, f"end in one of {', '.join(KINDS)}")
     try:
-        content = source.read_bytes()
-        if source.suffix == ".md":
-            body = markdown_as_html(content, source.parent)
-        else:
-            body = KINDS[source.suffix](content)
+        body = KINDS[source.suffix](source.read_bytes(), source.parent)
     except UnicodeDecodeError as error:
         raise InputError("document", source, "be text in UTF-8") from error
     parts = {"title": source.name, "body": markup(body)}
@@ -134,11 +130,11 @@ MOVIE = '<video controls loop muted autoplay src="data:video/mp4;base64,{}"></vi
 PICTURE = '<img alt="" src="data:image/gif;base64,{}">'
 KINDS = {
     ".md": markdown_as_html,
-    ".yaml": lambda content: f"<pre>{escape(content.decode('utf-8'))}</pre>",
-    ".mp4": lambda content: MOVIE.format(_base64(content)),
-    ".gif": lambda content: PICTURE.format(_base64(content)),
+    ".yaml": lambda content, _: f"<pre>{escape(content.decode('utf-8'))}</pre>",
+    ".mp4": lambda content, _: MOVIE.format(_base64(content)),
+    ".gif": lambda content, _: PICTURE.format(_base64(content)),
 }
-"""How the content (bytes) of a file becomes HTML, by its suffix."""
+"""How the content (bytes) of a file in a folder becomes HTML, by its suffix."""
 
 
 # ---------------------------------------------------------------- the report's front page

@@ -5,7 +5,7 @@ import pytest
 import xarray as xr
 
 from roughgas.base import InputError
-from roughgas.show.figures.observed import draw
+from roughgas.show.figures.sweep import draw_observed as draw
 
 ABOUT = {"experiment": "gas", "r": 0.9, "beta": 0.0, "particles": 9, "seed": 1}
 
@@ -32,7 +32,7 @@ def test_there_is_a_line_for_each_pair_of_species_with_its_error():
     }
     top = axes.collections[2].get_paths()[0].vertices[:, 1].max()
     assert top == pytest.approx(11.0 * 1.1)
-    assert axes.get_xlabel() == "far / a" and axes.get_ylabel() == "pair correlation"
+    assert axes.get_xlabel() == "distance / a" and axes.get_ylabel() == "pair correlation"
 
 
 def test_what_is_over_no_numbers_is_not_drawn():

@@ -95,7 +95,6 @@ def series_for_each(
     ]
 
 
-__all__ = ["RESTITUTION", "Series", "restitution_of", "series", "series_for_each"]
 ENERGY_RATIO = r"$R = E_\mathrm{rot}/(E_\mathrm{rot} + E_\mathrm{trans})$"
 AVERAGES = {"R": "mean of $R(t)$", "R_collisional": "averaged over collisions"}
 """The ways in which R is averaged, by the names of variables; the first is the paper's."""
@@ -305,11 +304,11 @@ def add_legend(
     """
     line = "none" if theory else None
     keys: list[Any] = [
-        _key(one.look.colour, _mark(one), one.look.marker, line or one.look.line) for one in drawn
+        key(one.look.colour, _mark(one), one.look.marker, line or one.look.line) for one in drawn
     ]
-    keys += [_key(THEORY, theory, "", "-")] if theory else []
-    keys += [_key(FAINT, "equipartition", "", DOTS), *main.get_legend_handles_labels()[0]]
-    keys = [key for key in keys if key.get_label() not in known]
+    keys += [key(THEORY, theory, "", "-")] if theory else []
+    keys += [key(FAINT, "equipartition", "", DOTS), *main.get_legend_handles_labels()[0]]
+    keys = [one for one in keys if one.get_label() not in known]
     if how.get("loc") == "half":
         low, high = main.get_ylim()
         how |= {"bbox_to_anchor": (0.0, (0.5 - low) / (high - low)), "borderaxespad": 0.8}
@@ -324,7 +323,7 @@ def add_notes(figure: Figure, drawn: Sequence[Series]) -> None:
     """Say below the figure what open and half filled symbols and a dagger are, if there are any."""
     keys = keys_of_steadiness(drawn)
     if any(one.touched.any() for one in drawn):
-        keys.append(_key(GREY, "contact-time model acted", f"${TOUCHED}$"))
+        keys.append(key(GREY, "contact-time model acted", f"${TOUCHED}$"))
     if keys:
         figure.legend(handles=keys, loc="outside lower right", ncols=len(keys), columnspacing=1.0)
 
@@ -333,9 +332,9 @@ def keys_of_steadiness(drawn: Sequence[Series]) -> list[Line2D]:
     """Return what open and half filled symbols are, if there are any."""
     keys = []
     if any((one.known & ~one.steady).any() for one in drawn):
-        keys.append(_key(GREY, "open: not steady", "o", **NOT_STEADY))
+        keys.append(key(GREY, "open: not steady", "o", **NOT_STEADY))
     if not all(one.known.all() for one in drawn):
-        keys.append(_key(GREY, "half: not known", "o", **NOT_KNOWN))
+        keys.append(key(GREY, "half: not known", "o", **NOT_KNOWN))
     return keys
 
 
@@ -376,5 +375,6 @@ def _mark(one: Series) -> str:
     return one.label + (TOUCHED if one.touched.any() else "")
 
 
-def _key(colour: str, label: str, marker: str, linestyle: Any = "none", **how: Any) -> Line2D:
+def key(colour: str, label: str, marker: str, linestyle: Any = "none", **how: Any) -> Line2D:
+    """Return an entry of a legend."""
     return Line2D([], [], color=colour, label=label, marker=marker, linestyle=linestyle, **how)

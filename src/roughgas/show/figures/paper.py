@@ -1,7 +1,6 @@
 """Figures 1a to 2b of McNamara & Luding (1998), each by its name, from reduced datasets."""
 
 from collections.abc import Sequence
-from typing import Any
 
 import xarray as xr
 from matplotlib.figure import Figure
@@ -19,12 +18,12 @@ from roughgas.show.figures.panel import (
     ratio_figure,
     series,
 )
-from roughgas.show.style import GREY, LOOKS
+from roughgas.show.style import GREY, LOOKS, Style
 from roughgas.theory import sonine_state
 
 WALLS = ("no side walls", "rough elastic walls", "walls like the particles", "smooth elastic walls")
-THIN: dict[str, Any] = {"linestyle": "-", "linewidth": 0.7, "zorder": 0.5}
-FAINT: dict[str, Any] = {"alpha": 0.5, "markersize": 2.6, "markeredgewidth": 0, "zorder": 0}
+THIN: Style = {"linestyle": "-", "linewidth": 0.7, "zorder": 0.5}
+FAINT: Style = {"alpha": 0.5, "markersize": 2.6, "markeredgewidth": 0, "zorder": 0}
 
 
 def fig1a(bed: xr.Dataset) -> Figure:

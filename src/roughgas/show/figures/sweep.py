@@ -1,4 +1,5 @@
-"""Any dataset as a figure: R of a reduced one over an axis, or a point over time, beside theory."""
+"""Any dataset as a figure: R of a reduced one over an axis, or a point over time, beside theory;
+what observables have found in a point."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -76,15 +77,20 @@ def arranged(data: xr.Dataset, over: str | None, chosen: Mapping[str, Sequence[f
     values = {name: _picked(data, name, chosen.get(name)) for name in rest}
     # the one with most values as series, the other as panels
     rest.sort(key=lambda name: len(values[name]), reverse=True)
-    most = zip(rest, (MOST_SERIES, MOST_PANELS), strict=False)
-    few = {name: _spread(values[name], number) for name, number in most}
+    few = {}
+    for name, most in zip(rest, (MOST_SERIES, MOST_PANELS), strict=False):
+        last = len(values[name]) - 1
+        chosen_ones = np.linspace(0, last, min(most, last + 1)).round().astype(int)
+        few[name] = [values[name][k] for k in chosen_ones]
     return Layout(over, rest[0], rest[1] if len(rest) > 1 else None, few)
 
 
-def left_out(data: xr.Dataset, layout: Layout) -> list[str]:
-    """Return a line for each coordinate of which not all values are drawn."""
+def left_out(
+    data: xr.Dataset, over: str | None, chosen: Mapping[str, Sequence[float]]
+) -> list[str]:
+    """Return a line for each coordinate of which not all values are drawn. Raises InputError."""
     lines = []
-    for name, shown in layout.values.items():
+    for name, shown in arranged(data, over, chosen).values.items():
         if len(shown) < data.sizes[name]:
             some = ", ".join(_text(value) for value in shown)
             lines.append(f"{len(shown)} of {data.sizes[name]} values of {name} are shown: {some}")
@@ -98,12 +104,6 @@ def _picked(data: xr.Dataset, name: str, wanted: Sequence[float] | None) -> list
         if value not in known:
             raise InputError(name, value, f"be one of {', '.join(map(_text, known))}")
     return list(wanted or known)
-
-
-def _spread(values: Sequence[Any], number: int) -> list[Any]:
-    if len(values) <= number:
-        return list(values)
-    return [values[round(k)] for k in np.linspace(0, len(values) - 1, number)]
 
 
 def _numbered(data: xr.Dataset, over: str) -> tuple[xr.Dataset, panel.Axis]:
@@ -143,7 +143,7 @@ def _content(
         series(data, _label(layout.series, value), look, **{layout.series: value}, **place)
         for value, look in zip(layout.values[layout.series], LOOKS, strict=False)
     ]
-    how: dict[str, Any] = {
+    how: Style = {
         "theories": f"lines: {equation_of(data.attrs).name}",
         "legend": {"loc": "outside"} if last else {},
         "axis": axis,
@@ -165,12 +165,8 @@ def _energies(data, layout, axis, places, width) -> Figure:
         axis.prepare(axes)
         axes.legend()
         panel.add_title(axes, [data], _title(data, place))
-    _label_energy(every[0])
+    every[0].set_ylabel(r"$E_\mathrm{trans}$, per degree of freedom")
     return figure
-
-
-def _label_energy(axes: Axes) -> None:
-    axes.set_ylabel(r"$E_\mathrm{trans}$, per degree of freedom")
 
 
 def _title(data: xr.Dataset, place: Mapping[str, Any]) -> str:
@@ -189,7 +185,7 @@ def _text(value: Any) -> str:
     return value if isinstance(value, str) else f"{value:g}"
 
 
-TIMELINE = 6.0, 4.6  # inches
+TIMELINE, LINES = (6.0, 4.6), (6.0, 3.2)  # inches
 MOST_PLACES = 400  # places along a line
 WINDOW = "#eeeeee"
 ENERGIES = {"E_trans": r"$E_\mathrm{trans}$", "E_rot": r"$E_\mathrm{rot}$"}
@@ -216,10 +212,9 @@ def draw_point(point: xr.Dataset, theory: float) -> Figure:
         _ratio_over_time(every[0], point, theory, at, block, window)
     _energies_over_time(every[-1], point, at, block, cooling)
     every[-1].set_xlabel("collisions per particle" if cooling else "time / $T$")
+    title = f"{title_of_point(point)}\nshaded: where R is measured"
     averaged = f"; lines: means over {block} samples" if block > 1 else ""
-    every[0].set_title(
-        f"{title_of_point(point)}\nshaded: where R is measured{averaged}", fontsize=8
-    )
+    every[0].set_title(title + averaged, fontsize=8)
     return figure
 
 
@@ -264,3 +259,59 @@ def title_of_point(point: xr.Dataset) -> str:
     name = "/".join(about[key] for key in ("experiment", "variant") if key in about)
     place = rf"$r = {about['r']:g}$, $\beta = {about['beta']:g}$"
     return f"{name.replace('_', ' ')}: {place}, $N = {about['particles']}$, seed {about['seed']}"
+
+
+def draw_observed(point: xr.Dataset, name: str) -> Figure:
+    """Draw what an observable has found in a point over a coordinate, a line for each species or
+    pair, with one standard error to either side.
+
+    Raises InputError for a variable that is over no numbers.
+    """
+    known = {str(one): axis for one in point.data_vars if (axis := _axis(point, one))}
+    if name not in known:
+        shown = [one for one in known if f"{one}_stderr" in point]
+        raise not_one_of("--of", name, shown or known)
+    axis = known[name]
+    figure = Figure(figsize=LINES, layout="constrained")
+    axes = figure.subplots()
+    at = point[axis].values
+    values = point[name].transpose(..., axis)
+    errors = point.get(f"{name}_stderr", values * np.nan).transpose(..., axis)
+    for number, place in enumerate(_places_of(values)):
+        look = LOOKS[number % len(LOOKS)]
+        line, error = values.values[place], errors.values[place]
+        axes.plot(at, line, color=look.colour, linestyle=look.line, label=_line(values, place))
+        band: Style = {"color": look.colour, "alpha": 0.25, "linewidth": 0}
+        axes.fill_between(at, line - error, line + error, **band)
+    over, said = (one.replace("_", " ") for one in (axis, name.removesuffix("_species")))
+    axes.set(xlabel=f"{over}{_unit(point[axis])}", ylabel=f"{said}{_unit(values)}")
+    axes.set_title(title_of_point(point), fontsize=8)
+    if values.ndim > 1:
+        axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False)
+    return figure
+
+
+def _axis(point: xr.Dataset, name: Any) -> str | None:
+    """Return the last dimension of a variable that has numbers along it, None without any."""
+    dims = [str(dim) for dim in point[name].dims if dim in point.coords]
+    return next((dim for dim in dims[::-1] if point[dim].dtype.kind in "fiu"), None)
+
+
+def _places_of(values: xr.DataArray) -> list[tuple[int, ...]]:
+    """Return the index of each line; of a pair of species in one of the two orders."""
+    places, dims = np.ndindex(values.shape[:-1]), values.dims
+    if "other" not in dims:
+        return list(places)
+    one, other = dims.index("species"), dims.index("other")
+    return [place for place in places if place[one] <= place[other]]
+
+
+def _line(values: xr.DataArray, place: tuple[int, ...]) -> str:
+    names = ["species" if dim == "other" else dim for dim in values.dims[:-1]]
+    pairs = zip(names, place, strict=True)
+    return ", ".join(str(values[n].values[k]) if n in values.coords else str(k) for n, k in pairs)
+
+
+def _unit(values: xr.DataArray) -> str:
+    unit = unit_of(values.attrs)
+    return "" if unit in ("", "1") else f" / ({unit})" if " " in unit else f" / {unit}"

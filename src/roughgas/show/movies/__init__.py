@@ -73,7 +73,9 @@ def picture(
     panels: Sequence[Panel], dpi: float | None = None
 ) -> tuple[Figure, Callable[[int], None]]:
     """Return the figure at its first frame, and a function that brings it to another one."""
-    view = _common_view([view_of(*panel) for panel in panels])
+    views = [view_of(*panel) for panel in panels]  # of equal boxes: as much as shows all
+    cropped = any(view.cropped for view in views)
+    view = views[0]._replace(top=max(view.top for view in views), cropped=cropped)
     room = min(3.9, 3.4 * (view.top - view.bottom) / (view.right - view.left))
     inches = math.ceil(10 * (room + FRAME_SPACE + GRAPH)) / 10  # even numbers of pixels
     figure = Figure(figsize=(WIDTH * len(panels), inches), dpi=dpi, layout="constrained")
@@ -122,9 +124,8 @@ def _particles(axes, subject, shots, view):
     if subject.colour == "height":
         tallest = max(np.percentile(heights(shot), TALL) for shot in shots)
         return Heights(axes, view, tallest), "height above the floor / a"
-    by_species = shots[0].bodies is not None and (
-        subject.colour == "species" or shots[0].spin is None
-    )
+    asked = subject.colour == "species" or shots[0].spin is None
+    by_species = asked and shots[0].bodies is not None
     kind = Disks if len(subject.scene.box) == 2 else Spheres
     name = "" if shots[0].spin is None else f"{kind.quantity} / thermal spin"
     return kind(axes, view, by_species), name
@@ -138,12 +139,6 @@ def _name_species(axes, subject):
         for name, colour in zip(names, itertools.cycle(OF_SPECIES), strict=False)
     ]
     axes.legend(handles=dots, loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
-
-
-def _common_view(views):
-    """Return what shows of equal boxes as much as the view that shows most."""
-    cropped = any(view.cropped for view in views)
-    return views[0]._replace(top=max(view.top for view in views), cropped=cropped)
 
 
 def view_of(subject: MovieSubject, shots: Sequence[Snapshot]) -> View:
@@ -232,9 +227,8 @@ def _graph(axes: Axes, subject: MovieSubject, shots: Sequence[Snapshot]) -> Call
     at = np.array([shot.collisions if cooling else shot.time for shot in shots])
     if shots[0].R is None:
         values = np.array([shot.E_trans for shot in shots])
-        axes.set(
-            ylabel=r"$E_\mathrm{trans}$ / ($m a^2/T^2$)", yscale="log" if cooling else "linear"
-        )
+        axes.set(ylabel=r"$E_\mathrm{trans}$ / ($m a^2/T^2$)")
+        axes.set_yscale("log" if cooling else "linear")
     else:
         values = np.array([shot.R for shot in shots])
         axes.set(ylabel=r"$R$", ylim=(0.0, 1.05 * max(0.6, values.max())))
