@@ -90,13 +90,7 @@ def _roughest(bed: xr.Dataset) -> list[tuple[str, Estimate]]:
 def one_curve_for_all_drives(*gases: xr.Dataset) -> Finding:
     """R averaged over collisions - the rate equations, at the measured share of rotation, is
     compatible with zero, whatever drives the gas."""
-    return together(
-        (
-            gas.attrs["experiment"],
-            agreement(
-                deviation_at_shares(averaged(gas, "R_collisional")),
-                "the rate equations at the measured share",
-            ),
-        )
-        for gas in gases
-    )
+    other = "the rate equations at the measured share"
+    samples = (deviation_at_shares(averaged(gas, "R_collisional")) for gas in gases)
+    pairs = zip(gases, samples, strict=True)
+    return together((gas.attrs["experiment"], agreement(one, other)) for gas, one in pairs)

@@ -85,9 +85,8 @@ def _seen(about, dimension, seed) -> list[Contact]:
     box = [WIDTH] * (dimension - 1) + [HEIGHT]
     gas = _gas(about, dimension, 12, box, walls, seed)
     contacts: list[Contact] = []
-    while (
-        min(sum(one.wall == wall for one in contacts) for wall in (True, False)) < about["contacts"]
-    ):
+    seen = {True: 0, False: 0}
+    while min(seen.values()) < about["contacts"]:
         velocity, spin = _motion(gas)
         height, since = gas.positions_and_velocities()[0][:, -1], gas.time
         paired = gas.step(gas.time + LOOK, 1)
@@ -108,6 +107,7 @@ def _seen(about, dimension, seed) -> list[Contact]:
         before, after = (_slip(v, w, i, j, n) for v, w in ((velocity, spin), (now, spun)))
         impulse, turn = now[i] - velocity[i], spun[i] - spin[i]
         contacts.append(Contact(i == j, n, impulse, turn, before, after))
+        seen[i == j] += 1
     return contacts
 
 

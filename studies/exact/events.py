@@ -95,9 +95,8 @@ def noise(about, gas, seed) -> dict[str, float]:
     dimension, r = gas
     frequency = float(theory.collision_frequency(1.0, about["packing"], dimension))
     power = frequency * (1.0 - r**2) / 2.0
-    effects = {
-        "thermostat": {"power": power, "spin_share": 0, "interval": 2.0 / (KICKS * frequency)}
-    }
+    kicks = {"power": power, "spin_share": 0, "interval": 2.0 / (KICKS * frequency)}
+    effects = {"thermostat": kicks}
     driven = _started(about, dimension, about["packing"], r, -1.0, effects, seed)
     driven.in_time(about["thermalise"] / frequency, 1)
     found = []

@@ -49,7 +49,6 @@ def average(values: xr.DataArray) -> Estimate:
 
 def table(data: xr.Dataset) -> str:
     """Return all numbers as a table."""
-    rows = [
-        [one.task.item(), one.quantity.item(), cell(one, "value")] for one in along(data, "number")
-    ]
+    every = along(data, "number")
+    rows = [[one.task.item(), one.quantity.item(), cell(one, "value")] for one in every]
     return f"## Gases of which something is known\n\n{markdown(['gas', 'quantity', 'found'], rows)}"

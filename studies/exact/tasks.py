@@ -34,15 +34,13 @@ def tasks(settings: Mapping[str, Any]) -> list[str]:
 
 def gases_of(settings: Mapping[str, Any]) -> dict[str, tuple[str, list[float]]]:
     """Return kind and parameters of each gas by name; its random numbers are of its place."""
-    gases = [(kind, gas) for kind in KINDS for gas in _gases(settings[kind])]
+    gases = []
+    for kind in KINDS:
+        about = settings[kind]
+        found = about["gases"] if "gases" in about else [[one] for one in about["dimensions"]]
+        gases += [(kind, gas) for gas in found]
     gases += [(CONTACTS, [dimension]) for dimension in settings[CONTACTS]["dimensions"]]
     return {name_of(kind, *gas): (kind, gas) for kind, gas in gases}
-
-
-def _gases(about):
-    return (
-        about["gases"] if "gases" in about else [[dimension] for dimension in about["dimensions"]]
-    )
 
 
 def name_of(kind: str, *gas: float) -> str:

@@ -20,7 +20,6 @@ from roughgas.tasks import (
     cell,
     dataset,
     estimate,
-    flat,
     label,
     markdown,
     mean,
@@ -37,12 +36,8 @@ VARIABLES = Path(__file__).with_name("variables.yaml")
 def combine(parts: Mapping[str, xr.Dataset], settings: Mapping[str, Any]) -> xr.Dataset:
     """Return R by both methods over point, number of particles and packing, from all tasks."""
     names, numbers, packings = point_names(settings), settings["particles"], settings["packings"]
-    found = stacked(
-        [
-            stacked([_gas(parts[f"{name}-n{number}"], number, packings) for number in numbers])
-            for name in names
-        ]
-    )
+    rows = [[_gas(parts[f"{name}-n{n}"], n, packings) for n in numbers] for name in names]
+    found = stacked([stacked(row) for row in rows])
     found["theory"] = found["theory"][:, 0]
     experiments, r, beta = zip(*names.values(), strict=True)
     ends = np.arange(1, found["R_series"].shape[-1] + 1) / found["R_series"].shape[-1]
@@ -60,16 +55,13 @@ def _gas(part: xr.Dataset, number: int, packings) -> dict[str, Any]:
     for box in boxes:
         quotient = over(box["R"], dsmc)
         box["over_dsmc"] = quotient._replace(value=quotient.value - 1.0)
-    return flat(
-        {
-            "dsmc_R": dsmc,
-            "dsmc_a02": estimate(part, "dsmc_a02"),
-            "dsmc_seconds": float(part.dsmc_seconds),
-            "theory": float(part.theory),
-            "flow_of_noise": noise,
-            **stacked(boxes),
-        }
-    )
+    return stacked(boxes) | {
+        "dsmc_R": dsmc,
+        "dsmc_a02": estimate(part, "dsmc_a02"),
+        "dsmc_seconds": float(part.dsmc_seconds),
+        "theory": float(part.theory),
+        "flow_of_noise": noise,
+    }
 
 
 def _box(part, number, packing, noise):

@@ -58,15 +58,10 @@ def combine(parts: Mapping[str, xr.Dataset], settings: Mapping[str, Any]) -> xr.
         sheared = float(runs[0].shear_rate) > 0.0
         found = [_found(run, point) | (_shear(run) if sheared else NO_SHEAR) for run in runs]
         rows.append(_estimates(found) | _exact(runs, point))
-    about: dict[str, Any] = {
-        key: [point[key] for point in points] for key in ("experiment", "r", "beta")
-    }
-    about |= {
-        "point": [point_name(point) for point in points],
-        "slice": range(settings["slices"]),
-    }
-    about["phase"] = np.arange(settings["phases"]) / settings["phases"]
-    every = stacked(rows) | about
+    every = stacked(rows) | {"point": [point_name(point) for point in points]}
+    every |= {key: [point[key] for point in points] for key in ("experiment", "r", "beta")}
+    every["phase"] = np.arange(settings["phases"]) / settings["phases"]
+    every["slice"] = range(settings["slices"])
     return dataset(variables(VARIABLES), every, seed=settings["seed"], runs=settings["runs"])
 
 
@@ -165,10 +160,7 @@ def _shear(run) -> dict[str, float]:
     }
 
 
-NO_SHEAR = dict.fromkeys(
-    ("theta", "factor", "rate", "stress", "difference", "spin_over_vorticity", "flow_deviation"),
-    math.nan,
-)
+NO_SHEAR = dict.fromkeys([name for name in SHEARED if name != "R_collisional"], math.nan)
 
 
 def _exact(runs, point) -> dict[str, Any]:
@@ -206,9 +198,8 @@ def imbalance(run: xr.Dataset) -> float:
     if not run.shear_rate > 0:
         squares["E_rot"] = run.inertia * sums.ww / (2 * D - 3)
     number = sums.particles / run.samples
-    return max(
-        float(abs(square / (2 * number * run[name]) - 1).max()) for name, square in squares.items()
-    )
+    misses = [abs(one / (2 * number * run[name]) - 1).max() for name, one in squares.items()]
+    return max(map(float, misses))
 
 
 def _estimates(found) -> dict[str, Estimate]:
@@ -233,9 +224,9 @@ def table(data: xr.Dataset) -> str:
     """Return R of beds by each average, and what makes R of sheared gases what it is."""
     points = along(data, "point")
     beds = [one for one in points if np.isnan(one.theta)]
-    head = ["bed", *(text for text in BED.values())]
+    head = ["bed", *BED.values()]
     rows = [[point_label(one), *(_written(one, name) for name in BED)] for one in beds]
-    sheared = ["sheared gas", *(text for text in SHEARED.values())]
+    sheared = ["sheared gas", *SHEARED.values()]
     gases = [
         [point_label(one), *(_written(one, name) for name in SHEARED)]
         for one in points

@@ -35,9 +35,8 @@ def sooner_the_larger(runaway: xr.Dataset) -> Finding:
 
 def _exponent(gases: xr.Dataset, kind: str) -> Estimate | None:
     """Return the exponent of N in the time of escape; None where fewer than two times are known."""
-    time, stderr, escapes = (
-        gases[f"{kind}_{name}"].values for name in ("time", "time_stderr", "escapes")
-    )
+    names = "time", "time_stderr", "escapes"
+    time, stderr, escapes = (gases[f"{kind}_{name}"].values for name in names)
     known = np.isfinite(time) & (stderr > 0)
     if known.sum() < 2:
         return None

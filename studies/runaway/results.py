@@ -19,7 +19,6 @@ from roughgas.tasks import (
     along,
     cell,
     dataset,
-    flat,
     markdown,
     mean,
     over,
@@ -43,15 +42,13 @@ def combine(parts: Mapping[str, xr.Dataset], settings: Mapping[str, Any]) -> xr.
     found: dict[str, Any] = {"mu": friction}
     for kind in SIMULATED:
         particles = [one["particles"] for one in settings[kind]]
-        cells = [
-            stacked([_escapes(parts[gas_name(kind, n, mu)]) for n in particles]) for mu in friction
-        ]
-        found |= {f"{kind}_{name}": x for name, x in stacked(cells).items()}
+        rows = [[_escapes(parts[gas_name(kind, n, mu)]) for n in particles] for mu in friction]
+        gases = stacked([stacked(row) for row in rows])
+        found |= {f"{kind}_{name}": x for name, x in gases.items()}
         found[f"{kind}_particles"] = particles
     found |= _compared(found)
     numbers = np.array(found["dsmc_particles"])
-    rates = [_rate(parts, numbers, mu, (r, beta, mu)) for mu in friction]
-    found |= stacked(rates)
+    found |= stacked([_rate(parts, numbers, mu, (r, beta, mu)) for mu in friction])
     mu = np.array(friction)
     found["threshold"] = theory.runaway_spin(r, beta, mu)
     found["predicted_rate"] = theory.runaway_rate(r, beta, mu)
@@ -82,17 +79,15 @@ def _escapes(part: xr.Dataset) -> dict[str, Any]:
     value, bound = time_of_escape(time, observed)
     gone = np.isfinite(time)
     share, number = (part[name].values[gone] for name in ("largest_share", "participation"))
-    return flat(
-        {
-            "time": value,
-            "bound": bound,
-            "escapes": int(gone.sum()),
-            "runs": len(time),
-            "largest_share": np.median(share) if gone.any() else math.nan,
-            "participation": np.median(number) if gone.any() else math.nan,
-            "seconds": float(part.seconds.sum()),
-        }
-    )
+    return {
+        "time": value,
+        "bound": bound,
+        "escapes": int(gone.sum()),
+        "runs": len(time),
+        "largest_share": np.median(share) if gone.any() else math.nan,
+        "participation": np.median(number) if gone.any() else math.nan,
+        "seconds": float(part.seconds.sum()),
+    }
 
 
 def _compared(found: Mapping[str, Any]) -> dict[str, Any]:
@@ -125,12 +120,8 @@ def _rate(parts, numbers, mu, gas) -> dict[str, Any]:
             escapes += gone
             exposed += number * float((observed - grown * np.isfinite(part.time.values)).sum())
     rate = escapes / exposed if escapes else math.nan
-    return flat(
-        {
-            "rate": Estimate(rate, rate / math.sqrt(max(escapes, 1))),
-            "rate_bound": EXCLUDED / exposed if exposed and not escapes else math.nan,
-        }
-    )
+    bound = EXCLUDED / exposed if exposed and not escapes else math.nan
+    return {"rate": Estimate(rate, rate / math.sqrt(max(escapes, 1))), "rate_bound": bound}
 
 
 def _example(parts, about) -> dict[str, Any]:
@@ -142,11 +133,8 @@ def _example(parts, about) -> dict[str, Any]:
     }
     samples = found["example_R"].shape[1]
     passed = about["limit"] / samples * np.arange(1, samples + 1)
-    return found | {
-        "example_mu": about["mu"],
-        "passed": passed,
-        "example_particles": about["particles"],
-    }
+    found |= {"example_mu": about["mu"], "example_particles": about["particles"]}
+    return found | {"passed": passed}
 
 
 def table(data: xr.Dataset) -> str:
