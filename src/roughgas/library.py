@@ -200,23 +200,20 @@ def simulate(
     True
     """
     changes: dict[str, Any] = dict(particles=particles, box=box, packing=packing, layer=layer)
-    changes |= dict(
-        effects=effects, species=species, species_pairs=species_pairs, schedule=schedule
-    )
-    changes |= dict(spin_temperature=spin_temperature, keep_state=keep_state)
+    changes |= dict(effects=effects, species=species, species_pairs=species_pairs)
+    changes |= dict(schedule=schedule, spin_temperature=spin_temperature, keep_state=keep_state)
 
     from roughgas.data.point import as_dataset
     from roughgas.results.reduce import reduced_in_memory
-    from roughgas.simulation.points import UNNAMED, observables_of, points, settings_of
+    from roughgas.simulation.points import observables_of, points
     from roughgas.simulation.restart import initial_of
 
     at, several = _places(r, beta, seed)
     if several and (keep_state or initial is not None):
         key = "keep_state" if keep_state else "initial"
         raise InputError(key, "given", "come with one r, one beta and one seed")
-    name, scale = experiment or UNNAMED, scale or _scale_of(experiment, config)
     changes["observables"], functions = observables_of(observe)
-    settings = settings_of(experiment, changes, scale, config)
+    name, scale, settings = _settings(experiment, changes, scale, config)
     states, told = ([], []) if initial is None else (initial_of(initial), ["--from", "start.nc"])
     outputs = ["point.nc"] * len(at)
     found = points(name, settings, at, scale, outputs, states, functions, told, quiet=not progress)
@@ -288,20 +285,18 @@ def trajectory(
     (2, 40, 2)
     """
     changes: dict[str, Any] = dict(particles=particles, box=box, packing=packing, layer=layer)
-    changes |= dict(
-        effects=effects, species=species, species_pairs=species_pairs, schedule=schedule
-    )
+    changes |= dict(effects=effects, species=species, species_pairs=species_pairs)
+    changes["schedule"] = schedule
     ((legal_r, legal_beta, number, labels),), _ = _places(r, beta, seed)
 
     from roughgas.data.trajectory import as_trajectory
     from roughgas.scene import build
-    from roughgas.simulation.points import UNNAMED, provenance, settings_of
+    from roughgas.simulation.points import provenance
     from roughgas.simulation.progress import watched
     from roughgas.simulation.restart import initial_of
     from roughgas.simulation.trajectory import chosen, snapshots, variables
 
-    name, scale = experiment or UNNAMED, scale or _scale_of(experiment, config)
-    settings = settings_of(experiment, changes, scale, config)
+    name, scale, settings = _settings(experiment, changes, scale, config)
     scene = build(settings, legal_r, legal_beta)
     states = [] if initial is None else initial_of(initial)
     take = chosen(settings, scene, start, length, frames, times, states)
@@ -329,11 +324,21 @@ def experiments(config: str | Path | None = None) -> dict[str, str]:
     return {name: settings.get("description", "") for name, settings in known.items()}
 
 
-def _scale_of(experiment: str | None, path: str | Path | None) -> str:
-    """Return the scale of a configuration; a scene without a name has that of the paper."""
-    from roughgas.config import PAPER, SHIPPED, usual_scale
+def _settings(
+    experiment: str | None,
+    changes: Mapping[str, Any],
+    scale: str | None,
+    path: str | Path | None,
+) -> tuple[str, str, dict[str, Any]]:
+    """Return the name of an experiment, its scale, and its settings with changes.
 
-    return PAPER if experiment is None else usual_scale(path or SHIPPED)
+    A scene without a name has the scale of the paper, others that of their configuration.
+    """
+    from roughgas.config import PAPER, SHIPPED, usual_scale
+    from roughgas.simulation.points import UNNAMED, settings_of
+
+    scale = scale or (PAPER if experiment is None else usual_scale(path or SHIPPED))
+    return experiment or UNNAMED, scale, settings_of(experiment, changes, scale, path)
 
 
 def _places(r: Any, beta: Any, seed: Any) -> "tuple[list[Place], bool]":

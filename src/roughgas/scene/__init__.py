@@ -37,29 +37,15 @@ def check_sides(effects: Effects) -> None:
         for end in wall.ends:
             if (other := closed.setdefault((wall.axis, end), name)) != name:
                 raise InputError("effects", f"{other} and {name}", "not close the same axis twice")
-    for one, other in OPPOSITE:
-        _check_opposite(effects, one, other)
-        _check_opposite(effects, other, one)
-
-
-def _check_opposite(effects, name, other):
-    there = getattr(effects, other) or (other == "bottom_wall" and effects.floor)
-    if getattr(effects, name) is not None and not there:
-        raise NeedsError(f"effects.{name}", other)
+    for name, other in (way for pair in OPPOSITE for way in (pair, pair[::-1])):
+        there = getattr(effects, other) or (other == "bottom_wall" and effects.floor)
+        if getattr(effects, name) is not None and not there:
+            raise NeedsError(f"effects.{name}", other)
 
 
 def moves_along(effects: Effects) -> bool:
     """Return whether walls that close the second axis move along the first, so that gas flows."""
     return any(wall.axis == 1 and wall.velocity != 0.0 for wall in _closing(effects).values())
-
-
-def smooth_walls(effects: Effects) -> Effects:
-    """Return the effects with all walls smooth and elastic."""
-    smooth = {
-        name: wall._replace(restitution=1.0, roughness=-1.0)
-        for name, wall in _closing(effects).items()
-    }
-    return effects._replace(**smooth)
 
 
 def has_sides(effects: Effects) -> bool:
@@ -113,7 +99,11 @@ def build(experiment: Mapping[str, Any], r: float, beta: float) -> Scene:
     ROUGHNESS.check("roughness beta", beta)
     lengths = tuple(None if side == "open" else float(side) for side in experiment["box"])
     mixture = mixture_of(experiment)
-    asked_for = _asked_for(experiment) | dict(experiment["effects"])
+    asked_for = dict(experiment["effects"])
+    if experiment.get("observables"):
+        from roughgas.observables import effects_of  # imported where they are wanted
+
+        asked_for = effects_of(experiment["observables"]) | asked_for
     effects = _effects(asked_for, lengths, float(r), float(beta), mixture)
     if effects.spin is None and beta != -1.0:
         raise InputError("roughness beta", beta, "be -1 where particles do not spin")
@@ -141,12 +131,14 @@ def build(experiment: Mapping[str, Any], r: float, beta: float) -> Scene:
 
 def elastic(scene: Scene) -> Scene:
     """Return the scene with smooth elastic particles, and walls if it has any."""
-    species, effects = scene.effects.species, smooth_walls(scene.effects)
-    if species is not None:
-        effects = effects._replace(species=species._replace(alike=True))
+    smooth: Mapping[str, Any] = {"restitution": 1.0, "roughness": -1.0}
+    effects = scene.effects
+    changes = {name: wall._replace(**smooth) for name, wall in _closing(effects).items()}
+    if effects.species is not None:
+        changes["species"] = effects.species._replace(alike=True)
     if effects.contact_log is not None:
-        effects = effects._replace(contact_log=effects.contact_log._replace(on=False))
-    return scene._replace(restitution=1.0, roughness=-1.0, effects=effects)
+        changes["contact_log"] = effects.contact_log._replace(on=False)
+    return scene._replace(effects=effects._replace(**changes), **smooth)
 
 
 def closed_axes(effects: Effects) -> set[int]:
@@ -186,15 +178,6 @@ def check_box(lengths: Sequence[float | None], effects: Effects, largest: float)
             raise InputError(f"box[{k}]", length, f"be at most {LONGEST:g}")
         if length is not None and not least <= length:
             raise InputError(f"box[{k}]", length, f"be a number of at least {least:g}")
-
-
-def _asked_for(experiment):
-    """Return the effects that only look, for observables of the experiment."""
-    if not experiment.get("observables"):
-        return {}
-    from roughgas.observables import effects_of  # imported where they are wanted
-
-    return effects_of(experiment["observables"])
 
 
 def _effects(settings, lengths, r, beta, mixture):

@@ -37,9 +37,7 @@ MOST_OF_A_CLASS = 10_000_000  # sites of its lattice
 SKIN = 0.3  # of the mean radius: pairs as near as this may come to overlap
 DENSEST = 0.95  # share of the box; above it places are not looked for
 MOST_STEPS = 10_000
-GROWN = (
-    1.0 + 1e-6
-)  # radii while particles push each other: so that they part in finitely many steps
+GROWN = 1.0 + 1e-6  # radii while particles push each other, to part in finitely many steps
 
 
 def random_positions(
@@ -87,7 +85,7 @@ def _free_sites(own, placed, radius, lengths, periodic):
         members = here[members]
         reach = np.ceil((own + radius[members[0]]) / widths).astype(int)
         ranges = [np.arange(-min(n, c), min(n, c) + 1) for n, c in zip(reach, counts, strict=True)]
-        around = np.stack(np.meshgrid(*ranges, indexing="ij"), axis=-1).reshape(-1, len(lengths))
+        around = _grid(ranges)
         together = max(1, AT_ONCE // len(around))
         for first in range(0, len(members), together):
             some = members[first : first + together]
@@ -108,8 +106,7 @@ def _pushed_apart(position, radius, lengths, periodic):
         if moved > 0.5 * skin:
             pairs, moved = _near(position, radius, lengths, periodic, skin), 0.0
         i, j = pairs
-        apart = position[i] - position[j]
-        apart -= np.where(periodic, lengths * np.round(apart / lengths), 0.0)
+        apart = _apart(position, i, j, lengths, periodic)
         distance = np.maximum(np.sqrt((apart**2).sum(-1)), 1e-9)
         lacking = radius[i] + radius[j] - distance
         if lacking.max(initial=0.0) < (1.0 - 1.0 / GROWN) * radius.min():
@@ -125,6 +122,12 @@ def _pushed_apart(position, radius, lengths, periodic):
         position = np.where(periodic, position % lengths, np.clip(position, low, high))
         moved += float(np.abs(step).max()) * math.sqrt(len(lengths))
     return None
+
+
+def _apart(position, i, j, lengths, periodic):
+    """Return the separations (pairs, D) of nearest images."""
+    apart = position[i] - position[j]
+    return apart - np.where(periodic, lengths * np.round(apart / lengths), 0.0)
 
 
 def _near(position, radius, lengths, periodic, skin):
@@ -149,8 +152,7 @@ def _near(position, radius, lengths, periodic, skin):
         keep = i < j
         found.append((i[keep], j[keep]))
     i, j = (np.concatenate(part) for part in zip(*found, strict=True))
-    apart = position[i] - position[j]
-    apart -= np.where(periodic, lengths * np.round(apart / lengths), 0.0)
+    apart = _apart(position, i, j, lengths, periodic)
     close = (apart**2).sum(-1) < (radius[i] + radius[j] + skin) ** 2
     return i[close], j[close]
 
@@ -224,9 +226,8 @@ def _places(scene, experiment, bodies, rng):
     if bodies is None or _fits_lattice(scene, experiment, bodies.radius):
         sites = lattice(scene, experiment, largest)
         return sites[np.sort(rng.permutation(len(sites))[:number])]
-    lengths, begins = _room(
-        scene, experiment, largest, float(np.sum(bodies.radius ** len(scene.box)))
-    )
+    filled = float(np.sum(bodies.radius ** len(scene.box)))
+    lengths, begins = _room(scene, experiment, largest, filled)
     periodic = [side is not None for side in scene.box]
     while (found := random_positions(bodies.radius, lengths, periodic, rng)) is None:
         if experiment["box"][-1] != "open":
@@ -252,17 +253,15 @@ def check_places(
 ) -> None:
     """Raise InputError where particles at these positions (N, D) overlap, or are in a wall or in
     the floor at `time` (T), by more than GRAZE. Their radii (N,) are 1 if not given."""
-    effects, radius = scene.effects, np.ones(len(position)) if radius is None else radius
-    for places, (low, high) in zip(
-        position.T, bounds(effects, position.shape[1], time), strict=True
-    ):
+    radius = np.ones(len(position)) if radius is None else radius
+    planes = bounds(scene.effects, position.shape[1], time)
+    for places, (low, high) in zip(position.T, planes, strict=True):
         outside = np.flatnonzero((places < low + radius - GRAZE) | (places > high - radius + GRAZE))
         if len(outside):
             first = outside[0]
             key, own = f"initial position of particle {first}", radius[first]
             raise InputError(key, places[first], f"lie in [{low + own:g}, {high - own:g}]")
-    pair = _overlapping(scene, position, time, radius)
-    if pair is not None:
+    if (pair := _overlapping(scene, position, time, radius)) is not None:
         i, j, distance = pair
         legal = f"be {radius[i] + radius[j]:g} or more, or the particles overlap"
         raise InputError(f"distance of particles {i} and {j}", f"{distance:.9g}", legal)
@@ -348,8 +347,13 @@ def _sites(lengths, counts, within):
             (np.arange(count) + share) * (length / count)
             for count, length, share in zip(counts, lengths, place, strict=True)
         ]
-        parts.append(np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1))
-    return np.concatenate([part.reshape(-1, len(lengths)) for part in parts])
+        parts.append(_grid(axes))
+    return np.concatenate(parts)
+
+
+def _grid(axes):
+    """Return all points with these coordinates along each axis, (points, axes)."""
+    return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, len(axes))
 
 
 def _closest(lengths, least):
@@ -359,7 +363,7 @@ def _closest(lengths, least):
     """
     *others, last = lengths
     choices = [np.arange(1, math.floor(length / least) + 1) for length in others]
-    counts = np.stack(np.meshgrid(*choices, indexing="ij"), axis=-1).reshape(-1, len(others))
+    counts = _grid(choices)
     sides = np.array(others) / counts
     beside = np.sqrt(np.maximum(4.0 * least**2 - sides**2, least**2))
     possible = np.all(sides[:, 1:] >= beside[:, :1], axis=1)
