@@ -199,7 +199,6 @@ def driven_species(parts: Sequence[Energies], per_period: int, together: int) ->
         parts,
         lambda part: part.translational,
         lambda part: part.rotational,
-        np.mean,
         lambda values: blocking(period_means(values, per_period))[0],
     )
     series = _of_each(parts, lambda values: period_means(values, together))
@@ -227,7 +226,6 @@ def cooling_species(
         parts,
         lambda part: share(part.translational),
         lambda part: share(part.rotational),
-        np.mean,
         lambda values: values.std(ddof=1) / np.sqrt(len(values)),
         lambda part: ratio(part)[:, inside].mean(axis=1),
     )
@@ -236,7 +234,7 @@ def cooling_species(
     return found | {f"{name}_series": values for name, values in series.items()}
 
 
-def _averages(parts, translational, rotational, mean, error, share=ratio):
+def _averages(parts, translational, rotational, error, share=ratio):
     """Return the mean and the error of both energies and of R, of each species."""
     quantities = {"E_trans_species": translational}
     if parts[0].rotational is not None:
@@ -244,7 +242,7 @@ def _averages(parts, translational, rotational, mean, error, share=ratio):
     found = {}
     for name, quantity in quantities.items():
         values = [quantity(part) for part in parts]
-        found[name] = [mean(one) for one in values]
+        found[name] = [one.mean() for one in values]
         found[f"{name}_stderr"] = [error(one) for one in values]
     return found
 

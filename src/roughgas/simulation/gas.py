@@ -6,9 +6,9 @@ after the same collisions.
 """
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any, Protocol, Self
+from typing import TYPE_CHECKING, Any, Protocol, Self
 
 import numpy as np
 
@@ -31,6 +31,9 @@ from roughgas.simulation.journal import COSTS
 from roughgas.simulation.recorder import Recorder, most_in, now
 from roughgas.simulation.restart import Initial, positions_and_velocities, state_from
 
+if TYPE_CHECKING:
+    from roughgas.simulation.observing import Observer
+
 
 def count(particles: int, per_particle: float) -> int:
     """Return the collisions in a gas of so many particles; at least one."""
@@ -48,18 +51,6 @@ class Watcher(Protocol):
     def after(self, state: State) -> None: ...
 
 
-class Observer(Protocol):
-    """Looks at a gas between samples (roughgas.simulation.observing)."""
-
-    def lengths(self, samples: int, first: int, unit: int) -> Iterator[int]: ...
-
-    def look(self, gas: "Gas", taken: int) -> None: ...
-
-    def saved(self) -> bytes: ...
-
-    def restore(self, saved: bytes) -> None: ...
-
-
 class Gas:
     """A scene, the state that it has reached, and the recorder of what this has cost.
 
@@ -72,7 +63,7 @@ class Gas:
         self.scene, self.state = scene, state
         self.recorder = Recorder() if recorder is None else recorder
         self.watcher: Watcher | None = None
-        self.observer: Observer | None = None
+        self.observer: Observer | None = None  # looks at it between samples
         self.sample: Columns = {}
         self.refresh_every = self.begun = 0
         self.keeps_books = False

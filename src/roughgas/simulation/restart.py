@@ -19,7 +19,7 @@ import zipfile
 import zlib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -34,6 +34,7 @@ from roughgas.scene.initial import check_places
 if TYPE_CHECKING:
     import xarray
 
+    from roughgas.simulation.gas import Gas
 
 OWNER, STATE, RECORD = "belongs to", "state.", "record."
 DAMAGE = (OSError, EOFError, KeyError, ValueError, RuntimeError, zipfile.BadZipFile, zlib.error)
@@ -184,20 +185,6 @@ class Initial(NamedTuple):
         return b"".join(parts) + repr(float(self.time)).encode()
 
 
-class Run(Protocol):
-    """A gas under way (roughgas.simulation.gas.Gas)."""
-
-    scene: Scene
-    state: State
-    extents: np.ndarray
-
-    @property
-    def begun(self) -> int: ...
-
-    @property
-    def time(self) -> float: ...
-
-
 def initial_of(dataset: "xarray.Dataset") -> list[Initial]:
     """Return the states in a dataset, one per replica.
 
@@ -321,7 +308,7 @@ def state_from(
     return state, None, np.ptp(initial.position, axis=0)
 
 
-def final_states(gases: Iterable[Run]) -> dict[str, Any]:
+def final_states(gases: "Iterable[Gas]") -> dict[str, Any]:
     """Return variables of a point (see roughgas.data.point): the states that its runs end in."""
     states = [_last(gas) for gas in gases]
     found = {
@@ -337,7 +324,7 @@ def final_states(gases: Iterable[Run]) -> dict[str, Any]:
     return {name: np.array(values) for name, values in found.items()}
 
 
-def _last(gas: Run) -> Initial:
+def _last(gas: "Gas") -> Initial:
     state, scene = gas.state, gas.scene
     unit = 2.0 ** int(state.counts[EXPONENT])
     position, velocity = positions_and_velocities(state, scene, gas.time)
@@ -359,9 +346,10 @@ def _bodies_of(state):
     return {name: in_order(state, getattr(state.bodies, name)) for name in OF_BODIES}
 
 
-def _memory(gas: Run) -> bytes:
+def _memory(gas: "Gas") -> bytes:
     header = np.array([gas.begun, *gas.extents], float)
-    return b"".join(array.tobytes() for array in [header, *_arrays(gas.state)])
+    arrays = (array for _, array in arrays_of(gas.state))
+    return b"".join(array.tobytes() for array in [header, *arrays])
 
 
 def _remembered(initial, scene, experiment):
@@ -376,7 +364,7 @@ def _remembered(initial, scene, experiment):
     if scene.effects.species is not None:
         bodies = given_bodies(scene, experiment, *initial.bodies())
     state = new_state(scene, position, np.zeros_like(position), spin, bodies=bodies)
-    for array in _arrays(state):
+    for _, array in arrays_of(state):
         if place + array.nbytes <= len(memory):
             part = memory[place : place + array.nbytes].copy()
             array[...] = part.view(array.dtype).reshape(array.shape)
@@ -384,7 +372,3 @@ def _remembered(initial, scene, experiment):
     if place != len(memory):
         raise InputError("initial.last_memory", f"{len(memory)} bytes", f"be {place} bytes long")
     return state, int(begun), np.array(extents)
-
-
-def _arrays(state: State) -> Iterator[np.ndarray]:
-    return (array for _, array in arrays_of(state))

@@ -23,12 +23,11 @@ from roughgas.simulation.energies import (
     energies_of_each,
     energy_exchange,
     exchange_series,
-    ratio,
 )
 from roughgas.simulation.gas import Gas, joined
 from roughgas.simulation.recorder import Recorder
 from roughgas.simulation.restart import Initial
-from roughgas.statistics.errors import UNKNOWN, blocking
+from roughgas.statistics.errors import UNKNOWN
 
 # see roughgas.simulation.schedule.Kind
 DRIVEN, UNIT, LENGTH, SAMPLES_PER_REFRESH = True, "T", "stages", 1
@@ -86,8 +85,7 @@ def length(scene: Scene, experiment: Mapping[str, Any]) -> float:
 
 def start(scene: Scene, experiment: Mapping[str, Any], seed: Any, recorder=None, initial=()) -> Gas:
     """Return the gas of a point in its first stage; `seed` may be a random generator."""
-    rng = np.random.default_rng(seed)
-    gas = Gas.start(scene, experiment, rng, recorder, *initial)
+    gas = steady.start(scene, experiment, seed, recorder, initial)
     if gas.state.counts[EXPONENT]:
         legal = "come without last_memory, in which time has another unit"
         raise InputError("initial", "a gas that has cooled", legal)
@@ -168,21 +166,15 @@ def run(
     found = joined(rows)
     collisions = 2.0 * (found["collisions"] - made) / gas.particles
     window = total.map(lambda part: part[first:])
-    shares = {} if window.rotational is None else {"R_series": ratio(total)}
     return {
-        "E_trans": window.translational.mean(),
-        "E_trans_stderr": blocking(window.translational)[0],
-        **(steady.shared(window, 1, every, UNKNOWN) if shares else {}),
+        **steady.averages(window, 1, every, UNKNOWN),
         **contact_averages(found, first, 1, steady.inertia_of_sums(gas.scene), sums),
         **_of_species(species, first),
         **energy_exchange(before, gas.balance(), gas.scene, gas.particles, changes.sum(axis=0)),
         "equilibrated": UNKNOWN,  # it need not settle in any stage
         "measured_from": begun + first * every,
         "measured_collisions": collisions[-1] - (collisions[first - 1] if first else 0.0),
-        "time": found["time"],
-        "E_trans_series": total.translational,
-        **({"E_rot_series": total.rotational} if shares else {}),
-        **shares,
+        **steady.over_time(found["time"], total, 1),
         "collisions_series": collisions,
         **exchange_series(found, before, gas.scene, gas.particles, changes, counts),
         "stage_begin": [one.begin for one in stages],

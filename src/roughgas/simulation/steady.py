@@ -180,15 +180,13 @@ def _measure(gas: Gas, schedule: Mapping[str, Any], rows: Columns, begun: Begun)
     first, found = _start(series, planned, length, per_period)
     made = rows["collisions"][-1] - (rows["collisions"][first - 1] if first else begun.collisions)
     window = series.map(lambda part: part[first:])
-    translational = period_means(window.translational, per_period)
-    evidence = Evidence(2 * made / gas.particles, len(translational))
+    periods = len(window.translational) // per_period
+    evidence = Evidence(2 * made / gas.particles, periods)
     steady = evidence.verdict(found)
     shown = phases(scene, schedule) >= LEAST_PHASES
     vouched = steady if shown or steady != YES else UNKNOWN
     return {
-        "E_trans": window.translational.mean(),
-        "E_trans_stderr": blocking(translational)[0],
-        **(shared(window, per_period, every, vouched) if window.rotational is not None else {}),
+        **averages(window, per_period, every, vouched),
         **contact_averages(rows, first, per_period, inertia_of_sums(scene), begun.sums),
         **_unsubtracted(gas, rows, first),
         **_of_species(gas, rows, first, per_period),
@@ -196,7 +194,7 @@ def _measure(gas: Gas, schedule: Mapping[str, Any], rows: Columns, begun: Begun)
         "equilibrated": steady,
         "measured_from": begun.time + first * every,
         "measured_collisions": evidence.collisions,
-        **_series(rows["time"][first:], window, max(1, per_period // KEPT)),
+        **over_time(rows["time"][first:], window, max(1, per_period // KEPT)),
     }
 
 
@@ -210,13 +208,20 @@ def _start(series, planned, length, per_period):
     return start, is_equilibrated(*means, start=start // per_period)
 
 
-def shared(window, per_period, every, steady):
-    """Return how the energy is shared between translation and rotation, steady or not."""
+def averages(window, per_period, every, steady):
+    """Return the energies, and how they are shared between translation and rotation, steady or
+    not."""
+    found = {
+        "E_trans": window.translational.mean(),
+        "E_trans_stderr": blocking(period_means(window.translational, per_period))[0],
+    }
+    if window.rotational is None:
+        return found
     R = ratio(window)
     R_periods = period_means(R, per_period)
     stderr, blocks = blocking(R_periods)
     error, memory = Error(stderr, degrees_of_freedom(blocks)), autocorrelation_time(R_periods)
-    return {
+    return found | {
         "R": R.mean(),
         "R_stderr": error.stderr,
         "R_dof": error.dof,
@@ -229,7 +234,7 @@ def shared(window, per_period, every, steady):
     }
 
 
-def _series(time, window, together):
+def over_time(time, window, together):
     """Return what is stored over time: means of so many samples each."""
     found = {"time": time, "E_trans_series": window.translational}
     if window.rotational is not None:

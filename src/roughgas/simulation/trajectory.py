@@ -163,10 +163,8 @@ def snapshots(
         check_initial(initial, experiment, scene)
     gas = kind.start(scene, experiment, seed, None, initial[:1])
     before = gas.collisions
-    changes: list[Stage] = []
-    if kind is stages:
-        changes = stages.course(scene, experiment, gas.time)
-    elif kind is not cooling and take.start > gas.time:
+    changes = stages.course(scene, experiment, gas.time) if kind is stages else []
+    if kind is steady and take.start > gas.time:
         wait = take.start - gas.time
         samples = math.ceil(wait / experiment["schedule"]["sample_every"])
         gas.in_time(wait / samples, samples)
@@ -176,17 +174,19 @@ def snapshots(
     elif kind is not cooling:  # whose instants follow from the steps, to their roundings
         stride = gas.count(LONG)
     gas.look()
-    if kind is stages:
-        _let_pass(gas, take.start, stride, changes)
-    if kind is cooling:
-        _make_collisions(gas, take.start, stride, before)
+
+    def reach(instant: float) -> None:
+        if kind is cooling:
+            _make_collisions(gas, instant, stride, before)
+        else:
+            _let_pass(gas, instant, stride, changes)
+
+    if kind is not steady:
+        reach(take.start)
+    for time in take.times:
+        reach(time)
+        yield _snapshot(gas, before)
     if take.times:
-        for time in take.times:
-            if kind is cooling:
-                _make_collisions(gas, time, stride, before)
-            else:
-                _let_pass(gas, time, stride, changes)
-            yield _snapshot(gas, before)
         return
     if kind is cooling:
         yield _snapshot(gas, before)
