@@ -10,8 +10,9 @@ import pytest
 from tests.observables.frames import frame_of, system_of
 
 from roughgas import simulate, theory
-from roughgas.base import InputError, NeedsError
+from roughgas.base import NeedsError
 from roughgas.cli.show import observed
+from roughgas.effects.contacts import HEAT, STRESSES, columns_of_pairs
 from roughgas.observables import KINDS, wanted
 from roughgas.observables.plugin import SUFFIX, Group
 from roughgas.simulation.observing import Seen
@@ -121,16 +122,47 @@ def test_what_is_seen_of_species_can_be_kept_in_a_journal():
             assert np.array_equal(found[key], value, equal_nan=True)
 
 
-def test_what_rests_on_all_contacts_is_not_that_of_a_species():
-    """It is of all particles, or is refused in one line."""
-    system = mixed_frames(number=1)[0].system
-    for name, kind in KINDS.items():
-        if kind.effects and kind.alike:
-            with pytest.raises(
-                InputError, match=rf"^observables\.{name} = with species: must come"
-            ):
-                wanted({name: {}})[0].make(system)
-    assert type(wanted({"stress": {}})[0].make(system)) is KINDS["stress"]
+def with_rates(frames):
+    """Frames with made-up sums over contacts of each pair, and those of the same particles without
+    a species."""
+    rng, every, alike = np.random.default_rng(5), [], []
+    names = [*STRESSES, *HEAT]
+    for frame in frames:
+        sums = rng.standard_normal((4, 12))
+        rates = dict(zip(columns_of_pairs(STRESSES, 2), sums[:, :9].ravel(), strict=True))
+        rates |= zip(columns_of_pairs(HEAT, 2), sums[:, 9:].ravel(), strict=True)
+        every.append(frame._replace(rates=rates))
+        system = frame.system._replace(species=())
+        total = dict(zip(names, sums.sum(axis=0), strict=True))
+        alike.append(frame._replace(system=system, species_of=None, rates=total))
+    return every, alike
+
+
+@pytest.mark.parametrize("name", ["stress", "heat_flux", "flux_autocorrelation"])
+def test_what_all_contacts_carry_is_the_sum_of_all_pairs(name):
+    """And of all particles as of alike ones; but no conductivity of a mixture."""
+    every, alike = with_rates(mixed_frames((20, 15, 10)))
+    found, whole = (
+        averages(wanted({name: {}})[0].make(frames[0].system), frames) for frames in (every, alike)
+    )
+    of_all = {key for key in found if not key.endswith(SUFFIX)}
+    assert of_all == {key for key in whole if "heat_flux_" not in key and "conduct" not in key}
+    for key in of_all:
+        assert found[key] == pytest.approx(whole[key], rel=1e-12, nan_ok=True), key
+    if name == "stress":
+        own, pairs = found["stress_kinetic_species"], found["stress_collisional_species"]
+        assert own.sum(axis=0) == pytest.approx(whole["stress_kinetic"], rel=1e-12)
+        assert pairs.sum(axis=(0, 1)) == pytest.approx(whole["stress_collisional"], rel=1e-12)
+        assert np.array_equal(pairs[0, 1], pairs[1, 0])
+        assert found["pressure_species"].sum() == pytest.approx(whole["pressure"], rel=1e-12)
+    elif name == "heat_flux":
+        pairs = found["heat_flux_collisional_species"]
+        assert found["heat_flux_species"].sum(axis=0) == pytest.approx(
+            whole["heat_flux"], rel=1e-12
+        )
+        flown = [by_hand(frame, 1) for frame in every]
+        flown = np.mean([one.energy @ one.velocity for one in flown], axis=0) / 3000
+        assert found["heat_flux_species"][1] - pairs[1].sum(axis=0) == pytest.approx(flown)
 
 
 def test_a_function_may_look_at_one_species():
@@ -170,11 +202,13 @@ def test_g_at_contact_of_each_pair_is_that_of_theory():
 def test_how_often_species_meet_is_as_theory_says():
     """Elastic disks in equilibrium: Enskog's frequencies within four errors of eight replicas, and
 
-    2 %, as of g at contact; each contact of a pair is one of either species, and takes nothing.
+    2 %, as of g at contact; each contact of a pair is one of either species, and takes nothing. The
+    pressure of each species and of each pair as well, and no heat flows.
     """
     schedule = {"kind": "cooling", "replicas": 8, "thermalise": 30, "relaxation_times": 0}
     schedule |= {"plateau": 50, "sample_every": 0.5}
-    common = {"schedule": schedule, "observe": "contacts", "progress": False}
+    observe = ["contacts", "stress", "heat_flux"]
+    common = {"schedule": schedule, "observe": observe, "progress": False}
     gas = simulate(r=1, beta=-1, species=MIXTURE, **common, **GAS)
     mixture = theory.mixture(MIXTURE, 1.0, -1.0, 2)
     expected = theory.mixture_frequency(mixture, 2.0, gas.packing)  # where E_trans is 1
@@ -186,6 +220,18 @@ def test_how_often_species_meet_is_as_theory_says():
     mean = (found.sum("other").values * numbers[:, 0]).sum() / numbers.sum()
     assert float(gas.contact_frequency) == pytest.approx(mean, rel=1e-9)
     assert abs(gas.contact_loss_species).max() < 1e-12
+    radius = np.array([1.0, 1.6])
+    density = numbers / (np.pi * (numbers[:, 0] @ radius**2) / gas.packing)
+    chi = theory.mixture_contact_values(mixture, gas.packing)
+    virial = np.pi * density * density.T * np.add.outer(radius, radius) ** 2 * chi
+    stress = gas.stress_collisional_species
+    errors = gas.stress_collisional_species_stderr
+    pairs, errors = ((one * np.eye(2)).sum(("component", "along")) / 2 for one in (stress, errors))
+    assert np.all(abs(pairs - virial) < 4.0 * errors + 0.02 * virial)
+    error, pressure = gas.pressure_species_stderr, density[:, 0] * 2.0 + virial.sum(axis=1)
+    assert np.all(abs(gas.pressure_species - pressure) < 4.0 * error + 0.02 * pressure)
+    assert np.all(errors < 0.05 * virial) and np.all(error < 0.05 * pressure)
+    assert np.all(abs(gas.heat_flux_species) < 4.5 * gas.heat_flux_species_stderr)
 
 
 def test_contacts_take_what_the_books_say():

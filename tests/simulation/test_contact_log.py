@@ -9,7 +9,7 @@ from roughgas import simulate
 from roughgas.base import as_json
 from roughgas.cli.show import summary
 from roughgas.data.point import read_point, write_point
-from roughgas.effects.contacts import columns_of_pairs
+from roughgas.effects.contacts import COUNTS, HEAT, STRESSES, columns_of_pairs
 from roughgas.kernel.state import BASE, EXPONENT
 from roughgas.scene import build
 from roughgas.simulation.contact_log import logged
@@ -27,6 +27,7 @@ GASES = {
 }
 for one in GASES.values():
     one["effects"] = one["effects"] | LOG
+GASES["two species"]["effects"] |= {"contact_stress": {}, "contact_heat": {}}
 
 
 def gas_of(name, seed=1):
@@ -36,14 +37,19 @@ def gas_of(name, seed=1):
 
 def gains(found, q):
     """The energy that each contact gives to translation and to rotation, (contacts, 2)."""
+    return gains_of_each(found, q).sum(axis=-1).T
+
+
+def gains_of_each(found, q):
+    """The same of each partner, (2, contacts, partners)."""
     mass = found.get("logged_mass", np.ones_like(found["logged_partner"]))
     inertia = found.get("logged_inertia", np.full(mass.shape, q)) * mass
     parts = []
     for values, weight in ((found["logged_velocity"], mass), (found["logged_spin"], inertia)):
         square = (values**2).sum(axis=-1)
         change = np.where(found["logged_partner"] < 0, 0.0, square[:, 1] - square[:, 0])
-        parts.append(0.5 * np.nansum(weight * change, axis=1))
-    return np.array(parts).T
+        parts.append(0.5 * np.nan_to_num(weight * change))
+    return np.array(parts)
 
 
 @pytest.mark.parametrize("name", GASES)
@@ -71,10 +77,37 @@ def test_contacts_of_each_pair_of_species_are_those_of_the_log(name):
     species = found.get("logged_species", np.zeros_like(found["logged_partner"]))
     place = species @ [kinds, 1]
     lost = -gains(found, gas.scene.effects.spin.inertia).sum(axis=1)
-    sums = np.array([columns[one][-1] for one in columns_of_pairs(kinds)]).reshape(2, -1)
+    sums = sums_of_pairs(columns, COUNTS, kinds).T
     assert sums[0].tolist() == np.bincount(place, minlength=kinds**2).tolist()
     assert sums[1] == pytest.approx(np.bincount(place, lost, kinds**2), rel=1e-9)
     assert sums[0].min() > 5
+
+
+def sums_of_pairs(columns, names, kinds):
+    """The last running sums, (pairs of species, names)."""
+    names = columns_of_pairs(names, kinds)
+    return np.array([columns[one][-1] for one in names]).reshape(kinds**2, -1)
+
+
+def test_what_contacts_of_each_pair_carry_is_that_of_the_log():
+    """The momentum that passes to one partner, and half of what energy one gains and the other
+    loses, from centre to centre; to rounding."""
+    gas = gas_of("two species")
+    columns = gas.in_time(5.0, 3)
+    found = logged(gas, gas.state.log)
+    place = found["logged_species"] @ [2, 1]
+    far = found["logged_radius"].sum(axis=1)[:, None] * found["logged_normal"]
+    velocity, spun = found["logged_velocity"], gains_of_each(found, 0.5).sum(axis=0)
+    passed = found["logged_mass"][:, :1] * (velocity[:, 1, 0] - velocity[:, 0, 0])
+    energy = (spun[:, 0] - spun[:, 1]) / 2.0
+    stress = sums_of_pairs(columns, STRESSES, 2).reshape(4, 3, 3)[:, :2, :2]
+    heat = sums_of_pairs(columns, HEAT, 2)[:, :2]
+    for pair in range(4):
+        own = place == pair
+        expected = passed[own].T @ far[own]
+        assert stress[pair] == pytest.approx(expected, rel=1e-9)
+        assert heat[pair] == pytest.approx(energy[own] @ far[own], rel=1e-9)
+        assert own.sum() > 5 and abs(expected).min() > 0.0
 
 
 def test_a_gas_that_cools_by_powers_of_two_is_logged_in_its_first_units():

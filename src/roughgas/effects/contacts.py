@@ -23,12 +23,13 @@ i, and is carried at once from the centre of j to that of i, over 2a where parti
 Summed over contacts, per time and volume, that is the collisional part of the pressure tensor (the
 virial of J. H. Irving & J. G. Kirkwood, J. Chem. Phys. 18, 817 (1950)).
 
-Collisional heat flux, for the observable `flux_autocorrelation`: as far is carried the energy that
-passes from j to i, half of what i gains and j loses. Where particles are alike that is -push.(v_i +
-v_j)/2 + (n x push).(w_i - w_j)/2, with the velocities and spins after the contact.
+Collisional heat flux, for the observables `heat_flux` and `flux_autocorrelation`: as far is carried
+the energy that passes from j to i, half of what i gains and j loses. Where particles are alike that
+is -push.(v_i + v_j)/2 + (n x push).(w_i - w_j)/2, with the velocities and spins after the contact.
 
-Contacts of each pair of species are counted for the observable `contacts`, and the energy summed up
-that they take from translation and rotation together.
+Contacts are counted for the observable `contacts`, and the energy summed up that they take from
+translation and rotation together. Of a mixture, each pair of species has sums of its own of all of
+these.
 
 The log of contacts keeps the last ones: a row of State.log for each, which the next one but `most`
 overwrites. Contacts with floors and walls are there, too, unless these are thermal.
@@ -134,6 +135,32 @@ def _weights(bodies, i, j):
 register(ContactAverages, {}, observe_contact=observe_squares, sums=SQUARES)
 
 
+def columns_of_pairs(names, kinds: int) -> list[str]:
+    """Return the columns of sums over contacts: of so many species, those of each pair in turn,
+    species k with each species, from k = 0 on."""
+    pairs = product(range(kinds), repeat=2)
+    return (
+        [f"{name}[{k},{other}]" for k, other in pairs for name in names] if kinds > 1 else [*names]
+    )
+
+
+def _of_pairs(powers):
+    """Return what `sums` of a hook is, for these columns of each pair of species."""
+
+    def of(effects):
+        kinds = 1 if effects.species is None else effects.species.kinds
+        return {name: powers[name.partition("[")[0]] for name in columns_of_pairs(powers, kinds)}
+
+    return of
+
+
+@jit
+def _number_of_pair(bodies, i, j):
+    if bodies is None:
+        return 0
+    return bodies.pairs.shape[0] * bodies.species[i] + bodies.species[j]
+
+
 AXES = "xyz"
 STRESSES = {f"J_{k} s_{along}": 1 for k, along in product(AXES, AXES)}
 """Momentum times distance: its component k, carried along an axis."""
@@ -147,12 +174,13 @@ class ContactStress(NamedTuple):
 def observe_stress(stress, index, state, contact):
     sums, n, push = state.sums.contact_stress, contact.n, contact.push
     far = reach_of(state.bodies, contact.i, contact.j)
+    first = 9 * _number_of_pair(state.bodies, contact.i, contact.j)
     for k in range(len(n)):
         for along in range(len(n)):
-            sums[0, 3 * k + along] -= push[k] * far * n[along]
+            sums[0, first + 3 * k + along] -= push[k] * far * n[along]
 
 
-register(ContactStress, {}, observe_contact=observe_stress, sums=STRESSES)
+register(ContactStress, {}, observe_contact=observe_stress, sums=_of_pairs(STRESSES))
 
 
 HEAT = {f"E s_{along}": 2 for along in AXES}
@@ -177,24 +205,15 @@ def observe_heat(heat, index, state, contact):
     if bodies is not None and state.spin is not None:
         one, other = spin_mass_of(bodies, None, i), spin_mass_of(bodies, None, j)
         passed -= 0.25 * dot(turn, turn) * (1.0 / one - 1.0 / other)
-    far = reach_of(bodies, i, j)
+    far, first = reach_of(bodies, i, j), 3 * _number_of_pair(bodies, i, j)
     for k in range(len(n)):
-        sums[0, k] += passed * far * n[k]
+        sums[0, first + k] += passed * far * n[k]
 
 
-register(ContactHeat, {}, observe_contact=observe_heat, sums=HEAT)
+register(ContactHeat, {}, observe_contact=observe_heat, sums=_of_pairs(HEAT))
 
 
-def columns_of_pairs(kinds: int) -> list[str]:
-    """Return the columns in which contacts of so many species are counted, and then those of the
-    energy that they take: of species k with each species, from k = 0 on."""
-    pairs = [f"[{k},{other}]" for k, other in product(range(kinds), repeat=2)]
-    return [f"{what}{pair}" for what in ("contacts", "loss") for pair in pairs]
-
-
-def sums_of_pairs(effects):
-    names = columns_of_pairs(1 if effects.species is None else effects.species.kinds)
-    return {name: 2 if name.startswith("loss") else 0 for name in names}
+COUNTS = {"contacts": 0, "loss": 2}
 
 
 class ContactPairs(NamedTuple):
@@ -215,9 +234,9 @@ def observe_pairs(effect, index, state, contact):
     if state.spin is not None:
         w_i, w_j = contact.spins
         lost -= _gained(effect, state, i, w_i) + _gained(effect, state, j, w_j)
-    sums, place = state.sums.contact_pairs, _number_of_pair(bodies, i, j)
-    sums[0, place] += 1.0
-    sums[0, sums.shape[1] // 2 + place] += lost
+    sums, first = state.sums.contact_pairs, 2 * _number_of_pair(bodies, i, j)
+    sums[0, first] += 1.0
+    sums[0, first + 1] += lost
 
 
 @jit
@@ -226,14 +245,7 @@ def _gained(effect, state, i, before):
     return 0.5 * spin_mass_of(state.bodies, effect, i) * (gained - dot(before, before))
 
 
-@jit
-def _number_of_pair(bodies, i, j):
-    if bodies is None:
-        return 0
-    return bodies.pairs.shape[0] * bodies.species[i] + bodies.species[j]
-
-
-register(ContactPairs, {}, observe_contact=observe_pairs, sums=sums_of_pairs)
+register(ContactPairs, {}, observe_contact=observe_pairs, sums=_of_pairs(COUNTS))
 
 
 class ContactLog(NamedTuple):

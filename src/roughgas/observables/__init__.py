@@ -92,8 +92,6 @@ def _wanted(name, given):
             raise NeedsError(f"observables.{name}", "spin")
         if system.species and not kind.effects:
             return OfSpecies(kind, system, values)
-        if system.species and kind.alike:  # sums over all contacts are of all species
-            raise InputError(f"observables.{name}", "with species", "come without species")
         return kind(system, **values)
 
     return Wanted(name, every, make)

@@ -17,7 +17,11 @@ next: the kinetic parts, sum m v v and sum (m v^2 + m q a^2 w^2) v/2, over V, of
 all contacts in between have carried (effects/contacts.py). Of such means the integral up to t by
 the trapezium rule is half of the slope of the mean square of int P_xy dt (E. Helfand, Phys. Rev.
 119, 1 (1960)). Looks must be dense: h apart, with a memory of tau, they give (h/tau)^2/12 too much.
-T is that of N - 1 particles, since momentum is conserved, and both get the factor N/(N - 1).
+T is that of N - 1 particles, since momentum is conserved, and both get the factor N/(N - 1). Of a
+mixture there is the viscosity only: its heat flux has a part that diffusion carries.
+
+All of these depend on the box, since what is longer than it is not there; in two dimensions without
+end, as the logarithm of its width: B. J. Alder & T. E. Wainwright, Phys. Rev. A 1, 18 (1970).
 """
 
 from collections import deque
@@ -29,7 +33,15 @@ import numpy as np
 from roughgas.base import InputError
 from roughgas.data.variables import SPIN, TIME, Variable
 from roughgas.effects.contacts import HEAT, STRESSES
-from roughgas.observables.plugin import Frame, Observable, Setting, System, Values, Whole
+from roughgas.observables.plugin import (
+    IN_THIS_BOX,
+    Frame,
+    Observable,
+    Setting,
+    System,
+    Values,
+    Whole,
+)
 
 SQUARED = "a^2 T^-2"
 VELOCITY, OF_SPIN = "velocity_autocorrelation", "spin_autocorrelation"
@@ -50,7 +62,7 @@ class Autocorrelation(Observable):
     settings: ClassVar[Mapping[str, Setting]] = DELAYS
     variables: Mapping[str, Variable] = {
         "delay": DELAY,
-        VELOCITY: Variable("autocorrelation of a velocity component", SQUARED, ALONG),
+        VELOCITY: Variable(f"autocorrelation of a velocity component{IN_THIS_BOX}", SQUARED, ALONG),
         OF_SPIN: Variable("autocorrelation of a spin component", SQUARED, ALONG, when=(SPIN,)),
     }
 
@@ -78,15 +90,18 @@ class Autocorrelation(Observable):
 class FluxAutocorrelation(Observable):
     """Autocorrelation of stress and heat flux, and the coefficients that are its integrals."""
 
-    alike = True
     effects = ("contact_stress", "contact_heat")
     settings: ClassVar[Mapping[str, Setting]] = DELAYS
     variables: Mapping[str, Variable] = {
         "delay": DELAY,
         STRESS: Variable("V <P_xy(0) P_xy(t)> of the pressure tensor", "m^2 a^(4-D) T^-4", ALONG),
         HEAT_FLUX: Variable("V <q_x(0) q_x(t)> of the heat flux", "m^2 a^(6-D) T^-6", ALONG),
-        VISCOSITY: Variable("shear viscosity, of memory up to this delay", "m a^(2-D) T^-1", ALONG),
-        CONDUCTIVITY: Variable("conductivity, of memory up to this delay", "a^(2-D) T^-1", ALONG),
+        VISCOSITY: Variable(
+            f"shear viscosity, of memory up to this delay{IN_THIS_BOX}", "m a^(2-D) T^-1", ALONG
+        ),
+        CONDUCTIVITY: Variable(
+            f"conductivity, of memory up to this delay{IN_THIS_BOX}", "a^(2-D) T^-1", ALONG
+        ),
     }
 
     def __init__(self, system: System, delays: int) -> None:
@@ -102,11 +117,11 @@ class FluxAutocorrelation(Observable):
         """Return both since earlier looks, NaN where there was none, and the temperature."""
         system, V = self.system, frame.velocity
         D, volume, before = system.dimension, system.volume, self._kinetic
-        self._kinetic = V.T @ V, frame.energy @ V
+        self._kinetic = V.T @ (frame.mass[:, None] * V), frame.energy @ V
         temperature = np.trace(self._kinetic[0]) / (D * (system.particles - 1))
         found = np.full((2, self._path[0].maxlen or 0), np.nan)
         if before is not None:
-            rates = [np.array([frame.rates[name] for name in names]) for names in (STRESSES, HEAT)]
+            rates = [frame.of_pairs(names).sum(axis=(0, 1)) for names in (STRESSES, HEAT)]
             contacts = rates[0].reshape(3, 3)[:D, :D], rates[1][:D]
             stress, heat = (
                 (one + other) / 2.0 + carried
@@ -122,12 +137,17 @@ class FluxAutocorrelation(Observable):
         return {STRESS: found[0], HEAT_FLUX: found[1], "temperature": np.array(temperature)}
 
     def combine(self, means: Values) -> Values:
-        """Return both, and their integrals."""
+        """Return both, and their integrals; of a mixture those of the stress."""
         free = (self.system.particles - 1) / self.system.particles
-        found = {name: means[name] / free for name in (STRESS, HEAT_FLUX)}
         T, step = means["temperature"], self.system.interval
-        until = [_integral(found[name]) * step for name in (STRESS, HEAT_FLUX)]
-        return found | {VISCOSITY: until[0] / T, CONDUCTIVITY: until[1] / T**2}
+        units = {STRESS: (VISCOSITY, T)}
+        if not self.system.species:
+            units[HEAT_FLUX] = CONDUCTIVITY, T**2
+        found = {name: means[name] / free for name in units}
+        until = {
+            integral: _integral(found[n]) * step / unit for n, (integral, unit) in units.items()
+        }
+        return found | until
 
 
 def _integral(values):

@@ -11,10 +11,9 @@ from collections.abc import Mapping
 import numpy as np
 
 from roughgas.data.variables import ENERGY, MIXTURE, RATE, Variable
-from roughgas.effects.contacts import columns_of_pairs
-from roughgas.observables.plugin import SUFFIX, Frame, Observable, System, Values
+from roughgas.effects.contacts import COUNTS
+from roughgas.observables.plugin import PAIR, SUFFIX, Frame, Observable, Values
 
-PAIR = ("species", "other")
 FREQUENCY, LOSS = "contact_frequency", "contact_loss"
 
 
@@ -36,15 +35,9 @@ class Contacts(Observable):
         ),
     }
 
-    def __init__(self, system: System) -> None:
-        super().__init__(system)
-        self._kinds = max(1, len(system.species))
-
     def look(self, frame: Frame) -> Values:
         """Return the contacts, and the energy that they take, per T: (species, species) each."""
-        sums = np.array([frame.rates[name] for name in columns_of_pairs(self._kinds)])
-        either = sums.reshape(2, self._kinds, self._kinds)
-        contacts, losses = either + either.transpose(0, 2, 1)  # by the partners that have them
+        contacts, losses = np.moveaxis(2.0 * frame.of_pairs(COUNTS), -1, 0)  # each has two partners
         return {"contacts": contacts, "losses": losses}
 
     def combine(self, means: Values) -> Values:

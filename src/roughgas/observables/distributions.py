@@ -56,7 +56,16 @@ import numpy as np
 from roughgas.base import InputError
 from roughgas.data.variables import LENGTH, SPIN, TIME, Variable
 from roughgas.effects.settings import Number
-from roughgas.observables.plugin import Frame, Group, Observable, Setting, System, Values, Whole
+from roughgas.observables.plugin import (
+    IN_THIS_BOX,
+    Frame,
+    Group,
+    Observable,
+    Setting,
+    System,
+    Values,
+    Whole,
+)
 from roughgas.theory.closed_forms import VOLUME
 
 
@@ -275,7 +284,7 @@ class MeanSquareDisplacement(Observable):
     variables: Mapping[str, Variable] = {
         "lag": Variable("time between two observations", TIME, ("lag",)),
         "moving": Variable("component of the displacement", "", ("moving",), "str"),
-        NAME: Variable("mean square displacement", f"{LENGTH}^2", ("lag", "moving")),
+        NAME: Variable(f"mean square displacement{IN_THIS_BOX}", f"{LENGTH}^2", ("lag", "moving")),
     }
 
     def __init__(self, system: System, lags: int) -> None:

@@ -25,6 +25,14 @@ average over the box of that between particles.
 The heat flux is likewise (1/V) [ sum (m v^2 + m q a^2 w^2) v/2 + (1/t) sum_contacts e s ], e being
 the energy that a contact passes on. Between thermal walls at a distance L it is the flux that they
 give and take times (L - 2 a)/L, as centres come no closer than a.
+
+Of a mixture, each species has the kinetic part of its own particles, and each pair of species the
+collisional part of its contacts, half of it in either order: all pairs together make the whole, and
+a species has the sum over its partners. In an elastic gas in equilibrium its partial pressure is
+
+    p_i = n_i T [1 + (b/2) sum_j n_j (a_i + a_j)^D chi_ij],    b = pi (disks) or 4 pi/3 (spheres):
+
+J. T. Jenkins & F. Mancini, J. Appl. Mech. 54, 27 (1987).
 """
 
 import math
@@ -34,10 +42,10 @@ from typing import ClassVar
 import numpy as np
 
 from roughgas.base import InputError
-from roughgas.data.variables import ENERGY, LENGTH, SHEARED, SPEED, Variable
+from roughgas.data.variables import ENERGY, LENGTH, MIXTURE, SHEARED, SPEED, Variable
 from roughgas.effects import contacts
 from roughgas.effects.settings import Number
-from roughgas.observables.plugin import Frame, Observable, Setting, System, Values, Whole
+from roughgas.observables.plugin import PAIR, Frame, Observable, Setting, System, Values, Whole
 from roughgas.theory.closed_forms import VOLUME
 
 WIDTH = 2.0  # of a layer in a, in an open box
@@ -124,7 +132,7 @@ class Profiles(Observable):
         return found | {"T_rot_profile": T_rot, "R_profile": R}
 
 
-PRESSURE = f"{ENERGY} a^-D"
+PRESSURE, FLUX = f"{ENERGY} a^-D", f"{ENERGY} a^(1-D) T^-1"
 TENSOR = ("component", "along")
 
 
@@ -142,6 +150,15 @@ class Stress(Observable):
         "shear_power": Variable(
             "power of the shear per particle, by the stress", f"{ENERGY} T^-1", when=(SHEARED,)
         ),
+        "stress_kinetic_species": Variable(
+            "kinetic part of a species", PRESSURE, ("species", *TENSOR), when=(MIXTURE,)
+        ),
+        "stress_collisional_species": Variable(
+            "collisional part of a pair of species", PRESSURE, (*PAIR, *TENSOR), when=(MIXTURE,)
+        ),
+        "pressure_species": Variable(
+            "pressure of a species", PRESSURE, ("species",), when=(MIXTURE,)
+        ),
     }
 
     def __init__(self, system: System) -> None:
@@ -153,11 +170,19 @@ class Stress(Observable):
 
     def look(self, frame: Frame) -> Values:
         """Return both parts of the tensor, the collisional one since the look before."""
-        V, D, volume = frame.thermal_velocity, self.system.dimension, self.system.volume
-        sums = np.array([frame.rates[name] for name in contacts.STRESSES])
-        return {
-            "stress_kinetic": V.T @ (frame.mass[:, None] * V) / volume,
-            "stress_collisional": sums.reshape(3, 3)[:D, :D] / volume,
+        D, volume = self.system.dimension, self.system.volume
+        sums = frame.of_pairs(contacts.STRESSES)
+        collisional = sums.reshape(*sums.shape[:2], 3, 3)[..., :D, :D] / volume
+        found = {
+            "stress_kinetic": _momentum_flux(frame) / volume,
+            "stress_collisional": collisional.sum(axis=(0, 1)),
+        }
+        if not self.system.species:
+            return found
+        kinetic = [_momentum_flux(one) / volume for one in frame.of_each_species()]
+        return found | {
+            "stress_kinetic_species": np.array(kinetic),
+            "stress_collisional_species": collisional,
         }
 
     def combine(self, means: Values) -> Values:
@@ -171,7 +196,16 @@ class Stress(Observable):
         if system.shear_rate:
             share = system.volume / system.particles
             found["shear_power"] = -total[0, 1] * system.shear_rate * share
+        if system.species:
+            own = means["stress_kinetic_species"] + means["stress_collisional_species"].sum(axis=1)
+            found["pressure_species"] = np.trace(own, axis1=1, axis2=2) / system.dimension
         return found
+
+
+def _momentum_flux(frame):
+    """Return the sum of m V V, (D, D)."""
+    V = frame.thermal_velocity
+    return V.T @ (frame.mass[:, None] * V)
 
 
 class HeatFlux(Observable):
@@ -180,7 +214,19 @@ class HeatFlux(Observable):
     effects = ("contact_heat",)
     variables: Mapping[str, Variable] = {
         "component": Variable("component of a vector", "", ("component",), "str"),
-        "heat_flux": Variable("heat flux", f"{ENERGY} a^(1-D) T^-1", ("component",)),
+        "heat_flux": Variable("heat flux", FLUX, ("component",)),
+        "heat_flux_species": Variable(
+            "heat flux of a species, half of each contact with another",
+            FLUX,
+            ("species", "component"),
+            when=(MIXTURE,),
+        ),
+        "heat_flux_collisional_species": Variable(
+            "heat flux by contacts of a pair of species",
+            FLUX,
+            (*PAIR, "component"),
+            when=(MIXTURE,),
+        ),
     }
 
     def __init__(self, system: System) -> None:
@@ -191,5 +237,14 @@ class HeatFlux(Observable):
 
     def look(self, frame: Frame) -> Values:
         """Return the flux, its collisional part since the look before."""
-        carried = np.array([frame.rates[name] for name in contacts.HEAT])[: self.system.dimension]
-        return {"heat_flux": (frame.energy @ frame.velocity + carried) / self.system.volume}
+        carried, volume = frame.of_pairs(contacts.HEAT), self.system.volume
+        carried = carried[..., : self.system.dimension]
+        flux = frame.energy @ frame.velocity + carried.sum(axis=(0, 1))
+        found = {"heat_flux": flux / volume}
+        if not self.system.species:
+            return found
+        flown = np.array([one.energy @ one.velocity for one in frame.of_each_species()])
+        return found | {
+            "heat_flux_species": (flown + carried.sum(axis=1)) / volume,
+            "heat_flux_collisional_species": carried / volume,
+        }

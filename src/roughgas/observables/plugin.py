@@ -1,7 +1,8 @@
 """What an observable is: it looks at frames, and says what the means of all looks amount to.
 
 Of a mixture every observable is made once for each species, or for each pair of species, and sees
-the frame of these particles alone: `<name>_species` has what it finds (OfSpecies).
+the frame of these particles alone: `<name>_species` has what it finds (OfSpecies). One that needs
+sums over contacts sees all particles, and says itself what each species has.
 
 An observable is made anew for every gas, so it may remember frames; `roughgas.observables.KINDS`
 lists them. A frame holds the particles of a gas at an instant, as plain numpy arrays. Units:
@@ -16,13 +17,14 @@ B. Efron, The Jackknife, the Bootstrap and Other Resampling Plans, 1982, chapter
 import itertools
 import math
 import warnings
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
 from roughgas.base import InputError, NeedsError
 from roughgas.data.variables import Variable
+from roughgas.effects.contacts import columns_of_pairs
 from roughgas.effects.settings import Number, Whole
 from roughgas.statistics.errors import blocking, degrees_of_freedom, period_means
 
@@ -110,6 +112,19 @@ class Frame(NamedTuple):
         }
         return self._replace(system=self.system.only(*species), rates={}, **of_each)
 
+    def of_each_species(self) -> list["Frame"]:
+        """Return the frame of each species, without `rates`."""
+        return [self.only(kind) for kind in range(len(self.system.species))]
+
+    def of_pairs(self, names: Iterable[str]) -> np.ndarray:
+        """Return sums over contacts per T, (species, species, names), half of each contact of
+        unlike partners for either order of them: all of them are the sum. (1, 1, names) without
+        species."""
+        kinds, names = max(1, len(self.system.species)), [*names]
+        sums = np.array([self.rates[name] for name in columns_of_pairs(names, kinds)])
+        either = sums.reshape(kinds, kinds, len(names))
+        return (either + either.transpose(1, 0, 2)) / 2.0
+
     @property
     def energy(self) -> np.ndarray:
         """Kinetic energies (N,), m v^2/2 and, without a mean spin, m q a^2 w^2/2."""
@@ -176,6 +191,9 @@ class Observable:
 
 SUFFIX = "_species"
 """Ends the names of what a species, or a pair of species, has of its own."""
+PAIR = ("species", "other")
+IN_THIS_BOX = "; depends on the size of the box"
+"""Ends what is said of numbers that transport coefficients are made of."""
 
 
 class OfSpecies(Observable):
@@ -184,7 +202,7 @@ class OfSpecies(Observable):
 
     def __init__(self, kind: type[Observable], system: System, settings: Mapping[str, Any]) -> None:
         super().__init__(system)
-        kinds, dims = range(len(system.species)), ("species", "other")[: 1 + kind.pairs]
+        kinds, dims = range(len(system.species)), PAIR[: 1 + kind.pairs]
         self._which = list(itertools.combinations_with_replacement(kinds, len(dims)))
         number = {which: n for n, which in enumerate(self._which)}
         every = [number[tuple(sorted(at))] for at in itertools.product(kinds, repeat=len(dims))]
