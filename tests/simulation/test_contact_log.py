@@ -16,6 +16,7 @@ from roughgas.simulation.contact_log import logged
 from roughgas.simulation.energies import balance
 from roughgas.simulation.gas import Gas
 from roughgas.simulation.point import run_point
+from roughgas.simulation.recorder import Recorder
 
 TWO = {"species": [{"fraction": 0.5}, {"fraction": 0.5, "radius": 1.5, "inertia": 0.3}]}
 LOG = {"contact_log": {"most": 3000}, "contact_pairs": {}}
@@ -198,6 +199,19 @@ def test_a_log_changes_no_bit():
         run(state, scene, 10, interval=1.0)
         ends.append((state.trajectory.tobytes(), balance(state, scene).ledger.tobytes()))
     assert ends[0] == ends[1]
+
+
+def test_of_many_replicas_only_the_logged_one_is_kept(monkeypatch):
+    recorders = []
+
+    def noted(*arguments):
+        recorders.append(Recorder(*arguments))
+        return recorders[-1]
+
+    monkeypatch.setattr("roughgas.simulation.point.Recorder", noted)
+    experiment = GASES["spheres"] | {"schedule": COOLING}
+    found = run_point(build(experiment, 0.8, 0.3), experiment, 1).variables
+    assert len(found["R_replica"]) > 1 and len(recorders[0].gases) == 1
 
 
 def test_a_full_log_has_the_last_contacts_and_says_so(tmp_path):
