@@ -78,12 +78,13 @@ def draw_full(layers: xr.Dataset) -> Figure:
 
 
 def draw_cycles(row: np.ndarray, layer: xr.Dataset) -> None:
-    """Draw mean heights one cycle apart into four axes, all in the same greys."""
-    first = clearest(layer)
-    low, high = np.percentile(layer.mean_height.values, GREYS)
+    """Draw heights one cycle apart into four axes, each from its own mean, in the same greys."""
+    first, heights = clearest(layer), layer.mean_height
+    heights = heights - heights.mean(("cell_x", "cell_y"))
+    low, high = np.percentile(heights.values, GREYS)
     look: dict[str, Any] = {"cmap": "gray", "vmin": low, "vmax": high}
     for number, axes in enumerate(row):
-        one = layer.mean_height[(first + number) % REPEATS].values.T
+        one = heights[(first + number) % REPEATS].values.T
         axes.imshow(one, origin="lower", interpolation="bilinear", **look)
         axes.set(xticks=[], yticks=[])
         later = f"{number} cycle{'s' * (number > 1)} later" if number else "now"

@@ -26,7 +26,9 @@ OF_EACH = """\
 Γ = {gamma:g}, f\\* = {f_star:g}; flights of the ball: {flights} cycles.
 
 - **Published** (60 000 spheres in a box of 100 D): {published}.
-- **Found here** ({size}): {measured}."""
+- **Found here** ({size}): {measured}.
+
+From above, the lighter the higher, grey the mean; in flight there is no pattern."""
 
 
 def draw(layers: xr.Dataset) -> Iterator[tuple[str, str, Figure]]:
