@@ -79,6 +79,7 @@ def test_a_workflow_stops_without_a_word_of_failure(project):
     assert planned == {"point": 2, "reduce": 1}  # the kernel is not compiled again
 
 
+@pytest.mark.slow
 def test_a_job_that_fails_shows_what_it_said_and_no_more(project):
     running = snakemake(project, "dense")
     lines = running.communicate(timeout=120)[0].splitlines()
@@ -120,6 +121,7 @@ def test_a_simulation_that_was_killed_goes_on(tmp_path):
     assert same_point(tmp_path / "point.nc", tmp_path / "undisturbed.nc")
 
 
+@pytest.mark.slow
 def test_a_workflow_that_was_killed_goes_on_within_a_point(project):
     folder, dataset = project.folder / "results/lasting", "results/lasting/cooling.nc"
     command = [sys.executable, "-m", "snakemake", "-j1", "--config", "scale=lasting", "--", dataset]

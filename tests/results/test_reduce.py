@@ -46,11 +46,13 @@ def write(folder, r, beta, seed, ratio, cooling=False, attributes=None, **others
 def paths(tmp_path):
     """Two r, two beta, and three seeds, two, one and none at the four places."""
     ratios = {1: 0.20, 2: 0.22, 3: 0.27}
-    points = [write(tmp_path, 0.9, -0.5, seed, ratio) for seed, ratio in ratios.items()]
+    whole = {seed: {"R_unsubtracted": 0.1 * seed} for seed in ratios}
+    points = [write(tmp_path, 0.9, -0.5, seed, R, **whole[seed]) for seed, R in ratios.items()]
     points += [
-        write(tmp_path, 0.9, 0.5, seed, ratios[seed], equilibrated=seed % 2) for seed in (1, 2)
+        write(tmp_path, 0.9, 0.5, seed, ratios[seed], equilibrated=seed % 2, **whole[seed])
+        for seed in (1, 2)
     ]
-    return [*points, write(tmp_path, 0.8, 0.5, 3, 0.3)]
+    return [*points, write(tmp_path, 0.8, 0.5, 3, 0.3, **whole[3])]
 
 
 def test_means_and_errors_over_seeds(paths, tmp_path):
@@ -67,6 +69,8 @@ def test_means_and_errors_over_seeds(paths, tmp_path):
     assert full.R_ci95.item() == pytest.approx(4.303 * full.R_stderr.item(), rel=0.05)
     assert full.R_stderr_within.item() == pytest.approx(0.01 * math.sqrt(1 + 4 + 9) / 3)
     assert full.R_ratio_of_means.item() == pytest.approx(0.22)
+    assert full.R_unsubtracted.item() == pytest.approx(0.2)
+    assert full.R_unsubtracted_stderr.item() == pytest.approx(0.1 / math.sqrt(3))
     assert full.collisions.item() == 300 and full.collisions.dtype == np.int64
     assert full.kernel_seconds.item() == 1.5
     np.testing.assert_array_equal(full.R_seed, [0.2, 0.22, 0.27])
@@ -120,14 +124,6 @@ def test_the_order_of_the_points_does_not_matter(paths, tmp_path):
     assert (tmp_path / "a.nc").read_bytes() == (tmp_path / "b.nc").read_bytes()
 
 
-def test_sheared_points_keep_the_unsubtracted_ratio(tmp_path):
-    paths = [write(tmp_path, 0.9, 0.0, s, 0.2, R_unsubtracted=0.1 * s) for s in (1, 2)]
-    reduce_points(paths, tmp_path / "a.nc")
-    data = read_reduced(tmp_path / "a.nc")
-    assert data.R_unsubtracted.item() == pytest.approx(0.15)
-    assert data.R_unsubtracted_stderr.item() == pytest.approx(0.05)
-
-
 def test_what_cannot_be_reduced_is_refused(paths, tmp_path):
     out = tmp_path / "out.nc"
     with pytest.raises(InputError, match="number of points"):
@@ -157,16 +153,9 @@ def test_the_table_has_one_row_for_each_place_with_data(paths, tmp_path):
     assert (row["particles"], row["n_seeds"], row["theory"]) == ("40", "3", "lun")
     assert float(row["R"]) == pytest.approx(0.23)
     assert float(row["residual"]) == pytest.approx(0.23 - theory.lun_ratio(-0.5, 0.5))
-    assert row["R_unsubtracted"] == "" and "kernel_seconds" not in row
+    assert float(row["R_unsubtracted"]) == pytest.approx(0.2) and "kernel_seconds" not in row
+    assert rows[3]["R_unsubtracted"] == ""
     assert float(rows[3]["R_theory"]) == pytest.approx(theory.cooling_ratio(0.7, 0.0, 2, 0.5))
-
-
-def test_a_file_of_another_kind_stays_where_it_is(tmp_path):
-    path = tmp_path / "config.yaml"
-    path.write_text("experiments: {}")
-    with pytest.raises(InputError, match=r"config\.yaml: must be a dataset of roughgas"):
-        reduce_points([path], tmp_path / "out.nc")
-    assert path.read_text() == "experiments: {}" and len(list(tmp_path.iterdir())) == 1
 
 
 def variant(folder, key, value, seed=1, ratio=0.2, beta=0.0, **attributes):
