@@ -51,8 +51,6 @@ def test_a_run_tells_what_is_ready(project, tmp_path):
     lines = ran.succeed(*told).splitlines()
     assert "ready: results/tiny/config.html" in lines and len(lines) < 20
     assert not any("localrule" in line or "jobid" in line for line in lines)
-    verbose = ran.succeed("-F", "--verbose", *told)
-    assert "Finished jobid: 0" in verbose and "ready: " not in verbose
 
 
 def test_a_run_counts_its_points(project, tmp_path):

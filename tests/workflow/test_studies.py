@@ -3,7 +3,6 @@
 import shutil
 
 import pytest
-from tests.houses import FOLDERS
 
 LEAST = """\
 experiments:
@@ -41,21 +40,6 @@ def test_a_copy_of_a_study_is_another(own):
     assert planned["reduce"] == 2 and planned["mine"] == 1
 
 
-@pytest.mark.slow  # plans as often as there are studies
-@pytest.mark.parametrize("folder", FOLDERS, ids=lambda one: one.name)
-def test_without_a_study_all_else_is_there(own, folder):
-    shutil.rmtree(own.folder / "studies" / folder.name)
-    own.configure(
-        lambda config: [
-            config["scales"]["tiny"].pop(name)
-            for name in [*config["scales"]["tiny"]]
-            if name.startswith(f"{folder.name}.")
-        ]
-    )
-    planned = own.planned("figures", "extensions")
-    assert planned["figure"] == 4 and planned["study_page"] == len(FOLDERS) - 1
-
-
 def test_a_broken_study_ends_in_one_line_and_keeps_nothing_else_from_being_made(own):
     own.add("broken", "experiments: {x: {extends: vibrated, particles: -3}}")
     own.add("unread", LEAST)
@@ -74,9 +58,6 @@ def test_a_broken_study_ends_in_one_line_and_keeps_nothing_else_from_being_made(
     )
     assert status == 0 and f"{line} (left out; all else can be made)" in output
     assert "studies/uncombined/results.py = SyntaxError: " in output
-    status, output = own.snakemake("-n", *TINY, "unnamed")
-    assert status == 1 and line in output and "Traceback" not in output
-    assert own.planned("figures")["figure"] == 4
     status, output = own.snakemake("-n", *TINY, "broken")
     line = "roughgas: error: studies/broken/config.yaml: experiments.x.particles = -3: must be"
     assert status == 1 and line in output and "Traceback" not in output
