@@ -237,7 +237,9 @@ def predict_wall(wall, index, state, scene, i):
     if wall.motion is None:
         return time + fall(gap, speed, gravity), motions.MEET
     phase = state.phase[index] + time
-    if law_of(wall.motion).waits and state.cells is not None:  # few get there before a contact
+    # Among many, few get there before a contact. Among few, the clock's base moves at other events
+    # if a search ends at one, and with it the last bits of all times
+    if law_of(wall.motion).waits and state.cells is not None:
         limit = next_contact(state, i)[0]
         search = law_of(wall.motion).search
         wait, what = search(wall.motion, gravity, gap, speed, phase, limit - time)

@@ -108,8 +108,8 @@ def index(number):
 
 
 @Primitive
-def fused(a, b, c):
-    """Return a b + c, in one instruction where the machine has it."""
+def multiply_add(a, b, c):
+    """Return a b + c; in single precision perhaps with one rounding."""
     return a * b + c
 
 
@@ -135,12 +135,6 @@ def larger(one, other):
 def smaller(one, other):
     """Return the smaller of two numbers, lane by lane if need be; the first if one is NaN."""
     return np.where(other < one, other, one)[()]
-
-
-@jit
-def multiply_add(a, b, c):
-    """Return a b + c; in single precision perhaps with one rounding."""
-    return fused(a, b, c) if is_single(a) and is_single(b) and is_single(c) else a * b + c
 
 
 @jit

@@ -152,7 +152,7 @@ def refresh(state, scene):
             mean = _mean_velocity(state, k)
         for i in range(number):
             state.trajectory[i, k] -= mean
-            square += state.trajectory[i, k] ** 2
+            square += state.trajectory[i, k] * state.trajectory[i, k]
     if square > 0.0:
         rescale(state, scene, math.frexp(math.sqrt(square / number))[1])
     start(state, scene)

@@ -53,9 +53,11 @@ class Site(NamedTuple):
         return place if vector is None else self.builder.bitcast(place, vector.as_pointer())
 
     def spread(self, value, kind):
-        """Return a number in every lane of the result, if that is lanes; lanes as they are."""
-        if isinstance(kind, Lanes) or not isinstance(self.result, Lanes):
+        """Return a number as the result has it, in every lane of lanes; lanes as they are."""
+        if isinstance(kind, Lanes):
             return value
+        if not isinstance(self.result, Lanes):
+            return self.context.cast(self.builder, value, kind, self.result)
         value = self.context.cast(self.builder, value, kind, self.result.kind)
         vector = ir.Constant(ir.VectorType(value.type, self.result.count), ir.Undefined)
         vector = self.builder.insert_element(vector, value, NUMBER(0))
@@ -169,7 +171,7 @@ def operation(result):
 
 def _last_lanes(*kinds):
     """Return the type of what is done lane by lane, to numbers if there are no lanes."""
-    return _lanes_among(kinds[::-1]) or kinds[-1]
+    return _lanes_among(kinds[::-1]) or max(kinds, key=lambda kind: kind.bitwidth)
 
 
 def _number(*kinds):
@@ -237,8 +239,14 @@ select = lane_by_lane(lambda site, condition, a, b: site.builder.select(conditio
 larger = lane_by_lane(lambda site, a, b: site.builder.select(_compare(">")(site, b, a), b, a))
 smaller = lane_by_lane(lambda site, a, b: site.builder.select(_compare("<")(site, b, a), b, a))
 root = lane_by_lane(lambda site, x: site.call("llvm.sqrt", x.type, x))
-fused = lane_by_lane(lambda site, a, b, c: site.call("llvm.fmuladd", a.type, a, b, c))
 trailing_zeros = operation(_number)(lambda site, word: site.builder.cttz(word, BIT(0)))
+
+
+@lane_by_lane
+def multiply_add(site, a, b, c):
+    if getattr(site.result, "kind", site.result) == types.float32:
+        return site.call("llvm.fmuladd", a.type, a, b, c)
+    return site.builder.fadd(site.builder.fmul(a, b), c)
 
 
 @operation(lambda lanes: lanes.kind)
