@@ -175,7 +175,7 @@ def test_the_small_layer_turns_over_with_each_cycle_without_overlap_or_loss_of_e
     after = layer.height_autocorrelation.values
     assert after[1] < -0.5 and after[2] > 0.8
     assert layer.energy_imbalance < 1e-11
-    place = layer.last_position.values
+    place = layer.last_position.values[0]
     order = np.argsort(place[:, 0])
     for shift in range(1, 600):  # at least 7 a wide, six spheres to each D^2
         one, other = place[order[shift:]], place[order[:-shift]]

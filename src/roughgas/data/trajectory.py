@@ -368,4 +368,4 @@ FORMATS: dict[str, Callable[[Path, str], AbstractContextManager[Append]]] = {
     ".nc": _amber,
     ".gsd": _gsd,
 }
-"""What opens files, by their endings: with a title, for frames to come."""
+"""What opens a file of each ending, with a title, for frames to come."""
