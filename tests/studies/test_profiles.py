@@ -129,12 +129,6 @@ def test_every_point_has_its_profiles(parts):
     assert float(bed.R_quarters) == pytest.approx(float(bed.R_phase[::2].mean()))
 
 
-def test_the_same_settings_give_the_same_runs(parts):
-    for task, one in parts.items():
-        again = runs.run(task, SETTINGS, EXPERIMENTS, quietly).drop_vars("cpu_seconds")
-        assert again.equals(one.drop_vars("cpu_seconds"))
-
-
 def test_figure_and_table_show_every_point(parts):
     data = results.combine(parts, SETTINGS)
     figure = draw(data)

@@ -7,7 +7,6 @@ from imageio_ffmpeg import read_frames
 from PIL import Image
 from schedules import COOLING, STEADY
 
-from roughgas.kernel.state import Bodies
 from roughgas.scene import build
 from roughgas.show import style as movie
 from roughgas.show.movies import MovieSubject, particles, picture, spin_scales, write
@@ -58,23 +57,6 @@ def test_a_disk_has_the_colour_of_its_spin_and_a_mark_at_its_angle():
     (start, tip), (_, other) = marks.get_segments()[:2]
     assert start == pytest.approx([3.0, 4.0]) and tip == pytest.approx([3.9, 4.0])
     assert other == pytest.approx([6.0, 5.9])
-
-
-def test_a_disk_on_the_edge_is_seen_on_both_sides_of_it():
-    _, disks, _ = drawn(subject("gas", [SIDE, SIDE]), shots())
-    corners = {(11.5, 11.7), (-0.5, 11.7), (11.5, -0.3), (-0.5, -0.3)}
-    assert {tuple(np.round(x, 9)) for x in disks.get_offsets()[2:]} == corners
-
-
-def test_the_floor_is_a_bar_that_moves():
-    about = subject("bed", [SIDE, "open"])
-    heights = (0.0, 2.0, 4.0)
-    frames = [STILL._replace(floor=height) for height in heights]
-    for frame, height in enumerate(heights):
-        axes, *_ = drawn(about, frames, frame)
-        (bar,) = axes.patches
-        assert bar.get_y() + bar.get_height() == pytest.approx(height)
-        assert axes.get_ylim()[1] == pytest.approx(12.7)  # that of the highest disk's top
 
 
 @pytest.mark.parametrize("top", [SIDE, "open"])
@@ -130,43 +112,3 @@ def test_an_encoder_that_fails_leaves_nothing_and_says_why(tmp_path, monkeypatch
         write(path, [(subject("gas", [SIDE, SIDE]), shots())], 20.0)
     assert "\n" not in str(failure.value) and failure.value.filename == str(path)
     assert list(tmp_path.iterdir()) == []
-
-
-UNLIKE = Bodies(
-    radius=np.array([1.0, 2.0, 1.0]),
-    mass=np.array([1.0, 4.0, 1.0]),
-    inertia=np.full(3, 0.5),
-    species=np.array([0, 1, 0]),
-    largest=np.array([2.0]),
-    pairs=np.zeros((2, 3, 3)),
-)
-TWO = [{"name": "small", "fraction": 0.6}, {"name": "large", "fraction": 0.4, "radius": 2}]
-
-
-def test_particles_that_differ_are_drawn_at_their_size():
-    about = subject("gas", [SIDE, SIDE], species=TWO)
-    _, disks, (marks,) = drawn(about, shots(bodies=UNLIKE))
-    assert disks.get_widths()[:2].tolist() == [2.0, 4.0]
-    (_, tip), (_, other) = marks.get_segments()[:2]
-    assert tip == pytest.approx([3.9, 4.0]) and other == pytest.approx([6.0, 6.8])
-    # thermal spins: the heavier, the slower
-    assert spin_scales(about, shots(bodies=UNLIKE))[0] == pytest.approx(
-        spin_scales(about, shots())[0] / np.array([1.0, 2.0, 1.0])
-    )
-
-
-def test_spheres_seen_from_above_are_the_lighter_the_higher():
-    """The highest is drawn last, the floor not at all; heights are those above the floor."""
-    about = subject("layer", [SIDE, SIDE, "open"])._replace(colour="height")
-    position = np.array([[3.0, 4.0, 8.0], [6.0, 5.0, 12.0], [9.0, 7.0, 3.0]])
-    frames = shots(2, position=position, spin=np.zeros((3, 3)), angle=None, floor=2.0)
-    figure, show = picture([(about, frames)])
-    show(1)
-    axes = figure.axes[0]
-    assert axes.get_xlabel() == "$x/a$" and axes.get_ylabel() == "$y/a$"
-    disks = axes.collections[0]
-    assert disks.get_offsets().tolist() == [[9.0, 7.0], [3.0, 4.0], [6.0, 5.0]]
-    shades = disks.get_facecolor()[:, 0]
-    tallest = np.percentile([1.0, 6.0, 10.0], 99)
-    assert shades == pytest.approx(np.minimum(np.array([1.0, 6.0, 10.0]) / tallest, 1.0), abs=0.01)
-    assert not [one for one in axes.patches if one.get_width() > SIDE / 2 and one.get_height() == 2]

@@ -1,7 +1,6 @@
 """The report: captions, its front page, tables and configurations as HTML."""
 
 import base64
-import json
 from html import unescape
 from pathlib import Path
 from types import SimpleNamespace
@@ -108,15 +107,6 @@ def html(source, tmp_path):
     return (tmp_path / "shown.html").read_text("utf-8")
 
 
-def test_markdown_becomes_tables_and_stays_text(tmp_path):
-    source = tmp_path / "claims.md"
-    source.write_text("# Verdict\n\n| R | β |\n| --- | --- |\n| a < b | **holds** |\n\n<b>$x</b>\n")
-    text = html(source, tmp_path)
-    assert "<h1>Verdict</h1>" in text and "<th>R</th>" in text
-    assert "<td>a &lt; b</td>" in text and "<td><strong>holds</strong></td>" in text
-    assert "&lt;b&gt;$x&lt;/b&gt;" in text
-
-
 def test_pictures_beside_a_text_are_part_of_its_page(tmp_path):
     for name in ("secret.png", "a/pictures/fig 1.png", "a/key.txt"):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
@@ -139,17 +129,3 @@ def test_run_times_are_sums_over_points_and_seeds(points, tmp_path):
         "| together |  | 6 | 8 | 9,872 | 2.0 | 4,936 |",
     ]
     assert read_reduced(points / "sheared.nc").kernel_seconds.sum().item() == 1.0
-
-
-@pytest.mark.parametrize("scale", ["paper", "small"])
-def test_the_complete_configuration_says_the_same_and_can_be_run(scale, tmp_path):
-    path = tmp_path / "config.yaml"
-    changes = {"experiments": {"cooling": {"particles": 99}}, "seeds_per_job": 2}
-    arguments = [str(ROOT / "config.yaml"), f"--scale={scale}", f"--changes={json.dumps(changes)}"]
-    assert main(["effective_config", *arguments, "--output", str(path)]) == 0
-    given, found = config.load(ROOT / "config.yaml", changes), config.load(path)
-    assert found["scale"] == scale and list(found["scales"]) == [scale]
-    assert found["seeds_per_job"] == 2
-    for name in given["experiments"]:
-        assert config.experiment(found, name, scale) == config.experiment(given, name, scale)
-    assert config.accuracy(found, scale) == config.accuracy(given, scale)

@@ -5,7 +5,6 @@ import numpy as np
 import pytest
 
 from roughgas import theory
-from roughgas.base import InputError
 from roughgas.tasks import dsmc
 
 PACKING = 0.2
@@ -135,15 +134,3 @@ def test_seldom_samples_waste_no_draws():
         assert gas.counts[dsmc.COLLISIONS] > 0.08 * gas.counts[dsmc.DRAWS]
         rates.append(-end.log_T_tr[-1] / 60.0)
     assert rates[0] == pytest.approx(rates[1], rel=0.02)
-
-
-def test_illegal_values_are_named():
-    rng = np.random.default_rng(0)
-    with pytest.raises(InputError, match="restitution r"):
-        dsmc.material(1.5, 0.0)
-    with pytest.raises(InputError, match="roughness beta"):
-        dsmc.material(0.5, -2.0)
-    with pytest.raises(InputError, match="particles"):
-        dsmc.new_gas(1, 1.0, rng)
-    with pytest.raises(InputError, match="theta"):
-        dsmc.new_gas(10, -1.0, rng)
