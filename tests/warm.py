@@ -22,8 +22,6 @@ SCENES = {  # those that take longest first
     **{f"{name} of two species": settings(name) | {"species": TWO} for name in MIXED},
     "triangle": settings("bed", floor={"wave": "triangle"}),
     "sine": settings("bed", floor={"wave": "sine"}),
-    "contact time": settings("gas")
-    | {"effects": KERNELS["gas"]["effects"] | {"contact_time": {"duration": 1e-4}}},
 }
 
 

@@ -80,6 +80,7 @@ def test_a_dilute_gas_settles_where_the_rate_equations_say(r, beta):
     assert expected[0] < 0.85  # the bath's temperature is not that of the gas
 
 
+@pytest.mark.slow  # compiles a kernel
 def test_drag_alone_is_exponential():
     """Two disks that never meet: velocities, places, spins and the books, to rounding."""
     kept, interval, steps = math.exp(-0.3 * 0.5), 0.5, 7
@@ -99,6 +100,7 @@ def test_drag_alone_is_exponential():
     assert imbalance(books.ledger - booked.ledger, books.energy - booked.energy) < 1e-14
 
 
+@pytest.mark.slow  # compiles a kernel
 def test_a_cooling_gas_is_rescaled_with_its_steps():
     """Scaled by powers of two as it cools, a gas with drag makes its steps as often as before.
 

@@ -13,7 +13,6 @@ from roughgas.kernel.state import EXPONENT, TOUCHED
 from roughgas.simulation.energies import SUMS, balance, contact_averages
 
 LOOKED_AT = ("bed", "sheared", "shaken", "heated", "spheres")
-MIXED = ("heated", "spheres")
 TWO = [{"fraction": 0.5}, {"fraction": 0.5, "radius": 1.5, "inertia": 0.3}]
 
 
@@ -24,7 +23,11 @@ def sums(rows, names=SUMS):
 
 @pytest.mark.parametrize(
     ("kernel", "species"),
-    [*((kernel, {}) for kernel in LOOKED_AT), *((one, {"species": TWO}) for one in MIXED)],
+    [
+        *((kernel, {}) for kernel in LOOKED_AT),
+        ("heated", {"species": TWO}),
+        pytest.param("spheres", {"species": TWO}, marks=pytest.mark.slow),  # compiles a kernel
+    ],
 )
 def test_each_contact_counts_as_brute_force_has_it(kernel, species):
     """Collision by collision, to roundings; each piece starts where the kernel stands."""

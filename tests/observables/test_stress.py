@@ -40,6 +40,7 @@ def booked(state):
     return state.ledger[0, :-1].sum() + due.sum()
 
 
+@pytest.mark.slow  # compiles a kernel
 def test_stress_times_shear_rate_is_the_account_of_the_shear():
     """Exactly: with G = sum v_x (y - L/2) of the images in the box, which a steady state keeps, its
 
@@ -66,6 +67,7 @@ def test_stress_times_shear_rate_is_the_account_of_the_shear():
     assert abs(contacts) > 0.1 * abs(kinetic) > 0.0 and work > 0.0
 
 
+@pytest.mark.slow  # compiles a kernel
 def test_of_a_point_both_powers_agree_within_the_error():
     settings = {"effects": {"contact_averages": {}, "contact_time": None}, "particles": 80}
     settings |= {"box": (24, 24), "observe": ["stress"], "progress": False}
@@ -92,6 +94,7 @@ def test_the_pressure_of_elastic_spheres_is_that_of_carnahan_and_starling():
     assert found == pytest.approx(expected, rel=0.02)
 
 
+@pytest.mark.slow  # compiles a kernel
 def test_heat_flows_from_wall_to_wall():
     """What thermal walls give and take is the flux between particles, within 4 sigma."""
     walls = {"bottom_wall": {"temperature": 0.5}, "lid": {"temperature": 1.5}}
@@ -114,6 +117,7 @@ def test_heat_flows_from_wall_to_wall():
     assert abs(along) < 4 * errors[0]
 
 
+@pytest.mark.slow  # compiles a kernel
 def test_dense_elastic_spheres_have_enskogs_viscosity_and_conductivity():
     """Within 4 sigma and the 5 % that higher approximations and N = 64 may make. At packing 0.2
     half of either is what contacts carry; kicks of 1e-12 are no drive."""

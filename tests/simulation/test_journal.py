@@ -19,7 +19,7 @@ from roughgas.simulation.point import run_point
 COSTS = {"kernel_seconds"}
 DRIVEN = config.load_experiment(config.SHIPPED, "sheared", "small")
 DRIVEN["schedule"] |= {"equilibrate": 20, "measure": 60, "sample_every": 0.5}
-WATCHED = {"mean_square_displacement": {"lags": 3}, "stress": {"every": 7}}
+WATCHED = {"mean_square_displacement": {"lags": 3}, "cumulants": {"every": 7}}
 RUNS = {
     "cooling": TINY | {"keep_state": True},
     "watched cooling": TINY | {"observables": {"cumulants": {"every": 3}}},
