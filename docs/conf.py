@@ -38,7 +38,10 @@ extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.autosummary", "sphinx
 exclude_patterns = ["_build", "**.ipynb_checkpoints"]
 nitpicky = True
 nitpick_ignore_regex = [
-    ("py:.*", r"(numpy|xarray|pathlib|collections|contextlib|netCDF4|types)\..*"),  # whose pages are not here
+    (
+        "py:.*",
+        r"(numpy|xarray|pathlib|collections|contextlib|netCDF4|types)\..*",
+    ),  # whose pages are not here
     ("py:class", r"roughgas\.(kernel|effects|simulation)\..*"),  # no library, but what is compiled
     ("py:class", "Observe|Functions"),  # types of arguments, imported for the checker alone
 ]
