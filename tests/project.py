@@ -39,6 +39,7 @@ POINTS = 6 * SWEEP["seeds"]
 JOBS = 6  # one makes both seeds of a point
 FINISHED = ("everything",)
 ELASTIC = ["disks", "spheres", "disks_fluxes", "spheres_fluxes", "disks_between_walls"]
+MPEMBA = ["hot", "cold", "overshoot_hot", "overshoot_cold"]
 BEYOND = {  # the experiments beyond the paper, and the third axis of their sweeps
     "spheres.cooling_spheres": {},
     "spheres.sheared_spheres": {},
@@ -62,8 +63,7 @@ BEYOND = {  # the experiments beyond the paper, and the third axis of their swee
     "couette.couette": {},
     "megias_santos.dilute": {"thermostat.spin_share": ["0.5"]},
     **{
-        f"mpemba.{name}": {}
-        for name in ("hot", "cold", "overshoot_hot", "overshoot_cold", "memory")
+        f"mpemba.{name}": {} for name in (*MPEMBA, *(f"{one}_smoother" for one in MPEMBA), "memory")
     },
     **{f"transport.smooth_{kind}": {"r": ["1"], "beta": ["-1"]} for kind in ELASTIC},
     **{f"transport.rough_{kind}": {"r": ["1"], "beta": ["1"]} for kind in ELASTIC},

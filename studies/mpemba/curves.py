@@ -6,6 +6,7 @@ stationary frequency, from when the last drive has begun.
 """
 
 import json
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -15,7 +16,7 @@ import xarray as xr
 from roughgas import theory
 
 REFERENCE = Path(__file__).with_name("reference.csv")
-SOURCE = 4
+SOURCE = 3
 """Lines of that file that say where its numbers are from."""
 NEAR = 0.3  # of a crossing: what a parabola is fitted to
 
@@ -35,6 +36,36 @@ class Crossing(NamedTuple):
     time: float
     stderr: float
     deepest: float  # in standard errors
+
+
+class Pair(NamedTuple):
+    """A hot and a cold gas that get the same drive, by a protocol of the paper: curves by gas."""
+
+    protocol: str  # crossing or overshoot
+    place: dict[str, float]  # r and beta
+    simulated: dict[str, Curve]
+    published: dict[str, Curve]
+    expected: dict[str, Curve]
+
+    def crossing(self, curves: Mapping[str, Curve]) -> Crossing:
+        """Return where curves of this pair cross, or their distances from the stationary one."""
+        return crossing(*curves.values(), self.protocol == "overshoot")
+
+
+def pair(hot: xr.Dataset, cold: xr.Dataset) -> Pair:
+    """Return the curves of two reduced datasets."""
+    gases = {"hot": hot, "cold": cold}
+    protocol = "overshoot" if "overshoot" in hot.attrs["experiment"] else "crossing"
+    place = {"r": float(hot.r[0]), "beta": float(hot.beta[0])}
+    ours = {name: simulated(gas) for name, gas in gases.items()}
+    theirs = {name: published(protocol, name, **place) for name in gases}
+    rates = {name: expected(gas, ours[name]) for name, gas in gases.items()}
+    return Pair(protocol, place, ours, theirs, rates)
+
+
+def pairs(gases: Sequence[xr.Dataset]) -> list[Pair]:
+    """Return the pairs of hot and cold gases in turn."""
+    return [pair(*two) for two in zip(gases[::2], gases[1::2], strict=True)]
 
 
 def simulated(gas: xr.Dataset, stage: int = 1) -> Curve:
@@ -94,12 +125,13 @@ def _point(gas):
     return one, one.stage_begin.values
 
 
-def published(protocol: str, sample: str) -> Curve:
+def published(protocol: str, sample: str, r: float, beta: float) -> Curve:
     """Return a published curve."""
     rows = np.genfromtxt(
         REFERENCE, delimiter=",", names=True, dtype=None, encoding="utf-8", skip_header=SOURCE
     )
     rows = rows[(rows["protocol"] == protocol) & (rows["sample"] == sample)]
+    rows = rows[(rows["r"] == r) & (rows["beta"] == beta)]
     return Curve(rows["time"], rows["T"], np.zeros(len(rows)))
 
 

@@ -1,70 +1,71 @@
 """Temperatures of gases that cool by the same drive, over time: which of two is the first."""
 
 import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from roughgas.plotting import GREY, LOOKS, add_title
 
-from .curves import Curve, crossing, expected, published, simulated
+from .curves import Curve, Pair, expected, pairs, simulated
 
-SIZE = (4.6, 8.4)  # inches
-SPAN = (-0.6, 5.0)  # of time that is shown
+SIZE = (7.2, 7.8)  # inches
 TIME = r"time, $\nu_\mathrm{st}\, t/2$"
-PAIRS = {"crossing": "The hotter one cools first", "overshoot": "The colder one overshoots"}
+TITLES = {"crossing": "The hotter one cools first", "overshoot": "The colder one overshoots"}
 MESSAGE = "How energy was shared decides which gas cools first"
+LAST = 2
+"""The stage in which a gas remembers."""
+SPAN = 5.0  # of time that it is shown
+BEFORE = 0.12  # of what is shown, before time 0
 
 
-def draw(
-    hot: xr.Dataset,
-    cold: xr.Dataset,
-    overshoot_hot: xr.Dataset,
-    overshoot_cold: xr.Dataset,
-    memory: xr.Dataset,
-) -> Figure:
-    """Draw the figure from the reduced datasets."""
+def draw(*gases: xr.Dataset) -> Figure:
+    """Draw the figure from the reduced datasets: pairs of gases, and one that remembers."""
+    *paired, memory = gases
     figure = Figure(figsize=SIZE, layout="constrained")
-    panels = figure.subplots(3, 1, sharex=True)
-    gases = {"crossing": (hot, cold), "overshoot": (overshoot_hot, overshoot_cold)}
-    for axes, (protocol, title) in zip(panels, PAIRS.items(), strict=False):
-        curves = []
-        for name, gas, look in zip(("hot", "cold"), gases[protocol], LOOKS, strict=False):
-            curves.append(_curve(axes, gas, 1, look.colour))
-            known = published(protocol, name)
-            few = slice(0, None, 3)
-            axes.plot(
-                known.time[few], known.T[few], "o", mfc="none", color=look.colour, ms=3, mew=0.7
-            )
-        at = crossing(*curves, protocol == "overshoot")
-        axes.axvspan(at.time - at.stderr, at.time + at.stderr, color=GREY, alpha=0.3, lw=0)
-        _name(axes, title)
-    panels[0].legend(handles=_keys(), fontsize="small", loc="right")
-    _curve(panels[2], memory, 2, LOOKS[2].colour)
-    _name(panels[2], "Spins remember their drive")
-    for axes in panels:
-        axes.axhline(1.0, color=GREY, lw=0.6, zorder=0)
-        axes.axvline(0.0, color=GREY, lw=0.6, ls=":", zorder=0)
-        axes.set(ylabel=r"temperature $T/T_\mathrm{st}$", xlim=SPAN)
-    panels[2].set_xlabel(TIME)
-    panels[1].set_ylim(0.8, 1.3)
-    panels[2].set_ylim(0.8, 1.3)
-    add_title(panels[0], [hot], "Gases that cool by the same drive", MESSAGE)
+    panels = figure.subplots(3, 2)
+    for axes, one in zip(panels[:2].T.flat, pairs(paired), strict=True):
+        _draw_pair(axes, one)
+    curve = simulated(memory, LAST)
+    _draw_curves(panels[2, 0], curve, expected(memory, curve, LAST), LOOKS[2].colour)
+    _finish(panels[2, 0], "Spins remember their drive", SPAN)
+    panels[2, 1].axis("off")
+    panels[2, 1].legend(handles=_keys(), loc="center")
+    add_title(panels[0, 0], paired, "Gases that cool by the same drive")
+    figure.suptitle(MESSAGE, fontsize=8.5, fontweight="bold")
     return figure
 
 
-def _curve(axes, gas, stage, colour) -> Curve:
-    """Draw a gas with its band, and the rate equations; return its curve."""
-    curve = simulated(gas, stage)
+def _draw_pair(axes: Axes, one: Pair) -> None:
+    for name, look in zip(one.simulated, LOOKS, strict=False):
+        _draw_curves(axes, one.simulated[name], one.expected[name], look.colour)
+        known = one.published[name]
+        few = slice(None, None, len(known.time) // 20)
+        axes.plot(known.time[few], known.T[few], "o", mfc="none", color=look.colour, ms=3, mew=0.7)
+    at = one.crossing(one.simulated)
+    axes.axvspan(at.time - at.stderr, at.time + at.stderr, color=GREY, alpha=0.3, lw=0)
+    material = rf"$r = {one.place['r']:g}$, $\beta = {one.place['beta']:g}$"
+    _finish(axes, f"{TITLES[one.protocol]}\n{material}", one.published["hot"].time[-1])
+
+
+def _draw_curves(axes: Axes, curve: Curve, rates: Curve, colour: str) -> None:
+    """Draw a gas with its band, and the rate equations."""
     low, high = curve.T - curve.stderr, curve.T + curve.stderr
     axes.fill_between(curve.time, low, high, color=colour, alpha=0.25, lw=0)
     axes.plot(curve.time, curve.T, color=colour, lw=1.0)
-    theory = expected(gas, curve, stage)
-    axes.plot(theory.time, theory.T, color="black", lw=0.8, ls="--")
-    return curve
+    axes.plot(rates.time, rates.T, color="black", lw=0.8, ls="--")
 
 
-def _name(axes, text):
-    axes.text(0.98, 0.95, text, ha="right", va="top", transform=axes.transAxes)
+def _finish(axes: Axes, text: str, span: float) -> None:
+    """Say what a panel shows, and show what is after time 0."""
+    axes.text(0.97, 0.95, text, ha="right", va="top", transform=axes.transAxes, fontsize=8)
+    axes.axhline(1.0, color=GREY, lw=0.6, zorder=0)
+    axes.axvline(0.0, color=GREY, lw=0.6, ls=":", zorder=0)
+    shown = (-BEFORE * span, span)
+    later = [line.get_ydata()[line.get_xdata() >= 0.0] for line in axes.lines[:-2]]
+    low, high = min(map(min, later)), max(map(max, later))
+    axes.set(ylabel=r"temperature $T/T_\mathrm{st}$", xlabel=TIME, xlim=shown)
+    axes.set_ylim(low - 0.1 * (high - low), high + 0.3 * (high - low))
 
 
 def _keys():

@@ -7,7 +7,7 @@ import xarray as xr
 
 from roughgas.judging import SIGNIFICANT, Estimate, Finding, NotTestedError, grade
 
-from .curves import crossing, expected, published, simulated
+from .curves import Pair, expected, pair, simulated
 
 NOISY = 0.3
 """Relative error of a crossing from which on nothing is judged."""
@@ -21,27 +21,25 @@ LAST = 2
 
 def hotter_cools_first(hot: xr.Dataset, cold: xr.Dataset) -> Finding:
     """The temperatures cross, and when they are published to."""
-    return _crosses("crossing", hot, cold, overshoot=False)
+    return _crosses(pair(hot, cold))
 
 
 def overshoots(hot: xr.Dataset, cold: xr.Dataset) -> Finding:
     """The distances from the stationary temperature cross, and when they are published to."""
-    curve = simulated(cold)
+    both = pair(hot, cold)
+    curve = both.simulated["cold"]
     later = curve.time > 0.0
     depth = float(np.max((1.0 - curve.T[later]) / curve.stderr[later]))
-    found = _crosses("overshoot", hot, cold, overshoot=True)
+    found = _crosses(both)
     if depth < SURE:
         return found._replace(verdict=grade(False, False))
     return found
 
 
-def _crosses(protocol, hot, cold, overshoot):
-    ours = crossing(simulated(hot), simulated(cold), overshoot)
-    theirs = crossing(published(protocol, "hot"), published(protocol, "cold"), overshoot)
+def _crosses(both: Pair) -> Finding:
+    ours, theirs, theory = map(both.crossing, (both.simulated, both.published, both.expected))
     if ours.stderr > NOISY * theirs.time:  # where they do not cross there is no error
         raise NotTestedError("The curves are too noisy to tell where they cross.")
-    curves = [expected(gas, simulated(gas)) for gas in (hot, cold)]
-    theory = crossing(*curves, overshoot)
     z = (ours.time - theirs.time) / math.hypot(ours.stderr, theirs.stderr)
     there = ours.deepest >= SURE
     close = abs(ours.time - theirs.time) < CLOSE * theirs.time

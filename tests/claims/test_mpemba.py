@@ -13,8 +13,10 @@ from roughgas.claims.evidence import FAILS, HOLDS, NOT_TESTED, QUALIFIED
 
 STUDY = DOCS.parent / "studies" / "mpemba"
 POWER, PACKING = 0.00127, 0.001
+ROUGHER, SMOOTHER = (0.7, 0.0), (0.9, -0.7)
+"""r and beta of the two materials."""
 ERROR = 0.001
-BEGIN, END = 4000.0, 10000.0
+BEGIN, END = 4000.0, 20000.0
 
 
 @pytest.fixture(scope="module")
@@ -22,37 +24,39 @@ def curves():
     return module_of(STUDY, "curves")
 
 
-def dataset(name, begins, stages, at, temperatures, frequency):
-    """A reduced dataset of a gas with these T_tr and T_rot at times, and what its stages say."""
-    settings = {"effects": {"thermostat": {}}, "schedule": {"stages": stages}} | stages[0]
-    error = np.full(len(at), ERROR / 2)
-    trans, rot = (one / 2 for one in temperatures)
-    series = {"time_series": at, "collisions_series": 2 * frequency * at}
-    series |= {"E_trans_series": trans, "E_trans_series_stderr": error}
-    series |= {"E_rot_series": rot, "E_rot_series_stderr": error}
-    found = {name: (("r", "beta", "sample"), values[None, None]) for name, values in series.items()}
-    found["stage_begin"] = (("r", "beta", "stage"), np.array(begins)[None, None])
-    about = {"experiment_json": json.dumps(settings), "packing": PACKING}
-    return reduced(name, r=(0.7,), beta=(0.0,)).assign(found).assign_attrs(about)
-
-
-def driven(power, share):
-    return {"effects": {"thermostat": {"power": power, "spin_share": share}}}
-
-
-def gas(name, T, theta, time, power=POWER, share=0.1, stretch=1.0):
-    """One with these temperatures T and theta = T_rot/T_tr over time, before and after which it is
-    stationary; `stretch` makes it slower."""
+def gas(name, T, theta, time, material, power=POWER, share=0.1, stretch=1.0):
+    """A reduced dataset of a gas with these temperatures T and theta = T_rot/T_tr over time,
+    before and after which it is stationary; `stretch` makes it slower."""
     T_tr = 3 * T / (2 + theta)
     frequency = 0.5 * float(theory_frequency())
-    at = np.arange(20.0, 18001.0, 20.0)
+    at = np.arange(20.0, 28001.0, 20.0)
     since = np.clip((at - BEGIN) * frequency / stretch, 0.0, None)
     trans = np.interp(since, time, T_tr, right=T_tr[-1])
     rot = np.interp(since, time, theta * T_tr, right=(theta * T_tr)[-1])
-    set_to = {"temperature": float(T_tr[0]), "spin_temperature": float(theta[0] * T_tr[0])}
-    stages = [{"duration": BEGIN}, {"duration": END - BEGIN} | driven(power, share) | set_to]
-    stages.append({"duration": 8000.0})
-    return dataset(name, [0.0, BEGIN, END], stages, at, (trans, rot), frequency)
+    stages = [
+        {"duration": BEGIN},
+        {
+            "duration": END - BEGIN,
+            "effects": {"thermostat": {"power": power, "spin_share": share}},
+            "temperature": float(T_tr[0]),
+            "spin_temperature": float(theta[0] * T_tr[0]),
+        },
+        {"duration": 8000.0},
+    ]
+    settings = {"effects": {"thermostat": {}}, "schedule": {"stages": stages}}
+    series = {
+        "time_series": at,
+        "E_trans_series": trans / 2,
+        "E_rot_series": rot / 2,
+        "E_trans_series_stderr": np.full(len(at), ERROR / 2),
+        "E_rot_series_stderr": np.full(len(at), ERROR / 2),
+        "collisions_series": 2 * frequency * at,
+    }
+    found = {name: (("r", "beta", "sample"), values[None, None]) for name, values in series.items()}
+    found["stage_begin"] = (("r", "beta", "stage"), np.array([[[0.0, BEGIN, END]]]))
+    data = reduced(name, r=material[:1], beta=material[1:])
+    about = {"experiment_json": json.dumps(settings), "packing": PACKING}
+    return data.assign(found).assign_attrs(about)
 
 
 def remembering(depth):
@@ -65,12 +69,27 @@ def remembering(depth):
         parts.append(np.array(part))
     end = np.repeat(parts[-1][:, -1:], 400, axis=1)
     parts[-1] = end[:, :1] + depth * (parts[-1] - end[:, :1])
-    series = np.concatenate([*parts, end], axis=1)
-    stages = [*(driven(*drive) for drive in drives), {}]
-    time = 20.0 * np.arange(1, series.shape[1] + 1)
+    trans, rot = np.concatenate([*parts, end], axis=1)
+    stages = [
+        {"effects": {"thermostat": dict(zip(("power", "spin_share"), drive, strict=True))}}
+        for drive in drives
+    ]
+    settings = {"effects": stages[0]["effects"], "schedule": {"stages": [{}, *stages[1:], {}]}}
+    time = 20.0 * np.arange(1, len(trans) + 1)
+    frequency = float(theory.collision_frequency(end[0, 0], PACKING))
+    series = {
+        "time_series": time,
+        "E_trans_series": trans / 2,
+        "E_rot_series": rot / 2,
+        "E_trans_series_stderr": np.full(len(time), ERROR / 2),
+        "E_rot_series_stderr": np.full(len(time), ERROR / 2),
+        "collisions_series": frequency * time,
+    }
+    found = {name: (("r", "beta", "sample"), values[None, None]) for name, values in series.items()}
     begins = np.concatenate([[0.0], np.cumsum(lengths)])
-    frequency = float(theory.collision_frequency(end[0, 0], PACKING)) / 2
-    return dataset("memory", begins, stages, time, series, frequency)
+    found["stage_begin"] = (("r", "beta", "stage"), begins[None, None])
+    about = {"experiment_json": json.dumps(settings), "packing": PACKING}
+    return reduced("memory", r=(0.7,), beta=(0.0,)).assign(found).assign_attrs(about)
 
 
 @pytest.mark.parametrize(("depth", "verdict"), [(1.0, HOLDS), (1.08, QUALIFIED), (0.0, FAILS)])
@@ -84,20 +103,33 @@ def theory_frequency():
     return theory.collision_frequency(3 / (2 + theta), PACKING)
 
 
-def pair(curves, protocol, **changes):
+def pair(curves, protocol, material=ROUGHER, **changes):
     """The two gases of a protocol, as they are published."""
     rows = np.genfromtxt(
-        curves.REFERENCE, delimiter=",", names=True, dtype=None, encoding="utf-8", skip_header=4
+        curves.REFERENCE,
+        delimiter=",",
+        names=True,
+        dtype=None,
+        encoding="utf-8",
+        skip_header=curves.SOURCE,
     )
     found, prefix = [], "" if protocol == "crossing" else f"{protocol}_"
+    suffix = "" if material == ROUGHER else "_smoother"
     for sample in ("hot", "cold"):
         own = rows[(rows["protocol"] == protocol) & (rows["sample"] == sample)]
+        own = own[(own["r"] == material[0]) & (own["beta"] == material[1])]
         T, theta = np.append(own["T"], 1.0), np.append(own["theta"], own["theta"][-1])
-        found.append(gas(sample, T, theta, np.append(own["time"], 7.0), **changes))
-    return [one.assign_attrs(experiment=prefix + one.experiment) for one in found]
+        time = np.append(own["time"], own["time"][-1] + 1.0)
+        found.append(gas(sample, T, theta, time, material, **changes))
+    return [one.assign_attrs(experiment=prefix + one.experiment + suffix) for one in found]
 
 
-CASES = {"hotter_cools_first": "crossing", "overshoot": "overshoot"}
+CASES = {
+    "hotter_cools_first": ("crossing", ROUGHER),
+    "overshoot": ("overshoot", ROUGHER),
+    "hotter_cools_first_where_smoother": ("crossing", SMOOTHER),
+    "overshoot_where_smoother": ("overshoot", SMOOTHER),
+}
 
 
 @pytest.mark.parametrize("name", CASES)
@@ -105,27 +137,27 @@ CASES = {"hotter_cools_first": "crossing", "overshoot": "overshoot"}
 def test_gases_as_published_cross_when_they_are_published_to(
     judged, curves, name, stretch, verdict
 ):
-    found = judged(name, *pair(curves, CASES[name], stretch=stretch))
+    found = judged(name, *pair(curves, *CASES[name], stretch=stretch))
     assert found.verdict == verdict, found.reason
 
 
 @pytest.mark.parametrize("name", CASES)
 def test_what_is_too_noisy_is_not_judged(judged, curves, name):
-    gases = pair(curves, CASES[name])
+    gases = pair(curves, *CASES[name])
     noisy = [one.assign(E_trans_series_stderr=one.E_trans_series_stderr + 1.0) for one in gases]
     assert judged(name, *noisy).verdict == NOT_TESTED
 
 
 @pytest.mark.parametrize("name", CASES)
 def test_curves_that_do_not_cross_fail(judged, curves, name):
-    hot, cold = pair(curves, CASES[name])
+    hot, cold = pair(curves, *CASES[name])
     assert judged(name, hot, hot.assign_attrs(experiment=cold.experiment)).verdict == FAILS
 
 
 def test_the_rate_equations_are_near_the_published_curves(curves):
     for gas_of, sample in zip(pair(curves, "crossing"), ("hot", "cold"), strict=True):
         ours = curves.simulated(gas_of)
-        wanted = curves.published("crossing", sample)
+        wanted = curves.published("crossing", sample, *ROUGHER)
         known = curves.expected(gas_of, ours)
         away = np.interp(wanted.time, known.time, known.T) - wanted.T
         assert np.abs(away).max() < 0.03

@@ -7,6 +7,7 @@ import pickle
 
 import numpy as np
 import pytest
+from brute_force import settings
 from tests.observables.frames import frame_of, system_of
 
 from roughgas import simulate, theory
@@ -199,19 +200,26 @@ def test_g_at_contact_of_each_pair_is_that_of_theory():
     assert not g.isel(species=0, other=1).where(g.distance < 2.55, drop=True).any()
 
 
-def test_how_often_species_meet_is_as_theory_says():
-    """Elastic disks in equilibrium: Enskog's frequencies within four errors of eight replicas, and
+def contacts_of(r, beta, drive, observe, **gas):
+    """A steady mixture that is watched at contacts for 400 T, in the kernel of other tests."""
+    schedule = {"kind": "steady", "equilibrate": 0, "measure": 400, "sample_every": 1}
+    effects = settings("heated", thermostat=drive)["effects"]
+    own = {"schedule": schedule, "effects": effects, "species": MIXTURE}
+    return simulate(r=r, beta=beta, observe=observe, progress=False, **own, **gas)
 
-    2 %, as of g at contact; each contact of a pair is one of either species, and takes nothing. The
-    pressure of each species and of each pair as well, and no heat flows.
+
+def test_how_often_species_meet_is_as_theory_says():
+    """Elastic disks in equilibrium: Enskog's frequencies within four errors, and 2 %, as of g at
+
+    contact; each contact of a pair is one of either species, and takes nothing. The pressure of
+    each species and of each pair as well, and no heat flows.
     """
-    schedule = {"kind": "cooling", "replicas": 8, "thermalise": 30, "relaxation_times": 0}
-    schedule |= {"plateau": 50, "sample_every": 0.5}
+    no_drive = {"power": 1e-12, "interval": 1e6}
     observe = ["contacts", "stress", "heat_flux"]
-    common = {"schedule": schedule, "observe": observe, "progress": False}
-    gas = simulate(r=1, beta=-1, species=MIXTURE, **common, **GAS)
+    gas = contacts_of(1, -1, no_drive, observe, particles=120, box=(1, 1), packing=0.3)
     mixture = theory.mixture(MIXTURE, 1.0, -1.0, 2)
-    expected = theory.mixture_frequency(mixture, 2.0, gas.packing)  # where E_trans is 1
+    T = 2.0 * float(gas.E_trans)
+    expected = theory.mixture_frequency(mixture, T, gas.packing)
     found, error = gas.contact_frequency_species, gas.contact_frequency_species_stderr.values
     assert np.all(abs(found - expected) < 4.0 * error + 0.02 * expected)
     assert np.all(error < 0.03 * expected)
@@ -223,12 +231,12 @@ def test_how_often_species_meet_is_as_theory_says():
     radius = np.array([1.0, 1.6])
     density = numbers / (np.pi * (numbers[:, 0] @ radius**2) / gas.packing)
     chi = theory.mixture_contact_values(mixture, gas.packing)
-    virial = np.pi * density * density.T * np.add.outer(radius, radius) ** 2 * chi
+    virial = np.pi / 2 * T * density * density.T * np.add.outer(radius, radius) ** 2 * chi
     stress = gas.stress_collisional_species
     errors = gas.stress_collisional_species_stderr
     pairs, errors = ((one * np.eye(2)).sum(("component", "along")) / 2 for one in (stress, errors))
     assert np.all(abs(pairs - virial) < 4.0 * errors + 0.02 * virial)
-    error, pressure = gas.pressure_species_stderr, density[:, 0] * 2.0 + virial.sum(axis=1)
+    error, pressure = gas.pressure_species_stderr, density[:, 0] * T + virial.sum(axis=1)
     assert np.all(abs(gas.pressure_species - pressure) < 4.0 * error + 0.02 * pressure)
     assert np.all(errors < 0.05 * virial) and np.all(error < 0.05 * pressure)
     assert np.all(abs(gas.heat_flux_species) < 4.5 * gas.heat_flux_species_stderr)
@@ -236,12 +244,7 @@ def test_how_often_species_meet_is_as_theory_says():
 
 def test_contacts_take_what_the_books_say():
     """Losses per contact times the contacts of a run are what contacts have put in."""
-    heat = {"thermostat": {"power": 1.0, "spin_share": 0.5, "interval": 0.5}}
-    schedule = {"kind": "steady", "equilibrate": 0, "measure": 400, "sample_every": 1}
-    gas = simulate(
-        r=0.8, beta=0.3, observe="contacts", schedule=schedule, progress=False,
-        particles=40, box=(30, 30), effects=GAS["effects"] | heat, species=MIXTURE,
-    )  # fmt: skip
+    gas = contacts_of(0.8, 0.3, {}, "contacts", particles=40, box=(30, 30))
     per_time = gas.contact_frequency / 2.0 * gas.contact_loss
     booked = float(gas.energy_input.sel(source="contacts").sum()) / 400.0
     assert float(per_time) == pytest.approx(-booked, rel=1e-2)  # but for the first T, in which
