@@ -2,6 +2,7 @@
 TESTS = SOURCE / "tests"
 HARD_CASES = TESTS / "hard_cases"
 FAMILIES = sorted(path.stem.removeprefix("test_") for path in HARD_CASES.glob("test_*.py"))
+WORDS = HARD_CASES / "cases.yaml"
 DRAWING = [HARD_CASES / "report.py", HARD_CASES / "pictures.py"]
 SHARED = [  # what a family may import
     path
@@ -40,7 +41,7 @@ def urgency_of_family(wildcards):
 rule family:
     # other families start while this one compiles: the kernels of all are the same few
     input:
-        of_project(*SHARED),
+        of_project(*SHARED, WORDS),
         others_of_family,
         cases=cases_of_family,
     output:

@@ -1,19 +1,17 @@
-"""What a hard case is made of: its marker, and the margins that it measures.
+"""What a hard case is made of: its words, in cases.yaml, and the margins that it measures.
 
-A test of this catalogue is marked by `hard_case` and measures through the fixture `margins`.
+A test of this catalogue measures through the fixture `margins`.
 """
 
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-import pytest
+import yaml
 
 BEYOND = "beyond its limit"
-
-
-def hard_case(title: str, danger: str):
-    """Mark a test as a case of the catalogue: what it is called, and what could go wrong."""
-    return pytest.mark.hard_case(title=title, danger=danger)
+CASES = yaml.safe_load(Path(__file__).with_name("cases.yaml").read_text(encoding="utf-8"))
+"""By module and test: what the case is called, and what could go wrong."""
 
 
 class Margin(NamedTuple):

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from hard_cases.catalogue import Margins
+from hard_cases.catalogue import CASES, Margins
 
 FOUND = pytest.StashKey[dict]()
 
@@ -32,9 +32,9 @@ def family_of(module):
 
 @pytest.fixture
 def margins(request):
-    mark = request.node.get_closest_marker("hard_case")
+    case = CASES[request.path.stem][request.node.originalname]
     full = bool(request.config.getoption("--full", False))
-    measured = Margins(family_of(request.module), mark.kwargs["title"], mark.kwargs["danger"], full)
+    measured = Margins(family_of(request.module), case["title"], case["danger"], full)
     yield measured
     assert measured.rows, "this case measured nothing"
     found = request.config.stash[FOUND]

@@ -7,7 +7,6 @@ import numpy as np
 from brute_force import begin, run, settings, snapshot
 from brute_force.scenes import UNLIMITED
 
-from hard_cases.catalogue import hard_case
 from roughgas.kernel.loop import COLLAPSED
 from roughgas.kernel.memory import new_state
 from roughgas.kernel.record import Sampling, columns, record
@@ -19,10 +18,6 @@ BED = settings("bed")  # 160 disks on 50 a, as in Fig. 1a
 THRESHOLD = 7.0 - 4.0 * math.sqrt(3.0)  # of r, for three particles on a line
 
 
-@hard_case(
-    "a vibrated bed at r = 0.6 without the contact-time model",
-    "chains of particles touch infinitely often in a finite time: a simulation never gets past it",
-)
 def test_a_bed_that_collapses_is_stopped(margins):
     """60 T at beta = 0. A bed may be lucky: about three in four collapse in that time."""
     seeds = margins.size(quick=4, full=24)
@@ -56,10 +51,6 @@ def collapse(seed):
     return {"collapsed": collapsed, "contacts": contacts, "x": x % 50.0, "y": y, "last": last}
 
 
-@hard_case(
-    "a bed that does not collapse, r = 0.8 and 0.7",
-    "what is merely dense is taken for a collapse, and a good run is stopped",
-)
 def test_a_dense_bed_is_not_taken_for_a_collapse(margins):
     """In quarters of T: what was stopped is missing. r = 0.7 is as close as one safely gets."""
     samples = margins.size(quick=200, full=8000)
@@ -72,10 +63,6 @@ def test_a_dense_bed_is_not_taken_for_a_collapse(margins):
     margins.at_most("quarters of T that are missing", missing, 0, **tried)
 
 
-@hard_case(
-    "the contact-time model at r = 0.6, t_c from 1e-8 to 1e-3 T",
-    "the remedy against collapse changes the physics: R depends on t_c",
-)
 def test_R_does_not_depend_on_the_contact_time(margins):
     """Deviations in pooled standard errors: 4.5 of them are passed by chance once in 3000 times
     (once in 500 where there are few seeds)."""
@@ -104,11 +91,6 @@ def bed_with(duration, seed, measure):
     return R.mean(), state.counts[TOUCHED] / state.counts[COLLISIONS]
 
 
-@hard_case(
-    "three particles on a line, around r = 7 - 4 sqrt(3)",
-    "below this r the three touch infinitely often, above it they do not: contacts are lost or "
-    "invented",
-)
 def test_three_on_a_line(margins):
     """Contacts of smooth particles, against exact fractions.
 
@@ -127,12 +109,6 @@ def test_three_on_a_line(margins):
     margins.at_most("difference of velocities afterwards, in a/T", spread, 3e-10, **tried)
 
 
-@hard_case(
-    "three particles, the outer ones spinning against each other",
-    "nearly smooth particles that spin fast draw the one between them in, again and again: they "
-    "collapse at an r at which those that do not spin would part after a few contacts, and a gas "
-    "whose spins outlive its velocities does so where nobody expects it",
-)
 def test_spin_draws_three_particles_into_a_collapse(margins):
     """At r = 0.6 and beta = -0.95, where on a line and without spin 0.072 would be needed.
 
@@ -146,8 +122,9 @@ def test_spin_draws_three_particles_into_a_collapse(margins):
     margins.at_least("share that is noticed as a collapse", stopped, 1.0, **tried)
     contacts = max(contacts for _, contacts in spinning)
     margins.at_most("contacts made until it is noticed", contacts, 5000, **tried)
-    kept = [squeezed(angle, -30.0, contact_time={"duration": 1e-4}) for angle in angles]
-    margins.at_most("contacts made with the model", max(c for _, c in kept), 20, **tried)
+    if margins.full:  # a kernel of its own
+        kept = [squeezed(angle, -30.0, contact_time={"duration": 1e-4}) for angle in angles]
+        margins.at_most("contacts made with the model", max(c for _, c in kept), 20, **tried)
     margins.at_most("share without spin", np.mean([c for c, _ in still]), 0.0, **tried)
     margins.at_most("their contacts", max(contacts for _, contacts in still), 20, **tried)
 

@@ -5,7 +5,6 @@ import pytest
 from brute_force import begin, run, settings, snapshot
 from compiled import from_python
 
-from hard_cases.catalogue import hard_case
 from roughgas import theory
 from roughgas.effects import Effects
 from roughgas.effects.contacts import Spin
@@ -44,11 +43,6 @@ def run_to(state, scene, collisions):
         run(state, scene, 1, collisions=int(collisions - state.counts[COLLISIONS]))
 
 
-@hard_case(
-    "elastic gases",
-    "rounding errors that have a sign add up, contact by contact: an elastic gas heats up or "
-    "cools, drifts away, or spins up where nothing should turn",
-)
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_conserved(margins, dimension):
     """What r = 1 and beta = +-1 conserve. The energy drifts in proportion to the collisions: by
@@ -77,11 +71,6 @@ def test_conserved(margins, dimension):
             margins.at_most(what, (spin != state.spin).sum(), 0, **tried)
 
 
-@hard_case(
-    "the length of the normal",
-    "a unit vector that is too long on average, by less than a rounding, heats an elastic gas at "
-    "each contact",
-)
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_normal(margins, dimension):
     """n.n - 1, the share of its normal motion that a contact adds, on average over contacts of
@@ -103,10 +92,6 @@ def test_normal(margins, dimension):
     )
 
 
-@hard_case(
-    "the angular momentum of a pair",
-    "what the tangential push takes from the orbital part is not what the spins get",
-)
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_angular_momentum(margins, dimension):
     """About a fixed point some ten radii off, over the largest value that its terms could have.
@@ -141,9 +126,6 @@ def angular_momentum(shot, q):
     return (np.cross(x, v) + q * w).sum(axis=0), sizes.sum()
 
 
-@hard_case(
-    "the rule undone", "small coefficients leave so little of a velocity that it cannot be got back"
-)
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_inverse(margins, dimension):
     """The rule with 1/r and 1/beta undoes the one with r and beta, these down to 1e-3 in size.
@@ -174,11 +156,6 @@ def applied(material, q, n, v, w):
     return v - 2.0 * np.array(push), w + 2.0 * np.array(turn)
 
 
-@hard_case(
-    "pairs that hardly part",
-    "where r leaves nothing of the normal velocity but rounding, the pair meets again at once, and "
-    "for ever: time stands still",
-)
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_parting(margins, dimension):
     """One contact a pair, for r from 0 and 1e-16 to 1, and normal velocities from 1e-12 to 1 of

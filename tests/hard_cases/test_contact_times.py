@@ -7,7 +7,6 @@ import mpmath
 import numpy as np
 from compiled import from_python
 
-from hard_cases.catalogue import hard_case
 from roughgas.kernel import prediction
 
 time_to_contact = from_python(prediction.time_to_contact)
@@ -73,11 +72,6 @@ def floats(vector):
     return tuple(map(float, vector))
 
 
-@hard_case(
-    "grazing contacts",
-    "a discriminant within rounding of zero takes the wrong sign: particles pass through each "
-    "other, or collide without having met",
-)
 def test_grazing(margins):
     """Bounds: three roundings of the distance between the paths, each 2^-53 of the distance."""
     rng = np.random.default_rng(1)
@@ -97,10 +91,6 @@ def test_grazing(margins):
     margins.at_most("gap of an invented contact, over the distance", invented, 4e-16, **tried)
 
 
-@hard_case(
-    "contacts of close pairs",
-    "two terms of a root cancel: a contact comes too early or too late, or before the present",
-)
 def test_close_pairs(margins):
     """Where a pair is at the time predicted: gaps from 1e-14 to 1e-6 a, head-on or up to grazing.
 
@@ -119,11 +109,6 @@ def test_close_pairs(margins):
     margins.at_most("gap at the predicted time, in space [a]", error[1], 3.4e-16, **tried)
 
 
-@hard_case(
-    "contacts of far pairs",
-    "the squares of large distances leave few digits for the diameter: a contact comes too early "
-    "or too late",
-)
 def test_far_pairs(margins):
     """Gaps from 1 to 1e4 a, with any impact parameter up to grazing.
 
@@ -148,11 +133,6 @@ def test_far_pairs(margins):
     )
 
 
-@hard_case(
-    "overlapping and touching pairs",
-    "a contact of two that touch or overlap by rounding is lost, or lies in the past, or comes "
-    "when they have long parted; one that is over takes place again",
-)
 def test_overlapping_pairs(margins):
     """Overlaps from 0 to 1e-10 a, and normal velocities down to 1e-17 of the relative one.
 

@@ -6,7 +6,6 @@ import numpy as np
 from brute_force import begin, run, settings, snapshot
 from compiled import from_python
 
-from hard_cases.catalogue import hard_case
 from roughgas.config import experiment, load
 from roughgas.kernel import record
 from roughgas.kernel.state import LAST_FIRST, LAST_SECOND
@@ -22,11 +21,6 @@ LEG = 100  # samples
 rescale, start = from_python(record.rescale), from_python(record.start)
 
 
-@hard_case(
-    "ten thousand collisions per particle, r from 0.4 to 0.99",
-    "the energy falls by hundreds of orders of magnitude: it underflows, or old rounding errors in "
-    "the momentum of the whole gas become all the energy that there is (a flying ice cube)",
-)
 def test_a_gas_cools_for_ever(margins):
     """R in two halves of the run, in standard errors from means of twenty blocks.
 
@@ -85,9 +79,6 @@ def curves(restitutions, runs, samples):
     return columns
 
 
-@hard_case(
-    "a gas in other units of time", "rescaling a gas that has become slow changes its collisions"
-)
 def test_rescaling_changes_no_digit(margins):
     """Velocities doubled or halved so and so often: the same pairs, at the same places."""
     powers = (-40, -1, 30) if not margins.full else range(-50, 51, 5)
@@ -113,10 +104,6 @@ def rescaled(power, collisions):
     return pairs, shot.position.tobytes(), *(part.tobytes() for part in restored)
 
 
-@hard_case(
-    "a point whose energy falls below the smallest number",
-    "its energies become zero, and R, their ratio, nonsense",
-)
 def test_a_point_may_cool_below_the_smallest_number(margins):
     """1000 collisions per particle at r = 0.4 take e^380 off the energy; doubles reach e^-745."""
     point = experiment(load("config.yaml", {}), "cooling", "small")

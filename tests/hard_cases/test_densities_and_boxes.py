@@ -7,7 +7,6 @@ import pytest
 from brute_force import Beside, begin, largest_overlap, run, scene_of, settings
 from schedules import COOLING, STEADY
 
-from hard_cases.catalogue import hard_case
 from roughgas.base import InputError
 from roughgas.scene import build
 from roughgas.scene.initial import check
@@ -71,11 +70,6 @@ def check_beside(margins, scenes, segments, collisions):
     margins.at_most("difference from brute force, over what is tolerated", worst, 1.0, **tried)
 
 
-@hard_case(
-    "from nearly empty to nearly packed",
-    "particles that meet only every thousand diameters, and others that touch all the time, need "
-    "outlooks of very different length; a dense start must find a place for each",
-)
 def test_densities(margins):
     collisions = margins.size(quick=5000, full=500_000)
     disks = [lossless("gas", 160, [math.sqrt(160 * math.pi / share)] * 2) for share in DISKS]
@@ -114,22 +108,12 @@ NARROW = {
 }
 
 
-@hard_case(
-    "boxes hardly wider than two particles",
-    "in a narrow periodic box a particle meets one image of another shortly after the next: that "
-    "which is nearest at one moment need not be the first to be met",
-)
 @pytest.mark.parametrize("kernel", NARROW)
 def test_narrow_boxes(margins, kernel):
     check_run(margins, NARROW[kernel], margins.size(quick=1000, full=20_000))
     check_beside(margins, NARROW[kernel], margins.size(quick=2, full=10), 10)
 
 
-@hard_case(
-    "channels hardly wider than a particle",
-    "between side walls a particle may have no more than a hundredth of its radius to move in, and "
-    "hits the walls hundreds of times from one contact to the next",
-)
 def test_narrow_channels(margins):
     scenes = [lossless("walled", 4, [W, "open"], **BETWEEN) for W in (2.05, 3.0, 3.99, 4.2)]
     check_run(margins, scenes, margins.size(quick=1000, full=20_000))
@@ -137,11 +121,6 @@ def test_narrow_channels(margins):
     check_beside(margins, scenes[1:], margins.size(quick=2, full=10), 10)
 
 
-@hard_case(
-    "boxes a hundred times as long as wide",
-    "whatever is chosen by the shortest side, such as the span after which the clock is set anew, "
-    "or by the longest, such as the margin of single precision, must suit the other, too",
-)
 def test_aspect_ratios(margins):
     collisions = margins.size(quick=5000, full=200_000)
     scenes = [
@@ -162,11 +141,6 @@ ALONE = {
 }
 
 
-@hard_case(
-    "one, two, three particles",
-    "a single particle in a periodic box has no energy, and its R would be 0/0; two may wait for "
-    "each other for ever",
-)
 def test_few_particles(margins):
     points = nothing = refused = 0
     for alone in ALONE.values():

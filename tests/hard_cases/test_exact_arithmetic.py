@@ -5,8 +5,6 @@ import pytest
 from brute_force import begin, run, scene_of, settings
 from exact import segment
 
-from hard_cases.catalogue import hard_case
-
 TWO = [{"fraction": 0.5}, {"fraction": 0.5, "radius": 1.5, "mass": 6.0, "inertia": 0.25}]
 WALLED = {
     "floor": {"restitution": 0.9, "roughness": 0.5},
@@ -45,11 +43,6 @@ def compare(margins, name, state, scene, world, collisions):
     return segments, tried
 
 
-@hard_case(
-    "the first collisions, until chaos",
-    "the kernel makes collisions that the equations do not, or loses digits to more than rounding "
-    "and its growth by chaos",
-)
 @pytest.mark.parametrize("name", SCENES)
 def test_separates_from_exact_arithmetic_as_chaos_demands(name, margins):
     """Thousands of collisions, the exact simulation beginning anew where pairs begin to differ.
@@ -74,11 +67,6 @@ def test_separates_from_exact_arithmetic_as_chaos_demands(name, margins):
     )
 
 
-@hard_case(
-    "a gas that is millions of collisions old",
-    "time and the phases of floor and shear are large numbers, whose last digits are coarse: the "
-    "longer a run, the worse it is resolved",
-)
 @pytest.mark.parametrize("name", STEADY)
 def test_an_old_gas_is_as_close_to_exact_arithmetic(name, margins):
     """The exact simulation begins where the kernel is after so many collisions."""

@@ -9,7 +9,6 @@ from brute_force import run, scene_of, settings
 from compiled import from_python
 from exact import exactly, segment
 
-from hard_cases.catalogue import hard_case
 from roughgas.effects import drives
 from roughgas.effects.drives import Shear
 from roughgas.kernel import memory
@@ -101,11 +100,6 @@ def speed(rng):
     return float(rng.choice([-1, 1]) * on_grid(2.0 ** rng.uniform(-2, 10)))
 
 
-@hard_case(
-    "one sheared gas, seen in many ways",
-    "a particle crosses the boundary with the wrong velocity, or at the wrong place: the gas knows "
-    "of its frame, of its images, or of the time",
-)
 @pytest.mark.parametrize("name", VIEWS)
 def test_the_gas_is_the_same_however_it_is_seen(name, scheme, margins):
     """The kernel runs what is seen, the exact simulation the gas at rest in its first images."""
@@ -126,11 +120,6 @@ def test_the_gas_is_the_same_however_it_is_seen(name, scheme, margins):
     measure(margins, f"{name}, {scheme}", segments)
 
 
-@hard_case(
-    "the place of the images after a long time",
-    "the offset of the image above, U t, is a large number of which only the part beyond whole "
-    "boxes matters",
-)
 def test_the_slide_is_where_it_should_be(margins):
     """U t mod L from U and the period L/U, which are rounded once each: 2 U t 2^-53 and L 2^-52."""
     rng = np.random.default_rng(2)
@@ -163,11 +152,6 @@ def touching_on_the_boundary(offset, angle, box, rng):
             return position, velocity
 
 
-@hard_case(
-    "contacts on the boundary itself",
-    "a particle that crosses the boundary at the very instant of a contact has one image in the "
-    "collision and another one after it",
-)
 @pytest.mark.parametrize("box", [[11.0, 9.0], [4.01, 4.01]])
 def test_contacts_coincide_with_crossings(box, margins):
     """On a grid of angles and of distances from the boundary, from none and one rounding up; also
@@ -183,11 +167,6 @@ def test_contacts_coincide_with_crossings(box, margins):
     measure(margins, f"two particles in a box of {box[0]:g} by {box[1]:g}", segments)
 
 
-@hard_case(
-    "images that slide past within one flight",
-    "of all images of a particle only the nearest one is looked at, and another one comes by "
-    "before the next look",
-)
 def test_fast_shear_makes_the_same_collisions(scheme, margins):
     """Box of 25, U up to 10^4; the particles begin on either side of the boundary, with the mean
     flow or nearly at rest."""

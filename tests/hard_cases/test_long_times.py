@@ -3,7 +3,6 @@
 import numpy as np
 from brute_force import Beside, begin, run, scene_of, settings
 
-from hard_cases.catalogue import hard_case
 from roughgas.kernel.state import BASE, COLLISIONS, NOW
 from roughgas.simulation.restart import arrays_of
 
@@ -22,11 +21,6 @@ PER_SAMPLE = 10_000  # collisions
 SEGMENTS, SEGMENT = 20, 40  # comparisons with the brute force, and collisions in each
 
 
-@hard_case(
-    "a late start",
-    "a double holds a time of 1e9 T to no better than 1e-7 T: events that are closer together "
-    "would change places, and the phases of floor and images would be coarse",
-)
 def test_an_offset_of_the_clock_changes_no_bit(margins):
     collisions = margins.size(quick=2000, full=500_000)
     changed, coarsest = 0, 0.0
@@ -61,11 +55,6 @@ def _bytes(array):
     return np.ascontiguousarray(array).reshape(-1).view(np.uint8)
 
 
-@hard_case(
-    "a billion collisions",
-    "times counted from the start lose a digit with each decade, until contacts happen too late "
-    "and out of order; rounding errors of a billion collisions add up in the energy",
-)
 def test_a_billion_collisions_wear_nothing_out(margins):
     collisions = margins.size(quick=2_000_000, full=1_000_000_000)
     # the quickest of all: a few smooth elastic disks

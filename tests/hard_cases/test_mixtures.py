@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from brute_force import begin, largest_overlap, run, scene_of, settings
 
-from hard_cases.catalogue import hard_case
 from roughgas.effects.species import UNIFORM
 from roughgas.kernel import memory
 from roughgas.kernel.state import COLLISIONS
@@ -49,20 +48,12 @@ def check(margins, particles, box, species, collisions, r=1.0, beta=-1.0):
     return state
 
 
-@hard_case(
-    "sizes that differ a hundredfold",
-    "a small particle is a rounding of the large one, whose contacts are then missed or made twice",
-)
 def test_size_ratio_100(margins):
     species = [{"number": 2, "radius": 100.0}, {"number": 300}]
     state = check(margins, 302, [500, 450], species, margins.size(3000, 100_000), 0.99, 0.3)
     assert state.changes[state.bodies.species == 0].min() > 10
 
 
-@hard_case(
-    "masses that differ by a factor of 1e9",
-    "momentum and energy of the light ones are lost in roundings of the heavy ones'",
-)
 def test_mass_ratio_1e9(margins):
     """Elastic ones; and others, until two heavy ones close in on a light one: a collapse."""
     species = [{"fraction": 0.5, "mass": 1.0}, {"fraction": 0.5, "mass": 1e9}]
@@ -70,10 +61,6 @@ def test_mass_ratio_1e9(margins):
     check(margins, 100, [60, 60], species, 5000, 0.95, 0.3)
 
 
-@hard_case(
-    "a lone large particle among many small ones, in cells as wide as it",
-    "a cell holds a large share of all particles, and some of them are never met",
-)
 @pytest.mark.slow  # a kernel that no other test compiles
 def test_a_lone_large_one(margins, monkeypatch):
     """Full: among a million, of which each then looks at a thousand others."""
@@ -88,10 +75,6 @@ def test_a_lone_large_one(margins, monkeypatch):
     assert found > 20
 
 
-@hard_case(
-    "a packed box of many sizes",
-    "particles that touch on all sides begin with overlaps, or meet at once without end",
-)
 def test_a_packed_polydisperse_box(margins):
     """Radii that scatter by a fifth fill 0.74 of the box."""
     species = [{"fraction": 1, "radius": SPREAD}]

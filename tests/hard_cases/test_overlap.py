@@ -3,15 +3,10 @@
 import numpy as np
 from brute_force import run, scene_of, settings
 
-from hard_cases.catalogue import hard_case
 from roughgas.kernel.memory import new_state
 from roughgas.kernel.state import COLLISIONS
 
 
-@hard_case(
-    "pairs that overlap by rounding",
-    "a pair that overlaps and approaches is overlooked, one that recedes collides over and over",
-)
 def test_overlapping_pairs(margins):
     """Overlaps from 1e-16 to 1e-9 a: approaching pairs collide at once, and only once."""
     pairs = margins.size(quick=200, full=5000)

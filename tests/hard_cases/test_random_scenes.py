@@ -7,11 +7,9 @@ from collections import defaultdict
 from concurrent.futures import ProcessPoolExecutor
 
 import numba
-import pytest
 from brute_force import KERNELS, begin
 from hypothesis import Phase, given, settings
 
-from hard_cases.catalogue import hard_case
 from hard_cases.compositions import (
     PARAMETERS,
     covering,
@@ -55,11 +53,6 @@ JUNK = (math.nan, math.inf, -7, "x", None, True, [], {})
 """What no parameter may be, but None where there is a default."""
 
 
-@hard_case(
-    "any set of effects, legal or not",
-    "a composition that makes no sense is simulated, or one that does is refused, or ends in an "
-    "error that no user understands",
-)
 def test_every_set_of_effects_is_accepted_or_refused_in_one_line(margins):
     """Sets of effects, in two and three dimensions, closed and open above, and with parameters that
 
@@ -123,12 +116,6 @@ def verdict(judge, *arguments):
     return True
 
 
-@hard_case(
-    "any legal composition of effects, at random",
-    "effects that are right on their own disturb each other: energy or momentum comes from "
-    "nowhere, particles leave the box or each other's way, time runs backwards, numbers cease to "
-    "be numbers",
-)
 def test_invariants_of_random_scenes(margins):
     """Change of the energy = what its sources and the contacts have booked, to rounding.
 
@@ -138,11 +125,6 @@ def test_invariants_of_random_scenes(margins):
     keep_invariants(margins, scenes(FEW + covering(3) if margins.full else FEW), 90, 1500)
 
 
-@hard_case(
-    "any legal composition of effects, of particles that differ",
-    "what one particle gives the other does not take, or they meet, walls and floor included, as "
-    "if they had another radius",
-)
 def test_invariants_of_random_mixtures(margins):
     """As above, of up to three species of any material, with masses that differ by 1e6."""
     keep_invariants(margins, mixtures(covering(2) if margins.full else UNLIKE), 40, 600)
@@ -203,10 +185,3 @@ def in_processes(groups):
     spawn = multiprocessing.get_context("spawn")
     with ProcessPoolExecutor(1, mp_context=spawn, max_tasks_per_child=1) as one:
         yield from one.map(worst_of, groups)
-
-
-def test_an_error_in_a_process_tells_its_scene():
-    crowded = {"particles": 40, "box": [7.0, 7.0], "effects": {}}
-    with pytest.raises(InputError, match="box") as raised:
-        next(in_processes([[(crowded, 0.9, -1.0, 3)]]))
-    assert raised.value.__notes__ == [f"scene {(crowded, 0.9, -1.0, 3)}"]

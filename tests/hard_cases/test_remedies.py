@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 import roughgas
-from hard_cases.catalogue import BEYOND, Remedy
+from hard_cases.catalogue import BEYOND, CASES, Remedy
 from hard_cases.conftest import FOUND, family_of
 
 HERE, PACKAGE = Path(__file__).parent, Path(roughgas.__file__).parent
@@ -37,7 +37,6 @@ def test_a_case_fails_without_its_safeguard(one, tmp_path, request):
     told = {"cwd": HERE.parents[1], "env": around, "capture_output": True, "text": True}
     done = subprocess.run(command, **told, timeout=900)
     assert done.returncode == pytest.ExitCode.TESTS_FAILED and BEYOND in done.stdout, done.stdout
-    module = import_module(f"hard_cases.{file}")
-    (mark,) = (mark for mark in getattr(module, name).pytestmark if mark.name == "hard_case")
-    found = Remedy(family_of(module), mark.kwargs["title"], one["remedy"])
+    family = family_of(import_module(f"hard_cases.{file}"))
+    found = Remedy(family, CASES[file][name]["title"], one["remedy"])
     request.config.stash[FOUND]["remedies"].append(found._asdict())

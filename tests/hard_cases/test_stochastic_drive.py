@@ -9,7 +9,6 @@ same phase of it: a drive that kicks all particles at once is then seen at its h
 import numpy as np
 from brute_force import begin, run, settings
 
-from hard_cases.catalogue import hard_case
 from roughgas.simulation.energies import energies, ratio
 from roughgas.statistics.errors import blocking_stderr
 
@@ -26,11 +25,6 @@ def measured(interval, share, time):
     return found.mean(), blocking_stderr(found)
 
 
-@hard_case(
-    "kicks of any strength",
-    "a gas looked at right after its kicks seems hotter than it is: R depends on how coarse the "
-    "kicks are, and on when one looks",
-)
 def test_R_converges_as_kicks_shrink(margins):
     """R of coarser kicks minus that of the finest, in standard errors of the difference.
 

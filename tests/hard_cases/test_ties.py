@@ -3,7 +3,6 @@
 import numpy as np
 from brute_force import begin, run, scene_of, settings, snapshot
 
-from hard_cases.catalogue import hard_case
 from roughgas.kernel.memory import new_state
 from roughgas.kernel.state import COLLISIONS
 
@@ -56,11 +55,6 @@ def lattice_gas(rng):
 SCENES = (hit_triangle, imploding_triangle, square_lattice, touching_cluster, cradle, lattice_gas)
 
 
-@hard_case(
-    "contacts at the same instant, under any numbering of the particles",
-    "which of two simultaneous contacts comes first changes what follows: the outcome depends on "
-    "how particles happen to be numbered",
-)
 def test_ties_do_not_depend_on_the_numbering(margins):
     """Bitwise the same but for the numbers, at r = 1 and r = 0.9, until 20 T later."""
     numberings = margins.size(quick=4, full=60)

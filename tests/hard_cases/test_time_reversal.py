@@ -12,7 +12,6 @@ from typing import NamedTuple
 import numpy as np
 from brute_force import begin, run, settings, snapshot
 
-from hard_cases.catalogue import hard_case
 from roughgas.kernel.memory import new_state
 from roughgas.kernel.state import COLLISIONS
 
@@ -116,11 +115,6 @@ def errors_of_return(experiment, beta, seeds):
     return np.median(errors, axis=1), errors.min(axis=1), predicted, exponent
 
 
-@hard_case(
-    "time reversal",
-    "an error far larger than rounding, or a step that cannot be undone, hides in the chaos of a "
-    "gas: run backwards, it does not come back where it should",
-)
 def test_return(margins):
     """Bounds: ln(error) scatters by 1.5 from run to run, and so does what it has grown by: medians
     of 20 runs by 0.4, and the growth over some 20 collisions per particle by 2 % of itself. A

@@ -8,7 +8,6 @@ import pytest
 from brute_force import begin, run, settings, snapshot
 from compiled import from_python
 
-from hard_cases.catalogue import hard_case
 from hard_cases.falls import Exact, dyadic, general, nearly_at_rest
 from roughgas.effects.motions import time_to_pieces
 from roughgas.kernel.memory import new_state
@@ -20,11 +19,6 @@ RULE = 1e-3  # a/T: a particle leaves the floor at no less than this speed, rela
 PHASE = 0.3  # of the accelerating mode: no dyadic number
 
 
-@hard_case(
-    "hits at the stroke's return",
-    "the floor drops from under a particle that is about to be met: a hit that is taken or missed "
-    "by a rounding could leave the particle below the floor, or let it bounce in mid-air",
-)
 def test_hits_around_the_return_of_the_floor(margins):
     falls = margins.size(quick=600, full=30_000)
     rng = np.random.default_rng(0)
@@ -42,11 +36,6 @@ def test_hits_around_the_return_of_the_floor(margins):
     margins.at_most("distance from the floor when it is hit, likewise", beside, 1e-15, **tried)
 
 
-@hard_case(
-    "take-off",
-    "a particle that sits on the floor, a rounding above or below it, and leaves it slowly or not "
-    "at all: it could be hit again and again without moving, or be pulled through the floor",
-)
 def test_take_off_at_hardly_any_speed(margins):
     starts = margins.size(quick=1000, full=50_000)
     rng = np.random.default_rng(1)
@@ -93,11 +82,6 @@ class Bouncer:
         return self.state.clock[BASE], time, y - 1.0, v
 
 
-@hard_case(
-    "ten thousand bounces on a floor at rest",
-    "an elastic particle that bounces keeps its height only if the rounding errors of its bounces "
-    "do not add up in one direction",
-)
 def test_bounces_on_a_floor_at_rest_follow_the_closed_form(margins):
     bounces = margins.size(quick=10_000, full=300_000)
     height = 7.3
@@ -121,11 +105,6 @@ def test_bounces_on_a_floor_at_rest_follow_the_closed_form(margins):
     margins.at_most("error of the time, in those of its sum", sums, 10.0, **tried)
 
 
-@hard_case(
-    "ten thousand bounces, each faster than the last",
-    "on a floor that meets it at the same phase each time, a particle gains speed with each "
-    "bounce: the errors of ever longer flights shift the phase until the floor is missed",
-)
 @pytest.mark.parametrize(("amplitude", "flight", "gained"), [(0.25, 2, 1), (5.0, 20, 20)])
 def test_the_accelerating_mode_follows_the_closed_form(margins, amplitude, flight, gained):
     """With g = period = 1 the k-th bounce comes after a flight of so many + k times so many gained.
@@ -158,11 +137,6 @@ def _rising(amplitude, flight):
         return amplitude * PHASE + flight * gone / 2 - gone**2 / 2, mpmath.mpf(flight) / 2 - gone
 
 
-@hard_case(
-    "a particle that comes to rest",
-    "on a floor that takes energy a particle bounces infinitely often in a finite time: the "
-    "simulation would not get past that moment",
-)
 @pytest.mark.parametrize("amplitude", [0.0, 5.0])
 @pytest.mark.parametrize("restitution", [0.5, 0.9])
 def test_bounces_that_accumulate_come_to_an_end(margins, restitution, amplitude):

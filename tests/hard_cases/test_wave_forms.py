@@ -8,7 +8,6 @@ import pytest
 from brute_force import begin, run, settings
 from compiled import from_python
 
-from hard_cases.catalogue import hard_case
 from hard_cases.waves import DIGITS, exact, level, rise_of
 from roughgas.effects import motions
 from roughgas.effects.motions import Sine, triangle
@@ -45,11 +44,6 @@ def wave(rng):
     return Sine(*stroke) if rise == 0.0 else triangle(*stroke, rise)
 
 
-@hard_case(
-    "falls onto floors of any wave form",
-    "where a floor is met no formula may say: a step too long would lead past the first meeting, "
-    "and the particle through the floor",
-)
 def test_falls_from_anywhere(margins):
     rng = np.random.default_rng(0)
 
@@ -92,21 +86,12 @@ def touching(rng):
                 return floor, gravity, height + shift, speed, phase
 
 
-@hard_case(
-    "a sine that grazes",
-    "a floor that falls away as a particle reaches it touches it or not by a rounding: the search "
-    "for the meeting could creep for ever, or miss what comes after",
-)
 def test_sines_that_graze(margins):
     rng = np.random.default_rng(1)
     falls = (touching(rng) for _ in range(margins.size(quick=300, full=10_000)))
     measure(margins, falls, "falls")
 
 
-@hard_case(
-    "a triangle's turning points",
-    "a particle that meets the floor just as it turns could be found on neither piece",
-)
 def test_meetings_at_turning_points(margins):
     rng = np.random.default_rng(2)
 
@@ -125,11 +110,6 @@ def test_meetings_at_turning_points(margins):
     measure(margins, (fall() for _ in range(margins.size(quick=600, full=30_000))), "falls")
 
 
-@hard_case(
-    "take-off from a moving floor",
-    "a particle that has just been hit, a rounding above the surface or below it, could be met "
-    "again at once, or be pulled through the floor",
-)
 def test_take_off_from_a_moving_floor(margins):
     rng = np.random.default_rng(3)
     starts = margins.size(quick=500, full=20_000)
@@ -152,10 +132,6 @@ def test_take_off_from_a_moving_floor(margins):
     margins.at_most("share by which a hop from a sine is too short", early, 1e-6, **tried)
 
 
-@hard_case(
-    "a crowd on a floor of any wave form",
-    "a particle that others push against the floor, whenever that is, must not get below it",
-)
 @pytest.mark.parametrize("form", ["sawtooth", "reversed_sawtooth", "triangle", "sine"])
 def test_no_particle_falls_through_the_floor(margins, form):
     instants = margins.size(quick=500, full=20_000)
