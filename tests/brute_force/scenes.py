@@ -21,8 +21,7 @@ NEVER = 1e-300  # a contact time
 UNLIMITED = 2**60
 
 _SUMS = {"contact_averages": {}}
-_PAIRS = {"contact_pairs": {}}
-_ALL_SUMS = _SUMS | _PAIRS | {"contact_stress": {}, "contact_heat": {}}
+_ALL_SUMS = _SUMS | {"contact_stress": {}, "contact_heat": {}, "contact_pairs": {}}
 _LOG = {"contact_log": {"most": 3000}}
 _DISKS = {"spin": {"inertia": 0.5}}
 _BED = _DISKS | {
@@ -57,7 +56,7 @@ KERNELS = {
     "friction": _kernel([100, 100], _DISKS, _FRICTION),
     "rubbed bed": _kernel([50, "open"], _BED, {"walls": _ROUGH}, _FRICTION),
     "shaken": _kernel([50, 50], _DISKS, _SUMS, {"shaken_walls": _SHAKEN}),
-    "heated": _kernel([100, 100], _DISKS, _HEAT, _SUMS, _PAIRS, _LOG),
+    "heated": _kernel([100, 100], _DISKS, _HEAT, _ALL_SUMS, _LOG),
     "heated, smooth": _kernel(
         [100, 100], {"thermostat": _HEAT["thermostat"] | {"spin_share": 0.0}}
     ),
