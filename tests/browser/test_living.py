@@ -170,6 +170,18 @@ def test_its_theory_is_that_of_the_library(page):
     np.testing.assert_allclose(np.transpose(found), expected, atol=1e-12)
 
 
+def test_a_gas_that_would_collapse_goes_on(page):
+    collisions, time, R = page.script(
+        """const gas = started(SCENES.cooling, { r: 0.76, beta: -0.95 }, 1);
+        for (let k = 1; k <= 300; k++) {
+          gas.run(Infinity, 80 * k);
+          if (gas.energies().translation < 0.25) gas.doubleSpeeds();
+        }
+        return [gas.collisions, gas.time, gas.energies().R];"""
+    )
+    assert collisions == 24000 and math.isfinite(time) and 0 < R < 1
+
+
 NOISE = """
     const [seeds, samples, memory, transient] = arguments, made = [];
     for (let seed = 1; seed <= seeds; seed++) {
@@ -203,6 +215,21 @@ def test_nothing_is_said_of_a_series_that_is_short_or_drifts(page):
     assert drifting.count(None) >= 48
 
 
+def test_the_transient_of_a_sheared_gas_is_not_in_its_mean(page):
+    """R is above 0.4 for 170 T, and 0.3567(8) later, as the kernel has it over 60000 T."""
+    found = page.script(
+        """const run = new Run(SCENES.sheared, { r: 0.9, beta: 0.5 }, 3), found = [];
+        for (let k = 0; k < 250; k++) { run.advance(10); found.push(run.record.average()); }
+        return found;"""
+    )
+    assert found[:10] == [None] * 10
+    told = [one for one in found if one and one["half"]]
+    assert len(told) > 50
+    assert min(one["from"] for one in told) > 50
+    assert all(abs(one["mean"] - 0.3567) < 2 * one["half"] for one in told)
+    assert told[-1]["end"] - told[-1]["from"] > 1000
+
+
 def now(page):
     return page.script(
         "const { gas } = panels[0].run; return [gas.time, gas.collisions, gas.r, gas.beta, name]"
@@ -233,6 +260,15 @@ def test_it_moves_at_once_and_pauses(page):
     assert now(page) == stopped
     page.find("#pause")[0].click()
     page.wait(lambda: now(page)[0] > stopped[0])
+
+
+@pytest.mark.parametrize("clicked", [".r", ".beta", "#restart", "input[value=vibrated]"])
+def test_the_space_bar_pauses_whatever_was_clicked_before(page, clicked):
+    page.find(clicked)[0].click()
+    press(page, " ")
+    assert page.text("#pause") == "Play"
+    press(page, " ")
+    assert page.text("#pause") == "Pause"
 
 
 def test_sliders_act_at_once_and_the_address_keeps_them(page):
@@ -282,6 +318,40 @@ def test_two_gases_beside_each_other(file, page):
     press(page, "c")
     assert len(page.find("canvas.gas")) == 1
     assert page.script("return location.hash") == "#sheared/r0.9/beta-0.5"
+
+
+@pytest.mark.parametrize("second", ["", "/vs/r0.9/beta0"])
+@pytest.mark.parametrize("size", [(1920, 1080), (1280, 720), (1024, 768)])
+def test_for_projectors_type_is_large_and_all_is_in_sight(file, page, size, second):
+    with emulated(page, *size, mobile=False):
+        page.open(file, f"#sheared/r0.9/beta0.5{second}")
+        press(page, "p")
+        (mode,) = page.find("#projector")
+        assert mode.get_attribute("aria-pressed") == "true"
+        for selector in ("canvas.gas", "canvas.graph", ".present", ".r", ".beta"):
+            for box in boxes(page, selector):
+                assert 0 <= box["left"] < box["right"] <= size[0]
+                assert 0 <= box["top"] < box["bottom"] <= size[1]
+        lies_in_its_panel(page, ".mean")
+        for one in page.find(".present"):
+            assert float(one.value_of_css_property("font-size")[:-2]) > size[1] / 36
+        assert not any(one.is_displayed() for one in page.find("table, .question, footer"))
+        press(page, "p")
+        assert page.find("footer")[0].is_displayed()
+
+
+SAID = [("cooling", {"r": 0.8, "beta": -0.8}, 0.975), ("cooling", {"r": 0.99, "beta": -0.8}, 0.05)]
+SAID += [("vibrated", {"r": 0.9, "beta": 1.0}, 0.50), ("vibrated", {"r": 0.95, "beta": 0.0}, 0.215)]
+SAID += [("vibrated", {"r": 0.7, "beta": 0.0}, 0.277), ("vibrated", {"r": 0.9, "beta": 0.0}, 0.225)]
+SAID += [("vibrated", {"r": 0.9, "beta": 0.0, "q": 1}, 0.30)]
+
+
+@pytest.mark.parametrize(("name", "material", "R"), SAID)
+def test_answers_to_questions_say_what_the_kernel_finds(page, name, material, R):
+    kernel, _ = kernel_R(name, **material)
+    assert kernel["R"] == pytest.approx(R, abs=0.005 + 4 * kernel["R_stderr"])
+    assert kernel["R_stderr"] < 0.003
+    assert f"{R:.3f}".rstrip("0") in page.script("return QUESTIONS.map(one => one.why).join()")
 
 
 @contextmanager
