@@ -38,7 +38,9 @@ TINY = {
 POINTS = 6 * SWEEP["seeds"]
 JOBS = 6  # one makes both seeds of a point
 FINISHED = ("everything",)
-ELASTIC = ["disks", "spheres", "disks_fluxes", "spheres_fluxes", "disks_between_walls"]
+OF_FLUXES = ("", "_fluxes", "_between_walls")
+ELASTIC = [f"{kind}{of}" for kind in ("disks", "spheres") for of in OF_FLUXES]
+ELASTIC += ["spheres_far_walls"]
 MPEMBA = ["hot", "cold", "overshoot_hot", "overshoot_cold"]
 BEYOND = {  # the experiments beyond the paper, and the third axis of their sweeps
     "spheres.cooling_spheres": {},
@@ -96,7 +98,7 @@ TINY["patterns.layers"] |= {
     "observables": {"pattern": {"cells": 4}},
 }
 for name in BEYOND:
-    if name.endswith(("strained", "fluxes", "between_walls")):
+    if name.endswith(("strained", "fluxes", "_walls")):
         TINY[name]["schedule"] = {"equilibrate": 100, "measure": 1000, "sample_every": 10}
 TINY["megias_santos.dilute"]["schedule"] = {"equilibrate": 80, "measure": 800, "target_stderr": 0.1}
 

@@ -150,13 +150,14 @@ def in_shear(gas: xr.Dataset) -> tuple[Estimate, Estimate, Estimate]:
 
 
 def between_walls(gas: xr.Dataset) -> Estimate:
-    """Return the conductivity of one gas between thermal walls over theory, q/[int kappa dT/dy].
+    """Return the conductivity of one gas between thermal walls over theory, q/[int kappa dT/dz].
 
     Errors of the layers are added as if they were one, which makes the error too large.
     """
     length = float(gas.height[0] + gas.height[-1])  # of their middles
+    across = "xyz"[gas.attrs["dimension"] - 1]
     flux = Estimate(
-        *(float(gas[f"heat_flux{end}"].sel(component="y")) for end in ("", "_stderr", "_dof"))
+        *(float(gas[f"heat_flux{end}"].sel(component=across)) for end in ("", "_stderr", "_dof"))
     ).scaled(-length / (length - 2.0))
     middle = abs(gas.height.values / length - 0.5) < 0.5 - MARGIN
     layers = gas.isel(height=middle)

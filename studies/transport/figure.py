@@ -29,7 +29,8 @@ SHOWN = 5.0
 """Collisions per particle up to which memory is drawn."""
 MESSAGES = "Rough particles forget faster", "Inelastic particles remember longer"
 CARRIED = "Roughness makes a gas more viscous", "Elastic gases agree with theory"
-WAYS = {"viscosity": "o", "conductivity": "s", "conductivity, between walls": "D"}
+WALLS = "conductivity, between walls"
+WAYS = {"viscosity": "o", "conductivity": "s", WALLS: "D", f"{WALLS} twice as far": "^"}
 """Markers of coefficients."""
 
 
@@ -59,8 +60,9 @@ def draw_fluxes(strained: xr.Dataset, *elastic: xr.Dataset) -> Figure:
     _draw_viscosity(left, strained)
     _draw_elastic(right, elastic)
     _tell((left, right), CARRIED)
-    gases = {"driven": strained, "elastic": elastic[0], "between walls": elastic[-1]}
-    numbers = ", ".join(f"{name}: N = {particles_of(gas)}" for name, gas in gases.items())
+    walled = sorted({gas.attrs["particles"] for gas in elastic if "heat_flux" in gas})
+    numbers = f"driven: N = {particles_of(strained)}, elastic: N = {particles_of(elastic[0])}"
+    numbers += f", between walls: N = {walled[0]} to {walled[-1]}"
     figure.suptitle(f"Packing 0.01, between walls 0.05; {numbers}", fontsize=8)
     return figure
 
@@ -148,13 +150,14 @@ def _draw_elastic(axes: Axes, gases: Sequence[xr.Dataset]) -> None:
         kind += "disks" if gas.attrs["dimension"] == 2 else "spheres"
         kinds += [] if kind in kinds else [kind]
         if "heat_flux" in gas:
-            found = {"conductivity, between walls": between_walls(gas)}
+            far = gas.attrs["experiment"].endswith("far_walls")
+            found = {f"{WALLS} twice as far" if far else WALLS: between_walls(gas)}
         else:
             found = {name: in_equilibrium(gas, name)[-1] for name in REMEMBERED}
         for number, (way, marker) in enumerate(WAYS.items()):
             if way in found:
                 value, stderr, _ = found[way]
-                at, colour = kinds.index(kind) + 0.2 * (number - 1), LOOKS[number].colour
+                at, colour = kinds.index(kind) + 0.2 * (number - 1.5), LOOKS[number].colour
                 axes.errorbar(at, value, stderr, fmt=marker, color=colour, ms=4, lw=0.9)
     keys = [
         Line2D([], [], ls="none", marker=marker, color=look.colour, label=way)

@@ -69,6 +69,16 @@ def heat_flows_between_walls(*gases: xr.Dataset) -> Finding:
     return together((gas.attrs["experiment"], _one(between_walls(point(gas)))) for gas in gases)
 
 
+def walls_do_not_matter(*gases: xr.Dataset) -> Finding:
+    """Conductivity is the same between walls twice as far apart, of gases in pairs."""
+    found = []
+    for gas, longer in zip(gases[::2], gases[1::2], strict=True):
+        near, far = (between_walls(point(one)) for one in (gas, longer))
+        change = far.minus(near).scaled(1.0 / near.value)
+        found.append((gas.attrs["experiment"], _one(change._replace(value=1.0 + change.value))))
+    return together(found)
+
+
 def _one(over_theory: Estimate) -> Finding:
     off = over_theory._replace(value=over_theory.value - 1.0)
     verdict = grade(

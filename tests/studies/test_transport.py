@@ -1,11 +1,13 @@
 """Transport of made-up gases: coefficients, judges and rows of evidence."""
 
+import itertools
+
 import numpy as np
 import pytest
 import xarray as xr
 from tests.pages import DOCS
 
-from roughgas import theory
+from roughgas import simulate, theory
 from roughgas.base.files import module_of
 from roughgas.claims.evidence import FAILS, HOLDS, QUALIFIED
 
@@ -154,24 +156,27 @@ def fluxes(beta, dimension, over, error=1e-3):
     return xr.Dataset(values, {"r": [1.0], "beta": [beta], "delay": delay}, about)
 
 
-def walled(beta, over, error=1e-3):
-    """Elastic disks through which heat flows down from a hot lid, in Fourier's profile."""
-    q = None if beta == -1.0 else 0.5
+def walled(beta, over, dimension=2, error=1e-3):
+    """An elastic gas through which heat flows down from a hot lid, in Fourier's profile."""
+    q = None if beta == -1.0 else theory.moment_of_inertia(dimension)
     height = SHEARED * (np.arange(40) + 0.5) / 40
     profile, packing = (1.0 + height / SHEARED) ** (2 / 3), np.zeros(40)
-    flux = over * theory.thermal_conductivity(1.0, 2, 0.0, q) * 2 / 3 / SHEARED  # kappa ~ T^(1/2)
+    # kappa ~ T^(1/2)
+    flux = over * theory.thermal_conductivity(1.0, dimension, 0.0, q) * 2 / 3 / SHEARED
     flux *= (SHEARED - 2.0) / SHEARED
-    grid, both = ("r", "beta"), ["x", "y"]
-    values = {"heat_flux": ((*grid, "component"), [[[0.0, -flux]]])}
-    values["heat_flux_stderr"] = (*grid, "component"), [[[error * flux] * 2]]
-    values["heat_flux_dof"] = (*grid, "component"), [[[40.0, 40.0]]]
-    layers = np.broadcast_to(profile[:, None], (1, 1, 40, 2))
+    grid, axes = ("r", "beta"), list("xyz"[:dimension])
+    values = {"heat_flux": ((*grid, "component"), [[[0.0] * (dimension - 1) + [-flux]]])}
+    values["heat_flux_stderr"] = (*grid, "component"), [[[error * flux] * dimension]]
+    values["heat_flux_dof"] = (*grid, "component"), [[[40.0] * dimension]]
+    layers = np.broadcast_to(profile[:, None], (1, 1, 40, dimension))
     values["temperature_profile"] = (*grid, "height", "component"), layers
     values["temperature_profile_stderr"] = (*grid, "height", "component"), 1e-4 * layers
     values["packing_profile"] = (*grid, "height"), packing[None, None]
-    coordinates = {"r": [1.0], "beta": [beta], "height": height, "component": both}
-    about = {name: one for name, one in ABOUT.items() if name != "inertia" or q}
-    return xr.Dataset(values, coordinates, about | {"experiment": f"walls {beta}"})
+    coordinates = {"r": [1.0], "beta": [beta], "height": height, "component": axes}
+    about = {name: one for name, one in ABOUT.items() if name != "inertia"}
+    about |= {"inertia": q} if q else {}
+    about |= {"experiment": f"walls {beta} {dimension}", "dimension": dimension}
+    return xr.Dataset(values, coordinates, about)
 
 
 def test_made_up_gases_have_the_viscosity_and_conductivity_that_they_were_made_with(coefficients):
@@ -184,8 +189,8 @@ def test_made_up_gases_have_the_viscosity_and_conductivity_that_they_were_made_w
         one = fluxes([-1.0, 1.0][beta], dimension + 2, 1.1).isel(r=0, beta=0)
         for name in coefficients.REMEMBERED:
             assert coefficients.in_equilibrium(one, name)[-1].value == pytest.approx(1.1, rel=0.02)
-    for beta in (-1.0, 1.0):
-        found = coefficients.between_walls(walled(beta, 1.1).isel(r=0, beta=0))
+    for beta, dimension in itertools.product((-1.0, 1.0), (2, 3)):
+        found = coefficients.between_walls(walled(beta, 1.1, dimension).isel(r=0, beta=0))
         assert found.value == pytest.approx(1.1, rel=1e-4)
 
 
@@ -198,6 +203,8 @@ def test_viscosity_and_conductivity_are_judged(over, verdict):
     assert judges.elastic_gases_carry(*two).verdict == verdict
     found = judges.heat_flows_between_walls(walled(-1.0, over), walled(1.0, 1.0))
     assert found.verdict == verdict
+    pairs = walled(-1.0, 0.9), walled(-1.0, 0.9 * over), *[walled(1.0, 1.1, 3)] * 2
+    assert judges.walls_do_not_matter(*pairs).verdict == verdict
 
 
 def test_every_point_has_its_rows():
@@ -208,3 +215,17 @@ def test_every_point_has_its_rows():
     assert len(rows) == 2 * (2 + 2 + 1) + 2 + 2 * 3 + 4 + 2 + 1
     named = "D of", "viscosity of driven", "between walls"
     assert all(row.verdict == "agrees" for row in rows if any(x in row.quantity for x in named))
+
+
+def test_gases_between_walls_have_a_row():
+    """As they are simulated, in a box that is given by its lengths or by its packing."""
+    schedule = {"equilibrate": 10, "measure": 300, "sample_every": 5}
+    evidence = module_of(STUDY, "evidence")
+    for room in ({}, {"box": (30, 40)}):
+        one = simulate(
+            "transport.rough_disks_between_walls", r=[1.0], beta=[1.0], seed=[1, 2],
+            scale="small", schedule=schedule, particles=20, progress=False, **room,
+        )  # fmt: skip
+        (row,) = evidence._of_elastic(one.isel(r=0, beta=0))
+        assert row.quantity == "conductivity of rough elastic disks between walls over theory"
+        assert "N = 20" in row.at and np.isfinite(row.ours.stderr)

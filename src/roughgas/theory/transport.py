@@ -32,8 +32,9 @@ dilute spheres: F. B. Pidduck, Proc. R. Soc. A 101, 101 (1922), whose coefficien
 (1 + q)/(1 + 2 q) times the smooth one's; Chapman & Cowling, chapter 11. Inelastic ones: J. J.
 Brey, M. J. Ruiz-Montero, D. Cubero & R. Garcia-Rojo, Phys. Fluids 12, 876 (2000); rough ones: A.
 Bodrova & N. Brilliantov, Granular Matter 14, 85 (2012); their viscosity: G. M. Kremer, A. Santos &
-V. Garzo, Phys. Rev. E 90, 022205 (2014), whose nu_s is this one. Rough disks, and what rough
-particles carry from centre to centre, are derived anew; tests draw pairs that collide.
+V. Garzo, Phys. Rev. E 90, 022205 (2014), whose nu_s is this one. These are of cooling spheres,
+whose coefficients have terms of the cooling. Rough disks, driven particles, and what rough ones
+carry from centre to centre, are derived anew; tests draw pairs that collide.
 
 Heat flows through a gas at rest between two thermal walls. Where the mean free path is much longer
 than the gap, particles fly from wall to wall. They leave a wall of temperature T with the velocity
