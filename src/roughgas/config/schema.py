@@ -36,10 +36,9 @@ RESERVED = frozenset(
     effective_config everything evidence explore explore_extensions extensions family fig1a fig1b
     fig2a fig2b figure figure_of_evidence figures front hard_cases hard_cases_chaos
     hard_cases_collapse hard_cases_cooling living living_page movie movies numbers page
-    page_of_evidence picture_for_talks pictures plot point quoted_numbers reduce report
-    rows_of_evidence run_times run_times_extensions study_claims study_data study_evidence
-    study_figure study_movie study_page study_slides
-    study_table study_task table
+    page_of_evidence picture_for_talks pictures plot point quoted_by_documentation quoted_numbers
+    reduce report rows_of_evidence run_times run_times_extensions study_claims study_data
+    study_evidence study_figure study_movie study_page study_slides study_table study_task table
     """.split()
 )
 """Names that no experiment may have, those of rules and products of the workflow."""
