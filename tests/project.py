@@ -98,7 +98,7 @@ TINY["patterns.layers"] |= {
     "observables": {"pattern": {"cells": 4}},
 }
 for name in BEYOND:
-    if name.endswith(("strained", "fluxes", "_walls")):
+    if name.endswith(("strained", "fluxes", "between_walls", "far_walls")):
         TINY[name]["schedule"] = {"equilibrate": 100, "measure": 1000, "sample_every": 10}
 TINY["megias_santos.dilute"]["schedule"] = {"equilibrate": 80, "measure": 800, "target_stderr": 0.1}
 
