@@ -56,10 +56,10 @@ def draw(layers: xr.Dataset) -> Figure:
             how["label"] = f"{case}: " + ", ".join(f"{one:.2f}" for one in flights(gamma))
             draw_height(over, shown[case], how)
             _correlation(apart, shown[case], how | {"marker": look.marker, "ms": 3})
-    over.set_ylim(0.0, 1.35 * over.get_ylim()[1])
+    over.set_ylim(0.0, 1.5 * over.get_ylim()[1])
     title = "panel: flights of a ball that does not bounce, in cycles"
     keys: dict[str, Any] = {"fontsize": SMALL, "title_fontsize": SMALL, "handlelength": 1.5}
-    over.legend(**keys, title=title, ncols=4, loc="upper center")
+    over.legend(**keys, title=title, ncols=3, loc="upper center")
     figure.suptitle(MESSAGE, fontsize=8.5, fontweight="bold", x=0.01, ha="left")
     return figure
 
