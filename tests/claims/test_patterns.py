@@ -115,6 +115,12 @@ def test_the_full_size_is_the_published_one():
     assert b["schedule"]["equilibrate"] == pytest.approx(2700 * cycle)
 
 
+def test_half_the_size_has_as_many_spheres_to_a_square():
+    found = config.load(ROOT / "config.yaml", read_yaml(STUDY / "half.yaml"))
+    h = config.experiment(found, "patterns.layers/caseh", "half")
+    assert (h["particles"], h["box"]) == (15000, [100.0, 100.0, "open"])
+
+
 def test_the_published_numbers_are_those_of_their_table():
     published = part("patterns", "published").panels()
     assert [one.panel for one in published] == list("abcdefgh")

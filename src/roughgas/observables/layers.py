@@ -13,6 +13,8 @@ most power has the wavelength L/n, half a shell uncertain. On it, within 3/4 of 
 
 is the m-fold order: Q_2 is 1 for stripes, Q_4 for squares, Q_6 for hexagons. A window widens each
 peak by a shell or so, which lowers Q_m the more, the larger m and the fewer wavelengths there are.
+Averages over looks of shares of power, wavelength and Q_m have the variance of the field as weight,
+as a layer in flight has hardly any pattern.
 
 A pattern may need several cycles of the drive to repeat. With z' the smoothed field without its
 mean, C_k = <z'(t) z'(t + k)>/sqrt(<z'^2>(t) <z'^2>(t + k)) over all cells is the correlation of
@@ -38,6 +40,8 @@ DEPTH = (5.0, 95.0)  # percentiles of height, between which the depth of a layer
 ALONG = ("layer_phase",)
 LOOKS, PATTERNS = ("layer_time",), ("pattern_time",)
 PHASES, DELAYS = ("pattern_phase",), ("pattern_delay",)
+WEIGHED = ("shell_power", "wavelength", "fold_order")
+"""Variables of a pattern that are averaged with the variance of the field as weight."""
 
 
 class Spectrum(NamedTuple):
@@ -170,7 +174,7 @@ class Pattern(Observable):
         "pattern_delay": Variable("share of schedule.period between two looks", "1", DELAYS),
         "shell_power": Variable("share of a shell in the power", "1", ("wavenumber",)),
         "contrast": Variable("standard deviation of the height", LENGTH),
-        "wavelength": Variable("mean wavelength of the shell with most power", LENGTH),
+        "wavelength": Variable("wavelength of the shell with most power", LENGTH),
         "wavelength_resolution": Variable("half a shell, as a wavelength", LENGTH),
         "fold_order": Variable("m-fold order on that shell", "1", ("fold",)),
         "mean_height": Variable(
@@ -212,7 +216,8 @@ class Pattern(Observable):
         self._before: deque[np.ndarray] = deque(maxlen=delays)
         flat = spectrum(np.zeros((cells, cells)), self._sides)
         nowhere = np.full((phases, cells, cells), math.nan)
-        self._nothing = self._found(math.nan, nowhere, 0, flat, np.full(delays, math.nan))
+        nothing = self._found(math.nan, nowhere, 0, flat, np.full(delays, math.nan))
+        self._nothing = {name: np.full_like(one, math.nan) for name, one in nothing.items()}
         middles = (np.arange(cells) + 0.5) / cells
         apart = system.interval / self._period if phase is None else 1.0 / phases
         self.coordinates: dict[str, Any] = {
@@ -257,18 +262,26 @@ class Pattern(Observable):
 
     def _found(self, time, at_phase, now, about, correlations):
         field = at_phase[now]
-        averaged = {
-            "shell_power": about.power,
-            "contrast": np.array(field.std()),
-            "wavelength": np.array(about.wavelength),
-            "fold_order": about.order,
+        contrast, wavelength = np.array(field.std()), np.array(about.wavelength)
+        seen = about.power, wavelength, about.order
+        # of a field that is flat these are NaN: it has no weight
+        weighed = {n: np.nan_to_num(field.var() * x) for n, x in zip(WEIGHED, seen, strict=True)}
+        return weighed | {
+            "contrast": contrast,
+            "variance": np.array(field.var()),
+            "mean_height": at_phase,
+            "height_autocorrelation": correlations,
+            "pattern_time": np.array(time),
+            "contrast_series": contrast,
+            "wavelength_series": wavelength,
+            "fold_order_series": about.order,
+            "height_field": field,
         }
-        series = {f"{name}_series": averaged[name] for name in averaged if name != "shell_power"}
-        series |= {"height_field": field, "pattern_time": np.array(time)}
-        over = {"mean_height": at_phase, "height_autocorrelation": correlations}
-        return averaged | over | series
 
     def combine(self, means: Values) -> Values:
         """Return the means, and how much of a wavelength half a shell is."""
-        half = means["wavelength"] ** 2 / (2.0 * max(self._sides))
-        return dict(means) | {"wavelength_resolution": half}
+        found = dict(means)
+        variance = found.pop("variance")
+        found |= {name: means[name] / variance for name in WEIGHED}
+        half = found["wavelength"] ** 2 / (2.0 * max(self._sides))
+        return found | {"wavelength_resolution": half}
