@@ -119,6 +119,7 @@ def test_half_the_size_has_as_many_spheres_to_a_square():
     found = config.load(ROOT / "config.yaml", read_yaml(STUDY / "half.yaml"))
     h = config.experiment(found, "patterns.layers/caseh", "half")
     assert (h["particles"], h["box"]) == (15000, [100.0, 100.0, "open"])
+    assert [*config.experiment(found, "patterns.layers", "half")["sweep"]["case"]] == [*REPEATS][2:]
 
 
 def test_the_published_numbers_are_those_of_their_table():

@@ -232,7 +232,33 @@ def read(
     config = {"scales": {str(config["scale"]): {}}} | config
     if not overrides:
         return config, source
-    return settings_of.merged(config, overrides), f"{source} with the command line's changes"
+    return _changed(config, overrides), f"{source} with the command line's changes"
+
+
+def _changed(config: Mapping[str, Any], overrides: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a configuration with `overrides` merged in.
+
+    What these remove of an experiment stays, as None: it may be a study's, or inherited.
+    """
+    changes, found = dict(overrides), {}
+    for key, depth in {"experiments": 1, "scales": 2}.items():
+        if isinstance(changes.get(key), Mapping):
+            found[key] = _noted(config.get(key), changes.pop(key), depth)
+    return settings_of.merged(config, changes) | found
+
+
+def _noted(base: Any, changes: Mapping[str, Any], depth: int) -> dict[str, Any]:
+    """Return `base` with `changes` merged in, which remove keys of the outer `depth` mappings only."""
+    base = base if isinstance(base, Mapping) else {}
+    if not depth:
+        return settings_of.merged(base, changes, removing=False)
+    inner = {
+        key: _noted(base.get(key), one, depth - 1)
+        for key, one in changes.items()
+        if isinstance(one, Mapping)
+    }
+    outer = {key: one for key, one in changes.items() if key not in inner}
+    return settings_of.merged(base, outer) | inner
 
 
 def check(config: Mapping[str, Any], source: str = "config.yaml") -> None:
