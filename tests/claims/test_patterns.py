@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+import xarray as xr
 from matplotlib.text import Text
 from tests.houses import ROOT, part
 from tests.synthetic import reduced
@@ -191,3 +192,20 @@ def test_the_small_layer_turns_over_with_each_cycle_without_overlap_or_loss_of_e
         if (one[:, 0] - other[:, 0]).min() > 2.0:
             return
     raise AssertionError("not all pairs were seen")
+
+
+def test_copies_of_a_layer_are_mirror_images_of_their_neighbours():
+    """Distances and speeds stay; of a mirror image, velocity times spin changes its sign."""
+    rng = np.random.default_rng(4)
+    kept = {n: ("run", "particle", n) for n in ("last_position", "last_velocity", "last_spin")}
+    values = {name: (dims, rng.uniform(1.0, 9.0, (1, 20, 3))) for name, dims in kept.items()}
+    one = xr.Dataset(values | {"last_time": ("run", [7.0])})
+    found = part("patterns", "straight").beside(one, 3, 10.0)
+    first, second, third = found.position.values.reshape(3, 20, 3)
+    assert first == pytest.approx(one.last_position.values[0])
+    assert first + second == pytest.approx(np.array([2.0, 0.0, 2.0]) * first + [0.0, 20.0, 0.0])
+    assert third - first == pytest.approx(np.broadcast_to([0.0, 20.0, 0.0], (20, 3)))
+    turning = (found.velocity.values * found.spin.values).sum(axis=1).reshape(3, 20)
+    assert turning[1] == pytest.approx(-turning[0]) and turning[2] == pytest.approx(turning[0])
+    assert (found.velocity**2).sum() == pytest.approx(3.0 * float((one.last_velocity**2).sum()))
+    assert float(found.time) == 7.0

@@ -1,9 +1,11 @@
 """The movie of a scene: what is drawn is what there is, and the file is whole."""
 
+from contextlib import closing
+
 import numpy as np
 import pytest
 from brute_force import settings
-from imageio_ffmpeg import read_frames
+from imageio_ffmpeg import count_frames_and_secs, read_frames
 from PIL import Image
 from schedules import COOLING, STEADY
 
@@ -99,10 +101,10 @@ def test_a_gif_has_every_frame_and_goes_round(tmp_path):
 def test_an_mp4_has_every_frame(tmp_path):
     path = tmp_path / "gas.mp4"
     write(path, [(subject("gas", [SIDE, SIDE]), shots(5))], 25.0)
-    reader = read_frames(str(path))
-    about = next(reader)
+    with closing(read_frames(str(path))) as reader:
+        about = next(reader)
     assert about["fps"] == 25.0 and about["size"][0] == 960 and about["codec"] == "h264"
-    assert len(list(reader)) == 5
+    assert count_frames_and_secs(str(path))[0] == 5
 
 
 def test_an_encoder_that_fails_leaves_nothing_and_says_why(tmp_path, monkeypatch):

@@ -1,0 +1,64 @@
+"""Stripes that are straight to begin with, in a layer of the published size.
+
+A layer of 100 D by 20 D has stripes across its length alone, and chooses their wavelength. Five of
+these side by side, each the mirror image of the next, are a layer of (100 D)^2. Does it stay so?
+
+    python studies/patterns/straight.py g g32.nc     # 32 cycles of it, to go on from by --from
+"""
+
+import argparse
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from roughgas import simulate
+
+COPIES, WIDTH, LENGTH = 5, 20.0, 100.0  # D
+DIAMETER, AREAL = 2.0, 6  # a; spheres to D^2
+VECTORS = {"position": "axis", "velocity": "axis", "spin": "spin_axis"}
+
+
+def beside(layer: xr.Dataset, copies: int, width: float) -> xr.Dataset:
+    """Return the last state of a layer between solid walls, `width` a apart along y, as so many
+    side by side, each the mirror image of the next, without the walls between them.
+
+    Variables are `position`, `velocity` and `spin` (particle, axis), and `time`.
+    """
+    own = {name: layer[f"last_{name}"].values[0] for name in VECTORS}
+    found: dict[str, list[np.ndarray]] = {name: [] for name in VECTORS}
+    for number in range(copies):
+        side = -1.0 if number % 2 else 1.0
+        begin = number * width if side > 0.0 else (number + 1) * width
+        found["position"].append(own["position"] * [1.0, side, 1.0] + [0.0, begin, 0.0])
+        found["velocity"].append(own["velocity"] * [1.0, side, 1.0])
+        found["spin"].append(own["spin"] * [side, 1.0, side])  # an axial vector
+    stacked = {n: (("particle", VECTORS[n]), np.concatenate(one)) for n, one in found.items()}
+    return xr.Dataset(stacked | {"time": float(layer.last_time[0])})
+
+
+def main(case: str, output: str) -> None:
+    """Simulate both layers of a case, and write the large one."""
+    about: dict[str, Any] = {"experiment": f"patterns.layers/case{case}", "r": 0.7, "beta": 0.35}
+    narrow = simulate(
+        **about,
+        particles=round(AREAL * LENGTH * WIDTH),
+        box=(DIAMETER * LENGTH, DIAMETER * WIDTH, "open"),
+        layer={"width": None},
+        observe={"pattern": None},
+    )
+    large = simulate(
+        **about,
+        particles=round(AREAL * LENGTH * WIDTH * COPIES),
+        layer={"width": LENGTH, "cycles": {"equilibrate": 0}},
+        observe={"pattern": {"cells": 100}},
+        initial=beside(narrow, COPIES, DIAMETER * WIDTH),
+    )
+    large.to_netcdf(output)
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("case", choices=["b", "g"], help="of the published stripes")
+    parser.add_argument("output", help="the dataset to write")
+    main(**vars(parser.parse_args()))
