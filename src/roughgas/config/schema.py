@@ -248,7 +248,7 @@ def _changed(config: Mapping[str, Any], overrides: Mapping[str, Any]) -> dict[st
 
 
 def _noted(base: Any, changes: Mapping[str, Any], depth: int) -> dict[str, Any]:
-    """Return `base` with `changes` merged in, which remove keys of the outer `depth` mappings only."""
+    """Return `base` with `changes` merged in, which remove keys of the outer `depth` mappings."""
     base = base if isinstance(base, Mapping) else {}
     if not depth:
         return settings_of.merged(base, changes, removing=False)
