@@ -4,6 +4,7 @@ Workers would else compile the same ones at the same time, since neighbouring te
 """
 
 import sys
+from multiprocessing import get_context
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,7 @@ from roughgas.scene.initial import initial_state
 
 TWO = [{"fraction": 0.5}, {"fraction": 0.5, "radius": 1.5}]
 MIXED = ("gas", "heated", "rubbed bed")
+SINGLE = "single precision"
 
 SCENES = {  # those that take longest first
     "walled, in cells": settings("walled", 800, [80, "open"]),
@@ -27,14 +29,27 @@ SCENES = {  # those that take longest first
 
 def compile_kernels(claimed):
     """Compile what no other worker does; `claimed` is a folder that they share."""
-    for name, experiment in SCENES.items():
+    for name in [*SCENES, SINGLE]:
         if claims(claimed / name):
-            scene, state = begin(experiment, 0.9, -1.0)
-            run(state, scene, 0)
-    if claims(claimed / "single precision"):
-        scene, _ = begin(SCENES["gas"], 0.9, 0.0)
+            in_a_child(compile_one, name)
+
+
+def compile_one(name):
+    """Compile the kernel of a scene."""
+    scene, state = begin(SCENES["gas" if name == SINGLE else name], 0.9, -1.0)
+    if name == SINGLE:
         rng = np.random.default_rng(1)
-        run(initial_state(scene, SCENES["gas"], rng, np.float32), scene, 0)
+        state = initial_state(scene, SCENES["gas"], rng, np.float32)
+    run(state, scene, 0)
+
+
+def in_a_child(work, *arguments):
+    """Do some work in a process of its own, since a compiler never gives back its memory."""
+    process = get_context("fork").Process(target=work, args=arguments)
+    process.start()
+    process.join()
+    if process.exitcode:
+        sys.exit(process.exitcode)
 
 
 def claims(path):
