@@ -141,7 +141,7 @@ rule pictures:
 
 rule movies:
     input:
-        drawn([f"movies/{movie}" for movie in MOVIES], [".gif"]),
+        drawn([f"movies/{movie}" for movie in MOVIES], [".gif", ".mp4"]),
 
 
 rule accuracy:

@@ -29,9 +29,11 @@ def told_of_movie(wildcards):
 
 
 rule movie:
-    # at the scale `paper` into figures/movies/, at others into a folder below figures/{scale}/
+    # at the scale `paper` into figures/movies/, at others into a folder below figures/{scale}/;
+    # a fresh clone has the GIFs, and makes them anew since it lacks the others
     output:
         "figures/{folder}movies/{movie}.gif",
+        "figures/{folder}movies/{movie}.mp4",
     log:
         "logs/figures/{folder}movies/{movie}.log",
     benchmark:

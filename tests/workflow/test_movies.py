@@ -15,7 +15,10 @@ def test_an_unknown_movie_is_refused_in_one_line(project):
 @pytest.mark.slow
 def test_one_is_made(project, tmp_path):
     copy = project.copy_to(tmp_path / "copy")
-    copy.succeed("-j1", *TINY, "figures/tiny/movies/cooling.gif")
+    committed = copy.folder / "figures/tiny/movies/cooling.gif"
+    committed.parent.mkdir(parents=True)
+    committed.touch()
+    copy.succeed("-j1", *TINY, "figures/tiny/movies/cooling.mp4")
     with Image.open(copy.folder / "figures/tiny/movies/cooling.gif") as image:
         assert image.n_frames == 80 and image.width == 384
 
