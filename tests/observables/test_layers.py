@@ -52,6 +52,22 @@ def test_stripes_squares_and_hexagons_have_their_own_order(name):
     assert found.power.sum() == pytest.approx(1.0)
 
 
+@pytest.mark.parametrize(
+    ("number", "told"), [(2, [0.83, 0.47, 0.21]), (3, [0.93, 0.74, 0.51]), (5, [0.97, 0.89, 0.78])]
+)
+def test_few_wavelengths_in_a_side_lower_the_order(number, told):
+    """The means of perfect patterns in any direction, as docs/observables.md has them; 0.04 is 4
+    errors of what varies most."""
+    rng = np.random.default_rng(7)
+    for fold, expected in zip(FOLDS, told, strict=True):
+        found = []
+        for turn, phase in rng.uniform(0.0, 2.0 * math.pi, (200, 2)):
+            angles = [turn + 2.0 * math.pi * k / fold for k in range(fold // 2)]
+            order = spectrum(waves(number, angles, phase), (SIDE, SIDE)).order
+            found.append(order[FOLDS.index(fold)])
+        assert np.mean(found) == pytest.approx(expected, abs=0.04)
+
+
 def test_noise_has_no_order():
     """97.8 % of fields have all orders below 1/2 (of 2000); 95 % of 500 is 4 sigma less."""
     rng = np.random.default_rng(3)
