@@ -20,7 +20,7 @@ def test_one_is_made(project, tmp_path):
     committed.touch()
     copy.succeed("-j1", *TINY, "figures/tiny/movies/cooling.mp4")
     with Image.open(copy.folder / "figures/tiny/movies/cooling.gif") as image:
-        assert image.n_frames == 80 and image.width == 384
+        assert image.n_frames == 80 and image.width == 336
 
 
 PRODUCTS = {f"figures/tiny/clustering.{kind}" for kind in ("pdf", "png", "mp4")}

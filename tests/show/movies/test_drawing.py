@@ -91,7 +91,7 @@ def test_a_gif_has_every_frame_and_goes_round(tmp_path):
     write(path, [(subject("gas", [SIDE, SIDE]), frames)], 20.0)
     with Image.open(path) as image:
         assert image.n_frames == 5 and image.info["loop"] == 0 and image.info["duration"] == 50
-        assert image.width == 384 and 320 < image.height <= 480
+        assert image.width == 336 and 280 < image.height <= 420
         pixels = np.asarray(image.convert("RGB"))
     assert pixels.std() > 20
     assert path.stat().st_size < 100_000

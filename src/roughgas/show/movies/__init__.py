@@ -30,7 +30,7 @@ from roughgas.simulation.steady import drive_periods
 from roughgas.simulation.trajectory import Snapshot
 
 WIDTH = 4.8  # inches
-DPI = {".gif": 80, ".mp4": 200}
+DPI = {".gif": 70, ".mp4": 200}
 DPI_BESIDE = {".gif": 60, ".mp4": 120}  # where several are side by side
 TALLEST = 1.5  # of what is shown, in widths of the box
 TALL = 99.0  # percentile of height from which on spheres seen from above are white
