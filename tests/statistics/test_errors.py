@@ -1,6 +1,9 @@
 """Standard errors: of a series, over seeds, and of what is combined from them; intervals."""
 
 import math
+import os
+import subprocess
+import sys
 from statistics import NormalDist
 
 import mpmath
@@ -269,3 +272,21 @@ def test_error_of_a_sum():
     np.testing.assert_allclose(error.stderr, [math.sqrt(2), 3.0, 0.0, math.sqrt(2)])
     np.testing.assert_allclose(error.dof, [10, 3, np.inf, 0])
     assert sum_error([1.0, 2.0], [math.inf, math.inf]).dof == math.inf
+
+
+ERRORS = """
+import numpy as np
+from roughgas.statistics.errors import blocking
+series = np.random.default_rng(1).standard_normal((40, 439))
+print(*[blocking(one[: 400 + n])[0].hex() for n, one in enumerate(series)])
+"""
+
+
+def test_an_error_has_the_same_bits_whatever_kernels_blas_has_for_the_processor():
+    """A product of BLAS rounds by its kernel: with one these would differ."""
+    found = set()
+    for kernels in ("Nehalem", "Haswell"):
+        environment = os.environ | {"OPENBLAS_CORETYPE": kernels}
+        command = [sys.executable, "-c", ERRORS]
+        found.add(subprocess.run(command, env=environment, capture_output=True, check=True).stdout)
+    assert len(found) == 1 and len(found.pop().split()) == 40

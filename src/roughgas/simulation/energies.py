@@ -286,7 +286,7 @@ def contact_averages(
 
 def _variables(name, value, gradient, periods):
     """Return a function of means with its error, from its gradient and the means (3, periods)."""
-    stderr, blocks = blocking(np.dot(gradient, periods))
+    stderr, blocks = blocking((gradient[:, None] * periods).sum(axis=0))
     error = Error(stderr, degrees_of_freedom(blocks))
     return {
         name: value,

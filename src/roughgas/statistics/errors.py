@@ -195,7 +195,7 @@ def _overlapping_block_variance(series: np.ndarray, length: int) -> float:
     samples = len(series)
     sums = np.concatenate([[0.0], np.cumsum(series - series.mean())])
     means = (sums[length:] - sums[:-length]) / length
-    return length / ((samples - length) * (samples - length + 1)) * float(means @ means)
+    return length / ((samples - length) * (samples - length + 1)) * float((means**2).sum())
 
 
 class Error(NamedTuple):
@@ -253,7 +253,8 @@ def pooled(means: np.ndarray, within: np.ndarray, dof: np.ndarray) -> Error:
     if runs == 1:
         return Error(float(within[0]), float(weights[0]))
     between = float(means.var(ddof=1))
-    own = float(weights @ np.nan_to_num(within) ** 2) / max(float(weights.sum()), 1e-300)
+    squares = weights * np.nan_to_num(within) ** 2
+    own = float(squares.sum()) / max(float(weights.sum()), 1e-300)
     scatter_dof, own_dof = runs - 1.0, float(weights.sum())
     if own_dof == 0 or excess_sigmas(between, scatter_dof, own, own_dof) > DISAGREE:
         return Error(math.sqrt(between / runs), scatter_dof)

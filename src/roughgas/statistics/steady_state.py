@@ -153,7 +153,7 @@ def drift(series: np.ndarray) -> Drift:
 
 def _line_through(series: np.ndarray) -> np.ndarray:
     position = np.arange(len(series)) - (len(series) - 1) / 2
-    return series.mean() + (position @ series) / (position @ position) * position
+    return series.mean() + (position * series).sum() / (position**2).sum() * position
 
 
 def _is_stationary(series: np.ndarray) -> bool:
