@@ -31,7 +31,7 @@ from .published import (
 
 HEIGHT = 6.9  # inches
 COLUMNS = 4
-SMALL = 6.0  # points
+SMALL = 5.5  # points
 Q = {2: "Q₂", 4: "Q₄", 6: "Q₆"}
 GREYS = (2, 98)  # percentiles of height that are black and white
 MESSAGE = "Shaken spheres stand in patterns that repeat after two or four cycles"
