@@ -3,7 +3,7 @@
 A layer of 100 D by 20 D has stripes across its length alone, and chooses their wavelength. Five of
 these side by side, each the mirror image of the next, are a layer of (100 D)^2. Does it stay so?
 
-    python studies/patterns/straight.py g g32.nc     # 32 cycles of it, to go on from by --from
+    python -m studies.patterns.straight g g120.nc     # 32 cycles of it, to go on from by --from
 """
 
 import argparse
@@ -13,13 +13,17 @@ import numpy as np
 import xarray as xr
 
 from roughgas import simulate
+from roughgas.base.files import whole_file
 
-COPIES, WIDTH, LENGTH = 5, 20.0, 100.0  # D
-DIAMETER, AREAL = 2.0, 6  # a; spheres to D^2
+from .published import DIAMETER
+
+WIDTH, COPIES = 20.0, 5  # D, of the narrow layer
+LENGTH = WIDTH * COPIES
+AREAL = 6  # spheres to D^2
 VECTORS = {"position": "axis", "velocity": "axis", "spin": "spin_axis"}
 
 
-def beside(layer: xr.Dataset, copies: int, width: float) -> xr.Dataset:
+def mirrored(layer: xr.Dataset, copies: int, width: float) -> xr.Dataset:
     """Return the last state of a layer between solid walls, `width` a apart along y, as so many
     side by side, each the mirror image of the next, without the walls between them.
 
@@ -52,9 +56,10 @@ def main(case: str, output: str) -> None:
         particles=round(AREAL * LENGTH * WIDTH * COPIES),
         layer={"width": LENGTH, "cycles": {"equilibrate": 0}},
         observe={"pattern": {"cells": 100}},
-        initial=beside(narrow, COPIES, DIAMETER * WIDTH),
+        initial=mirrored(narrow, COPIES, DIAMETER * WIDTH),
     )
-    large.to_netcdf(output)
+    with whole_file(output) as draft:
+        large.to_netcdf(draft)
 
 
 if __name__ == "__main__":

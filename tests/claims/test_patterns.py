@@ -200,7 +200,7 @@ def test_copies_of_a_layer_are_mirror_images_of_their_neighbours():
     kept = {n: ("run", "particle", n) for n in ("last_position", "last_velocity", "last_spin")}
     values = {name: (dims, rng.uniform(1.0, 9.0, (1, 20, 3))) for name, dims in kept.items()}
     one = xr.Dataset(values | {"last_time": ("run", [7.0])})
-    found = part("patterns", "straight").beside(one, 3, 10.0)
+    found = part("patterns", "straight").mirrored(one, 3, 10.0)
     first, second, third = found.position.values.reshape(3, 20, 3)
     assert first == pytest.approx(one.last_position.values[0])
     assert first + second == pytest.approx(np.array([2.0, 0.0, 2.0]) * first + [0.0, 20.0, 0.0])

@@ -262,13 +262,13 @@ class Pattern(Observable):
 
     def _found(self, time, at_phase, now, about, correlations):
         field = at_phase[now]
-        contrast, wavelength = np.array(field.std()), np.array(about.wavelength)
-        seen = about.power, wavelength, about.order
+        variance, wavelength = np.array(field.var()), np.array(about.wavelength)
+        contrast, seen = np.sqrt(variance), (about.power, wavelength, about.order)
         # of a field that is flat these are NaN: it has no weight
-        weighed = {n: np.nan_to_num(field.var() * x) for n, x in zip(WEIGHED, seen, strict=True)}
+        weighed = {n: np.nan_to_num(variance * x) for n, x in zip(WEIGHED, seen, strict=True)}
         return weighed | {
             "contrast": contrast,
-            "variance": np.array(field.var()),
+            "variance": variance,
             "mean_height": at_phase,
             "height_autocorrelation": correlations,
             "pattern_time": np.array(time),
