@@ -7,13 +7,13 @@ these side by side, each the mirror image of the next, are a layer of (100 D)^2.
 """
 
 import argparse
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from roughgas import simulate
-from roughgas.base.files import whole_file
 
 from .published import DIAMETER
 
@@ -58,8 +58,9 @@ def main(case: str, output: str) -> None:
         observe={"pattern": {"cells": 100}},
         initial=mirrored(narrow, COPIES, DIAMETER * WIDTH),
     )
-    with whole_file(output) as draft:
-        large.to_netcdf(draft)
+    draft = Path(f"{output}.tmp")  # so that `output` is whole or not there
+    large.to_netcdf(draft)
+    draft.replace(output)
 
 
 if __name__ == "__main__":
