@@ -57,7 +57,7 @@ def largest_overlap(state, scene, world):
     one = brute_force_from(world, snapshot(state, scene))
     i, j = one.pairs.T
     x = one.x[i] - one.x[j]
-    squares = np.min([((x + shift) ** 2).sum(axis=1) for shift, _ in one.images()], axis=0)
+    squares = np.min([((x + shift) ** 2).sum(axis=1) for shift in one.images()[0]], axis=0)
     return float(np.max(one.radius[i] + one.radius[j] - np.sqrt(squares)))
 
 
@@ -66,7 +66,10 @@ def compare(shot, brute):
     own = brute_force_from(brute.world, shot._replace(time=brute.time))
     x, v = own.x - brute.x, own.v - brute.v
     # a particle on the edge of the box may be folded either way
-    near = [np.abs(x + s).max(axis=1) + np.abs(v + d).max(axis=1) for s, d in brute.images()]
+    near = [
+        np.abs(x + s).max(axis=1) + np.abs(v + d).max(axis=1)
+        for s, d in zip(*brute.images(), strict=True)
+    ]
     spins = np.abs(own.w - brute.w)
     return float(max(abs(shot.time - brute.time), np.min(near, axis=0).max(), spins.max()))
 

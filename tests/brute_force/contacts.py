@@ -31,8 +31,9 @@ class Contacts:
         """the collision rule of the paper, term by term."""
         world = self.world
         x, v = self.x[i] - self.x[j], self.v[i] - self.v[j]
-        shift, drift = min(self.images(), key=lambda image: ((x + image[0]) ** 2).sum())
-        n, v = in_space(x + shift), in_space(v + drift)
+        shifts, drifts = self.images()
+        nearest = np.argmin(((x + shifts) ** 2).sum(axis=1))
+        n, v = in_space(x + shifts[nearest]), in_space(v + drifts[nearest])
         n /= math.sqrt(n @ n)
         r, beta, mu = self.material(i, j)
         r = self._restitution(r, abs(v @ n), i, j)

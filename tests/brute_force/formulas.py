@@ -21,8 +21,8 @@ def first_touch(gap, limit):
 
 
 def meeting_times(x, v, reach):
-    """First root of |x + v t| = reach for each row, if the pair approaches; overlapping is now."""
-    b, vv, c = (x * v).sum(axis=1), (v * v).sum(axis=1), (x * x).sum(axis=1) - reach**2
+    """First root of |x + v t| = reach for each pair, if it approaches; overlapping is now."""
+    b, vv, c = (x * v).sum(axis=-1), (v * v).sum(axis=-1), (x * x).sum(axis=-1) - reach**2
     discriminant = b * b - vv * c
     with np.errstate(invalid="ignore", divide="ignore"):
         root = np.maximum(0.0, (-b - np.sqrt(discriminant)) / vv)

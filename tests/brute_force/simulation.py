@@ -46,7 +46,8 @@ class BruteForce(Contacts):
         begun = sum(share >= begin for begin, *_ in self.strokes)
         self.stroke = int(whole) * len(self.strokes) + begun - 1
         self.last = np.full(self.number, -np.inf) if last_contact is None else last_contact.copy()
-        self.pairs = np.array(list(itertools.combinations(range(self.number), 2))).reshape(-1, 2)
+        self.pairs = np.transpose(np.triu_indices(self.number, 1))
+        self.steps = self._steps_to_images()
         company = company or alike(self.number, world.q)
         self.radius, self.mass, self.q, self.species = company
         kind, drawn = (Bath, world.bath) if world.bath else (Kicks, world.thermostat)
@@ -135,32 +136,34 @@ class BruteForce(Contacts):
         """Time until each pair touches, over all images that half a box of motion can reach."""
         i, j = self.pairs.T
         x, v = self.x[i] - self.x[j], self.v[i] - self.v[j]
-        best = np.full(len(x), np.inf)
-        for shift, drift in self.images():
-            reach = self.radius[i] + self.radius[j]
-            best = np.minimum(best, meeting_times(x + shift, v + drift, reach))
-        return best
+        shifts, drifts = self.images()
+        reach = self.radius[i] + self.radius[j]
+        return meeting_times(x + shifts[:, None], v + drifts[:, None], reach).min(axis=0)
+
+    def _steps_to_images(self):
+        """By how many boxes every image is away that another particle could reach."""
+        ranges = [range(0, 1) if side is None else range(-1, 2) for side in self.world.box]
+        if self.world.shear:
+            ranges[0] = range(-3, 4)
+        return np.array(list(itertools.product(*ranges)))
 
     def images(self):
-        """(shift, velocity) of every image of a particle that another could reach."""
+        """Shifts and velocities of these images."""
         world = self.world
-        reach = 3 if world.shear else 1
-        ranges = [range(0, 1) if side is None else range(-1, 2) for side in world.box]
-        if world.box[0] is not None:
-            ranges[0] = range(-reach, reach + 1)
-        lengths = np.array([side or 0.0 for side in world.box])
-        offset = (world.shear * self.time + world.slide) % world.box[0] if world.shear else 0.0
-        for numbers in itertools.product(*ranges):
-            shift, drift = lengths * numbers, np.zeros(self.dimension)
-            shift[0] += numbers[1] * offset
-            drift[0] += numbers[1] * world.shear
-            yield shift, drift
+        shifts, drifts = self.steps * [side or 0.0 for side in world.box], 0.0 * self.steps
+        if world.shear:
+            shifts[:, 0] += self.steps[:, 1] * (
+                (world.shear * self.time + world.slide) % world.box[0]
+            )
+            drifts[:, 0] = self.steps[:, 1] * world.shear
+        return shifts, drifts
 
     def _boundary_events(self, limit):
         world = self.world
+        floor = self.surface(0.0) if world.floor else None
         for i in range(self.number):
             if world.floor:
-                yield self._floor_wait(i, limit), "floor", i, -1
+                yield self._floor_wait(i, limit, *floor), "floor", i, -1
             if world.walls:
                 x, v, radius = self.x[i, 0], self.v[i, 0], self.radius[i]
                 if v < 0.0:
@@ -176,17 +179,18 @@ class BruteForce(Contacts):
         weight = side.inwards * self.world.gravity if side.axis == self.dimension - 1 else 0.0
         return side.wait(gap, speed, weight, self.time, limit)
 
-    def _floor_wait(self, i, limit):
+    def _floor_wait(self, i, limit, level, speed):
         """Time until particle i meets the floor, if that is before the limit."""
         height, v, g = self.x[i, -1] - self.radius[i], self.v[i, -1], self.world.gravity
-        level, speed = self.surface(0.0)
         if self.world.wave != "sine" or (height - level <= 1e-12 and v < speed):
             return falling_time(height - level, v - speed, g)
 
-        def gap(wait):
-            return height + v * wait - g * wait**2 / 2.0 - self.surface(wait)[0]
+        def path(wait):
+            return height + v * wait - g * wait**2 / 2.0
 
-        return first_touch(gap, limit)
+        if min(height, path(limit)) > self.world.floor[0]:  # above all strokes
+            return math.inf
+        return first_touch(lambda wait: path(wait) - self.surface(wait)[0], limit)
 
     def _move(self, wait):
         self.x += self.v * wait

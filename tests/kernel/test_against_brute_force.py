@@ -31,6 +31,7 @@ PISTONS = {
     "bottom_wall": SHAKEN | {"restitution": 0.9},
     "lid": SHAKEN | {"wave": "triangle", "period": 1.0},
 }
+SPUN = {"interval": 5.0, "drag": 0.0, "temperature": 0.0, "spin_drag": 0.2}
 DRAG = {"interval": 10.0, "drag": 0.001, "spin_drag": 0.002}
 BED = {name: KERNELS["bed"]["effects"][name] for name in ("spin", "gravity")} | {
     "floor": {"amplitude": 1.0, "period": 1.0, "restitution": 1.0, "roughness": -1.0}
@@ -123,14 +124,14 @@ CASES = {  # experiment, r, beta, seed
     ),
     "kicks": (heated("heated", 8, [12, 12]), 0.9, 0.4, 1),
     "kicks of translation": (heated("heated", 8, [12, 12], spin_share=0.0), 0.98, -0.5, 2),
-    "kicks of spins": (heated("heated", 8, [12, 12], spin_share=1.0, interval=0.1), 0.9, 1.0, 3),
+    "kicks of spins": (heated("heated", 8, [12, 12], spin_share=1.0, interval=0.3), 0.9, 1.0, 3),
     "hard kicks": (heated("heated", 6, [9, 11], power=1e4, interval=2.0), 0.8, 0.2, 4),
     "kicks of a pair": (heated("heated", 2, [9, 9]), 0.9, 0.2, 5),
     "kicks, no spin": (heated("heated, smooth", 8, [12, 12]), 0.95, -1.0, 6),
     "kicks of spheres": (heated("heated spheres", 8, [7, 7, 7], spin_share=0.3), 0.9, 0.5, 7),
     "bath": (settings("bath", 8, [12, 12]), 0.9, 0.4, 1),
     "bath of spins": (
-        settings("bath", 8, [12, 12], langevin={"drag": 0.0, "temperature": 0.0, "spin_drag": 2.0}),
+        settings("bath", 8, [12, 12], langevin=SPUN),
         *(0.98, -0.5, 2),
     ),
     "species, bath": (of_species("bath", 12, [16, 16]), 0.9, 0.2, 17),
