@@ -8,6 +8,9 @@ from pathlib import Path
 
 import pytest
 from hypothesis import settings
+from remembered import remember_yaml
+
+remember_yaml()
 
 # sums by several threads have other last bits; the command `roughgas` has one thread, too
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")

@@ -17,7 +17,7 @@ from roughgas.results.products import PROJECT
 ROOT = Path(__file__).parent.parent
 COPIED = (*PROJECT, "rules", "profiles", "src", "studies")
 COPIED += tuple(f"tests/{name}" for name in ("hard_cases", "brute_force", "exact"))
-COPIED += tuple(f"tests/{name}.py" for name in ("conftest", "compiled", "schedules"))
+COPIED += tuple(f"tests/{name}.py" for name in ("conftest", "compiled", "remembered", "schedules"))
 SWEEP = {"r": ["0.9"], "beta": ["0"], "seeds": 2}
 STEADY = {"equilibrate": 20, "measure": 20}
 TINY = {
