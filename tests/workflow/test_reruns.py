@@ -12,10 +12,11 @@ AFTER_POINTS = {"claims": 1, "table": 1, "run_times": 1, "document": 2, "figures
 CONFIGURED = {"effective_config": 1, "document": 1, "figures": 1}
 AFTER_BOTH = AFTER_POINTS | CONFIGURED | {"document": 3}
 
+FOLDERS = config.load("config.yaml")["folders"]
 STUDIED, OF_TASKS_ALONE = (
     {
         figure
-        for one in config.load("config.yaml")["folders"].values()
+        for one in FOLDERS.values()
         for figure, shows in one["figures"].items()
         if (shows == ["tasks"]) == alone
     }
@@ -139,22 +140,17 @@ def test_what_edits_in_several_rooms_run_again(made):
     assert rerun(made, dict.fromkeys(TOGETHER, "\nADDED = 1\n")) == expected
 
 
-def test_an_edit_of_one_experiment(finished):
-    finished.configure(
-        lambda config: config["experiments"]["sheared"]["effects"]["shear"].update(velocity=3)
-    )
-    assert finished.planned() == {"seeds": EACH, "reduce": 1, "figure": 1} | AFTER_BOTH
-
-
-def test_more_seeds_are_added_to_those_that_are_there(finished):
+def test_an_edit_of_one_experiment_and_more_seeds_of_another(finished):
     """Two seeds more are a job, and one more a point."""
 
     def change(config):
+        config["experiments"]["sheared"]["effects"]["shear"].update(velocity=3)
         config["seeds_per_job"] = 2  # so that the two that are there are a whole job
         config["scales"]["tiny"]["cooling"]["sweep"].update(seeds=5)
 
     finished.configure(change)
-    assert finished.planned() == {"seeds": 1, "point": 1, "reduce": 1, "figure": 1} | AFTER_BOTH
+    again = {"seeds": EACH + 1, "point": 1, "reduce": 2, "figure": 2}
+    assert finished.planned() == again | AFTER_BOTH
 
 
 def test_which_job_has_made_a_point_does_not_matter(finished):
@@ -170,13 +166,10 @@ def test_an_edit_is_not_forgotten_when_a_run_is_interrupted(finished):
     assert finished.planned("results/tiny/cooling.nc") == {"seeds": EACH, "reduce": 1}
 
 
-def test_an_edit_of_what_combines_the_tasks_of_a_study_runs_none_of_them_again(finished):
+def test_an_edit_of_what_combines_the_tasks_of_a_study_and_of_the_settings_of_others(finished):
+    """The tasks of the first, which has no movie, do not run again."""
     finished.append("studies/runaway/results.py")
-    expected = {"study_data": 1, "study_figure": 1, "study_claims": 1, "study_page": 1}
-    assert finished.planned("runaway") == expected | {"runaway": 1}
-
-
-def test_an_edit_of_the_settings_of_tasks(finished):
     finished.configure(lambda config: config["scales"]["tiny"]["clustering.tasks"].update(seed=2))
-    expected = {"study_task": 1, "study_data": 1, "study_figure": 1, "study_movie": 1}
-    assert finished.planned("clustering") == expected | {"study_page": 1, "clustering": 1}
+    each = {"study_data": 2, "study_figure": 2, "study_page": 2, "runaway": 1, "clustering": 1}
+    expected = each | {"study_claims": 1, "study_task": 1, "study_movie": 1}
+    assert finished.planned("runaway", "clustering") == expected

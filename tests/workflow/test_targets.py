@@ -1,7 +1,5 @@
 """What can be asked for, and how the rest is refused."""
 
-from pathlib import Path
-
 import pytest
 from project import BEYOND, JOBS, Project
 
@@ -47,31 +45,20 @@ def test_the_default_are_the_figures_which_need_every_point_of_the_sweep_once(pr
     }
 
 
-def test_seeds_that_fill_no_job_are_jobs_nevertheless(tmp_path):
+def test_a_job_makes_several_seeds_and_betas_and_what_fills_none_is_a_point(tmp_path):
+    """Of cooling five seeds, of sheared three values of beta, and one that is not swept."""
     project = Project(tmp_path)
 
     def change(config):
-        config["seeds_per_job"] = 2
-        config["scales"]["tiny"]["cooling"]["sweep"].update(seeds=5)
+        config.update(seeds_per_job=2, betas_per_job=2)
+        tiny = config["scales"]["tiny"]
+        tiny["cooling"]["sweep"].update(seeds=5)
+        tiny["sheared"]["sweep"] |= {"r": ["0.9", "0.8"], "beta": ["-0.5", "0", "0.5"]}
 
     project.configure(change)
-    planned = project.planned("results/tiny/cooling.nc")
-    assert planned == {"compile_kernel": 1, "seeds": 2, "point": 1, "reduce": 1}
-
-
-def test_one_job_makes_points_at_several_betas(tmp_path):
-    project = Project(tmp_path)
-
-    def change(config):
-        config["betas_per_job"] = 2
-        sweep = {"r": ["0.9", "0.8"], "beta": ["-0.5", "0", "0.5"], "seeds": 1}
-        config["scales"]["tiny"]["cooling"].update(sweep=sweep)
-
-    project.configure(change)
-    expected = {"compile_kernel": 2, "seeds": 2, "point": 2, "reduce": 1}
-    assert project.planned("results/tiny/cooling.nc") == expected
-    others = (f"results/tiny/cooling/r0.8/beta{beta}/seed1.nc" for beta in ("0.5", "0.1"))
-    assert project.planned(*others)["point"] == 2
+    paths = "cooling.nc", "sheared.nc", "sheared/r0.8/beta0.1/seed1.nc"
+    planned = project.planned(*(f"results/tiny/{path}" for path in paths))
+    assert planned == {"compile_kernel": 3, "seeds": 2 + 2 * 2, "point": 1 + 1, "reduce": 2}
 
 
 def test_everything_has_films_and_the_experiments_that_were_added(tmp_path):
@@ -93,15 +80,15 @@ def test_any_legal_point_can_be_asked_for(project):
     assert planned == {"compile_kernel": len(LEGAL), "point": len(LEGAL)}
 
 
-@pytest.mark.parametrize("product", ["evidence.csv", "numbers.json"])
-def test_what_a_clone_brings_along_is_made_anew(tmp_path, product):
+def test_what_a_clone_brings_along_is_made_anew(tmp_path):
     project = Project(tmp_path)
     (tmp_path / "docs").mkdir()
     (tmp_path / "docs/results.md").touch()
     (tmp_path / "figures/tiny").mkdir(parents=True)
-    (tmp_path / "figures/tiny" / product).write_text("of another machine")
-    planned = project.planned(Path(product).stem)
-    assert planned["quoted_by_documentation"] == 1
+    for product in ("evidence.csv", "numbers.json"):
+        (tmp_path / "figures/tiny" / product).write_text("of another machine")
+    planned = project.planned("evidence", "numbers")
+    assert planned["quoted_by_documentation"] == 2
     assert planned["reduce"] > 0
 
 
