@@ -8,6 +8,7 @@ from multiprocessing import get_context
 from pathlib import Path
 
 import numpy as np
+from accuracy.soft_spheres.pair import collide, shot
 from brute_force.scenes import KERNELS, RARE, begin, run, settings
 
 from roughgas.scene.initial import initial_state
@@ -15,10 +16,9 @@ from roughgas.scene.initial import initial_state
 TWO = [{"fraction": 0.5}, {"fraction": 0.5, "radius": 1.5}]
 MIXED = ("gas", "heated", "rubbed bed")
 SINGLE = "single precision"
+SOFT = {"soft disks": 2, "soft spheres": 3}  # their dimension
 
 SCENES = {  # those that take longest first
-    "walled, in cells": settings("walled", 800, [80, "open"]),
-    "spheres, in cells": settings("spheres", 800, [28, 28, 28]),
     "sheared, in cells": settings("sheared", 800, [100, 100]),
     **{name: settings(name) for name in KERNELS if name not in RARE},
     **{f"{name} of two species": settings(name) | {"species": TWO} for name in MIXED},
@@ -29,13 +29,16 @@ SCENES = {  # those that take longest first
 
 def compile_kernels(claimed):
     """Compile what no other worker does; `claimed` is a folder that they share."""
-    for name in [*SCENES, SINGLE]:
+    for name in [*SOFT, *SCENES, SINGLE]:
         if claims(claimed / name):
             in_a_child(compile_one, name)
 
 
 def compile_one(name):
-    """Compile the kernel of a scene."""
+    """Compile the kernel of a scene, or that of soft particles."""
+    if name in SOFT:
+        collide(0.7, 0.3, 0.3, 3, shot(0.8, SOFT[name], 0.01))
+        return
     scene, state = begin(SCENES["gas" if name == SINGLE else name], 0.9, -1.0)
     if name == SINGLE:
         rng = np.random.default_rng(1)

@@ -11,6 +11,7 @@ from brute_force.scenes import RARE
 from compiled import from_python
 from project import ROOT
 
+from kernel.test_cells import sheared_or_slow
 from roughgas.effects import Effects
 from roughgas.effects.drives import Gravity
 from roughgas.effects.settings import register
@@ -79,7 +80,7 @@ def test_floors_run_as_plain_python(wave):
     assert_plain_python_has_the_same_bits(WAVES[wave] | own, collisions=8)
 
 
-@pytest.mark.parametrize("kernel", CELLS)
+@pytest.mark.parametrize("kernel", sheared_or_slow(CELLS))
 def test_cells_run_as_plain_python(kernel, monkeypatch):
     monkeypatch.setattr(memory, "FEW", 0)
     monkeypatch.setattr(memory, "PER_CELL", {2: 0.0, 3: 0.0})
@@ -190,6 +191,7 @@ def show(*options):
     return subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
 
 
+@pytest.mark.slow  # compiles a kernel
 def test_a_function_is_shown_as_it_is_compiled_for_a_scene():
     shown = show("--show", "collide", "--scene", "cooling").stdout
     assert shown.startswith("# roughgas.kernel.contact") and "n = direction(x)" in shown

@@ -245,6 +245,7 @@ def test_tails_without_positions():
         assert float(found["tail"]) == pytest.approx(expected, abs=0.4)
 
 
+@pytest.mark.slow  # compiles a kernel
 def test_clusters_cool_by_other_laws():
     """Haff's law would have 2 and 2, of energies whose ratio stays."""
     found = runs.run("clusters_0.8_0", SETTINGS, {}, quietly).mean()

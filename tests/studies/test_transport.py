@@ -217,6 +217,7 @@ def test_every_point_has_its_rows():
     assert all(row.verdict == "agrees" for row in rows if any(x in row.quantity for x in named))
 
 
+@pytest.mark.slow  # compiles a kernel
 def test_gases_between_walls_have_a_row():
     """As they are simulated, in a box that is given by its lengths or by its packing."""
     schedule = {"equilibrate": 10, "measure": 300, "sample_every": 5}
