@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from brute_force import KERNELS, begin, largest_overlap, scene_of, settings
 
+from roughgas.scene import initial
 from roughgas.scene.initial import check_places, random_positions
 
 CASES = {
@@ -111,8 +112,9 @@ def test_particles_end_where_they_are_pushed_on_the_side_that_is_free():
     assert random_positions(radius, [11.5, 1.6], [True, False], rng) is None
 
 
-def test_a_giant_among_dwarfs_takes_no_lattice_of_dwarfs():
+def test_a_giant_among_dwarfs_takes_no_lattice_of_dwarfs(monkeypatch):
     """Its sites would be 2.5e9."""
+    monkeypatch.setattr(initial, "MOST_OF_A_CLASS", 40_000)
     radius = np.array([10.0, *[0.001] * 99])
     found = random_positions(radius, [100.0, 100.0], [True, True], np.random.default_rng(1))
     apart = found[1:] - found[0]

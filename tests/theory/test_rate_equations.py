@@ -114,7 +114,7 @@ def test_a_gas_driven_by_rotation_is_that_of_cafiero_luding_and_herrmann(r, beta
     assert theory.stationary_ratio(r, beta, 2, q, 1) == pytest.approx(A / (A + B), rel=1e-12)
 
 
-PAIRS = 400_000
+PAIRS = 100_000
 SIGMAS = 5
 MATERIALS = [(2, 0.9, 0.3, 0.5), (2, 0.6, -0.7, 1.0), (3, 0.8, -0.2, 0.4), (3, 1.0, 1.0, 0.4)]
 THETA = 0.6
@@ -162,7 +162,7 @@ def test_energy_changes_are_those_of_the_collision_rule(r, beta, q, dimension, s
 
 @pytest.mark.parametrize(("dimension", "r", "beta", "q"), MATERIALS)
 def test_averages_and_rates_over_sampled_collisions(dimension, r, beta, q):
-    """Means over 4e5 Maxwellian pairs, weighted as they collide, within 5 standard errors.
+    """Means over 1e5 Maxwellian pairs, weighted as they collide, within 5 standard errors.
 
     A collision counts for both its particles: dT_tr/dn = <change of the pair's energy>/D.
     """
