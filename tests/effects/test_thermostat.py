@@ -106,7 +106,7 @@ def left(number, dimension, temperature, inertia):
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_particles_leave_a_thermal_wall_as_they_would_leave_a_gas(dimension):
     """Means, variances and fourth moments within four standard errors, and the energy booked."""
-    T, q, number = 1.7, 0.4, 8000
+    T, q, number = 1.7, 0.4, 4000
     velocity, spin, booked = left(number, dimension, T, q)
     v, along, others = velocity[:, 0], velocity[:, -1] - 0.5, velocity[:, 1:-1]
     expected = [

@@ -99,9 +99,9 @@ def test_three_on_a_line(margins):
     """
     above = [0.08, 0.1, 0.15, 0.2, 0.3, 0.5, 0.7, 0.9]
     below = [THRESHOLD * share for share in (0.05, 0.2, 0.5, 0.8, 0.9, 0.98)]
-    wrong = max(abs(on_a_line(r)[0] - exact_contacts(r, 200)) for r in above)
+    wrong = max(abs(on_a_line(r)[0] - exact_contacts(r, 80)) for r in above)
     margins.at_most("contacts too many or too few above it", wrong, 0, len(above), "values of r")
-    assert all(exact_contacts(r, 200) == 200 for r in below)
+    assert all(exact_contacts(r, 80) == 80 for r in below)
     ends = [on_a_line(r) for r in below]
     tried = {"tried": len(below), "unit": "values of r"}
     margins.at_most("contacts made below it", max(contacts for contacts, _ in ends), 100, **tried)

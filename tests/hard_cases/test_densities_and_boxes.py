@@ -71,7 +71,7 @@ def check_beside(margins, scenes, segments, collisions):
 
 
 def test_densities(margins):
-    collisions = margins.size(quick=5000, full=500_000)
+    collisions = margins.size(quick=2000, full=500_000)
     disks = [lossless("gas", 160, [math.sqrt(160 * math.pi / share)] * 2) for share in DISKS]
     volume = 4.0 * math.pi / 3.0
     spheres = [lossless("spheres", 108, [(108 * volume / s) ** (1 / 3)] * 3) for s in SPHERES]
@@ -122,7 +122,7 @@ def test_narrow_channels(margins):
 
 
 def test_aspect_ratios(margins):
-    collisions = margins.size(quick=5000, full=200_000)
+    collisions = margins.size(quick=2000, full=200_000)
     scenes = [
         lossless(kernel, 160, box)
         for kernel in ("gas", "sheared")

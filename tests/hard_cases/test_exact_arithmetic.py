@@ -54,7 +54,7 @@ def test_separates_from_exact_arithmetic_as_chaos_demands(name, margins):
     scene, world = scene_of(*point)
     _, state = begin(*point, seed)
     most = 400 if name in COLD else 10_000  # a cold one only moves as a whole
-    collisions = min(most, margins.size(quick=200, full=10_000))
+    collisions = min(most, margins.size(quick=120, full=10_000))
     segments, tried = compare(margins, name, state, scene, world, collisions)
     first = min(one.parted for one in segments)
     margins.at_least(f"{name}: separation from which pairs differ", first, SMALL, **tried)
@@ -76,4 +76,4 @@ def test_an_old_gas_is_as_close_to_exact_arithmetic(name, margins):
     age = margins.size(quick=100_000, full=5_000_000)
     while state.counts[0] < age:
         run(state, scene, 1, collisions=age - int(state.counts[0]))
-    compare(margins, name, state, scene, world, margins.size(quick=100, full=1000))
+    compare(margins, name, state, scene, world, margins.size(quick=60, full=1000))

@@ -53,7 +53,7 @@ def test_falls_from_anywhere(margins):
         height = level(floor, phase) + 10.0 ** rng.uniform(-6, 2)
         return floor, gravity, height, 5.0 * math.sqrt(gravity) * rng.standard_normal(), phase
 
-    measure(margins, (fall() for _ in range(margins.size(quick=300, full=10_000))), "falls")
+    measure(margins, (fall() for _ in range(margins.size(quick=200, full=10_000))), "falls")
 
 
 def touching(rng):
@@ -88,7 +88,7 @@ def touching(rng):
 
 def test_sines_that_graze(margins):
     rng = np.random.default_rng(1)
-    falls = (touching(rng) for _ in range(margins.size(quick=300, full=10_000)))
+    falls = (touching(rng) for _ in range(margins.size(quick=200, full=10_000)))
     measure(margins, falls, "falls")
 
 
@@ -107,12 +107,12 @@ def test_meetings_at_turning_points(margins):
         height = max(height, level(floor, phase))
         return floor, gravity, height + rng.integers(-1, 2) * 2.0**-50 * height, speed, phase
 
-    measure(margins, (fall() for _ in range(margins.size(quick=600, full=30_000))), "falls")
+    measure(margins, (fall() for _ in range(margins.size(quick=400, full=30_000))), "falls")
 
 
 def test_take_off_from_a_moving_floor(margins):
     rng = np.random.default_rng(3)
-    starts = margins.size(quick=500, full=20_000)
+    starts = margins.size(quick=300, full=20_000)
     early = 0.0
     falls = []
     for _ in range(starts):
@@ -134,7 +134,7 @@ def test_take_off_from_a_moving_floor(margins):
 
 @pytest.mark.parametrize("form", ["sawtooth", "reversed_sawtooth", "triangle", "sine"])
 def test_no_particle_falls_through_the_floor(margins, form):
-    instants = margins.size(quick=500, full=20_000)
+    instants = margins.size(quick=300, full=20_000)
     # on a floor at rest a gas that dissipates would come to rest
     deepest, lossy, elastic = -math.inf, (0.9, 0.2), (1.0, -1.0)
     for amplitude, period, own in ((5.0, 1.0, lossy), (0.3, 0.2, lossy), (0.0, 1.0, elastic)):

@@ -154,7 +154,7 @@ def test_the_earliest_event(few, spread, monkeypatch):
     if few == 0:
         clear_calendar(state)
     expected = np.full(300, np.inf)
-    for step in range(4000):
+    for step in range(2000):
         i = int(rng.integers(300)) if step < 600 else earliest(state)
         now = 0.0 if step < 600 else state.agenda.key[i]
         state.clock[NOW] = now
