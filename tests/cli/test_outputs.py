@@ -71,7 +71,7 @@ def test_where_nothing_can_be_written_is_seen_before_any_work(folder, capsys):
     [
         [*ONE, "-o", "a.nc"],
         ["reduce", POINT, "-o", "a.nc"],
-        ["plot", REDUCED, "-o", "a.png", "a.pdf", "a.svg"],
+        ["plot", REDUCED, "-o", "a.png", "a.pdf"],
         ["trajectory", *ONE[1:], "--frames=2", "-o", "a.xyz", "a.nc"],
     ],
     ids=lambda line: line[0],

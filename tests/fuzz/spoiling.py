@@ -28,7 +28,7 @@ QUICK, LONG = (
         database=None,
         suppress_health_check=list(HealthCheck),
     )
-    for number in (50, int(TRIES or 2000))
+    for number in (30, int(TRIES or 2000))
 )
 """How often `make test` tries, and the extras: the same examples unless FUZZ_TRIES is set."""
 OFTEN = pytest.mark.parametrize("often", [QUICK, pytest.param(LONG, marks=pytest.mark.slow)])

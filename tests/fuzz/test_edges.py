@@ -25,7 +25,7 @@ def test_every_command_is_walked(folder, monkeypatch):
 @pytest.mark.parametrize(
     ("kind", "number"),
     [
-        ("option", 100),
+        ("option", 60),
         ("schedule", 60),
         ("environment", 4),
         pytest.param("environment", 10**6, marks=pytest.mark.slow),

@@ -109,12 +109,13 @@ def test_a_folder_of_somebody_else_is_not_trusted(program):
     assert done.returncode != 0 and "belongs to somebody else" in done.stderr
 
 
-def test_what_others_can_write_is_never_unpickled(program, tmp_path):
+def test_what_others_can_write_is_never_unpickled(program, tmp_path, monkeypatch, capsys):
     folder, trap = tmp_path / "kernels", tmp_path / "sprung"
-    places = {"ROUGHGAS_CACHE_DIR": str(folder), "TMPDIR": str(tmp_path)}
+    monkeypatch.setenv("ROUGHGAS_CACHE_DIR", str(folder))
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     old = os.umask(0o002)  # as many systems have it
     try:
-        assert run(program, **places) == ("compiled", "")
+        assert run_here(program, capsys) == ("compiled", "")
     finally:
         os.umask(old)
     (kernels,) = folder.iterdir()
@@ -123,10 +124,10 @@ def test_what_others_can_write_is_never_unpickled(program, tmp_path):
     assert not path.stat().st_mode & 0o077
     path.write_bytes(sealed(pickle.dumps(Trap(str(trap)))))
     path.chmod(0o666)
-    assert run(program, **places) == ("compiled", "") and not trap.exists()
-    assert run(program, **places) == ("loaded", "")
+    assert run_here(program, capsys) == ("compiled", "") and not trap.exists()
+    assert run_here(program, capsys) == ("loaded", "")
     kernels.chmod(0o777)
-    assert run(program, **places) == ("compiled", "")
+    assert run_here(program, capsys) == ("compiled", "")
     assert list(tmp_path.glob(f"roughgas-{os.getuid()}/kernels-*/*/*.nbc"))
 
 

@@ -13,7 +13,7 @@ from schedules import BRIEF, TINY
 
 from habits.conftest import LONG, catches, environment, interrupt, point, wait_until
 
-SECONDS_LONG = TINY | {"schedule": BRIEF | {"plateau": 500_000, "sample_every": 25}}
+SECONDS_LONG = TINY | {"schedule": BRIEF | {"plateau": 200_000, "sample_every": 25}}
 LAST = "Stopped: the same command goes on from here."
 
 

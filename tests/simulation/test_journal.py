@@ -34,7 +34,7 @@ RUNS = {
             "stages": [{"duration": 10}, {"duration": 15, "effects": {"shear": {"velocity": 3}}}],
         },
     },
-    "target": DRIVEN | {"schedule": DRIVEN["schedule"] | {"target_stderr": 0.02}},
+    "target": DRIVEN | {"schedule": DRIVEN["schedule"] | {"target_stderr": 0.04}},
 }
 
 

@@ -123,7 +123,7 @@ def tried(number):
     return lambda test: seed(1)(profile(max_examples=number, **off)(test))
 
 
-@tried(60)
+@tried(20)
 @given(runs(["gas"]))
 def test_a_cooling_gas_has_made_the_collisions_that_it_says(run):
     """As many as all its replicas have been counted to make, the smooth elastic ones left out."""
@@ -143,7 +143,7 @@ def _theory(run):
     return scene, run.schedule["relaxation_times"]
 
 
-@tried(40)
+@tried(20)
 @given(runs(["sheared", "heated"]))
 def test_a_driven_gas_has_made_the_collisions_that_it_says(run):
     """As many as are counted when it is stopped where the measurement begins and goes on."""
@@ -158,7 +158,7 @@ def test_a_driven_gas_has_made_the_collisions_that_it_says(run):
     assert gas.time == pytest.approx(found["time"][-1])
 
 
-@tried(40)
+@tried(20)
 @given(runs(["gas", "sheared", "heated"], shortest=0.05))
 def test_nothing_is_known_without_evidence(run):
     """Whatever has fewer collisions, samples or replicas than the least is neither yes nor no."""
@@ -209,7 +209,7 @@ def sigmas(one, other):
 # ------------------------------------------------------------------------ what ends early
 
 
-def test_collisions_that_do_not_come_end_a_run_in_one_line(monkeypatch):
+def test_collisions_that_do_not_come_end_a_run_in_one_line():
     """Two disks side by side never meet: no sample is handed over in place of the one wanted."""
     gas = beside_each_other()
     with pytest.raises(SilentError, match=r"do not meet any longer at t = .* after 0 collisions"):
