@@ -1,5 +1,6 @@
 """The living page in a real browser: its dynamics against the kernel's, and what a person does."""
 
+import functools
 import math
 from contextlib import contextmanager
 
@@ -16,7 +17,7 @@ from roughgas.simulation.restart import in_order, positions_and_velocities
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
-CONFIGURATION = config.load("config.yaml")
+CONFIGURATION = functools.cache(lambda: config.load("config.yaml"))
 PERIODS = {"vibrated": 30.0, "sheared": 50.0}
 """Whole periods of the drive, in T, after which the kernel hands its gas over."""
 COLLISIONS = 60
@@ -81,7 +82,7 @@ def page(file, browser):
 
 def of_material(name, q=0.5, mu=None):
     """The page's settings of an experiment with another moment of inertia, or friction."""
-    experiment = settings(CONFIGURATION, name)
+    experiment = settings(CONFIGURATION(), name)
     effects = experiment["effects"] | {"spin": {"inertia": q}}
     return experiment | {"effects": effects | ({"friction": {"mu": mu}} if mu else {})}
 

@@ -103,9 +103,14 @@ DATA = {
 }
 
 
+@functools.cache
+def data_of(name):
+    return DATA[name]()
+
+
 def inputs(name, folder):
     paths = []
-    for data in DATA[name]():
+    for data in data_of(name):
         paths.append(folder / f"{data.attrs['experiment']}.nc")
         data.to_netcdf(paths[-1])
     return paths
@@ -116,17 +121,16 @@ def bars(axes):
     return [np.column_stack(box[0].get_xydata().T) for box in axes.containers]
 
 
-@pytest.mark.parametrize("name", ["fig1b", "mixtures_cooling"])
-def test_a_figure_is_drawn_from_its_files(name, tmp_path):
-    output = tmp_path / "figures" / f"{name}.png"
-    paths = inputs(name, tmp_path)
-    if name in figures_of("paper"):
-        draw(name, paths, output=[output])
-    else:
-        folder = ROOT / "studies" / name.partition("_")[0]
-        draw_of_study(folder, name, paths, shows=[path.stem for path in paths], output=[output])
-    image = imread(output)
-    assert image.shape[0] > 600 and image.shape[1] > 800 and image.std() > 0.05
+def is_a_picture(path):
+    image = imread(path)
+    return image.shape[0] > 600 and image.shape[1] > 800 and image.std() > 0.05
+
+
+def test_a_figure_of_a_study_is_drawn_from_its_files(tmp_path):
+    output, paths = tmp_path / "figures" / "friction.png", inputs("friction", tmp_path)
+    shown = [path.stem for path in paths]
+    draw_of_study(ROOT / "studies" / "friction", "friction", paths, shows=shown, output=[output])
+    assert is_a_picture(output)
 
 
 @functools.cache
@@ -135,10 +139,16 @@ def drawn(name):
     study, line, suffix = name.partition("_")
     own = part(study, "figure") if name not in figures_of("paper") else paper
     with rc_context(style.PARAMETERS):
-        return getattr(own, name if own is paper else f"draw{line}{suffix}")(*DATA[name]())
+        return getattr(own, name if own is paper else f"draw{line}{suffix}")(*data_of(name))
 
 
-@pytest.mark.parametrize("name", DATA)
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(one, marks=[pytest.mark.slow] * (one == "mixtures_polydisperse"))
+        for one in DATA
+    ],
+)
 def test_a_figure_can_be_read(name):
     assert faults(lambda: drawn(name)) == []
 
@@ -147,8 +157,8 @@ def test_a_figure_can_be_read(name):
     "name", [one for one in DATA if not one.startswith(("mix", "visco", "couette"))]
 )
 def test_every_point_stands_where_it_was_measured(name):
-    measured = [data.get("input_spin_share", data.R) for data in DATA[name]()]
-    axes = [data[axis] for data in DATA[name]() for axis in data.R.dims if axis != "wave"]
+    measured = [data.get("input_spin_share", data.R) for data in data_of(name)]
+    axes = [data[axis] for data in data_of(name) for axis in data.R.dims if axis != "wave"]
     known = np.concatenate([values.values.ravel() for values in (*measured, *axes)])
     for axes in drawn(name).axes:
         for column in bars(axes):
@@ -163,7 +173,7 @@ def test_the_same_data_in_any_order_give_the_same_bytes(tmp_path):
         content.append([output.read_bytes() for output in outputs])
     assert content[0] == content[1]
     assert content[0][0].startswith(b"%PDF") and b"CreationDate" not in content[0][0]
-    assert sorted((tmp_path / "out").iterdir()) == outputs
+    assert sorted((tmp_path / "out").iterdir()) == outputs and is_a_picture(outputs[1])
 
 
 def test_the_order_of_its_files_changes_no_picture(tmp_path):

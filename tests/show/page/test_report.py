@@ -37,6 +37,11 @@ def loaded():
     return config.load(ROOT / "tests" / "experiments.yaml")
 
 
+@pytest.fixture(scope="module")
+def studied():
+    return config.load(ROOT / "config.yaml")["folders"]
+
+
 @pytest.mark.parametrize("figure", [*figures_of("paper"), *figures_of("accuracy")])
 def test_a_caption_is_rendered_and_says_how_it_was_made(figure, loaded):
     about = {"caption": (CAPTIONS / f"{figure}.rst").read_text("utf-8")}
@@ -49,8 +54,8 @@ def test_a_caption_is_rendered_and_says_how_it_was_made(figure, loaded):
 
 
 @pytest.mark.parametrize("folder", FOLDERS, ids=lambda one: one.name)
-def test_readme_of_a_study_has_a_caption_for_each_figure(folder, loaded):
-    figures = config.load(ROOT / "config.yaml")["folders"][folder.name]["figures"]
+def test_readme_of_a_study_has_a_caption_for_each_figure(folder, studied):
+    figures = studied[folder.name]["figures"]
     found = captions(folder, [*figures])
     assert found.keys() == figures.keys()
     for caption in found.values():

@@ -53,7 +53,7 @@ def test_another_scheme_finds_the_same_gas(dimension):
     by each of the two."""
     r, beta = 0.6, 0.2
     R, error = settled(r, beta, dimension, 10_000, 300, 1)
-    passed, series = ratios(5_000, r, beta, dimension, 190, 2)
+    passed, series = ratios(4_000, r, beta, dimension, 120, 2)
     series = series[passed > 50]
     other, other_error = series.mean(), blocking_stderr(series)
     theoretical = theory.cooling_ratio(r, beta, dimension)
