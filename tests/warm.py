@@ -14,7 +14,9 @@ from brute_force.scenes import KERNELS, RARE, begin, run, settings
 from roughgas.scene.initial import initial_state
 
 TWO = [{"fraction": 0.5}, {"fraction": 0.5, "radius": 1.5}]
-MIXED = ("gas", "heated", "rubbed bed")
+MIXED = ("gas", "heated")
+CAREFUL = settings("gas")
+CAREFUL["effects"] = CAREFUL["effects"] | {"contact_time": {"duration": 1e-3}}
 SINGLE = "single precision"
 SOFT = {"soft disks": 2, "soft spheres": 3}  # their dimension
 
@@ -22,8 +24,8 @@ SCENES = {  # those that take longest first
     "sheared, in cells": settings("sheared", 800, [100, 100]),
     **{name: settings(name) for name in KERNELS if name not in RARE},
     **{f"{name} of two species": settings(name) | {"species": TWO} for name in MIXED},
+    "gas, contact time": CAREFUL,
     "triangle": settings("bed", floor={"wave": "triangle"}),
-    "sine": settings("bed", floor={"wave": "sine"}),
 }
 
 

@@ -35,7 +35,7 @@ FEW = [
 
 UNLIKE = [
     (set(KERNELS[name]["effects"]), len(KERNELS[name]["box"]), "sawtooth")
-    for name in ("gas", "heated", "rubbed bed")
+    for name in ("gas", "heated")
 ]
 """Those of which other tests run mixtures, too."""
 
@@ -127,7 +127,7 @@ def test_invariants_of_random_scenes(margins):
 
 def test_invariants_of_random_mixtures(margins):
     """As above, of up to three species of any material, with masses that differ by 1e6."""
-    keep_invariants(margins, mixtures(covering(2) if margins.full else UNLIKE), 40, 600)
+    keep_invariants(margins, mixtures(covering(2) if margins.full else UNLIKE), 20, 600)
 
 
 def keep_invariants(margins, kinds, few, many):

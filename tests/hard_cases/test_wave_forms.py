@@ -132,7 +132,10 @@ def test_take_off_from_a_moving_floor(margins):
     margins.at_most("share by which a hop from a sine is too short", early, 1e-6, **tried)
 
 
-@pytest.mark.parametrize("form", ["sawtooth", "reversed_sawtooth", "triangle", "sine"])
+SINE = pytest.param("sine", marks=pytest.mark.slow)
+
+
+@pytest.mark.parametrize("form", ["sawtooth", "reversed_sawtooth", "triangle", SINE])
 def test_no_particle_falls_through_the_floor(margins, form):
     instants = margins.size(quick=300, full=20_000)
     # on a floor at rest a gas that dissipates would come to rest

@@ -73,9 +73,10 @@ def test_a_cooling_gas_goes_on_wherever_it_was_last_refreshed(name, first):
     assert_same_end(whole, run(experiment, cooling(50 - first - 10), half))
 
 
-@pytest.mark.parametrize(
-    "name", [pytest.param("gas", marks=pytest.mark.slow), "sheared", "walled", "spheres"]
-)
+SLOW = [pytest.param(name, marks=pytest.mark.slow) for name in ("gas", "walled", "spheres")]
+
+
+@pytest.mark.parametrize("name", ["sheared", *SLOW])
 def test_many_particles_go_on_in_their_cells(name, monkeypatch):
     """However few they are; the cells of a bed stay those of the gas that it was at the start."""
     monkeypatch.setattr(memory, "FEW", 0)

@@ -19,6 +19,7 @@ from roughgas.simulation.point import run_point
 COSTS = {"kernel_seconds"}
 DRIVEN = config.load_experiment(config.SHIPPED, "sheared", "small")
 DRIVEN["schedule"] |= {"equilibrate": 20, "measure": 60, "sample_every": 0.5}
+TARGET = {"target_stderr": 0.04, "sample_every": 2}
 WATCHED = {"mean_square_displacement": {"lags": 3}, "cumulants": {"every": 7}}
 RUNS = {
     "cooling": TINY | {"keep_state": True},
@@ -34,7 +35,7 @@ RUNS = {
             "stages": [{"duration": 10}, {"duration": 15, "effects": {"shear": {"velocity": 3}}}],
         },
     },
-    "target": DRIVEN | {"schedule": DRIVEN["schedule"] | {"target_stderr": 0.04}},
+    "target": DRIVEN | {"schedule": DRIVEN["schedule"] | TARGET},
 }
 
 

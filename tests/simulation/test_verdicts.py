@@ -209,6 +209,7 @@ def sigmas(one, other):
 # ------------------------------------------------------------------------ what ends early
 
 
+@pytest.mark.slow
 def test_collisions_that_do_not_come_end_a_run_in_one_line():
     """Two disks side by side never meet: no sample is handed over in place of the one wanted."""
     gas = beside_each_other()

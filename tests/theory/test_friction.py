@@ -205,7 +205,8 @@ def test_pushes_balance_the_cooling_of_a_spinner(dimension):
 @pytest.mark.parametrize("gas", [(0.9, 0.0, 0.08, 2), (0.9, 0.0, 0.105, 3)])
 def test_the_share_of_a_maxwellian_beyond_the_threshold(gas):
     """Of two million drawn; within 4 standard errors."""
-    spins = np.random.default_rng(2).standard_normal((2_000_000, 2 * gas[3] - 3))
+    size = 2_000_000, 2 * gas[3] - 3
+    spins = np.random.default_rng(2).standard_normal(size, np.float32)
     R, q = theory.friction_ratio(*gas), theory.moment_of_inertia(gas[3])
     spins = np.linalg.norm(spins, axis=1) * math.sqrt(R / (1 - R) / q)
     expected = theory.maxwellian_share(*gas)

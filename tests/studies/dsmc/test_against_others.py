@@ -90,7 +90,7 @@ def test_another_program_finds_the_same_cumulants(dimension, r, beta, expected):
 
     Spins prefer to be perpendicular to velocities, as N. V. Brilliantov et al. found (2007).
     """
-    found = settled_samples(r, beta, dimension, 20_000, 100, 5)
+    found = settled_samples(r, beta, dimension, 10_000, 100, 5)
     for name, value in expected.items():
         values, digit = getattr(found, name), 0.005 if name == "a02" else 0.0005
         assert values.mean() == pytest.approx(value, abs=digit + 4 * blocking_stderr(values))
