@@ -7,31 +7,23 @@ import sys
 from multiprocessing import get_context
 from pathlib import Path
 
-import numpy as np
 from accuracy.soft_spheres.pair import collide, shot
 from brute_force.scenes import KERNELS, RARE, begin, run, settings
 
-from roughgas.scene.initial import initial_state
-
 TWO = [{"fraction": 0.5}, {"fraction": 0.5, "radius": 1.5}]
-MIXED = ("gas", "heated")
-CAREFUL = settings("gas")
-CAREFUL["effects"] = CAREFUL["effects"] | {"contact_time": {"duration": 1e-3}}
-SINGLE = "single precision"
 SOFT = {"soft disks": 2, "soft spheres": 3}  # their dimension
 
 SCENES = {  # those that take longest first
     "sheared, in cells": settings("sheared", 800, [100, 100]),
     **{name: settings(name) for name in KERNELS if name not in RARE},
-    **{f"{name} of two species": settings(name) | {"species": TWO} for name in MIXED},
-    "gas, contact time": CAREFUL,
+    **{f"{name} of two species": settings(name) | {"species": TWO} for name in ("gas", "heated")},
     "triangle": settings("bed", floor={"wave": "triangle"}),
 }
 
 
 def compile_kernels(claimed):
     """Compile what no other worker does; `claimed` is a folder that they share."""
-    for name in [*SOFT, *SCENES, SINGLE]:
+    for name in [*SOFT, *SCENES]:
         if claims(claimed / name):
             in_a_child(compile_one, name)
 
@@ -41,10 +33,7 @@ def compile_one(name):
     if name in SOFT:
         collide(0.7, 0.3, 0.3, 3, shot(0.8, SOFT[name], 0.01))
         return
-    scene, state = begin(SCENES["gas" if name == SINGLE else name], 0.9, -1.0)
-    if name == SINGLE:
-        rng = np.random.default_rng(1)
-        state = initial_state(scene, SCENES["gas"], rng, np.float32)
+    scene, state = begin(SCENES[name], 0.9, -1.0)
     run(state, scene, 0)
 
 

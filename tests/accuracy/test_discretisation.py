@@ -45,6 +45,7 @@ def group(parts):
     return discretisation.combine(parts, SETTINGS)
 
 
+@pytest.mark.slow  # compiles two kernels
 def test_what_the_jobs_measure(parts):
     for task, found in parts.items():
         assert 0.15 < found.R < 0.4 and 0.0 < found.R_stderr < 0.05, task
@@ -55,11 +56,13 @@ def test_what_the_jobs_measure(parts):
     assert parts["model-0"].touched < 0.1 < 0.5 < parts["model-1"].touched
 
 
+@pytest.mark.slow
 def test_jobs_are_independent(parts):
     values = [found.R.item() for found in parts.values()]
     assert len(set(values)) == len(values)
 
 
+@pytest.mark.slow
 def test_everything_in_the_group_is_described(group):
     for name, values in group.variables.items():
         assert values.attrs["long_name"] and values.attrs["units"], name

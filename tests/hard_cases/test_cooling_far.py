@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+import pytest
 from brute_force import begin, run, settings, snapshot
 from compiled import from_python
 
@@ -104,6 +105,7 @@ def rescaled(power, collisions):
     return pairs, shot.position.tobytes(), *(part.tobytes() for part in restored)
 
 
+@pytest.mark.slow  # compiles a kernel
 def test_a_point_may_cool_below_the_smallest_number(margins):
     """1000 collisions per particle at r = 0.4 take e^380 off the energy; doubles reach e^-745."""
     point = experiment(load("config.yaml", {}), "cooling", "small")

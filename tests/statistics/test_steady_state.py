@@ -157,9 +157,6 @@ def staying(s):
 SCENES = [(50, 10, 4, staying, 0), (200, 20, 20, staying, 60), (400, 60, 5, declining, 0)]
 SCENES += [(400, 20, 5, collapsing, 40), (400, 20, 5, collapsing_early, 0)]
 SCENES += [(800, 20, 60, staying, 0)]
-MORE = [(50, 60, 4, staying, 0), (200, 20, 5, staying, 0), (400, 10, 5, declining, 25)]
-MORE += [(400, 20, 5, collapsing, 0), (800, 60, 20, staying, 0)]
-SCENES += [pytest.param(*one, marks=pytest.mark.slow) for one in MORE]
 
 
 @pytest.mark.parametrize("samples, replicas, relaxation, late, minimum_start", SCENES)

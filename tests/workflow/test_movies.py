@@ -6,12 +6,6 @@ from PIL import Image
 TINY = ("--config", "scale=tiny", "--")
 
 
-def test_an_unknown_movie_is_refused_in_one_line(project):
-    status, output = project.snakemake("-j1", "figures/movies/flow.gif")
-    assert status != 0
-    assert "roughgas: error: movie = flow: must be one of vibrated, " in output
-
-
 @pytest.mark.slow
 def test_one_is_made(project, tmp_path):
     copy = project.copy_to(tmp_path / "copy")

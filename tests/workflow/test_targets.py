@@ -15,6 +15,7 @@ ILLEGAL = {
     ("results/paper/cooling/r1.5/beta0/seed1.nc",): "restitution r = 1.5: must lie in [0, 1]",
     ("results/paper/heating/r0.9/beta0/seed1.nc",): "experiment = 'heating': must be one of clu",
     ("figures/fig9.png",): "figure = 'fig9': must be a figure or an experiment, such as fig2b, fi",
+    ("figures/movies/flow.gif",): "movie = flow: must be one of vibrated, ",
     ("--config", "n_particles=5"): "key = 'n_particles': must be one of accuracy, betas_per_job,",
 }
 
