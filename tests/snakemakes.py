@@ -23,15 +23,15 @@ ROOT = Path(__file__).parent.parent
 
 
 def run(folder, environment, arguments):
-    server = _server()
+    program = server()
     with tempfile.NamedTemporaryFile("r") as output:
         job = [str(folder), dict(environment), [*map(str, arguments)], output.name]
-        print(json.dumps(job), file=server.stdin, flush=True)
-        return int(server.stdout.readline()), output.read()
+        print(json.dumps(job), file=program.stdin, flush=True)
+        return int(program.stdout.readline()), output.read()
 
 
 @functools.cache
-def _server():
+def server():
     """Start the program below; it ends with its standard input, that is, with this process."""
     command = [sys.executable, __file__]
     return subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)

@@ -7,6 +7,7 @@ import sys
 import time
 
 import pytest
+import snakemakes
 import xarray as xr
 from project import Project
 from schedules import BRIEF, TINY
@@ -63,6 +64,7 @@ def snakemake(project, scale):
 
 
 def test_a_workflow_stops_without_a_word_of_failure(project):
+    snakemakes.server()  # which is ready by the time that the point runs
     running = snakemake(project, "long")
     log = project.folder / "logs/long/cooling/r0.9/beta0/seeds1-2.log"
     wait_until(log.exists, running)

@@ -127,7 +127,7 @@ def test_invariants_of_random_scenes(margins):
 
 def test_invariants_of_random_mixtures(margins):
     """As above, of up to three species of any material, with masses that differ by 1e6."""
-    keep_invariants(margins, mixtures(covering(2) if margins.full else UNLIKE), 20, 600)
+    keep_invariants(margins, mixtures(covering(2) if margins.full else UNLIKE), 12, 600)
 
 
 def keep_invariants(margins, kinds, few, many):

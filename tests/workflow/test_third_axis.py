@@ -16,6 +16,12 @@ EXPERIMENTS = {
 }
 SPUN = "results/tiny/spun"
 LEGAL = [
+    "results/paper/cooling/r0.87/beta-0.33/seed7.nc",
+    "results/paper/vibrated/r1/beta1/seed0.nc",
+    "results/small/sheared/r0.5/beta-1/seed123.nc",
+    "results/tiny/vibrated_rough_walls/r1e-3/beta.5/seed1.nc",
+    "results/paper/vibrated_particle_walls/r0.90/beta0.0/seed1.nc",
+    "results/paper/vibrated_smooth_walls/r0/beta0/seed1.nc",
     f"{SPUN}/inertia0.33/r0.87/beta-0.2/seed7.nc",
     "results/paper/spun/inertia1e-3/r0.5/beta1/seed1.nc",
     "results/small/walled/roughnessparticles/r0.9/beta0/seed1.nc",
@@ -46,7 +52,7 @@ def sweep_inertia(*labels):
     return lambda config: config["experiments"]["spun"]["sweep"].update({"spin.inertia": labels})
 
 
-def test_any_legal_value_can_be_asked_for(project):
+def test_any_legal_point_can_be_asked_for(project):
     assert project.planned(*LEGAL) == {"compile_kernel": len(LEGAL), "point": len(LEGAL)}
 
 
