@@ -129,9 +129,10 @@ def next_pair(state, scene, until):
     """The kernel's next collision; none if there is none up to some time after `until`."""
     made = state.counts[COLLISIONS]
     while state.counts[COLLISIONS] == made:
-        if state.clock[BASE] + state.clock[NOW] > until:
+        left = until - (state.clock[BASE] + state.clock[NOW])
+        if left < 0.0:
             return set()
-        run(state, scene, 1, interval=1.0, collisions=1)
+        run(state, scene, 1, interval=left + 1.0, collisions=1)
     return {int(state.counts[LAST_FIRST]), int(state.counts[LAST_SECOND])}
 
 
