@@ -6,6 +6,7 @@ PARAMETERS, and one in NEEDS or EXCLUDES if it does not go with everything.
 import itertools
 import random
 
+import numpy as np
 from hypothesis import strategies as st
 
 from roughgas.effects import KINDS
@@ -133,18 +134,19 @@ def covering(strength):
     legal = random_sets(600) + [
         (one, D) for one in every_set() for D in (2, 3) if is_legal(one, D) and not one >= ENDLESS
     ]
-    patterns = [(one, _patterns(*one, strength)) for one in legal]
-    found, missing = [], set().union(*(all_of for _, all_of in patterns))
-    while missing:
-        best, there = max(patterns, key=lambda pair: len(missing & pair[1]))
-        missing -= there
-        found.append((*best, WAVES[len(found) % len(WAVES)]))
+    choices = np.array([[*(name in one for name in KINDS), D == 3] for one, D in legal])
+    together = np.array([*itertools.combinations(range(choices.shape[1]), strength)])
+    patterns = choices[:, together] @ (1 << np.arange(strength, dtype=np.int8))
+    which = np.arange(len(together))
+    missing = np.zeros((len(together), 2**strength), bool)
+    for has in patterns:
+        missing[which, has] = True
+    found = []
+    while missing.any():
+        best = max(range(len(legal)), key=lambda k: missing[which, patterns[k]].sum())
+        missing[which, patterns[best]] = False
+        found.append((*legal[best], WAVES[len(found) % len(WAVES)]))
     return found
-
-
-def _patterns(effects, dimension, strength):
-    choices = [*((name, name in effects) for name in KINDS), ("dimension", dimension)]
-    return set(itertools.combinations(choices, strength))
 
 
 @st.composite
