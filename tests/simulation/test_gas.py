@@ -9,7 +9,7 @@ from brute_force import begin, run, settings
 from schedules import COOLING, STEADY
 
 from roughgas.base import InputError, JammedError
-from roughgas.kernel.state import EXPONENT
+from roughgas.kernel.state import BOUNDARY_HITS, EXPONENT
 from roughgas.scene import build, elastic
 from roughgas.simulation.energies import restored
 from roughgas.simulation.gas import Gas
@@ -121,9 +121,11 @@ def test_particles_that_do_little_but_hit_walls_are_given_up(monkeypatch, go_on)
     bed = settings("bed")
     gas = Gas.start(build(bed, 0.9, 0.2), bed, np.random.default_rng(1))
     gas.in_time(2.0, 10)
-    monkeypatch.setattr("roughgas.simulation.recorder.HELD", 0.002)
+    before = gas.state.counts[BOUNDARY_HITS]
+    monkeypatch.setattr("roughgas.simulation.recorder.MOST_HITS", 0.002)
     with pytest.raises(JammedError, match=r"more than 0\.002 hits of walls and floor by each part"):
         go_on(gas)
+    assert gas.state.counts[BOUNDARY_HITS] - before <= math.ceil(0.002 * 30 * gas.particles) + 1
 
 
 @pytest.mark.parametrize("soon", [0.0, math.inf])

@@ -20,6 +20,7 @@ from roughgas.kernel.state import (
     AT_ONCE,
     BASE,
     BOUNDARY,
+    BOUNDARY_HITS,
     COLLISIONS,
     EXTENT,
     HORIZON,
@@ -36,7 +37,7 @@ from roughgas.kernel.state import (
 )
 from roughgas.kernel.sweep import find_by_sweep, redraw_line
 
-REACHED, COLLAPSED, SILENT = range(3)  # how `advance` ends
+REACHED, COLLAPSED, SILENT, HELD = range(4)  # how `advance` ends
 # Spans without a collision after which none is waited for any longer: so many in all, divided among
 # the particles, and so many at least. A hundred thousand of a gas of 100, a few seconds.
 SILENCE = 10_000_000, 1000
@@ -47,11 +48,12 @@ STANDSTILL = 100_000, 10  # simultaneous events, and as many more for each parti
 
 
 @jit
-def advance(state, scene, until, collisions):
+def advance(state, scene, until, collisions, hits):
     """Run to the absolute time `until`, or to a total number of collisions; return the outcome.
 
     REACHED: at one of the two. COLLAPSED: the work per simulated time diverges (inelastic
-    collapse). SILENT: no time was given, and the collisions that were asked for do not come.
+    collapse). SILENT: no time was given, and the collisions that were asked for do not come. HELD:
+    there were more than `hits` of walls and floor in all.
     """
     clock, counts, agenda = state.clock, state.counts, state.agenda
     silent, patience = 0, max(SILENCE[0] // len(state.changes), SILENCE[1])
@@ -68,6 +70,8 @@ def advance(state, scene, until, collisions):
         for k in range(2):
             if affected[k] >= 0:
                 predict_events(state, scene, index(affected[k]), time)
+        if agenda.boundary_time is not None and counts[BOUNDARY_HITS] > hits:
+            return HELD
         if time >= clock[SPAN]:
             silent = 0 if counts[SINCE_REBASE] > 0 else silent + 1
             renew(state, scene)

@@ -14,18 +14,31 @@ from roughgas.kernel.particles import (
     set_path,
     spin_mass_of,
 )
-from roughgas.kernel.state import BASE, COLLISIONS, EXPONENT, INSTANT_END, NOW, ORIGIN, STARTED
+from roughgas.kernel.state import (
+    BASE,
+    BOUNDARY_HITS,
+    COLLISIONS,
+    EXPONENT,
+    INSTANT_END,
+    NOW,
+    ORIGIN,
+    STARTED,
+)
+
+UNLIMITED = 2**62
 
 
 class Sampling(NamedTuple):
     """When to sample: every `interval` of time, or every `collisions`, whichever comes first.
 
-    `refresh` is the number of samples after which a cooling gas is refreshed (0: never).
+    `refresh` is the number of samples after which a cooling gas is refreshed (0: never). More than
+    `hits` of walls and floor within a sample end it early.
     """
 
     interval: float
     collisions: int
     refresh: int
+    hits: int = UNLIMITED
 
 
 def columns(scene):
@@ -63,7 +76,8 @@ def record(state, scene, plan, samples):
     for k in range(len(samples)):
         now = state.clock[BASE] + state.clock[NOW]
         collisions = state.counts[COLLISIONS] + plan.collisions
-        ended = advance(state, scene, now + plan.interval, collisions)
+        hits = state.counts[BOUNDARY_HITS] + plan.hits
+        ended = advance(state, scene, now + plan.interval, collisions, hits)
         if ended != REACHED:
             return ended, k
         take_sample(state, scene, samples[k])

@@ -15,11 +15,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from roughgas.base import CollapseError, EndedEarlyError, JammedError, SilentError
-from roughgas.kernel.loop import COLLAPSED, INSTANT, REACHED
-from roughgas.kernel.record import Sampling, columns, record
+from roughgas.kernel.loop import COLLAPSED, HELD, INSTANT, REACHED
+from roughgas.kernel.record import UNLIMITED, Sampling, columns, record
 from roughgas.kernel.state import (
     BASE,
-    BOUNDARY_HITS,
     COLLISIONS,
     EXPONENT,
     LAST_FIRST,
@@ -85,7 +84,7 @@ def _wanted(blocks: int, excess: float) -> int:
 REPORTS = 50
 SOON = 0.5  # seconds after which a call of the kernel should come back
 JAMMED = 50_000  # collisions of each particle within a sample, or within a T if that is longer
-HELD = 1_000_000  # hits of walls and floor by each particle within a T, or a call if that is longer
+MOST_HITS = 1_000_000  # of walls and floor by each particle within a T, or a shorter sample
 NAMED = 8  # of the particles in a collapse
 
 
@@ -146,6 +145,7 @@ class Recorder:
         """
         names = columns(scene)
         rows = np.empty((samples, len(names)))
+        sampling = sampling._replace(hits=_most_hits(sampling.interval, state))
         record(state, scene, sampling, rows[:0])  # compiles, or fetches the kernel from its cache
         if self._tell and not self._compiled:
             self._tell(0.0, 0)
@@ -153,7 +153,7 @@ class Recorder:
         first, length = 0, max(1, sampling.refresh)
         while first < samples:
             part, called = rows[first : first + length], time.perf_counter()
-            made, hits = int(state.counts[COLLISIONS]), _hits(state)
+            made = int(state.counts[COLLISIONS])
             begin, before = time.process_time(), state.counts.copy()
             ended, _ = record(state, scene, sampling, part)
             self.seconds += time.process_time() - begin
@@ -163,8 +163,6 @@ class Recorder:
                 raise _failure(ended, state, scene)
             if timed and np.diff(part[:, 1], prepend=made).max() >= sampling.collisions:
                 raise _jam(state, sampling.interval)
-            if _hits(state) - hits > _most_hits(len(part) * sampling.interval, state):
-                raise _held(state)
             first += len(part)
             length = _next_length(length, time.perf_counter() - called, samples, sampling.refresh)
             if self._tell:
@@ -180,9 +178,10 @@ def most_in(interval: float, particles: int) -> int:
     return math.ceil(particles / 2 * JAMMED * max(1.0, interval))
 
 
-def _most_hits(time: float, state: State) -> float:
-    """Return the hits of walls and floor within some T after which particles are held there."""
-    return HELD * len(state.label) * max(1.0, time)
+def _most_hits(interval: float, state: State) -> int:
+    """Return the hits of walls and floor within a sample after which particles are held there."""
+    length = max(1.0, interval) if math.isfinite(interval) else 1.0
+    return math.ceil(min(MOST_HITS * len(state.label) * length, UNLIMITED))
 
 
 def _next_length(length: int, took: float, samples: int, refresh: int) -> int:
@@ -200,6 +199,8 @@ def _failure(ended: int, state: State, scene: Scene) -> EndedEarlyError:
     """Return the error of a call of the kernel that ended early."""
     if ended == COLLAPSED:
         return _collapse(state, scene)
+    if ended == HELD:
+        return _held(state)
     made, remedy = int(state.counts[COLLISIONS]), "raise the packing, or the number of particles"
     where = f"at t = {now(state):.6g} T, after {made} collisions"
     return SilentError(f"particles do not meet any longer {where}: {remedy}")
@@ -211,12 +212,8 @@ def _jam(state: State, interval: float) -> JammedError:
     return JammedError(f"more than {limit}, at t = {now(state):.6g} T: the gas is jammed: {remedy}")
 
 
-def _hits(state: State) -> int:
-    return int(state.counts[BOUNDARY_HITS])
-
-
 def _held(state: State) -> JammedError:
-    limit = f"{HELD} hits of walls and floor by each particle within a T"
+    limit = f"{MOST_HITS} hits of walls and floor by each particle within a T"
     remedy = "make walls and floor smoother, or raise their r"
     return JammedError(f"more than {limit}, at t = {now(state):.6g} T: some are held: {remedy}")
 
