@@ -82,7 +82,8 @@ def experiment(number: int, width: float) -> dict:
     }
     sides = {f"{side}_wall": material for side in ("left", "right", "front", "back")}
     box = [2.0 * width, 2.0 * width, "open"]
-    return {"particles": number, "box": box, "effects": effects | sides}
+    about = {"particles": number, "box": box, "neighbours": "lists"}
+    return about | {"effects": effects | sides}
 
 
 def settle() -> np.ndarray:

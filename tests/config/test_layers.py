@@ -35,6 +35,7 @@ def test_gamma_and_f_star_are_those_of_the_floor():
     assert falls / math.sqrt(2.0) / floor.period == pytest.approx(0.44)
     assert found["effects"]["floor"]["wave"] == "sine"
     assert found["box"] == [20, 20, "open"]
+    assert build(found, 0.7, 0.35).lists
     period = floor.period
     lengths = [found["schedule"][key] for key in ("equilibrate", "measure", "sample_every")]
     assert lengths == pytest.approx([40 * period, 8 * period, period / 32])

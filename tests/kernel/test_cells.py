@@ -5,8 +5,10 @@ import pytest
 from brute_force import Beside, begin, run, scene_of, settings, snapshot
 
 from roughgas.kernel import memory
-from roughgas.kernel.state import LAST_FIRST, LAST_SECOND
+from roughgas.kernel.loop import start
+from roughgas.kernel.state import LAST_FIRST, LAST_SECOND, PREDICTIONS
 
+LISTS = {"neighbours": "lists"}
 CASES = {
     # experiment, r, beta, seed
     "gas": (settings("gas", 24, [17, 19]), 0.98, 0.2, 1),
@@ -21,14 +23,16 @@ CASES = {
         6,
     ),
     "bed between rough walls": (settings("walled", 40, [20, "open"]), 0.8, 0.2, 7),
+    "bed on lists": (settings("walled", 40, [20, "open"]) | LISTS, 0.8, 0.2, 7),
     "spheres": (settings("spheres", 40, [17, 17, 17]), 0.98, 0.2, 8),
+    "spheres on lists": (settings("spheres", 80, [20, 20, 20]) | LISTS, 0.98, 0.2, 8),
 }
 SEGMENTS, COLLISIONS = 20, 10
 
 
 def sheared_or_slow(cases):
     """Parameters of a test; others than the sheared gas, in which most of it acts, are slow."""
-    quick = ("sheared", "fast shear", "slow gas, fast shear")
+    quick = ("sheared", "fast shear", "slow gas, fast shear", "bed on lists", "walled, on lists")
     return [pytest.param(case, marks=[pytest.mark.slow] * (case not in quick)) for case in cases]
 
 
@@ -58,8 +62,14 @@ MANY = {
     "gas": (settings("gas", 400, [60, 60]), 0.9, 0.2),
     "sheared": (settings("sheared", 400, [60, 60], shear={"velocity": 5.0}), 0.9, 0.2),
     "walled": (settings("walled", 400, [50, "open"]), 0.9, 0.2),
+    "walled, on lists": (settings("walled", 400, [50, "open"]) | LISTS, 0.9, 0.2),
     "spheres": (settings("spheres", 600, [22, 22, 22]), 0.95, 0.2),
     "species": (settings("gas", 400, [80, 80]) | {"species": UNLIKE}, 0.9, 0.3),
+    "species, on lists": (
+        settings("walled", 400, [80, "open"]) | {"species": UNLIKE} | LISTS,
+        0.9,
+        0.3,
+    ),
     "species, sheared": (settings("sheared", 400, [80, 80]) | {"species": UNLIKE}, 0.9, 0.3),
 }
 
@@ -111,6 +121,36 @@ def test_every_particle_is_listed_once_in_its_cell_and_on_its_day(many):
     assert members(queue.first, queue.later) == {
         day: set(np.flatnonzero(days == day)) for day in set(days)
     }
+
+
+@pytest.mark.parametrize("skin", [memory.SKIN, 4.0])  # such a wide one has more than there is room
+def test_lists_have_all_that_can_be_met(skin, many, monkeypatch):
+    """Which is told by the distances of all regions; and what is met is what brute force says."""
+    monkeypatch.setattr(memory, "SKIN", skin)
+    scene, state = begin(*MANY["walled, on lists"], 6)
+    full = 0
+    for _ in range(20):
+        run(state, scene, 1, collisions=100)
+        lists = state.cells.neighbours
+        apart = np.abs(lists.middle[:, None] - lists.middle) - lists.sides
+        near = (np.maximum(apart, 0.0) ** 2).sum(axis=2) < memory.NARROWEST**2
+        np.fill_diagonal(near, False)
+        for i, count in enumerate(lists.count):
+            if count <= memory.ROOM:
+                assert sorted(lists.members[i, :count]) == list(np.flatnonzero(near[i]))
+        full += (lists.count > memory.ROOM).sum()
+    assert (full > 0) == (skin == 4.0)
+
+
+def test_the_regions_of_lists_move_as_the_particles_do(many):
+    """All that fall together keep their lists: nobody looks around anew but after contacts."""
+    scene, state = begin(*MANY["walled, on lists"], 7)
+    run(state, scene, 0)
+    state.trajectory[:, 2:4] = [0.0, 50.0]
+    start(state, scene)
+    before = state.counts[PREDICTIONS]
+    run(state, scene, 1, 1.0)
+    assert state.counts[PREDICTIONS] - before < 5 * len(state.changes)
 
 
 def members(first, following):

@@ -37,7 +37,7 @@ def said_by_layer(settings: Mapping[str, Any]) -> dict[str, Any]:
     amplitude = layer["gamma"] * gravity / (2.0 * math.pi * frequency) ** 2
     period = 1.0 / frequency
     floor = {"amplitude": 2.0 * amplitude, "period": period, "wave": "sine"}
-    found: dict[str, Any] = {"effects": {"floor": floor}}
+    found: dict[str, Any] = {"effects": {"floor": floor}, "neighbours": "lists"}
     if "width" in layer:
         found["box"] = [DIAMETER * layer["width"]] * 2 + ["open"]
     cycles = layer.get("cycles") or {}

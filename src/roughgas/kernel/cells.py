@@ -11,6 +11,13 @@ away are considered, and never met. Under shear each row of cells moves with the
 of n by about (k + 1/2)/n - 1/2 of what the images above the box have slid: rows slide past each
 other slowly, and past the images no faster.
 
+In a dense layer (Scene.lists) a particle meets those around it many times before any of them has
+moved on. There each keeps a list of its neighbours. It has a region, a few tenths of a radius wide,
+and on its list are all whose regions are so near that the two may meet while both are in them. One
+that leaves its region gets a new one around it, and both its own list and those of its neighbours
+are mended. All regions move as the layer does in the mean, so that particles that fly together stay
+in theirs. Cells tell who is near: they hold the middles of the regions.
+
 Particles lie in memory in the order of their cells: neighbours are mostly in the cache when they
 are needed. As particles move they are numbered anew now and then; State.label keeps the numbers of
 the start.
@@ -19,31 +26,58 @@ the start.
 import math
 import sys
 
+import numpy as np
+
 from roughgas.kernel import hooks
-from roughgas.kernel.event_lists import clear_contacts, enter, unlink
+from roughgas.kernel.event_lists import choose_next, clear_contacts, enter, unlink
 from roughgas.kernel.hooks import present
-from roughgas.kernel.jit import jit
-from roughgas.kernel.mathematics import index, subtract
+from roughgas.kernel.jit import compiled, jit
+from roughgas.kernel.mathematics import (
+    REGISTER,
+    bits,
+    dot,
+    gather,
+    index,
+    lanes_of,
+    larger,
+    numbers_in,
+    order,
+    read,
+    subtract,
+    trailing_zeros,
+    write,
+)
+from roughgas.kernel.memory import NARROWEST, ROOM
 from roughgas.kernel.particles import (
     fold_into_box,
     image_numbers,
+    largest_of,
     position_and_velocity,
     shifted,
     slid,
 )
 from roughgas.kernel.prediction import decide
-from roughgas.kernel.state import NOBODY, SPAN
+from roughgas.kernel.state import ALIGNED, NOBODY, PREDICTIONS, SPAN
 
 ALL = -1  # every axis
 ORIGIN = 0.38196601125  # where cells begin, in their widths: no lattice has many sites on an edge
 FARTHEST = sys.float_info.max
+ALIGN_EVERY = 2  # predictions of each particle
 AT_ONCE = tuple(range(8))  # particles whose followers are read before any is put on a list
 
 
 @jit
 def find_around(state, scene, i, time):
-    """Foresee particle i's contacts with the particles around it; if it leaves its cell now, only
-    with those that enter its neighbourhood by that."""
+    """Foresee particle i's contacts with the particles around it."""
+    if state.cells.neighbours is None:
+        _find_in_cells(state, scene, i, time)
+    else:
+        _find_on_list(state, scene, i, time)
+
+
+@jit
+def _find_in_cells(state, scene, i, time):
+    """Look at all cells around; if particle i leaves its cell now, only at those that are new."""
     agenda, cells = state.agenda, state.cells
     moved_on = time >= cells.leave[i]
     axis, step = _move_on(state, scene, i, time) if moved_on else (ALL, 0)
@@ -67,9 +101,13 @@ def find_around(state, scene, i, time):
 
 @jit
 def settle(state, scene, i, time):
-    """Put particle i on the list of the cell that it is in at `time`."""
+    """Put particle i on the list of its cell at `time`, and in the middle of its own region."""
     cells = state.cells
     position, velocity = position_and_velocity(state, scene, i, time)
+    if cells.neighbours is not None:
+        position, velocity = _in_frame(cells.neighbours, position, velocity, time)
+        write(cells.neighbours.middle, i, 0, position)
+        cells.neighbours.count[i] = 0
     slide = slid(hooks.sliding(scene.effects, state), time)
     position, velocity = fold_into_box(position, velocity, cells.periods, slide)
     home = 0
@@ -255,6 +293,131 @@ def _columns(slide, cells, place, up, duration, steps):
     return column, column + last - first + 1
 
 
+# ------------------------------------------------------------------ lists of neighbours
+
+
+@jit
+def _find_on_list(state, scene, i, time):
+    if time >= state.cells.leave[i]:
+        _move_region(state, scene, i, time)
+    _foresee_exit(state, scene, i, time)
+    clear_contacts(state.agenda, i, time + state.clock[SPAN])
+    decide(state, scene, i, _members(state, i), time, time, FARTHEST)
+
+
+@jit
+def _foresee_exit(state, scene, i, time):
+    """Note when particle i leaves its region."""
+    cells, neighbours = state.cells, state.cells.neighbours
+    position, velocity = position_and_velocity(state, scene, i, time)
+    position, velocity = _in_frame(neighbours, position, velocity, time)
+    d = subtract(position, read(neighbours.middle, i, 0, position))
+    d, velocity = shifted(d, velocity, image_numbers(d, scene.box, None), scene.box, None)
+    gravity = hooks.acceleration(scene.effects)
+    cells.leave[i] = time + _exit(d, velocity, neighbours.sides, gravity)[0]
+
+
+@jit
+def _in_frame(neighbours, position, velocity, time):
+    """Return position and velocity relative to the frame in which regions rest."""
+    frame = neighbours.frame
+    height = position[-1] - (frame[0] + frame[1] * time)
+    return position[:-1] + (height,), velocity[:-1] + (velocity[-1] - frame[1],)
+
+
+@jit
+def _members(state, i):
+    """Put the neighbours of particle i on the shortlist, and more if its own lacks some; return
+    their number."""
+    neighbours, found = state.cells.neighbours, state.shortlist.found
+    if neighbours.count[i] > ROOM:
+        return _collect(state, i, None, 0.0, ALL, 0)
+    for k in range(ROOM):
+        found[k] = neighbours.members[i, k]
+    return int(neighbours.count[i])
+
+
+@compiled
+def _move_region(state, scene, i, time):
+    """Let the region of particle i be around where it is at `time`."""
+    cells = state.cells
+    for k in range(_members(state, i)):
+        _remove(cells.neighbours, state.shortlist.found[k], i)
+    unlink(cells.first, cells.following, cells.home[i], i)
+    settle(state, scene, i, time)
+    _list_neighbours(state, scene, i, len(state.changes))
+
+
+@jit
+def _list_neighbours(state, scene, i, end):
+    """Put those near particle i, of numbers below `end`, on its list, and it on theirs."""
+    neighbours, found = state.cells.neighbours, state.shortlist.found
+    number = _collect(state, i, None, 0.0, ALL, 0)
+    middle = read(neighbours.middle, i, 0, scene.box)
+    reach = NARROWEST * largest_of(state.bodies)
+    for first in range(0, number, lanes_of(state.shortlist.when)):
+        others = numbers_in(found, first, REGISTER)
+        x = tuple(gather(neighbours.middle, k, others) - middle[k] for k in range(len(scene.box)))
+        x, _ = shifted(x, x, image_numbers(x, scene.box, None), scene.box, None)
+        gap = tuple(larger(abs(x[k]) - neighbours.sides[k], 0.0) for k in range(len(scene.box)))
+        near = bits((dot(gap, gap) < reach * reach) & (order(REGISTER) < number - first))
+        while near != np.uint64(0):
+            j = index(int(found[index(first + trailing_zeros(near))]))
+            if (j != i) & (j < end):
+                _add(neighbours, i, j)
+                _add(neighbours, j, i)
+            near &= near - np.uint64(1)
+
+
+@jit
+def _add(neighbours, i, j):
+    count = neighbours.count[i]
+    if count < ROOM:
+        neighbours.members[i, count] = j
+    neighbours.count[i] = min(count + 1, ROOM + 1)
+
+
+@jit
+def _remove(neighbours, i, j):
+    """Take j off the list of particle i. One that lacks some stays so until i moves its region."""
+    count, members = neighbours.count[i], neighbours.members
+    if count > ROOM:
+        return
+    for k in range(count):
+        if members[i, k] == j:
+            members[i, k] = members[i, count - 1]
+            neighbours.count[i] = count - 1
+            return
+
+
+@jit
+def align_now_and_then(state, scene, time):
+    """Let the regions of neighbour lists, if there are any, go on moving as the particles do."""
+    if state.cells.neighbours is None:
+        return
+    counts = state.counts
+    if counts[PREDICTIONS] - counts[ALIGNED] > ALIGN_EVERY * len(state.changes):
+        _align(state, scene, time)
+        for i in range(len(state.changes)):
+            choose_next(state, i)
+
+
+@compiled
+def _align(state, scene, time):
+    frame, total = state.cells.neighbours.frame, 0.0
+    for i in range(len(state.changes)):
+        total += position_and_velocity(state, scene, i, time)[1][-1]
+    velocity = total / len(state.changes)
+    frame[0] += (frame[1] - velocity) * time  # where regions are now does not change
+    frame[1] = velocity
+    for i in range(len(state.changes)):
+        _foresee_exit(state, scene, i, time)
+    state.counts[ALIGNED] = state.counts[PREDICTIONS]
+
+
+# ------------------------------------------------------------------ particles in order
+
+
 @jit
 def arrange(state, scene, time):
     """Number the particles anew, in the order of their cells. The calendar's lists are lost."""
@@ -276,11 +439,17 @@ def arrange(state, scene, time):
             place = source
         order[place] = place
     _settle_all(state, scene, time)
+    if cells.neighbours is not None:
+        _align(state, scene, time)
+        for i in range(len(state.changes)):
+            _list_neighbours(state, scene, i, i)
 
 
 @jit
 def _settle_all(state, scene, time):
     cells = state.cells
+    if cells.neighbours is not None:
+        cells.neighbours.frame[:] = 0.0
     for cell in range(cells.first.size):
         cells.first[cell] = NOBODY
     for i in range(len(state.changes) - 1, -1, -1):

@@ -30,6 +30,7 @@ from roughgas.kernel.state import (
     TYPICAL_SPEED,
 )
 
+FETCHED = 8  # of a particle's list, about all that are on it
 FLIGHTS = 2.5  # mean free flights to foresee
 LAST_DAY = 2.0**62
 EVENTS_A_DAY = 2.0  # this many make a day's list short and empty days rare
@@ -79,12 +80,19 @@ def _partner(agenda, i):
 def _fetch(state, i):
     prefetch(state.agenda.key, i)
     prefetch(state.trajectory, i)
+    if state.cells.neighbours is not None:
+        prefetch(state.cells.neighbours.members, i)
 
 
 @jit
 def _fetch_around(state, i):
-    """Ask for those in the cells before and behind; those beside i are near it in memory, too."""
+    """Ask for those on its list, or in the cells before and behind; those beside i are near it in
+    memory, too."""
     cells = state.cells
+    if cells.neighbours is not None:
+        for k in range(FETCHED):
+            prefetch(state.trajectory, cells.neighbours.members[i, k])
+        return
     for step in (-1, 1):
         cell = cells.home[i] + step * cells.counts[0]
         cell = max(0, min(cell, cells.first.size - 1))

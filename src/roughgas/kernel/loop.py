@@ -3,7 +3,7 @@
 import math
 
 from roughgas.kernel import hooks
-from roughgas.kernel.cells import arrange, find_around
+from roughgas.kernel.cells import align_now_and_then, arrange, find_around
 from roughgas.kernel.contact import collide
 from roughgas.kernel.event_lists import (
     FLIGHTS,
@@ -72,6 +72,8 @@ def advance(state, scene, until, collisions, hits):
                 predict_events(state, scene, index(affected[k]), time)
         if agenda.boundary_time is not None and counts[BOUNDARY_HITS] > hits:
             return HELD
+        if state.cells is not None:
+            align_now_and_then(state, scene, time)
         if time >= clock[SPAN]:
             silent = 0 if counts[SINCE_REBASE] > 0 else silent + 1
             renew(state, scene)

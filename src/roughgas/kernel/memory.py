@@ -15,6 +15,7 @@ from roughgas.kernel.state import (
     Calendar,
     Cells,
     Log,
+    Neighbours,
     Shortlist,
     State,
     Sweep,
@@ -31,6 +32,8 @@ OF_BODIES = {"radius": (float,), "mass": (float,), "inertia": (float,), "species
 MOMENT = "moment of "  # before the name of an effect: the array of its moments
 PER_CELL = {2: 0.6, 3: 0.4}  # particles to a cell in so many dimensions, if that is wide enough
 IN_LAYER = 4.0  # density where most contacts of a layer are, over that of the layer as it is filled
+SKIN = 0.45  # added to the width of a cell where particles keep lists: the sides of their regions
+ROOM = 16  # on a particle's list, which is a line of the cache then
 FEWEST = 8  # cells along an axis: fewer would be met twice
 
 
@@ -47,11 +50,11 @@ def new_state(scene, position, velocity, spin, precision=np.float64, rng=None, b
     """
     number, dimension = position.shape
     narrowest = NARROWEST if bodies is None else NARROWEST * bodies.radius.max()
-    grid = cell_grid(scene, position, narrowest)
+    grid = cell_grid(scene, position, narrowest + (SKIN if scene.lists else 0.0))
     if number <= FEW or min(grid[0]) < FEWEST:
         state = _few(scene, number, dimension, precision)
     else:
-        state = _many(scene, number, dimension, precision, *grid)
+        state = _many(scene, number, dimension, precision, *grid, narrowest)
     order = np.lexsort(position.T[::-1])
     state.trajectory[:, :dimension] = position[order]
     state.trajectory[:, dimension:-1] = velocity[order]
@@ -112,7 +115,7 @@ def _few(scene, number, dimension, precision):
     )
 
 
-def _many(scene, number, dimension, precision, counts, widths):
+def _many(scene, number, dimension, precision, counts, widths, narrowest):
     """Give each particle one line of the cache for where it is, and one for what comes next."""
     fields = _fields(scene, dimension, precision, SLOTS_OF_MANY)
     fields |= {name: (np.int32,) for name in ("home", "following", "later")} | {"leave": (float,)}
@@ -143,7 +146,19 @@ def _many(scene, number, dimension, precision, counts, widths):
             periods=tuple(n * width for n, width in zip(counts, widths, strict=True)),
             first=np.full(math.prod(counts), NOBODY, np.int32),
             **{name: arrays[name] for name in ("following", "home", "leave")},
+            neighbours=_neighbours(number, widths, narrowest) if scene.lists else None,
         ),
+    )
+
+
+def _neighbours(number, widths, narrowest):
+    """Let those whose regions are no more than `narrowest` apart be in cells next to each other."""
+    return Neighbours(
+        middle=np.zeros((number, len(widths))),
+        sides=tuple(width - narrowest for width in widths),
+        members=_interleaved(number, {"members": (np.int32, ROOM)})["members"],
+        count=np.zeros(number, np.int32),
+        frame=np.zeros(2),
     )
 
 
@@ -190,7 +205,7 @@ def _state(scene, number, arrays, **parts):
         log=_log(effects.contact_log, arrays),
         random=np.zeros(1, np.uint64) if hooks.present(effects, "random") else None,
         clock=np.zeros(8),
-        counts=np.zeros(12, np.int64),
+        counts=np.zeros(13, np.int64),
         agenda=Agenda(**{name: arrays.get(name) for name in Agenda._fields}),
         shortlist=Shortlist(np.zeros(number + LANES, np.int32), np.zeros((1, TOGETHER))),
         **parts,

@@ -28,7 +28,8 @@ BASE, NOW, ORIGIN, SPAN, TYPICAL_SPEED, LONGEST_HORIZON, EXTENT, INSTANT_END = r
     EXPONENT,
     LAST_FIRST,
     LAST_SECOND,
-) = range(12)
+    ALIGNED,
+) = range(13)
 # Kinds of event in Agenda.kind: a slot's number, or one of these
 HORIZON, BOUNDARY, NOTHING = -1, -2, -3
 NOBODY = -1  # ends a linked list of particles
@@ -84,6 +85,17 @@ class Sweep(NamedTuple):
     sizes: np.ndarray | None  # (1, N padded) radii, rounded up; None where all are 1
 
 
+class Neighbours(NamedTuple):
+    """A list for each particle of those near it, good for as long as it stays in its region."""
+
+    middle: np.ndarray  # (N, D) of the region, as the frame moves
+    sides: tuple[float, ...]  # of the region, in a
+    members: np.ndarray  # (N, ROOM) who can be met while both are in their regions
+    count: np.ndarray  # (N,) how many there are; above ROOM the list lacks some
+    frame: np.ndarray  # (2,) along the last axis: how far all regions have moved at the clock's
+    # base, and how fast they do
+
+
 class Cells(NamedTuple):
     """The particles listed by their cell; cells repeat along every axis, open ones included."""
 
@@ -93,7 +105,8 @@ class Cells(NamedTuple):
     first: np.ndarray  # (cells,) first particle of each cell's list
     following: np.ndarray  # (N,) the next particle of the same list
     home: np.ndarray  # (N,) number of the cell, the first axis running fastest
-    leave: np.ndarray  # (N,) when the particle leaves it
+    leave: np.ndarray  # (N,) when the particle leaves it, or its region
+    neighbours: Neighbours | None  # None where particles look at all cells around them
 
 
 class Shortlist(NamedTuple):

@@ -70,6 +70,7 @@ DIAMETER = 2.0
 NARROWEST = 4.01
 NARROWEST_CHANNEL = 2.01  # between side walls, in a
 LONGEST = 1e9  # side of a box, in a: products of three still leave room for squares
+CELLS, LISTS = "cells", "lists"  # where particles look for their neighbours
 FAR_APART = 8.0  # of side walls, in a: nothing comes round there, however near they are
 
 
@@ -82,6 +83,7 @@ class Scene(NamedTuple):
     effects: Effects
     extent: float  # least distance after which something comes round: a period or a width, in a
     middle: float  # height at which the mean flow vanishes, in a
+    lists: bool = False  # whether many particles keep lists of their neighbours
 
 
 def shear_rate(scene: Scene) -> float:
@@ -126,7 +128,15 @@ def build(experiment: Mapping[str, Any], r: float, beta: float) -> Scene:
         effects=effects,
         extent=min(across),
         middle=0.0 if lengths[1] is None else lengths[1] / 2.0,
+        lists=_keeps_lists(experiment, effects),
     )
+
+
+def _keeps_lists(experiment, effects):
+    found = experiment.get("neighbours", CELLS)
+    if found == LISTS and effects.shear is not None:
+        raise InputError("neighbours", found, f"be {CELLS} where images slide past each other")
+    return found == LISTS
 
 
 def elastic(scene: Scene) -> Scene:
