@@ -67,6 +67,7 @@ PARAMETERS = {
     "contact_pairs": {},
     "contact_log": {"most": st.sampled_from([1, 100])},
 }
+MOVED = {"floor", "right_wall"}  # in any wave form
 OPPOSITE = [("left_wall", "right_wall"), ("front_wall", "back_wall")]
 NEEDS = [("gravity", "floor"), ("floor", "gravity"), ("friction", "spin")]
 NEEDS += [("contact_averages", "spin")]
@@ -128,8 +129,8 @@ def random_sets(number):
 def covering(strength):
     """Legal compositions (effects, dimension, wave) in which all choices occur together that can:
 
-    for any so many effects (the dimension counts as one), every legal pattern of there and not
-    there. Wave forms of the floor, each with code of its own, take turns.
+    for any so many effects (the dimension counts as one, and so does a wave form), every legal
+    pattern of there and not there.
     """
     legal = random_sets(600) + [
         (one, D) for one in every_set() for D in (2, 3) if is_legal(one, D) and not one >= ENDLESS
@@ -145,8 +146,23 @@ def covering(strength):
     while missing.any():
         best = max(range(len(legal)), key=lambda k: missing[which, patterns[k]].sum())
         missing[which, patterns[best]] = False
-        found.append((*legal[best], WAVES[len(found) % len(WAVES)]))
-    return found
+        found.append(legal[best])
+    return _with_waves(found, strength)
+
+
+def _with_waves(found, strength):
+    """Give each composition a wave form of its floor and right wall, since forms have code of their
+    own; repeat some with other forms until each form of either has met any strength - 2 effects."""
+    met, waved = set(), []
+    for k, (effects, dimension) in enumerate(found * len(WAVES)):
+        others = [*itertools.combinations(sorted(effects), strength - 2)]
+        new = {w: {*itertools.product([w], MOVED & effects, others)} - met for w in WAVES}
+        turn = k % len(WAVES)  # of forms that are as good, each is taken as often
+        wave = max(WAVES[turn:] + WAVES[:turn], key=lambda w: len(new[w]))
+        if k < len(found) or new[wave]:
+            waved.append((effects, dimension, wave))
+            met |= new[wave]
+    return waved
 
 
 @st.composite
@@ -154,8 +170,8 @@ def scenes(draw, compositions):
     """(settings of an experiment, r, beta) of a legal scene with 2 to 40 particles."""
     names, dimension, wave = draw(st.sampled_from(compositions))
     effects = draw(parameters(names))
-    if "floor" in names:
-        effects["floor"]["wave"] = wave
+    for name in MOVED & names:
+        effects[name]["wave"] = wave
     box = [draw(st.floats(7.0, 40.0)) for _ in range(dimension)]
     if "gravity" in names and "lid" not in names:
         box[-1] = "open"
