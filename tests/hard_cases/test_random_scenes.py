@@ -1,13 +1,15 @@
 """Random scenes."""
 
+import itertools
 import math
 import multiprocessing
 import os
 from collections import defaultdict
 from concurrent.futures import ProcessPoolExecutor
+from contextlib import suppress
 
 import numba
-from brute_force import KERNELS, begin
+from brute_force import KERNELS
 from hypothesis import Phase, given, settings
 
 from hard_cases.compositions import (
@@ -38,15 +40,6 @@ UNLIKE = [
     for name in ("gas", "heated")
 ]
 """Those of which other tests run mixtures, too."""
-
-
-def fits(experiment, r, beta, seed):
-    """Whether the particles find room."""
-    try:
-        begin(experiment, r, beta, seed)
-    except InputError:
-        return False
-    return True
 
 
 JUNK = (math.nan, math.inf, -7, "x", None, True, [], {})
@@ -136,7 +129,7 @@ def keep_invariants(margins, kinds, few, many):
     In full, each kernel has a process of its own: numba never frees the memory of compiling, and
     dozens of kernels would take several GB.
     """
-    groups = by_kernel(drawn(kinds, margins.size(few, many)))
+    groups = drawn(kinds, margins.size(few, many))
     worst = sum(in_processes(groups) if margins.full else map(worst_of, groups), Worst())
     tried = {"tried": worst.tried, "unit": f"scenes, {worst.collisions} contacts"}
     what = "error of the energy balance, in roundings per exchange"
@@ -156,27 +149,18 @@ def keep_invariants(margins, kinds, few, many):
 
 
 def drawn(kinds, number):
-    """Return [(experiment, r, beta, seed)] of those scenes whose particles find room; so many are
-    tried as FUZZ_TRIES says if it is set, and then others for each --hypothesis-seed."""
-    found, tries = [], os.environ.get("FUZZ_TRIES")
+    """Return lists of scenes (experiment, r, beta, seed) that one kernel simulates: as many as
+    FUZZ_TRIES says if it is set, and then others for each --hypothesis-seed."""
+    groups, seeds, tries = defaultdict(list), itertools.count(), os.environ.get("FUZZ_TRIES")
     how = {"phases": [Phase.generate], "database": None, "deadline": None}
 
     @settings(max_examples=int(tries or number), derandomize=tries is None, **how)
     @given(kinds)
     def draw(scene):
-        if fits(*scene, len(found)):
-            found.append((*scene, len(found)))
+        with suppress(InputError):  # a box may be too narrow
+            groups[numba.typeof(build(*scene))].append((*scene, next(seeds)))
 
     draw()
-    return found
-
-
-def by_kernel(found):
-    """Return lists of the scenes that one kernel simulates."""
-    groups = defaultdict(list)
-    for experiment, r, beta, seed in found:
-        kernel = numba.typeof(build(experiment, r, beta))
-        groups[kernel].append((experiment, r, beta, seed))
     return list(groups.values())
 
 

@@ -6,7 +6,7 @@ import numpy as np
 from brute_force import begin, largest_overlap, scene_of, snapshot
 
 from hard_cases.invariants import beyond_cone, gain_of_momentum, outside
-from roughgas.base import CollapseError, JammedError
+from roughgas.base import CollapseError, InputError
 from roughgas.effects.walls import SIDES
 from roughgas.kernel.state import BOUNDARY_HITS, COLLISIONS, LAST_FIRST, LAST_SECOND
 from roughgas.simulation.gas import Gas
@@ -49,23 +49,21 @@ class Worst:
         self.momentum = self.gained = self.cone = 0.0
 
     def see(self, experiment, r, beta, seed):
-        """Simulate a scene for some hundreds of collisions; return what came of it.
-
-        "run", or "held" or "stopped" where it is given up, as a run would be.
-        """
-        gas, end = Gas(*begin(experiment, r, beta, seed)), "run"
+        """Simulate a scene for some hundreds of collisions, if its particles find room."""
+        try:
+            gas = Gas(*begin(experiment, r, beta, seed))
+        except InputError:
+            return
         _, world = scene_of(experiment, r, beta)
         self.broken += (gas.state.spin is None) != ("spin" not in experiment["effects"])
         try:
             self._see_samples(gas, world, not BOUNDARIES & set(experiment["effects"]))
             self._see_contacts(gas, world)
         except CollapseError as error:
-            end = "held" if isinstance(error, JammedError) else "stopped"
             self.broken += "\n" in str(error)
             self.given_up += 1
         self.tried += 1
         self.collisions += contacts_of(gas.state)
-        return end
 
     def __add__(self, other):
         """Return the worst of both: counts are added, of numbers the larger is kept."""
