@@ -10,7 +10,7 @@ SHARED = [  # what a family may import
     for path in sorted(Path(TESTS, folder).glob("*.py"))
     if not path.name.startswith("test_") and path not in DRAWING
 ]
-LONGEST = ["remedies", "random_scenes", "long_times"]  # start first
+LONGEST = ["random_scenes", "long_times", "exact_arithmetic", "remedies"]  # start first
 PICTURES = catalogue.figures_of("hard_cases")
 
 
@@ -35,7 +35,7 @@ def others_of_family(wildcards):
 
 
 def urgency_of_family(wildcards):
-    return 10 if wildcards.family in LONGEST else 0
+    return 10 - LONGEST.index(wildcards.family) if wildcards.family in LONGEST else 0
 
 
 rule family:
