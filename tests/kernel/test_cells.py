@@ -135,10 +135,10 @@ def test_lists_have_all_that_can_be_met(skin, many, monkeypatch):
         apart = np.abs(lists.middle[:, None] - lists.middle) - lists.sides
         near = (np.maximum(apart, 0.0) ** 2).sum(axis=2) < memory.NARROWEST**2
         np.fill_diagonal(near, False)
-        for i, count in enumerate(lists.count):
+        for i, count in enumerate(lists.number):
             if count <= memory.ROOM:
                 assert sorted(lists.members[i, :count]) == list(np.flatnonzero(near[i]))
-        full += (lists.count > memory.ROOM).sum()
+        full += (lists.number > memory.ROOM).sum()
     assert (full > 0) == (skin == 4.0)
 
 

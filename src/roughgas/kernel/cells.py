@@ -107,7 +107,7 @@ def settle(state, scene, i, time):
     if cells.neighbours is not None:
         position, velocity = _in_frame(cells.neighbours, position, velocity, time)
         write(cells.neighbours.middle, i, 0, position)
-        cells.neighbours.count[i] = 0
+        cells.neighbours.number[i] = 0
     slide = slid(hooks.sliding(scene.effects, state), time)
     position, velocity = fold_into_box(position, velocity, cells.periods, slide)
     home = 0
@@ -330,11 +330,11 @@ def _members(state, i):
     """Put the neighbours of particle i on the shortlist, and more if its own lacks some; return
     their number."""
     neighbours, found = state.cells.neighbours, state.shortlist.found
-    if neighbours.count[i] > ROOM:
+    if neighbours.number[i] > ROOM:
         return _collect(state, i, None, 0.0, ALL, 0)
     for k in range(ROOM):
         found[k] = neighbours.members[i, k]
-    return int(neighbours.count[i])
+    return int(neighbours.number[i])
 
 
 @compiled
@@ -371,22 +371,22 @@ def _list_neighbours(state, scene, i, end):
 
 @jit
 def _add(neighbours, i, j):
-    count = neighbours.count[i]
+    count = neighbours.number[i]
     if count < ROOM:
         neighbours.members[i, count] = j
-    neighbours.count[i] = min(count + 1, ROOM + 1)
+    neighbours.number[i] = min(count + 1, ROOM + 1)
 
 
 @jit
 def _remove(neighbours, i, j):
     """Take j off the list of particle i. One that lacks some stays so until i moves its region."""
-    count, members = neighbours.count[i], neighbours.members
+    count, members = neighbours.number[i], neighbours.members
     if count > ROOM:
         return
     for k in range(count):
         if members[i, k] == j:
             members[i, k] = members[i, count - 1]
-            neighbours.count[i] = count - 1
+            neighbours.number[i] = count - 1
             return
 
 

@@ -157,7 +157,7 @@ def _neighbours(number, widths, narrowest):
         middle=np.zeros((number, len(widths))),
         sides=tuple(width - narrowest for width in widths),
         members=_interleaved(number, {"members": (np.int32, ROOM)})["members"],
-        count=np.zeros(number, np.int32),
+        number=np.zeros(number, np.int32),
         frame=np.zeros(2),
     )
 

@@ -91,7 +91,7 @@ class Neighbours(NamedTuple):
     middle: np.ndarray  # (N, D) of the region, as the frame moves
     sides: tuple[float, ...]  # of the region, in a
     members: np.ndarray  # (N, ROOM) who can be met while both are in their regions
-    count: np.ndarray  # (N,) how many there are; above ROOM the list lacks some
+    number: np.ndarray  # (N,) how many there are; above ROOM the list lacks some
     frame: np.ndarray  # (2,) along the last axis: how far all regions have moved at the clock's
     # base, and how fast they do
 
