@@ -5,6 +5,7 @@ As a program, it reads lines of JSON from standard input, each with a folder, an
 arguments of Snakemake and a file for all output, and answers each with an exit status.
 """
 
+import atexit
 import contextlib
 import functools
 import gc
@@ -34,7 +35,9 @@ def run(folder, environment, arguments):
 def server():
     """Start the program below; it ends with its standard input, that is, with this process."""
     command = [sys.executable, __file__]
-    return subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+    program = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+    atexit.register(program.communicate)  # which closes its input, and waits
+    return program
 
 
 def become_snakemake(folder, environment, arguments, output):
