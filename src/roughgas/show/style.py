@@ -54,6 +54,7 @@ PARAMETERS = PLAIN | {
     "svg.hashsalt": "roughgas",
     "savefig.dpi": 200,
 }
+ON_PAGES = 140  # dots per inch of what is no line in an .svg, or a page takes long to load
 METADATA = {
     ".pdf": {"CreationDate": None, "Creator": "roughgas"},
     ".png": {"Software": "roughgas"},
@@ -109,7 +110,8 @@ def save(figure: Figure, outputs: Iterable[str | Path]) -> None:
     for output in sorted(map(Path, outputs), key=lambda path: path.suffix != ".png"):
         with whole_file(output) as draft:
             kind = output.suffix
-            figure.savefig(draft, format=kind.removeprefix("."), metadata=METADATA[kind])
+            how: dict[str, Any] = {"dpi": ON_PAGES} if kind == ".svg" else {}
+            figure.savefig(draft, format=kind.removeprefix("."), metadata=METADATA[kind], **how)
 
 
 def add_circles(axes: Axes, **look: Any) -> EllipseCollection:
