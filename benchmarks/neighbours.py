@@ -46,7 +46,8 @@ def main() -> None:
 
 def layer(case: str, width: float):
     """(settings, r, beta, how long to settle, how long to measure) of a layer."""
-    found = config.experiment(config.load(ROOT / "config.yaml"), f"patterns.layers/case{case}", "paper")
+    configuration = config.load(ROOT / "config.yaml")
+    found = config.experiment(configuration, f"patterns.layers/case{case}", "paper")
     changes = {"particles": 6 * width**2, "layer": {"width": width}, "observables": None}
     settings = config.fitted(config.changed_by(found, changes), "benchmark")
     period = settings["effects"]["floor"]["period"]
