@@ -15,6 +15,7 @@ SOFT = {"soft disks": 2, "soft spheres": 3}  # their dimension
 
 SCENES = {  # those that take longest first
     "sheared, in cells": settings("sheared", 800, [100, 100]),
+    "walled, on lists": settings("walled", 800, [100, "open"]) | {"neighbours": "lists"},
     **{name: settings(name) for name in KERNELS if name not in RARE},
     **{f"{name} of two species": settings(name) | {"species": TWO} for name in ("gas", "heated")},
     "triangle": settings("bed", floor={"wave": "triangle"}),

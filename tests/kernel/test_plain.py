@@ -82,11 +82,19 @@ def test_floors_run_as_plain_python(wave):
 
 @pytest.mark.parametrize("kernel", sheared_or_slow(CELLS))
 def test_cells_run_as_plain_python(kernel, monkeypatch):
+    run_in_cells(kernel, monkeypatch)
+
+
+def test_lists_run_as_plain_python(monkeypatch):
+    run_in_cells("walled", monkeypatch, neighbours="lists")
+
+
+def run_in_cells(kernel, monkeypatch, **more):
     monkeypatch.setattr(memory, "FEW", 0)
     monkeypatch.setattr(memory, "PER_CELL", {2: 0.0, 3: 0.0})
     box = [17, *settings(kernel)["box"][1:]]
     box[1:] = [length if length == "open" else 17 for length in box[1:]]
-    assert_plain_python_has_the_same_bits(settings(kernel, 10, box), collisions=10)
+    assert_plain_python_has_the_same_bits(settings(kernel, 10, box) | more, collisions=10)
 
 
 # ---------------------------------------------------------------------- as it is written
