@@ -72,13 +72,10 @@ def compare(name, settings, r, beta, settling, measured, runs):
     scene = build(settings, r, beta)
     state = initial_state(scene, settings, np.random.default_rng(1))
     advance(scene, state, **settling)
-    rates = [
-        [
-            rate(scene._replace(lists=bool(lists)), present(scene, state), measured)
-            for lists in (1, 0)
-        ]
-        for _ in range(runs + 1)
-    ][1:]  # the first compiles
+    both = [scene._replace(lists=lists) for lists in (True, False)]
+    rates = [[rate(one, present(scene, state), measured) for one in both] for _ in range(runs + 1)][
+        1:
+    ]  # the first compiles
     ratio = statistics.median(one / other for one, other in rates)
     lists, cells = (statistics.median(column) for column in zip(*rates, strict=True))
     number = settings["particles"]

@@ -32,7 +32,7 @@ class Sampling(NamedTuple):
     """When to sample: every `interval` of time, or every `collisions`, whichever comes first.
 
     `refresh` is the number of samples after which a cooling gas is refreshed (0: never). More than
-    `hits` of walls and floor within a sample end it early.
+    `hits` of walls and floor within a call end it early.
     """
 
     interval: float
@@ -73,10 +73,10 @@ def record(state, scene, plan, samples):
     if state.counts[STARTED] == 0:
         start(state, scene)
         state.counts[STARTED] = 1
+    hits = state.counts[BOUNDARY_HITS] + plan.hits
     for k in range(len(samples)):
         now = state.clock[BASE] + state.clock[NOW]
         collisions = state.counts[COLLISIONS] + plan.collisions
-        hits = state.counts[BOUNDARY_HITS] + plan.hits
         ended = advance(state, scene, now + plan.interval, collisions, hits)
         if ended != REACHED:
             return ended, k

@@ -84,7 +84,7 @@ def _wanted(blocks: int, excess: float) -> int:
 REPORTS = 50
 SOON = 0.5  # seconds after which a call of the kernel should come back
 JAMMED = 50_000  # collisions of each particle within a sample, or within a T if that is longer
-MOST_HITS = 1_000_000  # of walls and floor by each particle within a T, or a shorter sample
+MOST_HITS = 1_000_000  # of walls and floor by each particle within a T, or a shorter call
 NAMED = 8  # of the particles in a collapse
 
 
@@ -145,7 +145,6 @@ class Recorder:
         """
         names = columns(scene)
         rows = np.empty((samples, len(names)))
-        sampling = sampling._replace(hits=_most_hits(sampling.interval, state))
         record(state, scene, sampling, rows[:0])  # compiles, or fetches the kernel from its cache
         if self._tell and not self._compiled:
             self._tell(0.0, 0)
@@ -155,7 +154,8 @@ class Recorder:
             part, called = rows[first : first + length], time.perf_counter()
             made = int(state.counts[COLLISIONS])
             begin, before = time.process_time(), state.counts.copy()
-            ended, _ = record(state, scene, sampling, part)
+            most = _most_hits(len(part), sampling.interval, state)
+            ended, _ = record(state, scene, sampling._replace(hits=most), part)
             self.seconds += time.process_time() - begin
             self.collisions += int(state.counts[COLLISIONS] - before[COLLISIONS])
             self.touched += int(state.counts[TOUCHED] - before[TOUCHED])
@@ -178,9 +178,12 @@ def most_in(interval: float, particles: int) -> int:
     return math.ceil(particles / 2 * JAMMED * max(1.0, interval))
 
 
-def _most_hits(interval: float, state: State) -> int:
-    """Return the hits of walls and floor within a sample after which particles are held there."""
-    length = max(1.0, interval) if math.isfinite(interval) else 1.0
+def _most_hits(samples: int, interval: float, state: State) -> int:
+    """Return the hits of walls and floor within a call after which particles are held there.
+
+    A sample that has no interval counts as a T.
+    """
+    length = max(1.0, samples * (interval if math.isfinite(interval) else 1.0))
     return math.ceil(min(MOST_HITS * len(state.label) * length, UNLIMITED))
 
 
