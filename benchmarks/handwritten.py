@@ -24,7 +24,7 @@ from benchmarks.handwritten_contacts import (
     meeting_of_any_image,
     redraw_line,
 )
-from roughgas.kernel.jit import compiled, entry, jit
+from roughgas.compiling.jit import compiled, entry, jit
 
 NOW, SPAN, SPEED, LONGEST, INSTANT_END = range(5)  # of Gas.clock
 MADE, SINCE_REBASE, AT_ONCE, SPENT, STARTED = range(5)  # of Gas.counts

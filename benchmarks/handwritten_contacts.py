@@ -8,8 +8,8 @@ import math
 
 import numpy as np
 
-from roughgas.kernel.jit import compiled, jit
-from roughgas.kernel.mathematics import multiply_add, trailing_zeros
+from roughgas.compiling.jit import compiled, jit
+from roughgas.compiling.lanes import multiply_add, trailing_zeros
 
 ROUNDING = 2.0**-24
 LARGE_SINGLE, LARGE = np.float32(1.5 * 2.0**23), 1.5 * 2.0**52  # numbers spaced by 1

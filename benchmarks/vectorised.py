@@ -13,7 +13,7 @@ from collections import Counter
 import numpy as np
 
 from benchmarks.scenes import CASES, settings
-from roughgas.kernel.jit import entry
+from roughgas.compiling.jit import entry
 from roughgas.kernel.prediction import decide
 from roughgas.kernel.sweep import line_of, list_candidates, singles
 from roughgas.scene import Scene, build

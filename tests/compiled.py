@@ -1,6 +1,6 @@
 """Compiled functions that only compiled code may call, made callable from Python."""
 
-from roughgas.kernel.jit import entry
+from roughgas.compiling.jit import entry
 
 
 def from_python(function):

@@ -15,9 +15,9 @@ import numba
 from brute_force import begin, run, settings
 from numba.core.registry import cpu_target
 
+from roughgas.compiling.jit import jit
 from roughgas.effects import KINDS
 from roughgas.kernel.hooks import Hooks
-from roughgas.kernel.jit import jit
 from roughgas.kernel.record import record
 
 

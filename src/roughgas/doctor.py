@@ -86,7 +86,7 @@ def _kernel() -> str:
 
 
 def _kernel_cache() -> str:
-    from roughgas.kernel.compiler import cache_root, kernel_folder
+    from roughgas.compiling.compiler import cache_root, kernel_folder
 
     if (folder := kernel_folder()).parent != cache_root():
         raise OSError(f"{cache_root()} cannot be written; kernels are lost, in {folder}")

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from schedules import BRIEF, TINY
 
-from roughgas.kernel.compiler import kernel_folder
+from roughgas.compiling.compiler import kernel_folder
 
 ROOT = Path(__file__).parent.parent.parent
 LONG = TINY | {"schedule": BRIEF | {"plateau": 5_000_000, "sample_every": 25}}

@@ -14,7 +14,7 @@ import pytest
 from habits.conftest import python
 
 PROGRAM = """
-from roughgas.kernel.jit import entry
+from roughgas.compiling.jit import entry
 
 @entry(cache=True)
 def triple(x):

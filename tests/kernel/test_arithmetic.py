@@ -9,9 +9,8 @@ from brute_force import largest_overlap, run, scene_of, settings
 from brute_force.kicks import SplitMix
 from compiled import from_python
 
-from roughgas.kernel import mathematics
-from roughgas.kernel.jit import entry, jit
-from roughgas.kernel.mathematics import (
+from roughgas.compiling.jit import entry, jit
+from roughgas.compiling.lanes import (
     REGISTER,
     append,
     bits,
@@ -26,11 +25,12 @@ from roughgas.kernel.mathematics import (
     numbers_in,
     order,
     root,
-    sine_and_cosine,
     smaller,
     store,
     trailing_zeros,
 )
+from roughgas.kernel import mathematics
+from roughgas.kernel.mathematics import sine_and_cosine
 from roughgas.scene.initial import initial_state
 
 uniform = from_python(mathematics.uniform)

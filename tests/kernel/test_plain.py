@@ -12,12 +12,12 @@ from compiled import from_python
 from project import ROOT
 
 from kernel.test_cells import sheared_or_slow
+from roughgas.compiling.jit import jit
 from roughgas.effects import Effects
 from roughgas.effects.drives import Gravity
 from roughgas.effects.settings import register
 from roughgas.kernel import hooks, memory
 from roughgas.kernel.hooks import present
-from roughgas.kernel.jit import jit
 from roughgas.kernel.record import Sampling, columns, record
 
 TWO = [{"fraction": 0.5}, {"fraction": 0.5, "radius": 1.5}]

@@ -9,9 +9,9 @@ from tests.entry import main
 from roughgas import config
 from roughgas.base import InputError
 from roughgas.base.files import code_in
+from roughgas.compiling.compiler import folder_of
 from roughgas.config import study_folders
 from roughgas.config.schema import read
-from roughgas.kernel.compiler import folder_of
 from roughgas.tasks.running import names
 
 CONFIG = """

@@ -23,7 +23,7 @@ from typing import NamedTuple
 import numpy as np
 
 from roughgas.base import ROUGHNESS, InputError, Interval
-from roughgas.kernel.jit import compiled, entry, jit
+from roughgas.compiling.jit import compiled, entry, jit
 from roughgas.kernel.mathematics import (
     add_scaled,
     cross_to_spin,

@@ -20,9 +20,9 @@ import math
 from typing import Any, NamedTuple
 
 from roughgas.base import InputError
+from roughgas.compiling.jit import jit
 from roughgas.effects.drives import first_kicks
 from roughgas.effects.settings import TEMPERATURE, Number, register
-from roughgas.kernel.jit import jit
 from roughgas.kernel.mathematics import add_scaled, gaussian_vector, scale
 from roughgas.kernel.particles import (
     enter_box,

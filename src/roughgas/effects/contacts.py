@@ -40,8 +40,8 @@ from itertools import product
 from typing import NamedTuple
 
 from roughgas.base import NeedsError
+from roughgas.compiling.jit import jit
 from roughgas.effects.settings import Number, Whole, register
-from roughgas.kernel.jit import jit
 from roughgas.kernel.mathematics import (
     add_scaled,
     cross_to_spin,

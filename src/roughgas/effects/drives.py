@@ -24,8 +24,8 @@ import math
 from typing import NamedTuple
 
 from roughgas.base import InputError, NeedsError
+from roughgas.compiling.jit import jit
 from roughgas.effects.settings import Number, register
-from roughgas.kernel.jit import jit
 from roughgas.kernel.mathematics import add_scaled, divide, random_vector, scale, uniform
 from roughgas.kernel.particles import (
     enter_box,

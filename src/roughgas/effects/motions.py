@@ -21,8 +21,8 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from roughgas.base import InputError
+from roughgas.compiling.jit import jit, of_types
 from roughgas.effects.settings import LENGTH, TIME, Number, SceneContext, Word, check_speed
-from roughgas.kernel.jit import jit, of_types
 from roughgas.kernel.mathematics import TURN, sine_and_cosine
 
 ROUNDING = 2.0**-52

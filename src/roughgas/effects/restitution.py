@@ -44,8 +44,8 @@ from typing import NamedTuple
 import numpy as np
 
 from roughgas.base import InputError
+from roughgas.compiling.jit import compiled, jit
 from roughgas.effects.settings import Number, Numbers, register
-from roughgas.kernel.jit import compiled, jit
 from roughgas.kernel.state import EXPONENT
 
 LAWS = ("viscoelastic", "power_law", "restitution_table")

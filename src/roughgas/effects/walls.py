@@ -19,6 +19,7 @@ import math
 from typing import NamedTuple
 
 from roughgas.base import InputError, NeedsError
+from roughgas.compiling.jit import jit
 from roughgas.effects import motions
 from roughgas.effects.motions import LOOK, Motion, Swing, fall, law_of, motion_of
 from roughgas.effects.settings import (
@@ -31,7 +32,6 @@ from roughgas.effects.settings import (
 from roughgas.kernel import hooks
 from roughgas.kernel.contact import collide_with_wall, note_contact
 from roughgas.kernel.event_lists import next_contact
-from roughgas.kernel.jit import jit
 from roughgas.kernel.mathematics import (
     add_scaled,
     along_axis,

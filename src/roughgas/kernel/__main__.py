@@ -1,6 +1,6 @@
 """`python -m roughgas.kernel --show FUNCTION --scene EXPERIMENT`: a function as it is compiled.
 
-All that the types of a scene decide is decided, as kernel/jit.py says: what the scene lacks is not
+All that the types of a scene decide is decided (compiling/jit.py): what the scene lacks is not
 there. The experiment is one of config.yaml here, or of roughgas's own. Nothing imports this file.
 """
 
@@ -13,7 +13,7 @@ import numpy as np
 
 from roughgas import config
 from roughgas.base import InputError
-from roughgas.kernel.jit import Compiled, Entry
+from roughgas.compiling.jit import Compiled, Entry
 from roughgas.kernel.record import Sampling, columns, record
 from roughgas.scene import build
 from roughgas.scene.initial import initial_state

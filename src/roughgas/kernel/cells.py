@@ -28,25 +28,22 @@ import sys
 
 import numpy as np
 
-from roughgas.kernel import hooks
-from roughgas.kernel.event_lists import choose_next, clear_contacts, enter, unlink
-from roughgas.kernel.hooks import present
-from roughgas.kernel.jit import compiled, jit
-from roughgas.kernel.mathematics import (
+from roughgas.compiling.jit import compiled, jit
+from roughgas.compiling.lanes import (
     REGISTER,
     bits,
-    dot,
     gather,
     index,
     lanes_of,
     larger,
     numbers_in,
     order,
-    read,
-    subtract,
     trailing_zeros,
-    write,
 )
+from roughgas.kernel import hooks
+from roughgas.kernel.event_lists import choose_next, clear_contacts, enter, unlink
+from roughgas.kernel.hooks import present
+from roughgas.kernel.mathematics import dot, read, subtract, write
 from roughgas.kernel.memory import NARROWEST, ROOM
 from roughgas.kernel.particles import (
     fold_into_box,

@@ -13,9 +13,9 @@ particles that differ share the impulse and the turning is in particles.Pair.
 import math
 from typing import Any, NamedTuple
 
+from roughgas.compiling.jit import jit
 from roughgas.kernel import hooks
 from roughgas.kernel.hooks import present
-from roughgas.kernel.jit import jit
 from roughgas.kernel.mathematics import (
     add_scaled,
     cross_to_spin,

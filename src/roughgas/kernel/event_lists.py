@@ -6,8 +6,8 @@ earliest of them is its entry in the queue: blocks of keys for few particles, a 
 
 import math
 
-from roughgas.kernel.jit import compiled, jit
-from roughgas.kernel.mathematics import (
+from roughgas.compiling.jit import compiled, jit
+from roughgas.compiling.lanes import (
     bits,
     choose,
     index,

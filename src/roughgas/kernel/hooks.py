@@ -3,7 +3,7 @@
 An effect is a NamedTuple whose file registers its hooks: the functions that are its part in the
 simulation (effects/settings.py; docs/effects.md has an example). `scene.effects` has one entry per
 effect, None where the scene does without it: a loop over those present is written out before numba
-compiles it (kernel/jit.py), and an absent effect leaves no instruction.
+compiles it (compiling/jit.py), and an absent effect leaves no instruction.
 
 Where several effects have a say, each gets the value as those listed before it in `Effects` have
 left it.
@@ -12,7 +12,7 @@ left it.
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
-from roughgas.kernel.jit import jit, of_types
+from roughgas.compiling.jit import jit, of_types
 
 CODES = 8  # kinds of event per effect
 

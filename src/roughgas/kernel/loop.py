@@ -2,6 +2,8 @@
 
 import math
 
+from roughgas.compiling.jit import compiled, jit
+from roughgas.compiling.lanes import index
 from roughgas.kernel import hooks
 from roughgas.kernel.cells import align_now_and_then, arrange, find_around
 from roughgas.kernel.contact import collide
@@ -13,8 +15,7 @@ from roughgas.kernel.event_lists import (
     enter_in_queue,
 )
 from roughgas.kernel.hooks import CODES, present
-from roughgas.kernel.jit import compiled, jit
-from roughgas.kernel.mathematics import dot, index
+from roughgas.kernel.mathematics import dot
 from roughgas.kernel.particles import path_of
 from roughgas.kernel.state import (
     AT_ONCE,

@@ -18,17 +18,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from roughgas.compiling.jit import jit
+from roughgas.compiling.lanes import is_single, multiply_add
 from roughgas.kernel import hooks
-from roughgas.kernel.jit import jit
-from roughgas.kernel.mathematics import (
-    add_scaled,
-    dot,
-    is_single,
-    multiply_add,
-    read,
-    subtract,
-    write,
-)
+from roughgas.kernel.mathematics import add_scaled, dot, read, subtract, write
 
 FIRST_LARGE_32, ONE_32 = np.float32(1.5 * 2.0**23), np.float32(1.0)
 FIRST_LARGE_64 = 1.5 * 2.0**52

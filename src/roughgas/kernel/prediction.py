@@ -9,16 +9,11 @@ import math
 
 import numpy as np
 
-from roughgas.kernel import hooks
-from roughgas.kernel.event_lists import add_contact
-from roughgas.kernel.jit import compiled, jit
-from roughgas.kernel.mathematics import (
+from roughgas.compiling.jit import compiled, jit
+from roughgas.compiling.lanes import (
     REGISTER,
-    add_scaled,
     bits,
     choose,
-    cross_squared,
-    dot,
     gather,
     index,
     lanes_of,
@@ -29,9 +24,11 @@ from roughgas.kernel.mathematics import (
     root,
     smaller,
     store,
-    subtract,
     trailing_zeros,
 )
+from roughgas.kernel import hooks
+from roughgas.kernel.event_lists import add_contact
+from roughgas.kernel.mathematics import add_scaled, cross_squared, dot, subtract
 from roughgas.kernel.memory import SLOTS_OF_FEW
 from roughgas.kernel.particles import (
     along,

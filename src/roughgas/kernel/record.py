@@ -3,8 +3,8 @@
 import math
 from typing import NamedTuple
 
+from roughgas.compiling.jit import by_reference, compiled, entry, jit
 from roughgas.kernel.hooks import sums as sums_of
-from roughgas.kernel.jit import by_reference, compiled, entry, jit
 from roughgas.kernel.loop import REACHED, advance, start
 from roughgas.kernel.particles import (
     enter_box,

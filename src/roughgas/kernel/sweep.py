@@ -13,21 +13,11 @@ import math
 
 import numpy as np
 
+from roughgas.compiling.jit import jit
+from roughgas.compiling.lanes import REGISTER, append, lanes_of, load, multiply_add
 from roughgas.kernel import hooks
 from roughgas.kernel.event_lists import clear_contacts
-from roughgas.kernel.jit import jit
-from roughgas.kernel.mathematics import (
-    REGISTER,
-    add_scaled,
-    append,
-    cross_squared,
-    dot,
-    lanes_of,
-    load,
-    multiply_add,
-    read,
-    subtract,
-)
+from roughgas.kernel.mathematics import add_scaled, cross_squared, dot, read, subtract
 from roughgas.kernel.particles import (
     image_numbers,
     largest_of,

@@ -54,7 +54,7 @@ def run_point(
     Raises InputError if the particles do not fit or could not begin so, CollapseError if contacts
     accumulate without end.
     """
-    from roughgas.kernel.compiler import source_hash  # only a run needs the compiler
+    from roughgas.compiling.compiler import source_hash  # only a run needs the compiler
 
     _refuse_rest(scene)
     keep, number = experiment.get("keep_state", False), experiment["particles"]

@@ -23,7 +23,7 @@ from roughgas.simulation.point import run_point
 from roughgas.simulation.progress import Progress
 from roughgas.simulation.restart import Initial
 
-ROOMS = ("base", "effects", "kernel", "observables", "scene", "simulation", "statistics", "theory")
+ROOMS = "base compiling effects kernel observables scene simulation statistics theory".split()
 """Where the sources are that a run's numbers depend on, between a stop and its going on."""
 UNNAMED = "scene"
 """What messages and datasets call an experiment that has no name."""
@@ -90,12 +90,13 @@ def points(
     simulated.
     """
     scenes = {(r, beta): build(settings, r, beta) for r, beta, *_ in at}
+    sources = _sources() if checkpoints else ""
     journals: list[Journal] = []
     for place, output in zip(at, outputs, strict=True):
         r, beta, seed, labels = place
         one = name if len(at) == 1 else f"{name}, r = {labels[0]}, beta = {labels[1]}, seed {seed}"
         about = provenance(name, settings, labels, scale, output, told=told)
-        journal = _journal(output, settings, place, initial) if checkpoints else None
+        journal = _journal(output, sources, settings, place, initial) if checkpoints else None
         journals += [journal] if journal else []
         with Progress(one, scenes[r, beta], settings, quiet=quiet) as bar:
             found = _run(scenes[r, beta], settings, seed, bar, initial, functions, journal)
@@ -104,13 +105,21 @@ def points(
         journal.discard()
 
 
+def _sources() -> str:
+    from roughgas.compiling.compiler import source_hash  # only a run needs the compiler
+
+    return source_hash(*ROOMS)
+
+
 def _journal(
-    output: str, settings: Mapping[str, Any], place: Place, initial: Sequence[Initial]
+    output: str,
+    sources: str,
+    settings: Mapping[str, Any],
+    place: Place,
+    initial: Sequence[Initial],
 ) -> Journal:
     """Return the journal of a point, beside the `output` that it is written to."""
-    from roughgas.kernel.compiler import source_hash  # only a run needs the compiler
-
-    about = [source_hash(*ROOMS), np.__version__, config.as_text(settings), place[:3]]
+    about = [sources, np.__version__, config.as_text(settings), place[:3]]
     text = repr([*about, [one.digest() for one in initial]])
     owner = hashlib.sha256(text.encode()).hexdigest()
     return Journal(f"{output}.checkpoint.npz", owner)

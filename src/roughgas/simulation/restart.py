@@ -265,7 +265,7 @@ def check_initial(initial: Sequence[Initial], experiment: Mapping[str, Any], sce
 
 def owner(scene: Scene) -> str:
     """Return a text that is the same for all runs that understand each other's memory."""
-    from roughgas.kernel.compiler import source_hash
+    from roughgas.compiling.compiler import source_hash
 
     about = repr((source_hash(), np.__version__, scene))
     return hashlib.sha256(about.encode()).hexdigest()[:16]

@@ -16,10 +16,10 @@ from typing import NamedTuple
 import numpy as np
 
 from roughgas.base import InputError
+from roughgas.compiling.jit import compiled, entry, jit
 from roughgas.effects import Effects
 from roughgas.effects.contacts import Friction, Spin
 from roughgas.kernel.contact import response
-from roughgas.kernel.jit import compiled, entry, jit
 from roughgas.kernel.mathematics import add_scaled, dot, read, scale, subtract, write
 from roughgas.kernel.particles import alike, spin_of, turn_spin
 from roughgas.theory import arguments, moment_of_inertia

@@ -9,7 +9,7 @@ written each process compiles its own. What is loaded is run: folders are made f
 alone, and a folder or a file that somebody else could have written is left alone.
 
 What is private to numba, and what it is needed for; checked with numba 0.68, and by
-tests/kernel/test_compiler.py:
+tests/compiling/test_compiler.py:
 
 - `_nrt`: without it reference counting takes more than half of the time;
 - `no_cpython_wrapper`, `no_cfunc_wrapper`, `forceinline`: documented for `overload` only. Unpacking
@@ -19,7 +19,7 @@ tests/kernel/test_compiler.py:
 - `Passes`, `_ENFORCING`: passes of numba, and analyses between them, that find nothing to do in a
   function that is written for types;
 - `Library`, `set_env`: machine code is made of a kernel, and not of each function in it besides;
-- the types and values of a Reference (kernel/reference.py): a state and a scene in memory;
+- the types and values of a Reference (compiling/reference.py): a state and a scene in memory;
 - `event.start_event`, `end_event`: a tenth of the time went into telling of locks and passes;
 - `_cache`, `CompileResult`, `rtsys`: to load a kernel without setting up the compiler, to share it
   among copies of the project, to seal files with a checksum.
@@ -47,10 +47,10 @@ from numba.core.serialize import dumps
 
 from roughgas.base import InputError
 from roughgas.base.files import whole_file
-from roughgas.kernel import reference, simd
+from roughgas.compiling import reference, simd
 
 PACKAGE = Path(__file__).resolve().parent.parent
-ROOMS = ("kernel", "effects")
+ROOMS = ("compiling", "kernel", "effects")
 
 
 def source_hash(*rooms):
@@ -121,7 +121,7 @@ def _try_to_write(folder):
 
 
 # For closures, `with`, branches that types decide, functions that numba inlines, literals,
-# expressions of whole arrays: kernel/jit.py has done it, or the kernel has none
+# expressions of whole arrays: compiling/jit.py has done it, or the kernel has none
 IDLE = {
     "WithLifting",
     "InlineClosureLikes",
@@ -157,7 +157,7 @@ INNER = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 
 
 def dispatcher(function, cache=False, inner=False, inline=False):
-    """Return numba's object for a function (see the decorators in kernel/jit.py).
+    """Return numba's object for a function (see the decorators in compiling/jit.py).
 
     Raises InputError where numba is told not to compile, OSError where no folder for compiled code
     can be written.

@@ -81,8 +81,8 @@ class Site(NamedTuple):
         return self.builder.call(function, arguments, **more)
 
 
-def _numbers(values):
-    return ir.VectorType(NUMBER, len(values))(list(values))
+def _numbers(values, kind=NUMBER):
+    return ir.VectorType(kind, len(values))(list(values))
 
 
 def _lanes_among(kinds):
@@ -113,21 +113,16 @@ def _operator(function, generate, is_comparison=False):
         lower_builtin(function, *kinds)(lower)
 
 
-def _instruction(of_floats, of_integers):
-    def generate(site, *vectors):
-        is_float = isinstance(site.result.kind, types.Float)
-        return getattr(site.builder, of_floats if is_float else of_integers)(*vectors)
+def _instruction(of_floats, of_integers, *sign):
+    def generate(site, *values):
+        is_float = isinstance(getattr(site.result, "kind", site.result), types.Float)
+        return getattr(site.builder, of_floats if is_float else of_integers)(*sign, *values)
 
     return generate
 
 
 def _compare(sign):
-    def generate(site, one, other):
-        is_float = isinstance(getattr(site.result, "kind", site.result), types.Float)
-        compare = site.builder.fcmp_ordered if is_float else site.builder.icmp_signed
-        return compare(sign, one, other)
-
-    return generate
+    return _instruction("fcmp_ordered", "icmp_signed", sign)
 
 
 _operator(operator.add, _instruction("fadd", "add"))
@@ -267,7 +262,7 @@ def bits(site, lanes):
 
 @operation(lambda count: _side_by_side(types.intp, count))
 def order(site, count):
-    return ir.VectorType(WORD, site.result.count)(list(range(site.result.count)))
+    return _numbers(range(site.result.count), WORD)
 
 
 @operation(_number)
@@ -319,11 +314,9 @@ def _packed(site, mask, word, base):
         function = cgutils.get_or_insert_function(builder.module, compress, name)
         numbers = builder.add(base, _numbers(range(16)))
         return builder.call(function, [numbers, ir.Constant(kind, None), mask])
-    row, name = ir.VectorType(ir.IntType(8), 8), "roughgas.bits_set"
-    if name not in builder.module.globals:
-        rows = [[k for k in range(8) if byte >> k & 1] for byte in range(256)]
-        table = ir.GlobalVariable(builder.module, ir.ArrayType(row, 256), name)
-        table.initializer = table.type.pointee([row(one + [0] * (8 - len(one))) for one in rows])
-        table.global_constant, table.linkage = True, "internal"
-    place = builder.gep(builder.module.globals[name], [WORD(0), word])
+    rows = [[k for k in range(8) if byte >> k & 1] for byte in range(256)]
+    rows = [_numbers(one + [0] * (8 - len(one)), ir.IntType(8)) for one in rows]
+    table = ir.Constant(ir.ArrayType(rows[0].type, 256), rows)
+    table = cgutils.global_constant(builder, "roughgas.bits_set", table)
+    place = builder.gep(table, [WORD(0), word])
     return builder.add(base, builder.zext(builder.load(place, align=8), kind))

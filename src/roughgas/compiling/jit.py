@@ -37,7 +37,7 @@ class Compiled:
     @functools.cached_property
     def dispatcher(self):
         """Numba's object for the function."""
-        from roughgas.kernel import compiler
+        from roughgas.compiling import compiler
 
         made = compiler.dispatcher(self.py_func, **self.options)
         made._compiler._get_implementation = self._for_types
@@ -106,14 +106,14 @@ class Primitive:
 
     @property
     def _numba_type_(self):
-        from roughgas.kernel import compiler
+        from roughgas.compiling import compiler
 
         return compiler.type_of(self.__name__)
 
 
 @Primitive
 def by_reference(whole):
-    """Return a named tuple, which compiled code takes from memory then: kernel/reference.py."""
+    """Return a named tuple, which compiled code takes from memory then: compiling/reference.py."""
     return whole
 
 

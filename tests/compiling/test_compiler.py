@@ -1,4 +1,4 @@
-"""The parts of numba that kernel/compiler.py replaces, and the same bits from what is compiled."""
+"""The parts of numba that compiler.py replaces, and the same bits from what is compiled."""
 
 import json
 import os
@@ -13,8 +13,8 @@ import pytest
 from brute_force import begin, run, settings
 
 import roughgas
-from roughgas.kernel import compiler
-from roughgas.kernel.jit import compiled, entry
+from roughgas.compiling import compiler
+from roughgas.compiling.jit import compiled, entry
 
 PACKAGE = Path(roughgas.__file__).parent
 
@@ -59,7 +59,7 @@ def test_every_pass_that_is_left_out_is_one_of_numbas():
     assert len(passes[0] - passes[1]) == len(compiler.IDLE)
 
 
-COPY = """from roughgas.kernel.jit import entry
+COPY = """from roughgas.compiling.jit import entry
 @entry(cache=True)
 def double(x):
     return 2.0 * x
@@ -100,7 +100,7 @@ TESTS = Path(__file__).parent.parent
 PROGRAM = """
 import json
 from brute_force import begin, run, settings
-from roughgas.kernel import compiler
+from roughgas.compiling import compiler
 
 scene, state = begin(settings("smooth", 20, [20, 20]), 0.9, -1.0, 11)
 rows = run(state, scene, 10, collisions=100)
