@@ -18,7 +18,6 @@ SCENES = {  # those that take longest first
     "walled, on lists": settings("walled", 800, [100, "open"]) | {"neighbours": "lists"},
     **{name: settings(name) for name in KERNELS if name not in RARE},
     **{f"{name} of two species": settings(name) | {"species": TWO} for name in ("gas", "heated")},
-    "triangle": settings("bed", floor={"wave": "triangle"}),
 }
 
 

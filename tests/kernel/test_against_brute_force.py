@@ -165,7 +165,10 @@ RARE |= {"friction of floor and walls", "kicks, no spin", "kicks of spheres", "p
 RARE |= {"under a thermal lid", "under an inelastic lid", "species, container", "closed spheres"}
 RARE |= {"species, bed", "species, smallest box", "species, smooth", "species, sheared"}
 RARE |= {"species, shaken walls", "species, spheres", "species, bath", "drag"}
-RARE |= {"species, bed between walls, friction", *(f"sine, {floor}" for floor in FLOORS)}
+RARE |= {
+    "species, bed between walls, friction",
+    *(f"{wave}, {floor}" for floor in FLOORS for wave in WAVES),
+}
 """Kernels that no other test compiles."""
 SEGMENTS = 25
 

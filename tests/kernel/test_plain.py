@@ -74,7 +74,8 @@ def test_mixtures_run_as_plain_python(kernel):
     assert_plain_python_has_the_same_bits(of_ten(kernel, species=TWO, box=[20, 20]))
 
 
-@pytest.mark.parametrize("wave", ["triangle", pytest.param("sine", marks=pytest.mark.slow)])
+@pytest.mark.slow  # compiles kernels
+@pytest.mark.parametrize("wave", WAVES)
 def test_floors_run_as_plain_python(wave):
     own = {"particles": 10, "box": [14, "open"]}
     assert_plain_python_has_the_same_bits(WAVES[wave] | own, collisions=8)
