@@ -51,19 +51,14 @@ EDITED = {  # file of the package: what an edit of its code runs again
     "tasks/dsmc.py": ACCURACY | {"models"} | OF_DSMC,
     "cli/run.py": POINTS | FAMILIES,
 }
-QUICK = ("effects/walls.py",)
 TOGETHER = ("config/schema.py", "results/products.py", "show/figures/paper.py", "tasks/dsmc.py")
 UNUSED = ("steps.py", "doctor.py", "library.py")
 
 
-@pytest.fixture(scope="module")
-def made(tmp_path_factory):
-    """A project that Snakemake takes to be finished: its products are there, though empty.
-
-    It takes long to make: all tests of such a project are in this file, which one worker runs.
-    """
-    made = Project(tmp_path_factory.mktemp("made"))
-    targets = ("--config", "scale=tiny", "--", *FINISHED)
+def project_made(folder, *targets):
+    """A project that Snakemake takes to be finished: its products are there, though empty."""
+    made = Project(folder)
+    targets = ("--config", "scale=tiny", "--", *targets)
     for line in made.succeed("--summary", *targets).splitlines():
         if re.match(r"(results|figures)/\S+\t", line):
             path = made.folder / line.split("\t")[0]
@@ -73,10 +68,22 @@ def made(tmp_path_factory):
     return made
 
 
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """All of it, which takes long: its tests are slow, and in this file, which one worker runs."""
+    return project_made(tmp_path_factory.mktemp("made"), *FINISHED)
+
+
+@pytest.fixture(scope="module")
+def drawn(tmp_path_factory):
+    """The figures of the paper alone."""
+    return project_made(tmp_path_factory.mktemp("drawn"), "figures")
+
+
 @pytest.fixture
-def finished(made, tmp_path):
-    """A copy of `made` that a test may change."""
-    return made.copy_to(tmp_path / "copy")
+def finished(drawn, tmp_path):
+    """A copy of `drawn` that a test may change."""
+    return drawn.copy_to(tmp_path / "copy")
 
 
 def test_an_edit_of_a_file_of_radii(tmp_path):
@@ -128,13 +135,19 @@ def rerun(made, edit):
     return {*jobs_by_rule(output), *named} - targets
 
 
-@pytest.mark.parametrize(
-    "file", [pytest.param(file, marks=[pytest.mark.slow] * (file not in QUICK)) for file in EDITED]
-)
+def test_an_edit_of_the_kernel_makes_every_point_and_figure_anew(finished):
+    finished.append("src/roughgas/kernel/prediction.py")
+    made_again = {"compile_kernel": 6, "seeds": JOBS, "reduce": 6, "figure": 4}
+    assert finished.planned() == made_again | AFTER_POINTS
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("file", EDITED)
 def test_what_an_edit_in_each_room_runs_again(made, file):
     assert rerun(made, {file: "\nADDED = 1\n"}) == EDITED[file]
 
 
+@pytest.mark.slow
 def test_what_edits_in_several_rooms_run_again(made):
     expected = set().union(*(EDITED[file] for file in TOGETHER))
     assert rerun(made, dict.fromkeys(TOGETHER, "\nADDED = 1\n")) == expected
@@ -166,8 +179,12 @@ def test_an_edit_is_not_forgotten_when_a_run_is_interrupted(finished):
     assert finished.planned("results/tiny/cooling.nc") == {"seeds": EACH, "reduce": 1}
 
 
-def test_an_edit_of_what_combines_the_tasks_of_a_study_and_of_the_settings_of_others(finished):
+@pytest.mark.slow
+def test_an_edit_of_what_combines_the_tasks_of_a_study_and_of_the_settings_of_others(
+    made, tmp_path
+):
     """The tasks of the first, which has no movie, do not run again."""
+    finished = made.copy_to(tmp_path / "copy")
     finished.append("studies/runaway/results.py")
     finished.configure(lambda config: config["scales"]["tiny"]["clustering.tasks"].update(seed=2))
     each = {"study_data": 2, "study_figure": 2, "study_page": 2, "runaway": 1, "clustering": 1}

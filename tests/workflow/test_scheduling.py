@@ -35,6 +35,7 @@ def threads_at_the_end(folder, start):
     return int(re.search(r"threads: (\d+)", done.stderr)[1])
 
 
+@pytest.mark.slow
 def test_timers_do_not_pile_up(tmp_path):
     assert threads_at_the_end(tmp_path, "start_jobs_at_once(workflow)") < 10
 
@@ -53,6 +54,7 @@ def test_a_run_tells_what_is_ready(project, tmp_path):
     assert not any("localrule" in line or "jobid" in line for line in lines)
 
 
+@pytest.mark.slow
 def test_a_run_counts_its_points(project, tmp_path):
     """In a terminal, too, since a bar is drawn there."""
     ran = project.copy_to(tmp_path / "project")

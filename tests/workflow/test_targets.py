@@ -11,6 +11,9 @@ ILLEGAL = {
     ("--config", "n_particles=5"): "key = 'n_particles': must be one of accuracy, betas_per_job,",
 }
 
+QUICK = (("figures/fig9.png",), ("--config", "n_particles=5"))
+"""The others are refused in the same way; their words are those of test_refusals.py."""
+
 
 def refusal(project, *arguments):
     """The one line in which Snakemake refuses."""
@@ -54,6 +57,7 @@ def test_a_job_makes_several_seeds_and_betas_and_what_fills_none_is_a_point(tmp_
     assert planned == {"compile_kernel": 3, "seeds": 2 + 2 * 2, "point": 1 + 1, "reduce": 2}
 
 
+@pytest.mark.slow
 def test_everything_has_films_and_the_experiments_that_were_added(tmp_path):
     project = Project(tmp_path)
     project.configure(
@@ -68,6 +72,7 @@ def test_everything_has_films_and_the_experiments_that_were_added(tmp_path):
     assert found == {"seeds": seeds, "point": one_by_one, "study_movie": 1, "movie": 9}
 
 
+@pytest.mark.slow
 def test_what_a_clone_brings_along_is_made_anew(tmp_path):
     project = Project(tmp_path)
     (tmp_path / "docs").mkdir()
@@ -88,7 +93,10 @@ def test_figures_and_experiments_are_targets_by_their_names(project):
     assert "such as fig2a, " in output
 
 
-@pytest.mark.parametrize("arguments", ILLEGAL)
+@pytest.mark.parametrize(
+    "arguments",
+    [pytest.param(one, marks=[pytest.mark.slow] * (one not in QUICK)) for one in ILLEGAL],
+)
 def test_what_is_illegal_is_refused_in_one_line(project, arguments):
     assert ILLEGAL[arguments] in refusal(project, *arguments)
 
