@@ -52,6 +52,7 @@ def test_pages_have_the_examples_that_they_should_have():
 
 # what these show is compiled anew
 SLOW = {name: [pytest.mark.slow] for name in ("observables", "trajectories")}
+SLOW["library"] = [pytest.mark.slow]  # as its docstrings, which test_library.py runs, simulate
 
 
 @pytest.mark.parametrize(

@@ -63,6 +63,7 @@ def snakemake(project, scale):
     return start([*command, "--", f"results/{scale}/cooling.nc"], project.folder)
 
 
+@pytest.mark.slow
 def test_a_workflow_stops_without_a_word_of_failure(project):
     snakemakes.server()  # which is ready by the time that the point runs
     running = snakemake(project, "long")
