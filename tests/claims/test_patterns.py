@@ -165,6 +165,7 @@ def test_the_path_of_a_ball_is_on_the_floor_or_falls_freely(gamma):
     assert np.mean(~flies & (floor > 1.0 / gamma + 0.03)) < 1e-3
 
 
+@pytest.mark.slow
 def test_there_is_a_slide_of_each_layer_that_says_what_is_published(tmp_path, monkeypatch):
     made_up = layers(20, ("cd", "g"), fading=0.9)
     monkeypatch.setattr(slides, "read_reduced", lambda path: made_up)

@@ -87,6 +87,7 @@ def test_a_full_disk_only_costs_time(program, mounts):
     assert "No space left on device: the kernel is not kept" in warning
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("home", [{"HOME": None}, {"HOME": "/proc/nobody"}])
 def test_without_a_home_or_a_compiler_kernels_go_to_temporary_files(program, tmp_path, home):
     """Numba needs no C compiler: there is none on an empty PATH."""

@@ -63,6 +63,7 @@ def snakemake(project, scale):
     return start([*command, "--", f"results/{scale}/cooling.nc"], project.folder)
 
 
+@pytest.mark.slow
 def test_a_workflow_stops_without_a_word_of_failure(project):
     snakemakes.server()  # which is ready by the time that the point runs
     running = snakemake(project, "long")
@@ -110,6 +111,7 @@ def same_point(one, other):
         return here.drop_vars("kernel_seconds").equals(there.drop_vars("kernel_seconds"))
 
 
+@pytest.mark.slow
 def test_a_simulation_that_was_killed_goes_on(tmp_path):
     command = [sys.executable, "-m", "roughgas", *point("point.nc", SECONDS_LONG)]
     killed(command, tmp_path, "point.nc.checkpoint.npz")

@@ -79,6 +79,7 @@ def test_disks_are_in_the_window_and_do_not_overlap(undisturbed, gas, tmp_path):
     assert np.mean(spins[1:] ** 2, axis=1) == pytest.approx(1.0)
 
 
+@pytest.mark.slow
 def test_a_killed_step_goes_on_from_its_checkpoint_with_the_same_bits(gas, tmp_path, capsys):
     settings = SETTINGS | {"frames": 1000, "collisions": 100}
     settings = as_text({"study": settings, "experiments": {"gas": gas}})
@@ -137,6 +138,7 @@ def panels(film):
     return {axes.get_title(loc="left")[:1]: axes for axes in figure.draw(film).axes}
 
 
+@pytest.mark.slow
 def test_the_movie_is_drawn(film, tmp_path, monkeypatch):
     monkeypatch.setattr(movie, "LAST_FRAME", 0.1)  # or it is drawn 18 times
     movie.draw(film, tmp_path / "c.mp4")

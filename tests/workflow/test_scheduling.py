@@ -53,6 +53,7 @@ def test_a_run_tells_what_is_ready(project, tmp_path):
     assert not any("localrule" in line or "jobid" in line for line in lines)
 
 
+@pytest.mark.slow
 def test_a_run_counts_its_points(project, tmp_path):
     """In a terminal, too, since a bar is drawn there."""
     ran = project.copy_to(tmp_path / "project")
