@@ -50,9 +50,8 @@ def test_pages_have_the_examples_that_they_should_have():
     assert sum("simulate(" in text for text, _ in found["library"]) > 4
 
 
-# what these show is compiled anew
-SLOW = {name: [pytest.mark.slow] for name in ("observables", "trajectories")}
-SLOW["library"] = [pytest.mark.slow]  # as its docstrings, which test_library.py runs, simulate
+# what these show takes seconds, or is compiled anew
+SLOW = {name: [pytest.mark.slow] for name in ("library", "observables", "trajectories")}
 
 
 @pytest.mark.parametrize(

@@ -46,6 +46,7 @@ def calibrated(runs, seed=0):
     return calibrate(runs, Estimate(0.0, 0.0), (0.68, 0.95), 4, np.random.default_rng(seed))
 
 
+@pytest.mark.slow
 def test_honest_runs_are_found_honest():
     """At 4 sigma, 10 numbers: by chance once in 1600."""
     found = calibrated(honest(np.random.default_rng(1), 2000))

@@ -111,6 +111,7 @@ def same_point(one, other):
         return here.drop_vars("kernel_seconds").equals(there.drop_vars("kernel_seconds"))
 
 
+@pytest.mark.slow
 def test_a_simulation_that_was_killed_goes_on(tmp_path):
     command = [sys.executable, "-m", "roughgas", *point("point.nc", SECONDS_LONG)]
     killed(command, tmp_path, "point.nc.checkpoint.npz")

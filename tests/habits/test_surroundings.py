@@ -108,6 +108,7 @@ def test_a_problem_is_told_in_words_and_by_the_exit_status(monkeypatch, capsys):
     assert "gsd" in said and said.endswith("-> mend it\n")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("broken", "said"),
     [

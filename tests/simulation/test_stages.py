@@ -178,6 +178,7 @@ def test_temperatures_that_are_set_are_exact():
     np.testing.assert_array_equal(stopped.E_rot_series, 0.0)
 
 
+@pytest.mark.slow
 def test_a_relaxation_after_a_quench_is_that_of_a_gas_without_positions():
     """A cooling gas whose r and beta change when T_rot/T_tr is set: the ratio of the temperatures
     over collisions against the DSMC, at four instants, averaged over 24 seeds. A dilute gas, whose

@@ -89,6 +89,7 @@ def test_results_are_what_they_are_made_of(parts, data):
     )
 
 
+@pytest.mark.slow
 def test_it_is_documented_tabulated_and_drawn(data):
     check_variables("finite_size", data)
     table = results.table(data)

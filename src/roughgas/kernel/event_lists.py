@@ -63,7 +63,7 @@ def prefetch_calendar(state, day):
 
 @jit
 def _first_of(queue, day):
-    return _or_zero(queue.first[day & (queue.first.size - 1)])
+    return _or_zero(queue.first[index(day & (queue.first.size - 1))])
 
 
 @jit
@@ -203,11 +203,12 @@ def _earliest_in_calendar(state):
     day = queue.today[0]
     for _ in range(queue.first.size):
         least, place = math.inf, NOBODY
-        i = queue.first[day & (queue.first.size - 1)]
+        i = int(queue.first[index(day & (queue.first.size - 1))])
         while i != NOBODY and least > state.clock[NOW]:  # nothing comes before now
+            i = index(i)
             if key[i] < least and day_of(queue, key[i]) <= day:
                 least, place = key[i], i
-            i = queue.later[i]
+            i = int(queue.later[i])
         if place != NOBODY:
             queue.today[0] = day
             return place

@@ -165,6 +165,7 @@ def test_every_point_stands_where_it_was_measured(name):
             assert np.isin(column[:, 0], known).all()
 
 
+@pytest.mark.slow
 def test_the_same_data_in_any_order_give_the_same_bytes(tmp_path):
     paths, content = inputs("fig1b", tmp_path), []
     for order in (paths, paths[::-1]):

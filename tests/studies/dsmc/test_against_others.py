@@ -61,6 +61,7 @@ def test_another_scheme_finds_the_same_gas(dimension):
     assert theoretical - R > 5 * error and theoretical - other > 5 * other_error
 
 
+@pytest.mark.slow
 def test_another_scheme_finds_the_same_gas_with_friction():
     """R on its way up from no spin, where most contacts slide, and on from there: before single
     particles run away. Within 4 standard errors of eight gases each."""

@@ -250,7 +250,8 @@ def _energies_over_time(axes: Axes, point, at, block, cooling) -> None:
     unit = UNITS.get(unit_of(point.E_trans.attrs), "1")
     axes.set_ylabel(f"energy per degree of\nfreedom / {unit}")
     axes.set_yscale("log" if cooling else "linear")
-    axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False)
+    if axes.lines:  # a point that was shortened may have none
+        axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False)
 
 
 def title_of_point(point: xr.Dataset) -> str:
