@@ -135,7 +135,6 @@ def test_an_interrupt_leaves_nothing_behind(bars, monkeypatch, tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.slow
 def test_the_examples_in_docstrings():
     found = doctest.testmod(library)
     assert found.attempted > 5 and not found.failed

@@ -1,8 +1,11 @@
 """A slider that turns the slides of a page."""
 
+import pytest
 from selenium.webdriver.common.keys import Keys
 
 from roughgas.show import slides
+
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 SLIDES = """
 from matplotlib.figure import Figure

@@ -12,7 +12,7 @@ ILLEGAL = {
 }
 
 QUICK = (("figures/fig9.png",), ("--config", "n_particles=5"))
-"""The others are refused in the same way; their words are those of test_refusals.py."""
+"""The others are refused in the same way, and are slow."""
 
 
 def refusal(project, *arguments):
