@@ -191,20 +191,12 @@ def _move_on(state, scene, i, time):
     d, u = _in_cell(state, scene, i, time)
     _, axis, step = _exit(d, u, cells.widths, hooks.acceleration(scene.effects))
     unlink(cells.first, cells.following, cells.home[i], i)
-    cells.home[i] = _next_to(cells.counts, cells.home[i], axis, step)
+    home = places(cells.counts, cells.home[i])
+    cells.home[i] += _along(cells.counts, home, axis, step) - _along(cells.counts, home, axis, 0)
     if axis == 1:
         _find_column(state, scene, i, time)
     enter(cells.first, cells.following, cells.home[i], i)
     return axis, step
-
-
-@jit
-def _next_to(counts, home, axis, step):
-    stride = 1
-    for k in range(axis):
-        stride *= counts[k]
-    place = home // stride % counts[axis]
-    return home + stride * (wrapped(place + step, counts[axis]) - place)
 
 
 @jit
@@ -233,20 +225,70 @@ def _collect(state, i, slide, duration, axis, step):
     """
     cells, found, number = state.cells, state.shortlist.found, 0
     home = places(cells.counts, cells.home[i])
-    for above in range(*_steps(len(home) - 1, axis, step) if len(home) == 3 else (0, 1)):
-        level = 0
-        if len(home) == 3:
-            level = wrapped(home[-1] + above, cells.counts[-1]) * cells.counts[1]
-        for up in range(*_steps(1, axis, step)):
-            row = wrapped(home[1] + up, cells.counts[1])
-            first, last = _columns(slide, cells, home[0], up, duration, _steps(0, axis, step))
-            for column in range(first, last):
-                cell = wrapped(column, cells.counts[0]) + cells.counts[0] * (row + level)
-                number = _append(found, number, cells.first[index(cell)])
+    if axis == ALL:
+        for along in range(-1, 2):
+            number = _list_slab(cells, found, number, home, len(home) - 1, along, slide, duration)
+    else:
+        number = _list_slab(cells, found, number, home, axis, step, slide, duration)
     k = 0
     while k < number:
         k, number = _append_followers(cells.following, found, number, k, AT_ONCE)
     found[index(number)] = 0  # `decide` reads on to the end of a register
+    return number
+
+
+@jit
+def _list_slab(cells, found, number, home, axis, step, slide, duration):
+    """List the first particle of each cell of a slab, a step from home along an axis.
+
+    Which axis, the processor could not foresee: there is no branch for it. It is the last where
+    rows slide past each other.
+    """
+    if slide is not None:
+        return _list_sliding(cells, found, number, home, step, slide, duration)
+    counts, x, y = cells.counts, _beside(cells.counts, home, 0), _beside(cells.counts, home, 1)
+    here = _along(counts, home, 0, step) if axis == 0 else _along(counts, home, 1, step)
+    across, up = y if axis == 0 else x, (0,)
+    if len(home) == 3:
+        here = _along(counts, home, 2, step) if axis == 2 else here
+        up = y if axis == 2 else _beside(cells.counts, home, 2)
+    for n in range(len(up)):
+        for m in range(len(across)):
+            number = _append(found, number, cells.first[index(here + across[m] + up[n])])
+    return number
+
+
+@jit
+def _beside(counts, home, axis):
+    return (
+        _along(counts, home, axis, -1),
+        _along(counts, home, axis, 0),
+        _along(counts, home, axis, 1),
+    )
+
+
+@jit
+def _along(counts, home, axis, step):
+    """Return what the place a step from home along an axis adds to the number of a cell."""
+    stride = 1
+    for k in range(axis):
+        stride *= counts[k]
+    return stride * wrapped(home[axis] + step, counts[axis])
+
+
+@jit
+def _list_sliding(cells, found, number, home, step, slide, duration):
+    counts = cells.counts
+    level = _along(counts, home, 2, step) if len(home) == 3 else 0
+    for up in range(-1, 2) if len(home) == 3 else range(step, step + 1):
+        row = level + _along(counts, home, 1, up)
+        by = up / (counts[1] * cells.widths[0])
+        begin, slip = home[0] - 1 - by * slide[0], by * slide[1] * duration
+        first = math.floor(begin - max(slip, 0.0))
+        number_of_columns = math.floor(begin + 3 - min(slip, 0.0)) - first + (up != 0)
+        first %= counts[0]
+        for column in range(first, first + number_of_columns):
+            number = _append(found, number, cells.first[index(row + wrapped(column, counts[0]))])
     return number
 
 
@@ -269,25 +311,6 @@ def _append_followers(following, found, number, k, those):
         found[index(number)] = behind[m]
         number += int((behind[m] != NOBODY) & (k + m < end))
     return min(k + len(those), end), number
-
-
-@jit
-def _steps(along, axis, step):
-    """Return the first and the end of the steps to take along an axis."""
-    return (step, step + 1) if along == axis else (-1, 2)
-
-
-@jit
-def _columns(slide, cells, place, up, duration, steps):
-    """Return first and end of the columns to look at in the same row or the next ones."""
-    if slide is None or up == 0:
-        return place + steps[0], place + steps[1]
-    by = up / (cells.counts[1] * cells.widths[0])
-    begin, slip = by * slide[0], by * slide[1] * duration
-    first = math.floor(place - 1 - begin - max(slip, 0.0))
-    last = math.floor(place + 2 - begin - min(slip, 0.0))
-    column = first % cells.counts[0]
-    return column, column + last - first + 1
 
 
 # ------------------------------------------------------------------ lists of neighbours

@@ -36,7 +36,7 @@ from roughgas.kernel.state import (
     STALE,
     TYPICAL_SPEED,
 )
-from roughgas.kernel.sweep import find_by_sweep, redraw_line
+from roughgas.kernel.sweep import draw_line, find_by_sweep, line_of
 
 REACHED, COLLAPSED, SILENT, HELD = range(4)  # how `advance` ends
 # Spans without a collision after which none is waited for any longer: so many in all, divided among
@@ -151,7 +151,8 @@ def _shift_agenda(state, scene, step):
     agenda = state.agenda
     state.clock[EXTENT] = 0.0
     for i in range(len(state.changes)):
-        redraw_line(state, scene, i)
+        line, velocity = line_of(state, scene, i)
+        draw_line(state, i, line, velocity)
         agenda.complete_until[i] -= step
         for k in range(agenda.slot_time.shape[1]):
             agenda.slot_time[i, k] -= step

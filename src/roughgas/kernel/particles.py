@@ -102,12 +102,6 @@ def speed_limit(box, half, reach):
     return speed * speed
 
 
-@jit
-def exceeds(squared, limit):
-    """Return whether the square of a relative speed is above a speed limit; NaN is not."""
-    return False if limit is None else squared > limit
-
-
 class Pair(NamedTuple):
     """What decides what a contact does, of two particles or of one with a wall.
 

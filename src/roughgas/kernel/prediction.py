@@ -32,7 +32,6 @@ from roughgas.kernel.mathematics import add_scaled, cross_squared, dot, subtract
 from roughgas.kernel.memory import SLOTS_OF_FEW
 from roughgas.kernel.particles import (
     along,
-    exceeds,
     image_numbers,
     largest_of,
     path_of,
@@ -82,7 +81,7 @@ def meeting(path_i, path_j, box, gravity, slide, middle, limit, reach):
     numbers = image_numbers(add_scaled(x, u, middle - since), box, slid(slide, middle))
     x, u = shifted(x, u, numbers, box, slid(slide, since))
     time = since + time_to_contact(x, u, reach)
-    return time, exceeds(dot(u, u), limit)
+    return time, False if limit is None else dot(u, u) > limit
 
 
 @compiled

@@ -161,9 +161,7 @@ def refresh(state, scene):
         set_path(state, scene, i, position, velocity, time)
     square = 0.0
     for k in range(dimension, 2 * dimension):
-        mean = 0.0
-        if state.agenda.boundary_time is None:
-            mean = _mean_velocity(state, k)
+        mean = _mean_velocity(state, k) if state.agenda.boundary_time is None else 0.0
         for i in range(number):
             state.trajectory[i, k] -= mean
             square += state.trajectory[i, k] * state.trajectory[i, k]

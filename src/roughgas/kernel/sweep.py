@@ -65,13 +65,6 @@ def _free_way(bodies, scene):
 
 
 @jit
-def redraw_line(state, scene, i):
-    """Renew particle i's single-precision line."""
-    start, velocity = line_of(state, scene, i)
-    draw_line(state, i, start, velocity)
-
-
-@jit
 def line_of(state, scene, i):
     """Return where particle i's path is, and its velocity, at the clock's base.
 
