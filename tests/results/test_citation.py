@@ -4,6 +4,7 @@ import json
 import shutil
 from pathlib import Path
 
+import pytest
 from project import Project, jobs_by_rule
 
 from roughgas.config.reading import read_yaml
@@ -46,6 +47,7 @@ def test_the_check_has_the_authors_and_title_of_what_is_cited():
     assert CHECKED["paper"]["title"] == f"[Re] {CITED['references'][0]['title']}"
 
 
+@pytest.mark.slow  # runs Snakemake
 def test_every_file_of_the_manifest_is_made_by_a_rule(tmp_path):
     project, files = Project(tmp_path), [one["file"] for one in CHECKED["manifest"]]
     (tmp_path / "docs").mkdir()

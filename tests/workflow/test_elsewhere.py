@@ -173,9 +173,8 @@ def assert_runs(project, folder):
     assert all((folder / made).exists() for made in REAL)
 
 
-@pytest.mark.parametrize(
-    "name", [NAMES[0], *(pytest.param(name, marks=pytest.mark.slow) for name in (NAMES[1], BRACES))]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("name", [*NAMES, BRACES])
 def test_one_works_in_it(tmp_path, name):
     project = project_in(tmp_path / name)
     if name == BRACES:  # from within alone

@@ -86,6 +86,7 @@ def finished(drawn, tmp_path):
     return drawn.copy_to(tmp_path / "copy")
 
 
+@pytest.mark.slow
 def test_an_edit_of_a_file_of_radii(tmp_path):
     """Its points run again, and no others."""
     project = Project(tmp_path)

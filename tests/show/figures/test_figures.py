@@ -144,10 +144,7 @@ def drawn(name):
 
 @pytest.mark.parametrize(
     "name",
-    [
-        pytest.param(one, marks=[pytest.mark.slow] * (one == "mixtures_polydisperse"))
-        for one in DATA
-    ],
+    [pytest.param(one, marks=[pytest.mark.slow] * (not one.startswith("fig"))) for one in DATA],
 )
 def test_a_figure_can_be_read(name):
     assert faults(lambda: drawn(name)) == []
