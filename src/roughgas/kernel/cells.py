@@ -259,21 +259,22 @@ def _list_slab(cells, found, number, home, axis, step, slide, duration):
 
 
 @jit
-def _beside(counts, home, axis):
-    return (
-        _along(counts, home, axis, -1),
-        _along(counts, home, axis, 0),
-        _along(counts, home, axis, 1),
-    )
-
-
-@jit
 def _along(counts, home, axis, step):
     """Return what the place a step from home along an axis adds to the number of a cell."""
     stride = 1
     for k in range(axis):
         stride *= counts[k]
     return stride * wrapped(home[axis] + step, counts[axis])
+
+
+@jit
+def _beside(counts, home, axis):
+    """Return what the place before, the same and the next one along an axis add to it."""
+    return (
+        _along(counts, home, axis, -1),
+        _along(counts, home, axis, 0),
+        _along(counts, home, axis, 1),
+    )
 
 
 @jit
@@ -285,6 +286,7 @@ def _list_sliding(cells, found, number, home, step, slide, duration):
         by = up / (counts[1] * cells.widths[0])
         begin, slip = home[0] - 1 - by * slide[0], by * slide[1] * duration
         first = math.floor(begin - max(slip, 0.0))
+        # of a row that has slid, the columns at both ends are beside home in part
         number_of_columns = math.floor(begin + 3 - min(slip, 0.0)) - first + (up != 0)
         first %= counts[0]
         for column in range(first, first + number_of_columns):
