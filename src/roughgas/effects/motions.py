@@ -177,6 +177,18 @@ def fall(gap, speed, gravity):
 
 
 @jit
+def is_above(amplitude, gravity, height, speed, span):
+    """Return whether a particle that gravity pulls back is above all strokes in a span of time.
+
+    Then it is so at both ends. Height and speed are those at time 0.
+    """
+    start, end = span
+    first = height + speed * start - 0.5 * gravity * start * start
+    last = height + speed * end - 0.5 * gravity * end * end
+    return (gravity >= 0.0) & (min(first, last) > amplitude)
+
+
+@jit
 def time_below(amplitude, gravity, height, speed, time):
     """Return when a particle that is above all strokes at `time` is back from there, else `time`.
 

@@ -236,6 +236,12 @@ def predict_wall(wall, index, state, scene, i):
     gravity = _pull(hooks.acceleration(scene.effects), place, dimension)
     if wall.motion is None:
         return time + fall(gap, speed, gravity), motions.MEET
+    # What stays above all strokes is looked at again when its foresight ends. Where a search waits,
+    # this would change when events are, and with them the last bits of all times
+    span = state.clock[NOW] - time, state.agenda.complete_until[i] - time
+    if not law_of(wall.motion).waits:
+        if motions.is_above(wall.motion.amplitude, gravity, gap, speed, span):
+            return math.inf, motions.MEET
     phase = state.phase[index] + time
     # Among many, few get there before a contact. Among few, the clock's base moves at other events
     # if a search ends at one, and with it the last bits of all times
