@@ -28,13 +28,13 @@ ARITHMETIC = re.compile(
 def sweep(state, scene, i, number):
     """Which of all particles may be met soon: single precision (`ps`)."""
     start, velocity = line_of(state, scene, i)
-    return list_candidates(state, scene, 0, singles(start), singles(velocity), 0.5, 0.5)
+    return list_candidates(state, scene, 0, 0, singles(start), singles(velocity), 0.5, 0.5)
 
 
 @entry
 def decisions(state, scene, i, number):
     """When so many that may be met are: double precision (`pd`)."""
-    decide(state, scene, i, number, 0.0, 1.0, 1.0)
+    decide(state, scene, i, 0, number, 0.0, 1.0, 1.0)
 
 
 def packed_instructions(loop, scene: Scene, state) -> Counter:

@@ -31,7 +31,7 @@ def written(name, scene, state):
     known = [kernel, *(one for m in modules for one in vars(m).values() if type(one) is Compiled)]
     named = [one for one in known if one.__name__ == name]
     if not named:
-        raise InputError("--show", name, "be a compiled function, such as collide or find_by_sweep")
+        raise InputError("--show", name, "be a compiled function, such as collide or list_by_sweep")
     kernel(state, scene, Sampling(np.inf, 1, 0), np.empty((0, len(columns(scene)))))
     found = {}
     for one in named:

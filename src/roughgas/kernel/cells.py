@@ -24,7 +24,6 @@ the start.
 """
 
 import math
-import sys
 
 import numpy as np
 
@@ -53,28 +52,25 @@ from roughgas.kernel.particles import (
     shifted,
     slid,
 )
-from roughgas.kernel.prediction import decide
 from roughgas.kernel.state import ALIGNED, NOBODY, PREDICTIONS, SPAN
 
 ALL = -1  # every axis
 ORIGIN = 0.38196601125  # where cells begin, in their widths: no lattice has many sites on an edge
-FARTHEST = sys.float_info.max
 ALIGN_EVERY = 2  # predictions of each particle
 AT_ONCE = tuple(range(8))  # particles whose followers are read before any is put on a list
 
 
 @jit
-def find_around(state, scene, i, time):
-    """Foresee particle i's contacts with the particles around it."""
+def list_around(state, scene, i, begin, time):
+    """List the particles around particle i in the shortlist, from `begin` on; return the end."""
     if state.cells.neighbours is None:
-        _find_in_cells(state, scene, i, time)
-    else:
-        _find_on_list(state, scene, i, time)
+        return _list_in_cells(state, scene, i, begin, time)
+    return _list_neighbours_of(state, scene, i, begin, time)
 
 
 @jit
-def _find_in_cells(state, scene, i, time):
-    """Look at all cells around; if particle i leaves its cell now, only at those that are new."""
+def _list_in_cells(state, scene, i, begin, time):
+    """List those in all cells around; if particle i leaves its cell now, only in the new ones."""
     agenda, cells = state.agenda, state.cells
     moved_on = time >= cells.leave[i]
     axis, step = _move_on(state, scene, i, time) if moved_on else (ALL, 0)
@@ -92,8 +88,7 @@ def _find_in_cells(state, scene, i, time):
     if not known:
         axis = ALL
         clear_contacts(agenda, i, time + outlook)
-    number = _collect(state, i, slide, outlook, axis, step)
-    decide(state, scene, i, number, time, time, FARTHEST)
+    return _collect(state, i, begin, slide, outlook, axis, step)
 
 
 @jit
@@ -217,20 +212,20 @@ def wrapped(place, count):
 
 
 @jit
-def _collect(state, i, slide, duration, axis, step):
-    """List the particles around particle i in the shortlist; return how many there are.
+def _collect(state, i, begin, slide, duration, axis, step):
+    """List the particles around particle i in the shortlist, from `begin` on; return the end.
 
     Take all cells around, or only those a step further along an axis: the first particle of each
     cell, then those that follow the ones on the list, with no branch that depends on what is there.
     """
-    cells, found, number = state.cells, state.shortlist.found, 0
+    cells, found, number = state.cells, state.shortlist.found, begin
     home = places(cells.counts, cells.home[i])
     if axis == ALL:
         for along in range(-1, 2):
             number = _list_slab(cells, found, number, home, len(home) - 1, along, slide, duration)
     else:
         number = _list_slab(cells, found, number, home, axis, step, slide, duration)
-    k = 0
+    k = begin
     while k < number:
         k, number = _append_followers(cells.following, found, number, k, AT_ONCE)
     found[index(number)] = 0  # `decide` reads on to the end of a register
@@ -319,12 +314,12 @@ def _append_followers(following, found, number, k, those):
 
 
 @jit
-def _find_on_list(state, scene, i, time):
+def _list_neighbours_of(state, scene, i, begin, time):
     if time >= state.cells.leave[i]:
-        _move_region(state, scene, i, time)
+        _move_region(state, scene, i, begin, time)
     _foresee_exit(state, scene, i, time)
     clear_contacts(state.agenda, i, time + state.clock[SPAN])
-    decide(state, scene, i, _members(state, i), time, time, FARTHEST)
+    return _members(state, i, begin)
 
 
 @jit
@@ -348,36 +343,36 @@ def _in_frame(neighbours, position, velocity, time):
 
 
 @jit
-def _members(state, i):
-    """Put the neighbours of particle i on the shortlist, and more if its own lacks some; return
-    their number."""
+def _members(state, i, begin):
+    """Put the neighbours of particle i on the shortlist, from `begin` on, and more if its own list
+    lacks some; return the end."""
     neighbours, found = state.cells.neighbours, state.shortlist.found
     if neighbours.number[i] > ROOM:
-        return _collect(state, i, None, 0.0, ALL, 0)
+        return _collect(state, i, begin, None, 0.0, ALL, 0)
     for k in range(ROOM):
-        found[k] = neighbours.members[i, k]
-    return int(neighbours.number[i])
+        found[begin + k] = neighbours.members[i, k]
+    return begin + int(neighbours.number[i])
 
 
 @compiled
-def _move_region(state, scene, i, time):
+def _move_region(state, scene, i, begin, time):
     """Let the region of particle i be around where it is at `time`."""
     cells = state.cells
-    for k in range(_members(state, i)):
+    for k in range(begin, _members(state, i, begin)):
         _remove(cells.neighbours, state.shortlist.found[k], i)
     unlink(cells.first, cells.following, cells.home[i], i)
     settle(state, scene, i, time)
-    _list_neighbours(state, scene, i, len(state.changes))
+    _list_neighbours(state, scene, i, begin, len(state.changes))
 
 
 @jit
-def _list_neighbours(state, scene, i, end):
+def _list_neighbours(state, scene, i, begin, end):
     """Put those near particle i, of numbers below `end`, on its list, and it on theirs."""
     neighbours, found = state.cells.neighbours, state.shortlist.found
-    number = _collect(state, i, None, 0.0, ALL, 0)
+    number = _collect(state, i, begin, None, 0.0, ALL, 0)
     middle = read(neighbours.middle, i, 0, scene.box)
     reach = NARROWEST * largest_of(state.bodies)
-    for first in range(0, number, lanes_of(state.shortlist.when)):
+    for first in range(begin, number, lanes_of(state.shortlist.when)):
         others = numbers_in(found, first, REGISTER)
         x = tuple(gather(neighbours.middle, k, others) - middle[k] for k in range(len(scene.box)))
         x, _ = shifted(x, x, image_numbers(x, scene.box, None), scene.box, None)
@@ -464,7 +459,7 @@ def arrange(state, scene, time):
     if cells.neighbours is not None:
         _align(state, scene, time)
         for i in range(len(state.changes)):
-            _list_neighbours(state, scene, i, i)
+            _list_neighbours(state, scene, i, 0, i)
 
 
 @jit

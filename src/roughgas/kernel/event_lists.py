@@ -145,7 +145,9 @@ def earliest(state):
 def _enter_in_blocks(state, i, time):
     queue, block = state.queue, i // BLOCK
     keys = _with(queue.keys, block, i % BLOCK, time)
-    _with(queue.least, block // BLOCK, block % BLOCK, least(keys))
+    first = least(keys)
+    queue.whose[block] = BLOCK * block + trailing_zeros(bits(keys == first))
+    _with(queue.least, block // BLOCK, block % BLOCK, first)
 
 
 @jit
@@ -168,8 +170,7 @@ def _earliest_in_blocks(state):
         if least(candidates) < first:
             first = least(candidates)
             block = BLOCK * k + trailing_zeros(bits(candidates == first))
-    keys = load(queue.keys, block, 0, BLOCK)
-    return BLOCK * block + trailing_zeros(bits(keys == first))
+    return queue.whose[index(block)]
 
 
 @jit

@@ -1,11 +1,12 @@
 """The event loop: take the earliest event, carry it out, foresee the next ones; and the clock."""
 
 import math
+import sys
 
 from roughgas.compiling.jit import compiled, jit
 from roughgas.compiling.lanes import index
 from roughgas.kernel import hooks
-from roughgas.kernel.cells import align_now_and_then, arrange, find_around
+from roughgas.kernel.cells import align_now_and_then, arrange, list_around
 from roughgas.kernel.contact import collide
 from roughgas.kernel.event_lists import (
     FLIGHTS,
@@ -17,6 +18,7 @@ from roughgas.kernel.event_lists import (
 from roughgas.kernel.hooks import CODES, present
 from roughgas.kernel.mathematics import dot
 from roughgas.kernel.particles import path_of
+from roughgas.kernel.prediction import decide
 from roughgas.kernel.state import (
     AT_ONCE,
     BASE,
@@ -36,7 +38,7 @@ from roughgas.kernel.state import (
     STALE,
     TYPICAL_SPEED,
 )
-from roughgas.kernel.sweep import draw_line, find_by_sweep, line_of
+from roughgas.kernel.sweep import draw_line, line_of, list_by_sweep, look_ahead
 
 REACHED, COLLAPSED, SILENT, HELD = range(4)  # how `advance` ends
 # Spans without a collision after which none is waited for any longer: so many in all, divided among
@@ -44,6 +46,7 @@ REACHED, COLLAPSED, SILENT, HELD = range(4)  # how `advance` ends
 SILENCE = 10_000_000, 1000
 CELLS = 16.0  # cells that a particle crosses before all are sorted anew
 INSTANT = 2.0**-30  # of a span; events as close as this count as simultaneous
+FARTHEST = sys.float_info.max
 COLLAPSE = 10  # simultaneous contacts of particles that hardly approach
 STANDSTILL = 100_000, 10  # simultaneous events, and as many more for each particle
 
@@ -68,9 +71,7 @@ def advance(state, scene, until, collisions, hits):
             break
         clock[NOW] = time
         affected = execute_event(state, scene, i, int(agenda.kind[i]), time)
-        for k in range(2):
-            if affected[k] >= 0:
-                predict_events(state, scene, index(affected[k]), time)
+        predict_events(state, scene, affected, time)
         if agenda.boundary_time is not None and counts[BOUNDARY_HITS] > hits:
             return HELD
         if state.cells is not None:
@@ -116,22 +117,56 @@ def _resolve_boundary(state, scene, i, code, time):
 
 
 @jit
-def predict_events(state, scene, i, time):
-    """Predict all events of particle i: its next meeting with a boundary, and its contacts."""
-    agenda, effects = state.agenda, scene.effects
-    state.counts[PREDICTIONS] += 1
+def predict_events(state, scene, affected, time):
+    """Predict all events of up to two particles: their meetings with boundaries, and contacts.
+
+    Each step is done for both before the next, which waits for its result: the processor fills the
+    wait of one particle with the work for the other.
+    """
+    number = int(affected[0] != NOBODY) + int(affected[1] != NOBODY)
+    state.counts[PREDICTIONS] += number
+    shortlist, room = state.shortlist, len(state.shortlist.found) // 2
     if state.cells is None:
-        find_by_sweep(state, scene, i, time)
+        for k in range(number):
+            look_ahead(state, scene, index(affected[k]), time)
+    for k in range(number):
+        i = index(affected[k])
+        shortlist.beyond[k] = _list_candidates(state, scene, i, k * room, time)
+    for k in range(number):
+        i = index(affected[k])
+        _decide(state, scene, i, k * room, index(shortlist.beyond[k]), time)
+    for k in range(number):
+        i = index(affected[k])
+        if state.agenda.boundary_time is not None:
+            _predict_boundary(state, scene, i)
+        choose_next(state, i)
+
+
+@jit
+def _list_candidates(state, scene, i, begin, time):
+    if state.cells is None:
+        return list_by_sweep(state, scene, i, begin, time)
+    return list_around(state, scene, i, begin, time)
+
+
+@jit
+def _decide(state, scene, i, begin, beyond, time):
+    if state.cells is None:
+        end = state.agenda.complete_until[i]
+        decide(state, scene, i, begin, beyond, time, end, end)
     else:
-        find_around(state, scene, i, time)
-    if agenda.boundary_time is not None:
-        first, code = math.inf, 0
-        for part in present(effects, "predict"):
-            when, what = part.own(effects[part.place], part.rank, state, scene, i)
-            if when < first:
-                first, code = when, CODES * part.rank + what
-        agenda.boundary_time[i], agenda.boundary_code[i] = first, code
-    choose_next(state, i)
+        decide(state, scene, i, begin, beyond, time, time, FARTHEST)
+
+
+@jit
+def _predict_boundary(state, scene, i):
+    agenda, effects = state.agenda, scene.effects
+    first, code = math.inf, 0
+    for part in present(effects, "predict"):
+        when, what = part.own(effects[part.place], part.rank, state, scene, i)
+        if when < first:
+            first, code = when, CODES * part.rank + what
+    agenda.boundary_time[i], agenda.boundary_code[i] = first, code
 
 
 @compiled

@@ -99,17 +99,21 @@ def cell_grid(scene, position, narrowest=NARROWEST):
 
 def _few(scene, number, dimension, precision):
     padded = _whole(number, LANES)
-    key = np.full(padded, np.inf)
-    least = np.full(_whole(padded // BLOCK, BLOCK), np.inf)
+    blocks = padded // BLOCK
+    keys = _aligned((blocks, BLOCK), value=np.inf)
     fields = _fields(scene, dimension, precision, SLOTS_OF_FEW)
     return _state(
         scene,
         number,
-        _arrays(number, fields) | {"key": key},
-        queue=Blocks(keys=key.reshape(-1, BLOCK), least=least.reshape(-1, BLOCK)),
+        _arrays(number, fields) | {"key": keys.reshape(-1)},
+        queue=Blocks(
+            keys=keys,
+            least=_aligned((-(-blocks // BLOCK), BLOCK), value=np.inf),
+            whose=np.zeros(blocks, np.int64),
+        ),
         sweep=Sweep(
-            lines=np.full((2 * dimension, padded), np.nan, np.float32),
-            sizes=None if scene.effects.species is None else np.zeros((1, padded), np.float32),
+            lines=_aligned((2 * dimension, padded), np.float32, np.nan),
+            sizes=None if scene.effects.species is None else _aligned((1, padded), np.float32),
         ),
         cells=None,
     )
@@ -207,7 +211,11 @@ def _state(scene, number, arrays, **parts):
         clock=np.zeros(8),
         counts=np.zeros(13, np.int64),
         agenda=Agenda(**{name: arrays.get(name) for name in Agenda._fields}),
-        shortlist=Shortlist(np.zeros(number + LANES, np.int32), np.zeros((1, TOGETHER))),
+        shortlist=Shortlist(
+            found=_aligned((2 * (_whole(number, LANES) + LANES),), np.int32),
+            beyond=np.zeros(2, np.int64),
+            when=_aligned((1, TOGETHER)),
+        ),
         **parts,
     )
 
@@ -242,7 +250,19 @@ def _whole(number, unit):
 
 
 def _arrays(number, fields):
-    return {name: np.zeros((number, *width), kind) for name, (kind, *width) in fields.items()}
+    return {name: _aligned((number, *width), kind) for name, (kind, *width) in fields.items()}
+
+
+def _aligned(shape, kind=float, value=0):
+    """Return an array that begins with a line of the cache: a register that spans two lines takes
+    longer to load and to store."""
+    size = math.prod(shape) * np.dtype(kind).itemsize
+    memory = np.zeros(size + LINE, np.uint8)
+    start = -memory.ctypes.data % LINE
+    array = memory[start : start + size].view(kind).reshape(shape)
+    if value != 0:
+        array[...] = value
+    return array
 
 
 def _interleaved(number, fields):
@@ -250,9 +270,7 @@ def _interleaved(number, fields):
     order = sorted(fields.items(), key=lambda field: -np.dtype(field[1][0]).itemsize)
     sizes = {name: np.dtype(kind).itemsize * math.prod(width) for name, (kind, *width) in order}
     size = _whole(sum(sizes.values()), 8)
-    memory = np.zeros(number * size + LINE, np.uint8)
-    start = -memory.ctypes.data % LINE
-    rows = memory[start : start + number * size].reshape(number, size)
+    rows = _aligned((number, size), np.uint8)
     arrays, offset = {}, 0
     for name, (kind, *width) in order:
         array = rows[:, offset : offset + sizes[name]].view(kind)

@@ -108,11 +108,12 @@ def meeting_of_any_image(path_i, path_j, box, gravity, slide, start, end, reach)
 
 
 @jit
-def decide(state, scene, i, number, start, end, limit):
-    """Put the contacts of particle i with the candidates, up to time `limit`, on its agenda.
+def decide(state, scene, i, begin, beyond, start, end, limit):
+    """Put the contacts of particle i with candidates, up to time `limit`, on its agenda.
 
-    Between `start` and `end` every image counts, later only the nearest one in their middle. What
-    lies beyond the last candidate on the list is a particle's number, too: it is decided and left.
+    Candidates are on the shortlist from the place `begin` to the one before `beyond`. Between
+    `start` and `end` every image counts, later only the nearest one in their middle. What lies
+    beyond the last candidate is a particle's number, too: it is decided and left.
     """
     box = scene.box
     path = path_of(state.trajectory, i, box)
@@ -120,18 +121,19 @@ def decide(state, scene, i, number, start, end, limit):
     slide = hooks.sliding(scene.effects, state)
     half = 0.5 * (end - start)
     fastest = speed_limit(box, half, 2.0 * largest_of(state.bodies))
-    first, more = 0, True
+    first, more = begin, True
     while more:  # once mostly, and at least once, so that the processor can foresee it
         others = numbers_in(state.shortlist.found, first, REGISTER)
         paths = _paths_of(state.trajectory, others, box)
         reach = _reaches(state.bodies, i, others)
         when, unsure = meeting(path, paths, box, gravity, slide, start + half, fastest, reach)
-        listed = order(REGISTER) < number - first
+        listed = order(REGISTER) < beyond - first
         candidates = path, first, listed
         when = _of_any_image(fastest, state, scene, i, candidates, start, end, when, unsure)
-        _note(state, i, first, others, choose((when <= limit) & listed, when, math.inf))
+        when = choose((when <= limit) & listed, when, math.inf)
+        _note(state, i, first - begin, first, others, when)
         first += lanes_of(state.shortlist.when)
-        more = first < number
+        more = first < beyond
 
 
 @jit
@@ -189,12 +191,12 @@ def _one_by_one(state, i, first, when):
 
 
 @jit
-def _note(state, i, first, others, when):
+def _note(state, i, slot, first, others, when):
     """Put contacts with candidates on particle i's list: all at once, where they have slots."""
-    if state.cells is not None or first + lanes_of(state.shortlist.when) > SLOTS_OF_FEW:
+    if state.cells is not None or slot + lanes_of(state.shortlist.when) > SLOTS_OF_FEW:
         _one_by_one(state, i, first, when)
         return
     agenda = state.agenda
-    store(agenda.slot_time, i, first, when)
-    store(agenda.slot_partner, i, first, others)
-    store(agenda.slot_change, i, first, gather(state.changes, 0, others))
+    store(agenda.slot_time, i, slot, when)
+    store(agenda.slot_partner, i, slot, others)
+    store(agenda.slot_change, i, slot, gather(state.changes, 0, others))

@@ -61,10 +61,12 @@ class Agenda(NamedTuple):
 
 
 class Blocks(NamedTuple):
-    """A queue of few: the keys in blocks, and the least of each block, in blocks again."""
+    """A queue of few: the keys in blocks, and the least of each block, in blocks again, and whose
+    it is."""
 
     keys: np.ndarray  # (blocks, BLOCK) the memory of Agenda.key
     least: np.ndarray  # (blocks padded / BLOCK, BLOCK)
+    whose: np.ndarray  # (blocks,) particle with the least key of a block
 
 
 class Calendar(NamedTuple):
@@ -110,9 +112,10 @@ class Cells(NamedTuple):
 
 
 class Shortlist(NamedTuple):
-    """The candidates for a contact with one particle, and what becomes of them."""
+    """The candidates for a contact with each of two particles, and what becomes of them."""
 
-    found: np.ndarray  # (room,) numbers of particles
+    found: np.ndarray  # (2 room,) particles; those for the second begin half-way
+    beyond: np.ndarray  # (2,) the place after the last candidate for each of the two
     when: np.ndarray  # (1, 8) times of contact, of those that are looked at one by one
 
 

@@ -27,7 +27,6 @@ from roughgas.kernel.particles import (
     slid,
     speed_limit,
 )
-from roughgas.kernel.prediction import decide
 from roughgas.kernel.state import EXTENT, LONGEST_HORIZON, SPAN, TYPICAL_SPEED
 
 ROUNDING = 2.0**-24  # half the spacing of single precision just above 1
@@ -35,15 +34,21 @@ ROUNDED_UP = 1.0 + 2.0**-20  # radii in single precision are no less than they a
 
 
 @jit
-def find_by_sweep(state, scene, i, time):
-    """Foresee particle i's contacts with all others up to its horizon."""
+def look_ahead(state, scene, i, time):
+    """Forget particle i's contacts; those that are listed next are complete to its horizon."""
+    clear_contacts(state.agenda, i, time + horizon(state, scene, i))
+
+
+@jit
+def list_by_sweep(state, scene, i, begin, time):
+    """List every particle that i may touch up to its horizon in the shortlist, from `begin` on;
+    return the end."""
     start, velocity = line_of(state, scene, i)
-    end = time + horizon(state, scene, i)
-    half = 0.5 * (end - time)
-    number = list_candidates(state, scene, i, singles(start), singles(velocity), time + half, half)
+    half = 0.5 * (state.agenda.complete_until[i] - time)
+    line = singles(start), singles(velocity)
+    end = list_candidates(state, scene, i, begin, *line, time + half, half)
     draw_line(state, i, start, velocity)
-    clear_contacts(state.agenda, i, end)
-    decide(state, scene, i, number, time, end, end)
+    return end
 
 
 @jit
@@ -89,9 +94,9 @@ def draw_line(state, i, start, velocity):
 
 
 @jit
-def list_candidates(state, scene, i, start, velocity, middle, half):
+def list_candidates(state, scene, i, begin, start, velocity, middle, half):
     """List every particle that one on this line may touch within `half` of time `middle` in the
-    shortlist; return their number. The particle itself may be among them: it never meets itself."""
+    shortlist; return the end. The particle itself may be among them: it never meets itself."""
     clock = state.clock
     slack = 16.0 * ROUNDING * clock[EXTENT]
     margin = radius_of(state.bodies, i) + largest_of(state.bodies) + slack
@@ -104,6 +109,7 @@ def list_candidates(state, scene, i, start, velocity, middle, half):
         state.sweep.sizes,
         single(ROUNDED_UP * (radius_of(state.bodies, i) + slack)),
         state.shortlist.found,
+        begin,
         len(state.changes),
         start,
         velocity,
@@ -119,9 +125,23 @@ def list_candidates(state, scene, i, start, velocity, middle, half):
 
 @jit
 def _sweep(
-    lines, sizes, own, found, particles, x_i, u_i, box, slide, limit, middle, reach, spare, square
+    lines,
+    sizes,
+    own,
+    found,
+    begin,
+    particles,
+    x_i,
+    u_i,
+    box,
+    slide,
+    limit,
+    middle,
+    reach,
+    spare,
+    square,
 ):
-    lanes, number = lanes_of(lines), 0
+    lanes, number = lanes_of(lines), begin
     for first in range(0, particles, lanes):
         u = subtract(u_i, _lines_of(lines, len(box), first, box))
         x = add_scaled(subtract(x_i, _lines_of(lines, 0, first, box)), u, middle)
