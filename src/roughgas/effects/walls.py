@@ -31,7 +31,7 @@ from roughgas.effects.settings import (
 )
 from roughgas.kernel import hooks
 from roughgas.kernel.contact import collide_with_wall, note_contact
-from roughgas.kernel.event_lists import next_contact
+from roughgas.kernel.event_lists import foreseen_until, next_contact
 from roughgas.kernel.mathematics import (
     add_scaled,
     along_axis,
@@ -238,7 +238,7 @@ def predict_wall(wall, index, state, scene, i):
         return time + fall(gap, speed, gravity), motions.MEET
     # What stays above all strokes is looked at again when its foresight ends. Where a search waits,
     # this would change when events are, and with them the last bits of all times
-    span = state.clock[NOW] - time, state.agenda.complete_until[i] - time
+    span = state.clock[NOW] - time, foreseen_until(state, i) - time
     if not law_of(wall.motion).waits:
         if motions.is_above(wall.motion.amplitude, gravity, gap, speed, span):
             return math.inf, motions.MEET

@@ -321,6 +321,15 @@ def next_contact(state, i):
 
 
 @jit
+def foreseen_until(state, i):
+    """Return a time at which particle i's whole future is foreseen again, if not before."""
+    until = state.agenda.complete_until[i]
+    if state.cells is None or state.cells.neighbours is not None:
+        return until  # when it leaves its region may change without that
+    return min(until, state.cells.leave[i])
+
+
+@jit
 def _of_two(state, i):
     agenda, kind = state.agenda, HORIZON
     time = min(agenda.complete_until[i], state.cells.leave[i])
