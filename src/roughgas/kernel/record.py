@@ -13,6 +13,7 @@ from roughgas.kernel.particles import (
     radius_of,
     set_path,
     spin_mass_of,
+    spin_of,
 )
 from roughgas.kernel.state import (
     BASE,
@@ -96,35 +97,58 @@ def take_sample(state, scene, row):
     row[0] = state.clock[ORIGIN] + (state.clock[BASE] + time) * unit
     row[1] = state.counts[COLLISIONS]
     row[2] = state.counts[EXPONENT]
+    sums = _no_sums(scene.box, state.spin)
     for i in range(len(state.changes)):
         position, velocity = position_in_box(state, scene, i, time)
-        _add(state, scene, i, position, velocity, row, 3)
+        sums = _added(state, scene, i, position, velocity, sums)
         if state.bodies is not None:
-            length = 2 * len(scene.box) + 3
-            length += 0 if state.spin is None else 1 + state.spin.shape[1]
-            first = 3 + length * (1 + state.bodies.species[i])
-            _add(state, scene, i, position, velocity, row, first)
+            first = 3 + len(sums) * (1 + state.bodies.species[i])
+            own = tuple_from(row, first, sums)
+            put(row, first, _added(state, scene, i, position, velocity, own))
+    put(row, 3, sums)
     _enter_sums(state.sums, state.counts[EXPONENT], row)
 
 
 @jit
-def _add(state, scene, i, position, velocity, row, first):
-    mass, dimension = mass_of(state.bodies, i), len(position)
-    for k in range(dimension):
-        row[first + k] += mass * (velocity[k] * velocity[k])
-        row[first + dimension + k] += mass * velocity[k]
+def _no_sums(box, spin):
+    return tuple(0.0 for k in range(2 * len(box) + 3 if spin is None else 4 * len(box) + 1))
+
+
+@jit
+def _added(state, scene, i, position, velocity, sums):
+    """Return the sums with what particle i adds to them."""
+    mass, n = mass_of(state.bodies, i), len(position)
     height = position[1] - scene.middle
-    row[first + 2 * dimension] += mass * height
-    row[first + 1 + 2 * dimension] += mass * (height * height)
-    row[first + 2 + 2 * dimension] += mass * (height * velocity[0])
-    if state.spin is not None:
-        bodies, effect = state.bodies, scene.effects.spin
-        share = 1.0 if bodies is None else spin_mass_of(bodies, effect, i) / effect.inertia
-        lever = share * radius_of(bodies, i)
-        first += 3 + 2 * dimension
-        for k in range(state.spin.shape[1]):
-            row[first] += share * (state.spin[i, k] * state.spin[i, k])
-            row[first + 1 + k] += lever * state.spin[i, k]
+    squares = tuple(sums[k] + mass * (velocity[k] * velocity[k]) for k in range(n))
+    momenta = tuple(sums[n + k] + mass * velocity[k] for k in range(n))
+    profile = (
+        sums[2 * n] + mass * height,
+        sums[2 * n + 1] + mass * (height * height),
+        sums[2 * n + 2] + mass * (height * velocity[0]),
+    )
+    if state.spin is None:
+        return squares + momenta + profile
+    share = 1.0
+    if state.bodies is not None:
+        share = spin_mass_of(state.bodies, scene.effects.spin, i) / scene.effects.spin.inertia
+    lever = share * radius_of(state.bodies, i)
+    spin = spin_of(state.spin, scene.box, i)
+    square = sums[2 * n + 3]
+    for k in range(2 * n - 3):
+        square += share * (spin[k] * spin[k])
+    turning = tuple(sums[2 * n + 4 + k] + lever * spin[k] for k in range(2 * n - 3))
+    return squares + momenta + profile + (square,) + turning
+
+
+@jit
+def tuple_from(row, first, like):
+    return tuple(row[first + k] for k in range(len(like)))
+
+
+@jit
+def put(row, first, numbers):
+    for k in range(len(numbers)):
+        row[first + k] = numbers[k]
 
 
 @jit
