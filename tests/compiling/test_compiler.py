@@ -46,6 +46,27 @@ def test_only_what_is_called_from_python_is_finished():
     assert engine.is_symbol_defined(outer.fndesc.llvm_cpython_wrapper_name)
 
 
+def test_numba_functions_of_ones_own_work_beside_the_kernel():
+    """Ours is the library of all that numba compiles in this process. One that lost what is called
+    by what a function calls ended in an error, or jumped to address 0."""
+
+    @numba.njit
+    def inner(x, n):
+        if n < 0:
+            raise ValueError("negative", n)
+        return max(x.shape) + n, np.full(2, n)
+
+    @numba.njit
+    def outer(x, n):
+        return inner(x, n)[0] + inner(x, n)[1].sum() + np.sort(x)[0], [str(k) for k in range(n)]
+
+    x = np.array([3.0, 1.0, 2.0])
+    assert outer(x, 2) == outer.py_func(x, 2) == (10.0, ["0", "1"])
+    for function in (inner, outer):
+        with pytest.raises(ValueError, match="negative"):
+            function(x, -1)
+
+
 def test_every_pass_that_is_left_out_is_one_of_numbas():
     """One that is renamed would be there again, and take its time."""
     passes = []

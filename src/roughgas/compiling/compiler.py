@@ -219,7 +219,7 @@ class Library(JITCodeLibrary):
 
     def finalize(self):
         if any(_is_entry(one.name) for module in self._written for one in module.functions):
-            below = _all_below(self, [])
+            _, *below = _callers_first(self)
             for library in below:
                 self._reload_init.update(library._reload_init)
                 for module in library._written:
@@ -228,18 +228,25 @@ class Library(JITCodeLibrary):
                             function.linkage = function.linkage or "linkonce_odr"
             for module in [one for library in (self, *below) for one in library._written]:
                 self._final_module.link_in(parse_assembly(normalize_ir_text(str(module))))
-            self._linking_libraries = []
+            linked, self._linking_libraries = self._linking_libraries, []
             super().finalize()
+            self._linking_libraries = linked  # for what calls this function in its turn
         self._finalized = True
 
 
-def _all_below(library, found):
-    """Return the list with all libraries added that one calls, directly or not, each once."""
-    for one in library._linking_libraries:
-        if one not in found:
-            found.append(one)
-            _all_below(one, found)
-    return found
+def _callers_first(library):
+    """Return a library and all that it calls, directly or not, each once and before what it calls:
+    LLVM drops a function that nothing has called when it is linked."""
+    done = {}
+
+    def visit(one):
+        for called in one._linking_libraries:
+            if called not in done:
+                visit(called)
+        done[one] = None
+
+    visit(library)
+    return [*done][::-1]
 
 
 def _is_entry(name):

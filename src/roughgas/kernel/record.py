@@ -103,14 +103,15 @@ def take_sample(state, scene, row):
         sums = _added(state, scene, i, position, velocity, sums)
         if state.bodies is not None:
             first = 3 + len(sums) * (1 + state.bodies.species[i])
-            own = tuple_from(row, first, sums)
-            put(row, first, _added(state, scene, i, position, velocity, own))
-    put(row, 3, sums)
+            own = _read(row, first, sums)
+            _write(row, first, _added(state, scene, i, position, velocity, own))
+    _write(row, 3, sums)
     _enter_sums(state.sums, state.counts[EXPONENT], row)
 
 
 @jit
 def _no_sums(box, spin):
+    """Return zeros, as many as `columns` has sums over all particles."""
     return tuple(0.0 for k in range(2 * len(box) + 3 if spin is None else 4 * len(box) + 1))
 
 
@@ -141,12 +142,12 @@ def _added(state, scene, i, position, velocity, sums):
 
 
 @jit
-def tuple_from(row, first, like):
+def _read(row, first, like):
     return tuple(row[first + k] for k in range(len(like)))
 
 
 @jit
-def put(row, first, numbers):
+def _write(row, first, numbers):
     for k in range(len(numbers)):
         row[first + k] = numbers[k]
 
