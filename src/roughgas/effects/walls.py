@@ -238,8 +238,8 @@ def predict_wall(wall, index, state, scene, i):
         return time + fall(gap, speed, gravity), motions.MEET
     # What stays above all strokes is looked at again when its foresight ends. Where a search waits,
     # this would change when events are, and with them the last bits of all times
-    span = state.clock[NOW] - time, foreseen_until(state, i) - time
     if not law_of(wall.motion).waits:
+        span = state.clock[NOW] - time, foreseen_until(state, i) - time
         if motions.is_above(wall.motion.amplitude, gravity, gap, speed, span):
             return math.inf, motions.MEET
     phase = state.phase[index] + time

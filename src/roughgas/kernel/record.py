@@ -6,6 +6,7 @@ from typing import NamedTuple
 from roughgas.compiling.jit import by_reference, compiled, entry, jit
 from roughgas.kernel.hooks import sums as sums_of
 from roughgas.kernel.loop import REACHED, advance, start
+from roughgas.kernel.mathematics import read, write
 from roughgas.kernel.particles import (
     enter_box,
     mass_of,
@@ -81,16 +82,16 @@ def record(state, scene, plan, samples):
         ended = advance(state, scene, now + plan.interval, collisions, hits)
         if ended != REACHED:
             return ended, k
-        take_sample(state, scene, samples[k])
+        take_sample(state, scene, samples, k)
         if plan.refresh > 0 and (k + 1) % plan.refresh == 0:
             refresh(state, scene)
     return REACHED, len(samples)
 
 
 @compiled
-def take_sample(state, scene, row):
+def take_sample(state, scene, samples, place):
     """Fill a row with sums over the particles at the present instant; nothing is moved."""
-    time = state.clock[NOW]
+    time, row = state.clock[NOW], samples[place]
     for k in range(len(row)):
         row[k] = 0.0
     unit = math.ldexp(1.0, -int(state.counts[EXPONENT]))
@@ -103,9 +104,10 @@ def take_sample(state, scene, row):
         sums = _added(state, scene, i, position, velocity, sums)
         if state.bodies is not None:
             first = 3 + len(sums) * (1 + state.bodies.species[i])
-            own = _read(row, first, sums)
-            _write(row, first, _added(state, scene, i, position, velocity, own))
-    _write(row, 3, sums)
+            own = read(samples, place, first, sums)
+            own = _added(state, scene, i, position, velocity, own)
+            write(samples, place, first, own)
+    write(samples, place, 3, sums)
     _enter_sums(state.sums, state.counts[EXPONENT], row)
 
 
@@ -139,17 +141,6 @@ def _added(state, scene, i, position, velocity, sums):
         square += share * (spin[k] * spin[k])
     turning = tuple(sums[2 * n + 4 + k] + lever * spin[k] for k in range(2 * n - 3))
     return squares + momenta + profile + (square,) + turning
-
-
-@jit
-def _read(row, first, like):
-    return tuple(row[first + k] for k in range(len(like)))
-
-
-@jit
-def _write(row, first, numbers):
-    for k in range(len(numbers)):
-        row[first + k] = numbers[k]
 
 
 @jit
