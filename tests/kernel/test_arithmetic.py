@@ -11,7 +11,6 @@ from compiled import from_python
 
 from roughgas.compiling.jit import entry, jit
 from roughgas.compiling.lanes import (
-    REGISTER,
     append,
     bits,
     choose,
@@ -168,7 +167,7 @@ def test_least_of_lanes_and_lanes_from_rows(kind):
 def _append_those_below(numbers, limit, places):
     taken = 0
     for first in range(0, numbers.shape[1], lanes_of(numbers)):
-        below = load(numbers, 0, first, REGISTER) < limit
+        below = load(numbers, 0, first, lanes_of(numbers)) < limit
         taken = append(places, taken, below, first)
     return taken
 

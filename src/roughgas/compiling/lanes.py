@@ -10,7 +10,6 @@ import numpy as np
 
 from roughgas.compiling.jit import Primitive, jit, of_types
 
-REGISTER = 0  # a count: as many as a register has, of doubles if not of the array's own numbers
 BYTES = 64  # of a register, in plain Python
 
 
@@ -26,10 +25,20 @@ def is_single(x):
     return str(getattr(x, "kind", getattr(x, "dtype", x))) == "float32"
 
 
+@of_types
+def lanes_of(array):
+    """Return how many of an array's numbers a register has; in place of it may be its type."""
+    if isinstance(array, np.ndarray):
+        return BYTES // array.itemsize
+    from roughgas.compiling import simd
+
+    return simd.BYTES * 8 // array.dtype.bitwidth
+
+
 @Primitive
 def load(array, row, first, count):
     """Return array[row, first:first + count], as lanes."""
-    return array[row, first : first + (count or BYTES // array.itemsize)].copy()
+    return array[row, first : first + count].copy()
 
 
 @Primitive
@@ -42,7 +51,7 @@ def store(array, row, first, lanes):
 def numbers_in(places, first, count):
     """Return places[first:first + count], which are 32-bit integers, each read by itself: what has
     just been written one by one, a read of all would have to wait for."""
-    return places[first : first + (count or BYTES // 8)].copy()
+    return places[first : first + count].copy()
 
 
 @Primitive
@@ -54,14 +63,8 @@ def gather(array, column, numbers):
 
 @Primitive
 def order(count):
-    """Return 0, 1, 2, ..."""
-    return np.arange(count or BYTES // 8)
-
-
-@Primitive
-def lanes_of(array):
-    """Return how many of the array's numbers a register has."""
-    return BYTES // array.itemsize
+    """Return 0.0, 1.0, 2.0, ..."""
+    return np.arange(float(count))
 
 
 @Primitive
@@ -112,15 +115,12 @@ def root(x):
 
 
 @Primitive
-def larger(one, other):
-    """Return the larger of two numbers, lane by lane if need be; the first if one is NaN."""
-    return np.where(other > one, other, one)[()]
-
-
-@Primitive
-def smaller(one, other):
-    """Return the smaller of two numbers, lane by lane if need be; the first if one is NaN."""
-    return np.where(other < one, other, one)[()]
+def append(places, number, lanes, first):
+    """Write the numbers, counted from `first`, of the lanes that hold into places[number:]; return
+    how many places are taken then."""
+    (found,) = np.nonzero(lanes)
+    places[number : number + len(found)] = first + found
+    return number + len(found)
 
 
 @jit
@@ -131,10 +131,13 @@ def choose(condition, one, other):
     return one if condition else other
 
 
-@Primitive
-def append(places, number, lanes, first):
-    """Write the numbers, counted from `first`, of the lanes that hold into places[number:]; return
-    how many places are taken then."""
-    (found,) = np.nonzero(lanes)
-    places[number : number + len(found)] = first + found
-    return number + len(found)
+@jit
+def larger(one, other):
+    """Return the larger of two numbers, lane by lane if need be; the first if one is NaN."""
+    return choose(other > one, other, one)
+
+
+@jit
+def smaller(one, other):
+    """Return the smaller of two numbers, lane by lane if need be; the first if one is NaN."""
+    return choose(other < one, other, one)

@@ -1,9 +1,9 @@
-"""Vector registers as numba's values, and the operations on them; mathematics.py has both in plain
+"""Vector registers as numba's values, and what is done to them: lanes.py has all of it in plain
 Python. Imported when compiled code is first called.
 
-A Lanes holds `count` numbers of one kind, one to each lane: a value of one of LLVM's vector types.
-LLVM splits what the machine's registers are too narrow for. Operators work lane by lane, with one
-operand a scalar if need be; comparisons give lanes of booleans.
+A Lanes holds `count` numbers of one kind, one to each lane: a value of one of LLVM's vector types,
+which LLVM splits where the machine's registers are narrower. Operators work on floats, lane by
+lane, with one operand a scalar if need be; comparisons give lanes of booleans.
 """
 
 import inspect
@@ -14,10 +14,12 @@ from llvmlite import ir
 from numba import types
 from numba.core import cgutils
 from numba.core.registry import cpu_target
-from numba.core.typing.templates import AbstractTemplate, infer_global, signature
-from numba.extending import intrinsic, lower_builtin, models, register_model
+from numba.core.typing.templates import infer_global, make_intrinsic_template
+from numba.extending import intrinsic, models, register_model
 
 BIT, NUMBER, WORD = ir.IntType(1), ir.IntType(32), ir.IntType(64)
+# of a register: of AVX-512, or else of AVX
+BYTES = 64 if "+avx512f" in cpu_target.target_context.codegen().magic_tuple()[2] else 32
 
 
 class Lanes(types.Type):
@@ -29,11 +31,12 @@ class Lanes(types.Type):
 
 
 @register_model(Lanes)
-class LanesModel(models.PrimitiveModel):
-    def __init__(self, manager, lanes):
-        is_truth = lanes.kind == types.boolean
-        one = BIT if is_truth else manager.lookup(lanes.kind).get_value_type()
-        super().__init__(manager, lanes, ir.VectorType(one, lanes.count))
+def _model(manager, lanes):
+    one = manager.lookup(lanes.kind).get_value_type()
+    return models.PrimitiveModel(manager, lanes, ir.VectorType(one, lanes.count))
+
+
+# ------------------------------------------------------------------ operations
 
 
 class Site(NamedTuple):
@@ -44,153 +47,117 @@ class Site(NamedTuple):
     kinds: tuple  # of the arguments, numba's types
     result: types.Type
 
-    def pointer(self, array, value, indices, vector=None):
-        """Return where an item of an array is, or where a vector of items begins."""
+    def pointer(self, value, indices, vector=None):
+        """Return where an item of the first argument is, or where a vector of items begins."""
+        array = self.kinds[0]
         made = self.context.make_array(array)(self.context, self.builder, value)
-        place = cgutils.get_item_pointer(
-            self.context, self.builder, array, made, indices, wraparound=False
-        )
+        place = cgutils.get_item_pointer(self.context, self.builder, array, made, indices)
         return place if vector is None else self.builder.bitcast(place, vector.as_pointer())
-
-    def spread(self, value, kind):
-        """Return a number as the result has it, in every lane of lanes; lanes as they are."""
-        if isinstance(kind, Lanes):
-            return value
-        if not isinstance(self.result, Lanes):
-            return self.context.cast(self.builder, value, kind, self.result)
-        value = self.context.cast(self.builder, value, kind, self.result.kind)
-        vector = ir.Constant(ir.VectorType(value.type, self.result.count), ir.Undefined)
-        vector = self.builder.insert_element(vector, value, NUMBER(0))
-        return self.builder.shuffle_vector(vector, vector, _numbers([0] * self.result.count))
 
     def joined(self, values):
         """Return numbers as lanes."""
-        vector = ir.Constant(self.context.get_value_type(self.result), ir.Undefined)
+        vector = ir.Constant(ir.VectorType(values[0].type, len(values)), ir.Undefined)
         for k, value in enumerate(values):
             vector = self.builder.insert_element(vector, value, NUMBER(k))
         return vector
 
-    def call(self, name, result, *arguments, **more):
+    def call(self, name, result, *values, **more):
         """Return what one of LLVM's functions makes of values, named by the type of the first."""
-        kind = arguments[0].type
-        one = kind.element if isinstance(kind, ir.VectorType) else kind
-        count = f"v{kind.count}" if kind != one else ""
+        kind = values[0].type
+        one, count = (kind.element, f"v{kind.count}") if hasattr(kind, "count") else (kind, "")
         name = f"{name}.{count}{one.intrinsic_name}"
-        kind = ir.FunctionType(result, [one.type for one in arguments])
+        kind = ir.FunctionType(result, [value.type for value in values])
         function = cgutils.get_or_insert_function(self.builder.module, kind, name)
-        return self.builder.call(function, arguments, **more)
+        return self.builder.call(function, values, **more)
+
+    def spread(self, value, kind):
+        """Return a number in every lane, if the first of the lanes are any; lanes as they are."""
+        if isinstance(kind, Lanes):
+            return value
+        whole = _lane_by_lane(*self.kinds)
+        value = self.context.cast(self.builder, value, kind, getattr(whole, "kind", whole))
+        return self.joined([value] * whole.count) if isinstance(whole, Lanes) else value
 
 
-def _numbers(values, kind=NUMBER):
-    return ir.VectorType(kind, len(values))(list(values))
-
-
-def _lanes_among(kinds):
-    return next((one for one in kinds if isinstance(one, Lanes)), None)
-
-
-# ------------------------------------------------------------------ operators
-
-
-def _operator(function, generate, is_comparison=False):
-    """Teach numba an operator of lanes, or of lanes and a scalar; generate(site, *vectors)."""
-
-    @infer_global(function)
-    class Typing(AbstractTemplate):
-        def generic(self, arguments, keywords):
-            lanes = _lanes_among(arguments)
-            if lanes is None:
-                return None
-            truth = Lanes(types.boolean, lanes.count)
-            return signature(truth if is_comparison else lanes, *arguments)
-
-    def lower(context, builder, signature, arguments):
-        kinds = signature.args
-        site = Site(context, builder, kinds, _lanes_among(kinds))
-        return generate(site, *map(site.spread, arguments, kinds))
-
-    for kinds in ((Lanes,), (Lanes, Lanes), (Lanes, types.Number), (types.Number, Lanes)):
-        lower_builtin(function, *kinds)(lower)
-
-
-def _instruction(of_floats, of_integers, *sign):
-    def generate(site, *values):
-        is_float = isinstance(getattr(site.result, "kind", site.result), types.Float)
-        return getattr(site.builder, of_floats if is_float else of_integers)(*sign, *values)
-
-    return generate
-
-
-def _compare(sign):
-    return _instruction("fcmp_ordered", "icmp_signed", sign)
-
-
-_operator(operator.add, _instruction("fadd", "add"))
-_operator(operator.sub, _instruction("fsub", "sub"))
-_operator(operator.mul, _instruction("fmul", "mul"))
-_operator(operator.truediv, _instruction("fdiv", ""))
-_operator(operator.neg, _instruction("fneg", "neg"))
-_operator(operator.and_, _instruction("", "and_"))
-_operator(operator.or_, _instruction("", "or_"))
-_operator(abs, lambda site, vector: site.call("llvm.fabs", vector.type, vector))
-for _name, _sign in {"lt": "<", "le": "<=", "gt": ">", "ge": ">=", "eq": "=="}.items():
-    _operator(getattr(operator, _name), _compare(_sign), is_comparison=True)
-
-# ------------------------------------------------------------------ operations
-
-
-def operation(result):
-    """Decorate generate(site, *values) -> LLVM's value, an operation of compiled code.
+def operation(result, function=None):
+    """Decorate generate(site, *values) -> LLVM's value, an operation of compiled code, or what
+    `function`, one of Python's, does to lanes.
 
     result: of the arguments' types, literal ones where a number is known -> the type returned.
     """
 
     def decorate(generate):
         def define(context, *kinds):
+            if function is not None and not any(isinstance(one, Lanes) for one in kinds):
+                return None
             returned = result(*kinds)
             passed = [types.intp if type(one) is types.Integer else one for one in kinds]
 
             def lower(context, builder, signature, values):
                 site = Site(context, builder, signature.args, returned)
-                if result is _last_lanes:
+                if result in (_lane_by_lane, _truth):
                     values = map(site.spread, values, site.kinds)
                 return generate(site, *values)
 
             return returned(*passed), lower
 
         define.__name__, define.__signature__ = generate.__name__, inspect.signature(generate)
-        return intrinsic(prefer_literal=True)(define)
+        if function is None:
+            return intrinsic(prefer_literal=True)(define)
+        return infer_global(function)(make_intrinsic_template(function, define, "operator"))
 
     return decorate
 
 
-def _last_lanes(*kinds):
+def _lane_by_lane(*kinds):
     """Return the type of what is done lane by lane, to numbers if there are no lanes."""
-    return _lanes_among(kinds[::-1]) or max(kinds, key=lambda kind: kind.bitwidth)
+    lanes = [one for one in kinds if isinstance(one, Lanes)]
+    return lanes[-1] if lanes else max(kinds, key=lambda kind: kind.bitwidth)
 
 
-def _number(*kinds):
-    return types.intp
+def _truth(*kinds):
+    return Lanes(types.boolean, _lane_by_lane(*kinds).count)
 
 
-def register_bytes():
-    """Return how many bytes a vector register has: of AVX-512, or else of AVX."""
-    return 64 if "+avx512f" in cpu_target.target_context.codegen().magic_tuple()[2] else 32
+def _numbers(values, kind=NUMBER):
+    return ir.VectorType(kind, len(values))(list(values))
 
 
-def _side_by_side(kind, count, width=None):
-    """Return as many lanes as are asked for; REGISTER is as many as a vector register has."""
-    return Lanes(kind, count.literal_value or register_bytes() * 8 // (width or kind.bitwidth))
+# ------------------------------------------------------------------ lane by lane
+
+ARITHMETIC = {"add": "fadd", "sub": "fsub", "mul": "fmul", "truediv": "fdiv", "neg": "fneg"}
+LOGIC = {"and_": "and_", "or_": "or_"}
+COMPARED = {"lt": "<", "le": "<=", "gt": ">", "ge": ">=", "eq": "=="}
 
 
-def _wide(kind):
-    return types.float64 if kind == types.float32 else kind
+def _instruction(name, *sign):
+    return lambda site, *values: getattr(site.builder, name)(*sign, *values)
 
 
-@operation(lambda array, row, first, count: _side_by_side(array.dtype, count))
+for _name, _of_llvm in (ARITHMETIC | LOGIC).items():
+    operation(_lane_by_lane, getattr(operator, _name))(_instruction(_of_llvm))
+for _name, _sign in COMPARED.items():
+    operation(_truth, getattr(operator, _name))(_instruction("fcmp_ordered", _sign))
+
+lane_by_lane = operation(_lane_by_lane)
+operation(_lane_by_lane, abs)(lambda site, x: site.call("llvm.fabs", x.type, x))
+root = lane_by_lane(lambda site, x: site.call("llvm.sqrt", x.type, x))
+select = lane_by_lane(lambda site, condition, a, b: site.builder.select(condition, a, b))
+
+
+@lane_by_lane
+def multiply_add(site, a, b, c):
+    if getattr(a.type, "element", a.type) == ir.FloatType():
+        return site.call("llvm.fmuladd", a.type, a, b, c)
+    return site.builder.fadd(site.builder.fmul(a, b), c)
+
+
+# ------------------------------------------------------------------ memory
+
+
+@operation(lambda array, row, first, count: Lanes(array.dtype, count.literal_value))
 def load(site, array, row, first, count):
-    vector = site.context.get_value_type(site.result)
-    pointer = site.pointer(site.kinds[0], array, [row, first], vector)
+    pointer = site.pointer(array, [row, first], site.context.get_value_type(site.result))
     return site.builder.load(pointer, align=site.result.kind.bitwidth // 8)
 
 
@@ -205,18 +172,21 @@ class WholeStore(ir.instructions.StoreInstr):
 
 @operation(lambda array, row, first, lanes: types.none)
 def store(site, array, row, first, lanes):
-    pointer = site.pointer(site.kinds[0], array, [row, first], lanes.type)
+    pointer = site.pointer(array, [row, first], lanes.type)
     instruction = WholeStore(site.builder.block, lanes, pointer)
     instruction.align = site.kinds[3].kind.bitwidth // 8
     site.builder._insert(instruction)
     return site.context.get_dummy_value()
 
 
-@operation(lambda places, first, count: _side_by_side(types.int32, count, 64))
+@operation(lambda places, first, count: Lanes(places.dtype, count.literal_value))
 def numbers_in(site, places, first, count):
-    here = [site.builder.add(first, first.type(k)) for k in range(site.result.count)]
-    pointers = [site.pointer(site.kinds[0], places, [place]) for place in here]
-    return site.joined(map(site.builder.load, pointers))
+    here = [site.builder.add(first, WORD(k)) for k in range(site.result.count)]
+    return site.joined([site.builder.load(site.pointer(places, [place])) for place in here])
+
+
+def _wide(kind):
+    return types.float64 if kind == types.float32 else kind
 
 
 @operation(lambda array, column, numbers: Lanes(_wide(array.dtype), numbers.count))
@@ -224,99 +194,57 @@ def gather(site, array, column, numbers):
     kind, values = site.kinds[0], []
     for k in range(site.result.count):
         row = site.builder.zext(site.builder.extract_element(numbers, NUMBER(k)), WORD)
-        value = site.builder.load(site.pointer(kind, array, [row, column][: kind.ndim]))
+        value = site.builder.load(site.pointer(array, [row, column][: kind.ndim]))
         values.append(site.context.cast(site.builder, value, kind.dtype, site.result.kind))
     return site.joined(values)
 
 
-lane_by_lane = operation(_last_lanes)
-select = lane_by_lane(lambda site, condition, a, b: site.builder.select(condition, a, b))
-larger = lane_by_lane(lambda site, a, b: site.builder.select(_compare(">")(site, b, a), b, a))
-smaller = lane_by_lane(lambda site, a, b: site.builder.select(_compare("<")(site, b, a), b, a))
-root = lane_by_lane(lambda site, x: site.call("llvm.sqrt", x.type, x))
-trailing_zeros = operation(_number)(lambda site, word: site.builder.cttz(word, BIT(0)))
+@operation(lambda array, row: types.none)
+def prefetch(site, array, row):
+    pointer = site.pointer(array, [row, WORD(0)][: site.kinds[0].ndim], ir.IntType(8))
+    site.call("llvm.prefetch", ir.VoidType(), pointer, NUMBER(0), NUMBER(3), NUMBER(1))
+    return site.context.get_dummy_value()
 
 
-@lane_by_lane
-def multiply_add(site, a, b, c):
-    if getattr(site.result, "kind", site.result) == types.float32:
-        return site.call("llvm.fmuladd", a.type, a, b, c)
-    return site.builder.fadd(site.builder.fmul(a, b), c)
+least = operation(lambda lanes: lanes.kind)(
+    lambda site, x: site.call("llvm.vector.reduce.fmin", x.type.element, x, fastmath=("nnan",))
+)
+bits = operation(lambda lanes: types.uint64)(
+    lambda site, x: site.builder.zext(site.builder.bitcast(x, ir.IntType(x.type.count)), WORD)
+)
+order = operation(lambda count: Lanes(types.float64, count.literal_value))(
+    lambda site, count: _numbers(range(site.result.count), ir.DoubleType())
+)
+trailing_zeros = operation(lambda word: types.intp)(lambda site, x: site.builder.cttz(x, BIT(0)))
 
 
-@operation(lambda lanes: lanes.kind)
-def least(site, value):
-    builder, count = site.builder, value.type.count
-    step = count
-    while step > 1:  # a power of two
-        step //= 2
-        other = builder.shuffle_vector(value, value, _numbers([k ^ step for k in range(count)]))
-        value = builder.select(builder.fcmp_ordered("<", other, value), other, value)
-    return builder.extract_element(value, NUMBER(0))
-
-
-@operation(lambda lanes: types.uint64)
-def bits(site, lanes):
-    return site.builder.zext(site.builder.bitcast(lanes, ir.IntType(lanes.type.count)), WORD)
-
-
-@operation(lambda count: _side_by_side(types.intp, count))
-def order(site, count):
-    return _numbers(range(site.result.count), WORD)
-
-
-@operation(_number)
-def lanes_of(site, array):
-    return WORD(register_bytes() * 8 // site.kinds[0].dtype.bitwidth)
-
-
-@operation(_number)
+@operation(lambda number: types.intp)
 def index(site, number):
     site.builder.assume(site.builder.icmp_signed(">=", number, number.type(0)))
     return number
-
-
-@operation(lambda array, row: types.none)
-def prefetch(site, array, row):
-    indices = [row, WORD(0)][: site.kinds[0].ndim]
-    pointer = site.pointer(site.kinds[0], array, indices, ir.IntType(8))
-    read, near, data = NUMBER(0), NUMBER(3), NUMBER(1)
-    site.call("llvm.prefetch", ir.VoidType(), pointer, read, near, data)
-    return site.context.get_dummy_value()
 
 
 @operation(lambda places, number, lanes, first: types.intp)
 def append(site, places, number, mask, first):
     """What lies beyond the places that are taken is spoiled; and there is no branch in it, which
     the processor could not foresee."""
-    builder, lanes = site.builder, mask.type.count
-    step = 16 if register_bytes() == 64 and lanes == 16 else 8
-    for k in range(0, lanes, step):
-        part = _numbers(range(k, k + step))
-        some = builder.shuffle_vector(mask, mask, part) if step < lanes else mask
-        word = builder.zext(builder.bitcast(some, ir.IntType(step)), WORD)
-        packed = site._replace(result=Lanes(types.int32, step))
-        base = packed.spread(builder.add(first, first.type(k)), types.intp)
-        numbers = _packed(site, some, word, base)
-        pointer = site.pointer(site.kinds[0], places, [number], numbers.type)
-        builder.store(numbers, pointer, align=4)
-        number = builder.add(number, builder.ctpop(word))
-    return number
+    builder, count = site.builder, mask.type.count
+    word = builder.zext(builder.bitcast(mask, ir.IntType(count)), WORD)
+    base = site.joined([builder.trunc(first, NUMBER)] * count)
+    numbers = builder.add(base, _packed(site, mask, word))
+    builder.store(numbers, site.pointer(places, [number], numbers.type), align=4)
+    return builder.add(number, builder.ctpop(word))
 
 
-def _packed(site, mask, word, base):
-    """Return the numbers of the lanes that hold, in the first lanes, plus `base`: by an
-    instruction, or from a table of which bits are set in each byte."""
-    builder, kind = site.builder, base.type
-    if kind.count == 16:
-        compress = ir.FunctionType(kind, [kind, kind, mask.type])
-        name = "llvm.x86.avx512.mask.compress.v16i32"
-        function = cgutils.get_or_insert_function(builder.module, compress, name)
-        numbers = builder.add(base, _numbers(range(16)))
-        return builder.call(function, [numbers, ir.Constant(kind, None), mask])
+def _packed(site, mask, word):
+    """Return which lanes hold, in the first lanes: of 16 by an instruction, of 8 from a table."""
+    kind = ir.VectorType(NUMBER, mask.type.count)
+    if mask.type.count == 16:
+        name = "llvm.x86.avx512.mask.compress"
+        return site.call(name, kind, _numbers(range(16)), ir.Constant(kind, None), mask)
     rows = [[k for k in range(8) if byte >> k & 1] for byte in range(256)]
     rows = [_numbers(one + [0] * (8 - len(one)), ir.IntType(8)) for one in rows]
     table = ir.Constant(ir.ArrayType(rows[0].type, 256), rows)
-    table = cgutils.global_constant(builder, "roughgas.bits_set", table)
-    place = builder.gep(table, [WORD(0), word])
-    return builder.add(base, builder.zext(builder.load(place, align=8), kind))
+    table = cgutils.global_constant(site.builder, "roughgas.bits_set", table)
+    row = site.builder.load(site.builder.gep(table, [WORD(0), word]), align=8)
+    return site.builder.zext(row, kind)

@@ -29,7 +29,6 @@ import numpy as np
 
 from roughgas.compiling.jit import compiled, jit
 from roughgas.compiling.lanes import (
-    REGISTER,
     bits,
     gather,
     index,
@@ -372,12 +371,13 @@ def _list_neighbours(state, scene, i, begin, end):
     number = _collect(state, i, begin, None, 0.0, ALL, 0)
     middle = read(neighbours.middle, i, 0, scene.box)
     reach = NARROWEST * largest_of(state.bodies)
-    for first in range(begin, number, lanes_of(state.shortlist.when)):
-        others = numbers_in(found, first, REGISTER)
+    lanes = lanes_of(state.shortlist.when)
+    for first in range(begin, number, lanes):
+        others = numbers_in(found, first, lanes)
         x = tuple(gather(neighbours.middle, k, others) - middle[k] for k in range(len(scene.box)))
         x, _ = shifted(x, x, image_numbers(x, scene.box, None), scene.box, None)
         gap = tuple(larger(abs(x[k]) - neighbours.sides[k], 0.0) for k in range(len(scene.box)))
-        near = bits((dot(gap, gap) < reach * reach) & (order(REGISTER) < number - first))
+        near = bits((dot(gap, gap) < reach * reach) & (order(lanes) < number - first))
         while near != np.uint64(0):
             j = index(int(found[index(first + trailing_zeros(near))]))
             if (j != i) & (j < end):

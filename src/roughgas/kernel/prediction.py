@@ -11,7 +11,6 @@ import numpy as np
 
 from roughgas.compiling.jit import compiled, jit
 from roughgas.compiling.lanes import (
-    REGISTER,
     bits,
     choose,
     gather,
@@ -121,18 +120,18 @@ def decide(state, scene, i, begin, beyond, start, end, limit):
     slide = hooks.sliding(scene.effects, state)
     half = 0.5 * (end - start)
     fastest = speed_limit(box, half, 2.0 * largest_of(state.bodies))
-    first, more = begin, True
+    first, more, lanes = begin, True, lanes_of(state.shortlist.when)
     while more:  # once mostly, and at least once, so that the processor can foresee it
-        others = numbers_in(state.shortlist.found, first, REGISTER)
+        others = numbers_in(state.shortlist.found, first, lanes)
         paths = _paths_of(state.trajectory, others, box)
         reach = _reaches(state.bodies, i, others)
         when, unsure = meeting(path, paths, box, gravity, slide, start + half, fastest, reach)
-        listed = order(REGISTER) < beyond - first
+        listed = order(lanes) < beyond - first
         candidates = path, first, listed
         when = _of_any_image(fastest, state, scene, i, candidates, start, end, when, unsure)
         when = choose((when <= limit) & listed, when, math.inf)
         _note(state, i, first - begin, first, others, when)
-        first += lanes_of(state.shortlist.when)
+        first += lanes
         more = first < beyond
 
 
@@ -175,7 +174,7 @@ def _of_any_image(fastest, state, scene, i, candidates, start, end, when, unsure
         time = meeting_of_any_image(path, other, box, gravity, slide, start, end, reach)
         shortlist.when[0, k] = time
         undecided &= undecided - np.uint64(1)
-    return load(shortlist.when, 0, 0, REGISTER)
+    return load(shortlist.when, 0, 0, lanes_of(shortlist.when))
 
 
 @jit

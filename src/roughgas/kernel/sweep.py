@@ -14,7 +14,7 @@ import math
 import numpy as np
 
 from roughgas.compiling.jit import jit
-from roughgas.compiling.lanes import REGISTER, append, lanes_of, load, multiply_add
+from roughgas.compiling.lanes import append, lanes_of, load, multiply_add
 from roughgas.kernel import hooks
 from roughgas.kernel.event_lists import clear_contacts
 from roughgas.kernel.mathematics import add_scaled, cross_squared, dot, read, subtract
@@ -160,13 +160,13 @@ def _square(sizes, own, first, square):
     """Return the square of the distance at which each of these particles may be touched."""
     if sizes is None:
         return square
-    reach = load(sizes, 0, first, REGISTER) + own
+    reach = load(sizes, 0, first, lanes_of(sizes)) + own
     return reach * reach
 
 
 @jit
 def _lines_of(lines, first, block, box):
-    return tuple(load(lines, first + k, block, REGISTER) for k in range(len(box)))
+    return tuple(load(lines, first + k, block, lanes_of(lines)) for k in range(len(box)))
 
 
 @jit
