@@ -20,6 +20,7 @@ tests/compiling/test_compiler.py:
   function that is written for types;
 - `Library`, `set_env`: machine code is made of a kernel, and not of each function in it besides;
 - the types and values of a Reference (compiling/reference.py): a state and a scene in memory;
+- `make_intrinsic_template`: operators of lanes (compiling/simd.py) are defined as operations are;
 - `event.start_event`, `end_event`: a tenth of the time went into telling of locks and passes;
 - `_cache`, `CompileResult`, `rtsys`: to load a kernel without setting up the compiler, to share it
   among copies of the project, to seal files with a checksum.

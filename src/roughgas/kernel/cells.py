@@ -264,11 +264,7 @@ def _along(counts, home, axis, step):
 @jit
 def _beside(counts, home, axis):
     """Return what the place before, the same and the next one along an axis add to it."""
-    return (
-        _along(counts, home, axis, -1),
-        _along(counts, home, axis, 0),
-        _along(counts, home, axis, 1),
-    )
+    return tuple(_along(counts, home, axis, step) for step in range(-1, 2))
 
 
 @jit

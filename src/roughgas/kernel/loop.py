@@ -1,7 +1,6 @@
 """The event loop: take the earliest event, carry it out, foresee the next ones; and the clock."""
 
 import math
-import sys
 
 from roughgas.compiling.jit import compiled, jit
 from roughgas.compiling.lanes import index
@@ -46,7 +45,6 @@ REACHED, COLLAPSED, SILENT, HELD = range(4)  # how `advance` ends
 SILENCE = 10_000_000, 1000
 CELLS = 16.0  # cells that a particle crosses before all are sorted anew
 INSTANT = 2.0**-30  # of a span; events as close as this count as simultaneous
-FARTHEST = sys.float_info.max
 COLLAPSE = 10  # simultaneous contacts of particles that hardly approach
 STANDSTILL = 100_000, 10  # simultaneous events, and as many more for each particle
 
@@ -131,31 +129,18 @@ def predict_events(state, scene, affected, time):
             look_ahead(state, scene, index(affected[k]), time)
     for k in range(number):
         i = index(affected[k])
-        shortlist.beyond[k] = _list_candidates(state, scene, i, k * room, time)
+        if state.cells is None:
+            shortlist.beyond[k] = list_by_sweep(state, scene, i, k * room, time)
+        else:
+            shortlist.beyond[k] = list_around(state, scene, i, k * room, time)
     for k in range(number):
-        i = index(affected[k])
-        _decide(state, scene, i, k * room, index(shortlist.beyond[k]), time)
+        beyond = index(shortlist.beyond[k])
+        decide(state, scene, index(affected[k]), k * room, beyond, time)
     for k in range(number):
         i = index(affected[k])
         if state.agenda.boundary_time is not None:
             _predict_boundary(state, scene, i)
         choose_next(state, i)
-
-
-@jit
-def _list_candidates(state, scene, i, begin, time):
-    if state.cells is None:
-        return list_by_sweep(state, scene, i, begin, time)
-    return list_around(state, scene, i, begin, time)
-
-
-@jit
-def _decide(state, scene, i, begin, beyond, time):
-    if state.cells is None:
-        end = state.agenda.complete_until[i]
-        decide(state, scene, i, begin, beyond, time, end, end)
-    else:
-        decide(state, scene, i, begin, beyond, time, time, FARTHEST)
 
 
 @jit

@@ -6,6 +6,7 @@ trajectory. A path is (position, velocity, time at which they hold), and goes on
 """
 
 import math
+import sys
 
 import numpy as np
 
@@ -40,6 +41,8 @@ from roughgas.kernel.particles import (
     slid,
     speed_limit,
 )
+
+FARTHEST = sys.float_info.max
 
 
 @jit
@@ -107,28 +110,30 @@ def meeting_of_any_image(path_i, path_j, box, gravity, slide, start, end, reach)
 
 
 @jit
-def decide(state, scene, i, begin, beyond, start, end, limit):
-    """Put the contacts of particle i with candidates, up to time `limit`, on its agenda.
+def decide(state, scene, i, begin, beyond, time):
+    """Put the contacts of particle i with candidates, from `time` on, on its agenda.
 
-    Candidates are on the shortlist from the place `begin` to the one before `beyond`. Between
-    `start` and `end` every image counts, later only the nearest one in their middle. What lies
-    beyond the last candidate is a particle's number, too: it is decided and left.
+    Candidates are on the shortlist from the place `begin` to the one before `beyond`. After a sweep
+    every image counts, up to the particle's horizon; in cells the nearest one. What lies beyond the
+    last candidate is a particle's number, too: it is decided and left.
     """
+    end = state.agenda.complete_until[i] if state.cells is None else time
+    limit = end if state.cells is None else FARTHEST
     box = scene.box
     path = path_of(state.trajectory, i, box)
     gravity = hooks.acceleration(scene.effects)
     slide = hooks.sliding(scene.effects, state)
-    half = 0.5 * (end - start)
+    half = 0.5 * (end - time)
     fastest = speed_limit(box, half, 2.0 * largest_of(state.bodies))
     first, more, lanes = begin, True, lanes_of(state.shortlist.when)
     while more:  # once mostly, and at least once, so that the processor can foresee it
         others = numbers_in(state.shortlist.found, first, lanes)
         paths = _paths_of(state.trajectory, others, box)
         reach = _reaches(state.bodies, i, others)
-        when, unsure = meeting(path, paths, box, gravity, slide, start + half, fastest, reach)
+        when, unsure = meeting(path, paths, box, gravity, slide, time + half, fastest, reach)
         listed = order(lanes) < beyond - first
         candidates = path, first, listed
-        when = _of_any_image(fastest, state, scene, i, candidates, start, end, when, unsure)
+        when = _of_any_image(fastest, state, scene, i, candidates, time, end, when, unsure)
         when = choose((when <= limit) & listed, when, math.inf)
         _note(state, i, first - begin, first, others, when)
         first += lanes

@@ -97,62 +97,33 @@ def draw_line(state, i, start, velocity):
 def list_candidates(state, scene, i, begin, start, velocity, middle, half):
     """List every particle that one on this line may touch within `half` of time `middle` in the
     shortlist; return the end. The particle itself may be among them: it never meets itself."""
-    clock = state.clock
+    lines, clock, bodies = state.sweep.lines, state.clock, state.bodies
     slack = 16.0 * ROUNDING * clock[EXTENT]
-    margin = radius_of(state.bodies, i) + largest_of(state.bodies) + slack
+    own = single(ROUNDED_UP * (radius_of(bodies, i) + slack))
+    margin = radius_of(bodies, i) + largest_of(bodies) + slack
     speed = max(clock[TYPICAL_SPEED], 1e-30)
     # s |u| <= (s / 2) (u.u / w + w) for any speed w, which saves a root per pair
-    reach = half + 0.55 * margin / speed
-    slide = slid(hooks.sliding(scene.effects, state), middle)
-    return _sweep(
-        state.sweep.lines,
-        state.sweep.sizes,
-        single(ROUNDED_UP * (radius_of(state.bodies, i) + slack)),
-        state.shortlist.found,
-        begin,
-        len(state.changes),
-        start,
-        velocity,
-        singles(scene.box),
-        singles(slide),
-        single(speed_limit(scene.box, half, 2.0 * largest_of(state.bodies))),
-        np.float32(middle),
-        np.float32(reach),
-        np.float32(0.55 * margin * speed),
-        np.float32(margin * margin),
-    )
+    reach, spare = single(half + 0.55 * margin / speed), single(0.55 * margin * speed)
+    limit = single(speed_limit(scene.box, half, 2.0 * largest_of(bodies)))
+    slide = singles(slid(hooks.sliding(scene.effects, state), middle))
+    box, square, middle = singles(scene.box), single(margin * margin), single(middle)
+    number = begin
+    for first in range(0, len(state.changes), lanes_of(lines)):
+        u = subtract(velocity, _lines_of(lines, len(scene.box), first, box))
+        x = add_scaled(subtract(start, _lines_of(lines, 0, first, box)), u, middle)
+        x, u = shifted(x, u, image_numbers(x, box, slide), box, slide)
+        uu = dot(u, u)
+        passes = cross_squared(x, u) <= _square(state.sweep.sizes, own, first, square) * uu
+        meets = passes & (abs(dot(x, u)) <= multiply_add(uu, reach, spare))
+        meets = _or_beyond(limit, meets, uu)
+        number = append(state.shortlist.found, number, meets, first)
+    return number
 
 
 @jit
-def _sweep(
-    lines,
-    sizes,
-    own,
-    found,
-    begin,
-    particles,
-    x_i,
-    u_i,
-    box,
-    slide,
-    limit,
-    middle,
-    reach,
-    spare,
-    square,
-):
-    lanes, number = lanes_of(lines), begin
-    for first in range(0, particles, lanes):
-        u = subtract(u_i, _lines_of(lines, len(box), first, box))
-        x = add_scaled(subtract(x_i, _lines_of(lines, 0, first, box)), u, middle)
-        x, u = shifted(x, u, image_numbers(x, box, slide), box, slide)
-        uu = dot(u, u)
-        passes = cross_squared(x, u) <= _square(sizes, own, first, square) * uu
-        meets = passes & (abs(dot(x, u)) <= multiply_add(uu, reach, spare))
-        if limit is not None:
-            meets = meets | (uu > limit)
-        number = append(found, number, meets, first)
-    return number
+def _or_beyond(limit, meets, uu):
+    """Return which pairs meet, and those that are too fast for one image."""
+    return meets if limit is None else meets | (uu > limit)
 
 
 @jit
@@ -178,6 +149,4 @@ def single(x):
 @jit
 def singles(numbers):
     """Return a tuple in single precision; None stays None, inside and out."""
-    if numbers is None:
-        return None
-    return tuple(single(numbers[k]) for k in range(len(numbers)))
+    return None if numbers is None else tuple(single(numbers[k]) for k in range(len(numbers)))
