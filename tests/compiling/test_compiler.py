@@ -67,6 +67,34 @@ def test_numba_functions_of_ones_own_work_beside_the_kernel():
             function(x, -1)
 
 
+BEFORE = """import numba
+import numpy as np
+
+@numba.njit
+def longest(x):
+    return max(x.shape)
+
+print(longest(np.ones((2, 3))))
+
+from roughgas.compiling.jit import entry
+
+@entry
+def longer(x):
+    return max(x.shape) + 1
+
+print(longer(np.ones((2, 3))))
+"""
+
+
+def test_what_numba_had_compiled_before_is_called(tmp_path):
+    """Its `max` was finished by numba's own library: a kernel that called it ended in an error."""
+    program = tmp_path / "before.py"
+    program.write_text(BEFORE)
+    run = [sys.executable, str(program)]
+    said = subprocess.run(run, env={"PYTHONPATH": str(PACKAGE.parent)}, capture_output=True)
+    assert said.stdout.split() == [b"3", b"4"], said.stderr.decode()
+
+
 def test_every_pass_that_is_left_out_is_one_of_numbas():
     """One that is renamed would be there again, and take its time."""
     passes = []

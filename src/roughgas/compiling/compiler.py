@@ -223,16 +223,24 @@ class Library(JITCodeLibrary):
             _, *below = _callers_first(self)
             for library in below:
                 self._reload_init.update(library._reload_init)
-                for module in library._written:
+                for module in getattr(library, "_written", ()):
                     for function in module.functions:
                         if not function.is_declaration:
                             function.linkage = function.linkage or "linkonce_odr"
-            for module in [one for library in (self, *below) for one in library._written]:
-                self._final_module.link_in(parse_assembly(normalize_ir_text(str(module))))
+            for module in [one for library in (self, *below) for one in _modules_of(library)]:
+                self._final_module.link_in(module)
             linked, self._linking_libraries = self._linking_libraries, []
             super().finalize()
             self._linking_libraries = linked  # for what calls this function in its turn
         self._finalized = True
+
+
+def _modules_of(library):
+    """Return LLVM's modules of a library, to be linked. What numba had compiled for others before
+    this file was imported is one, with all that it calls."""
+    if isinstance(library, Library):
+        return [parse_assembly(normalize_ir_text(str(module))) for module in library._written]
+    return [library._get_module_for_linking().clone()]
 
 
 def _callers_first(library):
@@ -241,7 +249,7 @@ def _callers_first(library):
     done = {}
 
     def visit(one):
-        for called in one._linking_libraries:
+        for called in one._linking_libraries if isinstance(one, Library) else ():
             if called not in done:
                 visit(called)
         done[one] = None
