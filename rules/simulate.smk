@@ -22,18 +22,30 @@ def kernel_of_point(wildcards):
         found = settings(wildcards.scale, wildcards.experiment)
         roughgas.config.check_one_variant(wildcards.experiment, found)
     experiment, _, _ = wildcards.experiment.partition("/")
-    return KERNEL.format(scale=wildcards.scale, experiment=experiment, r=wildcards.r)
+    r = as_at(wildcards.scale, experiment, wildcards.r)
+    return KERNEL.format(scale=wildcards.scale, experiment=experiment, r=r)
 
 
-def kinds_of_kernels(wildcards):
+def as_at(scale, experiment, r):
+    """The first r in the sweep of an experiment that needs the same kernels: they are compiled once."""
+    needed = kinds_at(scale, experiment, r)
+    swept = settings(scale, experiment)["sweep"]["r"]
+    return next((one for one in swept if kinds_at(scale, experiment, one) == needed), r)
+
+
+@functools.cache
+def kinds_at(scale, experiment, r):
     """Which kernels the variants in the sweep of an experiment need at some r."""
     from roughgas.simulation.point import kernels
 
-    found = settings(wildcards.scale, wildcards.experiment)
-    every = roughgas.config.every_variant(wildcards.experiment, found).values()
-    with one_line(KERNEL.format(**wildcards)):
-        r = place_of(wildcards).r
-    return sorted(map(str, kernels(every, r)))
+    every = roughgas.config.every_variant(experiment, settings(scale, experiment)).values()
+    with one_line(KERNEL.format(scale=scale, experiment=experiment, r=r)):
+        (place,) = roughgas.config.places([r], ["0"], ["1"])
+    return sorted(map(str, kernels(every, place.r)))
+
+
+def kinds_of_kernels(wildcards):
+    return kinds_at(wildcards.scale, wildcards.experiment, wildcards.r)
 
 
 def settings_of_kernels(wildcards, output):

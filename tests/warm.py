@@ -10,28 +10,35 @@ from pathlib import Path
 from accuracy.soft_spheres.pair import collide, shot
 from brute_force.scenes import KERNELS, RARE, begin, run, settings
 
+from roughgas.compiling.compiler import cpu_target
+
 TWO = [{"fraction": 0.5}, {"fraction": 0.5, "radius": 1.5}]
-SOFT = {"soft disks": 2, "soft spheres": 3}  # their dimension
+SOFT = "soft disks"
 
 SCENES = {  # those that take longest first
     "sheared, in cells": settings("sheared", 800, [100, 100]),
     "walled, on lists": settings("walled", 800, [100, "open"]) | {"neighbours": "lists"},
     **{name: settings(name) for name in KERNELS if name not in RARE},
-    **{f"{name} of two species": settings(name) | {"species": TWO} for name in ("gas", "heated")},
+    "gas of two species": settings("gas") | {"species": TWO},
 }
 
 
 def compile_kernels(claimed):
-    """Compile what no other worker does; `claimed` is a folder that they share."""
-    for name in [*SOFT, *SCENES]:
+    """Compile what no other worker does; `claimed` is a folder that they share.
+
+    Numba first registers all that it can compile, here once for all children.
+    """
+    cpu_target.typing_context.refresh()
+    cpu_target.target_context.refresh()
+    for name in [SOFT, *SCENES]:
         if claims(claimed / name):
             in_a_child(compile_one, name)
 
 
 def compile_one(name):
     """Compile the kernel of a scene, or that of soft particles."""
-    if name in SOFT:
-        collide(0.7, 0.3, 0.3, 3, shot(0.8, SOFT[name], 0.01))
+    if name == SOFT:
+        collide(0.7, 0.3, 0.3, 3, shot(0.8, 2, 0.01))
         return
     scene, state = begin(SCENES[name], 0.9, -1.0)
     run(state, scene, 0)

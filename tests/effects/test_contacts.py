@@ -25,8 +25,10 @@ def sums(rows, names=SUMS):
     ("kernel", "species"),
     [
         *((kernel, {}) for kernel in LOOKED_AT),
-        ("heated", {"species": TWO}),
-        pytest.param("spheres", {"species": TWO}, marks=pytest.mark.slow),  # compiles a kernel
+        *(
+            pytest.param(kernel, {"species": TWO}, marks=pytest.mark.slow)  # compiles a kernel
+            for kernel in ("heated", "spheres")
+        ),
     ],
 )
 def test_each_contact_counts_as_brute_force_has_it(kernel, species):

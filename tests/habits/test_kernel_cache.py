@@ -13,6 +13,8 @@ import pytest
 
 from habits.conftest import python
 
+pytestmark = pytest.mark.slow
+
 PROGRAM = """
 from roughgas.compiling.jit import entry
 
@@ -87,9 +89,7 @@ def test_a_full_disk_only_costs_time(program, mounts):
     assert "No space left on device: the kernel is not kept" in warning
 
 
-@pytest.mark.parametrize(
-    "home", [{"HOME": None}, pytest.param({"HOME": "/proc/nobody"}, marks=pytest.mark.slow)]
-)
+@pytest.mark.parametrize("home", [{"HOME": None}, {"HOME": "/proc/nobody"}])
 def test_without_a_home_or_a_compiler_kernels_go_to_temporary_files(program, tmp_path, home):
     """Numba needs no C compiler: there is none on an empty PATH."""
     bare = {"ROUGHGAS_CACHE_DIR": None, "XDG_CACHE_HOME": "/proc/none", "PATH": "/nonexistent"}

@@ -14,6 +14,8 @@ from schedules import BRIEF, TINY
 
 from habits.conftest import LONG, catches, environment, interrupt, point, wait_until
 
+pytestmark = pytest.mark.slow
+
 SECONDS_LONG = TINY | {"schedule": BRIEF | {"plateau": 200_000, "sample_every": 25}}
 LAST = "Stopped: the same command goes on from here."
 
@@ -63,7 +65,6 @@ def snakemake(project, scale):
     return start([*command, "--", f"results/{scale}/cooling.nc"], project.folder)
 
 
-@pytest.mark.slow
 def test_a_workflow_stops_without_a_word_of_failure(project):
     snakemakes.server()  # which is ready by the time that the point runs
     running = snakemake(project, "long")
@@ -82,7 +83,6 @@ def test_a_workflow_stops_without_a_word_of_failure(project):
     assert planned == {"point": 2, "reduce": 1}  # the kernel is not compiled again
 
 
-@pytest.mark.slow
 def test_a_job_that_fails_shows_what_it_said_and_no_more(project):
     running = snakemake(project, "dense")
     lines = running.communicate(timeout=120)[0].splitlines()
@@ -111,7 +111,6 @@ def same_point(one, other):
         return here.drop_vars("kernel_seconds").equals(there.drop_vars("kernel_seconds"))
 
 
-@pytest.mark.slow
 def test_a_simulation_that_was_killed_goes_on(tmp_path):
     command = [sys.executable, "-m", "roughgas", *point("point.nc", SECONDS_LONG)]
     killed(command, tmp_path, "point.nc.checkpoint.npz")
@@ -125,7 +124,6 @@ def test_a_simulation_that_was_killed_goes_on(tmp_path):
     assert same_point(tmp_path / "point.nc", tmp_path / "undisturbed.nc")
 
 
-@pytest.mark.slow
 def test_a_workflow_that_was_killed_goes_on_within_a_point(project):
     folder, dataset = project.folder / "results/lasting", "results/lasting/cooling.nc"
     command = [sys.executable, "-m", "snakemake", "-j1", "--config", "scale=lasting", "--", dataset]

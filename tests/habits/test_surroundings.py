@@ -13,6 +13,8 @@ from tests.habits.conftest import ROOT, environment, point, python, roughgas
 from roughgas import doctor
 from roughgas.base import EXTRAS
 
+pytestmark = pytest.mark.slow
+
 
 def test_who_reads_only_the_beginning_sees_no_traceback(tmp_path):
     reader, writer = os.pipe()
@@ -52,7 +54,6 @@ def test_what_is_no_file_is_not_replaced(tmp_path):
     assert (tmp_path / "pipe").is_fifo()
 
 
-@pytest.mark.slow  # what is around it, not the code
 def test_memory_that_runs_out(tmp_path):
     script = 'ulimit -v 2000000; exec "$@"'
     many = {"particles": 10**8, "box": [10**5, 10**5]}
@@ -83,7 +84,6 @@ def check(name, monkeypatch, capsys):
     return found["said"], found["ok"]
 
 
-@pytest.mark.slow  # what is around it, not the code
 def test_an_installation_as_it_should_be():
     done = roughgas("doctor", "--json", cwd=ROOT)
     found = json.loads(done.stdout)
@@ -108,7 +108,6 @@ def test_a_problem_is_told_in_words_and_by_the_exit_status(monkeypatch, capsys):
     assert "gsd" in said and said.endswith("-> mend it\n")
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("broken", "said"),
     [
@@ -153,7 +152,6 @@ def told(line, folder):
     return python("-c", BLOCKED.format(packages=packages), *line.split(), cwd=folder)
 
 
-@pytest.mark.slow  # what is around it, not the code
 def test_what_simulates_needs_no_extra(tmp_path):
     for name, line in WITHOUT_ANY.items():
         done = told(line, tmp_path)

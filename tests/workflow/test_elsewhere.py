@@ -12,6 +12,8 @@ from project import ROOT, Project
 
 from roughgas.config.reading import read_yaml
 
+pytestmark = pytest.mark.slow
+
 POINT = "results/tiny/cooling/r0.9/beta0/seed9.nc"
 CONFIG = "results/tiny/config.yaml"
 HOST = """
@@ -54,7 +56,6 @@ def succeed(*arguments):
     return output
 
 
-@pytest.mark.slow
 def test_a_snakefile_elsewhere_writes_here(source, tmp_path):
     told = ("-s", source.folder / "Snakefile", "--config", "scale=tiny", "--")
     succeed(source, tmp_path, "-j1", *told, POINT, CONFIG)
@@ -67,7 +68,6 @@ def test_a_snakefile_elsewhere_writes_here(source, tmp_path):
     assert status != 0 and f"folder = {tmp_path}: must be {source.folder}" in output
 
 
-@pytest.mark.slow
 def test_the_configuration_of_the_working_folder_comes_first(source, tmp_path):
     own = read_yaml(source.folder / "config.yaml")
     own["experiments"]["mine"] = {"extends": "cooling", "particles": 30}
@@ -116,7 +116,6 @@ def test_a_host_is_told_what_is_wrong_with_its_configuration(source, host):
     assert "scale = 3: must" in said
 
 
-@pytest.mark.slow
 def test_a_module_makes_points_and_pages_of_them(source, host):
     succeed(source, host, "-c1", f"other folder/{POINT}", "roughgas_explore")
     assert (host / "other folder" / POINT).exists()
@@ -129,7 +128,6 @@ def test_a_module_makes_points_and_pages_of_them(source, host):
     }
 
 
-@pytest.mark.slow
 def test_every_rule_has_a_container_and_lint_says_nothing_without_a_reason():
     command = [sys.executable, "-m", "snakemake", "--lint"]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
@@ -173,7 +171,6 @@ def assert_runs(project, folder):
     assert all((folder / made).exists() for made in REAL)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", [*NAMES, BRACES])
 def test_one_works_in_it(tmp_path, name):
     project = project_in(tmp_path / name)
@@ -211,7 +208,6 @@ def test_a_place_that_cannot_be_written_is_said_in_one_line(tmp_path):
     assert said.startswith(f"roughgas: error: {project.folder / '.snakemake'}")
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("read_only", "place", "told"),
     [

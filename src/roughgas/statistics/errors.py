@@ -109,9 +109,10 @@ def blocking(series: np.ndarray) -> Blocking:
     if np.ptp(series) == 0:
         return Blocking(0.0, samples)
     naive = series.var(ddof=1) / samples
+    sums = np.concatenate([[0.0], np.cumsum(series - series.mean())])
     length = 1
     while True:
-        variance = _overlapping_block_variance(series, length)
+        variance = _overlapping_block_variance(sums, length)
         time = variance / naive
         longer = math.ceil(1.3 * length)
         if length**3 > 2 * samples * time**2 or longer * FEWEST_BLOCKS > samples:
@@ -190,10 +191,10 @@ def _wallace(degrees_of_freedom: float) -> float:
     return (8 * degrees_of_freedom + 1) / (8 * degrees_of_freedom + 3)
 
 
-def _overlapping_block_variance(series: np.ndarray, length: int) -> float:
-    """Return the variance of the mean from all blocks of `length` consecutive samples."""
-    samples = len(series)
-    sums = np.concatenate([[0.0], np.cumsum(series - series.mean())])
+def _overlapping_block_variance(sums: np.ndarray, length: int) -> float:
+    """Return the variance of the mean from all blocks of `length` consecutive samples of a series,
+    whose cumulated departures from its mean are `sums`, shape (samples + 1,)."""
+    samples = len(sums) - 1
     means = (sums[length:] - sums[:-length]) / length
     return length / ((samples - length) * (samples - length + 1)) * float((means**2).sum())
 

@@ -8,10 +8,11 @@ import pytest
 from accuracy.soft_spheres.pair import angular_momentum, collide, energy, momentum, shot
 
 PHASES = np.linspace(0.03, 1.03, 12, endpoint=False)  # in steps: where in a step a contact begins
+DIMENSIONS = [2, pytest.param(3, marks=pytest.mark.slow)]  # each compiles a kernel of its own
 BETAS = [-1.0, -0.5, 0.0, 0.5, 1.0]
 
 
-@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("dimension", DIMENSIONS)
 @pytest.mark.parametrize("offset", [0.0, 1.0])
 @pytest.mark.parametrize("beta", BETAS)
 @pytest.mark.parametrize("r", [0.5, 0.75, 0.9, 1.0])
@@ -56,7 +57,7 @@ def test_a_central_contact_does_not_know_its_duration():
     assert long.r == pytest.approx(short.r, abs=1e-10)
 
 
-@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("dimension", DIMENSIONS)
 @pytest.mark.parametrize("steps", [3, 20])
 def test_momentum_and_angular_momentum(steps, dimension):
     """To rounding, however long the contact and coarse the step."""

@@ -29,7 +29,7 @@ def run(gas, spheres, dt, steps, samples=1, temperature=0.0):
     return rows
 
 
-@pytest.mark.parametrize("kernel", ["gas", "spheres"])
+@pytest.mark.parametrize("kernel", ["gas", pytest.param("spheres", marks=pytest.mark.slow)])
 def test_the_list_of_neighbours_changes_nothing(kernel):
     """Narrow and wide skins list other pairs at other times: the same motion to rounding.
 

@@ -16,6 +16,8 @@ from roughgas.show.explore import GRID, LONGEST, NUMBERS, experiment, write_page
 from roughgas.theory.prediction import predicted_ratio
 from show.page.conftest import SAMPLES, write
 
+pytestmark = pytest.mark.slow
+
 EXPERIMENTS = ("sheared", "cooling", "cooling_friction")
 
 

@@ -18,6 +18,8 @@ from roughgas.results.products import write_times
 from roughgas.show.catalogue import FIGURES, figures_of
 from roughgas.show.pages import captions
 
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).parents[3]
 CAPTIONS = ROOT / "rules" / "captions"
 NAMES = figures_of("paper")
