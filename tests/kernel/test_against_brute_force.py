@@ -164,7 +164,7 @@ RARE = {"sheared spheres", "bed of spheres", "tabulated bed", "friction of spher
 RARE |= {"friction of floor and walls", "kicks, no spin", "kicks of spheres", "pistons"}
 RARE |= {"under a thermal lid", "under an inelastic lid", "species, container", "closed spheres"}
 RARE |= {"species, bed", "species, smallest box", "species, smooth", "species, sheared"}
-RARE |= {"species, shaken walls", "species, spheres", "species, bath", "drag"}
+RARE |= {"species, shaken walls", "species, spheres", "species, bath", "species, kicks", "drag"}
 RARE |= {
     "species, bed between walls, friction",
     *(f"{wave}, {floor}" for floor in FLOORS for wave in WAVES),

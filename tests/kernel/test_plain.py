@@ -69,7 +69,7 @@ def test_scenes_run_as_plain_python(kernel):
     assert_plain_python_has_the_same_bits(of_ten(kernel))
 
 
-@pytest.mark.parametrize("kernel", ["gas", "heated"])
+@pytest.mark.parametrize("kernel", ["gas", pytest.param("heated", marks=pytest.mark.slow)])
 def test_mixtures_run_as_plain_python(kernel):
     assert_plain_python_has_the_same_bits(of_ten(kernel, species=TWO, box=[20, 20]))
 

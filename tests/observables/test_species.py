@@ -209,6 +209,7 @@ def contacts_of(r, beta, drive, observe, **gas):
     return simulate(r=r, beta=beta, observe=observe, progress=False, **own, **gas)
 
 
+@pytest.mark.slow  # compiles a kernel
 def test_how_often_species_meet_is_as_theory_says():
     """Elastic disks in equilibrium: Enskog's frequencies within four errors, and 2 %, as of g at
 
@@ -243,6 +244,7 @@ def test_how_often_species_meet_is_as_theory_says():
     assert np.all(abs(gas.heat_flux_species) < 4.5 * gas.heat_flux_species_stderr)
 
 
+@pytest.mark.slow  # compiles a kernel
 def test_contacts_take_what_the_books_say():
     """Losses per contact times the contacts of a run are what contacts have put in."""
     gas = contacts_of(0.8, 0.3, {}, "contacts", particles=40, box=(30, 30))
