@@ -34,7 +34,7 @@ def sweep(state, scene, i, number):
 @entry
 def decisions(state, scene, i, number):
     """When so many that may be met are: double precision (`pd`)."""
-    decide(state, scene, i, 0, number, 0.0, 1.0, 1.0)
+    decide(state, scene, i, 0, number, 0.0)
 
 
 def packed_instructions(loop, scene: Scene, state) -> Counter:

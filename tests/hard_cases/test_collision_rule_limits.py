@@ -83,7 +83,7 @@ def test_normal(margins, dimension):
     normals = rng.standard_normal((contacts, dimension))
     normals *= 2.0 / np.linalg.norm(normals, axis=1)[:, None]
     places = rng.uniform(2.0, 23.0, normals.shape)
-    found = np.array([direction(x) for x in map(tuple, (places + normals - places).tolist())])
+    found = np.array([direction(2.0, x) for x in map(tuple, (places + normals - places).tolist())])
     excess = (found.astype(np.longdouble) ** 2).sum(axis=1) - 1  # to 1e-19
     what, tried = f"mean of n.n - 1, D = {dimension}", {"tried": contacts, "unit": "contacts"}
     margins.at_most(what, abs(excess.mean()), ROUNDING / 4.0, **tried)

@@ -203,8 +203,8 @@ def show(*options):
 @pytest.mark.slow  # compiles a kernel
 def test_a_function_is_shown_as_it_is_compiled_for_a_scene():
     shown = show("--show", "collide", "--scene", "cooling").stdout
-    assert shown.startswith("# roughgas.kernel.contact") and "n = direction(x)" in shown
-    assert "None" not in shown and "direction_along" not in shown
+    assert shown.startswith("# roughgas.kernel.contact") and "n = direction(" in shown
+    assert "None" not in shown and "observe_contact" not in shown and "turn_and_book" in shown
 
 
 @pytest.mark.parametrize(

@@ -80,7 +80,7 @@ def collide(state, scene, i, j, time):
     x = subtract(position_i, position_j)
     between = subtract(velocity_i, velocity_j)
     x, v = shifted(x, between, image_numbers(x, box, slide), box, slide)
-    n = direction(x) if bodies is None else direction_along(reach_of(bodies, i, j), x)
+    n = direction(reach_of(bodies, i, j), x)
     w_i, w_j = spin_of(spin, box, i), spin_of(spin, box, j)
     w = None if spin is None else add_scaled(w_i, w_j, 1.0)
 
@@ -145,24 +145,16 @@ def collide_with_wall(state, scene, index, i, time, material, n, wall_velocity, 
 
 
 @jit
-def direction(x):
-    """Return the unit vector along the separation x of a pair in contact, of radius 1.
+def direction(reach, x):
+    """Return the unit vector along the separation x of a pair in contact, |x| = reach but for some
+    roundings.
 
-    Where |x| is 2 but for some roundings, the root of x.x and its reciprocal lie midway between two
-    doubles half of the time, and then always on the same side of the middle: x times 1/|x| would be
-    too long on average, and an elastic gas would heat up. Half of x is exact, and what it lacks is
-    too small for its own rounding to matter.
+    Of such x the root of x.x and its reciprocal lie midway between two doubles half of the time,
+    and then always on the same side of the middle: x times 1/|x| would be too long on average, and
+    an elastic gas would heat up. What x/reach lacks is too small for its own rounding to matter.
+    That of reach^2, which would be on the same side in all contacts of two species, is added
+    (T. J. Dekker, Numer. Math. 18, 224, 1971); for a reach of 2 there is none.
     """
-    square = dot(x, x)
-    length = math.sqrt(square)
-    half = scale(x, 0.5)
-    return add_scaled(half, half, (4.0 - square) / (length * (2.0 + length)))
-
-
-@jit
-def direction_along(reach, x):
-    """As `direction`, for |x| = reach. The rounding of reach^2, which would be on the same side in
-    all contacts of two species, is added (T. J. Dekker, Numer. Math. 18, 224, 1971)."""
     square = dot(x, x)
     length = math.sqrt(square)
     upper = SPLIT * reach - (SPLIT * reach - reach)
