@@ -25,7 +25,8 @@ GASES = {
     "two species": settings("heated", 40, [30, 30]) | TWO,
     "sheared": SHEARED | {"effects": SHEARED["effects"] | {"contact_log": {"most": 3000}}},
 }
-EACH = [*list(GASES)[:-1], pytest.param("sheared", marks=pytest.mark.slow)]  # a kernel of its own
+OWN = [pytest.param(name, marks=pytest.mark.slow) for name in ("two species", "sheared")]
+EACH = ["walled", "spheres", *OWN]  # the slow ones have kernels of their own
 
 
 def gas_of(name, seed=1):
@@ -66,7 +67,7 @@ def test_what_logged_contacts_take_is_what_the_books_say(name):
         assert gained[~pairs].sum(axis=0) == pytest.approx(booked[:-1].sum(axis=0), rel=1e-9)
 
 
-@pytest.mark.parametrize("name", ["two species", "spheres"])
+@pytest.mark.parametrize("name", ["spheres", OWN[0]])
 def test_contacts_of_each_pair_of_species_are_those_of_the_log(name):
     """Their number, and the energy that they take, to rounding."""
     gas = gas_of(name)
@@ -87,6 +88,7 @@ def sums_of_pairs(columns, names, kinds):
     return np.array([columns[one][-1] for one in names]).reshape(kinds**2, -1)
 
 
+@pytest.mark.slow  # compiles a kernel
 def test_what_contacts_of_each_pair_carry_is_that_of_the_log():
     """The momentum that passes to one partner, and half of what energy one gains and the other
     loses, from centre to centre; to rounding."""
