@@ -40,8 +40,8 @@ def kinds_at(scale, experiment, r):
 
     every = roughgas.config.every_variant(experiment, settings(scale, experiment)).values()
     with one_line(KERNEL.format(scale=scale, experiment=experiment, r=r)):
-        (place,) = roughgas.config.places([r], ["0"], ["1"])
-    return sorted(map(str, kernels(every, place.r)))
+        number = roughgas.config.restitution(r)
+    return sorted(map(str, kernels(every, number)))
 
 
 def kinds_of_kernels(wildcards):

@@ -221,26 +221,21 @@ class Library(JITCodeLibrary):
     def finalize(self):
         if any(_is_entry(one.name) for module in self._written for one in module.functions):
             _, *below = _callers_first(self)
-            for library in below:
+            ours = [one for one in below if isinstance(one, Library)]
+            for library in ours:
                 self._reload_init.update(library._reload_init)
-                for module in getattr(library, "_written", ()):
+                for module in library._written:
                     for function in module.functions:
                         if not function.is_declaration:
                             function.linkage = function.linkage or "linkonce_odr"
-            for module in [one for library in (self, *below) for one in _modules_of(library)]:
-                self._final_module.link_in(module)
-            linked, self._linking_libraries = self._linking_libraries, []
+            for module in [one for library in (self, *ours) for one in library._written]:
+                self._final_module.link_in(parse_assembly(normalize_ir_text(str(module))))
+            # what was finished before this file was imported, numba links as ever
+            linked = self._linking_libraries
+            self._linking_libraries = [one for one in below if not isinstance(one, Library)]
             super().finalize()
             self._linking_libraries = linked  # for what calls this function in its turn
         self._finalized = True
-
-
-def _modules_of(library):
-    """Return LLVM's modules of a library, to be linked. What numba had compiled for others before
-    this file was imported is one, with all that it calls."""
-    if isinstance(library, Library):
-        return [parse_assembly(normalize_ir_text(str(module))) for module in library._written]
-    return [library._get_module_for_linking().clone()]
 
 
 def _callers_first(library):
@@ -249,7 +244,7 @@ def _callers_first(library):
     done = {}
 
     def visit(one):
-        for called in one._linking_libraries if isinstance(one, Library) else ():
+        for called in one._linking_libraries:
             if called not in done:
                 visit(called)
         done[one] = None

@@ -71,7 +71,7 @@ class Site(NamedTuple):
         return self.builder.call(function, values, **more)
 
     def spread(self, value, kind):
-        """Return a number in every lane, if the first of the lanes are any; lanes as they are."""
+        """Return a number in every lane where an argument is lanes; lanes as they are."""
         if isinstance(kind, Lanes):
             return value
         whole = _lane_by_lane(*self.kinds)
