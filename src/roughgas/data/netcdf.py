@@ -137,11 +137,17 @@ def _fill(
         for dim, length in zip(variable.dims, variable.values.shape, strict=True):
             if dim not in group.dimensions:
                 group.createDimension(str(dim), length)
-    for name in content.variables:
-        _write_variable(group, name, content, complevel)
+    # Each is defined before any is written to: after a new one netCDF goes over all of them.
+    targets = [_defined(group, name, content, complevel) for name in content.variables]
+    group.set_auto_maskandscale(False)  # nothing is masked or packed: it need not search
+    for target, variable in zip(targets, content.variables.values(), strict=True):
+        target[...] = variable.values.astype(object) if target.dtype is str else variable.values
 
 
-def _write_variable(group: "netCDF4.Dataset", name: str, content: Content, complevel: int) -> None:
+def _defined(
+    group: "netCDF4.Dataset", name: str, content: Content, complevel: int
+) -> "netCDF4.Variable":
+    """Return a new variable of a group, with its attributes and no values."""
     variable = content.variables[name]
     dims, values = tuple(map(str, variable.dims)), variable.values
     words = values.dtype.kind in "OU"
@@ -153,7 +159,7 @@ def _write_variable(group: "netCDF4.Dataset", name: str, content: Content, compl
         layout["fill_value"] = np.nan
     target = group.createVariable(name, str if words else values.dtype, dims, **layout)
     target.setncatts(_attributes(name, content, is_coordinate))
-    target[...] = values.astype(object) if words else values
+    return target
 
 
 def _attributes(name: str, content: Content, is_coordinate: bool) -> dict[str, Any]:
