@@ -15,7 +15,7 @@ import numpy as np
 from benchmarks.scenes import CASES, settings
 from roughgas.compiling.jit import entry
 from roughgas.kernel.prediction import decide
-from roughgas.kernel.sweep import line_of, list_candidates, singles
+from roughgas.kernel.sweep import list_by_sweep
 from roughgas.scene import Scene, build
 from roughgas.scene.initial import initial_state
 
@@ -27,8 +27,7 @@ ARITHMETIC = re.compile(
 @entry
 def sweep(state, scene, i, number):
     """Which of all particles may be met soon: single precision (`ps`)."""
-    start, velocity = line_of(state, scene, i)
-    return list_candidates(state, scene, 0, 0, singles(start), singles(velocity), 0.5, 0.5)
+    return list_by_sweep(state, scene, i, 0, 0.0)
 
 
 @entry

@@ -64,7 +64,11 @@ def list_around(state, scene, i, begin, time):
     """List the particles around particle i in the shortlist, from `begin` on; return the end."""
     if state.cells.neighbours is None:
         return _list_in_cells(state, scene, i, begin, time)
-    return _list_neighbours_of(state, scene, i, begin, time)
+    if time >= state.cells.leave[i]:
+        _move_region(state, scene, i, begin, time)
+    _foresee_exit(state, scene, i, time)
+    clear_contacts(state.agenda, i, time + state.clock[SPAN])
+    return _members(state, i, begin)
 
 
 @jit
@@ -306,15 +310,6 @@ def _append_followers(following, found, number, k, those):
 
 
 # ------------------------------------------------------------------ lists of neighbours
-
-
-@jit
-def _list_neighbours_of(state, scene, i, begin, time):
-    if time >= state.cells.leave[i]:
-        _move_region(state, scene, i, begin, time)
-    _foresee_exit(state, scene, i, time)
-    clear_contacts(state.agenda, i, time + state.clock[SPAN])
-    return _members(state, i, begin)
 
 
 @jit

@@ -317,7 +317,19 @@ def choose_next(state, i):
 def next_contact(state, i):
     """Return (time, kind) of particle i's first contact, or of the end of its foresight if that
     comes first."""
-    return _of_eight(state.agenda, i) if state.cells is None else _of_two(state, i)
+    agenda, kind = state.agenda, HORIZON
+    times, time = agenda.slot_time, agenda.complete_until[i]
+    if state.cells is None:
+        slots = load(times, i, 0, SLOTS_OF_FEW)
+        first = least(slots)
+        slot = trailing_zeros(bits(slots == first))
+        return (first, slot) if first <= time else (time, HORIZON)
+    time = min(time, state.cells.leave[i])
+    for k in range(times.shape[1]):
+        earlier = times[i, k] <= time
+        time = times[i, k] if earlier else time
+        kind = k if earlier else kind
+    return time, kind
 
 
 @jit
@@ -327,23 +339,3 @@ def foreseen_until(state, i):
     if state.cells is None or state.cells.neighbours is not None:
         return until  # when it leaves its region may change without that
     return min(until, state.cells.leave[i])
-
-
-@jit
-def _of_two(state, i):
-    agenda, kind = state.agenda, HORIZON
-    time = min(agenda.complete_until[i], state.cells.leave[i])
-    for k in range(agenda.slot_time.shape[1]):
-        earlier = agenda.slot_time[i, k] <= time
-        time = agenda.slot_time[i, k] if earlier else time
-        kind = k if earlier else kind
-    return time, kind
-
-
-@jit
-def _of_eight(agenda, i):
-    time = agenda.complete_until[i]
-    times = load(agenda.slot_time, i, 0, SLOTS_OF_FEW)
-    first = least(times)
-    slot = trailing_zeros(bits(times == first))
-    return (first, slot) if first <= time else (time, HORIZON)

@@ -11,6 +11,7 @@ from roughgas.kernel.event_lists import (
     FLIGHTS,
     choose_next,
     clear_calendar,
+    clear_contacts,
     earliest,
     enter_in_queue,
 )
@@ -37,7 +38,7 @@ from roughgas.kernel.state import (
     STALE,
     TYPICAL_SPEED,
 )
-from roughgas.kernel.sweep import draw_line, line_of, list_by_sweep, look_ahead
+from roughgas.kernel.sweep import draw_line, horizon, line_of, list_by_sweep
 
 REACHED, COLLAPSED, SILENT, HELD = range(4)  # how `advance` ends
 # Spans without a collision after which none is waited for any longer: so many in all, divided among
@@ -126,7 +127,8 @@ def predict_events(state, scene, affected, time):
     shortlist, room = state.shortlist, len(state.shortlist.found) // 2
     if state.cells is None:
         for k in range(number):
-            look_ahead(state, scene, index(affected[k]), time)
+            i = index(affected[k])
+            clear_contacts(state.agenda, i, time + horizon(state, scene, i))
     for k in range(number):
         i = index(affected[k])
         if state.cells is None:

@@ -119,17 +119,17 @@ def decide(state, scene, i, begin, beyond, time):
     """
     end = state.agenda.complete_until[i] if state.cells is None else time
     limit = end if state.cells is None else FARTHEST
-    box = scene.box
+    box, bodies = scene.box, state.bodies
     path = path_of(state.trajectory, i, box)
     gravity = hooks.acceleration(scene.effects)
     slide = hooks.sliding(scene.effects, state)
     half = 0.5 * (end - time)
-    fastest = speed_limit(box, half, 2.0 * largest_of(state.bodies))
+    fastest = speed_limit(box, half, 2.0 * largest_of(bodies))
     first, more, lanes = begin, True, lanes_of(state.shortlist.when)
     while more:  # once mostly, and at least once, so that the processor can foresee it
         others = numbers_in(state.shortlist.found, first, lanes)
         paths = _paths_of(state.trajectory, others, box)
-        reach = _reaches(state.bodies, i, others)
+        reach = radius_of(bodies, i) + (1.0 if bodies is None else gather(bodies.radius, 0, others))
         when, unsure = meeting(path, paths, box, gravity, slide, time + half, fastest, reach)
         listed = order(lanes) < beyond - first
         candidates = path, first, listed
@@ -148,14 +148,6 @@ def _paths_of(trajectory, others, box):
         tuple(gather(trajectory, len(box) + k, others) for k in range(len(box))),
         gather(trajectory, 2 * len(box), others),
     )
-
-
-@jit
-def _reaches(bodies, i, others):
-    """Return the distances at which particle i touches others, given as lanes."""
-    if bodies is None:
-        return reach_of(bodies, i, i)
-    return radius_of(bodies, i) + gather(bodies.radius, 0, others)
 
 
 @jit

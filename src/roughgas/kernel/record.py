@@ -98,7 +98,8 @@ def take_sample(state, scene, samples, place):
     row[0] = state.clock[ORIGIN] + (state.clock[BASE] + time) * unit
     row[1] = state.counts[COLLISIONS]
     row[2] = state.counts[EXPONENT]
-    sums = _no_sums(scene.box, state.spin)
+    axes = len(scene.box)
+    sums = tuple(0.0 for k in range(2 * axes + 3 if state.spin is None else 4 * axes + 1))
     for i in range(len(state.changes)):
         position, velocity = position_in_box(state, scene, i, time)
         sums = _added(state, scene, i, position, velocity, sums)
@@ -109,12 +110,6 @@ def take_sample(state, scene, samples, place):
             write(samples, place, first, own)
     write(samples, place, 3, sums)
     _enter_sums(state.sums, state.counts[EXPONENT], row)
-
-
-@jit
-def _no_sums(box, spin):
-    """Return zeros, as many as `columns` has sums over all particles."""
-    return tuple(0.0 for k in range(2 * len(box) + 3 if spin is None else 4 * len(box) + 1))
 
 
 @jit

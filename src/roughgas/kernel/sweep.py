@@ -16,7 +16,6 @@ import numpy as np
 from roughgas.compiling.jit import jit
 from roughgas.compiling.lanes import append, lanes_of, load, multiply_add
 from roughgas.kernel import hooks
-from roughgas.kernel.event_lists import clear_contacts
 from roughgas.kernel.mathematics import add_scaled, cross_squared, dot, read, subtract
 from roughgas.kernel.particles import (
     image_numbers,
@@ -34,21 +33,35 @@ ROUNDED_UP = 1.0 + 2.0**-20  # radii in single precision are no less than they a
 
 
 @jit
-def look_ahead(state, scene, i, time):
-    """Forget particle i's contacts; those that are listed next are complete to its horizon."""
-    clear_contacts(state.agenda, i, time + horizon(state, scene, i))
-
-
-@jit
 def list_by_sweep(state, scene, i, begin, time):
     """List every particle that i may touch up to its horizon in the shortlist, from `begin` on;
-    return the end."""
+    return the end. The particle itself may be among them: it never meets itself."""
     start, velocity = line_of(state, scene, i)
-    half = 0.5 * (state.agenda.complete_until[i] - time)
     line = singles(start), singles(velocity)
-    end = list_candidates(state, scene, i, begin, *line, time + half, half)
+    lines, clock, bodies = state.sweep.lines, state.clock, state.bodies
+    half = 0.5 * (state.agenda.complete_until[i] - time)
+    slack = 16.0 * ROUNDING * clock[EXTENT]
+    margin = radius_of(bodies, i) + largest_of(bodies) + slack
+    own = margin if bodies is None else radius_of(bodies, i) + slack
+    speed = max(clock[TYPICAL_SPEED], 1e-30)
+    # s |u| <= (s / 2) (u.u / w + w) for any speed w, which saves a root per pair
+    reach, spare = single(half + 0.55 * margin / speed), single(0.55 * margin * speed)
+    limit = single(speed_limit(scene.box, half, 2.0 * largest_of(bodies)))
+    slide = singles(slid(hooks.sliding(scene.effects, state), time + half))
+    box, own, middle = singles(scene.box), single(ROUNDED_UP * own), single(time + half)
+    number = begin
+    for first in range(0, len(state.changes), lanes_of(lines)):
+        u = subtract(line[1], _lines_of(lines, len(scene.box), first, box))
+        x = add_scaled(subtract(line[0], _lines_of(lines, 0, first, box)), u, middle)
+        x, u = shifted(x, u, image_numbers(x, box, slide), box, slide)
+        uu = dot(u, u)
+        s = own if bodies is None else own + load(state.sweep.sizes, 0, first, lanes_of(lines))
+        meets = (cross_squared(x, u) <= s * s * uu) & (
+            abs(dot(x, u)) <= multiply_add(uu, reach, spare)
+        )
+        number = append(state.shortlist.found, number, _or_beyond(limit, meets, uu), first)
     draw_line(state, i, start, velocity)
-    return end
+    return number
 
 
 @jit
@@ -59,14 +72,10 @@ def horizon(state, scene, i):
     speed = math.sqrt(dot(v, v)) + 2.0 * state.clock[TYPICAL_SPEED]
     if speed == 0.0:
         return state.clock[SPAN]
-    return min(_free_way(state.bodies, scene) / speed, state.clock[LONGEST_HORIZON])
-
-
-@jit
-def _free_way(bodies, scene):
-    if bodies is None:
-        return scene.extent - 4.0
-    return max(scene.extent - 4.0 * bodies.largest[0], bodies.largest[0])  # walls may be near
+    way = scene.extent - 4.0 * largest_of(state.bodies)
+    if state.bodies is not None:
+        way = max(way, largest_of(state.bodies))  # walls may be near
+    return min(way / speed, state.clock[LONGEST_HORIZON])
 
 
 @jit
@@ -94,45 +103,9 @@ def draw_line(state, i, start, velocity):
 
 
 @jit
-def list_candidates(state, scene, i, begin, start, velocity, middle, half):
-    """List every particle that one on this line may touch within `half` of time `middle` in the
-    shortlist; return the end. The particle itself may be among them: it never meets itself."""
-    lines, clock, bodies = state.sweep.lines, state.clock, state.bodies
-    slack = 16.0 * ROUNDING * clock[EXTENT]
-    own = single(ROUNDED_UP * (radius_of(bodies, i) + slack))
-    margin = radius_of(bodies, i) + largest_of(bodies) + slack
-    speed = max(clock[TYPICAL_SPEED], 1e-30)
-    # s |u| <= (s / 2) (u.u / w + w) for any speed w, which saves a root per pair
-    reach, spare = single(half + 0.55 * margin / speed), single(0.55 * margin * speed)
-    limit = single(speed_limit(scene.box, half, 2.0 * largest_of(bodies)))
-    slide = singles(slid(hooks.sliding(scene.effects, state), middle))
-    box, square, middle = singles(scene.box), single(margin * margin), single(middle)
-    number = begin
-    for first in range(0, len(state.changes), lanes_of(lines)):
-        u = subtract(velocity, _lines_of(lines, len(scene.box), first, box))
-        x = add_scaled(subtract(start, _lines_of(lines, 0, first, box)), u, middle)
-        x, u = shifted(x, u, image_numbers(x, box, slide), box, slide)
-        uu = dot(u, u)
-        passes = cross_squared(x, u) <= _square(state.sweep.sizes, own, first, square) * uu
-        meets = passes & (abs(dot(x, u)) <= multiply_add(uu, reach, spare))
-        meets = _or_beyond(limit, meets, uu)
-        number = append(state.shortlist.found, number, meets, first)
-    return number
-
-
-@jit
 def _or_beyond(limit, meets, uu):
     """Return which pairs meet, and those that are too fast for one image."""
     return meets if limit is None else meets | (uu > limit)
-
-
-@jit
-def _square(sizes, own, first, square):
-    """Return the square of the distance at which each of these particles may be touched."""
-    if sizes is None:
-        return square
-    reach = load(sizes, 0, first, lanes_of(sizes)) + own
-    return reach * reach
 
 
 @jit
