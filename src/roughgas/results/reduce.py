@@ -49,6 +49,8 @@ PROVENANCE = ("roughgas_version", "numpy_version", "numba_version", "kernel_sour
 SERIES = (*OF_COOLING, *(name for name in OF_STAGES if POINT[name].dims[0] == "sample"))
 OF_SPECIES = [name for name, one in POINT.items() if one.dims == ("species",) and one.over_seeds]
 
+Stored = Mapping[str, netCDF4.Variable]  # of an open file
+
 
 class Summary(NamedTuple):
     """The scalars and attributes of one point's file, and where it is in the reduced dataset."""
@@ -103,60 +105,61 @@ def _checked(path: Path) -> Summary:
 
 def _summary(path: Path) -> Summary:
     with opened(path, netcdf.POINT) as file:
-        file.set_auto_mask(False)
-        attributes = netcdf.attributes_of(file)
+        file.set_auto_maskandscale(False)  # nothing is masked or packed: it need not search
+        variables, attributes = file.variables, netcdf.attributes_of(file)
         require(attributes, ("swept_value",) if "swept" in attributes else (), path)
         found = [name for name, about in POINT.items() if not about.dims]
-        scalars = {name: file[name][...].item() for name in found if name in file.variables}
-        scalars |= {name: file[name][...] for name in OF_SPECIES if name in file.variables}
+        scalars = {name: variables[name][...].item() for name in found if name in variables}
+        scalars |= {name: variables[name][...] for name in OF_SPECIES if name in variables}
         if "E_trans_species" in scalars:  # a ratio in each seed: what all species share is no error
             energy = scalars["E_trans_species"]
             scalars["T_ratio_species"] = energy / energy[0]
-        scalars |= _series(file)
-        exchanged = ("source", "motion") if "stage_begin" in file.variables else ()
-        named = [*exchanged, *(["species"] if "species" in file.variables else [])]
-        names = {name: tuple(file[name][...].tolist()) for name in named}
+        scalars |= _series(variables)
+        exchanged = ("source", "motion") if "stage_begin" in variables else ()
+        named = [*exchanged, *(["species"] if "species" in variables else [])]
+        names = {name: tuple(variables[name][...].tolist()) for name in named}
         for name in scalars.keys() & SOUND:
             check_sound(path, name, scalars[name])
-        scalars["measured_for"], scalars["R_drift"] = _window(file, scalars)
-        observed = _observed(file)
-        replicas = file["R_replica"][...] if "R_replica" in file.variables else np.empty(0)
+        scalars["measured_for"], scalars["R_drift"] = _window(variables, scalars)
+        observed = _observed(variables)
+        replicas = variables["R_replica"][...] if "R_replica" in variables else np.empty(0)
     swept = (attributes["swept_value"],) if "swept" in attributes else ()
     r, beta, seed = (attributes[name] for name in (*GRID, "seed"))
     place = (*swept, float(r), float(beta), int(seed))
     return Summary(scalars, attributes, place, replicas, names, observed)
 
 
-def _series(file: netCDF4.Dataset) -> dict[str, np.ndarray]:
+def _series(variables: Stored) -> dict[str, np.ndarray]:
     """Return what changes over time, of a cooling gas that has no R for all times, and of a gas
     through stages."""
-    if "stage_begin" in file.variables:
-        names = [name for name in (*SERIES, *OF_STAGES) if name in file.variables]
-        return {"time_series": file["time"][...]} | {name: file[name][...] for name in names}
-    if "time_series" not in file.variables:
+    if "stage_begin" in variables:
+        names = [name for name in (*SERIES, *OF_STAGES) if name in variables]
+        series = {name: variables[name][...] for name in names}
+        return {"time_series": variables["time"][...]} | series
+    if "time_series" not in variables:
         return {}
-    return {name: file[name][...] for name in SERIES if name in file.variables}
+    return {name: variables[name][...] for name in SERIES if name in variables}
 
 
-def _observed(file: netCDF4.Dataset) -> dict[str, Array]:
+def _observed(variables: Stored) -> dict[str, Array]:
     """Return the variables of observables in the file of a point."""
     found = {}
-    for name, variable in file.variables.items():
-        about = {key: variable.getncattr(key) for key in variable.ncattrs()}
-        if "observable" in about:
+    for name, variable in variables.items():
+        if "observable" in variable.ncattrs():
+            about = {key: variable.getncattr(key) for key in variable.ncattrs()}
             kept = {key: about[key] for key in ("long_name", "observable")}
             values = np.asarray(variable[...])
             found[name] = Array(variable.dimensions, values, kept | {"units": unit_of(about)})
     return found
 
 
-def _window(file: netCDF4.Dataset, scalars: Mapping[str, float]) -> tuple[float, float]:
+def _window(variables: Stored, scalars: Mapping[str, float]) -> tuple[float, float]:
     """Return the length of the measured window, and the drift of R between its halves."""
-    clock = next((name for name in CLOCKS if name in file.variables), None)
+    clock = next((name for name in CLOCKS if name in variables), None)
     begin = scalars.get("measured_from", math.nan)
-    if clock is None or "R_series" not in file.variables or math.isnan(begin):
+    if clock is None or "R_series" not in variables or math.isnan(begin):
         return math.nan, math.nan
-    at, ratio = file[clock][...], file["R_series"][...]
+    at, ratio = variables[clock][...], variables["R_series"][...]
     end = scalars.get("plateau_end", math.nan)
     inside = (at >= begin) & (at <= (at[-1] if math.isnan(end) else end))
     halves = np.array_split(ratio[inside], 2)
