@@ -42,13 +42,13 @@ def list_by_sweep(state, scene, i, begin, time):
     half = 0.5 * (state.agenda.complete_until[i] - time)
     slack = 16.0 * ROUNDING * clock[EXTENT]
     margin = radius_of(bodies, i) + largest_of(bodies) + slack
-    own = margin if bodies is None else radius_of(bodies, i) + slack
     speed = max(clock[TYPICAL_SPEED], 1e-30)
     # s |u| <= (s / 2) (u.u / w + w) for any speed w, which saves a root per pair
     reach, spare = single(half + 0.55 * margin / speed), single(0.55 * margin * speed)
     limit = single(speed_limit(scene.box, half, 2.0 * largest_of(bodies)))
     slide = singles(slid(hooks.sliding(scene.effects, state), time + half))
-    box, own, middle = singles(scene.box), single(ROUNDED_UP * own), single(time + half)
+    box, middle = singles(scene.box), single(time + half)
+    own = single(ROUNDED_UP * (margin if bodies is None else radius_of(bodies, i) + slack))
     number = begin
     for first in range(0, len(state.changes), lanes_of(lines)):
         u = subtract(line[1], _lines_of(lines, len(scene.box), first, box))
@@ -56,9 +56,8 @@ def list_by_sweep(state, scene, i, begin, time):
         x, u = shifted(x, u, image_numbers(x, box, slide), box, slide)
         uu = dot(u, u)
         s = own if bodies is None else own + load(state.sweep.sizes, 0, first, lanes_of(lines))
-        meets = (cross_squared(x, u) <= s * s * uu) & (
-            abs(dot(x, u)) <= multiply_add(uu, reach, spare)
-        )
+        passes = cross_squared(x, u) <= s * s * uu
+        meets = passes & (abs(dot(x, u)) <= multiply_add(uu, reach, spare))
         number = append(state.shortlist.found, number, _or_beyond(limit, meets, uu), first)
     draw_line(state, i, start, velocity)
     return number
