@@ -9,6 +9,7 @@ Where several effects have a say, each gets the value as those listed before it 
 left it.
 """
 
+import functools
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
@@ -92,9 +93,13 @@ def present(effects, name):
     `effects` is an Effects, or its type in numba.
     """
     kinds = getattr(effects, "types", effects)
-    classes = [getattr(kind, "instance_class", type(kind)) for kind in kinds]
+    return _present(tuple(getattr(kind, "instance_class", type(kind)) for kind in kinds), name)
+
+
+@functools.cache
+def _present(classes, name):
     there = [(k, getattr(c.hooks, name)) for k, c in enumerate(classes) if hasattr(c, "hooks")]
-    return [Part(place, rank, own) for rank, (place, own) in enumerate(there) if own]
+    return tuple(Part(place, rank, own) for rank, (place, own) in enumerate(there) if own)
 
 
 def accounts(effects):

@@ -338,4 +338,6 @@ def _last(rows: Columns) -> Columns:
 
 def joined(parts: Sequence[Columns]) -> Columns:
     """Return the samples of several pieces as those of one."""
+    if len(parts) == 1:
+        return parts[0]
     return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}

@@ -81,8 +81,8 @@ def _wanted(blocks: int, excess: float) -> int:
     return max(blocks + 1, min(2 * blocks, math.ceil(min(needed, 2.0 * blocks))))
 
 
-REPORTS = 50
-SOON = 0.5  # seconds after which a call of the kernel should come back
+REPORTS = 50  # of a run that is not over before anybody could read them
+BRIEF, SOON = 0.02, 0.5  # seconds that a call of the kernel should take at least, and at most
 JAMMED = 50_000  # collisions of each particle within a sample, or within a T if that is longer
 MOST_HITS = 1_000_000  # of walls and floor by each particle within a T, or a shorter call
 NAMED = 8  # of the particles in a collapse
@@ -92,7 +92,8 @@ class Recorder:
     """Sums up what gases have cost together.
 
     CPU seconds in the kernel, collisions, and contacts that the contact-time model touched.
-    `tell(time, collisions)` is called at least some fifty times a run, `begin(gas)` for each gas.
+    `tell(time, collisions)` is called some fifty times a run or more, where that is no oftener than
+    after BRIEF; `begin(gas)` for each gas.
     """
 
     def __init__(
@@ -161,7 +162,8 @@ class Recorder:
             self.touched += int(state.counts[TOUCHED] - before[TOUCHED])
             if ended != REACHED:
                 raise _failure(ended, state, scene)
-            if timed and np.diff(part[:, 1], prepend=made).max() >= sampling.collisions:
+            jammed = timed and part[-1, 1] - made >= sampling.collisions  # together, if not in one
+            if jammed and np.diff(part[:, 1], prepend=made).max() >= sampling.collisions:
                 raise _jam(state, sampling.interval)
             first += len(part)
             length = _next_length(length, time.perf_counter() - called, samples, sampling.refresh)
@@ -190,11 +192,13 @@ def _most_hits(samples: int, interval: float, state: State) -> int:
 def _next_length(length: int, took: float, samples: int, refresh: int) -> int:
     """Return how many samples the next call of the kernel makes: no bit depends on it.
 
-    So many that it comes back soon, and that there are some REPORTS calls; a whole number of times
-    `refresh`, which the kernel counts from the start of each call.
+    So many that it comes back soon, and that there are some REPORTS calls or each is BRIEF; a whole
+    number of times `refresh`, which the kernel counts from the start of each call.
     """
     if took < SOON:
-        return min(2 * length, max(1, refresh) * -(-samples // (REPORTS * max(1, refresh))))
+        unit = max(1, refresh)
+        share = unit * -(-samples // (REPORTS * unit))
+        return min(2 * length, max(length, share)) if took > BRIEF else 2 * length
     return max(1, length // 2) if refresh == 0 else max(refresh, length // 2 // refresh * refresh)
 
 
