@@ -162,8 +162,8 @@ class Recorder:
             self.touched += int(state.counts[TOUCHED] - before[TOUCHED])
             if ended != REACHED:
                 raise _failure(ended, state, scene)
-            jammed = timed and part[-1, 1] - made >= sampling.collisions  # together, if not in one
-            if jammed and np.diff(part[:, 1], prepend=made).max() >= sampling.collisions:
+            many = timed and part[-1, 1] - made >= sampling.collisions  # in all samples together
+            if many and np.diff(part[:, 1], prepend=made).max() >= sampling.collisions:
                 raise _jam(state, sampling.interval)
             first += len(part)
             length = _next_length(length, time.perf_counter() - called, samples, sampling.refresh)
