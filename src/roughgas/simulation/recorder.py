@@ -153,18 +153,19 @@ class Recorder:
         first, length = 0, max(1, sampling.refresh)
         while first < samples:
             part, called = rows[first : first + length], time.perf_counter()
-            made = int(state.counts[COLLISIONS])
             begin, before = time.process_time(), state.counts.copy()
             most = _most_hits(len(part), sampling.interval, state)
             ended, _ = record(state, scene, sampling._replace(hits=most), part)
             self.seconds += time.process_time() - begin
-            self.collisions += int(state.counts[COLLISIONS] - before[COLLISIONS])
+            made = int(state.counts[COLLISIONS] - before[COLLISIONS])
+            self.collisions += made
             self.touched += int(state.counts[TOUCHED] - before[TOUCHED])
             if ended != REACHED:
                 raise _failure(ended, state, scene)
-            many = timed and part[-1, 1] - made >= sampling.collisions  # in all samples together
-            if many and np.diff(part[:, 1], prepend=made).max() >= sampling.collisions:
-                raise _jam(state, sampling.interval)
+            if timed and made >= sampling.collisions:  # in all samples together: perhaps in one
+                each = np.diff(part[:, 1], prepend=before[COLLISIONS])
+                if each.max() >= sampling.collisions:
+                    raise _jam(state, sampling.interval)
             first += len(part)
             length = _next_length(length, time.perf_counter() - called, samples, sampling.refresh)
             if self._tell:
@@ -195,11 +196,10 @@ def _next_length(length: int, took: float, samples: int, refresh: int) -> int:
     So many that it comes back soon, and that there are some REPORTS calls or each is BRIEF; a whole
     number of times `refresh`, which the kernel counts from the start of each call.
     """
-    if took < SOON:
-        unit = max(1, refresh)
-        share = unit * -(-samples // (REPORTS * unit))
-        return min(2 * length, max(length, share)) if took > BRIEF else 2 * length
-    return max(1, length // 2) if refresh == 0 else max(refresh, length // 2 // refresh * refresh)
+    unit = max(1, refresh)
+    if took >= SOON:
+        return max(unit, length // 2 // unit * unit)
+    return 2 * length if took < BRIEF or 2 * length * REPORTS <= samples else length
 
 
 def _failure(ended: int, state: State, scene: Scene) -> EndedEarlyError:
