@@ -136,31 +136,37 @@ def urgency(wildcards):
 
 def jobs_of_points():
     """(name, outputs, log, wildcard constraints) of the rules that make points. A rule has a fixed
-    number of outputs and the seeds of a sweep vary: so each block of points has a rule. With a job
-    for each seed the paper takes a third longer, since a process starts as long as some points run.
+    number of outputs and the seeds of a sweep vary: so each block of points has a rule, which is
+    that of all experiments with such a block. With a job for each seed the paper takes a third
+    longer, since a process starts as long as some points run.
+
+    No point has two rules: Snakemake would make a job of each, for each file, before it chooses.
     """
-    yield "point", [POINT], "beta{beta}/seed{seed}", {}
+    blocks = {}  # -> where: experiments, and r in their sweeps
     for experiment in config["experiments"]:
         found = roughgas.config.experiment(config, experiment, SCALE)
-        axes = found["sweep"]
-        swept_values = {
-            "scale": SCALE,
-            "experiment": one_of(roughgas.config.variants(experiment, found)),
-            "r": one_of(axes["r"]),
-            "beta": one_of(axes["beta"]),
-        }
-        for number, (betas, seeds) in enumerate(roughgas.config.blocks(axes, config), start=1):
-            files = [
-                POINT.replace("{beta}", beta).replace("{seed}", seed)
-                for beta in betas
-                for seed in seeds
-            ]
-            span = betas[0] if len(betas) == 1 else f"{betas[0]}to{betas[-1]}"
-            log_of_block = f"beta{span}/seeds{seeds[0]}-{seeds[-1]}"
-            yield f"{experiment}_block_{number}", files, log_of_block, swept_values
+        axes, names = found["sweep"], one_of(roughgas.config.variants(experiment, found))
+        for betas, seeds in roughgas.config.blocks(axes, config):
+            swept = one_of(axes["beta"] if betas == ["{beta}"] else betas)
+            block = tuple(betas), tuple(seeds), swept
+            blocks.setdefault(block, []).append(f"(?:{names})(?=/r(?:{one_of(axes['r'])})/)")
+    in_blocks = ["(?!)"]
+    for number, ((betas, seeds, swept), where) in enumerate(blocks.items(), start=1):
+        files = [
+            POINT.replace("{beta}", beta).replace("{seed}", seed)
+            for beta in betas
+            for seed in seeds
+        ]
+        span = betas[0] if len(betas) == 1 else f"{betas[0]}to{betas[-1]}"
+        constraints = {"scale": SCALE, "experiment": "|".join(where), "beta": swept}
+        yield f"block_{number}", files, f"beta{span}/seeds{seeds[0]}-{seeds[-1]}", constraints
+        labels = constraints | {"r": NAME, "seed": one_of(seeds)}
+        found = POINT.format(**{name: f"(?:{one})" for name, one in labels.items()})
+        in_blocks.append(found.removeprefix("results/"))
+    yield "point", [POINT], "beta{beta}/seed{seed}", {"scale": f"(?!{'|'.join(in_blocks)}){NAME}"}
 
 
-for job, files, log_of_job, swept_values in jobs_of_points():
+for job, files, log_of_job, constraints in jobs_of_points():
 
     rule:
         name:
@@ -174,7 +180,7 @@ for job, files, log_of_job, swept_values in jobs_of_points():
         benchmark:
             f"logs/{{scale}}/{{experiment}}/r{{r}}/{log_of_job}.tsv"
         wildcard_constraints:
-            **swept_values,
+            **constraints,
         priority: urgency
         params:
             code=code_of_points,
@@ -186,9 +192,6 @@ for job, files, log_of_job, swept_values in jobs_of_points():
             "roughgas run {wildcards.experiment:q} --scale {wildcards.scale:q} --r={wildcards.r:q}"
             " {params.points:q} --settings {params.settings:q} --checked --output {output:q}"
             " > {log:q} 2>&1"
-
-    if job != "point":
-        workflow.ruleorder(job, "point")  # the statement `ruleorder:` takes no variables
 
 
 def points_of_experiment(wildcards):

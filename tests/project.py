@@ -178,6 +178,6 @@ def jobs_by_rule(output):
     table = output.rsplit("Job stats:", 1)[1].split("total")[0]
     found = {}
     for rule, count in re.findall(r"^([\w.]+) +(\d+)$", table, re.M):
-        name = re.sub(r"[\w.]+_block_\d+", "seeds", rule)
+        name = re.sub(r"block_\d+", "seeds", rule)
         found[name] = found.get(name, 0) + int(count)
     return found

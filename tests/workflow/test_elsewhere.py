@@ -102,7 +102,7 @@ def test_it_is_a_module_beside_its_hosts_configuration(source, host):
 def test_a_module_with_a_prefix_finds_its_points_below_it(source, host):
     told = ("-n", "-p", "roughgas_figures", "roughgas_explore")
     status, output = snakemakes.run(host, source.environment(), told)
-    assert status == 0 and "roughgas_reduce" in output and "roughgas_cooling_block_1" in output
+    assert status == 0 and "roughgas_reduce" in output and "roughgas_block_1" in output
     assert "--points 'other folder/results/tiny'" in output
     outputs = re.findall("--output (.*)", output)
     assert len(outputs) > 10 and all(one.startswith("'other folder/") for one in outputs)

@@ -9,10 +9,9 @@ import json
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from xarray import Dataset
 
 from roughgas.base import InputError, __version__, as_json, in_csv, markdown
 from roughgas.base.files import whole_file, write_text
@@ -20,6 +19,9 @@ from roughgas.config.reading import read_yaml
 from roughgas.data.reduced import GRID, particles_of, read_reduced, third_axis
 from roughgas.statistics.errors import half_width
 from roughgas.theory.prediction import predicted_ratio
+
+if TYPE_CHECKING:
+    import xarray
 
 ABOUT = ("experiment", "scale", "particles", "dimension", "inertia", "parameter", "value")
 COLUMNS = (
@@ -54,7 +56,7 @@ def write_table(inputs: Iterable[str | Path], *, output: str | Path) -> None:
                 table.writerow(map(_in_csv, row.values()))
 
 
-def rows(dataset: Dataset, head: Sequence[str] = HEAD) -> Iterator[dict[str, Any]]:
+def rows(dataset: "xarray.Dataset", head: Sequence[str] = HEAD) -> Iterator[dict[str, Any]]:
     """Yield the rows of a reduced dataset, ascending in the third axis, r and beta.
 
     Each has the names in `head`, which may be those of HEAD, of variables over the grid, or of
@@ -78,7 +80,7 @@ def rows(dataset: Dataset, head: Sequence[str] = HEAD) -> Iterator[dict[str, Any
             yield {name: row.get(name, one.attrs.get(name, "")) for name in head}
 
 
-def why_wide(dataset: Dataset) -> str:
+def why_wide(dataset: "xarray.Dataset") -> str:
     """Return a sentence on intervals that are wide since few seeds say little of their errors;
     nothing if there are none."""
     freedom = np.atleast_1d(dataset["R_dof"] if "R_dof" in dataset else math.inf).ravel()

@@ -105,13 +105,14 @@ def draw(figure: Callable[[], Figure], outputs: Iterable[str | Path], slide: boo
 def save(figure: Figure, outputs: Iterable[str | Path]) -> None:
     """Write `figure` to each of `outputs` (.pdf, .png or .svg), whole or not at all.
 
-    The .png first, whatever the order: the layout goes on from the last time that it was drawn.
+    The .png first, whatever the order, and the others in its layout.
     """
     for output in sorted(map(Path, outputs), key=lambda path: path.suffix != ".png"):
         with whole_file(output) as draft:
             kind = output.suffix
             how: dict[str, Any] = {"dpi": ON_PAGES} if kind == ".svg" else {}
             figure.savefig(draft, format=kind.removeprefix("."), metadata=METADATA[kind], **how)
+        figure.set_layout_engine("none")
 
 
 def add_circles(axes: Axes, **look: Any) -> EllipseCollection:

@@ -110,12 +110,14 @@ class Recorder:
         self.journal = journal  # where gases keep how far they are
         self._tell, self._keep, self._begin = tell, keep, begin
         self._begun = 0.0, 0  # time and collisions at which the present gas has begun
-        self._compiled = True  # what the present gas runs
+        self._told = True  # that the present gas begins
+        self._compiled: set[Scene] = set()
+        self._lengths: dict[Sampling, int] = {}  # samples that a call makes, by how they are taken
 
     def begin(self, gas: "Gas") -> None:
         """Note that a gas begins."""
         self._begun = gas.time, int(gas.state.counts[COLLISIONS])
-        self._compiled = False
+        self._told = False
         if stage := getattr(self._tell, "stage", None):
             stage("compiling")
         if len(self.gases) < self._keep:
@@ -146,11 +148,13 @@ class Recorder:
         """
         names = columns(scene)
         rows = np.empty((samples, len(names)))
-        record(state, scene, sampling, rows[:0])  # compiles, or fetches the kernel from its cache
-        if self._tell and not self._compiled:
+        if scene not in self._compiled:
+            record(state, scene, sampling, rows[:0])  # compiles the kernel, or fetches it
+            self._compiled.add(scene)
+        if self._tell and not self._told:
             self._tell(0.0, 0)
-        self._compiled = True
-        first, length = 0, max(1, sampling.refresh)
+        self._told = True
+        first, length = 0, self._lengths.get(sampling, max(1, sampling.refresh))
         while first < samples:
             part, called = rows[first : first + length], time.perf_counter()
             begin, before = time.process_time(), state.counts.copy()
@@ -173,6 +177,8 @@ class Recorder:
                 self._tell(float(part[-1, 0] - time_begun), int(part[-1, 1]) - collisions_begun)
             if keep and self.journal and self.journal.due():
                 keep(dict(zip(names, rows[:first].T, strict=True)))
+        if samples > 1:  # the next replica, or piece, begins with what has suited this one
+            self._lengths[sampling] = length
         return dict(zip(names, rows.T, strict=True))
 
 
@@ -199,7 +205,8 @@ def _next_length(length: int, took: float, samples: int, refresh: int) -> int:
     unit = max(1, refresh)
     if took >= SOON:
         return max(unit, length // 2 // unit * unit)
-    return 2 * length if took < BRIEF or 2 * length * REPORTS <= samples else length
+    longer = length < samples and (took < BRIEF or 2 * length * REPORTS <= samples)
+    return 2 * length if longer else length
 
 
 def _failure(ended: int, state: State, scene: Scene) -> EndedEarlyError:

@@ -65,6 +65,7 @@ NEGLIGIBLE_DRIFT = 0.01  # of the energy
 LARGEST_DRIFT = 0.5
 CUT_SIGMAS = 3.0
 BLOCKS = 60
+Edges = int | np.ndarray  # numbers of edges between blocks
 ORIGIN = 1 / 40  # of all samples, added to s: no block is shorter than a few per mille of them
 SHORTEST_PLATEAU = 8  # blocks
 SHORTEST_GROWTH = 2.0
@@ -251,7 +252,7 @@ def _window(R: np.ndarray, s: np.ndarray, first: int) -> tuple[int, int] | None:
     edges = np.append(np.unique(np.searchsorted(s, even)), len(s))
     sums = np.concatenate([np.zeros((len(R), 1)), np.cumsum(R, axis=1)], axis=1)
     blocks = BlockSums(sums[:, edges], edges)
-    stops = np.array([_last_stationary_stop(blocks, start) for start in range(len(edges) - 1)])
+    stops = _stationary_stops(blocks)
     growth = np.where(stops > 0, s[edges[stops] - 1] / s[edges[:-1]], 0.0)
     growth[1:][growth[1:] < SHORTEST_GROWTH] = 0.0
     for start in np.argsort(-growth, kind="stable")[: np.count_nonzero(growth)]:
@@ -262,11 +263,20 @@ def _window(R: np.ndarray, s: np.ndarray, first: int) -> tuple[int, int] | None:
     return None
 
 
-def _last_stationary_stop(blocks: BlockSums, start: int) -> int:
-    """Return the edge at which the longest stationary window from `start` ends; 0 for none."""
-    stops = np.arange(start + SHORTEST_PLATEAU, len(blocks.edges))
-    stationary = np.maximum(*_edge_sigmas(blocks, start, stops)) < ALARM_SIGMAS
-    return int(stops[stationary].max(initial=0))
+def _stationary_stops(blocks: BlockSums) -> np.ndarray:
+    """Return the edge at which the longest stationary window from each start ends; 0 for none."""
+    last = len(blocks.edges) - 1
+    starts, stops = np.arange(last - SHORTEST_PLATEAU + 1), np.zeros(last, int)
+    to_the_end = _are_stationary(blocks, starts, last)
+    stops[starts[to_the_end]] = last
+    for start in starts[~to_the_end]:
+        ends = np.arange(start + SHORTEST_PLATEAU, last)
+        stops[start] = ends[_are_stationary(blocks, start, ends)].max(initial=0)
+    return stops
+
+
+def _are_stationary(blocks: BlockSums, start: Edges, stop: Edges) -> np.ndarray:
+    return np.maximum(*_edge_sigmas(blocks, start, stop)) < ALARM_SIGMAS
 
 
 def _trimmed(blocks: BlockSums, start: int, stop: int) -> tuple[int, int]:
@@ -286,23 +296,24 @@ def _with_margin(edges: np.ndarray, start: int, stop: int) -> tuple[int, int]:
     return int(edges[start] + margin * (start > 0)), int(edges[stop] - margin * at_stop)
 
 
-def _edge_sigmas(
-    blocks: BlockSums, start: int, stops: np.ndarray | int
-) -> tuple[np.ndarray, np.ndarray]:
+def _edge_sigmas(blocks: BlockSums, start: Edges, stop: Edges) -> tuple[np.ndarray, np.ndarray]:
     """Return the most sigma by which the first, and the last, 1, 2, 4, ... blocks are off."""
-    stops = np.asarray(stops)[..., np.newaxis]
-    widths = np.minimum(2 ** np.arange(BLOCKS.bit_length()), (stops - start) // 2)
-    off_early = _sigmas(_contrasts(blocks, start, start + widths, stops))
-    off_late = _sigmas(_contrasts(blocks, start, stops - widths, stops))
+    start, stop = np.asarray(start)[..., np.newaxis], np.asarray(stop)[..., np.newaxis]
+    widths = np.minimum(2 ** np.arange(BLOCKS.bit_length()), (stop - start) // 2)
+    off_early = _sigmas(_contrasts(blocks, start, start + widths, stop))
+    off_late = _sigmas(_contrasts(blocks, start, stop - widths, stop))
     return off_early.max(axis=-1), off_late.max(axis=-1)
 
 
-def _contrasts(blocks: BlockSums, start: int, split: np.ndarray, stop: np.ndarray) -> np.ndarray:
+def _contrasts(
+    blocks: BlockSums, start: np.ndarray, split: np.ndarray, stop: np.ndarray
+) -> np.ndarray:
     """Return means over blocks [split, stop) less those over [start, split): (replicas, ...)."""
     sums, edges = blocks
-    sums = sums - sums[:, [start]]
-    late = (sums[:, stop] - sums[:, split]) / (edges[stop] - edges[split])
-    return late - sums[:, split] / (edges[split] - edges[start])
+    start, split, stop = np.broadcast_arrays(start, split, stop)
+    early = sums[:, split] - sums[:, start]
+    late = sums[:, stop] - sums[:, start] - early
+    return late / (edges[stop] - edges[split]) - early / (edges[split] - edges[start])
 
 
 def _drift_is_small(R: np.ndarray) -> bool:
