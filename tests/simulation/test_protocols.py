@@ -10,6 +10,7 @@ from roughgas.effects.species import packing
 from roughgas.scene import build
 from roughgas.simulation import cooling, steady
 from roughgas.simulation.energies import Energies
+from roughgas.simulation.point import effort
 from roughgas.simulation.recorder import Recorder
 
 BED = settings("bed", 40, [12.5, "open"]) | {
@@ -42,6 +43,21 @@ def test_a_steady_bed():
     assert measured["measured_from"] == round(measured["measured_from"])  # whole periods
     assert measured["time"][0] == pytest.approx(measured["measured_from"] + 0.25)
     assert len(measured["R_series"]) == len(measured["time"]) == len(measured["E_rot_series"])
+
+
+@pytest.mark.parametrize("name", ["bed", "sheared"])
+def test_the_jobs_that_take_longest_are_known_before(name):
+    """At r = 0.8 a bed has more collisions than at 0.99, a sheared gas fewer: by a third."""
+    box = [12.5, "open"] if name == "bed" else [25, 25]
+    experiment = settings(name, 40, box) | {"schedule": BED["schedule"]}
+    made, expected = [], []
+    for r in (0.8, 0.99):
+        recorder = Recorder()
+        steady.run(begin(experiment, r, 0.0)[0], experiment, 1, recorder)
+        made.append(recorder.collisions)
+        expected.append(effort(experiment, r, 0.0))
+    assert max(made) > 1.33 * min(made)
+    assert np.argmax(made) == np.argmax(expected) == (name == "sheared")
 
 
 def test_a_start_that_would_leave_less_than_half_is_not_taken():

@@ -27,6 +27,7 @@ from roughgas.theory.mixtures import SPECIES
 from roughgas.theory.rate_equations import LANGEVIN
 
 ENERGIES = ("E_trans", "E_rot", "R", "R_ratio_of_means", "R_corrected")
+LEAST_LOSS = 0.01  # of the energy of a contact: a gas that loses nothing is not driven for ever
 VOUCHED = {
     "equilibrated": ENERGIES,
     "R_ci95_trusted": (*ENERGIES, "R_stderr", "R_dof", "R_ci95", "autocorrelation_time"),
@@ -188,11 +189,17 @@ def _about_restitution(scene):
 def effort(experiment: Mapping[str, Any], r: float, beta: float) -> float:
     """Return about how much work a point is, in particles times collisions of each.
 
-    Meant for the order of jobs: a driven gas is taken for one whose particles meet once a T, and a
-    point with a target for one that meets it at once.
+    Meant for the order of jobs. A driven gas is taken for one whose particles meet once a T if all
+    energy of a contact is lost. The temperature of one that is driven at a given speed goes as
+    1/(1 - r^2); its particles meet the more often the hotter it is, or, under gravity, the cooler
+    and denser. A point with a target is taken for one that meets it at once.
     """
-    kind = schedule.of(experiment)
-    return float(experiment["particles"]) * kind.length(build(experiment, r, beta), experiment)
+    kind, scene = schedule.of(experiment), build(experiment, r, beta)
+    work = float(experiment["particles"]) * kind.length(scene, experiment)
+    if not kind.DRIVEN:
+        return work
+    loss = max(1.0 - r * r, LEAST_LOSS)
+    return work * loss ** (-0.5 if scene.effects.gravity is None else 0.5)
 
 
 def compile_kernels(experiments: Iterable[Mapping[str, Any]], r: float) -> int:
