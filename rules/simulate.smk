@@ -142,7 +142,7 @@ def jobs_of_points():
 
     No point has two rules: Snakemake would make a job of each, for each file, before it chooses.
     """
-    blocks = {}  # -> where: experiments, and r in their sweeps
+    blocks = {}  # (betas, seeds, constraint of beta) -> experiments, each with the r of its sweep
     for experiment in config["experiments"]:
         found = roughgas.config.experiment(config, experiment, SCALE)
         axes, names = found["sweep"], one_of(roughgas.config.variants(experiment, found))
@@ -150,7 +150,7 @@ def jobs_of_points():
             swept = one_of(axes["beta"] if betas == ["{beta}"] else betas)
             block = tuple(betas), tuple(seeds), swept
             blocks.setdefault(block, []).append(f"(?:{names})(?=/r(?:{one_of(axes['r'])})/)")
-    in_blocks = ["(?!)"]
+    in_blocks = ["(?!)"]  # which is no point
     for number, ((betas, seeds, swept), where) in enumerate(blocks.items(), start=1):
         files = [
             POINT.replace("{beta}", beta).replace("{seed}", seed)
