@@ -141,6 +141,7 @@ def jobs_of_points():
     longer, since a process starts as long as some points run.
 
     No point has two rules: Snakemake would make a job of each, for each file, before it chooses.
+    Constraints look ahead at the rest of the path: of `experiment` at r, of `scale` at all.
     """
     blocks = {}  # (betas, seeds, constraint of beta) -> experiments, each with the r of its sweep
     for experiment in config["experiments"]:
@@ -148,8 +149,8 @@ def jobs_of_points():
         axes, names = found["sweep"], one_of(roughgas.config.variants(experiment, found))
         for betas, seeds in roughgas.config.blocks(axes, config):
             swept = one_of(axes["beta"] if betas == ["{beta}"] else betas)
-            block = tuple(betas), tuple(seeds), swept
-            blocks.setdefault(block, []).append(f"(?:{names})(?=/r(?:{one_of(axes['r'])})/)")
+            where = f"(?:{names})(?=/r(?:{one_of(axes['r'])})/)"
+            blocks.setdefault((tuple(betas), tuple(seeds), swept), []).append(where)
     in_blocks = ["(?!)"]  # which is no point
     for number, ((betas, seeds, swept), where) in enumerate(blocks.items(), start=1):
         files = [
@@ -161,8 +162,8 @@ def jobs_of_points():
         constraints = {"scale": SCALE, "experiment": "|".join(where), "beta": swept}
         yield f"block_{number}", files, f"beta{span}/seeds{seeds[0]}-{seeds[-1]}", constraints
         labels = constraints | {"r": NAME, "seed": one_of(seeds)}
-        found = POINT.format(**{name: f"(?:{one})" for name, one in labels.items()})
-        in_blocks.append(found.removeprefix("results/"))
+        points = POINT.format(**{name: f"(?:{one})" for name, one in labels.items()})
+        in_blocks.append(points.removeprefix("results/"))
     yield "point", [POINT], "beta{beta}/seed{seed}", {"scale": f"(?!{'|'.join(in_blocks)}){NAME}"}
 
 

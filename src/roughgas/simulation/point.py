@@ -27,12 +27,12 @@ from roughgas.theory.mixtures import SPECIES
 from roughgas.theory.rate_equations import LANGEVIN
 
 ENERGIES = ("E_trans", "E_rot", "R", "R_ratio_of_means", "R_corrected")
-LEAST_LOSS = 0.01  # of the energy of a contact: a gas that loses nothing is not driven for ever
 VOUCHED = {
     "equilibrated": ENERGIES,
     "R_ci95_trusted": (*ENERGIES, "R_stderr", "R_dof", "R_ci95", "autocorrelation_time"),
 }
 """The numbers that each flag of a point vouches for."""
+LEAST_LOSS = 0.01  # what 1 - r^2 counts as where it is less: elastic gases are not infinitely hot
 
 
 def run_point(

@@ -65,7 +65,6 @@ NEGLIGIBLE_DRIFT = 0.01  # of the energy
 LARGEST_DRIFT = 0.5
 CUT_SIGMAS = 3.0
 BLOCKS = 60
-Edges = int | np.ndarray  # numbers of edges between blocks
 ORIGIN = 1 / 40  # of all samples, added to s: no block is shorter than a few per mille of them
 SHORTEST_PLATEAU = 8  # blocks
 SHORTEST_GROWTH = 2.0
@@ -215,6 +214,9 @@ class Plateau(NamedTuple):
     found: bool
 
 
+Edges = int | np.ndarray  # one edge between blocks by its number, or several
+
+
 class BlockSums(NamedTuple):
     """Sums of R over all samples before each edge, shape (replicas, edges), and the edges."""
 
@@ -311,8 +313,9 @@ def _contrasts(
     """Return means over blocks [split, stop) less those over [start, split): (replicas, ...)."""
     sums, edges = blocks
     start, split, stop = np.broadcast_arrays(start, split, stop)
-    early = sums[:, split] - sums[:, start]
-    late = sums[:, stop] - sums[:, start] - early
+    before = sums[:, start]
+    early = sums[:, split] - before
+    late = sums[:, stop] - before - early
     return late / (edges[stop] - edges[split]) - early / (edges[split] - edges[start])
 
 
