@@ -18,40 +18,65 @@ REFUSED = re.compile(r"Traceback .*\n\w+: \[Errno \d+\] ([^\n]*): '([^\n]*)'", r
 """A traceback that ends in a place that cannot be read or written: what is wrong, and where."""
 
 
+AS_LONG_AS = {"point": 1e5, "compile_kernel": 1e7}
+"""How many collisions take as long as the rest of a point, and as compiling a kernel."""
+
+
 class Watch:
     """How far a run is, counted in points, or in jobs where it makes none: a bar in a terminal, a
-    line a minute in a pipe."""
+    line a minute in a pipe. How much of it is done goes by collisions: some points make a hundred
+    times as many as others."""
 
     bar = None
 
     def begin(self, jobs):
-        """`jobs` has the output of each job that is to be run."""
-        self.running, self.done = {}, 0
-        points = sum(map(self.points, jobs))
-        self.points_alone = points > 0
-        self.bar = Bar(SCALE, points or len(jobs), "points" if points else "steps")
-
-    @staticmethod
-    def points(files):
-        return sum(Path(str(file)).match("seed*.nc") for file in files)
+        """`jobs` are those that are to be run."""
+        points = {job.jobid: points_in(job.output) for job in jobs}
+        if any(points.values()):
+            self.counts = {jobid: len(files) for jobid, files in points.items()}
+            self.work = {job.jobid: length_of(job, points[job.jobid]) for job in jobs}
+        else:
+            self.counts = self.work = dict.fromkeys(points, 1)
+        self.running, self.done = {}, set()
+        unit = "points" if any(points.values()) else "steps"
+        self.bar = Bar(SCALE, sum(self.counts.values()), unit)
 
     def start(self, record):
         at = record.wildcards.get("experiment", record.rule_name)
-        size = self.points(record.output) if self.points_alone else 1
         seen = [file for file in record.output if file.endswith((".png", ".md", ".html", ".csv"))]
-        self.running[record.jobid] = at, size, seen
+        self.running[record.jobid] = at, seen
 
     def finish(self, jobid):
-        _, size, seen = self.running.pop(jobid, ("", 0, ()))
-        self.done += size
+        _, seen = self.running.pop(jobid, ("", ()))
+        self.done.add(jobid)
         for file in seen:
             self.bar.say(f"ready: {file}")
-        at = ", ".join(sorted({at for at, size, _ in self.running.values() if size}))
-        self.bar.reach(self.done, at)
+        at = {at for job, (at, _) in self.running.items() if self.counts.get(job)}
+        # those that run are half done, on average
+        share = total(self.work, self.done) + 0.5 * total(self.work, self.running)
+        share /= total(self.work, self.work)
+        self.bar.reach(total(self.counts, self.done), ", ".join(sorted(at)), share=share)
 
     def end(self):
         if self.bar:
             self.bar.__exit__()
+
+
+def points_in(files):
+    return [Path(str(file)) for file in files if Path(str(file)).match("seed*.nc")]
+
+
+def length_of(job, points):
+    """In how many collisions' time a job of a run that makes points is done, about."""
+    if not points:
+        return AS_LONG_AS.get(job.rule.name, 0.0)
+    betas = [file.parent.name.removeprefix("beta") for file in points]
+    at = [job.wildcards.get(name) for name in ("scale", "experiment", "r")]
+    return sum(AS_LONG_AS["point"] + collisions_of_point(*at, beta) for beta in betas)
+
+
+def total(amounts, jobs):
+    return sum(amounts.get(job, 0) for job in jobs)
 
 
 watch = Watch()
@@ -64,7 +89,7 @@ def is_of_use(record):
     if shown.verbose or shown.dryrun:
         return True
     if event == LogEvent.RUN_INFO:
-        watch.begin([job.output for job in workflow.dag.needrun_jobs()])
+        watch.begin(list(workflow.dag.needrun_jobs()))
     elif watch.bar is None:  # before, or in a job on a cluster, of whose run another process tells
         return not record.getMessage().startswith(NOISE)
     elif event == LogEvent.PROGRESS:

@@ -124,14 +124,20 @@ def points_of_job(wildcards, output):
     return [*(f"--beta={beta}" for beta in betas), "--seed", *seeds]
 
 
-def urgency(wildcards):
-    """How long a point takes: of an experiment the longest start first, so that none is left alone at
-    the end. A job on several betas counts as if they were 0, or -1 where nothing spins."""
+@functools.cache
+def collisions_of_point(scale, experiment, r, beta):
+    """About how many a point makes."""
     from roughgas.simulation.point import effort
 
-    place, found = place_of(wildcards), settings(wildcards.scale, wildcards.experiment)
-    length = effort(found, place.r, place.beta if "spin" in found["effects"] else -1.0)
-    return turn(wildcards) + min(length, TURN - 1)
+    (place,), found = roughgas.config.places([r], [beta], ["1"]), settings(scale, experiment)
+    return effort(found, place.r, place.beta if "spin" in found["effects"] else -1.0)
+
+
+def urgency(wildcards):
+    """The longest points of an experiment start first, so that none is left alone at the end. Those
+    of a job on several betas count as if they were 0."""
+    at = [wildcards.get(name, "0") for name in ("scale", "experiment", "r", "beta")]
+    return turn(wildcards) + min(collisions_of_point(*at), TURN - 1)
 
 
 def jobs_of_points():

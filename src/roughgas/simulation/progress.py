@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Self, TypeVar
 if TYPE_CHECKING:
     from roughgas.scene import Scene
 
-BAR = "{desc}: {percentage:3.0f}%|{bar}| {n_fmt} of {total_fmt}{unit}, {remaining} left{postfix}"
+BAR = "{desc}: {percentage:3.0f}%|{bar}| {unit}, {remaining} left{postfix}"  # unit: see `_told`
 SECONDS_BETWEEN = 0.1  # looks of a bar
 PATIENCE, SILENCE = 10.0, 60.0  # seconds until the first line, and between lines
 NOTEBOOK = "ipykernel"  # a notebook has imported it
@@ -44,7 +44,7 @@ class Bar:
             self._bar = _tqdm()(
                 desc=name,
                 total=total,
-                unit=self._unit,
+                unit=self._told(),
                 bar_format=BAR,
                 file=self._stream,
                 leave=False,
@@ -68,23 +68,33 @@ class Bar:
         else:
             self._print(text)
 
-    def reach(self, done: float, note: str = "", total: float | None = None) -> None:
-        """Show how much is done; `total` where it has become known."""
+    def reach(
+        self,
+        done: float,
+        note: str = "",
+        total: float | None = None,
+        share: float | None = None,
+    ) -> None:
+        """Show how much is done; `total` where it has become known, and the `share` of the work,
+        where that is not done / total, as of parts that take unequal times."""
         self._done, self._total = done, self._total if total is None else total
+        known = self._total or 0.0
+        if share is None:
+            share = done / known if known else 0.0
         if self._bar is not None:
-            self._bar.total = self._total
+            self._bar.total, self._bar.unit = self._total, self._told()
             self._bar.set_postfix_str(note, refresh=False)
-            self._bar.update(done - self._bar.n)
+            self._bar.update((share * known or done) - self._bar.n)
         elif (now := time.monotonic()) > self._next:
             self._next = now + SILENCE
-            told = f"{done:g} of {self._total:g}{self._unit}{note and f' ({note})'}"
-            elapsed = now - self._begun
-            if done > 0 and self._total is not None:
-                told = f"{100 * done / self._total:.0f} %, {told}"
-                left = f", about {elapsed * (self._total - done) / done:.0f} s left"
-            else:
-                left = ""
-            self._print(f"{self._name}: {told}, {elapsed:.0f} s so far{left}")
+            told, elapsed = f"{self._told()}{note and f' ({note})'}", now - self._begun
+            left = f", about {elapsed * (1.0 - share) / share:.0f} s left" if share else ""
+            percentage = f"{100 * share:.0f} %, " if share else ""
+            self._print(f"{self._name}: {percentage}{told}, {elapsed:.0f} s so far{left}")
+
+    def _told(self) -> str:
+        total = "?" if self._total is None else f"{self._total:.0f}"
+        return f"{self._done:.0f} of {total}{self._unit}"
 
     def _print(self, text: str) -> None:
         with suppress(OSError, ValueError):  # nobody reads, or the stream is closed
