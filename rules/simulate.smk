@@ -57,9 +57,13 @@ def settings_of_kernels(wildcards, output):
 
 # The figures of the paper appear one by one, the one that takes least first.
 IN_TURN = [
-    one for name in reversed(catalogue.figures_of("paper")) for one in catalogue.FIGURES[name].shows
+    *dict.fromkeys(
+        one
+        for name in reversed(catalogue.figures_of("paper"))
+        for one in catalogue.FIGURES[name].shows
+    )
 ]
-TURN = 10**9  # more than any point takes
+TURN = 10**10  # more collisions than any job makes
 
 
 def turn(wildcards):
@@ -133,11 +137,11 @@ def collisions_of_point(scale, experiment, r, beta):
     return effort(found, place.r, place.beta if "spin" in found["effects"] else -1.0)
 
 
-def urgency(wildcards):
-    """The longest points of an experiment start first, so that none is left alone at the end. Those
-    of a job on several betas count as if they were 0."""
+def urgency(points, wildcards):
+    """The longest jobs of an experiment start first, so that none is left alone at the end. A job has
+    so many points; on several betas they count as if these were 0."""
     at = [wildcards.get(name, "0") for name in ("scale", "experiment", "r", "beta")]
-    return turn(wildcards) + min(collisions_of_point(*at), TURN - 1)
+    return turn(wildcards) + min(points * collisions_of_point(*at), TURN - 1)
 
 
 def jobs_of_points():
@@ -153,7 +157,7 @@ def jobs_of_points():
     for experiment in config["experiments"]:
         found = roughgas.config.experiment(config, experiment, SCALE)
         axes, names = found["sweep"], one_of(roughgas.config.variants(experiment, found))
-        for betas, seeds in roughgas.config.blocks(axes, config):
+        for betas, seeds in roughgas.config.blocks(axes, config, last=experiment == IN_TURN[-1]):
             swept = one_of(axes["beta"] if betas == ["{beta}"] else betas)
             where = f"(?:{names})(?=/r(?:{one_of(axes['r'])})/)"
             blocks.setdefault((tuple(betas), tuple(seeds), swept), []).append(where)
@@ -165,7 +169,7 @@ def jobs_of_points():
             for seed in seeds
         ]
         span = betas[0] if len(betas) == 1 else f"{betas[0]}to{betas[-1]}"
-        constraints = {"scale": SCALE, "experiment": "|".join(where), "beta": swept}
+        constraints = {"scale": re.escape(SCALE), "experiment": "|".join(where), "beta": swept}
         yield f"block_{number}", files, f"beta{span}/seeds{seeds[0]}-{seeds[-1]}", constraints
         labels = constraints | {"r": NAME, "seed": one_of(seeds)}
         points = POINT.format(**{name: f"(?:{one})" for name, one in labels.items()})
@@ -188,7 +192,7 @@ for job, files, log_of_job, constraints in jobs_of_points():
             f"logs/{{scale}}/{{experiment}}/r{{r}}/{log_of_job}.tsv"
         wildcard_constraints:
             **constraints,
-        priority: urgency
+        priority: functools.partial(urgency, len(files))
         params:
             code=code_of_points,
             settings=settings_of_points,

@@ -61,6 +61,12 @@ def test_how_many_collisions_a_point_makes_is_known_before(name):
     assert expected == pytest.approx(made, rel=0.5)
 
 
+def test_a_bed_that_is_hardly_shaken_makes_few_collisions():
+    """The square of its floor's speed is too small for a number."""
+    floor = BED["effects"]["floor"] | {"amplitude": 1e-200}
+    assert effort(BED | {"effects": BED["effects"] | {"floor": floor}}, 0.9, 0.0) == 0.0
+
+
 def test_a_start_that_would_leave_less_than_half_is_not_taken():
     """A small step just after the middle of the run, which has no time before the measurement."""
     series = 1.0 + 0.001 * np.random.default_rng(1).standard_normal(104)

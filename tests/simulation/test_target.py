@@ -1,6 +1,7 @@
 """Runs that go on to a target error, and their progress."""
 
 import io
+import re
 
 import numpy as np
 import pytest
@@ -121,6 +122,19 @@ def test_progress_is_silent_elsewhere_of_what_is_soon_over():
     with Progress("cooling", build(FREE, 0.9, 0.0), FREE, stream=stream) as progress:
         progress(1.0, 1)
     assert stream.getvalue() == ""
+
+
+def test_parts_that_take_unequal_times(monkeypatch):
+    """Two of nine points are a tenth of the work, in a pipe and on a terminal."""
+    pipe, terminal = io.StringIO(), Terminal()
+    clock = iter([0, 11, 11])
+    monkeypatch.setattr("roughgas.simulation.progress.time.monotonic", lambda: next(clock))
+    with Bar("task", 9, "points", pipe) as bar:
+        bar.reach(2, share=0.1)
+    assert pipe.getvalue() == "task: 10 %, 2 of 9 points, 11 s so far, about 99 s left\n"
+    with Bar("task", 9, "points", terminal) as bar:
+        bar.reach(2, share=0.1)
+    assert re.match(r"task:  10%\|[^|]*\| 2 of 9 points, ", terminal.shown[-1])
 
 
 def test_a_pipe_hears_now_and_then_of_what_takes_long(monkeypatch):

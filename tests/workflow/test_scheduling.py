@@ -64,3 +64,4 @@ def test_a_run_counts_its_points(project, tmp_path):
     terminal = ["script", "--quiet", "--return", "--command", typed, "/dev/null"]
     done = subprocess.run(terminal, cwd=ran.folder, capture_output=True, text=True, check=True)
     assert re.search(r"tiny: 100%\|.*1 of 1 points", done.stdout)
+    assert re.search(r"tiny: +[1-9]\d?%\|[^|]*\| 0 of 1 points", done.stdout)  # its kernel is there

@@ -242,23 +242,32 @@ def sweep(settings: Mapping[str, Any]) -> Iterator[tuple[str, str, str]]:
     yield from itertools.product(map(str, r), map(str, beta), map(str, range(1, seeds + 1)))
 
 
-def blocks(axes: Mapping[str, Any], config: Mapping[str, Any]) -> list[tuple[list[str], list[str]]]:
+def blocks(
+    axes: Mapping[str, Any], config: Mapping[str, Any], last: bool = False
+) -> list[tuple[list[str], list[str]]]:
     """Return the labels (betas, seeds) of swept points that one job makes, each beta with each
     seed.
 
     Where a job has a single beta the label is `{beta}`, which stands for any. Each block has two
-    points or more: a point that is left over has a job of its own, and is in no block.
+    points or more: a point that is left over has a job of its own, and is in no block. Of what is
+    run `last` a block has at most half of the betas that are left, so that cores end together.
     """
     labels = [str(number) for number in range(1, axes["seeds"] + 1)]
     by_seed = _chunks(labels, config.get("seeds_per_job", SEEDS_PER_JOB))
-    size = config.get("betas_per_job", 1)
-    by_beta = [["{beta}"]] if size == 1 else _chunks([str(beta) for beta in axes["beta"]], size)
+    betas, size = [str(beta) for beta in axes["beta"]], config.get("betas_per_job", 1)
+    by_beta = [["{beta}"]] if size == 1 else _chunks(betas, size, 2 if last else 1)
     pairs = [(betas, seeds) for betas in by_beta for seeds in by_seed]
     return [(betas, seeds) for betas, seeds in pairs if len(betas) * len(seeds) > 1]
 
 
-def _chunks(labels: list[str], size: int) -> list[list[str]]:
-    return [labels[first : first + size] for first in range(0, len(labels), size)]
+def _chunks(labels: list[str], size: int, parts: int = 1) -> list[list[str]]:
+    """Return labels in chunks of at most `size`, each at most one of `parts` of what is left."""
+    chunks = []
+    while labels:
+        length = min(size, math.ceil(len(labels) / parts))
+        chunks.append(labels[:length])
+        labels = labels[length:]
+    return chunks
 
 
 def from_text(text: str, source: str, checked: bool = False) -> dict[str, Any]:

@@ -34,6 +34,7 @@ VOUCHED = {
 }
 """The numbers that each flag of a point vouches for."""
 LEAST_LOSS = 0.01  # of a contact, where it is less: elastic gases are not infinitely hot
+DENSEST = 0.6  # packing of a bed, where it would be more: a cold one does not collapse to a point
 
 
 def run_point(
@@ -219,7 +220,9 @@ def _collision_rate(scene, experiment):
     speed = effects.floor.amplitude / effects.floor.period
     temperature = 0.9 * speed**2 / (4.0 ** (dimension - 2) * layers * loss)
     weight = layers * VOLUME[dimension] * effects.gravity.acceleration
-    return float(collision_frequency(temperature, min(0.5 * weight / temperature, 0.6), dimension))
+    dense = weight >= 2.0 * DENSEST * temperature
+    phi = DENSEST if dense else 0.5 * weight / temperature  # averaged over the particles
+    return float(collision_frequency(temperature, phi, dimension))
 
 
 def compile_kernels(experiments: Iterable[Mapping[str, Any]], r: float) -> int:
