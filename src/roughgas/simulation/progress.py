@@ -49,7 +49,7 @@ class Bar:
                 file=self._stream,
                 leave=False,
                 mininterval=SECONDS_BETWEEN,
-                miniters=1,  # looks at the clock at every call
+                miniters=0,  # looks at the clock at every call
                 dynamic_ncols=True,
             )
 
