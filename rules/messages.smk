@@ -33,12 +33,13 @@ class Watch:
         """`jobs` are those that are to be run."""
         points = {job.jobid: points_in(job.output) for job in jobs}
         if any(points.values()):
-            self.counts = {jobid: len(files) for jobid, files in points.items()}
+            unit, self.counts = "points", {jobid: len(files) for jobid, files in points.items()}
             self.work = {job.jobid: length_of(job, points[job.jobid]) for job in jobs}
         else:
-            self.counts = self.work = dict.fromkeys(points, 1)
-        self.running, self.done = {}, set()
-        unit = "points" if any(points.values()) else "steps"
+            unit, self.counts = "steps", dict.fromkeys(points, 1)
+            self.work = self.counts
+        self.running, self.done, self.worked = {}, 0, 0.0
+        self.to_do = sum(self.work.values())
         self.bar = Bar(SCALE, sum(self.counts.values()), unit)
 
     def start(self, record):
@@ -48,14 +49,15 @@ class Watch:
 
     def finish(self, jobid):
         _, seen = self.running.pop(jobid, ("", ()))
-        self.done.add(jobid)
+        self.done += self.counts.get(jobid, 0)
+        self.worked += self.work.get(jobid, 0.0)
         for file in seen:
             self.bar.say(f"ready: {file}")
         at = {at for job, (at, _) in self.running.items() if self.counts.get(job)}
         # those that run are half done, on average
-        share = total(self.work, self.done) + 0.5 * total(self.work, self.running)
-        share /= total(self.work, self.work)
-        self.bar.reach(total(self.counts, self.done), ", ".join(sorted(at)), share=share)
+        running = sum(self.work.get(job, 0.0) for job in self.running)
+        share = (self.worked + 0.5 * running) / self.to_do
+        self.bar.reach(self.done, ", ".join(sorted(at)), share=share)
 
     def end(self):
         if self.bar:
@@ -70,13 +72,8 @@ def length_of(job, points):
     """In how many collisions' time a job of a run that makes points is done, about."""
     if not points:
         return AS_LONG_AS.get(job.rule.name, 0.0)
-    betas = [file.parent.name.removeprefix("beta") for file in points]
-    at = [job.wildcards.get(name) for name in ("scale", "experiment", "r")]
-    return sum(AS_LONG_AS["point"] + collisions_of_point(*at, beta) for beta in betas)
-
-
-def total(amounts, jobs):
-    return sum(amounts.get(job, 0) for job in jobs)
+    made = sum(collisions_of_point(job.wildcards, beta_of(file)) for file in points)
+    return len(points) * AS_LONG_AS["point"] + made
 
 
 watch = Watch()

@@ -56,18 +56,18 @@ def settings_of_kernels(wildcards, output):
 
 
 # The figures of the paper appear one by one, the one that takes least first.
-IN_TURN = [
-    *dict.fromkeys(
+IN_TURN = list(
+    dict.fromkeys(
         one
         for name in reversed(catalogue.figures_of("paper"))
         for one in catalogue.FIGURES[name].shows
     )
-]
+)
 TURN = 10**10  # more collisions than any job makes
 
 
 def turn(wildcards):
-    """How urgent the experiment is: beyond the paper the length of a point alone decides."""
+    """How urgent the experiment is: beyond the paper the length of a job alone decides."""
     experiment, _, _ = wildcards.experiment.partition("/")
     return (len(IN_TURN) - IN_TURN.index(experiment)) * TURN if experiment in IN_TURN else 0
 
@@ -123,14 +123,23 @@ def points_of_job(wildcards, output):
     """The betas and seeds of a job's outputs, each with each. Made from the output and therefore
     not recorded: a point is up to date whichever job has made it."""
     files = [Path(file) for file in output]
-    betas = dict.fromkeys(file.parent.name.removeprefix("beta") for file in files)
+    betas = dict.fromkeys(map(beta_of, files))
     seeds = dict.fromkeys(file.stem.removeprefix("seed") for file in files)
     return [*(f"--beta={beta}" for beta in betas), "--seed", *seeds]
 
 
+def beta_of(file):
+    """The label of beta in the path of a point."""
+    return file.parent.name.removeprefix("beta")
+
+
+def collisions_of_point(wildcards, beta):
+    """About how many collisions a point at this beta makes."""
+    return collisions_at(wildcards.scale, wildcards.experiment, wildcards.r, beta)
+
+
 @functools.cache
-def collisions_of_point(scale, experiment, r, beta):
-    """About how many a point makes."""
+def collisions_at(scale, experiment, r, beta):
     from roughgas.simulation.point import effort
 
     (place,), found = roughgas.config.places([r], [beta], ["1"]), settings(scale, experiment)
@@ -140,8 +149,8 @@ def collisions_of_point(scale, experiment, r, beta):
 def urgency(points, wildcards):
     """The longest jobs of an experiment start first, so that none is left alone at the end. A job has
     so many points; on several betas they count as if these were 0."""
-    at = [wildcards.get(name, "0") for name in ("scale", "experiment", "r", "beta")]
-    return turn(wildcards) + min(points * collisions_of_point(*at), TURN - 1)
+    length = points * collisions_of_point(wildcards, wildcards.get("beta", "0"))
+    return turn(wildcards) + min(length, TURN - 1)
 
 
 def jobs_of_points():

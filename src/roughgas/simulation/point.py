@@ -218,6 +218,7 @@ def _collision_rate(scene, experiment):
         return 1.0 / math.sqrt(loss)
     layers = experiment["particles"] / math.prod(float(side) for side in experiment["box"][:-1])
     speed = effects.floor.amplitude / effects.floor.period
+    # 0.9 = 4 sqrt(2)/(2 pi) a of disks; spheres collide four times as often at the same n and T
     temperature = 0.9 * speed**2 / (4.0 ** (dimension - 2) * layers * loss)
     weight = layers * VOLUME[dimension] * effects.gravity.acceleration
     dense = weight >= 2.0 * DENSEST * temperature
