@@ -74,11 +74,11 @@ def write_netcdf(
     path: str | Path,
     content: Content,
     groups: Mapping[str, Content] | None = None,
-    complevel: int = 0,
 ) -> None:
     """Write a netCDF4 file with these contents, whole or not at all; parent folders are created.
 
-    The root gets the attributes that all files have. `complevel` > 0 compresses arrays.
+    The root gets the attributes that all files have. Nothing is compressed: series are noise, which
+    a fourth smaller would take a fifth longer to write.
     Raises OSError if the file cannot be written, as on a full disk.
     """
     import netCDF4
@@ -86,9 +86,9 @@ def write_netcdf(
     try:
         with whole_file(path) as draft:
             with netCDF4.Dataset(draft, "w") as file:
-                _fill(file, content, COMMON_ATTRIBUTES, complevel)
+                _fill(file, content, COMMON_ATTRIBUTES)
                 for name, one in (groups or {}).items():
-                    _fill(file.createGroup(name), one, {}, complevel)
+                    _fill(file.createGroup(name), one, {})
             seal(draft)
     except (RuntimeError, PermissionError) as error:  # as netCDF4 says that a disk is full
         reason = f"{error}; is the disk full or the folder read-only?"
@@ -101,7 +101,7 @@ def in_memory(content: Content) -> "xarray.Dataset":
     import xarray
 
     file = netCDF4.Dataset("memory.nc", "w", memory=1)  # never gets to a disk
-    _fill(file, content, COMMON_ATTRIBUTES, 0)
+    _fill(file, content, COMMON_ATTRIBUTES)
     file = netCDF4.Dataset("memory.nc", memory=file.close())
     return xarray.load_dataset(xarray.backends.NetCDF4DataStore(file))  # which closes it
 
@@ -129,35 +129,28 @@ def read_groups(path: str | Path) -> "dict[str, xarray.Dataset]":
     return {n: xarray.load_dataset(path, group=n, engine="netcdf4") for n in names}
 
 
-def _fill(
-    group: "netCDF4.Dataset", content: Content, common: Mapping[str, Any], complevel: int
-) -> None:
+def _fill(group: "netCDF4.Dataset", content: Content, common: Mapping[str, Any]) -> None:
     group.setncatts({**common, **content.attributes})
     for variable in content.variables.values():
         for dim, length in zip(variable.dims, variable.values.shape, strict=True):
             if dim not in group.dimensions:
                 group.createDimension(str(dim), length)
     # Each is defined before any is written to: after a new one netCDF goes over all of them.
-    targets = [_defined(group, name, content, complevel) for name in content.variables]
+    targets = [_defined(group, name, content) for name in content.variables]
     group.set_auto_maskandscale(False)  # nothing is masked or packed: it need not search
     for target, variable in zip(targets, content.variables.values(), strict=True):
         target[...] = variable.values.astype(object) if target.dtype is str else variable.values
 
 
-def _defined(
-    group: "netCDF4.Dataset", name: str, content: Content, complevel: int
-) -> "netCDF4.Variable":
+def _defined(group: "netCDF4.Dataset", name: str, content: Content) -> "netCDF4.Variable":
     """Return a new variable of a group, with its attributes and no values."""
     variable = content.variables[name]
     dims, values = tuple(map(str, variable.dims)), variable.values
     words = values.dtype.kind in "OU"
     is_coordinate = name in dims or name in content.clocks
-    layout: dict[str, Any] = {}
-    if complevel and dims and not words:
-        layout = {"compression": "zlib", "complevel": complevel, "shuffle": True}
-    if values.dtype.kind == "f" and not is_coordinate:  # CF forbids it in coordinates
-        layout["fill_value"] = np.nan
-    target = group.createVariable(name, str if words else values.dtype, dims, **layout)
+    # CF forbids one in coordinates
+    fill = np.nan if values.dtype.kind == "f" and not is_coordinate else None
+    target = group.createVariable(name, str if words else values.dtype, dims, fill_value=fill)
     target.setncatts(_attributes(name, content, is_coordinate))
     return target
 

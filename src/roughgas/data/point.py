@@ -17,7 +17,6 @@ REQUIRED_OF_SPIN = ("R", "R_stderr", "R_dof", "R_ci95", "R_ratio_of_means", "E_r
 """What a point holds besides netcdf.KINDS where particles spin, and so has `inertia`."""
 WALL_CLOCK = ("kernel_seconds",)
 """The only variables that differ when the same point is run again."""
-COMPLEVEL = 1
 
 
 class Point(NamedTuple):
@@ -38,7 +37,7 @@ def write_point(path: str | Path, point: Point) -> None:
     Raises ValueError for unregistered variables, for missing ones, and for shapes that disagree;
     OSError if the file cannot be written, as on a full disk.
     """
-    write_netcdf(path, _content(point), complevel=COMPLEVEL)
+    write_netcdf(path, _content(point))
 
 
 def read_point(path: str | Path) -> "xarray.Dataset":

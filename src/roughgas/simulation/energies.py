@@ -273,9 +273,10 @@ def contact_averages(
     """
     if not set(SUMS) <= set(rows):
         return {}
-    running = np.array([rows[name] for name in SUMS])
+    begun = {name: rows[name][first - 1 : first] for name in SUMS} if first else begun
     before = np.array([begun[name] for name in SUMS]) if begun else np.zeros((len(SUMS), 1))
-    periods = period_means(np.diff(running, axis=1, prepend=before)[:, first:], per_period)
+    running = np.array([rows[name][first:] for name in SUMS])
+    periods = period_means(np.diff(running, axis=1, prepend=before), per_period)
     A, B, C = np.where(periods.any(axis=1), periods.mean(axis=1), math.nan).tolist()
     R, correlation = inertia * B / (A + inertia * B), C / math.sqrt(A * B)
     slopes = np.array([-1.0 / A, 1.0 / B, 0.0]) * R * (1.0 - R)
