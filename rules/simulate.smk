@@ -166,7 +166,7 @@ def jobs_of_points():
     for experiment in config["experiments"]:
         found = roughgas.config.experiment(config, experiment, SCALE)
         axes, names = found["sweep"], one_of(roughgas.config.variants(experiment, found))
-        for betas, seeds in roughgas.config.blocks(axes, config, last=experiment == IN_TURN[-1]):
+        for betas, seeds in roughgas.config.blocks(found, config, last=experiment == IN_TURN[-1]):
             swept = one_of(axes["beta"] if betas == ["{beta}"] else betas)
             where = f"(?:{names})(?=/r(?:{one_of(axes['r'])})/)"
             blocks.setdefault((tuple(betas), tuple(seeds), swept), []).append(where)

@@ -2,11 +2,13 @@ import os
 import subprocess
 import sys
 
+import netCDF4
 import numpy as np
 import pytest
 from tests import files
 
 from roughgas.base.files import write_text
+from roughgas.data.netcdf import FIRST, number_in
 from roughgas.data.point import Point, read_point, write_point
 
 ATTRIBUTES = files.ABOUT | {"command": "roughgas run ..."}
@@ -29,6 +31,18 @@ def test_a_point_comes_back_as_written(tmp_path):
     assert data.R_series.dims == ("sample",) and "time" in data.R_series.coords
     assert {name: data.attrs[name] for name in ATTRIBUTES} == ATTRIBUTES
     assert data.attrs["schema_version"] == 2 and data.attrs["Conventions"].startswith("CF-")
+
+
+@pytest.mark.parametrize("kind", [np.int8, np.int64, float])
+def test_a_number_is_read_and_written_without_being_looked_for(tmp_path, kind):
+    """By what netCDF4 keeps to itself: without it all would be as right, and slower."""
+    with netCDF4.Dataset(tmp_path / "a.nc", "w") as file:
+        number = file.createVariable("number", kind, ())
+        number._put(np.array(100, kind), *FIRST)
+        assert number_in(number) == number._get(*FIRST) == number[...] == 100
+        file.createDimension("sample", 3)
+        with pytest.raises(ValueError):
+            number_in(file.createVariable("series", kind, ("sample",)))
 
 
 def test_a_cooling_gas_counts_collisions_and_initial_energies(tmp_path):

@@ -168,7 +168,11 @@ def test_an_edit_of_one_experiment_and_more_seeds_of_another(finished):
 
 
 def test_which_job_has_made_a_point_does_not_matter(finished):
-    finished.configure(lambda config: config.update(seeds_per_job=1, betas_per_job=25))
+    def change(config):
+        config.update(seeds_per_job=1, betas_per_job=25)
+        config["experiments"]["sheared"]["betas_per_job"] = 1
+
+    finished.configure(change)
     assert finished.planned() == CONFIGURED
 
 

@@ -47,7 +47,8 @@ def test_a_job_makes_several_seeds_and_betas_and_what_fills_none_is_a_point(tmp_
     project = Project(tmp_path)
 
     def change(config):
-        config.update(seeds_per_job=2, betas_per_job=2)
+        config.update(seeds_per_job=2, betas_per_job=1)
+        config["experiments"]["sheared"]["betas_per_job"] = 2  # which counts more
         tiny = config["scales"]["tiny"]
         tiny["cooling"]["sweep"].update(seeds=5)
         tiny["sheared"]["sweep"] |= {"r": ["0.9", "0.8"], "beta": ["-0.5", "0", "0.5"]}

@@ -51,7 +51,7 @@ CASE = "case"
 """A third axis whose labels are names of settings that vary together."""
 GRID = ("r", "beta", "seeds")
 """The axes of every sweep; any other key of a sweep is its third axis."""
-NOT_OF_A_POINT = ("description", "sweep")
+NOT_OF_A_POINT = ("description", "sweep", "betas_per_job")
 """Settings of an experiment that do not concern any single point of it."""
 PACKING = "packing"
 """In place of lengths; `box` then has its proportions."""
@@ -243,18 +243,19 @@ def sweep(settings: Mapping[str, Any]) -> Iterator[tuple[str, str, str]]:
 
 
 def blocks(
-    axes: Mapping[str, Any], config: Mapping[str, Any], last: bool = False
+    settings: Mapping[str, Any], config: Mapping[str, Any], last: bool = False
 ) -> list[tuple[list[str], list[str]]]:
-    """Return the labels (betas, seeds) of swept points that one job makes, each beta with each
-    seed.
+    """Return the labels (betas, seeds) of an experiment's points that one job makes, each beta with
+    each seed.
 
     Where a job has a single beta the label is `{beta}`, which stands for any. Each block has two
     points or more: a point that is left over has a job of its own, and is in no block. Of what is
     run `last` a block has at most half of the betas that are left, so that cores end together.
     """
+    axes, usual = settings["sweep"], config.get("betas_per_job", 1)
     labels = [str(number) for number in range(1, axes["seeds"] + 1)]
     by_seed = _chunks(labels, config.get("seeds_per_job", SEEDS_PER_JOB))
-    betas, size = [str(beta) for beta in axes["beta"]], config.get("betas_per_job", 1)
+    betas, size = [str(beta) for beta in axes["beta"]], settings.get("betas_per_job", usual)
     by_beta = [["{beta}"]] if size == 1 else _chunks(betas, size, 2 if last else 1)
     pairs = [(betas, seeds) for betas in by_beta for seeds in by_seed]
     return [(betas, seeds) for betas, seeds in pairs if len(betas) * len(seeds) > 1]

@@ -49,6 +49,9 @@ COMMON_ATTRIBUTES = {
     "are in terms of these, of collisions per particle, or of an energy at the start.",
 }
 UDUNITS = ("1", "s", "1/s")
+FIRST = [0], [1], [1]
+"""Start, count and stride of a single number, for what netCDF4 itself gets and puts values with:
+to find them takes its indexing ten times as long."""
 QUALITIES = ("stderr", "dof", "ci95", "ci95_trusted")
 """Suffixes of the ancillary variables of <name>, which say how sure it is (<name>_stderr, ...)."""
 
@@ -139,7 +142,18 @@ def _fill(group: "netCDF4.Dataset", content: Content, common: Mapping[str, Any])
     targets = [_defined(group, name, content) for name in content.variables]
     group.set_auto_maskandscale(False)  # nothing is masked or packed: it need not search
     for target, variable in zip(targets, content.variables.values(), strict=True):
-        target[...] = variable.values.astype(object) if target.dtype is str else variable.values
+        values = variable.values
+        put = None if values.shape or target.dtype is str else getattr(target, "_put", None)
+        if put is None:
+            target[...] = values.astype(object) if target.dtype is str else values
+        else:
+            put(values, *FIRST)
+
+
+def number_in(variable: "netCDF4.Variable") -> float | int:
+    """Return the number that a variable without dimensions holds."""
+    get = None if variable.dimensions else getattr(variable, "_get", None)
+    return (variable[...] if get is None else get(*FIRST)).item()
 
 
 def _defined(group: "netCDF4.Dataset", name: str, content: Content) -> "netCDF4.Variable":

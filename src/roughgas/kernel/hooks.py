@@ -92,7 +92,9 @@ def present(effects, name):
 
     `effects` is an Effects, or its type in numba.
     """
-    kinds = getattr(effects, "types", effects)
+    kinds = getattr(effects, "types", None)
+    if kinds is None:
+        return _present(tuple(map(type, effects)), name)
     return _present(tuple(getattr(kind, "instance_class", type(kind)) for kind in kinds), name)
 
 

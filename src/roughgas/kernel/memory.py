@@ -50,8 +50,9 @@ def new_state(scene, position, velocity, spin, precision=np.float64, rng=None, b
     """
     number, dimension = position.shape
     narrowest = NARROWEST if bodies is None else NARROWEST * bodies.radius.max()
-    grid = cell_grid(scene, position, narrowest + (SKIN if scene.lists else 0.0))
-    if number <= FEW or min(grid[0]) < FEWEST:
+    width, few = narrowest + (SKIN if scene.lists else 0.0), number <= FEW
+    grid = () if few else cell_grid(scene, position, width)
+    if few or min(grid[0]) < FEWEST:
         state = _few(scene, number, dimension, precision)
     else:
         state = _many(scene, number, dimension, precision, *grid, narrowest)
@@ -98,23 +99,24 @@ def cell_grid(scene, position, narrowest=NARROWEST):
 
 
 def _few(scene, number, dimension, precision):
-    padded = _whole(number, LANES)
+    fields, padded = _fields(scene, dimension, precision, SLOTS_OF_FEW), _whole(number, LANES)
     blocks = padded // BLOCK
-    keys = _aligned((blocks, BLOCK), value=np.inf)
-    fields = _fields(scene, dimension, precision, SLOTS_OF_FEW)
+    arrays = _arrays(
+        number,
+        fields,
+        keys=(float, blocks, BLOCK),
+        least=(float, -(-blocks // BLOCK), BLOCK),
+        lines=(np.float32, 2 * dimension, padded),
+        sizes=(np.float32, 1, padded),
+    )
+    for name, value in (("keys", np.inf), ("least", np.inf), ("lines", np.nan)):
+        arrays[name][...] = value
     return _state(
         scene,
         number,
-        _arrays(number, fields) | {"key": keys.reshape(-1)},
-        queue=Blocks(
-            keys=keys,
-            least=_aligned((-(-blocks // BLOCK), BLOCK), value=np.inf),
-            whose=np.zeros(blocks, np.int64),
-        ),
-        sweep=Sweep(
-            lines=_aligned((2 * dimension, padded), np.float32, np.nan),
-            sizes=None if scene.effects.species is None else _aligned((1, padded), np.float32),
-        ),
+        arrays | {"key": arrays["keys"].reshape(-1)},
+        queue=Blocks(arrays["keys"], arrays["least"], whose=np.zeros(blocks, np.int64)),
+        sweep=Sweep(arrays["lines"], arrays["sizes"] if "radius" in fields else None),
         cells=None,
     )
 
@@ -212,9 +214,7 @@ def _state(scene, number, arrays, **parts):
         counts=np.zeros(13, np.int64),
         agenda=Agenda(**{name: arrays.get(name) for name in Agenda._fields}),
         shortlist=Shortlist(
-            found=_aligned((2 * (_whole(number, LANES) + LANES),), np.int32),
-            beyond=np.zeros(2, np.int64),
-            when=_aligned((1, TOGETHER)),
+            found=arrays["found"], beyond=np.zeros(2, np.int64), when=arrays["when"]
         ),
         **parts,
     )
@@ -249,20 +249,23 @@ def _whole(number, unit):
     return -(-number // unit) * unit
 
 
-def _arrays(number, fields):
-    return {name: _aligned((number, *width), kind) for name, (kind, *width) in fields.items()}
+def _arrays(number, fields, **shapes):
+    """Return arrays with an entry for each particle, those of other shapes, and the shortlist's."""
+    shapes |= {name: (kind, number, *width) for name, (kind, *width) in fields.items()}
+    room = 2 * (_whole(number, LANES) + LANES)
+    return _aligned(**shapes, found=(np.int32, room), when=(float, 1, TOGETHER))
 
 
-def _aligned(shape, kind=float, value=0):
-    """Return an array that begins with a line of the cache: a register that spans two lines takes
-    longer to load and to store."""
-    size = math.prod(shape) * np.dtype(kind).itemsize
-    memory = np.zeros(size + LINE, np.uint8)
-    start = -memory.ctypes.data % LINE
-    array = memory[start : start + size].view(kind).reshape(shape)
-    if value != 0:
-        array[...] = value
-    return array
+def _aligned(**shapes):
+    """Return zeros of each (type, *shape), which begin with a line of the cache: a register that
+    spans two lines takes longer to load and to store."""
+    sizes = [math.prod(shape) * np.dtype(kind).itemsize for kind, *shape in shapes.values()]
+    memory = np.zeros(sum(_whole(size, LINE) for size in sizes) + LINE, np.uint8)
+    arrays, place = {}, -memory.ctypes.data % LINE
+    for (name, (kind, *shape)), size in zip(shapes.items(), sizes, strict=True):
+        arrays[name] = np.ndarray(shape, kind, memory, place)
+        place += _whole(size, LINE)
+    return arrays
 
 
 def _interleaved(number, fields):
@@ -270,7 +273,7 @@ def _interleaved(number, fields):
     order = sorted(fields.items(), key=lambda field: -np.dtype(field[1][0]).itemsize)
     sizes = {name: np.dtype(kind).itemsize * math.prod(width) for name, (kind, *width) in order}
     size = _whole(sum(sizes.values()), 8)
-    rows = _aligned((number, size), np.uint8)
+    rows = _aligned(rows=(np.uint8, number, size))["rows"]
     arrays, offset = {}, 0
     for name, (kind, *width) in order:
         array = rows[:, offset : offset + sizes[name]].view(kind)

@@ -109,7 +109,9 @@ def _summary(path: Path) -> Summary:
         variables, attributes = file.variables, netcdf.attributes_of(file)
         require(attributes, ("swept_value",) if "swept" in attributes else (), path)
         found = [name for name, about in POINT.items() if not about.dims]
-        scalars = {name: variables[name][...].item() for name in found if name in variables}
+        scalars: dict[str, Any] = {
+            name: netcdf.number_in(variables[name]) for name in found if name in variables
+        }
         scalars |= {name: variables[name][...] for name in OF_SPECIES if name in variables}
         if "E_trans_species" in scalars:  # a ratio in each seed: what all species share is no error
             energy = scalars["E_trans_species"]
