@@ -122,7 +122,8 @@ def _try_to_write(folder):
 
 
 # For closures, `with`, branches that types decide, functions that numba inlines, literals,
-# expressions of whole arrays: compiling/jit.py has done it, or the kernel has none
+# expressions of whole arrays, references to release: compiling/jit.py has done it, or the kernel
+# has none
 IDLE = {
     "WithLifting",
     "InlineClosureLikes",
@@ -137,6 +138,7 @@ IDLE = {
     "NopythonRewrites",
     "NoPythonSupportedFeatureValidation",
     "DumpParforDiagnostics",
+    "IRLegalization",
 }
 
 

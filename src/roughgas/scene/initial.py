@@ -353,7 +353,10 @@ def _sites(lengths, counts, within):
 
 def _grid(axes):
     """Return all points with these coordinates along each axis, (points, axes)."""
-    return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, len(axes))
+    points = np.empty((*map(len, axes), len(axes)), np.result_type(*axes))
+    for k, places in enumerate(np.ix_(*axes)):
+        points[..., k] = places
+    return points.reshape(-1, len(axes))
 
 
 def _closest(lengths, least):
