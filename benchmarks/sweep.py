@@ -77,6 +77,7 @@ def _write_project(folder: Path, restitutions: int, settings: dict[str, Any]) ->
         (folder / name).symlink_to(ROOT / name)
     config = read_yaml(ROOT / "config.yaml")
     config |= settings
+    del config["experiments"][EXPERIMENT]["betas_per_job"]  # so that `settings` count
     config["experiments"][EXPERIMENT]["sweep"] = {
         "r": [f"{0.6 + 0.39 * step / restitutions:.6g}" for step in range(restitutions)],
         "beta": [f"{-0.95 + 1.95 * step / BETAS:.6g}" for step in range(BETAS)],
