@@ -19,6 +19,7 @@ Numba is imported when the first compiled function is called.
 import ast
 import functools
 import inspect
+import sys
 import textwrap
 from types import SimpleNamespace
 
@@ -79,6 +80,25 @@ def entry(function=None, *, cache=False):
     if function is None:
         return functools.partial(entry, cache=cache)
     return Entry(function, cache=cache)
+
+
+def texts_of(name, called, *arguments):
+    """Return {module: texts} of all functions of a name, as they are written for an entry's call.
+
+    Empty where no function has this name; without texts where the call has no need of it. In a
+    process that has compiled nothing yet.
+    """
+    modules = [m for key, m in sorted(sys.modules.items()) if key.startswith("roughgas.")]
+    called = Entry(called.py_func)  # not from the cache
+    known = [called, *(one for m in modules for one in vars(m).values() if type(one) is Compiled)]
+    named = [one for one in known if one.__name__ == name]
+    if named:
+        called(*arguments)
+    found = {}
+    for one in named:
+        texts = found.setdefault(one.__module__, {})  # in order, and each once
+        texts |= dict.fromkeys(map(ast.unparse, one.written.values()))
+    return found
 
 
 def compiled(function):

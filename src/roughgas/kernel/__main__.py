@@ -5,7 +5,6 @@ there. The experiment is one of config.yaml here, or of roughgas's own. Nothing 
 """
 
 import argparse
-import ast
 import sys
 from pathlib import Path
 
@@ -13,33 +12,10 @@ import numpy as np
 
 from roughgas import config
 from roughgas.base import InputError
-from roughgas.compiling.jit import Compiled, Entry
+from roughgas.compiling.jit import texts_of
 from roughgas.kernel.record import Sampling, columns, record
 from roughgas.scene import build
 from roughgas.scene.initial import initial_state
-
-HERE = Path("config.yaml")
-
-
-def written(name, scene, state):
-    """Return the texts of all functions of a name as they are compiled for a scene, by their file.
-
-    In a process that has compiled nothing yet. Raises InputError where there is none.
-    """
-    modules = [m for key, m in sorted(sys.modules.items()) if key.startswith("roughgas.")]
-    kernel = Entry(record.py_func)  # not from the cache
-    known = [kernel, *(one for m in modules for one in vars(m).values() if type(one) is Compiled)]
-    named = [one for one in known if one.__name__ == name]
-    if not named:
-        raise InputError("--show", name, "be a compiled function, such as collide or list_by_sweep")
-    kernel(state, scene, Sampling(np.inf, 1, 0), np.empty((0, len(columns(scene)))))
-    found = {}
-    for one in named:
-        texts = found.setdefault(one.__module__, {})  # in order, and each once
-        texts |= dict.fromkeys(map(ast.unparse, one.written.values()))
-    if not any(found.values()):
-        raise InputError("--show", name, "be compiled for this scene, which does without it")
-    return found
 
 
 def main(arguments=None):
@@ -48,11 +24,16 @@ def main(arguments=None):
     parser.add_argument("--scene", metavar="EXPERIMENT", required=True)
     options = parser.parse_args(arguments)
     try:
-        path = HERE if HERE.exists() else config.SHIPPED
+        path = next(path for path in (Path("config.yaml"), config.SHIPPED) if path.exists())
         experiment = config.load_experiment(path, options.scene, config.PAPER)
         scene = build(experiment, 0.9, -1.0)
         state = initial_state(scene, experiment, np.random.default_rng(0))
-        found = written(options.show, scene, state)
+        samples = np.empty((0, len(columns(scene))))
+        found = texts_of(options.show, record, state, scene, Sampling(np.inf, 1, 0), samples)
+        if not any(found.values()):
+            unneeded = "compiled for this scene, which does without it"
+            legal = unneeded if found else "a compiled function, such as collide or list_by_sweep"
+            raise InputError("--show", options.show, f"be {legal}")
     except InputError as error:
         print(f"roughgas: error: {error}", file=sys.stderr)
         sys.exit(2)

@@ -56,7 +56,7 @@ from roughgas.kernel.state import ALIGNED, NOBODY, PREDICTIONS, SPAN
 ALL = -1  # every axis
 ORIGIN = 0.38196601125  # where cells begin, in their widths: no lattice has many sites on an edge
 ALIGN_EVERY = 2  # predictions of each particle
-AT_ONCE = tuple(range(8))  # particles whose followers are read before any is put on a list
+AT_ONCE = tuple(range(4))  # particles whose followers are read before any is put on a list
 
 
 @jit
@@ -77,9 +77,9 @@ def _list_in_cells(state, scene, i, begin, time):
     agenda, cells = state.agenda, state.cells
     moved_on = time >= cells.leave[i]
     axis, step = _move_on(state, scene, i, time) if moved_on else (ALL, 0)
-    d, u = _in_cell(state, scene, i, time)
-    gravity = hooks.acceleration(scene.effects)
-    cells.leave[i] = time + _exit(d, u, cells.widths, gravity)[0]
+    home = places(cells, i)
+    d, u = _in_cell(state, scene, i, time, home)
+    cells.leave[i], cells.heading[i] = _exit(scene, time, d, u, cells.widths)
     slide = slid(hooks.sliding(scene.effects, state), time)
     known = moved_on and state.trajectory[i, 2 * len(scene.box)] < time < agenda.complete_until[i]
     outlook = state.clock[SPAN]
@@ -91,7 +91,7 @@ def _list_in_cells(state, scene, i, begin, time):
     if not known:
         axis = ALL
         clear_contacts(agenda, i, time + outlook)
-    return _collect(state, i, begin, slide, outlook, axis, step)
+    return _collect(state, home, begin, slide, outlook, axis, step)
 
 
 @jit
@@ -116,24 +116,22 @@ def settle(state, scene, i, time):
 
 
 @jit
-def _in_cell(state, scene, i, time):
-    """Return particle i's position relative to the middle of its cell, and its velocity there."""
-    cells = state.cells
+def _in_cell(state, scene, i, time, home):
+    """Return particle i's position relative to the middle of its home, and its velocity there."""
+    cells, widths = state.cells, state.cells.widths
     position, velocity = position_and_velocity(state, scene, i, time)
     slide = slid(hooks.sliding(scene.effects, state), time)
-    position, velocity = _beside_row(slide, cells, cells.home[i], position, velocity)
-    place, widths = places(cells.counts, cells.home[i]), cells.widths
-    middle = tuple(widths[k] * (place[k] + ORIGIN + 0.5) for k in range(len(widths)))
+    position, velocity = _beside_row(slide, cells, home[1], position, velocity)
+    middle = tuple(widths[k] * (home[k] + ORIGIN + 0.5) for k in range(len(widths)))
     d = subtract(position, middle)
     return shifted(d, velocity, image_numbers(d, cells.periods, slide), cells.periods, slide)
 
 
 @jit
-def _beside_row(slide, cells, home, position, velocity):
+def _beside_row(slide, cells, row, position, velocity):
     """Return position and velocity relative to a row of cells, which slides under shear."""
     if slide is None:
         return position, velocity
-    row = home // cells.counts[0] % cells.counts[1]
     share = (row + ORIGIN + 0.5) / cells.counts[1] - 0.5
     return (
         (position[0] - share * slide[0],) + position[1:],
@@ -142,24 +140,26 @@ def _beside_row(slide, cells, home, position, velocity):
 
 
 @jit
-def places(counts, home):
-    """Return which cell along each axis the cell with this number is."""
-    if len(counts) == 2:
-        return home % counts[0], home // counts[0]
-    return home % counts[0], home // counts[0] % counts[1], home // (counts[0] * counts[1])
+def places(cells, i):
+    """Return which cell along each axis is particle i's home."""
+    home, across = index(int(cells.home[i])), index(cells.counts[0])
+    level = index(across * cells.counts[1])
+    if len(cells.counts) == 2:
+        return home % across, home // across
+    return home % across, home % level // across, home // level
 
 
 @jit
-def _exit(d, u, widths, gravity):
-    """Return (time, axis, step) with which a particle in free flight leaves its cell."""
-    last = len(d) - 1
+def _exit(scene, now, d, u, widths):
+    """Return when a particle in free flight leaves its cell, and its heading then."""
+    gravity, last = hooks.acceleration(scene.effects), len(d) - 1
     time, up = _fall_out(gravity, d[last], u[last], 0.5 * widths[last])
     axis = last
     for k in range(last):
         other, forward = _fly_out(d[k], u[k], 0.5 * widths[k])
         if other < time:
             time, up, axis = other, forward, k
-    return time, axis, 1 if up else -1
+    return now + time, 2 * axis + int(up)
 
 
 @jit
@@ -185,11 +185,10 @@ def _fall_out(gravity, d, u, half):
 @jit
 def _move_on(state, scene, i, time):
     """Move particle i into the next cell on its way; return the axis and the step that it takes."""
-    cells = state.cells
-    d, u = _in_cell(state, scene, i, time)
-    _, axis, step = _exit(d, u, cells.widths, hooks.acceleration(scene.effects))
+    cells, heading = state.cells, int(state.cells.heading[i])
+    axis, step = heading // 2, 2 * (heading % 2) - 1
     unlink(cells.first, cells.following, cells.home[i], i)
-    home = places(cells.counts, cells.home[i])
+    home = places(cells, i)
     cells.home[i] += _along(cells.counts, home, axis, step) - _along(cells.counts, home, axis, 0)
     if axis == 1:
         _find_column(state, scene, i, time)
@@ -201,11 +200,10 @@ def _move_on(state, scene, i, time):
 def _find_column(state, scene, i, time):
     """Correct the column of a particle's home, which is in the right row, if rows have slid."""
     if present(scene.effects, "sliding"):
-        cells = state.cells
-        d, _ = _in_cell(state, scene, i, time)
-        place = cells.home[i] % cells.counts[0]
-        moved = (place + round(d[0] / cells.widths[0])) % cells.counts[0]
-        cells.home[i] += moved - place
+        cells, home = state.cells, places(state.cells, i)
+        d, _ = _in_cell(state, scene, i, time, home)
+        moved = (home[0] + round(d[0] / cells.widths[0])) % cells.counts[0]
+        cells.home[i] += moved - home[0]
 
 
 @jit
@@ -215,14 +213,13 @@ def wrapped(place, count):
 
 
 @jit
-def _collect(state, i, begin, slide, duration, axis, step):
-    """List the particles around particle i in the shortlist, from `begin` on; return the end.
+def _collect(state, home, begin, slide, duration, axis, step):
+    """List the particles around a cell in the shortlist, from `begin` on; return the end.
 
     Take all cells around, or only those a step further along an axis: the first particle of each
     cell, then those that follow the ones on the list, with no branch that depends on what is there.
     """
     cells, found, number = state.cells, state.shortlist.found, begin
-    home = places(cells.counts, cells.home[i])
     if axis == ALL:
         for along in range(-1, 2):
             number = _list_slab(cells, found, number, home, len(home) - 1, along, slide, duration)
@@ -320,8 +317,7 @@ def _foresee_exit(state, scene, i, time):
     position, velocity = _in_frame(neighbours, position, velocity, time)
     d = subtract(position, read(neighbours.middle, i, 0, position))
     d, velocity = shifted(d, velocity, image_numbers(d, scene.box, None), scene.box, None)
-    gravity = hooks.acceleration(scene.effects)
-    cells.leave[i] = time + _exit(d, velocity, neighbours.sides, gravity)[0]
+    cells.leave[i] = _exit(scene, time, d, velocity, neighbours.sides)[0]
 
 
 @jit
@@ -338,7 +334,7 @@ def _members(state, i, begin):
     lacks some; return the end."""
     neighbours, found = state.cells.neighbours, state.shortlist.found
     if neighbours.number[i] > ROOM:
-        return _collect(state, i, begin, None, 0.0, ALL, 0)
+        return _collect(state, places(state.cells, i), begin, None, 0.0, ALL, 0)
     for k in range(ROOM):
         found[begin + k] = neighbours.members[i, k]
     return begin + int(neighbours.number[i])
@@ -359,7 +355,7 @@ def _move_region(state, scene, i, begin, time):
 def _list_neighbours(state, scene, i, begin, end):
     """Put those near particle i, of numbers below `end`, on its list, and it on theirs."""
     neighbours, found = state.cells.neighbours, state.shortlist.found
-    number = _collect(state, i, begin, None, 0.0, ALL, 0)
+    number = _collect(state, places(state.cells, i), begin, None, 0.0, ALL, 0)
     middle = read(neighbours.middle, i, 0, scene.box)
     reach = NARROWEST * largest_of(state.bodies)
     lanes = lanes_of(state.shortlist.when)
@@ -389,9 +385,7 @@ def _add(neighbours, i, j):
 def _remove(neighbours, i, j):
     """Take j off the list of particle i. One that lacks some stays so until i moves its region."""
     count, members = neighbours.number[i], neighbours.members
-    if count > ROOM:
-        return
-    for k in range(count):
+    for k in range(count if count <= ROOM else 0):
         if members[i, k] == j:
             members[i, k] = members[i, count - 1]
             neighbours.number[i] = count - 1
@@ -458,8 +452,7 @@ def _settle_all(state, scene, time):
     cells = state.cells
     if cells.neighbours is not None:
         cells.neighbours.frame[:] = 0.0
-    for cell in range(cells.first.size):
-        cells.first[cell] = NOBODY
+    cells.first[:] = NOBODY
     for i in range(len(state.changes) - 1, -1, -1):
         settle(state, scene, i, time)
 

@@ -31,6 +31,7 @@ from roughgas.kernel.state import (
 )
 
 FETCHED = 8  # of a particle's list, about all that are on it
+FIT_IN_CACHE = 2048  # particles, for whose memory no event has to wait
 FLIGHTS = 2.5  # mean free flights to foresee
 LAST_DAY = 2.0**62
 EVENTS_A_DAY = 2.0  # this many make a day's list short and empty days rare
@@ -45,20 +46,21 @@ def prefetch_calendar(state, day):
     """Ask the memory for what the events after `day` need, so that they need not wait for it.
 
     A read that the caches cannot answer takes as long as a hundred additions, and an event has some
-    twenty of them. Only what has arrived can tell what is needed next: first the particles that
-    come first and second on a day's list, a day later their partners and the cells around them.
+    twenty of them. Only what has arrived can tell what is needed next: first the particles on a
+    day's list, a day later their partners and the lists of the cells around, then who is on these.
     Particle 0 stands for one that is not there, since the processor could not foresee a branch.
     """
     queue = state.queue
-    _fetch(state, _first_of(queue, day + 4))
-    first = _first_of(queue, day + 3)
+    _fetch(state, _first_of(queue, day + 5))
+    first = _first_of(queue, day + 4)
     _fetch(state, _or_zero(queue.later[first]))
-    _fetch(state, _partner(state.agenda, first))
-    first = _first_of(queue, day + 2)
+    _fetch_next(state, first)
+    first = _first_of(queue, day + 3)
     second = _or_zero(queue.later[first])
-    _fetch(state, _partner(state.agenda, second))
+    _fetch(state, _or_zero(queue.later[second]))
+    _fetch_next(state, second)
     _fetch_around(state, first)
-    _fetch_around(state, _or_zero(queue.later[_first_of(queue, day + 1)]))
+    _fetch_around(state, _or_zero(queue.later[_first_of(queue, day + 2)]))
 
 
 @jit
@@ -72,31 +74,57 @@ def _or_zero(i):
 
 
 @jit
-def _partner(agenda, i):
-    return _or_zero(agenda.slot_partner[i, _or_zero(agenda.kind[i])])
-
-
-@jit
 def _fetch(state, i):
+    """Ask for particle i."""
     prefetch(state.agenda.key, i)
     prefetch(state.trajectory, i)
+    if len(state.cells.counts) == 3:  # a disk has these in the same line
+        prefetch(state.label, i)
+        if state.spin is not None:
+            prefetch(state.spin, i)
     if state.cells.neighbours is not None:
         prefetch(state.cells.neighbours.members, i)
 
 
 @jit
+def _fetch_next(state, i):
+    """Ask for the partner of particle i, and for which particles are first in the cells around."""
+    agenda, cells = state.agenda, state.cells
+    partner = int(agenda.slot_partner[i, _or_zero(agenda.kind[i])])
+    _fetch(state, partner if agenda.kind[i] >= 0 else i)
+    if cells.neighbours is None:
+        rows = _rows_around(state, i)
+        for k in range(len(rows)):
+            prefetch(cells.first, rows[k])
+
+
+@jit
 def _fetch_around(state, i):
-    """Ask for those on its list, or in the cells before and behind; those beside i are near it in
-    memory, too."""
+    """Ask for those on the list of particle i, or first in the cells around."""
     cells = state.cells
     if cells.neighbours is not None:
         for k in range(FETCHED):
             prefetch(state.trajectory, cells.neighbours.members[i, k])
         return
-    for step in (-1, 1):
-        cell = cells.home[i] + step * cells.counts[0]
-        cell = max(0, min(cell, cells.first.size - 1))
-        prefetch(state.trajectory, _or_zero(cells.first[cell]))
+    rows = _rows_around(state, i)
+    for k in range(len(rows)):
+        for along in range(3):
+            prefetch(state.trajectory, int(cells.first[rows[k] + along]))
+
+
+@jit
+def _rows_around(state, i):
+    """Return the first cells of the rows of three around where the next event of particle i is: at
+    home, or in the cell that it enters. At the edges of the box they are others."""
+    cells, heading, flat = state.cells, int(state.cells.heading[i]), len(state.cells.counts) == 2
+    row, level = cells.counts[0], cells.counts[0] * cells.counts[1]
+    stride = 1 if heading < 2 else row if heading < 4 else level
+    step = stride if heading % 2 == 1 else -stride
+    begin = cells.home[i] - 1 + (step if state.agenda.kind[i] < 0 else 0)
+    return tuple(
+        max(0, min(begin + (k % 3 - 1) * row + (k // 3 - 1 + flat) * level, cells.first.size - 3))
+        for k in range(3 if flat else 9)
+    )
 
 
 # ------------------------------------------------------------------ linked lists
@@ -214,7 +242,8 @@ def _earliest_in_calendar(state):
             queue.today[0] = day
             return place
         day += 1
-        prefetch_calendar(state, day)
+        if queue.first.size > FIT_IN_CACHE:
+            prefetch_calendar(state, day)
     return _earliest_of_all(state)
 
 
@@ -249,8 +278,7 @@ def _set_pace(state, pace):
     queue, key = state.queue, state.agenda.key
     if pace != queue.pace[0]:
         queue.pace[0] = pace
-        for place in range(queue.first.size):
-            queue.first[place] = NOBODY
+        queue.first[:] = NOBODY
         for i in range(key.size):
             if key[i] < math.inf:
                 enter(queue.first, queue.later, day_of(queue, key[i]) & (queue.first.size - 1), i)

@@ -249,7 +249,8 @@ def _survey(state, scene, elapsed):
     slide = hooks.sliding(scene.effects, state)
     for i in range(number):
         x, v, _ = path_of(state.trajectory, i, scene.box)
-        v = _beside_flow(slide, scene.box, x, v)
+        if present(scene.effects, "sliding"):  # relative to the mean flow, up to a constant
+            v = (v[0] - slide[1] * (x[1] / scene.box[1] - 0.5),) + v[1:]
         total += dot(v, v)
     speed = math.sqrt(total / number)
     clock[TYPICAL_SPEED] = speed
@@ -262,9 +263,3 @@ def _survey(state, scene, elapsed):
     if counts[SINCE_REBASE] > number and elapsed > 0.0:
         clock[LONGEST_HORIZON] = FLIGHTS * elapsed * number / (2.0 * counts[SINCE_REBASE])
     counts[SINCE_REBASE] = 0
-
-
-@jit
-def _beside_flow(slide, box, x, v):
-    """Return a velocity relative to the mean flow of a sheared gas, up to a constant."""
-    return v if slide is None else (v[0] - slide[1] * (x[1] / box[1] - 0.5),) + v[1:]

@@ -124,11 +124,12 @@ def _few(scene, number, dimension, precision):
 def _many(scene, number, dimension, precision, counts, widths, narrowest):
     """Give each particle one line of the cache for where it is, and one for what comes next."""
     fields = _fields(scene, dimension, precision, SLOTS_OF_MANY)
-    fields |= {name: (np.int32,) for name in ("home", "following", "later")} | {"leave": (float,)}
+    fields |= {name: (np.int32,) for name in ("home", "following", "later")}
+    fields |= {"leave": (float,), "heading": (np.int8,)}
     ahead = [name for name in fields if name in Agenda._fields and name != "kind"]
     here, ahead = ["trajectory", "changes", "following"], [*ahead, "later", "leave"]
     (here if dimension == 2 else ahead).append("home")
-    here += [name for name in ("spin", "radius") if dimension == 2 and name in fields]
+    here += [name for name in ("label", "spin", "radius") if dimension == 2 and name in fields]
     records = [{name: fields.pop(name) for name in record} for record in (here, ahead)]
     arrays = _arrays(number, fields)
     for record in records:
@@ -151,7 +152,7 @@ def _many(scene, number, dimension, precision, counts, widths, narrowest):
             widths=widths,
             periods=tuple(n * width for n, width in zip(counts, widths, strict=True)),
             first=np.full(math.prod(counts), NOBODY, np.int32),
-            **{name: arrays[name] for name in ("following", "home", "leave")},
+            **{name: arrays[name] for name in ("following", "home", "leave", "heading")},
             neighbours=_neighbours(number, widths, narrowest) if scene.lists else None,
         ),
     )

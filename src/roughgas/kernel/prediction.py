@@ -6,7 +6,6 @@ trajectory. A path is (position, velocity, time at which they hold), and goes on
 """
 
 import math
-import sys
 
 import numpy as np
 
@@ -41,8 +40,6 @@ from roughgas.kernel.particles import (
     slid,
     speed_limit,
 )
-
-FARTHEST = sys.float_info.max
 
 
 @jit
@@ -117,24 +114,27 @@ def decide(state, scene, i, begin, beyond, time):
     every image counts, up to the particle's horizon; in cells the nearest one. What lies beyond the
     last candidate is a particle's number, too: it is decided and left.
     """
-    end = state.agenda.complete_until[i] if state.cells is None else time
-    limit = end if state.cells is None else FARTHEST
     box, bodies = scene.box, state.bodies
     path = path_of(state.trajectory, i, box)
     gravity = hooks.acceleration(scene.effects)
     slide = hooks.sliding(scene.effects, state)
-    half = 0.5 * (end - time)
-    fastest = speed_limit(box, half, 2.0 * largest_of(bodies))
+    middle, end, fastest = time, math.inf, None
+    if state.cells is None:
+        end = state.agenda.complete_until[i]
+        half = 0.5 * (end - time)
+        middle, fastest = time + half, speed_limit(box, half, 2.0 * largest_of(bodies))
     first, more, lanes = begin, True, lanes_of(state.shortlist.when)
     while more:  # once mostly, and at least once, so that the processor can foresee it
         others = numbers_in(state.shortlist.found, first, lanes)
         paths = _paths_of(state.trajectory, others, box)
         reach = radius_of(bodies, i) + (1.0 if bodies is None else gather(bodies.radius, 0, others))
-        when, unsure = meeting(path, paths, box, gravity, slide, time + half, fastest, reach)
+        when, unsure = meeting(path, paths, box, gravity, slide, middle, fastest, reach)
         listed = order(lanes) < beyond - first
         candidates = path, first, listed
         when = _of_any_image(fastest, state, scene, i, candidates, time, end, when, unsure)
-        when = choose((when <= limit) & listed, when, math.inf)
+        if state.cells is None:
+            listed = listed & (when <= end)
+        when = choose(listed, when, math.inf)
         _note(state, i, first - begin, first, others, when)
         first += lanes
         more = first < beyond

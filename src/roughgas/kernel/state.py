@@ -108,6 +108,7 @@ class Cells(NamedTuple):
     following: np.ndarray  # (N,) the next particle of the same list
     home: np.ndarray  # (N,) number of the cell, the first axis running fastest
     leave: np.ndarray  # (N,) when the particle leaves it, or its region
+    heading: np.ndarray  # (N,) into which cell: twice the axis, and 1 more if upwards
     neighbours: Neighbours | None  # None where particles look at all cells around them
 
 

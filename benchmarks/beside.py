@@ -1,0 +1,79 @@
+"""The kernel of this checkout beside that of another one: the same scene, in turns.
+
+    git worktree add ../before COMMIT
+    python -m benchmarks.beside ../before [--case "cooling, packing 0.2"] [--numbers 10000 100000]
+
+Each has a process of its own, which makes so many collisions whenever it is its turn: what else the
+machine does changes less within a second than between two runs. Prints the median of the ratios of
+turns that follow each other, and their quartiles.
+"""
+
+import argparse
+import inspect
+import statistics
+import subprocess
+import sys
+from pathlib import Path
+
+HERE = Path(__file__).parent.parent
+NUMBERS, CASE = (10_000, 100_000), "cooling, packing 0.2"
+TURN, TURNS = 100_000, 30  # collisions in a turn; turns of each
+
+
+def main() -> None:
+    """Print a line for each number of particles."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("other", type=Path, help="a checkout of another commit")
+    parser.add_argument("--case", default=CASE, help="of benchmarks/scenes.py")
+    parser.add_argument("--numbers", type=int, nargs="+", default=NUMBERS)
+    parser.add_argument("--turns", type=int, default=TURNS)
+    options = parser.parse_args()
+    print("| particles | ratio | quartiles | collisions/s | of the other |\n|" + " --- |" * 5)
+    for number in options.numbers:
+        arguments = options.case, number, TURN
+        with runner(HERE, *arguments) as ours, runner(options.other, *arguments) as theirs:
+            turns = [(turn(ours), turn(theirs)) for _ in range(options.turns)]
+        low, ratio, high = statistics.quantiles([a / b for a, b in turns], n=4)
+        here, there = (statistics.median(column) for column in zip(*turns, strict=True))
+        line = f"{number:,} | {ratio:.2f} | {low:.2f} to {high:.2f} | {here:.3g} | {there:.3g}"
+        print(f"| {line} |", flush=True)
+
+
+def runner(checkout: Path, *arguments: object) -> "subprocess.Popen[str]":
+    """A process that runs the kernel of a checkout, a turn at a time."""
+    code = f"{inspect.getsource(run)}\nrun{arguments}"
+    pipe = subprocess.PIPE
+    return subprocess.Popen(
+        [sys.executable, "-c", code], cwd=checkout, stdin=pipe, stdout=pipe, text=True
+    )
+
+
+def turn(process: "subprocess.Popen[str]") -> float:
+    """Collisions a second of CPU time in the next turn."""
+    print(file=process.stdin, flush=True)
+    told = process.stdout.readline()
+    if not told:
+        raise SystemExit("a kernel has ended early: see above")
+    return float(told)
+
+
+def run(case: str, number: int, collisions: int) -> None:
+    """Run the kernel of the checkout that is the current folder: a turn for each line of input."""
+    import sys
+    import time
+
+    sys.path[:0] = ["src", "."]
+    from benchmarks.kernel import warm_up
+    from benchmarks.scenes import CASES, advance, steady
+
+    (chosen,) = [one for one in CASES if one.title == case]
+    scene, state = steady(chosen, number)
+    warm_up(scene, state)
+    for _ in sys.stdin:
+        begin = time.process_time()
+        advance(scene, state, collisions=collisions)
+        print(collisions / (time.process_time() - begin), flush=True)
+
+
+if __name__ == "__main__":
+    main()
