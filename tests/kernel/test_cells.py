@@ -5,7 +5,10 @@ import pytest
 from brute_force import Beside, begin, run, scene_of, settings, snapshot
 
 from roughgas.kernel import memory
+from roughgas.kernel.cells import ORIGIN
+from roughgas.kernel.event_lists import _rows_around
 from roughgas.kernel.loop import start
+from roughgas.kernel.particles import position_and_velocity
 from roughgas.kernel.state import LAST_FIRST, LAST_SECOND, PREDICTIONS
 
 LISTS = {"neighbours": "lists"}
@@ -98,6 +101,28 @@ def test_both_schemes_make_the_same_collisions(name, monkeypatch):
 @pytest.fixture
 def many(monkeypatch):
     monkeypatch.setattr(memory, "FEW", 0)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["gas", "spheres"])
+def test_the_cells_that_are_fetched_ahead_are_around_the_next_event(name, many):
+    """Around where a particle makes its next contact, or is when it has just left its cell."""
+    scene, state = begin(*MANY[name], 5)
+    run(state, scene, 1, collisions=500)
+    cells, agenda, tested = state.cells, state.agenda, {True: 0, False: 0}
+    counts = np.array(cells.counts)
+    strides = np.cumprod([1, *counts[:-1]])
+    around = np.indices([3] * len(counts)).reshape(len(counts), -1).T - 1
+    for i in range(len(state.label)):
+        leaves = bool(agenda.key[i] == cells.leave[i])
+        position, _ = position_and_velocity(state, scene, i, agenda.key[i] + 1e-9 * leaves)
+        place = np.floor(np.array(position) / cells.widths - ORIGIN).astype(int) % counts
+        inside = np.all((place > 0) & (place < counts - 1))
+        if inside and (leaves or agenda.kind[i] >= 0):
+            fetched = {begin + k for begin in _rows_around(state, i) for k in range(3)}
+            assert fetched == set((place + around) @ strides)
+            tested[leaves] += 1
+    assert min(tested.values()) > 50
 
 
 def test_particles_are_put_into_the_order_of_their_cells(many):
