@@ -15,8 +15,10 @@ import subprocess
 import sys
 from pathlib import Path
 
+from benchmarks.scenes import CASES
+
 HERE = Path(__file__).parent.parent
-NUMBERS, CASE = (10_000, 100_000), "cooling, packing 0.2"
+NUMBERS, CASE = (10_000, 100_000), CASES[1].title
 TURN, TURNS = 100_000, 30  # collisions in a turn; turns of each
 
 
@@ -24,10 +26,14 @@ def main() -> None:
     """Print a line for each number of particles."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("other", type=Path, help="a checkout of another commit")
-    parser.add_argument("--case", default=CASE, help="of benchmarks/scenes.py")
+    parser.add_argument("--case", default=CASE, choices=[case.title for case in CASES])
     parser.add_argument("--numbers", type=int, nargs="+", default=NUMBERS)
     parser.add_argument("--turns", type=int, default=TURNS)
     options = parser.parse_args()
+    if not (options.other / "benchmarks").is_dir():
+        parser.error(f"{options.other} is not a checkout")
+    if options.turns < 2:
+        parser.error(f"--turns = {options.turns}: must be 2 at least, for quartiles")
     print("| particles | ratio | quartiles | collisions/s | of the other |\n|" + " --- |" * 5)
     for number in options.numbers:
         arguments = options.case, number, TURN
@@ -39,7 +45,7 @@ def main() -> None:
         print(f"| {line} |", flush=True)
 
 
-def runner(checkout: Path, *arguments: object) -> "subprocess.Popen[str]":
+def runner(checkout: Path, *arguments: object) -> subprocess.Popen[str]:
     """A process that runs the kernel of a checkout, a turn at a time."""
     code = f"{inspect.getsource(run)}\nrun{arguments}"
     pipe = subprocess.PIPE
@@ -48,7 +54,7 @@ def runner(checkout: Path, *arguments: object) -> "subprocess.Popen[str]":
     )
 
 
-def turn(process: "subprocess.Popen[str]") -> float:
+def turn(process: subprocess.Popen[str]) -> float:
     """Collisions a second of CPU time in the next turn."""
     print(file=process.stdin, flush=True)
     told = process.stdout.readline()

@@ -6,7 +6,6 @@ there. The experiment is one of config.yaml here, or of roughgas's own. Nothing 
 
 import argparse
 import sys
-from pathlib import Path
 
 import numpy as np
 
@@ -24,8 +23,7 @@ def main(arguments=None):
     parser.add_argument("--scene", metavar="EXPERIMENT", required=True)
     options = parser.parse_args(arguments)
     try:
-        path = next(path for path in (Path("config.yaml"), config.SHIPPED) if path.exists())
-        experiment = config.load_experiment(path, options.scene, config.PAPER)
+        experiment = config.load_experiment(config.in_use(), options.scene, config.PAPER)
         scene = build(experiment, 0.9, -1.0)
         state = initial_state(scene, experiment, np.random.default_rng(0))
         samples = np.empty((0, len(columns(scene))))

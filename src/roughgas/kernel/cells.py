@@ -385,7 +385,9 @@ def _add(neighbours, i, j):
 def _remove(neighbours, i, j):
     """Take j off the list of particle i. One that lacks some stays so until i moves its region."""
     count, members = neighbours.number[i], neighbours.members
-    for k in range(count if count <= ROOM else 0):
+    if count > ROOM:
+        return
+    for k in range(count):
         if members[i, k] == j:
             members[i, k] = members[i, count - 1]
             neighbours.number[i] = count - 1
