@@ -23,6 +23,7 @@ UNLIMITED = 2**60
 _SUMS = {"contact_averages": {}}
 _ALL_SUMS = _SUMS | {"contact_stress": {}, "contact_heat": {}, "contact_pairs": {}}
 _LOG = {"contact_log": {"most": 3000}}
+_PATHS = {"paths": {}}
 _DISKS = {"spin": {"inertia": 0.5}}
 _BED = _DISKS | {
     "gravity": {"acceleration": 1.0},
@@ -52,11 +53,11 @@ KERNELS = {
     "sheared": _kernel([50, 50], _DISKS, _SUMS, {"shear": {"velocity": 2.0}}),
     "bed": _kernel([50, "open"], _BED, _SUMS),
     "walled": _kernel([50, "open"], _BED, {"walls": _ROUGH}, _LATE, _LOG),
-    "spheres": _kernel([12, 12, 12], _SPHERES, _LATE, _ALL_SUMS, _LOG),
+    "spheres": _kernel([12, 12, 12], _SPHERES, _LATE, _ALL_SUMS, _LOG, _PATHS),
     "friction": _kernel([100, 100], _DISKS, _FRICTION),
     "rubbed bed": _kernel([50, "open"], _BED, {"walls": _ROUGH}, _FRICTION),
-    "shaken": _kernel([50, 50], _DISKS, _SUMS, {"shaken_walls": _SHAKEN}),
-    "heated": _kernel([100, 100], _DISKS, _HEAT, _ALL_SUMS, _LOG),
+    "shaken": _kernel([50, 50], _DISKS, _SUMS, {"shaken_walls": _SHAKEN}, _PATHS),
+    "heated": _kernel([100, 100], _DISKS, _HEAT, _ALL_SUMS, _LOG, _PATHS),
     "heated, smooth": _kernel(
         [100, 100], {"thermostat": _HEAT["thermostat"] | {"spin_share": 0.0}}
     ),

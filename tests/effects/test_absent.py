@@ -89,6 +89,7 @@ def test_a_state_has_room_for_effects_that_are_there_alone(kernel):
     assert {name for part in kept for name, one in part.items() if one is not None} <= there
     assert (state.spin is not None) == ("spin" in there)
     assert (state.log is not None) == ("contact_log" in there)
+    assert (state.paths is not None) == ("paths" in there)
     assert (state.random is not None) == ("thermostat" in there)
 
 

@@ -23,11 +23,13 @@ def frame_of(system, position=None, velocity=None, spin=None, **changes):
     """A frame; what is not given is random."""
     rng = np.random.default_rng(7)
     shape = system.particles, system.dimension
+    position = rng.uniform(0, 1, shape) * system.box if position is None else position
     frame = Frame(
         system=system,
         time=0.0,
         collisions=0.0,
-        position=rng.uniform(0, 1, shape) * system.box if position is None else position,
+        position=position,
+        unwrapped_position=position,
         velocity=rng.standard_normal(shape) if velocity is None else velocity,
         spin=rng.standard_normal((shape[0], 2 * shape[1] - 3)) if spin is None else spin,
         radius=np.ones(shape[0]),

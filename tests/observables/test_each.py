@@ -126,10 +126,11 @@ def flight(system, velocity, times, acceleration=0.0):
     for time in times:
         now = velocity - fall * time
         place = start + velocity * time - 0.5 * fall * time**2
+        unwrapped = place.copy()
         for axis, periodic in enumerate(system.periodic):
             if periodic:
                 place[:, axis] %= system.box[axis]
-        yield frame_of(system, place, now, time=time)
+        yield frame_of(system, place, now, time=time, unwrapped_position=unwrapped)
 
 
 @pytest.mark.parametrize("speed", [0.1, 40.0])

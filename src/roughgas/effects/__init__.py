@@ -17,6 +17,7 @@ from roughgas.effects.contacts import (
     Spin,
 )
 from roughgas.effects.drives import Gravity, Shear, Thermostat
+from roughgas.effects.paths import Paths
 from roughgas.effects.restitution import (
     ContactTime,
     PowerLaw,
@@ -58,6 +59,7 @@ class Effects(NamedTuple):
     contact_heat: ContactHeat | None = None
     contact_pairs: ContactPairs | None = None
     contact_log: ContactLog | None = None
+    paths: Paths | None = None
 
 
 def inertia(effects: Effects) -> float | None:

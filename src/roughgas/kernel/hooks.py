@@ -49,6 +49,10 @@ class Hooks(NamedTuple):
     and change nothing but State.sums and State.log"""
     observe_wall: Callable | None = None
     """The same of a contact with a floor or a wall, unless that is thermal"""
+    observe_flight: Callable | None = None
+    """(effect, index, state, i, crossings, elapsed): look at the free flight that ends with an
+    event of particle i, before its path and spin change: the periods of each axis by which it has
+    left the box, and its duration; change nothing but State.paths"""
     sums: Mapping[str, int] | Callable | None = None
     """Columns of samples in which the effect keeps running sums -> the power of velocity that each
     has as its unit, or a function of all Effects that returns this; State.sums has them under the
@@ -105,11 +109,12 @@ def _present(classes, name):
 
 
 def accounts(effects):
-    """Return how many effects have an account in the ledger: what only looks has none.
+    """Return the number of effects with an account in the ledger: passive effects have none.
 
-    It is listed last in Effects, so that the numbers of the others' accounts are their ranks.
+    Passive effects are last in Effects, so that the accounts of the others have their ranks.
     """
-    return sum(effect is not None for effect in effects) - len(present(effects, "observe_contact"))
+    passive = len(present(effects, "observe_contact")) + len(present(effects, "observe_flight"))
+    return sum(effect is not None for effect in effects) - passive
 
 
 def sums(effects):
@@ -146,3 +151,10 @@ def transfer(effects, state, work):
     """Book the energy that particles gain as other images."""
     for part in present(effects, "transfer"):
         part.own(effects[part.place], part.rank, state, work)
+
+
+@jit
+def observe_flight(effects, state, i, crossings, elapsed):
+    """Report the end of a flight of particle i to the effects that observe flights."""
+    for part in present(effects, "observe_flight"):
+        part.own(effects[part.place], part.rank, state, i, crossings, elapsed)

@@ -16,6 +16,7 @@ from roughgas.kernel.state import (
     Cells,
     Log,
     Neighbours,
+    PathCounts,
     Shortlist,
     State,
     Sweep,
@@ -199,17 +200,18 @@ def _with_moments(effects):
 
 def _state(scene, number, arrays, **parts):
     effects = scene.effects
-    there = sum(effect is not None for effect in effects)
+    accounts = hooks.accounts(effects)
     moments = {name: arrays[MOMENT + name] for name in _with_moments(effects)}
     return State(
         **{name: arrays.get(name) for name in ("trajectory", "spin")},
         **{name: arrays[name] for name in ("changes", "label")},
         bodies=_bodies(effects.species, arrays),
         moments=type(effects)(**moments),
-        phase=np.zeros(there) if hooks.present(effects, "phase") else None,
-        ledger=np.zeros((2, hooks.accounts(effects) + 1, 2)),
+        phase=np.zeros(accounts) if hooks.present(effects, "phase") else None,
+        ledger=np.zeros((2, accounts + 1, 2)),
         sums=_sums(effects),
         log=_log(effects.contact_log, arrays),
+        paths=_path_counts(scene, number),
         random=np.zeros(1, np.uint64) if hooks.present(effects, "random") else None,
         clock=np.zeros(8),
         counts=np.zeros(13, np.int64),
@@ -244,6 +246,15 @@ def _log(effect, arrays):
     components = arrays["trajectory"].shape[1] - 1  # of position and velocity
     width = 3 + 3 * components + (4 * arrays["spin"].shape[1] if "spin" in arrays else 0)
     return Log(rows=np.zeros((effect.most, width)), made=np.zeros(1, np.int64))
+
+
+def _path_counts(scene, number):
+    effects, dimension = scene.effects, len(scene.box)
+    if not hooks.present(effects, "observe_flight"):
+        return None
+    disks_spin = dimension == 2 and effects.spin is not None
+    rotation = np.zeros(number) if disks_spin else None
+    return PathCounts(np.zeros((number, dimension)), rotation)
 
 
 def _whole(number, unit):

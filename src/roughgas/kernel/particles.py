@@ -21,6 +21,7 @@ import numpy as np
 from roughgas.compiling.jit import jit
 from roughgas.compiling.lanes import is_single, multiply_add
 from roughgas.kernel import hooks
+from roughgas.kernel.hooks import present
 from roughgas.kernel.mathematics import add_scaled, dot, read, subtract, write
 
 FIRST_LARGE_32, ONE_32 = np.float32(1.5 * 2.0**23), np.float32(1.0)
@@ -83,6 +84,14 @@ def fold_into_box(position, velocity, box, slide):
     """Return the image of a particle in the box, whose periodic axes reach from 0 to L."""
     centred = _shift(position, tuple(0.5 for k in range(len(position))), box)
     return shifted(position, velocity, image_numbers(centred, box, slide), box, slide)
+
+
+@jit
+def periods_outside(position, box, slide):
+    """Return the periods of each axis by which `fold_into_box` moves a position; 0 if open."""
+    centred = _shift(position, tuple(0.5 for k in range(len(position))), box)
+    numbers = image_numbers(centred, box, slide)
+    return tuple(0.0 if box[k] is None else numbers[k] for k in range(len(position)))
 
 
 @jit
@@ -251,9 +260,17 @@ def position_in_box(state, scene, i, time):
 
 @jit
 def enter_box(state, scene, i, time):
-    """Do as `position_in_box`, and book the energy that particle i gains as another image."""
-    _, before = position_and_velocity(state, scene, i, time)
+    """Do as `position_in_box`, and book the energy that particle i gains as another image.
+
+    Every event of a particle begins here, before its path or spin changes.
+    """
+    landing, before = position_and_velocity(state, scene, i, time)
     position, velocity = position_in_box(state, scene, i, time)
+    if present(scene.effects, "observe_flight"):
+        slide = slid(hooks.sliding(scene.effects, state), time)
+        crossings = periods_outside(landing, scene.box, slide)
+        elapsed = time - state.trajectory[i, 2 * len(scene.box)]
+        hooks.observe_flight(scene.effects, state, i, crossings, elapsed)
     gained = subtract(velocity, before)
     work = dot(gained, add_scaled(before, gained, 0.5))
     hooks.transfer(scene.effects, state, mass_of(state.bodies, i) * work)

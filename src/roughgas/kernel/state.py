@@ -127,6 +127,16 @@ class Log(NamedTuple):
     made: np.ndarray  # (1,) contacts so far
 
 
+class PathCounts(NamedTuple):
+    """Net crossings of the box, and rotation, of each particle, up to its last event.
+
+    Both count from the start, and the rows are in the order of the start.
+    """
+
+    crossings: np.ndarray  # (N, D) periods along each axis; 0 along an open one
+    rotation: np.ndarray | None  # (N,) rad, anticlockwise; None unless disks spin
+
+
 class State(NamedTuple):
     """Everything that a simulation changes."""
 
@@ -136,12 +146,14 @@ class State(NamedTuple):
     moments: tuple  # an Effects with, for each effect that keeps one of each particle, times (N,)
     changes: np.ndarray  # (N,) how often each particle's velocity has changed
     label: np.ndarray  # (N,) the particle's number at the start: many are sorted anew now and then
-    phase: np.ndarray | None  # (effects,) the phase, at the clock's base, of each one that is there
+    phase: np.ndarray | None  # (accounts,) the phase of each effect with an account, at the clock's
+    # base; None where no effect has a phase
     ledger: np.ndarray  # (2, accounts + 1, 2) energy that each effect that is there, and last the
     # contacts, put into translation and rotation: [0] in present units, [1] before a rescaling
     sums: tuple | None  # an Effects with, for each effect that keeps running sums, (3, sums): [0]
     # in present units, [1] before a rescaling, [2] the power of velocity in each; None without any
     log: Log | None  # None without the effect contact_log
+    paths: PathCounts | None  # None without the effect paths
     random: np.ndarray | None  # (1,) of the generator; None where no effect draws random numbers
     clock: np.ndarray
     counts: np.ndarray

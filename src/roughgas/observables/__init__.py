@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable, Mapping
 from functools import partial
 from typing import Any, NamedTuple
 
+from roughgas import effects
 from roughgas.base import InputError, NeedsError, not_one_of
 from roughgas.effects.settings import schema_of_kinds
 from roughgas.observables.autocorrelation import Autocorrelation, FluxAutocorrelation
@@ -90,11 +91,16 @@ def _wanted(name, given):
     def make(system):
         if kind.spins and system.inertia is None:
             raise NeedsError(f"observables.{name}", "spin")
-        if system.species and not kind.effects:
+        if system.species and not _sums_contacts(kind):
             return OfSpecies(kind, system, values)
         return kind(system, **values)
 
     return Wanted(name, every, make)
+
+
+def _sums_contacts(kind: type[Observable]) -> bool:
+    """Return whether an observable rests on sums over contacts, which have no parts by species."""
+    return any(effects.KINDS[name].hooks.sums for name in kind.effects)
 
 
 def _settings(kind: type[Observable]) -> dict[str, Setting]:

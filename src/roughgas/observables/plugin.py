@@ -77,8 +77,11 @@ class System(NamedTuple):
         return list(AXES[: self.dimension])
 
 
-OF_EACH = ("position", "velocity", "spin", "radius", "mass", "inertia", "species_of")
-"""What a frame has of each particle."""
+OF_EACH = (
+    *("position", "velocity", "spin", "radius", "mass", "inertia", "species_of"),
+    *("unwrapped_position", "angle"),
+)
+"""The fields of a frame with an entry for each particle."""
 
 
 class Frame(NamedTuple):
@@ -98,6 +101,9 @@ class Frame(NamedTuple):
     species_of: np.ndarray | None = None  # (N,) index of each one's species; None: all are alike
     speed_unit: float = 1.0  # of the velocities, in a/T: not 1 in a cooling gas
     floor: float = 0.0  # height of a shaken floor, in a
+    unwrapped_position: np.ndarray | None = None  # (N, D) in a, along continuous paths, NaN along
+    # the flow of a sheared gas; None without the effect `paths`
+    angle: np.ndarray | None = None  # (N,) rad by which disks have turned; None as above
 
     def only(self, *species: int) -> "Frame":
         """Return the frame of the particles of some species alone, by index, without `rates`.

@@ -20,6 +20,7 @@ from roughgas.kernel.state import BASE, NOW, STARTED
 from roughgas.scene import Scene, moves_along, shear_rate
 from roughgas.scene.initial import GRAZE
 from roughgas.simulation.gas import Gas
+from roughgas.simulation.paths import end_flights, flown
 from roughgas.simulation.restart import positions_and_velocities
 
 LATER = 1e-9  # of a period: just after an instant at which a sawtooth falls back
@@ -103,9 +104,11 @@ def change(
 
 
 def _settle(state, scene, time):
-    """Bring all particles to the present and into the box; book what crossing images gives."""
+    """Bring all particles to the present and into the box; count the crossings of images, and book
+    the energy that they give."""
     dimension = len(scene.box)
     position, velocity = positions_and_velocities(state, scene, time)
+    end_flights(state, position, flown(state, scene)[0], scene)
     for part in hooks.present(scene.effects, "transfer"):
         mass = np.ones(1) if state.bodies is None else state.bodies.mass
         squares = (velocity**2 - state.trajectory[:, dimension:-1] ** 2).sum(axis=1)

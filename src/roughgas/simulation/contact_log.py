@@ -6,7 +6,7 @@ import numpy as np
 
 from roughgas.kernel.state import NOBODY, Log
 from roughgas.simulation.gas import Gas
-from roughgas.simulation.restart import in_order
+from roughgas.simulation.paths import in_order
 
 OF_PARTNERS = {"species": -1, "radius": np.nan, "mass": np.nan, "inertia": np.nan}
 """What is logged of partners that differ, and what a wall has in its place."""

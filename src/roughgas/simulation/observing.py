@@ -20,7 +20,8 @@ from roughgas.observables.plugin import Group, Observable, Values, averaged
 from roughgas.scene import Scene
 from roughgas.simulation import schedule
 from roughgas.simulation.gas import Gas
-from roughgas.simulation.restart import in_order, positions_and_velocities
+from roughgas.simulation.paths import in_order, rotations, unwrapped_positions
+from roughgas.simulation.restart import positions_and_velocities
 
 Functions = Mapping[str, Callable[[Frame], Any]]
 PRESENT = {
@@ -233,6 +234,8 @@ def frame_of(gas: Gas, system: System) -> Frame:
         position=in_order(state, position),
         velocity=in_order(state, velocity * scale),
         spin=spin,
+        unwrapped_position=unwrapped_positions(state, gas.scene),
+        angle=rotations(state),
         radius=radius,
         mass=mass,
         inertia=inertia,

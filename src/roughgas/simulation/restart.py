@@ -30,6 +30,7 @@ from roughgas.kernel.memory import new_state
 from roughgas.kernel.state import BASE, EXPONENT, NOW, State
 from roughgas.scene import Scene, given_bodies
 from roughgas.scene.initial import check_places
+from roughgas.simulation.paths import flown, in_order
 
 if TYPE_CHECKING:
     import xarray
@@ -120,13 +121,6 @@ def read(path: str | Path, owner: str) -> dict[str, np.ndarray]:
     return content
 
 
-def in_order(state: State, values: np.ndarray) -> np.ndarray:
-    """Return a copy of `values` (N, ...), one of each particle, in the order of the start."""
-    ordered = np.empty_like(values)
-    ordered[state.label] = values
-    return ordered
-
-
 def positions_and_velocities(
     state: State, scene: Scene, time: float
 ) -> tuple[np.ndarray, np.ndarray]:
@@ -135,13 +129,8 @@ def positions_and_velocities(
     `time` is the present in T. Velocities are those of the images in the box, in the kernel's unit:
     2^exponent a/T. The order is that of the state's arrays.
     """
-    dimension, gravity, shear = len(scene.box), scene.effects.gravity, scene.effects.shear
-    elapsed = state.clock[NOW] - state.trajectory[:, -1]
-    velocity = state.trajectory[:, dimension:-1].copy()
-    position = state.trajectory[:, :dimension] + velocity * elapsed[:, None]
-    if gravity is not None:
-        position[:, -1] -= 0.5 * gravity.acceleration * elapsed**2
-        velocity[:, -1] -= gravity.acceleration * elapsed
+    shear = scene.effects.shear
+    position, velocity = flown(state, scene)
     if shear is not None:
         images = np.floor(position[:, 1] / scene.box[1])
         position[:, 0] -= displacement(shear, time) * images
@@ -267,6 +256,7 @@ def owner(scene: Scene) -> str:
     """Return a text that is the same for all runs that understand each other's memory."""
     from roughgas.compiling.compiler import source_hash
 
+    scene = scene._replace(effects=scene.effects._replace(paths=None))  # passive, not remembered
     about = repr((source_hash(), np.__version__, scene))
     return hashlib.sha256(about.encode()).hexdigest()[:16]
 
@@ -348,8 +338,13 @@ def _bodies_of(state):
 
 def _memory(gas: "Gas") -> bytes:
     header = np.array([gas.begun, *gas.extents], float)
-    arrays = (array for _, array in arrays_of(gas.state))
+    arrays = (array for _, array in _remembered_arrays(gas.state))
     return b"".join(array.tobytes() for array in [header, *arrays])
+
+
+def _remembered_arrays(state: State) -> Iterator[tuple[str, np.ndarray]]:
+    """Yield (dotted name, array) of a memory: the paths that a run counts begin with the run."""
+    return arrays_of(state._replace(paths=None))
 
 
 def _remembered(initial, scene, experiment):
@@ -364,7 +359,7 @@ def _remembered(initial, scene, experiment):
     if scene.effects.species is not None:
         bodies = given_bodies(scene, experiment, *initial.bodies())
     state = new_state(scene, position, np.zeros_like(position), spin, bodies=bodies)
-    for _, array in arrays_of(state):
+    for _, array in _remembered_arrays(state):
         if place + array.nbytes <= len(memory):
             part = memory[place : place + array.nbytes].copy()
             array[...] = part.view(array.dtype).reshape(array.shape)

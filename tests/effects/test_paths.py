@@ -1,0 +1,135 @@
+"""Paths through periodic boundaries, and rotations: counted in the kernel, beside brute force."""
+
+import numpy as np
+import pytest
+from brute_force import begin, run, scene_of, settings, snapshot
+from brute_force.beside import brute_force_from
+from schedules import STEADY
+
+from roughgas.effects import KINDS
+from roughgas.effects.paths import Paths
+from roughgas.scene import build
+from roughgas.simulation.change import change
+from roughgas.simulation.gas import Gas
+from roughgas.simulation.paths import rotations, unwrapped_positions
+
+TINY = 1e-9
+MIXTURE = {
+    "species": [
+        {"name": "small", "number": 4, "radius": 1.0},
+        {"name": "large", "number": 2, "radius": 1.5, "mass": 2.0},
+    ]
+}
+GASES = {
+    "shaken": (settings("shaken", 6, [12, 12]), 0.3),
+    "heated": (settings("heated", 6, [12, 12]), 0.3),
+    "sheared": (settings("sheared", 6, [12, 12]), 0.3),
+    "bed": (settings("bed", 6, [10, "open"]), 0.3),
+    "spheres": (settings("spheres", 6, [6, 7, 8]), 0.3),
+    "mixture": (settings("heated", 6, [14, 12]) | MIXTURE, 0.3),
+}
+
+
+def with_paths(experiment):
+    return experiment | {"effects": experiment["effects"] | {"paths": {}}}
+
+
+class BruteForcePath:
+    """Adds up the displacement and the rotation of each flight of a brute-force simulation."""
+
+    def __init__(self, brute):
+        self.brute, self.move = brute, brute._move
+        self.displacement = np.zeros_like(brute.x)
+        self.rotation = np.zeros(brute.number)
+        brute._move = self
+
+    def __call__(self, duration):
+        self.displacement += self.brute.v * duration
+        self.displacement[:, -1] -= 0.5 * self.brute.world.gravity * duration**2
+        self.rotation += self.brute.w[:, 2] / self.brute.radius * duration
+        self.move(duration)
+
+
+@pytest.mark.parametrize("name", GASES)
+def test_displacements_and_rotations_are_those_of_each_flight_of_a_brute_force(name):
+    """Instants are far apart, and some particles cross the box in between."""
+    experiment, beta = GASES[name]
+    experiment = with_paths(experiment) | {"schedule": STEADY}
+    scene, world = scene_of(experiment, 0.9, beta)
+    scene, state = begin(experiment, 0.9, beta, 7)
+    state.trajectory[:, len(scene.box) : -1] *= 8.0  # fast: many crossings before chaos grows
+    first = unwrapped_positions(state, scene)
+    brute = brute_force_from(world, snapshot(state, scene))
+    path = BruteForcePath(brute)
+    axes = slice(1 if scene.effects.shear else 0, None)
+    for time in (0.7, 1.5):
+        run(state, scene, 1, interval=time - brute.time)
+        brute.run_until(time)
+        displacement = (unwrapped_positions(state, scene) - first)[:, axes]
+        assert displacement == pytest.approx(path.displacement[:, axes], abs=TINY)
+        if len(scene.box) == 2:
+            assert rotations(state) == pytest.approx(path.rotation, abs=TINY)
+    assert np.any(state.paths.crossings[:, axes])
+    assert rotations(state) is None or np.abs(rotations(state)).max() > 0.5
+
+
+def dense_path(gas, interval, samples):
+    """Displacements (N, D), the sum of steps so short along the second axis that nearest images are
+
+    the right ones."""
+    before = gas.positions_and_velocities()[0][np.argsort(gas.state.label)]
+    lengths = [length or np.inf for length in gas.scene.box]
+    total = np.zeros_like(before)
+    for _ in range(samples):
+        gas.in_time(interval, 1)
+        position = gas.positions_and_velocities()[0][np.argsort(gas.state.label)]
+        step = position - before
+        for axis, length in enumerate(lengths):
+            if np.isfinite(length):
+                step[:, axis] -= length * np.rint(step[:, axis] / length)
+        assert np.abs(step[:, 1]).max() < 0.4 * lengths[1]
+        total, before = total + step, position
+    return total
+
+
+@pytest.mark.parametrize(("number", "box"), [(16, [12, 12]), (900, [80, 80])])
+def test_paths_are_those_of_dense_observations_also_where_particles_are_sorted_anew(number, box):
+    """900 particles lie in cells, and their order in memory changes; the paths span 30 T."""
+    experiment = with_paths(settings("shaken" if number < 500 else "sheared", number, box))
+    gas = Gas.start(build(experiment, 0.9, 0.3), experiment, np.random.default_rng(1))
+    first, order = unwrapped_positions(gas.state, gas.scene), gas.state.label.copy()
+    total = dense_path(gas, 0.5, 60)
+    displacement = unwrapped_positions(gas.state, gas.scene) - first
+    assert displacement[:, 1] == pytest.approx(total[:, 1], abs=TINY)
+    assert np.count_nonzero(gas.state.paths.crossings[:, 1]) > number / 40
+    assert number < 500 or not np.array_equal(gas.state.label, order)
+
+
+def test_paths_go_on_where_a_stage_changes_the_scene():
+    """The change brings all particles into the box, some of them out of other images."""
+    experiment = with_paths(settings("heated", 10, [14, 14]))
+    gas = Gas.start(build(experiment, 0.9, 0.3), experiment, np.random.default_rng(1))
+    other = with_paths(settings("heated", 10, [14, 14], thermostat={"power": 3.0}))
+    first = unwrapped_positions(gas.state, gas.scene)
+    gas.in_time(60.0, 1)
+    before, turned = unwrapped_positions(gas.state, gas.scene), rotations(gas.state)
+    outside = (gas.state.trajectory[:, :2] + 0.0).copy()
+    change(gas, build(other, 0.9, 0.3), gas.time)
+    assert unwrapped_positions(gas.state, gas.scene) == pytest.approx(before, abs=TINY)
+    assert rotations(gas.state) == pytest.approx(turned, abs=TINY)
+    assert not np.array_equal(outside, gas.state.trajectory[:, :2])
+    gas.in_time(60.0, 1)
+    assert np.abs(unwrapped_positions(gas.state, gas.scene) - first).max() > 14.0
+
+
+def test_a_run_that_counts_paths_has_the_bits_of_one_that_does_not():
+    states = []
+    bare = settings("sheared", 40, [20, 20])
+    for experiment in (bare, with_paths(bare)):
+        scene, state = begin(experiment, 0.9, 0.3, 5)
+        run(state, scene, 4, interval=10.0)
+        states.append(state)
+    assert states[0].paths is None and states[1].paths is not None
+    assert states[0].trajectory.tobytes() == states[1].trajectory.tobytes()
+    assert states[0].ledger.tobytes() == states[1].ledger.tobytes()
+    assert KINDS["paths"] is Paths
