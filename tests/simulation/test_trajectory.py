@@ -101,6 +101,8 @@ def test_it_goes_on_from_the_state_of_a_run(name):
         assert other.time == pytest.approx(one.time, rel=1e-12)
         assert other.position == pytest.approx(one.position, abs=1e-9)
         assert other.spin == pytest.approx(one.spin, abs=1e-9)
+        assert other.angle == pytest.approx(one.angle, abs=1e-9)
+    assert np.abs(other.angle).max() > 0.5
     assert chosen(experiment, scene, initial=states).start == states[0].time
     with pytest.raises(InputError, match=r"times = 59\.0: must be 60 or more, where the initial"):
         chosen(experiment, scene, times=[59.0, 61.0], initial=states)
@@ -195,6 +197,19 @@ def test_gsd_has_particles_inside_a_centred_cell(name, tmp_path):
             assert least_distance(cell, shot.particles.position, periodic) > 2.0 - 1e-5
             assert shot.particles.velocity == pytest.approx(one.velocity, rel=1e-5, abs=1e-6)
             assert shot.log["time"].item() == one.time
+            assert (one.image is None) == (name == "sheared")
+            image = np.zeros((len(one.position), 3)) if one.image is None else one.image
+            assert np.array_equal(shot.particles.image, image)
+    if name != "sheared":
+        periods = image[:, : found.sizes["axis"]] * periods_of(found)
+        path = found.position.values[-1] + periods
+        assert path == pytest.approx(found.unwrapped_position.values[-1], abs=1e-9)
+
+
+def periods_of(trajectory):
+    """Lengths of the periodic axes, 0 of the others."""
+    pairs = zip(trajectory.box.values, trajectory.periodic.values, strict=True)
+    return [length if periodic else 0.0 for length, periodic in pairs]
 
 
 @pytest.mark.parametrize("ending", FORMATS)

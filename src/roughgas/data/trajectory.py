@@ -58,6 +58,11 @@ TRAJECTORY = register(
             dims=("frame",),
         ),
         "position": Variable("position of a particle, folded into the box", LENGTH, PLACES),
+        "unwrapped_position": Variable(
+            "position of a particle along its continuous path, NaN along the flow of a sheared gas",
+            LENGTH,
+            PLACES,
+        ),
         "velocity": Variable("velocity of the image in the box", SPEED, PLACES),
         "spin": Variable(
             "spin as the velocity a w of the surface: of disks anticlockwise, of spheres a vector",
@@ -66,7 +71,7 @@ TRAJECTORY = register(
             when=(SPIN,),
         ),
         "angle": Variable(
-            "angle by which a disk has turned since the first time",
+            "angle by which a disk has turned since the trajectory starts",
             "rad",
             ("frame", "particle"),
             when=("disks that spin",),
@@ -135,6 +140,7 @@ class Frame(NamedTuple):
     velocity: np.ndarray  # (N, 3)
     spin: np.ndarray | None  # (N, 3)
     angle: np.ndarray | None  # (N,)
+    image: np.ndarray | None  # (N, 3) periods from the position to the path; None of a sheared gas
 
 
 def check_format(path: str | Path) -> None:
@@ -197,7 +203,20 @@ def frames(values: Values, reached: float = 0.0) -> Iterator[Frame]:
             # that of a disk points along z
             spin=spin if spin is None else np.pad(spin, ((0, 0), (3 - spin.shape[1], 0))),
             angle=values["angle"][number] if "angle" in values else None,
+            image=_images(values, number),
         )
+
+
+def _images(values: Values, number: int) -> np.ndarray | None:
+    """Return the periods (N, 3) of the box between folded and unwrapped positions of a frame.
+
+    None for a sheared gas, whose crossings along the flow are not known.
+    """
+    if "image_shift" in values:
+        return None
+    periods = np.where(values["periodic"] == 1, values["box"], np.inf)
+    apart = values["unwrapped_position"][number] - values["position"][number]
+    return np.pad(np.rint(apart / periods).astype(int), ((0, 0), (0, 3 - len(periods))))
 
 
 def _tallest(values: Values) -> np.ndarray:
@@ -334,6 +353,8 @@ def _shot(shot: Any, step: int, frame: Frame, values: Values) -> Any:
     shot.particles.diameter = 2.0 * values["radius"]
     shot.particles.position = _centred(frame.position, cell, upward, dimension)
     shot.particles.velocity = frame.velocity
+    if frame.image is not None:
+        shot.particles.image = frame.image
     shot.log["time"] = np.array([frame.time])
     if frame.spin is not None:
         shot.log["particles/omega"] = frame.spin

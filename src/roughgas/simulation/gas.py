@@ -8,7 +8,7 @@ after the same collisions.
 import math
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
@@ -40,17 +40,6 @@ def count(particles: int, per_particle: float) -> int:
     return max(1, round(particles / 2 * per_particle))
 
 
-class Watcher(Protocol):
-    """Looks at the state before and after each step of a gas (see Gas.step), and changes nothing.
-
-    When `after` is called, a cooling gas has not been refreshed yet.
-    """
-
-    def before(self, state: State) -> None: ...
-
-    def after(self, state: State) -> None: ...
-
-
 class Gas:
     """A scene, the state that it has reached, and the recorder of what this has cost.
 
@@ -62,7 +51,6 @@ class Gas:
     def __init__(self, scene: Scene, state: State, recorder: Recorder | None = None) -> None:
         self.scene, self.state = scene, state
         self.recorder = Recorder() if recorder is None else recorder
-        self.watcher: Watcher | None = None
         self.observer: Observer | None = None  # looks at it between samples
         self.sample: Columns = {}
         self.refresh_every = self.begun = 0
@@ -223,12 +211,8 @@ class Gas:
         """
         begun, every = self.collisions, self.refresh_every
         most = min(collisions, every - begun % every) if every else collisions
-        if self.watcher:
-            self.watcher.before(self.state)
         interval = (until - self.time) * 2.0 ** int(self.state.counts[EXPONENT])
         self._call(1, lambda n: self._run(Sampling(interval, most, 0), n))
-        if self.watcher:
-            self.watcher.after(self.state)
         made = self.collisions - begun
         if every and made and self.collisions % every == 0:
             self.refresh()

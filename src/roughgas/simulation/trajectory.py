@@ -11,21 +11,23 @@ from typing import Any, NamedTuple, Self
 import numpy as np
 
 from roughgas.base import InputError, Interval
+from roughgas.effects.paths import Paths
 from roughgas.effects.species import packing
 from roughgas.kernel.hooks import displacement
-from roughgas.kernel.state import BASE, EXPONENT, NOW, Bodies, State
+from roughgas.kernel.state import EXPONENT, Bodies
 from roughgas.scene import Scene, has_sides
 from roughgas.scene.initial import bounds
 from roughgas.simulation import cooling, schedule, stages, steady
 from roughgas.simulation.change import change
 from roughgas.simulation.energies import Energies, ratio, restored, species_names
 from roughgas.simulation.gas import Gas
-from roughgas.simulation.restart import Initial, check_initial, in_order, positions_and_velocities
+from roughgas.simulation.paths import in_order, rotations, unwrapped_positions
+from roughgas.simulation.restart import Initial, check_initial, positions_and_velocities
 from roughgas.simulation.stages import Stage
 from roughgas.theory.closed_forms import collision_frequency
 
-STRIDES = 200  # steps are of one collision in the gas for each so many particles
-LONG = 100.0  # collisions per particle, of steps of a driven gas without angles to watch
+STRIDES = 200  # particles for each collision of a step of a cooling gas
+LONG = 100.0  # collisions per particle, of the steps of a driven gas
 PATIENCE = 1_000_000  # particles times T that a movie waits for its gas to be stationary, at most
 UNKNOWN_TRANSIENT = 1000.0  # T, where the schedule does not say how long to wait
 PERIODS, FRAMES = 5, 125  # of a drive, and of a movie of a driven gas
@@ -66,7 +68,8 @@ class Snapshot(NamedTuple):
     position: np.ndarray  # (N, D) in a, folded into the box
     velocity: np.ndarray  # (N, D) in a/T, of the images in the box
     spin: np.ndarray | None  # (N, 2 D - 3) surface velocities in a/T; None without spin
-    angle: np.ndarray | None  # (N,) by which disks have turned; None in space
+    unwrapped: np.ndarray  # (N, D) positions in a along continuous paths; NaN along a shear flow
+    angle: np.ndarray | None  # (N,) rad by which disks have turned; None in space
     E_trans: float  # m a^2/T^2 per degree of freedom; in a sheared gas without the mean flow
     E_rot: float | None
     R: float | None
@@ -152,13 +155,13 @@ def snapshots(
     Where the take names no times, those of a driven gas are equally spaced, each in the middle of
     its interval, away from the instants at which a sawtooth falls back. Those of a cooling gas are
     equally spaced in scaled time: their interval is a fixed share of the mean free time (Enskog's,
-    at the present E_trans), so that the take is about as long as asked for. Angles are exact unless
-    a particle has two contacts within one step, of one collision in the gas for each 200 particles.
-    Spheres have no angle, and a driven gas of them goes from frame to frame in one step.
+    at the present E_trans), so that the take is about as long as asked for. The kernel counts the
+    crossings of the box and the rotation of disks: both are exact, however long the intervals are.
 
     Raises InputError for illegal values, CollapseError where contacts accumulate without end.
     """
     kind = schedule.of(experiment)
+    scene, experiment = _with_paths(scene, experiment)
     if initial:
         check_initial(initial, experiment, scene)
     gas = kind.start(scene, experiment, seed, None, initial[:1])
@@ -168,11 +171,8 @@ def snapshots(
         wait = take.start - gas.time
         samples = math.ceil(wait / experiment["schedule"]["sample_every"])
         gas.in_time(wait / samples, samples)
-    stride = max(1, gas.particles // STRIDES)
-    if scene.effects.spin is not None and len(scene.box) == 2:
-        gas.watcher = AngleTracker(gas.particles)
-    elif kind is not cooling:  # whose instants follow from the steps, to their roundings
-        stride = gas.count(LONG)
+    # the instants of a cooling gas follow from its steps, to their roundings
+    stride = max(1, gas.particles // STRIDES) if kind is cooling else gas.count(LONG)
     gas.look()
 
     def reach(instant: float) -> None:
@@ -183,20 +183,28 @@ def snapshots(
 
     if kind is not steady:
         reach(take.start)
+    turned = rotations(gas.state)
     for time in take.times:
         reach(time)
-        yield _snapshot(gas, before)
+        yield _snapshot(gas, before, turned)
     if take.times:
         return
     if kind is cooling:
-        yield _snapshot(gas, before)
+        yield _snapshot(gas, before, turned)
     interval = take.length / take.frames
     for frame in range(1 if kind is cooling else 0, take.frames):
         until = take.start + (frame + 0.5) * interval
         if kind is cooling:
             until = gas.time + interval / _collision_frequency(gas, experiment)
         _let_pass(gas, until, stride, changes)
-        yield _snapshot(gas, before)
+        yield _snapshot(gas, before, turned)
+
+
+def _with_paths(scene, experiment):
+    """Return a scene and its settings with the effect `paths`, which changes no bit of a run."""
+    effects = scene.effects._replace(paths=Paths())
+    settings = {**experiment, "effects": {**experiment["effects"], "paths": {}}}
+    return scene._replace(effects=effects), settings
 
 
 def _let_pass(gas: Gas, until: float, stride: int, changes: list[Stage]) -> None:
@@ -219,32 +227,6 @@ def _make_collisions(gas: Gas, per_particle: float, stride: int, before: int) ->
         gas.step(math.inf, min(stride, wanted - gas.collisions))
 
 
-class AngleTracker:
-    """Watches a gas of disks: the angles (N,) by which they have turned, in the order of the start.
-
-    A Watcher of roughgas.simulation.gas.
-    """
-
-    def __init__(self, particles: int) -> None:
-        self.angle = np.zeros(particles)
-
-    def before(self, state: State) -> None:
-        """Note the instant, and the spins at it."""
-        self._begun, self._spin = _now(state), _turning(state)
-
-    def after(self, state: State) -> None:
-        """Add what was turned since then: with the old spin up to a contact, the new one after."""
-        now = _now(state)
-        path = in_order(state, state.clock[BASE] + state.trajectory[:, -1])
-        contact = np.clip(path, self._begun, now)  # the last one, if there was one in this step
-        spin = _turning(state)
-        self.angle += self._spin * (contact - self._begun) + spin * (now - contact)
-
-
-def _turning(state):
-    return in_order(state, state.spin)[:, 0]
-
-
 def _collision_frequency(gas, experiment):
     """Return Enskog's; of a mixture about what it would be, from means of radii and masses."""
     T, dimension, bodies = (
@@ -259,11 +241,17 @@ def _collision_frequency(gas, experiment):
     return found * float(wide * np.sqrt(np.mean(1.0 / bodies.mass)))
 
 
-def _snapshot(gas: Gas, before: int) -> Snapshot:
-    """Return what there is to be seen at the present instant; so many collisions do not count."""
+def _snapshot(gas: Gas, before: int, turned: np.ndarray | None) -> Snapshot:
+    """Return the snapshot of the present instant.
+
+    Collisions are counted from `before` on, and angles from `turned`, those at the take's start.
+    """
     state, effects, present, time = gas.state, gas.scene.effects, _energies(gas), gas.time
     unit, spin = 2.0 ** int(state.counts[EXPONENT]), state.spin
     position, velocity = positions_and_velocities(state, gas.scene, time)
+    unwrapped = unwrapped_positions(state, gas.scene)
+    assert unwrapped is not None  # `_with_paths`
+    angle = None if turned is None else rotations(state) - turned
     if spin is not None:
         spin = in_order(state, spin * unit)
     return Snapshot(
@@ -272,7 +260,8 @@ def _snapshot(gas: Gas, before: int) -> Snapshot:
         position=in_order(state, position),
         velocity=in_order(state, velocity * unit),
         spin=spin,
-        angle=gas.watcher.angle.copy() if isinstance(gas.watcher, AngleTracker) else None,
+        unwrapped=unwrapped,
+        angle=angle,
         E_trans=float(present.translational),
         E_rot=None if present.rotational is None else float(present.rotational),
         R=None if spin is None else float(ratio(present)),
@@ -297,11 +286,10 @@ def _energies(gas: Gas) -> Energies:
     return present.map(lambda part: part[0])
 
 
-def _now(state):
-    return state.clock[BASE] + state.clock[NOW]
-
-
-MOVED = {"image_shift": "slide", "floor_height": "floor", "wall_displacement": "walls"}
+MOVED = {
+    **{"image_shift": "slide", "floor_height": "floor", "wall_displacement": "walls"},
+    "unwrapped_position": "unwrapped",
+}
 """Variables of a trajectory that have other names in a Snapshot."""
 OF_EACH = ("time", "position", "velocity", "spin", "angle", "E_trans", "E_rot", "R")
 
