@@ -66,6 +66,7 @@ PARAMETERS = {
     "contact_heat": {},
     "contact_pairs": {},
     "contact_log": {"most": st.sampled_from([1, 100])},
+    "paths": {},
 }
 MOVED = {"floor", "right_wall"}  # in any wave form
 OPPOSITE = [("left_wall", "right_wall"), ("front_wall", "back_wall")]

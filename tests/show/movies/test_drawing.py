@@ -16,10 +16,12 @@ from roughgas.simulation.trajectory import Snapshot
 
 SIDE = 12.0
 SPIN, ANGLE = [[0.5], [-0.5], [0.0]], [0.0, np.pi / 2, 3.0]
+POSITION = np.array([[3.0, 4.0], [6.0, 5.0], [11.5, 11.7]])
 STILL = Snapshot(
     time=10.0,
     collisions=0.0,
-    position=np.array([[3.0, 4.0], [6.0, 5.0], [11.5, 11.7]]),
+    position=POSITION,
+    unwrapped=POSITION,
     velocity=np.zeros((3, 2)),
     spin=np.array(SPIN),
     angle=np.array(ANGLE),
