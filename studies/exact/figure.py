@@ -14,7 +14,7 @@ from . import published
 from .evidence import NAMES, Gas, rows
 
 SIZE = (7.0, 6.4)  # inches
-FARTHEST = 5.0  # sigma that are drawn
+FARTHEST = 5.0  # abs(z) within the axis
 SHORT = {
     "compressibility factor Z from momentum transfer": "$Z$, momentum",
     "compressibility factor Z from the collision rate": "$Z$, collisions",
@@ -52,7 +52,7 @@ def draw(data: xr.Dataset) -> Figure:
 
 
 def draw_exact(axes: Axes, data: xr.Dataset) -> None:
-    """Draw the deviation of each number whose exact value is known, by what it is."""
+    """Draw z of each number with a known exact value, a line for each quantity."""
     found: dict[str, list[float]] = defaultdict(list)
     for row in rows(data):
         if row.tier == "exact":
@@ -65,7 +65,7 @@ def draw_exact(axes: Axes, data: xr.Dataset) -> None:
     axes.axvline(0.0, color=THEORY, lw=0.8, zorder=0)
     axes.set_yticks(range(len(found)), list(found))
     axes.set(xlim=(-FARTHEST - 0.2, FARTHEST + 0.2), ylim=(len(found) - 0.4, -0.6))
-    axes.set_xlabel("ours minus exact, in combined standard errors")
+    axes.set_xlabel("$z$ of ours minus exact")
     axes.set_title("(a) numbers that are known exactly", loc="left", fontsize=8.5)
     axes.tick_params(axis="y", which="both", left=False, right=False)
 

@@ -3,7 +3,7 @@
 import numpy as np
 import xarray as xr
 
-from roughgas.judging import Estimate, Finding, NotTestedError, Row, grade
+from roughgas.judging import SIGNIFICANT, Estimate, Finding, NotTestedError, Row, grade
 
 from .evidence import Gas, rows
 
@@ -12,15 +12,15 @@ CLOSE = 0.001
 
 
 def meets_exact_results(data: xr.Dataset) -> Finding:
-    """No number whose exact value is known differs from it by 3 combined standard errors."""
+    """No number with a known exact value differs from it by abs(z) = 3 or more."""
     exact = [row for row in rows(data) if row.tier == "exact"]
     off = [row for row in exact if row.gap.real]
     far = [row for row in off if abs(row.gap.value) > CLOSE * abs(row.theirs.value)]
     worst = max(exact, key=lambda row: abs(row.z))
     z = np.array([row.z for row in exact])
     reason = (
-        f"{len(off)} of {len(exact)} numbers differ by 3 combined standard errors; z has the root "
-        f"mean square {np.sqrt(np.mean(z**2)):.2f}, and is largest, {worst.z:+.1f}, in "
+        f"{len(off)} of {len(exact)} numbers differ by |z| = {SIGNIFICANT:g} or more; z has the "
+        f"root mean square {np.sqrt(np.mean(z**2)):.2f}, and is largest, {worst.z:+.1f}, in "
         f"{worst.quantity} ({worst.at})."
     )
     return Finding(grade(not off, not far), reason, _shown(worst))

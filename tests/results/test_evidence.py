@@ -43,7 +43,16 @@ def test_errors_of_few_seeds_count_less():
     """4 standard errors of two degrees of freedom are 1.9 sigma (Student's t: p = 0.057)."""
     one = row((1.0, 0.0), (1.4, 0.1, 2))
     assert one.z == pytest.approx(1.90, abs=0.05)
-    assert one.verdict == AGREES
+    assert one.verdict == AGREES and one.is_lenient
+    assert not row((1.0, 0.0), (1.2, 0.1, 2)).is_lenient
+
+
+def test_the_page_counts_verdicts_that_say_little():
+    """Three rows agree: by few degrees of freedom, without a published error, and by many."""
+    rows = [row((1.0, 0.0), (1.4, 0.1, 2)), row((1.0, math.nan), (1.02, 0.01)), row((1, 0), (1, 1))]
+    page = as_markdown([("study", one) for one in rows])
+    assert "errors with few degrees of freedom: 1." in page
+    assert "and never differ: 1." in page
 
 
 def test_tables_of_studies_join_with_every_row(tmp_path):

@@ -56,15 +56,26 @@ class Row(NamedTuple):
 
     @property
     def z(self) -> float:
-        """Their difference in combined standard errors, NaN where ours has none."""
+        """Student's t of the gap, as the Gaussian z of the same probability; NaN without our error.
+
+        The degrees of freedom of the combined error are those of Welch and Satterthwaite, and
+        published errors have infinitely many. z equals the gap in combined standard errors only if
+        the degrees of freedom are many: with 3 of them, 9.8 errors are z = 3.
+        """
         return self.gap.sigma
 
     @property
-    def verdict(self) -> str:
-        """Whether the numbers agree within SIGNIFICANT standard errors.
+    def is_lenient(self) -> bool:
+        """Whether the numbers agree in z, but are SIGNIFICANT combined standard errors apart."""
+        gap = self.gap
+        return self.verdict == AGREES and abs(gap.value) >= SIGNIFICANT * gap.stderr > 0.0
 
-        Where the source gives no error numbers that agree within ours alone agree; of others it is
-        not known.
+    @property
+    def verdict(self) -> str:
+        """Whether abs(z) is below SIGNIFICANT: a lack of evidence, not equality.
+
+        Numbers without a published error agree if they do by our error alone. Otherwise the verdict
+        is not known: such a row never differs.
         """
         if math.isnan(self.z):
             return NOT_KNOWN
@@ -121,9 +132,22 @@ def _counts(rows: Sequence[Row]) -> str:
     ]
     total = [sum(column) for column in zip(*(line[1:] for line in lines), strict=True)]
     head = ("What the published number is", "Rows", *VERDICTS)
-    said = f"{len(rows)} rows from {of_sources}. A row differs from {SIGNIFICANT:g} combined "
-    said += "standard errors on; by chance one of 370 does."
-    return f"{said}\n\n{markdown(head, [*lines, ['all', *total]], '<>>>>')}"
+    legend = f"{len(rows)} rows from {of_sources}. {_meaning_of_verdicts(rows)}"
+    return f"{legend}\n\n{markdown(head, [*lines, ['all', *total]], '<>>>>')}"
+
+
+def _meaning_of_verdicts(rows: Sequence[Row]) -> str:
+    """Return sentences on z, and the numbers of rows whose verdict says little."""
+    lenient = sum(row.is_lenient for row in rows)
+    unpublished = sum(math.isnan(row.theirs.stderr) for row in rows)
+    return (
+        f"A row differs from |z| = {SIGNIFICANT:g} on; by chance one of 370 does. z is Student's t "
+        "of ours minus theirs, as the Gaussian z of the same probability. "
+        f"Rows that agree in z, but are {SIGNIFICANT:g} combined standard errors or more apart, by "
+        f"errors with few degrees of freedom: {lenient}. "
+        f"Rows without a published error, which agree or are not known, and never differ: "
+        f"{unpublished}."
+    )
 
 
 def _summary(

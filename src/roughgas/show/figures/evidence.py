@@ -10,7 +10,7 @@ from roughgas.results.evidence import TIERS, Row
 from roughgas.show.style import GREY, LOOKS, TWO_WIDE
 
 END, BIN = 6.0, 0.5
-"""Where the histograms end, in combined standard errors, and how wide their bars are."""
+"""End of the histograms, and width of their bars, in z."""
 TESTS = "Tests of this program", [tier for tier in TIERS if tier != "theory"]
 THEORIES = "How good theories are", ["theory"]
 
@@ -24,7 +24,8 @@ def draw(rows: Sequence[Row]) -> Figure:
         _histogram(axes, {tier: z[np.isfinite(z)] for tier, z in found.items()})
         axes.set_title(title, loc="left", fontsize=8.5, fontweight="bold")
     panels[0].set_ylabel("rows")
-    figure.supxlabel("$z$: ours minus theirs, in combined standard errors", fontsize=10)
+    label = "$z$ of ours minus theirs: Student's $t$ as a Gaussian $z$ of the same probability"
+    figure.supxlabel(label, fontsize=10)
     return figure
 
 
