@@ -36,8 +36,9 @@ DECIDES |= {"SIGNIFICANT": errors, "INTERMEDIATE": paper, "CONSIDERABLY": paper,
 def tables():
     """Each table by its page and its name."""
     found = {("claims", "tolerances"): _tolerances()}
-    rows = ((f"`{one.name}`", one.criterion, one.fixed) for one in PAPER.statements)
-    found["claims", "paper"] = markdown(("statement", "criterion", "fixed"), rows)
+    whose = {False: "the paper", True: "ours"}
+    rows = ((f"`{s.name}`", whose[s.ours], s.criterion, s.fixed) for s in PAPER.statements)
+    found["claims", "paper"] = markdown(("statement", "of", "criterion", "fixed"), rows)
     parts = _schema()["$defs"]
     found["config", "file"] = _keys_of(_schema())
     for name in ("experiment", "sweep", "schedule", "stage"):

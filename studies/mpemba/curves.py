@@ -22,8 +22,12 @@ NEAR = 0.3  # of a crossing: what a parabola is fitted to
 
 
 class Curve(NamedTuple):
-    """Arrays over time; `stderr` is an upper bound where it is ours, as errors of both energies
-    are added as if they were the same, and unknown (zero) where it is published."""
+    """Arrays over time: half the collisions of a particle, T over the stationary T, its error.
+
+    Our `stderr` adds the errors of both energies at each time as if they were the same. It leaves
+    out the errors of the stationary temperature, the unit of T, and of the frequency, the unit of
+    time, which all points of a curve share. Errors of published curves are unknown (zero).
+    """
 
     time: np.ndarray
     T: np.ndarray
@@ -69,7 +73,10 @@ def pairs(gases: Sequence[xr.Dataset]) -> list[Pair]:
 
 
 def simulated(gas: xr.Dataset, stage: int = 1) -> Curve:
-    """Return the curve of a reduced dataset from the beginning of a stage on."""
+    """Return the curve of a reduced dataset from the beginning of a stage on.
+
+    Means over the last stage are its units, and count as exact: their errors are left out.
+    """
     one, begins = _point(gas)
     time = one.time_series.values
     steady = time > begins[-1]

@@ -12,9 +12,9 @@ from .curves import Crossing, expected, pairs, simulated
 SOURCE = "Megias & Santos 2022, Front. Phys. 10, 971671, doi:10.3389/fphy.2022.971671"
 RAW = "raw data: repository amegiasf/MpembaSplitting, commit f2d033c, folders SME and OME"
 WHAT = {"crossing": "temperatures", "overshoot": "distances from T_st"}
-SCATTER = "their error is what scatters about a parabola"
-BOUND = "our errors are upper bounds"
-ALONG = f"{BOUND}, and points of one curve are not independent"
+INCOMPLETE = "our errors leave out those of T_st and of the frequency"
+OF_CROSSING = f"their error is what scatters about a parabola; {INCOMPLETE}"
+ALONG = f"{INCOMPLETE}, which all points of one curve share"
 RATES = "rate equations, integrated numerically"
 LAST = 2
 
@@ -25,9 +25,9 @@ def rows(*gases: xr.Dataset) -> Iterator[Row]:
     for one in pairs(paired):
         quantity, at = f"time nu_st t/2 at which {WHAT[one.protocol]} cross", place_of(one.place)
         ours, found = (_time(one.crossing(curves)) for curves in (one.simulated, one.published))
-        yield Row(quantity, at, "simulation", SOURCE, RAW, found, ours, "", f"{SCATTER}; {BOUND}")
+        yield Row(quantity, at, "simulation", SOURCE, RAW, found, ours, "", OF_CROSSING)
         theory = Estimate(one.crossing(one.expected).time, 0.0)
-        yield Row(quantity, at, "theory", SOURCE, RATES, theory, ours, "", BOUND)
+        yield Row(quantity, at, "theory", SOURCE, RATES, theory, ours, "", INCOMPLETE)
         for name, curve in one.published.items():
             quantity = f"T/T_st, {one.protocol}, {name} gas"
             yield from _on_the_way(quantity, at, curve, one.simulated[name])
@@ -37,7 +37,7 @@ def rows(*gases: xr.Dataset) -> Iterator[Row]:
     ours = Estimate(float(curve.T[lowest]), float(curve.stderr[lowest]))
     theory = Estimate(float(wanted[lowest]), 0.0)
     quantity, at = "T/T_st in the hump of a gas that remembers its drive", "r = 0.7, beta = 0"
-    yield Row(quantity, at, "theory", SOURCE, RATES, theory, ours, "", BOUND)
+    yield Row(quantity, at, "theory", SOURCE, RATES, theory, ours, "", INCOMPLETE)
 
 
 def _time(found: Crossing) -> Estimate:

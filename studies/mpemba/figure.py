@@ -74,7 +74,7 @@ def _keys():
         Line2D([], [], color=LOOKS[0].colour, label="hotter"),
         Line2D([], [], color=LOOKS[1].colour, label="colder"),
         Line2D([], [], color=GREY, lw=3, alpha=0.4, label="where ours cross"),
-        Line2D([], [], color=LOOKS[0].colour, lw=6, alpha=0.25, label="errors, at most"),
+        Line2D([], [], color=LOOKS[0].colour, lw=6, alpha=0.25, label="errors of the energies"),
         Line2D([], [], ls="none", marker="o", mfc="none", color=GREY, ms=3, label="published"),
         Line2D([], [], color="black", lw=0.8, ls="--", label="rate equations"),
     ]

@@ -12,7 +12,7 @@ from .curves import Pair, expected, pair, simulated
 NOISY = 0.3
 """Relative error of a crossing from which on nothing is judged."""
 SURE = 5.0
-"""Standard errors by which a crossing, or a hump, is there."""
+"""Standard errors of the energies by which a crossing, or a hump, counts; T_st's is left out."""
 CLOSE = 0.1
 """Relative difference up to which one that differs significantly qualifies."""
 LAST = 2

@@ -1,6 +1,7 @@
 """Judges of materials, mixtures, averages and studies; the sample of differences."""
 
 import math
+from statistics import NormalDist
 
 import numpy as np
 import pytest
@@ -10,10 +11,19 @@ from tests.claims.gases import KICKS, boundaries, constant, swept
 from tests.houses import part, statements
 
 from roughgas.claims import evidence, examine
-from roughgas.claims.evidence import FAILS, HOLDS, NOT_TESTED, QUALIFIED, Sample, beside_theory
+from roughgas.claims.evidence import (
+    FAILS,
+    HOLDS,
+    NOT_TESTED,
+    QUALIFIED,
+    Sample,
+    beside_theory,
+    text,
+)
 from roughgas.data.point import Point, write_point
 from roughgas.data.reduced import read_reduced
 from roughgas.results.reduce import reduce_points
+from roughgas.statistics.errors import Estimate
 
 materials = part("viscoelastic", "judges")
 
@@ -151,6 +161,27 @@ def test_significance_depends_on_the_degrees_of_freedom():
     assert found.off(0.02).tolist() == [False, True, False]
     assert found.vague(0.02).tolist() == [True, False, True]
     assert not found.off(0.06).any() and not found.vague(0.06).any()
+
+
+@pytest.mark.parametrize(
+    ("number", "words"),
+    [
+        ((0.02713, 0.00039, 1), "+0.02713, 95 % +0.02027 to +0.03399 (2.4 sigma)"),
+        ((0.02713, 0.00039, 1000), "+0.02713, 95 % +0.02636 to +0.02790 (> 20 sigma)"),
+        ((-0.012, 0.004), "-0.0120, 95 % -0.0198 to -0.0042 (3.0 sigma)"),
+        ((0.012, math.nan), "+0.0120 (error unknown)"),
+        ((0.012, 0.004, 0), "+0.0120 ± 0.0040"),
+    ],
+)
+def test_numbers_stand_with_the_interval_that_fits_their_sigma(number, words):
+    assert text(Estimate(*number)) == words
+
+
+@pytest.mark.parametrize("dof", [1, 3, 30, math.inf])
+def test_sigma_exceeds_196_exactly_if_the_interval_leaves_out_zero(dof):
+    for ratio in np.geomspace(1.0, 50.0, 40):
+        number = Estimate(ratio, 1.0, dof)
+        assert (number.sigma > NormalDist().inv_cdf(0.975)) == (number.ci95 < ratio)
 
 
 STATEMENTS = statements()

@@ -27,8 +27,9 @@ def quoted_of(sheared):
     gases["vibrated"] = gas("vibrated", 0.05, beta=gases["vibrated"].beta.values)
     gases |= {"sheared": sheared, "cooling": gas("cooling")}
     gases["drives.heated"] = gas("heated", -0.003).expand_dims(spin_share=[0.0])
-    verdicts = ["holds"] * 3 + ["fails"]
-    return numbers(gases, {"claims": [{"verdict": one} for one in verdicts]})
+    verdicts = [("holds", False), ("holds", True), ("holds", False), ("fails", False)]
+    claims = [{"verdict": one, "ours": ours} for one, ours in verdicts]
+    return numbers(gases, {"claims": claims})
 
 
 @pytest.fixture(scope="module")
@@ -49,11 +50,13 @@ def test_numbers_are_those_of_the_data(found):
     assert found["sheared.time.most"] == "0.020"
     assert found["walls.other"] == "0.050"
     assert found["sheared.r8_b95.theory"] == "0.0084"
-    assert (found["claims.all"], found["claims.holds"], found["claims.fails"]) == (
-        "four",
-        "three",
-        "one",
-    )
+
+
+def test_statements_of_the_paper_are_counted_without_ours(found):
+    counts = [found[f"claims.{name}"] for name in ("all", "holds", "qualified", "fails")]
+    assert counts == ["three", "two", "none", "one"]
+    ours = [found[f"claims.ours.{name}"] for name in ("all", "holds", "qualified", "fails")]
+    assert ours == ["one", "one", "none", "none"]
 
 
 def test_the_page_of_results_quotes_the_last_results():

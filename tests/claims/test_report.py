@@ -32,6 +32,12 @@ def test_one_row_for_each_statement_in_both_reports(paths, tmp_path):
         if claim["verdict"] != NOT_TESTED:
             deciding = claim["numbers"][0]
             assert claim["deviation"] == deciding["value"] and claim["sigma"] == deciding["sigma"]
+            assert claim["ci95"] == deciding["ci95"] >= 1.9 * claim["error"]
+    ours = [one.name for one in PAPER.statements if one.ours]
+    assert ours == ["lun_over_collisions", "excess_is_of_averaging"]
+    assert [claim["id"] for claim in content["claims"] if claim["ours"]] == ours
+    assert "Of 17 statements: " in markdown and "Of 2 statements of ours: " in markdown
+    assert markdown.count("| Ours: ") == markdown.count("> Ours: ") == 2
 
 
 def test_datasets_of_several_scales_are_refused(paths, tmp_path):

@@ -19,7 +19,7 @@ ROOT = Path(__file__).parents[2]
 ARTICLE = ROOT / "article"
 NUMBERS = ROOT / "figures/numbers.json"
 FIGURES = ("fig1a", "fig1b", "fig2a", "fig2b")
-CLAIM = {"quote": "R > 1/2 at <v> [ours]", "verdict": "holds"}
+CLAIM = {"quote": "R > 1/2 at <v> [ours]", "ours": False, "verdict": "holds"}
 HEAD = ["experiment", "r", "beta", "R", "R_stderr"]
 HEAD += ["R_collisional", "R_collisional_stderr", "R_corrected", "R_theory"]
 

@@ -40,6 +40,12 @@ class Statement(NamedTuple):
     judge: Callable[..., Finding]
     criterion: str  # what is judged, in a sentence
     fixed: str  # whether the criterion was, before its data were seen
+    ours: bool = False  # whether we state it, not the text that the table is about
+
+    @property
+    def text(self) -> str:
+        """The statement in quotation marks, or as ours without them."""
+        return f"Ours: {self.quote}" if self.ours else f"“{self.quote}”"
 
 
 class Subject(NamedTuple):
@@ -90,8 +96,8 @@ def _read(path: Path) -> Any:
 def _statement(name: str, row: Mapping[str, Any], modules: tuple[ModuleType, ...]) -> Statement:
     functions = {key: one for module in modules for key, one in vars(module).items()}
     judge = functions[row["judge"]] if "judge" in row else _agrees(row, functions)
-    experiments = tuple(row["experiments"])
-    return Statement(name, row["quote"], experiments, judge, row["criterion"], row["fixed"])
+    texts = row["criterion"], row["fixed"], row.get("ours", False)
+    return Statement(name, row["quote"], tuple(row["experiments"]), judge, *texts)
 
 
 def _agrees(row: Mapping[str, Any], functions: Mapping[str, Any]) -> Callable[..., Finding]:
@@ -135,7 +141,9 @@ LIMITS = ("agree", "limit", "tendency", "few", "near", "far")
 TOLERANCES = {name: getattr(evidence, name.upper()) for name in LIMITS}
 TOLERANCES |= {"significant_sigma": SIGNIFICANT}
 HOW_TO_READ = """\
-How to read it. A number is "value ± standard error (sigma)". Significance and size count
+How to read it. A number is "value, 95 % low to high (sigma)": its 95 % interval by Student's t, and
+how many sigma it is from 0, those of a Gaussian with the same probability as Student's t. With few
+degrees of freedom the interval is wider than 4 standard errors. Significance and size count
 separately: with small errors a theory that is 2 % off is 20 sigma off and still useful. R agrees
 where it is within {agree:g}, and disagrees beyond {limit:g} where the difference is significant,
 {significant_sigma:g} sigma or more. In between, agreement is qualified, and so it is where errors
@@ -147,7 +155,7 @@ the reason for each of these numbers, and says what was fixed before the data we
 
 Errors are those of the reduced datasets (`R_stderr`, with `R_dof` degrees of freedom), which pool
 the scatter over seeds with the errors within the runs; `coverage.md` shows how often their
-intervals hold the truth. Sigma is that of a Gaussian with the same probability as Student's t."""
+intervals hold the truth."""
 
 
 def judge(
@@ -198,6 +206,7 @@ def _claim(statement: Statement, finding: Finding) -> dict[str, Any]:
     return {
         "id": statement.name,
         "quote": statement.quote,
+        "ours": statement.ours,
         "criterion": statement.criterion,
         "fixed": statement.fixed,
         "experiments": list(statement.experiments),
@@ -205,6 +214,7 @@ def _claim(statement: Statement, finding: Finding) -> dict[str, Any]:
         "reason": finding.reason,
         "deviation": deciding.get("value"),
         "error": deciding.get("error"),
+        "ci95": deciding.get("ci95"),
         "sigma": deciding.get("sigma"),
         "numbers": numbers,
     }
@@ -212,8 +222,6 @@ def _claim(statement: Statement, finding: Finding) -> dict[str, Any]:
 
 def as_markdown(subject: Subject, findings: list[Finding], scale: str) -> str:
     """Return a table of all verdicts, then the reasons and numbers of each, as Markdown."""
-    count = Counter(finding.verdict for finding in findings)
-    summary = ", ".join(f"{one} {count[one]}" for one in (*evidence.VERDICTS, NOT_TESTED))
     rows = [(i, *row) for i, row in enumerate(zip(subject.statements, findings, strict=True), 1)]
     head = ("#", subject.quotes, "Deciding number", "Verdict")
     parts = [
@@ -221,7 +229,7 @@ def as_markdown(subject: Subject, findings: list[Finding], scale: str) -> str:
         f"{subject.about}\n",
         HOW_TO_READ.format(**TOLERANCES),
         f"Sizes and run lengths: those of the scale `{scale}` in config.yaml.",
-        f"Of {len(rows)} statements: {summary}.",
+        _counts(subject.statements, findings),
         base.markdown(head, [_cells(*row) for row in rows]).rstrip(),
         *([subject.after] if subject.after else []),
         "## Reasons and numbers",
@@ -230,15 +238,26 @@ def as_markdown(subject: Subject, findings: list[Finding], scale: str) -> str:
     return "\n\n".join(parts) + "\n"
 
 
+def _counts(statements: Iterable[Statement], findings: Iterable[Finding]) -> str:
+    """Return the number of statements of each verdict, those that are ours apart."""
+    pairs, sentences = list(zip(statements, findings, strict=True)), []
+    for ours, kind in ((False, "statements"), (True, "statements of ours")):
+        count = Counter(finding.verdict for one, finding in pairs if one.ours == ours)
+        if count:
+            verdicts = (f"{one} {count[one]}" for one in (*evidence.VERDICTS, NOT_TESTED))
+            sentences.append(f"Of {count.total()} {kind}: {', '.join(verdicts)}.")
+    return " ".join(sentences)
+
+
 def _cells(number: int, statement: Statement, finding: Finding) -> tuple[object, ...]:
     deciding = "".join(f"{label}: {text(value)}" for label, value in finding.numbers[:1])
-    return number, f"“{statement.quote}”", deciding, f"**{finding.verdict}**"
+    return number, statement.text, deciding, f"**{finding.verdict}**"
 
 
 def _details(number: int, statement: Statement, finding: Finding) -> str:
     numbers = "".join(f"\n- {label}: {text(value)}" for label, value in finding.numbers)
     return (
-        f"### {number}. {statement.name}: {finding.verdict}\n\n> {statement.quote}\n\n"
+        f"### {number}. {statement.name}: {finding.verdict}\n\n> {statement.text}\n\n"
         f"{finding.reason}\n\n- criterion: {statement.criterion} Fixed {statement.fixed}.\n"
         f"- data: {', '.join(statement.experiments)}{numbers}"
     )

@@ -227,7 +227,7 @@ at one r. Fixed before any data."""
 NEAR = 0.1
 """Fraction of R up to which a value agrees relative to theory. AGREE over the R of a driven
 gas in mid-range, Lun's formula at beta = 0. Fixed before the data of friction and inertia; for beds
-and sheared gases (Figs. 1a, 2a, 3) after their data."""
+and sheared gases (Figs. 1a and 2a, the study `spheres`) after their data."""
 FAR = 0.5
 """Fraction beyond which it disagrees; between the two, agreement is qualified. A convention: theory
 is then wrong by a factor of 1.5 to 2. Fixed as NEAR was."""
@@ -328,11 +328,17 @@ def worse(*verdicts: str) -> str:
 
 
 def text(number: Estimate) -> str:
-    """Return such as "+0.0213 ± 0.0014 (12.3 sigma)"; the error decides the number of digits."""
-    if not np.isfinite(number.stderr):
+    """Return such as "+0.0213, 95 % +0.0185 to +0.0241 (12.3 sigma)".
+
+    Interval and sigma count the degrees of freedom alike, so that sigma exceeds 1.96 exactly if the
+    interval leaves out 0. A standard error would not fit sigma with few of them.
+    """
+    if not np.isfinite(number.ci95):
         return f"{number:+.4f}"
-    shown, sigma = f"{number:+.{4 if number.stderr >= 0.001 else 5}f}", abs(number.sigma)
-    return f"{shown} ({'> 20' if sigma > 20 else f'{sigma:.1f}'} sigma)"
+    how, sigma = f"+.{4 if number.stderr >= 0.001 else 5}f", abs(number.sigma)
+    low, high = number.value - number.ci95, number.value + number.ci95
+    size = "> 20" if sigma > 20 else f"{sigma:.1f}"
+    return f"{number.value:{how}}, 95 % {low:{how}} to {high:{how}} ({size} sigma)"
 
 
 def points(count: int) -> str:

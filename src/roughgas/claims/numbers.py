@@ -8,8 +8,9 @@ import json
 import math
 import re
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import xarray as xr
 
@@ -128,7 +129,11 @@ def _of_rows(gas: xr.Dataset) -> dict[str, str]:
     return found
 
 
-def _counts(claims) -> dict[str, str]:
-    words, verdicts = IN_WORDS.split(), Counter(one["verdict"] for one in claims)
-    found = {f"claims.{name}": words[verdicts[one]] for name, one in COUNTED.items()}
-    return found | {"claims.all": words[len(claims)]}
+def _counts(claims: Sequence[Mapping[str, Any]]) -> dict[str, str]:
+    """Return the numbers of statements of each verdict in words, the paper's and ours apart."""
+    words, counts = IN_WORDS.split(), {}
+    for name, ours in (("claims", False), ("claims.ours", True)):
+        verdicts = Counter(one["verdict"] for one in claims if one["ours"] == ours)
+        counts |= {f"{name}.{key}": words[verdicts[one]] for key, one in COUNTED.items()}
+        counts[f"{name}.all"] = words[verdicts.total()]
+    return counts

@@ -102,7 +102,8 @@ def verdict(claim: Mapping[str, Any]) -> dict[str, str]:
     if first is not None and first["value"] is not None:
         error = math.nan if first["error"] is None else first["error"]
         deciding = f"{first['label']}: {Estimate(first['value'], error)}".replace("-", "−")
-    return {"quote": claim["quote"], "deciding": deciding, "verdict": claim["verdict"]}
+    quote = f"Ours: {claim['quote']}" if claim["ours"] else claim["quote"]
+    return {"quote": quote, "deciding": deciding, "verdict": claim["verdict"]}
 
 
 def _cell(row: Mapping[str, str], column: str) -> str:

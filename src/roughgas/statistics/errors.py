@@ -181,9 +181,12 @@ def gaussian_sigmas(t: np.ndarray | float, degrees_of_freedom: float) -> np.ndar
 def student_t(sigmas: float, degrees_of_freedom: float) -> float:
     """Return how many standard errors are as safe a bound as `sigmas` >= 0 of a known Gaussian.
 
-    The inverse of `gaussian_sigmas`: 2 sigma are 3.3 standard errors of four values, 2.4 of nine.
+    The inverse of `gaussian_sigmas`: 2 sigma are 3.3 standard errors of four values, 2.4 of nine,
+    and 2 with infinitely many degrees of freedom.
     """
     dof = degrees_of_freedom
+    if math.isinf(dof):
+        return sigmas
     return math.sqrt(dof * math.expm1((sigmas / _wallace(dof)) ** 2 / dof))
 
 
@@ -314,6 +317,11 @@ class Estimate(NamedTuple):
         return ratio if math.isinf(self.dof) else float(gaussian_sigmas(ratio, self.dof))
 
     @property
+    def ci95(self) -> float:
+        """Half the width of the 95 % interval, by Student's t; NaN if the error is unknown."""
+        return half_width(self.stderr, self.dof, 0.95)
+
+    @property
     def real(self) -> bool:
         """Whether it differs from 0 significantly."""
         return abs(self.sigma) >= SIGNIFICANT
@@ -328,8 +336,9 @@ class Estimate(NamedTuple):
         return Estimate(factor * self.value, abs(factor) * self.stderr, self.dof)
 
     def record(self) -> dict[str, float]:
-        """Return value, error and sigma for JSON, with six significant digits."""
-        numbers = {"value": self.value, "error": self.stderr, "sigma": self.sigma}
+        """Return value, error, ci95 and sigma for JSON, with six significant digits."""
+        numbers = {"value": self.value, "error": self.stderr, "ci95": self.ci95}
+        numbers["sigma"] = self.sigma
         return {name: float(f"{number:.6g}") for name, number in numbers.items()}
 
     def __format__(self, how: str) -> str:
