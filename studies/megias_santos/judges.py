@@ -28,14 +28,20 @@ def are_published(gas: xr.Dataset) -> Finding:
 
 
 def _compatible(gas, gap, error, what, close) -> Finding:
+    """Judge differences by their combined standard errors, as if these were known exactly.
+
+    Degrees of freedom are infinitely many here. Rows of evidence count them, so that the same point
+    may differ here and agree there.
+    """
     gap = sample(gap.where(np.isfinite(gas.R)), error, np.full(gap.shape, np.inf))
-    z, off = gap.value / gap.stderr, gap.real()
-    largest = int(np.argmax(np.abs(z)))
+    ratios, off = gap.value / gap.stderr, gap.real()
+    largest = int(np.argmax(np.abs(ratios)))
     worst = gap.at(largest)
     reason = (
         f"At {int(off.sum())} of {points(gap.size)} {what} differs by {SIGNIFICANT:g} combined "
-        f"standard errors or more; z has the root mean square {np.sqrt(np.mean(z**2)):.2f}, and "
-        f"the largest is that of {text(worst)} at {gap.place(largest)}."
+        "standard errors or more, as if these were known exactly; in them the root mean square is "
+        f"{np.sqrt(np.mean(ratios**2)):.2f}, and the largest is {text(worst)} at "
+        f"{gap.place(largest)}."
     )
     verdict = grade(not off.any(), not gap.off(close).any())
-    return Finding(verdict, reason, ((f"{what} - published where z is largest", worst),))
+    return Finding(verdict, reason, ((f"{what} - published where it is largest in its errors", worst),))

@@ -28,7 +28,7 @@ SIZE = (7.0, 3.4)  # inches
 SHOWN = 5.0
 """Collisions per particle up to which memory is drawn."""
 MESSAGES = "Rough particles forget faster", "Inelastic particles remember longer"
-CARRIED = "Roughness makes a gas more viscous", "Elastic gases agree with theory"
+CARRIED = "Roughness makes a gas more viscous", "Elastic gases beside theory"
 WALLS = "conductivity, between walls"
 WAYS = {"viscosity": "o", "conductivity": "s", WALLS: "D", f"{WALLS} twice as far": "^"}
 """Markers of coefficients."""
