@@ -44,4 +44,4 @@ def _compatible(gas, gap, error, what, close) -> Finding:
         f"{gap.place(largest)}."
     )
     verdict = grade(not off.any(), not gap.off(close).any())
-    return Finding(verdict, reason, ((f"{what} - published where it is largest in its errors", worst),))
+    return Finding(verdict, reason, ((f"{what} - published, largest in its errors", worst),))
