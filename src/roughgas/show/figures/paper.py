@@ -48,7 +48,7 @@ def fig1b(*beds: xr.Dataset) -> Figure:
         drawn,
         theory="Lun's formula",
         legend={"loc": "lower right"},
-        message="Only rough elastic walls matter: they put in spin",
+        message="Rough elastic walls put in spin, others hardly shift R",
         # rough walls shift R ten times as much as the others: the scale is that of the others
         scale=lambda drawn: [drawn[0], *drawn[2:]],
         room=0.15,
