@@ -12,7 +12,7 @@ from .curves import Crossing, expected, pairs, simulated
 SOURCE = "Megias & Santos 2022, Front. Phys. 10, 971671, doi:10.3389/fphy.2022.971671"
 RAW = "raw data: repository amegiasf/MpembaSplitting, commit f2d033c, folders SME and OME"
 WHAT = {"crossing": "temperatures", "overshoot": "distances from T_st"}
-INCOMPLETE = "our errors leave out those of T_st and of the frequency"
+INCOMPLETE = "our errors leave out the errors of T_st and of the frequency"
 OF_CROSSING = f"their error is what scatters about a parabola; {INCOMPLETE}"
 ALONG = f"{INCOMPLETE}, which all points of one curve share"
 RATES = "rate equations, integrated numerically"

@@ -7,8 +7,9 @@ from tests import pages
 from tests.claims.gases import constant, walls
 from tests.synthetic import reduced
 
+from roughgas.claims import PAPER
 from roughgas.claims.evidence import beside_theory
-from roughgas.claims.numbers import WALLS, filled, numbers
+from roughgas.claims.numbers import IN_WORDS, WALLS, filled, numbers
 
 AT_POINTS = (-0.95, -0.8, 0.0, 0.5)
 
@@ -61,6 +62,20 @@ def test_statements_of_the_paper_are_counted_without_ours(found):
 
 def test_the_page_of_results_quotes_the_last_results():
     assert pages.RESULTS.read_text(encoding="utf-8") == pages.quoted(), "python -m tests.pages"
+
+
+def test_readme_counts_the_statements_as_the_verdicts_do():
+    """The last verdicts are of all statements of the paper, and of ours."""
+    known = json.loads((pages.DOCS.parent / "figures" / "numbers.json").read_text())
+    words = IN_WORDS.split()
+    ours = sum(one.ours for one in PAPER.statements)
+    assert known["claims.all"] == words[len(PAPER.statements) - ours]
+    assert known["claims.ours.all"] == words[ours]
+    counts = [known[f"claims.{name}"] for name in ("all", "holds", "qualified", "fails")]
+    said = "Of {} statements of the paper that are judged, {} hold, {} hold with a qualification, "
+    said += "{} fails; {} of ours, on averages, hold:"
+    readme = " ".join((pages.DOCS.parent / "README.md").read_text(encoding="utf-8").split())
+    assert said.format(*counts, known["claims.ours.holds"]) in readme
 
 
 def test_a_mark_fills_the_number_before_it_and_must_be_known(found):

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from tests.pages import DOCS
 
+from roughgas.base.files import module_of
 from roughgas.results.evidence import AGREES, NOT_KNOWN, read_rows
 from roughgas.statistics.errors import SIGNIFICANT, student_t
 
@@ -73,6 +74,13 @@ def test_the_page_says_where_simulations_lie(page):
     assert [f"{np.mean(one):+.1f}" for one in (z, *sets)] == 3 * ["+0.6"]
     assert page.count("+0.6 on average") == 3
     assert words("rules/captions/evidence.rst").count("z is +0.6 on average") == 1
+
+
+def test_notes_on_errors_are_as_the_code_makes_them():
+    """The rows of mpemba say what their errors leave out."""
+    notes = module_of(ROOT / "studies" / "mpemba", "evidence")
+    made = {notes.OF_CROSSING, notes.INCOMPLETE, notes.ALONG}
+    assert {row.reason for study, row in ROWS if study == "mpemba"} == made
 
 
 def test_the_study_of_exact_numbers_says_how_far_the_farthest_is():

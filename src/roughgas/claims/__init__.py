@@ -142,7 +142,7 @@ TOLERANCES = {name: getattr(evidence, name.upper()) for name in LIMITS}
 TOLERANCES |= {"significant_sigma": SIGNIFICANT}
 HOW_TO_READ = """\
 How to read it. A number is "value, 95 % low to high (sigma)": its 95 % interval by Student's t, and
-how many sigma it is from 0, those of a Gaussian with the same probability as Student's t. With few
+its distance from 0 in sigma, which is the Gaussian z with the probability of Student's t. With few
 degrees of freedom the interval is wider than 4 standard errors. Significance and size count
 separately: with small errors a theory that is 2 % off is 20 sigma off and still useful. R agrees
 where it is within {agree:g}, and disagrees beyond {limit:g} where the difference is significant,

@@ -58,8 +58,8 @@ class Row(NamedTuple):
     def z(self) -> float:
         """Student's t of the gap, as the Gaussian z of the same probability; NaN without our error.
 
-        The degrees of freedom of the combined error are those of Welch and Satterthwaite, and
-        published errors have infinitely many. z equals the gap in combined standard errors only if
+        The degrees of freedom of the combined error follow Welch and Satterthwaite, and published
+        errors have infinitely many. z equals the gap in combined standard errors only if
         the degrees of freedom are many: with 3 of them, 9.8 errors are z = 3.
         """
         return self.gap.sigma
