@@ -131,7 +131,8 @@ def _of_rows(gas: xr.Dataset) -> dict[str, str]:
 
 def _counts(claims: Sequence[Mapping[str, Any]]) -> dict[str, str]:
     """Return the numbers of statements of each verdict in words, the paper's and ours apart."""
-    words, counts = IN_WORDS.split(), {}
+    words = IN_WORDS.split()
+    counts: dict[str, str] = {}
     for name, ours in (("claims", False), ("claims.ours", True)):
         verdicts = Counter(one["verdict"] for one in claims if one["ours"] == ours)
         counts |= {f"{name}.{key}": words[verdicts[one]] for key, one in COUNTED.items()}
