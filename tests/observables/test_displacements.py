@@ -103,3 +103,12 @@ def test_a_cooling_gas_gets_as_far_at_its_usual_samples_as_at_dense_ones():
     (far, far_error, dof), (near, near_error, _) = pairs
     limit = Error(math.hypot(far_error, near_error), dof).half_width(SURE)
     assert abs(far - near) < limit < 0.2 * near
+
+
+def test_an_observable_sees_the_same_beside_another_of_another_interval():
+    """Every 3 samples alone, and beside another every 2, which shares each sixth sample."""
+    gas = {"effects": HEATED, "schedule": STEADY | {"period": EVERY, "measure": 20}}
+    wanted = {"mean_square_displacement": {"lags": 3, "every": 3}}
+    alone = observed(gas, **wanted)
+    beside = observed(gas, **wanted, cumulants={"every": 2})
+    assert np.array_equal(alone.mean_square_displacement, beside.mean_square_displacement)

@@ -212,6 +212,24 @@ def periods_of(trajectory):
     return [length if periodic else 0.0 for length, periodic in pairs]
 
 
+def test_images_are_whole_periods_whatever_the_roundings_are():
+    """Of 2000 made-up positions; a quotient just below a whole number is that number."""
+    rng, box = np.random.default_rng(3), np.array([7.3, np.nan])
+    position, images = rng.uniform(0.0, 7.3, (1, 2000, 2)), rng.integers(-9, 10, (2000, 2))
+    images[:, 1] = 0
+    values = {
+        "box": box,
+        "periodic": np.array([1, 0]),
+        "position": position,
+        "unwrapped_position": position + images * np.array([7.3, 0.0]),
+        "velocity": np.zeros_like(position),
+        "radius": np.ones(2000),
+        "time": np.zeros(1),
+    }
+    (frame,) = frames_of_values(values)
+    assert np.array_equal(frame.image[:, :2], images)
+
+
 @pytest.mark.parametrize("ending", FORMATS)
 @pytest.mark.parametrize("name", kernels("bed", "sheared"))
 def test_a_file_that_grows_has_each_frame_on_the_disk_and_the_bytes_of_the_whole(
