@@ -13,6 +13,7 @@ from pathlib import Path
 import netCDF4
 import numpy as np
 import pytest
+import xarray
 import yaml
 from brute_force import begin, settings
 from schedules import COOLING, STEADY, TINY
@@ -34,7 +35,9 @@ from roughgas.scene.initial import check
 from roughgas.show import living as page
 from roughgas.show.figures import sweep
 from roughgas.simulation import schedule
-from roughgas.simulation.restart import Initial, check_initial
+from roughgas.simulation.restart import Initial
+from roughgas.simulation.saved import initial_of
+from roughgas.simulation.starts import check_initial
 from roughgas.tasks import dsmc
 from roughgas.tasks.free_cooling import FreeCooling
 
@@ -137,6 +140,13 @@ def begun(kernel, position):
     time = 3.0  # after which the images of a sheared gas have slid by 6 a
     one = Initial(np.array(position, float), np.zeros((2, 2)), time=time)
     check_initial([one], chosen, build(chosen, 0.9, 0.3))
+
+
+def outside(*dims, units="a", **coordinates):
+    """Read the state of two disks, whose positions have other dimensions, units or coordinates."""
+    position, velocity = [[2.0, 6.0], [9.0, 6.0]], np.zeros((2, 2))
+    vectors = {"position": (dims, position, {"units": units}), "velocity": (dims, velocity)}
+    initial_of(xarray.Dataset(vectors, coordinates))
 
 
 def watched(observe, beta=0.5, **more):

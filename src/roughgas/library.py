@@ -67,7 +67,7 @@ def simulate(
     *,
     r: Values,
     beta: Values,
-    seed: Values = 1,
+    seed: Values | None = None,
     particles: int | None = None,
     box: Sequence[Side] | None = None,
     packing: float | None = None,
@@ -78,6 +78,7 @@ def simulate(
     schedule: Schedule | None = None,
     spin_temperature: float | None = None,
     initial: "xarray.Dataset | None" = None,
+    reseed: int | None = None,
     keep_state: bool | None = None,
     observe: Observe | None = None,
     scale: str | None = None,
@@ -102,7 +103,8 @@ def simulate(
     beta
         Tangential restitution (roughness), in [-1, 1]; -1 is smooth, 1 perfectly rough.
     seed
-        Seed of the random generator, from 0 to 2^63 - 1.
+        Seed of the random generator, from 0 to 2^63 - 1; by default 1, or with `initial` that of
+        the run which is gone on from.
     particles
         Number N of particles.
     box
@@ -130,7 +132,11 @@ def simulate(
         Temperature of the spins at the start, in m a^2/T^2; that of the velocities is 1.
     initial
         Where to begin instead: a point that has kept its state, which is gone on from; or one frame
-        of a trajectory, or a dataset with its variables ``position``, ``velocity`` and ``spin``.
+        of a trajectory, or a dataset with its variables ``position``, ``velocity`` and ``spin``,
+        read by the names of their dimensions. Species are matched by name.
+    reseed
+        Seed of fresh noise for `initial`. Without it an unchanged state goes on with the noise of
+        its run; a changed one has noise that follows from the seed and from the state.
     keep_state
         Whether to keep the last state in the dataset, for `initial` of another run.
     observe
@@ -206,15 +212,17 @@ def simulate(
     from roughgas.data.point import as_dataset
     from roughgas.results.reduce import reduced_in_memory
     from roughgas.simulation.points import observables_of, points
-    from roughgas.simulation.restart import initial_of
+    from roughgas.simulation.saved import initial_of, seeded
 
+    states = [] if initial is None else initial_of(initial)
+    states, seed = seeded(states, seed, reseed)
     at, several = _places(r, beta, seed)
     if several and (keep_state or initial is not None):
         key = "keep_state" if keep_state else "initial"
         raise InputError(key, "given", "come with one r, one beta and one seed")
     changes["observables"], functions = observables_of(observe)
     name, scale, settings = _settings(experiment, changes, scale, config)
-    states, told = ([], []) if initial is None else (initial_of(initial), ["--from", "start.nc"])
+    told = ["--from", "start.nc"] if states else []
     outputs = ["point.nc"] * len(at)
     found = points(name, settings, at, scale, outputs, states, functions, told, quiet=not progress)
     return reduced_in_memory(found) if several else as_dataset(next(found))
@@ -225,7 +233,7 @@ def trajectory(
     *,
     r: float,
     beta: float,
-    seed: int = 1,
+    seed: int | None = None,
     particles: int | None = None,
     box: Sequence[Side] | None = None,
     packing: float | None = None,
@@ -239,6 +247,7 @@ def trajectory(
     frames: int | None = None,
     times: Sequence[float] | None = None,
     initial: "xarray.Dataset | None" = None,
+    reseed: int | None = None,
     scale: str | None = None,
     config: str | Path | None = None,
     progress: bool = True,
@@ -254,7 +263,7 @@ def trajectory(
         As for `simulate`.
     effects, species, species_pairs, schedule
         As for `simulate`.
-    initial, scale, config, progress
+    initial, reseed, scale, config, progress
         As for `simulate`.
     start
         Where the frames begin; by default at `initial`, or when a driven gas should be steady.
@@ -287,24 +296,25 @@ def trajectory(
     changes: dict[str, Any] = dict(particles=particles, box=box, packing=packing, layer=layer)
     changes |= dict(effects=effects, species=species, species_pairs=species_pairs)
     changes["schedule"] = schedule
-    ((legal_r, legal_beta, number, labels),), _ = _places(r, beta, seed)
-
     from roughgas.data.trajectory import as_trajectory
     from roughgas.scene import build
     from roughgas.simulation.points import provenance
     from roughgas.simulation.progress import watched
-    from roughgas.simulation.restart import initial_of
+    from roughgas.simulation.restart import SEED
+    from roughgas.simulation.saved import initial_of, seeded
     from roughgas.simulation.trajectory import chosen, snapshots, variables
 
+    states, seed = seeded([] if initial is None else initial_of(initial), seed, reseed)
+    ((legal_r, legal_beta, number, labels),), _ = _places(r, beta, seed)
     name, scale, settings = _settings(experiment, changes, scale, config)
     scene = build(settings, legal_r, legal_beta)
-    states = [] if initial is None else initial_of(initial)
     take = chosen(settings, scene, start, length, frames, times, states)
     told = (["--from", "start.nc"] if states else []) + take.options()
-    about = provenance(name, settings, labels, scale, "bed.xyz", "trajectory", told)
+    noise = states[0].noise if states else SEED
+    about = provenance(name, settings, labels, scale, "bed.xyz", "trajectory", told, noise)
     filmed = snapshots(scene, settings, number, take, states)
     shots = list(watched(name, take.frames, "frames", filmed, quiet=not progress))
-    return as_trajectory(variables(scene, settings, shots), about)
+    return as_trajectory(variables(scene, settings, shots), about | {"seed": number})
 
 
 def experiments(config: str | Path | None = None) -> dict[str, str]:

@@ -142,7 +142,9 @@ def test_a_run_goes_on_from_the_file_of_another(tmp_path, monkeypatch, capsys):
     assert main(["run", "cooling", *PLACE, "--from", "first.nc", "-o", "second.nc"]) == 0
     first, second = read_point("first.nc"), read_point("second.nc")
     assert second.initial_exact == 1 and "last_position" not in second
-    assert "--from first.nc" in second.command and '"keep_state":true' in first.experiment_json
+    assert "--from first.nc" in second.command and "--seed" not in second.command
+    assert second.seed == first.seed
+    assert '"keep_state":true' in first.experiment_json
     again = shlex.split(second.command)[1:]
     assert main([*again[:-1], "again.nc"]) == 0 and read_point("again.nc").R == second.R
     capsys.readouterr()
@@ -151,7 +153,9 @@ def test_a_run_goes_on_from_the_file_of_another(tmp_path, monkeypatch, capsys):
             ["--from", "second.nc"],
             "--from = second.nc: must be a point that has kept its last state",
         ),
-        (["--from", "first.nc", "--seed", "1", "2"], "--seed = 1 2: must be one with --from"),
+        (["--from", "first.nc", "--seed", "1", "2"], "seed = 1: must be left out: nothing in this"),
+        (["--from", "first.nc", "--reseed", "2"], "reseed = 2: must be left out: nothing in this"),
+        (["--reseed", "2"], "reseed = 2: must come with a saved state: --from, or initial="),
         (["--from", "none.nc"], "none.nc: No such file"),
     ):
         assert main(["run", "cooling", *PLACE, *arguments]) != 0

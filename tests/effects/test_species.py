@@ -101,5 +101,5 @@ def test_a_run_goes_on_to_the_last_bit_and_from_what_it_leaves(beta):
     assert np.array_equal(first.last_radius, other.last_radius)
     start = float(other.E_trans_series[0] / again.E_trans_series[0])
     assert start == pytest.approx(1.0, rel=1e-9)
-    with pytest.raises(InputError, match="initial = without radius: must be in the dataset"):
+    with pytest.raises(InputError, match="initial = without species_of: must be in the dataset"):
         simulate("cooling", initial=bare.drop_vars("last_species_of"), **args)

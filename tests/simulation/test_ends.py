@@ -11,7 +11,7 @@ from roughgas.data.point import as_dataset
 from roughgas.kernel import memory
 from roughgas.scene import build
 from roughgas.simulation.point import run_point
-from roughgas.simulation.restart import initial_of
+from roughgas.simulation.saved import initial_of
 
 R, BETA, SEED = 0.9, 0.3, 3
 DRIVEN = ("sheared", "bed", "walled", "rubbed bed", "shaken", "heated")
@@ -106,9 +106,10 @@ def test_from_what_physics_knows_it_goes_on_to_rounding(name):
 def test_a_state_of_ones_own():
     experiment = settings("gas", 2, [12, 12]) | {"schedule": cooling(5)}
     vectors = {"position": [[2.0, 6.0], [9.0, 6.0]], "velocity": [[1.0, 0.0], [-1.0, 0.0]]}
-    (one,) = initial_of(xr.Dataset({k: (("particle", "axis"), v) for k, v in vectors.items()}))
-    assert one.time == 0.0 and one.spin is None
-    point = run_point(build(experiment, 1.0, 1.0), experiment, SEED, None, [one] * 3).variables
+    (state,) = initial_of(xr.Dataset({k: (("particle", "axis"), v) for k, v in vectors.items()}))
+    assert state.time == 0.0 and state.spin is None
+    states = [state._replace(position=state.position + shift) for shift in (0.0, 0.5, 1.0)]
+    point = run_point(build(experiment, 1.0, 1.0), experiment, SEED, None, states).variables
     assert point["E_trans_series"] == pytest.approx(np.ones_like(point["E_trans_series"]))
 
 

@@ -26,7 +26,7 @@ from roughgas.scene import build
 from roughgas.simulation import cooling
 from roughgas.simulation.energies import restored
 from roughgas.simulation.point import run_point
-from roughgas.simulation.restart import initial_of
+from roughgas.simulation.saved import initial_of
 from roughgas.simulation.trajectory import Frames, chosen, snapshots, variables
 
 R, BETA, SEED = 0.9, 0.3, 7

@@ -216,7 +216,6 @@ POINTS = (
         "--seed SEED",
         f"seeds of the random generator: 0, 1, ...; {LISTED} (default: 1)",
         nargs="+",
-        default=["1"],
     ),
 )
 """What names several points: each r with each beta and each seed."""
@@ -228,6 +227,7 @@ SET = value(
     dest="changes",
 )
 FROM = value("--from POINT", "continue from the last state of this dataset", dest="start_from")
+RESEED = "--reseed SEED", "fresh noise for the state of --from, in place of --seed"
 TAKE = (
     value("--start TIME", "time of the first frame (default: when steady)"),
     value("--length TIME", "time shown (default: by experiment)"),

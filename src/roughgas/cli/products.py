@@ -28,11 +28,11 @@ RATES = Interval("[1, 50]")  # frames a second
 
 def trajectory(options: Namespace) -> None:
     """Simulate a point, and write its trajectory, frame by frame."""
-    name, ((place,), settings) = options.experiment, points_of(options)
-    scene = build(settings, place.r, place.beta)
     for output in options.output:
         check_format(output)
-    initial = initial_in(options)
+    initial, seed = initial_in(options)
+    name, ((place,), settings) = options.experiment, points_of(options, seed)
+    scene = build(settings, place.r, place.beta)
     take = chosen_take(options, settings, scene, initial)
     about = provenance(name, settings, place.labels, options.scale, options.output[0])
     simulated = snapshots(scene, settings, place.seed, take, initial)

@@ -15,7 +15,8 @@ from roughgas.config.labels import SPECIES, holder, names_of
 from roughgas.data.point import Point, read_point, write_point
 from roughgas.simulation import schedule
 from roughgas.simulation.points import points, variant_attributes
-from roughgas.simulation.restart import Initial, initial_of
+from roughgas.simulation.restart import Initial
+from roughgas.simulation.saved import initial_of, seeded
 from roughgas.statistics.errors import NO, UNKNOWN, YES, Estimate
 from roughgas.theory.prediction import over_collisions
 
@@ -27,8 +28,9 @@ REACHED = {YES: "met", NO: "NOT met", UNKNOWN: "not known to be met"}
 
 def run(options: Namespace) -> None:
     """Simulate the points that `options` name, and write each dataset as soon as it is there."""
-    at, settings = points_of(options)
-    initial, settings = initial_in(options), config.point_settings(settings)
+    initial, seed = initial_in(options)
+    at, settings = points_of(options, seed)
+    settings = config.point_settings(settings)
     outputs = options.output or [_own_name(options, place) for place in at]
     if len(outputs) != len(at):
         raise InputError("--output", " ".join(outputs), f"name {len(at)}, one per point")
@@ -51,28 +53,33 @@ def run(options: Namespace) -> None:
             _say_done(output, point)
 
 
-def initial_in(options: Namespace) -> list[Initial]:
-    """Return the states in the file that the run goes on from; none where it starts anew."""
-    if options.start_from is None:
-        return []
-    if isinstance(options.seed, list) and len(options.seed) > 1:
-        legal = "be one with --from, which has the random numbers of its own run"
-        raise InputError("--seed", " ".join(options.seed), legal)
-    point = read_point(options.start_from)
-    if "last_position" not in point:
-        legal = "be a point that has kept its last state, by --keep-state"
-        raise InputError("--from", options.start_from, legal)
-    return initial_of(point)
+def initial_in(options: Namespace) -> tuple[list[Initial], Any]:
+    """Return the states in the file that a run goes on from, none where it starts anew; and the
+    seed of its noise, or a list of seeds."""
+    states: list[Initial] = []
+    if options.start_from is not None:
+        point = read_point(options.start_from)
+        if "last_position" not in point:
+            legal = "be a point that has kept its last state, by --keep-state"
+            raise InputError("--from", options.start_from, legal)
+        states = initial_of(point)
+    return seeded(states, options.seed, options.reseed)
 
 
-def points_of(options: Namespace) -> tuple[list[config.Place], dict[str, Any]]:
+def points_of(options: Namespace, seed: Any = None) -> tuple[list[config.Place], dict[str, Any]]:
     """Return the places that are named, and the settings of their experiment.
 
-    Raises InputError for illegal values, and for a name that disagrees with --settings.
+    `seed`, one or a list, stands in place of that of the options, whose default is 1. Raises
+    InputError for illegal values, and for a name that disagrees with --settings.
     """
     settings = _settings(options)
-    r, beta, seed = (labels(f"--{name}", getattr(options, name)) for name in config.PARSE)
-    at = config.places(r, beta, seed, prefix="--")
+    chosen = options.seed if seed is None else seed
+    seeds = chosen if isinstance(chosen, list) else [str(1 if chosen is None else chosen)]
+    r, beta, seeds = (
+        labels(f"--{name}", values)
+        for name, values in (("r", options.r), ("beta", options.beta), ("seed", seeds))
+    )
+    at = config.places(r, beta, seeds, prefix="--")
     config.check_one_variant(options.experiment, settings)
     variant_attributes(options.experiment, settings)
     return at, settings

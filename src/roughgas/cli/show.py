@@ -119,7 +119,9 @@ def _settings(about: Mapping[str, Any]) -> Iterator[list[str]]:
     """Yield rows with what was simulated, and for how long, from attributes."""
     experiment = from_json(about["experiment_json"], "settings of the dataset")
     netcdf.require(experiment, ("particles", "box", "effects"), "its settings")
-    yield ["point", f"r = {about['r']:g}, beta = {about['beta']:g}, seed {about['seed']}"]
+    noise = ", fresh noise for a saved state" if about.get("reseeded") else ""
+    point = f"r = {about['r']:g}, beta = {about['beta']:g}, seed {about['seed']}{noise}"
+    yield ["point", point]
     box = " x ".join(f"{side:g}" if side != "open" else "open" for side in experiment["box"])
     filled = "" if "open" in experiment["box"] else f", packing {packing(experiment):.3g}"
     shape = SHAPES[len(experiment["box"])]

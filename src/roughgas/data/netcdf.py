@@ -205,10 +205,10 @@ LARGEST = 4e9  # bytes that a file may say it holds
 NUMBER, WHOLE, WORD, JSON = "a number", "a whole number", "text", "a JSON object"
 ATTRIBUTES = {
     "schema_version": WHOLE,
-    **dict.fromkeys(("seed", "dimension", "particles"), WHOLE),
+    **dict.fromkeys(("seed", "dimension", "particles", "initial_exact", "reseeded"), WHOLE),
     **dict.fromkeys(("r", "beta", "inertia", "spin_share", "mu", "packing", "r_at_speed"), NUMBER),
     **dict.fromkeys(("experiment", "scale", "r_label", "beta_label", "command", "swept"), WORD),
-    **dict.fromkeys(("variant", "theory", "study", "task"), WORD),
+    **dict.fromkeys(("variant", "theory", "study", "task", "initial_digest"), WORD),
     **dict.fromkeys(("experiment_json", "settings_json", "species_json", "langevin_json"), JSON),
 }
 """What the attributes that are read must be, where they are there."""

@@ -61,6 +61,17 @@ class Kind(NamedTuple):
             return np.broadcast_to(mean, self.number)
         return rng.choice(mean, self.number)
 
+    def admits(self, radii: np.ndarray, tolerance: float) -> np.ndarray:
+        """Return whether a particle of it can have each of these radii (N,), to a relative
+        tolerance."""
+        mean = np.array(self.radius)
+        if self.spread is None:
+            nearest = mean[np.abs(radii[:, None] - mean).argmin(axis=1)]
+            return np.isclose(radii, nearest, rtol=tolerance, atol=0.0)
+        name, deviation = self.spread
+        width = math.sqrt(3.0) * deviation if name == UNIFORM else math.inf
+        return np.abs(radii / mean - 1.0) <= width + tolerance
+
     def mean_power(self, power: int) -> float:
         """Return the mean of radius^2 or radius^3, as it is expected."""
         mean = float(np.mean(np.array(self.radius) ** power))

@@ -21,9 +21,10 @@ from roughgas.simulation.energies import free_of_momentum, species_names
 from roughgas.simulation.gas import Gas
 from roughgas.simulation.journal import Journal
 from roughgas.simulation.recorder import Recorder
-from roughgas.simulation.restart import Initial, check_initial, final_states, is_memory_of, owner
+from roughgas.simulation.restart import RESEED, Initial, final_states, is_memory_of, owner
+from roughgas.simulation.starts import prepared
 from roughgas.statistics.errors import UNKNOWN, YES
-from roughgas.theory.closed_forms import VOLUME, collision_frequency
+from roughgas.theory.closed_forms import VOLUME, collision_frequency, packing_fraction
 from roughgas.theory.mixtures import SPECIES
 from roughgas.theory.rate_equations import LANGEVIN
 
@@ -52,8 +53,9 @@ def run_point(
     roughgas.scene.build makes of them at r and beta. The same settings, r, beta and seed give the
     same numbers to the last bit, but for `kernel_seconds`. `tell(time, collisions)` is called as
     the simulation goes on. It begins in the `initial` states, one per replica, or else on a
-    lattice. Its observables are those of the settings, and `functions` of frames by name. It
-    goes on from where a `journal` of the same run is, and keeps there how far it is.
+    lattice; where it goes on from them to the last bit, nothing depends on the seed. Its
+    observables are those of the settings, and `functions` of frames by name. It goes on from where
+    a `journal` of the same run is, and keeps there how far it is.
     Raises InputError if the particles do not fit or could not begin so, CollapseError if contacts
     accumulate without end.
     """
@@ -66,7 +68,7 @@ def run_point(
     kept = math.inf if keep else int(logs)  # the log is that of the first gas
     recorder = Recorder(tell, kept, watching.begin if watching else None, journal)
     if initial:
-        check_initial(initial, experiment, scene)
+        initial = prepared(initial, experiment, scene, seed)
     found = schedule.of(experiment).run(scene, experiment, seed, recorder, initial)
     if keep:
         found |= final_states(recorder.gases)
@@ -96,7 +98,7 @@ def run_point(
             "seed": int(seed),
             "particles": number,
             "dimension": len(scene.box),
-            **_packing(scene, experiment),
+            **_packing(scene, experiment, initial),
             **_known_to_theory(scene, experiment),
             **_about_stages(experiment),
             **_about_restitution(scene),
@@ -124,12 +126,16 @@ def _refuse_rest(scene):
         raise InputError("effects.floor.amplitude", floor.amplitude, legal)
 
 
-def _packing(scene, experiment):
-    """Return the packing that was asked for, or that of a periodic box."""
+def _packing(scene, experiment, initial):
+    """Return the packing that was asked for, or that of a periodic box: of the particles in the
+    initial states, where they differ."""
     asked = experiment.get("packing")
     if asked is None and None in scene.box:
         return {}
     found = packing(experiment)
+    if initial and scene.effects.species is not None:
+        volume = np.mean([np.mean(state.radius ** len(scene.box)) for state in initial])
+        found = float(volume) * packing_fraction(experiment["particles"], experiment["box"])
     return {"packing": asked if asked and math.isclose(asked, found) else found}
 
 
@@ -150,12 +156,15 @@ def _withdrawn(found):
 
 
 def _about_start(initial, scene):
-    """Return which states a run began in, and whether it went on to the last bit."""
+    """Return which states a run began in, whether it went on to the last bit, and whether with
+    fresh noise."""
     if not initial:
         return {}
-    exact = all(is_memory_of(one, scene) for one in initial)
-    digests = ",".join(one.digest() for one in initial)
-    return {"initial_digest": digests, "initial_exact": int(exact)}
+    fresh = initial[0].noise == RESEED
+    exact = not fresh and all(is_memory_of(state, scene) for state in initial)
+    digests = ",".join(state.digest() for state in initial)
+    origin = {"initial_digest": digests, "initial_exact": int(exact)}
+    return origin | ({"reseeded": 1} if fresh else {})
 
 
 def _known_to_theory(scene, experiment):

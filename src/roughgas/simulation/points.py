@@ -21,7 +21,7 @@ from roughgas.simulation import schedule
 from roughgas.simulation.journal import Journal
 from roughgas.simulation.point import run_point
 from roughgas.simulation.progress import Progress
-from roughgas.simulation.restart import Initial
+from roughgas.simulation.restart import CARRIED, SEED, Initial
 
 ROOMS = "base compiling effects kernel observables scene simulation statistics theory".split()
 """Where the sources are that a run's numbers depend on, between a stop and its going on."""
@@ -95,7 +95,8 @@ def points(
     for place, output in zip(at, outputs, strict=True):
         r, beta, seed, labels = place
         one = name if len(at) == 1 else f"{name}, r = {labels[0]}, beta = {labels[1]}, seed {seed}"
-        about = provenance(name, settings, labels, scale, output, told=told)
+        noise = initial[0].noise if initial else SEED
+        about = provenance(name, settings, labels, scale, output, told=told, noise=noise)
         journal = _journal(output, sources, settings, place, initial) if checkpoints else None
         journals += [journal] if journal else []
         with Progress(one, scenes[r, beta], settings, quiet=quiet) as bar:
@@ -120,7 +121,7 @@ def _journal(
 ) -> Journal:
     """Return the journal of a point, beside the `output` that it is written to."""
     about = [sources, np.__version__, config.as_text(settings), place[:3]]
-    text = repr([*about, [one.digest() for one in initial]])
+    text = repr([*about, [(state.digest(), state.noise) for state in initial]])
     owner = hashlib.sha256(text.encode()).hexdigest()
     return Journal(f"{output}.checkpoint.npz", owner)
 
@@ -152,18 +153,21 @@ def provenance(
     output: str,
     verb: str = "run",
     told: Sequence[str] = (),
+    noise: str = SEED,
 ) -> dict[str, Any]:
     """Return the attributes of a point's dataset that say how to make it again.
 
     `point` has its labels (r, beta, seed); the command among the attributes, `roughgas VERB`, is
-    told what else is in `told`, and writes to `output`.
+    told what else is in `told`, and writes to `output`. Its option `noise` has the seed, or none
+    where the state that it begins in has it (see roughgas.simulation.restart).
     Raises InputError where the name of the experiment and the settings disagree.
     """
     text = config.as_text(config.point_settings(settings))
     r, beta, seed = point
     command = ["roughgas", verb, experiment, "--scale", scale]
     # joined by =, so that a negative number is not taken for an option
-    command += [f"--r={r}", f"--beta={beta}", f"--seed={seed}"]
+    command += [f"--r={r}", f"--beta={beta}"]
+    command += [] if noise == CARRIED else [f"--{noise}={seed}"]
     command += [*told, "--settings", text, "--output", output]
     return {
         "title": f"{experiment}: r = {r}, beta = {beta}",

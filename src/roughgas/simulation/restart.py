@@ -17,24 +17,21 @@ import hashlib
 import math
 import zipfile
 import zlib
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from roughgas.base import InputError, shown
+from roughgas.base import InputError
 from roughgas.base.files import remove_dead_drafts, whole_file
 from roughgas.kernel.hooks import displacement
 from roughgas.kernel.memory import new_state
 from roughgas.kernel.state import BASE, EXPONENT, NOW, State
 from roughgas.scene import Scene, given_bodies
-from roughgas.scene.initial import check_places
 from roughgas.simulation.paths import flown, in_order
 
 if TYPE_CHECKING:
-    import xarray
-
     from roughgas.simulation.gas import Gas
 
 OWNER, STATE, RECORD = "belongs to", "state.", "record."
@@ -143,7 +140,11 @@ def positions_and_velocities(
 
 OF_BODIES = {"radius": "radius", "species": "species_of"}
 """What an Initial has of each particle that differs, and what variables call it."""
+OF_SETTINGS = ("mass", "inertia")
+"""Quantities of a particle in a dataset that a run takes from its settings."""
 SEAL = 32  # bytes at the end of a memory, a checksum
+CARRIED, SEED, RESEED = "", "seed", "reseed"
+"""Source of the noise of a run that begins in a state: the seed of the run before, or an option."""
 
 
 class Initial(NamedTuple):
@@ -157,6 +158,10 @@ class Initial(NamedTuple):
     time: float = 0.0  # T: the phase of what drives the gas
     memory: bytes = b""  # of the kernel
     owner: str = ""  # whose memory it is
+    names: tuple[str, ...] = ()  # of the species; empty: they are numbered as in the experiment
+    of_settings: Mapping[str, np.ndarray] = {}  # (N,) each, to be checked: OF_SETTINGS
+    seed: Any = 1  # of the run that ended in it, as its dataset has it
+    noise: str = CARRIED  # or SEED, or RESEED
 
     def digest(self) -> str:
         """Return a checksum of all that shapes what comes of it."""
@@ -173,83 +178,15 @@ class Initial(NamedTuple):
         parts = [np.asarray(one, float).tobytes() for one in self[:5] if one is not None]
         return b"".join(parts) + repr(float(self.time)).encode()
 
+    def generator(self, rng: np.random.Generator) -> np.random.Generator:
+        """Return the generator of a run from this state; `rng` is the generator of its seed.
 
-def initial_of(dataset: "xarray.Dataset") -> list[Initial]:
-    """Return the states in a dataset, one per replica.
-
-    It may be a point that has kept its last state, a frame of a trajectory, or of one's own:
-    `position` and `velocity` (particle, axis), `spin` (particle, spin_axis), `radius` and
-    `species_of` (particle), `time`. Raises InputError where any of the first two lacks or any is
-    not a finite number.
-    """
-    prefix = "last_" if "last_position" in dataset else ""
-    found = {}
-    for name in ("position", "velocity", "spin"):
-        if prefix + name in dataset:
-            found[name] = _by_replica(dataset, prefix + name)
-        elif name != "spin":
-            legal = "be in the dataset: a point made with keep_state, or a frame of a trajectory"
-            raise InputError("initial", f"without {name}", legal)
-    differ = f"{prefix}species_of" in dataset
-    for name, variable in OF_BODIES.items() if differ else ():
-        if prefix + variable in dataset:
-            found[name] = _by_replica(dataset, prefix + variable, 1)
-    times = np.atleast_1d(dataset[f"{prefix}time"].values) if f"{prefix}time" in dataset else [0.0]
-    if not np.isfinite(times).all() or np.min(times) < 0.0:
-        raise InputError("initial.time", shown(list(times)), "be a number >= 0")
-    memory = dataset["last_memory"].values if "last_memory" in dataset else None
-    return [
-        Initial(
-            **{name: values[number] for name, values in found.items()},
-            time=float(times[number if len(times) > 1 else 0]),
-            memory=b"" if memory is None else memory[number].tobytes(),
-            owner=dataset.attrs.get("memory_of", ""),
-        )
-        for number in range(len(found["position"]))
-    ]
-
-
-def _by_replica(dataset, name, axes=2):
-    """Return an array (replicas, N, components), or without components."""
-    values = np.asarray(dataset[name].values, float)
-    if "frame" in dataset[name].dims:
-        legal = "have no frames: choose one, as by initial.isel(frame=-1)"
-        raise InputError(f"initial.{name}", dataset[name].dims, legal)
-    values = values[None] if values.ndim == axes else values
-    if values.ndim != 1 + axes or not np.isfinite(values).all():
-        legal = "be finite vectors" if axes == 2 else "be finite numbers"
-        raise InputError(f"initial.{name}", f"of shape {values.shape}", legal)
-    return values
-
-
-def check_initial(initial: Sequence[Initial], experiment: Mapping[str, Any], scene: Scene) -> None:
-    """Raise InputError where a run of this scene could not begin with these states."""
-    replicas = experiment["schedule"].get("replicas", 1)
-    if len(initial) != replicas:
-        raise InputError("number of initial states", len(initial), f"be {replicas}, as replicas")
-    number, dimension = experiment["particles"], len(scene.box)
-    components = 2 * dimension - 3
-    for one in initial:
-        wanted = {"position": dimension, "velocity": dimension, "spin": components}
-        for name, width in wanted.items():
-            values = getattr(one, name)
-            if values is not None and values.shape != (number, width):
-                legal = f"have the shape ({number}, {width}) in this scene"
-                raise InputError(f"initial.{name}", f"of shape {values.shape}", legal)
-        if one.spin is not None and scene.effects.spin is None and np.any(one.spin):
-            raise InputError("initial.spin", "not zero", "not be there where particles do not spin")
-        if scene.effects.species is not None:
-            for name, variable in OF_BODIES.items():
-                if getattr(one, name) is None:
-                    legal = "be in the dataset where the experiment has species"
-                    raise InputError("initial", f"without {variable}", legal)
-                if getattr(one, name).shape != (number,):
-                    legal = f"have the shape ({number},) in this scene"
-                    raise InputError(f"initial.{variable}", getattr(one, name).shape, legal)
-            given_bodies(scene, experiment, *one.bodies())
-        if not is_memory_of(one, scene):
-            radius = None if scene.effects.species is None else one.radius
-            check_places(scene, one.position, one.time, radius)
+        Another state has other random numbers with the same seed, so that a loop which changes
+        states between runs does not repeat its noise. The numbers of species do not matter.
+        """
+        content = self._replace(species=None).physics()
+        state = int.from_bytes(hashlib.sha256(content).digest()[:16], "little")
+        return np.random.default_rng([int(rng.integers(2**63)), state])
 
 
 def owner(scene: Scene) -> str:
@@ -281,7 +218,11 @@ def state_from(
     """Return the state in which a run begins, and the extents (D,) that it is laid out for; between
     them, where it goes on with its memory, the collisions when it began to cool."""
     if is_memory_of(initial, scene):
-        return _remembered(initial, scene, experiment)
+        state, begun, extents = _remembered(initial, scene, experiment)
+        if initial.noise == RESEED:
+            state.random[:] = initial.generator(rng).integers(2**64, dtype=np.uint64)
+        return state, begun, extents
+    rng = initial.generator(rng)
     spin, bodies = initial.spin, None
     if spin is None:
         spin = np.zeros((len(initial.position), 2 * len(scene.box) - 3))

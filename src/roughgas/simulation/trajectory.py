@@ -22,8 +22,9 @@ from roughgas.simulation.change import change
 from roughgas.simulation.energies import Energies, ratio, restored, species_names
 from roughgas.simulation.gas import Gas
 from roughgas.simulation.paths import in_order, rotations, unwrapped_positions
-from roughgas.simulation.restart import Initial, check_initial, positions_and_velocities
+from roughgas.simulation.restart import Initial, positions_and_velocities
 from roughgas.simulation.stages import Stage
+from roughgas.simulation.starts import prepared
 from roughgas.theory.closed_forms import collision_frequency
 
 STRIDES = 200  # particles for each collision of a step of a cooling gas
@@ -163,7 +164,7 @@ def snapshots(
     kind = schedule.of(experiment)
     scene, experiment = _with_paths(scene, experiment)
     if initial:
-        check_initial(initial, experiment, scene)
+        initial = prepared(initial, experiment, scene, seed)
     gas = kind.start(scene, experiment, seed, None, initial[:1])
     before = gas.collisions
     changes = stages.course(scene, experiment, gas.time) if kind is stages else []
