@@ -46,6 +46,8 @@ if TYPE_CHECKING:
 SAME = ("experiment", "scale", "dimension", "inertia", "spin_share", "mu", "particles", "swept")
 OF_A_POINT = ("r", "beta", "seed", "r_label", "beta_label", "variant", "swept_value", "command")
 PROVENANCE = ("roughgas_version", "numpy_version", "numba_version", "kernel_source_hash")
+SAME_RUN = ("R", "E_trans", "E_rot", "collisions", "measured_from")
+"""Results whose bits agree in copies of a run alone."""
 SERIES = (*OF_COOLING, *(name for name in OF_STAGES if POINT[name].dims[0] == "sample"))
 OF_SPECIES = [name for name, one in POINT.items() if one.dims == ("species",) and one.over_seeds]
 
@@ -68,8 +70,8 @@ def reduce_points(paths: Iterable[str | Path], output: str | Path) -> None:
 
     A path is that of a dataset, or of a folder with a dataset for each seed. Seeds that are missing
     at an (r, beta) are NaN in R_seed, and do not count in n_seeds and the means.
-    Raises InputError if there are no paths, several experiments, the same point twice, a point
-    whose numbers cannot be right, or a damaged file, which is then put aside.
+    Raises InputError if there are no paths, several experiments, the same point or the same run
+    twice, a point whose numbers cannot be right, or a damaged file, which is then put aside.
     """
     folders = (path.glob("seed*.nc") if path.is_dir() else [path] for path in map(Path, paths))
     points = [_checked(file) for files in folders for file in sorted(files)]
@@ -172,6 +174,7 @@ def _window(variables: Stored, scalars: Mapping[str, float]) -> tuple[float, flo
 
 def _combined(points: Sequence[Summary]) -> Content:
     """Return the reduced dataset of points of one experiment."""
+    _refuse_copies(points)
     attributes = _common_attributes(points)
     columns = zip(*(point.place for point in points), strict=True)
     axes = [sorted(set(column), key=lambda x: (isinstance(x, str), x)) for column in columns]
@@ -191,6 +194,21 @@ def _combined(points: Sequence[Summary]) -> Content:
     reduced = described("reduced", values, "plateau_end" in stacks, grid)
     seen = _observables(points, axes, grid)
     return Content(third | reduced | seen, attributes)
+
+
+def _refuse_copies(points: Sequence[Summary]) -> None:
+    """Raise InputError for two seeds whose runs began in the same state and went on alike: either
+    to the last bit, or, as in a scene without random numbers, with the same results."""
+    begun: dict[Any, Summary] = {}
+    for point in points:
+        exact = point.attributes.get("initial_exact") == 1
+        alike = () if exact else tuple(map(str, map(point.scalars.get, SAME_RUN)))
+        for state in filter(None, str(point.attributes.get("initial_digest", "")).split(",")):
+            other = begun.setdefault((point.place[:-1], state, exact, alike), point)
+            if other.place != point.place:
+                seeds = f"{other.place[-1]} and {point.place[-1]}"
+                legal = "be of runs that differ, and both go on alike from one state: use --reseed"
+                raise InputError("seeds", seeds, legal)
 
 
 def _names(points: Sequence[Summary]) -> dict[str, Any]:
