@@ -6,12 +6,16 @@ from brute_force import begin, run, scene_of, settings, snapshot
 from brute_force.beside import brute_force_from
 from schedules import STEADY
 
+from roughgas.data.point import as_dataset
 from roughgas.effects import KINDS
 from roughgas.effects.paths import Paths
 from roughgas.scene import build
 from roughgas.simulation.change import change
 from roughgas.simulation.gas import Gas
-from roughgas.simulation.paths import rotations, unwrapped_positions
+from roughgas.simulation.paths import in_order, rotations, unwrapped_positions
+from roughgas.simulation.point import run_point
+from roughgas.simulation.restart import state_from
+from roughgas.simulation.saved import initial_of
 
 TINY = 1e-9
 MIXTURE = {
@@ -140,3 +144,18 @@ def test_a_run_that_counts_paths_has_the_bits_of_one_that_does_not():
     assert states[0].trajectory.tobytes() == states[1].trajectory.tobytes()
     assert states[0].ledger.tobytes() == states[1].ledger.tobytes()
     assert KINDS["paths"] is Paths
+
+
+def test_rotations_of_a_run_that_goes_on_begin_at_zero():
+    """In the middle of flights, which began before."""
+    experiment = settings("sheared", 16, [20, 20]) | {"schedule": STEADY, "keep_state": True}
+    point = run_point(build(experiment, 0.9, 0.3), experiment, 5)
+    about = {"experiment": "x", "scale": "small"} | point.attributes
+    (initial,) = initial_of(as_dataset(point._replace(attributes=about)))
+    scene = build(with_paths(experiment), 0.9, 0.3)
+    state, begun, _ = state_from(initial, scene, experiment, np.random.default_rng(0))
+    assert begun is not None  # with its memory, though that run counted no paths
+    assert np.all(rotations(state) == 0.0)
+    spin = in_order(state, state.spin[:, 0])
+    run(state, scene, 1, interval=1e-6)
+    assert rotations(state) == pytest.approx(spin * 1e-6, rel=1e-6)

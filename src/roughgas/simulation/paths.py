@@ -68,6 +68,15 @@ def _turned_since_event(state):
     return state.spin[:, 0] / radius * (state.clock[NOW] - state.trajectory[:, -1])
 
 
+def begin_paths(state: State) -> None:
+    """Let rotations count from the present instant on, where flights are under way.
+
+    For a state from a kernel's memory, in which counts are zero and flights have begun before.
+    """
+    if state.paths is not None and state.paths.rotation is not None:
+        state.paths.rotation[state.label] = -_turned_since_event(state)
+
+
 def end_flights(state: State, position: np.ndarray, landing: np.ndarray, scene: Scene) -> None:
     """Count the flights that end at the present instant, of all particles.
 

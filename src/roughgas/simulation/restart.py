@@ -29,7 +29,7 @@ from roughgas.kernel.hooks import displacement
 from roughgas.kernel.memory import new_state
 from roughgas.kernel.state import BASE, EXPONENT, NOW, State
 from roughgas.scene import Scene, given_bodies
-from roughgas.simulation.paths import flown, in_order
+from roughgas.simulation.paths import begin_paths, flown, in_order
 
 if TYPE_CHECKING:
     from roughgas.simulation.gas import Gas
@@ -307,4 +307,5 @@ def _remembered(initial, scene, experiment):
         place += array.nbytes
     if place != len(memory):
         raise InputError("initial.last_memory", f"{len(memory)} bytes", f"be {place} bytes long")
+    begin_paths(state)
     return state, int(begun), np.array(extents)
