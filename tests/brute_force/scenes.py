@@ -62,7 +62,7 @@ KERNELS = {
         [100, 100], {"thermostat": _HEAT["thermostat"] | {"spin_share": 0.0}}
     ),
     "heated spheres": _kernel([12, 12, 12], _SPHERES, _HEAT, _FRICTION, _ALL_SUMS),
-    "bath": _kernel([100, 100], _DISKS, {"langevin": _BATH}),
+    "bath": _kernel([100, 100], _DISKS, {"langevin": _BATH}, _PATHS),
     "viscoelastic": _kernel(
         [100, 100],
         _DISKS,
@@ -74,6 +74,7 @@ KERNELS = {
         {"left_wall": {"temperature": 2.0, "velocity": 0.7}},
         {"right_wall": {"restitution": 0.9, "roughness": 0.5}},
         {"bottom_wall": {"velocity": -1.0, "roughness": 0.8}, "lid": _SINE | {"roughness": 0.3}},
+        _PATHS,
     ),
     "closed spheres": _kernel(
         [12, 12, 12],

@@ -9,6 +9,7 @@ from schedules import STEADY
 from roughgas.data.point import as_dataset
 from roughgas.effects import KINDS
 from roughgas.effects.paths import Paths
+from roughgas.kernel.state import EXPONENT
 from roughgas.scene import build
 from roughgas.simulation.change import change
 from roughgas.simulation.gas import Gas
@@ -29,6 +30,7 @@ GASES = {
     "heated": (settings("heated", 6, [12, 12]), 0.3),
     "sheared": (settings("sheared", 6, [12, 12]), 0.3),
     "bed": (settings("bed", 6, [10, "open"]), 0.3),
+    "bath": (settings("bath", 6, [12, 12]), 0.3),
     "spheres": (settings("spheres", 6, [6, 7, 8]), 0.3),
     "mixture": (settings("heated", 6, [14, 12]) | MIXTURE, 0.3),
 }
@@ -83,21 +85,21 @@ def test_displacements_and_rotations_are_those_of_each_flight_of_a_brute_force(n
     assert rotations(state) is None or np.abs(rotations(state)).max() > 0.5
 
 
-def dense_path(gas, interval, samples):
-    """Displacements (N, D), the sum of steps so short along the second axis that nearest images are
-
-    the right ones."""
+def dense_path(gas, advance, samples):
+    """Displacements (N, D), the sum of steps so short that nearest images are the right ones; along
+    the flow of a sheared gas they are not."""
     before = gas.positions_and_velocities()[0][np.argsort(gas.state.label)]
     lengths = [length or np.inf for length in gas.scene.box]
     total = np.zeros_like(before)
     for _ in range(samples):
-        gas.in_time(interval, 1)
+        advance()
         position = gas.positions_and_velocities()[0][np.argsort(gas.state.label)]
         step = position - before
         for axis, length in enumerate(lengths):
             if np.isfinite(length):
                 step[:, axis] -= length * np.rint(step[:, axis] / length)
-        assert np.abs(step[:, 1]).max() < 0.4 * lengths[1]
+        steps = step[:, 1:] if gas.scene.effects.shear else step
+        assert np.all(np.abs(steps) < 0.4 * np.array(lengths)[-steps.shape[1] :])
         total, before = total + step, position
     return total
 
@@ -108,11 +110,38 @@ def test_paths_are_those_of_dense_observations_also_where_particles_are_sorted_a
     experiment = with_paths(settings("shaken" if number < 500 else "sheared", number, box))
     gas = Gas.start(build(experiment, 0.9, 0.3), experiment, np.random.default_rng(1))
     first, order = unwrapped_positions(gas.state, gas.scene), gas.state.label.copy()
-    total = dense_path(gas, 0.5, 60)
+    total = dense_path(gas, lambda: gas.in_time(0.5, 1), 60)
     displacement = unwrapped_positions(gas.state, gas.scene) - first
     assert displacement[:, 1] == pytest.approx(total[:, 1], abs=TINY)
     assert np.count_nonzero(gas.state.paths.crossings[:, 1]) > number / 40
     assert number < 500 or not np.array_equal(gas.state.label, order)
+
+
+def test_paths_go_on_where_a_cooling_gas_is_refreshed():
+    """Each refresh brings all particles into the box, and changes the units of time and spin."""
+    experiment = with_paths(settings("spheres", 40, [12, 12, 12]))
+    gas = Gas.start(build(experiment, 0.6, 0.3), experiment, np.random.default_rng(1))
+    gas.cool(40)
+    gas.look()
+    first = unwrapped_positions(gas.state, gas.scene)
+    total = dense_path(gas, lambda: gas.step(np.inf, 5), 160)
+    displacement = unwrapped_positions(gas.state, gas.scene) - first
+    assert gas.state.counts[EXPONENT] < -2
+    assert np.any(gas.state.paths.crossings, axis=1).sum() > 10
+    assert displacement == pytest.approx(total, abs=TINY)
+
+
+def test_paths_go_on_through_thermal_walls():
+    """They send particles off at other velocities, along a periodic axis of the box as well."""
+    walled = settings("container", 16, [14, 14])
+    walled["effects"] = {"spin": {"inertia": 0.5}, "bottom_wall": {"temperature": 2.0}, "lid": {}}
+    experiment = with_paths(walled)
+    gas = Gas.start(build(experiment, 0.9, 0.3), experiment, np.random.default_rng(1))
+    first = unwrapped_positions(gas.state, gas.scene)
+    total = dense_path(gas, lambda: gas.in_time(0.25, 1), 400)
+    displacement = unwrapped_positions(gas.state, gas.scene) - first
+    assert displacement == pytest.approx(total, abs=TINY)
+    assert np.any(gas.state.paths.crossings[:, 0])
 
 
 def test_paths_go_on_where_a_stage_changes_the_scene():
