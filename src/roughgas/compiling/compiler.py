@@ -34,6 +34,7 @@ import pickle
 import sys
 import tempfile
 from pathlib import Path
+from types import SimpleNamespace
 
 import numba
 from llvmlite.binding import parse_assembly
@@ -146,6 +147,8 @@ class Passes(CompilerBase):
     """What numba does to a function, without the passes that would find nothing to do."""
 
     def define_pipelines(self):
+        self.state.library = Library(self.state.targetctx.codegen(), self.state.func_id.func_qualname)
+        self.state.library.enable_object_caching()
         whole = DefaultPassBuilder.define_nopython_pipeline(self.state)
         needed = PassManager("kernel")
         needed._ENFORCING = False  # no analysis that no pass asks for after each that changes much
@@ -210,34 +213,57 @@ class Library(JITCodeLibrary):
     Numba makes machine code of each function that a kernel is put together from, and optimises it
     with all that it calls, though only the kernel's own is ever run. Here only what Python or C
     calls is optimised and finished, with each function that it calls, directly or not, linked once;
-    of the others LLVM knows nothing until then.
+    of the others LLVM knows nothing until then, or until a function of the user's calls them.
     """
 
     def __init__(self, codegen, name):
         super().__init__(codegen, name)
-        self._written = []  # llvmlite's modules
+        self._written = []  # llvmlite's modules, until they are linked
+
+    @property
+    def codegen(self):
+        """Numba's code generator, which tells a function where its Python objects are; a function
+        without machine code has none."""
+        return self._codegen if self._is_entry() else OBJECTLESS
+
+    def _is_entry(self):
+        names = [function.name for module in self._written for function in module.functions]
+        return any(name.startswith(("_ZN7cpython", "_ZN5cfunc")) for name in names)
 
     def add_ir_module(self, ir_module):
         self._written.append(ir_module)
 
     def finalize(self):
-        if any(_is_entry(one.name) for module in self._written for one in module.functions):
-            _, *below = _callers_first(self)
-            ours = [one for one in below if isinstance(one, Library)]
-            for library in ours:
-                self._reload_init.update(library._reload_init)
-                for module in library._written:
-                    for function in module.functions:
-                        if not function.is_declaration:
-                            function.linkage = function.linkage or "linkonce_odr"
-            for module in [one for library in (self, *ours) for one in library._written]:
-                self._final_module.link_in(parse_assembly(normalize_ir_text(str(module))))
-            # what was finished before this file was imported, numba links as ever
-            linked = self._linking_libraries
-            self._linking_libraries = [one for one in below if not isinstance(one, Library)]
+        if self._is_entry():
+            self._link()
+            calls, self._linking_libraries = self._linking_libraries, []
             super().finalize()
-            self._linking_libraries = linked  # for what calls this function in its turn
+            self._linking_libraries = calls  # for what calls this function in its turn
         self._finalized = True
+
+    def _get_module_for_linking(self):
+        """Return what numba links where a function of the user's calls this one."""
+        if not (self._shared_module or self._is_entry()):
+            self._link()
+        return super()._get_module_for_linking()
+
+    def _link(self):
+        """Put this function and all that it calls into numba's module."""
+        _, *called = _callers_first(self)
+        inner = [library for library in called if isinstance(library, Library)]
+        for library in called:
+            self._reload_init.update(library._reload_init)
+        for function in (f for library in inner for m in library._written for f in m.functions):
+            if not function.is_declaration:
+                function.linkage = function.linkage or "linkonce_odr"
+        for module in (module for library in (self, *inner) for module in library._written):
+            self._final_module.link_in(parse_assembly(normalize_ir_text(str(module))))
+        for library in called:
+            if library not in inner:  # numba's own, which it has finished
+                self._final_module.link_in(library._get_module_for_linking(), preserve=True)
+
+
+OBJECTLESS = SimpleNamespace(set_env=lambda name, environment: None)
 
 
 def _callers_first(library):
@@ -245,33 +271,14 @@ def _callers_first(library):
     LLVM drops a function that nothing has called when it is linked."""
     done = {}
 
-    def visit(one):
-        for called in one._linking_libraries:
+    def visit(caller):
+        for called in caller._linking_libraries:
             if called not in done:
                 visit(called)
-        done[one] = None
+        done[caller] = None
 
     visit(library)
     return [*done][::-1]
-
-
-def _is_entry(name):
-    return name.startswith(("_ZN7cpython", "_ZN5cfunc"))
-
-
-def _set_environment(code, set_it, name, environment):
-    """Tell a function where its Python objects are; one without machine code has none."""
-    if code._engine.is_symbol_defined(name):
-        set_it(name, environment)
-
-
-def _finish_entries_only():
-    code = cpu_target.target_context.codegen()
-    code._library_class = Library
-    code.set_env = functools.partial(_set_environment, code, code.set_env)
-
-
-_finish_entries_only()
 
 
 def type_of(name):
