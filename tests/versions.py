@@ -23,7 +23,7 @@ TOOLS = ("pytest", "hypothesis", "mpmath")
 BASE = (
     "tests/data/test_point_file.py",
     "tests/kernel/test_collision_rule.py",
-    "tests/compiling/test_compiler.py",
+    "tests/compiling",
     "tests/observables/test_each.py",
     "tests/observables/test_each.py",
     "tests/simulation/test_gas.py",
@@ -31,7 +31,7 @@ BASE = (
     "tests/test_bits.py",
 )
 """Tests that need nothing but the package; those of bits compare numbers across all versions."""
-PRIVATE = ("tests/compiling/test_compiler.py", "tests/habits/test_stopping.py")
+PRIVATE = ("tests/compiling", "tests/habits/test_stopping.py")
 """Tests of what is used though it is private."""
 QUICK = "not slow and not remedy and not browser and not slurm"
 

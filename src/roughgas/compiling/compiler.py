@@ -21,13 +21,10 @@ tests/compiling/test_compiler.py:
 - `Library`, `set_env`: machine code is made of a kernel, and not of each function in it besides;
 - the types and values of a Reference (compiling/reference.py): a state and a scene in memory;
 - `make_intrinsic_template`: operators of lanes (compiling/simd.py) are defined as operations are;
-- `event.start_event`, `end_event`: a tenth of the time went into telling of locks and passes;
 - `_cache`, `CompileResult`, `rtsys`: to load a kernel without setting up the compiler, to share it
   among copies of the project, to seal files with a checksum.
 """
 
-import functools
-import gc
 import hashlib
 import os
 import pickle
@@ -38,7 +35,6 @@ from types import SimpleNamespace
 
 import numba
 from llvmlite.binding import parse_assembly
-from numba.core import event
 from numba.core.cgutils import normalize_ir_text
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase, CompileResult, DefaultPassBuilder
@@ -147,7 +143,8 @@ class Passes(CompilerBase):
     """What numba does to a function, without the passes that would find nothing to do."""
 
     def define_pipelines(self):
-        self.state.library = Library(self.state.targetctx.codegen(), self.state.func_id.func_qualname)
+        name, target = self.state.func_id.func_qualname, self.state.targetctx
+        self.state.library = Library(target.codegen(), name)
         self.state.library.enable_object_caching()
         whole = DefaultPassBuilder.define_nopython_pipeline(self.state)
         needed = PassManager("kernel")
@@ -176,35 +173,7 @@ def dispatcher(function, cache=False, inner=False, inline=False):
     made = numba.njit(error_model="numpy", _nrt=False, pipeline_class=Passes, **options)(function)
     if cache:
         made._cache = Kept(function)
-    if not inner:
-        made.compile = _undisturbed(made.compile)
     return made
-
-
-def _tell_nobody(*about, **more):
-    pass
-
-
-def _undisturbed(compile_it):
-    """Have memory collected once, after compiling: nothing that is compiled can be thrown away.
-
-    And let numba tell nobody of each lock that it takes and each pass that it runs: all functions
-    that are being compiled listen, each within the one that calls it.
-    """
-
-    @functools.wraps(compile_it)
-    def compiling(*args):
-        enabled, told = gc.isenabled(), (event.start_event, event.end_event)
-        gc.disable()
-        event.start_event = event.end_event = _tell_nobody
-        try:
-            return compile_it(*args)
-        finally:
-            event.start_event, event.end_event = told
-            if enabled:
-                gc.enable()
-
-    return compiling
 
 
 class Library(JITCodeLibrary):
@@ -218,7 +187,8 @@ class Library(JITCodeLibrary):
 
     def __init__(self, codegen, name):
         super().__init__(codegen, name)
-        self._written = []  # llvmlite's modules, until they are linked
+        self._written = []  # llvmlite's modules
+        self._exported = []  # functions in them that are known elsewhere
 
     @property
     def codegen(self):
@@ -232,6 +202,9 @@ class Library(JITCodeLibrary):
 
     def add_ir_module(self, ir_module):
         self._written.append(ir_module)
+        for function in ir_module.functions:
+            if not (function.is_declaration or function.linkage):
+                self._exported.append(function)
 
     def finalize(self):
         if self._is_entry():
@@ -253,9 +226,10 @@ class Library(JITCodeLibrary):
         inner = [library for library in called if isinstance(library, Library)]
         for library in called:
             self._reload_init.update(library._reload_init)
-        for function in (f for library in inner for m in library._written for f in m.functions):
-            if not function.is_declaration:
-                function.linkage = function.linkage or "linkonce_odr"
+        for function in (function for library in inner for function in library._exported):
+            function.linkage = "linkonce_odr"
+        for function in self._exported:
+            function.linkage = ""
         for module in (module for library in (self, *inner) for module in library._written):
             self._final_module.link_in(parse_assembly(normalize_ir_text(str(module))))
         for library in called:
