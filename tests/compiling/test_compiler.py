@@ -1,10 +1,12 @@
 """The parts of numba that compiler.py replaces, and the same bits from what is compiled."""
 
+import gc
 import json
 import os
 import shutil
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numba
@@ -74,17 +76,38 @@ def test_what_numba_had_compiled_before_is_called(tmp_path):
     assert said.stdout.split() == [b"3", b"4"], said.stderr.decode()
 
 
-def test_every_pass_that_is_left_out_is_one_of_numbas():
-    """One that is renamed would be there again, and take its time."""
-    passes = []
-    for compile_it in (numba.njit, lambda function: entry(function).dispatcher):
-        function = compile_it(lambda x: 2.0 * x)
-        assert function(1.5) == 3.0
-        (about,) = function.get_metadata().values()
-        (times,) = about["pipeline_times"].values()
-        passes.append({name.partition("_")[2] for name in times})
-    assert passes[1] < passes[0]
-    assert len(passes[0] - passes[1]) == len(compiler.IDLE)
+def test_int_max_and_min_are_pythons():
+    """Of integers, booleans, floats, NaN and tuples; and none of numba's own is linked."""
+
+    @entry
+    def values(x, k, widths):
+        whole = int(x), int(k), int(x > k)
+        return whole, max(x, k), min(x, k), max(k, x, 2.5), max(widths), min(widths)
+
+    for x in (3.75, -0.5, 0.0, float("inf"), float("nan")):
+        finite = x if np.isfinite(x) else 1.0
+        arguments = (finite, 2, (x, 1.5, 0.0))
+        np.testing.assert_equal(values(*arguments), values.py_func(*arguments))
+    (overload,) = values.dispatcher.overloads.values()
+    libraries = compiler._callers_first(overload.library)
+    assert {one.name for one in libraries if not isinstance(one, compiler.Library)} <= {"nrt"}
+
+
+def test_threads_compile_at_the_same_time():
+    """Functions of a user and of ours, one of ours by all threads."""
+
+    @entry
+    def shared(x):
+        return twice(x) + 1.0
+
+    def compile_three(k):
+        mine, users = entry(lambda x: twice(twice(x))), numba.njit(lambda x: twice(x) - x)
+        return mine(float(k)), users(float(k)), shared(float(k))
+
+    with ThreadPoolExecutor(4) as threads:
+        values = [*threads.map(compile_three, range(8))]
+    assert values == [(4.0 * k, 1.0 * k, 2.0 * k + 1.0) for k in range(8)]
+    assert gc.isenabled()
 
 
 COPY = """from roughgas.compiling.jit import entry

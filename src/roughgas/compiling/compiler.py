@@ -25,6 +25,8 @@ tests/compiling/test_compiler.py:
   among copies of the project, to seal files with a checksum.
 """
 
+import functools
+import gc
 import hashlib
 import os
 import pickle
@@ -38,7 +40,6 @@ from llvmlite.binding import parse_assembly
 from numba.core.cgutils import normalize_ir_text
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase, CompileResult, DefaultPassBuilder
-from numba.core.compiler_machinery import PassManager
 from numba.core.registry import cpu_target
 from numba.core.runtime import rtsys
 from numba.core.serialize import dumps
@@ -118,42 +119,14 @@ def _try_to_write(folder):
     tempfile.TemporaryFile(dir=folder).close()
 
 
-# For closures, `with`, branches that types decide, functions that numba inlines, literals,
-# expressions of whole arrays, references to release: compiling/jit.py has done it, or the kernel
-# has none
-IDLE = {
-    "WithLifting",
-    "InlineClosureLikes",
-    "RewriteSemanticConstants",
-    "DeadBranchPrune",
-    "MakeFunctionToJitFunction",
-    "InlineInlinables",
-    "FindLiterallyCalls",
-    "LiteralUnroll",
-    "LiteralPropagationSubPipelinePass",
-    "InlineOverloads",
-    "NopythonRewrites",
-    "NoPythonSupportedFeatureValidation",
-    "DumpParforDiagnostics",
-    "IRLegalization",
-}
-
-
 class Passes(CompilerBase):
-    """What numba does to a function, without the passes that would find nothing to do."""
+    """Numba's passes over a function, whose machine code goes to a Library."""
 
     def define_pipelines(self):
         name, target = self.state.func_id.func_qualname, self.state.targetctx
         self.state.library = Library(target.codegen(), name)
         self.state.library.enable_object_caching()
-        whole = DefaultPassBuilder.define_nopython_pipeline(self.state)
-        needed = PassManager("kernel")
-        needed._ENFORCING = False  # no analysis that no pass asks for after each that changes much
-        for one, purpose in whole.passes:
-            if one.__name__ not in IDLE:
-                needed.add_pass(one, purpose)
-        needed.finalize()
-        return [needed]
+        return [DefaultPassBuilder.define_nopython_pipeline(self.state)]
 
 
 INNER = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
@@ -173,7 +146,25 @@ def dispatcher(function, cache=False, inner=False, inline=False):
     made = numba.njit(error_model="numpy", _nrt=False, pipeline_class=Passes, **options)(function)
     if cache:
         made._cache = Kept(function)
+    if not inner:
+        made.compile = _without_collections(made.compile)
     return made
+
+
+def _without_collections(compile_function):
+    """Have Python look for garbage after a compilation, not during it: there is hardly any."""
+
+    @functools.wraps(compile_function)
+    def compile_at_once(*args):
+        is_enabled = gc.isenabled()
+        gc.disable()
+        try:
+            return compile_function(*args)
+        finally:
+            if is_enabled:
+                gc.enable()
+
+    return compile_at_once
 
 
 class Library(JITCodeLibrary):

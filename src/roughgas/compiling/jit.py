@@ -59,7 +59,7 @@ class Compiled:
         function = self.py_func
         if function.__name__ == "<lambda>":
             return function
-        around = function.__globals__ | inspect.getclosurevars(function).nonlocals
+        around = BUILTINS | function.__globals__ | inspect.getclosurevars(function).nonlocals
         writer = _Writer(self._definition, kinds, around)
         self.written[kinds] = definition = writer.visit(self._definition)
         module = ast.fix_missing_locations(ast.Module([definition], []))
@@ -142,6 +142,45 @@ def of_types(function):
     these: the writer calls it, and compiled code does not."""
     function.of_types = True
     return function
+
+
+@of_types
+def is_tuple(x):
+    """Return whether x is a tuple; it may be a type of numba's."""
+    return isinstance(x, tuple) or hasattr(x, "types")
+
+
+@Primitive
+def integer(x):
+    """Return int(x)."""
+    return int(x)
+
+
+@jit
+def largest(*values):
+    """Return max(*values)."""
+    numbers = values[0] if is_tuple(values[0]) else values
+    number = numbers[0]
+    for k in range(1, len(numbers)):
+        if numbers[k] > number:
+            number = numbers[k]
+    return number
+
+
+@jit
+def smallest(*values):
+    """Return min(*values)."""
+    numbers = values[0] if is_tuple(values[0]) else values
+    number = numbers[0]
+    for k in range(1, len(numbers)):
+        if numbers[k] < number:
+            number = numbers[k]
+    return number
+
+
+BUILTINS = {"int": integer, "max": largest, "min": smallest}
+"""Functions that compiled code calls by these names. Numba's own have a library each, which is
+optimised before the kernel is, or was by a user's function."""
 
 
 def part_of(kind, step):

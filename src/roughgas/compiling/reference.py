@@ -11,14 +11,10 @@ import hashlib
 from llvmlite import ir
 from numba import types
 from numba.core import cgutils
-from numba.core.typing.templates import (
-    AbstractTemplate,
-    AttributeTemplate,
+from numba.core.typing.templates import AbstractTemplate, AttributeTemplate, signature
+from numba.extending import (
     infer,
     infer_getattr,
-    signature,
-)
-from numba.extending import (
     intrinsic,
     lower_builtin,
     lower_getattr_generic,

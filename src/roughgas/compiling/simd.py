@@ -7,6 +7,7 @@ lane, with one operand a scalar if need be; comparisons give lanes of booleans.
 """
 
 import inspect
+import itertools
 import operator
 from typing import Any, NamedTuple
 
@@ -14,8 +15,7 @@ from llvmlite import ir
 from numba import types
 from numba.core import cgutils
 from numba.core.registry import cpu_target
-from numba.core.typing.templates import infer_global, make_intrinsic_template
-from numba.extending import intrinsic, models, register_model
+from numba.extending import intrinsic, lower_builtin, models, register_model, type_callable
 
 BIT, NUMBER, WORD = ir.IntType(1), ir.IntType(32), ir.IntType(64)
 # of a register: of AVX-512, or else of AVX
@@ -79,34 +79,50 @@ class Site(NamedTuple):
         return self.joined([value] * whole.count) if isinstance(whole, Lanes) else value
 
 
-def operation(result, function=None):
-    """Decorate generate(site, *values) -> LLVM's value, an operation of compiled code, or what
-    `function`, one of Python's, does to lanes.
+def operation(result):
+    """Decorate generate(site, *values) -> LLVM's value: an operation of compiled code.
 
     result: of the arguments' types, literal ones where a number is known -> the type returned.
     """
 
     def decorate(generate):
         def define(context, *kinds):
-            if function is not None and not any(isinstance(one, Lanes) for one in kinds):
-                return None
             returned = result(*kinds)
             passed = [types.intp if type(one) is types.Integer else one for one in kinds]
 
             def lower(context, builder, signature, values):
                 site = Site(context, builder, signature.args, returned)
-                if result in (_lane_by_lane, _truth):
+                if result is _lane_by_lane:
                     values = map(site.spread, values, site.kinds)
                 return generate(site, *values)
 
             return returned(*passed), lower
 
         define.__name__, define.__signature__ = generate.__name__, inspect.signature(generate)
-        if function is None:
-            return intrinsic(prefer_literal=True)(define)
-        return infer_global(function)(make_intrinsic_template(function, define, "operator"))
+        return intrinsic(prefer_literal=True)(define)
 
     return decorate
+
+
+def define_operator(function, result, generate):
+    """Have numba compile one of Python's operators for lanes.
+
+    result, generate: as of an operation.
+    """
+
+    def type_of(*kinds):
+        return result(*kinds) if any(isinstance(kind, Lanes) for kind in kinds) else None
+
+    def lower(context, builder, signature, values):
+        site = Site(context, builder, signature.args, signature.return_type)
+        return generate(site, *map(site.spread, values, site.kinds))
+
+    arity = len(inspect.signature(function).parameters)
+    type_of_operands = {1: lambda x: type_of(x), 2: lambda x, y: type_of(x, y)}[arity]
+    type_callable(function)(lambda context: type_of_operands)
+    for kinds in itertools.product((Lanes, types.Any), repeat=arity):
+        if Lanes in kinds:
+            lower_builtin(function, *kinds)(lower)
 
 
 def _lane_by_lane(*kinds):
@@ -135,12 +151,12 @@ def _instruction(name, *sign):
 
 
 for _name, _of_llvm in (ARITHMETIC | LOGIC).items():
-    operation(_lane_by_lane, getattr(operator, _name))(_instruction(_of_llvm))
+    define_operator(getattr(operator, _name), _lane_by_lane, _instruction(_of_llvm))
 for _name, _sign in COMPARED.items():
-    operation(_truth, getattr(operator, _name))(_instruction("fcmp_ordered", _sign))
+    define_operator(getattr(operator, _name), _truth, _instruction("fcmp_ordered", _sign))
+define_operator(abs, _lane_by_lane, lambda site, x: site.call("llvm.fabs", x.type, x))
 
 lane_by_lane = operation(_lane_by_lane)
-operation(_lane_by_lane, abs)(lambda site, x: site.call("llvm.fabs", x.type, x))
 root = lane_by_lane(lambda site, x: site.call("llvm.sqrt", x.type, x))
 select = lane_by_lane(lambda site, condition, a, b: site.builder.select(condition, a, b))
 
@@ -216,6 +232,11 @@ order = operation(lambda count: Lanes(types.float64, count.literal_value))(
     lambda site, count: _numbers(range(site.result.count), ir.DoubleType())
 )
 trailing_zeros = operation(lambda word: types.intp)(lambda site, x: site.builder.cttz(x, BIT(0)))
+
+
+@operation(lambda x: types.intp)
+def integer(site, x):
+    return site.context.cast(site.builder, x, site.kinds[0], site.result)
 
 
 @operation(lambda number: types.intp)
