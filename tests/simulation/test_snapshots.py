@@ -96,3 +96,19 @@ def test_many_particles_keep_their_numbers():
     alike = spins[1:] == spins[:-1]  # those that met nobody
     assert alike.mean() > 0.9
     assert turned[alike] == pytest.approx((spins[:-1] * intervals)[alike], abs=1e-12)
+
+
+def test_disks_of_a_cooling_gas_turn_as_far_as_they_spin_whatever_its_units_are():
+    """Refreshing changes the units of times and of spins, here by 2^-6 or more."""
+    experiment = settings("gas", 40, [30, 30]) | {"schedule": COOLING}
+    scene = build(experiment, 0.5, 0.0)
+    shots = list(snapshots(scene, experiment, SEED, Frames(0.0, 40.0, 1200)))
+    assert shots[-1].E_trans < 2.0**-12 * shots[0].E_trans
+    turned = np.diff([shot.angle for shot in shots], axis=0)
+    spins = np.array([shot.spin[:, 0] for shot in shots])
+    intervals = np.diff([shot.time for shot in shots])[:, None]
+    undisturbed = spins[1:] == spins[:-1]
+    assert undisturbed.mean() > 0.9
+    expected = (spins[:-1] * intervals)[undisturbed]
+    assert turned[undisturbed] == pytest.approx(expected, rel=1e-6, abs=1e-9)
+    assert np.abs(expected).max() > 1e-3
