@@ -1,6 +1,5 @@
 """The parts of numba that compiler.py replaces, and the same bits from what is compiled."""
 
-import gc
 import json
 import os
 import shutil
@@ -107,7 +106,19 @@ def test_threads_compile_at_the_same_time():
     with ThreadPoolExecutor(4) as threads:
         values = [*threads.map(compile_three, range(8))]
     assert values == [(4.0 * k, 1.0 * k, 2.0 * k + 1.0) for k in range(8)]
-    assert gc.isenabled()
+
+
+def test_every_pass_that_is_left_out_is_one_of_numbas():
+    """One that is renamed would be there again, and take its time."""
+    passes = []
+    for compile_it in (numba.njit, lambda function: entry(function).dispatcher):
+        function = compile_it(lambda x: 2.0 * x)
+        assert function(1.5) == 3.0
+        (about,) = function.get_metadata().values()
+        (times,) = about["pipeline_times"].values()
+        passes.append({name.partition("_")[2] for name in times})
+    assert passes[1] < passes[0]
+    assert len(passes[0] - passes[1]) == len(compiler.IDLE)
 
 
 COPY = """from roughgas.compiling.jit import entry
