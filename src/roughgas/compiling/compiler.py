@@ -24,10 +24,11 @@ the factor of a kernel's compiling without the name, in CPU time, or of its coll
   x 1.0;
 - the types of a Reference (compiling/reference.py): state and scene stay in memory; compiling
   x 1.2, a seventh more machine code;
-- `_cache`, `CompileResult`, `rtsys`: a kernel is loaded before numba registers all functions that it
-  can compile, in 0.09 s instead of 0.36; copies of the project share it, and a checksum seals it;
-- `_numba_type_`, `_compiler._get_implementation`: the type of a decorated function, and its text for
-  the types of its arguments. Nothing can be compiled without these two.
+- `_cache`, `CompileResult`, `rtsys`: a kernel is loaded before numba registers all functions that
+  it can compile, in 0.09 s instead of 0.36; copies of the project share it, and a checksum seals
+  it;
+- `_numba_type_`, `_compiler._get_implementation`: the type of a decorated function, and its text
+  for the types of its arguments. Nothing can be compiled without these two.
 
 No attribute of numba's modules, classes or objects is replaced: numba compiles a user's functions
 as it does without this package.
