@@ -13,20 +13,18 @@ the factor of a kernel's compiling without the name, in CPU time, or of its coll
 160 particles (cooling gas, bed, shear):
 
 - `JITCodeLibrary`, from which Library inherits, and `set_env`: only kernels become machine code;
-  compiling x 1.5;
+  compiling x 1.6;
 - `IDLE`, names of passes: they find no work in a function that is written for types; compiling
   x 1.13 to 1.16;
 - `no_cpython_wrapper`, `no_cfunc_wrapper`: inner functions take no arguments from Python or C;
-  compiling x 2.3 and x 1.15;
-- `forceinline`: a call takes longer than many functions; collisions x 0.93 to 0.97, 9 to 12 % more
+  compiling x 2.4 and x 1.15;
+- `forceinline`: a call takes longer than many functions; collisions x 0.94 to 0.96, 9 to 12 % more
   instructions;
-- `_nrt`: no counts of references to arrays, of which there are 4 % more instructions; collisions
-  x 1.0;
+- `_nrt`: no counts of references to arrays, which are 4 % more instructions; collisions x 1.0;
 - the types of a Reference (compiling/reference.py): state and scene stay in memory; compiling
   x 1.2, a seventh more machine code;
-- `_cache`, `CompileResult`, `rtsys`: a kernel is loaded before numba registers all functions that
-  it can compile, in 0.09 s instead of 0.36; copies of the project share it, and a checksum seals
-  it;
+- `_cache`, `CompileResult`, `rtsys`: a kernel is loaded in 0.09 s instead of 0.36, before numba
+  registers all functions that it can compile; copies of the project share it, a checksum seals it;
 - `_numba_type_`, `_compiler._get_implementation`: the type of a decorated function, and its text
   for the types of its arguments. Nothing can be compiled without these two.
 
