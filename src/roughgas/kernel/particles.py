@@ -82,15 +82,19 @@ def shifted(x, u, numbers, box, slide):
 @jit
 def fold_into_box(position, velocity, box, slide):
     """Return the image of a particle in the box, whose periodic axes reach from 0 to L."""
+    return shifted(position, velocity, _image_in_box(position, box, slide), box, slide)
+
+
+@jit
+def _image_in_box(position, box, slide):
     centred = _shift(position, tuple(0.5 for k in range(len(position))), box)
-    return shifted(position, velocity, image_numbers(centred, box, slide), box, slide)
+    return image_numbers(centred, box, slide)
 
 
 @jit
 def periods_outside(position, box, slide):
     """Return the periods of each axis by which `fold_into_box` moves a position; 0 if open."""
-    centred = _shift(position, tuple(0.5 for k in range(len(position))), box)
-    numbers = image_numbers(centred, box, slide)
+    numbers = _image_in_box(position, box, slide)
     return tuple(0.0 if box[k] is None else numbers[k] for k in range(len(position)))
 
 
