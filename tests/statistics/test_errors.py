@@ -20,7 +20,7 @@ from roughgas.statistics.errors import (
     excess_sigmas,
     gaussian_sigmas,
     half_width,
-    is_trusted,
+    outlasts_memory,
     period_means,
     pooled,
     stderr_over_seeds,
@@ -75,7 +75,7 @@ def test_a_constant_series_has_no_error_and_no_memory(recwarn):
     constant = np.full(100, 0.1)
     assert blocking_stderr(constant) == 0
     assert autocorrelation_time(constant) == 1.0
-    assert is_trusted(100, 1.0)
+    assert outlasts_memory(100, 1.0)
     assert not recwarn.list
 
 
@@ -84,7 +84,7 @@ def test_a_series_with_a_number_that_is_none_is_never_trusted_nor_steady(wrong):
     series = np.random.default_rng(1).standard_normal(200) + 10.0
     series[150] = wrong
     assert math.isnan(autocorrelation_time(series))
-    assert not is_trusted(len(series), autocorrelation_time(series))
+    assert not outlasts_memory(len(series), autocorrelation_time(series))
     with np.errstate(invalid="ignore"):
         assert not is_equilibrated(series)
         assert not find_plateau(np.arange(200.0), np.tile(series, (12, 1))).found

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from roughgas.statistics.errors import UNKNOWN, Evidence, verdict
 from roughgas.statistics.steady_state import (
     cut_sigmas,
     detect_start,
@@ -49,10 +50,21 @@ def test_the_slowest_series_decides(ar1):
     assert not is_equilibrated(steady, slow * (1 - np.exp(-np.arange(1000) / 500)))
 
 
-def test_noise_is_not_taken_for_equilibrium(ar1):
-    """Fluctuations of 300 % with tau = n/20: the drift is unknown to within the energy itself."""
-    for one in noisy(ar1, 26, 50, 1000, 20, amplitude=3.0):
-        assert not is_equilibrated(one)
+def test_noise_that_could_hide_any_drift_is_for_theory_to_reject(ar1):
+    """Fluctuations of 300 % with tau = n/20 drift by no more than noise does, whatever is beneath.
+
+    Were the largest of them refused, those with the smallest drift by luck would be left.
+    """
+    for series in noisy(ar1, 26, 50, 1000, 20, amplitude=3.0):
+        assert is_equilibrated(series)
+        assert verdict(Evidence(1000, 1000, memories=5).enough(), True) == UNKNOWN
+
+
+def test_a_drift_that_noise_cannot_explain_counts_however_small_it_is(ar1):
+    """By 0.8 % of the energy, and by 8 to 60 sigma."""
+    for series in noisy(ar1, 27, 5, 4000, 20, amplitude=1e-3):
+        assert not is_equilibrated(series * np.linspace(1.0, 1.012, 4000))
+        assert is_equilibrated(series)
 
 
 def test_too_short_a_series_shows_nothing():

@@ -27,7 +27,7 @@ onsuccess:
 def threads_at_the_end(folder, start):
     """Return the number of threads that Snakemake has after JOBS short jobs.
 
-    The jobs run one after another: of jobs that end together, one pass of the scheduler takes several.
+    The jobs run one after another: a pass of the scheduler takes all that end together.
     """
     rules = ROOT / "rules" / "messages.smk"
     (folder / "Snakefile").write_text(

@@ -97,10 +97,18 @@ def errors_of(name: str, origin: str, about: Variable) -> dict[str, Variable]:
     }
 
 
+def verdict_on(name: str, about: Variable) -> Variable:
+    """Return the verdict on the error of a variable."""
+    said = f"whether {name}_stderr is right; -1 where there is too little to tell"
+    flags = "unknown untrusted trusted"
+    return about._replace(long_name=said, units="1", dtype="i1", over_seeds="", flags=flags)
+
+
 def _at_contacts(name: str, long_name: str) -> dict[str, Variable]:
     """Return an average over the collisions of pairs, with its error."""
     about = Variable(long_name, when=(AT_CONTACTS,))
-    return {name: about, **errors_of(name, WITHIN, about)}
+    verdict = {f"{name}_trusted": verdict_on(name, about)}
+    return {name: about, **errors_of(name, WITHIN, about), **verdict}
 
 
 NAMES = {  # in all kinds of datasets
@@ -122,6 +130,7 @@ def _of_species(name: str, long_name: str, units: str = "1", *when: str) -> dict
     """Return a mean of each species, with its error and, but for R, its series."""
     about = Variable(f"{long_name} of a species", units, ("species",), when=(MIXTURE, *when))
     found = {name: about, f"{name}_stderr": error_of(name, WITHIN, about)}
+    found[f"{name}_trusted"] = verdict_on(name, about)
     if units == ENERGY:
         found[f"{name}_series"] = about._replace(dims=("species", "sample"))
     return found
@@ -155,8 +164,10 @@ POINT = {
     ),
     "E_trans": _TRANSLATION,
     "E_trans_stderr": error_of("E_trans", WITHIN, _TRANSLATION),
+    "E_trans_trusted": verdict_on("E_trans", _TRANSLATION),
     "E_rot": _ROTATION,
     "E_rot_stderr": error_of("E_rot", WITHIN, _ROTATION),
+    "E_rot_trusted": verdict_on("E_rot", _ROTATION),
     "collisions": Variable("collisions simulated", dtype="i8", over_seeds="sum"),
     "kernel_seconds": Variable("CPU time spent in the kernel", "s", over_seeds="sum"),
     "equilibrated": Variable(
@@ -167,6 +178,13 @@ POINT = {
     "measured_from": Variable("begin of the measured window", TIME),
     "measured_collisions": Variable("collisions of each particle in the measured window"),
     "autocorrelation_time": _of_spin("integrated autocorrelation time of R", TIME),
+    "memory_of_R": _of_spin("integrated autocorrelation time of R, by theory", TIME, DRIVEN),
+    "slowest_relaxation": Variable(
+        "e-fold of the slowest combination of the temperatures, by theory", TIME, when=(DRIVEN,)
+    ),
+    "flow_relaxation": Variable(
+        "e-fold of the longest flow, or of the momentum in a bath, by theory", TIME, when=(DRIVEN,)
+    ),
     "target_met": Variable(
         "whether R_stderr reached the target_stderr; -1 where there is too little to tell",
         dtype="i1",

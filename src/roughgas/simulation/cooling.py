@@ -20,11 +20,19 @@ from roughgas.simulation.energies import (
     ratio,
     ratio_of_means,
     restored,
+    verdicts_on_means,
 )
 from roughgas.simulation.gas import Gas, count
 from roughgas.simulation.recorder import KEY, Recorder, until_met
 from roughgas.simulation.restart import Initial
-from roughgas.statistics.errors import LEAST, UNKNOWN, Error, Evidence, autocorrelation_time
+from roughgas.statistics.errors import (
+    LEAST,
+    UNKNOWN,
+    Error,
+    Evidence,
+    autocorrelation_time,
+    verdict,
+)
 from roughgas.statistics.steady_state import find_plateau
 from roughgas.theory import friction_relaxation_rate, mixture_relaxation_rate, relaxation_rate
 
@@ -244,13 +252,13 @@ def _measure(ensemble, passed, transient, rate, every):
     inside = (passed >= plateau.start) & (passed <= plateau.stop)
     first = np.argmax(inside)
     length = plateau.stop - (passed[first - 1] if first else 0.0)
-    evidence = Evidence(length, np.count_nonzero(inside), rate * plateau.start, len(R))
-    found = evidence.verdict(plateau.found)
+    evidence = Evidence(length, np.count_nonzero(inside), rate * plateau.start, runs=len(R))
+    found = verdict(evidence.enough(), plateau.found)
     error = Error(plateau.stderr, len(R) - 1.0)
     exponent = ensemble.exponent
     E_rot = restored(ensemble.energies, exponent).rotational
     alike = restored(ensemble.energies, exponent - exponent.max(axis=0))
-    return _decay(ensemble, passed, first) | {
+    variables = _decay(ensemble, passed, first) | {
         "R": plateau.mean,
         "R_stderr": error.stderr,
         "R_dof": error.dof,
@@ -270,6 +278,7 @@ def _measure(ensemble, passed, transient, rate, every):
         "E_rot_series": E_rot.mean(axis=0),
         **_of_species(ensemble, inside),
     }
+    return variables | verdicts_on_means(variables, found)
 
 
 def _decay(ensemble, passed, first):

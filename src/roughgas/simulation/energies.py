@@ -297,6 +297,19 @@ def _variables(name, value, gradient, periods):
     }
 
 
+def verdicts_on_means(variables: Mapping[str, Any], known: int) -> dict[str, Any]:
+    """Return `<name>_trusted` of every mean with an error but R, which has a verdict of its own.
+
+    Means of species have a flag for each.
+    """
+    names = (name.removesuffix("_stderr") for name in variables if name.endswith("_stderr"))
+    return {
+        f"{name}_trusted": np.full(np.shape(variables[name]), known)[()]
+        for name in names
+        if name not in ("R", "R_series")
+    }
+
+
 MOTIONS = ("translation", "rotation")
 CONTACTS = "contacts"
 STAGES = "stages"

@@ -1,16 +1,19 @@
 """A gas under steady driving: wait until it is stationary, then average over time."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from roughgas.base import InputError
 from roughgas.effects import inertia
-from roughgas.scene import Scene, moves_along
+from roughgas.effects.species import packing
+from roughgas.scene import Scene, closed_axes, for_theory, moves_along, walls_of
 from roughgas.simulation.energies import (
     Columns,
+    Energies,
     EnergyBalance,
     contact_averages,
     driven_species,
@@ -20,21 +23,23 @@ from roughgas.simulation.energies import (
     ratio,
     ratio_of_means,
     shear_rates,
+    verdicts_on_means,
 )
 from roughgas.simulation.gas import Gas, joined
+from roughgas.simulation.memory import Memory, Thermal, drags, memory
 from roughgas.simulation.recorder import KEY, Recorder, until_met
 from roughgas.simulation.restart import Initial
 from roughgas.statistics.errors import (
-    UNKNOWN,
+    LEAST,
     YES,
     Error,
     Evidence,
     autocorrelation_time,
     blocking,
     degrees_of_freedom,
-    is_trusted,
-    of_all,
+    outlasts_memory,
     period_means,
+    verdict,
 )
 from roughgas.statistics.steady_state import detect_start, is_equilibrated
 
@@ -45,6 +50,10 @@ LEAST_LEFT = 0.5  # share of the planned measurement below which a late start is
 # of a periodic drive, that samples must show: with 16 a bed has R within 0.0005 of that with 80
 LEAST_PHASES = 16
 WHOLE = 1e-6  # by which a number of samples, or of periods, may miss a whole one
+LEAST_IN_BED = LEAST._replace(memories=24)
+"""Evidence under gravity, where R is measured to remember up to twice as long as by theory."""
+LEAST_RELAXATIONS = 48.0
+"""E-folds of the slowest motion in a window whose mean energies have right errors."""
 
 
 def length(scene: Scene, experiment: Mapping[str, Any]) -> float:
@@ -71,6 +80,7 @@ def interval(experiment: Mapping[str, Any]) -> float:
 
 def check(scene: Scene, experiment: Mapping[str, Any]) -> None:
     """Raise InputError for lengths that make no whole period, or samples that miss phases of it."""
+    _check_momentum(scene, experiment)
     schedule = experiment["schedule"]
     measure, every = schedule["measure"], schedule["sample_every"]
     period = schedule.get("period", every)
@@ -88,6 +98,28 @@ def check(scene: Scene, experiment: Mapping[str, Any]) -> None:
     if KEY in schedule and phases(scene, schedule) < LEAST_PHASES:
         legal = f"divide a period of the drive into {LEAST_PHASES} samples beside schedule.{KEY}"
         raise InputError("schedule.sample_every", every, legal)
+
+
+def _check_momentum(scene, experiment):
+    """Refuse noise on single particles where nothing damps their total momentum.
+
+    The centre of mass would diffuse, and its energy grow for ever: there is no steady state. Walls
+    damp the momentum across themselves, and along themselves if they are rough or thermal.
+    """
+    effects, (drag, _) = scene.effects, drags(scene)
+    bath = effects.langevin
+    if bath is None or not bath.noise or drag > 0.0:
+        return
+    walls = walls_of(effects).values()
+    across = closed_axes(effects) | {wall.axis for wall in walls}
+    gripping = any(wall.temperature is not None or wall.roughness > -1.0 for wall in walls)
+    if len(across) < len(scene.box) and not gripping:
+        power = experiment["effects"]["langevin"]["power"]
+        legal = (
+            "be 0 without a drag in a steady state: noise on single particles heats the centre of "
+            "mass of a periodic box for ever (the thermostat conserves momentum)"
+        )
+        raise InputError("effects.langevin.power", power, legal)
 
 
 def drive_periods(scene: Scene) -> dict[str, float]:
@@ -150,6 +182,7 @@ def run(
     if initial:
         gas.look()  # at running sums that others have begun
     begun = Begun(gas.time, gas.sample, gas.balance(), gas.begun + gas.collisions)
+    theory = _theory(scene, experiment)
     rows: Columns = {"time": np.empty(0)}
 
     def run_to(schedule):
@@ -157,8 +190,8 @@ def run(
         recorder.expect(length(scene, {"schedule": schedule}))
         more = gas.in_time(schedule["sample_every"], sum(_planned(schedule)) - len(rows["time"]))
         rows = joined([rows, more]) if len(rows["time"]) else more
-        found = _measure(gas, schedule, rows, begun)
-        return found, found.get("R_ci95_trusted") == YES
+        variables = _measure(gas, schedule, rows, begun, theory)
+        return variables, variables.get("R_ci95_trusted") == YES
 
     return until_met(experiment["schedule"], LENGTH, run_to)
 
@@ -172,30 +205,97 @@ class Begun(NamedTuple):
     collisions: int
 
 
-def _measure(gas: Gas, schedule: Mapping[str, Any], rows: Columns, begun: Begun) -> dict[str, Any]:
+class Theory(NamedTuple):
+    """What theory makes of a measured state, and the lengths of the box that the state has."""
+
+    memory: Callable[[Thermal], Memory]
+    lengths: tuple[float, ...]  # a
+
+
+def _theory(scene: Scene, experiment: Mapping[str, Any]) -> Theory:
+    lengths = tuple(math.inf if side == "open" else float(side) for side in experiment["box"])
+    mixture = for_theory(scene, experiment)
+    dense = mixture is not None and math.isfinite(math.prod(lengths))
+    filled = packing(experiment) if dense else 0.0
+    return Theory(partial(memory, scene, mixture=mixture, packing=filled), lengths)
+
+
+def _measure(
+    gas: Gas, schedule: Mapping[str, Any], rows: Columns, begun: Begun, theory: Theory
+) -> dict[str, Any]:
     """Return the variables of a run, `rows` being its samples since it began."""
     scene, every, per_period = gas.scene, schedule["sample_every"], samples_per_period(schedule)
     planned, length = _planned(schedule)
     series = gas.energies(rows)
-    first, found = _start(series, planned, length, per_period)
-    made = rows["collisions"][-1] - (rows["collisions"][first - 1] if first else begun.collisions)
+    first, settled = _start(series, planned, length, per_period)
+    before = rows["collisions"][first - 1] if first else begun.collisions
     window = series.map(lambda part: part[first:])
-    periods = len(window.translational) // per_period
-    evidence = Evidence(2 * made / gas.particles, periods)
-    steady = evidence.verdict(found)
+    species = [
+        energies.map(lambda part: part[first:])
+        for energies in energies_of_each(rows, scene, gas.state)
+    ]
+    made = 2 * (rows["collisions"][-1] - before) / gas.particles
+    measured = len(window.translational) * every
+    state = _thermal(species or [window], made / measured, gas.particles, theory.lengths)
+    remembers = theory.memory(state)
+    spins_change = state.T_rot is not None
+    evidence = Evidence(
+        collisions=made,
+        samples=len(window.translational) // per_period,
+        relaxations=_relaxations(2 * before / gas.particles, made, measured, remembers.energies),
+        memories=measured / (remembers.of_R if spins_change else 2.0 * remembers.energies),
+    )
+    least = LEAST if scene.effects.gravity is None else LEAST_IN_BED
+    steady = verdict(evidence.enough(least), settled)
     shown = phases(scene, schedule) >= LEAST_PHASES
-    vouched = steady if shown or steady != YES else UNKNOWN
-    return {
-        **averages(window, per_period, every, vouched),
+    if not spins_change:  # R stays 0, or what the spins were at the start decides
+        of_R = 0.0 if window.rotational is None or not window.rotational.any() else math.inf
+        remembers = remembers._replace(of_R=of_R)
+    known = verdict(shown and remembers.of_R < math.inf, True, steady)
+    variables = {
+        **averages(window, per_period, every, known),
         **contact_averages(rows, first, per_period, inertia_of_sums(scene), begun.sums),
         **_unsubtracted(gas, rows, first),
-        **_of_species(gas, rows, first, per_period),
+        **driven_species(species, per_period, max(1, per_period // KEPT)),
         **energy_exchange(begun.balance, gas.balance(), scene, gas.particles),
         "equilibrated": steady,
+        "slowest_relaxation": remembers.energies,
+        "flow_relaxation": remembers.flow,
         "measured_from": begun.time + first * every,
         "measured_collisions": evidence.collisions,
         **over_time(rows["time"][first:], window, max(1, per_period // KEPT)),
     }
+    if window.rotational is not None:
+        variables["memory_of_R"] = remembers.of_R
+    long = measured >= LEAST_RELAXATIONS * remembers.energies
+    return variables | verdicts_on_means(variables, verdict(shown and long, True, steady))
+
+
+def _thermal(
+    species: Sequence[Energies], frequency: float, particles: int, lengths: tuple[float, ...]
+) -> Thermal:
+    """Return the state of a gas from the energies of its species: T is twice an energy.
+
+    Spins that never change are left out: no contact, and nothing else, relaxes them.
+    """
+    T_tr = 2.0 * np.array([energies.translational.mean() for energies in species])
+    spins = [energies.rotational for energies in species if energies.rotational is not None]
+    changing = any(np.ptp(rotational) > 0.0 for rotational in spins)
+    T_rot = 2.0 * np.array([rotational.mean() for rotational in spins]) if changing else None
+    return Thermal(T_tr, T_rot, frequency, particles, lengths)
+
+
+def _relaxations(before: float, made: float, measured: float, slowest: float) -> float:
+    """Return the e-folds of the slowest mode that a transient has had to decay in.
+
+    `before` and `made` are collisions per particle before and in the window, `measured` its length
+    in T. Of a transient that is exp(-m) when a window of w e-folds begins, the mean has a share of
+    exp(-m)/w: the window itself counts for ln w.
+    """
+    within = measured / slowest
+    if not (within > 0.0 and made > 0.0):
+        return -math.inf
+    return within * before / made + math.log(within)
 
 
 def _start(series, planned, length, per_period):
@@ -208,9 +308,11 @@ def _start(series, planned, length, per_period):
     return start, is_equilibrated(*means, start=start // per_period)
 
 
-def averages(window, per_period, every, steady):
-    """Return the energies, and how they are shared between translation and rotation, steady or
-    not."""
+def averages(window, per_period, every, known):
+    """Return the energies, and how they are shared between translation and rotation, steady or not.
+
+    `known` is the verdict on the interval of R before the data have had their veto.
+    """
     found = {
         "E_trans": window.translational.mean(),
         "E_trans_stderr": blocking(period_means(window.translational, per_period))[0],
@@ -220,17 +322,17 @@ def averages(window, per_period, every, steady):
     R = ratio(window)
     R_periods = period_means(R, per_period)
     stderr, blocks = blocking(R_periods)
-    error, memory = Error(stderr, degrees_of_freedom(blocks)), autocorrelation_time(R_periods)
+    error, correlated = Error(stderr, degrees_of_freedom(blocks)), autocorrelation_time(R_periods)
     return found | {
         "R": R.mean(),
         "R_stderr": error.stderr,
         "R_dof": error.dof,
         "R_ci95": error.half_width(0.95),
-        "R_ci95_trusted": of_all(steady, is_trusted(len(R_periods), memory)),
+        "R_ci95_trusted": verdict(True, outlasts_memory(len(R_periods), correlated), known=known),
         "R_ratio_of_means": ratio_of_means(window),
         "E_rot": window.rotational.mean(),
         "E_rot_stderr": blocking(period_means(window.rotational, per_period))[0],
-        "autocorrelation_time": memory * per_period * every,
+        "autocorrelation_time": correlated * per_period * every,
     }
 
 
@@ -246,13 +348,6 @@ def inertia_of_sums(scene: Scene) -> float:
     """Return the q that sums over contacts belong to."""
     q = inertia(scene.effects)
     return 1.0 if q is None or scene.effects.species is not None else q
-
-
-def _of_species(gas, rows, first, per_period):
-    """Return the energies and R of each species."""
-    parts = energies_of_each(rows, gas.scene, gas.state)
-    parts = [part.map(lambda values: values[first:]) for part in parts]
-    return driven_species(parts, per_period, max(1, per_period // KEPT))
 
 
 def _unsubtracted(gas, rows, first):

@@ -62,7 +62,8 @@ MSER_BATCH = 5
 SHORTEST_SERIES = 12
 ALARM_SIGMAS = 3.5  # one false alarm in 2000 if the noise were known exactly
 NEGLIGIBLE_DRIFT = 0.01  # of the energy
-LARGEST_DRIFT = 0.5
+SURE_SIGMAS = 5.0  # of a drift that counts however small it is
+ROUNDING_OF_ENERGY = 1e-9  # of the energy: a drift below this is none
 CUT_SIGMAS = 3.0
 BLOCKS = 60
 ORIGIN = 1 / 40  # of all samples, added to s: no block is shorter than a few per mille of them
@@ -108,20 +109,25 @@ def detect_start(*series: np.ndarray, planned: int = 0) -> int:
 def is_equilibrated(*series: np.ndarray, start: int = 0) -> bool:
     """Return whether energies, each of shape (samples,), are stationary from `start` on.
 
-    Pass E_tr and E_rot of the whole run, and the index `start`. The test begins at `start`/2: a
-    relaxation slow enough to bias the measurement is seen best there, since the fraction of it that
-    is left at `start`/2 is the root of that left at `start`. Each series must pass two tests of its
-    `drift` over that stretch:
+    Pass E_tr and E_rot of the whole run, and the index `start`. Each series must pass two tests:
 
-    * It must not drift by more than 1 % and 3.5 sigma. White or AR(1) series fail by chance about
-      once in 1000 or less if their autocorrelation time is below a fiftieth of the stretch, once
-      in 700 at a twentieth, in 200 at a tenth.
-    * Its drift plus 2 standard errors must lie below half the energy: noise does not pass for
-      equilibrium.
+    * From `start`/2 on, its `drift` must not exceed both 1 % and 3.5 sigma: a relaxation slow
+      enough to bias the measurement is seen best there, since the fraction of it that is left at
+      `start`/2 is the root of that left at `start`. White or AR(1) series fail by chance about once
+      in 1000 or less if their autocorrelation time is below a fiftieth of the stretch, once in 700
+      at a twentieth, in 200 at a tenth.
+    * From `start` on, it must not exceed 5 sigma, however small it is. Spins that hardly relax
+      drift by little, and for long. Noise alone fails in up to 1.5 % of long runs.
 
-    Series that leave fewer than 12 samples are not stationary as far as they show.
+    That nothing drifts is no evidence of a steady state where noise would hide a drift: whether a
+    run is long enough is for theory to say (`errors.Evidence`). Series that leave fewer than 12
+    samples are not stationary as far as they show.
     """
-    return all(_is_stationary(np.asarray(one, dtype=float)[start // 2 :]) for one in series)
+    return all(
+        _is_stationary(values[start // 2 :], NEGLIGIBLE_DRIFT, ALARM_SIGMAS)
+        and _is_stationary(values[start:], ROUNDING_OF_ENERGY, SURE_SIGMAS)
+        for values in (np.asarray(energy, dtype=float) for energy in series)
+    )
 
 
 def drift(series: np.ndarray) -> Drift:
@@ -156,12 +162,12 @@ def _line_through(series: np.ndarray) -> np.ndarray:
     return series.mean() + (position * series).sum() / (position**2).sum() * position
 
 
-def _is_stationary(series: np.ndarray) -> bool:
+def _is_stationary(series: np.ndarray, negligible: float, alarm: float) -> bool:
+    """Return whether a series does not drift by more than `negligible` and `alarm` sigma."""
     if len(series) < SHORTEST_SERIES:
         return False
-    change, stderr, sigmas = drift(series)
-    significant = abs(change) > NEGLIGIBLE_DRIFT and sigmas > ALARM_SIGMAS
-    return not significant and abs(change) + 2 * stderr <= LARGEST_DRIFT
+    change, _, sigmas = drift(series)
+    return bool(abs(change) <= negligible or sigmas <= alarm)  # both are false of NaN
 
 
 def _start(series: np.ndarray, planned: int) -> int:

@@ -1,0 +1,247 @@
+"""How long a driven gas remembers: theory beside measured memories, and verdicts that rest on it."""
+
+import math
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from brute_force import begin
+
+import roughgas
+from roughgas.base import InputError
+from roughgas.scene import build, for_theory
+from roughgas.simulation import schedule, steady
+from roughgas.simulation.memory import Thermal, drags, memory, spin_share
+from roughgas.statistics.errors import LEAST, NO, UNKNOWN, YES, Evidence, verdict
+
+SPIN = {"spin": {"inertia": 0.5}}
+SHEAR, BATH = {"velocity": 2}, {"interval": 0.5, "drag": 0.05, "temperature": 1.0}
+BED = {
+    "gravity": {"acceleration": 1},
+    "floor": {"amplitude": 5, "period": 1, "restitution": 1, "roughness": -1},
+}
+THERMAL = {"left_wall": {"temperature": 1.0}, "right_wall": {"temperature": 1.0}}
+
+
+def kicks(power=0.1, share=0.0):
+    return {"thermostat": {"power": power, "interval": 0.5, "spin_share": share}}
+
+
+# Scene, r, beta, particles, side; measured over 20 000 T or more: T_tr, R, contacts of a particle
+# per T, and the autocorrelation time of R in T.
+MEASURED = {
+    "sheared": ({"shear": SHEAR}, 0.9, 0.0, 40, 25, 0.1044, 0.225, 0.21, 16.9),
+    "sheared, smoother": ({"shear": SHEAR}, 0.9, -0.8, 40, 25, 0.177, 0.039, 0.27, 42.6),
+    "sheared, dissipative": ({"shear": SHEAR}, 0.6, 0.3, 40, 25, 0.0284, 0.327, 0.12, 27.0),
+    "ten sheared": ({"shear": SHEAR}, 0.9, 0.5, 10, 15, 0.489, 0.372, 0.27, 10.4),
+    "ten heated": (kicks(1.0, 0.5), 0.9, -0.9, 10, 15, 4.79, 0.786, 0.84, 29.9),
+    "heated": (kicks(), 0.9, 0.0, 40, 25, 0.791, 0.204, 0.57, 6.6),
+    "heated, rough": (kicks(0.1, 0.2), 0.9, 0.8, 20, 18, 0.902, 0.484, 0.58, 5.0),
+    "nearly elastic": (kicks(0.1, 0.3), 0.99, -0.5, 40, 25, 1.206, 0.273, 0.71, 14.1),
+    "bath": ({"langevin": BATH}, 0.9, -0.5, 20, 20, 0.637, 0.093, 0.36, 16.2),
+    "bed": (BED, 0.9, 0.0, 40, 12.5, 4.42, 0.233, 3.9, 1.9),
+    "bed, smoother": (BED, 0.9, -0.8, 40, 12.5, 12.0, 0.040, 2.74, 5.2),
+    "friction": (kicks() | {"friction": {"mu": 0.1}}, 0.9, 0.5, 40, 25, 0.970, 0.137, 0.63, 10.0),
+    "more friction": (kicks() | {"friction": {"mu": 0.3}}, 0.9, 0.5, 40, 25, 0.818, 0.248, 0.59, 6),
+    "thermal walls": (THERMAL, 0.95, 0.0, 40, 25, 0.380, 0.341, 0.41, 9.9),
+    "smooth between thermal walls": (THERMAL, 0.95, -1.0, 40, 25, 0.717, 0.577, 0.56, 60.3),
+}
+
+
+def scene_of(effects, r, beta, particles=40, side=25.0, **more):
+    box = [side, "open"] if "gravity" in effects else [side, side]
+    settings = {"particles": particles, "box": box, "effects": SPIN | effects, **more}
+    return build(settings, r, beta), settings
+
+
+def state_of(T_tr, R, frequency, particles, side, effects=()):
+    top = math.inf if "gravity" in effects else side
+    T_rot = None if R == 0 else np.array([T_tr * R / (1.0 - R)])
+    return Thermal(np.array([T_tr]), T_rot, frequency, particles, (side, top))
+
+
+@pytest.mark.parametrize("name", MEASURED)
+def test_theory_knows_the_memory_of_R_within_a_factor(name):
+    """Within 2.1 of what long runs measure: drag, friction and walls have their part in it."""
+    effects, r, beta, particles, side, T_tr, R, frequency, measured = MEASURED[name]
+    scene, _ = scene_of(effects, r, beta, particles, side)
+    state = state_of(T_tr, R, frequency, particles, side, effects)
+    assert 1.0 / 2.1 < memory(scene, state).of_R / measured < 2.1
+
+
+def test_a_mixture_remembers_as_long_as_its_slowest_exchange():
+    species = [{"fraction": 0.5}, {"fraction": 0.5, "radius": 2.0}]
+    scene, settings = scene_of(kicks(), 0.9, 0.0, 40, 40.0, species=species)
+    state = Thermal(np.array([1.44, 1.40]), np.array([0.36, 0.35]), 0.32, 40, (40.0, 40.0))
+    assert 0.5 < memory(scene, state, for_theory(scene, settings), 0.2).of_R / 12.8 < 2.0
+
+
+def test_a_species_that_nothing_distinguishes_changes_no_memory():
+    alike = [{"fraction": 0.3}, {"fraction": 0.7}]
+    scene, settings = scene_of(kicks(0.1, 0.3), 0.9, -0.5, species=alike)
+    single, _ = scene_of(kicks(0.1, 0.3), 0.9, -0.5)
+    mixed = Thermal(np.full(2, 0.8), np.full(2, 0.2), 0.5, 40, (25.0, 25.0))
+    found = memory(scene, mixed, for_theory(scene, settings))
+    expected = memory(single, state_of(0.8, 0.2, 0.5, 40, 25.0))
+    assert found.of_R == pytest.approx(expected.of_R, rel=1e-3)
+    assert found.energies == pytest.approx(expected.energies, rel=1e-3)
+
+
+def test_a_heated_gas_settles_as_a_slow_integration_says():
+    """The e-fold of the energies, by the Runge-Kutta method with Enskog's frequency: 3 %."""
+    scene, _ = scene_of(kicks(), 0.9, 0.0)
+    r, beta, phi, power = 0.9, 0.0, 0.05, 0.1
+    T_tr, T_rot = (x[-1] for x in theory_run(np.array([2000.0]), 1.0, 0.2))
+    nu = float(roughgas.theory.collision_frequency(T_tr, phi, 2))
+    state = Thermal(np.array([T_tr]), np.array([T_rot]), nu, 40, (25.0, 25.0))
+    settling = memory(scene, state).energies
+    times = settling * np.array([6.0, 8.0])
+    disturbed, _ = theory_run(times, 1.02 * T_tr, 1.02 * T_rot)
+    decayed = math.log((disturbed[0] - T_tr) / (disturbed[1] - T_tr))
+    assert decayed == pytest.approx(2.0, rel=0.03)
+    assert (r, beta, power) == (scene.restitution, scene.roughness, 0.1)
+
+
+def theory_run(times, T_tr, T_rot):
+    return roughgas.theory.driven_temperatures(times, T_tr, T_rot, 0.9, 0.0, 0.05, power=0.1)
+
+
+def test_nothing_is_remembered_for_ever_but_by_what_never_relaxes():
+    scene, _ = scene_of(kicks(), 0.9, -1.0)
+    never = memory(scene, state_of(1.0, 0.3, 0.5, 40, 25.0))
+    assert never.of_R == never.energies == math.inf
+    smooth = memory(scene, state_of(1.0, 0, 0.5, 40, 25.0))
+    assert smooth.of_R == 0.0 and smooth.energies < 100.0
+    alone = memory(scene, state_of(1.0, 0.3, 0.0, 40, 25.0))
+    assert alone.of_R == alone.flow == math.inf
+
+
+def test_the_momentum_of_a_bath_is_remembered_as_long_as_the_drag_lasts():
+    """Weak drag on a few particles, kept far below the temperature of their bath."""
+    weak = {"langevin": {"interval": 0.5, "drag": 1e-4, "temperature": 1e4}}
+    scene, _ = scene_of(weak, 0.9, 0.0)
+    found = memory(scene, state_of(1.0, 0.2, 0.5, 40, 25.0))
+    assert drags(scene) == (pytest.approx(1e-4), 0.0)
+    assert found.flow == pytest.approx(1e4) and found.of_R == pytest.approx(1e4, rel=0.01)
+    near = {"langevin": BATH}
+    elastic = memory(scene_of(near, 1.0, 0.0)[0], state_of(1.0, 0.2, 0.5, 40, 25.0))
+    assert elastic.of_R < 12.0
+
+
+@pytest.mark.parametrize("share", [0.0, 0.3, 1.0])
+def test_the_share_of_spins_is_that_of_the_settings(share):
+    assert spin_share(scene_of(kicks(0.7, share), 0.9, 0.0)[0]) == pytest.approx(share)
+    noise = {"langevin": {"interval": 0.5, "drag": 0.1, "power": 1.0 - share, "spin_power": share}}
+    assert spin_share(scene_of(noise, 0.9, 0.0)[0]) == pytest.approx(share, abs=0.05)
+
+
+# ------------------------------------------------------------------------ verdicts
+
+
+def test_data_may_veto_and_never_vouch():
+    enough, little = Evidence(20, 20), Evidence(20, 20, memories=11.9)
+    assert enough.enough() and not little.enough()
+    assert verdict(True, True) == YES and verdict(True, False) == NO
+    assert verdict(False, True) == verdict(False, False) == UNKNOWN
+    assert [verdict(True, True, known) for known in (YES, NO, UNKNOWN)] == [YES, NO, UNKNOWN]
+
+
+@pytest.mark.parametrize("numbers", LEAST._asdict())
+def test_each_number_that_is_too_small_is_too_little_evidence(numbers):
+    assert not LEAST._replace(**{numbers: 0.99 * getattr(LEAST, numbers)}).enough()
+    assert not LEAST._replace(**{numbers: math.nan}).enough()
+    assert LEAST.enough()
+
+
+LONG = {"kind": "steady", "equilibrate": 500.0, "measure": 1500.0, "sample_every": 1.0}
+
+
+def measured(effects, r, beta, timing=None, particles=40, side=25.0, number=1, **more):
+    """The variables of a point."""
+    _, settings = scene_of(effects, r, beta, particles, side, **more)
+    settings |= {"schedule": LONG | (timing or {})}
+    schedule.check(settings)
+    scene, _ = begin(settings, r, beta)
+    return steady.run(scene, settings, number, roughgas.simulation.recorder.Recorder())
+
+
+@pytest.mark.parametrize(("beta", "q"), [(-0.999999, 0.5), (-0.99999, 0.5), (1.0, 1e-6)])
+def test_spins_that_hardly_relax_are_no_steady_state(beta, q):
+    """Their energy drifts by less than any noise; by theory they need 1e5 T or more."""
+    effects = {"spin": {"inertia": q}} | kicks(1.0)
+    found = measured(effects, 0.9, beta, spin_temperature=1.0)
+    assert found["memory_of_R"] > 1e5 and found["R"] > 0.1
+    assert found["equilibrated"] == found["R_ci95_trusted"] == UNKNOWN
+    assert found["E_trans_trusted"] == found["E_rot_trusted"] == UNKNOWN
+
+
+def test_spins_that_no_contact_changes_leave_R_unknown():
+    """It is what the start made it; the translational energy is as steady as any."""
+    found = measured(kicks(1.0), 0.9, -1.0, spin_temperature=1.0)
+    assert found["equilibrated"] == found["E_trans_trusted"] == YES
+    assert found["R_ci95_trusted"] == UNKNOWN and found["memory_of_R"] == math.inf
+
+
+def test_a_smooth_gas_has_an_R_of_zero_that_is_trusted():
+    found = measured(kicks(1.0), 0.9, -1.0)
+    assert (found["R"], found["R_ci95_trusted"], found["memory_of_R"]) == (0.0, YES, 0.0)
+
+
+@pytest.mark.parametrize(("memories", "expected"), [(6.0, UNKNOWN), (25.0, YES)])
+def test_the_length_that_theory_asks_for_decides(memories, expected):
+    """Whatever the run says of itself: 20 seeds of a sheared gas, not one of them too short."""
+    length = {"measure": round(19.0 * memories)}
+    runs = [measured({"shear": SHEAR}, 0.9, 0.0, length, number=seed) for seed in range(20)]
+    flags = [run["R_ci95_trusted"] for run in runs]
+    assert (flags.count(YES) >= 17) if expected == YES else set(flags) == {UNKNOWN}
+    assert [run["memory_of_R"] for run in runs] == pytest.approx([19.0] * 20, rel=0.35)
+
+
+def test_a_bed_needs_twice_as_many_memories():
+    timing = {"measure": 18.0, "sample_every": 0.05, "period": 1.0, "equilibrate": 50.0}
+    found = measured(BED, 0.9, 0.0, timing, side=12.5)
+    assert 12.0 < 18.0 / found["memory_of_R"] < 24.0
+    assert found["R_ci95_trusted"] == found["equilibrated"] == UNKNOWN
+
+
+def test_means_of_energies_need_a_window_of_their_own_length():
+    """R is known after 12 of its memories, its energies after 48 of their e-folds."""
+    for measure, expected in ((600.0, UNKNOWN), (2500.0, YES)):
+        found = measured({"shear": SHEAR}, 0.9, 0.0, {"measure": measure})
+        assert found["R_ci95_trusted"] == YES
+        assert found["E_trans_trusted"] == found["E_rot_trusted"] == expected
+
+
+def test_a_continued_run_has_waited_since_its_first_state(tmp_path):
+    """Without a wait of its own: 500 T of the run before count, where it goes on to the last bit."""
+    given = dict(particles=40, box=[25, 25], effects=SPIN | {"shear": SHEAR}, progress=False)
+    first = roughgas.simulate(
+        r=0.9, beta=0.0, seed=1, keep_state=True, schedule=LONG | {"measure": 500.0}, **given
+    )
+    again = {"equilibrate": 0.0, "measure": 400.0}
+    exact = roughgas.simulate(r=0.9, beta=0.0, initial=first, schedule=LONG | again, **given)
+    fresh = roughgas.simulate(r=0.9, beta=0.0, seed=1, schedule=LONG | again, **given)
+    assert exact.attrs["initial_exact"] == 1
+    assert int(exact.equilibrated) == YES and int(fresh.equilibrated) == UNKNOWN
+
+
+NOISE = {"langevin": {"power": 1, "interval": 0.5}}
+
+
+@pytest.mark.parametrize(
+    ("more", "legal"),
+    [
+        ({}, False),
+        ({"left_wall": {}, "right_wall": {}}, False),
+        ({"left_wall": {"roughness": 0.5}, "right_wall": {}}, True),
+        ({"left_wall": {"temperature": 1.0}, "right_wall": {}}, True),
+        ({"left_wall": {}, "right_wall": {}, "bottom_wall": {}, "lid": {}}, True),
+    ],
+)
+def test_noise_without_drag_needs_something_that_damps_the_momentum(more, legal):
+    settings = {"particles": 10, "box": [25, 25], "effects": SPIN | NOISE | more, "schedule": LONG}
+    if legal:
+        schedule.check(settings)
+        return
+    with pytest.raises(InputError, match=r"langevin\.power = 1: must be 0 without a drag"):
+        schedule.check(settings)
