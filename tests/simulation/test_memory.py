@@ -1,7 +1,6 @@
-"""How long a driven gas remembers: theory beside measured memories, and verdicts that rest on it."""
+"""How long a driven gas remembers: theory beside measured memories, and the verdicts on it."""
 
 import math
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -213,7 +212,7 @@ def test_means_of_energies_need_a_window_of_their_own_length():
 
 
 def test_a_continued_run_has_waited_since_its_first_state(tmp_path):
-    """Without a wait of its own: 500 T of the run before count, where it goes on to the last bit."""
+    """The 1000 T of the run before count as its wait, where it goes on to the last bit."""
     given = dict(particles=40, box=[25, 25], effects=SPIN | {"shear": SHEAR}, progress=False)
     first = roughgas.simulate(
         r=0.9, beta=0.0, seed=1, keep_state=True, schedule=LONG | {"measure": 500.0}, **given

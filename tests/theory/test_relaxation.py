@@ -43,7 +43,7 @@ def test_what_grows_has_no_relaxation():
 
 @pytest.mark.parametrize(("mu", "share"), [(0.1, 0.0), (0.3, 0.0), (0.3, 0.4)])
 def test_friction_relaxes_as_a_slow_integration_says(mu, share):
-    """A disturbance of R at constant energy decays at the rate of the slopes: 2 % in two e-folds."""
+    """A disturbance of R at constant energy decays at the rate of the slopes: to 2 %."""
     material = 0.9, 0.5, mu, 2, 0.5
     R = float(theory.friction_ratio(*material[:3], 2, 0.5, share))
     state = np.array([1.0 - R, R])
@@ -69,7 +69,7 @@ def test_a_perfectly_rough_elastic_wall_conserves_energy(dimension):
 
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_hits_of_a_rough_wall_by_brute_force(dimension):
-    """A million hits by particles of a Maxwellian gas: 4 standard errors, once in 3000 by chance."""
+    """A million hits in a Maxwellian gas: 4 standard errors, by chance once in 3000 tests."""
     rng, q, T_tr, T_rot, r, beta = np.random.default_rng(5), 0.4, 1.3, 0.6, 0.8, 0.3
     hits, axes, spin_axes = 1_000_000, dimension - 1, 2 * dimension - 3
     normal = np.sqrt(-2.0 * T_tr * np.log(rng.random(hits)))  # of those that hit
