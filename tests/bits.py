@@ -32,6 +32,7 @@ SINCE = (
     "memory_of_R",
     "slowest_relaxation",
     "flow_relaxation",
+    "R_flow_",
 )
 TRUSTED = "_trusted"  # how verdicts on errors end
 VERDICTS = ("equilibrated",)  # are no numbers, and their criteria may change

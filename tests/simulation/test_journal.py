@@ -35,6 +35,7 @@ RUNS = {
             "stages": [{"duration": 10}, {"duration": 15, "effects": {"shear": {"velocity": 3}}}],
         },
     },
+    "flow": DRIVEN | {"particles": 100, "box": [40, 40]},
     "target": DRIVEN | {"schedule": DRIVEN["schedule"] | TARGET},
 }
 

@@ -204,6 +204,8 @@ POINT = {
     "R_unsubtracted": _of_spin("R with the mean flow and the mean spin left in", "1", SHEARED),
     "E_trans_unsubtracted": Variable("E_trans with the mean flow left in", ENERGY, when=(SHEARED,)),
     "E_rot_unsubtracted": _of_spin("E_rot with the mean spin left in", ENERGY, SHEARED),
+    "R_flow_shift": _of_spin("R over the local flow, less R over the mean flow", "1", SHEARED),
+    "R_flow_sigma": _of_spin("sigmas by which R_flow_shift differs from 0", "1", SHEARED),
     "shear_rate": Variable(
         "gradient of the mean flow, by a straight line fitted to the velocities",
         RATE,

@@ -21,6 +21,7 @@ from roughgas.observables.distributions import (
     SpinCorrelation,
 )
 from roughgas.observables.fields import HeatFlux, Profiles, Stress
+from roughgas.observables.flow import LocalFlow
 from roughgas.observables.layers import Layer, Pattern
 from roughgas.observables.plugin import (
     Frame,
@@ -42,6 +43,7 @@ KINDS: dict[str, type[Observable]] = {
     "pair_correlation": PairCorrelation,
     "stress": Stress,
     "heat_flux": HeatFlux,
+    "local_flow": LocalFlow,
     "contacts": Contacts,
     "mean_square_displacement": MeanSquareDisplacement,
     "autocorrelation": Autocorrelation,

@@ -15,13 +15,15 @@ from roughgas.base import InputError
 from roughgas.data.variables import ENERGY, POINT, RATE, SPEED, TIME, Variable
 from roughgas.kernel.hooks import displacement, sums
 from roughgas.kernel.state import EXPONENT
-from roughgas.observables import KINDS, Frame, System, wanted
+from roughgas.observables import KINDS, Frame, System, Wanted, wanted
+from roughgas.observables.flow import IN_CELL, SHIFT, LocalFlow, cells_of
 from roughgas.observables.plugin import Group, Observable, Values, averaged
-from roughgas.scene import Scene
+from roughgas.scene import Scene, moves_along
 from roughgas.simulation import schedule
 from roughgas.simulation.gas import Gas
 from roughgas.simulation.paths import in_order, rotations, unwrapped_positions
 from roughgas.simulation.restart import positions_and_velocities
+from roughgas.statistics.errors import Estimate, stderr_over_seeds
 
 Functions = Mapping[str, Callable[[Frame], Any]]
 PRESENT = {
@@ -58,7 +60,7 @@ class Observer:
         self.begun, self.watched = gas.time, watched
         self._wait, self._taken = wait, 0
         self._start: int | None = None  # samples before the first look; None: not known yet
-        self._stride = math.gcd(*(one.every for one in watched))
+        self._intervals = {registered.every for registered in watched}
 
     def lengths(self, samples: int, first: int, unit: int) -> Iterator[int]:
         """Yield the lengths of the pieces that so many more samples are taken in.
@@ -71,7 +73,8 @@ class Observer:
             yield min(self._start, end)
         while self._taken < end:
             since = self._taken - self._start
-            piece = -since if since < 0 else self._stride - since % self._stride
+            due = (every - since % every for every in self._intervals)
+            piece = -since if since < 0 else min(due)
             yield min(piece, end - self._taken)
 
     def look(self, gas: Gas, taken: int) -> None:
@@ -123,6 +126,25 @@ class Seen(pickle.Unpickler):
         raise pickle.UnpicklingError(f"{module}.{name}")
 
 
+FLOW_LOOKS = 16
+"""At the flow in a measurement as long as its schedule plans."""
+
+
+def assumed_flow(scene: Scene, experiment: Mapping[str, Any]) -> Wanted | None:
+    """Return the observable of the local flow, where R assumes that the flow is a straight line.
+
+    None elsewhere, and where there are no two cells with particles enough for a flow.
+    """
+    timing = experiment["schedule"]
+    assumed = scene.effects.shear is not None or moves_along(scene.effects)
+    if not assumed or scene.effects.spin is None or timing["kind"] != "steady":
+        return None
+    if math.prod(cells_of(schedule.system_of(scene, experiment), IN_CELL)) < 2:
+        return None
+    planned = timing["measure"] / timing["sample_every"]
+    return Wanted("local_flow", max(1, int(planned / FLOW_LOOKS)), LocalFlow)
+
+
 class Observers:
     """The observables of a run: looks at each of its gases, and averages what was seen."""
 
@@ -133,17 +155,41 @@ class Observers:
         self._wanted = wanted(experiment.get("observables", {}), functions)
         self._experiment, self._kind = experiment, schedule.of(experiment)
         self._scene, self._system = scene, schedule.system_of(scene, experiment)
+        self._flow = assumed_flow(scene, experiment)
         self._observers: list[Observer] = []
         self._make()
 
     def _make(self) -> list[Registered]:
+        """Return new observables of a gas: those that settings list, and last the flow."""
         unit = self._kind.SAMPLES_PER_REFRESH
-        found = []
-        for one in self._wanted:
-            every = unit * math.ceil(one.every / unit)
+        registered = []
+        for listed in [*self._wanted, *([self._flow] if self._flow else [])]:
+            every = unit * math.ceil(listed.every / unit)
             system = self._system._replace(interval=every * self._system.interval)
-            found.append(Registered(one.make(system), every, [], {}))
-        return found
+            registered.append(Registered(listed.make(system), every, [], {}))
+        return registered
+
+    @property
+    def watch(self) -> bool:
+        """Whether there is anything to look at."""
+        return bool(self._wanted or self._flow)
+
+    def flow_shift(self, start: float) -> Estimate | None:
+        """Return by how much R is larger over the local flow, from `start` (T) on.
+
+        None where R rests on no assumed flow. The looks are too far apart to be correlated.
+        """
+        if self._flow is None:
+            return None
+        shifts = [
+            float(look.values[SHIFT])
+            for observer in self._observers
+            for look in observer.watched[-1].looks
+            if observer.begun + look.taken * self._system.interval > start
+        ]
+        return Estimate(
+            float(np.mean(shifts)), stderr_over_seeds(np.array(shifts)), len(shifts) - 1.0
+        )
 
     def begin(self, gas: Gas) -> None:
         """Watch a gas from now on."""

@@ -14,7 +14,7 @@ from roughgas.effects import speed_of_r
 from roughgas.effects.species import packing
 from roughgas.effects.walls import LEAST_DEPARTURE
 from roughgas.kernel import hooks
-from roughgas.scene import Scene, build, conserves_momentum, shear_rate
+from roughgas.scene import Scene, build, conserves_momentum, moves_along, shear_rate
 from roughgas.simulation import schedule
 from roughgas.simulation.contact_log import logged
 from roughgas.simulation.energies import free_of_momentum, species_names
@@ -23,7 +23,7 @@ from roughgas.simulation.journal import Journal
 from roughgas.simulation.recorder import Recorder
 from roughgas.simulation.restart import RESEED, Initial, final_states, is_memory_of, owner
 from roughgas.simulation.starts import prepared
-from roughgas.statistics.errors import UNKNOWN, YES
+from roughgas.statistics.errors import UNKNOWN, YES, Estimate
 from roughgas.theory.closed_forms import VOLUME, collision_frequency, packing_fraction
 from roughgas.theory.mixtures import SPECIES
 from roughgas.theory.rate_equations import LANGEVIN
@@ -86,7 +86,7 @@ def run_point(
         values, observed = watching.results(
             found["measured_from"], found.get("plateau_end", math.inf)
         )
-        found |= values
+        found |= values | flow_verdict(found, watching.flow_shift(found["measured_from"]))
     if journal:
         journal.end(recorder)
     return Point(
@@ -140,12 +140,32 @@ def _packing(scene, experiment, initial):
 
 
 def _watching(scene, experiment, functions):
-    """Return the observables that are asked for; None if there are none."""
-    if not functions and not experiment.get("observables"):
+    """Return the observables that settings list, or that R needs; None if there are none."""
+    effects = scene.effects
+    flows = effects.shear is not None or moves_along(effects)
+    if not functions and not experiment.get("observables") and not flows:
         return None
     from roughgas.simulation.observing import Observers  # imported where it is wanted
 
-    return Observers(scene, experiment, functions)
+    observers = Observers(scene, experiment, functions)
+    return observers if observers.watch else None
+
+
+def flow_verdict(variables: Mapping[str, Any], shift: "Estimate | None") -> dict[str, Any]:
+    """Return by how much R is larger over the local flow, and verdicts that this takes back.
+
+    Where it is so by more than half the interval of R, and significantly, the gas has a flow of its
+    own, whose energy passes for temperature.
+    """
+    if shift is None or "R" not in variables:
+        return {}
+    flows = shift.value > variables["R_ci95"] and shift.real
+    names = [name for name in variables if name.endswith("_trusted") or name == "target_met"]
+    withdrawn = {
+        name: np.where(np.equal(variables[name], YES), UNKNOWN, variables[name])[()]
+        for name in names
+    }
+    return {"R_flow_shift": shift.value, "R_flow_sigma": shift.sigma} | (withdrawn if flows else {})
 
 
 def _withdrawn(found):
