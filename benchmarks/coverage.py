@@ -1,0 +1,323 @@
+"""Coverage of trusted intervals of R, by this checkout and by another one: are verdicts right?
+
+    git worktree add ../before COMMIT
+    python -m benchmarks.coverage ../before [--jobs 2] [--scenes "bed, N=40"] [--only theirs]
+
+Each checkout simulates the scenes of coverage.yaml in processes of its own, with the same settings
+and seeds. Among the runs that it calls trusted (`R_ci95_trusted` is 1), and among those that met
+their target (`target_met` is 1), the interval R ± `R_ci95` should hold the truth in 95 %: a verdict
+must not select lucky runs. A folder keeps the runs, and a second call simulates only the missing
+ones. Prints tables, which --document writes into docs/accuracy.md. --pilot prints memories and
+target errors for the scenes of coverage.yaml.
+"""
+
+import argparse
+import hashlib
+import inspect
+import itertools
+import json
+import math
+import os
+import subprocess
+import sys
+import zlib
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import yaml
+
+from benchmarks.coverage_tables import (
+    COLUMNS,
+    OURS,
+    THEIRS,
+    Comparison,
+    Runs,
+    Scene,
+    tables_of,
+    truth_of,
+)
+from roughgas.simulation.recorder import KEY
+
+HERE = Path(__file__).parent.parent
+PLAN, PAGE = Path(__file__).with_suffix(".yaml"), HERE / "docs" / "accuracy.md"
+BEGIN, END = "<!-- coverage: made by benchmarks/coverage.py -->\n", "<!-- until here -->\n"
+TRUTH, LENGTH, TARGET, PILOT = "truth", "length", "target", "pilot"
+SETTINGS = ("particles", "box", "effects", "species")
+TARGET_LENGTH = 25  # memories of a run whose error is the target
+
+
+class Task(NamedTuple):
+    """Runs of a scene with one schedule, such as those of 20 memories: `length` and 20."""
+
+    scene: str
+    kind: str
+    number: float  # memories in the measurement, or in its first block; T of a pilot run
+    settings: dict[str, Any]
+    r: float
+    beta: float
+    seeds: list[int]
+
+    @property
+    def path(self) -> Path:
+        """Path of the file of its runs, in the folder of a checkout."""
+        words = "".join(c if c.isalnum() or c in "-=." else "_" for c in self.scene)
+        return Path(words) / f"{self.kind}_{self.number:g}.json"
+
+    def record(self) -> dict[str, Any]:
+        """Return the task as JSON has it."""
+        return json.loads(json.dumps(self._asdict()))
+
+
+# ------------------------------------------------------------------------------------------ tasks
+
+
+def tasks_of(name: str, plan: Mapping[str, Any]) -> list[Task]:
+    """Return the tasks of a scene: the truth, runs of each length, and runs to the target."""
+    scene = plan["scenes"][name]
+    seeds, truth = scene.get("seeds", plan["seeds"]), scene.get("truth", plan["truth"])
+    target = {KEY: scene["target_stderr"]}
+    lengths = plan["lengths" + gravity_suffix(scene)]
+    return [
+        task_of(plan, name, TRUTH, truth["memories"], truth["seeds"]),
+        *(task_of(plan, name, LENGTH, length, seeds) for length in lengths),
+        *(task_of(plan, name, TARGET, block, seeds, target) for block in plan["blocks"]),
+    ]
+
+
+def task_of(
+    plan: Mapping[str, Any],
+    name: str,
+    kind: str,
+    number: float,
+    seeds: int,
+    target: Mapping[str, float] | None = None,
+) -> Task:
+    """Return a task, its measurement of whole periods, with seeds that no other task has."""
+    scene = plan["scenes"][name]
+    schedule, memory = scene["schedule"], 1.0 if kind == PILOT else scene["memory"]
+    unit = schedule.get("period", schedule["sample_every"])
+    measure = unit * max(1, round(number * memory / unit))
+    settings = {key: scene[key] for key in SETTINGS if key in scene}
+    settings["schedule"] = {"kind": "steady", **schedule, "measure": measure, **(target or {})}
+    key = zlib.crc32(f"{name} {kind} {number:g}".encode())
+    drawn = np.random.SeedSequence([plan["seed"], key]).generate_state(seeds, "u8") >> 1
+    r, beta = float(scene["r"]), float(scene["beta"])
+    return Task(name, kind, number, settings, r, beta, drawn.tolist())
+
+
+def gravity_suffix(scene: Mapping[str, Any]) -> str:
+    """Return the ending of the plan's keys that apply to a scene."""
+    return "_under_gravity" if "gravity" in scene["effects"] else ""
+
+
+# ------------------------------------------------------------------------------------------- runs
+
+
+def measure() -> None:
+    """Simulate the tasks that are lines of input, in the checkout that is the current folder."""
+    import json
+    import sys
+    import time
+
+    from roughgas.scene import build
+    from roughgas.simulation.point import run_point
+    from roughgas.simulation.points import settings_of
+
+    names = ["R", "R_stderr", "R_dof", "R_ci95", "R_ci95_trusted", "equilibrated", "measured_from"]
+    names += ["target_met", "target_blocks", "autocorrelation_time", "memory_of_R", "collisions"]
+    for line in sys.stdin:
+        task = json.loads(line)
+        settings = settings_of(None, task["settings"], "paper", None)
+        scene, begin = build(settings, task["r"], task["beta"]), time.process_time()
+        points = [run_point(scene, settings, seed).variables for seed in task["seeds"]]
+        runs = {name: [float(point.get(name, "nan")) for point in points] for name in names}
+        seconds = time.process_time() - begin
+        print(json.dumps({"runs": runs, "seconds": seconds}), flush=True)
+
+
+# read at import: the file may change while processes start
+PROGRAM = f"{inspect.getsource(measure)}\nmeasure()"
+
+
+class Checkout(NamedTuple):
+    """A checkout, ours or theirs, and the folder of the runs of both."""
+
+    side: str
+    path: Path
+    folder: Path
+
+    def file(self, task: Task) -> Path:
+        """Return the path of the runs of a task; both checkouts share the truth."""
+        return self.folder / (TRUTH if task.kind == TRUTH else self.side) / task.path
+
+    def stored(self, task: Task) -> dict[str, Any]:
+        """Return the content of the file of a task; empty without one of this task."""
+        path = self.file(task)
+        content = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
+        return content if content.get("task") == task.record() else {}
+
+    def runs(self, task: Task) -> Runs | None:
+        """Return the stored runs of a task; None without any."""
+        content = self.stored(task)
+        if not content:
+            return None
+        variables = {name: np.array(values) for name, values in content["runs"].items()}
+        return Runs(task.number, task.settings["schedule"]["measure"], variables)
+
+    def sources(self) -> str:
+        """Return a digest of the sources of the package."""
+        files = sorted((self.path / "src" / "roughgas").rglob("*.py"))
+        return hashlib.sha256(b"".join(file.read_bytes() for file in files)).hexdigest()
+
+    def missing(self, tasks: Sequence[Task]) -> list[Task]:
+        """Return the tasks without runs by these sources; R of the truth depends on none."""
+        sources, stored = self.sources(), [self.stored(task) for task in tasks]
+        present = [
+            bool(content) and (task.kind == TRUTH or content["sources"] == sources)
+            for task, content in zip(tasks, stored, strict=True)
+        ]
+        return [task for task, kept in zip(tasks, present, strict=True) if not kept]
+
+    def simulate(self, tasks: Sequence[Task], report: Callable[[str], None]) -> None:
+        """Simulate the missing ones of the tasks, one after the other, in a process."""
+        sources, missing = self.sources(), self.missing(tasks)
+        if not missing:
+            return
+        with self._process() as process:
+            assert process.stdin and process.stdout
+            for task in missing:
+                print(json.dumps(task.record()), file=process.stdin, flush=True)
+                line = process.stdout.readline()
+                if not line:
+                    raise SystemExit(f"{self.side}, {task.scene}: ended early, see above")
+                content = {"task": task.record(), "sources": sources, **json.loads(line)}
+                _write(self.file(task), json.dumps(content))
+                words = f"{task.kind} {task.number:g}, {len(task.seeds)} runs"
+                report(f"{self.side}: {task.scene}: {words}, {content['seconds']:.1f} s")
+
+    def _process(self) -> subprocess.Popen[str]:
+        environment = os.environ | {"PYTHONPATH": str(self.path / "src")}
+        command, pipe = [sys.executable, "-c", PROGRAM], subprocess.PIPE
+        return subprocess.Popen(
+            command, cwd=self.path, env=environment, stdin=pipe, stdout=pipe, text=True
+        )
+
+
+def _write(path: Path, text: str) -> None:
+    """Write a file as a whole or not at all."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    unfinished = path.with_suffix(".unfinished")
+    unfinished.write_text(text, encoding="utf-8")
+    unfinished.replace(path)
+
+
+def simulate(checkouts: Sequence[Checkout], tasks: Mapping[str, Sequence[Task]], jobs: int) -> None:
+    """Simulate the tasks of each scene in each checkout, in `jobs` processes at a time."""
+    missing = [len(checkout.missing(scene)) for checkout in checkouts for scene in tasks.values()]
+    numbers = itertools.count(1)
+
+    def report(words: str) -> None:
+        print(f"[{next(numbers)}/{sum(missing)}] {words}", file=sys.stderr, flush=True)
+
+    with ThreadPoolExecutor(jobs) as pool:
+        for checkout in checkouts:  # in turn: the second finds the truth
+            list(pool.map(checkout.simulate, tasks.values(), itertools.repeat(report)))
+
+
+def scenes_of(
+    checkout: Checkout, tasks: Mapping[str, Sequence[Task]], plan: Mapping[str, Any]
+) -> dict[str, Scene]:
+    """Return the scenes by name whose truth, and some runs besides, the folder holds."""
+    scenes = {}
+    for name, scene_tasks in tasks.items():
+        kinds: dict[str, list[Runs]] = {TRUTH: [], LENGTH: [], TARGET: []}
+        for task in scene_tasks:
+            if runs := checkout.runs(task):
+                kinds[task.kind].append(runs)
+        if kinds[TRUTH] and (kinds[LENGTH] or kinds[TARGET]):
+            settings = plan["scenes"][name]
+            least = plan["criteria"]["memories" + gravity_suffix(settings)]
+            truth = truth_of(*kinds[TRUTH])
+            scenes[name] = Scene(settings["memory"], least, truth, kinds[LENGTH], kinds[TARGET])
+    return scenes
+
+
+# ----------------------------------------------------------------------------------------- command
+
+
+def main() -> None:
+    """Simulate the missing runs, and print the tables."""
+    plan = yaml.safe_load(PLAN.read_text(encoding="utf-8"))
+    options = arguments(list(plan["scenes"]))
+    paths = {THEIRS: options.other.resolve(), OURS: HERE}
+    checkouts = {
+        side: Checkout(side, path, options.folder.resolve()) for side, path in paths.items()
+    }
+    if options.pilot:
+        for name in options.scenes:
+            print_pilot(checkouts[OURS], task_of(plan, name, PILOT, plan["pilot"], 1))
+        return
+    tasks = {name: tasks_of(name, plan) for name in options.scenes}
+    if not options.table:
+        sides = [options.only] if options.only else list(COLUMNS)
+        simulate([checkouts[side] for side in sides], tasks, options.jobs)
+    scenes = {side: scenes_of(checkouts[side], tasks, plan) for side in COLUMNS}
+    warn_of_other_sources(checkouts, tasks)
+    text = tables_of(Comparison(scenes, plan["criteria"]))
+    print(text, end="")
+    if options.document:
+        document(text)
+
+
+def arguments(scenes: list[str]) -> argparse.Namespace:
+    """Return the options of the command line."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("other", type=Path, help="a checkout of another commit")
+    parser.add_argument("--folder", type=Path, default=HERE / "results" / "verdicts")
+    parser.add_argument("--jobs", type=int, default=1, help="processes at a time")
+    parser.add_argument("--scenes", nargs="+", choices=scenes, default=scenes, metavar="SCENE")
+    parser.add_argument("--only", choices=(OURS, THEIRS), help="simulate in one checkout only")
+    parser.add_argument("--table", action="store_true", help="simulate nothing")
+    parser.add_argument("--document", action="store_true", help="write into docs/accuracy.md")
+    parser.add_argument("--pilot", action="store_true", help="one long run of each scene instead")
+    options = parser.parse_args()
+    if not (options.other / "src" / "roughgas").is_dir():
+        parser.error(f"{options.other} is not a checkout")
+    if options.jobs < 1:
+        parser.error(f"--jobs = {options.jobs}: must be 1 at least")
+    return options
+
+
+def warn_of_other_sources(
+    checkouts: Mapping[str, Checkout], tasks: Mapping[str, Sequence[Task]]
+) -> None:
+    """Warn of runs in the tables that the present sources of a checkout did not make."""
+    for side, checkout in checkouts.items():
+        stale = [task for scene in tasks.values() for task in checkout.missing(scene)]
+        if number := sum(bool(checkout.stored(task)) for task in stale):
+            words = f"{number} files are by other sources than the checkout now has"
+            print(f"{side}: {words}", file=sys.stderr)
+
+
+def print_pilot(checkout: Checkout, task: Task) -> None:
+    """Simulate a long run of a scene, and print its memory (T) and the error of its target."""
+    checkout.simulate([task], lambda words: None)
+    runs = checkout.runs(task)
+    assert runs
+    memory, stderr = float(runs["autocorrelation_time"][0]), float(runs["R_stderr"][0])
+    target = stderr * math.sqrt(runs.measure / (TARGET_LENGTH * memory))
+    print(f"{task.scene}: memory: {memory:.2g}, target_stderr: {target:.2g}", flush=True)
+
+
+def document(text: str) -> None:
+    """Write the tables between their marks in docs/accuracy.md."""
+    before, rest = PAGE.read_text(encoding="utf-8").split(BEGIN)
+    _, after = rest.split(END)
+    PAGE.write_text(before + BEGIN + text + END + after, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
