@@ -245,7 +245,7 @@ def trusted_table(comparison: Comparison) -> str:
         long = _percent(scene.trusted_long_runs().share, 0)
         return [*_tally_cells(comparison, scene.trusted_runs()), long]
 
-    return _scene_table(comparison, ["trusted", "missed", "sigma", "of long runs"], cells)
+    return _scene_table(comparison, ["trusted", "missed", "sigma", "long trusted"], cells)
 
 
 def target_table(comparison: Comparison) -> str:
