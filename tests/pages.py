@@ -162,12 +162,17 @@ def _observables():
     settings, rows = [], []
     for name, kind in observables.KINDS.items():
         told = "<br>".join(_setting(key, one) for key, one in kind.settings.items())
-        settings.append((f"`{name}`", kind.__doc__, told))
+        settings.append((f"`{name}`", kind.__doc__, told, _window(kind.relaxations)))
         for variable, v in kind.variables.items():
             dims, when = ", ".join(v.dims), ", ".join(v.when)
             rows.append((f"`{name}`", f"`{variable}`", dims, v.units, when, v.long_name))
     head = ("observable", "variables", "dimensions", "units", "when", "meaning")
-    return f"{markdown(('observable', 'what it is', 'settings'), settings)}\n{markdown(head, rows)}"
+    kinds = ("observable", "what it is", "settings", "window")
+    return f"{markdown(kinds, settings)}\n{markdown(head, rows)}"
+
+
+def _window(relaxations):
+    return f"{relaxations:g}" if math.isfinite(relaxations) else "not known"
 
 
 def _setting(key, one):

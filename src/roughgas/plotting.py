@@ -14,6 +14,7 @@ from roughgas.show.figures.panel import (
     FRICTION,
     HALF,
     INERTIA,
+    NOT_TRUSTED,
     RESTITUTION,
     ROUGHNESS,
     SPIN_SHARE,
@@ -32,11 +33,13 @@ from roughgas.show.figures.panel import (
     draw_theory,
     frame_rows,
     key,
+    key_of_trust,
     keys_of_steadiness,
     ratio_figure,
     ratio_panels,
     series,
     series_for_each,
+    trusted,
 )
 from roughgas.show.style import (
     FAINT,

@@ -8,13 +8,16 @@ from roughgas.plotting import (
     ENERGY_RATIO,
     GREY,
     LOOKS,
+    NOT_TRUSTED,
     SPIN_SHARE,
     THEORY,
     add_title,
     draw_theory,
     key,
+    key_of_trust,
     keys_of_steadiness,
     series,
+    trusted,
 )
 from roughgas.plotting import Panel as Drawn
 from roughgas.theory import sonine_state, stationary_ratio
@@ -42,7 +45,7 @@ def draw(gas: xr.Dataset) -> Figure:
         _cumulants(axes, gas, place, look)
     draw_theory(Drawn(axes["R"], [axes["gap"]], SPIN_SHARE), drawn)
     axes["R"].set(ylabel=ENERGY_RATIO, ylim=(-0.02, 1.02))
-    axes["R"].legend(handles=_keys(drawn), loc="lower right", fontsize=7)
+    axes["R"].legend(handles=_keys(drawn, gas), loc="lower right", fontsize=7)
     axes["gap"].set_ylabel("$R$ minus published $R$\n" r"(DSMC), in $10^{-3}$")
     for name, one in axes.items():
         SPIN_SHARE.prepare(one)
@@ -74,13 +77,16 @@ def _ratio(above, beneath, gas, place, one) -> None:
 
 
 def _cumulants(axes, gas, place, look) -> None:
-    """Draw the cumulants, ours, theirs and those of theory."""
+    """Draw the cumulants, ours, paler where their errors are not trusted, theirs, and theory's."""
     shares, close = gas.spin_share, np.linspace(0.0, 1.0, 201)
     theory = sonine_state(place["r"], place["beta"], spin_share=close)
     for name in CUMULANTS:
         one, about = axes[name], {"color": look.colour, "ms": 4}
         row = gas.sel(place)
-        one.errorbar(shares, row[name], row[f"{name}_stderr"], fmt=look.marker, lw=0.9, **about)
+        for shown, style in _by_trust(row, name):
+            bars = shown[f"{name}_stderr"]
+            more = about | {"fmt": look.marker, "lw": 0.9} | style
+            one.errorbar(shown.spin_share, shown[name], bars, **more)
         for method, (marker, _) in METHODS.items():
             values = published(method, gas.R, name)[0].sel(place)
             size, colour = (7, GREY) if marker == "s" else (5, look.colour)
@@ -88,11 +94,19 @@ def _cumulants(axes, gas, place, look) -> None:
         one.plot(close, getattr(theory, name), "-", color=look.colour, lw=0.8, zorder=1)
 
 
-def _keys(drawn):
+def _by_trust(row, name):
+    """Return the points whose error is trusted and those whose is not, and how they are drawn."""
+    sure = trusted(row, name).values
+    return (row.isel(spin_share=sure), {}), (row.isel(spin_share=~sure), NOT_TRUSTED)
+
+
+def _keys(drawn, gas):
     """Return what colours and symbols are."""
     keys = [key(one.look.colour, one.label, one.look.marker) for one in drawn]
     keys += [key(GREY, label, marker, mfc="none") for marker, label in METHODS.values()]
     keys.append(key(GREY, "theory: see below", "", "-"))
+    if not all(trusted(gas, name).all() for name in CUMULANTS):
+        keys.append(key_of_trust())
     return keys + keys_of_steadiness(drawn)
 
 

@@ -267,7 +267,7 @@ def test_a_dataset_says_what_each_species_does():
     one = simulate(r=0.9, beta=0, seed=1, **common, **GAS)
     lines = observed(one).splitlines()
     found = Estimate(float(one.a20_species[1]), float(one.a20_species_stderr[1]))
-    assert any(line.startswith("a20_species [large] ") and f" {found} " in line for line in lines)
+    assert any(line.startswith("a20_species [large] ") and f" {found}? " in line for line in lines)
     assert any("over species (2), height (50)" in line for line in lines)
     numbers = one.species_particles
     every = (one.mean_square_displacement_species * numbers).sum(

@@ -11,7 +11,7 @@ from roughgas.base import InputError
 from roughgas.scene import build, for_theory
 from roughgas.simulation import schedule, steady
 from roughgas.simulation.memory import Thermal, drags, memory, spin_share
-from roughgas.statistics.errors import LEAST, NO, UNKNOWN, YES, Evidence, verdict
+from roughgas.statistics.errors import LEAST, NO, UNKNOWN, YES, Evidence, lack_of, verdict
 
 SPIN = {"spin": {"inertia": 0.5}}
 SHEAR, BATH = {"velocity": 2}, {"interval": 0.5, "drag": 0.05, "temperature": 1.0}
@@ -139,17 +139,28 @@ def test_the_share_of_spins_is_that_of_the_settings(share):
 
 def test_data_may_veto_and_never_vouch():
     enough, little = Evidence(20, 20), Evidence(20, 20, memories=11.9)
-    assert enough.enough() and not little.enough()
-    assert verdict(True, True) == YES and verdict(True, False) == NO
-    assert verdict(False, True) == verdict(False, False) == UNKNOWN
-    assert [verdict(True, True, known) for known in (YES, NO, UNKNOWN)] == [YES, NO, UNKNOWN]
+    short = enough._replace(times=5.9)
+    assert enough.verdict(True) == YES and enough.verdict(False) == NO
+    assert little.verdict(True) == little.verdict(False) == UNKNOWN
+    assert [verdict(steady, enough) for steady in (YES, NO, UNKNOWN)] == [YES, NO, UNKNOWN]
+    for lacking in (little, short):
+        assert [verdict(steady, lacking) for steady in (YES, NO)] == [UNKNOWN, NO]
 
 
 @pytest.mark.parametrize("numbers", LEAST._asdict())
 def test_each_number_that_is_too_small_is_too_little_evidence(numbers):
-    assert not LEAST._replace(**{numbers: 0.99 * getattr(LEAST, numbers)}).enough()
-    assert not LEAST._replace(**{numbers: math.nan}).enough()
-    assert LEAST.enough()
+    assert not LEAST._replace(**{numbers: 0.99 * getattr(LEAST, numbers)}).suffices()
+    assert not LEAST._replace(**{numbers: math.nan}).suffices()
+    assert LEAST.suffices()
+
+
+def test_what_is_lacking_is_said_in_words():
+    evidence = Evidence(collisions=9.7, samples=12, memories=3.2, phases=4)
+    assert lack_of(evidence, LEAST) == (
+        "9 collisions per particle, 10 needed; window of 3 memories, 12 needed; "
+        "4 phases of the drive, 16 needed"
+    )
+    assert lack_of(LEAST, LEAST) == ""
 
 
 LONG = {"kind": "steady", "equilibrate": 500.0, "measure": 1500.0, "sample_every": 1.0}

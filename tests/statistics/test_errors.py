@@ -12,6 +12,7 @@ import pytest
 
 from roughgas.statistics.errors import (
     Estimate,
+    Evidence,
     autocorrelation_time,
     block_means,
     blocking,
@@ -20,7 +21,6 @@ from roughgas.statistics.errors import (
     excess_sigmas,
     gaussian_sigmas,
     half_width,
-    outlasts_memory,
     period_means,
     pooled,
     stderr_over_seeds,
@@ -75,7 +75,7 @@ def test_a_constant_series_has_no_error_and_no_memory(recwarn):
     constant = np.full(100, 0.1)
     assert blocking_stderr(constant) == 0
     assert autocorrelation_time(constant) == 1.0
-    assert outlasts_memory(100, 1.0)
+    assert Evidence(times=100 / 1.0).suffices()
     assert not recwarn.list
 
 
@@ -84,7 +84,7 @@ def test_a_series_with_a_number_that_is_none_is_never_trusted_nor_steady(wrong):
     series = np.random.default_rng(1).standard_normal(200) + 10.0
     series[150] = wrong
     assert math.isnan(autocorrelation_time(series))
-    assert not outlasts_memory(len(series), autocorrelation_time(series))
+    assert not Evidence(times=len(series) / autocorrelation_time(series)).suffices()
     with np.errstate(invalid="ignore"):
         assert not is_equilibrated(series)
         assert not find_plateau(np.arange(200.0), np.tile(series, (12, 1))).found

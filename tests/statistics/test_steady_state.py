@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from roughgas.statistics.errors import UNKNOWN, Evidence, verdict
+from roughgas.statistics.errors import UNKNOWN, Evidence
 from roughgas.statistics.steady_state import (
     cut_sigmas,
     detect_start,
@@ -57,7 +57,7 @@ def test_noise_that_could_hide_any_drift_is_for_theory_to_reject(ar1):
     """
     for series in noisy(ar1, 26, 50, 1000, 20, amplitude=3.0):
         assert is_equilibrated(series)
-        assert verdict(Evidence(1000, 1000, memories=5).enough(), True) == UNKNOWN
+        assert Evidence(1000, 1000, memories=5).verdict(True) == UNKNOWN
 
 
 def test_a_drift_that_noise_cannot_explain_counts_however_small_it_is(ar1):

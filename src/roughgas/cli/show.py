@@ -32,6 +32,8 @@ FEW = 0.01
 OF_SPECIES = ("E_trans", "E_rot", "R")
 PARTS = {"species", "other"}  # what is over nothing else is shown value by value
 MOST_VALUES = 4  # of a variable, that are all shown
+MOST_NAMES = 4  # of variables with the same reason for doubt
+MARK, TRUSTED = "?", "_trusted"
 FLAGS = {YES: True, NO: False, UNKNOWN: None}
 QUOTED = {netcdf.POINT: ("experiment_json", "command"), netcdf.TASK: ("settings_json",)}
 """Attributes of each kind that a summary quotes."""
@@ -285,14 +287,14 @@ def _by_species(point: Dataset) -> str:
 
 def observed(point: Dataset) -> str:
     """Return a row for each result of an observable, and what it is over; one for each species, or
-    pair of species, where it is over nothing else."""
+    pair of species, where it is over nothing else. Beneath, why errors are not trusted."""
     rows = [["observed", "value", "meaning"]]
     for key, about in point.variables.items():
         if "observable" not in about.attrs or f"{key}_stderr" not in point:
             continue
         if not PARTS >= {*about.dims}:
             over = ", ".join(f"{dim} ({point.sizes[dim]})" for dim in about.dims)
-            rows.append([str(key), f"over {over}", about.attrs["long_name"]])
+            rows.append([str(key), f"over {over}{_doubtful(point, key)}", about.attrs["long_name"]])
             continue
         for at in np.ndindex(about.shape):
             if list(at) == sorted(at):  # a pair is the same in either order
@@ -300,11 +302,39 @@ def observed(point: Dataset) -> str:
                 one = point.isel(dict(zip(about.dims, at, strict=True)))
                 name = f"{key} [{kinds}]" if kinds else str(key)
                 rows.append([name, _estimate(one, str(key)), about.attrs["long_name"]])
-    return columns(rows) if rows[1:] else ""
+    return columns(rows) + _doubts(point) if rows[1:] else ""
 
 
 def _estimate(point: Dataset, name: str) -> str:
-    return f"{Estimate(float(point[name]), float(point.get(f'{name}_stderr', math.nan)))}"
+    value, stderr = float(point[name]), float(point.get(f"{name}_stderr", math.nan))
+    return f"{Estimate(value, stderr)}{MARK if point.get(f'{name}_trusted', YES) != YES else ''}"
+
+
+def _doubtful(point: Dataset, name: Any) -> str:
+    """Return how many values of a variable have errors that are not trusted."""
+    flags = point.get(f"{name}_trusted")
+    count = 0 if flags is None else int((flags != YES).sum())
+    return f", {count} of {point[name].size} {MARK}" if count else ""
+
+
+def _doubts(point: Dataset) -> str:
+    """Return a line on errors that are not trusted, and one for each reason, if there are any."""
+    reasons: dict[str, list[str]] = {}
+    for name, about in point.variables.items():
+        if (
+            about.attrs.get("observable")
+            and str(name).endswith(TRUSTED)
+            and "comment" in about.attrs
+        ):
+            for reason in about.attrs["comment"].split("; "):
+                reasons.setdefault(reason, []).append(str(name).removesuffix(TRUSTED))
+    lines = [f"  {reason}: {_few(names)}" for reason, names in reasons.items()]
+    return "\n".join([f"\n{MARK}: the error may be too small", *lines]) if lines else ""
+
+
+def _few(names: list[str]) -> str:
+    more = f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else ""
+    return ", ".join(names[:MOST_NAMES]) + more
 
 
 def scalars(data: Dataset) -> dict[str, Any]:

@@ -52,7 +52,7 @@ UDUNITS = ("1", "s", "1/s")
 FIRST = [0], [1], [1]
 """Start, count and stride of a single number, for what netCDF4 itself gets and puts values with:
 to find them takes its indexing ten times as long."""
-QUALITIES = ("stderr", "dof", "ci95", "ci95_trusted")
+QUALITIES = ("stderr", "dof", "trusted", "ci95", "ci95_trusted")
 """Suffixes of the ancillary variables of <name>, which say how sure it is (<name>_stderr, ...)."""
 
 

@@ -48,6 +48,7 @@ class Variable(NamedTuple):
     flags: str = ""  # the meanings of 0, 1, ..., a word each; `unknown`, if it is there, is -1
     of_settings: bool = False  # in units of the settings even in a cooling gas
     observable: str = ""  # which has watched it
+    comment: str = ""  # on its values
 
     def units_of(self, cooling: bool) -> str:
         """Return its units in a cooling gas, or in a driven one."""
@@ -97,18 +98,21 @@ def errors_of(name: str, origin: str, about: Variable) -> dict[str, Variable]:
     }
 
 
-def verdict_on(name: str, about: Variable) -> Variable:
-    """Return the verdict on the error of a variable."""
-    said = f"whether {name}_stderr is right; -1 where there is too little to tell"
-    flags = "unknown untrusted trusted"
-    return about._replace(long_name=said, units="1", dtype="i1", over_seeds="", flags=flags)
+TRUST = "unknown untrusted trusted"
+"""The meanings of flags that say whether an error is right."""
+
+
+def trust_of(name: str, about: Variable) -> Variable:
+    """Return the flags that say whether the error of a variable is right."""
+    said = f"whether {name}_stderr is large enough; -1 where there is too little to tell"
+    return about._replace(long_name=said, units="1", dtype="i1", over_seeds="", flags=TRUST)
 
 
 def _at_contacts(name: str, long_name: str) -> dict[str, Variable]:
     """Return an average over the collisions of pairs, with its error."""
     about = Variable(long_name, when=(AT_CONTACTS,))
-    verdict = {f"{name}_trusted": verdict_on(name, about)}
-    return {name: about, **errors_of(name, WITHIN, about), **verdict}
+    errors = errors_of(name, WITHIN, about)
+    return {name: about, **errors, f"{name}_trusted": trust_of(name, about)}
 
 
 NAMES = {  # in all kinds of datasets
@@ -130,7 +134,7 @@ def _of_species(name: str, long_name: str, units: str = "1", *when: str) -> dict
     """Return a mean of each species, with its error and, but for R, its series."""
     about = Variable(f"{long_name} of a species", units, ("species",), when=(MIXTURE, *when))
     found = {name: about, f"{name}_stderr": error_of(name, WITHIN, about)}
-    found[f"{name}_trusted"] = verdict_on(name, about)
+    found[f"{name}_trusted"] = trust_of(name, about)
     if units == ENERGY:
         found[f"{name}_series"] = about._replace(dims=("species", "sample"))
     return found
@@ -150,7 +154,7 @@ POINT = {
         "whether R_ci95 holds the truth as often as it says; -1 where there is too little to tell",
         dtype="i1",
         when=(SPIN,),
-        flags="unknown untrusted trusted",
+        flags=TRUST,
     ),
     "R_ratio_of_means": _of_spin("share of rotation in the energy, from the mean energies"),
     "R_corrected": _of_spin(
@@ -164,10 +168,10 @@ POINT = {
     ),
     "E_trans": _TRANSLATION,
     "E_trans_stderr": error_of("E_trans", WITHIN, _TRANSLATION),
-    "E_trans_trusted": verdict_on("E_trans", _TRANSLATION),
+    "E_trans_trusted": trust_of("E_trans", _TRANSLATION),
     "E_rot": _ROTATION,
     "E_rot_stderr": error_of("E_rot", WITHIN, _ROTATION),
-    "E_rot_trusted": verdict_on("E_rot", _ROTATION),
+    "E_rot_trusted": trust_of("E_rot", _ROTATION),
     "collisions": Variable("collisions simulated", dtype="i8", over_seeds="sum"),
     "kernel_seconds": Variable("CPU time spent in the kernel", "s", over_seeds="sum"),
     "equilibrated": Variable(
@@ -346,6 +350,8 @@ def _array(about: Variable, values: Any, cooling: bool, grid: tuple[str, ...]) -
         attributes["units"] = about.units_of(cooling)
     if about.observable:
         attributes["observable"] = about.observable
+    if about.comment:
+        attributes["comment"] = about.comment
     if about.flags:
         words = about.flags.split()
         meanings = np.arange(len(words), dtype=about.dtype) - words.count("unknown")

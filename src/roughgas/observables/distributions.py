@@ -109,6 +109,7 @@ class Histograms(Observable):
         "bins": Whole("Number of bins.", 2, 10_000, 60),
         "reach": Number("End of the last bin, in root mean squares.", "(0, 1000]", 6.0),
     }
+    relaxations = 24.0
     variables: Mapping[str, Variable] = {
         ALONG: Variable("middle of a bin, in root mean squares", "1", (ALONG,)),
         "component": Variable("component of a vector", "", ("component",), "str"),
@@ -150,6 +151,7 @@ class SpinCorrelation(Observable):
 
     spins = True
     alike = True
+    relaxations = 24.0
     variables: Mapping[str, Variable] = {
         "a11": Variable("<V^2 w^2>/(<V^2> <w^2>) - 1 of velocities and spins"),
         "alignment": Variable("3 <(V.w)^2>/<V^2 w^2> - 1 of velocities and spins", when=(SPHERES,)),
@@ -191,6 +193,7 @@ class PairCorrelation(Observable):
         "bins": Whole("Number of bins in a diameter.", 1, 1000, 20),
         "reach": Number(f"Largest distance, in a; {REACH:g} if the box is wide enough."),
     }
+    relaxations = 24.0
     variables: Mapping[str, Variable] = {
         "distance": Variable("distance of two centres, middle of a bin", LENGTH, ("distance",)),
         "pair_correlation": Variable("pair correlation function g(r)", "1", ("distance",)),
@@ -282,6 +285,7 @@ class MeanSquareDisplacement(Observable):
     settings: ClassVar[Mapping[str, Setting]] = {
         "lags": Whole("Number of times, each twice the one before.", 1, 20, 8)
     }
+    relaxations = 96.0
     variables: Mapping[str, Variable] = {
         "lag": Variable("time between two observations", TIME, ("lag",)),
         "moving": Variable("component of the displacement", "", ("moving",), "str"),

@@ -140,6 +140,7 @@ class Stress(Observable):
     """The pressure tensor, and the pressure."""
 
     effects = ("contact_stress",)
+    relaxations = 96.0
     variables: Mapping[str, Variable] = {
         "component": Variable("component of a vector", "", ("component",), "str"),
         "along": Variable("axis that it is carried along", "", ("along",), "str"),
@@ -212,6 +213,7 @@ class HeatFlux(Observable):
     """The heat flux, of the whole box."""
 
     effects = ("contact_heat",)
+    relaxations = 24.0
     variables: Mapping[str, Variable] = {
         "component": Variable("component of a vector", "", ("component",), "str"),
         "heat_flux": Variable("heat flux", FLUX, ("component",)),

@@ -114,6 +114,7 @@ class Layer(Observable):
     settings: ClassVar[Mapping[str, Setting]] = {
         "phases": Whole("Number of phases in schedule.period.", 1, 10_000, 20)
     }
+    relaxations = 24.0
     variables: Mapping[str, Variable] = {
         "layer_phase": Variable("share of schedule.period that has passed", "1", ALONG),
         "layer_height": Variable("mean height above the floor", LENGTH, ALONG),

@@ -26,7 +26,14 @@ from roughgas.base import InputError, NeedsError
 from roughgas.data.variables import Variable
 from roughgas.effects.contacts import columns_of_pairs
 from roughgas.effects.settings import Number, Whole
-from roughgas.statistics.errors import blocking, degrees_of_freedom, period_means
+from roughgas.statistics.errors import (
+    Evidence,
+    autocorrelation_time,
+    blocking,
+    carriers,
+    degrees_of_freedom,
+    period_means,
+)
 
 AXES = "xyz"
 
@@ -178,6 +185,9 @@ class Observable:
     alike: ClassVar[bool] = False  # of a mixture, it makes sense of each species alone
     pairs: ClassVar[bool] = False  # it is of pairs, which may be of two species
     kept: tuple[str, ...] = ()  # what points keep look by look, and nobody averages
+    relaxations: float = math.inf
+    # e-folds of the slowest mode of the two temperatures that a window of a driven gas must have
+    # for errors that are right, by benchmarks/observed.py; infinite where no such length is known
     variables: Mapping[str, Variable] = {}
 
     def __init__(self, system: System) -> None:
@@ -208,6 +218,7 @@ class OfSpecies(Observable):
 
     def __init__(self, kind: type[Observable], system: System, settings: Mapping[str, Any]) -> None:
         super().__init__(system)
+        self.relaxations = kind.relaxations
         kinds, dims = range(len(system.species)), PAIR[: 1 + kind.pairs]
         self._which = list(itertools.combinations_with_replacement(kinds, len(dims)))
         number = {which: n for n, which in enumerate(self._which)}
@@ -316,11 +327,13 @@ STEP = 1e-4  # of the deviations, in which the slope is taken
 
 
 class Averages(NamedTuple):
-    """Results, their standard errors, and the degrees of freedom of these, each by name."""
+    """Results, their standard errors, the degrees of freedom of these, and what the errors rest on,
+    each by name."""
 
     value: dict[str, np.ndarray]
     stderr: dict[str, np.ndarray]
     dof: dict[str, np.ndarray]
+    evidence: dict[str, Evidence]  # arrays in the shape of the value
 
 
 def averaged(
@@ -341,9 +354,29 @@ def averaged(
         found = combine(mean)
         slopes = list(_slopes(combine, mean, series[0]))
     value = {name: np.asarray(one, float) for name, one in found.items()}
-    error = _scatter if len(runs) > 1 else _blocked
-    errors = {name: error(np.array([one[name] for one in slopes])) for name in value}
-    return Averages(value, *({n: errors[n][k] for n in value} for k in range(2)))
+    error, support = (_scatter, _replicas) if len(runs) > 1 else (_blocked, _length_of_series)
+    linear = {name: np.array([one[name] for one in slopes]) for name in value}
+    errors = {name: error(one) for name, one in linear.items()}
+    evidence = {name: support(one) for name, one in linear.items()}
+    stderr, dof = ({name: pair[k] for name, pair in errors.items()} for k in range(2))
+    return Averages(value, stderr, dof, evidence)
+
+
+def _replicas(runs: np.ndarray) -> Evidence:
+    """Return in how many independent runs (runs, ...) there is each number."""
+    return Evidence(runs=np.isfinite(runs).sum(axis=0))
+
+
+def _length_of_series(series: np.ndarray) -> Evidence:
+    """Return how long each linearised series (samples, ...) is, and what carries its variance."""
+    columns = [column[np.isfinite(column)] for column in series.reshape(len(series), -1).T]
+    lengths = [(len(one), autocorrelation_time(one) if len(one) else math.nan) for one in columns]
+    rows = [
+        (samples, samples / time, carriers(one, time))
+        for one, (samples, time) in zip(columns, lengths, strict=True)
+    ]
+    of_each = np.array(rows, float).reshape(-1, 3).T.reshape(3, *series.shape[1:])
+    return Evidence(samples=of_each[0], times=of_each[1], carriers=of_each[2])
 
 
 def _stacked(looks: Sequence[Values], per_period: int) -> dict[str, np.ndarray]:

@@ -192,7 +192,7 @@ def _combined(points: Sequence[Summary]) -> Content:
     for name in VERDICTS & values.keys():
         values[name] = np.where(mixed & (values[name] > NO), float(NO), values[name])
     reduced = described("reduced", values, "plateau_end" in stacks, grid)
-    seen = _observables(points, axes, grid)
+    seen = _observables(points, axes, grid, mixed)
     return Content(third | reduced | seen, attributes)
 
 
@@ -306,15 +306,20 @@ def _errors(
 
 
 def _observables(
-    points: Sequence[Summary], axes: Sequence[Sequence[Any]], grid: tuple[str, ...]
+    points: Sequence[Summary],
+    axes: Sequence[Sequence[Any]],
+    grid: tuple[str, ...],
+    mixed: np.ndarray,
 ) -> dict[str, Array]:
-    """Return what observables have watched: means over seeds, with pooled errors, and coordinates.
+    """Return what observables have watched: means over seeds, with pooled errors and shares of
+    trust, and coordinates. No mean is trusted where replicas are `mixed` (see _mixed).
 
     Raises InputError where points have watched along different coordinates.
     """
     first = {name: one for point in reversed(points) for name, one in point.observed.items()}
     means = [name for name in first if f"{name}_stderr" in first]
-    several = {f"{name}{end}" for name in means for end in ("", "_stderr", "_dof")}
+    ends = ("", "_stderr", "_dof", "_trusted")
+    several = {f"{name}{end}" for name in means for end in ends}
     found = {name: one for name, one in first.items() if name not in several}
     for name, one in ((name, one) for point in points for name, one in point.observed.items()):
         if one.values.shape != first[name].values.shape:
@@ -333,7 +338,20 @@ def _observables(
         found[name] = Array(dims, mean, about)
         found[f"{name}_stderr"] = Array(dims, stderr, about | {"long_name": said})
         found[f"{name}_dof"] = Array(dims, dof, about | {"long_name": freedom, "units": "1"})
+        if f"{name}_trusted" in stacks:  # points of earlier versions have no such flags
+            found[f"{name}_trusted"] = _trust(name, stacks, mixed, dims, about)
     return {name: found[name] for name in first}
+
+
+def _trust(name, stacks, mixed, dims, about) -> Array:
+    """Return the share of seeds whose error of a variable is trusted; none of a mixture of two."""
+    share = _share(stacks[f"{name}_trusted"])
+    mixed = mixed.reshape(*mixed.shape, *[1] * (share.ndim - mixed.ndim))
+    share = np.where(mixed & (share > NO), float(NO), share)
+    said = (
+        f"share of seeds whose {name}_stderr is large enough; -1 where most have too little to tell"
+    )
+    return Array(dims, share, about | {"long_name": said, "units": "1"})
 
 
 def _kinds_of_error(stacks: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:

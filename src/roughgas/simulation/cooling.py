@@ -31,7 +31,6 @@ from roughgas.statistics.errors import (
     Error,
     Evidence,
     autocorrelation_time,
-    verdict,
 )
 from roughgas.statistics.steady_state import find_plateau
 from roughgas.theory import friction_relaxation_rate, mixture_relaxation_rate, relaxation_rate
@@ -133,6 +132,11 @@ def sample(gas: Gas, every: float, samples: int) -> Columns:
 def samples_per_period(schedule: Mapping[str, Any]) -> int:
     """Return 1: nothing drives a cooling gas."""
     return 1
+
+
+def phases(scene: Scene, schedule: Mapping[str, Any], every: int = 1) -> float:
+    """Return infinity: nothing drives a cooling gas."""
+    return math.inf
 
 
 def wait(scene: Scene, experiment: Mapping[str, Any]) -> int:
@@ -253,7 +257,7 @@ def _measure(ensemble, passed, transient, rate, every):
     first = np.argmax(inside)
     length = plateau.stop - (passed[first - 1] if first else 0.0)
     evidence = Evidence(length, np.count_nonzero(inside), rate * plateau.start, runs=len(R))
-    found = verdict(evidence.enough(), plateau.found)
+    found = evidence.verdict(plateau.found)
     error = Error(plateau.stderr, len(R) - 1.0)
     exponent = ensemble.exponent
     E_rot = restored(ensemble.energies, exponent).rotational

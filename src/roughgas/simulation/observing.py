@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from roughgas.base import InputError
-from roughgas.data.variables import ENERGY, POINT, RATE, SPEED, TIME, Variable
+from roughgas.data.variables import ENERGY, POINT, RATE, SPEED, TIME, Variable, trust_of
 from roughgas.kernel.hooks import displacement, sums
 from roughgas.kernel.state import EXPONENT
 from roughgas.observables import KINDS, Frame, System, Wanted, wanted
@@ -23,6 +23,7 @@ from roughgas.simulation import schedule
 from roughgas.simulation.gas import Gas
 from roughgas.simulation.paths import in_order, rotations, unwrapped_positions
 from roughgas.simulation.restart import positions_and_velocities
+from roughgas.simulation.trust import trust_in, window_of
 from roughgas.statistics.errors import Estimate, stderr_over_seeds
 
 Functions = Mapping[str, Callable[[Frame], Any]]
@@ -197,24 +198,46 @@ class Observers:
         gas.observer = Observer(gas, self._make(), wait)
         self._observers.append(gas.observer)
 
-    def results(self, start: float, stop: float = math.inf) -> tuple[dict, dict[str, Variable]]:
-        """Return variables of a point by name, and what they are, of a measured window.
-
-        Its ends are in T since the start, or in collisions per particle of a cooling gas.
-        """
+    def results(self, point: Mapping[str, Any]) -> tuple[dict, dict[str, Variable]]:
+        """Return variables of a point by name, and what they are, of the window that the variables
+        of `point` say was measured. They say too whether the gas was steady, and how long it
+        remembers."""
         values: dict[str, Any] = {}
         about: dict[str, Variable] = {}
         for number, one in enumerate(self._wanted):
             watched = [observer.watched[number] for observer in self._observers]
-            found = self._averaged(watched, start, stop)
+            found, lacks = self._averaged(watched, point)
             kind = watched[0].observable
             shared = _same(values, kind.coordinates)
             _refuse_twice(one.name, (found.keys() | kind.variables.keys() - shared), values)
             values |= kind.coordinates | found
-            about |= self._described(one.name, kind.variables, found)
+            about |= self._described(one.name, kind.variables, found, lacks)
         return values, about
 
-    def _averaged(self, watched: Sequence[Registered], start: float, stop: float) -> dict[str, Any]:
+    def _averaged(
+        self, watched: Sequence[Registered], point: Mapping[str, Any]
+    ) -> tuple[dict[str, Any], dict[str, str]]:
+        """Return averages with their errors and flags of trust, and by name what trust lacks."""
+        runs = self._windows(watched, point["measured_from"], point.get("plateau_end", math.inf))
+        observable, every = watched[-1].observable, watched[0].every
+        period = self._kind.samples_per_period(self._experiment["schedule"])
+        per_period = period // every if period % every == 0 else 1
+        means = [[_without(observable.kept, values) for values in run] for run in runs]
+        found = averaged(observable.combine, means, per_period)
+        window = window_of(self._scene, self._experiment, point, len(runs[0]), every)
+        values, lacks = _series(observable.kept, [x for run in runs for x in run]), {}
+        for name, value in found.value.items():
+            stderr, evidence = found.stderr[name], found.evidence[name]
+            trust = trust_in(value, stderr, evidence, window, observable.relaxations)
+            values |= {name: value, f"{name}_stderr": stderr, f"{name}_dof": found.dof[name]}
+            values[f"{name}_trusted"], lacks[name] = trust
+        return values, lacks
+
+    def _windows(
+        self, watched: Sequence[Registered], start: float, stop: float
+    ) -> list[list[Values]]:
+        """Return what was seen of each gas in a window; its ends are in T since the start, or in
+        collisions per particle of a cooling gas."""
         every = self._system.interval
         runs = []
         for one, observer in zip(watched, self._observers, strict=True):
@@ -222,22 +245,13 @@ class Observers:
             low, high = ((end - begun) / every + 0.5 for end in (start, stop))
             runs.append([look.values for look in one.looks if low < look.taken < high])
         runs = [run for run in runs if run]
-        kept = watched[0].observable.kept
         if not runs:
             legal = "be small enough for observations during the measurement"
             raise InputError("observables: every", watched[0].every, legal)
-        period = self._kind.samples_per_period(self._experiment["schedule"])
-        per_period = period // one.every if period % one.every == 0 else 1
-        means = [[_without(kept, values) for values in run] for run in runs]
-        found = averaged(one.observable.combine, means, per_period)
-        return {
-            f"{name}{end}": values[name]
-            for name in found.value
-            for end, values in zip(("", "_stderr", "_dof"), found, strict=True)
-        } | _series(kept, [values for run in runs for values in run])
+        return runs
 
-    def _described(self, observable, variables, found) -> dict[str, Variable]:
-        """Return what the variables of an observable are, errors included."""
+    def _described(self, observable, variables, found, lacks) -> dict[str, Variable]:
+        """Return what the variables of an observable are, errors and flags of trust included."""
         described = {}
         for name, about in variables.items():
             units = _present(about.units) if self._system.cooling else about.units
@@ -250,6 +264,7 @@ class Observers:
                 freedom = f"degrees of freedom that {name}_stderr is known with"
                 described[f"{name}_stderr"] = about._replace(long_name=error)
                 described[f"{name}_dof"] = about._replace(long_name=freedom, units="1")
+                described[f"{name}_trusted"] = trust_of(name, about)._replace(comment=lacks[name])
         return described
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from roughgas.base import InputError, __version__
 from roughgas.data.point import Point
-from roughgas.data.variables import Variable
+from roughgas.data.variables import POINT, Variable
 from roughgas.effects import speed_of_r
 from roughgas.effects.species import packing
 from roughgas.effects.walls import LEAST_DEPARTURE
@@ -23,6 +23,7 @@ from roughgas.simulation.journal import Journal
 from roughgas.simulation.recorder import Recorder
 from roughgas.simulation.restart import RESEED, Initial, final_states, is_memory_of, owner
 from roughgas.simulation.starts import prepared
+from roughgas.simulation.steady import LACK
 from roughgas.statistics.errors import UNKNOWN, YES, Estimate
 from roughgas.theory.closed_forms import VOLUME, collision_frequency, packing_fraction
 from roughgas.theory.mixtures import SPECIES
@@ -34,6 +35,10 @@ VOUCHED = {
     "R_ci95_trusted": (*ENERGIES, "R_stderr", "R_dof", "R_ci95", "autocorrelation_time"),
 }
 """The numbers that each flag of a point vouches for."""
+TRUSTED = "_trusted"
+"""Ends the name of the verdict on the error of a number."""
+FLOW = "the gas has a flow of its own, which R counts as temperature"
+"""What takes back a verdict on R; see `flow_verdict`."""
 LEAST_LOSS = 0.01  # of a contact, where it is less: elastic gases are not infinitely hot
 DENSEST = 0.6  # packing of a bed, where it would be more: a cold one does not collapse to a point
 
@@ -81,17 +86,21 @@ def run_point(
     if scene.effects.contact_time is not None:
         found["contact_time"] = scene.effects.contact_time.duration
         found["contact_time_fraction"] = recorder.touched / max(1, recorder.collisions)
-    observed: Mapping[str, Variable] = {}
+    lack = found.pop(LACK, "")
+    found |= _withdrawn(found)
+    observed: dict[str, Variable] = {}
     if watching:
-        values, observed = watching.results(
-            found["measured_from"], found.get("plateau_end", math.inf)
-        )
-        found |= values | flow_verdict(found, watching.flow_shift(found["measured_from"]))
+        values, observed = watching.results(found)
+        flow = flow_verdict(found, watching.flow_shift(found["measured_from"]))
+        lack = FLOW if "R_ci95_trusted" in flow else lack
+        found |= values | flow
+    if lack:
+        observed["R_ci95_trusted"] = POINT["R_ci95_trusted"]._replace(comment=lack)
     if journal:
         journal.end(recorder)
     return Point(
         observed=observed,
-        variables=found | _withdrawn(found),
+        variables=found,
         attributes={
             "r": scene.restitution,
             "beta": scene.roughness,
@@ -172,7 +181,13 @@ def _withdrawn(found):
     """Return verdicts that are not known, since a number that they vouch for is not finite."""
     given = {flag: [found[one] for one in VOUCHED[flag] if one in found] for flag in VOUCHED}
     wrong = (flag for flag, numbers in given.items() if not np.isfinite(numbers).all())
-    return {flag: UNKNOWN for flag in wrong if found.get(flag) == YES}
+    withdrawn: dict[str, Any] = {flag: UNKNOWN for flag in wrong if found.get(flag) == YES}
+    for name in (flag.removesuffix(TRUSTED) for flag in found if flag.endswith(TRUSTED)):
+        if f"{name}_stderr" in found:
+            finite = np.isfinite(found[name]) & np.isfinite(found[f"{name}_stderr"])
+            flags = found[f"{name}{TRUSTED}"]
+            withdrawn[f"{name}{TRUSTED}"] = np.where(finite | (flags != YES), flags, UNKNOWN)[()]
+    return withdrawn
 
 
 def _about_start(initial, scene):

@@ -48,6 +48,10 @@ class Kind(Protocol):
     def samples_per_period(self, schedule: Mapping[str, Any]) -> int:
         """Return the samples in a period of the drive."""
 
+    def phases(self, scene: Scene, schedule: Mapping[str, Any], every: int = 1) -> float:
+        """Return how many phases of a periodic drive one in `every` samples shows; infinity without
+        such a drive."""
+
     def wait(self, scene: Scene, experiment: Mapping[str, Any]) -> int:
         """Return the samples that are taken before any can count."""
 

@@ -5,6 +5,7 @@ run through all stages, and have what a change has put in beside what effects ha
 a point are over the stages that are measured.
 """
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
@@ -23,6 +24,7 @@ from roughgas.simulation.energies import (
     energies_of_each,
     energy_exchange,
     exchange_series,
+    verdicts_on_means,
 )
 from roughgas.simulation.gas import Gas, joined
 from roughgas.simulation.recorder import Recorder
@@ -97,6 +99,11 @@ def samples_per_period(schedule: Mapping[str, Any]) -> int:
     return 1
 
 
+def phases(scene: Scene, schedule: Mapping[str, Any], every: int = 1) -> float:
+    """Return infinity: no average is over a period of the drive."""
+    return math.inf
+
+
 def check(scene: Scene, experiment: Mapping[str, Any]) -> None:
     """Raise InputError for stages that cannot be run, or measure nothing."""
     stages = course(scene, experiment)
@@ -166,8 +173,8 @@ def run(
     found = joined(rows)
     collisions = 2.0 * (found["collisions"] - made) / gas.particles
     window = total.map(lambda part: part[first:])
-    return {
-        **steady.averages(window, 1, every, UNKNOWN),
+    variables = {
+        **steady.averages(window, 1, every),
         **contact_averages(found, first, 1, steady.inertia_of_sums(gas.scene), sums),
         **_of_species(species, first),
         **energy_exchange(before, gas.balance(), gas.scene, gas.particles, changes.sum(axis=0)),
@@ -180,6 +187,9 @@ def run(
         "stage_begin": [one.begin for one in stages],
         "stage_input": changes / gas.particles,
     }
+    if window.rotational is not None:
+        variables["R_ci95_trusted"] = UNKNOWN
+    return variables | verdicts_on_means(variables, UNKNOWN)
 
 
 def _samples(gas, stage, every):

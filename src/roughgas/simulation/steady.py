@@ -37,7 +37,7 @@ from roughgas.statistics.errors import (
     autocorrelation_time,
     blocking,
     degrees_of_freedom,
-    outlasts_memory,
+    lack_of,
     period_means,
     verdict,
 )
@@ -47,13 +47,14 @@ from roughgas.statistics.steady_state import detect_start, is_equilibrated
 DRIVEN, UNIT, LENGTH, SAMPLES_PER_REFRESH = True, "T", "measure", 1
 KEPT = 4  # values in a period that the stored series have
 LEAST_LEFT = 0.5  # share of the planned measurement below which a late start is not worth having
-# of a periodic drive, that samples must show: with 16 a bed has R within 0.0005 of that with 80
-LEAST_PHASES = 16
+LEAST_PHASES = int(LEAST.phases)
 WHOLE = 1e-6  # by which a number of samples, or of periods, may miss a whole one
+LACK = "R_ci95_lack"
+"""What R lacks to be trusted, in words, among the variables of a run: it becomes a comment."""
 LEAST_IN_BED = LEAST._replace(memories=24)
 """Evidence under gravity, where R is measured to remember up to twice as long as by theory."""
-LEAST_RELAXATIONS = 48.0
-"""E-folds of the slowest motion in a window whose mean energies have right errors."""
+LEAST_OF_MEANS = LEAST._replace(memories=48)
+"""Evidence for the errors of mean energies, of which a memory is an e-fold of the slowest one."""
 
 
 def length(scene: Scene, experiment: Mapping[str, Any]) -> float:
@@ -129,11 +130,12 @@ def drive_periods(scene: Scene) -> dict[str, float]:
     return {name: period for name, period in periods.items() if period < math.inf}
 
 
-def phases(scene: Scene, schedule: Mapping[str, Any]) -> float:
-    """Return how many phases of the drive samples show; infinity where it has no period."""
+def phases(scene: Scene, schedule: Mapping[str, Any], every: int = 1) -> float:
+    """Return how many phases of the drive one in `every` samples shows; infinity where it has no
+    period."""
     per_period = samples_per_period(schedule)
     of_each = [
-        per_period // math.gcd(per_period, round(schedule["period"] / period))
+        per_period // math.gcd(per_period, every * round(schedule["period"] / period))
         for period in drive_periods(scene).values()
     ]
     return min(of_each, default=math.inf)
@@ -246,14 +248,13 @@ def _measure(
         memories=measured / (remembers.of_R if spins_change else 2.0 * remembers.energies),
     )
     least = LEAST if scene.effects.gravity is None else LEAST_IN_BED
-    steady = verdict(evidence.enough(least), settled)
-    shown = phases(scene, schedule) >= LEAST_PHASES
+    steady = evidence.verdict(settled, least)
+    shown = phases(scene, schedule)
     if not spins_change:  # R stays 0, or what the spins were at the start decides
         of_R = 0.0 if window.rotational is None or not window.rotational.any() else math.inf
         remembers = remembers._replace(of_R=of_R)
-    known = verdict(shown and remembers.of_R < math.inf, True, steady)
     variables = {
-        **averages(window, per_period, every, known),
+        **averages(window, per_period, every),
         **contact_averages(rows, first, per_period, inertia_of_sums(scene), begun.sums),
         **_unsubtracted(gas, rows, first),
         **driven_species(species, per_period, max(1, per_period // KEPT)),
@@ -265,10 +266,16 @@ def _measure(
         "measured_collisions": evidence.collisions,
         **over_time(rows["time"][first:], window, max(1, per_period // KEPT)),
     }
-    if window.rotational is not None:
-        variables["memory_of_R"] = remembers.of_R
-    long = measured >= LEAST_RELAXATIONS * remembers.energies
-    return variables | verdicts_on_means(variables, verdict(shown and long, True, steady))
+    of_means = Evidence(phases=shown, memories=measured / remembers.energies)
+    trusted = verdicts_on_means(variables, int(verdict(steady, of_means, LEAST_OF_MEANS)))
+    if window.rotational is None:
+        return variables | trusted
+    times = measured / variables["autocorrelation_time"]
+    never = 0.0 if remembers.of_R == math.inf else math.inf  # memories, of spins that never change
+    of_ratio = Evidence(phases=shown, memories=never, times=times)
+    trusted["R_ci95_trusted"] = int(verdict(steady, of_ratio))
+    lack = lack_of(evidence, least) or lack_of(of_ratio, LEAST)
+    return variables | trusted | {"memory_of_R": remembers.of_R, LACK: lack}
 
 
 def _thermal(
@@ -308,11 +315,9 @@ def _start(series, planned, length, per_period):
     return start, is_equilibrated(*means, start=start // per_period)
 
 
-def averages(window, per_period, every, known):
-    """Return the energies, and how they are shared between translation and rotation, steady or not.
-
-    `known` is the verdict on the interval of R before the data have had their veto.
-    """
+def averages(window, per_period, every):
+    """Return the energies, and how they are shared between translation and rotation, steady or
+    not."""
     found = {
         "E_trans": window.translational.mean(),
         "E_trans_stderr": blocking(period_means(window.translational, per_period))[0],
@@ -328,7 +333,6 @@ def averages(window, per_period, every, known):
         "R_stderr": error.stderr,
         "R_dof": error.dof,
         "R_ci95": error.half_width(0.95),
-        "R_ci95_trusted": verdict(True, outlasts_memory(len(R_periods), correlated), known=known),
         "R_ratio_of_means": ratio_of_means(window),
         "E_rot": window.rotational.mean(),
         "E_rot_stderr": blocking(period_means(window.rotational, per_period))[0],

@@ -20,44 +20,84 @@ YES, NO, UNKNOWN = 1, 0, -1
 FEWEST_BLOCKS = 4
 WINDOW = 3.0  # in autocorrelation times; longer ones add noise, and bias in a short series
 DISAGREE = 2.0  # sigma
-SHORTEST = 6.0
-"""Measured autocorrelation times in a series that may be trusted: a veto beside theory."""
 DIGITS = 2  # of an error
 SIGNIFICANT = 3.0
 """Sigma from which a difference counts as real. A convention. Fixed before any data."""
 
 
 class Evidence(NamedTuple):
-    """What a measured window rests on; every number must reach that of LEAST."""
+    """What a measured window rests on, numbers or arrays; each must reach that of LEAST."""
 
-    collisions: float  # of each particle, made within it
-    samples: int  # that its mean is made of; where a drive has a period, means over periods
-    relaxations: float = math.inf  # e-folds, by theory, that a transient has had to decay in
-    memories: float = math.inf  # its length in autocorrelation times, by theory
-    runs: float = math.inf  # independent ones that it is averaged over, where it is over such
+    collisions: Any = math.inf  # of each particle, made within it
+    samples: Any = math.inf  # that its mean is made of; where a drive has a period, means over it
+    relaxations: Any = math.inf  # e-folds, by theory, that a transient has had to decay in
+    memories: Any = math.inf  # of its length, in times of theory
+    runs: Any = math.inf  # independent ones that it is averaged over, where it is over such
+    phases: Any = math.inf  # of a periodic drive, shown by the samples
+    times: Any = math.inf  # of its length, in measured autocorrelation times
+    carriers: Any = math.inf  # independent samples that carry its variance (`carriers`)
 
-    def enough(self, least: "Evidence | None" = None) -> bool:
-        """Return whether every number reaches that of `least`, by default LEAST."""
-        return all(has >= needs for has, needs in zip(self, least or LEAST, strict=True))
+    def suffices(self, least: "Evidence | None" = None) -> np.ndarray:
+        """Return whether each number reaches that of `least`, LEAST if not given."""
+        pairs = zip(self, LEAST if least is None else least, strict=True)
+        reached = [np.greater_equal(number, limit) for number, limit in pairs]
+        return np.all(np.broadcast_arrays(*reached), axis=0)
+
+    def verdict(self, holds: bool, least: "Evidence | None" = None) -> int:
+        """Return whether a statement `holds`, YES or NO; UNKNOWN if this is too little evidence."""
+        return int(holds) if self.suffices(least) else UNKNOWN
 
 
 # Ten collisions per particle are a few e-folds of R where it relaxes fastest. Relaxations: the
 # 95 % interval of a plateau that begins after three holds the truth in 87 % only (`find_plateau`).
-# Memories: from twelve on the interval holds the truth in 92 to 98 % (docs/accuracy.md). Runs: the
-# spread of fewer is too badly known to show a drift.
-LEAST = Evidence(collisions=10, samples=12, relaxations=5, memories=12, runs=5)
+# Memories: from twelve on the interval of R holds the truth in 92 to 98 % (docs/accuracy.md). Runs:
+# the spread of fewer is too badly known to show a drift. Phases: with 16 a bed has R within 0.0005
+# of that with 80. Times and carriers are of data, which may only veto: honest series pass.
+LEAST = Evidence(
+    collisions=10,
+    samples=12,
+    relaxations=5,
+    memories=12,
+    runs=5,
+    phases=16,
+    times=6,
+    carriers=12,
+)
 
 
-def verdict(enough: bool, holds: bool, known: int = YES) -> int:
-    """Return the verdict on a statement: a steady state, or an interval that holds the truth.
+IN_WORDS = {
+    "collisions": "{} collisions per particle",
+    "samples": "{} samples",
+    "relaxations": "{} e-folds of the slowest temperature",
+    "memories": "window of {} memories",
+    "runs": "{} replicas",
+    "phases": "{} phases of the drive",
+    "times": "window of {} measured autocorrelation times",
+}
 
-    YES and NO say whether it `holds` by the data, where theory says that there is evidence
-    `enough`, and where what it rests on is `known` to hold: this verdict is no better. So data may
-    only veto: the run's own noise never decides whether there is evidence enough.
+
+def lack_of(evidence: Evidence, least: Evidence) -> str:
+    """Return in words which numbers do not reach those of `least`; nothing where all do."""
+    return "; ".join(
+        f"{text.format(_whole(getattr(evidence, name)))}, {getattr(least, name):g} needed"
+        for name, text in IN_WORDS.items()
+        if not getattr(evidence, name) >= getattr(least, name)
+    )
+
+
+def _whole(number: float) -> int:
+    return math.floor(number) if math.isfinite(number) else 0
+
+
+def verdict(steady: int, evidence: Evidence, least: Evidence = LEAST) -> np.ndarray:
+    """Return whether a number's interval holds the truth as often as it says.
+
+    Flags (int8) in the shape of the evidence: `steady`, a flag, where that is not YES; YES with all
+    the evidence of `least`, else UNKNOWN. Theory decides by the length of the window. The run's own
+    noise never vouches for it: it can but veto.
     """
-    if known != YES:
-        return known
-    return (YES if holds else NO) if enough else UNKNOWN
+    enough = evidence.suffices(least)
+    return np.where(enough | (steady != YES), steady, UNKNOWN).astype(np.int8)
 
 
 def period_means(series: np.ndarray, samples_per_period: int) -> np.ndarray:
@@ -168,6 +208,25 @@ def _autocorrelation(series: np.ndarray) -> np.ndarray:
     return covariance / covariance[0]
 
 
+def carriers(series: np.ndarray, autocorrelation_time: float) -> float:
+    """Return how many independent samples carry the variance of a series (samples,) about 0.
+
+    Of means z over overlapping blocks of an autocorrelation time (in samples) it is 3 <z^2>^2/<z^4>
+    times the blocks side by side: their number if z is Gaussian, three times the visits if a few
+    rare ones make up the series. 0 of a series that is 0, and where the time is NaN.
+    """
+    if not (len(series) and math.isfinite(autocorrelation_time)):
+        return 0.0
+    length = max(1, min(math.ceil(autocorrelation_time), len(series)))
+    sums = np.concatenate([[0.0], np.cumsum(series)])
+    square = (sums[length:] - sums[:-length]) ** 2
+    largest = float(square.max())
+    if not largest > 0.0:
+        return 0.0
+    share = square / largest
+    return float(3.0 * share.sum() ** 2 / (share**2).sum()) / length
+
+
 def stderr_over_seeds(values: np.ndarray) -> float:
     """Return the standard error of the mean of independent values, shape (seeds,); NaN for one."""
     values = np.asarray(values, dtype=float)
@@ -230,16 +289,6 @@ def half_width(stderr: float, dof: float, level: float) -> float:
     if not dof >= 1:
         return math.nan
     return student_t(NormalDist().inv_cdf((1 + level) / 2), dof) * stderr
-
-
-def outlasts_memory(samples: int, autocorrelation_time: float) -> bool:
-    """Return whether a correlated series is at least SHORTEST measured autocorrelation times long.
-
-    `autocorrelation_time` is in samples; where that is NaN, the series is not. A run whose error is
-    too small measures a memory that is too short as well: to trust whatever passes would select
-    such runs. Theory has to demand more.
-    """
-    return samples >= SHORTEST * autocorrelation_time
 
 
 def degrees_of_freedom(blocks: float) -> float:

@@ -35,6 +35,21 @@ def test_there_is_a_line_for_each_pair_of_species_with_its_error():
     assert axes.get_xlabel() == "distance / a" and axes.get_ylabel() == "pair correlation"
 
 
+def test_errors_that_are_not_trusted_are_paler_and_a_line_says_so():
+    one = point()
+    flags = np.ones(one.pair_correlation_species.shape, np.int8)
+    one["pair_correlation_species_trusted"] = (one.pair_correlation_species.dims, flags)
+    assert not draw(one, "pair_correlation_species").legends
+    flags[1, 1, 2] = -1
+    figure = draw(one, "pair_correlation_species")
+    (legend,) = figure.legends
+    assert [text.get_text() for text in legend.get_texts()] == ["paler: the error is not trusted"]
+    *_, paler, rest = figure.axes[0].collections
+    assert paler.get_alpha() < rest.get_alpha()
+    ends = [band.get_paths()[0].vertices[:, 0].max() for band in (paler, rest)]
+    assert ends == [3.0, 2.0]
+
+
 def test_what_is_over_no_numbers_is_not_drawn():
     with pytest.raises(InputError, match=r"^--of = a20_species: .* pair_correlation_species"):
         draw(point(), "a20_species")

@@ -338,6 +338,21 @@ def keys_of_steadiness(drawn: Sequence[Series]) -> list[Line2D]:
     return keys
 
 
+NOT_TRUSTED: Style = {"alpha": 0.4}
+
+
+def trusted(data: xr.Dataset, name: str) -> xr.DataArray:
+    """Return where the error of a variable of an observable is trusted, in the shape of that: by
+    flags of a point, or shares of seeds. Everywhere in datasets without either."""
+    flags = data.get(f"{name}_trusted", xr.ones_like(data[name]))
+    return flags > EQUILIBRATED
+
+
+def key_of_trust() -> Line2D:
+    """Return what paler symbols are."""
+    return key(GREY, "paler: the error is not trusted", "o", **NOT_TRUSTED)
+
+
 def add_title(main: Axes, datasets: Sequence[xr.Dataset], what: str, message: str = "") -> None:
     """Write above what one learns, what is shown, how large it is, and what error bars are."""
     counts = np.concatenate([data.n_seeds.values.ravel() for data in datasets])

@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.patches import Patch
 
 from roughgas.base import InputError, not_one_of
 from roughgas.data.netcdf import unit_of
@@ -16,7 +17,7 @@ from roughgas.data.reduced import GRID, third_axis
 from roughgas.data.variables import CLOCKS, ENERGY, START
 from roughgas.show.figures import panel
 from roughgas.show.figures.panel import series
-from roughgas.show.style import HEIGHT, LOOKS, THEORY, TWO_WIDE, WIDTH, Style
+from roughgas.show.style import GREY, HEIGHT, LOOKS, THEORY, TWO_WIDE, WIDTH, Style
 from roughgas.statistics.errors import Estimate, block_means
 from roughgas.theory.prediction import equation_of
 
@@ -264,7 +265,7 @@ def title_of_point(point: xr.Dataset) -> str:
 
 def draw_observed(point: xr.Dataset, name: str) -> Figure:
     """Draw what an observable has found in a point over a coordinate, a line for each species or
-    pair, with one standard error to either side.
+    pair, with one standard error to either side, paler where that is not trusted.
 
     Raises InputError for a variable that is over no numbers.
     """
@@ -278,18 +279,33 @@ def draw_observed(point: xr.Dataset, name: str) -> Figure:
     at = point[axis].values
     values = point[name].transpose(..., axis)
     errors = point.get(f"{name}_stderr", values * np.nan).transpose(..., axis)
+    trusted = panel.trusted(point, name).transpose(..., axis).values
     for number, place in enumerate(_places_of(values)):
         look = LOOKS[number % len(LOOKS)]
         line, error = values.values[place], errors.values[place]
         axes.plot(at, line, color=look.colour, linestyle=look.line, label=_line(values, place))
-        band: Style = {"color": look.colour, "alpha": 0.25, "linewidth": 0}
-        axes.fill_between(at, line - error, line + error, **band)
+        _draw_errors(axes, at, line, error, trusted[place], look.colour)
     over, said = (one.replace("_", " ") for one in (axis, name.removesuffix("_species")))
     axes.set(xlabel=f"{over}{_unit(point[axis])}", ylabel=f"{said}{_unit(values)}")
     axes.set_title(title_of_point(point), fontsize=8)
     if values.ndim > 1:
         axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False)
+    if not trusted.all():
+        note = Patch(color=GREY, label=panel.key_of_trust().get_label(), **DOUBTFUL)
+        figure.legend(handles=[note], loc="outside lower right")
     return figure
+
+
+BAND: Style = {"alpha": 0.25, "linewidth": 0}
+DOUBTFUL: Style = {"alpha": 0.08, "linewidth": 0}
+
+
+def _draw_errors(axes: Axes, at, line, error, trusted, colour: str) -> None:
+    """Draw one standard error to either side of a line; paler from a value whose error is not
+    trusted to the next."""
+    if not trusted.all():
+        axes.fill_between(at, line - error, line + error, color=colour, **DOUBTFUL)
+    axes.fill_between(at, line - error, line + error, where=trusted, color=colour, **BAND)
 
 
 def _axis(point: xr.Dataset, name: Any) -> str | None:
