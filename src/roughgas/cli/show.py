@@ -147,6 +147,11 @@ def _ratio(point: Dataset) -> Iterator[list[str]]:
     trust, over_time = TRUST[int(point.R_ci95_trusted)], "R_collisional" in point
     yield ["R", f"{_estimate(point, 'R')}{', averaged over time' * over_time}"]
     yield ["95 % interval", f"{R - half:.{digits}f} to {R + half:.{digits}f}{trust}"]
+    if lack := point.R_ci95_trusted.attrs.get("comment"):
+        yield ["lacking", lack]
+    if "R_flow_shift" in point:
+        said = f"by {float(point.R_flow_shift):+.4f} ({abs(float(point.R_flow_sigma)):.1f} sigma)"
+        yield ["over the local flow", f"R is higher {said}"]
     if "R_corrected" in point:
         said = "of the mean energies, with D (N - 1) translational degrees of freedom"
         yield ["R_corrected", f"{float(point.R_corrected):.4f}, {said}"]

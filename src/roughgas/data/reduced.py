@@ -17,7 +17,9 @@ if TYPE_CHECKING:
 GRID = ("r", "beta")
 EQUILIBRATED = 0.5
 """A point counts as being in a steady state where more than this share of its seeds is."""
-VERDICTS = {"equilibrated", "R_ci95_trusted", "target_met"}
+TRUSTED = tuple(name for name in POINT if name.endswith("_trusted") and name != "R_ci95_trusted")
+"""Verdicts on the errors of other numbers than R."""
+VERDICTS = {"equilibrated", "R_ci95_trusted", "target_met", *TRUSTED}
 SHARE, AMOUNT, VERDICT = Interval("[0, 1]"), Interval("[0, inf)"), Interval("[-1, 1]")
 UNSURE = {
     f"{name}_{quality}": Interval("[0, inf]")
@@ -135,6 +137,15 @@ _WITHOUT_ERRORS = {
         "share of seeds that were found in a steady state; 0 for a mixture of two, -1 where most "
         "have too little to tell"
     ),
+    **{
+        name: _over_grid(
+            POINT[name],
+            long_name=f"share of seeds whose {name.removesuffix('_trusted')}_stderr is large "
+            "enough; -1 where most have too little to tell",
+            flags="",
+        )
+        for name in TRUSTED
+    },
     "target_met": _over_grid(
         POINT["target_met"],
         long_name="share of seeds whose R_stderr reached the target_stderr; -1 as for equilibrated",

@@ -190,7 +190,7 @@ def _combined(points: Sequence[Summary]) -> Content:
     values = _over_seeds(stacks) | coordinates | _names(points)
     mixed = _mixed(points, axes[:-1])
     for name in VERDICTS & values.keys():
-        values[name] = np.where(mixed & (values[name] > NO), float(NO), values[name])
+        values[name] = _of_one_state(values[name], mixed)
     reduced = described("reduced", values, "plateau_end" in stacks, grid)
     seen = _observables(points, axes, grid, mixed)
     return Content(third | reduced | seen, attributes)
@@ -343,11 +343,15 @@ def _observables(
     return {name: found[name] for name in first}
 
 
+def _of_one_state(share, mixed):
+    """Return shares of seeds, NO where the seeds are a mixture of two states."""
+    mixed = mixed.reshape(*mixed.shape, *[1] * (share.ndim - mixed.ndim))
+    return np.where(mixed & (share > NO), float(NO), share)
+
+
 def _trust(name, stacks, mixed, dims, about) -> Array:
     """Return the share of seeds whose error of a variable is trusted; none of a mixture of two."""
-    share = _share(stacks[f"{name}_trusted"])
-    mixed = mixed.reshape(*mixed.shape, *[1] * (share.ndim - mixed.ndim))
-    share = np.where(mixed & (share > NO), float(NO), share)
+    share = _of_one_state(_share(stacks[f"{name}_trusted"]), mixed)
     said = (
         f"share of seeds whose {name}_stderr is large enough; -1 where most have too little to tell"
     )
