@@ -162,7 +162,7 @@ def _observables():
     settings, rows = [], []
     for name, kind in observables.KINDS.items():
         told = "<br>".join(_setting(key, one) for key, one in kind.settings.items())
-        settings.append((f"`{name}`", kind.__doc__, told, _window(kind.relaxations)))
+        settings.append((f"`{name}`", kind.__doc__, told, _window(kind)))
         for variable, v in kind.variables.items():
             dims, when = ", ".join(v.dims), ", ".join(v.when)
             rows.append((f"`{name}`", f"`{variable}`", dims, v.units, when, v.long_name))
@@ -171,8 +171,13 @@ def _observables():
     return f"{markdown(kinds, settings)}\n{markdown(head, rows)}"
 
 
-def _window(relaxations):
-    return f"{relaxations:g}" if math.isfinite(relaxations) else "not known"
+def _window(kind):
+    """The e-folds that a kind of observable needs, of flows, too, and where they are not known."""
+    if math.isinf(kind.relaxations):
+        return "not known"
+    unknown = ["in beds"] * (not kind.beds) + [f"of `{name}`" for name in kind.doubtful]
+    text = f"{kind.relaxations:g}{' of flows, too' * kind.of_flow}"
+    return f"{text}; not known {', '.join(unknown)}" if unknown else text
 
 
 def _setting(key, one):

@@ -11,7 +11,7 @@ from tests.entry import main
 from roughgas import theory
 from roughgas.data.point import read_point
 from roughgas.data.reduced import read_reduced
-from roughgas.statistics.errors import Estimate
+from roughgas.statistics.errors import YES, Estimate
 
 
 def shown(capsys, *arguments):
@@ -96,6 +96,7 @@ def test_a_mixture_is_shown_species_by_species(tmp_path, capsys):
         one = point.isel(species=k)
         found = [
             f"{Estimate(float(one[f'{key}_species']), float(one[f'{key}_species_stderr']))}"
+            f"{'' if int(one[f'{key}_species_trusted']) == YES else '?'}"
             for key in ("E_trans", "E_rot", "R")
         ]
         assert [name, "10", *found] in [line.split() for line in text.splitlines()]

@@ -215,8 +215,8 @@ def test_a_bed_needs_twice_as_many_memories():
 
 
 def test_means_of_energies_need_a_window_of_their_own_length():
-    """R is known after 12 of its memories, its energies after 48 of their e-folds."""
-    for measure, expected in ((600.0, UNKNOWN), (2500.0, YES)):
+    """R is known after 12 of its memories, its energies after 96 of their e-folds."""
+    for measure, expected in ((1000.0, UNKNOWN), (4000.0, YES)):
         found = measured({"shear": SHEAR}, 0.9, 0.0, {"measure": measure})
         assert found["R_ci95_trusted"] == YES
         assert found["E_trans_trusted"] == found["E_rot_trusted"] == expected

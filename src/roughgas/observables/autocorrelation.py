@@ -60,7 +60,7 @@ class Autocorrelation(Observable):
     alike = True
 
     settings: ClassVar[Mapping[str, Setting]] = DELAYS
-    relaxations = 96.0
+    relaxations, of_flow = 96.0, True
     variables: Mapping[str, Variable] = {
         "delay": DELAY,
         VELOCITY: Variable(f"autocorrelation of a velocity component{IN_THIS_BOX}", SQUARED, ALONG),
@@ -93,7 +93,7 @@ class FluxAutocorrelation(Observable):
 
     effects = ("contact_stress", "contact_heat")
     settings: ClassVar[Mapping[str, Setting]] = DELAYS
-    relaxations = 48.0
+    relaxations = 96.0
     variables: Mapping[str, Variable] = {
         "delay": DELAY,
         STRESS: Variable("V <P_xy(0) P_xy(t)> of the pressure tensor", "m^2 a^(4-D) T^-4", ALONG),

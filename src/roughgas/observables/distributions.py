@@ -73,6 +73,7 @@ class Cumulants(Observable):
     """Fourth cumulants of velocities and of spins."""
 
     alike = True
+    relaxations, beds = 96.0, False
     variables: Mapping[str, Variable] = {
         "a20": Variable("cumulant D <V^4>/[(D + 2) <V^2>^2] - 1 of velocities"),
         "a02": Variable("cumulant n <w^4>/[(n + 2) <w^2>^2] - 1 of spins", when=(SPIN,)),
@@ -109,7 +110,7 @@ class Histograms(Observable):
         "bins": Whole("Number of bins.", 2, 10_000, 60),
         "reach": Number("End of the last bin, in root mean squares.", "(0, 1000]", 6.0),
     }
-    relaxations = 24.0
+    relaxations = 96.0
     variables: Mapping[str, Variable] = {
         ALONG: Variable("middle of a bin, in root mean squares", "1", (ALONG,)),
         "component": Variable("component of a vector", "", ("component",), "str"),
@@ -151,7 +152,7 @@ class SpinCorrelation(Observable):
 
     spins = True
     alike = True
-    relaxations = 24.0
+    relaxations = 96.0
     variables: Mapping[str, Variable] = {
         "a11": Variable("<V^2 w^2>/(<V^2> <w^2>) - 1 of velocities and spins"),
         "alignment": Variable("3 <(V.w)^2>/<V^2 w^2> - 1 of velocities and spins", when=(SPHERES,)),
@@ -285,7 +286,7 @@ class MeanSquareDisplacement(Observable):
     settings: ClassVar[Mapping[str, Setting]] = {
         "lags": Whole("Number of times, each twice the one before.", 1, 20, 8)
     }
-    relaxations = 96.0
+    relaxations, of_flow = 96.0, True
     variables: Mapping[str, Variable] = {
         "lag": Variable("time between two observations", TIME, ("lag",)),
         "moving": Variable("component of the displacement", "", ("moving",), "str"),

@@ -62,6 +62,7 @@ class Profiles(Observable):
             "Height up to which layers reach, in a; the box's, or two a layer if it is open."
         ),
     }
+    relaxations, of_flow, beds = 96.0, True, False
     variables: Mapping[str, Variable] = {
         "height": Variable("height of the middle of a layer", LENGTH, ALONG),
         "component": Variable("component of a vector", "", ("component",), "str"),
@@ -141,6 +142,7 @@ class Stress(Observable):
 
     effects = ("contact_stress",)
     relaxations = 96.0
+    doubtful = ("stress_collisional",)
     variables: Mapping[str, Variable] = {
         "component": Variable("component of a vector", "", ("component",), "str"),
         "along": Variable("axis that it is carried along", "", ("along",), "str"),
@@ -213,7 +215,7 @@ class HeatFlux(Observable):
     """The heat flux, of the whole box."""
 
     effects = ("contact_heat",)
-    relaxations = 24.0
+    relaxations = 96.0
     variables: Mapping[str, Variable] = {
         "component": Variable("component of a vector", "", ("component",), "str"),
         "heat_flux": Variable("heat flux", FLUX, ("component",)),

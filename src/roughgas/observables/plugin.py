@@ -188,6 +188,11 @@ class Observable:
     relaxations: float = math.inf
     # e-folds of the slowest mode of the two temperatures that a window of a driven gas must have
     # for errors that are right, by benchmarks/observed.py; infinite where no such length is known
+    of_flow: bool = (
+        False  # it depends on flows: the window needs as many e-folds of the longest one
+    )
+    beds: bool = True  # whether that length is known under gravity, too
+    doubtful: tuple[str, ...] = ()  # variables for which no length is known
     variables: Mapping[str, Variable] = {}
 
     def __init__(self, system: System) -> None:
@@ -218,7 +223,8 @@ class OfSpecies(Observable):
 
     def __init__(self, kind: type[Observable], system: System, settings: Mapping[str, Any]) -> None:
         super().__init__(system)
-        self.relaxations = kind.relaxations
+        self.relaxations, self.of_flow, self.beds = kind.relaxations, kind.of_flow, kind.beds
+        self.doubtful = (*kind.doubtful, *(name + SUFFIX for name in kind.doubtful))
         kinds, dims = range(len(system.species)), PAIR[: 1 + kind.pairs]
         self._which = list(itertools.combinations_with_replacement(kinds, len(dims)))
         number = {which: n for n, which in enumerate(self._which)}

@@ -224,11 +224,15 @@ class Observers:
         per_period = period // every if period % every == 0 else 1
         means = [[_without(observable.kept, values) for values in run] for run in runs]
         found = averaged(observable.combine, means, per_period)
-        window = window_of(self._scene, self._experiment, point, len(runs[0]), every)
+        looks = len(runs[0]), every
+        window = window_of(self._scene, self._experiment, point, looks, observable.of_flow)
+        known = observable.beds or self._scene.effects.gravity is None
         values, lacks = _series(observable.kept, [x for run in runs for x in run]), {}
         for name, value in found.value.items():
             stderr, evidence = found.stderr[name], found.evidence[name]
-            trust = trust_in(value, stderr, evidence, window, observable.relaxations)
+            measured = known and name not in observable.doubtful
+            relaxations = observable.relaxations if measured else math.inf
+            trust = trust_in(value, stderr, evidence, window, relaxations)
             values |= {name: value, f"{name}_stderr": stderr, f"{name}_dof": found.dof[name]}
             values[f"{name}_trusted"], lacks[name] = trust
         return values, lacks

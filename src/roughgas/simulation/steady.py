@@ -53,7 +53,7 @@ LACK = "R_ci95_lack"
 """What R lacks to be trusted, in words, among the variables of a run: it becomes a comment."""
 LEAST_IN_BED = LEAST._replace(memories=24)
 """Evidence under gravity, where R is measured to remember up to twice as long as by theory."""
-LEAST_OF_MEANS = LEAST._replace(memories=48)
+LEAST_OF_MEANS = LEAST._replace(memories=96)
 """Evidence for the errors of mean energies, of which a memory is an e-fold of the slowest one."""
 
 

@@ -19,7 +19,7 @@ class Window(NamedTuple):
     """A measured window, as an observable has looked at it."""
 
     steady: int  # a flag
-    memories: float  # e-folds of the slowest mode of the two temperatures that it is long
+    memories: float  # e-folds of the slowest temperature, or flow, that it is long
     phases: float  # of each periodic drive that looks show
 
 
@@ -31,14 +31,22 @@ class Trust(NamedTuple):
 
 
 def window_of(
-    scene: Scene, experiment: Mapping[str, Any], point: Mapping[str, Any], looks: int, every: int
+    scene: Scene,
+    experiment: Mapping[str, Any],
+    point: Mapping[str, Any],
+    looks: tuple[int, int],
+    of_flow: bool = False,
 ) -> Window:
-    """Return the window of so many looks, `every` samples apart, at a gas with the variables of a
-    `point`."""
-    kind, length = schedule.of(experiment), looks * every * experiment["schedule"]["sample_every"]
+    """Return the window of `looks`, their number and the samples from one to the next, at a gas
+    with the variables of a `point`; in e-folds of flows, too, if the observable is one `of_flow`.
+    """
+    number, every = looks
+    kind, length = schedule.of(experiment), number * every * experiment["schedule"]["sample_every"]
     if not kind.DRIVEN:
         return Window(int(point.get("R_ci95_trusted", UNKNOWN)), math.inf, math.inf)
     relaxation = float(point.get("slowest_relaxation", math.nan))
+    if of_flow:
+        relaxation = max(relaxation, float(point.get("flow_relaxation", math.nan)))
     memories = length / relaxation if relaxation > 0.0 else math.nan
     phases = kind.phases(scene, experiment["schedule"], every)
     return Window(int(point["equilibrated"]), memories, phases)
