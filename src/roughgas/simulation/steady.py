@@ -236,23 +236,16 @@ def _measure(
         energies.map(lambda part: part[first:])
         for energies in energies_of_each(rows, scene, gas.state)
     ]
-    made = 2 * (rows["collisions"][-1] - before) / gas.particles
-    measured = len(window.translational) * every
-    state = _thermal(species or [window], made / measured, gas.particles, theory.lengths)
-    remembers = theory.memory(state)
-    spins_change = state.T_rot is not None
-    evidence = Evidence(
-        collisions=made,
-        samples=len(window.translational) // per_period,
-        relaxations=_relaxations(2 * before / gas.particles, made, measured, remembers.energies),
-        memories=measured / (remembers.of_R if spins_change else 2.0 * remembers.energies),
+    waited = 2 * before / gas.particles
+    passed = Passed(
+        2 * (rows["collisions"][-1] - before) / gas.particles, len(window.translational) * every
     )
+    state = _thermal(species or [window], passed.frequency, gas.particles, theory.lengths)
+    remembers = _with_fixed_spins(theory.memory(state), state, window)
+    periods = len(window.translational) // per_period
+    evidence = _evidence(waited, passed, periods, remembers)
     least = LEAST if scene.effects.gravity is None else LEAST_IN_BED
     steady = evidence.verdict(settled, least)
-    shown = phases(scene, schedule)
-    if not spins_change:  # R stays 0, or what the spins were at the start decides
-        of_R = 0.0 if window.rotational is None or not window.rotational.any() else math.inf
-        remembers = remembers._replace(of_R=of_R)
     variables = {
         **averages(window, per_period, every),
         **contact_averages(rows, first, per_period, inertia_of_sums(scene), begun.sums),
@@ -263,19 +256,63 @@ def _measure(
         "slowest_relaxation": remembers.energies,
         "flow_relaxation": remembers.flow,
         "measured_from": begun.time + first * every,
-        "measured_collisions": evidence.collisions,
+        "measured_collisions": passed.collisions,
         **over_time(rows["time"][first:], window, max(1, per_period // KEPT)),
     }
-    of_means = Evidence(phases=shown, memories=measured / remembers.energies)
-    trusted = verdicts_on_means(variables, int(verdict(steady, of_means, LEAST_OF_MEANS)))
+    shown = phases(scene, schedule)
+    of_means = Evidence(phases=shown, memories=_quotient(passed.time, remembers.energies))
+    variables |= verdicts_on_means(variables, int(verdict(steady, of_means, LEAST_OF_MEANS)))
     if window.rotational is None:
-        return variables | trusted
-    times = measured / variables["autocorrelation_time"]
-    never = 0.0 if remembers.of_R == math.inf else math.inf  # memories, of spins that never change
-    of_ratio = Evidence(phases=shown, memories=never, times=times)
-    trusted["R_ci95_trusted"] = int(verdict(steady, of_ratio))
+        return variables
+    of_ratio = Evidence(
+        phases=shown,
+        memories=_quotient(passed.time, remembers.of_R),
+        times=passed.time / variables["autocorrelation_time"],
+    )
+    variables["R_ci95_trusted"] = int(verdict(steady, of_ratio))
     lack = lack_of(evidence, least) or lack_of(of_ratio, LEAST)
-    return variables | trusted | {"memory_of_R": remembers.of_R, LACK: lack}
+    return variables | {"memory_of_R": remembers.of_R, LACK: lack}
+
+
+class Passed(NamedTuple):
+    """How long a stretch of a run is."""
+
+    collisions: float  # of each particle
+    time: float  # T
+
+    @property
+    def frequency(self) -> float:
+        """Contacts of a particle per T."""
+        return self.collisions / self.time
+
+
+def _evidence(waited: float, passed: Passed, periods: int, remembers: Memory) -> Evidence:
+    """Return what a window rests on, that `passed` after the gas had `waited` for so many
+    collisions per particle.
+
+    Where R has no memory that theory knows, the energies have: twice the e-fold of the slowest.
+    """
+    known = 0.0 < remembers.of_R < math.inf
+    longest = remembers.of_R if known else 2.0 * remembers.energies
+    return Evidence(
+        collisions=passed.collisions,
+        samples=periods,
+        relaxations=_relaxations(waited, passed, remembers.energies),
+        memories=_quotient(passed.time, longest),
+    )
+
+
+def _quotient(length: float, unit: float) -> float:
+    return length / unit if unit > 0.0 else math.inf
+
+
+def _with_fixed_spins(remembers: Memory, state: Thermal, window: Energies) -> Memory:
+    """Return how long a gas remembers, whose spins may never change: then R is 0 for ever, or what
+    they were at the start decides."""
+    if state.T_rot is not None:
+        return remembers
+    spinning = window.rotational is not None and bool(window.rotational.any())
+    return remembers._replace(of_R=math.inf if spinning else 0.0)
 
 
 def _thermal(
@@ -292,17 +329,16 @@ def _thermal(
     return Thermal(T_tr, T_rot, frequency, particles, lengths)
 
 
-def _relaxations(before: float, made: float, measured: float, slowest: float) -> float:
+def _relaxations(waited: float, passed: Passed, slowest: float) -> float:
     """Return the e-folds of the slowest mode that a transient has had to decay in.
 
-    `before` and `made` are collisions per particle before and in the window, `measured` its length
-    in T. Of a transient that is exp(-m) when a window of w e-folds begins, the mean has a share of
-    exp(-m)/w: the window itself counts for ln w.
+    Of a transient that is exp(-m) when a window of w e-folds begins, the mean has a share of
+    exp(-m)/w: the window itself counts for ln w. `waited` is in collisions per particle.
     """
-    within = measured / slowest
-    if not (within > 0.0 and made > 0.0):
+    within = _quotient(passed.time, slowest)
+    if not (within > 0.0 and passed.collisions > 0.0):
         return -math.inf
-    return within * before / made + math.log(within)
+    return within * waited / passed.collisions + math.log(within)
 
 
 def _start(series, planned, length, per_period):
