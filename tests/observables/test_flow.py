@@ -141,6 +141,19 @@ def test_the_papers_sheared_gas_has_no_flow_of_its_own():
     assert FLOW_LOOKS == 16
 
 
+def test_a_gas_between_sliding_walls_is_looked_at_without_being_asked():
+    """Its line is fitted to the flow, which slips at the walls and bends."""
+    sides = {"bottom_wall": {"velocity": -2.0, "roughness": 0.5}}
+    sides |= {"lid": {"velocity": 2.0, "roughness": 0.5}}
+    given = {"kind": "steady", "equilibrate": 200, "measure": 600, "sample_every": 1}
+    gas = dict(particles=100, box=[40, 40], effects=SPIN | sides, schedule=given, progress=False)
+    found = roughgas.simulate(r=0.8, beta=0.0, **gas)
+    assert math.isfinite(float(found.R_flow_shift)) and float(found.R_flow_shift) != 0.0
+    heated = {"thermostat": {"power": 0.1, "interval": 0.5, "spin_share": 0}}
+    at_rest = roughgas.simulate(r=0.8, beta=0.0, **gas | {"effects": SPIN | heated})
+    assert "R_flow_shift" not in at_rest
+
+
 def test_few_particles_have_no_flow_to_look_at():
     given = {"kind": "steady", "equilibrate": 500, "measure": 1000, "sample_every": 1}
     sheared = dict(r=0.8, beta=0.0, schedule=given, progress=False)

@@ -135,6 +135,16 @@ def test_a_column_that_a_few_visits_make_is_not_trusted():
     assert found.lack == "variance from fewer than 12 looks"
 
 
+def test_each_element_of_a_table_has_the_flag_of_its_own_series():
+    """Of two rows and three columns one is made by a few visits, and one has few looks."""
+    values = noise((400, 2, 3))
+    values[:, 0, 2] = 0.0
+    values[[40, 170, 333], 0, 2] = 1.0
+    values[10:, 1, 0] = math.nan
+    expected = [[YES, YES, UNKNOWN], [UNKNOWN, YES, YES]]
+    assert trusted(values).flags.tolist() == expected
+
+
 def test_looks_that_are_few_or_remember_for_too_long_are_not_trusted():
     values = np.column_stack([np.cos(np.linspace(0.0, np.pi, 400)), noise(400)])
     found = trusted(values)

@@ -12,7 +12,7 @@ from roughgas.base import InputError
 from roughgas.data.point import Point, write_point
 from roughgas.data.reduced import read_reduced
 from roughgas.results.products import write_table
-from roughgas.results.reduce import reduce_points
+from roughgas.results.reduce import _share, reduce_points
 
 ABOUT = {"experiment": "sheared", "scale": "small", "dimension": 2, "inertia": 0.5, "particles": 40}
 
@@ -237,3 +237,9 @@ def test_the_table_has_a_row_for_each_value(inertia, tmp_path):
         ("wave", "sine", "0.5", "0"),
     ]
     assert float(rows[2]["R_theory"]) == pytest.approx(theory.lun_ratio(0.5, 0.02))
+
+
+def test_the_share_of_trusted_seeds_is_that_of_all_seeds():
+    """Of those that were found; not known where half of them or more are not."""
+    verdicts = np.array([[1, 1, 1, -1, -1], [1, 1, -1, -1, np.nan], [1, 0, 0, 0, -1]], float)
+    assert _share(verdicts) == pytest.approx([0.6, -1.0, 0.2])

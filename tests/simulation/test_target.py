@@ -148,3 +148,14 @@ def test_a_pipe_hears_now_and_then_of_what_takes_long(monkeypatch):
         "task: 22 %, 2 of 9 points (r = 0.9), 11 s so far, about 38 s left",
         "task: 44 %, 4 of 9 points (r = 0.9), 72 s so far, about 90 s left",
     ]
+
+
+@pytest.mark.parametrize("trusted", [YES, NO, UNKNOWN])
+@pytest.mark.parametrize("stderr", [0.005, 0.02])
+def test_a_target_is_met_where_R_is_trusted(trusted, stderr):
+    """Whatever else ends the run: enough replicas, or the most blocks."""
+    point = {"R_stderr": stderr, "R_ci95_trusted": trusted, "measured_collisions": 100.0}
+    timing = {"target_stderr": 0.01, "measure": 1e5, "sample_every": 0.01}
+    found = recorder.until_met(timing, "measure", lambda longer: (point, True))
+    small = YES if trusted == YES else UNKNOWN
+    assert found["target_met"] == (small if stderr <= 0.01 else NO)
