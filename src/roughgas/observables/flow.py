@@ -10,18 +10,37 @@ Evans & G. P. Morriss, Phys. Rev. Lett. 56, 2172 (1986)).
 
 import math
 from collections.abc import Mapping
-from typing import ClassVar
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
 from roughgas.data.variables import ENERGY, SPIN, Variable
 from roughgas.observables.plugin import Frame, Observable, Setting, System, Values, Whole
 
-E_TRANS, RATIO, SHIFT = "E_trans_local", "R_local", "shift"
+E_TRANS, RATIO = "E_trans_local", "R_local"
 IN_CELL = 40
 """Particles in a cell: their mean velocity is a flow, and hardly the motion of single particles."""
 IN_LAYER, LAYERS = 10, 16
 """Particles in a layer between walls at least, and the largest number of layers."""
+
+
+class Motion(NamedTuple):
+    """Particles at an instant, in any order, in units of a, m and T."""
+
+    position: np.ndarray  # (N, D)
+    velocity: np.ndarray  # (N, D)
+    spin: np.ndarray | None  # (N, 2 D - 3)
+    mass: np.ndarray  # (N,), as those that follow
+    inertia: np.ndarray  # q
+    radius: np.ndarray
+
+
+class OverFlow(NamedTuple):
+    """What a gas has over its local flow."""
+
+    E_trans: float  # NaN where no two particles share a cell
+    R: float  # NaN without spin
+    shift: float  # R, less R over the mean flow: 0 on average in equilibrium
 
 
 class LocalFlow(Observable):
@@ -40,23 +59,15 @@ class LocalFlow(Observable):
         self.cells = cells_of(system, particles)
 
     def look(self, frame: Frame) -> Values:
-        """Return E_trans and R over the local flow, and by how much R exceeds that over the mean
-        flow, `shift`: 0 on average in equilibrium, where no particle knows of its neighbours."""
-        velocity = _without_gradient(frame)
-        local = local_energy(frame, velocity, self.cells)
-        if frame.spin is None:
-            return {E_TRANS: np.array(local)}
-        spin = frame.spin - _mean_spin(frame)
-        rotational = 0.5 * np.sum(frame.mass * frame.inertia * (spin**2).sum(axis=1))
-        rotational /= (self.system.particles - 1) * spin.shape[1]
-        overall = local_energy(frame, velocity, (1,) * len(self.cells))
-        ratio, over_mean = (rotational / (rotational + E_trans) for E_trans in (local, overall))
-        values = {E_TRANS: local, RATIO: ratio, SHIFT: ratio - over_mean}
-        return {name: np.array(value) for name, value in values.items()}
+        """Return E_trans and R over the local flow."""
+        bodies = frame.mass, frame.inertia, frame.radius
+        motion = Motion(frame.position, frame.velocity, frame.spin, *bodies)
+        over = over_flow(motion, self.system, self.cells)
+        return {E_TRANS: np.array(over.E_trans), RATIO: np.array(over.R)}
 
     def combine(self, means: Values) -> Values:
         """Return the energy, and R where particles spin."""
-        return {name: means[name] for name in self.variables if name in means}
+        return means if self.system.inertia is not None else {E_TRANS: means[E_TRANS]}
 
 
 def cells_of(system: System, particles: int) -> tuple[int, ...]:
@@ -73,48 +84,69 @@ def cells_of(system: System, particles: int) -> tuple[int, ...]:
     return tuple(int(max(1, round(cells))) for cells in sides / width)
 
 
-def local_energy(frame: Frame, velocity: np.ndarray, cells: tuple[int, ...]) -> float:
-    """Return the translational energy per degree of freedom over the flow in cells.
+def over_flow(motion: Motion, system: System, cells: tuple[int, ...]) -> OverFlow:
+    """Return what a gas has over the flow in cells."""
+    velocity = _over_mean_flow(motion, system)
+    local, overall = local_energies(motion, velocity, _cell_numbers(motion, system, cells))
+    if motion.spin is None:
+        return OverFlow(local, math.nan, math.nan)
+    rotational = _rotational_energy(motion, motion.spin)
+    ratio, over_mean = (rotational / (rotational + E_trans) for E_trans in (local, overall))
+    return OverFlow(local, ratio, ratio - over_mean)
 
-    `velocity` (N, D) is that over the mean flow. NaN where no two particles share a cell.
+
+def local_energies(motion: Motion, velocity: np.ndarray, cell: np.ndarray) -> tuple[float, float]:
+    """Return the translational energy per degree of freedom over the flow in cells, and over the
+    mean velocity of all particles.
+
+    `velocity` (N, D) is that over the mean flow, `cell` (N,) the number of each particle's cell.
+    The first energy is NaN where no two particles share a cell.
     """
-    number = _cell_numbers(frame, cells)
-    counts = np.bincount(number, minlength=math.prod(cells))
-    masses = np.bincount(number, frame.mass, minlength=len(counts))
-    energy = 0.0
-    for component in velocity.T:
-        momenta = np.bincount(number, frame.mass * component, minlength=len(counts))
-        flow = np.divide(momenta, masses, out=np.zeros(len(counts)), where=masses > 0.0)
-        energy += 0.5 * np.sum(frame.mass * (component - flow[number]) ** 2)
-    freedom = velocity.shape[1] * np.sum(np.maximum(counts - 1, 0))
-    return float(energy / freedom) if freedom else math.nan
+    mass, (number, dimension) = motion.mass, velocity.shape
+    total = mass @ (velocity * velocity).sum(axis=1)
+    counts, masses = np.bincount(cell), np.bincount(cell, mass)
+    shared = np.where(masses > 0.0, masses, 1.0)
+    momenta = [np.bincount(cell, mass * component) for component in velocity.T]
+    flows = sum(momentum @ (momentum / shared) for momentum in momenta)
+    mean = sum(momentum.sum() ** 2 for momentum in momenta) / masses.sum()
+    freedom = number - np.count_nonzero(counts)
+    local = 0.5 * (total - flows) / (dimension * freedom) if freedom else math.nan
+    return float(local), float(0.5 * (total - mean) / (dimension * (number - 1)))
 
 
-def _cell_numbers(frame, cells):
+def _cell_numbers(motion, system, cells):
     """Return the number of the cell that each particle is in, (N,)."""
-    number = np.zeros(len(frame.position), int)
-    for axis, (side, count) in enumerate(zip(frame.system.box, cells, strict=True)):
-        reach = frame.position[:, axis].max() + 1.0 if side is None else side
-        at = (frame.position[:, axis] / reach * count).astype(int)
-        number = number * count + np.clip(at, 0, count - 1)
-    return number
+    number = 0
+    for axis, (side, count) in enumerate(zip(system.box, cells, strict=True)):
+        if count > 1:
+            position = motion.position[:, axis]
+            reach = position.max() + 1.0 if side is None else side
+            at = np.minimum((position * (count / reach)).astype(int), count - 1)
+            number = number * count + np.maximum(at, 0)
+    return np.zeros(len(motion.mass), int) if isinstance(number, int) else number
 
 
-def _without_gradient(frame):
+def _over_mean_flow(motion, system):
     """Return velocities over the mean flow: between walls that close the second axis, over the
     straight line that fits v_x best, as E_trans is."""
-    if frame.system.shear_rate or frame.system.periodic[1]:
-        return frame.thermal_velocity
-    velocity, height = frame.velocity.copy(), frame.position[:, 1]
-    height = height - np.average(height, weights=frame.mass)
-    spread = np.sum(frame.mass * height**2)
+    height, rate = motion.position[:, 1], system.shear_rate
+    if not rate and system.periodic[1]:
+        return motion.velocity
+    velocity = motion.velocity.copy()
+    if rate:
+        velocity[:, 0] -= rate * (height - system.box[1] / 2.0)
+        return velocity
+    height = height - motion.mass @ height / motion.mass.sum()
+    spread = motion.mass @ height**2
     if spread > 0.0:
-        velocity[:, 0] -= np.sum(frame.mass * height * velocity[:, 0]) / spread * height
+        velocity[:, 0] -= (motion.mass * height) @ velocity[:, 0] / spread * height
     return velocity
 
 
-def _mean_spin(frame):
-    """Return the mean spin, the surface velocity of a particle that turns with the others."""
-    turning = frame.mass * frame.inertia * frame.radius
-    rotation = (turning[:, None] * frame.spin).sum(axis=0) / np.sum(turning * frame.radius)
-    return frame.radius[:, None] * rotation
+def _rotational_energy(motion, spin):
+    """Return the rotational energy per degree of freedom over the mean spin, which is the surface
+    velocity of a particle that turns with the others."""
+    turning, radius = motion.mass * motion.inertia, motion.radius
+    rotation = (turning * radius) @ spin / (turning @ radius**2)
+    square = ((spin - radius[:, None] * rotation) ** 2).sum(axis=1)
+    return float(0.5 * (turning @ square) / ((len(spin) - 1) * spin.shape[1]))

@@ -15,16 +15,16 @@ from roughgas.base import InputError
 from roughgas.data.variables import ENERGY, POINT, RATE, SPEED, TIME, Variable, trust_of
 from roughgas.kernel.hooks import displacement, sums
 from roughgas.kernel.state import EXPONENT
-from roughgas.observables import KINDS, Frame, System, Wanted, wanted
-from roughgas.observables.flow import IN_CELL, SHIFT, LocalFlow, cells_of
+from roughgas.observables import KINDS, Frame, System, wanted
 from roughgas.observables.plugin import Group, Observable, Values, averaged
-from roughgas.scene import Scene, moves_along
+from roughgas.scene import Scene
 from roughgas.simulation import schedule
+from roughgas.simulation.flow import FlowWatch, watch_of
 from roughgas.simulation.gas import Gas
 from roughgas.simulation.paths import in_order, rotations, unwrapped_positions
 from roughgas.simulation.restart import positions_and_velocities
 from roughgas.simulation.trust import trust_in, window_of
-from roughgas.statistics.errors import Estimate, stderr_over_seeds
+from roughgas.statistics.errors import Estimate
 
 Functions = Mapping[str, Callable[[Frame], Any]]
 PRESENT = {
@@ -57,11 +57,14 @@ class Registered(NamedTuple):
 class Observer:
     """Looks at one gas; it is a Gas's `observer`."""
 
-    def __init__(self, gas: Gas, watched: Sequence[Registered], wait: int) -> None:
-        self.begun, self.watched = gas.time, watched
+    def __init__(
+        self, gas: Gas, watched: Sequence[Registered], wait: int, flow: FlowWatch | None = None
+    ) -> None:
+        self.begun, self.watched, self.flow = gas.time, watched, flow
         self._wait, self._taken = wait, 0
         self._start: int | None = None  # samples before the first look; None: not known yet
-        self._intervals = {registered.every for registered in watched}
+        self._intervals = {one.every for one in watched}
+        self._intervals |= {flow.every} if flow else set()
 
     def lengths(self, samples: int, first: int, unit: int) -> Iterator[int]:
         """Yield the lengths of the pieces that so many more samples are taken in.
@@ -83,6 +86,8 @@ class Observer:
         self._taken += taken
         assert self._start is not None
         since = self._taken - self._start
+        if self.flow and since > 0 and since % self.flow.every == 0:
+            self.flow.look(gas, self._taken)
         due = [one for one in self.watched if since >= 0 and since % one.every == 0]
         if not due:
             return
@@ -101,11 +106,14 @@ class Observer:
     def saved(self) -> bytes:
         """Return what it has seen so far."""
         seen = [(vars(one.observable), one.looks, one.before) for one in self.watched]
-        return pickle.dumps((self._start, self._taken, seen))
+        shifts = self.flow.shifts if self.flow else []
+        return pickle.dumps((self._start, self._taken, seen, shifts))
 
     def restore(self, saved: bytes) -> None:
         """See what another one has seen. Raises UnpicklingError where there is anything else."""
-        self._start, self._taken, seen = Seen(io.BytesIO(saved)).load()
+        self._start, self._taken, seen, shifts = Seen(io.BytesIO(saved)).load()
+        if self.flow:
+            self.flow.shifts[:] = shifts
         for one, (own, looks, before) in zip(self.watched, seen, strict=True):
             vars(one.observable).update(own)
             one.looks[:] = looks
@@ -127,25 +135,6 @@ class Seen(pickle.Unpickler):
         raise pickle.UnpicklingError(f"{module}.{name}")
 
 
-FLOW_LOOKS = 16
-"""At the flow in a measurement as long as its schedule plans."""
-
-
-def assumed_flow(scene: Scene, experiment: Mapping[str, Any]) -> Wanted | None:
-    """Return the observable of the local flow, where R assumes that the flow is a straight line.
-
-    None elsewhere, and where there are no two cells with particles enough for a flow.
-    """
-    timing = experiment["schedule"]
-    assumed = scene.effects.shear is not None or moves_along(scene.effects)
-    if not assumed or scene.effects.spin is None or timing["kind"] != "steady":
-        return None
-    if math.prod(cells_of(schedule.system_of(scene, experiment), IN_CELL)) < 2:
-        return None
-    planned = timing["measure"] / timing["sample_every"]
-    return Wanted("local_flow", max(1, int(planned / FLOW_LOOKS)), LocalFlow)
-
-
 class Observers:
     """The observables of a run: looks at each of its gases, and averages what was seen."""
 
@@ -156,15 +145,13 @@ class Observers:
         self._wanted = wanted(experiment.get("observables", {}), functions)
         self._experiment, self._kind = experiment, schedule.of(experiment)
         self._scene, self._system = scene, schedule.system_of(scene, experiment)
-        self._flow = assumed_flow(scene, experiment)
         self._observers: list[Observer] = []
         self._make()
 
     def _make(self) -> list[Registered]:
-        """Return new observables of a gas: those that settings list, and last the flow."""
         unit = self._kind.SAMPLES_PER_REFRESH
         registered = []
-        for listed in [*self._wanted, *([self._flow] if self._flow else [])]:
+        for listed in self._wanted:
             every = unit * math.ceil(listed.every / unit)
             system = self._system._replace(interval=every * self._system.interval)
             registered.append(Registered(listed.make(system), every, [], {}))
@@ -173,29 +160,21 @@ class Observers:
     @property
     def watch(self) -> bool:
         """Whether there is anything to look at."""
-        return bool(self._wanted or self._flow)
+        return bool(self._wanted) or watch_of(self._scene, self._experiment) is not None
 
     def flow_shift(self, start: float) -> Estimate | None:
-        """Return by how much R is larger over the local flow, from `start` (T) on.
-
-        None where R rests on no assumed flow. The looks are too far apart to be correlated.
-        """
-        if self._flow is None:
+        """Return by how much R is larger over the local flow, from `start` (T) on; None where R
+        assumes no flow."""
+        (observer,) = self._observers[:1]
+        if observer.flow is None:
             return None
-        shifts = [
-            float(look.values[SHIFT])
-            for observer in self._observers
-            for look in observer.watched[-1].looks
-            if observer.begun + look.taken * self._system.interval > start
-        ]
-        return Estimate(
-            float(np.mean(shifts)), stderr_over_seeds(np.array(shifts)), len(shifts) - 1.0
-        )
+        return observer.flow.shift(round((start - observer.begun) / self._system.interval))
 
     def begin(self, gas: Gas) -> None:
         """Watch a gas from now on."""
         wait = self._kind.wait(self._scene, self._experiment)
-        gas.observer = Observer(gas, self._make(), wait)
+        flow = watch_of(self._scene, self._experiment)
+        gas.observer = Observer(gas, self._make(), wait, flow)
         self._observers.append(gas.observer)
 
     def results(self, point: Mapping[str, Any]) -> tuple[dict, dict[str, Variable]]:

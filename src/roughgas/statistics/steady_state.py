@@ -56,13 +56,20 @@ from typing import NamedTuple
 
 import numpy as np
 
-from roughgas.statistics.errors import blocking, degrees_of_freedom, gaussian_sigmas, student_t
+from roughgas.statistics.errors import (
+    blocking,
+    degrees_of_freedom,
+    gaussian_sigmas,
+    period_means,
+    student_t,
+)
 
 MSER_BATCH = 5
 SHORTEST_SERIES = 12
 ALARM_SIGMAS = 3.5  # one false alarm in 2000 if the noise were known exactly
 NEGLIGIBLE_DRIFT = 0.01  # of the energy
 SURE_SIGMAS = 5.0  # of a drift that counts however small it is
+MOST_MEANS = 400  # that this drift is sought in
 ROUNDING_OF_ENERGY = 1e-9  # of the energy: a drift below this is none
 CUT_SIGMAS = 3.0
 BLOCKS = 60
@@ -125,7 +132,7 @@ def is_equilibrated(*series: np.ndarray, start: int = 0) -> bool:
     """
     return all(
         _is_stationary(values[start // 2 :], NEGLIGIBLE_DRIFT, ALARM_SIGMAS)
-        and _is_stationary(values[start:], ROUNDING_OF_ENERGY, SURE_SIGMAS)
+        and _is_stationary(_thinned(values[start:]), ROUNDING_OF_ENERGY, SURE_SIGMAS)
         for values in (np.asarray(energy, dtype=float) for energy in series)
     )
 
@@ -160,6 +167,14 @@ def drift(series: np.ndarray) -> Drift:
 def _line_through(series: np.ndarray) -> np.ndarray:
     position = np.arange(len(series)) - (len(series) - 1) / 2
     return series.mean() + (position * series).sum() / (position**2).sum() * position
+
+
+def _thinned(series: np.ndarray) -> np.ndarray:
+    """Return means over as many samples as leave MOST_MEANS of them, or fewer than twice as many.
+
+    Correlation between such means is part of what blocking finds; that within them is averaged.
+    """
+    return period_means(series, max(1, len(series) // MOST_MEANS)) if len(series) else series
 
 
 def _is_stationary(series: np.ndarray, negligible: float, alarm: float) -> bool:
