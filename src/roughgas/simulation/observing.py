@@ -157,11 +157,6 @@ class Observers:
             registered.append(Registered(listed.make(system), every, [], {}))
         return registered
 
-    @property
-    def watch(self) -> bool:
-        """Whether there is anything to look at."""
-        return bool(self._wanted) or watch_of(self._scene, self._experiment) is not None
-
     def flow_shift(self, start: float) -> Estimate | None:
         """Return by how much R is larger over the local flow, from `start` (T) on; None where R
         assumes no flow."""

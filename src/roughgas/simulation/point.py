@@ -150,14 +150,16 @@ def _packing(scene, experiment, initial):
 
 def _watching(scene, experiment, functions):
     """Return the observables that settings list, or that R needs; None if there are none."""
-    effects = scene.effects
-    flows = effects.shear is not None or moves_along(effects)
-    if not functions and not experiment.get("observables") and not flows:
+    listed = functions or experiment.get("observables")
+    assumed = scene.effects.shear is not None or moves_along(scene.effects)
+    if not (listed or assumed):
         return None
-    from roughgas.simulation.observing import Observers  # imported where it is wanted
+    from roughgas.simulation.flow import watch_of  # imported where it is wanted
+    from roughgas.simulation.observing import Observers
 
-    observers = Observers(scene, experiment, functions)
-    return observers if observers.watch else None
+    if not (listed or watch_of(scene, experiment)):
+        return None
+    return Observers(scene, experiment, functions)
 
 
 def flow_verdict(variables: Mapping[str, Any], shift: "Estimate | None") -> dict[str, Any]:

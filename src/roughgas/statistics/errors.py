@@ -39,9 +39,11 @@ class Evidence(NamedTuple):
 
     def suffices(self, least: "Evidence | None" = None) -> np.ndarray:
         """Return whether each number reaches that of `least`, LEAST if not given."""
-        pairs = zip(self, LEAST if least is None else least, strict=True)
-        reached = [np.greater_equal(number, limit) for number, limit in pairs]
-        return np.all(np.broadcast_arrays(*reached), axis=0)
+        reached: Any = True
+        for number, limit in zip(self, LEAST if least is None else least, strict=True):
+            if number is not math.inf:  # which reaches any
+                reached = reached & np.greater_equal(number, limit)
+        return np.asarray(reached)
 
     def verdict(self, holds: bool, least: "Evidence | None" = None) -> int:
         """Return whether a statement `holds`, YES or NO; UNKNOWN if this is too little evidence."""

@@ -12,6 +12,7 @@ frequent as T_tr^(1/2), and the power of a drive stays as it is (a thermostat, a
 wall) or becomes larger with the frequency of contacts (shear, a shaken floor).
 """
 
+import math
 from collections.abc import Callable
 from typing import Any
 
@@ -43,14 +44,20 @@ def ratio_relaxation(matrix: np.ndarray, heating: np.ndarray, capacity: np.ndarr
     """
     if len(capacity) < 2:
         return np.inf
-    replaced = np.eye(len(capacity)) - np.outer(heating, capacity) / (capacity @ heating)
-    # Disturbances without energy: the rows of Vh but the first, which is along the capacities.
-    exchange = np.linalg.svd(capacity[np.newaxis])[2][1:]
-    return slowest_relaxation(exchange @ replaced @ matrix @ exchange.T)
+    replaced = matrix - np.outer(heating, capacity @ matrix) / (capacity @ heating)
+    # Disturbances without energy: each temperature but the last, which makes up for them.
+    share = capacity[:-1] / capacity[-1]
+    return slowest_relaxation(replaced[:-1, :-1] - np.outer(replaced[:-1, -1], share))
 
 
 def slowest_relaxation(matrix: np.ndarray) -> float:
     """Return the rate of the slowest mode of d(delta T)/dt = `matrix` delta T; 0 if it grows."""
+    if len(matrix) == 1:
+        return max(0.0, -float(matrix[0, 0]))
+    if len(matrix) == 2:  # most gases: without a library that takes a while to wake up
+        (a, b), (c, d) = matrix.tolist()
+        root = math.sqrt(max(0.0, (a - d) ** 2 + 4.0 * b * c))
+        return max(0.0, -(a + d + root) / 2.0)
     return max(0.0, float(-np.linalg.eigvals(matrix).real.max()))
 
 
