@@ -93,7 +93,7 @@ CASES = {
 }
 
 
-class Seen(NamedTuple):
+class Values(NamedTuple):
     """A variable of a run, flat."""
 
     value: np.ndarray
@@ -118,12 +118,12 @@ def main() -> None:
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--scenes", nargs="+", choices=CASES, default=[*CASES])
     options = parser.parse_args()
-    found = {}
+    measurements = {}
     for scene in options.scenes:
-        found[scene] = measured(scene, range(1, options.seeds + 1), options.jobs)
-        print(f"{scene}\n\n{table(found[scene])}", flush=True)
+        measurements[scene] = measured(scene, range(1, options.seeds + 1), options.jobs)
+        print(f"{scene}\n\n{table(measurements[scene])}", flush=True)
     for kind in KINDS:
-        windows = window_of(kind, found.values())
+        windows = window_of(kind, measurements.values())
         print(f"{kind}: {windows:g} e-folds" if windows < math.inf else f"{kind}: not known")
 
 
@@ -136,30 +136,32 @@ def measured(scene: str, seeds: Iterable[int], jobs: int) -> dict[tuple[str, int
 
 
 def judged(
-    windows: Iterable[int], runs: Iterable[dict[str, Seen]]
+    windows: Iterable[int], runs: Iterable[dict[str, Values]]
 ) -> dict[tuple[str, int], Misses]:
     """Return the misses of each variable and each kind in runs of these windows."""
     by_window = defaultdict(list)
-    for window, one in zip(windows, runs, strict=True):
-        by_window[window].append(one)
+    for window, entry in zip(windows, runs, strict=True):
+        by_window[window].append(entry)
     last = by_window[WINDOWS[-1]]
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # no particle has been in a layer
-        truth = {name: np.nanmean([one[name].value for one in last], axis=0) for name in last[0]}
+        truth = {
+            name: np.nanmean([entry[name].value for entry in last], axis=0) for name in last[0]
+        }
     parts = {name: [name] for name in truth}
     for name in truth:
         parts.setdefault(name.partition(".")[0], []).append(name)
     return {
-        (name, window): misses(found, names, truth)
-        for window, found in by_window.items()
+        (name, window): misses(measurements, names, truth)
+        for window, measurements in by_window.items()
         for name, names in parts.items()
     }
 
 
-def run(scene: str, window: int, seed: int) -> dict[str, Seen]:
-    """Return what a run of so many e-folds has seen, by KIND.VARIABLE."""
-    for kind in KINDS.values():
-        kind.relaxations = 0.0
+def run(scene: str, window: int, seed: int) -> dict[str, Values]:
+    """Return the values of all observables in a run of `window` e-folds, by KIND.VARIABLE."""
+    for kind in KINDS.values():  # of all criteria but the length of the window
+        kind.relaxations, kind.beds, kind.doubtful = 0.0, True, ()
     case = CASES[scene]
     whole = case.period or case.sample_every
     schedule = {
@@ -178,26 +180,26 @@ def run(scene: str, window: int, seed: int) -> dict[str, Seen]:
         **case.settings,
     )
     return {
-        f"{point[name].observable}.{name}": _seen(point, str(name))
+        f"{point[name].observable}.{name}": _values(point, str(name))
         for name in point.data_vars
         if f"{name}_trusted" in point and "observable" in point[name].attrs
     }
 
 
-def _seen(point, name):
+def _values(point, name):
     parts = [point[f"{name}{end}"].values.ravel() for end in ("", "_stderr", "_dof", "_trusted")]
     value, stderr, dof, trusted = parts
-    half = [half_width(*one, 0.95) for one in zip(stderr, dof, strict=True)]
-    return Seen(value, np.array(half), trusted == YES)
+    half = [half_width(*entry, 0.95) for entry in zip(stderr, dof, strict=True)]
+    return Values(value, np.array(half), trusted == YES)
 
 
 def misses(
-    runs: list[dict[str, Seen]], names: list[str], truth: Mapping[str, np.ndarray]
+    runs: list[dict[str, Values]], names: list[str], truth: Mapping[str, np.ndarray]
 ) -> Misses:
     """Return the misses of some variables in runs of one window."""
     value, half, trusted = (
-        np.array([np.concatenate([getattr(one[name], part) for name in names]) for one in runs])
-        for part in Seen._fields
+        np.array([np.concatenate([getattr(entry[name], part) for name in names]) for entry in runs])
+        for part in Values._fields
     )
     expected = np.concatenate([truth[name] for name in names])
     away = np.abs(value - expected) > half
@@ -211,29 +213,29 @@ def misses(
     return Misses(total / trusted.size, share, scatter, of_all, int(np.count_nonzero(count)))
 
 
-def table(found: Mapping[tuple[str, int], Misses]) -> str:
+def table(measurements: Mapping[tuple[str, int], Misses]) -> str:
     """Return a row for each variable: of each window the share trusted, and misses in per cent."""
-    names = sorted({name for name, _ in found})
+    names = sorted({name for name, _ in measurements})
     head = ["elements of", *(f"{window}: trusted, missed (all)" for window in WINDOWS)]
-    rows = [[name, *(_cell(found[name, window]) for window in WINDOWS)] for name in names]
+    rows = [[name, *(_cell(measurements[name, window]) for window in WINDOWS)] for name in names]
     return as_table(head, rows)
 
 
-def _cell(one: Misses) -> str:
-    if not one.runs:
-        return f"0 ({100 * one.of_all:.1f})"
-    missed = f"{100 * one.missed:.1f} ± {100 * one.error:.1f}"
-    return f"{100 * one.trusted:.0f} %, {missed} ({100 * one.of_all:.1f})"
+def _cell(entry: Misses) -> str:
+    if not entry.runs:
+        return f"0 ({100 * entry.of_all:.1f})"
+    missed = f"{100 * entry.missed:.1f} ± {100 * entry.error:.1f}"
+    return f"{100 * entry.trusted:.0f} %, {missed} ({100 * entry.of_all:.1f})"
 
 
 def window_of(kind: str, scenes: Iterable[Mapping[tuple[str, int], Misses]]) -> float:
     """Return the e-folds from which on a kind misses at most MOST in each scene; infinite if none,
     or if too few runs show it."""
     needed = 0.0
-    for found in scenes:
-        shown = {w: found[kind, w] for w in CRITERIA if (kind, w) in found}
-        good = [w for w, one in shown.items() if one.runs >= FEWEST and one.missed <= MOST]
-        bad = [w for w, one in shown.items() if one.runs >= FEWEST and one.missed > MOST]
+    for measurements in scenes:
+        shown = {w: measurements[kind, w] for w in CRITERIA if (kind, w) in measurements}
+        good = [w for w, entry in shown.items() if entry.runs >= FEWEST and entry.missed <= MOST]
+        bad = [w for w, entry in shown.items() if entry.runs >= FEWEST and entry.missed > MOST]
         if shown:
             later = [w for w in good if w > max(bad, default=0)]
             needed = max(needed, min(later, default=math.inf))

@@ -115,21 +115,21 @@ POINT = {"R": 0.2, "R_ci95": 0.01, "R_ci95_trusted": YES, "E_trans_trusted": YES
 )
 def test_a_shift_beyond_the_interval_of_R_takes_its_verdicts_back(shift, stderr, flows):
     """A significant one; beyond what R can bear at the error that it states."""
-    found = POINT | flow_verdict(POINT, Estimate(shift, stderr))
+    point = POINT | flow_verdict(POINT, Estimate(shift, stderr))
     expected = UNKNOWN if flows else YES
-    assert found["R_flow_shift"] == shift
-    assert [found[name] for name in list(POINT)[2:]] == [expected] * 3
+    assert point["R_flow_shift"] == shift
+    assert [point[name] for name in list(POINT)[2:]] == [expected] * 3
 
 
 def test_what_was_not_trusted_before_stays_as_it_was():
     point = POINT | {"R_ci95_trusted": NO, "E_trans_trusted": NO, "target_met": NO}
-    found = point | flow_verdict(point, Estimate(0.05, 0.001))
-    assert [found[name] for name in list(POINT)[2:]] == [NO] * 3
+    point = point | flow_verdict(point, Estimate(0.05, 0.001))
+    assert [point[name] for name in list(POINT)[2:]] == [NO] * 3
 
 
 def test_a_large_sheared_gas_has_a_flow_that_R_counts_as_temperature():
     """R over the local flow lies by two of its intervals above R, which is not known."""
-    found = roughgas.simulate(
+    point = roughgas.simulate(
         r=0.8,
         beta=0.0,
         particles=1500,
@@ -139,18 +139,18 @@ def test_a_large_sheared_gas_has_a_flow_that_R_counts_as_temperature():
         observe=["local_flow"],
         progress=False,
     )
-    assert int(found.equilibrated) == YES
-    assert int(found.R_ci95_trusted) == int(found.E_trans_trusted) == UNKNOWN
-    assert float(found.R_flow_shift) > float(found.R_ci95) and float(found.R_flow_sigma) > 3.0
-    over_flow = float(found.R_local) - float(found.R)
-    assert over_flow == pytest.approx(float(found.R_flow_shift), abs=0.004)
+    assert int(point.equilibrated) == YES
+    assert int(point.R_ci95_trusted) == int(point.E_trans_trusted) == UNKNOWN
+    assert float(point.R_flow_shift) > float(point.R_ci95) and float(point.R_flow_sigma) > 3.0
+    over_flow = float(point.R_local) - float(point.R)
+    assert over_flow == pytest.approx(float(point.R_flow_shift), abs=0.004)
 
 
 def test_the_papers_sheared_gas_has_no_flow_of_its_own():
     given = {"kind": "steady", "equilibrate": 500, "measure": 3000, "sample_every": 1}
-    found = roughgas.simulate("sheared", r=0.8, beta=0.0, schedule=given, progress=False)
-    assert int(found.R_ci95_trusted) == YES
-    assert 0.0 < abs(float(found.R_flow_shift)) < float(found.R_ci95)
+    point = roughgas.simulate("sheared", r=0.8, beta=0.0, schedule=given, progress=False)
+    assert int(point.R_ci95_trusted) == YES
+    assert 0.0 < abs(float(point.R_flow_shift)) < float(point.R_ci95)
 
 
 def test_a_gas_between_sliding_walls_is_looked_at_without_being_asked():
@@ -159,8 +159,8 @@ def test_a_gas_between_sliding_walls_is_looked_at_without_being_asked():
     sides |= {"lid": {"velocity": 2.0, "roughness": 0.5}}
     given = {"kind": "steady", "equilibrate": 200, "measure": 600, "sample_every": 1}
     gas = dict(particles=100, box=[40, 40], effects=SPIN | sides, schedule=given, progress=False)
-    found = roughgas.simulate(r=0.8, beta=0.0, **gas)
-    assert math.isfinite(float(found.R_flow_shift)) and float(found.R_flow_shift) != 0.0
+    point = roughgas.simulate(r=0.8, beta=0.0, **gas)
+    assert math.isfinite(float(point.R_flow_shift)) and float(point.R_flow_shift) != 0.0
     heated = {"thermostat": {"power": 0.1, "interval": 0.5, "spin_share": 0}}
     at_rest = roughgas.simulate(r=0.8, beta=0.0, **gas | {"effects": SPIN | heated})
     assert "R_flow_shift" not in at_rest
@@ -169,5 +169,5 @@ def test_a_gas_between_sliding_walls_is_looked_at_without_being_asked():
 def test_few_particles_have_no_flow_to_look_at():
     given = {"kind": "steady", "equilibrate": 500, "measure": 1000, "sample_every": 1}
     sheared = dict(r=0.8, beta=0.0, schedule=given, progress=False)
-    found = roughgas.simulate("sheared", particles=40, box=[25, 25], **sheared)
-    assert "R_flow_shift" not in found
+    point = roughgas.simulate("sheared", particles=40, box=[25, 25], **sheared)
+    assert "R_flow_shift" not in point

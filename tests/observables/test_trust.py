@@ -59,8 +59,8 @@ def point(observe, **scene):
 
 def trusted(values, window=LONG, relaxations=ENOUGH):
     """The flags of the means of a series (looks, elements), and what they lack."""
-    found = averaged(dict, [[{"x": look} for look in values]])
-    return trust_in(found.value["x"], found.stderr["x"], found.evidence["x"], window, relaxations)
+    mean = averaged(dict, [[{"x": look} for look in values]])
+    return trust_in(mean.value["x"], mean.stderr["x"], mean.evidence["x"], window, relaxations)
 
 
 # ------------------------------------------------------------------------ phases of a drive
@@ -109,8 +109,8 @@ def test_theory_sets_the_length_of_the_window():
 def test_without_a_steady_state_nothing_is_trusted():
     values = noise((400, 1))
     for steady in (NO, UNKNOWN):
-        found = trusted(values, LONG._replace(steady=steady))
-        assert found.flags.tolist() == [steady] and "steady state" in found.lack
+        mean = trusted(values, LONG._replace(steady=steady))
+        assert mean.flags.tolist() == [steady] and "steady state" in mean.lack
 
 
 def test_one_function_judges_by_all_the_evidence():
@@ -130,9 +130,9 @@ def test_a_column_that_a_few_visits_make_is_not_trusted():
     values[[40, 170, 333], 1] = 1.0
     for begin in (40, 333):
         values[begin : begin + 10, 2] = 1.0
-    found = trusted(values)
-    assert found.flags.tolist() == [YES, UNKNOWN, UNKNOWN, UNKNOWN]
-    assert found.lack == "variance from fewer than 12 looks"
+    mean = trusted(values)
+    assert mean.flags.tolist() == [YES, UNKNOWN, UNKNOWN, UNKNOWN]
+    assert mean.lack == "variance from fewer than 12 looks"
 
 
 def test_each_element_of_a_table_has_the_flag_of_its_own_series():
@@ -147,9 +147,9 @@ def test_each_element_of_a_table_has_the_flag_of_its_own_series():
 
 def test_looks_that_are_few_or_remember_for_too_long_are_not_trusted():
     values = np.column_stack([np.cos(np.linspace(0.0, np.pi, 400)), noise(400)])
-    found = trusted(values)
-    assert found.flags.tolist() == [UNKNOWN, YES]
-    assert found.lack == "shorter than 6 autocorrelation times"
+    mean = trusted(values)
+    assert mean.flags.tolist() == [UNKNOWN, YES]
+    assert mean.lack == "shorter than 6 autocorrelation times"
     values[8:, 1] = math.nan
     assert trusted(values).lack == ("fewer than 12 looks; shorter than 6 autocorrelation times")
     values[:, 1] = math.nan
@@ -177,9 +177,9 @@ def test_replicas_of_a_cooling_gas_are_trusted_with_its_r():
     assert (few.R_ci95_trusted, few.a20_trusted) == (UNKNOWN, UNKNOWN)
     assert many.a20_trusted == many.R_ci95_trusted != UNKNOWN
     values = [[{"x": np.array([x, math.nan])}] for x in noise(5)]
-    found = averaged(dict, values)
+    mean = averaged(dict, values)
     cooling = Window(YES, math.inf, math.inf)
-    parts = found.value["x"], found.stderr["x"], found.evidence["x"]
+    parts = mean.value["x"], mean.stderr["x"], mean.evidence["x"]
     trust = trust_in(*parts, cooling, math.inf)
     assert trust.flags.tolist() == [YES, UNKNOWN] and trust.lack == "fewer than 5 replicas"
 
@@ -187,17 +187,17 @@ def test_replicas_of_a_cooling_gas_are_trusted_with_its_r():
 def test_a_gas_through_stages_is_not_known_to_be_steady():
     schedule = {"kind": "stages", "sample_every": 1.0, "stages": [{"duration": 30.0}]}
     effects = SPIN | {"shear": {"velocity": 1}}
-    found = point(["cumulants"], **(GAS | {"effects": effects, "schedule": schedule}))
-    assert found.a20_trusted == UNKNOWN and found.a20_trusted.comment == "steady state not known"
+    mean = point(["cumulants"], **(GAS | {"effects": effects, "schedule": schedule}))
+    assert mean.a20_trusted == UNKNOWN and mean.a20_trusted.comment == "steady state not known"
 
 
 def test_no_length_is_known_of_a_function_of_a_users():
     effects = SPIN | {"shear": {"velocity": 1}}
     schedule = STEADY | {"equilibrate": 400, "measure": 1000, "sample_every": 2, "period": 2}
     energy = {"energy": lambda frame: frame.energy.mean()}
-    found = point(energy, **(GAS | {"effects": effects, "schedule": schedule}))
-    assert found.equilibrated == YES and found.energy_trusted == UNKNOWN
-    assert found.energy_trusted.comment == "needed length of the window not known"
+    mean = point(energy, **(GAS | {"effects": effects, "schedule": schedule}))
+    assert mean.equilibrated == YES and mean.energy_trusted == UNKNOWN
+    assert mean.energy_trusted.comment == "needed length of the window not known"
     assert Observable.relaxations == math.inf
 
 
@@ -205,10 +205,10 @@ def test_each_species_has_flags_of_its_own(measured):
     effects = SPIN | {"thermostat": {"power": 1, "spin_share": 0, "interval": 1}}
     schedule = STEADY | {"sample_every": 0.5, "period": 0.5}
     scene = GAS | {"effects": effects, "schedule": schedule, "species": MIXED}
-    found = point({"cumulants": {}, "profiles": {"bins": 3}}, **scene)
-    assert found.a20_species_trusted.dims == ("species",)
-    assert found.flow_profile_species_trusted.dims == found.flow_profile_species.dims
-    assert found.a20_species_trusted.dtype == np.int8
+    mean = point({"cumulants": {}, "profiles": {"bins": 3}}, **scene)
+    assert mean.a20_species_trusted.dims == ("species",)
+    assert mean.flow_profile_species_trusted.dims == mean.flow_profile_species.dims
+    assert mean.a20_species_trusted.dtype == np.int8
 
 
 # ------------------------------------------------------------------------ what is shown of it
@@ -228,8 +228,8 @@ def test_reduced_datasets_have_the_share_of_seeds():
 
 
 def test_show_marks_what_is_not_trusted_and_says_why(measured):
-    found = point({"cumulants": {"every": 20}, "profiles": {"every": 20, "bins": 10}}, **BED)
-    text = observed(found)
+    mean = point({"cumulants": {"every": 20}, "profiles": {"every": 20, "bins": 10}}, **BED)
+    text = observed(mean)
     a20, flow = (
         next(one for one in text.splitlines() if one.startswith(name))
         for name in ("a20", "flow_profile")
@@ -285,9 +285,9 @@ def _heated(kind, relaxations, runs):
     return [point(observe, **HEATED, schedule=schedule, seed=n) for n in range(runs)]
 
 
-def _of(found):
-    names = [str(name) for name in found.data_vars if "observable" in found[name].attrs]
-    return [name for name in names if f"{name}_trusted" in found]
+def _of(mean):
+    names = [str(name) for name in mean.data_vars if "observable" in mean[name].attrs]
+    return [name for name in names if f"{name}_trusted" in mean]
 
 
 # ------------------------------------------------------------------------ what is not known

@@ -97,10 +97,10 @@ def test_a_species_that_nothing_distinguishes_changes_no_memory(packing):
     scene, settings = scene_of(kicks(0.1, 0.3), 0.9, -0.5, species=alike)
     single, _ = scene_of(kicks(0.1, 0.3), 0.9, -0.5)
     mixed = Thermal(np.full(2, 0.8), np.full(2, 0.2), 0.5, 40, (25.0, 25.0))
-    found = memory(scene, mixed, for_theory(scene, settings), packing)
+    point = memory(scene, mixed, for_theory(scene, settings), packing)
     expected = memory(single, state_of(0.8, 0.2, 0.5, 40, 25.0))
-    assert found.of_R == pytest.approx(expected.of_R, rel=1e-3)
-    assert found.energies == pytest.approx(expected.energies, rel=1e-3)
+    assert point.of_R == pytest.approx(expected.of_R, rel=1e-3)
+    assert point.energies == pytest.approx(expected.energies, rel=1e-3)
 
 
 @pytest.mark.parametrize("mu", [0.1, 0.3, 1.0])
@@ -151,9 +151,9 @@ def test_the_momentum_of_a_bath_is_remembered_as_long_as_the_drag_lasts():
     """Weak drag on a few particles, kept far below the temperature of their bath."""
     weak = {"langevin": {"interval": 0.5, "drag": 1e-4, "temperature": 1e4}}
     scene, _ = scene_of(weak, 0.9, 0.0)
-    found = memory(scene, state_of(1.0, 0.2, 0.5, 40, 25.0))
+    point = memory(scene, state_of(1.0, 0.2, 0.5, 40, 25.0))
     assert drags(scene) == (pytest.approx(1e-4), 0.0)
-    assert found.flow == pytest.approx(1e4) and found.of_R == pytest.approx(1e4, rel=0.01)
+    assert point.flow == pytest.approx(1e4) and point.of_R == pytest.approx(1e4, rel=0.01)
     near = {"langevin": BATH}
     elastic = memory(scene_of(near, 1.0, 0.0)[0], state_of(1.0, 0.2, 0.5, 40, 25.0))
     assert elastic.of_R < 12.0
@@ -178,8 +178,8 @@ def test_the_momentum_has_its_share_of_the_memory():
         gas[k] = 0.95 * gas[k - 1] + noise[k]
     energy = gas + (momentum**2).sum(axis=0)
     own = (1.0 + 0.95) / (1.0 - 0.95)  # T, of the gas alone
-    found = _with_total_momentum(own, scene, state)
-    assert found == pytest.approx(autocorrelation_time(energy), rel=0.08)
+    point = _with_total_momentum(own, scene, state)
+    assert point == pytest.approx(autocorrelation_time(energy), rel=0.08)
 
 
 @pytest.mark.parametrize("share", [0.0, 0.3, 1.0])
@@ -234,22 +234,22 @@ def measured(effects, r, beta, timing=None, particles=40, side=25.0, number=1, *
 def test_spins_that_hardly_relax_are_no_steady_state(beta, q):
     """Their energy drifts by less than any noise; by theory they need 1e5 T or more."""
     effects = {"spin": {"inertia": q}} | kicks(1.0)
-    found = measured(effects, 0.9, beta, spin_temperature=1.0)
-    assert found["memory_of_R"] > 1e5 and found["R"] > 0.1
-    assert found["equilibrated"] == found["R_ci95_trusted"] == UNKNOWN
-    assert found["E_trans_trusted"] == found["E_rot_trusted"] == UNKNOWN
+    point = measured(effects, 0.9, beta, spin_temperature=1.0)
+    assert point["memory_of_R"] > 1e5 and point["R"] > 0.1
+    assert point["equilibrated"] == point["R_ci95_trusted"] == UNKNOWN
+    assert point["E_trans_trusted"] == point["E_rot_trusted"] == UNKNOWN
 
 
 def test_spins_that_no_contact_changes_leave_R_unknown():
     """It is what the start made it; the translational energy is as steady as any."""
-    found = measured(kicks(1.0), 0.9, -1.0, spin_temperature=1.0)
-    assert found["equilibrated"] == found["E_trans_trusted"] == YES
-    assert found["R_ci95_trusted"] == UNKNOWN and found["memory_of_R"] == math.inf
+    point = measured(kicks(1.0), 0.9, -1.0, spin_temperature=1.0)
+    assert point["equilibrated"] == point["E_trans_trusted"] == YES
+    assert point["R_ci95_trusted"] == UNKNOWN and point["memory_of_R"] == math.inf
 
 
 def test_a_smooth_gas_has_an_R_of_zero_that_is_trusted():
-    found = measured(kicks(1.0), 0.9, -1.0)
-    assert (found["R"], found["R_ci95_trusted"], found["memory_of_R"]) == (0.0, YES, 0.0)
+    point = measured(kicks(1.0), 0.9, -1.0)
+    assert (point["R"], point["R_ci95_trusted"], point["memory_of_R"]) == (0.0, YES, 0.0)
 
 
 @pytest.mark.parametrize(("memories", "expected"), [(6.0, UNKNOWN), (25.0, YES)])
@@ -264,17 +264,17 @@ def test_the_length_that_theory_asks_for_decides(memories, expected):
 
 def test_a_bed_needs_twice_as_many_memories():
     timing = {"measure": 18.0, "sample_every": 0.05, "period": 1.0, "equilibrate": 50.0}
-    found = measured(BED, 0.9, 0.0, timing, side=12.5)
-    assert 12.0 < 18.0 / found["memory_of_R"] < 24.0
-    assert found["R_ci95_trusted"] == found["equilibrated"] == UNKNOWN
+    point = measured(BED, 0.9, 0.0, timing, side=12.5)
+    assert 12.0 < 18.0 / point["memory_of_R"] < 24.0
+    assert point["R_ci95_trusted"] == point["equilibrated"] == UNKNOWN
 
 
 def test_means_of_energies_need_a_window_of_their_own_length():
     """R is known after 12 of its memories, its energies after 96 of their e-folds."""
     for measure, expected in ((1000.0, UNKNOWN), (4000.0, YES)):
-        found = measured({"shear": SHEAR}, 0.9, 0.0, {"measure": measure})
-        assert found["R_ci95_trusted"] == YES
-        assert found["E_trans_trusted"] == found["E_rot_trusted"] == expected
+        point = measured({"shear": SHEAR}, 0.9, 0.0, {"measure": measure})
+        assert point["R_ci95_trusted"] == YES
+        assert point["E_trans_trusted"] == point["E_rot_trusted"] == expected
 
 
 def test_a_continued_run_has_waited_since_its_first_state(tmp_path):

@@ -79,10 +79,10 @@ def test_hits_of_a_rough_wall_by_brute_force(dimension):
     kappa = (1.0 + beta) / (1.0 + q)
     lost = (1.0 - r**2) * normal**2 + (v**2 - (v - q * kappa * slip) ** 2).sum(axis=0)
     gained = q * ((w[:axes] - kappa * slip) ** 2 - w[:axes] ** 2).sum(axis=0)
-    found = np.array([-lost / dimension, gained / spin_axes])
+    change = np.array([-lost / dimension, gained / spin_axes])
     expected = wall_slopes(r, beta, dimension, q) @ [T_tr, T_rot]
-    stderr = found.std(axis=1) / math.sqrt(hits)
-    assert (np.abs(found.mean(axis=1) - expected) < 4.0 * stderr).all()
+    stderr = change.std(axis=1) / math.sqrt(hits)
+    assert (np.abs(change.mean(axis=1) - expected) < 4.0 * stderr).all()
 
 
 def test_a_thermal_wall_keeps_nothing_of_what_hits_it():

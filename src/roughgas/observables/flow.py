@@ -1,10 +1,10 @@
-"""Energies over the local flow: what a gas has besides the mean flow that R leaves out.
+"""Energies over the local flow of a gas, beside the mean flow that R leaves out.
 
-A sheared gas is described without its mean flow, a straight line. A large one has flows of its own
-besides, and their energy would pass for temperature. The local flow is the mean velocity, weighted
+A sheared gas is described without its mean flow, a straight line. A large gas has further
+flows, whose energy passes for temperature. The local flow is the mean velocity, weighted
 with the masses, of the particles in a cell; what remains of their velocities has D (n - 1) degrees
-of freedom in a cell of n particles, so that the energy per degree of freedom is that of any other
-gas in equilibrium, however small cells are. This is the idea of profile-unbiased thermostats (D. J.
+of freedom in a cell of n particles, so that the energy per degree of freedom does not depend on the
+size of cells in equilibrium. This is the idea of profile-unbiased thermostats (D. J.
 Evans & G. P. Morriss, Phys. Rev. Lett. 56, 2172 (1986)).
 """
 
@@ -30,13 +30,13 @@ class Motion(NamedTuple):
     position: np.ndarray  # (N, D)
     velocity: np.ndarray  # (N, D)
     spin: np.ndarray | None  # (N, 2 D - 3)
-    mass: np.ndarray  # (N,), as those that follow
+    mass: np.ndarray  # (N,), as the next two
     inertia: np.ndarray  # q
     radius: np.ndarray
 
 
 class OverFlow(NamedTuple):
-    """What a gas has over its local flow."""
+    """Energies of a gas over its local flow."""
 
     E_trans: float  # NaN where no two particles share a cell
     R: float  # NaN without spin
@@ -71,7 +71,7 @@ class LocalFlow(Observable):
 
 
 def cells_of(system: System, particles: int) -> tuple[int, ...]:
-    """Return the number of cells along each axis, cubes with so many particles on average.
+    """Return the number of cells along each axis: cubes with `particles` on average.
 
     Between walls across the second axis there are layers along it: their flow varies across.
     """
@@ -85,7 +85,7 @@ def cells_of(system: System, particles: int) -> tuple[int, ...]:
 
 
 def over_flow(motion: Motion, system: System, cells: tuple[int, ...]) -> OverFlow:
-    """Return what a gas has over the flow in cells."""
+    """Return the energies over the flow in cells."""
     velocity = _over_mean_flow(motion, system)
     local, overall = local_energies(motion, velocity, _cell_numbers(motion, system, cells))
     if motion.spin is None:

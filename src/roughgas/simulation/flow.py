@@ -25,17 +25,17 @@ LOOKS = 10
 
 
 class FlowWatch:
-    """Looks at the local flow of a gas after every so many samples."""
+    """Looks at the local flow of a gas every now and then."""
 
     def __init__(self, system: System, every: int) -> None:
         self.every, self._system = every, system
         self._cells = cells_of(system, IN_CELL)
-        ones = np.ones(system.particles)
-        self._alike = ones, (system.inertia or 0.0) * ones, ones
+        unity = np.ones(system.particles)
+        self._alike = unity, (system.inertia or 0.0) * unity, unity
         self.shifts: list[tuple[int, float]] = []  # samples that had been taken, and the shift of R
 
     def look(self, gas: "Gas", taken: int) -> None:
-        """Look at a gas that so many samples have been taken of."""
+        """Look at a gas from which `taken` samples have been taken."""
         state, bodies = gas.state, self._alike
         if state.bodies is not None:
             bodies = state.bodies.mass, state.bodies.inertia, state.bodies.radius
@@ -46,7 +46,7 @@ class FlowWatch:
     def shift(self, first: int) -> Estimate:
         """Return by how much R is larger over the local flow, after `first` samples.
 
-        Looks are so far apart that they count as independent.
+        Looks are far apart, and count as independent.
         """
         shifts = np.array([shift for taken, shift in self.shifts if taken > first])
         if not len(shifts):

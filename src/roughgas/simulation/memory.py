@@ -6,9 +6,8 @@ energies and the frequency of contacts, which every run measures well, so that n
 decides how long is long enough.
 
 The rates of all that relaxes temperatures add up: contacts (also with friction, or of several
-species), the drag of a bath, and walls. The spin of a particle, and what a thermal wall gives it,
-take a while to spread from a wall: the rates of hits and of diffusion to the wall are combined as
-those of two steps, one after the other.
+species), the drag of a bath, and walls. Spin and heat from a wall take a while to
+spread: hits and the diffusion to the wall are two steps, one after the other, whose times add up.
 """
 
 import math
@@ -37,7 +36,7 @@ from roughgas.theory.relaxation import (
 class Memory(NamedTuple):
     """Times in T; infinite where a motion never forgets, 0 where nothing has to be forgotten."""
 
-    of_R: float  # integrated autocorrelation time of R, 2 over the rate at which R relaxes
+    of_R: float  # integrated autocorrelation time of R, 2 over its relaxation rate
     energies: float  # e-fold of the slowest combination of the temperatures
     flow: float  # e-fold of the longest flow, or of the total momentum in a bath
 
@@ -60,10 +59,10 @@ class Thermal(NamedTuple):
 def memory(
     scene: Scene, state: Thermal, mixture: Mixture | None = None, packing: float = 0.0
 ) -> Memory:
-    """Return how long a driven gas remembers in a measured state.
+    """Return the memory of a driven gas in a measured state.
 
-    The state of a `mixture` has the temperatures of the species as settings list them; `packing`,
-    that of a periodic box, gives its contact values. Without contacts a gas never forgets.
+    The state of a `mixture` has the temperatures of the species as settings list them; the
+    `packing` of a periodic box gives its contact values. Without contacts a gas never forgets.
     """
     measured = np.isfinite(state.T_tr).all() and (state.T_tr > 0.0).all()
     if not (measured and state.frequency > 0.0):
@@ -102,7 +101,8 @@ class RateEquations:
         """Energy per temperature, (temperatures,), half of it left out."""
 
     def contacts(self) -> np.ndarray:
-        """Return what contacts relax per T, (temperatures, temperatures), at their frequency."""
+        """Return the slopes per T due to contacts at a constant frequency, (temperatures,
+        temperatures)."""
         friction = self.scene.effects.friction
         if self.mixture is None and friction is None:  # linear: no slope need be measured
             loss, gain, spin_gain, spin_loss = map(float, collision_rates(*self._material()))
@@ -113,9 +113,9 @@ class RateEquations:
         return self.state.frequency * linear[:size, :size]
 
     def accelerated_contacts(self) -> np.ndarray:
-        """Return what contacts relax because they become more frequent as T_tr^(1/2).
+        """Return the slopes due to the frequency of contacts, which grows as T_tr^(1/2).
 
-        Nothing where the drive puts in more with each contact: it replaces all that they lose.
+        Zeros where the power of the drive grows alike: it replaces the energy that contacts lose.
         """
         size = len(self.capacity)
         if not _has_constant_power(self.scene):
@@ -126,7 +126,7 @@ class RateEquations:
         return self.state.frequency * np.outer(losses, frequency_slopes)
 
     def walls(self) -> np.ndarray:
-        """Return what walls relax per T, where all particles are alike; else nothing."""
+        """Return the slopes per T due to walls; zeros in a mixture."""
         size = len(self.capacity)
         total = np.zeros((size, size))
         if self.mixture is None:
@@ -135,13 +135,13 @@ class RateEquations:
         return total
 
     def drags(self) -> np.ndarray:
-        """Return the rate at which drag takes from each temperature, per T, (temperatures,)."""
+        """Return the rates of drag on all temperatures, per T, (temperatures,)."""
         drag, spin_drag = drags(self.scene)
         of_spins = np.full(np.count_nonzero(self.turning), 2.0 * spin_drag)
         return np.append(np.full(len(self.fraction), 2.0 * drag), of_spins)
 
     def heating(self) -> np.ndarray:
-        """Return how the drive changes the temperatures, (temperatures,), in any unit."""
+        """Return the changes of the temperatures by the drive, (temperatures,), in any unit."""
         share, power = spin_share(self.scene), np.ones(len(self.fraction))
         if self.mixture is not None and self.scene.effects.thermostat is not None:
             power = kick_power(self.mixture)
@@ -152,7 +152,7 @@ class RateEquations:
         return np.append(self.T_tr, self.T_rot[self.turning])
 
     def _changes(self, temperatures):
-        """Return what contacts change the temperatures by, per collision per particle."""
+        """Return the changes of the temperatures per collision per particle."""
         species = len(self.fraction)
         T_tr, T_rot = temperatures[:species], np.zeros(species)
         T_rot[self.turning] = temperatures[species:]
@@ -180,7 +180,7 @@ class RateEquations:
         return rate_matrix(gas, T_tr, T_rot, self.crowding) @ temperatures / contacts
 
     def _hits(self, wall: Wall) -> float:
-        """Return how often a wall acts on a particle, per T."""
+        """Return the hits of a particle on a wall, per T, slowed by the diffusion to it."""
         T_tr, gravity = float(self.T_tr[0]), self.scene.effects.gravity
         if isinstance(wall, Floor) and gravity is not None:
             return hits_of_floor(T_tr, gravity.acceleration)
@@ -231,10 +231,10 @@ def _has_constant_power(scene: Scene) -> bool:
 
 
 def _with_total_momentum(of_R: float, scene: Scene, state: Thermal) -> float:
-    """Return the memory of R with that of the total momentum, which a bath alone brings to rest.
+    """Return the memory of R, total momentum included, which only a bath brings to rest.
 
-    The energy of the centre of mass fluctuates (T_bath/T_tr)^2/N times as much as that of all
-    particles, where T_bath is the temperature to which drag and noise would lead.
+    The energy of the centre of mass fluctuates by (T_bath/T_tr)^2/N of the fluctuations of
+    all particles; drag and noise alone would lead to the temperature T_bath.
     """
     bath = scene.effects.langevin
     drag, _ = drags(scene)
@@ -246,7 +246,7 @@ def _with_total_momentum(of_R: float, scene: Scene, state: Thermal) -> float:
 
 
 def _flow_decay(scene: Scene, state: Thermal) -> float:
-    """Return the rate at which the longest flow decays, per T; infinity where there is no room."""
+    """Return the decay rate of the longest flow, per T."""
     drag, _ = drags(scene)
     bath = scene.effects.langevin
     if bath is not None and bath.noise:

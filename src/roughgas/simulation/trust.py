@@ -1,4 +1,4 @@
-"""Whether the errors of observables are to be trusted, and what it takes besides where not.
+"""Whether the errors of observables are to be trusted, and the evidence that they lack.
 
 Theory says how long a window must be, so that a run's luck does not; its data may only veto: by a
 series that is short against its own autocorrelation time, or whose variance a few rare visits make.
@@ -24,7 +24,7 @@ class Window(NamedTuple):
 
 
 class Trust(NamedTuple):
-    """Flags in the shape of a variable, and the evidence that those that are not YES lack."""
+    """Flags in the shape of a variable, and the evidence that is missing where they are not YES."""
 
     flags: np.ndarray
     lack: str
@@ -55,7 +55,7 @@ def window_of(
 def trust_in(
     value: np.ndarray, stderr: np.ndarray, evidence: Evidence, window: Window, relaxations: float
 ) -> Trust:
-    """Return whether to trust the errors of a variable, whose window must have so many e-folds."""
+    """Return whether to trust the errors of a variable that needs `relaxations` e-folds."""
     least = LEAST._replace(memories=relaxations)
     if math.isinf(window.memories):  # of replicas, whose errors need no length
         least = LEAST
@@ -68,7 +68,7 @@ def trust_in(
 
 
 def _lack_of_window(window: Window, least: Evidence) -> str:
-    """Return what a window needs; nothing if it has that."""
+    """Return the evidence that a window lacks, in words; nothing where it is enough."""
     if window.steady != YES:
         return "no steady state" if window.steady == NO else "steady state not known"
     lacks = []
@@ -98,7 +98,7 @@ OF_ELEMENTS = {
 
 
 def _lack_of_elements(flags: np.ndarray, evidence: Evidence, least: Evidence) -> str:
-    """Return the first lack of each element that is not trusted, those of several joined."""
+    """Return the first lack of each element that is not trusted, joined."""
     doubted, lacks = flags != YES, []
     for name, text in OF_ELEMENTS.items():
         limit = getattr(least, name)

@@ -4,7 +4,7 @@ The temperatures are a vector (k,): T_tr of each species, then T_rot of each spe
 collision per particle, contacts change them by F(T). `slopes` holds dF/dT, all rates are positive
 where a disturbance decays.
 
-The ratio R relaxes at the rate at which temperatures exchange energy while the drive replaces what
+The ratio R relaxes as temperatures exchange energy while the drive replaces the energy that
 contacts dissipate, as in `rate_equations.relaxation_rate`: with the capacities c (energy c.T) and
 the heating h of the drive (c.h = 1), the slopes of F - h (c.F), among disturbances that leave the
 energy c.T as it is. The slowest of all modes involves the energy as well. Contacts become more
@@ -67,8 +67,8 @@ def wall_slopes(
     """Return the slopes (2, 2) of T_tr and T_rot per hit of a heavy wall at rest.
 
     Derived for this package. With kappa = (1 + beta)/(1 + q), a hit changes the tangential velocity
-    by -q kappa (v_t + a w) and a w by -kappa (v_t + a w). Those that hit a wall have <v_n^2> =
-    2 T_tr/m and, in every direction along the wall, <v_t^2> = T_tr/m.
+    by -q kappa (v_t + a w) and a w by -kappa (v_t + a w). Particles that hit a wall have <v_n^2>
+    = 2 T_tr/m and, in every direction along the wall, <v_t^2> = T_tr/m.
     """
     q = moment_of_inertia(dimension) if inertia is None else inertia
     kappa = (1.0 + roughness) / (1.0 + q)
@@ -83,15 +83,15 @@ def wall_slopes(
 
 
 def thermal_wall_slopes(dimension: int = 2) -> np.ndarray:
-    """Return the same of a thermal wall, which all that hits it leaves with fresh velocities.
+    """Return the slopes (2, 2) per hit of a thermal wall, which replaces the velocity and the spin.
 
-    Those that hit it carry D + 1 times T_tr/2, and leave with as much at the wall's temperature.
+    Particles bring (D + 1) T_tr/2 along, and leave with (D + 1)/2 of the wall's temperature.
     """
     return np.diag([-(dimension + 1.0) / dimension, -1.0])
 
 
 def hits_of_wall(T_tr: float, length: float) -> float:
-    """Return how often a particle hits a wall that closes an axis of this length (a), per T.
+    """Return the hits of a particle per T on a wall that closes an axis of this `length` (a).
 
     That is the flux of a Maxwellian gas, (T_tr/2 pi m)^(1/2) per particle and length.
     """
@@ -99,7 +99,7 @@ def hits_of_wall(T_tr: float, length: float) -> float:
 
 
 def hits_of_floor(T_tr: float, gravity: float) -> float:
-    """Return how often a particle hits the floor that bears its weight, per T.
+    """Return the hits of a particle per T on the floor that bears its weight.
 
     A hit hands over 2 m v_n, on average 2 (pi m T_tr/2)^(1/2) in a Maxwellian gas.
     """
@@ -107,10 +107,10 @@ def hits_of_floor(T_tr: float, gravity: float) -> float:
 
 
 def viscous_decay(T_tr: float, frequency: float, wavelength: float) -> float:
-    """Return the rate, per T, at which a flow of this `wavelength` (a) decays.
+    """Return the decay rate, per T, of a flow with this `wavelength` (a).
 
     The kinematic viscosity of dilute elastic disks is T_tr/(m nu), nu being the contacts of a
-    particle per T; that of spheres is 5/4 of it (S. Chapman & T. G. Cowling, The Mathematical
+    particle per T; spheres have 5/4 of it (S. Chapman & T. G. Cowling, The Mathematical
     Theory of Non-Uniform Gases, 1970, in the first Sonine approximation).
     """
     return T_tr / frequency * (2.0 * np.pi / wavelength) ** 2
