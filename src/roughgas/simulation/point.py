@@ -183,7 +183,7 @@ def _withdrawn(found):
     """Return verdicts that are not known, since a number that they vouch for is not finite."""
     given = {flag: [found[one] for one in VOUCHED[flag] if one in found] for flag in VOUCHED}
     wrong = (flag for flag, numbers in given.items() if not np.isfinite(numbers).all())
-    withdrawn: dict[str, Any] = {flag: UNKNOWN for flag in wrong if found.get(flag) == YES}
+    withdrawn = {flag: UNKNOWN for flag in wrong if found.get(flag) == YES}
     for name in (flag.removesuffix(TRUSTED) for flag in found if flag.endswith(TRUSTED)):
         if f"{name}_stderr" in found:
             finite = np.isfinite(found[name]) & np.isfinite(found[f"{name}_stderr"])
