@@ -16,6 +16,7 @@ from roughgas.base.files import module_of
 from roughgas.data import netcdf
 from roughgas.data.netcdf import read_netcdf, unit_of
 from roughgas.data.reduced import EQUILIBRATED, particles_of, third_axis
+from roughgas.data.variables import TRUSTED
 from roughgas.effects.species import packing
 from roughgas.results.products import rows as rows_of
 from roughgas.results.products import why_wide
@@ -33,7 +34,7 @@ OF_SPECIES = ("E_trans", "E_rot", "R")
 PARTS = {"species", "other"}  # what is over nothing else is shown value by value
 MOST_VALUES = 4  # of a variable, that are all shown
 MOST_NAMES = 4  # of variables with the same reason for doubt
-MARK, TRUSTED = "?", "_trusted"
+MARK = "?"
 FLAGS = {YES: True, NO: False, UNKNOWN: None}
 QUOTED = {netcdf.POINT: ("experiment_json", "command"), netcdf.TASK: ("settings_json",)}
 """Attributes of each kind that a summary quotes."""

@@ -17,7 +17,9 @@ if TYPE_CHECKING:
 GRID = ("r", "beta")
 EQUILIBRATED = 0.5
 """A point counts as being in a steady state where more than this share of its seeds is."""
-TRUSTED = tuple(name for name in POINT if name.endswith("_trusted") and name != "R_ci95_trusted")
+TRUSTED = tuple(
+    name for name in POINT if name.endswith(variables.TRUSTED) and name != "R_ci95_trusted"
+)
 """Verdicts on the errors of other numbers than R."""
 VERDICTS = {"equilibrated", "R_ci95_trusted", "target_met", *TRUSTED}
 SHARE, AMOUNT, VERDICT = Interval("[0, 1]"), Interval("[0, inf)"), Interval("[-1, 1]")
@@ -140,8 +142,7 @@ _WITHOUT_ERRORS = {
     **{
         name: _over_grid(
             POINT[name],
-            long_name=f"share of seeds whose {name.removesuffix('_trusted')}_stderr is large "
-            "enough; -1 where most have too little to tell",
+            long_name=variables.share_of_trust(name.removesuffix(variables.TRUSTED)),
             flags="",
         )
         for name in TRUSTED

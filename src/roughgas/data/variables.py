@@ -98,6 +98,8 @@ def errors_of(name: str, origin: str, about: Variable) -> dict[str, Variable]:
     }
 
 
+TRUSTED = "_trusted"
+"""Ends the name of the flags that say whether the error of a variable is right."""
 TRUST = "unknown untrusted trusted"
 """The meanings of flags that say whether an error is right."""
 
@@ -106,6 +108,12 @@ def trust_of(name: str, about: Variable) -> Variable:
     """Return the flags that say whether the error of a variable is right."""
     said = f"whether {name}_stderr is large enough; -1 where there is too little to tell"
     return about._replace(long_name=said, units="1", dtype="i1", over_seeds="", flags=TRUST)
+
+
+def share_of_trust(name: str) -> str:
+    """Return the description of the share of seeds whose error of a variable is right."""
+    error = f"{name}_stderr"
+    return f"share of seeds whose {error} is large enough; -1 where most have too little to tell"
 
 
 def _at_contacts(name: str, long_name: str) -> dict[str, Variable]:

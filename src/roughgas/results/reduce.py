@@ -34,7 +34,15 @@ from roughgas.data.reduced import (
     read_reduced,
     third_axis,
 )
-from roughgas.data.variables import CLOCKS, POINT, Array, Variable, described, errors_of
+from roughgas.data.variables import (
+    CLOCKS,
+    POINT,
+    Array,
+    Variable,
+    described,
+    errors_of,
+    share_of_trust,
+)
 from roughgas.data.variables import POOLED as SEEDS
 from roughgas.statistics.errors import NO, UNKNOWN, YES, pooled
 from roughgas.statistics.steady_state import is_bimodal
@@ -352,10 +360,7 @@ def _of_one_state(share, mixed):
 def _trust(name, stacks, mixed, dims, about) -> Array:
     """Return the share of seeds whose error of a variable is trusted; none of a mixture of two."""
     share = _of_one_state(_share(stacks[f"{name}_trusted"]), mixed)
-    said = (
-        f"share of seeds whose {name}_stderr is large enough; -1 where most have too little to tell"
-    )
-    return Array(dims, share, about | {"long_name": said, "units": "1"})
+    return Array(dims, share, about | {"long_name": share_of_trust(name), "units": "1"})
 
 
 def _kinds_of_error(stacks: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:

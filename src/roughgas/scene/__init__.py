@@ -48,6 +48,12 @@ def moves_along(effects: Effects) -> bool:
     return any(wall.axis == 1 and wall.velocity != 0.0 for wall in _closing(effects).values())
 
 
+def assumes_flow(effects: Effects) -> bool:
+    """Return whether R leaves out a mean flow, a straight line: between images or walls that move
+    along themselves."""
+    return effects.shear is not None or moves_along(effects)
+
+
 def has_sides(effects: Effects) -> bool:
     """Return whether there are walls on single sides of the box."""
     return any(len(wall.ends) == 1 for wall in _closing(effects).values())

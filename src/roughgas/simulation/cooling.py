@@ -25,13 +25,7 @@ from roughgas.simulation.energies import (
 from roughgas.simulation.gas import Gas, count
 from roughgas.simulation.recorder import KEY, Recorder, until_met
 from roughgas.simulation.restart import Initial
-from roughgas.statistics.errors import (
-    LEAST,
-    UNKNOWN,
-    Error,
-    Evidence,
-    autocorrelation_time,
-)
+from roughgas.statistics.errors import LEAST, UNKNOWN, Error, Evidence, autocorrelation_time
 from roughgas.statistics.steady_state import find_plateau
 from roughgas.theory import friction_relaxation_rate, mixture_relaxation_rate, relaxation_rate
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from roughgas.observables import System
 from roughgas.observables.flow import IN_CELL, Motion, cells_of, over_flow
-from roughgas.scene import Scene, moves_along
+from roughgas.scene import Scene, assumes_flow
 from roughgas.simulation import schedule
 from roughgas.simulation.restart import positions_and_velocities
 from roughgas.statistics.errors import Estimate, stderr_over_seeds
@@ -58,8 +58,7 @@ def watch_of(scene: Scene, experiment: Mapping[str, Any]) -> FlowWatch | None:
     """Return a watch on a gas whose R assumes a flow, new for each; None for any other, and where
     there are no two cells with particles enough for a flow."""
     timing, effects = experiment["schedule"], scene.effects
-    assumed = effects.shear is not None or moves_along(effects)
-    if not assumed or effects.spin is None or timing["kind"] != "steady":
+    if not assumes_flow(effects) or effects.spin is None or timing["kind"] != "steady":
         return None
     system = schedule.system_of(scene, experiment)
     if math.prod(cells_of(system, IN_CELL)) < 2:

@@ -40,11 +40,6 @@ class Memory(NamedTuple):
     energies: float  # e-fold of the slowest combination of the temperatures
     flow: float  # e-fold of the longest flow, or of the total momentum in a bath
 
-    @property
-    def slowest(self) -> float:
-        """The e-fold of the slowest of all motions."""
-        return max(self.energies, self.flow)
-
 
 class Thermal(NamedTuple):
     """The measured state of a gas, in units of a, m and T."""

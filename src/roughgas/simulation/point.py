@@ -9,12 +9,12 @@ import numpy as np
 
 from roughgas.base import InputError, __version__
 from roughgas.data.point import Point
-from roughgas.data.variables import POINT, Variable
+from roughgas.data.variables import POINT, TRUSTED, Variable
 from roughgas.effects import speed_of_r
 from roughgas.effects.species import packing
 from roughgas.effects.walls import LEAST_DEPARTURE
 from roughgas.kernel import hooks
-from roughgas.scene import Scene, build, conserves_momentum, moves_along, shear_rate
+from roughgas.scene import Scene, assumes_flow, build, conserves_momentum, shear_rate
 from roughgas.simulation import schedule
 from roughgas.simulation.contact_log import logged
 from roughgas.simulation.energies import free_of_momentum, species_names
@@ -35,8 +35,6 @@ VOUCHED = {
     "R_ci95_trusted": (*ENERGIES, "R_stderr", "R_dof", "R_ci95", "autocorrelation_time"),
 }
 """The numbers that each flag of a point vouches for."""
-TRUSTED = "_trusted"
-"""Ends the name of the verdict on the error of a number."""
 FLOW = "the gas has a flow of its own, which R counts as temperature"
 """What takes back a verdict on R; see `flow_verdict`."""
 LEAST_LOSS = 0.01  # of a contact, where it is less: elastic gases are not infinitely hot
@@ -151,8 +149,7 @@ def _packing(scene, experiment, initial):
 def _watching(scene, experiment, functions):
     """Return the observables that settings list, or that R needs; None if there are none."""
     listed = functions or experiment.get("observables")
-    assumed = scene.effects.shear is not None or moves_along(scene.effects)
-    if not (listed or assumed):
+    if not (listed or assumes_flow(scene.effects)):
         return None
     from roughgas.simulation.flow import watch_of  # imported where it is wanted
     from roughgas.simulation.observing import Observers
@@ -162,7 +159,7 @@ def _watching(scene, experiment, functions):
     return Observers(scene, experiment, functions)
 
 
-def flow_verdict(variables: Mapping[str, Any], shift: "Estimate | None") -> dict[str, Any]:
+def flow_verdict(variables: Mapping[str, Any], shift: Estimate | None) -> dict[str, Any]:
     """Return by how much R is larger over the local flow, and verdicts that this takes back.
 
     Where it is so by more than half the interval of R, and significantly, the gas has a flow of its
@@ -171,7 +168,7 @@ def flow_verdict(variables: Mapping[str, Any], shift: "Estimate | None") -> dict
     if shift is None or "R" not in variables:
         return {}
     flows = shift.value > variables["R_ci95"] and shift.real
-    names = [name for name in variables if name.endswith("_trusted") or name == "target_met"]
+    names = [name for name in variables if name.endswith(TRUSTED) or name == "target_met"]
     withdrawn = {
         name: np.where(np.equal(variables[name], YES), UNKNOWN, variables[name])[()]
         for name in names

@@ -10,7 +10,7 @@ import numpy as np
 from roughgas.base import InputError
 from roughgas.effects import inertia
 from roughgas.effects.species import packing
-from roughgas.scene import Scene, closed_axes, for_theory, moves_along, walls_of
+from roughgas.scene import Scene, assumes_flow, for_theory, walls_of
 from roughgas.simulation.energies import (
     Columns,
     Energies,
@@ -112,7 +112,7 @@ def _check_momentum(scene, experiment):
     if bath is None or not bath.noise or drag > 0.0:
         return
     walls = walls_of(effects).values()
-    across = closed_axes(effects) | {wall.axis for wall in walls}
+    across = {wall.axis for wall in walls}
     gripping = any(wall.temperature is not None or wall.roughness > -1.0 for wall in walls)
     if len(across) < len(scene.box) and not gripping:
         power = experiment["effects"]["langevin"]["power"]
@@ -393,7 +393,7 @@ def inertia_of_sums(scene: Scene) -> float:
 def _unsubtracted(gas, rows, first):
     """Return energies of a sheared gas with its mean flow and mean spin left in, not meant by R."""
     effects, found = gas.scene.effects, {}
-    if effects.shear is None and not moves_along(effects):
+    if not assumes_flow(effects):
         return {}
     if effects.shear is None:
         found["shear_rate"] = shear_rates(rows, gas.state)[first:].mean()
