@@ -30,7 +30,7 @@ COOLING = {
 }
 FAR = 5.0  # sigma, of a Gaussian: by chance once in two million
 LONGER = 10
-TRIED = 300
+TRIED = 200
 SHARE = 0.1  # of the scenes that must be trusted, lest a verdict that trusts nothing passes
 
 
@@ -67,20 +67,20 @@ def lengths(low, high):
     return st.floats(math.log(low), math.log(high)).map(lambda x: float(f"{math.exp(x):.3g}"))
 
 
-def runs(kernels, shortest=0.3, thinnest=1e-5):
+def runs(kernels, shortest=0.3, longest=3000.0, thinnest=1e-5, replicas=12):
     """Random legal points, with schedules from absurdly short to sensible."""
     steady_ones = st.fixed_dictionaries(
         {
             "kind": st.just("steady"),
             "equilibrate": lengths(0.1, 1000),
-            "measure": lengths(shortest, 3000),
+            "measure": lengths(shortest, longest),
             "sample_every": lengths(0.1, 30),
         }
     )
     cooling_ones = st.fixed_dictionaries(
         {
             "kind": st.just("cooling"),
-            "replicas": st.integers(2, 12),
+            "replicas": st.integers(2, replicas),
             "thermalise": lengths(0.1, 20),
             "relaxation_times": lengths(0.5, 30),
             "plateau": lengths(shortest, 200),
@@ -176,13 +176,13 @@ def test_nothing_is_known_without_evidence(run):
 def test_what_is_trusted_is_right():
     """Within 5 errors of a run ten times as long with another seed, in random scenes.
 
-    Errors have their degrees of freedom. None of the 300 may fail: by chance one does in
+    Errors have their degrees of freedom. None of the 200 may fail: by chance one does in
     some thousand runs of this test.
     """
     verdicts, wrong = [], []
 
     @tried(TRIED)
-    @given(runs(["gas", "sheared", "heated", "bed"], shortest=60.0, thinnest=0.01))
+    @given(runs(["gas", "sheared", "heated", "bed"], 200.0, 1e4, thinnest=0.01, replicas=40))
     def look(run):
         found, _ = run.measured(1)
         verdicts.append(found["R_ci95_trusted"])

@@ -70,6 +70,10 @@ def source_hash(*rooms):
     return digest.hexdigest()[:16]
 
 
+IMPORTED = source_hash()
+"""Digest of the sources of this process: those on disk may have been edited since."""
+
+
 def kernel_folder():
     """Return the folder of these sources' kernels; make it where it does not exist.
 

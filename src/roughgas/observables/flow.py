@@ -9,7 +9,7 @@ Evans & G. P. Morriss, Phys. Rev. Lett. 56, 2172 (1986)).
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import ClassVar, NamedTuple
 
 import numpy as np
@@ -36,11 +36,11 @@ class Motion(NamedTuple):
 
 
 class OverFlow(NamedTuple):
-    """Energies of a gas over its local flow."""
+    """Energies of a gas over its local flow, (instants,) each."""
 
-    E_trans: float  # NaN where no two particles share a cell
-    R: float  # NaN without spin
-    shift: float  # R, less R over the mean flow: 0 on average in equilibrium
+    E_trans: np.ndarray  # NaN where no two particles share a cell
+    R: np.ndarray  # NaN without spin
+    shift: np.ndarray  # R, less R over the mean flow: 0 on average in equilibrium
 
 
 class LocalFlow(Observable):
@@ -62,8 +62,8 @@ class LocalFlow(Observable):
         """Return E_trans and R over the local flow."""
         bodies = frame.mass, frame.inertia, frame.radius
         motion = Motion(frame.position, frame.velocity, frame.spin, *bodies)
-        over = over_flow(motion, self.system, self.cells)
-        return {E_TRANS: np.array(over.E_trans), RATIO: np.array(over.R)}
+        over = over_flow([motion], self.system, self.cells)
+        return {E_TRANS: over.E_trans[0], RATIO: over.R[0]}
 
     def combine(self, means: Values) -> Values:
         """Return the energy, and R where particles spin."""
@@ -84,69 +84,102 @@ def cells_of(system: System, particles: int) -> tuple[int, ...]:
     return tuple(int(max(1, round(cells))) for cells in sides / width)
 
 
-def over_flow(motion: Motion, system: System, cells: tuple[int, ...]) -> OverFlow:
-    """Return the energies over the flow in cells."""
-    velocity = _over_mean_flow(motion, system)
-    local, overall = local_energies(motion, velocity, _cell_numbers(motion, system, cells))
-    if motion.spin is None:
-        return OverFlow(local, math.nan, math.nan)
-    rotational = _rotational_energy(motion, motion.spin)
+def over_flow(motions: Sequence[Motion], system: System, cells: tuple[int, ...]) -> OverFlow:
+    """Return the energies over the flow in cells, at several instants: together they cost less."""
+    together = _stacked(motions)
+    velocity = _over_mean_flow(together, system)
+    numbers = _cell_numbers(together.position, system, cells)
+    local, overall = local_energies(together.mass, velocity, numbers, math.prod(cells))
+    if together.spin is None:
+        unknown = np.full(len(motions), math.nan)
+        return OverFlow(local, unknown, unknown)
+    rotational = _rotational_energy(together)
     ratio, over_mean = (rotational / (rotational + E_trans) for E_trans in (local, overall))
     return OverFlow(local, ratio, ratio - over_mean)
 
 
-def local_energies(motion: Motion, velocity: np.ndarray, cell: np.ndarray) -> tuple[float, float]:
-    """Return the translational energy per degree of freedom over the flow in cells, and over the
-    mean velocity of all particles.
+def _stacked(motions):
+    """Return the motions of several instants as arrays (instants, N, ...)."""
+    columns = zip(*motions, strict=True)
+    return Motion(*(None if column[0] is None else np.stack(column) for column in columns))
 
-    `velocity` (N, D) is that over the mean flow, `cell` (N,) the number of each particle's cell.
-    The first energy is NaN where no two particles share a cell.
+
+def local_energies(
+    mass: np.ndarray, velocity: np.ndarray, cell: np.ndarray, cells: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return translational energies per degree of freedom, (instants,) each: over the flow in
+    cells, and over the mean velocity of all particles.
+
+    `mass` (instants, N), `velocity` (instants, N, D) over the mean flow; `cell` (instants, N) is
+    the number of each particle's cell, below `cells`. The first energy is NaN where no two
+    particles share a cell.
     """
-    mass, (number, dimension) = motion.mass, velocity.shape
-    total = mass @ (velocity * velocity).sum(axis=1)
-    counts, masses = np.bincount(cell), np.bincount(cell, mass)
+    instants, number, dimension = velocity.shape
+    bins = (cell + cells * np.arange(instants)[:, None]).ravel()
+
+    def in_cells(values):
+        sums = np.bincount(bins, values.ravel(), instants * cells)
+        return sums.reshape(instants, cells)
+
+    masses = in_cells(mass)
     shared = np.where(masses > 0.0, masses, 1.0)
-    momenta = [np.bincount(cell, mass * component) for component in velocity.T]
-    flows = sum(momentum @ (momentum / shared) for momentum in momenta)
-    mean = sum(momentum.sum() ** 2 for momentum in momenta) / masses.sum()
-    freedom = number - np.count_nonzero(counts)
-    local = 0.5 * (total - flows) / (dimension * freedom) if freedom else math.nan
-    return float(local), float(0.5 * (total - mean) / (dimension * (number - 1)))
+    total, flows, mean = np.zeros((3, instants))
+    for component in np.moveaxis(velocity, -1, 0):
+        momentum = mass * component
+        total += (momentum * component).sum(axis=1)
+        in_each = in_cells(momentum)
+        flows += (in_each**2 / shared).sum(axis=1)
+        mean += in_each.sum(axis=1) ** 2 / mass.sum(axis=1)
+    freedom = np.where(masses > 0.0, -1.0, 0.0).sum(axis=1) + number
+    local = np.where(freedom > 0.0, total - flows, math.nan) / np.maximum(freedom, 1.0)
+    overall = (total - mean) / (number - 1)
+    return 0.5 * local / dimension, 0.5 * overall / dimension
 
 
-def _cell_numbers(motion, system, cells):
-    """Return the number of the cell that each particle is in, (N,)."""
-    number = 0
+def _cell_numbers(position, system, cells):
+    """Return the number of the cell that each particle is in, (instants, N)."""
+    numbers = np.zeros(position.shape[:2], int)
     for axis, (side, count) in enumerate(zip(system.box, cells, strict=True)):
         if count > 1:
-            position = motion.position[:, axis]
-            reach = position.max() + 1.0 if side is None else side
-            at = np.minimum((position * (count / reach)).astype(int), count - 1)
-            number = number * count + np.maximum(at, 0)
-    return np.zeros(len(motion.mass), int) if isinstance(number, int) else number
+            along = position[..., axis]
+            reach = along.max(axis=1, keepdims=True) + 1.0 if side is None else side
+            at = np.minimum((along * (count / reach)).astype(int), count - 1)
+            numbers = numbers * count + np.maximum(at, 0)
+    return numbers
 
 
 def _over_mean_flow(motion, system):
     """Return velocities over the mean flow: between walls that close the second axis, over the
     straight line that fits v_x best, as E_trans is."""
-    height, rate = motion.position[:, 1], system.shear_rate
+    height, rate = motion.position[..., 1], system.shear_rate
     if not rate and system.periodic[1]:
         return motion.velocity
     velocity = motion.velocity.copy()
     if rate:
-        velocity[:, 0] -= rate * (height - system.box[1] / 2.0)
+        velocity[..., 0] -= rate * (height - system.box[1] / 2.0)
         return velocity
-    height = height - motion.mass @ height / motion.mass.sum()
-    spread = motion.mass @ height**2
-    if spread > 0.0:
-        velocity[:, 0] -= (motion.mass * height) @ velocity[:, 0] / spread * height
+    mass = motion.mass
+    height = height - _sum(mass * height) / _sum(mass)
+    spread = _sum(mass * height**2)
+    slope = _sum(mass * height * velocity[..., 0]) / np.where(spread > 0.0, spread, 1.0)
+    velocity[..., 0] -= slope * height
     return velocity
 
 
-def _rotational_energy(motion, spin):
-    """Return the rotational energy per degree of freedom over the mean spin, which is the surface
-    velocity of a particle that turns with the others."""
+def _sum(values):
+    """Return sums over particles, (instants, 1)."""
+    return values.sum(axis=1, keepdims=True)
+
+
+def _rotational_energy(motion):
+    """Return the rotational energy per degree of freedom over the mean spin, (instants,).
+
+    The mean spin is the surface velocity of a particle that turns with the others.
+    """
     turning, radius = motion.mass * motion.inertia, motion.radius
-    rotation = (turning * radius) @ spin / (turning @ radius**2)
-    square = ((spin - radius[:, None] * rotation) ** 2).sum(axis=1)
-    return float(0.5 * (turning @ square) / ((len(spin) - 1) * spin.shape[1]))
+    number, axes = motion.spin.shape[1:]
+    energy = np.zeros(len(motion.spin))
+    for spin in np.moveaxis(motion.spin, -1, 0):
+        rotation = _sum(turning * radius * spin) / _sum(turning * radius**2)
+        energy += (turning * (spin - radius * rotation) ** 2).sum(axis=1)
+    return 0.5 * energy / ((number - 1) * axes)

@@ -5,16 +5,14 @@ and then, and says by how much R is larger over that.
 """
 
 import math
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from roughgas.observables import System
 from roughgas.observables.flow import IN_CELL, Motion, cells_of, over_flow
 from roughgas.scene import Scene, assumes_flow
-from roughgas.simulation import schedule
-from roughgas.simulation.restart import positions_and_velocities
 from roughgas.statistics.errors import Estimate, stderr_over_seeds
 
 if TYPE_CHECKING:
@@ -22,6 +20,15 @@ if TYPE_CHECKING:
 
 LOOKS = 10
 """At the flow in a measurement as long as its schedule plans."""
+TOGETHER = 20_000
+"""Particles whose motions are kept until several looks are reduced at once."""
+
+
+class Shift(NamedTuple):
+    """By how much R is larger over the local flow, at a look."""
+
+    taken: int  # samples before
+    value: float
 
 
 class FlowWatch:
@@ -32,35 +39,62 @@ class FlowWatch:
         self._cells = cells_of(system, IN_CELL)
         unity = np.ones(system.particles)
         self._alike = unity, (system.inertia or 0.0) * unity, unity
-        self.shifts: list[tuple[int, float]] = []  # samples that had been taken, and the shift of R
+        self._motions: list[tuple[int, Motion]] = []  # samples before, and what is not reduced yet
+        self._shifts: list[Shift] = []
 
     def look(self, gas: "Gas", taken: int) -> None:
         """Look at a gas from which `taken` samples have been taken."""
         state, bodies = gas.state, self._alike
         if state.bodies is not None:
             bodies = state.bodies.mass, state.bodies.inertia, state.bodies.radius
-        where = positions_and_velocities(state, gas.scene, gas.time)
-        motion = Motion(*where, state.spin, *bodies)
-        self.shifts.append((taken, over_flow(motion, self._system, self._cells).shift))
+        spin = None if state.spin is None else state.spin.copy()
+        motion = Motion(*gas.positions_and_velocities(), spin, *bodies)
+        self._motions.append((taken, motion))
+        if len(self._motions) * self._system.particles >= TOGETHER:
+            self._reduce()
+
+    def _reduce(self):
+        if not self._motions:
+            return
+        taken, motions = zip(*self._motions, strict=True)
+        values = over_flow(motions, self._system, self._cells).shift
+        self._shifts += map(Shift, taken, values.tolist())
+        self._motions.clear()
+
+    def shifts(self) -> list[Shift]:
+        """Return what has been seen so far."""
+        self._reduce()
+        return self._shifts
+
+    def restore(self, shifts: Iterable[tuple[int, float]]) -> None:
+        """See what another watch on the same gas has seen."""
+        self._motions.clear()
+        self._shifts = [Shift(*shift) for shift in shifts]
 
     def shift(self, first: int) -> Estimate:
         """Return by how much R is larger over the local flow, after `first` samples.
 
         Looks are far apart, and count as independent.
         """
-        shifts = np.array([shift for taken, shift in self.shifts if taken > first])
+        shifts = np.array([shift.value for shift in self.shifts() if shift.taken > first])
         if not len(shifts):
             return Estimate(math.nan, math.nan, 0.0)
         return Estimate(float(shifts.mean()), stderr_over_seeds(shifts), len(shifts) - 1.0)
 
 
-def watch_of(scene: Scene, experiment: Mapping[str, Any]) -> FlowWatch | None:
-    """Return a watch on a gas whose R assumes a flow, new for each; None for any other, and where
-    there are no two cells with particles enough for a flow."""
-    timing, effects = experiment["schedule"], scene.effects
-    if not assumes_flow(effects) or effects.spin is None or timing["kind"] != "steady":
+def has_flow(scene: Scene, system: System, experiment: Mapping[str, Any]) -> bool:
+    """Return whether R assumes a flow, and there are two cells with particles enough for another.
+
+    Only a measurement that is planned beforehand has looks.
+    """
+    assumed = assumes_flow(scene.effects) and scene.effects.spin is not None
+    planned = experiment["schedule"]["kind"] == "steady"
+    return assumed and planned and math.prod(cells_of(system, IN_CELL)) > 1
+
+
+def watch_of(scene: Scene, system: System, experiment: Mapping[str, Any]) -> FlowWatch | None:
+    """Return a new watch on a gas that `has_flow`; None for any other."""
+    if not has_flow(scene, system, experiment):
         return None
-    system = schedule.system_of(scene, experiment)
-    if math.prod(cells_of(system, IN_CELL)) < 2:
-        return None
+    timing = experiment["schedule"]
     return FlowWatch(system, max(1, int(timing["measure"] / timing["sample_every"] / LOOKS)))

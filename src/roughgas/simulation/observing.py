@@ -106,14 +106,14 @@ class Observer:
     def saved(self) -> bytes:
         """Return what it has seen so far."""
         seen = [(vars(one.observable), one.looks, one.before) for one in self.watched]
-        shifts = self.flow.shifts if self.flow else []
+        shifts = list(map(tuple, self.flow.shifts())) if self.flow else []
         return pickle.dumps((self._start, self._taken, seen, shifts))
 
     def restore(self, saved: bytes) -> None:
         """See what another one has seen. Raises UnpicklingError where there is anything else."""
         self._start, self._taken, seen, shifts = Seen(io.BytesIO(saved)).load()
         if self.flow:
-            self.flow.shifts[:] = shifts
+            self.flow.restore(shifts)
         for one, (own, looks, before) in zip(self.watched, seen, strict=True):
             vars(one.observable).update(own)
             one.looks[:] = looks
@@ -168,7 +168,7 @@ class Observers:
     def begin(self, gas: Gas) -> None:
         """Watch a gas from now on."""
         wait = self._kind.wait(self._scene, self._experiment)
-        flow = watch_of(self._scene, self._experiment)
+        flow = watch_of(self._scene, self._system, self._experiment)
         gas.observer = Observer(gas, self._make(), wait, flow)
         self._observers.append(gas.observer)
 

@@ -62,7 +62,7 @@ def run_point(
     Raises InputError if the particles do not fit or could not begin so, CollapseError if contacts
     accumulate without end.
     """
-    from roughgas.compiling.compiler import source_hash  # only a run needs the compiler
+    from roughgas.compiling.compiler import IMPORTED  # only a run needs the compiler
 
     _refuse_rest(scene)
     keep, number = experiment.get("keep_state", False), experiment["particles"]
@@ -113,7 +113,7 @@ def run_point(
             **_about_start(initial, scene),
             "roughgas_version": __version__,
             "numpy_version": np.__version__,
-            "kernel_source_hash": source_hash(),
+            "kernel_source_hash": IMPORTED,
         },
     )
 
@@ -151,10 +151,10 @@ def _watching(scene, experiment, functions):
     listed = functions or experiment.get("observables")
     if not (listed or assumes_flow(scene.effects)):
         return None
-    from roughgas.simulation.flow import watch_of  # imported where it is wanted
+    from roughgas.simulation.flow import has_flow  # imported where it is wanted
     from roughgas.simulation.observing import Observers
 
-    if not (listed or watch_of(scene, experiment)):
+    if not (listed or has_flow(scene, schedule.system_of(scene, experiment), experiment)):
         return None
     return Observers(scene, experiment, functions)
 

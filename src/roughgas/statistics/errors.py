@@ -116,6 +116,8 @@ def period_means(series: np.ndarray, samples_per_period: int) -> np.ndarray:
     if periods < 1:
         samples = f"{series.shape[-1]} samples"
         raise ValueError(f"{samples} hold no whole period of {samples_per_period} samples")
+    if samples_per_period == 1:  # a mean of each value takes time
+        return series.astype(float)
     whole = series[..., : periods * samples_per_period]
     return whole.reshape(*series.shape[:-1], periods, samples_per_period).mean(axis=-1)
 
@@ -268,8 +270,10 @@ def _overlapping_block_variance(sums: np.ndarray, length: int) -> float:
     """Return the variance of the mean from all blocks of `length` consecutive samples of a series,
     whose cumulated departures from its mean are `sums`, shape (samples + 1,)."""
     samples = len(sums) - 1
-    means = (sums[length:] - sums[:-length]) / length
-    return length / ((samples - length) * (samples - length + 1)) * float((means**2).sum())
+    means = sums[length:] - sums[:-length]
+    means /= length
+    means *= means  # in place: blocks are many, and arrays of them take time to allocate
+    return length / ((samples - length) * (samples - length + 1)) * float(means.sum())
 
 
 class Error(NamedTuple):

@@ -148,10 +148,7 @@ def drift(series: np.ndarray) -> Drift:
     series = np.asarray(series, dtype=float)
     if len(series) < SHORTEST_SERIES:
         raise ValueError(f"{len(series)} samples: must be at least {SHORTEST_SERIES}")
-    third = len(series) // 3
-    early, late = series[:third], series[-2 * third :]
-    change = late[third:].mean() - early.mean()
-    scale = abs(late.mean()) or 1.0
+    late, change, scale = _change(series)
     noise = blocking(late - _line_through(late))
     # 2: the error is for one third instead of two, and for a difference of two such means.
     # The root: the slope was fitted to the same data.
@@ -162,6 +159,13 @@ def drift(series: np.ndarray) -> Drift:
     degrees_of_freedom = max(1.0, 1.5 * (noise.blocks - 1) - 1)
     sigmas = float(gaussian_sigmas(abs(change) / stderr, degrees_of_freedom))
     return Drift(change / scale, stderr / scale, sigmas)
+
+
+def _change(series):
+    """Return the last two thirds, their change from the first third, and the scale of both."""
+    third = len(series) // 3
+    early, late = series[:third], series[-2 * third :]
+    return late, late[third:].mean() - early.mean(), abs(late.mean()) or 1.0
 
 
 def _line_through(series: np.ndarray) -> np.ndarray:
@@ -181,8 +185,9 @@ def _is_stationary(series: np.ndarray, negligible: float, alarm: float) -> bool:
     """Return whether a series does not drift by more than `negligible` and `alarm` sigma."""
     if len(series) < SHORTEST_SERIES:
         return False
-    change, _, sigmas = drift(series)
-    return bool(abs(change) <= negligible or sigmas <= alarm)  # both are false of NaN
+    _, change, scale = _change(series)
+    # the noise takes time, and is wanted of few series; both comparisons are false of NaN
+    return bool(abs(change / scale) <= negligible or drift(series).sigmas <= alarm)
 
 
 def _start(series: np.ndarray, planned: int) -> int:
