@@ -237,4 +237,5 @@ rule reduce:
         "reduce {wildcards.experiment}"
     shell:
         # a hundred thousand points are more than a command line holds
-        "printf '%s\\n' {input.points:q} | roughgas reduce - --output {output:q} > {log:q} 2>&1"
+        "printf '%s\\n' {input.points:q} | "
+        "roughgas reduce - --put-aside --output {output:q} > {log:q} 2>&1"

@@ -1,7 +1,11 @@
 """Files that are opened: damaged ones, those of others, and numbers that cannot be."""
 
+import fcntl
 import math
 import shutil
+import subprocess
+import sys
+from pathlib import Path
 
 import netCDF4
 import pytest
@@ -36,7 +40,7 @@ def test_every_flipped_byte_and_every_cut_is_noticed(files, kind, tmp_path):
         with pytest.raises(DamagedError), opened(path):
             pass
         path.write_bytes(content[:at])
-        with pytest.raises(DamagedError), opened(path):
+        with pytest.raises(InputError), opened(path):
             pass
 
 
@@ -49,14 +53,90 @@ def test_a_file_that_claims_to_be_huge_is_refused_before_it_is_read(tmp_path):
         read_netcdf(tmp_path / "huge.nc")
 
 
-def test_a_damaged_point_is_put_aside_and_named(files, tmp_path, capsys):
-    path = tmp_path / "seed1.nc"
-    path.write_bytes(files["point"].read_bytes()[:-200])
-    command = ["reduce", str(path), "-o", str(tmp_path / "all.nc")]
+def damaged(files, path):
+    """A point whose checksum proves that a byte has changed."""
+    content = bytearray(files["point"].read_bytes())
+    content[len(content) // 2] ^= 0x10
+    path.write_bytes(content)
+    return path
+
+
+def test_a_workflow_puts_a_damaged_point_aside(files, tmp_path, capsys):
+    path = damaged(files, tmp_path / "seed1.nc")
+    command = ["reduce", str(path), "-o", str(tmp_path / "all.nc"), "--put-aside"]
     assert main(command) == 2
     (line,) = capsys.readouterr().err.splitlines()
     assert f"{path}" in line and "seed1.nc.damaged: run the same command again" in line
-    assert sorted(one.name for one in tmp_path.iterdir()) == ["seed1.nc.damaged"]
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["seed1.nc.damaged"]
+
+
+def foreign(files, path):
+    """A dataset of another program."""
+    with netCDF4.Dataset(path, "w") as file:
+        file.createDimension("x", 3)
+
+
+def cut_off(files, path):
+    path.write_bytes(files["point"].read_bytes()[:-200])
+
+
+def forbidden(files, path):
+    """A folder in place of a file: root may read whatever permissions forbid to others."""
+    path.mkdir()
+
+
+@pytest.mark.parametrize("spoil", [foreign, cut_off, forbidden])
+@pytest.mark.parametrize("options", [[], ["--put-aside"]])
+def test_nothing_is_renamed_without_a_checksum_that_proves_the_damage(
+    files, tmp_path, capsys, options, spoil
+):
+    path = tmp_path / "seed1.nc"
+    spoil(files, path)
+    assert main(["reduce", str(path), "-o", str(tmp_path / "all.nc"), *options]) == 2
+    assert len(capsys.readouterr().err.splitlines()) == 1
+    assert [file.name for file in tmp_path.iterdir()] == ["seed1.nc"]
+
+
+def test_outside_a_workflow_nothing_is_renamed(files, tmp_path, capsys):
+    path = damaged(files, tmp_path / "seed1.nc")
+    assert main(["reduce", str(path), "-o", str(tmp_path / "all.nc")]) == 2
+    assert "it is damaged" in capsys.readouterr().err
+    assert path.exists()
+
+
+@pytest.fixture
+def holder(files, tmp_path):
+    """A point, and the process that holds it open for writing, as an editor of netCDF does."""
+    path = tmp_path / "seed1.nc"
+    shutil.copyfile(files["point"], path)
+    code = "import netCDF4, sys; f = netCDF4.Dataset(sys.argv[1], 'r+'); print(); input()"
+    pipe = subprocess.PIPE
+    command = [sys.executable, "-c", code, str(path)]
+    with subprocess.Popen(command, stdin=pipe, stdout=pipe, text=True) as process:
+        process.stdout.readline()
+        yield path, process.pid
+        process.kill()
+
+
+@pytest.mark.parametrize("options", [[], ["--put-aside"]])
+def test_a_point_that_is_locked_is_read(files, tmp_path, options):
+    """Reading takes no lock, which a disk without locks would refuse, too."""
+    path, output = tmp_path / "seed1.nc", tmp_path / "all.nc"
+    shutil.copyfile(files["point"], path)
+    with path.open("r+b") as file:
+        fcntl.flock(file, fcntl.LOCK_EX)
+        assert read_point(path).equals(read_point(files["point"]))
+        assert main(["reduce", str(path), "-o", str(output), *options]) == 0
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["all.nc", "seed1.nc"]
+
+
+@pytest.mark.skipif(not Path("/proc/locks").exists(), reason="locks are listed on Linux")
+def test_a_point_that_another_process_may_be_writing_is_left_alone(holder, tmp_path, capsys):
+    """HDF5 changes a file as soon as it opens it for writing."""
+    path, process = holder
+    assert main(["reduce", str(path), "-o", str(tmp_path / "all.nc"), "--put-aside"]) == 2
+    assert f"process {process} holds it" in capsys.readouterr().err
+    assert [file.name for file in tmp_path.iterdir()] == ["seed1.nc"]
 
 
 def test_a_dataset_without_what_a_summary_quotes_is_refused(files, tmp_path, capsys):

@@ -141,6 +141,7 @@ COMMANDS = {
             nargs="+",
         ),
         output("reduced dataset"),
+        flag("--put-aside", "rename a damaged point to POINT.damaged: a workflow makes it anew"),
         writes="REDUCED",
         examples=("roughgas reduce results/paper/sheared/r*/beta*/seed*.nc -o sheared.nc",),
         about="Combine points of one experiment, at any r and beta, of any seeds, into a dataset "

@@ -105,7 +105,8 @@ def reduce(options: Namespace) -> None:
     from roughgas.results.reduce import reduce_points
 
     piped = options.inputs == ["-"]
-    reduce_points(sys.stdin.read().splitlines() if piped else options.inputs, options.output)
+    inputs = sys.stdin.read().splitlines() if piped else options.inputs
+    reduce_points(inputs, options.output, options.put_aside)
 
 
 def plot(options: Namespace) -> None:

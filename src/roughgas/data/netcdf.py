@@ -114,10 +114,8 @@ def read_netcdf(path: str | Path, *kinds: str, group: str | None = None) -> "xar
 
     Raises InputError and OSError as `opened` does, which checks that the file is of one of `kinds`.
     """
-    import xarray
-
-    with opened(path, *kinds):
-        return xarray.load_dataset(path, group=group, engine="netcdf4")
+    with opened(path, *kinds) as file:
+        return _loaded(file if group is None else file.groups[group])
 
 
 def read_groups(path: str | Path) -> "dict[str, xarray.Dataset]":
@@ -125,11 +123,15 @@ def read_groups(path: str | Path) -> "dict[str, xarray.Dataset]":
 
     Raises InputError and OSError as `opened` does.
     """
+    with opened(path, STUDIES) as file:
+        return {name: _loaded(group) for name, group in file.groups.items()}
+
+
+def _loaded(group: "netCDF4.Dataset") -> "xarray.Dataset":
+    """Return an open file, or a group of it, in memory; it stays open."""
     import xarray
 
-    with opened(path, STUDIES) as file:
-        names = list(file.groups)
-    return {n: xarray.load_dataset(path, group=n, engine="netcdf4") for n in names}
+    return xarray.open_dataset(xarray.backends.NetCDF4DataStore(group)).load()
 
 
 def _fill(group: "netCDF4.Dataset", content: Content, common: Mapping[str, Any]) -> None:
@@ -251,16 +253,17 @@ KINDS = {
 
 
 class DamagedError(InputError):
-    """A file that does not hold what was once written to it."""
+    """A file of roughgas whose checksum proves that it has changed since it was written."""
 
 
 @contextmanager
 def opened(path: str | Path, *kinds: str) -> Iterator["netCDF4.Dataset"]:
     """Open the netCDF file at `path`, of one of `kinds` (by default any), to read.
 
-    Raises InputError for files of other programs, of other kinds and of newer schemas, and for
-    files that claim to be larger than LARGEST; DamagedError where the checksum is not that of the
-    contents; OSError where there is no file.
+    Nothing locks the file, and what is read is what the checksum was taken of. Raises InputError
+    for files of other programs, of other kinds and of newer schemas, for files that are cut off,
+    and for those that claim to be larger than LARGEST; DamagedError where the checksum is not that
+    of the contents, and no other process holds the file; OSError where it cannot be read.
     """
     import netCDF4
 
@@ -272,24 +275,57 @@ def opened(path: str | Path, *kinds: str) -> Iterator["netCDF4.Dataset"]:
         raise FileNotFoundError(errno.ENOENT, hint, str(path))
     if not place.is_file():  # a pipe would be waited for
         raise InputError("file", path, "be a file")
-    rest, mark, stated = place.read_bytes().rpartition(SEAL)
-    if mark and stated != hashlib.sha256(rest).hexdigest().encode():
-        raise DamagedError("file", path, "be what was written to it: it is damaged")
-    try:
-        file = netCDF4.Dataset(path)
+    _check_size(path, place.stat().st_size)
+    content = place.read_bytes()
+    _check_seal(content, place)
+    try:  # from memory: HDF5 would lock the file, and a disk without locks refuse that
+        file = netCDF4.Dataset(path, memory=content)
     except (OSError, RuntimeError, UnicodeError) as error:
-        legal = "be a dataset of roughgas: it is of another program, or cut off, or damaged"
-        raise DamagedError("file", path, legal) from error
+        legal = "be a dataset of roughgas: it is of another program, or cut off" + _held(place)
+        raise InputError("file", path, legal) from error
     with file:
         _check_attributes(file, path)
         variables = [v for g in (file, *file.groups.values()) for v in g.variables.values()]
-        if (size := sum(8.0 * math.prod(one.shape) for one in variables)) > LARGEST:
-            raise InputError(f"size of {path}", f"{size:.3g} bytes", f"be at most {LARGEST:.0g}")
+        _check_size(path, sum(8.0 * math.prod(variable.shape) for variable in variables))
         if (found := kind_of(file)) not in (kinds or (*KINDS, STUDIES)):
             wanted = " or ".join(kinds) or "a dataset of roughgas"
             other = f", not {found}" if found else ""
             raise InputError("file", path, f"be {wanted}{other}")
         yield file
+
+
+def _check_size(path, size):
+    if size > LARGEST:
+        raise InputError(f"size of {path}", f"{size:.3g} bytes", f"be at most {LARGEST:.0g}")
+
+
+def _check_seal(content, path):
+    """Raise DamagedError unless the checksum at the end, if there is any, is that of the rest."""
+    end = content.rfind(SEAL)
+    if end < 0:
+        return
+    digest = hashlib.sha256(memoryview(content)[:end]).hexdigest()
+    if content[end + len(SEAL) :] == digest.encode():
+        return
+    if held := _held(path):
+        raise InputError("file", path, f"be whole{held}")
+    raise DamagedError("file", path, "be what was written to it: it is damaged")
+
+
+def _held(path):
+    """Return words on the process that has locked a file, as one that writes HDF5 does; else none.
+
+    Linux lists locks and their inodes in /proc/locks, which takes no lock.
+    """
+    try:
+        inode, locks = str(path.stat().st_ino), Path("/proc/locks").read_text()
+    except OSError:
+        return ""
+    for line in locks.splitlines():
+        fields = line.split()  # number, kind, advisory, mode, process, device:inode, ...
+        if len(fields) > 5 and fields[5].rpartition(":")[2] == inode and fields[3] == "WRITE":
+            return f": process {fields[4]} holds it, and may be writing it; try again afterwards"
+    return ""
 
 
 def is_of_kind(path: str | Path, kind: str) -> bool:

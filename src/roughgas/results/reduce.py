@@ -73,16 +73,18 @@ class Summary(NamedTuple):
     observed: Mapping[str, Array] = {}  # what observables have watched
 
 
-def reduce_points(paths: Iterable[str | Path], output: str | Path) -> None:
+def reduce_points(paths: Iterable[str | Path], output: str | Path, put_aside: bool = False) -> None:
     """Combine the points at `paths` (of one experiment, in any order) into the dataset `output`.
 
     A path is that of a dataset, or of a folder with a dataset for each seed. Seeds that are missing
     at an (r, beta) are NaN in R_seed, and do not count in n_seeds and the means.
+    With `put_aside`, which is for workflows, a damaged point is renamed, so that it is made anew.
     Raises InputError if there are no paths, several experiments, the same point or the same run
-    twice, a point whose numbers cannot be right, or a damaged file, which is then put aside.
+    twice, a point whose numbers cannot be right, or a file that cannot be read.
     """
     folders = (path.glob("seed*.nc") if path.is_dir() else [path] for path in map(Path, paths))
-    points = [_checked(file) for files in folders for file in sorted(files)]
+    summary = _or_put_aside if put_aside else _summary
+    points = [summary(file) for files in folders for file in sorted(files)]
     if not points:
         raise InputError("number of points to reduce", 0, "be at least 1")
     netcdf.write_netcdf(output, _combined(points))
@@ -101,13 +103,11 @@ def reduced_in_memory(points: Iterable[Point]) -> "xarray.Dataset":
         return read_reduced(output)
 
 
-def _checked(path: Path) -> Summary:
+def _or_put_aside(path: Path) -> Summary:
     """Return a point; put a damaged file aside, so that the workflow makes it anew."""
     try:
         return _summary(path)
     except DamagedError as error:
-        if path.suffix != ".nc":  # a file of a person's
-            raise
         path.replace(f"{path}.damaged")
         legal = f"{error.legal}, and now called {path.name}.damaged: run the same command again"
         raise DamagedError("point", path, legal) from error
