@@ -114,3 +114,15 @@ def test_a_reduced_dataset(product, capsys):
         assert row[5:7] == [f"{expected:.4f}", f"{R - expected:+.4f}"]
     first, _ = json.loads(shown(capsys, path, "--json"))["points"]
     assert (first["beta"], first["R"], first["theory"]) == (-0.5, data.R.values[0, 0], "K")
+
+
+def test_an_interval_of_a_ratio_that_never_changes_is_not_known(tmp_path, capsys):
+    """Without contacts no spin begins, and R is 0 at every sample."""
+    output = tmp_path / "thin.nc"
+    changes = ("box=[1e6,1e6]", "schedule.equilibrate=1", "schedule.measure=20")
+    options = [word for change in changes for word in ("--set", change)]
+    point = ["run", "sheared", "--r", "0.9", "--beta", "0.5", "-o", str(output), *options]
+    assert main(point) == 0, capsys.readouterr().err
+    assert main(["show", str(output)]) == 0
+    (line,) = [line for line in capsys.readouterr().out.splitlines() if "95 % interval" in line]
+    assert "not known" in line and "0.0000 to 0.0000" not in line

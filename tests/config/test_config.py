@@ -6,8 +6,11 @@ import re
 from functools import partial
 from pathlib import Path
 
+import pytest
+
 from roughgas import accuracy, config, simulate
 from roughgas.accuracy.running import run_task
+from roughgas.base import InputError
 from roughgas.cli import main
 from roughgas.config import schema
 from roughgas.config.reading import read_yaml
@@ -125,3 +128,10 @@ def test_the_effective_configuration_stands_in_place_of_the_whole(tmp_path, pape
     there = simulate("cooling", **tiny, config=CONFIG, scale="small")
     assert here.R == there.R and here.scale == "small"
     assert main(["experiments"]) == 0
+
+
+def test_a_scale_without_a_name_is_refused_in_a_line_that_lists_the_names():
+    """An unset variable in `--config scale=$SCALE` removes the key."""
+    given = {key: value for key, value in read_yaml(CONFIG).items() if key != "scale"}
+    with pytest.raises(InputError, match=r"scale = .*: must be .*small"):
+        schema.check_file(given, "config.yaml")

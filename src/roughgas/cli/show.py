@@ -147,7 +147,9 @@ def _ratio(point: Dataset) -> Iterator[list[str]]:
     digits = decimals_of(half) if 0.0 < half < 1.0 else 4
     trust, over_time = TRUST[int(point.R_ci95_trusted)], "R_collisional" in point
     yield ["R", f"{_estimate(point, 'R')}{', averaged over time' * over_time}"]
-    yield ["95 % interval", f"{R - half:.{digits}f} to {R + half:.{digits}f}{trust}"]
+    known = half > 0.0  # it is 0 where R never changes, as without contacts
+    interval = f"{R - half:.{digits}f} to {R + half:.{digits}f}" if known else "not known"
+    yield ["95 % interval", f"{interval}{trust}"]
     if lack := point.R_ci95_trusted.attrs.get("comment"):
         yield ["lacking", lack]
     if "R_flow_shift" in point:

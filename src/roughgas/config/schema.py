@@ -285,7 +285,7 @@ def check_file(config: Mapping[str, Any], source: str) -> None:
     added = (settings_of.FOLDERS, settings_of.BROKEN)  # by studies that have joined
     check_schema({key: part for key, part in config.items() if key not in added}, source)
     known, scales = config["experiments"], config["scales"]
-    settings_of.one_of(f"{source}: scale", config["scale"], scales)
+    settings_of.one_of(f"{source}: scale", config.get("scale", ""), scales)  # `scale=` removes it
     for name in known:
         if name in RESERVED:
             legal = "be another name: the workflow has a rule or a product of this one"

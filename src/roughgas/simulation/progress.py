@@ -76,11 +76,14 @@ class Bar:
         share: float | None = None,
     ) -> None:
         """Show how much is done; `total` where it has become known, and the `share` of the work,
-        where that is not done / total, as of parts that take unequal times."""
-        self._done, self._total = done, self._total if total is None else total
+        where that is not done / total, as of parts that take unequal times. Work that exceeds its
+        total is shown as all of it: the total was an estimate."""
+        self._total = self._total if total is None else total
         known = self._total or 0.0
+        self._done = done = min(done, known) if known else done
         if share is None:
             share = done / known if known else 0.0
+        share = min(share, 1.0)
         if self._bar is not None:
             self._bar.total, self._bar.unit = self._total, self._told()
             self._bar.set_postfix_str(note, refresh=False)

@@ -246,8 +246,9 @@ def _collapse(state: State, scene: Scene) -> CollapseError:
         remedy = "add the contact_time effect to the experiment, or raise r"
     elif walls_of(effects):
         remedy = "raise r, or make floor or walls smoother, between which a particle may be held"
-    where = f"at t = {now(state):.6g} T of particles {', '.join(names[:NAMED])}{others}"
-    return CollapseError(f"inelastic collapse {where}: {remedy}")
+    # so slow a gas may have no two instants that differ: none of its particles is the last
+    partners = f" of particles {', '.join(names[:NAMED])}{others}" if names else ""
+    return CollapseError(f"inelastic collapse at t = {now(state):.6g} T{partners}: {remedy}")
 
 
 def _collapsing(state):
