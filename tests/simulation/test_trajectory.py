@@ -36,11 +36,18 @@ DRIVEN = {
     "shaken": settings("shaken", 16, [12, 12]),
 }
 NAMES = ["bed", "sheared", "shaken", "spheres"]
+INERTIA = {"bed": 0.5, "spheres": 0.4, "mixture": 0.5}  # in m a^2, of a mixture the small ones
+KINDS = [
+    {"name": "small", "fraction": 0.5},
+    {"name": "large", "fraction": 0.5, "radius": 1.5, "mass": 5.0, "inertia": 0.25},
+]
 
 
 def experiment_of(name):
     if name == "spheres":
         return settings("spheres", 20, [9, 9, 9]) | {"schedule": COOLING}
+    if name == "mixture":
+        return settings("sheared", 16, [16, 16]) | {"species": KINDS, "schedule": STEADY}
     return DRIVEN[name] | {"schedule": STEADY}
 
 
@@ -135,7 +142,7 @@ HEAD = re.compile(r'Lattice="([^"]*)" Properties=(\S+) pbc="([^"]*)" Time=(\S+)'
 
 
 def numbers_of_xyz(path):
-    """Number of particles, comment, and columns of each frame of an extended XYZ file."""
+    """Comment and numbers of each frame of an extended XYZ file."""
     lines = path.read_text().splitlines()
     while lines:
         number = int(lines[0])
@@ -266,3 +273,76 @@ def test_the_floor_of_an_open_box_stays_where_it_is_in_gsd(tmp_path):
             reached = max(reached, position[:, 1].max() + 1.0)
             assert shot.particles.position[:, 1] == pytest.approx(position[:, 1], abs=1e-5)
             assert shot.configuration.box[1] == pytest.approx(2.0 * reached, rel=1e-6)
+
+
+@pytest.mark.parametrize("name", kernels(*NAMES))
+def test_netcdf_has_the_units_of_the_conventions_and_the_true_ones(name, tmp_path):
+    """MDAnalysis reads no file without units, nor one with other units or stray scale factors."""
+    write_trajectory(tmp_path / "gas.nc", sample(name))
+    with netCDF4.Dataset(tmp_path / "gas.nc") as file:
+        check_units(file)
+
+
+def test_netcdf_of_a_mixture_has_units_of_masses_and_kinds(tmp_path):
+    write_trajectory(tmp_path / "gas.nc", sample("mixture"))
+    with netCDF4.Dataset(tmp_path / "gas.nc") as file:
+        check_units(file)
+        assert (file["mass"].units, file["mass"].true_units) == ("dalton", "m")
+        assert (file["kind"].units, file["kind"].true_units) == ("1", "1")
+
+
+def check_units(file):
+    quantities = {name: one for name, one in file.variables.items() if one.dtype.kind == "f"}
+    units = {name: (one.units, one.true_units) for name, one in quantities.items()}
+    expected = {
+        "time": ("picosecond", "T"),
+        "coordinates": ("angstrom", "a"),
+        "velocities": ("angstrom/picosecond", "a/T"),
+        "cell_lengths": ("angstrom", "a"),
+        "cell_angles": ("degree", "degree"),
+    }
+    assert expected.items() <= units.items()
+    scaled = {name for name, one in quantities.items() if hasattr(one, "scale_factor")}
+    assert scaled == set(expected)
+    assert all(quantities[name].scale_factor == 1.0 for name in scaled)
+
+
+def test_extended_xyz_has_masses_momenta_and_a_symbol_for_each_kind(tmp_path):
+    """ASE takes masses and velocities from these columns, and refuses symbols of no element."""
+    found, path = sample("mixture"), tmp_path / "gas.xyz"
+    write_trajectory(path, found)
+    lines = path.read_text().splitlines()[2 : 2 + found.sizes["particle"]]
+    kinds = found.species_of.values
+    assert [line.split()[0] for line in lines] == [["H", "He"][kind] for kind in kinds]
+    assert set(kinds) == {0, 1}
+    mass = found.mass.values[:, None]
+    for one, (comment, columns) in zip(frames(found), numbers_of_xyz(path), strict=True):
+        assert comment.count("mass") == 1 and "masses:R:1:momenta:R:3 " in comment
+        assert np.array_equal(columns[:, -4:], np.hstack([mass, mass * one.velocity]))
+
+
+@pytest.mark.parametrize("name", ["spheres", "mixture", "bed"])
+def test_gsd_has_moments_of_inertia_and_angular_momenta(name, tmp_path):
+    """L = q m a^2 w along the spin; an angular momentum P of HOOMD is 2 q (0, L)."""
+    found, path = sample(name), tmp_path / "gas.gsd"
+    write_trajectory(path, found)
+    radius, moment = found.radius.values, np.full(found.sizes["particle"], INERTIA[name])
+    if name == "mixture":
+        moment = found.inertia.values * found.mass.values * radius**2
+        assert set(moment) == {INERTIA["mixture"], 0.25 * 5.0 * 1.5**2}
+    with gsd.hoomd.open(path) as file:
+        for one, shot in zip(frames(found), file, strict=True):
+            axes = [1, 1, 1] if name == "spheres" else [0, 0, 1]
+            assert shot.particles.moment_inertia == pytest.approx(np.outer(moment, axes), rel=1e-6)
+            momentum = moment[:, None] * one.spin / radius[:, None]
+            scalar, vector = of_bodies(shot.particles.orientation, shot.particles.angmom)
+            assert scalar == pytest.approx(0.0, abs=1e-5)
+            assert vector == pytest.approx(momentum, rel=1e-5, abs=1e-5)
+    assert name == "spheres" or np.abs(found.angle.values[-1]).max() > 0.5
+
+
+def of_bodies(q, P):
+    """Scalar and vector of conj(q) P / 2: angular momenta in the frames of the bodies."""
+    scalar = q[:, 0] * P[:, 0] + np.sum(q[:, 1:] * P[:, 1:], axis=1)
+    vector = q[:, :1] * P[:, 1:] - P[:, :1] * q[:, 1:] - np.cross(q[:, 1:], P[:, 1:])
+    return scalar / 2, vector / 2

@@ -1,7 +1,7 @@
 """Trajectories: positions, velocities and spins of all particles at chosen times.
 
-They are datasets, and files for programs that look at particles. Files have no units: lengths are
-in a, times in T, masses in m.
+They are datasets, and files for programs that look at particles. In files lengths are in a, times
+in T, masses in m; where a convention demands units, a, T and m stand for them.
 
 - `.xyz`, extended XYZ: text, which OVITO and ASE read;
 - `.nc`, netCDF by the conventions of AMBER, for OVITO, VMD, MDAnalysis and ASE;
@@ -11,7 +11,8 @@ A sheared box is a triclinic cell, whose second vector leads to the image above:
 open axis is as long as the particles have reached so far, and not periodic where the format can say
 so. Frames are written one by one, and are on the disk as soon as they are. Disks lie
 in the plane z = 0 of a cell that is the largest diameter thick. Particles of several species have
-their masses, and the number of the species from 0 (`kind`); in .gsd these are types with a name.
+their masses, and the number of the species from 0 (`kind`); in .xyz each species has the symbol of
+an element, in .gsd its name as type.
 """
 
 from collections.abc import Callable, Iterator, Mapping
@@ -43,9 +44,24 @@ if TYPE_CHECKING:
     import xarray
 
 SPECIES = "X"  # of no element
+ELEMENTS = "H He Li Be B C N O F Ne Na Mg Al Si P S Cl Ar K Ca".split()  # of species in .xyz
 DEPTH = 2.0  # of the cell of disks, in radii of the largest
 AMBER = {"Conventions": "AMBER", "ConventionVersion": "1.0", "program": "roughgas"}
-
+UNITS = {
+    "time": ("picosecond", TIME),
+    "coordinates": ("angstrom", LENGTH),
+    "velocities": ("angstrom/picosecond", SPEED),
+    "cell_lengths": ("angstrom", LENGTH),
+    "cell_angles": ("degree", "degree"),
+    "omega": ("angstrom/picosecond", SPEED),
+    "angle": ("radian", "radian"),
+    "radius": ("angstrom", LENGTH),
+    "mass": ("dalton", "m"),
+    "kind": ("1", "1"),
+}
+"""Of each variable of a file of AMBER the units that the conventions demand, and the true ones."""
+SCALED = ("time", "coordinates", "velocities", "cell_lengths", "cell_angles")
+"""Variables of the conventions, which may have a scale_factor; MDAnalysis refuses it elsewhere."""
 
 PLACES = ("frame", "particle", "axis")
 TRAJECTORY = register(
@@ -80,6 +96,9 @@ TRAJECTORY = register(
         "mass": Variable("mass of a particle", "m", ("particle",), when=(MIXTURE,)),
         "inertia": Variable(
             "moment of inertia of a particle over its m a^2", "1", ("particle",), when=(MIXTURE,)
+        ),
+        "moment_of_inertia": Variable(
+            "moment of inertia of a particle", "m a^2", ("particle",), when=(SPIN,)
         ),
         "species_of": Variable(
             "number of a particle's species, from 0", "1", ("particle",), "i4", when=(MIXTURE,)
@@ -229,26 +248,47 @@ def _xyz(path: Path, title: str) -> Iterator["Append"]:
     with open(path, "w", encoding="utf-8", newline="\n") as file:
 
         def append(frame: Frame, values: Values) -> None:
-            radius = values["radius"][:, None]
-            columns = {"pos": frame.position, "velo": frame.velocity, "radius": radius}
-            columns |= {name: one[:, None] for name, one in _differing(values).items()}
-            if frame.spin is not None:
-                columns["omega"] = frame.spin
-            if frame.angle is not None:
-                columns["angle"] = frame.angle[:, None]
+            columns = _columns(frame, values)
             kinds = ":".join(f"{name}:R:{one.shape[1]}" for name, one in columns.items())
             cell = " ".join(map(repr, frame.cell.ravel().tolist()))
             bounded = [*(values["periodic"] == 0), True][:3]
             pbc = " ".join("F" if one else "T" for one in bounded)
             file.write(
-                f'{len(radius)}\nLattice="{cell}" Properties=species:S:1:{kinds} pbc="{pbc}" '
-                f"Time={frame.time!r}\n"
+                f'{len(frame.position)}\nLattice="{cell}" Properties=species:S:1:{kinds} '
+                f'pbc="{pbc}" Time={frame.time!r}\n'
             )
-            for row in np.hstack(list(columns.values())).tolist():
-                file.write(f"{SPECIES} {' '.join(map(repr, row))}\n")
+            rows = np.hstack(list(columns.values())).tolist()
+            for symbol, row in zip(_symbols(values), rows, strict=True):
+                file.write(f"{symbol} {' '.join(map(repr, row))}\n")
             file.flush()
 
         yield append
+
+
+def _columns(frame: Frame, values: Values) -> dict[str, np.ndarray]:
+    """Return the columns (N, ...) of a frame of extended XYZ, by the names that programs know."""
+    mass = _masses(values)[:, None]
+    columns = {"pos": frame.position, "velo": frame.velocity, "radius": values["radius"][:, None]}
+    if "species_of" in values:
+        columns["kind"] = values["species_of"].astype(float)[:, None]
+    if frame.spin is not None:
+        columns["omega"] = frame.spin
+    if frame.angle is not None:
+        columns["angle"] = frame.angle[:, None]
+    # ASE has velocities only as momenta over masses
+    return columns | {"masses": mass, "momenta": mass * frame.velocity}
+
+
+def _symbols(values: Values) -> list[str]:
+    """Return the symbol of each particle: X, or in a mixture the element of its species."""
+    if "species_of" not in values:
+        return [SPECIES] * len(values["radius"])
+    return [ELEMENTS[kind % len(ELEMENTS)] for kind in values["species_of"].tolist()]
+
+
+def _masses(values: Values) -> np.ndarray:
+    """Return the mass of each particle in m, (N,)."""
+    return values["mass"] if "mass" in values else np.ones(len(values["radius"]))
 
 
 @contextmanager
@@ -280,11 +320,19 @@ def _describe(file: "netCDF4.Dataset", frame: Frame, values: Values) -> None:
     _label(file, "cell_spatial", ("cell_spatial",), "abc")
     _label(file, "cell_angular", ("cell_angular", "label"), ["alpha", "beta ", "gamma"])
     for name, one in ({"radius": values["radius"]} | _differing(values)).items():
-        file.createVariable(name, "f8", ("atom",))[:] = one
+        _quantity(file, name, ("atom",))[:] = one
     for name, (present, dims) in _rows(frame).items():
         if present is not None:
-            file.createVariable(name, "f8", ("frame", *dims))
-    file["cell_angles"].units = "degree"
+            _quantity(file, name, ("frame", *dims))
+
+
+def _quantity(file: "netCDF4.Dataset", name: str, dims: tuple[str, ...]) -> "netCDF4.Variable":
+    """Create a variable of UNITS, with units, and return it."""
+    variable = file.createVariable(name, "f8", dims)
+    variable.units, variable.true_units = UNITS[name]
+    if name in SCALED:
+        variable.scale_factor = 1.0
+    return variable
 
 
 def _rows(frame: Frame) -> dict[str, tuple[Any, tuple[str, ...]]]:
@@ -358,10 +406,42 @@ def _shot(shot: Any, step: int, frame: Frame, values: Values) -> Any:
     shot.log["time"] = np.array([frame.time])
     if frame.spin is not None:
         shot.log["particles/omega"] = frame.spin
+    orientation = _orientation(frame)
     if frame.angle is not None:
-        half, zero = frame.angle / 2.0, np.zeros(number)
-        shot.particles.orientation = np.stack([np.cos(half), zero, zero, np.sin(half)], axis=1)
+        shot.particles.orientation = orientation
+    if frame.spin is not None and "moment_of_inertia" in values:
+        moments, momentum = _rotation(frame, values)
+        shot.particles.moment_inertia = moments
+        shot.particles.angmom = _doubled_product(orientation, momentum)
     return shot
+
+
+def _orientation(frame: Frame) -> np.ndarray:
+    """Return the quaternions (N, 4) of disks; of spheres, whose axes are not followed, identity."""
+    half = np.zeros(len(frame.position)) if frame.angle is None else frame.angle / 2.0
+    zero = np.zeros_like(half)
+    return np.stack([np.cos(half), zero, zero, np.sin(half)], axis=1)
+
+
+def _rotation(frame: Frame, values: Values) -> tuple[np.ndarray, np.ndarray]:
+    """Return moments of inertia (N, 3) in m a^2, and angular momenta (N, 3) in m a^2/T.
+
+    Disks turn around z alone: HOOMD has 0 where there is no such motion.
+    """
+    axes = [1.0, 1.0, 1.0] if len(values["box"]) == 3 else [0.0, 0.0, 1.0]
+    assert frame.spin is not None
+    moment = values["moment_of_inertia"][:, None]
+    # the spin is the velocity of the surface
+    return moment * axes, moment * frame.spin / values["radius"][:, None]
+
+
+def _doubled_product(orientation: np.ndarray, momentum: np.ndarray) -> np.ndarray:
+    """Return 2 q (0, L) as quaternions (N, 4): what HOOMD has of an angular momentum L in the
+    frame of the body, here (N, 3), and its orientation q, (N, 4)."""
+    real, imaginary = orientation[:, :1], orientation[:, 1:]
+    scalar = -np.sum(imaginary * momentum, axis=1, keepdims=True)
+    vector = real * momentum + np.cross(imaginary, momentum)
+    return 2.0 * np.hstack([scalar, vector])
 
 
 def _least(tilt, lengths):

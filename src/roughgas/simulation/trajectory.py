@@ -11,6 +11,7 @@ from typing import Any, NamedTuple, Self
 import numpy as np
 
 from roughgas.base import InputError, Interval
+from roughgas.effects import inertia_of_spin
 from roughgas.effects.paths import Paths
 from roughgas.effects.species import packing
 from roughgas.kernel.hooks import displacement
@@ -308,6 +309,7 @@ def variables(
         "axis": list("xyz"[:dimension]),
         "radius": shots[0].radius(),
         **_particles_of(shots[0], experiment),
+        **_moments_of(shots[0], scene),
         "box": np.array(lengths),
         "periodic": np.array([length is not None for length in scene.box], "i1"),
     }
@@ -322,3 +324,15 @@ def _particles_of(shot: Snapshot, experiment: Mapping[str, Any]) -> dict[str, An
         "inertia": shot.bodies.inertia,
         "species_of": shot.bodies.species,
     }
+
+
+def _moments_of(shot: Snapshot, scene: Scene) -> dict[str, np.ndarray]:
+    """Return the moments of inertia (N,) in m a^2 of particles that spin."""
+    if shot.spin is None:
+        return {}
+    bodies = shot.bodies
+    if bodies is None:
+        moments = np.full(len(shot.position), inertia_of_spin(scene.effects))
+    else:
+        moments = bodies.inertia * bodies.mass * bodies.radius**2
+    return {"moment_of_inertia": moments}
