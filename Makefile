@@ -15,7 +15,7 @@ FIGURES = figures$(if $(filter-out paper,$(SCALE)),/$(SCALE))
 PIP := $(BIN)/python -m pip --disable-pip-version-check install
 LOCK := uv pip compile --quiet --generate-hashes --no-emit-index-url --no-header --universal \
     --python-version 3.11 pyproject.toml
-EXTRA_TESTS := slow or remedy or browser or slurm
+EXTRA_TESTS := slow or remedy or browser or readers or slurm
 TESTS ?=
 FAST := base claims config data results scene statistics theory test_refusals.py
 
