@@ -80,12 +80,12 @@ def cut_off(files, path):
     path.write_bytes(files["point"].read_bytes()[:-200])
 
 
-def forbidden(files, path):
-    """A folder in place of a file: root may read whatever permissions forbid to others."""
+def no_file(files, path):
+    """A folder in place of a file."""
     path.mkdir()
 
 
-@pytest.mark.parametrize("spoil", [foreign, cut_off, forbidden])
+@pytest.mark.parametrize("spoil", [foreign, cut_off, no_file])
 @pytest.mark.parametrize("options", [[], ["--put-aside"]])
 def test_nothing_is_renamed_without_a_checksum_that_proves_the_damage(
     files, tmp_path, capsys, options, spoil

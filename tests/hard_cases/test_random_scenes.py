@@ -141,8 +141,8 @@ def keep_invariants(margins, kinds, few, many):
     margins.at_most("samples earlier than the one before", worst.backwards, 0, **tried)
     given_up = worst.given_up / worst.tried
     # Hypothesis varies what it has drawn: of few scenes, several may stem from one that collapses
-    share = 0.05 if margins.full else 0.1
-    most = share + 3.0 * math.sqrt(share * (1.0 - share) / worst.tried)
+    # in full the limit carries three standard errors of the number that a busy machine has tried
+    most = 0.05 + 3.0 * math.sqrt(0.05 * 0.95 / worst.tried) if margins.full else 0.1
     margins.at_most("share of scenes that are stopped", given_up, most, **tried)
 
 

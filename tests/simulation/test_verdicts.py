@@ -30,7 +30,7 @@ COOLING = {
 }
 FAR = 5.0  # sigma, of a Gaussian: by chance once in two million
 LONGER = 10
-TRIED = 200
+TRIED = 300
 SHARE = 0.1  # of the scenes that must be trusted, lest a verdict that trusts nothing passes
 
 
@@ -176,7 +176,7 @@ def test_nothing_is_known_without_evidence(run):
 def test_what_is_trusted_is_right():
     """Within 5 errors of a run ten times as long with another seed, in random scenes.
 
-    Errors have their degrees of freedom. None of the 200 may fail: by chance one does in
+    Errors have their degrees of freedom. None of the 300 may fail: by chance one does in
     some thousand runs of this test.
     """
     verdicts, wrong = [], []

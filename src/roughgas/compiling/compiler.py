@@ -81,7 +81,7 @@ def kernel_folder():
     read-only home), or others can write there, in the system's temporary directory. Raises OSError
     where that holds there as well.
     """
-    folder = cache_root() / f"kernels-{source_hash()}"
+    folder = cache_root() / f"kernels-{IMPORTED}"
     try:
         _try_to_write(folder)
     except OSError:

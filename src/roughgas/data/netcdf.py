@@ -101,12 +101,11 @@ def write_netcdf(
 def in_memory(content: Content) -> "xarray.Dataset":
     """Return what `read_netcdf` gives of the file that `write_netcdf` makes, without that file."""
     import netCDF4
-    import xarray
 
     file = netCDF4.Dataset("memory.nc", "w", memory=1)  # never gets to a disk
     _fill(file, content, COMMON_ATTRIBUTES)
-    file = netCDF4.Dataset("memory.nc", memory=file.close())
-    return xarray.load_dataset(xarray.backends.NetCDF4DataStore(file))  # which closes it
+    with netCDF4.Dataset("memory.nc", memory=file.close()) as written:
+        return _loaded(written)
 
 
 def read_netcdf(path: str | Path, *kinds: str, group: str | None = None) -> "xarray.Dataset":

@@ -130,8 +130,8 @@ def local_energies(
         in_each = in_cells(momentum)
         flows += (in_each**2 / shared).sum(axis=1)
         mean += in_each.sum(axis=1) ** 2 / mass.sum(axis=1)
-    freedom = np.where(masses > 0.0, -1.0, 0.0).sum(axis=1) + number
-    local = np.where(freedom > 0.0, total - flows, math.nan) / np.maximum(freedom, 1.0)
+    freedom = number - np.count_nonzero(masses, axis=1)
+    local = np.where(freedom > 0, total - flows, math.nan) / np.maximum(freedom, 1)
     overall = (total - mean) / (number - 1)
     return 0.5 * local / dimension, 0.5 * overall / dimension
 

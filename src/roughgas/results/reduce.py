@@ -108,6 +108,8 @@ def _or_put_aside(path: Path) -> Summary:
     try:
         return _summary(path)
     except DamagedError as error:
+        if path.suffix != ".nc":  # no workflow has made it
+            raise
         path.replace(f"{path}.damaged")
         legal = f"{error.legal}, and now called {path.name}.damaged: run the same command again"
         raise DamagedError("point", path, legal) from error

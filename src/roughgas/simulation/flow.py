@@ -6,7 +6,7 @@ and then, and says by how much R is larger over that.
 
 import math
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -24,13 +24,6 @@ TOGETHER = 20_000
 """Particles whose motions are kept until several looks are reduced at once."""
 
 
-class Shift(NamedTuple):
-    """By how much R is larger over the local flow, at a look."""
-
-    taken: int  # samples before
-    value: float
-
-
 class FlowWatch:
     """Looks at the local flow of a gas every now and then."""
 
@@ -40,7 +33,7 @@ class FlowWatch:
         unity = np.ones(system.particles)
         self._alike = unity, (system.inertia or 0.0) * unity, unity
         self._motions: list[tuple[int, Motion]] = []  # samples before, and what is not reduced yet
-        self._shifts: list[Shift] = []
+        self._shifts: list[tuple[int, float]] = []  # samples before, and by how much R is larger
 
     def look(self, gas: "Gas", taken: int) -> None:
         """Look at a gas from which `taken` samples have been taken."""
@@ -58,25 +51,25 @@ class FlowWatch:
             return
         taken, motions = zip(*self._motions, strict=True)
         values = over_flow(motions, self._system, self._cells).shift
-        self._shifts += map(Shift, taken, values.tolist())
+        self._shifts += zip(taken, values.tolist(), strict=True)
         self._motions.clear()
 
-    def shifts(self) -> list[Shift]:
-        """Return what has been seen so far."""
+    def shifts(self) -> list[tuple[int, float]]:
+        """Return the shift of R at each look so far, after the samples taken before it."""
         self._reduce()
         return self._shifts
 
     def restore(self, shifts: Iterable[tuple[int, float]]) -> None:
-        """See what another watch on the same gas has seen."""
+        """Go on from the `shifts` of another watch on the same gas."""
         self._motions.clear()
-        self._shifts = [Shift(*shift) for shift in shifts]
+        self._shifts = list(shifts)
 
     def shift(self, first: int) -> Estimate:
         """Return by how much R is larger over the local flow, after `first` samples.
 
         Looks are far apart, and count as independent.
         """
-        shifts = np.array([shift.value for shift in self.shifts() if shift.taken > first])
+        shifts = np.array([shift for taken, shift in self.shifts() if taken > first])
         if not len(shifts):
             return Estimate(math.nan, math.nan, 0.0)
         return Estimate(float(shifts.mean()), stderr_over_seeds(shifts), len(shifts) - 1.0)

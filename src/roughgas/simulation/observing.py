@@ -106,7 +106,7 @@ class Observer:
     def saved(self) -> bytes:
         """Return what it has seen so far."""
         seen = [(vars(one.observable), one.looks, one.before) for one in self.watched]
-        shifts = list(map(tuple, self.flow.shifts())) if self.flow else []
+        shifts = self.flow.shifts() if self.flow else []
         return pickle.dumps((self._start, self._taken, seen, shifts))
 
     def restore(self, saved: bytes) -> None:
